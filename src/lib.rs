@@ -1,1 +1,6 @@
 //! caustica: a photon mapper.
+
+pub mod engine;
+pub mod film;
+pub mod math;
+pub mod settings;

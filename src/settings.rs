@@ -1,0 +1,100 @@
+//! Render settings: what a pass does and how many there are. Each field names its unit and the paper's symbol.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// How light is carried to the film.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Method {
+    /// Stochastic progressive photon mapping: fresh eye paths each pass (Hachisuka & Jensen 2009).
+    #[default]
+    Sppm,
+    /// Progressive photon mapping: eye paths traced once (Hachisuka, Ogaki & Jensen 2008).
+    Ppm,
+    /// Path tracing with next-event estimation and multiple importance sampling; CPU engine only.
+    Path,
+}
+
+/// How the gather radius shrinks from pass to pass.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum RadiusRule {
+    /// `r_{i+1}^2 = r_i^2 (i + alpha) / (i + 1)` for all pixels (Knaus & Zwicker 2011, eq. 15).
+    #[default]
+    Global,
+    /// Per visible point, from its own photon count (Hachisuka et al. 2008, eqs. 3-5).
+    Local,
+    /// Constant; the bias stays.
+    Fixed,
+}
+
+/// How light that arrives straight from a light is found.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Direct {
+    /// Shadow rays to sampled lights; photons straight from a light are not stored.
+    #[default]
+    Sampled,
+    /// All photons are stored and none but they light a surface.
+    Photons,
+}
+
+/// The start radius of the gather disc.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Radius {
+    /// In widths of a pixel's footprint at the visible point.
+    Pixels(f64),
+    /// In scene units.
+    Units(f64),
+}
+
+impl Default for Radius {
+    fn default() -> Self {
+        Self::Pixels(2.0)
+    }
+}
+
+/// Everything that decides the bits of a picture beside the scene and the device.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct RenderSettings {
+    /// Light transport method.
+    pub method: Method,
+    /// Number of passes, `P`.
+    pub passes: u32,
+    /// Photons emitted per pass, `M`.
+    pub photons: u32,
+    /// Start radius, `r_1`.
+    pub radius: Radius,
+    /// How the radius shrinks.
+    pub radius_rule: RadiusRule,
+    /// Share of the photons kept when the radius shrinks, `alpha` in (0, 1].
+    pub alpha: f64,
+    /// Where direct light comes from.
+    pub direct: Direct,
+    /// Most scattering events on a photon path and on an eye path.
+    pub max_bounces: u32,
+    /// PPM: fixed visible points per pixel, stratified over pixel and lens.
+    pub eye_samples: u32,
+    /// Seed of the random numbers.
+    pub seed: u64,
+}
+
+impl Default for RenderSettings {
+    fn default() -> Self {
+        Self {
+            method: Method::default(),
+            passes: 64,
+            photons: 262_144,
+            radius: Radius::default(),
+            radius_rule: RadiusRule::default(),
+            alpha: 2.0 / 3.0,
+            direct: Direct::default(),
+            max_bounces: 32,
+            eye_samples: 4,
+            seed: 0,
+        }
+    }
+}
