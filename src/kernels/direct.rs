@@ -1,0 +1,95 @@
+//! Direct light at a non-specular hit: one shadow ray to a sampled light and, on metal, one ray by the
+//! material's density, joined by multiple importance sampling (Veach & Guibas 1995). Twin:
+//! `shaders/kernels/direct.wgsl`.
+
+use crate::lights::light::{eval_environment, pdf_environment, pdf_light, sample_light};
+use crate::materials::scatter::{RADIANCE, eval_rough, pdf_rough, scatter_rough};
+use crate::math::rng::{Rng, rng_next};
+use crate::math::sampling::balance;
+use crate::math::trig::exp;
+use crate::math::{FAR, max_component, offset_origin};
+use crate::shapes::intersect::{intersect_scene, occluded};
+use crate::shapes::ray::Ray;
+use crate::shapes::surface::{Surface, surface_at};
+use crate::tables::*;
+use glam::{Vec2, Vec3};
+
+/// Beer-Lambert transmittance over `distance` in a medium.
+pub fn transmittance(scene: &Scene, medium: u32, distance: f32) -> Vec3 {
+    if medium == NONE {
+        return Vec3::ONE;
+    }
+    let depth = scene.materials[medium as usize].absorption * -distance;
+    Vec3::new(exp(depth.x), exp(depth.y), exp(depth.z))
+}
+
+/// The medium that a ray with direction `-wo` crossed before it hit `s`: glass met from inside says so itself.
+pub fn medium_before(scene: &Scene, s: &Surface, wo: Vec3, medium: u32) -> u32 {
+    let inside = scene.materials[s.material as usize].kind == MATERIAL_GLASS && wo.dot(s.normal) < 0.0;
+    if inside { s.material } else { medium }
+}
+
+/// Radiance toward `wo` from the lights, and the number of rays spent.
+#[allow(clippy::too_many_arguments)]
+pub fn direct_light(
+    scene: &Scene,
+    s: &Surface,
+    wo: Vec3,
+    n: Vec3,
+    ng: Vec3,
+    reflectance: Vec3,
+    medium: u32,
+    rng: &mut Rng,
+) -> (Vec3, u32) {
+    let kind = scene.materials[s.material as usize].kind;
+    let alpha = scene.materials[s.material as usize].alpha;
+    let origin = s.position + ng * s.error;
+    let mut radiance = Vec3::ZERO;
+    let mut rays = 0;
+    let light = sample_light(scene, origin, rng_next(rng));
+    if light.direction.dot(ng) > 0.0 && max_component(light.radiance) > 0.0 {
+        let f = eval_rough(kind, alpha, reflectance, n, wo, light.direction);
+        if max_component(f) > 0.0 {
+            rays += 1;
+            let ray = Ray { origin, t_min: 0.0, direction: light.direction, t_max: light.distance };
+            if !occluded(scene, &ray) {
+                let mut weight = 1.0 / light.pdf;
+                if kind == MATERIAL_METAL && light.extended {
+                    weight *= balance(light.pdf, pdf_rough(kind, alpha, n, wo, light.direction));
+                }
+                radiance += f * light.radiance * weight;
+                if light.distance < FAR {
+                    radiance *= transmittance(scene, medium, light.distance);
+                }
+            }
+        }
+    }
+    if kind == MATERIAL_METAL {
+        let u = rng_next(rng);
+        let scattered = scatter_rough(scene, s, wo, medium, Vec2::new(u.x, u.y), RADIANCE);
+        if max_component(scattered.weight) > 0.0 {
+            rays += 1;
+            let pdf = pdf_rough(kind, alpha, n, wo, scattered.direction);
+            let origin = offset_origin(s.position, s.error, ng, scattered.direction);
+            let ray = Ray { origin, t_min: 0.0, direction: scattered.direction, t_max: FAR };
+            let hit = intersect_scene(scene, &ray);
+            if hit.reference == NONE {
+                if scene.world.environment != NONE {
+                    let light = &scene.lights[scene.world.environment as usize];
+                    let other = pdf_environment(scene, light, ray.direction) * light.selection;
+                    let seen = eval_environment(scene, light, ray.direction);
+                    radiance += scattered.weight * seen * balance(pdf, other);
+                }
+            } else {
+                let at = surface_at(scene, &ray, &hit);
+                if at.light != NONE && ray.direction.dot(at.normal) < 0.0 {
+                    let light = &scene.lights[at.light as usize];
+                    let other = pdf_light(scene, at.light, origin, ray.direction, hit.t, at.normal, at.v);
+                    let seen = light.color * transmittance(scene, medium, hit.t);
+                    radiance += scattered.weight * seen * balance(pdf, other);
+                }
+            }
+        }
+    }
+    (radiance, rays)
+}
