@@ -47,5 +47,5 @@ fn sphere_error(sphere: Sphere, position: vec3f) -> f32 {
 
 fn sphere_uv(n: vec3f) -> vec2f {
     let r = sqrt(n.x * n.x + n.z * n.z);
-    return vec2f(0.5 - atan2_poly(n.z, n.x) * (1.0 / TAU), 0.5 + atan2_poly(n.y, r) * (1.0 / PI));
+    return vec2f(0.5 - arctan2(n.z, n.x) * (1.0 / TAU), 0.5 + arctan2(n.y, r) * (1.0 / PI));
 }

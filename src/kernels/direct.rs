@@ -6,7 +6,7 @@ use crate::lights::light::{eval_environment, pdf_environment, pdf_light, sample_
 use crate::materials::scatter::{RADIANCE, eval_rough, pdf_rough, scatter_rough};
 use crate::math::rng::{Rng, rng_next};
 use crate::math::sampling::balance;
-use crate::math::trig::exp;
+use crate::math::trig::exponential;
 use crate::math::{FAR, max_component, offset_origin};
 use crate::shapes::intersect::{intersect_scene, occluded};
 use crate::shapes::ray::Ray;
@@ -20,7 +20,7 @@ pub fn transmittance(scene: &Scene, medium: u32, distance: f32) -> Vec3 {
         return Vec3::ONE;
     }
     let depth = scene.materials[medium as usize].absorption * -distance;
-    Vec3::new(exp(depth.x), exp(depth.y), exp(depth.z))
+    Vec3::new(exponential(depth.x), exponential(depth.y), exponential(depth.z))
 }
 
 /// The medium that a ray with direction `-wo` crossed before it hit `s`: glass met from inside says so itself.

@@ -41,7 +41,7 @@ pub fn emit_photon(scene: &Scene, rng: &mut Rng) -> Emission {
         let solid_angle = TAU * (1.0 - light.cos_outer);
         return Emission { ray, flux: light.color * (spot_falloff(light, local.z) * solid_angle / light.selection) };
     }
-    // from infinity: through one of a row of discs, each twice as wide as the one before
+    // from infinity: through one of a row of discs, each twice as wide as the one before and half as likely
     ray.direction = light.direction;
     let mut radiance = light.color;
     if light.kind != LIGHT_SUN {
@@ -49,9 +49,13 @@ pub fn emit_photon(scene: &Scene, rng: &mut Rng) -> Emission {
         ray.direction = -w;
         radiance = eval_environment(scene, light, w) * (1.0 / pdf_environment(scene, light, w));
     }
-    let level = (v.z * scene.world.disc_levels as f32).floor() as u32;
     let mut radius = scene.world.near_radius;
-    for _ in 0..level {
+    let mut x = v.z;
+    for _ in 1..scene.world.disc_levels {
+        if x >= 0.5 {
+            break;
+        }
+        x *= 2.0;
         radius *= 2.0;
     }
     let d = sample_disc(across) * radius;
@@ -69,15 +73,20 @@ pub fn disc_radius_max(scene: &Scene) -> f32 {
     radius
 }
 
-/// Density per area, at squared distance `r_sq` from the middle, of a point on a disc chosen uniformly.
+/// Density per area, at squared distance `r_sq` from the middle, of a point on a disc so chosen.
 pub fn pdf_discs(scene: &Scene, r_sq: f32) -> f32 {
     let mut radius = scene.world.near_radius;
+    let mut probability = 0.5;
     let mut sum = 0.0;
-    for _ in 0..scene.world.disc_levels {
-        if r_sq <= radius * radius * (1.0 + 16.0 * EPS) {
-            sum += 1.0 / (PI * radius * radius);
+    for level in 1..scene.world.disc_levels + 1 {
+        if level == scene.world.disc_levels {
+            probability *= 2.0;
         }
+        if r_sq <= radius * radius * (1.0 + 16.0 * EPS) {
+            sum += probability / (PI * radius * radius);
+        }
+        probability *= 0.5;
         radius *= 2.0;
     }
-    sum / scene.world.disc_levels as f32
+    sum
 }

@@ -4,7 +4,7 @@
 use super::shape::{pdf_bin, pdf_shape, pdf_sphere_cone, sample_shape, sample_sphere_cone};
 use crate::materials::texture::eval_texture;
 use crate::math::sampling::{PDF_SPHERE, sample_sphere};
-use crate::math::trig::{atan2, sin_cos};
+use crate::math::trig::{arctan2, sin_cos};
 use crate::math::{EPS, FAR, PI, TAU};
 use crate::tables::*;
 use glam::{Vec2, Vec3, Vec4};
@@ -163,7 +163,7 @@ pub fn environment_uv(light: &Light, direction: Vec3) -> Vec2 {
     let x = light.cos_outer * direction.x - light.cos_inner * direction.z;
     let z = light.cos_inner * direction.x + light.cos_outer * direction.z;
     let r = (x * x + z * z).sqrt();
-    Vec2::new(0.5 - atan2(z, x) * (1.0 / TAU), 1.0 - atan2(r, direction.y) * (1.0 / PI))
+    Vec2::new(0.5 - arctan2(z, x) * (1.0 / TAU), 1.0 - arctan2(r, direction.y) * (1.0 / PI))
 }
 
 /// Radiance from `direction`.

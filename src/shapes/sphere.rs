@@ -3,7 +3,7 @@
 //! `(k/2) t^2 + (v.n + k d.v) t + (d.n + k |d|^2 / 2) = 0`. Twin: `shaders/shapes/sphere.wgsl`.
 
 use super::ray::{Hit, Ray};
-use crate::math::{EPS, PI, TAU, max_abs, trig::atan2, unit};
+use crate::math::{EPS, PI, TAU, max_abs, trig::arctan2, unit};
 use crate::tables::Sphere;
 use glam::{Vec2, Vec3};
 
@@ -53,8 +53,8 @@ pub fn sphere_error(sphere: &Sphere, position: Vec3) -> f32 {
     16.0 * EPS * (max_abs(sphere.anchor) + max_abs(position - sphere.anchor))
 }
 
-/// u = 0.5 - atan2(z, x) / 2 pi, v from the south pole (0) to the north pole (1) by angle.
+/// u = 0.5 - arctan2(z, x) / 2 pi, v from the south pole (0) to the north pole (1) by angle.
 pub fn sphere_uv(n: Vec3) -> Vec2 {
     let r = (n.x * n.x + n.z * n.z).sqrt();
-    Vec2::new(0.5 - atan2(n.z, n.x) * (1.0 / TAU), 0.5 + atan2(n.y, r) * (1.0 / PI))
+    Vec2::new(0.5 - arctan2(n.z, n.x) * (1.0 / TAU), 0.5 + arctan2(n.y, r) * (1.0 / PI))
 }
