@@ -168,4 +168,8 @@ struct Light {
     first: u32,
     cos_outer: f32,
     cos_inner: f32,
+    patch_first: u32,
+    patch_count: u32,
+    pad0: u32,
+    pad1: u32,
 }

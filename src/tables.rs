@@ -341,12 +341,19 @@ pub struct Light {
     pub area: f32,
     /// Area: the shape's reference; image: texture index.
     pub reference: u32,
-    /// First entry in `distributions` (revolution and image).
+    /// First entry in `distributions`: revolution: where each patch's part of v starts, then the cumulative share
+    /// of the area by patch; image: cumulative rows, then each row's cumulative columns.
     pub first: u32,
     /// Spot: cosine of the angle where it is dark; image: cosine of the rotation about y.
     pub cos_outer: f32,
     /// Spot: cosine of the angle up to which it is full; image: sine of the rotation.
     pub cos_inner: f32,
+    /// Revolution: its first patch.
+    pub patch_first: u32,
+    /// Revolution: number of its patches.
+    pub patch_count: u32,
+    /// Padding.
+    pub pad: [u32; 2],
 }
 
 /// The flattened scene.

@@ -2,18 +2,15 @@
 
 use super::light::find_interval;
 use crate::math::sampling::{sample_cone, sample_disc, sample_sphere, sample_triangle};
-use crate::math::{FAR, TAU, from_frame, unit};
+use crate::math::{FAR, PI, TAU, from_frame, unit};
 use crate::shapes::cuboid::{cuboid_error, cuboid_normal};
 use crate::shapes::disc::disc_error;
 use crate::shapes::rectangle::{rectangle_error, rectangle_point};
-use crate::shapes::revolution::revolution_point;
+use crate::shapes::revolution::{revolution_surface, ring_point};
 use crate::shapes::sphere::{sphere_error, sphere_project};
 use crate::shapes::triangle::{triangle_error, triangle_normal, triangle_point};
 use crate::tables::*;
 use glam::{Vec2, Vec3};
-
-/// Bins of the distribution of area along a revolution's profile.
-pub const REVOLUTION_BINS: u32 = 64;
 
 /// A point on a shape.
 #[derive(Clone, Copy, Debug)]
@@ -89,17 +86,48 @@ pub fn sample_shape(scene: &Scene, light: &Light, u: Vec2, w: f32) -> ShapePoint
             ShapePoint { position: cuboid.lower + e * q, error: cuboid_error(cuboid), normal: n, pdf }
         }
         _ => {
-            let bin = find_interval(scene, light.first, REVOLUTION_BINS, w);
-            let v = (bin as f32 + u.x) * (1.0 / REVOLUTION_BINS as f32);
-            let r = revolution_point(scene, index as u32, v, TAU * u.y);
+            let k = find_interval(scene, light.first + light.patch_count, light.patch_count, w);
+            let start = scene.distributions[(light.first + k) as usize];
+            let end = if k + 1 < light.patch_count { scene.distributions[(light.first + k + 1) as usize] } else { 1.0 };
+            let v = start + (end - start) * u.x;
+            let r = patch_point(scene, light, k, v, TAU * u.y - PI);
             ShapePoint {
                 position: r.position,
                 error: r.error,
                 normal: r.normal,
-                pdf: pdf_bin(scene, light.first, bin, REVOLUTION_BINS) / (TAU * r.stretch).max(1e-30),
+                pdf: pdf_patch(scene, light, k, end - start) / (TAU * r.stretch).max(1e-30),
             }
         }
     }
+}
+
+/// A point of a revolution and how much area a unit of v and of theta cover there.
+struct PatchPoint {
+    position: Vec3,
+    error: f32,
+    normal: Vec3,
+    stretch: f32,
+}
+
+/// The point of a revolution light at profile parameter `v` in its patch `k`.
+fn patch_point(scene: &Scene, light: &Light, k: u32, v: f32, theta: f32) -> PatchPoint {
+    let patch = &scene.patches[(light.patch_first + k) as usize];
+    let revolution = &scene.revolutions[patch.revolution as usize];
+    let t = v * revolution.segments as f32 - patch.segment as f32;
+    let tau = ((t - patch.t0) / (patch.t1 - patch.t0)).clamp(0.0, 1.0);
+    let s = revolution_surface(&scene.profile_points, revolution, patch, theta, tau);
+    let ring = ring_point(&scene.profile_points, patch, theta, tau);
+    let by_v = ring.d_tau * (revolution.segments as f32 / (patch.t1 - patch.t0));
+    let stretch = ring.d_theta.cross(by_v);
+    let scale_sq = revolution.scale * revolution.scale;
+    PatchPoint { position: s.position, error: s.error, normal: s.normal, stretch: stretch.dot(stretch).sqrt() * scale_sq }
+}
+
+/// Density per v of patch `k`'s part, `width` long.
+fn pdf_patch(scene: &Scene, light: &Light, k: u32, width: f32) -> f32 {
+    let at = light.first + light.patch_count + k;
+    let low = if k > 0 { scene.distributions[(at - 1) as usize] } else { 0.0 };
+    (scene.distributions[at as usize] - low) / width
 }
 
 /// Density of bin `bin` of `count` equal bins on [0, 1), from the cumulative values at `first`.
@@ -112,10 +140,13 @@ pub fn pdf_bin(scene: &Scene, first: u32, bin: u32, count: u32) -> f32 {
 /// Density per area of [`sample_shape`] at a point with profile parameter `v` (revolutions only).
 pub fn pdf_shape(scene: &Scene, light: &Light, v: f32) -> f32 {
     if light.reference >> REFERENCE_BITS == KIND_REVOLUTION {
-        let index = light.reference & ((1 << REFERENCE_BITS) - 1);
-        let bin = ((v * REVOLUTION_BINS as f32).floor() as u32).min(REVOLUTION_BINS - 1);
-        let r = revolution_point(scene, index, v, 0.0);
-        return pdf_bin(scene, light.first, bin, REVOLUTION_BINS) / (TAU * r.stretch).max(1e-30);
+        // the last patch whose part starts at or before v
+        let k = find_interval(scene, light.first, light.patch_count, v);
+        let k = if k > 0 && scene.distributions[(light.first + k) as usize] > v { k - 1 } else { k };
+        let start = scene.distributions[(light.first + k) as usize];
+        let end = if k + 1 < light.patch_count { scene.distributions[(light.first + k + 1) as usize] } else { 1.0 };
+        let r = patch_point(scene, light, k, v, 0.0);
+        return pdf_patch(scene, light, k, end - start) / (TAU * r.stretch).max(1e-30);
     }
     1.0 / light.area
 }

@@ -3,7 +3,7 @@
 
 use super::cuboid::intersect_cuboid;
 use super::disc::{intersect_disc, intersect_plane};
-use super::kdtree::{traverse_any, traverse_closest};
+use super::kdtree::{Tree, traverse_any, traverse_closest};
 use super::ray::{Hit, Ray};
 use super::rectangle::intersect_rectangle;
 use super::revolution::intersect_patch;
@@ -21,7 +21,15 @@ pub fn intersect_primitive(scene: &Scene, shear: &RayShear, reference: u32, ray:
         KIND_RECTANGLE => intersect_rectangle(&scene.rectangles[index], reference, ray, hit),
         KIND_DISC => intersect_disc(&scene.discs[index], reference, ray, hit),
         KIND_CUBOID => intersect_cuboid(&scene.cuboids[index], reference, ray, hit),
-        KIND_REVOLUTION => intersect_patch(scene, index, reference, ray, hit),
+        KIND_REVOLUTION => {
+            let patch = &scene.patches[index];
+            let revolution = &scene.revolutions[patch.revolution as usize];
+            let points = &scene.profile_points;
+            let at = intersect_patch(points, revolution, patch, ray.origin, ray.direction, ray.t_min, hit.t);
+            if at.t < hit.t {
+                *hit = Hit { t: at.t, reference, u: at.theta, v: at.tau };
+            }
+        }
         _ => intersect_plane(&scene.planes[index], reference, ray, hit),
     }
 }
@@ -34,7 +42,7 @@ pub fn intersect_scene(scene: &Scene, ray: &Ray) -> Hit {
         intersect_primitive(scene, &shear, scene.unbounded[i as usize], ray, &mut hit);
     }
     if !scene.nodes.is_empty() {
-        traverse_closest(scene, &shear, ray, &mut hit);
+        traverse_closest(&tree(scene), ray, &mut hit, |r, ray, hit| intersect_primitive(scene, &shear, r, ray, hit));
     }
     hit
 }
@@ -49,5 +57,15 @@ pub fn occluded(scene: &Scene, ray: &Ray) -> bool {
             return true;
         }
     }
-    !scene.nodes.is_empty() && traverse_any(scene, &shear, ray, &mut hit)
+    !scene.nodes.is_empty()
+        && traverse_any(&tree(scene), ray, &mut hit, |r, ray, hit| intersect_primitive(scene, &shear, r, ray, hit))
+}
+
+fn tree(scene: &Scene) -> Tree<'_> {
+    Tree {
+        nodes: &scene.nodes,
+        refs: &scene.refs,
+        bounds_min: scene.world.bounds_min,
+        bounds_max: scene.world.bounds_max,
+    }
 }

@@ -135,7 +135,7 @@ pub fn surface_at(scene: &Scene, ray: &Ray, hit: &Hit) -> Surface {
         KIND_REVOLUTION => {
             let patch = scene.patches[index];
             let revolution = scene.revolutions[patch.revolution as usize];
-            let r = revolution_surface(scene, index, ray, hit);
+            let r = revolution_surface(&scene.profile_points, &revolution, &patch, hit.u, hit.v);
             s = Surface {
                 position: r.position,
                 error: r.error,
