@@ -6,7 +6,9 @@
 //! Conventions: right-handed, y up; linear Rec. 709 RGB; one scene unit is one metre; angles in degrees.
 
 mod appearance;
+pub mod file;
 mod geometry;
+pub mod numbers;
 
 use glam::DVec3;
 use schemars::JsonSchema;
