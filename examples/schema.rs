@@ -1,6 +1,5 @@
+//! Prints the JSON Schema of scene files: `cargo run --release --example schema > scenes/schema.json`.
+
 fn main() {
-    println!(
-        "{}",
-        serde_json::to_string_pretty(&schemars::schema_for!(caustica::scene::file::SceneFile)).unwrap()
-    );
+    print!("{}", caustica::scene::schema_json());
 }

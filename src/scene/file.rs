@@ -11,6 +11,7 @@ use serde::Deserialize;
 use super::ToneMap;
 use super::appearance::{Filter, Wrap};
 use super::numbers::{NonNegative, Paint, Positive, Share, Spectrum};
+use super::schema::close_variants;
 use crate::settings::RenderSettings;
 
 /// Three coordinates.
@@ -185,6 +186,7 @@ pub enum Uv {
 /// A surface.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(tag = "type", rename_all = "snake_case")]
+#[schemars(transform = close_variants)]
 pub enum ShapeFile {
     /// All points at one distance from the centre.
     Sphere {
