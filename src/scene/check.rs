@@ -136,7 +136,12 @@ impl<'c> Checker<'c> {
         let expected = describe(self.root, schema);
         if !number.is_finite() {
             let message = format!("`{path}` is not a finite number");
-            self.report.error(node.span(), message, format!("expected {expected}"), description(whole));
+            self.report.error(
+                node.span(),
+                message,
+                expected.replacen("a number", "expected a finite number", 1),
+                description(whole),
+            );
             return Some(Json::from(1.0));
         }
         let fits = in_range(schema, number) && integer_fits(schema, number);
