@@ -305,3 +305,37 @@ fn mutated_files() {
     }
     assert!(refused > 100, "the mutations do not bite: {refused}");
 }
+
+/// OBJ and MTL files of any bytes load or are refused; nothing panics (tobj alone does).
+#[test]
+fn mutated_meshes() {
+    let mut state = 0x9e37_79b9_7f4a_7c15_u64;
+    let mut random = |below: usize| {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        (state >> 16) as usize % below
+    };
+    let folder = std::env::temp_dir().join(format!("caustica-mutated-{}", std::process::id()));
+    std::fs::create_dir_all(folder.join("reference")).unwrap();
+    std::fs::copy(data("reference/grid.png"), folder.join("reference/grid.png")).unwrap();
+    let text = format!("{HEAD}[[shapes]]\ntype = \"mesh\"\nfile = \"parts.obj\"\n");
+    let mut refused = 0;
+    for _ in 0..400 {
+        for name in ["parts.obj", "parts.mtl"] {
+            let mut bytes = std::fs::read(data(name)).unwrap();
+            for _ in 0..random(4) {
+                let at = random(bytes.len());
+                match random(3) {
+                    0 => bytes[at] = random(256) as u8,
+                    1 => drop(bytes.remove(at)),
+                    _ => bytes.insert(at, b" /-.0123456789\n#fvn\\"[random(20)]),
+                }
+            }
+            std::fs::write(folder.join(name), bytes).unwrap();
+        }
+        refused += usize::from(parse(&folder.join("scene.toml"), text.as_bytes()).is_err());
+    }
+    std::fs::remove_dir_all(&folder).unwrap();
+    assert!((50..400).contains(&refused), "{refused}");
+}

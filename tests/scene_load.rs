@@ -197,3 +197,54 @@ fn schema_is_current() {
         "renew it: cargo run --release --example schema > scenes/schema.json"
     );
 }
+
+/// Each image format keeps its numbers: 8-bit as they are, 16-bit through the sRGB curve (or not), hdr and exr in linear
+/// floats. The same file in the same color space is read once.
+#[test]
+fn image_formats() {
+    let folder = std::env::temp_dir().join(format!("caustica-images-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let deep = image::ImageBuffer::from_pixel(2, 1, image::Rgb([32768u16, 0, 65535]));
+    deep.save(folder.join("deep.png")).unwrap();
+    let floats = image::ImageBuffer::from_fn(3, 2, |x, y| image::Rgb([x as f32, y as f32, 0.5]));
+    image::DynamicImage::ImageRgb32F(floats).save(folder.join("sky.hdr")).unwrap();
+    exr::prelude::write_rgb_file(folder.join("sky.exr"), 3, 2, |x, y| (x as f32, y as f32, 1e4f32)).unwrap();
+    let load = |texture: &str, environment: &str| {
+        let text = format!(
+            "{HEAD}[textures.a]\ntype = \"image\"\nfile = \"deep.png\"\n{texture}\n\
+             [textures.b]\ntype = \"planks\"\nfile = \"deep.png\"\nsize = [1, 2]\n\
+             [environment]\nfile = \"{environment}\"\nrotate = 90\n"
+        );
+        parse(&folder.join("scene.toml"), text.as_bytes()).map(|loaded| loaded.scene)
+    };
+    let exr = load("", "sky.exr").unwrap();
+    assert_eq!(exr.images.len(), 2, "deep.png is shared");
+    let Texels::Float(texels) = &exr.images[0].texels else { panic!() };
+    // IEC 61966-2-1 at 32768/65535: ((0.5000076 + 0.055) / 1.055)^2.4 = 0.214048
+    assert!((texels[1][0] - 0.214_048).abs() < 1e-6 && texels[1][1..] == [0.0, 1.0], "{texels:?}");
+    let Texels::Float(texels) = &exr.images[1].texels else { panic!() };
+    assert_eq!((exr.images[1].width, texels[5]), (3, [2.0, 1.0, 1e4]));
+    let environment = Environment::Image { image: 1, rotate_degrees: 90.0, scale: [1.0; 3] };
+    assert_eq!(exr.environment, Some(environment));
+
+    let hdr = load("color_space = \"linear\"", "sky.hdr").unwrap();
+    assert_eq!(hdr.images.len(), 3, "two color spaces of deep.png");
+    let Texels::Float(texels) = &hdr.images[0].texels else { panic!() };
+    assert!((texels[0][0] - 32768.0 / 65535.0).abs() < 1e-7);
+    let Texels::Float(texels) = &hdr.images[2].texels else { panic!() };
+    assert_eq!(texels[5], [2.0, 1.0, 0.5]);
+
+    // 1e4 is no reflectance, and NaN no radiance.
+    let text = format!("{HEAD}[textures.a]\ntype = \"image\"\nfile = \"sky.exr\"\n");
+    let errors = parse(&folder.join("scene.toml"), text.as_bytes()).unwrap_err();
+    assert!(errors.errors[0].message().contains("texel of 10000"));
+    exr::prelude::write_rgb_file(folder.join("nan.exr"), 2, 2, |x, _| (x as f32 / 0.0, 0.0f32, 0.0f32))
+        .unwrap();
+    let errors = load("", "nan.exr").unwrap_err();
+    assert!(errors.errors[0].message().contains("texel (0, 0)"), "{errors:?}");
+    // A truncated file.
+    let bytes = std::fs::read(folder.join("sky.exr")).unwrap();
+    std::fs::write(folder.join("cut.exr"), &bytes[..bytes.len() / 2]).unwrap();
+    assert!(load("", "cut.exr").is_err());
+    std::fs::remove_dir_all(&folder).unwrap();
+}

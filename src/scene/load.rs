@@ -98,11 +98,12 @@ impl<'l, 'a> Loader<'l, 'a> {
 
     fn load(mut self) -> Option<(Scene, RenderSettings)> {
         let document = self.document;
-        if let Some(item) = document.item("version") {
-            if let Some(version) = item.read::<u32>(self.report).filter(|&version| version != 1) {
-                let message = format!("version {version} of the scene format is not known");
-                self.report.error(item.node.span(), message, "expected 1", None);
-            }
+        if let Some(item) = document.item("version")
+            && let Some(version) = item.read::<u32>(self.report)
+            && version != 1
+        {
+            let message = format!("version {version} of the scene format is not known");
+            self.report.error(item.node.span(), message, "expected 1", None);
         }
         self.undefined("materials", "shapes", "material");
         self.undefined("textures", "materials", "reflectance");
