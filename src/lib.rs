@@ -3,4 +3,5 @@
 pub mod engine;
 pub mod film;
 pub mod math;
+pub mod scene;
 pub mod settings;
