@@ -1,5 +1,7 @@
 //! Vectors, frames, random numbers and elementary functions, each the twin of a file in `shaders/math/`.
 
+pub mod trig;
+
 use glam::Vec3;
 
 /// Twice pi.

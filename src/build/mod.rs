@@ -1,0 +1,4 @@
+//! Host-side preparation, in f64, of what the kernels read.
+
+pub mod bezier;
+pub mod revolution;
