@@ -93,6 +93,7 @@ struct Piece {
     t1: f64,
     points: Vec<DVec2>,
     slope: f64,
+    wobble: f64,
 }
 
 impl RevolutionTables {
@@ -167,7 +168,8 @@ impl RevolutionTables {
             length: local[local.len() - 1].x as f32,
             t0: piece.t0 as f32,
             t1: piece.t1 as f32,
-            padding: [0; 2],
+            wobble: (piece.wobble * 1.001 + 1e-6) as f32,
+            padding: 0,
         };
         let index = self.patches.len() as u32;
         self.patches.push(patch);
@@ -239,37 +241,39 @@ fn halve(segment: &[DVec2], limits: [f64; 2], t0: f64, t1: f64, depth: u32, out:
     let over = OVERLAP * (t1 - t0);
     let (a, b) = ((t0 - over).max(limits[0]), (t1 + over).min(limits[1]));
     let points = restrict(segment, a, b);
-    if let Some(slope) = slope(&points) {
-        out.push(Piece { t0: a, t1: b, points, slope });
+    if let Some((slope, wobble)) = slopes(&points) {
+        out.push(Piece { t0: a, t1: b, points, slope, wobble });
     } else if depth < MAX_DEPTH {
         let middle = 0.5 * (t0 + t1);
         halve(segment, limits, t0, middle, depth + 1, out);
         halve(segment, limits, middle, t1, depth + 1, out);
     } else {
         let ends = vec![points[0], points[points.len() - 1]];
-        out.push(Piece { t0: a, t1: b, points: ends, slope: 0.0 });
+        out.push(Piece { t0: a, t1: b, points: ends, slope: 0.0, wobble: 0.0 });
     }
 }
 
-/// Bound on |dh/ds| of a curve over its chord, from the legs of its control polygon; None when it is no flat
-/// graph.
-fn slope(points: &[DVec2]) -> Option<f64> {
+/// Bounds on |dh/ds| of a curve over its chord and on how far it leaves the range between its ends, from the
+/// legs of its control polygon (variation diminishing: dh/ds is a rational Bezier function with their slopes
+/// as coefficients). None when it is no flat graph.
+fn slopes(points: &[DVec2]) -> Option<(f64, f64)> {
     let chord = points[points.len() - 1] - points[0];
     let length = chord.length();
     if length < 1e-12 {
         return None;
     }
     let e = chord / length;
-    let mut bound = 0.0_f64;
-    for w in points.windows(2) {
-        let leg = w[1] - w[0];
-        // A leg of no length (at a cusp) turns no tangent.
-        if leg.length() > 1e-9 * length {
-            let (ds, dh) = (e.dot(leg), e.perp_dot(leg).abs());
-            bound = bound.max(if ds > 0.0 { dh / ds } else { f64::INFINITY });
-        }
+    // A leg of no length (at a cusp) turns no tangent.
+    let legs = points.windows(2).map(|w| w[1] - w[0]).filter(|leg| leg.length() > 1e-9 * length);
+    let slope = |leg: DVec2| if e.dot(leg) > 0.0 { leg.perp_dot(e) / e.dot(leg) } else { f64::INFINITY };
+    let slopes: Vec<f64> = legs.map(slope).collect();
+    let bound = slopes.iter().fold(0.0_f64, |a, x| a.max(x.abs()));
+    if bound > FLAT_SLOPE {
+        return None;
     }
-    (bound <= FLAT_SLOPE).then_some(bound)
+    let variation: f64 = slopes.windows(2).map(|w| (w[1] - w[0]).abs()).sum();
+    let net = slopes[slopes.len() - 1] - slopes[0];
+    Some((bound, 0.5 * (variation - net.abs())))
 }
 
 /// Box of sector `k` of `sectors` of the ring that the hull of `points` (local r, y) sweeps.

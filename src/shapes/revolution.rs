@@ -106,8 +106,10 @@ pub struct Patch {
     pub t0: f32,
     /// See `t0`.
     pub t1: f32,
+    /// Between two points, phi' leaves the range of its values there by no more than this.
+    pub wobble: f32,
     /// Zero.
-    pub padding: [u32; 2],
+    pub padding: u32,
 }
 
 /// Where a ray meets a patch.
@@ -256,23 +258,26 @@ fn tau_at(points: &[Vec2], patch: &Patch, s: f32) -> f32 {
     tau
 }
 
-/// F = h - phi(s); phi is continued by 0 past the chord's ends.
-fn profile_offset(points: &[Vec2], patch: &Patch, at: ChordPoint) -> f32 {
-    if at.x <= 0.0 || at.x >= patch.length {
-        return at.y;
-    }
-    at.y - profile_point(points, patch, tau_at(points, patch, at.x)).y
+/// F = h - phi(s) and phi'(s); phi is continued past the chord's ends by its tangents.
+fn profile_offset(points: &[Vec2], patch: &Patch, at: ChordPoint) -> Vec2 {
+    let s = at.x.clamp(0.0, patch.length);
+    let p = profile_point(points, patch, tau_at(points, patch, s));
+    let slope = if p.z > 0.0 { p.w / p.z } else { 0.0 };
+    let d_phi = slope.clamp(-patch.slope, patch.slope);
+    Vec2::new(at.y - (p.y + d_phi * (at.x - s)), d_phi)
 }
 
 /// Whether F >= 0.
 fn above_profile(points: &[Vec2], patch: &Patch, at: ChordPoint) -> bool {
-    if at.y > patch.phi_max {
+    // The band that holds phi, continued.
+    let past = (-at.x).max(at.x - patch.length).max(0.0) * patch.slope;
+    if at.y > patch.phi_max + past {
         return true;
     }
-    if at.y < patch.phi_min {
+    if at.y < patch.phi_min - past {
         return false;
     }
-    profile_offset(points, patch, at) >= 0.0
+    profile_offset(points, patch, at).x >= 0.0
 }
 
 /// S and its derivatives at (theta, tau).
@@ -359,8 +364,8 @@ fn newton(points: &[Vec2], patch: &Patch, ray: &LocalRay, start: PatchHit) -> Pa
 fn bracketed_root(points: &[Vec2], patch: &Patch, ray: &LocalRay, a: f32, b: f32, side: f32) -> PatchHit {
     let mut low = a;
     let mut high = b;
-    let mut f_low = profile_offset(points, patch, chord_point(patch, ray, low, side));
-    let mut f_high = profile_offset(points, patch, chord_point(patch, ray, high, side));
+    let mut f_low = profile_offset(points, patch, chord_point(patch, ray, low, side)).x;
+    let mut f_high = profile_offset(points, patch, chord_point(patch, ray, high, side)).x;
     let rising = f_high >= 0.0;
     let mut l = 0.5 * (low + high);
     for i in 0..60 {
@@ -370,7 +375,7 @@ fn bracketed_root(points: &[Vec2], patch: &Patch, ray: &LocalRay, a: f32, b: f32
         if l <= low || l >= high {
             break;
         }
-        let f = profile_offset(points, patch, chord_point(patch, ray, l, side));
+        let f = profile_offset(points, patch, chord_point(patch, ray, l, side)).x;
         if (f >= 0.0) == rising {
             high = l;
             f_high = f;
@@ -390,20 +395,21 @@ fn bracketed_root(points: &[Vec2], patch: &Patch, ray: &LocalRay, a: f32, b: f32
     PatchHit { t: l, theta: arctan2(z, x), tau: tau_at(points, patch, at.x), steps: BRACKETED }
 }
 
-/// The root of F between `a` and `b` (chord points at the distances `l_a`, `l_b`), where F changes sign.
-/// `reach` bounds how far in s the profile's root can lie from the chord's.
-fn find_root(points: &[Vec2], patch: &Patch, ray: &LocalRay, ends: [f32; 2], a: ChordPoint, b: ChordPoint, reach: f32, side: f32) -> PatchHit {
-    let rise = b.y - a.y;
-    let part = if rise == 0.0 { 0.5 } else { (-a.y / rise).clamp(0.0, 1.0) };
-    let mut l = ends[0] + (ends[1] - ends[0]) * part;
-    let mut at = chord_point(patch, ray, l, side);
+/// The root of F between the chord points `a` and `b` at the distances `l_a` and `l_b`, where F has different
+/// signs. `slack` is how far in s, per unit of |F|, the root can lie from a place in between.
+fn find_root(points: &[Vec2], patch: &Patch, ray: &LocalRay, l_a: f32, l_b: f32, a: ChordPoint, b: ChordPoint, slack: f32, side: f32) -> PatchHit {
     // h = 0 is the cone over the chord.
+    let rise = b.y - a.y;
+    let part = if rise.abs() > 1e-12 { (-a.y / rise).clamp(0.0, 1.0) } else { 0.5 };
+    let mut l = l_a + (l_b - l_a) * part;
+    let mut at = chord_point(patch, ray, l, side);
     for _ in 0..2 {
-        if at.w != 0.0 {
-            l = (l - at.y / at.w).clamp(ends[0], ends[1]);
+        if at.w.abs() > 1e-12 {
+            l = (l - at.y / at.w).clamp(l_a, l_b);
             at = chord_point(patch, ray, l, side);
         }
     }
+    let reach = (patch.phi_max.max(-patch.phi_min) + at.y.abs()) * slack + END_TOLERANCE;
     if at.x < -reach || at.x > patch.length + reach {
         return patch_miss();
     }
@@ -411,13 +417,22 @@ fn find_root(points: &[Vec2], patch: &Patch, ray: &LocalRay, ends: [f32; 2], a: 
     let z = ray.origin.z + ray.direction.z * l;
     let tau = (at.x / patch.length).clamp(0.0, 1.0);
     let root = newton(points, patch, ray, PatchHit { t: l, theta: arctan2(z, x), tau, steps: 0 });
-    let slack = END_TOLERANCE / patch.length;
-    let inside = root.t >= ends[0] && root.t <= ends[1] && root.tau >= -slack && root.tau <= 1.0 + slack;
-    if inside {
+    let over = END_TOLERANCE / patch.length;
+    if root.t >= l_a && root.t <= l_b && root.tau >= -over && root.tau <= 1.0 + over {
         return PatchHit { tau: root.tau.clamp(0.0, 1.0), ..root };
     }
-    let bracketed = bracketed_root(points, patch, ray, ends[0], ends[1], side);
+    let bracketed = bracketed_root(points, patch, ray, l_a, l_b, side);
     PatchHit { steps: bracketed.steps | root.steps, ..bracketed }
+}
+
+/// Range (low, high) of F' between two chord points, where h' and s' are monotone and phi' lies in
+/// [d_phi_low, d_phi_high].
+fn slope_range(a: ChordPoint, b: ChordPoint, d_phi_low: f32, d_phi_high: f32) -> Vec2 {
+    let s_low = a.z.min(b.z);
+    let s_high = a.z.max(b.z);
+    let least = (d_phi_low * s_low).min(d_phi_low * s_high).min((d_phi_high * s_low).min(d_phi_high * s_high));
+    let most = (d_phi_low * s_low).max(d_phi_low * s_high).max((d_phi_high * s_low).max(d_phi_high * s_high));
+    Vec2::new(a.w.min(b.w) - most, a.w.max(b.w) - least)
 }
 
 /// The first root of F in [begin, end], which lies on one side of the closest approach to the axis.
@@ -426,7 +441,6 @@ fn first_root(points: &[Vec2], patch: &Patch, ray: &LocalRay, begin: f32, end: f
         return patch_miss();
     }
     let least = (end - begin) * MARCH_LEAST;
-    let thickness = patch.phi_max.max(-patch.phi_min);
     let mut width = end - begin;
     let mut l = begin;
     let mut a = chord_point(patch, ray, l, side);
@@ -436,26 +450,44 @@ fn first_root(points: &[Vec2], patch: &Patch, ray: &LocalRay, begin: f32, end: f
         }
         let next = (l + width).min(end);
         let b = chord_point(patch, ray, next, side);
-        // A convex or concave function stays this close to the line between its ends.
-        let bow = 0.25 * (next - l);
-        let bow_s = (b.z - a.z).abs() * bow + END_TOLERANCE;
-        let bow_h = (b.w - a.w).abs() * bow;
-        let outside = a.x.min(b.x) - bow_s > patch.length
-            || a.x.max(b.x) + bow_s < 0.0
-            || a.y.min(b.y) - bow_h > patch.phi_max
-            || a.y.max(b.y) + bow_h < patch.phi_min;
+        // A function whose slope lies in an interval leaves the line between its ends by at most a quarter of
+        // that interval times the distance.
+        let quarter = 0.25 * (next - l);
+        let bow_s = (b.z - a.z).abs() * quarter + END_TOLERANCE;
+        let bow_h = (b.w - a.w).abs() * quarter;
+        let s_low = a.x.min(b.x) - bow_s;
+        let s_high = a.x.max(b.x) + bow_s;
+        let past = (-s_low).max(s_high - patch.length).max(0.0) * patch.slope;
+        let outside = s_low > patch.length
+            || s_high < 0.0
+            || a.y.min(b.y) - bow_h > patch.phi_max + past
+            || a.y.max(b.y) + bow_h < patch.phi_min - past;
         if !outside {
-            let turns = (a.w > 0.0) != (b.w > 0.0);
-            let least_dh = if turns { 0.0 } else { a.w.abs().min(b.w.abs()) };
-            let most_ds = a.z.abs().max(b.z.abs());
-            let monotone = least_dh > patch.slope * most_ds;
-            if !monotone && width > least {
-                width *= 0.5;
-                continue;
+            let mut range = slope_range(a, b, -patch.slope, patch.slope);
+            let mut crosses = false;
+            if range.x > 0.0 || range.y < 0.0 {
+                crosses = above_profile(points, patch, a) != above_profile(points, patch, b);
+            } else {
+                let f_a = profile_offset(points, patch, a);
+                let f_b = profile_offset(points, patch, b);
+                // While s runs one way, phi' is known from its ends.
+                if (a.z > 0.0) == (b.z > 0.0) {
+                    range = slope_range(a, b, f_a.y.min(f_b.y) - patch.wobble, f_a.y.max(f_b.y) + patch.wobble);
+                }
+                let bow = (range.y - range.x) * quarter;
+                if f_a.x.min(f_b.x) - bow <= 0.0 && f_a.x.max(f_b.x) + bow >= 0.0 {
+                    if range.x <= 0.0 && range.y >= 0.0 && width > least {
+                        width *= 0.5;
+                        continue;
+                    }
+                    crosses = (f_a.x >= 0.0) != (f_b.x >= 0.0);
+                }
             }
-            if above_profile(points, patch, a) != above_profile(points, patch, b) {
-                let reach = if monotone { END_TOLERANCE + 1.01 * thickness * (most_ds / least_dh) } else { FAR };
-                let root = find_root(points, patch, ray, [l, next], a, b, reach, side);
+            if crosses {
+                let most_ds = a.z.abs().max(b.z.abs());
+                let steepness = range.x.max(-range.y) - patch.slope * most_ds;
+                let slack = if steepness > 0.0 { 1.01 * most_ds / steepness } else { FAR };
+                let root = find_root(points, patch, ray, l, next, a, b, slack, side);
                 if root.t < FAR {
                     return root;
                 }
