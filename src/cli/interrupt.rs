@@ -1,0 +1,19 @@
+//! Ctrl-C: the first asks for an end, the second ends at once.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+static INTERRUPTED: AtomicBool = AtomicBool::new(false);
+
+/// The flag that the first Ctrl-C (or termination signal) from now on sets.
+pub fn flag() -> &'static AtomicBool {
+    let handler = || {
+        if INTERRUPTED.swap(true, Ordering::Relaxed) {
+            std::process::exit(super::Done::Interrupted as i32);
+        }
+        eprintln!("\ninterrupted: finishing the pass; once more to end at once");
+    };
+    if let Err(error) = ctrlc::set_handler(handler) {
+        eprintln!("warning: Ctrl-C will end the program without saving the picture: {error}");
+    }
+    &INTERRUPTED
+}
