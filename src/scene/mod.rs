@@ -6,7 +6,23 @@
 //! Conventions: right-handed, y up; linear Rec. 709 RGB; one scene unit is one metre; angles in degrees.
 
 mod appearance;
+mod check;
+pub mod file;
 mod geometry;
+mod images;
+mod load;
+mod looks;
+mod mesh;
+mod mtl;
+pub mod numbers;
+mod obj;
+mod profile;
+mod report;
+mod schema;
+mod surfaces;
+mod tree;
+mod triangles;
+mod view;
 
 use glam::DVec3;
 use schemars::JsonSchema;
@@ -16,6 +32,9 @@ pub use appearance::{
     Filter, ImageData, Material, MaterialKind, Reflectance, Rgb, Texels, Texture, TextureKind, Wrap,
 };
 pub use geometry::{Mesh, Shape, ShapeKind, Transform, Triangle};
+pub use load::{Loaded, load, parse};
+pub use report::{Finding, SceneErrors};
+pub use schema::schema_json;
 
 /// A validated scene: finite numbers, unit normals, no dangling index.
 #[derive(Clone, Debug, PartialEq)]
