@@ -43,7 +43,8 @@ impl Progress {
     /// Share of the work that is done, in [0, 1].
     pub fn share(&self) -> f64 {
         let passes = f64::from(self.passes) / f64::from(self.stop.passes.max(1));
-        let time = self.stop.time.map_or(0.0, |time| self.elapsed.as_secs_f64() / time.as_secs_f64().max(1e-9));
+        let time =
+            self.stop.time.map_or(0.0, |time| self.elapsed.as_secs_f64() / time.as_secs_f64().max(1e-9));
         passes.max(time).min(1.0)
     }
 
@@ -113,15 +114,8 @@ fn render_keeping(
     keep_every: Duration,
 ) -> Result<Outcome, EngineError> {
     let start = Instant::now();
-    let mut progress = Progress {
-        stop,
-        passes: 0,
-        photons: 0,
-        eye_paths: 0,
-        rays: 0,
-        radius: 0.0,
-        elapsed: Duration::ZERO,
-    };
+    let mut progress =
+        Progress { stop, passes: 0, photons: 0, eye_paths: 0, rays: 0, radius: 0.0, elapsed: Duration::ZERO };
     let mut kept: Option<(Picture, Progress)> = None;
     let mut next_keep = keep_every;
     progress.add(&engine.pass()?, start.elapsed());
@@ -222,9 +216,10 @@ mod tests {
     fn makes_all_passes_and_adds_them_up() {
         let mut seen = Vec::new();
         let mut engine = counter(NEVER, true);
-        let outcome =
-            render(&mut engine, passes(5), &AtomicBool::new(false), &mut |p| seen.push((p.passes, p.share())))
-                .unwrap();
+        let outcome = render(&mut engine, passes(5), &AtomicBool::new(false), &mut |p| {
+            seen.push((p.passes, p.share()))
+        })
+        .unwrap();
         assert!(matches!(outcome.ending, Ending::Passes));
         assert_eq!(shown(&outcome), 5.0);
         let p = outcome.progress;
@@ -241,7 +236,8 @@ mod tests {
         assert!(matches!(outcome.ending, Ending::Interrupted));
         assert_eq!((shown(&outcome), outcome.progress.passes), (3.0, 3));
         // One that comes before the first pass still leaves a picture.
-        let outcome = render(&mut counter(NEVER, true), passes(100), &AtomicBool::new(true), &mut |_| ()).unwrap();
+        let outcome =
+            render(&mut counter(NEVER, true), passes(100), &AtomicBool::new(true), &mut |_| ()).unwrap();
         assert_eq!(shown(&outcome), 1.0);
     }
 
@@ -271,7 +267,11 @@ mod tests {
         // Kept after passes 1 to 4; the fifth picture is refused since pass 6 is the one that fails.
         let outcome = run(&mut counter(6, false), passes(8), Duration::ZERO);
         let outcome = outcome.unwrap();
-        assert!(matches!(&outcome.ending, Ending::Failed(EngineError::DeviceLost(_))), "{:?}", outcome.ending);
+        assert!(
+            matches!(&outcome.ending, Ending::Failed(EngineError::DeviceLost(_))),
+            "{:?}",
+            outcome.ending
+        );
         assert_eq!((shown(&outcome), outcome.progress.passes), (4.0, 4));
         // With nothing kept there is nothing to give, and the first failure is the one told.
         let error = run(&mut counter(6, false), passes(8), KEEP_EVERY).unwrap_err();

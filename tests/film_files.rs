@@ -6,7 +6,9 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use caustica::film::{Development, FileError, Picture, Provenance, check_outputs, exr_file, file, pfm, read, write};
+use caustica::film::{
+    Development, FileError, Picture, Provenance, check_outputs, exr_file, file, pfm, read, write,
+};
 use caustica::settings::RenderSettings;
 
 /// A fresh folder of this test's own.
@@ -128,13 +130,17 @@ fn equal_pictures_give_equal_bytes() {
 #[test]
 fn outputs_are_checked_up_front() {
     let folder = folder("check");
-    let check = |names: &[&str]| check_outputs(&names.iter().map(|name| folder.join(name)).collect::<Vec<_>>());
+    let check =
+        |names: &[&str]| check_outputs(&names.iter().map(|name| folder.join(name)).collect::<Vec<_>>());
     check(&["a.png", "b.exr", "c.pfm", "d.hdr", "e.PNG"]).unwrap();
     check_outputs(&["in-the-current-folder.png".into()]).unwrap();
     let unknown = check(&["a.png", "b.jpg"]).unwrap_err();
     assert!(matches!(unknown, FileError::UnknownFormat { .. }), "{unknown:?}");
     for name in [".png", ".exr", ".pfm", ".hdr"] {
-        assert!(format!("{:?}", miette::Report::new(check(&["b.jpg"]).unwrap_err())).contains(name), "{name}");
+        assert!(
+            format!("{:?}", miette::Report::new(check(&["b.jpg"]).unwrap_err())).contains(name),
+            "{name}"
+        );
     }
     assert!(matches!(check(&["noextension"]), Err(FileError::UnknownFormat { .. })));
     assert!(matches!(check(&["no/such/a.png"]), Err(FileError::NoFolder { .. })));
@@ -186,7 +192,8 @@ fn damaged_files_are_errors() {
             assert!(matches!(error, FileError::Malformed { .. }), "{name} cut to {length}: {error:?}");
         }
     }
-    for header in ["P6\n1 1\n-1.0\n", "PF\n0 1\n-1.0\n", "PF\n1 -1\n-1.0\n", "PF\n1 1\n0\n", "PF\n1 1\nnan\n"] {
+    for header in ["P6\n1 1\n-1.0\n", "PF\n0 1\n-1.0\n", "PF\n1 -1\n-1.0\n", "PF\n1 1\n0\n", "PF\n1 1\nnan\n"]
+    {
         let bytes = [header.as_bytes(), &[0; 12]].concat();
         assert!(pfm::decode(&bytes).is_err(), "{header:?}");
     }

@@ -55,7 +55,11 @@ fn stays_in_range() {
             for g in extremes {
                 for b in extremes {
                     let shown = development(tonemap).display([r, g, b]);
-                    assert!(shown.iter().all(|v| (0.0..=1.0).contains(v)), "{tonemap:?} {:?}: {shown:?}", [r, g, b]);
+                    assert!(
+                        shown.iter().all(|v| (0.0..=1.0).contains(v)),
+                        "{tonemap:?} {:?}: {shown:?}",
+                        [r, g, b]
+                    );
                 }
             }
         }
@@ -87,7 +91,15 @@ fn known_values() {
 fn exposure_counts_in_stops() {
     for tonemap in BOTH {
         let brighter = Development { exposure: 2.0, tonemap };
-        assert_eq!(brighter.bytes([0.05, 0.1, 0.2]), development(tonemap).bytes([0.2, 0.4, 0.8]), "{tonemap:?}");
-        assert_ne!(brighter.bytes([0.05, 0.1, 0.2]), development(tonemap).bytes([0.1, 0.2, 0.4]), "{tonemap:?}");
+        assert_eq!(
+            brighter.bytes([0.05, 0.1, 0.2]),
+            development(tonemap).bytes([0.2, 0.4, 0.8]),
+            "{tonemap:?}"
+        );
+        assert_ne!(
+            brighter.bytes([0.05, 0.1, 0.2]),
+            development(tonemap).bytes([0.1, 0.2, 0.4]),
+            "{tonemap:?}"
+        );
     }
 }

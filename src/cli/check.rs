@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use caustica::scene;
 use miette::{Report, miette};
 
+use super::output::{message, result};
 use super::{Done, Failure};
 
 /// Report all errors and warnings of scene files
@@ -27,14 +28,14 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
                     many => format!(", {many} warnings"),
                 };
                 for warning in loaded.warnings {
-                    eprintln!("{:?}", Report::new(warning));
+                    message(format_args!("{:?}", Report::new(warning)));
                 }
-                println!("{}: good{warnings}", file.display());
+                result(format_args!("{}: good{warnings}", file.display()))?;
             }
             Err(errors) => {
                 bad += 1;
-                println!("{}: bad", file.display());
-                eprintln!("{:?}", Report::new(errors));
+                result(format_args!("{}: bad", file.display()))?;
+                message(format_args!("{:?}", Report::new(errors)));
             }
         }
     }

@@ -9,11 +9,12 @@ use caustica::film::{FileError, Picture, blocks, file, heat};
 use caustica::render::{Ending, Stop, render};
 use caustica::scene::Scene;
 use caustica::settings::RenderSettings;
+use clap::builder::NonEmptyStringValueParser;
 use serde_json::json;
 
+use super::output::{message, result};
 use super::overrides::Overrides;
-use super::progress::Reporter;
-use super::render::{Voice, load};
+use super::render::{Voice, begin, load};
 use super::{Done, Failure};
 
 /// Render a scene on two devices and compare the pictures
@@ -22,7 +23,7 @@ pub struct Arguments {
     /// Scene file
     scene: PathBuf,
     /// The device and the one that counts as the truth, as for `render`; give it twice
-    #[arg(long, value_name = "DEVICE", default_values = ["auto", "cpu"])]
+    #[arg(long, value_name = "DEVICE", value_parser = NonEmptyStringValueParser::new(), default_values = ["auto", "cpu"])]
     device: Vec<String>,
     /// Picture of the difference to write (.png)
     #[arg(short, long, value_name = "FILE")]
@@ -37,9 +38,9 @@ pub struct Arguments {
     #[arg(long)]
     bits: bool,
     #[command(flatten)]
-    overrides: Overrides,
-    #[command(flatten)]
     voice: Voice,
+    #[command(flatten)]
+    overrides: Overrides,
 }
 
 fn share(text: &str) -> Result<f64, String> {
@@ -67,24 +68,29 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
         check_difference_output(output)?;
     }
     let (scene, settings) = load(&arguments.scene, &arguments.overrides)?;
+    // A device that is not there should not show after the first render.
+    let devices = device::list();
+    for wanted in [first, second] {
+        device::pick(&device::parse(wanted), &devices)?;
+    }
     let a = render_on(first, &scene, &settings, &arguments.voice)?;
     let b = render_on(second, &scene, &settings, &arguments.voice)?;
     let comparison = compare(&a.picture, &b.picture)?;
     let outside = blocks::share_outside(&blocks::block_deviations(&a.picture, &b.picture, None, 0.0)?);
     if arguments.voice.json {
-        println!("{}", as_json(&a.device, &b.device, &comparison, outside));
+        result(as_json(&a.device, &b.device, &comparison, outside))?;
     } else {
-        print(&a.device, &b.device, &comparison, outside);
+        result(as_text(&a.device, &b.device, &comparison, outside))?;
     }
     if let Some(output) = &arguments.output {
         heat::write(output, &heat::heat_map(&a.picture, &b.picture)?)?;
         if !arguments.voice.json {
-            println!("{}", output.display());
+            result(output.display())?;
         }
     }
     let over = passed_thresholds(&arguments, &comparison);
     for threshold in &over {
-        eprintln!("over the threshold: {threshold}");
+        message(format_args!("over the threshold: {threshold}"));
     }
     Ok(if over.is_empty() { Done::Fully } else { Done::OverThreshold })
 }
@@ -100,10 +106,14 @@ fn check_difference_output(output: &std::path::Path) -> Result<(), FileError> {
     file::check_place(output)
 }
 
-fn render_on(wanted: &str, scene: &Scene, settings: &RenderSettings, voice: &Voice) -> Result<Rendered, Failure> {
+fn render_on(
+    wanted: &str,
+    scene: &Scene,
+    settings: &RenderSettings,
+    voice: &Voice,
+) -> Result<Rendered, Failure> {
     let opened = device::open(&device::parse(wanted), scene, settings)?;
-    let mut reporter = Reporter::new(voice.quiet, voice.json);
-    reporter.note(&format!("{}: {} ({})", scene.name, opened.name, opened.why));
+    let mut reporter = begin(voice, scene, settings, &opened)?;
     let stop = Stop { passes: settings.passes, time: None };
     let mut engine = opened.engine;
     let never = AtomicBool::new(false);
@@ -134,18 +144,20 @@ fn passed_thresholds(arguments: &Arguments, comparison: &Comparison) -> Vec<Stri
     over
 }
 
-fn print(a: &str, b: &str, comparison: &Comparison, outside: f64) {
-    let [r, g, blue] = comparison.mean_ratio;
-    let worst = &comparison.worst;
-    println!("a                     {a}");
-    println!("b                     {b}");
-    println!("mean ratio a/b        {r:.6} {g:.6} {blue:.6}");
-    println!("relMSE                {:.3e}", comparison.rel_mse);
-    println!("RMSE                  {:.3e}", comparison.rmse);
-    println!("PSNR                  {:.2} dB", comparison.psnr);
-    println!("blocks over 4 sigma   {:.2} %", 100.0 * outside);
-    println!("pixels of other bits  {} of {}", comparison.pixels_differing, comparison.pixels);
-    println!("worst pixel           column {}, row {}: {:?} and {:?}", worst.x, worst.y, worst.a, worst.b);
+fn as_text(a: &str, b: &str, comparison: &Comparison, outside: f64) -> String {
+    let Comparison { mean_ratio: [red, green, blue], worst, .. } = comparison;
+    [
+        format!("a                     {a}"),
+        format!("b                     {b}"),
+        format!("mean ratio a/b        {red:.6} {green:.6} {blue:.6}"),
+        format!("relMSE                {:.3e}", comparison.rel_mse),
+        format!("RMSE                  {:.3e}", comparison.rmse),
+        format!("PSNR                  {:.2} dB", comparison.psnr),
+        format!("blocks over 4 sigma   {:.2} %", 100.0 * outside),
+        format!("pixels of other bits  {} of {}", comparison.pixels_differing, comparison.pixels),
+        format!("worst pixel           column {}, row {}: {:?} and {:?}", worst.x, worst.y, worst.a, worst.b),
+    ]
+    .join("\n")
 }
 
 /// The figures as a JSON object; those that are infinite are null.

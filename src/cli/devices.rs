@@ -2,6 +2,7 @@
 
 use caustica::device;
 
+use super::output::result;
 use super::{Done, Failure};
 
 /// List the devices, their drivers and limits, and what --device auto takes
@@ -12,12 +13,12 @@ pub struct Arguments {}
 pub fn run(_: Arguments) -> Result<Done, Failure> {
     let devices = device::list();
     for device in &devices {
-        println!("{} [{}] {}", device.name, device.kind.word(), device.driver);
+        result(format_args!("{} [{}] {}", device.name, device.kind.word(), device.driver))?;
         for (limit, value) in &device.limits {
-            println!("    {limit:<32} {value}");
+            result(format_args!("    {limit:<32} {value}"))?;
         }
     }
     let (device, why) = device::pick(&device::Wanted::Auto, &devices)?;
-    println!("--device auto takes {} ({why})", device.name);
+    result(format_args!("--device auto takes {} ({why})", device.name))?;
     Ok(Done::Fully)
 }

@@ -9,6 +9,8 @@ use caustica::film::metrics::MetricsError;
 use caustica::scene::SceneErrors;
 use miette::{Report, miette};
 
+use super::output::message;
+
 /// Why a command failed.
 #[derive(Debug)]
 pub struct Failure {
@@ -33,7 +35,7 @@ impl Failure {
 
     /// Prints the failure to standard error.
     pub fn tell(self) -> ExitCode {
-        eprintln!("{:?}", self.report);
+        message(format_args!("{:?}", self.report));
         ExitCode::from(self.code)
     }
 }

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use caustica::scene::{Environment, Light, MaterialKind, Scene, ShapeKind, TextureKind};
 
+use super::output::result;
 use super::overrides::Overrides;
 use super::render::load;
 use super::{Done, Failure};
@@ -33,8 +34,11 @@ pub struct InfoReport {
 pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     let (scene, settings) = load(&arguments.scene, &arguments.overrides)?;
     let film = scene.film;
-    println!("{}: {} x {} pixels, {} passes", scene.name, film.width, film.height, settings.passes);
-    print!("{}", InfoReport { features: features(&scene), ..InfoReport::default() });
+    result(format_args!(
+        "{}: {} x {} pixels, {} passes",
+        scene.name, film.width, film.height, settings.passes
+    ))?;
+    result(InfoReport { features: features(&scene), ..InfoReport::default() })?;
     Ok(Done::Fully)
 }
 
@@ -73,27 +77,27 @@ fn features(scene: &Scene) -> Vec<(String, bool)> {
 
 impl fmt::Display for InfoReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (title, entries, yes, no) in [
-            ("features", &self.features, "needed", "left out"),
-            ("kernels", &self.kernels, "compiled", "left out"),
+        let mut lines = Vec::new();
+        for (title, entries, word, wanted) in [
+            ("features", &self.features, "needed", true),
+            ("features", &self.features, "left out", false),
+            ("kernels", &self.kernels, "compiled", true),
+            ("kernels", &self.kernels, "left out", false),
         ] {
-            for (word, wanted) in [(yes, true), (no, false)] {
-                let names: Vec<&str> =
-                    entries.iter().filter(|(_, is)| *is == wanted).map(|(name, _)| name.as_str()).collect();
-                if !names.is_empty() {
-                    writeln!(f, "{title} {word}: {}", names.join(", "))?;
-                }
+            let of_this_kind = entries.iter().filter(|(_, is)| *is == wanted);
+            let names: Vec<&str> = of_this_kind.map(|(name, _)| name.as_str()).collect();
+            if !names.is_empty() {
+                lines.push(format!("{title} {word}: {}", names.join(", ")));
             }
         }
-        if self.buffers.is_empty() {
-            return Ok(());
+        if !self.buffers.is_empty() {
+            let total: u64 = self.buffers.iter().map(|(_, bytes)| bytes).sum();
+            lines.push(format!("{:<32} {:>16}", "buffer", "bytes"));
+            for (name, bytes) in self.buffers.iter().chain([&("total".to_owned(), total)]) {
+                lines.push(format!("{name:<32} {bytes:>16}"));
+            }
         }
-        let total: u64 = self.buffers.iter().map(|(_, bytes)| bytes).sum();
-        writeln!(f, "{:<32} {:>16}", "buffer", "bytes")?;
-        for (name, bytes) in self.buffers.iter().chain([&("total".to_owned(), total)]) {
-            writeln!(f, "{name:<32} {bytes:>16}")?;
-        }
-        Ok(())
+        f.write_str(&lines.join("\n"))
     }
 }
 
@@ -109,7 +113,10 @@ mod tests {
             buffers: vec![("photons".into(), 4096), ("nodes".into(), 8)],
         };
         let text = report.to_string();
-        assert!(text.contains("features needed: glass\nfeatures left out: lens\nkernels compiled: gather\n"), "{text}");
+        assert!(
+            text.contains("features needed: glass\nfeatures left out: lens\nkernels compiled: gather\n"),
+            "{text}"
+        );
         assert!(text.lines().last().unwrap().ends_with(" 4104"), "{text}");
         assert_eq!(InfoReport::default().to_string(), "");
     }

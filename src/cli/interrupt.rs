@@ -2,6 +2,8 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use super::output::message;
+
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
 /// The flag that the first Ctrl-C (or termination signal) from now on sets.
@@ -10,10 +12,10 @@ pub fn flag() -> &'static AtomicBool {
         if INTERRUPTED.swap(true, Ordering::Relaxed) {
             std::process::exit(super::Done::Interrupted as i32);
         }
-        eprintln!("\ninterrupted: finishing the pass; once more to end at once");
+        message("\ninterrupted: finishing the pass; once more to end at once");
     };
     if let Err(error) = ctrlc::set_handler(handler) {
-        eprintln!("warning: Ctrl-C will end the program without saving the picture: {error}");
+        message(format_args!("warning: Ctrl-C will end the program without saving the picture: {error}"));
     }
     &INTERRUPTED
 }

@@ -8,6 +8,7 @@ mod devices;
 mod failure;
 mod info;
 mod interrupt;
+mod output;
 mod overrides;
 mod progress;
 mod render;

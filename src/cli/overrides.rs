@@ -81,7 +81,10 @@ fn positive(text: &str) -> Result<f64, String> {
 }
 
 fn alpha(text: &str) -> Result<f64, String> {
-    positive(text).ok().filter(|alpha| *alpha <= 1.0).ok_or("expected a number above 0 and up to 1".to_owned())
+    positive(text)
+        .ok()
+        .filter(|alpha| *alpha <= 1.0)
+        .ok_or("expected a number above 0 and up to 1".to_owned())
 }
 
 fn radius(text: &str) -> Result<Radius, String> {

@@ -7,6 +7,8 @@ use caustica::render::Progress;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::json;
 
+use super::output::{message, result};
+
 /// Where progress goes.
 pub enum Reporter {
     /// Nowhere.
@@ -31,7 +33,8 @@ impl Reporter {
             Self::Silent
         } else if std::io::stderr().is_terminal() {
             let bar = ProgressBar::with_draw_target(Some(BAR_LENGTH), ProgressDrawTarget::stderr());
-            let style = ProgressStyle::with_template("{bar:24} {msg}").unwrap_or(ProgressStyle::default_bar());
+            let style =
+                ProgressStyle::with_template("{bar:24} {msg}").unwrap_or(ProgressStyle::default_bar());
             bar.set_style(style);
             Self::Bar(bar)
         } else {
@@ -49,12 +52,13 @@ impl Reporter {
             }
             Self::Lines(pace) => {
                 if pace.due(progress) {
-                    eprintln!("{:3.0} %  {}", 100.0 * progress.share(), line(progress));
+                    message(format_args!("{:3.0} %  {}", 100.0 * progress.share(), line(progress)));
                 }
             }
             Self::Json(pace) => {
                 if pace.due(progress) {
-                    println!("{}", event("progress", progress));
+                    // Standard output that takes nothing fails the results at the end.
+                    let _ = result(event("progress", progress));
                 }
             }
         }
@@ -70,13 +74,8 @@ impl Reporter {
     /// Tells something beside the progress to a person who watches.
     pub fn note(&self, text: &str) {
         if let Self::Bar(_) | Self::Lines(_) = self {
-            eprintln!("{text}");
+            message(text);
         }
-    }
-
-    /// Whether results go out as JSON.
-    pub fn is_json(&self) -> bool {
-        matches!(self, Self::Json(_))
     }
 }
 

@@ -3,15 +3,17 @@
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+use caustica::device::{self, Opened};
 use caustica::engine::EngineError;
 use caustica::film::{self, Development, Provenance, check_outputs};
 use caustica::render::{Ending, Outcome, Stop, render};
-use caustica::scene::Scene;
+use caustica::scene::{self, Scene};
 use caustica::settings::RenderSettings;
-use caustica::{device, scene};
+use clap::builder::NonEmptyStringValueParser;
 use miette::Report;
 use serde_json::json;
 
+use super::output::{message, result};
 use super::overrides::{Overrides, duration};
 use super::progress::{Reporter, count, event, time};
 use super::{Done, Failure, interrupt};
@@ -26,15 +28,15 @@ pub struct Arguments {
     #[arg(short, long, value_name = "FILE")]
     output: Vec<PathBuf>,
     /// Device to render on: auto, gpu, software, cpu, or a part of a device's name
-    #[arg(long, value_name = "DEVICE", default_value = "auto")]
+    #[arg(long, value_name = "DEVICE", value_parser = NonEmptyStringValueParser::new(), default_value = "auto")]
     device: String,
     /// Begin no pass after this time, as in 30s or 5m; without --passes, the only limit
     #[arg(long, value_name = "TIME", value_parser = duration)]
     time: Option<Duration>,
     #[command(flatten)]
-    overrides: Overrides,
-    #[command(flatten)]
     voice: Voice,
+    #[command(flatten)]
+    overrides: Overrides,
 }
 
 /// How much is told, and in which form.
@@ -57,17 +59,7 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     check_outputs(&outputs)?;
     let (scene, settings) = load(&arguments.scene, &arguments.overrides)?;
     let opened = device::open(&device::parse(&arguments.device), &scene, &settings)?;
-    let mut reporter = Reporter::new(arguments.voice.quiet, arguments.voice.json);
-    reporter.note(&format!("{}: {} ({})", scene.name, opened.name, opened.why));
-    if reporter.is_json() {
-        let (width, height) = (scene.film.width, scene.film.height);
-        println!(
-            "{}",
-            json!({"event": "start", "scene": scene.name, "device": opened.name, "why": opened.why,
-                   "width": width, "height": height, "settings": settings})
-        );
-    }
-
+    let mut reporter = begin(&arguments.voice, &scene, &settings, &opened)?;
     let passes = match (arguments.time, arguments.overrides.passes) {
         (Some(_), None) => u32::MAX,
         _ => settings.passes,
@@ -86,12 +78,15 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
         passes_done: outcome.progress.passes,
     };
     write(&outputs, &outcome, &scene, &provenance)?;
-    tell(&reporter, &outputs, &outcome);
+    tell(arguments.voice.json, &reporter, &outputs, &outcome)?;
     match outcome.ending {
         Ending::Passes | Ending::Time => Ok(Done::Fully),
         Ending::Interrupted => Ok(Done::Interrupted),
         Ending::Failed(error) => {
-            eprintln!("the picture holds the first {} passes only: {error}", outcome.progress.passes);
+            message(format_args!(
+                "the picture holds the first {} passes only: {error}",
+                outcome.progress.passes
+            ));
             match error {
                 EngineError::DeviceLost(_) => Ok(Done::DeviceLost),
                 _ => Err(error.into()),
@@ -100,11 +95,34 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     }
 }
 
+/// Says what is rendered where, before it is.
+pub fn begin(
+    voice: &Voice,
+    scene: &Scene,
+    settings: &RenderSettings,
+    opened: &Opened,
+) -> Result<Reporter, Failure> {
+    let reporter = Reporter::new(voice.quiet, voice.json);
+    reporter.note(&format!("{}: {} ({})", scene.name, opened.name, opened.why));
+    if voice.json {
+        result(json!({
+            "event": "start",
+            "scene": scene.name,
+            "device": opened.name,
+            "why": opened.why,
+            "width": scene.film.width,
+            "height": scene.film.height,
+            "settings": settings,
+        }))?;
+    }
+    Ok(reporter)
+}
+
 /// Reads the scene, prints its warnings, and puts the options in force.
 pub fn load(file: &Path, overrides: &Overrides) -> Result<(Scene, RenderSettings), Failure> {
     let mut loaded = scene::load(file)?;
     for warning in loaded.warnings {
-        eprintln!("{:?}", Report::new(warning));
+        message(format_args!("{:?}", Report::new(warning)));
     }
     overrides.apply(&mut loaded.scene, &mut loaded.settings);
     Ok((loaded.scene, loaded.settings))
@@ -117,7 +135,9 @@ fn default_output(scene: &Path) -> PathBuf {
 fn write(outputs: &[PathBuf], outcome: &Outcome, scene: &Scene, made: &Provenance) -> Result<(), Failure> {
     let not_finite = outcome.picture.not_finite();
     if not_finite > 0 {
-        eprintln!("warning: {not_finite} values of the picture are not finite; please report this with the scene");
+        message(format_args!(
+            "warning: {not_finite} values of the picture are not finite; please report this with the scene"
+        ));
     }
     let development = Development { exposure: scene.film.exposure, tonemap: scene.film.tonemap };
     for output in outputs {
@@ -126,9 +146,9 @@ fn write(outputs: &[PathBuf], outcome: &Outcome, scene: &Scene, made: &Provenanc
     Ok(())
 }
 
-fn tell(reporter: &Reporter, outputs: &[PathBuf], outcome: &Outcome) {
+fn tell(json: bool, reporter: &Reporter, outputs: &[PathBuf], outcome: &Outcome) -> Result<(), Failure> {
     let progress = &outcome.progress;
-    if reporter.is_json() {
+    if json {
         let mut done = event("done", progress);
         done["ended"] = match &outcome.ending {
             Ending::Passes => "passes",
@@ -138,8 +158,7 @@ fn tell(reporter: &Reporter, outputs: &[PathBuf], outcome: &Outcome) {
         }
         .into();
         done["outputs"] = json!(outputs);
-        println!("{done}");
-        return;
+        return result(done);
     }
     reporter.note(&format!(
         "{} passes, {} photons, {} rays in {}",
@@ -148,7 +167,5 @@ fn tell(reporter: &Reporter, outputs: &[PathBuf], outcome: &Outcome) {
         count(progress.rays as f64),
         time(progress.elapsed)
     ));
-    for output in outputs {
-        println!("{}", output.display());
-    }
+    outputs.iter().try_for_each(|output| result(output.display()))
 }

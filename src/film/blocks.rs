@@ -54,7 +54,8 @@ pub fn block_deviations(
     for y in (0..truth.height / BLOCK).map(|row| row * BLOCK) {
         for x in (0..truth.width / BLOCK).map(|column| column * BLOCK) {
             let pixels = || (0..BLOCK * BLOCK).map(|i| pixel_index(truth, x + i % BLOCK, y + i / BLOCK));
-            let mean = |value: &dyn Fn(usize) -> f64| pixels().map(value).sum::<f64>() / f64::from(BLOCK * BLOCK);
+            let mean =
+                |value: &dyn Fn(usize) -> f64| pixels().map(value).sum::<f64>() / f64::from(BLOCK * BLOCK);
             let difference = |i: usize| luminance(render.rgb[i]) - luminance(truth.rgb[i]);
             let d = mean(&difference);
             let scatter = mean(&|i| (difference(i) - d).powi(2));

@@ -32,14 +32,19 @@ impl ExrFile {
 }
 
 /// The bytes of a losslessly compressed EXR file. Equal arguments give equal bytes.
-pub fn encode(picture: &Picture, attributes: &BTreeMap<String, String>) -> std::result::Result<Vec<u8>, String> {
+pub fn encode(
+    picture: &Picture,
+    attributes: &BTreeMap<String, String>,
+) -> std::result::Result<Vec<u8>, String> {
     let width = picture.width as usize;
     let pixel = |at: Vec2<usize>| {
         let [r, g, b] = picture.rgb[at.y() * width + at.x()];
         (r, g, b)
     };
-    let mut layer = LayerAttributes::default();
-    layer.software_name = Some(Text::from(concat!("caustica ", env!("CARGO_PKG_VERSION"))));
+    let mut layer = LayerAttributes {
+        software_name: Some(Text::from(concat!("caustica ", env!("CARGO_PKG_VERSION")))),
+        ..LayerAttributes::default()
+    };
     for (name, value) in attributes {
         let value = AttributeValue::Text(Text::from_slice_unchecked(value.as_bytes()));
         layer.other.insert(Text::from_slice_unchecked(name.as_bytes()), value);

@@ -123,8 +123,7 @@ pub fn read(file: &Path) -> Result<Picture, FileError> {
 
 /// Reads all channels and text attributes of an EXR file's first layer.
 pub fn read_exr(file: &Path) -> Result<exr_file::ExrFile, FileError> {
-    exr_file::decode(&read_bytes(file)?)
-        .map_err(|what| FileError::Malformed { file: file.to_owned(), what })
+    exr_file::decode(&read_bytes(file)?).map_err(|what| FileError::Malformed { file: file.to_owned(), what })
 }
 
 fn read_bytes(file: &Path) -> Result<Vec<u8>, FileError> {

@@ -37,7 +37,11 @@ pub fn decode(bytes: &[u8]) -> Result<Picture, String> {
     let scale = scale.ok_or("its scale is not a number other than zero")?;
     let values = u64::from(width) * u64::from(height) * channels;
     if rest.len() as u64 != 4 * values {
-        return Err(format!("{width} x {height} pixels take {} bytes, but it holds {}", 4 * values, rest.len()));
+        return Err(format!(
+            "{width} x {height} pixels take {} bytes, but it holds {}",
+            4 * values,
+            rest.len()
+        ));
     }
     let value = |four: &[u8]| {
         let four = [four[0], four[1], four[2], four[3]];

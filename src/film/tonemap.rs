@@ -23,7 +23,7 @@ impl Development {
             ToneMap::Agx => agx(exposed),
             ToneMap::Srgb => exposed,
         };
-        linear.to_array().map(|value| srgb_from_linear(value.max(0.0).min(1.0)))
+        linear.to_array().map(|value| if value > 0.0 { srgb_from_linear(value.min(1.0)) } else { 0.0 })
     }
 
     /// Display values as 8-bit numbers.
