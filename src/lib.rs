@@ -3,6 +3,7 @@
 pub mod build;
 pub mod camera;
 pub mod cpu;
+pub mod device;
 pub mod engine;
 pub mod features;
 pub mod film;
@@ -14,6 +15,7 @@ pub mod math;
 pub mod pack;
 pub mod plan;
 pub mod probe;
+pub mod render;
 pub mod scene;
 pub mod settings;
 pub mod shapes;
