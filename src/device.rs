@@ -2,7 +2,10 @@
 
 use thiserror::Error;
 
+use crate::cpu::CpuEngine;
 use crate::engine::{Engine, EngineError};
+use crate::pack::pack;
+use crate::plan::Plan;
 use crate::scene::Scene;
 use crate::settings::RenderSettings;
 
@@ -95,7 +98,12 @@ pub enum DeviceError {
 
 /// All devices.
 pub fn list() -> Vec<DeviceInfo> {
-    Vec::new()
+    vec![DeviceInfo {
+        name: "cpu".to_owned(),
+        kind: DeviceKind::Cpu,
+        driver: format!("{} threads", rayon::current_num_threads()),
+        limits: Vec::new(),
+    }]
 }
 
 /// The device that a wish means, and why.
@@ -141,12 +149,13 @@ pub fn open(wanted: &Wanted, scene: &Scene, settings: &RenderSettings) -> Result
     Ok(Opened { engine: start(device, scene, settings)?, name: device.name.clone(), why })
 }
 
-fn start(
-    device: &DeviceInfo,
-    _scene: &Scene,
-    _settings: &RenderSettings,
-) -> Result<Box<dyn Engine>, EngineError> {
-    Err(EngineError::Unsupported(format!("no engine runs on {}", device.name)))
+fn start(device: &DeviceInfo, scene: &Scene, settings: &RenderSettings) -> Result<Box<dyn Engine>, EngineError> {
+    let packed = pack(scene, scene.film.width, scene.film.height)?;
+    let plan = Plan::new(&packed, settings);
+    match device.kind {
+        DeviceKind::Cpu => Ok(Box::new(CpuEngine::new(packed, plan))),
+        _ => Err(EngineError::Unsupported(format!("no engine runs on {}", device.name))),
+    }
 }
 
 /// Theory: the order of preference is hardware, software driver, CPU, whatever the order of the list.

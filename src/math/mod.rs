@@ -1,13 +1,11 @@
 //! Vectors, frames, random numbers and elementary functions, each the twin of a file in `shaders/math/`.
+//!
+//! Twins use only operations that WGSL and Rust round alike (`+ - * /`, `sqrt`, `abs`, `floor`, comparisons
+//! and integers), in the same order, so that both engines give the same bits where the driver does not contract.
 
-use glam::Vec3;
+pub mod rng;
+pub mod sampling;
+pub mod trig;
+pub mod vector;
 
-/// Twice pi.
-pub const TAU: f32 = std::f32::consts::TAU;
-/// Farther than anything in a scene; WGSL has no infinity to rely on.
-pub const FAR: f32 = 1e30;
-
-/// `v` at length one.
-pub fn unit(v: Vec3) -> Vec3 {
-    v * (1.0 / v.dot(v).sqrt())
-}
+pub use vector::*;

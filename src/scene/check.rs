@@ -136,7 +136,12 @@ impl<'c> Checker<'c> {
         let expected = describe(self.root, schema);
         if !number.is_finite() {
             let message = format!("`{path}` is not a finite number");
-            self.report.error(node.span(), message, format!("expected {expected}"), description(whole));
+            self.report.error(
+                node.span(),
+                message,
+                expected.replacen("a number", "expected a finite number", 1),
+                description(whole),
+            );
             return Some(Json::from(1.0));
         }
         let fits = in_range(schema, number) && integer_fits(schema, number);
@@ -155,18 +160,14 @@ impl<'c> Checker<'c> {
     fn string(&mut self, schema: &Json, fitting: &[&Json], node: Node, path: &str) -> Option<Json> {
         let text = node.str()?;
         let listed: Option<Vec<_>> = fitting.iter().map(|one| listed_strings(one)).collect();
-        if let Some(words) = listed.map(|lists| lists.concat()) {
-            if !words.contains(&text) {
-                let expected = format!("expected {}", describe(self.root, schema));
-                let label = did_you_mean(text, words, &expected);
-                self.report.error(
-                    node.span(),
-                    format!("`{path}` = \"{text}\" is not known"),
-                    label,
-                    Some(expected),
-                );
-                return None;
-            }
+        if let Some(words) = listed.map(|lists| lists.concat())
+            && !words.contains(&text)
+        {
+            let expected = format!("expected {}", describe(self.root, schema));
+            let label = did_you_mean(text, words, &expected);
+            let message = format!("`{path}` = \"{text}\" is not known");
+            self.report.error(node.span(), message, label, Some(expected));
+            return None;
         }
         node.plain_json()
     }

@@ -98,13 +98,15 @@ impl<'l, 'a> Loader<'l, 'a> {
 
     fn load(mut self) -> Option<(Scene, RenderSettings)> {
         let document = self.document;
-        if let Some(item) = document.item("version") {
-            if let Some(version) = item.read::<u32>(self.report).filter(|&version| version != 1) {
-                let message = format!("version {version} of the scene format is not known");
-                self.report.error(item.node.span(), message, "expected 1", None);
-            }
+        if let Some(item) = document.item("version")
+            && let Some(version) = item.read::<u32>(self.report)
+            && version != 1
+        {
+            let message = format!("version {version} of the scene format is not known");
+            self.report.error(item.node.span(), message, "expected 1", None);
         }
-        self.names();
+        self.undefined("materials", "shapes", "material");
+        self.undefined("textures", "materials", "reflectance");
         let camera = view::camera(&mut self);
         let film = view::film(&mut self);
         let settings = view::settings(&mut self);
@@ -141,24 +143,26 @@ impl<'l, 'a> Loader<'l, 'a> {
             name: self.path.file_stem().map_or(String::new(), |stem| stem.to_string_lossy().into_owned()),
             camera: camera?,
             film: film?,
-            images: self.images.images,
+            images: std::mem::take(&mut self.images.images),
             textures,
             materials,
             shapes,
             lights,
             environment,
         };
-        if self.report.errors.is_empty() && !scene.is_lit() {
-            self.report.warn(
-                0..0,
-                "the scene has no light; the picture will be black",
-                "expected an emission above 0, [[lights]] or [environment]",
-            );
+        if self.report.errors.is_empty() {
+            self.unused("materials", "shapes", "material");
+            self.unused("textures", "materials", "reflectance");
+            if !scene.is_lit() {
+                let message = "the scene has no light; the picture will be black";
+                let label = "expected an emission above 0, [[lights]] or [environment]";
+                self.report.warn(0..0, message, label);
+            }
         }
         Some((scene, settings?))
     }
 
-    /// Index of a named part; 0 for an unknown name, which [`Self::names`] has reported.
+    /// Index of a named part; 0 for an unknown name, which [`Self::undefined`] has reported.
     pub fn index(&self, section: &str, name: &str) -> usize {
         self.document.items(section).position(|item| item.name == name).unwrap_or(0)
     }
@@ -168,32 +172,30 @@ impl<'l, 'a> Loader<'l, 'a> {
         self.path.parent().unwrap_or(Path::new("")).join(file)
     }
 
-    /// Reports names of materials and textures that are not defined, or not used.
-    fn names(&mut self) {
-        self.names_of("materials", "shapes", "material");
-        self.names_of("textures", "materials", "reflectance");
-    }
-
-    fn names_of(&mut self, section: &str, user: &str, key: &str) {
+    /// Reports names of a section that another section calls under `key` and that are not defined.
+    fn undefined(&mut self, section: &str, user: &str, key: &str) {
         let singular = section.trim_end_matches('s');
         let known: Vec<_> = self.document.items(section).map(|item| item.name).collect();
-        let mut used = BTreeSet::new();
-        for item in self.document.items(user) {
-            let Some(node) = item.node.get(key) else { continue };
-            let Some(name) = node.str() else { continue };
-            used.insert(name);
-            if !known.contains(&name) {
-                let label = did_you_mean(name, known.iter().copied(), &format!("no such {singular}"));
-                let help = match known[..] {
-                    [] => format!("define it: [{section}.{name}]"),
-                    _ => format!("define [{section}.{name}], or use one of {}", list(known.iter().copied())),
-                };
-                let message = format!("{singular} `{name}` is not defined");
-                self.report.error(node.span(), message, label, Some(help));
-            }
+        for node in self.document.items(user).filter_map(|item| item.node.get(key)) {
+            let Some(name) = node.str().filter(|name| !known.contains(name)) else {
+                continue;
+            };
+            let label = did_you_mean(name, known.iter().copied(), &format!("no such {singular}"));
+            let help = match known[..] {
+                [] => format!("define it: [{section}.{name}]"),
+                _ => format!("define [{section}.{name}], or use one of {}", list(known.iter().copied())),
+            };
+            let message = format!("{singular} `{name}` is not defined");
+            self.report.error(node.span(), message, label, Some(help));
         }
+    }
+
+    /// Warns of parts of a section that no other section calls under `key`.
+    fn unused(&mut self, section: &str, user: &str, key: &str) {
+        let users = self.document.items(user).filter_map(|item| item.node.get(key)?.str());
+        let used: BTreeSet<_> = users.collect();
         for item in self.document.items(section).filter(|item| !used.contains(item.name)) {
-            let message = format!("{singular} `{}` is not used", item.name);
+            let message = format!("{} `{}` is not used", section.trim_end_matches('s'), item.name);
             self.report.warn(item.node.span(), message, "defined here");
         }
     }

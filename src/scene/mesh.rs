@@ -43,13 +43,14 @@ pub(super) fn load(
     let named_at = item.node.span_of("file");
     let source = read(loader, item, &path)?;
     let text = obj::join_lines(source.text());
+    let before = loader.report.errors.len();
     let mut scan = obj::scan(&text, request.material.is_none());
     let libraries = libraries(loader, &path, &mut scan, &named_at);
     if request.material.is_none() {
         own_materials(&mut scan, &libraries);
     }
-    if !scan.faults.is_empty() {
-        loader.report.asset_errors(named_at, &source, scan.faults);
+    loader.report.asset_errors(named_at.clone(), &source, scan.faults);
+    if loader.report.errors.len() > before {
         return None;
     }
     for (keyword, count) in &scan.unread {
@@ -131,26 +132,28 @@ fn libraries(loader: &mut Loader, path: &Path, scan: &mut obj::Scan, named_at: &
         };
         let source = SourceFile::new(&library, String::from_utf8_lossy(&bytes).into_owned());
         let folder = library.parent().unwrap_or(Path::new(""));
-        let faults = mtl::scan(source.text(), folder, &mut loader.images);
-        let clean = faults.is_empty();
-        loader.report.asset_errors(named_at.clone(), &source, faults);
-        let text: String = source
-            .text()
-            .lines()
-            .map(|line| line.split('#').next().unwrap_or("").to_owned() + "\n")
-            .collect();
-        match tobj::load_mtl_buf(&mut Cursor::new(text)) {
-            _ if !clean => {}
-            Ok((materials, names)) => {
-                libraries.insert(name.into(), (materials, names.into_iter().collect()));
-            }
+        let found = mtl::scan(source.text(), folder, &mut loader.images);
+        let materials = match tobj_materials(&found) {
+            Ok(materials) => materials,
             Err(error) => {
                 let message = format!("cannot read {}: {error}", library.display());
                 scan.faults.push(Fault { span, message, expected: "expected an MTL file".into() });
+                continue;
             }
-        }
+        };
+        let names = found.names.iter().enumerate().map(|(index, &name)| (name.to_owned(), index));
+        libraries.insert(name.into(), (materials, names.collect()));
+        loader.report.asset_errors(named_at.clone(), &source, found.faults);
     }
     libraries
+}
+
+/// The materials of a library, in its order; none when it has faults, which tobj may not survive.
+fn tobj_materials(found: &mtl::Scan) -> Result<Vec<tobj::Material>, tobj::LoadError> {
+    if !found.faults.is_empty() {
+        return Ok(Vec::new());
+    }
+    tobj::load_mtl_buf(&mut Cursor::new(&found.cleaned)).map(|(materials, _)| materials)
 }
 
 /// Holds the materials that faces call against those that the libraries define.

@@ -1,10 +1,11 @@
 //! Materials that an OBJ file brings along in its MTL file.
 
+use std::ops::Range;
 use std::path::Path;
 
 use super::appearance::{Filter, Material, MaterialKind, Reflectance, Texels, Texture, TextureKind, Wrap};
 use super::images::ImageStore;
-use super::obj::{argument, words};
+use super::obj::{Word, argument, words};
 use super::report::Fault;
 
 /// Index of refraction of a transparent MTL material that gives none.
@@ -12,82 +13,100 @@ const DEFAULT_IOR: f64 = 1.5;
 /// Diffuse reflectance of an MTL material that gives none.
 const DEFAULT_DIFFUSE: [f64; 3] = [0.8; 3];
 
-/// Faults that tobj does not see, or sees without a line.
-pub(super) fn scan(text: &str, folder: &Path, images: &mut ImageStore) -> Vec<Fault> {
-    let mut faults = Vec::new();
+/// What a first look at an MTL file finds.
+#[derive(Debug, Default)]
+pub(super) struct Scan<'t> {
+    /// Statements for tobj to read.
+    pub cleaned: String,
+    /// What tobj does not see, stops at without a line, or panics at.
+    pub faults: Vec<Fault>,
+    /// Names of the materials.
+    pub names: Vec<&'t str>,
+}
+
+/// Looks through an MTL file, and reads the images that it names relative to `folder`.
+pub(super) fn scan<'t>(text: &'t str, folder: &Path, images: &mut ImageStore) -> Scan<'t> {
+    let mut scan = Scan::default();
     let mut start = 0;
-    for full in text.split_inclusive('\n') {
-        let line = full.split('#').next().unwrap_or("");
-        let mut words = words(line, start);
-        if let Some((keyword, span)) = words.next() {
-            let rest: Vec<_> = words.collect();
-            let (count, most) = match keyword {
-                "Kd" | "Ks" => (3, 1.0),
-                "Ka" | "Ke" => (3, f64::MAX),
-                "Ni" | "Ns" => (1, f64::MAX),
-                "d" => (1, 1.0),
-                _ => (0, 0.0),
-            };
-            if count > 0 && rest.len() != count {
-                let expected = format!("expected {count} number{}", if count == 1 { "" } else { "s" });
-                faults.push(Fault {
-                    span: span.clone(),
-                    message: format!("`{keyword}` has {}", rest.len()),
-                    expected,
-                });
-            }
-            for (word, span) in rest.iter().take(count) {
-                if !word.parse().is_ok_and(|number| (0.0..=most).contains(&number)) {
-                    let message = format!("`{word}` is out of range or no number");
-                    let expected = match most {
-                        1.0 => "expected a number from 0 to 1",
-                        _ => "expected a number that is not negative",
-                    };
-                    faults.push(Fault { span: span.clone(), message, expected: expected.into() });
-                }
-            }
-            let (name, at) = argument(line, start, keyword, &span);
-            match keyword {
-                "newmtl" if name.is_empty() => {
-                    faults.push(Fault {
-                        span,
-                        message: "`newmtl` names no material".into(),
-                        expected: "expected a name".into(),
-                    });
-                }
-                "illum" if rest.first().is_none_or(|word| word.0.parse::<u8>().is_err()) => {
-                    faults.push(Fault {
-                        span,
-                        message: "`illum` has no model".into(),
-                        expected: "expected a whole number".into(),
-                    });
-                }
-                "map_Kd" if name.starts_with('-') => {
-                    let message = "options of `map_Kd` are not supported".into();
-                    faults.push(Fault { span: at, message, expected: "expected a file name".into() });
-                }
-                "map_Kd" => match images.load(&folder.join(name), None) {
-                    Err(fault) => faults.push(Fault {
-                        span: at,
-                        message: fault.message,
-                        expected: fault.expected.into(),
-                    }),
-                    Ok(image) if exceeds_one(images, image) => {
-                        let message = format!("{name} has a texel above 1");
-                        faults.push(Fault {
-                            span: at,
-                            message,
-                            expected: "expected values from 0 to 1".into(),
-                        });
-                    }
-                    Ok(_) => {}
-                },
-                _ => {}
+    for line in text.split_inclusive('\n') {
+        let statement = line.split('#').next().unwrap_or("");
+        let mut words = words(statement, start);
+        if let Some((keyword, at)) = words.next() {
+            scan.numbers(keyword, &at, &words.collect::<Vec<_>>());
+            let argument = argument(statement, start, keyword, &at);
+            scan.name(keyword, &at, argument, folder, images);
+            scan.cleaned.push_str(statement.trim());
+            scan.cleaned.push('\n');
+        }
+        start += line.len();
+    }
+    scan
+}
+
+impl<'t> Scan<'t> {
+    fn fault(&mut self, span: &Range<usize>, message: impl Into<String>, expected: impl Into<String>) {
+        let (span, message, expected) = (span.clone(), message.into(), expected.into());
+        self.faults.push(Fault { span, message, expected });
+    }
+
+    /// Checks the statements that consist of numbers.
+    fn numbers(&mut self, keyword: &str, at: &Range<usize>, rest: &[Word]) {
+        let (count, most) = match keyword {
+            "Kd" | "Ks" => (3, 1.0),
+            "Ka" | "Ke" => (3, f64::MAX),
+            "Ni" | "Ns" => (1, f64::MAX),
+            "d" => (1, 1.0),
+            "illum" => (1, 255.0),
+            _ => return,
+        };
+        if rest.len() != count {
+            let plural = if count == 1 { "" } else { "s" };
+            let message = format!("`{keyword}` has {} values", rest.len());
+            self.fault(at, message, format!("expected {count} number{plural}"));
+        }
+        for (word, at) in rest.iter().take(count) {
+            let number = word.parse().ok().filter(|number| (0.0..=most).contains(number));
+            if number.is_none_or(|number| keyword == "illum" && number.fract() != 0.0) {
+                let expected = match (keyword, most) {
+                    ("illum", _) => "expected a whole number",
+                    (_, 1.0) => "expected a number from 0 to 1",
+                    _ => "expected a number that is not negative",
+                };
+                self.fault(at, format!("`{word}` is out of range or no number"), expected);
             }
         }
-        start += full.len();
     }
-    faults
+
+    /// Checks the statements that hold a name.
+    fn name(
+        &mut self,
+        keyword: &str,
+        at: &Range<usize>,
+        (name, name_at): Word<'t>,
+        folder: &Path,
+        images: &mut ImageStore,
+    ) {
+        let is_name = keyword == "newmtl" || keyword.starts_with("map_") || keyword == "bump";
+        if is_name && name.is_empty() {
+            self.fault(at, format!("`{keyword}` names nothing"), "expected a name");
+        } else if keyword == "newmtl" {
+            self.names.push(name);
+        } else if keyword == "map_Kd" && name.starts_with('-') {
+            self.fault(&name_at, "options of `map_Kd` are not supported", "expected a file name");
+        } else if keyword == "map_Kd" {
+            match images.load(&folder.join(name), None) {
+                Err(fault) => self.fault(&name_at, fault.message, fault.expected),
+                Ok(image) if exceeds_one(images, image) => {
+                    self.fault(
+                        &name_at,
+                        format!("{name} has a texel above 1"),
+                        "expected values from 0 to 1",
+                    );
+                }
+                Ok(_) => {}
+            }
+        }
+    }
 }
 
 fn exceeds_one(images: &ImageStore, image: usize) -> bool {

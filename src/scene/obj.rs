@@ -68,7 +68,7 @@ impl<'t> Scan<'t> {
         let argument = argument(statement, start, keyword, &span);
         let keep = match keyword {
             "v" => self.vertex(0, 3, &[3, 4, 6], &rest, &span),
-            "vt" => self.vertex(1, 2, &[2, 3], &rest, &span),
+            "vt" => self.vertex(1, 2, &[1, 2, 3], &rest, &span),
             "vn" => self.vertex(2, 3, &[3], &rest, &span),
             "f" => self.face(&rest, &span),
             "o" | "g" => {
@@ -110,7 +110,7 @@ impl<'t> Scan<'t> {
         span: &Range<usize>,
     ) -> bool {
         self.counts[kind] += 1;
-        if !lengths.contains(&rest.len()) && !(kind == 1 && rest.len() == 1) {
+        if !lengths.contains(&rest.len()) {
             let expected = format!("expected {kept} numbers");
             self.fault(span.clone(), format!("{} numbers", rest.len()), expected);
             return false;

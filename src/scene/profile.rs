@@ -121,8 +121,8 @@ mod tests {
         }
     }
 
-    /// The degree-15 curve through one negative control value among ones: B_7,15 is at most 0.2095 (at t = 7/15), so
-    /// 1 + (c - 1) 0.2095 is negative exactly when c < 1 - 1/0.2095 = -3.773.
+    /// The degree-15 curve through one negative control value among ones: B_7,15 is at most 0.203042 (at t = 7/15), so
+    /// 1 + (c - 1) 0.203042 is negative exactly when c < 1 - 1/0.203042 = -3.92509.
     #[test]
     fn sign_at_degree_fifteen() {
         let curve = |c: f64| {
@@ -130,7 +130,7 @@ mod tests {
             coefficients[7] = c;
             coefficients
         };
-        assert!(negative(&curve(-3.7), 1e-12, 40).is_none());
-        assert!(negative(&curve(-3.85), 1e-12, 40).is_some());
+        assert!(negative(&curve(-3.925), 1e-12, 40).is_none());
+        assert!(negative(&curve(-3.9252), 1e-12, 40).is_some());
     }
 }

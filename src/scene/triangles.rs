@@ -151,8 +151,8 @@ impl Builder {
         let [a, b, c] = corners.map(|corner| corner.position);
         let area = (b - a).cross(c - a);
         let longest = (b - a).length_squared().max((c - b).length_squared()).max((a - c).length_squared());
-        // Not `<=`: NaN, of coordinates too large to square, is degenerate as well.
-        if !(area.length() > DEGENERATE * longest) {
+        // Coordinates too large to square give no finite area.
+        if area.length() <= DEGENERATE * longest || !area.is_finite() {
             self.degenerate += 1;
             return;
         }

@@ -6,7 +6,7 @@ use super::check::Item;
 use super::file::{CameraFile, EnvironmentFile, FilmFile, LightFile};
 use super::load::Loader;
 use super::{Camera, Environment, Film, Light};
-use crate::settings::{Radius, RenderSettings};
+use crate::settings::RenderSettings;
 
 /// Least sine of the angle between two directions that count as different.
 const LEAST_SINE: f64 = 1e-9;
@@ -52,22 +52,24 @@ pub(super) fn settings(loader: &mut Loader) -> Option<RenderSettings> {
     let Some(item) = loader.document.item("render") else {
         return Some(RenderSettings::default());
     };
-    let settings: RenderSettings = item.read(loader.report)?;
-    let mut require = |holds: bool, key: &str, expected: &str| {
-        if !holds {
-            let message = format!("`render.{key}` is out of range");
-            loader.report.error(item.node.span_of(key), message, format!("expected {expected}"), None);
+    let mut require = |key: &str, expected: &str, holds: fn(f64) -> bool| {
+        let value = item.node.get(key);
+        let entries = value.into_iter().flat_map(|value| value.entries().map(|(.., number)| number));
+        for node in value.into_iter().chain(entries) {
+            // A number below 0 that has to be whole is reported by the schema.
+            if node.number().is_some_and(|number| number.is_finite() && !holds(number)) {
+                let message = format!("`render.{key}` is out of range");
+                let label = format!("expected {expected}");
+                loader.report.error(node.span(), message, label, None);
+            }
         }
     };
-    let (Radius::Pixels(radius) | Radius::Units(radius)) = settings.radius;
-    let alpha_fits = settings.alpha > 0.0 && settings.alpha <= 1.0;
-    require(settings.passes >= 1, "passes", "at least 1");
-    require(settings.photons >= 1, "photons", "at least 1");
-    require(settings.eye_samples >= 1, "eye_samples", "at least 1");
-    require(settings.max_bounces >= 1, "max_bounces", "at least 1");
-    require(radius > 0.0, "radius", "a number greater than 0");
-    require(alpha_fits, "alpha", "a number greater than 0 and at most 1");
-    Some(settings)
+    for count in ["passes", "photons", "eye_samples", "max_bounces"] {
+        require(count, "at least 1", |count| count != 0.0);
+    }
+    require("radius", "a number greater than 0", |radius| radius > 0.0);
+    require("alpha", "a number greater than 0 and at most 1", |alpha| alpha > 0.0 && alpha <= 1.0);
+    item.read(loader.report)
 }
 
 pub(super) fn light(loader: &mut Loader, item: &Item, file: LightFile) -> Option<Light> {

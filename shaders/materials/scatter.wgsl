@@ -1,0 +1,145 @@
+// Scattering at a surface, the dispatch over materials: twin of src/materials/scatter.rs.
+
+const RADIANCE: u32 = 0u;
+const IMPORTANCE: u32 = 1u;
+
+struct Scatter {
+    direction: vec3f,
+    medium: u32,
+    weight: vec3f,
+}
+
+fn reflectance_at(material: u32, uv: vec2f) -> vec3f {
+    let m = scene.materials[material];
+    //#if textures
+    if m.texture != NONE {
+        return eval_texture(m.texture, uv);
+    }
+    //#end
+    return m.reflectance;
+}
+
+fn is_specular(kind: u32) -> bool {
+    return kind == MATERIAL_MIRROR || kind == MATERIAL_GLASS;
+}
+
+fn toward(v: vec3f, w: vec3f) -> vec3f {
+    return select(-v, v, dot(v, w) >= 0.0);
+}
+
+fn shading_normal(s: Surface, wo: vec3f) -> vec3f {
+    let ng = toward(s.normal, wo);
+    let ns = toward(s.shading, ng);
+    return select(ng, ns, dot(wo, ns) > 0.0);
+}
+
+//#if specular
+fn scatter_specular(s: Surface, wo: vec3f, medium: u32, u: f32, mode: u32) -> Scatter {
+    let m = scene.materials[s.material];
+    let ng = toward(s.normal, wo);
+    var n = shading_normal(s, wo);
+    //#if glass
+    if m.kind == MATERIAL_GLASS {
+        let outside = dot(wo, s.normal) >= 0.0;
+        var eta = m.ior;
+        if outside {
+            eta = 1.0 / m.ior;
+        }
+        let cos_i = dot(wo, n);
+        let interface_n = fresnel(cos_i, eta);
+        if u >= interface_n.reflectance {
+            var wi = refracted(wo, n, cos_i, interface_n.cos_t, eta);
+            if dot(wi, ng) >= 0.0 {
+                let cos_g = dot(wo, ng);
+                let flat_ng = fresnel(cos_g, eta);
+                wi = refracted(wo, ng, cos_g, flat_ng.cos_t, eta);
+            }
+            let weight = select(1.0, eta * eta, mode == RADIANCE);
+            let beyond = select(NONE, s.material, outside);
+            return Scatter(wi, beyond, vec3f(weight));
+        }
+        var wi = mirrored(wo, n);
+        if dot(wi, ng) <= 0.0 {
+            wi = mirrored(wo, ng);
+        }
+        let here = select(s.material, medium, outside);
+        return Scatter(wi, here, vec3f(1.0));
+    }
+    //#end
+    if dot(mirrored(wo, n), ng) <= 0.0 {
+        n = ng;
+    }
+    return Scatter(mirrored(wo, n), medium, reflectance_at(s.material, s.uv));
+}
+//#end
+
+fn scatter_rough(s: Surface, wo: vec3f, medium: u32, u: vec2f, mode: u32) -> Scatter {
+    let m = scene.materials[s.material];
+    let ng = toward(s.normal, wo);
+    let n = shading_normal(s, wo);
+    var wi: vec3f;
+    var weight = reflectance_at(s.material, s.uv);
+    //#if metal
+    if m.kind == MATERIAL_METAL {
+        let f = basis(n);
+        let local_wo = vec3f(dot(wo, f.t), dot(wo, f.b), dot(wo, n));
+        let local_wi = sample_metal(local_wo, m.alpha, u);
+        weight = weight_metal(local_wo, local_wi, weight, m.alpha);
+        wi = from_frame(n, local_wi);
+    } else {
+        wi = from_frame(n, sample_cosine(u));
+    }
+    //#else
+    wi = from_frame(n, sample_cosine(u));
+    //#end
+    wi *= 1.0 / sqrt(dot(wi, wi));
+    let cos_g = dot(wi, ng);
+    if cos_g <= 0.0 {
+        weight = vec3f(0.0);
+    } else if mode == IMPORTANCE {
+        weight *= shading_correction(s, n, ng, wo, wi);
+    }
+    return Scatter(wi, medium, weight);
+}
+
+fn shading_correction(s: Surface, n: vec3f, ng: vec3f, wo: vec3f, wi: vec3f) -> f32 {
+    if all(s.shading == s.normal) {
+        return 1.0;
+    }
+    let denominator = dot(wo, ng) * dot(wi, n);
+    if denominator <= 1e-6 {
+        return 0.0;
+    }
+    return dot(wo, n) * dot(wi, ng) / denominator;
+}
+
+fn eval_rough(kind: u32, alpha: f32, reflectance: vec3f, n: vec3f, wo: vec3f, wi: vec3f) -> vec3f {
+    let cos = dot(wi, n);
+    if cos <= 0.0 {
+        return vec3f(0.0);
+    }
+    //#if metal
+    if kind == MATERIAL_METAL {
+        let f = basis(n);
+        let local_wo = vec3f(dot(wo, f.t), dot(wo, f.b), dot(wo, n));
+        let local_wi = vec3f(dot(wi, f.t), dot(wi, f.b), cos);
+        return eval_metal(local_wo, local_wi, reflectance, alpha) * cos;
+    }
+    //#end
+    return reflectance * (INV_PI * cos);
+}
+
+fn pdf_rough(kind: u32, alpha: f32, n: vec3f, wo: vec3f, wi: vec3f) -> f32 {
+    let cos = dot(wi, n);
+    if cos <= 0.0 {
+        return 0.0;
+    }
+    //#if metal
+    if kind == MATERIAL_METAL {
+        let f = basis(n);
+        let local_wo = vec3f(dot(wo, f.t), dot(wo, f.b), dot(wo, n));
+        return pdf_metal(local_wo, vec3f(dot(wi, f.t), dot(wi, f.b), cos), alpha);
+    }
+    //#end
+    return cos * INV_PI;
+}

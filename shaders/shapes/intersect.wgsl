@@ -1,0 +1,73 @@
+// A ray against the whole scene: twin of src/shapes/intersect.rs.
+
+fn intersect_primitive(reference: u32, ray: Ray, hit: ptr<function, Hit>) {
+    let index = reference & ((1u << REFERENCE_BITS) - 1u);
+    switch reference >> REFERENCE_BITS {
+        //#if triangle
+        case KIND_TRIANGLE: {
+            intersect_triangle(triangles[index], reference, ray, hit);
+        }
+        //#end
+        //#if sphere
+        case KIND_SPHERE: {
+            intersect_sphere(scene.spheres[index], reference, ray, hit);
+        }
+        //#end
+        //#if rectangle
+        case KIND_RECTANGLE: {
+            intersect_rectangle(scene.rectangles[index], reference, ray, hit);
+        }
+        //#end
+        //#if disc
+        case KIND_DISC: {
+            intersect_disc(scene.discs[index], reference, ray, hit);
+        }
+        //#end
+        //#if cuboid
+        case KIND_CUBOID: {
+            intersect_cuboid(scene.cuboids[index], reference, ray, hit);
+        }
+        //#end
+        //#if revolution
+        case KIND_REVOLUTION: {
+            intersect_patch(index, reference, ray, hit);
+        }
+        //#end
+        //#if plane
+        case KIND_PLANE: {
+            intersect_plane(scene.planes[index], reference, ray, hit);
+        }
+        //#end
+        default: {}
+    }
+}
+
+fn intersect_scene(ray: Ray) -> Hit {
+    var hit = Hit(ray.t_max, NONE, 0.0, 0.0);
+    //#if unbounded
+    for (var i = 0u; i < scene.world.unbounded_count; i++) {
+        intersect_primitive(scene.unbounded[i], ray, &hit);
+    }
+    //#end
+    //#if kdtree
+    traverse_closest(ray, &hit);
+    //#end
+    return hit;
+}
+
+fn occluded(ray: Ray) -> bool {
+    var hit = Hit(ray.t_max, NONE, 0.0, 0.0);
+    //#if unbounded
+    for (var i = 0u; i < scene.world.unbounded_count; i++) {
+        intersect_primitive(scene.unbounded[i], ray, &hit);
+        if hit.reference != NONE {
+            return true;
+        }
+    }
+    //#end
+    //#if kdtree
+    return traverse_any(ray, &hit);
+    //#else
+    return false;
+    //#end
+}

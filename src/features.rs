@@ -1,0 +1,114 @@
+//! What a scene and its settings require; whatever is not named here is neither compiled nor allocated.
+
+use crate::settings::{Direct, Method, RadiusRule, RenderSettings};
+use crate::tables::*;
+use std::collections::BTreeSet;
+
+/// Names that fence optional code in shaders (`//#if name`).
+pub const ALL: [&str; 33] = [
+    "triangle",
+    "attributes",
+    "sphere",
+    "rectangle",
+    "disc",
+    "cuboid",
+    "plane",
+    "revolution",
+    "unbounded",
+    "kdtree",
+    "textures",
+    "checker",
+    "texels",
+    "mirror",
+    "glass",
+    "metal",
+    "specular",
+    "absorption",
+    "lights",
+    "area_triangle",
+    "area_sphere",
+    "area_rectangle",
+    "area_disc",
+    "area_cuboid",
+    "area_revolution",
+    "point",
+    "spot",
+    "infinite",
+    "environment",
+    "environment_image",
+    "lens",
+    "sampled",
+    "local",
+];
+
+/// A set of names from [`ALL`], and "photons" where photons are traced at all.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Features(BTreeSet<&'static str>);
+
+impl Features {
+    /// What `scene` rendered with `settings` requires.
+    pub fn of(scene: &Scene, settings: &RenderSettings) -> Self {
+        let mut set = BTreeSet::new();
+        let mut put = |name: &'static str, needed: bool| {
+            if needed {
+                set.insert(name);
+            }
+        };
+        put("triangle", !scene.triangles.is_empty());
+        put("attributes", !scene.attributes.is_empty());
+        put("sphere", !scene.spheres.is_empty());
+        put("rectangle", !scene.rectangles.is_empty());
+        put("disc", !scene.discs.is_empty());
+        put("cuboid", !scene.cuboids.is_empty());
+        put("plane", !scene.planes.is_empty());
+        put("revolution", !scene.revolutions.is_empty());
+        put("unbounded", !scene.unbounded.is_empty());
+        put("kdtree", !scene.nodes.is_empty());
+        let material = |kind| scene.materials.iter().any(|m| m.kind == kind);
+        put("mirror", material(MATERIAL_MIRROR));
+        put("glass", material(MATERIAL_GLASS));
+        put("metal", material(MATERIAL_METAL));
+        put("specular", material(MATERIAL_MIRROR) || material(MATERIAL_GLASS));
+        put("absorption", scene.materials.iter().any(|m| m.absorption.max_element() > 0.0));
+        put("textures", !scene.textures.is_empty());
+        put("checker", scene.textures.iter().any(|t| t.kind == TEXTURE_CHECKER));
+        put("texels", !scene.texels.is_empty());
+        let light = |kind| scene.lights.iter().any(|l| l.kind == kind);
+        let area = |kind| {
+            scene.lights.iter().any(|l| l.kind == LIGHT_AREA && l.reference >> REFERENCE_BITS == kind)
+        };
+        put("lights", !scene.lights.is_empty());
+        put("area_triangle", area(KIND_TRIANGLE));
+        put("area_sphere", area(KIND_SPHERE));
+        put("area_rectangle", area(KIND_RECTANGLE));
+        put("area_disc", area(KIND_DISC));
+        put("area_cuboid", area(KIND_CUBOID));
+        put("area_revolution", area(KIND_REVOLUTION));
+        put("point", light(LIGHT_POINT));
+        put("spot", light(LIGHT_SPOT));
+        put("infinite", light(LIGHT_SUN) || light(LIGHT_CONSTANT) || light(LIGHT_IMAGE));
+        put("environment", light(LIGHT_CONSTANT) || light(LIGHT_IMAGE));
+        put("environment_image", light(LIGHT_IMAGE));
+        put("lens", scene.camera.aperture > 0.0);
+        put("sampled", settings.direct == Direct::Sampled && !scene.lights.is_empty());
+        put("local", settings.radius_rule == RadiusRule::Local);
+        put("photons", !scene.lights.is_empty() && settings.method != Method::Path);
+        Self(set)
+    }
+
+    /// Whether `name` is required.
+    pub fn has(&self, name: &str) -> bool {
+        self.0.contains(name)
+    }
+
+    /// The names, sorted.
+    pub fn names(&self) -> impl Iterator<Item = &'static str> + '_ {
+        self.0.iter().copied()
+    }
+}
+
+impl<const N: usize> From<[&'static str; N]> for Features {
+    fn from(names: [&'static str; N]) -> Self {
+        Self(names.into_iter().collect())
+    }
+}

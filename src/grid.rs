@@ -1,0 +1,24 @@
+//! The hash grid over photon records: cubes of one side length, hashed into a table of buckets. Two cells may
+//! share a bucket, so a reader compares the cell. Twin: `shaders/grid.wgsl`.
+
+use glam::{IVec3, Vec3};
+
+/// Farthest cell from the origin; beyond it cells are merged, which costs time and nothing else.
+const CELL_MAX: f32 = 1e9;
+
+/// Cell of a point; `inv_cell` is one over the side length. Monotone in each coordinate.
+pub fn grid_cell(position: Vec3, inv_cell: f32) -> IVec3 {
+    let p = (position * inv_cell).floor().clamp(Vec3::splat(-CELL_MAX), Vec3::splat(CELL_MAX));
+    p.as_ivec3()
+}
+
+/// Bucket of a cell (Teschner et al. 2003, primes; then a finaliser so that near cells part).
+pub fn grid_bucket(cell: IVec3, mask: u32) -> u32 {
+    let mut h = (cell.x as u32).wrapping_mul(73856093)
+        ^ (cell.y as u32).wrapping_mul(19349663)
+        ^ (cell.z as u32).wrapping_mul(83492791);
+    h ^= h >> 16;
+    h = h.wrapping_mul(0x7feb352d);
+    h ^= h >> 15;
+    h & mask
+}

@@ -1,0 +1,116 @@
+//! Direct light at a non-specular hit: one shadow ray to a sampled light and, on metal, one ray by the
+//! material's density, joined by multiple importance sampling (Veach & Guibas 1995). Twin:
+//! `shaders/kernels/direct.wgsl`.
+
+use crate::lights::light::{eval_environment, pdf_environment, pdf_light, sample_light};
+use crate::materials::scatter::{RADIANCE, eval_rough, pdf_rough, scatter_rough};
+use crate::math::rng::{Rng, rng_next};
+use crate::math::sampling::balance;
+use crate::math::trig::exponential;
+use crate::math::{FAR, max_component, offset_origin};
+use crate::shapes::intersect::{intersect_scene, occluded};
+use crate::shapes::ray::Ray;
+use crate::shapes::surface::{Surface, surface_at};
+use crate::tables::*;
+use glam::{Vec2, Vec3, Vec4};
+
+/// Beer-Lambert transmittance over `distance` in a medium.
+pub fn transmittance(scene: &Scene, medium: u32, distance: f32) -> Vec3 {
+    if medium == NONE {
+        return Vec3::ONE;
+    }
+    let depth = scene.materials[medium as usize].absorption * -distance;
+    Vec3::new(exponential(depth.x), exponential(depth.y), exponential(depth.z))
+}
+
+/// The medium that a ray with direction `-wo` crossed before it hit `s`: glass met from inside says so itself.
+pub fn medium_before(scene: &Scene, s: &Surface, wo: Vec3, medium: u32) -> u32 {
+    let inside = scene.materials[s.material as usize].kind == MATERIAL_GLASS && wo.dot(s.normal) < 0.0;
+    if inside { s.material } else { medium }
+}
+
+/// Radiance toward `wo` from one sampled light, and the number of shadow rays. `mis`: weighted against
+/// scattered rays that could meet the same light.
+#[allow(clippy::too_many_arguments)]
+pub fn next_event(
+    scene: &Scene,
+    s: &Surface,
+    wo: Vec3,
+    n: Vec3,
+    ng: Vec3,
+    reflectance: Vec3,
+    medium: u32,
+    mis: bool,
+    u: Vec4,
+) -> (Vec3, u32) {
+    let kind = scene.materials[s.material as usize].kind;
+    let alpha = scene.materials[s.material as usize].alpha;
+    let origin = s.position + ng * s.error;
+    let light = sample_light(scene, origin, u);
+    if light.direction.dot(ng) <= 0.0 || max_component(light.radiance) <= 0.0 {
+        return (Vec3::ZERO, 0);
+    }
+    let f = eval_rough(kind, alpha, reflectance, n, wo, light.direction);
+    if max_component(f) <= 0.0 {
+        return (Vec3::ZERO, 0);
+    }
+    let ray = Ray { origin, t_min: 0.0, direction: light.direction, t_max: light.distance };
+    if occluded(scene, &ray) {
+        return (Vec3::ZERO, 1);
+    }
+    let mut weight = 1.0 / light.pdf;
+    if mis && light.extended {
+        weight *= balance(light.pdf, pdf_rough(kind, alpha, n, wo, light.direction));
+    }
+    let mut radiance = f * light.radiance * weight;
+    if light.distance < FAR {
+        radiance *= transmittance(scene, medium, light.distance);
+    }
+    (radiance, 1)
+}
+
+/// Radiance toward `wo` from the lights, and the number of rays spent.
+#[allow(clippy::too_many_arguments)]
+pub fn direct_light(
+    scene: &Scene,
+    s: &Surface,
+    wo: Vec3,
+    n: Vec3,
+    ng: Vec3,
+    reflectance: Vec3,
+    medium: u32,
+    rng: &mut Rng,
+) -> (Vec3, u32) {
+    let kind = scene.materials[s.material as usize].kind;
+    let alpha = scene.materials[s.material as usize].alpha;
+    let metal = kind == MATERIAL_METAL;
+    let (mut radiance, mut rays) = next_event(scene, s, wo, n, ng, reflectance, medium, metal, rng_next(rng));
+    if metal {
+        let u = rng_next(rng);
+        let scattered = scatter_rough(scene, s, wo, medium, Vec2::new(u.x, u.y), RADIANCE);
+        if max_component(scattered.weight) > 0.0 {
+            rays += 1;
+            let pdf = pdf_rough(kind, alpha, n, wo, scattered.direction);
+            let origin = offset_origin(s.position, s.error, ng, scattered.direction);
+            let ray = Ray { origin, t_min: 0.0, direction: scattered.direction, t_max: FAR };
+            let hit = intersect_scene(scene, &ray);
+            if hit.reference == NONE {
+                if scene.world.environment != NONE {
+                    let light = &scene.lights[scene.world.environment as usize];
+                    let other = pdf_environment(scene, light, ray.direction) * light.selection;
+                    let seen = eval_environment(scene, light, ray.direction);
+                    radiance += scattered.weight * seen * balance(pdf, other);
+                }
+            } else {
+                let at = surface_at(scene, &ray, &hit);
+                if at.light != NONE && ray.direction.dot(at.normal) < 0.0 {
+                    let light = &scene.lights[at.light as usize];
+                    let other = pdf_light(scene, at.light, origin, ray.direction, hit.t, at.normal, at.v);
+                    let seen = light.color * transmittance(scene, medium, hit.t);
+                    radiance += scattered.weight * seen * balance(pdf, other);
+                }
+            }
+        }
+    }
+    (radiance, rays)
+}

@@ -1,0 +1,116 @@
+//! Eye path of one visible point: lens and pixel sample, through mirrors and glass, to the first non-specular
+//! hit. Run by one invocation per visible point; reads the scene, writes `visible_points`. Twin:
+//! `shaders/kernels/eye_trace.wgsl`.
+
+use super::direct::{direct_light, medium_before, transmittance};
+use super::records::{Dispatch, VisiblePoint};
+use crate::camera::camera_ray;
+use crate::lights::light::eval_environment;
+use crate::materials::scatter::{RADIANCE, is_specular, reflectance_at, scatter_specular, shading_normal, toward};
+use crate::math::rng::{STREAM_EYE, rng_new, rng_next};
+use crate::math::{FAR, INV_PI, max_component, oct_encode, offset_origin};
+use crate::shapes::intersect::intersect_scene;
+use crate::shapes::ray::Ray;
+use crate::shapes::surface::surface_at;
+use crate::tables::*;
+use glam::{Vec3, Vec4};
+
+/// Traces visible point `id` of the chunk; also returns the number of rays. `sampled`: direct light by shadow
+/// rays.
+pub fn eye_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, id: u32) -> (VisiblePoint, u32) {
+    let index = dispatch.chunk_first + id;
+    let pixel = index / dispatch.eye_samples;
+    let mut rng = rng_new(index, dispatch.pass_number, STREAM_EYE, dispatch.seed);
+    let u = stratified(rng_next(&mut rng), index - pixel * dispatch.eye_samples, pixel, dispatch);
+    let camera = &scene.camera;
+    let mut ray = camera_ray(camera, pixel % camera.width, pixel / camera.width, u);
+    let mut throughput = Vec3::ONE;
+    let mut medium = NONE;
+    let mut length = 0.0;
+    let mut rays = 0;
+    let mut point = VisiblePoint::default();
+    for bounce in 0..dispatch.max_bounces + 1 {
+        rays += 1;
+        let hit = intersect_scene(scene, &ray);
+        if hit.reference == NONE {
+            if scene.world.environment != NONE {
+                let light = &scene.lights[scene.world.environment as usize];
+                point.radiance += throughput * eval_environment(scene, light, ray.direction);
+            }
+            break;
+        }
+        let s = surface_at(scene, &ray, &hit);
+        let wo = -ray.direction;
+        length += hit.t;
+        throughput *= transmittance(scene, medium_before(scene, &s, wo, medium), hit.t);
+        if s.light != NONE && wo.dot(s.normal) > 0.0 {
+            point.radiance += throughput * scene.lights[s.light as usize].color;
+        }
+        let kind = scene.materials[s.material as usize].kind;
+        if !is_specular(kind) {
+            let reflectance = reflectance_at(scene, s.material, s.uv);
+            if max_component(reflectance) <= 0.0 {
+                break;
+            }
+            let ng = toward(s.normal, wo);
+            let n = shading_normal(&s, wo);
+            point.position = s.position;
+            point.radius = start_radius(dispatch, camera.pixel * length);
+            point.normal = oct_encode(ng);
+            point.shading = oct_encode(n);
+            point.weight = throughput * reflectance * INV_PI;
+            if kind == MATERIAL_METAL {
+                point.weight = throughput;
+                point.reflectance = reflectance;
+                point.alpha = scene.materials[s.material as usize].alpha;
+                point.wo = wo;
+            }
+            if sampled {
+                let (radiance, spent) = direct_light(scene, &s, wo, n, ng, reflectance, medium, &mut rng);
+                point.radiance += throughput * radiance;
+                rays += spent;
+            }
+            break;
+        }
+        if bounce == dispatch.max_bounces {
+            break;
+        }
+        let v = rng_next(&mut rng);
+        let scattered = scatter_specular(scene, &s, wo, medium, v.x, RADIANCE);
+        throughput *= scattered.weight;
+        medium = scattered.medium;
+        // roulette only where little is left to lose
+        let survival = (4.0 * max_component(throughput)).min(1.0);
+        if v.y >= survival {
+            break;
+        }
+        throughput *= 1.0 / survival;
+        let origin = offset_origin(s.position, s.error, s.normal, scattered.direction);
+        ray = Ray { origin, t_min: 0.0, direction: scattered.direction, t_max: FAR };
+    }
+    (point, rays)
+}
+
+/// Start radius at a visible point whose pixel covers `footprint`.
+fn start_radius(dispatch: &Dispatch, footprint: f32) -> f32 {
+    if dispatch.radius_pixels > 0.0 {
+        return (dispatch.radius_pixels * footprint).min(dispatch.radius_max);
+    }
+    dispatch.radius_units
+}
+
+/// Sample `k` of a pixel in its stratum of the pixel and, shuffled, of the lens square.
+fn stratified(u: Vec4, k: u32, pixel: u32, dispatch: &Dispatch) -> Vec4 {
+    if dispatch.eye_samples == 1 {
+        return u;
+    }
+    let columns = dispatch.strata;
+    let rows = dispatch.eye_samples / columns;
+    let lens = (k + pixel * 7 + pixel / 3) % dispatch.eye_samples;
+    Vec4::new(
+        ((k % columns) as f32 + u.x) / columns as f32,
+        ((k / columns) as f32 + u.y) / rows as f32,
+        ((lens % columns) as f32 + u.z) / columns as f32,
+        ((lens / columns) as f32 + u.w) / rows as f32,
+    )
+}

@@ -1,0 +1,77 @@
+//! Density estimate at one visible point: the sum over the photons in its disc. Run by one invocation per
+//! visible point and photon batch; reads `visible_points`, `sorted`, `starts` (and `statistics` under the
+//! local rule), adds to `gathered`. Twin: `shaders/kernels/gather.wgsl`.
+
+use super::records::{Dispatch, Gathered, PhotonRecord, Statistics, VisiblePoint};
+use crate::grid::{grid_bucket, grid_cell};
+use crate::materials::scatter::eval_rough;
+use crate::math::oct_decode;
+use crate::tables::MATERIAL_METAL;
+use glam::{IVec3, Vec3};
+
+/// Photons farther than this from the tangent plane, in radii, lie on another surface.
+const FLATNESS: f32 = 0.25;
+/// Least cosine with the geometric normal for which the shading normal's correction is formed.
+const COS_MIN: f32 = 1e-3;
+
+/// Squared radius of this pass over the squared start radius.
+pub fn scale_sq(dispatch: &Dispatch, local: bool, statistics: &Statistics) -> f32 {
+    if !local {
+        return dispatch.scale_sq;
+    }
+    if statistics.scale_sq == 0.0 { 1.0 } else { statistics.scale_sq - statistics.drop }
+}
+
+/// Adds the photons of one batch around a visible point to `gathered`.
+pub fn gather(
+    dispatch: &Dispatch,
+    point: &VisiblePoint,
+    scale_sq: f32,
+    starts: &[u32],
+    sorted: &[PhotonRecord],
+    gathered: &mut Gathered,
+) {
+    if point.radius <= 0.0 {
+        return;
+    }
+    let radius_sq = point.radius * point.radius * scale_sq;
+    let radius = radius_sq.sqrt();
+    let ng = oct_decode(point.normal);
+    let flat = point.normal == point.shading;
+    let n = oct_decode(point.shading);
+    let low = grid_cell(point.position - Vec3::splat(radius), dispatch.inv_cell);
+    let high = grid_cell(point.position + Vec3::splat(radius), dispatch.inv_cell);
+    for z in low.z..=high.z {
+        for y in low.y..=high.y {
+            for x in low.x..=high.x {
+                let cell = IVec3::new(x, y, z);
+                let bucket = grid_bucket(cell, dispatch.mask) as usize;
+                for record in &sorted[starts[bucket] as usize..starts[bucket + 1] as usize] {
+                    let d = record.position - point.position;
+                    if d.dot(d) > radius_sq
+                        || d.dot(ng).abs() > FLATNESS * radius
+                        || grid_cell(record.position, dispatch.inv_cell) != cell
+                    {
+                        continue;
+                    }
+                    let wi = oct_decode(record.direction);
+                    let cos_g = wi.dot(ng);
+                    if cos_g <= 0.0 {
+                        continue;
+                    }
+                    gathered.count += 1;
+                    if point.alpha > 0.0 {
+                        let f = eval_rough(MATERIAL_METAL, point.alpha, point.reflectance, n, point.wo, wi);
+                        gathered.flux += point.weight * f * record.flux * (1.0 / cos_g.max(COS_MIN));
+                    } else if flat {
+                        gathered.flux += point.weight * record.flux;
+                    } else {
+                        // flux arrives by the geometric cosine, the BRDF asks for the shading one
+                        let ratio = wi.dot(n).max(0.0) / cos_g.max(COS_MIN);
+                        gathered.flux += point.weight * record.flux * ratio;
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,11 @@
+//! The kernels of a pass, each the twin of `shaders/kernels/` file of the same stem: a function of the
+//! invocation's number and of what the kernel reads, returning what it writes.
+
+pub mod direct;
+pub mod eye_trace;
+pub mod gather;
+pub mod grid_build;
+pub mod path_trace;
+pub mod photon_trace;
+pub mod records;
+pub mod resolve;

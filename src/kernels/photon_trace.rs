@@ -1,0 +1,69 @@
+//! Path of one photon: emission, then a record at every non-specular hit and on to the next until roulette
+//! ends it. Run by one invocation per photon; reads the scene, appends to `records`. Twin:
+//! `shaders/kernels/photon_trace.wgsl`.
+
+use super::direct::{medium_before, transmittance};
+use super::records::{Dispatch, PhotonRecord};
+use crate::lights::emission::emit_photon;
+use crate::materials::scatter::{IMPORTANCE, is_specular, reflectance_at, scatter_rough, scatter_specular};
+use crate::math::rng::{STREAM_PHOTON, rng_new, rng_next};
+use crate::math::{FAR, max_component, oct_encode, offset_origin};
+use crate::shapes::intersect::intersect_scene;
+use crate::shapes::ray::Ray;
+use crate::shapes::surface::surface_at;
+use crate::tables::*;
+use glam::Vec2;
+
+/// Traces photon `id` of the batch and hands each record to `store`; returns the number of rays. `sampled`:
+/// photons straight from a light are not stored, since shadow rays bring that light.
+pub fn photon_trace(
+    scene: &Scene,
+    dispatch: &Dispatch,
+    sampled: bool,
+    id: u32,
+    mut store: impl FnMut(PhotonRecord),
+) -> u32 {
+    let mut rng = rng_new(dispatch.batch_first + id, dispatch.pass_number, STREAM_PHOTON, dispatch.seed);
+    let emission = emit_photon(scene, &mut rng);
+    let mut ray = emission.ray;
+    let mut flux = emission.flux;
+    let mut medium = NONE;
+    let mut rays = 0;
+    for bounce in 0..dispatch.max_bounces + 1 {
+        if max_component(flux) <= 0.0 {
+            break;
+        }
+        rays += 1;
+        let hit = intersect_scene(scene, &ray);
+        if hit.reference == NONE {
+            break;
+        }
+        let s = surface_at(scene, &ray, &hit);
+        let wo = -ray.direction;
+        // the first ray of light from infinity starts behind its origin, outside of every medium
+        flux *= transmittance(scene, medium_before(scene, &s, wo, medium), hit.t.max(0.0));
+        let kind = scene.materials[s.material as usize].kind;
+        let u = rng_next(&mut rng);
+        let mut scattered;
+        if is_specular(kind) {
+            scattered = scatter_specular(scene, &s, wo, medium, u.x, IMPORTANCE);
+        } else {
+            let stored = bounce > 0 || !sampled;
+            if stored && max_component(reflectance_at(scene, s.material, s.uv)) > 0.0 {
+                let key = id << dispatch.key_bits | bounce;
+                store(PhotonRecord { position: s.position, key, flux, direction: oct_encode(wo) });
+            }
+            scattered = scatter_rough(scene, &s, wo, medium, Vec2::new(u.x, u.y), IMPORTANCE);
+        }
+        let survival = max_component(scattered.weight).min(1.0);
+        if u.w >= survival {
+            break;
+        }
+        scattered.weight *= 1.0 / survival;
+        flux *= scattered.weight;
+        medium = scattered.medium;
+        let origin = offset_origin(s.position, s.error, s.normal, scattered.direction);
+        ray = Ray { origin, t_min: 0.0, direction: scattered.direction, t_max: FAR };
+    }
+    rays
+}

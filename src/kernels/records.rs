@@ -1,0 +1,124 @@
+//! What kernels hand to one another. Twin: `shaders/kernels/records.wgsl`.
+
+use bytemuck::{Pod, Zeroable};
+use glam::Vec3;
+
+/// Numbers of one dispatch.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub struct Dispatch {
+    /// First item of this dispatch.
+    pub first: u32,
+    /// One past its last item.
+    pub end: u32,
+    /// Pass number of the random numbers, from 0.
+    pub pass_number: u32,
+    /// Seed.
+    pub seed: u32,
+    /// First visible point of the chunk within the picture's.
+    pub chunk_first: u32,
+    /// First photon of the batch within the pass's.
+    pub batch_first: u32,
+    /// Low bits of a record's key that hold the bounce.
+    pub key_bits: u32,
+    /// Records that the buffers hold.
+    pub capacity: u32,
+    /// Most scattering events on a path.
+    pub max_bounces: u32,
+    /// Visible points per pixel.
+    pub eye_samples: u32,
+    /// Number of buckets less one.
+    pub mask: u32,
+    /// One over the side length of a grid cell.
+    pub inv_cell: f32,
+    /// Squared radius of this pass over the squared start radius (fixed and global rules).
+    pub scale_sq: f32,
+    /// `M`, photons emitted in a pass, as a float.
+    pub photons: f32,
+    /// `alpha` of the radius rule.
+    pub alpha: f32,
+    /// Start radius in pixel footprints, or 0.
+    pub radius_pixels: f32,
+    /// Start radius in scene units where `radius_pixels` is 0.
+    pub radius_units: f32,
+    /// Greatest start radius, in scene units.
+    pub radius_max: f32,
+    /// Columns of the strata of a pixel's visible points.
+    pub strata: u32,
+    /// Passes that the film holds already.
+    pub passes_done: u32,
+}
+
+/// First non-specular hit of an eye path.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct VisiblePoint {
+    /// In scene space.
+    pub position: Vec3,
+    /// Start radius in scene units; 0 where the eye path met nothing.
+    pub radius: f32,
+    /// Diffuse: throughput times BRDF. Metal: throughput alone.
+    pub weight: Vec3,
+    /// Geometric normal on the viewer's side, octahedral.
+    pub normal: u32,
+    /// Radiance met on the way: emission, environment and sampled direct light, times throughput.
+    pub radiance: Vec3,
+    /// Shading normal on the viewer's side, octahedral.
+    pub shading: u32,
+    /// Metal: reflectance at normal incidence.
+    pub reflectance: Vec3,
+    /// Metal: GGX width; 0 is diffuse.
+    pub alpha: f32,
+    /// Metal: direction to the viewer.
+    pub wo: Vec3,
+    /// Padding.
+    pub pad: u32,
+}
+
+/// A photon at a non-specular hit.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct PhotonRecord {
+    /// In scene space.
+    pub position: Vec3,
+    /// (photon within the batch, bounce): the order of summation.
+    pub key: u32,
+    /// Flux in W times the number of photons in the pass.
+    pub flux: Vec3,
+    /// Direction to where it came from, octahedral.
+    pub direction: u32,
+}
+
+/// What a visible point gathered in one pass.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct Gathered {
+    /// Sum of weight times BRDF times flux.
+    pub flux: Vec3,
+    /// Photons inside the disc, on the right side of the surface.
+    pub count: u32,
+}
+
+/// Local rule: statistics of a pixel (SPPM) or visible point (PPM), with radii over the start radius.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct Statistics {
+    /// `R^2` over the squared start radius, less what `drop` still holds back; 0 in fresh memory stands for 1.
+    pub scale_sq: f32,
+    /// Decrease of `R^2` not yet taken from `scale_sq`: small terms are summed here first, so that they count.
+    pub drop: f32,
+    /// Photons so far, low word; `N = alpha` times this count.
+    pub count_low: u32,
+    /// Photons so far, high word.
+    pub count_high: u32,
+}
+
+/// A pixel's estimate so far.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct FilmPixel {
+    /// Mean over the passes, in W sr^-1 m^-2 of scene units.
+    pub mean: Vec3,
+    /// Passes whose value was not finite and was left out.
+    pub rejected: u32,
+}

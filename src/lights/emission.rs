@@ -1,0 +1,92 @@
+//! Photon emission from every kind of light. Twin: `shaders/lights/emission.wgsl`.
+
+use super::light::{choose_light, eval_environment, pdf_environment, sample_environment, spot_falloff};
+use super::shape::sample_shape;
+use crate::math::rng::{Rng, rng_next};
+use crate::math::sampling::{sample_cone, sample_cosine, sample_disc, sample_sphere};
+use crate::math::{EPS, FAR, PI, TAU, from_frame, unit};
+use crate::shapes::ray::Ray;
+use crate::tables::*;
+use glam::{Vec2, Vec3};
+
+/// A photon as it leaves its light.
+#[derive(Clone, Copy, Debug)]
+pub struct Emission {
+    /// Its first ray.
+    pub ray: Ray,
+    /// Flux in W times the number of photons emitted in the pass.
+    pub flux: Vec3,
+}
+
+/// The next photon.
+pub fn emit_photon(scene: &Scene, rng: &mut Rng) -> Emission {
+    let u = rng_next(rng);
+    let v = rng_next(rng);
+    let light = &scene.lights[choose_light(scene, u.x) as usize];
+    let across = Vec2::new(v.x, v.y);
+    let mut ray = Ray { origin: light.position, t_min: 0.0, direction: Vec3::Z, t_max: FAR };
+    if light.kind == LIGHT_AREA {
+        let p = sample_shape(scene, light, Vec2::new(u.y, u.z), u.w);
+        ray.direction = unit(from_frame(p.normal, sample_cosine(across)));
+        ray.origin = p.position + p.normal * p.error;
+        return Emission { ray, flux: light.color * (PI / (p.pdf * light.selection)) };
+    }
+    if light.kind == LIGHT_POINT {
+        ray.direction = unit(sample_sphere(across));
+        return Emission { ray, flux: light.color * (2.0 * TAU / light.selection) };
+    }
+    if light.kind == LIGHT_SPOT {
+        let local = sample_cone(across, 1.0 - light.cos_outer);
+        ray.direction = unit(from_frame(light.direction, local));
+        let solid_angle = TAU * (1.0 - light.cos_outer);
+        return Emission { ray, flux: light.color * (spot_falloff(light, local.z) * solid_angle / light.selection) };
+    }
+    // from infinity: through one of a row of discs, each twice as wide as the one before and half as likely
+    ray.direction = light.direction;
+    let mut radiance = light.color;
+    if light.kind != LIGHT_SUN {
+        let w = sample_environment(scene, light, u);
+        ray.direction = -w;
+        radiance = eval_environment(scene, light, w) * (1.0 / pdf_environment(scene, light, w));
+    }
+    let mut radius = scene.world.near_radius;
+    let mut x = v.z;
+    for _ in 1..scene.world.disc_levels {
+        if x >= 0.5 {
+            break;
+        }
+        x *= 2.0;
+        radius *= 2.0;
+    }
+    let d = sample_disc(across) * radius;
+    ray.origin = from_frame(ray.direction, Vec3::new(d.x, d.y, 0.0));
+    ray.t_min = -4.0 * disc_radius_max(scene);
+    Emission { ray, flux: radiance * (1.0 / (pdf_discs(scene, d.dot(d)) * light.selection)) }
+}
+
+/// Radius of the widest emission disc.
+pub fn disc_radius_max(scene: &Scene) -> f32 {
+    let mut radius = scene.world.near_radius;
+    for _ in 1..scene.world.disc_levels {
+        radius *= 2.0;
+    }
+    radius
+}
+
+/// Density per area, at squared distance `r_sq` from the middle, of a point on a disc so chosen.
+pub fn pdf_discs(scene: &Scene, r_sq: f32) -> f32 {
+    let mut radius = scene.world.near_radius;
+    let mut probability = 0.5;
+    let mut sum = 0.0;
+    for level in 1..scene.world.disc_levels + 1 {
+        if level == scene.world.disc_levels {
+            probability *= 2.0;
+        }
+        if r_sq <= radius * radius * (1.0 + 16.0 * EPS) {
+            sum += probability / (PI * radius * radius);
+        }
+        probability *= 0.5;
+        radius *= 2.0;
+    }
+    sum
+}

@@ -1,0 +1,213 @@
+//! Choosing a light and sampling it from a surface point; densities per solid angle. Twin:
+//! `shaders/lights/light.wgsl`.
+
+use super::shape::{pdf_bin, pdf_shape, pdf_sphere_cone, sample_shape, sample_sphere_cone};
+use crate::materials::texture::eval_texture;
+use crate::math::sampling::{PDF_SPHERE, sample_sphere};
+use crate::math::trig::{arctan2, sin_cos};
+use crate::math::{EPS, FAR, PI, TAU};
+use crate::tables::*;
+use glam::{Vec2, Vec3, Vec4};
+
+/// Light that reaches a point from a sampled direction, if nothing is in between.
+#[derive(Clone, Copy, Debug)]
+pub struct LightSample {
+    /// Unit direction to the light.
+    pub direction: Vec3,
+    /// Distance up to which the way must be free.
+    pub distance: f32,
+    /// Radiance, or irradiance at normal incidence for lights without extent.
+    pub radiance: Vec3,
+    /// Density per solid angle times the probability of this light; for lights without extent that probability.
+    pub pdf: f32,
+    /// Whether a scattered ray could have met the same light.
+    pub extended: bool,
+}
+
+/// First index at `first..first + count` whose cumulative value exceeds `u`.
+pub fn find_interval(scene: &Scene, first: u32, count: u32, u: f32) -> u32 {
+    let mut low = 0;
+    let mut high = count - 1;
+    while low < high {
+        let middle = (low + high) / 2;
+        if scene.distributions[(first + middle) as usize] > u {
+            high = middle;
+        } else {
+            low = middle + 1;
+        }
+    }
+    low
+}
+
+/// A light by its share of the scene's power.
+pub fn choose_light(scene: &Scene, u: f32) -> u32 {
+    find_interval(scene, 0, scene.world.light_count, u)
+}
+
+/// Light at `position` from the light that `u.x` chooses, sampled by the other three.
+pub fn sample_light(scene: &Scene, position: Vec3, u: Vec4) -> LightSample {
+    let light = &scene.lights[choose_light(scene, u.x) as usize];
+    let none = LightSample {
+        direction: Vec3::Z,
+        distance: 0.0,
+        radiance: Vec3::ZERO,
+        pdf: 1.0,
+        extended: true,
+    };
+    if light.kind == LIGHT_AREA {
+        let index = (light.reference & ((1 << REFERENCE_BITS) - 1)) as usize;
+        if light.reference >> REFERENCE_BITS == KIND_SPHERE {
+            let sphere = &scene.spheres[index];
+            if pdf_sphere_cone(sphere, position) > 0.0 {
+                let p = sample_sphere_cone(sphere, position, Vec2::new(u.y, u.z));
+                let to = p.position + p.normal * p.error - position;
+                let dist_sq = to.dot(to);
+                let distance = dist_sq.sqrt();
+                return LightSample {
+                    direction: to * (1.0 / distance),
+                    distance: distance * (1.0 - 16.0 * EPS),
+                    radiance: light.color,
+                    pdf: p.pdf * light.selection,
+                    extended: true,
+                };
+            }
+        }
+        let p = sample_shape(scene, light, Vec2::new(u.y, u.z), u.w);
+        let to = p.position + p.normal * p.error - position;
+        let dist_sq = to.dot(to);
+        if dist_sq == 0.0 {
+            return none;
+        }
+        let distance = dist_sq.sqrt();
+        let direction = to * (1.0 / distance);
+        let cos = -direction.dot(p.normal);
+        if cos <= 0.0 {
+            return none;
+        }
+        return LightSample {
+            direction,
+            distance: distance * (1.0 - 16.0 * EPS),
+            radiance: light.color,
+            pdf: p.pdf * dist_sq / cos * light.selection,
+            extended: true,
+        };
+    }
+    if light.kind == LIGHT_POINT || light.kind == LIGHT_SPOT {
+        let to = light.position - position;
+        let dist_sq = to.dot(to);
+        if dist_sq == 0.0 {
+            return none;
+        }
+        let distance = dist_sq.sqrt();
+        let direction = to * (1.0 / distance);
+        let mut radiance = light.color * (1.0 / dist_sq);
+        if light.kind == LIGHT_SPOT {
+            radiance *= spot_falloff(light, -direction.dot(light.direction));
+        }
+        return LightSample {
+            direction,
+            distance: distance * (1.0 - 16.0 * EPS),
+            radiance,
+            pdf: light.selection,
+            extended: false,
+        };
+    }
+    if light.kind == LIGHT_SUN {
+        return LightSample {
+            direction: -light.direction,
+            distance: FAR,
+            radiance: light.color,
+            pdf: light.selection,
+            extended: false,
+        };
+    }
+    let direction = sample_environment(scene, light, u);
+    LightSample {
+        direction,
+        distance: FAR,
+        radiance: eval_environment(scene, light, direction),
+        pdf: pdf_environment(scene, light, direction) * light.selection,
+        extended: true,
+    }
+}
+
+/// 1 inside the full cone of a spot, 0 outside the dark one, a smoothstep of the cosine between.
+pub fn spot_falloff(light: &Light, cos: f32) -> f32 {
+    if cos >= light.cos_inner {
+        return 1.0;
+    }
+    if cos <= light.cos_outer {
+        return 0.0;
+    }
+    let x = (cos - light.cos_outer) / (light.cos_inner - light.cos_outer);
+    x * x * (3.0 - 2.0 * x)
+}
+
+/// Density with which [`sample_light`] at `from` would have looked along `direction` and met area light
+/// `index` at distance `t`, where the surface has unit normal `normal` and profile parameter `v`.
+pub fn pdf_light(scene: &Scene, index: u32, from: Vec3, direction: Vec3, t: f32, normal: Vec3, v: f32) -> f32 {
+    let light = &scene.lights[index as usize];
+    if light.reference >> REFERENCE_BITS == KIND_SPHERE {
+        let sphere = &scene.spheres[(light.reference & ((1 << REFERENCE_BITS) - 1)) as usize];
+        let pdf = pdf_sphere_cone(sphere, from);
+        if pdf > 0.0 {
+            return pdf * light.selection;
+        }
+    }
+    let cos = direction.dot(normal).abs();
+    pdf_shape(scene, light, v) * t * t / cos.max(1e-12) * light.selection
+}
+
+/// Zenith-down texture coordinates of a direction seen in an equirectangular picture turned about y.
+pub fn environment_uv(light: &Light, direction: Vec3) -> Vec2 {
+    let x = light.cos_outer * direction.x - light.cos_inner * direction.z;
+    let z = light.cos_inner * direction.x + light.cos_outer * direction.z;
+    let r = (x * x + z * z).sqrt();
+    Vec2::new(0.5 - arctan2(z, x) * (1.0 / TAU), 1.0 - arctan2(r, direction.y) * (1.0 / PI))
+}
+
+/// Radiance from `direction`.
+pub fn eval_environment(scene: &Scene, light: &Light, direction: Vec3) -> Vec3 {
+    if light.kind == LIGHT_CONSTANT {
+        return light.color;
+    }
+    light.color * eval_texture(scene, light.reference, environment_uv(light, direction))
+}
+
+/// A direction from which the environment shines.
+pub fn sample_environment(scene: &Scene, light: &Light, u: Vec4) -> Vec3 {
+    if light.kind == LIGHT_CONSTANT {
+        return sample_sphere(Vec2::new(u.y, u.z));
+    }
+    let texture = &scene.textures[light.reference as usize];
+    let row = find_interval(scene, light.first, texture.height, u.y);
+    let column = find_interval(scene, light.first + texture.height + row * texture.width, texture.width, u.z);
+    let high = scene.distributions[(light.first + row) as usize];
+    let low = if row > 0 { scene.distributions[(light.first + row - 1) as usize] } else { 0.0 };
+    let across = (column as f32 + u.w) / texture.width as f32;
+    let down = (row as f32 + ((u.y - low) / (high - low)).clamp(0.0, 1.0)) / texture.height as f32;
+    let (sin_phi, cos_phi) = sin_cos((0.5 - across) * TAU);
+    let (sin, cos) = sin_cos(down * PI);
+    let x = sin * cos_phi;
+    let z = sin * sin_phi;
+    Vec3::new(
+        light.cos_outer * x + light.cos_inner * z,
+        cos,
+        light.cos_outer * z - light.cos_inner * x,
+    )
+}
+
+/// Density per solid angle of [`sample_environment`].
+pub fn pdf_environment(scene: &Scene, light: &Light, direction: Vec3) -> f32 {
+    if light.kind == LIGHT_CONSTANT {
+        return PDF_SPHERE;
+    }
+    let texture = &scene.textures[light.reference as usize];
+    let uv = environment_uv(light, direction);
+    let row = (((1.0 - uv.y) * texture.height as f32).floor() as u32).min(texture.height - 1);
+    let column = ((uv.x * texture.width as f32).floor() as u32).min(texture.width - 1);
+    let p = pdf_bin(scene, light.first, row, texture.height)
+        * pdf_bin(scene, light.first + texture.height + row * texture.width, column, texture.width);
+    let sin = (1.0 - direction.y * direction.y).max(1e-12).sqrt();
+    p / (2.0 * PI * PI * sin)
+}

@@ -1,0 +1,5 @@
+//! Sources of light: choice, shadow-ray samples and photon emission. Twins: `shaders/lights/`.
+
+pub mod emission;
+pub mod light;
+pub mod shape;

@@ -1,0 +1,189 @@
+//! Points on emitting shapes. Twin: `shaders/lights/shape.wgsl`.
+
+use super::light::find_interval;
+use crate::math::sampling::{sample_cone, sample_disc, sample_sphere, sample_triangle};
+use crate::math::{FAR, PI, TAU, from_frame, unit};
+use crate::shapes::cuboid::{cuboid_error, cuboid_normal};
+use crate::shapes::disc::disc_error;
+use crate::shapes::rectangle::{rectangle_error, rectangle_point};
+use crate::shapes::revolution::{revolution_surface, ring_point};
+use crate::shapes::sphere::{sphere_error, sphere_project};
+use crate::shapes::triangle::{triangle_error, triangle_normal, triangle_point};
+use crate::tables::*;
+use glam::{Vec2, Vec3};
+
+/// A point on a shape.
+#[derive(Clone, Copy, Debug)]
+pub struct ShapePoint {
+    /// In scene space.
+    pub position: Vec3,
+    /// Bound of the distance from the true surface.
+    pub error: f32,
+    /// Unit normal on the emitting side.
+    pub normal: Vec3,
+    /// Density per area.
+    pub pdf: f32,
+}
+
+/// A point on the shape of an area light, by area. `w` is one more uniform number.
+pub fn sample_shape(scene: &Scene, light: &Light, u: Vec2, w: f32) -> ShapePoint {
+    let index = (light.reference & ((1 << REFERENCE_BITS) - 1)) as usize;
+    let pdf = 1.0 / light.area;
+    match light.reference >> REFERENCE_BITS {
+        KIND_TRIANGLE => {
+            let triangle = &scene.triangles[index];
+            let b = sample_triangle(u);
+            ShapePoint {
+                position: triangle_point(triangle, b.x, b.y),
+                error: triangle_error(triangle),
+                normal: triangle_normal(triangle),
+                pdf,
+            }
+        }
+        KIND_SPHERE => {
+            let sphere = &scene.spheres[index];
+            let n = sample_sphere(u);
+            let center = sphere.anchor - sphere.normal * sphere.radius;
+            let p = sphere_project(sphere, center + n * sphere.radius);
+            ShapePoint { position: p, error: sphere_error(sphere, p), normal: n, pdf }
+        }
+        KIND_RECTANGLE => {
+            let rectangle = &scene.rectangles[index];
+            ShapePoint {
+                position: rectangle_point(rectangle, u.x, u.y),
+                error: rectangle_error(rectangle),
+                normal: rectangle.normal,
+                pdf,
+            }
+        }
+        KIND_DISC => {
+            let disc = &scene.discs[index];
+            let d = sample_disc(u) * disc.radius;
+            ShapePoint {
+                position: disc.center + from_frame(disc.normal, Vec3::new(d.x, d.y, 0.0)),
+                error: disc_error(disc),
+                normal: disc.normal,
+                pdf,
+            }
+        }
+        KIND_CUBOID => {
+            let cuboid = &scene.cuboids[index];
+            let e = cuboid.upper - cuboid.lower;
+            let x = e.y * e.z;
+            let y = e.z * e.x;
+            let pick = w * light.area;
+            let upper = if u.x < 0.5 { 3.0 } else { 0.0 };
+            let s = if u.x < 0.5 { 2.0 * u.x } else { 2.0 * u.x - 1.0 };
+            let axis = if pick < 2.0 * x { 0.0 } else if pick < 2.0 * (x + y) { 1.0 } else { 2.0 };
+            let n = cuboid_normal(axis + upper);
+            let face = upper * (1.0 / 3.0);
+            let mut q = Vec3::new(s, u.y, face);
+            if axis == 0.0 {
+                q = Vec3::new(face, u.y, s);
+            } else if axis == 1.0 {
+                q = Vec3::new(s, face, u.y);
+            }
+            ShapePoint { position: cuboid.lower + e * q, error: cuboid_error(cuboid), normal: n, pdf }
+        }
+        _ => {
+            let k = find_interval(scene, light.first + light.patch_count, light.patch_count, w);
+            let start = scene.distributions[(light.first + k) as usize];
+            let end = if k + 1 < light.patch_count { scene.distributions[(light.first + k + 1) as usize] } else { 1.0 };
+            let v = start + (end - start) * u.x;
+            let r = patch_point(scene, light, k, v, TAU * u.y - PI);
+            ShapePoint {
+                position: r.position,
+                error: r.error,
+                normal: r.normal,
+                pdf: pdf_patch(scene, light, k, end - start) / (TAU * r.stretch).max(1e-30),
+            }
+        }
+    }
+}
+
+/// A point of a revolution and how much area a unit of v and of theta cover there.
+struct PatchPoint {
+    position: Vec3,
+    error: f32,
+    normal: Vec3,
+    stretch: f32,
+}
+
+/// The point of a revolution light at profile parameter `v` in its patch `k`.
+fn patch_point(scene: &Scene, light: &Light, k: u32, v: f32, theta: f32) -> PatchPoint {
+    let patch = &scene.patches[(light.patch_first + k) as usize];
+    let revolution = &scene.revolutions[patch.revolution as usize];
+    let t = v * revolution.segments as f32 - patch.segment as f32;
+    let tau = ((t - patch.t0) / (patch.t1 - patch.t0)).clamp(0.0, 1.0);
+    let s = revolution_surface(&scene.profile_points, revolution, patch, theta, tau);
+    let ring = ring_point(&scene.profile_points, patch, theta, tau);
+    let by_v = ring.d_tau * (revolution.segments as f32 / (patch.t1 - patch.t0));
+    let stretch = ring.d_theta.cross(by_v);
+    let scale_sq = revolution.scale * revolution.scale;
+    PatchPoint { position: s.position, error: s.error, normal: s.normal, stretch: stretch.dot(stretch).sqrt() * scale_sq }
+}
+
+/// Density per v of patch `k`'s part, `width` long.
+fn pdf_patch(scene: &Scene, light: &Light, k: u32, width: f32) -> f32 {
+    let at = light.first + light.patch_count + k;
+    let low = if k > 0 { scene.distributions[(at - 1) as usize] } else { 0.0 };
+    (scene.distributions[at as usize] - low) / width
+}
+
+/// Density of bin `bin` of `count` equal bins on [0, 1), from the cumulative values at `first`.
+pub fn pdf_bin(scene: &Scene, first: u32, bin: u32, count: u32) -> f32 {
+    let high = scene.distributions[(first + bin) as usize];
+    let low = if bin > 0 { scene.distributions[(first + bin - 1) as usize] } else { 0.0 };
+    (high - low) * count as f32
+}
+
+/// Density per area of [`sample_shape`] at a point with profile parameter `v` (revolutions only).
+pub fn pdf_shape(scene: &Scene, light: &Light, v: f32) -> f32 {
+    if light.reference >> REFERENCE_BITS == KIND_REVOLUTION {
+        // the last patch whose part starts at or before v
+        let k = find_interval(scene, light.first, light.patch_count, v);
+        let k = if k > 0 && scene.distributions[(light.first + k) as usize] > v { k - 1 } else { k };
+        let start = scene.distributions[(light.first + k) as usize];
+        let end = if k + 1 < light.patch_count { scene.distributions[(light.first + k + 1) as usize] } else { 1.0 };
+        let r = patch_point(scene, light, k, v, 0.0);
+        return pdf_patch(scene, light, k, end - start) / (TAU * r.stretch).max(1e-30);
+    }
+    1.0 / light.area
+}
+
+/// A point on an emitting sphere as seen from `from` outside: uniform in the cone that the sphere fills.
+/// `pdf` is per solid angle here.
+pub fn sample_sphere_cone(sphere: &Sphere, from: Vec3, u: Vec2) -> ShapePoint {
+    let center = sphere.anchor - sphere.normal * sphere.radius;
+    let d = center - from;
+    let dist_sq = d.dot(d);
+    let sin_sq = sphere.radius * sphere.radius / dist_sq;
+    let one_minus_cos = cone_one_minus_cos(sin_sq);
+    let w = from_frame(unit(d), sample_cone(u, one_minus_cos));
+    // nearest crossing of the ray with the sphere, clamped at the tangent
+    let along = d.dot(w);
+    let off_sq = (dist_sq - along * along).max(0.0);
+    let half = (sphere.radius * sphere.radius - off_sq).max(0.0).sqrt();
+    let p = sphere_project(sphere, from + w * (along - half));
+    ShapePoint {
+        position: p,
+        error: sphere_error(sphere, p),
+        normal: unit(p - center),
+        pdf: 1.0 / (TAU * one_minus_cos),
+    }
+}
+
+/// `1 - cos` of the half angle whose squared sine is `sin_sq`.
+pub fn cone_one_minus_cos(sin_sq: f32) -> f32 {
+    sin_sq / (1.0 + (1.0 - sin_sq).max(0.0).sqrt())
+}
+
+/// Density per solid angle with which [`sample_sphere_cone`] looks toward the sphere from `from`; 0 inside.
+pub fn pdf_sphere_cone(sphere: &Sphere, from: Vec3) -> f32 {
+    let d = sphere.anchor - sphere.normal * sphere.radius - from;
+    let sin_sq = sphere.radius * sphere.radius / d.dot(d);
+    if sin_sq >= 1.0 {
+        return 0.0;
+    }
+    1.0 / (TAU * cone_one_minus_cos(sin_sq)).max(1.0 / FAR)
+}

@@ -1,0 +1,30 @@
+//! Smooth dielectric: Fresnel reflection and refraction, total internal reflection. Twin:
+//! `shaders/materials/glass.wgsl`.
+
+use glam::Vec3;
+
+/// What a dielectric interface does with a ray.
+#[derive(Clone, Copy, Debug)]
+pub struct Interface {
+    /// Fresnel reflectance for unpolarised light; 1 beyond the critical angle.
+    pub reflectance: f32,
+    /// Cosine of the refracted ray with the far side of the normal; 0 when there is none.
+    pub cos_t: f32,
+}
+
+/// Fresnel's equations: `cos_i` > 0 on the side the ray comes from, `eta` = ior there / ior beyond.
+pub fn fresnel(cos_i: f32, eta: f32) -> Interface {
+    let sin_t_sq = eta * eta * (1.0 - cos_i * cos_i).max(0.0);
+    if sin_t_sq >= 1.0 {
+        return Interface { reflectance: 1.0, cos_t: 0.0 };
+    }
+    let cos_t = (1.0 - sin_t_sq).sqrt();
+    let parallel = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
+    let perpendicular = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
+    Interface { reflectance: 0.5 * (parallel * parallel + perpendicular * perpendicular), cos_t }
+}
+
+/// Direction of the refracted ray; `wo` away from the surface on the side of `n`.
+pub fn refracted(wo: Vec3, n: Vec3, cos_i: f32, cos_t: f32, eta: f32) -> Vec3 {
+    n * (eta * cos_i - cos_t) - wo * eta
+}

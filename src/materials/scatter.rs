@@ -1,0 +1,154 @@
+//! Scattering at a surface: the dispatch over materials. Twin: `shaders/materials/scatter.wgsl`.
+
+use super::glass::{fresnel, refracted};
+use super::metal::{eval_metal, pdf_metal, sample_metal, weight_metal};
+use super::texture::eval_texture;
+use crate::math::sampling::sample_cosine;
+use crate::math::{INV_PI, basis, from_frame, mirrored};
+use crate::shapes::surface::Surface;
+use crate::tables::*;
+use glam::{Vec2, Vec3};
+
+/// Transport of radiance: an eye path.
+pub const RADIANCE: u32 = 0;
+/// Transport of importance, that is of flux: a photon path.
+pub const IMPORTANCE: u32 = 1;
+
+/// Where a path goes on.
+#[derive(Clone, Copy, Debug)]
+pub struct Scatter {
+    /// Unit direction.
+    pub direction: Vec3,
+    /// The medium ahead: a glass material's index or [`NONE`].
+    pub medium: u32,
+    /// BSDF times cosine over density; zero where the path ends.
+    pub weight: Vec3,
+}
+
+/// Reflectance of a material at `uv`.
+pub fn reflectance_at(scene: &Scene, material: u32, uv: Vec2) -> Vec3 {
+    let m = &scene.materials[material as usize];
+    if m.texture != NONE {
+        return eval_texture(scene, m.texture, uv);
+    }
+    m.reflectance
+}
+
+/// Whether a material scatters into single directions only.
+pub fn is_specular(kind: u32) -> bool {
+    kind == MATERIAL_MIRROR || kind == MATERIAL_GLASS
+}
+
+/// `v` turned to the side of `w`.
+pub fn toward(v: Vec3, w: Vec3) -> Vec3 {
+    if v.dot(w) >= 0.0 { v } else { -v }
+}
+
+/// The shading normal on the side of `wo`, or the geometric one where `wo` lies behind the shading normal.
+pub fn shading_normal(s: &Surface, wo: Vec3) -> Vec3 {
+    let ng = toward(s.normal, wo);
+    let ns = toward(s.shading, ng);
+    if wo.dot(ns) > 0.0 { ns } else { ng }
+}
+
+/// Mirror and glass. `u` decides between reflection and refraction.
+pub fn scatter_specular(scene: &Scene, s: &Surface, wo: Vec3, medium: u32, u: f32, mode: u32) -> Scatter {
+    let m = &scene.materials[s.material as usize];
+    let ng = toward(s.normal, wo);
+    let mut n = shading_normal(s, wo);
+    if m.kind == MATERIAL_GLASS {
+        let outside = wo.dot(s.normal) >= 0.0;
+        let eta = if outside { 1.0 / m.ior } else { m.ior };
+        let cos_i = wo.dot(n);
+        let interface = fresnel(cos_i, eta);
+        if u >= interface.reflectance {
+            let mut wi = refracted(wo, n, cos_i, interface.cos_t, eta);
+            if wi.dot(ng) >= 0.0 {
+                let cos_g = wo.dot(ng);
+                let flat = fresnel(cos_g, eta);
+                wi = refracted(wo, ng, cos_g, flat.cos_t, eta);
+            }
+            // radiance is compressed into a smaller solid angle inside (Veach 1997, section 5.2)
+            let weight = if mode == RADIANCE { eta * eta } else { 1.0 };
+            let beyond = if outside { s.material } else { NONE };
+            return Scatter { direction: wi, medium: beyond, weight: Vec3::splat(weight) };
+        }
+        let mut wi = mirrored(wo, n);
+        if wi.dot(ng) <= 0.0 {
+            wi = mirrored(wo, ng);
+        }
+        let here = if outside { medium } else { s.material };
+        return Scatter { direction: wi, medium: here, weight: Vec3::ONE };
+    }
+    if mirrored(wo, n).dot(ng) <= 0.0 {
+        n = ng;
+    }
+    Scatter { direction: mirrored(wo, n), medium, weight: reflectance_at(scene, s.material, s.uv) }
+}
+
+/// Diffuse and metal: a direction by the material's own density.
+pub fn scatter_rough(scene: &Scene, s: &Surface, wo: Vec3, medium: u32, u: Vec2, mode: u32) -> Scatter {
+    let m = &scene.materials[s.material as usize];
+    let ng = toward(s.normal, wo);
+    let n = shading_normal(s, wo);
+    let mut wi: Vec3;
+    let mut weight = reflectance_at(scene, s.material, s.uv);
+    if m.kind == MATERIAL_METAL {
+        let (t, b) = basis(n);
+        let local_wo = Vec3::new(wo.dot(t), wo.dot(b), wo.dot(n));
+        let local_wi = sample_metal(local_wo, m.alpha, u);
+        weight = weight_metal(local_wo, local_wi, weight, m.alpha);
+        wi = from_frame(n, local_wi);
+    } else {
+        wi = from_frame(n, sample_cosine(u));
+    }
+    wi *= 1.0 / wi.dot(wi).sqrt();
+    let cos_g = wi.dot(ng);
+    if cos_g <= 0.0 {
+        weight = Vec3::ZERO;
+    } else if mode == IMPORTANCE {
+        weight *= shading_correction(s, n, ng, wo, wi);
+    }
+    Scatter { direction: wi, medium, weight }
+}
+
+/// Adjoint correction of shading normals for particles (Veach 1997, eq. 5.19); 1 where both normals agree.
+pub fn shading_correction(s: &Surface, n: Vec3, ng: Vec3, wo: Vec3, wi: Vec3) -> f32 {
+    if s.shading == s.normal {
+        return 1.0;
+    }
+    let denominator = wo.dot(ng) * wi.dot(n);
+    if denominator <= 1e-6 {
+        return 0.0;
+    }
+    wo.dot(n) * wi.dot(ng) / denominator
+}
+
+/// BRDF of diffuse and metal times the cosine with the shading normal `n`, both directions on its side.
+pub fn eval_rough(kind: u32, alpha: f32, reflectance: Vec3, n: Vec3, wo: Vec3, wi: Vec3) -> Vec3 {
+    let cos = wi.dot(n);
+    if cos <= 0.0 {
+        return Vec3::ZERO;
+    }
+    if kind == MATERIAL_METAL {
+        let (t, b) = basis(n);
+        let local_wo = Vec3::new(wo.dot(t), wo.dot(b), wo.dot(n));
+        let local_wi = Vec3::new(wi.dot(t), wi.dot(b), cos);
+        return eval_metal(local_wo, local_wi, reflectance, alpha) * cos;
+    }
+    reflectance * (INV_PI * cos)
+}
+
+/// Density of [`scatter_rough`], sr^-1.
+pub fn pdf_rough(kind: u32, alpha: f32, n: Vec3, wo: Vec3, wi: Vec3) -> f32 {
+    let cos = wi.dot(n);
+    if cos <= 0.0 {
+        return 0.0;
+    }
+    if kind == MATERIAL_METAL {
+        let (t, b) = basis(n);
+        let local_wo = Vec3::new(wo.dot(t), wo.dot(b), wo.dot(n));
+        return pdf_metal(local_wo, Vec3::new(wi.dot(t), wi.dot(b), cos), alpha);
+    }
+    cos * INV_PI
+}

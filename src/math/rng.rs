@@ -1,0 +1,52 @@
+//! Counter-based random numbers: an integer hash of (index, pass, dimension, seed), the same in every engine.
+
+use glam::Vec4;
+
+/// Stream of eye paths.
+pub const STREAM_EYE: u32 = 0x8000_0000;
+/// Stream of photon paths.
+pub const STREAM_PHOTON: u32 = 0;
+
+/// The position of one path in its sequence.
+#[derive(Clone, Copy, Debug)]
+pub struct Rng {
+    /// Pixel sample or photon.
+    pub index: u32,
+    /// Pass.
+    pub pass_number: u32,
+    /// Next dimension; the top bit tells the stream.
+    pub dimension: u32,
+    /// Seed.
+    pub seed: u32,
+}
+
+/// The sequence of path `index` in a pass.
+pub fn rng_new(index: u32, pass_number: u32, stream: u32, seed: u32) -> Rng {
+    Rng { index, pass_number, dimension: stream, seed }
+}
+
+/// pcg4d (Jarzynski & Olano 2020, "Hash Functions for GPU Rendering").
+pub fn pcg4d(mut v: [u32; 4]) -> [u32; 4] {
+    for x in &mut v {
+        *x = x.wrapping_mul(1664525).wrapping_add(1013904223);
+    }
+    v[0] = v[0].wrapping_add(v[1].wrapping_mul(v[3]));
+    v[1] = v[1].wrapping_add(v[2].wrapping_mul(v[0]));
+    v[2] = v[2].wrapping_add(v[0].wrapping_mul(v[1]));
+    v[3] = v[3].wrapping_add(v[1].wrapping_mul(v[2]));
+    for x in &mut v {
+        *x ^= *x >> 16;
+    }
+    v[0] = v[0].wrapping_add(v[1].wrapping_mul(v[3]));
+    v[1] = v[1].wrapping_add(v[2].wrapping_mul(v[0]));
+    v[2] = v[2].wrapping_add(v[0].wrapping_mul(v[1]));
+    v[3] = v[3].wrapping_add(v[1].wrapping_mul(v[2]));
+    v
+}
+
+/// Four uniform numbers in [0, 1), multiples of 2^-24.
+pub fn rng_next(rng: &mut Rng) -> Vec4 {
+    let h = pcg4d([rng.index, rng.pass_number, rng.dimension, rng.seed]);
+    rng.dimension += 1;
+    Vec4::new((h[0] >> 8) as f32, (h[1] >> 8) as f32, (h[2] >> 8) as f32, (h[3] >> 8) as f32) * (1.0 / 16777216.0)
+}

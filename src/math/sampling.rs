@@ -1,0 +1,49 @@
+//! Maps from uniform numbers to discs, spheres, hemispheres and triangles. Twin: `shaders/math/sampling.wgsl`.
+
+use super::trig::sin_cos;
+use super::{PI, TAU};
+use glam::{Vec2, Vec3};
+
+/// Uniform on the unit disc.
+pub fn sample_disc(u: Vec2) -> Vec2 {
+    let r = u.x.sqrt();
+    let (s, c) = sin_cos(TAU * u.y);
+    Vec2::new(r * c, r * s)
+}
+
+/// Cosine-weighted about +z; the density is `z / pi`.
+pub fn sample_cosine(u: Vec2) -> Vec3 {
+    let d = sample_disc(u);
+    Vec3::new(d.x, d.y, (1.0 - u.x).sqrt())
+}
+
+/// Uniform on the unit sphere; the density is `1 / (4 pi)`.
+pub fn sample_sphere(u: Vec2) -> Vec3 {
+    let z = 1.0 - 2.0 * u.x;
+    let r = (4.0 * u.x * (1.0 - u.x)).sqrt();
+    let (s, c) = sin_cos(TAU * u.y);
+    Vec3::new(r * c, r * s, z)
+}
+
+/// Uniform in the cone about +z with `one_minus_cos = 1 - cos(half angle)`; the density is
+/// `1 / (2 pi one_minus_cos)`.
+pub fn sample_cone(u: Vec2, one_minus_cos: f32) -> Vec3 {
+    let h = u.x * one_minus_cos;
+    let r = (h * (2.0 - h)).sqrt();
+    let (s, c) = sin_cos(TAU * u.y);
+    Vec3::new(r * c, r * s, 1.0 - h)
+}
+
+/// Uniform barycentric weights of the second and third corner of a triangle.
+pub fn sample_triangle(u: Vec2) -> Vec2 {
+    let r = u.x.sqrt();
+    Vec2::new(r * (1.0 - u.y), r * u.y)
+}
+
+/// Weight of strategy `a` against `b` (balance heuristic, Veach & Guibas 1995).
+pub fn balance(a: f32, b: f32) -> f32 {
+    a / (a + b)
+}
+
+/// Solid angle density of [`sample_sphere`].
+pub const PDF_SPHERE: f32 = 1.0 / (4.0 * PI);

@@ -1,0 +1,333 @@
+//! A pass as data: which kernels run, over how many items, with which buffers and numbers. Engines carry it out.
+//!
+//! The picture is cut into chunks of visible points and the photons into batches, so that no buffer passes a
+//! device's binding limit. Neither changes a result but for the grouping of the photons' sum, and batches are the
+//! same for every engine.
+
+use crate::features::Features;
+use crate::film::Picture;
+use crate::kernels::records::{Dispatch, FilmPixel, Gathered, PhotonRecord, Statistics, VisiblePoint};
+use crate::pack::Packed;
+use crate::probe::{Probe, probe};
+use crate::settings::{Method, Radius, RadiusRule, RenderSettings};
+
+/// A kernel: the stem of its shader file, of its Rust twin and its entry point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Kernel {
+    /// Eye paths to visible points.
+    EyeTrace,
+    /// Photon paths to records.
+    PhotonTrace,
+    /// Records per bucket.
+    GridCount,
+    /// Sums of blocks of buckets.
+    GridScanReduce,
+    /// Exclusive prefix sums of the blocks' sums.
+    GridScanSums,
+    /// Exclusive prefix sums of the buckets.
+    GridScan,
+    /// Records into bucket order.
+    GridScatter,
+    /// Each bucket into the order of its keys.
+    GridSort,
+    /// Density estimates.
+    Gather,
+    /// Estimates into the film.
+    Resolve,
+}
+
+/// Buckets that one workgroup of the scan kernels covers; the same number of blocks is the most there may be.
+pub const SCAN_BLOCK: u32 = 4096;
+/// Bytes that one storage binding may have on every device (WebGPU's default limit).
+pub const BINDING_LIMIT: u64 = 128 << 20;
+/// Most visible points in a chunk.
+const CHUNK_POINTS: u32 = 1 << 20;
+/// Most records that a batch may store.
+const CAPACITY_MAX: u32 = 1 << 22;
+/// Grid cells are this many mean radii wide.
+const CELL_RADII: f64 = 2.0;
+
+impl Kernel {
+    /// All kernels, in the order of a pass.
+    pub const ALL: [Self; 10] = [
+        Self::EyeTrace,
+        Self::PhotonTrace,
+        Self::GridCount,
+        Self::GridScanReduce,
+        Self::GridScanSums,
+        Self::GridScan,
+        Self::GridScatter,
+        Self::GridSort,
+        Self::Gather,
+        Self::Resolve,
+    ];
+
+    /// File stem and entry point.
+    pub fn stem(self) -> &'static str {
+        match self {
+            Self::EyeTrace => "eye_trace",
+            Self::PhotonTrace => "photon_trace",
+            Self::GridCount => "grid_count",
+            Self::GridScanReduce => "grid_scan_reduce",
+            Self::GridScanSums => "grid_scan_sums",
+            Self::GridScan => "grid_scan",
+            Self::GridScatter => "grid_scatter",
+            Self::GridSort => "grid_sort",
+            Self::Gather => "gather",
+            Self::Resolve => "resolve",
+        }
+    }
+
+    /// The buffers it binds beside the scene's (see [`Plan::buffers`]) and whether it writes them.
+    pub fn buffers(self, features: &Features) -> Vec<(&'static str, bool)> {
+        let mut list = match self {
+            Self::EyeTrace => vec![("visible_points", true), ("counters", true)],
+            Self::PhotonTrace => vec![("records", true), ("counters", true)],
+            Self::GridCount => vec![("records", false), ("counters", true), ("counts", true)],
+            Self::GridScanReduce => vec![("counts", true), ("block_sums", true)],
+            Self::GridScanSums => vec![("block_sums", true)],
+            Self::GridScan => vec![("counts", true), ("block_sums", true), ("starts", true)],
+            Self::GridScatter => {
+                vec![("records", false), ("counters", true), ("counts", true), ("starts", false), ("order", true)]
+            }
+            Self::GridSort => vec![("records", false), ("starts", false), ("order", true), ("sorted", true)],
+            Self::Gather => {
+                vec![("visible_points", false), ("starts", false), ("sorted", false), ("gathered", true)]
+            }
+            Self::Resolve => vec![("visible_points", false), ("gathered", false), ("film", true)],
+        };
+        if features.has("local") && matches!(self, Self::Gather | Self::Resolve) {
+            list.push(("statistics", self == Self::Resolve));
+        }
+        list
+    }
+
+    /// Whether it reads the flattened scene.
+    pub fn reads_scene(self) -> bool {
+        matches!(self, Self::EyeTrace | Self::PhotonTrace)
+    }
+}
+
+/// One dispatch of a kernel over `dispatch.first..dispatch.end`.
+#[derive(Clone, Copy, Debug)]
+pub struct Step {
+    /// What runs.
+    pub kernel: Kernel,
+    /// Which chunk's `visible_points`, `gathered`, `statistics` and `film` it binds.
+    pub chunk: u32,
+    /// Its numbers. Kernels over records run over the whole capacity and stop at the count in `counters`.
+    pub dispatch: Dispatch,
+}
+
+/// What a render of one scene with one set of settings does.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// What the scene and the settings need.
+    pub features: Features,
+    /// The settings.
+    pub settings: RenderSettings,
+    /// Pixels per row.
+    pub width: u32,
+    /// Pixels.
+    pub pixels: u32,
+    /// Visible points per pixel.
+    pub eye_samples: u32,
+    /// Visible points per chunk, a multiple of `eye_samples`.
+    pub chunk_points: u32,
+    /// Photons per batch.
+    pub batch_photons: u32,
+    /// Records that the buffers hold.
+    pub capacity: u32,
+    /// Buckets of the hash grid, a power of two.
+    pub buckets: u32,
+    /// What was found by looking at the scene before planning.
+    pub probe: Probe,
+    /// World units in one scene unit.
+    pub unit: f64,
+    /// Scene radiance times this is world radiance.
+    pub radiance_unit: f64,
+}
+
+impl Plan {
+    /// Plans a render.
+    pub fn new(packed: &Packed, settings: &RenderSettings) -> Self {
+        let features = Features::of(&packed.scene, settings);
+        let probe = probe(packed, settings);
+        let camera = &packed.scene.camera;
+        let eye_samples = if settings.method == Method::Ppm { settings.eye_samples } else { 1 };
+        let wanted = (settings.photons as f64 * probe.records_per_photon * 1.25).max(1024.0);
+        let capacity = (wanted.min(CAPACITY_MAX as f64) as u32).next_power_of_two().max(SCAN_BLOCK);
+        let fit = (capacity as f64 * 0.8 / probe.records_per_photon.max(1e-3)) as u64;
+        // a key has 32 bits for (photon of the batch, bounce)
+        let key_room = 1u64 << (32 - key_bits(settings.max_bounces));
+        Self {
+            features,
+            settings: settings.clone(),
+            width: camera.width,
+            pixels: camera.width * camera.height,
+            eye_samples,
+            chunk_points: CHUNK_POINTS / eye_samples * eye_samples,
+            batch_photons: fit.min(key_room).clamp(1, settings.photons as u64) as u32,
+            capacity,
+            buckets: capacity,
+            probe,
+            unit: packed.unit,
+            radiance_unit: packed.radiance_unit,
+        }
+    }
+
+    /// Number of chunks.
+    pub fn chunks(&self) -> u32 {
+        let points = self.pixels as u64 * self.eye_samples as u64;
+        points.div_ceil(self.chunk_points as u64) as u32
+    }
+
+    /// First visible point of a chunk and their number.
+    pub fn chunk(&self, chunk: u32) -> (u32, u32) {
+        let first = chunk * self.chunk_points;
+        (first, (self.pixels * self.eye_samples - first).min(self.chunk_points))
+    }
+
+    /// Squared radius in pass `pass` (from 0) over the squared start radius; the local rule's is the plan's guess,
+    /// which only sets the cell size.
+    pub fn scale_sq(&self, pass: u32) -> f64 {
+        match self.settings.radius_rule {
+            RadiusRule::Fixed => 1.0,
+            _ => global_scale_sq(pass as u64 + 1, self.settings.alpha),
+        }
+    }
+
+    /// The numbers that all dispatches of pass `pass` share.
+    pub fn dispatch(&self, pass: u32) -> Dispatch {
+        let scale_sq = self.scale_sq(pass);
+        let (pixels, units) = match self.settings.radius {
+            Radius::Pixels(p) => (p, 0.0),
+            Radius::Units(u) => (0.0, u / self.unit),
+        };
+        Dispatch {
+            pass_number: pass,
+            seed: (self.settings.seed ^ (self.settings.seed >> 32)) as u32,
+            key_bits: key_bits(self.settings.max_bounces),
+            capacity: self.capacity,
+            max_bounces: self.settings.max_bounces,
+            eye_samples: self.eye_samples,
+            strata: strata(self.eye_samples),
+            mask: self.buckets - 1,
+            inv_cell: (1.0 / (CELL_RADII * self.probe.radius * scale_sq.sqrt())) as f32,
+            scale_sq: scale_sq as f32,
+            photons: self.settings.photons as f32,
+            alpha: self.settings.alpha as f32,
+            radius_pixels: pixels as f32,
+            radius_units: units as f32,
+            radius_max: self.probe.radius_max as f32,
+            passes_done: pass,
+            ..Dispatch::default()
+        }
+    }
+
+    /// Pass `pass` with `batch_photons` photons a batch (fewer than planned when a batch overflowed). Before its
+    /// first step an engine clears `gathered`, before each [`Kernel::PhotonTrace`] the record counter.
+    pub fn steps(&self, pass: u32, batch_photons: u32) -> Vec<Step> {
+        let common = self.dispatch(pass);
+        let mut steps = Vec::new();
+        let mut step = |kernel, chunk, dispatch| steps.push(Step { kernel, chunk, dispatch });
+        let over = |end| Dispatch { end, ..common };
+        let ppm = self.settings.method == Method::Ppm;
+        if !ppm || pass == 0 {
+            for c in 0..self.chunks() {
+                let (chunk_first, end) = self.chunk(c);
+                step(Kernel::EyeTrace, c, Dispatch { end, chunk_first, ..common });
+            }
+        }
+        let mut batch_first = 0;
+        while self.features.has("photons") && batch_first < self.settings.photons {
+            let end = (self.settings.photons - batch_first).min(batch_photons);
+            step(Kernel::PhotonTrace, 0, Dispatch { end, batch_first, ..common });
+            step(Kernel::GridCount, 0, over(self.capacity));
+            step(Kernel::GridScanReduce, 0, over(self.buckets));
+            step(Kernel::GridScanSums, 0, over(self.buckets / SCAN_BLOCK));
+            step(Kernel::GridScan, 0, over(self.buckets));
+            step(Kernel::GridScatter, 0, over(self.capacity));
+            step(Kernel::GridSort, 0, over(self.buckets));
+            for c in 0..self.chunks() {
+                let (chunk_first, end) = self.chunk(c);
+                step(Kernel::Gather, c, Dispatch { end, chunk_first, ..common });
+            }
+            batch_first += end;
+        }
+        for c in 0..self.chunks() {
+            let (chunk_first, points) = self.chunk(c);
+            let end = points / self.eye_samples;
+            step(Kernel::Resolve, c, Dispatch { end, chunk_first, ..common });
+        }
+        steps
+    }
+
+    /// Name and bytes of every buffer beside the scene's; those of chunks for the largest chunk.
+    pub fn buffers(&self) -> Vec<(&'static str, u64)> {
+        let points = self.chunk(0).1 as u64;
+        let pixels = points / self.eye_samples as u64;
+        let records = self.capacity as u64;
+        let mut list = vec![
+            ("visible_points", points * size_of::<VisiblePoint>() as u64),
+            ("film", pixels * size_of::<FilmPixel>() as u64),
+            ("gathered", points * size_of::<Gathered>() as u64),
+            ("counters", 16),
+        ];
+        if self.features.has("local") {
+            list.push(("statistics", points * size_of::<Statistics>() as u64));
+        }
+        if self.features.has("photons") {
+            list.extend([
+                ("records", records * size_of::<PhotonRecord>() as u64),
+                ("sorted", records * size_of::<PhotonRecord>() as u64),
+                ("order", records * 4),
+                ("counts", self.buckets as u64 * 4),
+                ("starts", (self.buckets as u64 + 1) * 4),
+                ("block_sums", (self.buckets / SCAN_BLOCK + 1) as u64 * 4),
+            ]);
+        }
+        list
+    }
+
+    /// Typical gather radius of pass `pass` in world units.
+    pub fn radius(&self, pass: u32) -> f64 {
+        self.probe.radius * self.scale_sq(pass).sqrt() * self.unit
+    }
+
+    /// The picture that a film holds, in world units.
+    pub fn picture(&self, film: &[FilmPixel]) -> Picture {
+        let unit = self.radiance_unit;
+        let world = |p: &FilmPixel| p.mean.to_array().map(|x| (x as f64 * unit) as f32);
+        Picture { width: self.width, height: self.pixels / self.width, rgb: film.iter().map(world).collect() }
+    }
+}
+
+/// Bits that hold a bounce number.
+fn key_bits(max_bounces: u32) -> u32 {
+    32 - max_bounces.leading_zeros()
+}
+
+/// Columns of the most nearly square arrangement of `n` strata.
+fn strata(n: u32) -> u32 {
+    (1..=n).filter(|c| n % c == 0 && c * c <= n).max().unwrap_or(1)
+}
+
+/// `r_i^2 / r_1^2 = prod_{k=1}^{i-1} (k + alpha) / (k + 1)` (Knaus & Zwicker 2011, eq. 20), in closed form
+/// through the gamma function for large `i`.
+pub fn global_scale_sq(i: u64, alpha: f64) -> f64 {
+    const DIRECT: u64 = 256;
+    let head: f64 = (1..i.min(DIRECT)).map(|k| (k as f64 + alpha) / (k as f64 + 1.0)).product();
+    if i <= DIRECT {
+        return head;
+    }
+    // Gamma(i + a) / Gamma(i + 1) over the same at i = DIRECT
+    let ratio = |x: f64| ln_gamma(x + alpha) - ln_gamma(x + 1.0);
+    head * (ratio(i as f64) - ratio(DIRECT as f64)).exp()
+}
+
+/// Stirling's series; good to 1e-15 relative for x >= 100.
+fn ln_gamma(x: f64) -> f64 {
+    let r = 1.0 / x;
+    (x - 0.5) * x.ln() - x + 0.918_938_533_204_672_7 + r / 12.0 - r * r * r / 360.0 + r.powi(5) / 1260.0
+}

@@ -1,0 +1,81 @@
+//! Axis-parallel box by slabs. Twin: `shaders/shapes/cuboid.wgsl`.
+
+use super::ray::{Hit, Ray};
+use crate::math::{EPS, FAR, max_abs};
+use crate::tables::Cuboid;
+use glam::{Vec2, Vec3};
+
+/// Nearest crossing in `(t_min, hit.t)`; `hit.u` is the face: axis, plus 3 on the upper side.
+pub fn intersect_cuboid(cuboid: &Cuboid, reference: u32, ray: &Ray, hit: &mut Hit) {
+    let mut near = -FAR;
+    let mut far = FAR;
+    let mut near_face = 0.0;
+    let mut far_face = 0.0;
+    for axis in 0..3 {
+        let v = ray.direction[axis];
+        let a = cuboid.lower[axis] - ray.origin[axis];
+        let b = cuboid.upper[axis] - ray.origin[axis];
+        if v == 0.0 {
+            if a > 0.0 || b < 0.0 {
+                return;
+            }
+            continue;
+        }
+        let upward = v > 0.0;
+        let t0 = if upward { a } else { b } / v;
+        let t1 = if upward { b } else { a } / v;
+        let face = axis as f32;
+        if t0 > near {
+            near = t0;
+            near_face = if upward { face } else { face + 3.0 };
+        }
+        if t1 < far {
+            far = t1;
+            far_face = if upward { face + 3.0 } else { face };
+        }
+    }
+    if near > far {
+        return;
+    }
+    let from_outside = near > ray.t_min;
+    let t = if from_outside { near } else { far };
+    if t > ray.t_min && t < hit.t {
+        *hit = Hit { t, reference, u: if from_outside { near_face } else { far_face }, v: 0.0 };
+    }
+}
+
+/// Outward normal of a face.
+pub fn cuboid_normal(face: f32) -> Vec3 {
+    let s = if face >= 3.0 { 1.0 } else { -1.0 };
+    let axis = if face >= 3.0 { face - 3.0 } else { face };
+    Vec3::new(
+        if axis == 0.0 { s } else { 0.0 },
+        if axis == 1.0 { s } else { 0.0 },
+        if axis == 2.0 { s } else { 0.0 },
+    )
+}
+
+/// `position` moved onto a face.
+pub fn cuboid_project(cuboid: &Cuboid, position: Vec3, face: f32) -> Vec3 {
+    let n = cuboid_normal(face);
+    let corner = if face >= 3.0 { cuboid.upper } else { cuboid.lower };
+    position + (corner - position) * n.abs()
+}
+
+/// Bound of the distance between a projected point and its face.
+pub fn cuboid_error(cuboid: &Cuboid) -> f32 {
+    16.0 * EPS * max_abs(cuboid.lower).max(max_abs(cuboid.upper))
+}
+
+/// Each face is the unit square: (z, y), (x, z) and (x, y) for the faces across x, y and z.
+pub fn cuboid_uv(cuboid: &Cuboid, position: Vec3, face: f32) -> Vec2 {
+    let q = (position - cuboid.lower) / (cuboid.upper - cuboid.lower);
+    let n = cuboid_normal(face).abs();
+    if n.x > 0.0 {
+        return Vec2::new(q.z, q.y);
+    }
+    if n.y > 0.0 {
+        return Vec2::new(q.x, q.z);
+    }
+    Vec2::new(q.x, q.y)
+}

@@ -1,0 +1,71 @@
+//! A ray against the whole scene: shapes outside the kd-tree one by one, then the kd-tree.
+//! Twin: `shaders/shapes/intersect.wgsl`.
+
+use super::cuboid::intersect_cuboid;
+use super::disc::{intersect_disc, intersect_plane};
+use super::kdtree::{Tree, traverse_any, traverse_closest};
+use super::ray::{Hit, Ray};
+use super::rectangle::intersect_rectangle;
+use super::revolution::intersect_patch;
+use super::sphere::intersect_sphere;
+use super::triangle::{RayShear, intersect_triangle};
+use crate::tables::*;
+
+/// A ray against the shape that `reference` names.
+#[inline]
+pub fn intersect_primitive(scene: &Scene, shear: &RayShear, reference: u32, ray: &Ray, hit: &mut Hit) {
+    let index = (reference & ((1 << REFERENCE_BITS) - 1)) as usize;
+    match reference >> REFERENCE_BITS {
+        KIND_TRIANGLE => intersect_triangle(&scene.triangles[index], reference, shear, ray, hit),
+        KIND_SPHERE => intersect_sphere(&scene.spheres[index], reference, ray, hit),
+        KIND_RECTANGLE => intersect_rectangle(&scene.rectangles[index], reference, ray, hit),
+        KIND_DISC => intersect_disc(&scene.discs[index], reference, ray, hit),
+        KIND_CUBOID => intersect_cuboid(&scene.cuboids[index], reference, ray, hit),
+        KIND_REVOLUTION => {
+            let patch = &scene.patches[index];
+            let revolution = &scene.revolutions[patch.revolution as usize];
+            let points = &scene.profile_points;
+            let at = intersect_patch(points, revolution, patch, ray.origin, ray.direction, ray.t_min, hit.t);
+            if at.t < hit.t {
+                *hit = Hit { t: at.t, reference, u: at.theta, v: at.tau };
+            }
+        }
+        _ => intersect_plane(&scene.planes[index], reference, ray, hit),
+    }
+}
+
+/// The nearest hit of a ray, or a hit whose reference is [`NONE`].
+pub fn intersect_scene(scene: &Scene, ray: &Ray) -> Hit {
+    let mut hit = Hit { t: ray.t_max, reference: NONE, u: 0.0, v: 0.0 };
+    let shear = RayShear::new(ray);
+    for i in 0..scene.world.unbounded_count {
+        intersect_primitive(scene, &shear, scene.unbounded[i as usize], ray, &mut hit);
+    }
+    if !scene.nodes.is_empty() {
+        traverse_closest(&tree(scene), ray, &mut hit, |r, ray, hit| intersect_primitive(scene, &shear, r, ray, hit));
+    }
+    hit
+}
+
+/// Whether anything lies on the ray between `t_min` and `t_max`.
+pub fn occluded(scene: &Scene, ray: &Ray) -> bool {
+    let mut hit = Hit { t: ray.t_max, reference: NONE, u: 0.0, v: 0.0 };
+    let shear = RayShear::new(ray);
+    for i in 0..scene.world.unbounded_count {
+        intersect_primitive(scene, &shear, scene.unbounded[i as usize], ray, &mut hit);
+        if hit.reference != NONE {
+            return true;
+        }
+    }
+    !scene.nodes.is_empty()
+        && traverse_any(&tree(scene), ray, &mut hit, |r, ray, hit| intersect_primitive(scene, &shear, r, ray, hit))
+}
+
+fn tree(scene: &Scene) -> Tree<'_> {
+    Tree {
+        nodes: &scene.nodes,
+        refs: &scene.refs,
+        bounds_min: scene.world.bounds_min,
+        bounds_max: scene.world.bounds_max,
+    }
+}

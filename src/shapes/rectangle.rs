@@ -1,0 +1,39 @@
+//! Parallelogram. Twin: `shaders/shapes/rectangle.wgsl`.
+
+use super::ray::{Hit, Ray};
+use crate::math::{EPS, max_abs};
+use crate::tables::Rectangle;
+use glam::Vec3;
+
+/// How far beyond its edges, in edge lengths, a parallelogram still counts: neighbours that share an edge have
+/// no gap.
+const EDGE: f32 = 8.0 * EPS;
+
+/// The crossing in `(t_min, hit.t)`; `hit.u`, `hit.v` are s and t.
+pub fn intersect_rectangle(rectangle: &Rectangle, reference: u32, ray: &Ray, hit: &mut Hit) {
+    let d = ray.origin - rectangle.origin;
+    let slope = ray.direction.dot(rectangle.normal);
+    if slope == 0.0 {
+        return;
+    }
+    let t = -d.dot(rectangle.normal) / slope;
+    if !(t > ray.t_min && t < hit.t) {
+        return;
+    }
+    let p = d + ray.direction * t;
+    let s = p.dot(rectangle.dual_u);
+    let r = p.dot(rectangle.dual_v);
+    if s >= -EDGE && s <= 1.0 + EDGE && r >= -EDGE && r <= 1.0 + EDGE {
+        *hit = Hit { t, reference, u: s, v: r };
+    }
+}
+
+/// The point at (s, t).
+pub fn rectangle_point(rectangle: &Rectangle, s: f32, t: f32) -> Vec3 {
+    rectangle.origin + rectangle.u * s + rectangle.v * t
+}
+
+/// Bound of the distance between [`rectangle_point`] and the plane.
+pub fn rectangle_error(rectangle: &Rectangle) -> f32 {
+    16.0 * EPS * (max_abs(rectangle.origin) + max_abs(rectangle.u) + max_abs(rectangle.v))
+}

@@ -1,0 +1,172 @@
+//! What a hit means: position, normals, texture coordinates, material. Twin: `shaders/shapes/surface.wgsl`.
+
+use super::cuboid::{cuboid_error, cuboid_normal, cuboid_project, cuboid_uv};
+use super::disc::{disc_error, disc_uv, plane_error, plane_project};
+use super::ray::{Hit, Ray};
+use super::rectangle::{rectangle_error, rectangle_point};
+use super::revolution::revolution_surface;
+use super::sphere::{sphere_error, sphere_normal, sphere_project, sphere_uv};
+use super::triangle::{triangle_error, triangle_normal, triangle_point};
+use crate::math::unit;
+use crate::tables::*;
+use glam::{Vec2, Vec3};
+
+/// The surface at a hit.
+#[derive(Clone, Copy, Debug)]
+pub struct Surface {
+    /// Point on the surface, in scene space.
+    pub position: Vec3,
+    /// Bound of its distance from the true surface.
+    pub error: f32,
+    /// Geometric unit normal, on the shape's outer side.
+    pub normal: Vec3,
+    /// Material index.
+    pub material: u32,
+    /// Shading normal: interpolated on smooth meshes, on the same side as `normal`.
+    pub shading: Vec3,
+    /// Light index or [`NONE`].
+    pub light: u32,
+    /// Texture coordinates.
+    pub uv: Vec2,
+    /// Second coordinate of the shape's own (u, v): on revolutions the profile parameter.
+    pub v: f32,
+}
+
+/// The surface at `hit` of `ray`.
+pub fn surface_at(scene: &Scene, ray: &Ray, hit: &Hit) -> Surface {
+    let index = (hit.reference & ((1 << REFERENCE_BITS) - 1)) as usize;
+    let p = ray.origin + ray.direction * hit.t;
+    let mut planar = UV_NATURAL;
+    let mut s: Surface;
+    match hit.reference >> REFERENCE_BITS {
+        KIND_TRIANGLE => {
+            let triangle = &scene.triangles[index];
+            let n = triangle_normal(triangle);
+            s = Surface {
+                position: triangle_point(triangle, hit.u, hit.v),
+                error: triangle_error(triangle),
+                normal: n,
+                material: triangle.material,
+                shading: n,
+                light: triangle.light,
+                uv: Vec2::ZERO,
+                v: 0.0,
+            };
+            if triangle.attributes != NONE {
+                let a = &scene.attributes[triangle.attributes as usize];
+                let w = 1.0 - hit.u - hit.v;
+                s.uv = Vec2::new(
+                    a.u0 * w + a.u1 * hit.u + a.u2 * hit.v,
+                    a.v0 * w + a.v1 * hit.u + a.v2 * hit.v,
+                );
+                if a.smooth_normals == 1 {
+                    let m = a.n0 * w + a.n1 * hit.u + a.n2 * hit.v;
+                    if m.dot(m) > 0.0 {
+                        let m = unit(m);
+                        s.shading = if m.dot(n) >= 0.0 { m } else { -m };
+                    }
+                }
+            }
+        }
+        KIND_SPHERE => {
+            let sphere = &scene.spheres[index];
+            let q = sphere_project(sphere, p);
+            let n = sphere_normal(sphere, q);
+            s = Surface {
+                position: q,
+                error: sphere_error(sphere, q),
+                normal: n,
+                material: sphere.material,
+                shading: n,
+                light: sphere.light,
+                uv: Vec2::ZERO,
+                v: 0.0,
+            };
+            planar = sphere.uv;
+            if planar == UV_NATURAL {
+                s.uv = sphere_uv(n);
+            }
+        }
+        KIND_RECTANGLE => {
+            let rectangle = &scene.rectangles[index];
+            s = Surface {
+                position: rectangle_point(rectangle, hit.u, hit.v),
+                error: rectangle_error(rectangle),
+                normal: rectangle.normal,
+                material: rectangle.material,
+                shading: rectangle.normal,
+                light: rectangle.light,
+                uv: Vec2::new(hit.u, hit.v),
+                v: 0.0,
+            };
+            planar = rectangle.uv;
+        }
+        KIND_DISC => {
+            let disc = &scene.discs[index];
+            let q = plane_project(p, disc.center, disc.normal);
+            s = Surface {
+                position: q,
+                error: disc_error(disc),
+                normal: disc.normal,
+                material: disc.material,
+                shading: disc.normal,
+                light: disc.light,
+                uv: disc_uv(disc, q),
+                v: 0.0,
+            };
+            planar = disc.uv;
+        }
+        KIND_CUBOID => {
+            let cuboid = &scene.cuboids[index];
+            let q = cuboid_project(cuboid, p, hit.u);
+            let n = cuboid_normal(hit.u);
+            s = Surface {
+                position: q,
+                error: cuboid_error(cuboid),
+                normal: n,
+                material: cuboid.material,
+                shading: n,
+                light: cuboid.light,
+                uv: cuboid_uv(cuboid, q, hit.u),
+                v: 0.0,
+            };
+            planar = cuboid.uv;
+        }
+        KIND_REVOLUTION => {
+            let patch = scene.patches[index];
+            let revolution = scene.revolutions[patch.revolution as usize];
+            let r = revolution_surface(&scene.profile_points, &revolution, &patch, hit.u, hit.v);
+            s = Surface {
+                position: r.position,
+                error: r.error,
+                normal: r.normal,
+                material: revolution.material,
+                shading: r.normal,
+                light: revolution.light,
+                uv: r.uv,
+                v: r.uv.y,
+            };
+            planar = revolution.uv;
+        }
+        _ => {
+            let plane = &scene.planes[index];
+            let q = plane_project(p, plane.point, plane.normal);
+            let d = q - plane.point;
+            s = Surface {
+                position: q,
+                error: plane_error(plane, q),
+                normal: plane.normal,
+                material: plane.material,
+                shading: plane.normal,
+                light: NONE,
+                uv: Vec2::new(plane.u0 + d.dot(plane.tangent), plane.v0 + d.dot(plane.bitangent)),
+                v: 0.0,
+            };
+            planar = plane.uv;
+        }
+    }
+    if planar == UV_PLANAR {
+        s.uv = Vec2::new(s.position.x, s.position.z) * scene.world.unit + scene.world.planar_origin;
+    }
+    s
+}

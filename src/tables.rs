@@ -1,0 +1,402 @@
+//! The flattened scene: plain data that the kernels of both engines read, in scene space (the host has moved
+//! the scene to its own centre and scaled it near one; see [`crate::build::normalize`]).
+//!
+//! Each struct is the twin of the WGSL struct of the same name in `shaders/tables.wgsl`; a test compares the
+//! layouts by name. The short tables travel in one storage buffer, `scene`; the long ones have their own.
+
+use bytemuck::{Pod, Zeroable};
+use glam::{Vec2, Vec3};
+
+pub use crate::shapes::kdtree::Node;
+pub use crate::shapes::revolution::{Patch, Revolution};
+pub use crate::shapes::triangle::Triangle;
+
+/// "No such index".
+pub const NONE: u32 = 0xffff_ffff;
+
+/// Number of low bits of a reference that hold the index; the bits above hold the kind.
+pub const REFERENCE_BITS: u32 = 28;
+/// Reference kinds: what a leaf of the kd-tree or an area light points at.
+pub const KIND_TRIANGLE: u32 = 0;
+/// See [`Sphere`].
+pub const KIND_SPHERE: u32 = 1;
+/// See [`Rectangle`].
+pub const KIND_RECTANGLE: u32 = 2;
+/// See [`Disc`].
+pub const KIND_DISC: u32 = 3;
+/// See [`Cuboid`].
+pub const KIND_CUBOID: u32 = 4;
+/// See [`Patch`]; for lights the index is that of the [`Revolution`].
+pub const KIND_REVOLUTION: u32 = 5;
+/// See [`Plane`].
+pub const KIND_PLANE: u32 = 6;
+
+/// A reference from its kind and index.
+pub fn reference(kind: u32, index: usize) -> u32 {
+    kind << REFERENCE_BITS | index as u32
+}
+
+/// `(u, v)` is the shape's own.
+pub const UV_NATURAL: u32 = 0;
+/// `(u, v)` is world (x, z).
+pub const UV_PLANAR: u32 = 1;
+
+/// Facts about the scene as a whole.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct World {
+    /// Least corner of the kd-tree's box.
+    pub bounds_min: Vec3,
+    /// World units in one scene unit.
+    pub unit: f32,
+    /// Greatest corner of the kd-tree's box.
+    pub bounds_max: Vec3,
+    /// Radius, about the origin, of the sphere that the finite scene and the camera lie in.
+    pub near_radius: f32,
+    /// World (x, z) of the origin: where planar uv starts.
+    pub planar_origin: Vec2,
+    /// Number of lights.
+    pub light_count: u32,
+    /// The light that rays which leave the scene meet, or [`NONE`].
+    pub environment: u32,
+    /// Shapes tested against every ray (planes and huge spheres).
+    pub unbounded_count: u32,
+    /// Emission discs for light from infinity: radius `near_radius * 2^k`, k below this.
+    pub disc_levels: u32,
+    /// Padding.
+    pub pad: [u32; 2],
+}
+
+/// Pinhole or thin-lens camera.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct Camera {
+    /// Centre of the lens.
+    pub position: Vec3,
+    /// Lens radius; 0 is a pinhole.
+    pub aperture: f32,
+    /// Half the picture's width at distance one, to the right.
+    pub right: Vec3,
+    /// Distance in focus along `forward`.
+    pub focus: f32,
+    /// Half the picture's height at distance one, upward.
+    pub up: Vec3,
+    /// A pixel's height at distance one.
+    pub pixel: f32,
+    /// Unit view direction.
+    pub forward: Vec3,
+    /// Pixels per row.
+    pub width: u32,
+    /// Unit vector to the right.
+    pub lens_right: Vec3,
+    /// Rows.
+    pub height: u32,
+    /// Unit vector upward.
+    pub lens_up: Vec3,
+    /// Padding.
+    pub pad: u32,
+}
+
+/// A sphere through `anchor` with outward normal `normal` there: exact in f32 for any radius.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct Sphere {
+    /// The point of the sphere nearest to the scene's middle.
+    pub anchor: Vec3,
+    /// `k = 1 / radius`.
+    pub curvature: f32,
+    /// Outward unit normal at the anchor.
+    pub normal: Vec3,
+    /// Radius.
+    pub radius: f32,
+    /// Material index.
+    pub material: u32,
+    /// Light index or [`NONE`].
+    pub light: u32,
+    /// [`UV_NATURAL`] or [`UV_PLANAR`].
+    pub uv: u32,
+    /// Padding.
+    pub pad: u32,
+}
+
+/// A parallelogram `origin + s u + t v`, s and t in [0, 1].
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct Rectangle {
+    /// Corner.
+    pub origin: Vec3,
+    /// Material index.
+    pub material: u32,
+    /// Unit normal, along `u x v`.
+    pub normal: Vec3,
+    /// Light index or [`NONE`].
+    pub light: u32,
+    /// First edge.
+    pub u: Vec3,
+    /// [`UV_NATURAL`] or [`UV_PLANAR`].
+    pub uv: u32,
+    /// Second edge.
+    pub v: Vec3,
+    /// Area.
+    pub area: f32,
+    /// In-plane vector with `dual_u . u = 1` and `dual_u . v = 0`.
+    pub dual_u: Vec3,
+    /// Padding.
+    pub pad0: u32,
+    /// In-plane vector with `dual_v . v = 1` and `dual_v . u = 0`.
+    pub dual_v: Vec3,
+    /// Padding.
+    pub pad1: u32,
+}
+
+/// A flat disc.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct Disc {
+    /// Centre.
+    pub center: Vec3,
+    /// Radius.
+    pub radius: f32,
+    /// Unit normal.
+    pub normal: Vec3,
+    /// Material index.
+    pub material: u32,
+    /// Light index or [`NONE`].
+    pub light: u32,
+    /// [`UV_NATURAL`] or [`UV_PLANAR`].
+    pub uv: u32,
+    /// Padding.
+    pub pad: [u32; 2],
+}
+
+/// An axis-parallel box.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct Cuboid {
+    /// Least corner.
+    pub lower: Vec3,
+    /// Material index.
+    pub material: u32,
+    /// Greatest corner.
+    pub upper: Vec3,
+    /// Light index or [`NONE`].
+    pub light: u32,
+    /// [`UV_NATURAL`] (each face is the unit square) or [`UV_PLANAR`].
+    pub uv: u32,
+    /// Padding.
+    pub pad: [u32; 3],
+}
+
+/// An infinite plane.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct Plane {
+    /// The plane's point nearest to the scene's middle.
+    pub point: Vec3,
+    /// Material index.
+    pub material: u32,
+    /// Unit normal.
+    pub normal: Vec3,
+    /// [`UV_NATURAL`] (world units along the tangents) or [`UV_PLANAR`].
+    pub uv: u32,
+    /// First tangent, in world units per scene unit.
+    pub tangent: Vec3,
+    /// u at `point`.
+    pub u0: f32,
+    /// Second tangent, in world units per scene unit.
+    pub bitangent: Vec3,
+    /// v at `point`.
+    pub v0: f32,
+}
+
+/// Smooth normals and texture coordinates of a triangle's corners.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct Attributes {
+    /// Unit normal at `p0`.
+    pub n0: Vec3,
+    /// u at `p0`.
+    pub u0: f32,
+    /// Unit normal at `p1`.
+    pub n1: Vec3,
+    /// v at `p0`.
+    pub v0: f32,
+    /// Unit normal at `p2`.
+    pub n2: Vec3,
+    /// u at `p1`.
+    pub u1: f32,
+    /// v at `p1`.
+    pub v1: f32,
+    /// u at `p2`.
+    pub u2: f32,
+    /// v at `p2`.
+    pub v2: f32,
+    /// 1 where the corner normals are to be interpolated, else 0.
+    pub smooth_normals: u32,
+}
+
+/// Lambertian reflection.
+pub const MATERIAL_DIFFUSE: u32 = 0;
+/// Perfect mirror.
+pub const MATERIAL_MIRROR: u32 = 1;
+/// Smooth dielectric.
+pub const MATERIAL_GLASS: u32 = 2;
+/// GGX conductor.
+pub const MATERIAL_METAL: u32 = 3;
+
+/// What a surface does with light.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct Material {
+    /// Reflectance, in [0, 1]; at normal incidence for metal.
+    pub reflectance: Vec3,
+    /// One of `MATERIAL_*`.
+    pub kind: u32,
+    /// Glass: absorption coefficient, per scene unit.
+    pub absorption: Vec3,
+    /// Glass: index of refraction against the outside.
+    pub ior: f32,
+    /// Texture that replaces `reflectance`, or [`NONE`].
+    pub texture: u32,
+    /// Metal: GGX width, `roughness^2`.
+    pub alpha: f32,
+    /// Padding.
+    pub pad: [u32; 2],
+}
+
+/// Two colours in unit cells.
+pub const TEXTURE_CHECKER: u32 = 0;
+/// A picture.
+pub const TEXTURE_IMAGE: u32 = 1;
+/// A picture laid as staggered floor boards.
+pub const TEXTURE_PLANKS: u32 = 2;
+/// Nearest texel instead of bilinear.
+pub const TEXTURE_NEAREST: u32 = 1;
+/// Clamp to the edge instead of repeat.
+pub const TEXTURE_CLAMP: u32 = 2;
+/// Texels are one word, RGBA8 coded through the sRGB table at the head of `texels`.
+pub const TEXELS_SRGB8: u32 = 0;
+/// Texels are one word, RGBA8 linear.
+pub const TEXELS_LINEAR8: u32 = 1;
+/// Texels are three words, f32.
+pub const TEXELS_FLOAT: u32 = 2;
+
+/// A texture, read at `scale * (u, v)`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct Texture {
+    /// Factor on (u, v); for planks one over the board's size.
+    pub scale: Vec2,
+    /// One of `TEXTURE_CHECKER`, `TEXTURE_IMAGE`, `TEXTURE_PLANKS`.
+    pub kind: u32,
+    /// Sum of `TEXTURE_NEAREST` and `TEXTURE_CLAMP`.
+    pub flags: u32,
+    /// First word of the picture in `texels`.
+    pub first: u32,
+    /// Texels per row.
+    pub width: u32,
+    /// Rows, the top one first.
+    pub height: u32,
+    /// One of `TEXELS_*`.
+    pub format: u32,
+    /// Checker: colour of cell (0, 0).
+    pub color0: Vec3,
+    /// Padding.
+    pub pad0: u32,
+    /// Checker: the other colour.
+    pub color1: Vec3,
+    /// Padding.
+    pub pad1: u32,
+}
+
+/// Emitting shape, Lambertian on the side of its normal.
+pub const LIGHT_AREA: u32 = 0;
+/// Isotropic point.
+pub const LIGHT_POINT: u32 = 1;
+/// Point with a cone.
+pub const LIGHT_SPOT: u32 = 2;
+/// Parallel light.
+pub const LIGHT_SUN: u32 = 3;
+/// The same radiance from everywhere.
+pub const LIGHT_CONSTANT: u32 = 4;
+/// Radiance from an equirectangular picture.
+pub const LIGHT_IMAGE: u32 = 5;
+
+/// A source of light.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct Light {
+    /// Radiance (area, constant: W sr^-1 m^-2; image: factor), intensity (point, spot: W/sr) or irradiance
+    /// (sun: W m^-2), all in scene units.
+    pub color: Vec3,
+    /// One of `LIGHT_*`.
+    pub kind: u32,
+    /// Point and spot.
+    pub position: Vec3,
+    /// Probability of being chosen.
+    pub selection: f32,
+    /// Spot and sun: unit direction in which light travels.
+    pub direction: Vec3,
+    /// Area of the shape.
+    pub area: f32,
+    /// Area: the shape's reference; image: texture index.
+    pub reference: u32,
+    /// First entry in `distributions`: revolution: where each patch's part of v starts, then the cumulative share
+    /// of the area by patch; image: cumulative rows, then each row's cumulative columns.
+    pub first: u32,
+    /// Spot: cosine of the angle where it is dark; image: cosine of the rotation about y.
+    pub cos_outer: f32,
+    /// Spot: cosine of the angle up to which it is full; image: sine of the rotation.
+    pub cos_inner: f32,
+    /// Revolution: its first patch.
+    pub patch_first: u32,
+    /// Revolution: number of its patches.
+    pub patch_count: u32,
+    /// Padding.
+    pub pad: [u32; 2],
+}
+
+/// The flattened scene.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// Facts about the whole.
+    pub world: World,
+    /// The camera.
+    pub camera: Camera,
+    /// Spheres.
+    pub spheres: Vec<Sphere>,
+    /// Parallelograms.
+    pub rectangles: Vec<Rectangle>,
+    /// Discs.
+    pub discs: Vec<Disc>,
+    /// Boxes.
+    pub cuboids: Vec<Cuboid>,
+    /// Infinite planes.
+    pub planes: Vec<Plane>,
+    /// Surfaces of revolution.
+    pub revolutions: Vec<Revolution>,
+    /// Their patches, which the kd-tree points at.
+    pub patches: Vec<Patch>,
+    /// Their control points.
+    pub profile_points: Vec<Vec2>,
+    /// References of the shapes outside the kd-tree.
+    pub unbounded: Vec<u32>,
+    /// Materials.
+    pub materials: Vec<Material>,
+    /// Textures.
+    pub textures: Vec<Texture>,
+    /// Lights.
+    pub lights: Vec<Light>,
+    /// Cumulative distributions: first the choice of a light, then what `Light::first` points at.
+    pub distributions: Vec<f32>,
+    /// kd-tree.
+    pub nodes: Vec<Node>,
+    /// References in the order of the kd-tree's leaves.
+    pub refs: Vec<u32>,
+    /// Triangles.
+    pub triangles: Vec<Triangle>,
+    /// Corners of the triangles that have any.
+    pub attributes: Vec<Attributes>,
+    /// Pictures; the first 256 words are the sRGB decoding table when any is stored so.
+    pub texels: Vec<u32>,
+}
