@@ -103,7 +103,8 @@ fn writes_what_is_asked_for_and_says_where() {
 fn options_replace_the_file_and_equal_commands_give_equal_bytes() {
     let folder = folder("options");
     let render = |output: &str, seed: &str| {
-        let options = ["--size", "20x10", "--passes", "2", "--photons", "1500", "--seed", seed, "--radius", "0.1"];
+        let options =
+            ["--size", "20x10", "--passes", "2", "--photons", "1500", "--seed", seed, "--radius", "0.1"];
         let run = ["render", "ball.toml", "--device", "cpu", "--quiet", "-o", output];
         assert_eq!(caustica(&folder, &[&run[..], &options].concat()).status.code(), Some(0));
         fs::read(folder.join(output)).unwrap()
@@ -125,9 +126,15 @@ fn json_tells_start_progress_and_end() {
     let lines = json_lines(&output.stdout);
     let events: Vec<&str> = lines.iter().map(|line| line["event"].as_str().unwrap()).collect();
     assert_eq!((events.first(), events.last()), (Some(&"start"), Some(&"done")));
-    assert!(events[1..events.len() - 1].iter().all(|event| *event == "progress") && events.len() > 2, "{events:?}");
+    assert!(
+        events[1..events.len() - 1].iter().all(|event| *event == "progress") && events.len() > 2,
+        "{events:?}"
+    );
     let done = lines.last().unwrap();
-    assert_eq!((&done["passes"], &done["ended"], &done["outputs"]), (&3.into(), &"passes".into(), &["a.pfm"].into()));
+    assert_eq!(
+        (&done["passes"], &done["ended"], &done["outputs"]),
+        (&3.into(), &"passes".into(), &["a.pfm"].into())
+    );
     assert_eq!(done["photons"], 6000);
 }
 
