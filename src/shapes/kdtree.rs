@@ -46,16 +46,19 @@ impl Node {
     }
 
     /// Whether the node has no children.
+    #[inline]
     pub fn is_leaf(self) -> bool {
         self.word1 & 3 == 3
     }
 
     /// Interior: axis and position of the plane, and index of the right child.
+    #[inline]
     pub fn plane(self) -> (usize, f32, u32) {
         ((self.word1 & 3) as usize, f32::from_bits(self.word0), self.word1 >> 2)
     }
 
     /// Leaf: the range of its references.
+    #[inline]
     pub fn range(self) -> std::ops::Range<usize> {
         let first = self.word0 as usize;
         first..first + (self.word1 >> 2) as usize
@@ -83,6 +86,7 @@ struct Waiting {
     end: f32,
 }
 
+#[inline]
 fn reciprocal(d: f32) -> f32 {
     1.0 / if d.abs() < LEVEL { LEVEL } else { d }
 }
