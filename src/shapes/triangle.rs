@@ -122,7 +122,8 @@ pub fn intersect_triangle(triangle: &Triangle, reference: u32, shear: &RayShear,
     }
     let t = (u * a.z + v * b.z + w * c.z) / det;
     if t > ray.t_min && t < hit.t {
-        *hit = Hit { t, reference, u: v / det, v: w / det };
+        // Not negative; this settles the sign of zero.
+        *hit = Hit { t, reference, u: (v / det).abs(), v: (w / det).abs() };
     }
 }
 
