@@ -3,6 +3,7 @@
 mod device;
 mod scenes;
 mod structure;
+mod triangles;
 
 use caustica::build::kdtree::{KdTree, Primitive, build};
 use caustica::shapes::kdtree::STACK;
