@@ -91,8 +91,8 @@ fn separated(t: &[Vec3; 3], cell: Aabb, gap: f64) -> bool {
     })
 }
 
-/// Theory: with perfect splits a leaf names only primitives that enter its cell. Boxes alone would leave about a
-/// third of the references of slanted triangles wrong.
+/// Theory: with perfect splits a leaf names only primitives that enter its cell. Boxes in place of
+/// slanted triangles name many that do not.
 #[test]
 fn leaves_name_only_what_they_hold() {
     let mut rng = Rng(4);
