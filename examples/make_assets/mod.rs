@@ -4,6 +4,7 @@ pub mod canvas;
 pub mod car;
 pub mod car_paint;
 pub mod car_shape;
+pub mod crafts;
 pub mod lettering;
 pub mod mesh;
 pub mod numbers;
@@ -61,7 +62,11 @@ pub fn meshes() -> Vec<NamedMesh> {
 /// Every picture and material library.
 pub fn pictures() -> Vec<Asset> {
     let picture = |name, canvas| Asset { name, content: Content::Picture(canvas) };
-    vec![picture("car.png", car_paint::atlas(&car_shape::Unwrapping::new()))]
+    vec![
+        picture("car.png", car_paint::atlas(&car_shape::Unwrapping::new())),
+        picture("planks.png", crafts::planks()),
+        picture("porcelain.png", crafts::porcelain()),
+    ]
 }
 
 /// Every asset.
