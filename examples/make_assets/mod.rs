@@ -5,6 +5,8 @@ pub mod car;
 pub mod car_paint;
 pub mod car_shape;
 pub mod crafts;
+pub mod house;
+pub mod house_paint;
 pub mod lettering;
 pub mod mesh;
 pub mod numbers;
@@ -56,6 +58,12 @@ pub fn meshes() -> Vec<NamedMesh> {
             comment: "the chrome parts of car.obj, in the same frame",
             mesh: car::chrome(),
         },
+        NamedMesh {
+            name: "house.obj",
+            library: Some("house.mtl"),
+            comment: "a brick cottage, its front towards +z, y up, metres",
+            mesh: house::house(),
+        },
     ]
 }
 
@@ -66,6 +74,15 @@ pub fn pictures() -> Vec<Asset> {
         picture("car.png", car_paint::atlas(&car_shape::Unwrapping::new())),
         picture("planks.png", crafts::planks()),
         picture("porcelain.png", crafts::porcelain()),
+        picture("brick.png", house_paint::brick()),
+        picture("roof.png", house_paint::roof()),
+        picture("stone.png", house_paint::stone()),
+        picture("plaster.png", house_paint::plaster()),
+        picture("door.png", house_paint::door()),
+        picture("window.png", house_paint::window()),
+        picture("shutter.png", house_paint::shutter()),
+        picture("grass.png", house_paint::grass()),
+        Asset { name: "house.mtl", content: Content::Text(house::materials()) },
     ]
 }
 
