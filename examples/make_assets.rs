@@ -5,7 +5,6 @@
 #[path = "make_assets/mod.rs"]
 mod assets;
 
-use assets::Content;
 use std::path::PathBuf;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -14,10 +13,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         .map_or_else(|| PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/assets")), PathBuf::from);
     std::fs::create_dir_all(&folder)?;
     for asset in assets::all() {
-        let bytes = match asset.content {
-            Content::Text(text) => text.into_bytes(),
-            Content::Picture(canvas) => canvas.to_png()?,
-        };
+        let bytes = asset.content.to_bytes()?;
         println!("{:>8} bytes  {}", bytes.len(), asset.name);
         std::fs::write(folder.join(asset.name), bytes)?;
     }

@@ -229,6 +229,13 @@ fn half_pipe(mesh: &mut Mesh, a: DVec3, b: DVec3, radius: f64) {
         let out = DVec3::Y * s - across * c;
         (if row == 0 { a } else { b } + out * radius, out, DVec2::ZERO)
     });
+    for (end, turn) in [(a, 1.0), (b, -1.0)] {
+        let rim = (0..9).map(|k| {
+            let (s, c) = sin_cos(PI * (f64::from(k) / 8.0 * 1.2 - 0.1));
+            (end + (DVec3::Y * s + across * (c * turn)) * radius, DVec2::ZERO)
+        });
+        mesh.polygon(&rim.collect::<Vec<_>>());
+    }
 }
 
 /// Boards under the verges of the gables, and gutters along the eaves with their downpipes.

@@ -10,8 +10,10 @@ pub mod house_paint;
 pub mod lettering;
 pub mod mesh;
 pub mod numbers;
+pub mod sky;
 
 use canvas::Canvas;
+use image::codecs::hdr::HdrEncoder;
 use mesh::Mesh;
 
 /// What a file of assets/ holds.
@@ -20,6 +22,25 @@ pub enum Content {
     Text(String),
     /// A picture, to be saved as PNG.
     Picture(Canvas),
+    /// Linear radiance, this many pixels wide, to be saved as Radiance HDR.
+    Radiance(u32, Vec<[f32; 3]>),
+}
+
+impl Content {
+    /// The bytes of the file.
+    pub fn to_bytes(&self) -> Result<Vec<u8>, image::ImageError> {
+        match self {
+            Content::Text(text) => Ok(text.clone().into_bytes()),
+            Content::Picture(canvas) => canvas.to_png(),
+            Content::Radiance(width, pixels) => {
+                let mut bytes = Vec::new();
+                let pixels: Vec<_> = pixels.iter().map(|&rgb| image::Rgb(rgb)).collect();
+                let width = *width as usize;
+                HdrEncoder::new(&mut bytes).encode(&pixels, width, pixels.len() / width)?;
+                Ok(bytes)
+            }
+        }
+    }
 }
 
 /// A file of assets/ and what it was made from.
@@ -82,6 +103,7 @@ pub fn pictures() -> Vec<Asset> {
         picture("window.png", house_paint::window()),
         picture("shutter.png", house_paint::shutter()),
         picture("grass.png", house_paint::grass()),
+        Asset { name: "sky.hdr", content: Content::Radiance(sky::WIDTH, sky::sky()) },
         Asset { name: "house.mtl", content: Content::Text(house::materials()) },
     ]
 }
