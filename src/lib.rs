@@ -1,6 +1,8 @@
 //! caustica: a photon mapper.
 
+pub mod build;
 pub mod engine;
 pub mod film;
 pub mod math;
 pub mod settings;
+pub mod shapes;

@@ -1,0 +1,125 @@
+// Rays through the kd-tree: twin of src/shapes/kdtree.rs, which explains the method.
+// Reads `nodes: array<vec2u>`, `refs: array<u32>` and `scene.world.bounds_min`, `bounds_max`; calls
+// `intersect_primitive(reference, ray, hit)`.
+
+const STACK: u32 = 24u;
+const SLACK: f32 = 3.8146973e-6;
+const LEVEL: f32 = 1e-20;
+
+struct Waiting {
+    node: u32,
+    begin: f32,
+    end: f32,
+}
+
+fn reciprocal(d: f32) -> f32 {
+    return 1.0 / select(d, LEVEL, abs(d) < LEVEL);
+}
+
+fn traverse_closest(ray: Ray, hit: ptr<function, Hit>) {
+    traverse(ray, false, hit);
+}
+
+fn traverse_any(ray: Ray, hit: ptr<function, Hit>) -> bool {
+    traverse(ray, true, hit);
+    return (*hit).reference != NONE;
+}
+
+fn traverse(ray: Ray, any_hit: bool, hit: ptr<function, Hit>) {
+    //#if triangle
+    ray_shear = shear_of(ray);
+    //#end
+    let inverse = vec3f(reciprocal(ray.direction.x), reciprocal(ray.direction.y), reciprocal(ray.direction.z));
+    let to_min = scene.world.bounds_min - ray.origin;
+    let to_max = scene.world.bounds_max - ray.origin;
+    let reach = max(abs(to_min), abs(to_max));
+    let slack = (SLACK * max(max(reach.x, reach.y), reach.z)) * abs(inverse);
+    let t0 = to_min * inverse;
+    let t1 = to_max * inverse;
+    let enter = min(t0, t1) - slack;
+    let leave = max(t0, t1) + slack;
+    let root_begin = max(max(max(ray.t_min, enter.x), enter.y), enter.z);
+    let root_end = min(min(min((*hit).t, leave.x), leave.y), leave.z);
+    if root_begin > root_end {
+        return;
+    }
+
+    var stack: array<Waiting, STACK>;
+    var top = 0u;
+    var stored = 0u;
+    var waiting = 0u;
+    var known = 0u;
+    var level = 0u;
+    var index = 0u;
+    var begin = root_begin;
+    var end = root_end;
+    loop {
+        var node = nodes[index];
+        while (node.y & 3u) != 3u {
+            let axis = node.y & 3u;
+            let right = node.y >> 2u;
+            let forward = inverse[axis] > 0.0;
+            let near = select(right, index + 1u, forward);
+            let far = select(index + 1u, right, forward);
+            let t = (bitcast<f32>(node.x) - ray.origin[axis]) * inverse[axis];
+            let t_first = t - slack[axis];
+            let t_last = t + slack[axis];
+            if t_first > end {
+                index = near;
+            } else if t_last < begin {
+                index = far;
+            } else {
+                let bit = 1u << level;
+                if level >= known {
+                    waiting |= bit;
+                }
+                if (waiting & bit) != 0u {
+                    top = select(top + 1u, 0u, top + 1u == STACK);
+                    stack[top] = Waiting(far, max(begin, t_first), end);
+                    stored = select(stored + 1u, STACK, stored == STACK);
+                    index = near;
+                    end = min(end, t_last);
+                } else {
+                    index = far;
+                    begin = max(begin, t_first);
+                }
+            }
+            level++;
+            node = nodes[index];
+        }
+        known = 0u;
+
+        let last = node.x + (node.y >> 2u);
+        for (var i = node.x; i < last; i++) {
+            intersect_primitive(refs[i], ray, hit);
+            if any_hit && (*hit).reference != NONE {
+                return;
+            }
+        }
+
+        loop {
+            if waiting == 0u {
+                return;
+            }
+            level = firstLeadingBit(waiting);
+            waiting ^= 1u << level;
+            if stored == 0u {
+                known = level + 1u;
+                level = 0u;
+                index = 0u;
+                begin = root_begin;
+                end = root_end;
+                break;
+            }
+            index = stack[top].node;
+            begin = stack[top].begin;
+            end = stack[top].end;
+            top = select(top - 1u, STACK - 1u, top == 0u);
+            stored--;
+            level++;
+            if begin <= (*hit).t {
+                break;
+            }
+        }
+    }
+}

@@ -1,0 +1,192 @@
+//! The kd-tree over everything finite, by the surface area heuristic (Wald & Havran 2006, "On building fast kd-trees
+//! for ray tracing, and on doing that in O(N log N)").
+//!
+//! Large nodes are split at one of some evenly spaced planes (`kdtree_bins`); below a few thousand primitives
+//! all planes that bound a primitive are tried, from sorted lists that are kept sorted (`kdtree_sweep`). Both
+//! clip the primitives to the cells that they fall in ("perfect splits", `kdtree_clip`).
+
+use super::kdtree_bins::{best_plane, partition};
+use super::kdtree_clip::whole;
+use super::kdtree_sweep::Sweep;
+use crate::shapes::aabb::Aabb;
+use crate::shapes::kdtree::{MAX_DEPTH, Node, Tree};
+use glam::Vec3;
+use rayon::prelude::*;
+
+/// What the tree is built over: f32 geometry as the kernels see it.
+#[derive(Clone, Copy, Debug)]
+pub enum Primitive {
+    /// A triangle by its vertices.
+    Triangle([Vec3; 3]),
+    /// Anything else by a box that surely holds all of its computed hits.
+    Box(Aabb),
+}
+
+/// Facts about a tree.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Stats {
+    /// Expected cost of a ray that crosses the root's box, in node visits: the surface area heuristic summed over the
+    /// tree with [`INTERSECTION_COST`].
+    pub cost: f64,
+    /// Number of leaves.
+    pub leaves: usize,
+    /// Leaves without a primitive.
+    pub empty_leaves: usize,
+    /// Most primitives in one leaf.
+    pub largest_leaf: usize,
+    /// Interior nodes on the longest path.
+    pub depth: u32,
+}
+
+/// A kd-tree in the form that the kernels read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct KdTree {
+    /// Nodes, the root first, each left child right after its parent.
+    pub nodes: Vec<Node>,
+    /// Indices into the primitives, in the order of the leaves.
+    pub refs: Vec<u32>,
+    /// The box about all primitives; zero when there are none.
+    pub bounds: Aabb,
+    /// Facts about the tree.
+    pub stats: Stats,
+}
+
+impl KdTree {
+    /// The tree as [`crate::shapes::kdtree::traverse`] takes it.
+    pub fn view(&self) -> Tree<'_> {
+        Tree {
+            nodes: &self.nodes,
+            refs: &self.refs,
+            bounds_min: self.bounds.min,
+            bounds_max: self.bounds.max,
+        }
+    }
+}
+
+/// Cost of a primitive's test relative to a node visit (`K_I / K_T` in the paper).
+pub const INTERSECTION_COST: f64 = 1.5;
+/// Factor on the cost of a plane that cuts off empty space (`lambda`).
+const EMPTY_BONUS: f64 = 0.8;
+/// Nodes with more primitives are split at evenly spaced planes.
+const SWEEP_LIMIT: usize = 1 << 13;
+
+/// A primitive and the box about its part in the cell.
+#[derive(Clone, Copy)]
+pub(super) struct Item {
+    pub prim: u32,
+    pub bounds: Aabb,
+}
+
+/// A subtree on its own: right children and first references count from its own start.
+#[derive(Default)]
+pub(super) struct Subtree {
+    pub nodes: Vec<Node>,
+    pub refs: Vec<u32>,
+}
+
+/// The surface area heuristic in one cell along one axis.
+pub(super) struct Heuristic {
+    /// Half the area of a cut across the axis, over half the area of the cell.
+    cut: f64,
+    /// Growth of the (half) area ratio per unit along the axis.
+    growth: f64,
+    low: f64,
+    high: f64,
+}
+
+impl Heuristic {
+    /// None when the cell has no area.
+    pub fn new(cell: Aabb, axis: usize) -> Option<Heuristic> {
+        let d = cell.max.as_dvec3() - cell.min.as_dvec3();
+        let (b, c) = (d[(axis + 1) % 3], d[(axis + 2) % 3]);
+        let area = cell.half_area();
+        (area > 0.0).then(|| Heuristic {
+            cut: b * c / area,
+            growth: (b + c) / area,
+            low: f64::from(cell.min[axis]),
+            high: f64::from(cell.max[axis]),
+        })
+    }
+
+    /// Expected cost of a split at `position` with so many primitives on either side.
+    #[inline]
+    pub fn cost(&self, position: f32, left: usize, right: usize) -> f64 {
+        let p_left = self.cut + (f64::from(position) - self.low) * self.growth;
+        let p_right = self.cut + (self.high - f64::from(position)) * self.growth;
+        let bonus = if left == 0 || right == 0 { EMPTY_BONUS } else { 1.0 };
+        bonus * (1.0 + INTERSECTION_COST * (p_left * left as f64 + p_right * right as f64))
+    }
+}
+
+/// Builds the tree. The same input gives the same tree, whatever the number of threads.
+pub fn build(prims: &[Primitive]) -> KdTree {
+    let items: Vec<Item> =
+        prims.par_iter().enumerate().map(|(i, p)| Item { prim: i as u32, bounds: whole(p) }).collect();
+    let bounds = match items.iter().map(|i| i.bounds).reduce(Aabb::union) {
+        Some(b) => b,
+        None => Aabb { min: Vec3::ZERO, max: Vec3::ZERO },
+    };
+    let levels = 8.0 + 1.3 * (prims.len().max(1) as f64).log2();
+    let Subtree { nodes, refs } = subtree(prims, items, bounds, MAX_DEPTH.min(levels.round() as u32));
+    let stats = stats(&nodes, bounds);
+    KdTree { nodes, refs, bounds, stats }
+}
+
+fn subtree(prims: &[Primitive], items: Vec<Item>, cell: Aabb, levels: u32) -> Subtree {
+    let plane = if items.len() > SWEEP_LIMIT && levels > 0 { best_plane(&items, cell) } else { None };
+    let Some(plane) = plane else {
+        return Sweep::new(prims, &items, levels).build(&items, cell);
+    };
+    let (low, high) = cell.split(plane.axis, plane.position);
+    let (left, right) = partition(prims, &items, plane, low, high);
+    drop(items);
+    let (left, right) = rayon::join(
+        || subtree(prims, left, low, levels - 1),
+        || subtree(prims, right, high, levels - 1),
+    );
+    joined(plane.axis, plane.position, left, right)
+}
+
+fn joined(axis: usize, position: f32, left: Subtree, right: Subtree) -> Subtree {
+    let mut nodes = Vec::with_capacity(1 + left.nodes.len() + right.nodes.len());
+    nodes.push(Node::interior(axis, position, 1 + left.nodes.len() as u32));
+    for (part, first_node, first_ref) in
+        [(&left, 1, 0), (&right, 1 + left.nodes.len() as u32, left.refs.len() as u32)]
+    {
+        nodes.extend(part.nodes.iter().map(|n| {
+            if n.is_leaf() {
+                Node { word0: n.word0 + first_ref, word1: n.word1 }
+            } else {
+                Node { word0: n.word0, word1: n.word1 + (first_node << 2) }
+            }
+        }));
+    }
+    let mut refs = left.refs;
+    refs.extend_from_slice(&right.refs);
+    Subtree { nodes, refs }
+}
+
+fn stats(nodes: &[Node], bounds: Aabb) -> Stats {
+    let root = bounds.half_area();
+    let mut stats = Stats::default();
+    let mut open = vec![(0, bounds, 0)];
+    while let Some((index, cell, depth)) = open.pop() {
+        let node = nodes[index];
+        let p = if root > 0.0 { cell.half_area() / root } else { 1.0 };
+        if node.is_leaf() {
+            let count = node.range().len();
+            stats.cost += p * INTERSECTION_COST * count as f64;
+            stats.leaves += 1;
+            stats.empty_leaves += usize::from(count == 0);
+            stats.largest_leaf = stats.largest_leaf.max(count);
+            stats.depth = stats.depth.max(depth);
+        } else {
+            let (axis, position, right) = node.plane();
+            let (low, high) = cell.split(axis, position);
+            stats.cost += p;
+            open.push((right as usize, high, depth + 1));
+            open.push((index + 1, low, depth + 1));
+        }
+    }
+    stats
+}

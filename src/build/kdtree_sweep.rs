@@ -1,0 +1,217 @@
+//! Exact splits: every plane that bounds a primitive is tried (Wald & Havran 2006, section 4.3).
+//!
+//! Per axis a sorted list of events says where primitives end, lie flat or start. A split filters the lists, which
+//! keeps them sorted, and merges in the events of the primitives that straddle the plane.
+
+use super::kdtree::{Heuristic, INTERSECTION_COST, Item, Primitive, Subtree};
+use super::kdtree_bins::parts;
+use crate::shapes::aabb::Aabb;
+use crate::shapes::kdtree::Node;
+
+/// Order at equal positions: as the sweep meets them.
+const END: u64 = 0;
+const PLANAR: u64 = 1;
+const START: u64 = 2;
+
+/// Position (in an order-preserving code), kind and item in one word, so that events sort as integers.
+type Event = u64;
+/// Sorted events along each axis.
+type Events = [Vec<Event>; 3];
+
+const ITEM_BITS: u32 = 30;
+
+fn event(position: f32, kind: u64, item: usize) -> Event {
+    // Plus zero makes -0 into 0.
+    let bits = (position + 0.0).to_bits();
+    let code = if bits >> 31 == 1 { !bits } else { bits | 1 << 31 };
+    u64::from(code) << 32 | kind << ITEM_BITS | item as u64
+}
+
+fn position(event: Event) -> f32 {
+    let code = (event >> 32) as u32;
+    f32::from_bits(if code >> 31 == 1 { code & !(1 << 31) } else { !code })
+}
+
+fn kind(event: Event) -> u64 {
+    event >> ITEM_BITS & 3
+}
+
+fn item(event: Event) -> usize {
+    (event & ((1 << ITEM_BITS) - 1)) as usize
+}
+
+fn push_events(events: &mut Events, bounds: Aabb, item: usize) {
+    for (axis, events) in events.iter_mut().enumerate() {
+        let (low, high) = (bounds.min[axis], bounds.max[axis]);
+        if low == high {
+            events.push(event(low, PLANAR, item));
+        } else {
+            events.push(event(low, START, item));
+            events.push(event(high, END, item));
+        }
+    }
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Side {
+    Left,
+    Right,
+    Both,
+}
+
+/// A plane and the side that takes the primitives which lie in it.
+#[derive(Clone, Copy)]
+struct Split {
+    axis: usize,
+    position: f32,
+    planar_left: bool,
+}
+
+/// Builds one subtree.
+pub(super) struct Sweep<'a> {
+    prims: &'a [Primitive],
+    /// Item -> primitive.
+    ids: Vec<u32>,
+    /// Item -> where it goes in the split under way.
+    sides: Vec<Side>,
+    levels: u32,
+    tree: Subtree,
+}
+
+impl<'a> Sweep<'a> {
+    /// For a subtree over `items`, at most `levels` deep.
+    pub fn new(prims: &'a [Primitive], items: &[Item], levels: u32) -> Sweep<'a> {
+        Sweep {
+            prims,
+            ids: items.iter().map(|i| i.prim).collect(),
+            sides: vec![Side::Both; items.len()],
+            levels,
+            tree: Subtree::default(),
+        }
+    }
+
+    /// The subtree of `cell`.
+    pub fn build(mut self, items: &[Item], cell: Aabb) -> Subtree {
+        let mut events = Events::default();
+        for (i, item) in items.iter().enumerate() {
+            push_events(&mut events, item.bounds, i);
+        }
+        events.iter_mut().for_each(|e| e.sort_unstable());
+        self.node(events, items.len(), cell, 0);
+        self.tree
+    }
+
+    fn node(&mut self, events: Events, count: usize, cell: Aabb, level: u32) {
+        let split = if level < self.levels { best_split(&events, count, cell) } else { None };
+        let Some(split) = split else {
+            self.leaf(&events[0]);
+            return;
+        };
+        let (low, high) = cell.split(split.axis, split.position);
+        let ([left, right], [left_count, right_count]) = self.divide(events, split, low, high);
+        let index = self.tree.nodes.len();
+        self.tree.nodes.push(Node::leaf(0, 0));
+        self.node(left, left_count, low, level + 1);
+        self.tree.nodes[index] = Node::interior(split.axis, split.position, self.tree.nodes.len() as u32);
+        self.node(right, right_count, high, level + 1);
+    }
+
+    fn leaf(&mut self, events: &[Event]) {
+        let first = self.tree.refs.len();
+        self.tree.refs.extend(events.iter().filter(|&&e| kind(e) != END).map(|&e| self.ids[item(e)]));
+        self.tree.refs[first..].sort_unstable();
+        self.tree.nodes.push(Node::leaf(first as u32, (self.tree.refs.len() - first) as u32));
+    }
+
+    /// The events and numbers of items in the two cells beside the plane.
+    fn divide(&mut self, events: Events, split: Split, low: Aabb, high: Aabb) -> ([Events; 2], [usize; 2]) {
+        let mut counts = [0; 2];
+        for &e in &events[split.axis] {
+            let p = position(e);
+            let side = match kind(e) {
+                START if p >= split.position => Side::Right,
+                START => Side::Both,
+                END if p <= split.position => Side::Left,
+                END => continue,
+                _ if p < split.position || (p == split.position && split.planar_left) => Side::Left,
+                _ => Side::Right,
+            };
+            self.sides[item(e)] = side;
+        }
+        let mut new = [Events::default(), Events::default()];
+        for &e in events[split.axis].iter().filter(|&&e| kind(e) != END) {
+            match self.sides[item(e)] {
+                Side::Left => counts[0] += 1,
+                Side::Right => counts[1] += 1,
+                Side::Both => {
+                    let (a, b) = parts(self.prims, self.ids[item(e)], low, high);
+                    for (side, part) in [a, b].into_iter().enumerate() {
+                        if let Some(bounds) = part {
+                            push_events(&mut new[side], bounds, item(e));
+                            counts[side] += 1;
+                        }
+                    }
+                }
+            }
+        }
+        let mut divided = [Events::default(), Events::default()];
+        for (axis, events) in events.into_iter().enumerate() {
+            for (side, wanted) in [Side::Left, Side::Right].into_iter().enumerate() {
+                let added = &mut new[side][axis];
+                added.sort_unstable();
+                divided[side][axis] = merged(&events, added, |e| self.sides[item(e)] == wanted);
+            }
+        }
+        (divided, counts)
+    }
+}
+
+/// The events that are `kept`, merged with those `added`.
+fn merged(events: &[Event], added: &[Event], kept: impl Fn(Event) -> bool) -> Vec<Event> {
+    let mut out = Vec::with_capacity(events.len() + added.len());
+    let mut next = 0;
+    for &e in events.iter().filter(|&&e| kept(e)) {
+        while next < added.len() && added[next] < e {
+            out.push(added[next]);
+            next += 1;
+        }
+        out.push(e);
+    }
+    out.extend_from_slice(&added[next..]);
+    out
+}
+
+/// The plane of least expected cost strictly inside the cell, or none if a leaf is cheaper.
+fn best_split(events: &Events, count: usize, cell: Aabb) -> Option<Split> {
+    let mut best = None;
+    let mut best_cost = INTERSECTION_COST * count as f64;
+    for (axis, events) in events.iter().enumerate() {
+        let heuristic = Heuristic::new(cell, axis)?;
+        let mut left = 0;
+        let mut right = count;
+        let mut i = 0;
+        while i < events.len() {
+            let here = events[i] >> 32;
+            let mut numbers = [0; 3];
+            while i < events.len() && events[i] >> 32 == here {
+                numbers[kind(events[i]) as usize] += 1;
+                i += 1;
+            }
+            let [ends, planar, starts] = numbers;
+            right -= ends + planar;
+            let p = position(here << 32);
+            if p > cell.min[axis] && p < cell.max[axis] {
+                for planar_left in [true, false] {
+                    let (l, r) = if planar_left { (left + planar, right) } else { (left, right + planar) };
+                    let cost = heuristic.cost(p, l, r);
+                    if cost < best_cost {
+                        best_cost = cost;
+                        best = Some(Split { axis, position: p, planar_left });
+                    }
+                }
+            }
+            left += starts + planar;
+        }
+    }
+    best
+}

@@ -1,0 +1,39 @@
+//! Rays and hits. Twin: `shaders/shapes/ray.wgsl`.
+
+use glam::Vec3;
+
+/// Stands in a hit's `reference` when nothing was hit.
+pub const NONE: u32 = 0xffff_ffff;
+
+/// A segment of a line: the points `origin + t * direction` with `t_min < t < t_max`.
+#[derive(Clone, Copy, Debug)]
+pub struct Ray {
+    /// Where `t` is 0, in scene space.
+    pub origin: Vec3,
+    /// Hits must lie strictly beyond, in scene units.
+    pub t_min: f32,
+    /// Unit vector.
+    pub direction: Vec3,
+    /// Hits must lie strictly before, in scene units; finite.
+    pub t_max: f32,
+}
+
+/// The nearest hit so far.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    /// Distance along the ray; the ray's `t_max` while nothing was hit.
+    pub t: f32,
+    /// What was hit (kind and index), or [`NONE`].
+    pub reference: u32,
+    /// First parameter on the shape; a triangle's barycentric weight of `p1`.
+    pub u: f32,
+    /// Second parameter on the shape; a triangle's barycentric weight of `p2`.
+    pub v: f32,
+}
+
+impl Hit {
+    /// Nothing hit yet on `ray`.
+    pub fn none(ray: &Ray) -> Hit {
+        Hit { t: ray.t_max, reference: NONE, u: 0.0, v: 0.0 }
+    }
+}
