@@ -1,6 +1,13 @@
-//! Shapes: what a ray meets, each the twin of a file in `shaders/shapes/`.
+//! Shapes: what a ray meets and the surface there, each the twin of a file in `shaders/shapes/`.
 
 pub mod aabb;
+pub mod cuboid;
+pub mod disc;
+pub mod intersect;
 pub mod kdtree;
 pub mod ray;
+pub mod rectangle;
+pub mod revolution;
+pub mod sphere;
+pub mod surface;
 pub mod triangle;

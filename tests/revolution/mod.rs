@@ -1,0 +1,7 @@
+//! What the tests of surfaces of revolution share: profiles, rays, and an independent solver.
+
+#![allow(dead_code)] // each test binary uses its part
+
+pub mod oracle;
+pub mod profiles;
+pub mod rays;
