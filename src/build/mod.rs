@@ -1,8 +1,9 @@
-//! Host-only construction, in f64, of what the kernels read.
+//! Host-only construction of what the kernels read, in f64.
 
 pub mod bezier;
 pub mod kdtree;
 mod kdtree_bins;
 mod kdtree_clip;
 mod kdtree_sweep;
+pub mod normalize;
 pub mod revolution;

@@ -1,4 +1,4 @@
-//! Shapes: what a ray meets and the surface there, each the twin of a file in `shaders/shapes/`.
+//! Shapes: what a ray meets, each the twin of a file in `shaders/shapes/`.
 
 pub mod aabb;
 pub mod cuboid;

@@ -1,0 +1,223 @@
+//! From a scene file to a [`Scene`]: parse, hold against the schema, resolve names, then check what the parts mean.
+//! Every stage goes on after an error, so that one run shows them all; only a file that is not TOML stops early.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use super::check::{Document, document};
+use super::file::{EnvironmentFile, LightFile, MaterialFile, ShapeFile, TextureFile};
+use super::images::ImageStore;
+use super::report::{Finding, Report, SceneErrors, SourceFile, did_you_mean, list};
+use super::tree::Node;
+use super::{Scene, looks, schema, surfaces, view};
+use crate::settings::RenderSettings;
+
+/// What a scene file holds.
+#[derive(Clone, Debug)]
+pub struct Loaded {
+    /// The scene.
+    pub scene: Scene,
+    /// The file's `[render]`, defaults filled in.
+    pub settings: RenderSettings,
+    /// What is odd but no error.
+    pub warnings: Vec<Finding>,
+}
+
+/// Reads a scene file with all the files it names.
+///
+/// # Errors
+/// Everything that is wrong with them, at once.
+pub fn load(path: &Path) -> Result<Loaded, SceneErrors> {
+    match std::fs::read(path) {
+        Ok(bytes) => parse(path, &bytes),
+        Err(error) => {
+            let mut report = Report::new(path, SourceFile::new(path, String::new()));
+            let help = nearest_file(path).map(|near| format!("did you mean {near}?"));
+            report.unreadable(format!("cannot read {}: {error}", path.display()), help);
+            Err(errors(path, report))
+        }
+    }
+}
+
+/// Reads a scene from a file's bytes; `path` names it in messages, and the files it names are relative to it.
+///
+/// # Errors
+/// As [`load`].
+pub fn parse(path: &Path, bytes: &[u8]) -> Result<Loaded, SceneErrors> {
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let text = String::from_utf8_lossy(bytes).into_owned();
+    let source = SourceFile::new(path, text.clone());
+    let mut report = Report::new(path, source);
+    if let Err(error) = std::str::from_utf8(bytes) {
+        let at = error.valid_up_to();
+        report.error(at..at + 1, "the file is not UTF-8", "expected UTF-8 text", None);
+        return Err(errors(path, report));
+    }
+    let (table, faults) = DeTable::parse_recoverable(&text);
+    for fault in &faults {
+        let span = fault.span().unwrap_or(0..0);
+        let help = Some("the file is not TOML here; other checks follow once it is".to_owned());
+        report.error(span, fault.message(), "here", help);
+    }
+    if !report.errors.is_empty() {
+        return Err(errors(path, report));
+    }
+    let span = table.span().start..table.span().start;
+    let root = Spanned::new(span, DeValue::Table(table.into_inner()));
+    let schema = schema::root();
+    let document = document(&schema, Node::new(&root), &mut report);
+    let loaded = Loader::new(path, &document, &mut report).load();
+    match loaded {
+        Some((scene, settings)) if report.errors.is_empty() => {
+            Ok(Loaded { scene, settings, warnings: report.warnings })
+        }
+        _ => Err(errors(path, report)),
+    }
+}
+
+fn errors(path: &Path, mut report: Report) -> SceneErrors {
+    report.errors.sort_by_key(|error| (error.file() != path.display().to_string(), error.line_column()));
+    SceneErrors { file: path.display().to_string(), errors: report.errors, warnings: report.warnings }
+}
+
+/// What the parts of a scene share while they are read.
+pub(crate) struct Loader<'l, 'a> {
+    pub document: &'l Document<'a>,
+    pub report: &'l mut Report,
+    pub images: ImageStore,
+    path: &'l Path,
+}
+
+impl<'l, 'a> Loader<'l, 'a> {
+    fn new(path: &'l Path, document: &'l Document<'a>, report: &'l mut Report) -> Self {
+        Self { document, report, images: ImageStore::default(), path }
+    }
+
+    fn load(mut self) -> Option<(Scene, RenderSettings)> {
+        let document = self.document;
+        if let Some(item) = document.item("version")
+            && let Some(version) = item.read::<u32>(self.report)
+            && version != 1
+        {
+            let message = format!("version {version} of the scene format is not known");
+            self.report.error(item.node.span(), message, "expected 1", None);
+        }
+        self.undefined("materials", "shapes", "material");
+        self.undefined("textures", "materials", "reflectance");
+        let camera = view::camera(&mut self);
+        let film = view::film(&mut self);
+        let settings = view::settings(&mut self);
+        let mut textures = Vec::new();
+        for item in document.items("textures") {
+            if let Some(file) = item.read::<TextureFile>(self.report) {
+                textures.extend(looks::texture(&mut self, item, file));
+            }
+        }
+        let mut materials = Vec::new();
+        for item in document.items("materials") {
+            if let Some(file) = item.read::<MaterialFile>(self.report) {
+                materials.push(looks::material(&self, item, file));
+            }
+        }
+        let mut shapes = Vec::new();
+        for item in document.items("shapes") {
+            if let Some(file) = item.read::<ShapeFile>(self.report) {
+                let made = surfaces::shapes(&mut self, item, file, &mut textures, &mut materials);
+                shapes.extend(made.into_iter().flatten());
+            }
+        }
+        let mut lights = Vec::new();
+        for item in document.items("lights") {
+            if let Some(file) = item.read::<LightFile>(self.report) {
+                lights.extend(view::light(&mut self, item, file));
+            }
+        }
+        let environment = document.item("environment").and_then(|item| {
+            let file = item.read::<EnvironmentFile>(self.report)?;
+            view::environment(&mut self, item, &file)
+        });
+        let scene = Scene {
+            name: self.path.file_stem().map_or(String::new(), |stem| stem.to_string_lossy().into_owned()),
+            camera: camera?,
+            film: film?,
+            images: std::mem::take(&mut self.images.images),
+            textures,
+            materials,
+            shapes,
+            lights,
+            environment,
+        };
+        if self.report.errors.is_empty() {
+            self.unused("materials", "shapes", "material");
+            self.unused("textures", "materials", "reflectance");
+            if !scene.is_lit() {
+                let message = "the scene has no light; the picture will be black";
+                let label = "expected an emission above 0, [[lights]] or [environment]";
+                self.report.warn(0..0, message, label);
+            }
+        }
+        Some((scene, settings?))
+    }
+
+    /// Index of a named part; 0 for an unknown name, which [`Self::undefined`] has reported.
+    pub fn index(&self, section: &str, name: &str) -> usize {
+        self.document.items(section).position(|item| item.name == name).unwrap_or(0)
+    }
+
+    /// A path that the scene file names, relative to it.
+    pub fn resolve(&self, file: &str) -> PathBuf {
+        self.path.parent().unwrap_or(Path::new("")).join(file)
+    }
+
+    /// Reports names of a section that another section calls under `key` and that are not defined.
+    fn undefined(&mut self, section: &str, user: &str, key: &str) {
+        let singular = section.trim_end_matches('s');
+        let known: Vec<_> = self.document.items(section).map(|item| item.name).collect();
+        for node in self.document.items(user).filter_map(|item| item.node.get(key)) {
+            let Some(name) = node.str().filter(|name| !known.contains(name)) else {
+                continue;
+            };
+            let label = did_you_mean(name, known.iter().copied(), &format!("no such {singular}"));
+            let help = match known[..] {
+                [] => format!("define it: [{section}.{name}]"),
+                _ => format!("define [{section}.{name}], or use one of {}", list(known.iter().copied())),
+            };
+            let message = format!("{singular} `{name}` is not defined");
+            self.report.error(node.span(), message, label, Some(help));
+        }
+    }
+
+    /// Warns of parts of a section that no other section calls under `key`.
+    fn unused(&mut self, section: &str, user: &str, key: &str) {
+        let users = self.document.items(user).filter_map(|item| item.node.get(key)?.str());
+        let used: BTreeSet<_> = users.collect();
+        for item in self.document.items(section).filter(|item| !used.contains(item.name)) {
+            let message = format!("{} `{}` is not used", section.trim_end_matches('s'), item.name);
+            self.report.warn(item.node.span(), message, "defined here");
+        }
+    }
+}
+
+impl Scene {
+    /// Whether anything in the scene gives light.
+    pub fn is_lit(&self) -> bool {
+        !self.lights.is_empty()
+            || self.environment.is_some()
+            || self.shapes.iter().any(super::Shape::is_emitter)
+    }
+}
+
+/// The file in the same folder whose name is nearest.
+pub(crate) fn nearest_file(path: &Path) -> Option<String> {
+    let wanted = path.file_name()?.to_string_lossy().into_owned();
+    let folder = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let mut names: Vec<_> = std::fs::read_dir(folder)
+        .ok()?
+        .filter_map(|entry| Some(entry.ok()?.file_name().to_string_lossy().into_owned()))
+        .collect();
+    names.sort();
+    super::report::nearest(&wanted, names.iter().map(String::as_str)).map(str::to_owned)
+}

@@ -1,0 +1,80 @@
+//! Numbers with a range, and colors made of them. Ranges stand in the JSON Schema, and are checked from there.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::appearance::Rgb;
+
+/// A number greater than 0.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(transparent)]
+#[schemars(inline, extend("exclusiveMinimum" = 0))]
+pub struct Positive(pub f64);
+
+/// A number that is not negative.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
+#[serde(transparent)]
+#[schemars(inline, extend("minimum" = 0))]
+pub struct NonNegative(pub f64);
+
+/// A number from 0 to 1.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
+#[serde(transparent)]
+#[schemars(inline, extend("minimum" = 0, "maximum" = 1))]
+pub struct Share(pub f64);
+
+impl From<Positive> for f64 {
+    fn from(number: Positive) -> Self {
+        number.0
+    }
+}
+
+impl From<NonNegative> for f64 {
+    fn from(number: NonNegative) -> Self {
+        number.0
+    }
+}
+
+impl From<Share> for f64 {
+    fn from(number: Share) -> Self {
+        number.0
+    }
+}
+
+/// A number for all channels, or [r, g, b] linear.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(untagged)]
+#[schemars(inline)]
+pub enum Spectrum<T> {
+    /// The same for red, green and blue.
+    Gray(T),
+    /// Linear Rec. 709.
+    Rgb([T; 3]),
+}
+
+impl<T: Default> Default for Spectrum<T> {
+    fn default() -> Self {
+        Self::Gray(T::default())
+    }
+}
+
+impl<T: Copy + Into<f64>> Spectrum<T> {
+    /// Its three channels.
+    pub fn rgb(&self) -> Rgb {
+        match *self {
+            Self::Gray(value) => [value.into(); 3],
+            Self::Rgb(channels) => channels.map(Into::into),
+        }
+    }
+}
+
+/// A number from 0 to 1, [r, g, b] linear, or the name of a texture.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(untagged)]
+#[schemars(inline)]
+pub enum Paint {
+    /// The same everywhere.
+    Color(Spectrum<Share>),
+    /// Name of a texture.
+    Texture(String),
+}

@@ -1,0 +1,136 @@
+//! Meaning of the Bezier profiles of surfaces of revolution.
+
+use glam::DVec2;
+
+use super::check::Item;
+use super::file::Segments;
+use super::load::Loader;
+use super::tree::Node;
+
+/// Largest gap between two segments that counts as joined, over the extent of the profile.
+const JOIN_TOLERANCE: f64 = 1e-9;
+/// Largest negative radius that counts as rounding, over the largest control radius.
+const RADIUS_TOLERANCE: f64 = 1e-12;
+/// Halvings of the parameter while the sign of the radius is in doubt.
+const MOST_HALVINGS: u32 = 40;
+
+/// The profile's segments, checked: joined, off the axis somewhere, and with no negative radius.
+pub(super) fn segments(
+    loader: &mut Loader,
+    item: &Item,
+    profile: Option<Vec<[f64; 2]>>,
+    segments: Option<Segments>,
+) -> Option<Vec<Vec<DVec2>>> {
+    let one_of = "expected either `profile` or `segments`";
+    let (curves, nodes): (Vec<_>, Vec<_>) = match (profile, segments) {
+        (Some(profile), None) => (vec![profile], item.node.get("profile").into_iter().collect()),
+        (None, Some(Segments(curves))) => {
+            let nodes = item.node.get("segments").into_iter().flat_map(|node| node.elements());
+            (curves, nodes.collect())
+        }
+        (Some(_), Some(_)) => {
+            let message = format!("{} has both `profile` and `segments`", item.path);
+            loader.report.error(item.node.span_of("segments"), message, one_of, None);
+            return None;
+        }
+        (None, None) => {
+            let message = format!("{} has neither `profile` nor `segments`", item.path);
+            loader.report.error(item.node.span(), message, one_of, None);
+            return None;
+        }
+    };
+    let mut curves: Vec<Vec<_>> =
+        curves.into_iter().map(|curve| curve.into_iter().map(DVec2::from).collect()).collect();
+    let before = loader.report.errors.len();
+    for (curve, node) in curves.iter().zip(&nodes) {
+        check_curve(loader, curve, *node);
+    }
+    join(loader, &mut curves, &nodes);
+    (loader.report.errors.len() == before).then_some(curves)
+}
+
+fn check_curve(loader: &mut Loader, curve: &[DVec2], node: Node) {
+    let radii: Vec<_> = curve.iter().map(|point| point.x).collect();
+    let largest = radii.iter().fold(0.0f64, |most, radius| most.max(radius.abs()));
+    if largest == 0.0 {
+        let message = "the profile lies on the axis and sweeps no surface";
+        let label = "expected a control point with a radius above 0";
+        loader.report.error(node.span(), message, label, None);
+    } else if curve.iter().all(|point| *point == curve[0]) {
+        let message = "the profile is a single point";
+        loader.report.error(node.span(), message, "expected different control points", None);
+    } else if let Some(radius) = negative(&radii, RADIUS_TOLERANCE * largest, MOST_HALVINGS) {
+        let worst = (0..radii.len()).min_by(|&a, &b| radii[a].total_cmp(&radii[b])).unwrap_or(0);
+        let span = node.at(worst).map_or(node.span(), |point| point.span());
+        let message = format!("the profile crosses the axis: its radius falls to {radius:.3e}");
+        let help =
+            Some("a control radius may be negative only if the curve stays right of the axis".to_owned());
+        loader.report.error(span, message, "expected a larger radius here", help);
+    }
+}
+
+/// A negative value of a polynomial in Bernstein form on [0, 1], if it has one below `-tolerance`: halves the interval
+/// until the hull of the coefficients decides.
+fn negative(coefficients: &[f64], tolerance: f64, halvings: u32) -> Option<f64> {
+    let (first, last) = (coefficients[0], coefficients[coefficients.len() - 1]);
+    if let Some(value) = [first, last].into_iter().find(|&value| value < -tolerance) {
+        return Some(value);
+    }
+    if halvings == 0 || coefficients.iter().all(|&value| value >= -tolerance) {
+        return None;
+    }
+    let mut left = vec![first];
+    let mut right = vec![last];
+    let mut row = coefficients.to_vec();
+    while row.len() > 1 {
+        row = row.windows(2).map(|pair| 0.5 * (pair[0] + pair[1])).collect();
+        left.push(row[0]);
+        right.push(row[row.len() - 1]);
+    }
+    right.reverse();
+    negative(&left, tolerance, halvings - 1).or_else(|| negative(&right, tolerance, halvings - 1))
+}
+
+/// Makes each segment start exactly where the one before ends, or reports the gap.
+fn join(loader: &mut Loader, curves: &mut [Vec<DVec2>], nodes: &[Node]) {
+    let extent = curves.iter().flatten().fold(0.0f64, |most, point| most.max(point.abs().max_element()));
+    for index in 1..curves.len() {
+        let (Some(&end), Some(&start)) = (curves[index - 1].last(), curves[index].first()) else {
+            continue;
+        };
+        if start.distance(end) > JOIN_TOLERANCE * extent {
+            let span = nodes.get(index).and_then(|node| node.at(0)).map(|point| point.span());
+            let message = format!("segment {index} does not start where segment {} ends", index - 1);
+            let label = format!("expected [{}, {}]", end.x, end.y);
+            loader.report.error(span.unwrap_or(0..0), message, label, None);
+        }
+        curves[index][0] = end;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::negative;
+
+    /// A quadratic with coefficients (a, b, a) has its least value (a + b) / 2 in the middle: it is negative exactly
+    /// when b < -a.
+    #[test]
+    fn sign_of_a_quadratic() {
+        for (b, expected) in [(1.0, false), (-0.999, false), (-1.0, false), (-1.001, true), (-3.0, true)] {
+            assert_eq!(negative(&[1.0, b, 1.0], 1e-12, 40).is_some(), expected, "b = {b}");
+        }
+    }
+
+    /// The degree-15 curve through one negative control value among ones: B_7,15 is at most 0.203042 (at t = 7/15), so
+    /// 1 + (c - 1) 0.203042 is negative exactly when c < 1 - 1/0.203042 = -3.92509.
+    #[test]
+    fn sign_at_degree_fifteen() {
+        let curve = |c: f64| {
+            let mut coefficients = vec![1.0; 16];
+            coefficients[7] = c;
+            coefficients
+        };
+        assert!(negative(&curve(-3.925), 1e-12, 40).is_none());
+        assert!(negative(&curve(-3.9252), 1e-12, 40).is_some());
+    }
+}

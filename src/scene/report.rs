@@ -1,0 +1,254 @@
+//! Errors and warnings that point into the files they are about.
+
+use std::fmt;
+use std::ops::Range;
+use std::path::Path;
+use std::sync::Arc;
+
+use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode};
+
+/// A text file that findings point into; cheap to clone.
+#[derive(Clone, Debug)]
+pub(crate) struct SourceFile(Arc<NamedSource<String>>);
+
+impl SourceFile {
+    pub fn new(path: &Path, text: String) -> Self {
+        Self(Arc::new(NamedSource::new(path.display().to_string(), text)))
+    }
+
+    pub fn text(&self) -> &str {
+        self.0.inner()
+    }
+}
+
+/// An error or a warning about a scene, with the place it is about. Prints through [`miette`] with the offending line
+/// and a caret.
+#[derive(Clone, Debug)]
+pub struct Finding {
+    message: String,
+    help: Option<String>,
+    severity: miette::Severity,
+    file: String,
+    place: Option<Place>,
+}
+
+#[derive(Clone, Debug)]
+struct Place {
+    source: SourceFile,
+    span: Range<usize>,
+    label: String,
+}
+
+impl Finding {
+    /// What is wrong, in one line.
+    pub fn message(&self) -> &str {
+        &self.message
+    }
+
+    /// What was expected; stands at the caret.
+    pub fn label(&self) -> &str {
+        self.place.as_ref().map_or("", |place| &place.label)
+    }
+
+    /// How to mend it.
+    pub fn help(&self) -> Option<&str> {
+        self.help.as_deref()
+    }
+
+    /// Path of the file it is about.
+    pub fn file(&self) -> &str {
+        &self.file
+    }
+
+    /// Line and column, from 1, the column in characters; `None` when the file itself cannot be read.
+    pub fn line_column(&self) -> Option<(usize, usize)> {
+        let place = self.place.as_ref()?;
+        let before = place.source.text().get(..place.span.start)?;
+        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+        let line = before.matches('\n').count() + 1;
+        Some((line, before[line_start..].chars().count() + 1))
+    }
+}
+
+impl fmt::Display for Finding {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
+impl std::error::Error for Finding {}
+
+impl Diagnostic for Finding {
+    fn severity(&self) -> Option<miette::Severity> {
+        Some(self.severity)
+    }
+
+    fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
+        self.help.as_ref().map(|help| Box::new(help) as Box<dyn fmt::Display>)
+    }
+
+    fn source_code(&self) -> Option<&dyn SourceCode> {
+        self.place.as_ref().map(|place| &*place.source.0 as &dyn SourceCode)
+    }
+
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
+        let place = self.place.as_ref()?;
+        let label = LabeledSpan::new_primary_with_span(Some(place.label.clone()), place.span.clone());
+        Some(Box::new(std::iter::once(label)))
+    }
+}
+
+/// Everything that is wrong with a scene file and the files it names.
+#[derive(Debug, thiserror::Error)]
+#[error("{file}: {} error{}", errors.len(), if errors.len() == 1 { "" } else { "s" })]
+pub struct SceneErrors {
+    /// The scene file.
+    pub file: String,
+    /// At least one, in the order of the file.
+    pub errors: Vec<Finding>,
+    /// What is odd but no error.
+    pub warnings: Vec<Finding>,
+}
+
+impl Diagnostic for SceneErrors {
+    fn related<'a>(&'a self) -> Option<Box<dyn Iterator<Item = &'a dyn Diagnostic> + 'a>> {
+        let errors = self.errors.iter().map(|error| error as &dyn Diagnostic);
+        let warnings = self.warnings.iter().map(|warning| warning as &dyn Diagnostic);
+        Some(Box::new(errors.chain(warnings)))
+    }
+}
+
+/// Most errors of one mesh or material file that are listed one by one.
+const MOST_PER_ASSET: usize = 10;
+
+/// Collects the findings of one load.
+#[derive(Debug)]
+pub(crate) struct Report {
+    /// The scene file.
+    pub source: SourceFile,
+    path: String,
+    pub errors: Vec<Finding>,
+    pub warnings: Vec<Finding>,
+}
+
+impl Report {
+    pub fn new(path: &Path, source: SourceFile) -> Self {
+        Self { source, path: path.display().to_string(), errors: Vec::new(), warnings: Vec::new() }
+    }
+
+    /// An error in the scene file; `label` says what was expected, `help` how to mend it.
+    pub fn error(
+        &mut self,
+        span: Range<usize>,
+        message: impl Into<String>,
+        label: impl Into<String>,
+        help: Option<String>,
+    ) {
+        let finding = self.finding(miette::Severity::Error, span, message.into(), label.into(), help);
+        self.errors.push(finding);
+    }
+
+    /// A warning about the scene file.
+    pub fn warn(&mut self, span: Range<usize>, message: impl Into<String>, label: impl Into<String>) {
+        let finding = self.finding(miette::Severity::Warning, span, message.into(), label.into(), None);
+        self.warnings.push(finding);
+    }
+
+    /// The scene file cannot be read at all.
+    pub fn unreadable(&mut self, message: String, help: Option<String>) {
+        self.errors.push(Finding {
+            message,
+            help,
+            severity: miette::Severity::Error,
+            file: self.path.clone(),
+            place: None,
+        });
+    }
+
+    /// Errors in a file that the scene file names at `named_at`.
+    pub fn asset_errors(&mut self, named_at: Range<usize>, source: &SourceFile, faults: Vec<Fault>) {
+        let count = faults.len();
+        let (line, _) = self.line_column(named_at);
+        let file = source.0.name().to_owned();
+        for fault in faults.into_iter().take(MOST_PER_ASSET) {
+            self.errors.push(Finding {
+                message: fault.message,
+                help: Some(format!("{file} is named in {} at line {line}", self.path)),
+                severity: miette::Severity::Error,
+                file: file.clone(),
+                place: Some(Place { source: source.clone(), span: fault.span, label: fault.expected }),
+            });
+        }
+        if let (Some(last), Some(more @ 1..)) = (self.errors.last_mut(), count.checked_sub(MOST_PER_ASSET)) {
+            last.help = Some(format!("{more} more errors in {file} are not shown"));
+        }
+    }
+
+    fn line_column(&self, span: Range<usize>) -> (usize, usize) {
+        self.finding(miette::Severity::Error, span, String::new(), String::new(), None)
+            .line_column()
+            .unwrap_or((1, 1))
+    }
+
+    fn finding(
+        &self,
+        severity: miette::Severity,
+        span: Range<usize>,
+        message: String,
+        label: String,
+        help: Option<String>,
+    ) -> Finding {
+        Finding {
+            message,
+            help,
+            severity,
+            file: self.path.clone(),
+            place: Some(Place { source: self.source.clone(), span: self.drawable(span), label }),
+        }
+    }
+
+    /// Cuts a span that covers several lines down to its first, where a caret can show it.
+    fn drawable(&self, span: Range<usize>) -> Range<usize> {
+        let text = self.source.text();
+        let start = span.start.min(text.len());
+        let end = span.end.clamp(start, text.len());
+        let first = text.get(start..end).unwrap_or("");
+        let line = first.split(['\r', '\n']).next().unwrap_or("");
+        start..start + line.len()
+    }
+}
+
+/// Something wrong in a file that a scene names.
+#[derive(Clone, Debug)]
+pub(crate) struct Fault {
+    pub span: Range<usize>,
+    pub message: String,
+    pub expected: String,
+}
+
+/// The known name nearest to a misspelt one, if any is near.
+pub(crate) fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let lower = name.to_lowercase();
+    known
+        .into_iter()
+        .map(|candidate| (strsim::damerau_levenshtein(&lower, &candidate.to_lowercase()), candidate))
+        .filter(|&(distance, candidate)| distance <= candidate.chars().count().div_ceil(3))
+        .min_by_key(|&(distance, _)| distance)
+        .map(|(_, candidate)| candidate)
+}
+
+/// "did you mean `x`?", or `otherwise`.
+pub(crate) fn did_you_mean<'a>(
+    name: &str,
+    known: impl IntoIterator<Item = &'a str>,
+    otherwise: &str,
+) -> String {
+    nearest(name, known)
+        .map_or_else(|| otherwise.to_owned(), |candidate| format!("did you mean `{candidate}`?"))
+}
+
+/// "`a`, `b`, `c`".
+pub(crate) fn list<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
+    let quoted: Vec<_> = names.into_iter().map(|name| format!("`{name}`")).collect();
+    quoted.join(", ")
+}

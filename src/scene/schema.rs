@@ -1,0 +1,141 @@
+//! The JSON Schema of scene files, and what it says about a value.
+
+use serde_json::Value as Json;
+
+use super::file::SceneFile;
+
+/// The JSON Schema of scene files, as kept in `scenes/schema.json`.
+pub fn schema_json() -> String {
+    let mut text = format!("{:#}", root());
+    text.push('\n');
+    text
+}
+
+/// The schema as a value.
+pub(crate) fn root() -> Json {
+    schemars::schema_for!(SceneFile).to_value()
+}
+
+/// Forbids keys beyond those listed in each variant; serde cannot say so where it flattens.
+pub(crate) fn close_variants(schema: &mut schemars::Schema) {
+    if let Some(Json::Array(variants)) = schema.get_mut("oneOf") {
+        for variant in variants {
+            variant["additionalProperties"] = Json::Bool(false);
+        }
+    }
+}
+
+/// The schemas that a value may match: references followed, nested alternatives flattened, `null` left out.
+pub(crate) fn alternatives<'s>(root: &'s Json, schema: &'s Json) -> Vec<&'s Json> {
+    if let Some(reference) = schema["$ref"].as_str() {
+        let target = reference.strip_prefix('#').and_then(|path| root.pointer(path));
+        return target.map_or(Vec::new(), |target| alternatives(root, target));
+    }
+    let nested = schema["anyOf"].as_array().or(schema["oneOf"].as_array());
+    match nested {
+        Some(list) => list.iter().flat_map(|one| alternatives(root, one)).collect(),
+        None if schema["type"] == "null" => Vec::new(),
+        None => vec![schema],
+    }
+}
+
+/// Whether a schema without alternatives has this JSON type.
+pub(crate) fn has_type(schema: &Json, name: &str) -> bool {
+    match &schema["type"] {
+        Json::String(own) => own == name,
+        Json::Array(own) => own.iter().any(|one| one == name),
+        _ => false,
+    }
+}
+
+/// The strings that a schema without alternatives lists, if it does.
+pub(crate) fn listed_strings(schema: &Json) -> Option<Vec<&str>> {
+    if let Some(one) = schema["const"].as_str() {
+        return Some(vec![one]);
+    }
+    schema["enum"].as_array().map(|all| all.iter().filter_map(Json::as_str).collect())
+}
+
+/// The value of `type` that a table of this schema has.
+pub(crate) fn tag(schema: &Json) -> Option<&str> {
+    schema["properties"]["type"]["const"].as_str()
+}
+
+/// What a person should write, in words.
+pub(crate) fn describe(root: &Json, schema: &Json) -> String {
+    let all = alternatives(root, schema);
+    if let Some(tags) = all.iter().map(|one| tag(one)).collect::<Option<Vec<_>>>() {
+        return format!("a table with `type` {}", quoted(tags));
+    }
+    let (words, rest): (Vec<_>, Vec<_>) = all.into_iter().partition(|one| listed_strings(one).is_some());
+    let mut parts: Vec<_> = rest.into_iter().map(|one| describe_one(root, one)).collect();
+    if !words.is_empty() {
+        parts.push(quoted(words.into_iter().filter_map(listed_strings).flatten()));
+    }
+    parts.dedup();
+    parts.join(" or ")
+}
+
+fn quoted<'a>(words: impl IntoIterator<Item = &'a str>) -> String {
+    let words: Vec<_> = words.into_iter().map(|word| format!("\"{word}\"")).collect();
+    words.join(" or ")
+}
+
+fn describe_one(root: &Json, schema: &Json) -> String {
+    if has_type(schema, "boolean") {
+        "true or false".into()
+    } else if has_type(schema, "string") {
+        "a string".into()
+    } else if has_type(schema, "integer") {
+        format!("a whole number{}", range(schema))
+    } else if has_type(schema, "number") {
+        format!("a number{}", range(schema))
+    } else if has_type(schema, "array") {
+        let items = describe(root, &schema["items"]);
+        let items = match items.strip_prefix("a number") {
+            Some(range) if !range.contains(" or ") => format!(" numbers{range}"),
+            _ => format!(", each {items}"),
+        };
+        match (schema["minItems"].as_u64(), schema["maxItems"].as_u64()) {
+            (Some(least), Some(most)) if least == most => format!("an array of {least}{items}"),
+            (Some(least), Some(most)) => format!("an array of {least} to {most}{items}"),
+            (Some(least), None) => format!("an array of at least {least}{items}"),
+            _ => format!("an array of any number{items}"),
+        }
+    } else {
+        let required = schema["required"].as_array().map_or(&[][..], |keys| keys);
+        let keys: Vec<_> = required.iter().filter_map(Json::as_str).collect();
+        match keys[..] {
+            [only] if schema["additionalProperties"] == false => format!("{{ {only} = ... }}"),
+            _ => "a table".into(),
+        }
+    }
+}
+
+/// The range of a number in words, with a leading space.
+fn range(schema: &Json) -> String {
+    let bound = |name: &str| schema[name].as_f64();
+    let low = bound("exclusiveMinimum")
+        .map(|low| format!("greater than {low}"))
+        .or(bound("minimum").map(|low| format!("not below {low}")));
+    let high = bound("exclusiveMaximum")
+        .map(|high| format!("less than {high}"))
+        .or(bound("maximum").map(|high| format!("at most {high}")));
+    match (bound("minimum"), bound("maximum"), low, high) {
+        (Some(low), Some(high), ..) => format!(" from {low} to {high}"),
+        (_, _, Some(low), Some(high)) => format!(" {low} and {high}"),
+        (_, _, Some(only), None) | (_, _, None, Some(only)) => format!(" {only}"),
+        _ => String::new(),
+    }
+}
+
+/// Whether a number is within the range of its schema.
+pub(crate) fn in_range(schema: &Json, number: f64) -> bool {
+    let holds = |name: &str, test: fn(f64, f64) -> bool| {
+        schema[name].as_f64().is_none_or(|bound| test(number, bound))
+    };
+    holds("minimum", |x, bound| x >= bound)
+        && holds("maximum", |x, bound| x <= bound)
+        && holds("exclusiveMinimum", |x, bound| x > bound)
+        && holds("exclusiveMaximum", |x, bound| x < bound)
+}

@@ -1,0 +1,105 @@
+//! Meaning of shapes and transforms.
+
+use glam::{DMat3, DVec3};
+
+use super::appearance::{Material, Texture};
+use super::check::Item;
+use super::file::{ShapeFile, SurfaceFile, TransformFile};
+use super::geometry::{Shape, ShapeKind, Transform};
+use super::load::Loader;
+use super::view::unit;
+use super::{mesh, profile};
+
+/// Least sine between the edges of a rectangle that has an area.
+const LEAST_SINE: f64 = 1e-12;
+
+/// The shapes that an item stands for: one, or one for each material of a mesh that brings its own.
+pub(super) fn shapes(
+    loader: &mut Loader,
+    item: &Item,
+    file: ShapeFile,
+    textures: &mut Vec<Texture>,
+    materials: &mut Vec<Material>,
+) -> Option<Vec<Shape>> {
+    let (kind, material, surface) = match file {
+        ShapeFile::Sphere { center, radius, material, surface } => {
+            let kind = ShapeKind::Sphere { center: center.into(), radius: radius.0 };
+            (kind, material, surface)
+        }
+        ShapeFile::Rectangle { origin, u, v, material, surface } => {
+            let (u, v) = (DVec3::from(u), DVec3::from(v));
+            if u.cross(v).length() <= LEAST_SINE * u.length() * v.length() {
+                let message = format!("{} has no area: `u` and `v` are parallel or 0", item.path);
+                let label = "expected an edge in another direction than `u`";
+                loader.report.error(item.node.span_of("v"), message, label, None);
+            }
+            (ShapeKind::Rectangle { origin: origin.into(), u, v }, material, surface)
+        }
+        ShapeFile::Disc { center, normal, radius, material, surface } => {
+            let normal = unit(loader, item, "normal", normal)?;
+            let kind = ShapeKind::Disc { center: center.into(), normal, radius: radius.0 };
+            (kind, material, surface)
+        }
+        ShapeFile::Plane { point, normal, material, surface } => {
+            if surface.emission.rgb() != [0.0; 3] {
+                let message = "an infinite plane cannot shine: its power would be infinite";
+                let help = Some("use a rectangle or an [environment]".to_owned());
+                let label = "expected no emission here";
+                loader.report.error(item.node.span_of("emission"), message, label, help);
+            }
+            let normal = unit(loader, item, "normal", normal)?;
+            (ShapeKind::Plane { point: point.into(), normal }, material, surface)
+        }
+        ShapeFile::Box { min, max, material, surface } => {
+            if let Some(axis) = (0..3).find(|&axis| min[axis] >= max[axis]) {
+                let name = ["x", "y", "z"][axis];
+                let message =
+                    format!("{} is empty: min.{name} = {}, max.{name} = {}", item.path, min[axis], max[axis]);
+                let label = format!("expected {name} greater than {}", min[axis]);
+                loader.report.error(item.node.span_of("max"), message, label, None);
+            }
+            (ShapeKind::Cuboid { min: min.into(), max: max.into() }, material, surface)
+        }
+        ShapeFile::Revolution { profile, segments, material, transform, surface } => {
+            let segments = profile::segments(loader, item, profile, segments);
+            let transform = placed(loader, item, &transform)?;
+            let kind = ShapeKind::Revolution { segments: segments?, transform };
+            (kind, material, surface)
+        }
+        ShapeFile::Mesh { file, smooth, material, transform, surface } => {
+            let transform = placed(loader, item, &transform)?;
+            let material = material.map(|name| loader.index("materials", &name));
+            let request = mesh::Request { file: &file, smooth, material, transform };
+            let parts = mesh::load(loader, item, &request, textures, materials)?;
+            let shapes = parts.into_iter().map(|part| {
+                let own = surface.emission.rgb();
+                let emission = if own == [0.0; 3] { part.emission } else { own };
+                shape(ShapeKind::Mesh(part.mesh), part.material, emission, &surface)
+            });
+            return Some(shapes.collect());
+        }
+    };
+    let material = loader.index("materials", &material);
+    Some(vec![shape(kind, material, surface.emission.rgb(), &surface)])
+}
+
+fn shape(kind: ShapeKind, material: usize, emission: [f64; 3], surface: &SurfaceFile) -> Shape {
+    Shape { kind, material, emission, planar_uv: surface.uv.is_some() }
+}
+
+fn placed(loader: &mut Loader, item: &Item, file: &TransformFile) -> Option<Transform> {
+    let rotation = match &file.rotate {
+        None => DMat3::IDENTITY,
+        Some(rotate) => {
+            let Some(axis) = DVec3::from(rotate.axis).try_normalize() else {
+                let message = format!("`{}.transform.rotate.axis` has no direction", item.path);
+                let node = item.node.get("transform").and_then(|node| node.get("rotate"));
+                let span = node.map_or(item.node.span(), |node| node.span_of("axis"));
+                loader.report.error(span, message, "expected a vector of a length other than 0", None);
+                return None;
+            };
+            DMat3::from_axis_angle(axis, rotate.degrees.to_radians())
+        }
+    };
+    Some(Transform { scale: file.scale.map_or(1.0, f64::from), rotation, translation: file.translate.into() })
+}

@@ -1,0 +1,341 @@
+//! Scene files that are wrong: what is said, and where.
+
+use std::path::{Path, PathBuf};
+
+use caustica::scene::{Finding, SceneErrors, load, parse};
+
+fn data(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(name)
+}
+
+fn errors_of(text: &str) -> SceneErrors {
+    match parse(&data("scene.toml"), text.as_bytes()) {
+        Err(errors) => errors,
+        Ok(_) => panic!("no error in\n{text}"),
+    }
+}
+
+/// Line, column, and a part of the message with its caret's label and its help.
+type Expected = (usize, usize, &'static str);
+
+fn told(finding: &Finding) -> String {
+    format!("{} | {} | {}", finding.message(), finding.label(), finding.help().unwrap_or(""))
+}
+
+/// Whether the findings are those expected, in order; else what is wrong.
+fn differs(found: &[Finding], expected: &[Expected]) -> Option<String> {
+    let found: Vec<_> = found.iter().map(|finding| (finding.line_column(), told(finding))).collect();
+    let same = found.len() == expected.len()
+        && found.iter().zip(expected).all(|((place, text), &(line, column, part))| {
+            *place == Some((line, column)) && text.contains(part)
+        });
+    (!same).then(|| format!("found {found:#?}, expected {expected:#?}"))
+}
+
+/// Five lines, so that a case's first line is line 6.
+const HEAD: &str = "version = 1\n[camera]\nposition = [0, 1, 4]\ntarget = [0, 1, 0]\nfov = 39\n";
+/// Three lines.
+const MATERIAL: &str = "[materials.grey]\ntype = \"diffuse\"\nreflectance = 0.5\n";
+
+/// Each fault is told at its own place with what would be right.
+#[test]
+fn one_fault_each() {
+    let after_head: &[(&str, Expected)] = &[
+        ("[flim]\n", (6, 2, "did you mean `film`?")),
+        ("[film]\nwidth = \"wide\"\n", (7, 9, "expected a whole number from 1 to 65536")),
+        ("[film]\nwidth = 0\n", (7, 9, "out of range")),
+        ("[film]\ntonemap = \"agxx\"\n", (7, 11, "did you mean `agx`?")),
+        ("aperture = -1\n", (6, 12, "not below 0")),
+        ("aperture = 0.1\n", (6, 12, "`focus` is missing")),
+        ("up = [0, 0, 1]\n", (6, 6, "parallel to the view")),
+        ("up = [0, 0, 0]\n", (6, 6, "length 0")),
+        ("up = [0, nan, 0]\n", (6, 10, "expected a finite number")),
+        ("up = [0, -inf, 0]\n", (6, 10, "expected a finite number")),
+        ("up = [0, 1e999, 0]\n", (6, 10, "not a finite number")),
+        ("up = [0, 1]\n", (6, 6, "expected an array of 3 numbers")),
+        ("[render]\npasses = 0\n", (7, 10, "at least 1")),
+        ("[render]\nphotons = 5_000_000_000\n", (7, 11, "out of range")),
+        ("[render]\nalpha = 1.5\n", (7, 9, "greater than 0 and at most 1")),
+        ("[render]\nradius = { pixels = -2 }\n", (7, 21, "greater than 0")),
+        ("[render]\nradius = { pixel = 2 }\n", (7, 10, "{ pixels = ... } or { units = ... }")),
+        ("[render]\nmethod = \"bdpt\"\n", (7, 10, "expected \"sppm\" or \"ppm\" or \"path\"")),
+        ("[materials.a]\ntype = \"difuse\"\n", (7, 8, "did you mean `diffuse`?")),
+        ("[materials.a]\nreflectance = 1\n", (6, 1, "`type` is missing")),
+        ("[materials.a]\ntype = \"diffuse\"\nreflectance = 1.5\n", (8, 15, "from 0 to 1")),
+        ("[materials.a]\ntype = \"glass\"\nior = 0\n", (8, 7, "greater than 0")),
+        ("[materials.a]\ntype = \"glass\"\nior = 1.5\nabsorption = [0, -1, 0]\n", (9, 18, "not below 0")),
+        ("[materials.a]\ntype = \"metal\"\nreflectance = 1\nroughness = 2\n", (9, 13, "from 0 to 1")),
+        (
+            "[materials.a]\ntype = \"diffuse\"\nreflectance = \"wood\"\n",
+            (8, 15, "define it: [textures.wood]"),
+        ),
+        ("[textures.a]\ntype = \"image\"\nfile = \"reference/grd.png\"\n", (8, 8, "did you mean grid.png?")),
+        (
+            "[textures.a]\ntype = \"image\"\nfile = \"cube.obj\"\n",
+            (8, 8, "expected a png, jpg, hdr or exr file"),
+        ),
+        (
+            "[textures.a]\ntype = \"planks\"\nfile = \"reference/grid.png\"\nsize = [0, 1]\n",
+            (9, 9, "greater than 0"),
+        ),
+        ("[[lights]]\ntype = \"sun\"\ndirection = [0, 0, 0]\nirradiance = 1\n", (8, 13, "no direction")),
+        (
+            "[[lights]]\ntype = \"spot\"\nposition = [0, 0, 0]\ntarget = [0, 0, 0]\nintensity = 1\nangle = 20\n",
+            (9, 10, "is its position"),
+        ),
+        ("[[lights]]\ntype = \"point\"\nposition = [0, 0, 0]\nintensity = -1\n", (9, 13, "not below 0")),
+        ("[lights]\ntype = \"point\"\n", (6, 1, "write [[lights]] with two brackets")),
+        ("[environment]\n", (6, 1, "neither `radiance` nor `file`")),
+        ("[environment]\nradiance = 1\nrotate = 3\n", (8, 10, "no meaning without a `file`")),
+        ("[environment]\nfile = \"sky.exr\"\n", (7, 8, "cannot read image")),
+        ("fov = 3\n", (6, 1, "duplicate key")),
+        ("[film\n", (6, 6, "not TOML")),
+    ];
+    let wrong = after_head
+        .iter()
+        .filter_map(|&(text, expected)| differs(&errors_of(&format!("{HEAD}{text}")).errors, &[expected]));
+    assert_eq!(wrong.collect::<Vec<_>>().join("\n"), "");
+}
+
+/// As above, in a shape that starts at line 9.
+#[test]
+fn one_fault_in_a_shape() {
+    let shapes: &[(&str, Expected)] = &[
+        (
+            "type = \"sphere\"\ncenter = [0, 0, 0]\nradius = -1\nmaterial = \"grey\"",
+            (12, 10, "greater than 0"),
+        ),
+        (
+            "type = \"sphere\"\ncenter = [0, 0, 0]\nradius = 0\nmaterial = \"grey\"\nemission = 4",
+            (12, 10, "greater than 0"),
+        ),
+        ("type = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1", (9, 1, "`material` is missing")),
+        (
+            "type = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1\nmaterial = \"gray\"",
+            (13, 12, "did you mean `grey`?"),
+        ),
+        (
+            "type = \"sphere\"\ncenter = [0, 0, 0]\nraduis = 1\nradius = 1\nmaterial = \"grey\"",
+            (12, 1, "did you mean `radius`?"),
+        ),
+        (
+            "type = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1\nmaterial = \"grey\"\nuv = \"planer\"",
+            (14, 6, "did you mean `planar`?"),
+        ),
+        (
+            "type = \"rectangle\"\norigin = [0, 0, 0]\nu = [1, 0, 0]\nv = [2, 0, 0]\nmaterial = \"grey\"",
+            (13, 5, "no area"),
+        ),
+        (
+            "type = \"rectangle\"\norigin = [0, 0, 0]\nu = [0, 0, 0]\nv = [2, 0, 0]\nmaterial = \"grey\"",
+            (13, 5, "no area"),
+        ),
+        (
+            "type = \"disc\"\ncenter = [0, 0, 0]\nnormal = [0, 0, 0]\nradius = 1\nmaterial = \"grey\"",
+            (12, 10, "no direction"),
+        ),
+        (
+            "type = \"plane\"\npoint = [0, 0, 0]\nnormal = [0, 1, 0]\nmaterial = \"grey\"\nemission = 1",
+            (14, 12, "cannot shine"),
+        ),
+        (
+            "type = \"box\"\nmin = [0, 0, 0]\nmax = [1, 0, 1]\nmaterial = \"grey\"",
+            (12, 7, "expected y greater than 0"),
+        ),
+        ("type = \"mesh\"\nfile = \"cub.obj\"\nmaterial = \"grey\"", (11, 8, "did you mean cube.obj?")),
+        (
+            "type = \"mesh\"\nfile = \"cube.obj\"\nmaterial = \"grey\"\ntransform = { scale = 0 }",
+            (13, 23, "greater than 0"),
+        ),
+        (
+            "type = \"mesh\"\nfile = \"cube.obj\"\nmaterial = \"grey\"\ntransform = { rotate = { axis = [0, 0, 0], degrees = 3 } }",
+            (13, 33, "no direction"),
+        ),
+        ("type = \"revolution\"\nmaterial = \"grey\"", (9, 1, "neither `profile` nor `segments`")),
+        (
+            "type = \"revolution\"\nmaterial = \"grey\"\nprofile = [[1, 0], [1, 1]]\nsegments = [[[1, 0], [1, 1]]]",
+            (13, 12, "has both"),
+        ),
+        ("type = \"revolution\"\nmaterial = \"grey\"\nprofile = [[1, 0]]", (12, 11, "has 1 element")),
+        (
+            "type = \"revolution\"\nmaterial = \"grey\"\nprofile = [[0, 0], [0, 1]]",
+            (12, 11, "lies on the axis"),
+        ),
+        ("type = \"revolution\"\nmaterial = \"grey\"\nprofile = [[1, 1], [1, 1]]", (12, 11, "single point")),
+        (
+            "type = \"revolution\"\nmaterial = \"grey\"\nprofile = [[1, 0], [-3, 1], [1, 2]]",
+            (12, 20, "crosses the axis"),
+        ),
+        (
+            "type = \"revolution\"\nmaterial = \"grey\"\nsegments = [[[1, 0], [1, 1]], [[1, 2], [1, 3]]]",
+            (12, 32, "expected [1, 1]"),
+        ),
+    ];
+    let wrong = shapes.iter().filter_map(|&(text, expected)| {
+        let text = format!("{HEAD}{MATERIAL}[[shapes]]\n{text}\n");
+        differs(&errors_of(&text).errors, &[expected])
+    });
+    assert_eq!(wrong.collect::<Vec<_>>().join("\n"), "");
+}
+
+/// One file, all stages of checking: everything in one go, in the order of the file.
+#[test]
+fn many_faults_at_once() {
+    let text = "version = 2\n[camera]\nposition = [0, 1, 4]\ntarget = [0, 1]\nfov = 200\n[render]\nalpha = 0.0\npasses = -3\n\
+                [materials.glas]\ntype = \"glass\"\nior = -1\n[[shapes]]\ntype = \"sphere\"\ncenter = [0, nan, 0]\nradius = -1\n\
+                colour = 3\nmaterial = \"glass\"\n[[shapes]]\ntype = \"mesh\"\nfile = \"no.obj\"\nmaterial = \"glas\"\n";
+    let expected = [
+        (1, 11, "expected 1"),
+        (4, 10, "expected an array of 3 numbers"),
+        (5, 7, "less than 180"),
+        (7, 9, "at most 1"),
+        (8, 10, "out of range"),
+        (11, 7, "greater than 0"),
+        (14, 14, "finite"),
+        (15, 10, "greater than 0"),
+        (16, 1, "unknown key `colour`"),
+        (17, 12, "did you mean `glas`?"),
+        (20, 8, "cannot read mesh"),
+    ];
+    assert_eq!(differs(&errors_of(text).errors, &expected), None);
+}
+
+/// The comparator of this file finds a wrong line, a wrong column, a wrong text and a missing error.
+#[test]
+fn comparator_finds_planted_errors() {
+    let errors = errors_of(&format!("{HEAD}[flim]\n")).errors;
+    assert_eq!(differs(&errors, &[(6, 2, "film")]), None);
+    for planted in
+        [&[(7, 2, "film")][..], &[(6, 1, "film")], &[(6, 2, "foil")], &[], &[(6, 2, "film"), (6, 2, "film")]]
+    {
+        assert!(differs(&errors, planted).is_some(), "{planted:?}");
+    }
+}
+
+/// Faults inside an OBJ and its MTL name that file and its lines.
+#[test]
+fn faults_of_a_mesh() {
+    let text = format!("{HEAD}[[shapes]]\ntype = \"mesh\"\nfile = \"broken.obj\"\n");
+    let errors = errors_of(&text).errors;
+    let (mtl, obj): (Vec<_>, Vec<_>) = errors.into_iter().partition(|error| error.file().ends_with(".mtl"));
+    assert!(obj.iter().all(|error| error.file().ends_with("broken.obj")));
+    let expected = [
+        (4, 5, "not a finite number"),
+        (5, 1, "expected 3 numbers"),
+        (7, 1, "a face without a material"),
+        (8, 8, "did you mean `paint`?"),
+        (9, 7, "index of 0"),
+        (10, 7, "out of bounds: the file has 4 vertices | expected 1 to 4"),
+        (11, 7, "at least -4"),
+        (12, 3, "expected v, as before"),
+        (13, 1, "a face of 2 corners"),
+        (14, 3, "`x` is not an index"),
+    ];
+    assert_eq!(differs(&obj, &expected), None);
+    let expected = [(2, 8, "from 0 to 1"), (3, 1, "expected 3 numbers"), (4, 8, "cannot read image")];
+    assert_eq!(differs(&mtl, &expected), None);
+}
+
+/// A file that is not there, one that is not text, and a folder.
+#[test]
+fn unreadable_files() {
+    let errors = load(&data("reference/cornel.toml")).unwrap_err();
+    assert_eq!(errors.errors[0].help(), Some("did you mean cornell.toml?"));
+    assert_eq!(errors.errors[0].line_column(), None);
+    assert!(load(&data("reference")).is_err());
+    let errors = parse(&data("x.toml"), b"version = 1\n# \xff\n").unwrap_err();
+    assert_eq!(differs(&errors.errors, &[(2, 3, "not UTF-8")]), None);
+}
+
+/// What a person sees: path, line, column, the line itself, a caret's text.
+#[test]
+fn printed_form() {
+    let mut text = String::new();
+    let errors = errors_of(&format!("{HEAD}[flim]\n"));
+    let theme = miette::GraphicalTheme::unicode_nocolor();
+    miette::GraphicalReportHandler::new_themed(theme).render_report(&mut text, &errors).unwrap();
+    for part in ["1 error", "scene.toml:6:2", "[flim]", "did you mean `film`?", "known keys: `camera`"] {
+        assert!(text.contains(part), "no {part} in\n{text}");
+    }
+}
+
+/// Odd but no errors.
+#[test]
+fn warnings() {
+    let warnings = |text: &str| parse(&data("scene.toml"), text.as_bytes()).unwrap().warnings;
+    let found = warnings(&format!("{HEAD}{MATERIAL}"));
+    let expected = [(6, 1, "material `grey` is not used"), (1, 1, "no light")];
+    assert_eq!(differs(&found, &expected), None);
+    let found =
+        warnings(&format!("{HEAD}[[lights]]\ntype = \"point\"\nposition = [0, 0, 0]\nintensity = 0\n"));
+    assert_eq!(differs(&found, &[(9, 13, "gives no light")]), None);
+}
+
+/// Whatever bytes a file holds, it loads or is refused; nothing panics, and every error has a place in the text.
+#[test]
+fn mutated_files() {
+    let mut state = 0x2545_f491_4f6c_dd1d_u64;
+    let mut random = |below: usize| {
+        // xorshift64 (Marsaglia 2003)
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        (state >> 16) as usize % below
+    };
+    let mut refused = 0;
+    for name in ["reference/cornell.toml", "reference/drop.toml", "reference/mesh.toml"] {
+        let original = std::fs::read(data(name)).unwrap();
+        for _ in 0..100 {
+            let mut bytes = original.clone();
+            for _ in 0..1 + random(3) {
+                let at = random(bytes.len());
+                match random(4) {
+                    0 => bytes[at] = random(256) as u8,
+                    1 => drop(bytes.remove(at)),
+                    2 => bytes.insert(at, b"[]{}=\",.-0123456789\n#e"[random(22)]),
+                    _ => bytes.truncate(at.max(1)),
+                }
+            }
+            if let Err(errors) = parse(&data(name), &bytes) {
+                refused += 1;
+                assert!(!errors.errors.is_empty());
+                assert!(errors.errors.iter().all(|error| error.line_column().is_some()), "{errors:?}");
+            }
+        }
+    }
+    assert!(refused > 100, "the mutations do not bite: {refused}");
+}
+
+/// OBJ and MTL files of any bytes load or are refused; nothing panics (tobj alone does).
+#[test]
+fn mutated_meshes() {
+    let mut state = 0x9e37_79b9_7f4a_7c15_u64;
+    let mut random = |below: usize| {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        (state >> 16) as usize % below
+    };
+    let folder = std::env::temp_dir().join(format!("caustica-mutated-{}", std::process::id()));
+    std::fs::create_dir_all(folder.join("reference")).unwrap();
+    std::fs::copy(data("reference/grid.png"), folder.join("reference/grid.png")).unwrap();
+    let text = format!("{HEAD}[[shapes]]\ntype = \"mesh\"\nfile = \"parts.obj\"\n");
+    let mut refused = 0;
+    for _ in 0..400 {
+        for name in ["parts.obj", "parts.mtl"] {
+            let mut bytes = std::fs::read(data(name)).unwrap();
+            for _ in 0..random(4) {
+                let at = random(bytes.len());
+                match random(3) {
+                    0 => bytes[at] = random(256) as u8,
+                    1 => drop(bytes.remove(at)),
+                    _ => bytes.insert(at, b" /-.0123456789\n#fvn\\"[random(20)]),
+                }
+            }
+            std::fs::write(folder.join(name), bytes).unwrap();
+        }
+        refused += usize::from(parse(&folder.join("scene.toml"), text.as_bytes()).is_err());
+    }
+    std::fs::remove_dir_all(&folder).unwrap();
+    assert!((50..400).contains(&refused), "{refused}");
+}
