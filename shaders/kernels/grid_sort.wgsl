@@ -68,14 +68,14 @@ fn sort_short(begin: u32, end: u32) {
 // Items go to and fro between `order` and the keys of `sorted`, which are not needed yet.
 fn sort_long(begin: u32, end: u32, local: u32) {
     let share = (end - begin + 63u) / 64u;
-    let from = min(begin + local * share, end);
-    let to = min(from + share, end);
+    let first = min(begin + local * share, end);
+    let last = min(first + share, end);
     for (var shift = 0u; shift < 32u; shift += 4u) {
         let odd = (shift & 4u) != 0u;
         for (var digit = 0u; digit < RADIX; digit++) {
             tallies[digit * 64u + local] = 0u;
         }
-        for (var i = from; i < to; i++) {
+        for (var i = first; i < last; i++) {
             tallies[digit_of(item_at(i, odd), shift) * 64u + local] += 1u;
         }
         workgroupBarrier();
@@ -95,7 +95,7 @@ fn sort_long(begin: u32, end: u32, local: u32) {
             tallies[digit * 64u + local] += base;
             base += totals[digit];
         }
-        for (var i = from; i < to; i++) {
+        for (var i = first; i < last; i++) {
             let item = item_at(i, odd);
             let slot = digit_of(item, shift) * 64u + local;
             let place = tallies[slot];
@@ -109,7 +109,7 @@ fn sort_long(begin: u32, end: u32, local: u32) {
         storageBarrier();
         workgroupBarrier();
     }
-    for (var i = from; i < to; i++) {
+    for (var i = first; i < last; i++) {
         sorted[i] = records[order[i]];
     }
     workgroupBarrier();

@@ -160,9 +160,9 @@ fn pdf_shape(light: Light, v: f32) -> f32 {
 }
 
 //#if area_sphere
-fn sample_sphere_cone(sphere: Sphere, from: vec3f, u: vec2f) -> ShapePoint {
+fn sample_sphere_cone(sphere: Sphere, origin: vec3f, u: vec2f) -> ShapePoint {
     let center = sphere.anchor - sphere.normal * sphere.radius;
-    let d = center - from;
+    let d = center - origin;
     let dist_sq = dot(d, d);
     let sin_sq = sphere.radius * sphere.radius / dist_sq;
     let one_minus_cos = cone_one_minus_cos(sin_sq);
@@ -170,7 +170,7 @@ fn sample_sphere_cone(sphere: Sphere, from: vec3f, u: vec2f) -> ShapePoint {
     let along = dot(d, w);
     let off_sq = max(dist_sq - along * along, 0.0);
     let half = sqrt(max(sphere.radius * sphere.radius - off_sq, 0.0));
-    let p = sphere_project(sphere, from + w * (along - half));
+    let p = sphere_project(sphere, origin + w * (along - half));
     return ShapePoint(p, sphere_error(sphere, p), unit(p - center), 1.0 / (TAU * one_minus_cos));
 }
 
@@ -178,8 +178,8 @@ fn cone_one_minus_cos(sin_sq: f32) -> f32 {
     return sin_sq / (1.0 + sqrt(max(1.0 - sin_sq, 0.0)));
 }
 
-fn pdf_sphere_cone(sphere: Sphere, from: vec3f) -> f32 {
-    let d = sphere.anchor - sphere.normal * sphere.radius - from;
+fn pdf_sphere_cone(sphere: Sphere, origin: vec3f) -> f32 {
+    let d = sphere.anchor - sphere.normal * sphere.radius - origin;
     let sin_sq = sphere.radius * sphere.radius / dot(d, d);
     if sin_sq >= 1.0 {
         return 0.0;
