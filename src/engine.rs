@@ -40,6 +40,9 @@ pub enum EngineError {
     /// A kernel did not compile; a fault of this program.
     #[error("shader: {0}")]
     Shader(String),
+    /// The scene cannot be flattened.
+    #[error(transparent)]
+    Pack(#[from] crate::pack::PackError),
     /// The engine cannot carry out this method.
     #[error("{0}")]
     Unsupported(String),

@@ -5,10 +5,11 @@
 //! same for every engine.
 
 use crate::features::Features;
+use crate::film::Picture;
 use crate::kernels::records::{Dispatch, FilmPixel, Gathered, PhotonRecord, Statistics, VisiblePoint};
 use crate::pack::Packed;
 use crate::probe::{Probe, probe};
-use crate::settings::{Direct, Method, Radius, RadiusRule, RenderSettings};
+use crate::settings::{Method, Radius, RadiusRule, RenderSettings};
 
 /// A kernel: the stem of its shader file, of its Rust twin and its entry point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -125,6 +126,8 @@ pub struct Plan {
     pub features: Features,
     /// The settings.
     pub settings: RenderSettings,
+    /// Pixels per row.
+    pub width: u32,
     /// Pixels.
     pub pixels: u32,
     /// Visible points per pixel.
@@ -160,6 +163,7 @@ impl Plan {
         Self {
             features,
             settings: settings.clone(),
+            width: camera.width,
             pixels: camera.width * camera.height,
             eye_samples,
             chunk_points: CHUNK_POINTS / eye_samples * eye_samples,
@@ -286,9 +290,16 @@ impl Plan {
         list
     }
 
-    /// Whether shadow rays bring the direct light.
-    pub fn sampled(&self) -> bool {
-        self.settings.direct == Direct::Sampled
+    /// Typical gather radius of pass `pass` in world units.
+    pub fn radius(&self, pass: u32) -> f64 {
+        self.probe.radius * self.scale_sq(pass).sqrt() * self.unit
+    }
+
+    /// The picture that a film holds, in world units.
+    pub fn picture(&self, film: &[FilmPixel]) -> Picture {
+        let unit = self.radiance_unit;
+        let world = |p: &FilmPixel| p.mean.to_array().map(|x| (x as f64 * unit) as f32);
+        Picture { width: self.width, height: self.pixels / self.width, rgb: film.iter().map(world).collect() }
     }
 }
 

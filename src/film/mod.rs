@@ -1,5 +1,20 @@
 //! Pictures: files, tone mapping and measures.
 
+pub mod blocks;
+pub mod error;
+pub mod exr_file;
+pub mod file;
+pub mod heat;
+pub mod metrics;
+pub mod pfm;
+pub mod provenance;
+pub mod tonemap;
+
+pub use error::FileError;
+pub use file::{check_outputs, read, write};
+pub use provenance::Provenance;
+pub use tonemap::Development;
+
 /// Linear Rec. 709 radiance, row 0 on top.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
@@ -9,4 +24,33 @@ pub struct Picture {
     pub height: u32,
     /// `width * height` pixels, row by row, in W sr^-1 m^-2.
     pub rgb: Vec<[f32; 3]>,
+}
+
+impl Picture {
+    /// A picture whose pixel in column `x` and row `y` is `radiance(x, y)`.
+    pub fn from_fn(width: u32, height: u32, mut radiance: impl FnMut(u32, u32) -> [f32; 3]) -> Self {
+        let mut rgb = Vec::with_capacity(width as usize * height as usize);
+        for y in 0..height {
+            for x in 0..width {
+                rgb.push(radiance(x, y));
+            }
+        }
+        Self { width, height, rgb }
+    }
+
+    /// Column and row of the pixel at `index`.
+    pub fn position(&self, index: usize) -> (u32, u32) {
+        let width = self.width as usize;
+        ((index % width) as u32, (index / width) as u32)
+    }
+
+    /// How many channel values are NaN or infinite; a renderer's fault when it is not zero.
+    pub fn not_finite(&self) -> usize {
+        self.rgb.as_flattened().iter().filter(|value| !value.is_finite()).count()
+    }
+}
+
+/// Rec. 709 luminance of linear Rec. 709 values, in their unit.
+pub fn luminance(rgb: [f32; 3]) -> f64 {
+    0.2126 * f64::from(rgb[0]) + 0.7152 * f64::from(rgb[1]) + 0.0722 * f64::from(rgb[2])
 }

@@ -12,7 +12,7 @@ use crate::shapes::intersect::{intersect_scene, occluded};
 use crate::shapes::ray::Ray;
 use crate::shapes::surface::{Surface, surface_at};
 use crate::tables::*;
-use glam::{Vec2, Vec3};
+use glam::{Vec2, Vec3, Vec4};
 
 /// Beer-Lambert transmittance over `distance` in a medium.
 pub fn transmittance(scene: &Scene, medium: u32, distance: f32) -> Vec3 {
@@ -29,6 +29,46 @@ pub fn medium_before(scene: &Scene, s: &Surface, wo: Vec3, medium: u32) -> u32 {
     if inside { s.material } else { medium }
 }
 
+/// Radiance toward `wo` from one sampled light, and the number of shadow rays. `mis`: weighted against
+/// scattered rays that could meet the same light.
+#[allow(clippy::too_many_arguments)]
+pub fn next_event(
+    scene: &Scene,
+    s: &Surface,
+    wo: Vec3,
+    n: Vec3,
+    ng: Vec3,
+    reflectance: Vec3,
+    medium: u32,
+    mis: bool,
+    u: Vec4,
+) -> (Vec3, u32) {
+    let kind = scene.materials[s.material as usize].kind;
+    let alpha = scene.materials[s.material as usize].alpha;
+    let origin = s.position + ng * s.error;
+    let light = sample_light(scene, origin, u);
+    if light.direction.dot(ng) <= 0.0 || max_component(light.radiance) <= 0.0 {
+        return (Vec3::ZERO, 0);
+    }
+    let f = eval_rough(kind, alpha, reflectance, n, wo, light.direction);
+    if max_component(f) <= 0.0 {
+        return (Vec3::ZERO, 0);
+    }
+    let ray = Ray { origin, t_min: 0.0, direction: light.direction, t_max: light.distance };
+    if occluded(scene, &ray) {
+        return (Vec3::ZERO, 1);
+    }
+    let mut weight = 1.0 / light.pdf;
+    if mis && light.extended {
+        weight *= balance(light.pdf, pdf_rough(kind, alpha, n, wo, light.direction));
+    }
+    let mut radiance = f * light.radiance * weight;
+    if light.distance < FAR {
+        radiance *= transmittance(scene, medium, light.distance);
+    }
+    (radiance, 1)
+}
+
 /// Radiance toward `wo` from the lights, and the number of rays spent.
 #[allow(clippy::too_many_arguments)]
 pub fn direct_light(
@@ -43,28 +83,9 @@ pub fn direct_light(
 ) -> (Vec3, u32) {
     let kind = scene.materials[s.material as usize].kind;
     let alpha = scene.materials[s.material as usize].alpha;
-    let origin = s.position + ng * s.error;
-    let mut radiance = Vec3::ZERO;
-    let mut rays = 0;
-    let light = sample_light(scene, origin, rng_next(rng));
-    if light.direction.dot(ng) > 0.0 && max_component(light.radiance) > 0.0 {
-        let f = eval_rough(kind, alpha, reflectance, n, wo, light.direction);
-        if max_component(f) > 0.0 {
-            rays += 1;
-            let ray = Ray { origin, t_min: 0.0, direction: light.direction, t_max: light.distance };
-            if !occluded(scene, &ray) {
-                let mut weight = 1.0 / light.pdf;
-                if kind == MATERIAL_METAL && light.extended {
-                    weight *= balance(light.pdf, pdf_rough(kind, alpha, n, wo, light.direction));
-                }
-                radiance += f * light.radiance * weight;
-                if light.distance < FAR {
-                    radiance *= transmittance(scene, medium, light.distance);
-                }
-            }
-        }
-    }
-    if kind == MATERIAL_METAL {
+    let metal = kind == MATERIAL_METAL;
+    let (mut radiance, mut rays) = next_event(scene, s, wo, n, ng, reflectance, medium, metal, rng_next(rng));
+    if metal {
         let u = rng_next(rng);
         let scattered = scatter_rough(scene, s, wo, medium, Vec2::new(u.x, u.y), RADIANCE);
         if max_component(scattered.weight) > 0.0 {

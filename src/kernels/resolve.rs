@@ -51,29 +51,33 @@ pub fn is_finite(v: Vec3) -> bool {
     v.x.to_bits() & mask != mask && v.y.to_bits() & mask != mask && v.z.to_bits() & mask != mask
 }
 
-/// Folds a pixel's visible points of this pass into `film`. `statistics` holds one entry per visible point, or
-/// one placeholder where the rule needs none.
+/// Folds a pixel's visible points of this pass into `film`. `statistics` holds one entry per visible point under
+/// the local rule.
 pub fn resolve(
     dispatch: &Dispatch,
-    local: bool,
     points: &[VisiblePoint],
     gathered: &[Gathered],
-    statistics: &mut [Statistics],
+    mut statistics: Option<&mut [Statistics]>,
     film: &mut FilmPixel,
 ) {
     let mut sum = Vec3::ZERO;
     for k in 0..dispatch.eye_samples as usize {
-        let scale = if local { scale_sq(dispatch, true, &statistics[k]) } else { dispatch.scale_sq };
-        sum += pass_radiance(&points[k], &gathered[k], scale, dispatch.photons);
-        if local {
-            update_statistics(&mut statistics[k], gathered[k].count, dispatch.alpha);
+        let mut scale = dispatch.scale_sq;
+        if let Some(all) = &mut statistics {
+            scale = scale_sq(dispatch, true, &all[k]);
+            update_statistics(&mut all[k], gathered[k].count, dispatch.alpha);
         }
+        sum += pass_radiance(&points[k], &gathered[k], scale, dispatch.photons);
     }
-    let value = sum * (1.0 / dispatch.eye_samples as f32);
-    if is_finite(value) {
-        let n = (dispatch.passes_done + 1 - film.rejected) as f32;
-        film.mean += (value - film.mean) * (1.0 / n);
-    } else {
+    fold(dispatch, sum * (1.0 / dispatch.eye_samples as f32), film);
+}
+
+/// Adds one pass's value to a pixel's mean.
+pub fn fold(dispatch: &Dispatch, value: Vec3, film: &mut FilmPixel) {
+    if !is_finite(value) {
         film.rejected += 1;
+        return;
     }
+    let n = (dispatch.passes_done + 1 - film.rejected) as f32;
+    film.mean += (value - film.mean) * (1.0 / n);
 }

@@ -1,0 +1,46 @@
+//! `caustica check`: everything that is wrong with scene files, and nothing rendered.
+
+use std::path::PathBuf;
+
+use caustica::scene;
+use miette::{Report, miette};
+
+use super::output::{message, result};
+use super::{Done, Failure};
+
+/// Report all errors and warnings of scene files
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// Scene files
+    #[arg(required = true, value_name = "SCENE")]
+    scenes: Vec<PathBuf>,
+}
+
+/// Checks each file; fails at the end if one has errors.
+pub fn run(arguments: Arguments) -> Result<Done, Failure> {
+    let mut bad = 0;
+    for file in &arguments.scenes {
+        match scene::load(file) {
+            Ok(loaded) => {
+                let warnings = match loaded.warnings.len() {
+                    0 => String::new(),
+                    1 => ", 1 warning".to_owned(),
+                    many => format!(", {many} warnings"),
+                };
+                for warning in loaded.warnings {
+                    message(format_args!("{:?}", Report::new(warning)));
+                }
+                result(format_args!("{}: good{warnings}", file.display()))?;
+            }
+            Err(errors) => {
+                bad += 1;
+                result(format_args!("{}: bad", file.display()))?;
+                message(format_args!("{:?}", Report::new(errors)));
+            }
+        }
+    }
+    match bad {
+        0 => Ok(Done::Fully),
+        _ => Err(Failure::failed(miette!("{bad} of {} scenes cannot be rendered", arguments.scenes.len()))),
+    }
+}

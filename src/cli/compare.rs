@@ -1,0 +1,179 @@
+//! `caustica compare`: one scene on two devices, and how far the pictures are apart.
+
+use std::path::PathBuf;
+use std::sync::atomic::AtomicBool;
+
+use caustica::device;
+use caustica::film::metrics::{Comparison, compare};
+use caustica::film::{FileError, Picture, blocks, file, heat};
+use caustica::render::{Ending, Stop, render};
+use caustica::scene::Scene;
+use caustica::settings::RenderSettings;
+use clap::builder::NonEmptyStringValueParser;
+use serde_json::json;
+
+use super::output::{message, result};
+use super::overrides::Overrides;
+use super::render::{Voice, begin, load};
+use super::{Done, Failure};
+
+/// Render a scene on two devices and compare the pictures
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// Scene file
+    scene: PathBuf,
+    /// The device and the one that counts as the truth, as for `render`; give it twice
+    #[arg(long, value_name = "DEVICE", value_parser = NonEmptyStringValueParser::new(), default_values = ["auto", "cpu"])]
+    device: Vec<String>,
+    /// Picture of the difference to write (.png)
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Exit with 3 where a channel's means differ by more than this share, as in 0.005
+    #[arg(long, value_name = "SHARE", value_parser = share)]
+    max_mean_ratio: Option<f64>,
+    /// Exit with 3 where relMSE is more than this
+    #[arg(long, value_name = "X", value_parser = share)]
+    max_relmse: Option<f64>,
+    /// Exit with 3 where a bit differs
+    #[arg(long)]
+    bits: bool,
+    #[command(flatten)]
+    voice: Voice,
+    #[command(flatten)]
+    overrides: Overrides,
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(number) if number.is_finite() && number >= 0.0 => Ok(number),
+        _ => Err("expected a number of zero or more".to_owned()),
+    }
+}
+
+/// A picture and the device that made it.
+struct Rendered {
+    device: String,
+    picture: Picture,
+}
+
+/// Renders twice and compares.
+pub fn run(arguments: Arguments) -> Result<Done, Failure> {
+    let [first, second] = arguments.device.as_slice() else {
+        return Err(Failure::wrong_use(
+            &format!("compare takes two devices, not {}", arguments.device.len()),
+            "say --device twice, as in --device gpu --device cpu",
+        ));
+    };
+    if let Some(output) = &arguments.output {
+        check_difference_output(output)?;
+    }
+    let (scene, settings) = load(&arguments.scene, &arguments.overrides)?;
+    // A device that is not there should not show after the first render.
+    let devices = device::list();
+    for wanted in [first, second] {
+        device::pick(&device::parse(wanted), &devices)?;
+    }
+    let a = render_on(first, &scene, &settings, &arguments.voice)?;
+    let b = render_on(second, &scene, &settings, &arguments.voice)?;
+    let comparison = compare(&a.picture, &b.picture)?;
+    let outside = blocks::share_outside(&blocks::block_deviations(&a.picture, &b.picture, None, 0.0)?);
+    if arguments.voice.json {
+        result(as_json(&a.device, &b.device, &comparison, outside))?;
+    } else {
+        result(as_text(&a.device, &b.device, &comparison, outside))?;
+    }
+    if let Some(output) = &arguments.output {
+        heat::write(output, &heat::heat_map(&a.picture, &b.picture)?)?;
+        if !arguments.voice.json {
+            result(output.display())?;
+        }
+    }
+    let over = passed_thresholds(&arguments, &comparison);
+    for threshold in &over {
+        message(format_args!("over the threshold: {threshold}"));
+    }
+    Ok(if over.is_empty() { Done::Fully } else { Done::OverThreshold })
+}
+
+fn check_difference_output(output: &std::path::Path) -> Result<(), FileError> {
+    if file::Format::of(output) != Some(file::Format::Png) {
+        return Err(FileError::UnknownFormat {
+            file: output.to_owned(),
+            what: "a picture of the difference is a PNG file".to_owned(),
+            known: ".png",
+        });
+    }
+    file::check_place(output)
+}
+
+fn render_on(
+    wanted: &str,
+    scene: &Scene,
+    settings: &RenderSettings,
+    voice: &Voice,
+) -> Result<Rendered, Failure> {
+    let opened = device::open(&device::parse(wanted), scene, settings)?;
+    let mut reporter = begin(voice, scene, settings, &opened)?;
+    let stop = Stop { passes: settings.passes, time: None };
+    let mut engine = opened.engine;
+    let never = AtomicBool::new(false);
+    let outcome = render(engine.as_mut(), stop, &never, &mut |progress| reporter.show(progress));
+    reporter.finish();
+    let outcome = outcome?;
+    match outcome.ending {
+        Ending::Failed(error) => Err(error.into()),
+        Ending::Passes | Ending::Time | Ending::Interrupted => {
+            Ok(Rendered { device: opened.name, picture: outcome.picture })
+        }
+    }
+}
+
+fn passed_thresholds(arguments: &Arguments, comparison: &Comparison) -> Vec<String> {
+    let mut over = Vec::new();
+    let mut hold = |name: &str, value: f64, most: Option<f64>| {
+        // A value that is no number is over every threshold.
+        if let Some(most) = most
+            && (value.is_nan() || value > most)
+        {
+            over.push(format!("{name} {value:.3e}, at most {most:.3e}"));
+        }
+    };
+    hold("difference of the means", comparison.mean_error(), arguments.max_mean_ratio);
+    hold("relMSE", comparison.rel_mse, arguments.max_relmse);
+    hold("pixels of other bits", comparison.pixels_differing as f64, arguments.bits.then_some(0.0));
+    over
+}
+
+fn as_text(a: &str, b: &str, comparison: &Comparison, outside: f64) -> String {
+    let Comparison { mean_ratio: [red, green, blue], worst, .. } = comparison;
+    [
+        format!("a                     {a}"),
+        format!("b                     {b}"),
+        format!("mean ratio a/b        {red:.6} {green:.6} {blue:.6}"),
+        format!("relMSE                {:.3e}", comparison.rel_mse),
+        format!("RMSE                  {:.3e}", comparison.rmse),
+        format!("PSNR                  {:.2} dB", comparison.psnr),
+        format!("blocks over 4 sigma   {:.2} %", 100.0 * outside),
+        format!("pixels of other bits  {} of {}", comparison.pixels_differing, comparison.pixels),
+        format!("worst pixel           column {}, row {}: {:?} and {:?}", worst.x, worst.y, worst.a, worst.b),
+    ]
+    .join("\n")
+}
+
+/// The figures as a JSON object; those that are infinite are null.
+fn as_json(a: &str, b: &str, comparison: &Comparison, outside: f64) -> serde_json::Value {
+    let worst = &comparison.worst;
+    json!({
+        "event": "comparison",
+        "a": a,
+        "b": b,
+        "mean_ratio": comparison.mean_ratio,
+        "rel_mse": comparison.rel_mse,
+        "rmse": comparison.rmse,
+        "psnr": comparison.psnr,
+        "blocks_outside": outside,
+        "pixels_differing": comparison.pixels_differing,
+        "pixels": comparison.pixels,
+        "worst": { "x": worst.x, "y": worst.y, "a": worst.a, "b": worst.b },
+    })
+}

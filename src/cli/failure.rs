@@ -1,0 +1,84 @@
+//! Failures: what is printed and which exit code they have.
+
+use std::process::ExitCode;
+
+use caustica::device::DeviceError;
+use caustica::engine::EngineError;
+use caustica::film::FileError;
+use caustica::film::metrics::MetricsError;
+use caustica::scene::SceneErrors;
+use miette::{Report, miette};
+
+use super::output::message;
+
+/// Why a command failed.
+#[derive(Debug)]
+pub struct Failure {
+    code: u8,
+    report: Report,
+}
+
+impl Failure {
+    const FAILED: u8 = 1;
+    const WRONG_USE: u8 = 2;
+    const NO_SUCH_DEVICE: u8 = 4;
+
+    /// Arguments that cannot be meant, and what would do.
+    pub fn wrong_use(what: &str, help: &str) -> Self {
+        Self { code: Self::WRONG_USE, report: miette!(help = help.to_owned(), "{what}") }
+    }
+
+    /// Anything else.
+    pub fn failed(report: impl Into<Report>) -> Self {
+        Self { code: Self::FAILED, report: report.into() }
+    }
+
+    /// Prints the failure to standard error.
+    pub fn tell(self) -> ExitCode {
+        message(format_args!("{:?}", self.report));
+        ExitCode::from(self.code)
+    }
+}
+
+impl From<SceneErrors> for Failure {
+    fn from(errors: SceneErrors) -> Self {
+        Self::failed(errors)
+    }
+}
+
+impl From<FileError> for Failure {
+    fn from(error: FileError) -> Self {
+        let code = match error {
+            FileError::UnknownFormat { .. } | FileError::Repeated { .. } => Self::WRONG_USE,
+            _ => Self::FAILED,
+        };
+        Self { code, report: error.into() }
+    }
+}
+
+impl From<EngineError> for Failure {
+    fn from(error: EngineError) -> Self {
+        Self::failed(miette!("{error}"))
+    }
+}
+
+impl From<MetricsError> for Failure {
+    fn from(error: MetricsError) -> Self {
+        Self::failed(miette!("{error}"))
+    }
+}
+
+impl From<DeviceError> for Failure {
+    fn from(error: DeviceError) -> Self {
+        match &error {
+            DeviceError::NoSuchDevice { available, .. } => {
+                let help = match available.as_slice() {
+                    [] => "no device was found at all".to_owned(),
+                    names => format!("there is: {}; `caustica devices` tells more", names.join(", ")),
+                };
+                Self { code: Self::NO_SUCH_DEVICE, report: miette!(help = help, "{error}") }
+            }
+            DeviceError::Engine(_) => Self::failed(miette!("{error}")),
+        }
+    }
+}

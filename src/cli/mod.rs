@@ -1,0 +1,68 @@
+//! Arguments to calls to exit codes; one file per command.
+//!
+//! Standard output carries results, standard error everything else.
+
+mod check;
+mod compare;
+mod devices;
+mod failure;
+mod info;
+mod interrupt;
+mod output;
+mod overrides;
+mod progress;
+mod render;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+use failure::Failure;
+
+/// Renders scenes by photon mapping: caustics, soft shadows, depth of field.
+#[derive(Parser)]
+#[command(version, after_help = EXIT_CODES)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+const EXIT_CODES: &str = "Exit codes: 0 done, 1 failed, 2 wrong use, 3 over a threshold, 4 no such device, \
+                          5 device lost with the picture so far saved, 130 interrupted with the picture so far saved";
+
+#[derive(Subcommand)]
+enum Command {
+    Render(render::Arguments),
+    Compare(compare::Arguments),
+    Info(info::Arguments),
+    Check(check::Arguments),
+    Devices(devices::Arguments),
+}
+
+/// How a command that did not fail ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Done {
+    /// As asked.
+    Fully = 0,
+    /// A figure is over its threshold.
+    OverThreshold = 3,
+    /// The device was lost; the picture so far is saved.
+    DeviceLost = 5,
+    /// By the user; the picture so far is saved.
+    Interrupted = 130,
+}
+
+/// Carries out the command line.
+pub fn run() -> ExitCode {
+    let done = match Arguments::parse().command {
+        Command::Render(arguments) => render::run(arguments),
+        Command::Compare(arguments) => compare::run(arguments),
+        Command::Info(arguments) => info::run(arguments),
+        Command::Check(arguments) => check::run(arguments),
+        Command::Devices(arguments) => devices::run(arguments),
+    };
+    match done {
+        Ok(done) => ExitCode::from(done as u8),
+        Err(failure) => failure.tell(),
+    }
+}

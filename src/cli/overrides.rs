@@ -1,0 +1,152 @@
+//! Options that stand in for what the scene file says.
+
+use std::time::Duration;
+
+use caustica::scene::Scene;
+use caustica::settings::{Direct, Method, Radius, RadiusRule, RenderSettings};
+use clap::Args;
+use serde::de::DeserializeOwned;
+
+/// Options of commands that render; each replaces the scene file's own value.
+#[derive(Args, Debug, Default)]
+#[command(next_help_heading = "Instead of the scene file's settings")]
+pub struct Overrides {
+    /// Light transport: stochastic progressive photon mapping, progressive photon mapping, or path tracing
+    #[arg(long, value_name = "sppm|ppm|path", value_parser = word::<Method>)]
+    method: Option<Method>,
+    /// Number of passes
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub passes: Option<u32>,
+    /// Photons emitted per pass
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    photons: Option<u32>,
+    /// Start radius: pixels at the visible point as 2px, or scene units as 0.01
+    #[arg(long, value_name = "R", value_parser = radius)]
+    radius: Option<Radius>,
+    /// How the radius shrinks
+    #[arg(long, value_name = "global|local|fixed", value_parser = word::<RadiusRule>)]
+    radius_rule: Option<RadiusRule>,
+    /// Share of the photons kept when the radius shrinks, above 0 and up to 1
+    #[arg(long, value_name = "A", value_parser = alpha)]
+    alpha: Option<f64>,
+    /// Where direct light comes from
+    #[arg(long, value_name = "sampled|photons", value_parser = word::<Direct>)]
+    direct: Option<Direct>,
+    /// Most scattering events on a photon path and on an eye path
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    max_bounces: Option<u32>,
+    /// Fixed visible points per pixel (ppm only)
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    eye_samples: Option<u32>,
+    /// Seed of the random numbers
+    #[arg(long, value_name = "S")]
+    seed: Option<u64>,
+    /// Size of the picture in pixels; the vertical field of view stays
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    size: Option<(u32, u32)>,
+}
+
+impl Overrides {
+    /// Puts the options in force.
+    pub fn apply(&self, scene: &mut Scene, settings: &mut RenderSettings) {
+        fn set<T: Copy>(target: &mut T, value: Option<T>) {
+            *target = value.unwrap_or(*target);
+        }
+        set(&mut settings.method, self.method);
+        set(&mut settings.passes, self.passes);
+        set(&mut settings.photons, self.photons);
+        set(&mut settings.radius, self.radius);
+        set(&mut settings.radius_rule, self.radius_rule);
+        set(&mut settings.alpha, self.alpha);
+        set(&mut settings.direct, self.direct);
+        set(&mut settings.max_bounces, self.max_bounces);
+        set(&mut settings.eye_samples, self.eye_samples);
+        set(&mut settings.seed, self.seed);
+        if let Some((width, height)) = self.size {
+            (scene.film.width, scene.film.height) = (width, height);
+        }
+    }
+}
+
+/// One of a setting's words, as scene files spell them.
+fn word<T: DeserializeOwned>(text: &str) -> Result<T, String> {
+    serde_json::from_value(text.into()).map_err(|error| error.to_string())
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(number) if number.is_finite() && number > 0.0 => Ok(number),
+        _ => Err("expected a number above zero".to_owned()),
+    }
+}
+
+fn alpha(text: &str) -> Result<f64, String> {
+    positive(text)
+        .ok()
+        .filter(|alpha| *alpha <= 1.0)
+        .ok_or("expected a number above 0 and up to 1".to_owned())
+}
+
+fn radius(text: &str) -> Result<Radius, String> {
+    let radius = match text.strip_suffix("px") {
+        Some(pixels) => positive(pixels).map(Radius::Pixels),
+        None => positive(text).map(Radius::Units),
+    };
+    radius.map_err(|expected| format!("{expected}: pixels as in 2px, or scene units as in 0.01"))
+}
+
+fn size(text: &str) -> Result<(u32, u32), String> {
+    let side = |text: &str| text.parse::<u32>().ok().filter(|side| *side > 0);
+    let (width, height) = text.split_once('x').unwrap_or((text, ""));
+    side(width).zip(side(height)).ok_or("expected width x height in pixels, as in 640x480".to_owned())
+}
+
+/// A duration such as 500ms, 30s, 5m or 1.5h.
+pub fn duration(text: &str) -> Result<Duration, String> {
+    let units = [("ms", 0.001), ("s", 1.0), ("m", 60.0), ("h", 3600.0)];
+    let seconds = units.iter().find_map(|(unit, seconds)| {
+        let number = positive(text.strip_suffix(unit)?).ok()?;
+        Some(number * seconds)
+    });
+    seconds
+        .and_then(|seconds| Duration::try_from_secs_f64(seconds).ok())
+        .ok_or("expected a time with its unit, as in 500ms, 30s, 5m or 1.5h".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn radius_in_pixels_or_units() {
+        assert_eq!(radius("2px"), Ok(Radius::Pixels(2.0)));
+        assert_eq!(radius("0.01"), Ok(Radius::Units(0.01)));
+        for bad in ["", "px", "0px", "-1", "nan", "inf", "2 cm"] {
+            assert!(radius(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn sizes_and_times() {
+        assert_eq!(size("640x480"), Ok((640, 480)));
+        for bad in ["640", "640x", "x480", "0x480", "640x-1", "640 x 480", "1e3x5"] {
+            assert!(size(bad).is_err(), "{bad}");
+        }
+        assert_eq!(duration("500ms"), Ok(Duration::from_millis(500)));
+        assert_eq!(duration("30s"), Ok(Duration::from_secs(30)));
+        assert_eq!(duration("1.5h"), Ok(Duration::from_secs(5400)));
+        for bad in ["30", "s", "-1s", "infs", "30 days", "1e30h"] {
+            assert!(duration(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn words_are_those_of_scene_files() {
+        assert_eq!(word::<Method>("ppm"), Ok(Method::Ppm));
+        let error = word::<Method>("pmp").unwrap_err();
+        for known in ["sppm", "ppm", "path"] {
+            assert!(error.contains(known), "{error}");
+        }
+        assert!(alpha("1").is_ok() && alpha("1.1").is_err() && alpha("0").is_err());
+    }
+}

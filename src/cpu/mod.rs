@@ -1,0 +1,208 @@
+//! The CPU engine: carries out a plan on vectors, with rayon. Needs no adapter.
+
+use crate::engine::{Engine, EngineError, PassReport};
+use crate::film::Picture;
+use crate::kernels::eye_trace::eye_trace;
+use crate::kernels::gather::{gather, scale_sq};
+use crate::kernels::grid_build::{grid_count, grid_scan, grid_scatter};
+use crate::kernels::path_trace::path_trace;
+use crate::kernels::photon_trace::photon_trace;
+use crate::kernels::records::{Dispatch, FilmPixel, Gathered, PhotonRecord, Statistics, VisiblePoint};
+use crate::kernels::resolve::{fold, resolve};
+use crate::pack::Packed;
+use crate::plan::{Kernel, Plan};
+use crate::settings::Method;
+use crate::tables::Scene;
+use rayon::prelude::*;
+
+/// Photons that one task traces.
+const PHOTON_TASK: u32 = 1024;
+
+/// Passes over one scene on the processor's cores.
+pub struct CpuEngine {
+    packed: Packed,
+    plan: Plan,
+    passes_done: u32,
+    visible_points: Vec<VisiblePoint>,
+    gathered: Vec<Gathered>,
+    statistics: Vec<Statistics>,
+    film: Vec<FilmPixel>,
+    records: Vec<PhotonRecord>,
+    sorted: Vec<PhotonRecord>,
+    counts: Vec<u32>,
+    starts: Vec<u32>,
+    order: Vec<u32>,
+    device: String,
+}
+
+/// A batch left more records than the buffers hold.
+struct Overflow;
+
+impl CpuEngine {
+    /// An engine for one scene and plan.
+    pub fn new(packed: Packed, plan: Plan) -> Self {
+        let points = (plan.pixels * plan.eye_samples) as usize;
+        let photons = plan.features.has("photons");
+        let buckets = if photons { plan.buckets as usize } else { 0 };
+        let path = plan.settings.method == Method::Path;
+        let points_kept = if path { 0 } else { points };
+        Self {
+            passes_done: 0,
+            visible_points: vec![VisiblePoint::default(); points_kept],
+            gathered: vec![Gathered::default(); points_kept],
+            statistics: vec![Statistics::default(); if plan.features.has("local") { points_kept } else { 0 }],
+            film: vec![FilmPixel::default(); plan.pixels as usize],
+            records: Vec::new(),
+            sorted: Vec::new(),
+            counts: vec![0; buckets],
+            starts: vec![0; buckets + 1],
+            order: Vec::new(),
+            device: format!("CPU, {} threads", rayon::current_num_threads()),
+            packed,
+            plan,
+        }
+    }
+
+    fn photon_pass(&mut self, report: &mut PassReport) {
+        let mut batch = self.plan.batch_photons;
+        loop {
+            self.gathered.par_iter_mut().for_each(|g| *g = Gathered::default());
+            *report = PassReport { photons: self.plan.settings.photons as u64, ..PassReport::default() };
+            match self.steps(batch, report) {
+                Ok(()) => return,
+                // a pass that overflowed is thrown away and run again with batches half as large
+                Err(Overflow) => batch = (batch / 2).max(1),
+            }
+        }
+    }
+
+    fn steps(&mut self, batch_photons: u32, report: &mut PassReport) -> Result<(), Overflow> {
+        let sampled = self.plan.features.has("sampled");
+        let local = self.plan.features.has("local");
+        let scene = &self.packed.scene;
+        for step in self.plan.steps(self.passes_done, batch_photons) {
+            let d = &step.dispatch;
+            let chunk = d.chunk_first as usize..(d.chunk_first + d.end) as usize;
+            match step.kernel {
+                Kernel::EyeTrace => {
+                    report.eye_paths += d.end as u64;
+                    report.rays += self.visible_points[chunk]
+                        .par_iter_mut()
+                        .enumerate()
+                        .map(|(id, point)| {
+                            let (traced, rays) = eye_trace(scene, d, sampled, id as u32);
+                            *point = traced;
+                            rays as u64
+                        })
+                        .sum::<u64>();
+                }
+                Kernel::PhotonTrace => {
+                    report.rays += trace_photons(scene, d, sampled, &mut self.records);
+                    report.records += self.records.len() as u64;
+                    if self.records.len() > d.capacity as usize && d.end > 1 {
+                        return Err(Overflow);
+                    }
+                }
+                Kernel::GridCount => grid_count(d, &self.records, &mut self.counts),
+                Kernel::GridScanReduce | Kernel::GridScanSums => {}
+                Kernel::GridScan => grid_scan(&self.counts, &mut self.starts),
+                Kernel::GridScatter => {
+                    self.order.resize(self.records.len(), 0);
+                    grid_scatter(d, &self.records, &self.starts, &mut self.counts, &mut self.order);
+                }
+                // the scatter above leaves each bucket sorted
+                Kernel::GridSort => {
+                    let records = &self.records;
+                    self.order.par_iter().map(|&i| records[i as usize]).collect_into_vec(&mut self.sorted);
+                }
+                Kernel::Gather => {
+                    let statistics = &self.statistics;
+                    let first = chunk.start;
+                    self.gathered[chunk.clone()]
+                        .par_iter_mut()
+                        .zip(&self.visible_points[chunk])
+                        .enumerate()
+                        .for_each(|(i, (gathered, point))| {
+                            let none = Statistics::default();
+                            let scale = scale_sq(d, local, statistics.get(first + i).unwrap_or(&none));
+                            gather(d, point, scale, &self.starts, &self.sorted, gathered);
+                        });
+                }
+                Kernel::Resolve => {
+                    let samples = d.eye_samples as usize;
+                    let pixels = d.chunk_first as usize / samples..chunk.end / samples;
+                    let film = self.film[pixels].par_iter_mut();
+                    let points = self.visible_points[chunk.clone()].par_chunks(samples);
+                    let gathered = self.gathered[chunk.clone()].par_chunks(samples);
+                    let work = film.zip(points).zip(gathered);
+                    if local {
+                        let statistics = self.statistics[chunk].par_chunks_mut(samples);
+                        work.zip(statistics).for_each(|(((f, p), g), s)| resolve(d, p, g, Some(s), f));
+                    } else {
+                        work.for_each(|((f, p), g)| resolve(d, p, g, None, f));
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn path_pass(&mut self, report: &mut PassReport) {
+        let d = self.plan.dispatch(self.passes_done);
+        let sampled = self.plan.features.has("sampled");
+        let scene = &self.packed.scene;
+        report.eye_paths = self.film.len() as u64;
+        report.rays = self
+            .film
+            .par_iter_mut()
+            .enumerate()
+            .map(|(pixel, film)| {
+                let (radiance, rays) = path_trace(scene, &d, sampled, pixel as u32);
+                fold(&d, radiance, film);
+                rays as u64
+            })
+            .sum();
+    }
+}
+
+/// Photons of one batch; the records come in the order of their keys.
+fn trace_photons(scene: &Scene, d: &Dispatch, sampled: bool, records: &mut Vec<PhotonRecord>) -> u64 {
+    let tasks: Vec<(Vec<PhotonRecord>, u64)> = (0..d.end.div_ceil(PHOTON_TASK))
+        .into_par_iter()
+        .map(|task| {
+            let mut found = Vec::new();
+            let mut rays = 0;
+            for id in task * PHOTON_TASK..(task * PHOTON_TASK + PHOTON_TASK).min(d.end) {
+                rays += photon_trace(scene, d, sampled, id, |record| found.push(record)) as u64;
+            }
+            (found, rays)
+        })
+        .collect();
+    records.clear();
+    tasks.into_iter().fold(0, |sum, (found, rays)| {
+        records.extend(found);
+        sum + rays
+    })
+}
+
+impl Engine for CpuEngine {
+    fn device(&self) -> &str {
+        &self.device
+    }
+
+    fn pass(&mut self) -> Result<PassReport, EngineError> {
+        let mut report = PassReport::default();
+        if self.plan.settings.method == Method::Path {
+            self.path_pass(&mut report);
+        } else {
+            self.photon_pass(&mut report);
+            report.radius = self.plan.radius(self.passes_done);
+        }
+        self.passes_done += 1;
+        Ok(report)
+    }
+
+    fn picture(&mut self) -> Result<Picture, EngineError> {
+        Ok(self.plan.picture(&self.film))
+    }
+}

@@ -1,0 +1,198 @@
+//! Devices by name: which there are, which one a wish means, and an engine on it.
+
+use thiserror::Error;
+
+use crate::cpu::CpuEngine;
+use crate::engine::{Engine, EngineError};
+use crate::pack::pack;
+use crate::plan::Plan;
+use crate::scene::Scene;
+use crate::settings::RenderSettings;
+
+/// What a user asks for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Wanted {
+    /// A hardware GPU, else a software driver, else the CPU.
+    Auto,
+    /// The first hardware GPU.
+    Gpu,
+    /// The first software driver, such as lavapipe.
+    Software,
+    /// The Rust engine.
+    Cpu,
+    /// The first device whose name holds this, in any case.
+    Named(String),
+}
+
+/// Reads a `--device` value; what is none of its words is taken as a name.
+pub fn parse(text: &str) -> Wanted {
+    match text.to_ascii_lowercase().as_str() {
+        "auto" => Wanted::Auto,
+        "gpu" => Wanted::Gpu,
+        "software" => Wanted::Software,
+        "cpu" => Wanted::Cpu,
+        _ => Wanted::Named(text.to_owned()),
+    }
+}
+
+/// What a device is made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DeviceKind {
+    /// A hardware GPU.
+    Gpu,
+    /// A driver that runs shaders on the CPU.
+    Software,
+    /// The Rust engine.
+    Cpu,
+}
+
+impl DeviceKind {
+    /// The kind's `--device` word.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Gpu => "gpu",
+            Self::Software => "software",
+            Self::Cpu => "cpu",
+        }
+    }
+}
+
+/// A device that can render.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct DeviceInfo {
+    /// Its name, as printed and as `--device` takes it.
+    pub name: String,
+    /// What it is made of.
+    pub kind: DeviceKind,
+    /// Driver and its version; for the CPU, how many threads.
+    pub driver: String,
+    /// Limits that renders depend on: what, and how many or how many bytes.
+    pub limits: Vec<(String, u64)>,
+}
+
+/// An engine, ready for passes.
+pub struct Opened {
+    /// The engine.
+    pub engine: Box<dyn Engine>,
+    /// Its device's name.
+    pub name: String,
+    /// Why this device.
+    pub why: String,
+}
+
+/// No engine.
+#[derive(Debug, Error)]
+pub enum DeviceError {
+    /// The wish fits no device.
+    #[error("there is no device `{wanted}`")]
+    NoSuchDevice {
+        /// The wish, as written.
+        wanted: String,
+        /// Names of the devices that there are.
+        available: Vec<String>,
+    },
+    /// The device cannot render this.
+    #[error(transparent)]
+    Engine(#[from] EngineError),
+}
+
+/// All devices.
+pub fn list() -> Vec<DeviceInfo> {
+    vec![DeviceInfo {
+        name: "cpu".to_owned(),
+        kind: DeviceKind::Cpu,
+        driver: format!("{} threads", rayon::current_num_threads()),
+        limits: Vec::new(),
+    }]
+}
+
+/// The device that a wish means, and why.
+pub fn pick<'a>(wanted: &Wanted, devices: &'a [DeviceInfo]) -> Result<(&'a DeviceInfo, String), DeviceError> {
+    let of_kind = |kind| devices.iter().find(|device| device.kind == kind);
+    let (found, why) = match wanted {
+        Wanted::Gpu => (of_kind(DeviceKind::Gpu), "asked for"),
+        Wanted::Software => (of_kind(DeviceKind::Software), "asked for"),
+        Wanted::Cpu => (of_kind(DeviceKind::Cpu), "asked for"),
+        Wanted::Named(name) => {
+            let name = name.to_lowercase();
+            (devices.iter().find(|device| device.name.to_lowercase().contains(&name)), "asked for by name")
+        }
+        Wanted::Auto => {
+            if let Some(device) = of_kind(DeviceKind::Gpu) {
+                (Some(device), "auto: a hardware GPU")
+            } else if let Some(device) = of_kind(DeviceKind::Software) {
+                (Some(device), "auto: no hardware GPU, but a software driver")
+            } else {
+                (of_kind(DeviceKind::Cpu), "auto: neither a GPU nor a software driver")
+            }
+        }
+    };
+    match found {
+        Some(device) => Ok((device, why.to_owned())),
+        None => Err(DeviceError::NoSuchDevice {
+            wanted: match wanted {
+                Wanted::Auto => "auto".to_owned(),
+                Wanted::Gpu => DeviceKind::Gpu.word().to_owned(),
+                Wanted::Software => DeviceKind::Software.word().to_owned(),
+                Wanted::Cpu => DeviceKind::Cpu.word().to_owned(),
+                Wanted::Named(name) => name.clone(),
+            },
+            available: devices.iter().map(|device| device.name.clone()).collect(),
+        }),
+    }
+}
+
+/// Makes an engine for a scene on the device that is wanted.
+pub fn open(wanted: &Wanted, scene: &Scene, settings: &RenderSettings) -> Result<Opened, DeviceError> {
+    let devices = list();
+    let (device, why) = pick(wanted, &devices)?;
+    Ok(Opened { engine: start(device, scene, settings)?, name: device.name.clone(), why })
+}
+
+fn start(device: &DeviceInfo, scene: &Scene, settings: &RenderSettings) -> Result<Box<dyn Engine>, EngineError> {
+    let packed = pack(scene, scene.film.width, scene.film.height)?;
+    let plan = Plan::new(&packed, settings);
+    match device.kind {
+        DeviceKind::Cpu => Ok(Box::new(CpuEngine::new(packed, plan))),
+        _ => Err(EngineError::Unsupported(format!("no engine runs on {}", device.name))),
+    }
+}
+
+/// Theory: the order of preference is hardware, software driver, CPU, whatever the order of the list.
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn device(name: &str, kind: DeviceKind) -> DeviceInfo {
+        DeviceInfo { name: name.into(), kind, driver: String::new(), limits: Vec::new() }
+    }
+
+    fn picked(wanted: &str, devices: &[DeviceInfo]) -> Option<String> {
+        pick(&parse(wanted), devices).ok().map(|(device, _)| device.name.clone())
+    }
+
+    #[test]
+    fn preference_and_names() {
+        let all = [
+            device("cpu", DeviceKind::Cpu),
+            device("llvmpipe (LLVM 15)", DeviceKind::Software),
+            device("NVIDIA X", DeviceKind::Gpu),
+            device("Radeon Y", DeviceKind::Gpu),
+        ];
+        let is = |wanted, devices: &[DeviceInfo], name: &str| {
+            assert_eq!(picked(wanted, devices).as_deref(), Some(name), "{wanted}");
+        };
+        is("auto", &all, "NVIDIA X");
+        is("auto", &all[..2], "llvmpipe (LLVM 15)");
+        is("auto", &all[..1], "cpu");
+        is("gpu", &all, "NVIDIA X");
+        is("Software", &all, "llvmpipe (LLVM 15)");
+        is("cpu", &all, "cpu");
+        is("radeon", &all, "Radeon Y");
+        assert_eq!(picked("gpu", &all[..2]), None);
+        let Err(DeviceError::NoSuchDevice { wanted, available }) = pick(&parse("Arc"), &all[..2]) else {
+            panic!("there is no Arc");
+        };
+        assert_eq!((wanted.as_str(), available.len()), ("Arc", 2));
+    }
+}

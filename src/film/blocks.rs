@@ -1,0 +1,79 @@
+//! A test whether a render agrees with a truth within their noise, block by block.
+//!
+//! The mean luminance difference `d` of a block is set against its standard deviation
+//!
+//!     sigma^2 = s^2 / n + sum SE^2 / n^2 + (model * truth)^2
+//!
+//! from the scatter `s` of the difference inside the block (both pictures' noise, and detail that differs), the truth's
+//! standard errors `SE`, and an allowance for the bias of density estimation. For a render that agrees, `d / sigma` is
+//! Student-t of 63 degrees of freedom, so |d| > 4 sigma happens by chance in 1.7e-4 of the blocks.
+
+use super::metrics::{MetricsError, check_comparable};
+use super::{Picture, luminance};
+
+/// Edge of a block in pixels. Columns and rows that fill no whole block are left out.
+pub const BLOCK: u32 = 8;
+
+/// Deviation, in sigma, from which on a block counts as outside.
+pub const LIMIT: f64 = 4.0;
+
+/// Keeps the sigma of black blocks above zero.
+const SMALLEST_VARIANCE: f64 = 1e-14;
+
+/// One block's verdict.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Block {
+    /// Column of its left pixels.
+    pub x: u32,
+    /// Row of its top pixels.
+    pub y: u32,
+    /// Mean luminance difference, render less truth, over its sigma.
+    pub deviation: f64,
+}
+
+impl Block {
+    /// Whether it differs by more than [`LIMIT`] sigma.
+    pub fn outside(&self) -> bool {
+        self.deviation.abs() > LIMIT
+    }
+}
+
+/// Holds `render` against `truth`, whose standard errors are `standard_error` if they are known. `model` is the
+/// allowed bias as a share of the block's mean luminance, e.g. 0.01.
+pub fn block_deviations(
+    render: &Picture,
+    truth: &Picture,
+    standard_error: Option<&Picture>,
+    model: f64,
+) -> Result<Vec<Block>, MetricsError> {
+    check_comparable(render, truth)?;
+    if let Some(standard_error) = standard_error {
+        check_comparable(standard_error, truth)?;
+    }
+    let mut blocks = Vec::new();
+    for y in (0..truth.height / BLOCK).map(|row| row * BLOCK) {
+        for x in (0..truth.width / BLOCK).map(|column| column * BLOCK) {
+            let pixels = || (0..BLOCK * BLOCK).map(|i| pixel_index(truth, x + i % BLOCK, y + i / BLOCK));
+            let mean =
+                |value: &dyn Fn(usize) -> f64| pixels().map(value).sum::<f64>() / f64::from(BLOCK * BLOCK);
+            let difference = |i: usize| luminance(render.rgb[i]) - luminance(truth.rgb[i]);
+            let d = mean(&difference);
+            let scatter = mean(&|i| (difference(i) - d).powi(2));
+            let error = standard_error.map_or(0.0, |se| mean(&|i| luminance(se.rgb[i]).powi(2)));
+            let bias = model * mean(&|i| luminance(truth.rgb[i]));
+            let variance = (scatter + error) / f64::from(BLOCK * BLOCK) + bias.powi(2) + SMALLEST_VARIANCE;
+            blocks.push(Block { x, y, deviation: d / variance.sqrt() });
+        }
+    }
+    Ok(blocks)
+}
+
+/// Share of the blocks that are outside, in [0, 1]; zero for no blocks.
+pub fn share_outside(blocks: &[Block]) -> f64 {
+    let outside = blocks.iter().filter(|block| block.outside()).count();
+    outside as f64 / blocks.len().max(1) as f64
+}
+
+fn pixel_index(picture: &Picture, x: u32, y: u32) -> usize {
+    y as usize * picture.width as usize + x as usize
+}

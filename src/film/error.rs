@@ -1,0 +1,75 @@
+//! What can go wrong with picture files: which file, what happened, and how to mend it.
+
+use std::io;
+use std::path::PathBuf;
+
+use miette::Diagnostic;
+use thiserror::Error;
+
+/// A picture file that cannot be written or read.
+#[derive(Debug, Error, Diagnostic)]
+pub enum FileError {
+    /// The name's extension is none that is known for this use.
+    #[error("{}: {what}", file.display())]
+    #[diagnostic(help("end the name in {known}"))]
+    UnknownFormat {
+        /// The file.
+        file: PathBuf,
+        /// What is wrong with its name.
+        what: String,
+        /// The extensions that would do.
+        known: &'static str,
+    },
+    /// The folder that the file should go to does not exist.
+    #[error("{}: there is no folder `{}`", file.display(), folder.display())]
+    #[diagnostic(help("create the folder first, or choose another one"))]
+    NoFolder {
+        /// The file.
+        file: PathBuf,
+        /// Its folder.
+        folder: PathBuf,
+    },
+    /// The name is that of a folder.
+    #[error("{}: this is a folder", file.display())]
+    #[diagnostic(help("give the name of a file in it"))]
+    IsFolder {
+        /// The folder.
+        file: PathBuf,
+    },
+    /// The same output is named more than once.
+    #[error("{}: named as an output more than once", file.display())]
+    #[diagnostic(help("name every output once"))]
+    Repeated {
+        /// The file.
+        file: PathBuf,
+    },
+    /// The operating system refused.
+    #[error("{}: cannot be {verb}: {source}", file.display())]
+    #[diagnostic(help("check the name, the permissions and the free space"))]
+    Io {
+        /// The file.
+        file: PathBuf,
+        /// "written" or "read".
+        verb: &'static str,
+        /// What the system says.
+        source: io::Error,
+    },
+    /// The file's content is not a picture of its format.
+    #[error("{}: not a usable picture: {what}", file.display())]
+    #[diagnostic(help("the file may be damaged or of another format than its name says"))]
+    Malformed {
+        /// The file.
+        file: PathBuf,
+        /// The first thing that is wrong with it.
+        what: String,
+    },
+    /// The picture cannot be expressed in the format.
+    #[error("{}: cannot be encoded: {what}", file.display())]
+    #[diagnostic(help("try another format, such as .exr"))]
+    Encode {
+        /// The file.
+        file: PathBuf,
+        /// What the encoder says.
+        what: String,
+    },
+}

@@ -1,0 +1,178 @@
+//! Picture files by extension. A file is complete or absent: it is written beside its place, then renamed.
+
+use std::collections::HashSet;
+use std::ffi::OsString;
+use std::fs;
+use std::io::Cursor;
+use std::path::{Path, PathBuf};
+
+use image::{DynamicImage, ExtendedColorType, ImageEncoder, ImageFormat, codecs};
+
+use super::{Development, FileError, Picture, Provenance, exr_file, pfm};
+
+/// A kind of picture file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// 8 bits per channel, tone-mapped.
+    Png,
+    /// 32-bit float radiance with attributes.
+    Exr,
+    /// 32-bit float radiance.
+    Pfm,
+    /// Radiance's shared-exponent radiance.
+    Hdr,
+}
+
+impl Format {
+    /// The format that a file's extension names, in either case.
+    pub fn of(file: &Path) -> Option<Self> {
+        match file.extension()?.to_str()?.to_ascii_lowercase().as_str() {
+            "png" => Some(Self::Png),
+            "exr" => Some(Self::Exr),
+            "pfm" => Some(Self::Pfm),
+            "hdr" => Some(Self::Hdr),
+            _ => None,
+        }
+    }
+
+    /// The format of an output file, or an error that names the known ones.
+    fn of_output(file: &Path) -> Result<Self, FileError> {
+        Self::of(file).ok_or_else(|| FileError::UnknownFormat {
+            file: file.to_owned(),
+            what: "its extension names no known kind of picture".to_owned(),
+            known: ".png, .exr, .pfm or .hdr",
+        })
+    }
+}
+
+/// Finds out before the work whether the pictures can be written after it: known extensions, existing folders, no
+/// name twice, and folders that take new files.
+pub fn check_outputs(files: &[PathBuf]) -> Result<(), FileError> {
+    let mut seen = HashSet::new();
+    for file in files {
+        Format::of_output(file)?;
+        check_place(file)?;
+        if !seen.insert(file) {
+            return Err(FileError::Repeated { file: file.clone() });
+        }
+    }
+    Ok(())
+}
+
+/// Finds out whether a file can be made in its folder, and leaves nothing there.
+pub fn check_place(file: &Path) -> Result<(), FileError> {
+    let folder = match file.parent() {
+        Some(folder) if folder != Path::new("") => folder,
+        _ => Path::new("."),
+    };
+    if !folder.is_dir() {
+        return Err(FileError::NoFolder { file: file.to_owned(), folder: folder.to_owned() });
+    }
+    if file.is_dir() {
+        return Err(FileError::IsFolder { file: file.to_owned() });
+    }
+    let unfinished = unfinished_name(file);
+    fs::write(&unfinished, []).and_then(|()| fs::remove_file(&unfinished)).map_err(|e| not_written(file, e))
+}
+
+/// Writes a picture in the format that the extension names. `development` counts for PNG, `provenance` for EXR.
+pub fn write(
+    file: &Path,
+    picture: &Picture,
+    development: &Development,
+    provenance: &Provenance,
+) -> Result<(), FileError> {
+    let bytes = match Format::of_output(file)? {
+        Format::Png => encode_png(picture, development),
+        Format::Exr => exr_file::encode(picture, &provenance.attributes()),
+        Format::Pfm => Ok(pfm::encode(picture)),
+        Format::Hdr => encode_hdr(picture),
+    };
+    let bytes = bytes.map_err(|what| FileError::Encode { file: file.to_owned(), what })?;
+    write_whole(file, &bytes)
+}
+
+/// Writes the bytes to a name beside `file` and moves them into place, so that nothing half-written is seen.
+pub fn write_whole(file: &Path, bytes: &[u8]) -> Result<(), FileError> {
+    let unfinished = unfinished_name(file);
+    let written = fs::write(&unfinished, bytes).and_then(|()| fs::rename(&unfinished, file));
+    written.map_err(|source| {
+        // It may not be there; the error to report is the first one.
+        let _ = fs::remove_file(&unfinished);
+        not_written(file, source)
+    })
+}
+
+/// Reads radiance from an EXR (R, G, B of the first layer), PFM or HDR file.
+pub fn read(file: &Path) -> Result<Picture, FileError> {
+    let malformed = |what| FileError::Malformed { file: file.to_owned(), what };
+    match Format::of(file) {
+        Some(Format::Exr) => {
+            let exr = read_exr(file)?;
+            exr.picture("").ok_or_else(|| malformed("it has no channels R, G and B".to_owned()))
+        }
+        Some(Format::Pfm) => pfm::decode(&read_bytes(file)?).map_err(malformed),
+        Some(Format::Hdr) => decode_hdr(&read_bytes(file)?).map_err(malformed),
+        Some(Format::Png) | None => Err(FileError::UnknownFormat {
+            file: file.to_owned(),
+            what: "its extension names no kind of picture that holds radiance".to_owned(),
+            known: ".exr, .pfm or .hdr",
+        }),
+    }
+}
+
+/// Reads all channels and text attributes of an EXR file's first layer.
+pub fn read_exr(file: &Path) -> Result<exr_file::ExrFile, FileError> {
+    exr_file::decode(&read_bytes(file)?).map_err(|what| FileError::Malformed { file: file.to_owned(), what })
+}
+
+fn read_bytes(file: &Path) -> Result<Vec<u8>, FileError> {
+    fs::read(file).map_err(|source| FileError::Io { file: file.to_owned(), verb: "read", source })
+}
+
+fn not_written(file: &Path, source: std::io::Error) -> FileError {
+    FileError::Io { file: file.to_owned(), verb: "written", source }
+}
+
+/// A hidden name beside `file`, of this process alone.
+fn unfinished_name(file: &Path) -> PathBuf {
+    let mut name = OsString::from(".");
+    name.push(file.file_name().unwrap_or_default());
+    name.push(format!(".{}.part", std::process::id()));
+    file.with_file_name(name)
+}
+
+fn encode_png(picture: &Picture, development: &Development) -> Result<Vec<u8>, String> {
+    let rgb: Vec<u8> = picture.rgb.iter().flat_map(|&radiance| development.bytes(radiance)).collect();
+    encode_rgb8(picture.width, picture.height, &rgb)
+}
+
+/// The bytes of a PNG file of `width * height * 3` display values.
+pub(super) fn encode_rgb8(width: u32, height: u32, rgb: &[u8]) -> Result<Vec<u8>, String> {
+    let mut bytes = Vec::new();
+    codecs::png::PngEncoder::new(&mut bytes)
+        .write_image(rgb, width, height, ExtendedColorType::Rgb8)
+        .map_err(|error| error.to_string())?;
+    Ok(bytes)
+}
+
+fn encode_hdr(picture: &Picture) -> Result<Vec<u8>, String> {
+    // The format's exponent is shared and its mantissas have no sign.
+    let rgb: Vec<_> = picture.rgb.iter().map(|rgb| image::Rgb(rgb.map(|value| value.max(0.0)))).collect();
+    let mut bytes = Vec::new();
+    codecs::hdr::HdrEncoder::new(&mut bytes)
+        .encode(&rgb, picture.width as usize, picture.height as usize)
+        .map_err(|error| error.to_string())?;
+    Ok(bytes)
+}
+
+fn decode_hdr(bytes: &[u8]) -> Result<Picture, String> {
+    let mut reader = image::ImageReader::with_format(Cursor::new(bytes), ImageFormat::Hdr);
+    reader.no_limits();
+    match reader.decode().map_err(|error| error.to_string())? {
+        DynamicImage::ImageRgb32F(pixels) => {
+            Ok(Picture::from_fn(pixels.width(), pixels.height(), |x, y| pixels.get_pixel(x, y).0))
+        }
+        other => Err(format!("its values are {:?}", other.color())),
+    }
+}

@@ -1,0 +1,154 @@
+//! How far two pictures are apart.
+
+use thiserror::Error;
+
+use super::{Picture, luminance};
+
+/// Figures of a picture `a` against a truth `b`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Comparison {
+    /// Mean of `a` over mean of `b` per channel; 1 where both are zero.
+    pub mean_ratio: [f64; 3],
+    /// Mean over pixels of `(La - Lb)^2 / (Lb^2 + 0.01)`, the largest 0.1 % dropped (rounded up); `L` is luminance.
+    pub rel_mse: f64,
+    /// Root of the mean squared difference over all channel values, in W sr^-1 m^-2.
+    pub rmse: f64,
+    /// Peak signal-to-noise ratio in dB; the peak is the truth's largest value. Infinite for equal pictures.
+    pub psnr: f64,
+    /// The pixel with the largest absolute difference in a channel; the first such in reading order.
+    pub worst: WorstPixel,
+    /// How many pixels differ in at least one bit.
+    pub pixels_differing: usize,
+    /// How many pixels there are.
+    pub pixels: usize,
+}
+
+/// A pixel of two pictures.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WorstPixel {
+    /// Column.
+    pub x: u32,
+    /// Row, 0 on top.
+    pub y: u32,
+    /// Its value in the first picture.
+    pub a: [f32; 3],
+    /// Its value in the second.
+    pub b: [f32; 3],
+}
+
+/// Pictures that cannot be compared.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum MetricsError {
+    /// Their sizes differ.
+    #[error("the pictures' sizes differ: {}x{} and {}x{}", .a.0, .a.1, .b.0, .b.1)]
+    Size {
+        /// Width and height of the first.
+        a: (u32, u32),
+        /// Width and height of the second.
+        b: (u32, u32),
+    },
+    /// There are values that no figure can be made of.
+    #[error("{count} values of the {which} picture are not finite")]
+    NotFinite {
+        /// "first" or "second".
+        which: &'static str,
+        /// How many.
+        count: usize,
+    },
+    /// A picture has no pixels.
+    #[error("the pictures have no pixels")]
+    Empty,
+}
+
+/// Compares `a` with the truth `b`.
+pub fn compare(a: &Picture, b: &Picture) -> Result<Comparison, MetricsError> {
+    check_comparable(a, b)?;
+    let worst = worst_pixel(a, b);
+    let mse = mean(a.rgb.as_flattened().iter().zip(b.rgb.as_flattened()).map(|(&a, &b)| squared(a, b)));
+    let peak = b.rgb.as_flattened().iter().fold(0.0, |peak: f32, &value| peak.max(value));
+    Ok(Comparison {
+        mean_ratio: mean_ratio(a, b),
+        rel_mse: rel_mse(a, b),
+        rmse: mse.sqrt(),
+        psnr: if mse == 0.0 { f64::INFINITY } else { 10.0 * (f64::from(peak).powi(2) / mse).log10() },
+        worst,
+        pixels_differing: a.rgb.iter().zip(&b.rgb).filter(|(a, b)| !same_bits(**a, **b)).count(),
+        pixels: a.rgb.len(),
+    })
+}
+
+impl Comparison {
+    /// Largest distance of a channel's mean ratio from one.
+    pub fn mean_error(&self) -> f64 {
+        self.mean_ratio.iter().fold(0.0, |largest: f64, ratio| largest.max((ratio - 1.0).abs()))
+    }
+}
+
+/// Fails for pictures of different sizes, without pixels, or with values that are not finite.
+pub(super) fn check_comparable(a: &Picture, b: &Picture) -> Result<(), MetricsError> {
+    if (a.width, a.height) != (b.width, b.height) {
+        return Err(MetricsError::Size { a: (a.width, a.height), b: (b.width, b.height) });
+    }
+    if a.rgb.is_empty() {
+        return Err(MetricsError::Empty);
+    }
+    for (which, picture) in [("first", a), ("second", b)] {
+        let count = picture.not_finite();
+        if count > 0 {
+            return Err(MetricsError::NotFinite { which, count });
+        }
+    }
+    Ok(())
+}
+
+/// Largest absolute difference of a channel.
+pub(super) fn difference(a: [f32; 3], b: [f32; 3]) -> f64 {
+    (0..3).fold(0.0, |largest: f64, i| largest.max((f64::from(a[i]) - f64::from(b[i])).abs()))
+}
+
+/// Whether two pixels agree in every bit; 0 and -0 do not.
+pub(super) fn same_bits(a: [f32; 3], b: [f32; 3]) -> bool {
+    a.map(f32::to_bits) == b.map(f32::to_bits)
+}
+
+fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
+    let count = values.len();
+    values.sum::<f64>() / count as f64
+}
+
+fn squared(a: f32, b: f32) -> f64 {
+    (f64::from(a) - f64::from(b)).powi(2)
+}
+
+fn mean_ratio(a: &Picture, b: &Picture) -> [f64; 3] {
+    [0, 1, 2].map(|channel| {
+        let mean = |picture: &Picture| mean(picture.rgb.iter().map(|rgb| f64::from(rgb[channel])));
+        let (a, b) = (mean(a), mean(b));
+        if a == b { 1.0 } else { a / b }
+    })
+}
+
+fn rel_mse(a: &Picture, b: &Picture) -> f64 {
+    let error = |(a, b): (&[f32; 3], &[f32; 3])| {
+        let (a, b) = (luminance(*a), luminance(*b));
+        (a - b).powi(2) / (b.powi(2) + 0.01)
+    };
+    let mut errors: Vec<f64> = a.rgb.iter().zip(&b.rgb).map(error).collect();
+    errors.sort_by(f64::total_cmp);
+    let dropped = errors.len().div_ceil(1000);
+    // A picture of one pixel keeps it.
+    let kept = (errors.len() - dropped).max(1);
+    mean(errors[..kept].iter().copied())
+}
+
+fn worst_pixel(a: &Picture, b: &Picture) -> WorstPixel {
+    let mut worst = (0, 0.0);
+    for (index, (pixel_a, pixel_b)) in a.rgb.iter().zip(&b.rgb).enumerate() {
+        let difference = difference(*pixel_a, *pixel_b);
+        if difference > worst.1 {
+            worst = (index, difference);
+        }
+    }
+    let (x, y) = a.position(worst.0);
+    WorstPixel { x, y, a: a.rgb[worst.0], b: b.rgb[worst.0] }
+}

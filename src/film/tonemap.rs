@@ -1,0 +1,75 @@
+//! From radiance to display values: exposure, then AgX or a clip, then the sRGB curve.
+
+use std::sync::LazyLock;
+
+use glam::{DMat3, DVec3};
+
+use crate::scene::ToneMap;
+
+/// How radiance is developed into an 8-bit picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Development {
+    /// Exposure in stops (powers of two).
+    pub exposure: f64,
+    /// The curve.
+    pub tonemap: ToneMap,
+}
+
+impl Development {
+    /// Display values in [0, 1], encoded for an sRGB display. NaN becomes black.
+    pub fn display(&self, radiance: [f32; 3]) -> [f64; 3] {
+        let exposed = DVec3::from(radiance.map(f64::from)) * self.exposure.exp2();
+        let linear = match self.tonemap {
+            ToneMap::Agx => agx(exposed),
+            ToneMap::Srgb => exposed,
+        };
+        linear.to_array().map(|value| if value > 0.0 { srgb_from_linear(value.min(1.0)) } else { 0.0 })
+    }
+
+    /// Display values as 8-bit numbers.
+    pub fn bytes(&self, radiance: [f32; 3]) -> [u8; 3] {
+        self.display(radiance).map(|value| (255.0 * value).round() as u8)
+    }
+}
+
+/// The sRGB transfer curve (IEC 61966-2-1) for values in [0, 1].
+pub fn srgb_from_linear(linear: f64) -> f64 {
+    if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
+}
+
+/// Exposures that AgX's curve spans, in stops about a radiance of one.
+const AGX_STOPS: (f64, f64) = (-12.473_93, 4.026_069);
+
+/// AgX's inset: pulls saturated colors toward grey before the curve, so that bright lights run to white. Each row is
+/// scaled to sum to one, so that grey stays grey exactly.
+static AGX_INSET: LazyLock<DMat3> = LazyLock::new(|| {
+    let rows = [
+        DVec3::new(0.842_479_062_253_094, 0.078_433_599_999_999_2, 0.079_223_745_147_764_3),
+        DVec3::new(0.042_328_242_261_012_3, 0.878_468_636_469_772, 0.079_166_127_460_543_4),
+        DVec3::new(0.042_375_654_905_705_1, 0.078_433_6, 0.879_142_973_793_104),
+    ];
+    let [r, g, b] = rows.map(|row| row / row.element_sum());
+    DMat3::from_cols(r, g, b).transpose()
+});
+
+static AGX_OUTSET: LazyLock<DMat3> = LazyLock::new(|| AGX_INSET.inverse());
+
+/// The AgX picture formation of Troy Sobotka (2022), with the matrices and the sixth-order fit of the curve by
+/// Benjamin Wrensch ("Minimal AgX Implementation", mean squared error 3.7e-6). Linear in, linear out.
+fn agx(exposed: DVec3) -> DVec3 {
+    let (low, high) = AGX_STOPS;
+    let inset = *AGX_INSET * exposed.max(DVec3::ZERO);
+    let encoded = DVec3::from(inset.to_array().map(|value| {
+        let stops = value.log2().clamp(low, high);
+        agx_curve((stops - low) / (high - low)).clamp(0.0, 1.0)
+    }));
+    let display = *AGX_OUTSET * encoded;
+    // The curve's output is meant for a display of exponent 2.2.
+    display.max(DVec3::ZERO).powf(2.2)
+}
+
+/// AgX's base contrast over [0, 1], which it maps to about [0, 1], rising throughout.
+fn agx_curve(x: f64) -> f64 {
+    const COEFFICIENTS: [f64; 7] = [15.5, -40.14, 31.96, -6.868, 0.4298, 0.1191, -0.002_32];
+    COEFFICIENTS.iter().fold(0.0, |sum, coefficient| sum * x + coefficient)
+}

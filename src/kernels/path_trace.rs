@@ -1,0 +1,86 @@
+//! Path tracing with next-event estimation and multiple importance sampling: the independent check that photon
+//! mapping converges to the right picture wherever path tracing gets there. CPU engine only.
+
+use super::direct::{medium_before, next_event, transmittance};
+use super::records::Dispatch;
+use crate::camera::camera_ray;
+use crate::lights::light::{eval_environment, pdf_environment, pdf_light};
+use crate::materials::scatter::{
+    RADIANCE, is_specular, pdf_rough, reflectance_at, scatter_rough, scatter_specular, shading_normal, toward,
+};
+use crate::math::rng::{STREAM_EYE, rng_new, rng_next};
+use crate::math::sampling::balance;
+use crate::math::{FAR, max_component, offset_origin};
+use crate::shapes::intersect::intersect_scene;
+use crate::shapes::ray::Ray;
+use crate::shapes::surface::surface_at;
+use crate::tables::*;
+use glam::{Vec2, Vec3};
+
+/// One path through pixel `pixel`: its radiance and the number of rays. `sampled`: next-event estimation.
+pub fn path_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, pixel: u32) -> (Vec3, u32) {
+    let mut rng = rng_new(pixel, dispatch.pass_number, STREAM_EYE, dispatch.seed);
+    let camera = &scene.camera;
+    let mut ray = camera_ray(camera, pixel % camera.width, pixel / camera.width, rng_next(&mut rng));
+    let mut radiance = Vec3::ZERO;
+    let mut throughput = Vec3::ONE;
+    let mut medium = NONE;
+    let mut rays = 0;
+    // density of the last scattering; 0 where next-event estimation could not have found what is met now
+    let mut pdf = 0.0;
+    for bounce in 0..dispatch.max_bounces + 1 {
+        rays += 1;
+        let hit = intersect_scene(scene, &ray);
+        if hit.reference == NONE {
+            if scene.world.environment != NONE {
+                let light = &scene.lights[scene.world.environment as usize];
+                let other = pdf_environment(scene, light, ray.direction) * light.selection;
+                let weight = if pdf > 0.0 { balance(pdf, other) } else { 1.0 };
+                radiance += throughput * eval_environment(scene, light, ray.direction) * weight;
+            }
+            break;
+        }
+        let s = surface_at(scene, &ray, &hit);
+        let wo = -ray.direction;
+        throughput *= transmittance(scene, medium_before(scene, &s, wo, medium), hit.t);
+        if s.light != NONE && wo.dot(s.normal) > 0.0 {
+            let other = pdf_light(scene, s.light, ray.origin, ray.direction, hit.t, s.normal, s.v);
+            let weight = if pdf > 0.0 { balance(pdf, other) } else { 1.0 };
+            radiance += throughput * scene.lights[s.light as usize].color * weight;
+        }
+        if bounce == dispatch.max_bounces {
+            break;
+        }
+        let kind = scene.materials[s.material as usize].kind;
+        let scattered = if is_specular(kind) {
+            pdf = 0.0;
+            let u = rng_next(&mut rng);
+            scatter_specular(scene, &s, wo, medium, u.x, RADIANCE)
+        } else {
+            let alpha = scene.materials[s.material as usize].alpha;
+            let reflectance = reflectance_at(scene, s.material, s.uv);
+            let ng = toward(s.normal, wo);
+            let n = shading_normal(&s, wo);
+            if sampled {
+                let u = rng_next(&mut rng);
+                let (direct, spent) = next_event(scene, &s, wo, n, ng, reflectance, medium, true, u);
+                radiance += throughput * direct;
+                rays += spent;
+            }
+            let u = rng_next(&mut rng);
+            let scattered = scatter_rough(scene, &s, wo, medium, Vec2::new(u.x, u.y), RADIANCE);
+            pdf = if sampled { pdf_rough(kind, alpha, n, wo, scattered.direction) } else { 0.0 };
+            scattered
+        };
+        throughput *= scattered.weight;
+        medium = scattered.medium;
+        let survival = max_component(throughput).min(1.0);
+        if rng_next(&mut rng).x >= survival {
+            break;
+        }
+        throughput *= 1.0 / survival;
+        let origin = offset_origin(s.position, s.error, s.normal, scattered.direction);
+        ray = Ray { origin, t_min: 0.0, direction: scattered.direction, t_max: FAR };
+    }
+    (radiance, rays)
+}

@@ -1,0 +1,68 @@
+//! Textures and their pictures.
+
+use crate::scene::{self, Filter, ImageData, Texels, TextureKind, Wrap};
+use crate::tables::*;
+use bytemuck::Zeroable;
+use glam::{DVec3, Vec2};
+
+/// Fills `textures` and `texels`; an environment's picture becomes one more texture behind the scene's own.
+pub fn pack_textures(scene: &scene::Scene, out: &mut Scene) {
+    if scene.images.iter().any(|i| matches!(i.texels, Texels::Rgba8 { srgb: true, .. })) {
+        out.texels.extend((0..256).map(|i| srgb_to_linear(i as f64 / 255.0).to_bits()));
+    }
+    let images: Vec<Texture> = scene.images.iter().map(|image| pack_image(image, &mut out.texels)).collect();
+    for texture in &scene.textures {
+        out.textures.push(match &texture.kind {
+            TextureKind::Checker { colors, scale } => Texture {
+                kind: TEXTURE_CHECKER,
+                scale: vec2(*scale),
+                color0: DVec3::from(colors[0]).as_vec3(),
+                color1: DVec3::from(colors[1]).as_vec3(),
+                ..Texture::zeroed()
+            },
+            TextureKind::Image { image, filter, wrap, scale } => Texture {
+                kind: TEXTURE_IMAGE,
+                scale: vec2(*scale),
+                flags: filter_flag(*filter) | if *wrap == Wrap::Clamp { TEXTURE_CLAMP } else { 0 },
+                ..images[*image]
+            },
+            TextureKind::Planks { image, size, filter } => Texture {
+                kind: TEXTURE_PLANKS,
+                scale: vec2([1.0 / size[0], 1.0 / size[1]]),
+                flags: filter_flag(*filter),
+                ..images[*image]
+            },
+        });
+    }
+    if let Some(scene::Environment::Image { image, .. }) = &scene.environment {
+        out.textures.push(Texture { kind: TEXTURE_IMAGE, scale: Vec2::ONE, flags: TEXTURE_CLAMP, ..images[*image] });
+    }
+}
+
+fn vec2(v: [f64; 2]) -> Vec2 {
+    Vec2::new(v[0] as f32, v[1] as f32)
+}
+
+fn filter_flag(filter: Filter) -> u32 {
+    if filter == Filter::Nearest { TEXTURE_NEAREST } else { 0 }
+}
+
+fn pack_image(image: &ImageData, texels: &mut Vec<u32>) -> Texture {
+    let first = texels.len() as u32;
+    let format = match &image.texels {
+        Texels::Rgba8 { srgb, data } => {
+            texels.extend(data.iter().map(|p| u32::from_le_bytes(*p)));
+            if *srgb { TEXELS_SRGB8 } else { TEXELS_LINEAR8 }
+        }
+        Texels::Float(data) => {
+            texels.extend(data.iter().flatten().map(|x| x.to_bits()));
+            TEXELS_FLOAT
+        }
+    };
+    Texture { first, width: image.width, height: image.height, format, ..Texture::zeroed() }
+}
+
+/// IEC 61966-2-1.
+fn srgb_to_linear(x: f64) -> f32 {
+    (if x <= 0.04045 { x / 12.92 } else { ((x + 0.055) / 1.055).powf(2.4) }) as f32
+}

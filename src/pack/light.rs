@@ -1,0 +1,186 @@
+//! Lights: strengths in scene units and the distributions that they are sampled by.
+
+use super::shape::Emitter;
+use crate::build::normalize::Normalization;
+use crate::scene::{self, Environment};
+use crate::shapes::revolution::ring_point;
+use crate::tables::*;
+use bytemuck::Zeroable;
+use glam::{DVec3, Vec2, Vec3};
+use std::f64::consts::PI;
+
+/// Steps of the midpoint rule that measures a patch's area.
+const AREA_STEPS: u32 = 32;
+
+/// Fills `lights` and `distributions`; returns the world radiance of one unit of scene radiance.
+pub fn pack_lights(scene: &scene::Scene, n: &Normalization, emitters: &[Emitter], out: &mut Scene) -> f64 {
+    // strengths in world radiance first: areas and distances are in scene units already, so that irradiance
+    // is radiance times steradian in either
+    let near = PI * n.near_radius * n.near_radius;
+    let mut lights: Vec<(Light, DVec3, f64)> = Vec::new();
+    let mut distributions = Vec::new();
+    for e in emitters {
+        let mut light = Light { kind: LIGHT_AREA, reference: e.reference, ..Light::zeroed() };
+        let mut area = e.area;
+        if e.reference >> REFERENCE_BITS == KIND_REVOLUTION {
+            area = revolution_distribution(out, &mut light, &mut distributions);
+        }
+        light.area = area as f32;
+        lights.push((light, e.radiance, PI * area));
+    }
+    for l in &scene.lights {
+        let unit_sq = n.unit * n.unit;
+        lights.push(match l {
+            scene::Light::Point { position, intensity } => {
+                let light = Light {
+                    kind: LIGHT_POINT,
+                    position: n.point(*position).as_vec3(),
+                    ..Light::zeroed()
+                };
+                (light, DVec3::from(*intensity) / unit_sq, 4.0 * PI)
+            }
+            scene::Light::Spot { position, target, intensity, angle_degrees, blend } => {
+                let outer = angle_degrees.to_radians().cos();
+                let inner = (angle_degrees * (1.0 - blend)).to_radians().cos();
+                let light = Light {
+                    kind: LIGHT_SPOT,
+                    position: n.point(*position).as_vec3(),
+                    direction: (*target - *position).normalize().as_vec3(),
+                    cos_outer: outer as f32,
+                    cos_inner: inner.max(outer) as f32,
+                    ..Light::zeroed()
+                };
+                (light, DVec3::from(*intensity) / unit_sq, PI * (2.0 - inner - outer))
+            }
+            scene::Light::Sun { direction, irradiance } => {
+                let light =
+                    Light { kind: LIGHT_SUN, direction: direction.normalize().as_vec3(), ..Light::zeroed() };
+                (light, DVec3::from(*irradiance), near)
+            }
+        });
+    }
+    match &scene.environment {
+        Some(Environment::Constant { radiance }) if DVec3::from(*radiance).max_element() > 0.0 => {
+            out.world.environment = lights.len() as u32;
+            lights.push((
+                Light { kind: LIGHT_CONSTANT, ..Light::zeroed() },
+                DVec3::from(*radiance),
+                4.0 * PI * near,
+            ));
+        }
+        Some(Environment::Image { rotate_degrees, scale, .. }) => {
+            let (sin, cos) = rotate_degrees.to_radians().sin_cos();
+            let mut light = Light {
+                kind: LIGHT_IMAGE,
+                reference: out.textures.len() as u32 - 1,
+                cos_outer: cos as f32,
+                cos_inner: sin as f32,
+                ..Light::zeroed()
+            };
+            if let Some(mean) = image_distribution(out, &mut light, &mut distributions) {
+                out.world.environment = lights.len() as u32;
+                lights.push((light, DVec3::from(*scale), 4.0 * PI * near * mean));
+            }
+        }
+        _ => {}
+    }
+    let power: Vec<f64> = lights.iter().map(|(_, c, factor)| (c.x + c.y + c.z) / 3.0 * factor).collect();
+    let total: f64 = power.iter().sum();
+    let brightest = lights.iter().map(|(_, c, _)| c.max_element()).fold(0.0, f64::max);
+    let radiance_unit = if brightest > 0.0 { brightest.log2().round().exp2() } else { 1.0 };
+    let count = lights.len();
+    let mut sum = 0.0;
+    for ((mut light, color, _), power) in lights.into_iter().zip(&power) {
+        light.color = (color / radiance_unit).as_vec3();
+        light.selection = (power / total) as f32;
+        light.first += count as u32;
+        sum += power;
+        out.distributions.push((sum / total) as f32);
+        out.lights.push(light);
+    }
+    out.distributions.extend(distributions);
+    out.world.light_count = count as u32;
+    radiance_unit
+}
+
+/// The parts of v by patch and the cumulative shares of area; returns the area. A patch overlaps its neighbour,
+/// so that its part ends where the next one starts.
+fn revolution_distribution(out: &Scene, light: &mut Light, distributions: &mut Vec<f32>) -> f64 {
+    let index = light.reference & ((1 << REFERENCE_BITS) - 1);
+    let patches: Vec<&Patch> = out.patches.iter().filter(|p| p.revolution == index).collect();
+    let revolution = &out.revolutions[index as usize];
+    light.patch_first = out.patches.iter().position(|p| p.revolution == index).unwrap_or(0) as u32;
+    light.patch_count = patches.len() as u32;
+    light.first = distributions.len() as u32;
+    let v_of = |p: &Patch, t: f32| (p.segment as f32 + t) / revolution.segments as f32;
+    let starts: Vec<f32> = patches.iter().map(|p| v_of(p, p.t0)).collect();
+    let mut areas = Vec::new();
+    for (k, patch) in patches.iter().enumerate() {
+        let end = starts.get(k + 1).copied().unwrap_or(1.0);
+        let end_t = (end * revolution.segments as f32 - patch.segment as f32).min(patch.t1);
+        let end_tau = ((end_t - patch.t0) / (patch.t1 - patch.t0)) as f64;
+        let mut area = 0.0;
+        for i in 0..AREA_STEPS {
+            let tau = (i as f64 + 0.5) / AREA_STEPS as f64 * end_tau;
+            let ring = ring_point(&out.profile_points, patch, 0.0, tau as f32);
+            area += ring.d_theta.cross(ring.d_tau).length() as f64;
+        }
+        let scale = revolution.scale as f64;
+        areas.push(area * end_tau / AREA_STEPS as f64 * 2.0 * PI * scale * scale);
+    }
+    distributions.extend(&starts);
+    push_cumulative(&areas, distributions);
+    areas.iter().sum()
+}
+
+/// The cumulative shares of rows and of columns within each row, by luminance times solid angle; returns the
+/// mean luminance, or nothing for a black picture. Each texel counts the brightest of its neighbours, since
+/// filtering lets them shine into it.
+fn image_distribution(out: &Scene, light: &mut Light, distributions: &mut Vec<f32>) -> Option<f64> {
+    let texture = &out.textures[light.reference as usize];
+    let (w, h) = (texture.width as i32, texture.height as i32);
+    light.first = distributions.len() as u32;
+    let value = |i: i32, j: i32| {
+        let uv = Vec2::new((i as f32 + 0.5) / w as f32, 1.0 - (j as f32 + 0.5) / h as f32);
+        let c: Vec3 = crate::materials::texture::eval_texture(out, light.reference, uv);
+        ((c.x + c.y + c.z) / 3.0).max(0.0) as f64
+    };
+    let values: Vec<f64> = (0..h).flat_map(|j| (0..w).map(move |i| (i, j))).map(|(i, j)| value(i, j)).collect();
+    let spread = |i: i32, j: i32| {
+        let mut most = 0.0f64;
+        for y in (j - 1).max(0)..=(j + 1).min(h - 1) {
+            for x in (i - 1).max(0)..=(i + 1).min(w - 1) {
+                most = most.max(values[(y * w + x) as usize]);
+            }
+        }
+        most
+    };
+    let mut rows = Vec::new();
+    let mut columns = Vec::new();
+    let mut mean = 0.0;
+    for j in 0..h {
+        let theta = |j: i32| PI * j as f64 / h as f64;
+        let solid = theta(j).cos() - theta(j + 1).cos();
+        let row: Vec<f64> = (0..w).map(|i| spread(i, j)).collect();
+        rows.push(row.iter().sum::<f64>() * solid);
+        mean += (0..w).map(|i| values[(j * w + i) as usize]).sum::<f64>() * solid / (2.0 * w as f64);
+        push_cumulative(&row, &mut columns);
+    }
+    if mean <= 0.0 {
+        return None;
+    }
+    push_cumulative(&rows, distributions);
+    distributions.extend(columns);
+    Some(mean)
+}
+
+fn push_cumulative(values: &[f64], target: &mut Vec<f32>) {
+    let total: f64 = values.iter().sum();
+    let mut sum = 0.0;
+    let count = values.len();
+    for (k, v) in values.iter().enumerate() {
+        sum += v;
+        let share = if total > 0.0 { sum / total } else { (k + 1) as f64 / count as f64 };
+        target.push(if k + 1 == count { 1.0 } else { share as f32 });
+    }
+}

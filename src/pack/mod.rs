@@ -1,0 +1,164 @@
+//! A validated scene flattened into the tables that the kernels read.
+
+mod image;
+mod light;
+mod shape;
+
+use crate::build::normalize::Normalization;
+use crate::build::revolution::ProfileError;
+use crate::scene::{MaterialKind, Reflectance};
+use crate::tables::*;
+use crate::{build, scene};
+use bytemuck::Zeroable;
+use glam::{DVec3, Vec2, Vec3};
+
+/// Why a valid scene cannot be flattened.
+#[derive(Debug, thiserror::Error)]
+pub enum PackError {
+    /// More items than an index holds.
+    #[error("the scene has {count} {what}, but at most {limit} can be told apart")]
+    TooMany {
+        /// What there are too many of.
+        what: &'static str,
+        /// How many.
+        count: usize,
+        /// How many there may be.
+        limit: usize,
+    },
+    /// A profile that is no surface.
+    #[error("shape {shape}: {source}")]
+    Profile {
+        /// Index of the shape.
+        shape: usize,
+        /// What is wrong.
+        source: ProfileError,
+    },
+}
+
+/// A flattened scene and what undoes its normalisation.
+#[derive(Clone, Debug)]
+pub struct Packed {
+    /// The tables.
+    pub scene: Scene,
+    /// World units in one scene unit.
+    pub unit: f64,
+    /// Scene radiance times this is world radiance: brings the brightest light near one.
+    pub radiance_unit: f64,
+    /// Facts about the kd-tree.
+    pub tree: build::kdtree::Stats,
+}
+
+/// Flattens `scene` for a picture of `width` by `height` pixels.
+pub fn pack(scene: &scene::Scene, width: u32, height: u32) -> Result<Packed, PackError> {
+    let n = Normalization::of(scene);
+    let mut out = Scene::empty();
+    out.camera = camera(scene, &n, width, height);
+    image::pack_textures(scene, &mut out);
+    for m in &scene.materials {
+        out.materials.push(material(m, n.unit));
+    }
+    let (primitives, references, emitters) = shape::pack_shapes(scene, &n, &mut out)?;
+    let limit = 1 << REFERENCE_BITS;
+    if references.len() >= limit {
+        return Err(PackError::TooMany { what: "primitives", count: references.len(), limit });
+    }
+    let mut stats = build::kdtree::Stats::default();
+    if !primitives.is_empty() {
+        let tree = build::kdtree::build(&primitives);
+        stats = tree.stats;
+        out.world.bounds_min = tree.bounds.min;
+        out.world.bounds_max = tree.bounds.max;
+        out.nodes = tree.nodes;
+        out.refs = tree.refs.iter().map(|&i| references[i as usize]).collect();
+    }
+    out.world.unit = n.unit as f32;
+    out.world.planar_origin = Vec2::new(n.center.x as f32, n.center.z as f32);
+    out.world.near_radius = n.near_radius as f32;
+    out.world.disc_levels = (n.far_radius / n.near_radius).log2().ceil().max(0.0) as u32 + 1;
+    out.world.unbounded_count = out.unbounded.len() as u32;
+    let radiance_unit = light::pack_lights(scene, &n, &emitters, &mut out);
+    Ok(Packed { scene: out, unit: n.unit, radiance_unit, tree: stats })
+}
+
+impl Scene {
+    /// A scene with nothing in it.
+    pub fn empty() -> Self {
+        Self {
+            world: World { environment: NONE, ..World::zeroed() },
+            camera: Camera::zeroed(),
+            spheres: Vec::new(),
+            rectangles: Vec::new(),
+            discs: Vec::new(),
+            cuboids: Vec::new(),
+            planes: Vec::new(),
+            revolutions: Vec::new(),
+            patches: Vec::new(),
+            profile_points: Vec::new(),
+            unbounded: Vec::new(),
+            materials: Vec::new(),
+            textures: Vec::new(),
+            lights: Vec::new(),
+            distributions: Vec::new(),
+            nodes: Vec::new(),
+            refs: Vec::new(),
+            triangles: Vec::new(),
+            attributes: Vec::new(),
+            texels: Vec::new(),
+        }
+    }
+}
+
+fn camera(scene: &scene::Scene, n: &Normalization, width: u32, height: u32) -> Camera {
+    let c = &scene.camera;
+    let forward = (c.target - c.position).normalize();
+    let right = forward.cross(c.up).normalize();
+    let up = right.cross(forward);
+    let tan = (0.5 * c.fov_degrees.to_radians()).tan();
+    Camera {
+        position: n.point(c.position).as_vec3(),
+        aperture: (c.aperture / n.unit) as f32,
+        right: (right * (tan * width as f64 / height as f64)).as_vec3(),
+        focus: (c.focus / n.unit) as f32,
+        up: (up * tan).as_vec3(),
+        pixel: (2.0 * tan / height as f64) as f32,
+        forward: forward.as_vec3(),
+        width,
+        lens_right: right.as_vec3(),
+        height,
+        lens_up: up.as_vec3(),
+        pad: 0,
+    }
+}
+
+fn material(m: &scene::Material, unit: f64) -> Material {
+    let mut out = Material { texture: NONE, ior: 1.0, ..Material::zeroed() };
+    let mut reflect = |out: &mut Material, r: &Reflectance| match r {
+        Reflectance::Color(c) => out.reflectance = rgb(*c),
+        Reflectance::Texture(t) => out.texture = *t as u32,
+    };
+    match &m.kind {
+        MaterialKind::Diffuse { reflectance } => {
+            out.kind = MATERIAL_DIFFUSE;
+            reflect(&mut out, reflectance);
+        }
+        MaterialKind::Mirror { reflectance } => {
+            out.kind = MATERIAL_MIRROR;
+            reflect(&mut out, reflectance);
+        }
+        MaterialKind::Glass { ior, absorption } => {
+            out.kind = MATERIAL_GLASS;
+            out.ior = *ior as f32;
+            out.absorption = rgb(absorption.map(|a| a * unit));
+        }
+        MaterialKind::Metal { reflectance, roughness } => {
+            out.kind = MATERIAL_METAL;
+            out.alpha = ((roughness * roughness) as f32).max(crate::materials::metal::ALPHA_MIN);
+            reflect(&mut out, reflectance);
+        }
+    }
+    out
+}
+
+fn rgb(c: [f64; 3]) -> Vec3 {
+    DVec3::from(c).as_vec3()
+}

@@ -1,0 +1,236 @@
+//! Shapes: into tables, into the kd-tree's input, and which of them shine.
+
+use super::PackError;
+use crate::build::kdtree::Primitive;
+use crate::build::normalize::Normalization;
+use crate::build::revolution::{Attributes as RevolutionAttributes, Placement, RevolutionTables};
+use crate::math::EPS;
+use crate::scene::{self, Mesh, ShapeKind, Transform};
+use crate::shapes::aabb::Aabb;
+use crate::tables::*;
+use bytemuck::Zeroable;
+use glam::{DQuat, DVec2, DVec3, Vec3};
+
+/// Spheres of a larger radius, in scene units, are tested outside of the kd-tree.
+const UNBOUNDED_RADIUS: f64 = 64.0;
+
+/// An emitting shape.
+pub struct Emitter {
+    /// Its reference; for a revolution with the index of the revolution.
+    pub reference: u32,
+    /// Radiance, world units.
+    pub radiance: DVec3,
+    /// Area, scene units.
+    pub area: f64,
+}
+
+type Flattened = (Vec<Primitive>, Vec<u32>, Vec<Emitter>);
+
+/// Fills the shape tables; returns the kd-tree's primitives, the reference of each, and the emitters. An
+/// emitter's number is its light's.
+pub fn pack_shapes(scene: &scene::Scene, n: &Normalization, out: &mut Scene) -> Result<Flattened, PackError> {
+    let mut pack = Pack { n, out, primitives: Vec::new(), references: Vec::new(), emitters: Vec::new() };
+    let mut revolutions = RevolutionTables::default();
+    for (i, shape) in scene.shapes.iter().enumerate() {
+        let material = shape.material as u32;
+        let uv = if shape.planar_uv { UV_PLANAR } else { UV_NATURAL };
+        let emission = shape.is_emitter().then(|| DVec3::from(shape.emission));
+        match &shape.kind {
+            ShapeKind::Sphere { center, radius } => pack.sphere(*center, *radius, material, uv, emission),
+            ShapeKind::Rectangle { origin, u, v } => pack.rectangle(*origin, *u, *v, material, uv, emission),
+            ShapeKind::Disc { center, normal, radius } => {
+                pack.disc(*center, *normal, *radius, material, uv, emission);
+            }
+            ShapeKind::Plane { point, normal } => pack.plane(*point, *normal, material, uv),
+            ShapeKind::Cuboid { min, max } => pack.cuboid(*min, *max, material, uv, emission),
+            ShapeKind::Mesh(mesh) => pack.mesh(mesh, material, uv, emission),
+            ShapeKind::Revolution { segments, transform } => {
+                let light = pack.light(emission, reference(KIND_REVOLUTION, revolutions.revolutions.len()), 0.0);
+                let attributes = RevolutionAttributes { material, light, uv };
+                let placement = placement(transform, n);
+                let boxes = revolutions
+                    .push(segments, &placement, attributes)
+                    .map_err(|source| PackError::Profile { shape: i, source })?;
+                for b in boxes {
+                    pack.primitives.push(Primitive::Box(Aabb { min: b.min, max: b.max }));
+                    pack.references.push(reference(KIND_REVOLUTION, b.patch as usize));
+                }
+            }
+        }
+    }
+    let (primitives, references, emitters) = (pack.primitives, pack.references, pack.emitters);
+    out.revolutions = revolutions.revolutions;
+    out.patches = revolutions.patches;
+    out.profile_points = revolutions.profile_points;
+    Ok((primitives, references, emitters))
+}
+
+fn placement(transform: &Transform, n: &Normalization) -> Placement {
+    Placement {
+        rotation: DQuat::from_mat3(&transform.rotation),
+        scale: transform.scale / n.unit,
+        translation: n.point(transform.translation),
+    }
+}
+
+struct Pack<'a> {
+    n: &'a Normalization,
+    out: &'a mut Scene,
+    primitives: Vec<Primitive>,
+    references: Vec<u32>,
+    emitters: Vec<Emitter>,
+}
+
+impl Pack<'_> {
+    fn light(&mut self, emission: Option<DVec3>, reference: u32, area: f64) -> u32 {
+        let Some(radiance) = emission else { return NONE };
+        self.emitters.push(Emitter { reference, radiance, area });
+        self.emitters.len() as u32 - 1
+    }
+
+    /// A primitive whose computed hits lie in the box of `points`, grown by the rounding of those hits.
+    fn boxed(&mut self, reference: u32, points: &[Vec3]) {
+        let b = Aabb::of_points(points);
+        let grow = b.min.abs().max(b.max.abs()).max_element() * (64.0 * EPS);
+        let grow = Vec3::splat(grow.max(f32::MIN_POSITIVE));
+        self.primitives.push(Primitive::Box(Aabb { min: b.min - grow, max: b.max + grow }));
+        self.references.push(reference);
+    }
+
+    fn sphere(&mut self, center: DVec3, radius: f64, material: u32, uv: u32, emission: Option<DVec3>) {
+        let c = self.n.point(center);
+        let r = radius / self.n.unit;
+        // the anchor faces the scene's middle, which is the origin
+        let normal = if c.length() > 1e-3 * r { -c.normalize() } else { DVec3::Y };
+        let id = reference(KIND_SPHERE, self.out.spheres.len());
+        let light = self.light(emission, id, 4.0 * std::f64::consts::PI * r * r);
+        self.out.spheres.push(Sphere {
+            anchor: (c + normal * r).as_vec3(),
+            curvature: (1.0 / r) as f32,
+            normal: normal.as_vec3(),
+            radius: r as f32,
+            material,
+            light,
+            uv,
+            pad: 0,
+        });
+        if r > UNBOUNDED_RADIUS {
+            self.out.unbounded.push(id);
+        } else {
+            self.boxed(id, &[(c - DVec3::splat(r)).as_vec3(), (c + DVec3::splat(r)).as_vec3()]);
+        }
+    }
+
+    fn rectangle(&mut self, origin: DVec3, u: DVec3, v: DVec3, material: u32, uv: u32, emission: Option<DVec3>) {
+        let (o, u, v) = (self.n.point(origin), u / self.n.unit, v / self.n.unit);
+        let normal = u.cross(v);
+        let area_sq = normal.length_squared();
+        let id = reference(KIND_RECTANGLE, self.out.rectangles.len());
+        let light = self.light(emission, id, area_sq.sqrt());
+        self.out.rectangles.push(Rectangle {
+            origin: o.as_vec3(),
+            material,
+            normal: normal.normalize().as_vec3(),
+            light,
+            u: u.as_vec3(),
+            uv,
+            v: v.as_vec3(),
+            area: area_sq.sqrt() as f32,
+            dual_u: (v.cross(normal) / area_sq).as_vec3(),
+            pad0: 0,
+            dual_v: (normal.cross(u) / area_sq).as_vec3(),
+            pad1: 0,
+        });
+        self.boxed(id, &[o.as_vec3(), (o + u).as_vec3(), (o + v).as_vec3(), (o + u + v).as_vec3()]);
+    }
+
+    fn disc(&mut self, center: DVec3, normal: DVec3, radius: f64, material: u32, uv: u32, emission: Option<DVec3>) {
+        let c = self.n.point(center);
+        let r = radius / self.n.unit;
+        let n = normal.normalize();
+        let id = reference(KIND_DISC, self.out.discs.len());
+        let light = self.light(emission, id, std::f64::consts::PI * r * r);
+        self.out.discs.push(Disc {
+            center: c.as_vec3(),
+            radius: r as f32,
+            normal: n.as_vec3(),
+            material,
+            light,
+            uv,
+            pad: [0; 2],
+        });
+        let half = (DVec3::ONE - n * n).max(DVec3::ZERO).map(f64::sqrt) * r;
+        self.boxed(id, &[(c - half).as_vec3(), (c + half).as_vec3()]);
+    }
+
+    fn plane(&mut self, point: DVec3, normal: DVec3, material: u32, uv: u32) {
+        let n = normal.normalize();
+        let p = self.n.point(point);
+        let nearest = n * p.dot(n);
+        let (t, b) = crate::math::basis(n.as_vec3());
+        let (t, b) = (t.as_dvec3(), b.as_dvec3());
+        let d = (nearest - p) * self.n.unit;
+        self.out.unbounded.push(reference(KIND_PLANE, self.out.planes.len()));
+        self.out.planes.push(Plane {
+            point: nearest.as_vec3(),
+            material,
+            normal: n.as_vec3(),
+            uv,
+            tangent: (t * self.n.unit).as_vec3(),
+            u0: d.dot(t) as f32,
+            bitangent: (b * self.n.unit).as_vec3(),
+            v0: d.dot(b) as f32,
+        });
+    }
+
+    fn cuboid(&mut self, min: DVec3, max: DVec3, material: u32, uv: u32, emission: Option<DVec3>) {
+        let (lower, upper) = (self.n.point(min), self.n.point(max));
+        let e = upper - lower;
+        let id = reference(KIND_CUBOID, self.out.cuboids.len());
+        let light = self.light(emission, id, 2.0 * (e.x * e.y + e.y * e.z + e.z * e.x));
+        let (lower, upper) = (lower.as_vec3(), upper.as_vec3());
+        self.out.cuboids.push(Cuboid { lower, material, upper, light, uv, pad: [0; 3] });
+        self.boxed(id, &[lower, upper]);
+    }
+
+    fn mesh(&mut self, mesh: &Mesh, material: u32, uv: u32, emission: Option<DVec3>) {
+        for triangle in &mesh.triangles {
+            let corners = triangle.position.map(|i| mesh.positions[i as usize]);
+            let p = corners.map(|c| self.n.point(c));
+            let index = self.out.triangles.len();
+            let id = reference(KIND_TRIANGLE, index);
+            let light = self.light(emission, id, 0.5 * (p[1] - p[0]).cross(p[2] - p[0]).length());
+            let planar = corners.map(|c| DVec2::new(c.x, c.z));
+            let uvs = triangle.uv.map(|t| t.map(|i| mesh.uvs[i as usize]));
+            let uvs = if uv == UV_PLANAR { Some(planar) } else { uvs };
+            let normals = triangle.normal.map(|t| t.map(|i| mesh.normals[i as usize]));
+            let attributes = self.attributes(uvs, normals);
+            let p = p.map(|q| q.as_vec3());
+            self.out.triangles.push(Triangle { p0: p[0], material, p1: p[1], light, p2: p[2], attributes });
+            self.primitives.push(Primitive::Triangle(p));
+            self.references.push(id);
+        }
+    }
+
+    fn attributes(&mut self, uvs: Option<[DVec2; 3]>, normals: Option<[DVec3; 3]>) -> u32 {
+        if uvs.is_none() && normals.is_none() {
+            return NONE;
+        }
+        let t = uvs.unwrap_or_default().map(|t| t.as_vec2());
+        let n = normals.unwrap_or_default().map(|n| n.as_vec3());
+        self.out.attributes.push(Attributes {
+            n0: n[0],
+            u0: t[0].x,
+            n1: n[1],
+            v0: t[0].y,
+            n2: n[2],
+            u1: t[1].x,
+            v1: t[1].y,
+            u2: t[2].x,
+            v2: t[2].y,
+            smooth_normals: normals.is_some() as u32,
+            ..Attributes::zeroed()
+        });
+        self.out.attributes.len() as u32 - 1
+    }
+}

@@ -1,0 +1,288 @@
+//! The loop over passes: stop conditions, progress, and what is saved when something ends it early.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use crate::engine::{Engine, EngineError, PassReport};
+use crate::film::Picture;
+
+/// When to stop; whichever comes first. At least one pass is made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Stop {
+    /// After this many passes.
+    pub passes: u32,
+    /// No pass is begun after this time.
+    pub time: Option<Duration>,
+}
+
+/// How far a render is, after a pass.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Progress {
+    /// Where it will stop.
+    pub stop: Stop,
+    /// Passes made.
+    pub passes: u32,
+    /// Photon paths emitted.
+    pub photons: u64,
+    /// Eye paths traced.
+    pub eye_paths: u64,
+    /// Rays traced.
+    pub rays: u64,
+    /// Gather radius of the last pass in scene units, mean over the visible points.
+    pub radius: f64,
+    /// Since the first pass began.
+    pub elapsed: Duration,
+}
+
+impl Progress {
+    /// Rays per second so far.
+    pub fn rays_per_second(&self) -> f64 {
+        self.rays as f64 / self.elapsed.as_secs_f64().max(1e-9)
+    }
+
+    /// Share of the work that is done, in [0, 1].
+    pub fn share(&self) -> f64 {
+        let passes = f64::from(self.passes) / f64::from(self.stop.passes.max(1));
+        let time =
+            self.stop.time.map_or(0.0, |time| self.elapsed.as_secs_f64() / time.as_secs_f64().max(1e-9));
+        passes.max(time).min(1.0)
+    }
+
+    /// Time left if the passes go on as they did.
+    pub fn remaining(&self) -> Duration {
+        let share = self.share();
+        let seconds = self.elapsed.as_secs_f64() * (1.0 - share) / share.max(1e-9);
+        Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX)
+    }
+
+    fn add(&mut self, report: &PassReport, elapsed: Duration) {
+        self.passes += 1;
+        self.photons += report.photons;
+        self.eye_paths += report.eye_paths;
+        self.rays += report.rays;
+        self.radius = report.radius;
+        self.elapsed = elapsed;
+    }
+}
+
+/// Why a render ended.
+#[derive(Debug)]
+pub enum Ending {
+    /// All passes are made.
+    Passes,
+    /// The time is up.
+    Time,
+    /// The user asked for it.
+    Interrupted,
+    /// The engine failed after at least one pass.
+    Failed(EngineError),
+}
+
+/// A picture, and how it came about.
+#[derive(Debug)]
+pub struct Outcome {
+    /// The estimate.
+    pub picture: Picture,
+    /// The state after the picture's last pass.
+    pub progress: Progress,
+    /// Why there were no more passes.
+    pub ending: Ending,
+}
+
+/// A device that is lost takes its buffers along: so often is the picture copied to the host...
+const KEEP_EVERY: Duration = Duration::from_secs(10);
+/// ...unless copying it takes more than one part in so many of the time.
+const KEEP_COST: u32 = 20;
+
+/// Makes passes until a stop condition holds or `interrupted` is set, which ends it after the pass in hand; calls
+/// `observer` after each. Fails only where there is no picture to give; an engine that fails later gives the picture
+/// of the passes before, or the last one kept of them.
+pub fn render(
+    engine: &mut dyn Engine,
+    stop: Stop,
+    interrupted: &AtomicBool,
+    observer: &mut dyn FnMut(&Progress),
+) -> Result<Outcome, EngineError> {
+    render_keeping(engine, stop, interrupted, observer, KEEP_EVERY)
+}
+
+fn render_keeping(
+    engine: &mut dyn Engine,
+    stop: Stop,
+    interrupted: &AtomicBool,
+    observer: &mut dyn FnMut(&Progress),
+    keep_every: Duration,
+) -> Result<Outcome, EngineError> {
+    let start = Instant::now();
+    let mut progress =
+        Progress { stop, passes: 0, photons: 0, eye_paths: 0, rays: 0, radius: 0.0, elapsed: Duration::ZERO };
+    let mut kept: Option<(Picture, Progress)> = None;
+    let mut next_keep = keep_every;
+    progress.add(&engine.pass()?, start.elapsed());
+    let ending = loop {
+        observer(&progress);
+        if interrupted.load(Ordering::Relaxed) {
+            break Ending::Interrupted;
+        }
+        if progress.passes >= stop.passes {
+            break Ending::Passes;
+        }
+        if stop.time.is_some_and(|time| progress.elapsed >= time) {
+            break Ending::Time;
+        }
+        if progress.elapsed >= next_keep {
+            match engine.picture() {
+                Ok(picture) => kept = Some((picture, progress)),
+                Err(error) => break Ending::Failed(error),
+            }
+            let cost = start.elapsed() - progress.elapsed;
+            next_keep = start.elapsed() + keep_every.max(KEEP_COST * cost);
+        }
+        match engine.pass() {
+            Ok(report) => progress.add(&report, start.elapsed()),
+            Err(error) => break Ending::Failed(error),
+        }
+    };
+    match (engine.picture(), ending) {
+        (Ok(picture), ending) => Ok(Outcome { picture, progress, ending }),
+        (Err(_), Ending::Failed(error)) | (Err(error), _) => last_kept(kept, error),
+    }
+}
+
+fn last_kept(kept: Option<(Picture, Progress)>, error: EngineError) -> Result<Outcome, EngineError> {
+    match kept {
+        Some((picture, progress)) => Ok(Outcome { picture, progress, ending: Ending::Failed(error) }),
+        None => Err(error),
+    }
+}
+
+/// Theory: an engine that counts its passes into the picture shows by the picture alone how many were made, and the
+/// totals are the sums over its reports.
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Each pixel of its picture is the number of passes made. It fails in pass `fails_in`, and after that gives its
+    /// picture only if `survives`.
+    struct Counter {
+        passes: u32,
+        fails_in: u32,
+        survives: bool,
+        pictures_taken: u32,
+    }
+
+    const NEVER: u32 = u32::MAX;
+
+    fn counter(fails_in: u32, survives: bool) -> Counter {
+        Counter { passes: 0, fails_in, survives, pictures_taken: 0 }
+    }
+
+    impl Engine for Counter {
+        fn device(&self) -> &str {
+            "counter"
+        }
+
+        fn pass(&mut self) -> Result<PassReport, EngineError> {
+            if self.passes + 1 == self.fails_in {
+                return Err(EngineError::DeviceLost(format!("in pass {}", self.fails_in)));
+            }
+            self.passes += 1;
+            let i = u64::from(self.passes);
+            Ok(PassReport { photons: 10, records: 3, eye_paths: 7, rays: 100 * i, radius: 1.0 / i as f64 })
+        }
+
+        fn picture(&mut self) -> Result<Picture, EngineError> {
+            self.pictures_taken += 1;
+            if self.passes + 1 >= self.fails_in && !self.survives {
+                return Err(EngineError::DeviceLost("no picture".into()));
+            }
+            Ok(Picture::from_fn(2, 1, |_, _| [self.passes as f32; 3]))
+        }
+    }
+
+    fn passes(passes: u32) -> Stop {
+        Stop { passes, time: None }
+    }
+
+    fn run(engine: &mut Counter, stop: Stop, keep_every: Duration) -> Result<Outcome, EngineError> {
+        render_keeping(engine, stop, &AtomicBool::new(false), &mut |_| (), keep_every)
+    }
+
+    fn shown(outcome: &Outcome) -> f32 {
+        outcome.picture.rgb[1][2]
+    }
+
+    #[test]
+    fn makes_all_passes_and_adds_them_up() {
+        let mut seen = Vec::new();
+        let mut engine = counter(NEVER, true);
+        let outcome = render(&mut engine, passes(5), &AtomicBool::new(false), &mut |p| {
+            seen.push((p.passes, p.share()))
+        })
+        .unwrap();
+        assert!(matches!(outcome.ending, Ending::Passes));
+        assert_eq!(shown(&outcome), 5.0);
+        let p = outcome.progress;
+        assert_eq!((p.passes, p.photons, p.eye_paths, p.rays, p.radius), (5, 50, 35, 1500, 0.2));
+        assert_eq!(seen, [(1, 0.2), (2, 0.4), (3, 0.6), (4, 0.8), (5, 1.0)]);
+        assert_eq!(p.remaining(), Duration::ZERO);
+    }
+
+    #[test]
+    fn an_interrupt_ends_it_after_the_pass_in_hand() {
+        let interrupted = AtomicBool::new(false);
+        let mut observer = |p: &Progress| interrupted.store(p.passes == 3, Ordering::Relaxed);
+        let outcome = render(&mut counter(NEVER, true), passes(100), &interrupted, &mut observer).unwrap();
+        assert!(matches!(outcome.ending, Ending::Interrupted));
+        assert_eq!((shown(&outcome), outcome.progress.passes), (3.0, 3));
+        // One that comes before the first pass still leaves a picture.
+        let outcome =
+            render(&mut counter(NEVER, true), passes(100), &AtomicBool::new(true), &mut |_| ()).unwrap();
+        assert_eq!(shown(&outcome), 1.0);
+    }
+
+    #[test]
+    fn time_ends_it_between_passes() {
+        let stop = Stop { passes: u32::MAX, time: Some(Duration::from_millis(20)) };
+        let mut slow = |_: &Progress| std::thread::sleep(Duration::from_millis(8));
+        let outcome = render(&mut counter(NEVER, true), stop, &AtomicBool::new(false), &mut slow).unwrap();
+        assert!(matches!(outcome.ending, Ending::Time));
+        assert!((2..=4).contains(&outcome.progress.passes), "{:?}", outcome.progress);
+        assert_eq!(outcome.progress.share(), 1.0);
+        let none = Stop { passes: 9, time: Some(Duration::ZERO) };
+        assert_eq!(shown(&run(&mut counter(NEVER, true), none, KEEP_EVERY).unwrap()), 1.0);
+    }
+
+    #[test]
+    fn a_failure_saves_the_passes_before() {
+        for k in 2..6 {
+            let outcome = run(&mut counter(k, true), passes(8), KEEP_EVERY).unwrap();
+            assert!(matches!(outcome.ending, Ending::Failed(EngineError::DeviceLost(_))));
+            assert_eq!((shown(&outcome), outcome.progress.passes), ((k - 1) as f32, k - 1));
+        }
+    }
+
+    #[test]
+    fn a_lost_device_leaves_the_last_kept_picture() {
+        // Kept after passes 1 to 4; the fifth picture is refused since pass 6 is the one that fails.
+        let outcome = run(&mut counter(6, false), passes(8), Duration::ZERO);
+        let outcome = outcome.unwrap();
+        assert!(
+            matches!(&outcome.ending, Ending::Failed(EngineError::DeviceLost(_))),
+            "{:?}",
+            outcome.ending
+        );
+        assert_eq!((shown(&outcome), outcome.progress.passes), (4.0, 4));
+        // With nothing kept there is nothing to give, and the first failure is the one told.
+        let error = run(&mut counter(6, false), passes(8), KEEP_EVERY).unwrap_err();
+        assert_eq!(error.to_string(), "the device was lost: in pass 6");
+        assert!(run(&mut counter(1, true), passes(8), KEEP_EVERY).is_err());
+    }
+
+    #[test]
+    fn short_renders_read_the_picture_once() {
+        let mut engine = counter(NEVER, true);
+        run(&mut engine, passes(50), KEEP_EVERY).unwrap();
+        assert_eq!(engine.pictures_taken, 1);
+    }
+}
