@@ -31,6 +31,44 @@ struct DirectLight {
     rays: u32,
 }
 
+fn next_event(
+    s: Surface,
+    wo: vec3f,
+    n: vec3f,
+    ng: vec3f,
+    reflectance: vec3f,
+    medium: u32,
+    mis: bool,
+    u: vec4f,
+) -> DirectLight {
+    let kind = scene.materials[s.material].kind;
+    let alpha = scene.materials[s.material].alpha;
+    let origin = s.position + ng * s.error;
+    let light = sample_light(origin, u);
+    if dot(light.direction, ng) <= 0.0 || max_component(light.radiance) <= 0.0 {
+        return DirectLight(vec3f(0.0), 0u);
+    }
+    let f = eval_rough(kind, alpha, reflectance, n, wo, light.direction);
+    if max_component(f) <= 0.0 {
+        return DirectLight(vec3f(0.0), 0u);
+    }
+    let ray = Ray(origin, 0.0, light.direction, light.distance);
+    if occluded(ray) {
+        return DirectLight(vec3f(0.0), 1u);
+    }
+    var weight = 1.0 / light.pdf;
+    //#if metal
+    if mis && light.extended {
+        weight *= balance(light.pdf, pdf_rough(kind, alpha, n, wo, light.direction));
+    }
+    //#end
+    var radiance = f * light.radiance * weight;
+    if light.distance < FAR {
+        radiance *= transmittance(medium, light.distance);
+    }
+    return DirectLight(radiance, 1u);
+}
+
 fn direct_light(
     s: Surface,
     wo: vec3f,
@@ -41,36 +79,15 @@ fn direct_light(
     rng: ptr<function, Rng>,
 ) -> DirectLight {
     let kind = scene.materials[s.material].kind;
-    let alpha = scene.materials[s.material].alpha;
-    let origin = s.position + ng * s.error;
-    var radiance = vec3f(0.0);
-    var rays = 0u;
-    let light = sample_light(origin, rng_next(rng));
-    if dot(light.direction, ng) > 0.0 && max_component(light.radiance) > 0.0 {
-        let f = eval_rough(kind, alpha, reflectance, n, wo, light.direction);
-        if max_component(f) > 0.0 {
-            rays += 1u;
-            let ray = Ray(origin, 0.0, light.direction, light.distance);
-            if !occluded(ray) {
-                var weight = 1.0 / light.pdf;
-                //#if metal
-                if kind == MATERIAL_METAL && light.extended {
-                    weight *= balance(light.pdf, pdf_rough(kind, alpha, n, wo, light.direction));
-                }
-                //#end
-                radiance += f * light.radiance * weight;
-                if light.distance < FAR {
-                    radiance *= transmittance(medium, light.distance);
-                }
-            }
-        }
-    }
+    let metal = kind == MATERIAL_METAL;
+    var direct = next_event(s, wo, n, ng, reflectance, medium, metal, rng_next(rng));
     //#if metal
-    if kind == MATERIAL_METAL {
+    if metal {
+        let alpha = scene.materials[s.material].alpha;
         let u = rng_next(rng);
         let scattered = scatter_rough(s, wo, medium, vec2f(u.x, u.y), RADIANCE);
         if max_component(scattered.weight) > 0.0 {
-            rays += 1u;
+            direct.rays += 1u;
             let pdf = pdf_rough(kind, alpha, n, wo, scattered.direction);
             let start = offset_origin(s.position, s.error, ng, scattered.direction);
             let ray = Ray(start, 0.0, scattered.direction, FAR);
@@ -81,7 +98,7 @@ fn direct_light(
                     let sky = scene.lights[scene.world.environment];
                     let other = pdf_environment(sky, ray.direction) * sky.selection;
                     let seen = eval_environment(sky, ray.direction);
-                    radiance += scattered.weight * seen * balance(pdf, other);
+                    direct.radiance += scattered.weight * seen * balance(pdf, other);
                 }
                 //#end
             } else {
@@ -91,13 +108,13 @@ fn direct_light(
                     let lamp = scene.lights[at.light];
                     let other = pdf_light(at.light, start, ray.direction, hit.t, at.normal, at.v);
                     let seen = lamp.color * transmittance(medium, hit.t);
-                    radiance += scattered.weight * seen * balance(pdf, other);
+                    direct.radiance += scattered.weight * seen * balance(pdf, other);
                 }
                 //#end
             }
         }
     }
     //#end
-    return DirectLight(radiance, rays);
+    return direct;
 }
 //#end

@@ -20,15 +20,16 @@ fn resolve(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups) g
         sum += pass_radiance(at, dispatch.scale_sq);
         //#end
     }
-    let value = sum * (1.0 / f32(dispatch.eye_samples));
-    var pixel = film[id];
-    if is_finite(value) {
-        let n = f32(dispatch.passes_done + 1u - pixel.rejected);
-        pixel.mean += (value - pixel.mean) * (1.0 / n);
-    } else {
-        pixel.rejected += 1u;
+    fold(id, sum * (1.0 / f32(dispatch.eye_samples)));
+}
+
+fn fold(id: u32, value: vec3f) {
+    if !is_finite(value) {
+        film[id].rejected += 1u;
+        return;
     }
-    film[id] = pixel;
+    let n = f32(dispatch.passes_done + 1u - film[id].rejected);
+    film[id].mean += (value - film[id].mean) * (1.0 / n);
 }
 
 fn pass_radiance(at: u32, scale_sq: f32) -> vec3f {

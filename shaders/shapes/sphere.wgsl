@@ -4,7 +4,9 @@ fn intersect_sphere(sphere: Sphere, reference: u32, ray: Ray, hit: ptr<function,
     let k = sphere.curvature;
     let d0 = ray.origin - sphere.anchor;
     let side = dot(d0, sphere.normal) + 0.5 * k * dot(d0, d0);
-    if side >= 0.0 && dot(ray.direction, sphere.normal) + k * dot(d0, ray.direction) >= 0.0 {
+    // light from infinity starts behind its origin, so that the origin's side says nothing
+    let backward = ray.t_min < 0.0;
+    if !backward && side >= 0.0 && dot(ray.direction, sphere.normal) + k * dot(d0, ray.direction) >= 0.0 {
         return;
     }
     // from the point of the ray nearest to the anchor: small numbers however far the origin is
@@ -25,7 +27,8 @@ fn intersect_sphere(sphere: Sphere, reference: u32, ray: Ray, hit: ptr<function,
     }
     let near = t0 + min(t1, t2);
     let far = t0 + max(t1, t2);
-    let t = select(far, near, side >= 0.0);
+    let from_outside = select(side >= 0.0, near > ray.t_min, backward);
+    let t = select(far, near, from_outside);
     if t > ray.t_min && t < (*hit).t {
         *hit = Hit(t, reference, 0.0, 0.0);
     }

@@ -28,9 +28,9 @@ macro_rules! fragments {
 
 /// All shader files, in the order in which they are put together.
 pub const FRAGMENTS: &[Fragment] = fragments![
-    "tables.wgsl" if "scene || gather",
+    "tables.wgsl" if "scene || gather && metal",
     "math/vector.wgsl" if "scene || gather || resolve",
-    "math/trig.wgsl" if "scene || gather",
+    "math/trig.wgsl" if "scene || gather && metal",
     "math/rng.wgsl" if "scene",
     "math/sampling.wgsl" if "scene",
     "shapes/ray.wgsl" if "scene",
@@ -46,7 +46,7 @@ pub const FRAGMENTS: &[Fragment] = fragments![
     "materials/texture.wgsl" if "scene && textures",
     "materials/glass.wgsl" if "scene && glass",
     "materials/metal.wgsl" if "scene && metal || gather && metal",
-    "materials/scatter.wgsl" if "scene || gather",
+    "materials/scatter.wgsl" if "scene || gather && metal",
     "lights/shape.wgsl" if "scene && lights",
     "lights/light.wgsl" if "scene && lights",
     "lights/emission.wgsl" if "photon_trace",

@@ -12,7 +12,9 @@ pub fn intersect_sphere(sphere: &Sphere, reference: u32, ray: &Ray, hit: &mut Hi
     let k = sphere.curvature;
     let d0 = ray.origin - sphere.anchor;
     let side = d0.dot(sphere.normal) + 0.5 * k * d0.dot(d0);
-    if side >= 0.0 && ray.direction.dot(sphere.normal) + k * d0.dot(ray.direction) >= 0.0 {
+    // light from infinity starts behind its origin, so that the origin's side says nothing
+    let backward = ray.t_min < 0.0;
+    if !backward && side >= 0.0 && ray.direction.dot(sphere.normal) + k * d0.dot(ray.direction) >= 0.0 {
         return;
     }
     // from the point of the ray nearest to the anchor: small numbers however far the origin is
@@ -30,7 +32,8 @@ pub fn intersect_sphere(sphere: &Sphere, reference: u32, ray: &Ray, hit: &mut Hi
     let t2 = if q == 0.0 { t1 } else { 2.0 * c / q };
     let near = t0 + t1.min(t2);
     let far = t0 + t1.max(t2);
-    let t = if side >= 0.0 { near } else { far };
+    let from_outside = if backward { near > ray.t_min } else { side >= 0.0 };
+    let t = if from_outside { near } else { far };
     if t > ray.t_min && t < hit.t {
         *hit = Hit { t, reference, u: 0.0, v: 0.0 };
     }
