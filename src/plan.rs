@@ -310,7 +310,7 @@ fn key_bits(max_bounces: u32) -> u32 {
 
 /// Columns of the most nearly square arrangement of `n` strata.
 fn strata(n: u32) -> u32 {
-    (1..=n).filter(|c| n % c == 0 && c * c <= n).max().unwrap_or(1)
+    (1..=n).filter(|c| n.is_multiple_of(*c) && c * c <= n).max().unwrap_or(1)
 }
 
 /// `r_i^2 / r_1^2 = prod_{k=1}^{i-1} (k + alpha) / (k + 1)` (Knaus & Zwicker 2011, eq. 20), in closed form

@@ -89,10 +89,16 @@ pub struct Outcome {
     pub ending: Ending,
 }
 
-/// A device that is lost takes its buffers along: so often is the picture copied to the host...
-const KEEP_EVERY: Duration = Duration::from_secs(10);
-/// ...unless copying it takes more than one part in so many of the time.
-const KEEP_COST: u32 = 20;
+/// How often the picture is copied to the host, since a device that is lost takes its buffers along.
+#[derive(Clone, Copy)]
+struct Keep {
+    /// Time between copies.
+    every: Duration,
+    /// At least so many times the time that a copy takes.
+    times_cost: u32,
+}
+
+const KEEP: Keep = Keep { every: Duration::from_secs(10), times_cost: 20 };
 
 /// Makes passes until a stop condition holds or `interrupted` is set, which ends it after the pass in hand; calls
 /// `observer` after each. Fails only where there is no picture to give; an engine that fails later gives the picture
@@ -103,7 +109,7 @@ pub fn render(
     interrupted: &AtomicBool,
     observer: &mut dyn FnMut(&Progress),
 ) -> Result<Outcome, EngineError> {
-    render_keeping(engine, stop, interrupted, observer, KEEP_EVERY)
+    render_keeping(engine, stop, interrupted, observer, KEEP)
 }
 
 fn render_keeping(
@@ -111,13 +117,13 @@ fn render_keeping(
     stop: Stop,
     interrupted: &AtomicBool,
     observer: &mut dyn FnMut(&Progress),
-    keep_every: Duration,
+    keep: Keep,
 ) -> Result<Outcome, EngineError> {
     let start = Instant::now();
     let mut progress =
         Progress { stop, passes: 0, photons: 0, eye_paths: 0, rays: 0, radius: 0.0, elapsed: Duration::ZERO };
     let mut kept: Option<(Picture, Progress)> = None;
-    let mut next_keep = keep_every;
+    let mut next_keep = keep.every;
     progress.add(&engine.pass()?, start.elapsed());
     let ending = loop {
         observer(&progress);
@@ -136,7 +142,7 @@ fn render_keeping(
                 Err(error) => break Ending::Failed(error),
             }
             let cost = start.elapsed() - progress.elapsed;
-            next_keep = start.elapsed() + keep_every.max(KEEP_COST * cost);
+            next_keep = start.elapsed() + keep.every.max(keep.times_cost * cost);
         }
         match engine.pass() {
             Ok(report) => progress.add(&report, start.elapsed()),
@@ -204,8 +210,8 @@ mod tests {
         Stop { passes, time: None }
     }
 
-    fn run(engine: &mut Counter, stop: Stop, keep_every: Duration) -> Result<Outcome, EngineError> {
-        render_keeping(engine, stop, &AtomicBool::new(false), &mut |_| (), keep_every)
+    fn run(engine: &mut Counter, stop: Stop, keep: Keep) -> Result<Outcome, EngineError> {
+        render_keeping(engine, stop, &AtomicBool::new(false), &mut |_| (), keep)
     }
 
     fn shown(outcome: &Outcome) -> f32 {
@@ -250,13 +256,13 @@ mod tests {
         assert!((2..=4).contains(&outcome.progress.passes), "{:?}", outcome.progress);
         assert_eq!(outcome.progress.share(), 1.0);
         let none = Stop { passes: 9, time: Some(Duration::ZERO) };
-        assert_eq!(shown(&run(&mut counter(NEVER, true), none, KEEP_EVERY).unwrap()), 1.0);
+        assert_eq!(shown(&run(&mut counter(NEVER, true), none, KEEP).unwrap()), 1.0);
     }
 
     #[test]
     fn a_failure_saves_the_passes_before() {
         for k in 2..6 {
-            let outcome = run(&mut counter(k, true), passes(8), KEEP_EVERY).unwrap();
+            let outcome = run(&mut counter(k, true), passes(8), KEEP).unwrap();
             assert!(matches!(outcome.ending, Ending::Failed(EngineError::DeviceLost(_))));
             assert_eq!((shown(&outcome), outcome.progress.passes), ((k - 1) as f32, k - 1));
         }
@@ -265,8 +271,8 @@ mod tests {
     #[test]
     fn a_lost_device_leaves_the_last_kept_picture() {
         // Kept after passes 1 to 4; the fifth picture is refused since pass 6 is the one that fails.
-        let outcome = run(&mut counter(6, false), passes(8), Duration::ZERO);
-        let outcome = outcome.unwrap();
+        let always = Keep { every: Duration::ZERO, times_cost: 0 };
+        let outcome = run(&mut counter(6, false), passes(8), always).unwrap();
         assert!(
             matches!(&outcome.ending, Ending::Failed(EngineError::DeviceLost(_))),
             "{:?}",
@@ -274,15 +280,15 @@ mod tests {
         );
         assert_eq!((shown(&outcome), outcome.progress.passes), (4.0, 4));
         // With nothing kept there is nothing to give, and the first failure is the one told.
-        let error = run(&mut counter(6, false), passes(8), KEEP_EVERY).unwrap_err();
+        let error = run(&mut counter(6, false), passes(8), KEEP).unwrap_err();
         assert_eq!(error.to_string(), "the device was lost: in pass 6");
-        assert!(run(&mut counter(1, true), passes(8), KEEP_EVERY).is_err());
+        assert!(run(&mut counter(1, true), passes(8), KEEP).is_err());
     }
 
     #[test]
     fn short_renders_read_the_picture_once() {
         let mut engine = counter(NEVER, true);
-        run(&mut engine, passes(50), KEEP_EVERY).unwrap();
+        run(&mut engine, passes(50), KEEP).unwrap();
         assert_eq!(engine.pictures_taken, 1);
     }
 }

@@ -64,7 +64,7 @@ impl KdTree {
 }
 
 /// Cost of a primitive's test relative to a node visit (`K_I / K_T` in the paper).
-pub const INTERSECTION_COST: f64 = 1.5;
+pub const INTERSECTION_COST: f64 = 0.3;
 /// Factor on the cost of a plane that cuts off empty space (`lambda`).
 const EMPTY_BONUS: f64 = 0.8;
 /// Nodes with more primitives are split at evenly spaced planes.
@@ -140,10 +140,8 @@ fn subtree(prims: &[Primitive], items: Vec<Item>, cell: Aabb, levels: u32) -> Su
     let (low, high) = cell.split(plane.axis, plane.position);
     let (left, right) = partition(prims, &items, plane, low, high);
     drop(items);
-    let (left, right) = rayon::join(
-        || subtree(prims, left, low, levels - 1),
-        || subtree(prims, right, high, levels - 1),
-    );
+    let (left, right) =
+        rayon::join(|| subtree(prims, left, low, levels - 1), || subtree(prims, right, high, levels - 1));
     joined(plane.axis, plane.position, left, right)
 }
 

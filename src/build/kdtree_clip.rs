@@ -42,11 +42,8 @@ fn clipped_triangle(points: &[Vec3; 3], cell: Aabb) -> Option<Aabb> {
     let corners = &polygon[..count];
     let low = corners.iter().copied().reduce(DVec3::min)?;
     let high = corners.iter().copied().reduce(DVec3::max)?;
-    Some(Aabb {
-        min: low.to_array().map(rounded_down).into(),
-        max: high.to_array().map(rounded_up).into(),
-    })
-    .map(|b: Aabb| Aabb { min: b.min.clamp(cell.min, cell.max), max: b.max.clamp(cell.min, cell.max) })
+    Some(Aabb { min: low.to_array().map(rounded_down).into(), max: high.to_array().map(rounded_up).into() })
+        .map(|b: Aabb| Aabb { min: b.min.clamp(cell.min, cell.max), max: b.max.clamp(cell.min, cell.max) })
 }
 
 /// Keeps the corners with `side * (x - plane) >= 0` and adds those where an edge crosses.

@@ -201,7 +201,8 @@ fn best_split(events: &Events, count: usize, cell: Aabb) -> Option<Split> {
             right -= ends + planar;
             let p = position(here << 32);
             if p > cell.min[axis] && p < cell.max[axis] {
-                for planar_left in [true, false] {
+                let choices: &[bool] = if planar > 0 { &[true, false] } else { &[true] };
+                for &planar_left in choices {
                     let (l, r) = if planar_left { (left + planar, right) } else { (left, right + planar) };
                     let cost = heuristic.cost(p, l, r);
                     if cost < best_cost {

@@ -29,10 +29,10 @@ pub struct Arguments {
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Exit with 3 where a channel's means differ by more than this share, as in 0.005
-    #[arg(long, value_name = "SHARE", value_parser = share)]
+    #[arg(long, value_name = "SHARE", value_parser = share, allow_negative_numbers = true)]
     max_mean_ratio: Option<f64>,
     /// Exit with 3 where relMSE is more than this
-    #[arg(long, value_name = "X", value_parser = share)]
+    #[arg(long, value_name = "X", value_parser = share, allow_negative_numbers = true)]
     max_relmse: Option<f64>,
     /// Exit with 3 where a bit differs
     #[arg(long)]
@@ -140,7 +140,9 @@ fn passed_thresholds(arguments: &Arguments, comparison: &Comparison) -> Vec<Stri
     };
     hold("difference of the means", comparison.mean_error(), arguments.max_mean_ratio);
     hold("relMSE", comparison.rel_mse, arguments.max_relmse);
-    hold("pixels of other bits", comparison.pixels_differing as f64, arguments.bits.then_some(0.0));
+    if arguments.bits && comparison.pixels_differing > 0 {
+        over.push(format!("{} pixels of other bits, at most 0", comparison.pixels_differing));
+    }
     over
 }
 

@@ -3,7 +3,11 @@
 use std::fmt;
 use std::path::PathBuf;
 
-use caustica::scene::{Environment, Light, MaterialKind, Scene, ShapeKind, TextureKind};
+use caustica::engine::EngineError;
+use caustica::features;
+use caustica::pack::{Packed, pack};
+use caustica::plan::{Kernel, Plan};
+use caustica::tables::Scene;
 
 use super::output::result;
 use super::overrides::Overrides;
@@ -34,45 +38,51 @@ pub struct InfoReport {
 pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     let (scene, settings) = load(&arguments.scene, &arguments.overrides)?;
     let film = scene.film;
+    let packed = pack(&scene, film.width, film.height).map_err(EngineError::from)?;
+    let plan = Plan::new(&packed, &settings);
     result(format_args!(
         "{}: {} x {} pixels, {} passes",
         scene.name, film.width, film.height, settings.passes
     ))?;
-    result(InfoReport { features: features(&scene), ..InfoReport::default() })?;
+    result(report(&packed, &plan))?;
     Ok(Done::Fully)
 }
 
-/// Every feature that scenes may have, and whether this one has it.
-fn features(scene: &Scene) -> Vec<(String, bool)> {
-    let shape = |is: fn(&ShapeKind) -> bool| scene.shapes.iter().any(|shape| is(&shape.kind));
-    let material = |is: fn(&MaterialKind) -> bool| scene.materials.iter().any(|material| is(&material.kind));
-    let texture = |is: fn(&TextureKind) -> bool| scene.textures.iter().any(|texture| is(&texture.kind));
-    let light = |is: fn(&Light) -> bool| scene.lights.iter().any(is);
-    let environment = |is: fn(&Environment) -> bool| scene.environment.as_ref().is_some_and(is);
-    let features = [
-        ("spheres", shape(|kind| matches!(kind, ShapeKind::Sphere { .. }))),
-        ("rectangles", shape(|kind| matches!(kind, ShapeKind::Rectangle { .. }))),
-        ("discs", shape(|kind| matches!(kind, ShapeKind::Disc { .. }))),
-        ("planes", shape(|kind| matches!(kind, ShapeKind::Plane { .. }))),
-        ("boxes", shape(|kind| matches!(kind, ShapeKind::Cuboid { .. }))),
-        ("meshes", shape(|kind| matches!(kind, ShapeKind::Mesh(_)))),
-        ("revolutions", shape(|kind| matches!(kind, ShapeKind::Revolution { .. }))),
-        ("diffuse", material(|kind| matches!(kind, MaterialKind::Diffuse { .. }))),
-        ("mirror", material(|kind| matches!(kind, MaterialKind::Mirror { .. }))),
-        ("glass", material(|kind| matches!(kind, MaterialKind::Glass { .. }))),
-        ("metal", material(|kind| matches!(kind, MaterialKind::Metal { .. }))),
-        ("area lights", scene.shapes.iter().any(|shape| shape.is_emitter())),
-        ("point lights", light(|light| matches!(light, Light::Point { .. }))),
-        ("spot lights", light(|light| matches!(light, Light::Spot { .. }))),
-        ("suns", light(|light| matches!(light, Light::Sun { .. }))),
-        ("constant environment", environment(|light| matches!(light, Environment::Constant { .. }))),
-        ("image environment", environment(|light| matches!(light, Environment::Image { .. }))),
-        ("image textures", texture(|kind| matches!(kind, TextureKind::Image { .. }))),
-        ("checkers", texture(|kind| matches!(kind, TextureKind::Checker { .. }))),
-        ("planks", texture(|kind| matches!(kind, TextureKind::Planks { .. }))),
-        ("lens", scene.camera.aperture > 0.0),
-    ];
-    features.map(|(name, needed)| (name.to_owned(), needed)).to_vec()
+fn report(packed: &Packed, plan: &Plan) -> InfoReport {
+    let features = features::ALL.iter().map(|name| ((*name).to_owned(), plan.features.has(name)));
+    let steps = plan.steps(0, plan.batch_photons);
+    let used = |kernel| steps.iter().any(|step| step.kernel == kernel);
+    let kernels = Kernel::ALL.iter().map(|kernel| (kernel.stem().to_owned(), used(*kernel)));
+    let tables = scene_tables(&packed.scene).into_iter().filter(|(_, bytes)| *bytes > 0);
+    let buffers = tables.chain(plan.buffers()).map(|(name, bytes)| (name.to_owned(), bytes));
+    InfoReport { features: features.collect(), kernels: kernels.collect(), buffers: buffers.collect() }
+}
+
+/// Name and bytes of every table of the flattened scene.
+fn scene_tables(scene: &Scene) -> Vec<(&'static str, u64)> {
+    fn bytes<T>(table: &[T]) -> u64 {
+        size_of_val(table) as u64
+    }
+    vec![
+        ("spheres", bytes(&scene.spheres)),
+        ("rectangles", bytes(&scene.rectangles)),
+        ("discs", bytes(&scene.discs)),
+        ("cuboids", bytes(&scene.cuboids)),
+        ("planes", bytes(&scene.planes)),
+        ("revolutions", bytes(&scene.revolutions)),
+        ("patches", bytes(&scene.patches)),
+        ("profile_points", bytes(&scene.profile_points)),
+        ("unbounded", bytes(&scene.unbounded)),
+        ("materials", bytes(&scene.materials)),
+        ("textures", bytes(&scene.textures)),
+        ("lights", bytes(&scene.lights)),
+        ("distributions", bytes(&scene.distributions)),
+        ("nodes", bytes(&scene.nodes)),
+        ("refs", bytes(&scene.refs)),
+        ("triangles", bytes(&scene.triangles)),
+        ("attributes", bytes(&scene.attributes)),
+        ("texels", bytes(&scene.texels)),
+    ]
 }
 
 impl fmt::Display for InfoReport {

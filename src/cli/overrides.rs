@@ -21,13 +21,13 @@ pub struct Overrides {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     photons: Option<u32>,
     /// Start radius: pixels at the visible point as 2px, or scene units as 0.01
-    #[arg(long, value_name = "R", value_parser = radius)]
+    #[arg(long, value_name = "R", value_parser = radius, allow_negative_numbers = true)]
     radius: Option<Radius>,
     /// How the radius shrinks
     #[arg(long, value_name = "global|local|fixed", value_parser = word::<RadiusRule>)]
     radius_rule: Option<RadiusRule>,
     /// Share of the photons kept when the radius shrinks, above 0 and up to 1
-    #[arg(long, value_name = "A", value_parser = alpha)]
+    #[arg(long, value_name = "A", value_parser = alpha, allow_negative_numbers = true)]
     alpha: Option<f64>,
     /// Where direct light comes from
     #[arg(long, value_name = "sampled|photons", value_parser = word::<Direct>)]

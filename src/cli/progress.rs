@@ -34,7 +34,7 @@ impl Reporter {
         } else if std::io::stderr().is_terminal() {
             let bar = ProgressBar::with_draw_target(Some(BAR_LENGTH), ProgressDrawTarget::stderr());
             let style =
-                ProgressStyle::with_template("{bar:24} {msg}").unwrap_or(ProgressStyle::default_bar());
+                ProgressStyle::with_template("{bar:16} {wide_msg}").unwrap_or(ProgressStyle::default_bar());
             bar.set_style(style);
             Self::Bar(bar)
         } else {

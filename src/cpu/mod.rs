@@ -82,7 +82,8 @@ impl CpuEngine {
         let scene = &self.packed.scene;
         for step in self.plan.steps(self.passes_done, batch_photons) {
             let d = &step.dispatch;
-            let chunk = d.chunk_first as usize..(d.chunk_first + d.end) as usize;
+            let (first, points) = self.plan.chunk(step.chunk);
+            let chunk = first as usize..(first + points) as usize;
             match step.kernel {
                 Kernel::EyeTrace => {
                     report.eye_paths += d.end as u64;

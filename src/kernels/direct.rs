@@ -31,7 +31,6 @@ pub fn medium_before(scene: &Scene, s: &Surface, wo: Vec3, medium: u32) -> u32 {
 
 /// Radiance toward `wo` from one sampled light, and the number of shadow rays. `mis`: weighted against
 /// scattered rays that could meet the same light.
-#[allow(clippy::too_many_arguments)]
 pub fn next_event(
     scene: &Scene,
     s: &Surface,
@@ -70,7 +69,6 @@ pub fn next_event(
 }
 
 /// Radiance toward `wo` from the lights, and the number of rays spent.
-#[allow(clippy::too_many_arguments)]
 pub fn direct_light(
     scene: &Scene,
     s: &Surface,

@@ -132,7 +132,7 @@ fn camera(scene: &scene::Scene, n: &Normalization, width: u32, height: u32) -> C
 
 fn material(m: &scene::Material, unit: f64) -> Material {
     let mut out = Material { texture: NONE, ior: 1.0, ..Material::zeroed() };
-    let mut reflect = |out: &mut Material, r: &Reflectance| match r {
+    let reflect = |out: &mut Material, r: &Reflectance| match r {
         Reflectance::Color(c) => out.reflectance = rgb(*c),
         Reflectance::Texture(t) => out.texture = *t as u32,
     };

@@ -8,7 +8,6 @@ use crate::math::EPS;
 use crate::scene::{self, Mesh, ShapeKind, Transform};
 use crate::shapes::aabb::Aabb;
 use crate::tables::*;
-use bytemuck::Zeroable;
 use glam::{DQuat, DVec2, DVec3, Vec3};
 
 /// Spheres of a larger radius, in scene units, are tested outside of the kd-tree.
@@ -229,7 +228,6 @@ impl Pack<'_> {
             u2: t[2].x,
             v2: t[2].y,
             smooth_normals: normals.is_some() as u32,
-            ..Attributes::zeroed()
         });
         self.out.attributes.len() as u32 - 1
     }

@@ -1,12 +1,14 @@
 //! Rays and hits. Twin: `shaders/shapes/ray.wgsl`.
 
+use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
 /// Stands in a hit's `reference` when nothing was hit.
 pub const NONE: u32 = 0xffff_ffff;
 
 /// A segment of a line: the points `origin + t * direction` with `t_min < t < t_max`.
-#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct Ray {
     /// Where `t` is 0, in scene space.
     pub origin: Vec3,
@@ -19,7 +21,8 @@ pub struct Ray {
 }
 
 /// The nearest hit so far.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct Hit {
     /// Distance along the ray; the ray's `t_max` while nothing was hit.
     pub t: f32,
@@ -33,6 +36,7 @@ pub struct Hit {
 
 impl Hit {
     /// Nothing hit yet on `ray`.
+    #[inline]
     pub fn none(ray: &Ray) -> Hit {
         Hit { t: ray.t_max, reference: NONE, u: 0.0, v: 0.0 }
     }

@@ -23,7 +23,8 @@ pub fn intersect_rectangle(rectangle: &Rectangle, reference: u32, ray: &Ray, hit
     let p = d + ray.direction * t;
     let s = p.dot(rectangle.dual_u);
     let r = p.dot(rectangle.dual_v);
-    if s >= -EDGE && s <= 1.0 + EDGE && r >= -EDGE && r <= 1.0 + EDGE {
+    let inside = -EDGE..=1.0 + EDGE;
+    if inside.contains(&s) && inside.contains(&r) {
         *hit = Hit { t, reference, u: s, v: r };
     }
 }

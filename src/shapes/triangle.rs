@@ -107,8 +107,7 @@ pub fn intersect_triangle(triangle: &Triangle, reference: u32, shear: &RayShear,
     }
     let mut det = u + v + w;
     // Thin: the rounding of the products would move the hit by more than about 8 roundings of the triangle's size.
-    let products =
-        cb0.abs().max(cb1.abs()).max(ac0.abs()).max(ac1.abs()).max(ba0.abs()).max(ba1.abs());
+    let products = cb0.abs().max(cb1.abs()).max(ac0.abs()).max(ac1.abs()).max(ba0.abs()).max(ba1.abs());
     if det.abs() < 0.5 * products {
         u = exact_cross(c.x, c.y, b.x, b.y);
         v = exact_cross(a.x, a.y, c.x, c.y);
@@ -123,7 +122,8 @@ pub fn intersect_triangle(triangle: &Triangle, reference: u32, shear: &RayShear,
     }
     let t = (u * a.z + v * b.z + w * c.z) / det;
     if t > ray.t_min && t < hit.t {
-        *hit = Hit { t, reference, u: v / det, v: w / det };
+        // Not negative; this settles the sign of zero.
+        *hit = Hit { t, reference, u: (v / det).abs(), v: (w / det).abs() };
     }
 }
 

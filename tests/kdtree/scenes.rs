@@ -118,7 +118,11 @@ pub fn displaced_sphere(nu: usize, nv: usize) -> Vec<[Vec3; 3]> {
     grid_mesh(nu, nv, |a, b| {
         // The poles exactly, so that the mesh is closed.
         let (u, v) = (a * TAU, b * PI);
-        let (r, s) = if b == 0.0 || b == 1.0 { (1.0, 0.0) } else { (1.0 + 0.1 * (7.0 * u).sin() * (9.0 * v).sin(), v.sin()) };
+        let (r, s) = if b == 0.0 || b == 1.0 {
+            (1.0, 0.0)
+        } else {
+            (1.0 + 0.1 * (7.0 * u).sin() * (9.0 * v).sin(), v.sin())
+        };
         [r * s * u.cos(), r * v.cos(), r * s * u.sin()]
     })
 }
@@ -176,7 +180,9 @@ pub fn scenes() -> Vec<(&'static str, Vec<Primitive>)> {
     for level in 0..3 {
         for i in 0..12 {
             for j in 0..12 {
-                let at = |i: i32, j: i32| Vec3::new(i as f32 / 6.0 - 1.0, level as f32 / 3.0, j as f32 / 6.0 - 1.0);
+                let at = |i: i32, j: i32| {
+                    Vec3::new(i as f32 / 6.0 - 1.0, level as f32 / 3.0, j as f32 / 6.0 - 1.0)
+                };
                 lattice.push([at(i, j), at(i + 1, j), at(i + 1, j + 1)]);
                 lattice.push([at(i, j), at(i + 1, j + 1), at(i, j + 1)]);
             }

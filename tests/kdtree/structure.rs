@@ -68,7 +68,8 @@ fn no_point_of_a_triangle_is_lost() {
     for mesh in [displaced_torus(120, 60), displaced_sphere(40, 20)] {
         let mut tree = build(&prims(&mesh));
         assert_eq!(lost(&mesh, &tree), 0);
-        let full = (0..tree.nodes.len()).find(|&i| tree.nodes[i].is_leaf() && !tree.nodes[i].range().is_empty());
+        let full =
+            (0..tree.nodes.len()).find(|&i| tree.nodes[i].is_leaf() && !tree.nodes[i].range().is_empty());
         tree.nodes[full.expect("a mesh fills leaves")].word1 = 3;
         assert!(lost(&mesh, &tree) > 0, "planted");
     }
@@ -90,12 +91,17 @@ fn separated(t: &[Vec3; 3], cell: Aabb, gap: f64) -> bool {
     })
 }
 
-/// Theory: with perfect splits a leaf names only primitives that enter its cell. Boxes alone would leave about a
-/// third of the references of slanted triangles wrong.
+/// Theory: with perfect splits a leaf names only primitives that enter its cell. Boxes in place of
+/// slanted triangles name many that do not.
 #[test]
 fn leaves_name_only_what_they_hold() {
     let mut rng = Rng(4);
-    let mesh: Vec<[Vec3; 3]> = (0..400).map(|_| [rng.point(), rng.point(), rng.point()]).collect();
+    let mesh: Vec<[Vec3; 3]> = (0..2000)
+        .map(|_| {
+            let p = rng.point();
+            [p, p + 0.4 * rng.point(), p + 0.4 * rng.point()]
+        })
+        .collect();
     let tree = build(&prims(&mesh));
     let wrong = |clipped: bool| -> usize {
         let tree = if clipped {
@@ -109,7 +115,7 @@ fn leaves_name_only_what_they_hold() {
         leaves(&tree).iter().map(count).sum()
     };
     assert_eq!(wrong(true), 0);
-    assert!(wrong(false) > 1000, "planted: boxes in place of triangles");
+    assert!(wrong(false) > 100, "planted: boxes in place of triangles: {}", wrong(false));
 }
 
 /// Theory (Santalo): of the uniformly distributed lines that cross a convex body, the share that crosses a convex part
@@ -146,7 +152,7 @@ fn cost_is_what_random_lines_pay() {
     assert!((mean - 1.05 * expected).abs() > 4.0 * sigma + 1e-3 * expected);
     assert!(tree.stats.cost > INTERSECTION_COST * expected);
     let one_leaf = INTERSECTION_COST * mesh.len() as f64;
-    assert!(tree.stats.cost < 0.01 * one_leaf, "worth building");
+    assert!(tree.stats.cost < 0.02 * one_leaf, "worth building");
 }
 
 fn crosses(b: Aabb, ray: &Ray) -> bool {
@@ -167,14 +173,12 @@ fn one_input_one_tree() {
     assert!(mesh.len() > 1 << 14, "large enough to be split over threads");
     assert!(tree == with(3));
     let mut moved = mesh.clone();
-    if let Primitive::Triangle(p) = &mut moved[777] {
-        p[0] *= 1.01;
-    }
-    assert!(tree != build(&moved), "planted: another vertex, another tree");
+    moved.swap(700, 7000);
+    assert!(tree != build(&moved), "planted: two triangles swapped");
     let all = leaves(&tree);
     assert_eq!(all.len(), tree.stats.leaves);
     assert_eq!(all.iter().filter(|l| l.1.is_empty()).count(), tree.stats.empty_leaves);
     assert_eq!(2 * all.len() - 1, tree.nodes.len());
     assert!(tree.stats.depth <= MAX_DEPTH);
-    assert!(tree.refs.len() < 5 * mesh.len(), "{}", tree.refs.len());
+    assert!(tree.refs.len() < 4 * mesh.len(), "{}", tree.refs.len());
 }

@@ -1,0 +1,192 @@
+//! Renders through the program on the CPU engine.
+//!
+//! Theory: the files, the exit code and the JSON lines are what a script sees; the same command gives the same bytes, and
+//! an interrupted render leaves the picture of whole passes.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::time::Duration;
+
+use caustica::film::{file, read};
+
+const SCENE: &str = r#"
+version = 1
+[camera]
+position = [0.0, 1.0, 5.0]
+target = [0.0, 0.5, 0.0]
+fov = 40.0
+[film]
+width = 32
+height = 24
+[render]
+passes = 3
+photons = 2000
+[materials.white]
+type = "diffuse"
+reflectance = 0.5
+[materials.glass]
+type = "glass"
+ior = 1.5
+[[shapes]]
+type = "sphere"
+center = [0.0, 0.7, 0.0]
+radius = 0.5
+material = "glass"
+[[shapes]]
+type = "disc"
+center = [0.0, 0.0, 0.0]
+normal = [0.0, 1.0, 0.0]
+radius = 3.0
+material = "white"
+[[shapes]]
+type = "disc"
+center = [0.0, 3.0, 1.0]
+normal = [0.0, -1.0, 0.0]
+radius = 0.3
+material = "white"
+emission = [20.0, 20.0, 20.0]
+"#;
+
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("cli_render").join(name);
+    if folder.exists() {
+        fs::remove_dir_all(&folder).unwrap();
+    }
+    fs::create_dir_all(&folder).unwrap();
+    fs::write(folder.join("ball.toml"), SCENE).unwrap();
+    folder
+}
+
+fn command(folder: &Path, arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_caustica"));
+    command.args(arguments).current_dir(folder).env("NO_COLOR", "1");
+    command
+}
+
+fn caustica(folder: &Path, arguments: &[&str]) -> Output {
+    command(folder, arguments).output().unwrap()
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8(bytes.to_vec()).unwrap()
+}
+
+fn json_lines(bytes: &[u8]) -> Vec<serde_json::Value> {
+    text(bytes).lines().map(|line| serde_json::from_str(line).unwrap()).collect()
+}
+
+#[test]
+fn writes_what_is_asked_for_and_says_where() {
+    let folder = folder("outputs");
+    let output = caustica(&folder, &["render", "ball.toml", "--device", "cpu", "-o", "a.exr", "-o", "b.png"]);
+    let error = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{error}");
+    assert_eq!(text(&output.stdout), "a.exr\nb.png\n");
+    for word in ["ball:", "asked for", "3/3 passes", "photons", "rays/s", "radius", "left"] {
+        assert!(error.contains(word), "{word}: {error}");
+    }
+    let exr = file::read_exr(&folder.join("a.exr")).unwrap();
+    assert_eq!((exr.width, exr.height), (32, 24));
+    assert_eq!(exr.attributes["caustica.passes_done"], "3");
+    assert_eq!(exr.attributes["caustica.photons"], "2000");
+    assert_eq!(exr.attributes["caustica.scene_text"], SCENE);
+    let mean = exr.channels["G"].iter().sum::<f32>() / (32.0 * 24.0);
+    assert!(mean > 1e-3, "the picture is not black: {mean}");
+    // Without -o it is the scene's name, in the current folder; --quiet says nothing.
+    let output = caustica(&folder, &["render", "ball.toml", "--device", "cpu", "--quiet"]);
+    assert_eq!((text(&output.stdout).as_str(), text(&output.stderr).as_str()), ("ball.png\n", ""));
+    assert!(folder.join("ball.png").exists());
+}
+
+#[test]
+fn options_replace_the_file_and_equal_commands_give_equal_bytes() {
+    let folder = folder("options");
+    let render = |output: &str, seed: &str| {
+        let options =
+            ["--size", "20x10", "--passes", "2", "--photons", "1500", "--seed", seed, "--radius", "0.1"];
+        let run = ["render", "ball.toml", "--device", "cpu", "--quiet", "-o", output];
+        assert_eq!(caustica(&folder, &[&run[..], &options].concat()).status.code(), Some(0));
+        fs::read(folder.join(output)).unwrap()
+    };
+    let first = render("a.exr", "5");
+    assert!(render("b.exr", "5") == first);
+    // PFM holds the pixels alone, so this is not the seed's attribute.
+    assert!(render("c.pfm", "6") != render("d.pfm", "5"), "the seed counts");
+    let exr = file::read_exr(&folder.join("a.exr")).unwrap();
+    assert_eq!((exr.width, exr.height), (20, 10));
+    assert_eq!(exr.attributes["caustica.radius"], "{\"units\":0.1}");
+}
+
+#[test]
+fn json_tells_start_progress_and_end() {
+    let folder = folder("json");
+    let output = caustica(&folder, &["render", "ball.toml", "--device", "cpu", "--json", "-o", "a.pfm"]);
+    assert_eq!(text(&output.stderr), "");
+    let lines = json_lines(&output.stdout);
+    let events: Vec<&str> = lines.iter().map(|line| line["event"].as_str().unwrap()).collect();
+    assert_eq!((events.first(), events.last()), (Some(&"start"), Some(&"done")));
+    assert!(
+        events[1..events.len() - 1].iter().all(|event| *event == "progress") && events.len() > 2,
+        "{events:?}"
+    );
+    let done = lines.last().unwrap();
+    assert_eq!(
+        (&done["passes"], &done["ended"], &done["outputs"]),
+        (&3.into(), &"passes".into(), &["a.pfm"].into())
+    );
+    assert_eq!(done["photons"], 6000);
+}
+
+#[test]
+fn time_ends_a_render() {
+    let folder = folder("time");
+    let options = ["--device", "cpu", "--json", "--time", "300ms", "-o", "a.pfm"];
+    let output = caustica(&folder, &[&["render", "ball.toml"][..], &options].concat());
+    assert_eq!(output.status.code(), Some(0));
+    let done = json_lines(&output.stdout).pop().unwrap();
+    assert_eq!(done["ended"], "time");
+    assert!(done["passes"].as_u64().unwrap() >= 1 && done["elapsed"].as_f64().unwrap() >= 0.3, "{done}");
+}
+
+#[test]
+fn compare_holds_its_thresholds() {
+    let folder = folder("compare");
+    let compare = |more: &[&str]| {
+        let run = ["compare", "ball.toml", "--device", "cpu", "--device", "cpu", "--quiet"];
+        caustica(&folder, &[&run[..], more].concat())
+    };
+    let same = compare(&["--bits", "--max-relmse", "0", "--max-mean-ratio", "0", "-o", "map.png"]);
+    assert_eq!(same.status.code(), Some(0), "{}", text(&same.stderr));
+    assert!(text(&same.stdout).contains("pixels of other bits  0 of 768"), "{}", text(&same.stdout));
+    assert!(text(&same.stdout).ends_with("map.png\n") && folder.join("map.png").exists());
+}
+
+/// An interrupt while passes are being made: exit 130, and a picture of whole passes, fewer than asked for.
+#[cfg(unix)]
+#[test]
+fn interrupts_save_the_picture() {
+    use std::io::{BufRead, BufReader};
+
+    let folder = folder("interrupt");
+    let options = ["--device", "cpu", "--json", "--passes", "1000000", "-o", "a.exr"];
+    let mut child = command(&folder, &[&["render", "ball.toml"][..], &options].concat())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
+    // The first progress line is there: the render is under way.
+    let first_progress = lines.by_ref().map(Result::unwrap).find(|line| line.contains("\"progress\""));
+    assert!(first_progress.is_some());
+    std::thread::sleep(Duration::from_millis(100));
+    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    let last = lines.map(Result::unwrap).last().unwrap();
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    let done: serde_json::Value = serde_json::from_str(&last).unwrap();
+    assert_eq!((&done["event"], &done["ended"]), (&"done".into(), &"interrupted".into()));
+    let exr = file::read_exr(&folder.join("a.exr")).unwrap();
+    assert_eq!(exr.attributes["caustica.passes_done"], done["passes"].to_string());
+    assert!(done["passes"].as_u64().unwrap() < 1_000_000);
+    assert_eq!(read(&folder.join("a.exr")).unwrap().not_finite(), 0);
+}

@@ -1,0 +1,201 @@
+//! The program's manners, without a render: exit codes and messages.
+//!
+//! Theory: a mistake ends with its own exit code and a message on standard error that names the mistake and the way out;
+//! standard output stays empty, and so does the folder.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+const SCENE: &str = r#"
+version = 1
+[camera]
+position = [0.0, 0.0, 5.0]
+target = [0.0, 0.0, 0.0]
+fov = 40.0
+[film]
+width = 16
+height = 8
+[materials.white]
+type = "diffuse"
+reflectance = 0.5
+[[shapes]]
+type = "sphere"
+center = [0.0, 0.0, 0.0]
+radius = 1.0
+material = "white"
+[[lights]]
+type = "point"
+position = [0.0, 3.0, 3.0]
+intensity = [10.0, 10.0, 10.0]
+"#;
+
+/// A fresh folder with a good scene, `ball.toml`, in it.
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("cli_use").join(name);
+    if folder.exists() {
+        fs::remove_dir_all(&folder).unwrap();
+    }
+    fs::create_dir_all(&folder).unwrap();
+    fs::write(folder.join("ball.toml"), SCENE).unwrap();
+    folder
+}
+
+fn caustica(folder: &Path, arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_caustica"));
+    command.args(arguments).current_dir(folder).env("NO_COLOR", "1").output().unwrap()
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8(bytes.to_vec()).unwrap()
+}
+
+/// Runs in a fresh folder; the code must be as said, standard error must hold all the words, standard output nothing,
+/// and no file may be left.
+fn fails(name: &str, arguments: &[&str], code: i32, words: &[&str]) {
+    let folder = folder(name);
+    let output = caustica(&folder, arguments);
+    let error = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {error}");
+    for word in words {
+        assert!(error.contains(word), "{arguments:?} should say `{word}`: {error}");
+    }
+    assert_eq!(text(&output.stdout), "", "{arguments:?}");
+    let left: Vec<_> = fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    assert_eq!(left, ["ball.toml"], "{arguments:?}");
+}
+
+#[test]
+fn wrong_use_is_2() {
+    fails("none", &[], 2, &["Usage"]);
+    fails("command", &["rendr", "ball.toml"], 2, &["rendr", "render"]);
+    fails("option", &["render", "ball.toml", "--pases", "3"], 2, &["--pases", "--passes"]);
+    fails("no scene", &["render"], 2, &["<SCENE>"]);
+    fails("method", &["render", "ball.toml", "--method", "sspm"], 2, &["sspm", "sppm", "ppm", "path"]);
+    fails("rule", &["render", "ball.toml", "--radius-rule", "x"], 2, &["global", "local", "fixed"]);
+    fails("direct", &["render", "ball.toml", "--direct", "x"], 2, &["sampled", "photons"]);
+    fails("radius", &["render", "ball.toml", "--radius", "-1"], 2, &["2px", "0.01"]);
+    fails("alpha", &["render", "ball.toml", "--alpha", "1.5"], 2, &["up to 1"]);
+    fails("passes", &["render", "ball.toml", "--passes", "0"], 2, &["0"]);
+    fails("size", &["render", "ball.toml", "--size", "640"], 2, &["640x480"]);
+    fails("time", &["render", "ball.toml", "--time", "30"], 2, &["30s"]);
+    fails("device", &["render", "ball.toml", "--device", ""], 2, &["--device"]);
+    fails("devices", &["compare", "ball.toml", "--device", "cpu"], 2, &["two devices", "--device gpu"]);
+    fails("bits", &["compare", "ball.toml", "--max-relmse", "-1"], 2, &["zero or more"]);
+}
+
+#[test]
+fn outputs_are_known_before_the_scene_is_read() {
+    let known = [".png", ".exr", ".pfm", ".hdr"];
+    fails("extension", &["render", "missing.toml", "-o", "a.jpg"], 2, &[&["a.jpg"], &known[..]].concat());
+    fails("bare", &["render", "missing.toml", "-o", "picture"], 2, &known);
+    fails(
+        "twice",
+        &["render", "missing.toml", "-o", "a.png", "-o", "a.png"],
+        2,
+        &["a.png", "more than once"],
+    );
+    fails(
+        "folder",
+        &["render", "missing.toml", "-o", "no/a.png"],
+        1,
+        &["no/a.png", "no folder `no`", "create"],
+    );
+    fails("second", &["render", "missing.toml", "-o", "a.exr", "-o", "no/a.png"], 1, &["no folder `no`"]);
+    fails("map", &["compare", "missing.toml", "-o", "map.exr"], 2, &["map.exr", ".png"]);
+    fails("map folder", &["compare", "missing.toml", "-o", "no/map.png"], 1, &["no folder `no`"]);
+}
+
+#[test]
+fn scenes_with_errors_are_1() {
+    for command in ["render", "info", "compare"] {
+        fails(&format!("missing {command}"), &[command, "missing.toml"], 1, &["missing.toml"]);
+    }
+    for command in ["render", "info", "compare"] {
+        let folder = folder(&format!("bad {command}"));
+        fs::write(folder.join("bad.toml"), SCENE.replace("radius = 1.0", "radius = -1.0")).unwrap();
+        let output = caustica(&folder, &[command, "bad.toml"]);
+        let error = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{error}");
+        assert!(error.contains("bad.toml:16:") && error.contains("radius = -1.0"), "{error}");
+        assert_eq!(fs::read_dir(&folder).unwrap().count(), 2, "nothing is written");
+    }
+}
+
+#[test]
+fn a_device_that_is_not_there_is_4() {
+    fails("device 4", &["render", "ball.toml", "--device", "Voodoo 9"], 4, &["Voodoo 9"]);
+    fails(
+        "compare 4",
+        &["compare", "ball.toml", "--device", "cpu", "--device", "Voodoo 9"],
+        4,
+        &["there is no device"],
+    );
+}
+
+#[test]
+fn check_tells_good_from_bad() {
+    let folder = folder("check");
+    fs::write(folder.join("bad.toml"), SCENE.replace("\"white\"\n[[lights]]", "\"whit\"\n[[lights]]"))
+        .unwrap();
+    let good = caustica(&folder, &["check", "ball.toml"]);
+    assert_eq!((good.status.code(), text(&good.stdout).as_str()), (Some(0), "ball.toml: good\n"));
+    assert_eq!(text(&good.stderr), "");
+    let mixed = caustica(&folder, &["check", "bad.toml", "ball.toml", "missing.toml"]);
+    assert_eq!(mixed.status.code(), Some(1));
+    assert_eq!(text(&mixed.stdout), "bad.toml: bad\nball.toml: good\nmissing.toml: bad\n");
+    let error = text(&mixed.stderr);
+    for word in ["whit", "white", "missing.toml", "2 of 3"] {
+        assert!(error.contains(word), "{word}: {error}");
+    }
+}
+
+#[test]
+fn info_tells_what_is_needed_and_what_is_not() {
+    let folder = folder("info");
+    let output = caustica(&folder, &["info", "ball.toml", "--size", "32x24", "--passes", "7"]);
+    let shown = text(&output.stdout);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    let line = |start: &str| shown.lines().find(|line| line.starts_with(start)).unwrap_or_default();
+    assert!(shown.contains("32 x 24") && shown.contains('7'), "{shown}");
+    assert!(
+        line("features needed").contains("point") && !line("features needed").contains("glass"),
+        "{shown}"
+    );
+    assert!(
+        line("features left out").contains("glass") && !line("features left out").contains("diffuse"),
+        "{shown}"
+    );
+    assert_eq!(line("triangles"), "", "no table that the scene does without: {shown}");
+    let lens = SCENE.replace("fov = 40.0", "fov = 40.0\naperture = 0.1\nfocus = 4.0");
+    fs::write(folder.join("lens.toml"), lens).unwrap();
+    let shown = text(&caustica(&folder, &["info", "lens.toml"]).stdout);
+    assert!(
+        shown.lines().any(|line| line.starts_with("features needed") && line.contains("lens")),
+        "{shown}"
+    );
+}
+
+/// What is not built yet must not be offered.
+#[test]
+fn help_lists_only_what_works() {
+    let folder = folder("help");
+    let help = caustica(&folder, &["--help"]);
+    assert_eq!(help.status.code(), Some(0));
+    let help = text(&help.stdout);
+    for command in ["render", "compare", "info", "check", "devices"] {
+        assert!(help.contains(&format!("\n  {command} ")), "{command}: {help}");
+        let own = caustica(&folder, &[command, "--help"]);
+        assert_eq!(own.status.code(), Some(0), "{command}");
+        assert!(text(&own.stdout).contains("Usage"), "{command}");
+    }
+    for later in ["preview", "study", "diff", "--target-error", "--checkpoint", "--resume"] {
+        assert!(!help.contains(&format!("\n  {later} ")), "{later}: {help}");
+        assert!(!text(&caustica(&folder, &["render", "--help"]).stdout).contains(later), "{later}");
+    }
+    for code in ["0 ", "1 ", "2 ", "3 ", "4 ", "5 ", "130 "] {
+        assert!(help.split("Exit codes:").nth(1).unwrap().contains(code), "{code}");
+    }
+    let version = caustica(&folder, &["--version"]);
+    assert_eq!(text(&version.stdout), format!("caustica {}\n", env!("CARGO_PKG_VERSION")));
+}
