@@ -42,7 +42,15 @@ fn trace(placed: &Placed, o: Vec3, d: Vec3, t_min: f32) -> (PatchHit, u32) {
         if b.patch != last && meets(b.min, b.max, o, d) {
             last = b.patch;
             let t = &placed.tables;
-            let hit = intersect_patch(&t.profile_points, &t.revolutions[0], &t.patches[b.patch as usize], o, d, t_min, best.0.t);
+            let hit = intersect_patch(
+                &t.profile_points,
+                &t.revolutions[0],
+                &t.patches[b.patch as usize],
+                o,
+                d,
+                t_min,
+                best.0.t,
+            );
             if hit.t < best.0.t {
                 best = (hit, b.patch);
             }
@@ -71,8 +79,16 @@ impl Tally {
     fn report(&self) -> String {
         format!(
             "{} rays, {} hits; lost {}, false {}, off {}; ill-conditioned {} (worst {:.1e}); others' worst {:.1e}; bracketed {}; Newton steps {:?}",
-            self.rays, self.hits, self.lost, self.false_hits, self.off, self.ill_conditioned, self.worst,
-            self.worst_well, self.bracketed, self.steps
+            self.rays,
+            self.hits,
+            self.lost,
+            self.false_hits,
+            self.off,
+            self.ill_conditioned,
+            self.worst,
+            self.worst_well,
+            self.bracketed,
+            self.steps
         )
     }
 
@@ -103,7 +119,8 @@ fn excused(placed: &Placed, o: Vec3, d: Vec3, t: f64, first: &OracleHit) -> bool
     let normal = DVec3::new(v.y * p.x / r, -v.x, v.y * p.z / r).normalize();
     let size = scale + f64::from(revolution.center.abs().max_element().max(o.abs().max_element()));
     let shift = normal * (ROUNDINGS * size / scale);
-    let moved = [shift, -shift].map(|s| oracle::all_hits(&placed.segments, lo + s, ld).first().map_or(1e30, |h| h.t));
+    let moved =
+        [shift, -shift].map(|s| oracle::all_hits(&placed.segments, lo + s, ld).first().map_or(1e30, |h| h.t));
     moved[0].min(moved[1]) <= t && t <= moved[0].max(moved[1])
 }
 
@@ -154,7 +171,12 @@ fn agrees_with_the_oracle() {
     for placement in [Placement::default(), skew()] {
         for profile in profiles() {
             let placed = place(&profile, &placement);
-            println!("{}: {} patches, {} boxes", placed.name, placed.tables.patches.len(), placed.boxes.len());
+            println!(
+                "{}: {} patches, {} boxes",
+                placed.name,
+                placed.tables.patches.len(),
+                placed.boxes.len()
+            );
             for class in CLASSES {
                 let start = std::time::Instant::now();
                 let tally = (0..64u64)
