@@ -39,6 +39,8 @@ pub const FRAGMENTS: &[Fragment] = fragments![
     "shapes/disc.wgsl" if "scene && disc || scene && plane",
     "shapes/cuboid.wgsl" if "scene && cuboid",
     "shapes/triangle.wgsl" if "scene && triangle",
+    "shapes/revolution_profile.wgsl" if "scene && revolution",
+    "shapes/revolution_roots.wgsl" if "scene && revolution",
     "shapes/revolution.wgsl" if "scene && revolution",
     "shapes/kdtree.wgsl" if "scene && kdtree",
     "shapes/intersect.wgsl" if "scene",
