@@ -2,3 +2,4 @@
 
 pub mod bezier;
 pub mod revolution;
+pub mod tessellate;
