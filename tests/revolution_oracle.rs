@@ -11,7 +11,7 @@ use revolution::oracle::{self, OracleHit};
 use revolution::profiles::{Placed, place, profiles, skew};
 use revolution::rays::{CLASSES, Random, curve, ray};
 
-/// Rays of each class at each placed profile; 90 such sets make 1.44 million.
+/// Rays of each class at each placed profile; 100 such sets make 1.6 million.
 const RAYS: u64 = 16_000;
 /// Relative to the distance, or to the surface's size where that is larger.
 const DISTANCE: f64 = 1e-5;
@@ -202,4 +202,29 @@ fn agrees_with_the_oracle() {
     assert!(total.ill_conditioned * 10_000 < total.rays);
     let newton: u64 = total.steps.iter().sum();
     assert!(newton > 0 && total.bracketed > 0, "both solvers are used");
+}
+
+// Theory: the comparison above is worth something only if it sees a lost patch, a profile that is off by
+// 1e-4, and a surface that is not there.
+#[test]
+fn the_comparison_notices_planted_errors() {
+    let profile = &profiles()[3];
+    let run = |placed: &Placed| {
+        let mut random = Random(11);
+        (0..4000).fold(Tally::default(), |sum, _| {
+            let (o, d) = ray(placed, CLASSES[0], &mut random);
+            sum.add(compare(placed, o, d))
+        })
+    };
+    let sound = run(&place(profile, &skew()));
+    assert_eq!(sound.lost + sound.false_hits + sound.off, 0);
+    let mut holed = place(profile, &skew());
+    holed.boxes.retain(|b| b.patch != 5);
+    assert!(run(&holed).lost > 10);
+    let mut bent = place(profile, &skew());
+    bent.tables.profile_points.iter_mut().for_each(|p| p.y += 1e-4);
+    assert!(run(&bent).off > 100);
+    let mut grown = place(profile, &skew());
+    grown.segments[0].truncate(3);
+    assert!(run(&grown).false_hits > 100);
 }

@@ -247,7 +247,7 @@ fn pieces(segment: &[DVec2]) -> Vec<Piece> {
     cuts.extend(stops.filter(|&t| point(&velocity, t).length() < 1e-6 * speed));
     cuts.extend([0.0, 1.0]);
     cuts.sort_by(f64::total_cmp);
-    cuts.dedup_by(|b, a| *b - *a < 1e-9);
+    cuts.dedup_by(|b, a| *b - *a < 1e-6);
     for w in cuts.windows(2) {
         let side =
             if point(segment, 0.5 * (w[0] + w[1])).x < 0.0 { DVec2::new(-1.0, 1.0) } else { DVec2::ONE };
@@ -284,7 +284,7 @@ fn slopes(points: &[DVec2]) -> Option<(f64, f64)> {
     }
     let e = chord / length;
     // A leg of no length (at a cusp) turns no tangent.
-    let legs = points.windows(2).map(|w| w[1] - w[0]).filter(|leg| leg.length() > 1e-9 * length);
+    let legs = points.windows(2).map(|w| w[1] - w[0]).filter(|leg| leg.length() > 1e-7 * length);
     let slope = |leg: DVec2| if e.dot(leg) > 0.0 { leg.perp_dot(e) / e.dot(leg) } else { f64::INFINITY };
     let slopes: Vec<f64> = legs.map(slope).collect();
     let bound = slopes.iter().fold(0.0_f64, |a, x| a.max(x.abs()));
