@@ -20,7 +20,7 @@ pub fn pass_radiance(point: &VisiblePoint, gathered: &Gathered, scale_sq: f32, p
         return point.radiance;
     }
     let radius_sq = point.radius * point.radius * scale_sq;
-    point.radiance + gathered.flux * (1.0 / (photons * (PI * radius_sq)))
+    point.radiance + gathered.flux * (1.0 / (PI * photons * radius_sq))
 }
 
 /// Hachisuka's rule with `N = alpha T`, T photons so far: `R'^2 = R^2 alpha (T + m) / (alpha T + m)`.
