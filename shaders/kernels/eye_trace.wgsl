@@ -51,7 +51,7 @@ fn eye_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
             point.radius = start_radius(camera.pixel * length);
             point.normal = oct_encode(ng);
             point.shading = oct_encode(n);
-            point.weight = throughput * (reflectance * INV_PI);
+            point.weight = throughput * INV_PI * reflectance;
             //#if metal
             if kind == MATERIAL_METAL {
                 point.weight = throughput;

@@ -39,7 +39,7 @@ fn pass_radiance(at: u32, scale_sq: f32) -> vec3f {
     }
     let radius = visible_points[at].radius;
     let radius_sq = radius * radius * scale_sq;
-    return radiance + gathered[at].flux * (1.0 / (PI * dispatch.photons * radius_sq));
+    return radiance + gathered[at].flux * (1.0 / (dispatch.photons * (PI * radius_sq)));
 }
 
 //#if local

@@ -48,8 +48,9 @@ fn sample_shape(light: Light, u: vec2f, w: f32) -> ShapePoint {
         case KIND_DISC: {
             let disc = scene.discs[index];
             let d = sample_disc(u) * disc.radius;
+            let f = basis(disc.normal);
             return ShapePoint(
-                disc.center + from_frame(disc.normal, vec3f(d.x, d.y, 0.0)),
+                disc.center + f.t * d.x + f.b * d.y,
                 disc_error(disc),
                 disc.normal,
                 pdf,
