@@ -89,6 +89,12 @@ impl GpuEngine {
         Ok(engine)
     }
 
+    /// The content of a buffer of the plan (a chunk's, if it is one of those), for tests.
+    pub fn content(&self, name: &str, chunk: u32) -> Result<Vec<u8>, EngineError> {
+        let buffer = self.chunks.get(chunk as usize).and_then(|own| own.get(name)).or_else(|| self.shared.get(name));
+        buffer.map_or(Ok(Vec::new()), |buffer| self.gpu.read(buffer, buffer.size()))
+    }
+
     /// Compiles the kernels of the plan. Each runs once over nothing, since some drivers compile at the first run.
     fn compile(&mut self, scene: &SceneTables) -> Result<(), EngineError> {
         for step in self.plan.steps(0, self.plan.batch_photons) {
