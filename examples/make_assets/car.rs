@@ -78,7 +78,7 @@ pub fn chrome() -> Mesh {
 
 /// The closed shell: each section runs from the middle of the underside out, up the side and to the roof's
 /// middle, then down the other side. Wheel wells are where the lower edge is higher than the floor.
-fn body(unwrapping: &Unwrapping) -> Mesh {
+pub fn body(unwrapping: &Unwrapping) -> Mesh {
     const SIDE: usize = 25;
     const INNER: f64 = 0.42;
     let stations = unwrapping.stations();
@@ -92,13 +92,13 @@ fn body(unwrapping: &Unwrapping) -> Mesh {
     for side in [1.0, -1.0] {
         let outward = |p: DVec3| DVec3::new(p.x, p.y, p.z * side);
         // the left half is the mirror image: its columns run the other way, so that it winds outward too
-        let column = |col: usize| if side > 0.0 { SIDE - col } else { col };
+        let column = |col: usize| if side > 0.0 { col } else { SIDE - col };
         mesh.grid(stations.len(), SIDE + 1, |row, col| {
             let u = stations[row];
             let low = unwrapping.lower_edge(unwrapping.x(u));
             let v = lerp(low, 1.0, column(col) as f64 / SIDE as f64);
             let p = tip_or(row, u, v);
-            let p = if column(col) == SIDE { p.with_z(0.0) } else { p };
+            let p = if column(col) == SIDE || v == 0.0 { p.with_z(0.0) } else { p };
             (outward(p), outward(body_normal(p)), atlas(u, v))
         });
         // underside: from the edge in to the well's inner wall, down it, and to the middle
@@ -110,7 +110,7 @@ fn body(unwrapping: &Unwrapping) -> Mesh {
         };
         for (part, normal) in [-DVec3::Y, DVec3::Z, -DVec3::Y].into_iter().enumerate() {
             mesh.grid(stations.len(), 2, |row, col| {
-                let k = if side > 0.0 { part + col } else { part + 1 - col };
+                let k = if side > 0.0 { part + 1 - col } else { part + col };
                 (outward(section(row)[k]), outward(normal), BLACK)
             });
         }
@@ -141,7 +141,7 @@ fn lamp_frame((at, direction, radius): (DVec3, DVec3, f64), side: f64) -> (DMat3
     let x = y.cross(DVec3::Y).normalize();
     let away = DVec3::new(at.x, at.y, at.z * side) + y * 0.5;
     let on_body = meet(away, -y, 1.0).unwrap_or(away);
-    (DMat3::from_cols(x, y, x.cross(y)), on_body + y * (0.1 * radius))
+    (DMat3::from_cols(x, y, x.cross(y)), on_body + y * (0.3 * radius))
 }
 
 /// Turns a profile of (height, radius) about y. Smooth normals; the region is (u0, v0, u1, v1).
