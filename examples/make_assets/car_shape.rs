@@ -13,8 +13,10 @@ pub const WHEEL_RADIUS: f64 = 0.315;
 const ARCH_RADIUS: f64 = 0.375;
 /// Over what length, along x, the arches run out into the sill.
 const ARCH_FOOT: f64 = 0.06;
-/// Height of the body's lower edge.
-pub const SILL: f64 = 0.22;
+/// Height of the underside between the wheel wells.
+pub const FLOOR: f64 = 0.2;
+/// The v of the sill in the unwrapping.
+const SILL_V: f64 = 0.33;
 /// The lowest and highest angle of the unwrapping, about the axis at height [`AXIS_HEIGHT`].
 const ANGLES: (f64, f64) = (-FRAC_PI_2, FRAC_PI_2);
 /// Height of the axis about which the sections are unwrapped.
@@ -124,18 +126,19 @@ impl Unwrapping {
         at_angle(self.x(u), lerp(ANGLES.0, ANGLES.1, v))
     }
 
-    /// The v of the body's lower edge at `x`: the sill, or the rim of a wheel arch.
+    /// The v of the body's lower edge at `x`: the sill, which draws in under nose and tail, or the rim of a
+    /// wheel arch, which runs out into the sill.
     pub fn lower_edge(&self, x: f64) -> f64 {
-        let low = AXLES.iter().fold(SILL, |low, axle| low.max(arch(x - axle)));
-        // from well above the edge down to the first angle that is too low: under a wing it may rise again
-        let height = |v: f64| at_angle(x, lerp(ANGLES.0, ANGLES.1, v)).y;
-        let Some(k) = (0..80).rev().find(|&k| height(f64::from(k) / 100.0) < low) else { return 0.0 };
-        let (mut below, mut above) = (f64::from(k) / 100.0, f64::from(k + 1) / 100.0);
+        let ends = smoothstep(1.66, 1.92, x).max(smoothstep(-1.66, -1.94, x));
+        let sill = SILL_V * (1.0 - ends);
+        let d = AXLES.iter().map(|axle| (x - axle).abs()).fold(f64::MAX, f64::min);
+        let rim = WHEEL_RADIUS + (ARCH_RADIUS * ARCH_RADIUS - d * d).max(0.0).sqrt();
+        let (mut below, mut above) = (0.2, 0.8);
         for _ in 0..40 {
             let v = 0.5 * (below + above);
-            if height(v) < low { below = v } else { above = v }
+            if at_angle(x, lerp(ANGLES.0, ANGLES.1, v)).y < rim { below = v } else { above = v }
         }
-        above
+        lerp(above, sill, smoothstep(ARCH_RADIUS, ARCH_RADIUS + ARCH_FOOT, d))
     }
 
     /// Stations from nose to tail as u, with one at each edge of each arch and more beside these.
@@ -162,14 +165,6 @@ impl Unwrapping {
         }
         stations
     }
-}
-
-/// Height of a wheel arch's rim at `d` from its axle along x: a half circle on feet that run out to the sill.
-fn arch(d: f64) -> f64 {
-    if d.abs() < ARCH_RADIUS {
-        return WHEEL_RADIUS + (ARCH_RADIUS * ARCH_RADIUS - d * d).sqrt();
-    }
-    lerp(WHEEL_RADIUS, SILL, smoothstep(ARCH_RADIUS, ARCH_RADIUS + ARCH_FOOT, d.abs()))
 }
 
 /// Whether the section at `x` passes through a wheel well.
