@@ -8,8 +8,12 @@ use assets::mesh::Mesh;
 use glam::{DVec2, DVec3};
 use std::collections::HashMap;
 use std::path::Path;
+use std::sync::LazyLock;
 
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets");
+
+/// Everything, made once for all tests.
+static MADE: LazyLock<Vec<assets::Asset>> = LazyLock::new(assets::all);
 
 /// Most bytes in one file.
 const SIZE_LIMIT: u64 = 1 << 20;
@@ -83,7 +87,7 @@ fn difference(made: &[u8], shipped: &[u8]) -> Option<String> {
 #[test]
 fn shipped_assets_are_current() {
     let mut wrong = Vec::new();
-    for asset in assets::all() {
+    for asset in MADE.iter() {
         let shipped = std::fs::read(Path::new(FOLDER).join(asset.name)).expect(asset.name);
         let differs = match &asset.content {
             Content::Text(text) => difference(text.as_bytes(), &shipped),
@@ -107,7 +111,7 @@ fn shipped_assets_are_current() {
 /// No file is missing a maker, and none is larger than the limit.
 #[test]
 fn every_file_has_a_maker_and_is_small() {
-    let made: Vec<_> = assets::all().iter().map(|asset| asset.name).collect();
+    let made: Vec<_> = MADE.iter().map(|asset| asset.name).collect();
     for entry in std::fs::read_dir(FOLDER).expect("assets/") {
         let entry = entry.expect("assets/");
         let name = entry.file_name().into_string().expect("a name in UTF-8");
