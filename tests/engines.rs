@@ -342,8 +342,9 @@ fn assets() -> &'static Path {
         std::fs::create_dir_all(&folder).unwrap();
         let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data");
         std::fs::copy(data.join("cube.obj"), folder.join("cube.obj")).unwrap();
-        let picture =
-            image::RgbImage::from_fn(13, 7, |x, y| image::Rgb([(x * 19) as u8, (y * 36) as u8, (x * y * 3) as u8]));
+        let picture = image::RgbImage::from_fn(13, 7, |x, y| {
+            image::Rgb([(x * 19) as u8, (y * 36) as u8, (x * y * 3) as u8])
+        });
         picture.save(folder.join("picture.png")).unwrap();
         let sky = image::Rgb32FImage::from_fn(16, 8, |x, y| {
             let sun = if (x, y) == (5, 2) { 40.0 } else { 0.0 };
@@ -381,7 +382,8 @@ fn planned(settings: &str, rest: &str) -> (Packed, Plan) {
     let lens = if settings.contains("ppm") { "aperture = 0.1\nfocus = 4.3\n" } else { "" };
     let text = format!("{HEAD}{lens}{FILM}\n[render]\nphotons = 6000\npasses = 3\n{settings}\n{FLOOR}{rest}");
     let path = assets().join("scene.toml");
-    let loaded = parse(&path, text.as_bytes()).unwrap_or_else(|e| panic!("{:?}\n{text}", miette::Report::new(e)));
+    let loaded =
+        parse(&path, text.as_bytes()).unwrap_or_else(|e| panic!("{:?}\n{text}", miette::Report::new(e)));
     let packed = pack(&loaded.scene, loaded.scene.film.width, loaded.scene.film.height).unwrap();
     let plan = Plan::new(&packed, &loaded.settings);
     (packed, plan)
@@ -410,7 +412,13 @@ fn difference(a: &(Vec<PassReport>, Picture), b: &(Vec<PassReport>, Picture)) ->
     let (first, second) = (bits(&a.1), bits(&b.1));
     let wrong: Vec<usize> = (0..first.len()).filter(|i| first[*i] != second[*i]).collect();
     let i = *wrong.first()?;
-    Some(format!("{} of {} pixels, the first {:?} and {:?}", wrong.len(), first.len(), a.1.rgb[i], b.1.rgb[i]))
+    Some(format!(
+        "{} of {} pixels, the first {:?} and {:?}",
+        wrong.len(),
+        first.len(),
+        a.1.rgb[i],
+        b.1.rgb[i]
+    ))
 }
 
 /// Which visible point and which photon record of the first pass differ first: tells the kernel that is at fault.
@@ -452,7 +460,11 @@ fn engines_agree_to_the_bit() {
         let cpu = on_cpu(&packed, &plan);
         assert!(cpu.1.rgb.iter().flatten().all(|x| x.is_finite()), "{name}");
         let light = cpu.1.rgb.iter().flatten().sum::<f32>() / cpu.1.rgb.len() as f32;
-        assert!(light > 1e-3 && cpu.0.iter().all(|r| r.records > 20), "{name}: nothing to compare, {:?}", cpu.0);
+        assert!(
+            light > 1e-3 && cpu.0.iter().all(|r| r.records > 20),
+            "{name}: nothing to compare, {:?}",
+            cpu.0
+        );
         if let Some(text) = difference(&cpu, &on_driver(&packed, &plan)) {
             faults.push(format!("{name}: {text}{}", explain(&packed, &plan)));
         }
@@ -513,28 +525,62 @@ fn dbg_triangle() {
     for id in 0..d.end {
         let p = eye_trace(scene, d, true, id).0;
         let g = points[id as usize];
-        if bytes_of(&p.position) == bytes_of(&g.position) { continue; }
+        if bytes_of(&p.position) == bytes_of(&g.position) {
+            continue;
+        }
         n += 1;
-        if n > 6 { continue; }
+        if n > 6 {
+            continue;
+        }
         // the ray again
         let pixel = id / d.eye_samples;
         let mut rng = rng_new(id, d.pass_number, STREAM_EYE, d.seed);
         let r = rng_next(&mut rng);
         let k = id - pixel * d.eye_samples;
-        let columns = d.strata; let rows = d.eye_samples / columns;
+        let columns = d.strata;
+        let rows = d.eye_samples / columns;
         let lens = (k + pixel * 7 + pixel / 3) % d.eye_samples;
-        let u = glam::Vec4::new(((k % columns) as f32 + r.x) / columns as f32, ((k / columns) as f32 + r.y) / rows as f32, ((lens % columns) as f32 + r.z) / columns as f32, ((lens / columns) as f32 + r.w) / rows as f32);
+        let u = glam::Vec4::new(
+            ((k % columns) as f32 + r.x) / columns as f32,
+            ((k / columns) as f32 + r.y) / rows as f32,
+            ((lens % columns) as f32 + r.z) / columns as f32,
+            ((lens / columns) as f32 + r.w) / rows as f32,
+        );
         let ray = camera_ray(&scene.camera, pixel % scene.camera.width, pixel / scene.camera.width, u);
         let hit = intersect_scene(scene, &ray);
         println!("{id} {hit:?} kind {} cpu {:?} gpu {:?}", hit.reference >> 28, p.position, g.position);
         if hit.reference >> 28 == KIND_TRIANGLE {
             let t = &scene.triangles[hit.reference as usize];
-            let e1 = t.p1 - t.p0; let e2 = t.p2 - t.p0;
-            println!("  plain {:?} sum first {:?} e1 {e1} e2 {e2}", t.p0 + (e1 * hit.u + e2 * hit.v), (t.p0 + e1 * hit.u) + e2 * hit.v);
-            let fl = |a: f32, s: f32, s1: f32, du: f32, dv: f32| { let bump = |x: f32, d: f32| f32::from_bits((x.to_bits() as i64 + d as i64) as u32); a + (s * bump(hit.u, du) + s1 * bump(hit.v, dv)) };
-            for (du, dv) in [(0.,0.),(1.,0.),(-1.,0.),(0.,1.),(0.,-1.),(1.,1.),(-1.,-1.),(1.,-1.),(-1.,1.)] {
-                let q = glam::Vec3::new(fl(t.p0.x, e1.x, e2.x, du, dv), fl(t.p0.y, e1.y, e2.y, du, dv), fl(t.p0.z, e1.z, e2.z, du, dv));
-                if bytes_of(&q) == bytes_of(&g.position) { println!("  matches u{du:+} v{dv:+}"); }
+            let e1 = t.p1 - t.p0;
+            let e2 = t.p2 - t.p0;
+            println!(
+                "  plain {:?} sum first {:?} e1 {e1} e2 {e2}",
+                t.p0 + (e1 * hit.u + e2 * hit.v),
+                (t.p0 + e1 * hit.u) + e2 * hit.v
+            );
+            let fl = |a: f32, s: f32, s1: f32, du: f32, dv: f32| {
+                let bump = |x: f32, d: f32| f32::from_bits((x.to_bits() as i64 + d as i64) as u32);
+                a + (s * bump(hit.u, du) + s1 * bump(hit.v, dv))
+            };
+            for (du, dv) in [
+                (0., 0.),
+                (1., 0.),
+                (-1., 0.),
+                (0., 1.),
+                (0., -1.),
+                (1., 1.),
+                (-1., -1.),
+                (1., -1.),
+                (-1., 1.),
+            ] {
+                let q = glam::Vec3::new(
+                    fl(t.p0.x, e1.x, e2.x, du, dv),
+                    fl(t.p0.y, e1.y, e2.y, du, dv),
+                    fl(t.p0.z, e1.z, e2.z, du, dv),
+                );
+                if bytes_of(&q) == bytes_of(&g.position) {
+                    println!("  matches u{du:+} v{dv:+}");
+                }
             }
         }
     }

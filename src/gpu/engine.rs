@@ -91,7 +91,8 @@ impl GpuEngine {
 
     /// The content of a buffer of the plan (a chunk's, if it is one of those), for tests.
     pub fn content(&self, name: &str, chunk: u32) -> Result<Vec<u8>, EngineError> {
-        let buffer = self.chunks.get(chunk as usize).and_then(|own| own.get(name)).or_else(|| self.shared.get(name));
+        let buffer =
+            self.chunks.get(chunk as usize).and_then(|own| own.get(name)).or_else(|| self.shared.get(name));
         buffer.map_or(Ok(Vec::new()), |buffer| self.gpu.read(buffer, buffer.size()))
     }
 
