@@ -8,6 +8,7 @@ pub mod engine;
 pub mod features;
 pub mod film;
 pub mod grid;
+pub mod hold;
 pub mod kernels;
 pub mod lights;
 pub mod materials;

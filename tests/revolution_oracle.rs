@@ -37,7 +37,15 @@ fn trace(placed: &Placed, o: Vec3, d: Vec3, t_min: f32) -> (PatchHit, u32) {
         if b.patch != last && meets(b.min, b.max, o, d) {
             last = b.patch;
             let t = &placed.tables;
-            let hit = intersect_patch(&t.profile_points, &t.revolutions[0], &t.patches[b.patch as usize], o, d, t_min, best.0.t);
+            let hit = intersect_patch(
+                &t.profile_points,
+                &t.revolutions[0],
+                &t.patches[b.patch as usize],
+                o,
+                d,
+                t_min,
+                best.0.t,
+            );
             if hit.t < best.0.t {
                 best = (hit, b.patch);
             }
@@ -114,7 +122,12 @@ fn agrees_with_the_oracle() {
     for placement in [Placement::default(), skew()] {
         for profile in profiles() {
             let placed = place(&profile, &placement);
-            println!("{}: {} patches, {} boxes", placed.name, placed.tables.patches.len(), placed.boxes.len());
+            println!(
+                "{}: {} patches, {} boxes",
+                placed.name,
+                placed.tables.patches.len(),
+                placed.boxes.len()
+            );
             for class in CLASSES {
                 let start = std::time::Instant::now();
                 let tally = (0..64u64)
@@ -129,13 +142,23 @@ fn agrees_with_the_oracle() {
                     .reduce(Tally::default, Tally::add);
                 println!(
                     "  {class:?}: {} rays {} hits, lost {} false {} off {} worst {:.1e} bracketed {} steps {:?} {:.2?}",
-                    tally.rays, tally.hits, tally.lost, tally.false_hits, tally.off, tally.worst, tally.bracketed,
-                    &tally.steps[..12], start.elapsed()
+                    tally.rays,
+                    tally.hits,
+                    tally.lost,
+                    tally.false_hits,
+                    tally.off,
+                    tally.worst,
+                    tally.bracketed,
+                    &tally.steps[..12],
+                    start.elapsed()
                 );
                 total = total.add(tally);
             }
         }
     }
-    println!("total {} lost {} false {} off {} worst {:.1e} bracketed {} {:?}", total.rays, total.lost, total.false_hits, total.off, total.worst, total.bracketed, total.steps);
+    println!(
+        "total {} lost {} false {} off {} worst {:.1e} bracketed {} {:?}",
+        total.rays, total.lost, total.false_hits, total.off, total.worst, total.bracketed, total.steps
+    );
     let _ = Class::Random;
 }

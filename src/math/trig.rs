@@ -110,7 +110,10 @@ mod tests {
             assert!(e < 1e-7, "{e}");
         }
         // The comparator notices an argument that is one part in a million off.
-        assert!(worst(-10.0, 10.0, 1000, |x| (f64::from(sin_cos(x * 1.000_001).0) - f64::from(x).sin()).abs()) > 1e-6);
+        assert!(
+            worst(-10.0, 10.0, 1000, |x| (f64::from(sin_cos(x * 1.000_001).0) - f64::from(x).sin()).abs())
+                > 1e-6
+        );
     }
 
     #[test]
@@ -130,7 +133,8 @@ mod tests {
 
     #[test]
     fn exponential_agrees_with_f64() {
-        let e = worst(-87.0, 88.0, 2_000_000, |x| (f64::from(exponential(x)) / f64::from(x).exp() - 1.0).abs());
+        let e =
+            worst(-87.0, 88.0, 2_000_000, |x| (f64::from(exponential(x)) / f64::from(x).exp() - 1.0).abs());
         println!("exponential: {e:.2e}");
         assert!(e < 2e-7, "{e}");
         assert_eq!(exponential(0.0), 1.0);

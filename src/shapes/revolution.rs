@@ -184,7 +184,8 @@ pub fn local_ray(revolution: &Revolution, origin: Vec3, direction: Vec3) -> Loca
     let p = ((origin + high * far) - revolution.center) + low * far;
     let near = -p.dot(direction);
     let q = (p + direction * near) * revolution.inv_scale;
-    let local_origin = Vec3::new(revolution.x_axis.dot(q), revolution.y_axis.dot(q), revolution.z_axis.dot(q));
+    let local_origin =
+        Vec3::new(revolution.x_axis.dot(q), revolution.y_axis.dot(q), revolution.z_axis.dot(q));
     let local_direction = Vec3::new(
         revolution.x_axis.dot(direction),
         revolution.y_axis.dot(direction),
@@ -219,7 +220,8 @@ fn chord_point(patch: &Patch, ray: &LocalRay, l: f32, side: f32) -> ChordPoint {
     let z = o.z + d.z * l;
     let radius = (x * x + z * z).sqrt();
     // On the axis the radius has a kink: its slope there is the one-sided one.
-    let outward = if radius > 0.0 { (x * d.x + z * d.z) / radius } else { side * (d.x * d.x + d.z * d.z).sqrt() };
+    let outward =
+        if radius > 0.0 { (x * d.x + z * d.z) / radius } else { side * (d.x * d.x + d.z * d.z).sqrt() };
     let d_radius = if outward * side > 0.0 { outward } else { 0.0 };
     let r = radius - patch.origin.x;
     let y = (o.y + d.y * l) - patch.origin.y;
@@ -397,7 +399,17 @@ fn bracketed_root(points: &[Vec2], patch: &Patch, ray: &LocalRay, a: f32, b: f32
 
 /// The root of F between the chord points `a` and `b` at the distances `l_a` and `l_b`, where F has different
 /// signs. `slack` is how far in s, per unit of |F|, the root can lie from a place in between.
-fn find_root(points: &[Vec2], patch: &Patch, ray: &LocalRay, l_a: f32, l_b: f32, a: ChordPoint, b: ChordPoint, slack: f32, side: f32) -> PatchHit {
+fn find_root(
+    points: &[Vec2],
+    patch: &Patch,
+    ray: &LocalRay,
+    l_a: f32,
+    l_b: f32,
+    a: ChordPoint,
+    b: ChordPoint,
+    slack: f32,
+    side: f32,
+) -> PatchHit {
     // h = 0 is the cone over the chord.
     let rise = b.y - a.y;
     let part = if rise.abs() > 1e-12 { (-a.y / rise).clamp(0.0, 1.0) } else { 0.5 };
@@ -430,7 +442,8 @@ fn find_root(points: &[Vec2], patch: &Patch, ray: &LocalRay, l_a: f32, l_b: f32,
 fn slope_range(a: ChordPoint, b: ChordPoint, d_phi_low: f32, d_phi_high: f32) -> Vec2 {
     let s_low = a.z.min(b.z);
     let s_high = a.z.max(b.z);
-    let least = (d_phi_low * s_low).min(d_phi_low * s_high).min((d_phi_high * s_low).min(d_phi_high * s_high));
+    let least =
+        (d_phi_low * s_low).min(d_phi_low * s_high).min((d_phi_high * s_low).min(d_phi_high * s_high));
     let most = (d_phi_low * s_low).max(d_phi_low * s_high).max((d_phi_high * s_low).max(d_phi_high * s_high));
     Vec2::new(a.w.min(b.w) - most, a.w.max(b.w) - least)
 }
@@ -472,7 +485,8 @@ fn first_root(points: &[Vec2], patch: &Patch, ray: &LocalRay, begin: f32, end: f
                 let f_b = profile_offset(points, patch, b);
                 // While s runs one way, phi' is known from its ends.
                 if (a.z > 0.0) == (b.z > 0.0) {
-                    range = slope_range(a, b, f_a.y.min(f_b.y) - patch.wobble, f_a.y.max(f_b.y) + patch.wobble);
+                    range =
+                        slope_range(a, b, f_a.y.min(f_b.y) - patch.wobble, f_a.y.max(f_b.y) + patch.wobble);
                 }
                 let bow = (range.y - range.x) * quarter;
                 if f_a.x.min(f_b.x) - bow <= 0.0 && f_a.x.max(f_b.x) + bow >= 0.0 {
@@ -569,8 +583,8 @@ pub fn revolution_surface(
     let dy = patch.axis.y * tangent.z - patch.axis.x * tangent.w;
     let n = unit(Vec3::new(dy * cos, -dr, dy * sin));
     let p = at.point * revolution.scale;
-    let position = revolution.center
-        + ((revolution.x_axis * p.x + revolution.y_axis * p.y) + revolution.z_axis * p.z);
+    let position =
+        revolution.center + ((revolution.x_axis * p.x + revolution.y_axis * p.y) + revolution.z_axis * p.z);
     let normal = (revolution.x_axis * n.x + revolution.y_axis * n.y) + revolution.z_axis * n.z;
     let c = revolution.center;
     let size = revolution.scale + c.x.abs().max(c.y.abs()).max(c.z.abs());

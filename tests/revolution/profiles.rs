@@ -26,7 +26,9 @@ fn profile(name: &'static str, segments: &[&[[f64; 2]]]) -> Profile {
 
 pub fn profiles() -> Vec<Profile> {
     let wave: Vec<[f64; 2]> = (0..16)
-        .map(|i| [0.5 + if i % 2 == 0 { 0.45 } else { -0.45 } * (1.0 - f64::from(i) / 20.0), f64::from(i) / 7.5])
+        .map(|i| {
+            [0.5 + if i % 2 == 0 { 0.45 } else { -0.45 } * (1.0 - f64::from(i) / 20.0), f64::from(i) / 7.5]
+        })
         .collect();
     vec![
         profile("cylinder", &[&[[0.5, 0.0], [0.5, 1.0]]]),
