@@ -1,0 +1,8 @@
+//! Light transport against closed forms: every test states its theory first, renders the scene in-process with several
+//! seeds, and holds region means against the answer within a t-test's interval (see [`lab`]).
+//!
+//! `CAUSTICA_DEVICE` chooses the device (default `cpu`).
+
+mod closed_forms;
+mod irradiance;
+mod lab;
