@@ -42,7 +42,7 @@ fn check(name: &str, light: &str, irradiance: impl Fn(DVec3) -> f64) {
         // shadow rays go to the visible point itself, photons are averaged over the disc
         let blur = if sampled { 0.0 } else { RADIUS };
         let truth = camera().floor_picture(blur, |p| ALBEDO / PI * irradiance(p));
-        let power = if sampled { 0.01 } else { 0.016 };
+        let power = if sampled { 0.015 } else { 0.02 };
         runs_to(power, &text, &settings).assert_picture(&format!("{name}, {direct:?}"), &truth, power);
     }
 }
@@ -155,7 +155,7 @@ fn image_environment_seen() {
         let light = format!("[environment]\nfile = \"physics-sky-seen.exr\"\nrotate = {degrees:?}\n");
         let settings = RenderSettings { passes: 16, photons: 1, ..settings(RADIUS) };
         let n = camera.size as usize;
-        let sub = 32;
+        let sub = 16;
         let truth: Vec<f64> = (0..n * n)
             .map(|i| {
                 let points = (0..sub * sub).map(|k| {
@@ -254,7 +254,7 @@ fn revolution() {
     let shape = |profile: String| format!("type = \"revolution\"\n{profile}\ntransform = {{ translate = {} }}", list(base));
     let one = shape(format!("profile = {egg:?}"));
     let point = form::revolution(base, egg);
-    check("egg", &emitting(&one), |p| 5.0 * form::surface(p, DVec3::Y, &point, 48, 64));
+    check("egg", &emitting(&one), |p| 5.0 * form::surface(p, DVec3::Y, &point, 24, 48));
     // a double cone drawn as two straight segments; a straight cubic has its control points evenly spaced
     let line = |a: [f64; 2], b: [f64; 2]| {
         let at = |s: f64| [a[0] + s * (b[0] - a[0]), a[1] + s * (b[1] - a[1])];
@@ -264,6 +264,6 @@ fn revolution() {
     let lower = form::revolution(base, line([0.0, 0.0], [0.25, 0.1]));
     let upper = form::revolution(base, line([0.25, 0.1], [0.0, 0.4]));
     check("double cone", &emitting(&two), |p| {
-        5.0 * (form::surface(p, DVec3::Y, &lower, 32, 64) + form::surface(p, DVec3::Y, &upper, 32, 64))
+        5.0 * (form::surface(p, DVec3::Y, &lower, 16, 48) + form::surface(p, DVec3::Y, &upper, 16, 48))
     });
 }

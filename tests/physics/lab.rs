@@ -130,7 +130,7 @@ pub struct Runs {
 pub fn runs_to(power: f64, text: &str, settings: &RenderSettings) -> Runs {
     let pilot = runs(text, &RenderSettings { seed: settings.seed + 1000, ..settings.clone() });
     let Estimate { mean, error } = pilot.region(|_, _| true);
-    let needed = (T * error / (0.6 * (power - ARITHMETIC) * mean)).powi(2) * settings.passes as f64;
+    let needed = (T * error / (0.55 * (power - ARITHMETIC) * mean)).powi(2) * settings.passes as f64;
     let passes = (needed.ceil() as u32).clamp(settings.passes, 128 * settings.passes);
     runs(text, &RenderSettings { passes, ..settings.clone() })
 }
@@ -240,3 +240,13 @@ pub fn file(name: &str, bytes: &[u8]) -> String {
     name.to_owned()
 }
 
+
+/// Two sets of runs agree over the whole picture (to `power`) and in each of 4x4 tiles (to six times that).
+pub fn assert_regions(what: &str, a: &Runs, b: &Runs, power: f64) {
+    let n = a.size;
+    assert_same(what, a.region(|_, _| true), b.region(|_, _| true), 2.0 * power);
+    for tile in 0..16 {
+        let inside = |x: u32, y: u32| (4 * x / n) + 4 * (4 * y / n) == tile;
+        assert_same(&format!("{what}, tile {tile}"), a.region(inside), b.region(inside), 8.0 * power);
+    }
+}

@@ -4,5 +4,8 @@
 //! `CAUSTICA_DEVICE` chooses the device (default `cpu`).
 
 mod closed_forms;
+mod furnace;
+mod integrating_sphere;
 mod irradiance;
 mod lab;
+mod meshes;
