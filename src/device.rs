@@ -4,10 +4,11 @@ use thiserror::Error;
 
 use crate::cpu::CpuEngine;
 use crate::engine::{Engine, EngineError};
+use crate::gpu::{self, AdapterChoice, AdapterKind, AdapterSummary, GpuEngine};
 use crate::pack::pack;
 use crate::plan::Plan;
 use crate::scene::Scene;
-use crate::settings::RenderSettings;
+use crate::settings::{Method, RenderSettings};
 
 /// What a user asks for.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -96,14 +97,26 @@ pub enum DeviceError {
     Engine(#[from] EngineError),
 }
 
-/// All devices.
+/// All devices, the CPU last.
 pub fn list() -> Vec<DeviceInfo> {
-    vec![DeviceInfo {
+    let adapters = gpu::list().into_iter().filter(AdapterSummary::fits).map(|a| DeviceInfo {
+        name: a.name.clone(),
+        kind: if a.kind == AdapterKind::Software { DeviceKind::Software } else { DeviceKind::Gpu },
+        driver: format!("{}, {}", a.backend, a.driver),
+        limits: vec![
+            ("bytes in a binding".to_owned(), a.binding_bytes),
+            ("bytes in a buffer".to_owned(), a.buffer_bytes),
+            ("storage buffers in a kernel".to_owned(), a.storage_buffers as u64),
+            ("invocations in a workgroup".to_owned(), a.workgroup_invocations as u64),
+        ],
+    });
+    let cpu = DeviceInfo {
         name: "cpu".to_owned(),
         kind: DeviceKind::Cpu,
         driver: format!("{} threads", rayon::current_num_threads()),
         limits: Vec::new(),
-    }]
+    };
+    adapters.chain([cpu]).collect()
 }
 
 /// The device that a wish means, and why.
@@ -142,10 +155,12 @@ pub fn pick<'a>(wanted: &Wanted, devices: &'a [DeviceInfo]) -> Result<(&'a Devic
     }
 }
 
-/// Makes an engine for a scene on the device that is wanted.
+/// Makes an engine for a scene on the device that is wanted. Path tracing runs on the CPU alone, so `auto` takes it.
 pub fn open(wanted: &Wanted, scene: &Scene, settings: &RenderSettings) -> Result<Opened, DeviceError> {
     let devices = list();
-    let (device, why) = pick(wanted, &devices)?;
+    let path = settings.method == Method::Path && *wanted == Wanted::Auto;
+    let (device, why) = pick(if path { &Wanted::Cpu } else { wanted }, &devices)?;
+    let why = if path { "auto: path tracing runs on the CPU".to_owned() } else { why };
     Ok(Opened { engine: start(device, scene, settings)?, name: device.name.clone(), why })
 }
 
@@ -154,7 +169,7 @@ fn start(device: &DeviceInfo, scene: &Scene, settings: &RenderSettings) -> Resul
     let plan = Plan::new(&packed, settings);
     match device.kind {
         DeviceKind::Cpu => Ok(Box::new(CpuEngine::new(packed, plan))),
-        _ => Err(EngineError::Unsupported(format!("no engine runs on {}", device.name))),
+        _ => Ok(Box::new(GpuEngine::new(&AdapterChoice::Named(device.name.clone()), &packed, plan)?)),
     }
 }
 

@@ -7,6 +7,7 @@ pub mod device;
 pub mod engine;
 pub mod features;
 pub mod film;
+pub mod gpu;
 pub mod grid;
 pub mod kernels;
 pub mod lights;

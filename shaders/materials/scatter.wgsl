@@ -9,6 +9,7 @@ struct Scatter {
     weight: vec3f,
 }
 
+//#if scene
 fn reflectance_at(material: u32, uv: vec2f) -> vec3f {
     let m = scene.materials[material];
     //#if textures
@@ -112,6 +113,7 @@ fn shading_correction(s: Surface, n: vec3f, ng: vec3f, wo: vec3f, wi: vec3f) -> 
     }
     return dot(wo, n) * dot(wi, ng) / denominator;
 }
+//#end
 
 fn eval_rough(kind: u32, alpha: f32, reflectance: vec3f, n: vec3f, wo: vec3f, wi: vec3f) -> vec3f {
     let cos = dot(wi, n);

@@ -58,7 +58,7 @@ pub fn eye_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, id: u32) -> 
             point.radius = start_radius(dispatch, camera.pixel * length);
             point.normal = oct_encode(ng);
             point.shading = oct_encode(n);
-            point.weight = throughput * reflectance * INV_PI;
+            point.weight = throughput * INV_PI * reflectance;
             if kind == MATERIAL_METAL {
                 point.weight = throughput;
                 point.reflectance = reflectance;

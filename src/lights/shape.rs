@@ -2,7 +2,7 @@
 
 use super::light::find_interval;
 use crate::math::sampling::{sample_cone, sample_disc, sample_sphere, sample_triangle};
-use crate::math::{FAR, PI, TAU, from_frame, unit};
+use crate::math::{FAR, PI, TAU, basis, from_frame, unit};
 use crate::shapes::cuboid::{cuboid_error, cuboid_normal};
 use crate::shapes::disc::disc_error;
 use crate::shapes::rectangle::{rectangle_error, rectangle_point};
@@ -59,8 +59,9 @@ pub fn sample_shape(scene: &Scene, light: &Light, u: Vec2, w: f32) -> ShapePoint
         KIND_DISC => {
             let disc = &scene.discs[index];
             let d = sample_disc(u) * disc.radius;
+            let (t, b) = basis(disc.normal);
             ShapePoint {
-                position: disc.center + from_frame(disc.normal, Vec3::new(d.x, d.y, 0.0)),
+                position: disc.center + t * d.x + b * d.y,
                 error: disc_error(disc),
                 normal: disc.normal,
                 pdf,

@@ -18,7 +18,8 @@ pub struct OracleHit {
 /// The f32 ray in the local frame that the f32 revolution describes; distances stay the scene's.
 pub fn local_ray(revolution: &Revolution, origin: Vec3, direction: Vec3) -> (DVec3, DVec3) {
     let axes = [revolution.x_axis, revolution.y_axis, revolution.z_axis].map(|a| a.as_dvec3());
-    let into = |v: DVec3| DVec3::new(axes[0].dot(v), axes[1].dot(v), axes[2].dot(v)) / f64::from(revolution.scale);
+    let into =
+        |v: DVec3| DVec3::new(axes[0].dot(v), axes[1].dot(v), axes[2].dot(v)) / f64::from(revolution.scale);
     (into(origin.as_dvec3() - revolution.center.as_dvec3()), into(direction.as_dvec3()))
 }
 
@@ -84,7 +85,8 @@ fn slanted(points: &[DVec2], o: DVec3, d: DVec3, reach: f64, found: &mut impl Fn
         let (r, u) = (restrict(&r, w[0], w[1]), restrict(&u, w[0], w[1]));
         let line = |a: f64, b: f64| u.iter().map(|u| a + u * b).collect::<Vec<f64>>();
         let (x, z) = (line(o.x, d.x), line(o.z, d.z));
-        let g: Vec<f64> = square(&x).iter().zip(square(&z)).zip(square(&r)).map(|((x, z), r)| x + z - r).collect();
+        let g: Vec<f64> =
+            square(&x).iter().zip(square(&z)).zip(square(&r)).map(|((x, z), r)| x + z - r).collect();
         if o.x == 0.0 && o.z == 0.0 && d.x == 0.0 && d.z == 0.0 {
             // Along the axis g = -r^2: its roots are those of r, without a change of sign.
             for s in roots(&r) {
