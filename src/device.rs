@@ -110,13 +110,16 @@ pub fn list() -> Vec<DeviceInfo> {
             ("invocations in a workgroup".to_owned(), a.workgroup_invocations as u64),
         ],
     });
-    let cpu = DeviceInfo {
+    adapters.chain([cpu()]).collect()
+}
+
+fn cpu() -> DeviceInfo {
+    DeviceInfo {
         name: "cpu".to_owned(),
         kind: DeviceKind::Cpu,
         driver: format!("{} threads", rayon::current_num_threads()),
         limits: Vec::new(),
-    };
-    adapters.chain([cpu]).collect()
+    }
 }
 
 /// The device that a wish means, and why.
@@ -157,9 +160,11 @@ pub fn pick<'a>(wanted: &Wanted, devices: &'a [DeviceInfo]) -> Result<(&'a Devic
 
 /// Makes an engine for a scene on the device that is wanted. Path tracing runs on the CPU alone, so `auto` takes it.
 pub fn open(wanted: &Wanted, scene: &Scene, settings: &RenderSettings) -> Result<Opened, DeviceError> {
-    let devices = list();
     let path = settings.method == Method::Path && *wanted == Wanted::Auto;
-    let (device, why) = pick(if path { &Wanted::Cpu } else { wanted }, &devices)?;
+    let wanted = if path { &Wanted::Cpu } else { wanted };
+    // drivers take a while to answer and may write to standard error, so they are not asked for nothing
+    let devices = if *wanted == Wanted::Cpu { vec![cpu()] } else { list() };
+    let (device, why) = pick(wanted, &devices)?;
     let why = if path { "auto: path tracing runs on the CPU".to_owned() } else { why };
     Ok(Opened { engine: start(device, scene, settings)?, name: device.name.clone(), why })
 }
