@@ -1,6 +1,8 @@
 //! A small rounded car of the fifties: a painted body with wheels, and its chrome apart.
 
-use crate::assets::car_shape::{AXIS_HEIGHT, AXLES, SILL, Unwrapping, WHEEL_RADIUS, body_normal, in_arch, meet};
+use crate::assets::car_shape::{
+    AXIS_HEIGHT, AXLES, SILL, Unwrapping, WHEEL_RADIUS, body_normal, in_arch, meet,
+};
 use crate::assets::mesh::Mesh;
 use crate::assets::numbers::{lerp, sin_cos};
 use glam::{DMat3, DVec2, DVec3};
@@ -31,7 +33,16 @@ pub fn painted(unwrapping: &Unwrapping) -> Mesh {
     for side in [-1.0, 1.0] {
         for (lamp, region) in [(HEADLIGHTS, HEADLIGHT), (TAILLIGHTS, TAILLIGHT)] {
             let (turn, at) = lamp_frame(lamp, side);
-            mesh.append(&lathe(&[[0.0, 0.92], [0.12, 0.92], [0.22, 0.6], [0.28, 0.0]].map(|[y, r]| [y * lamp.2, r * lamp.2]), 20, region), turn, at);
+            mesh.append(
+                &lathe(
+                    &[[0.0, 0.92], [0.12, 0.92], [0.22, 0.6], [0.28, 0.0]]
+                        .map(|[y, r]| [y * lamp.2, r * lamp.2]),
+                    20,
+                    region,
+                ),
+                turn,
+                at,
+            );
         }
     }
     plate(&mut mesh, DVec3::new(2.045, 0.41, 0.0), 1.0);
@@ -53,7 +64,8 @@ pub fn chrome() -> Mesh {
         strip(&mut mesh, side);
         let handle = |u: f64| DVec3::new(lerp(-0.14, -0.27, u), 0.815, 0.0);
         if let Some(p) = meet(DVec3::new(-0.2, 0.815, 1.2), -DVec3::Z, 1.2) {
-            let path: Vec<DVec3> = (0..=8).map(|k| handle(f64::from(k) / 8.0) + DVec3::Z * (p.z + 0.02)).collect();
+            let path: Vec<DVec3> =
+                (0..=8).map(|k| handle(f64::from(k) / 8.0) + DVec3::Z * (p.z + 0.02)).collect();
             let path: Vec<DVec3> = path.iter().map(|&p| DVec3::new(p.x, p.y, p.z * side)).collect();
             tube(&mut mesh, &path, 0.013, 0.013);
         }
@@ -69,7 +81,11 @@ pub fn chrome() -> Mesh {
             .collect();
         tube(&mut mesh, &path, 0.05, 0.022);
         for z in [-0.33, 0.33] {
-            let guard = [DVec3::new(end * 2.03, 0.27, z), DVec3::new(end * 2.05, 0.37, z), DVec3::new(end * 2.03, 0.47, z)];
+            let guard = [
+                DVec3::new(end * 2.03, 0.27, z),
+                DVec3::new(end * 2.05, 0.37, z),
+                DVec3::new(end * 2.03, 0.47, z),
+            ];
             tube(&mut mesh, &guard, 0.028, 0.028);
         }
     }
@@ -83,7 +99,8 @@ fn body(unwrapping: &Unwrapping) -> Mesh {
     const INNER: f64 = 0.42;
     let stations = unwrapping.stations();
     let mut mesh = Mesh::default();
-    let atlas = |u: f64, v: f64| DVec2::new(lerp(0.004, 0.996, u), lerp(BODY_V.0 + 0.004, BODY_V.1 - 0.004, v));
+    let atlas =
+        |u: f64, v: f64| DVec2::new(lerp(0.004, 0.996, u), lerp(BODY_V.0 + 0.004, BODY_V.1 - 0.004, v));
     // the first and the last section shrink to a point
     let tip_or = |row: usize, u: f64, v: f64| {
         let p = unwrapping.point(u, v);
@@ -120,11 +137,31 @@ fn body(unwrapping: &Unwrapping) -> Mesh {
 
 /// Profile of a wheel about its axle, as (outward along the axle, radius), from inside to hub.
 const TYRE: [[f64; 2]; 14] = [
-    [-0.085, 0.16], [-0.09, 0.24], [-0.08, 0.295], [-0.055, 0.313], [0.0, 0.315], [0.055, 0.313], [0.08, 0.295],
-    [0.09, 0.26], [0.088, 0.225], [0.075, 0.208], [0.06, 0.20], [0.045, 0.16], [0.05, 0.08], [0.05, 0.0],
+    [-0.085, 0.16],
+    [-0.09, 0.24],
+    [-0.08, 0.295],
+    [-0.055, 0.313],
+    [0.0, 0.315],
+    [0.055, 0.313],
+    [0.08, 0.295],
+    [0.09, 0.26],
+    [0.088, 0.225],
+    [0.075, 0.208],
+    [0.06, 0.20],
+    [0.045, 0.16],
+    [0.05, 0.08],
+    [0.05, 0.0],
 ];
-const HUBCAP: [[f64; 2]; 8] =
-    [[0.04, 0.145], [0.06, 0.142], [0.068, 0.13], [0.062, 0.112], [0.078, 0.085], [0.094, 0.055], [0.102, 0.025], [0.104, 0.0]];
+const HUBCAP: [[f64; 2]; 8] = [
+    [0.04, 0.145],
+    [0.06, 0.142],
+    [0.068, 0.13],
+    [0.062, 0.112],
+    [0.078, 0.085],
+    [0.094, 0.055],
+    [0.102, 0.025],
+    [0.104, 0.0],
+];
 
 fn place_wheels(mesh: &mut Mesh, wheel: &Mesh) {
     for x in AXLES {
@@ -205,7 +242,10 @@ fn plate(mesh: &mut Mesh, at: DVec3, end: f64) {
     let [u0, v0, u1, v1] = PLATE;
     let (half, high) = (0.24 * end, 0.055);
     let corner = |s: f64, t: f64| {
-        (at + DVec3::new(0.0, high * t, -half * s), DVec2::new(lerp(u0, u1, 0.5 + 0.5 * s), lerp(v0, v1, 0.5 + 0.5 * t)))
+        (
+            at + DVec3::new(0.0, high * t, -half * s),
+            DVec2::new(lerp(u0, u1, 0.5 + 0.5 * s), lerp(v0, v1, 0.5 + 0.5 * t)),
+        )
     };
     mesh.polygon(&[corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)]);
     let behind = |s: f64, t: f64| (at + DVec3::new(-0.004 * end, high * t, -half * s), BLACK);

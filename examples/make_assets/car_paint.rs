@@ -122,7 +122,8 @@ fn wheel(q: DVec2) -> Color {
     let row = q.y * 13.0;
     if row < 9.0 {
         let groove = ((q.x * 48.0 + 0.5 * row) % 1.0 - 0.5).abs();
-        let tread = hex(0x20_1f20).lerp(hex(0x0d_0d0d), if row < 6.0 { smoothstep(0.36, 0.44, groove) } else { 0.0 });
+        let tread =
+            hex(0x20_1f20).lerp(hex(0x0d_0d0d), if row < 6.0 { smoothstep(0.36, 0.44, groove) } else { 0.0 });
         return tread.lerp(hex(0xe9_e3d6), smoothstep(6.55, 6.7, row) - smoothstep(8.3, 8.45, row));
     }
     if row < 10.0 {

@@ -105,7 +105,7 @@ fn wall(mesh: &mut Mesh, wall: &Wall, openings: &[Opening]) {
         cuts.dedup();
         cuts
     };
-        let (columns, rows) = (cuts(|p| p.x, wall.size.x), cuts(|p| p.y, wall.size.y));
+    let (columns, rows) = (cuts(|p| p.x, wall.size.x), cuts(|p| p.y, wall.size.y));
     for s in columns.windows(2) {
         for t in rows.windows(2) {
             let middle = DVec2::new(s[0] + s[1], t[0] + t[1]) * 0.5;
@@ -121,7 +121,8 @@ fn wall(mesh: &mut Mesh, wall: &Wall, openings: &[Opening]) {
         let around = [hole.low, hole.high.with_y(hole.low.y), hole.high, hole.low.with_y(hole.high.y)];
         for (k, &a) in around.iter().enumerate() {
             let b = around[(k + 1) % 4];
-            let corner = |p: DVec2, out: f64| (wall.at(p.x, p.y, out), DVec2::new(p.x + out, p.y) / BRICKWORK);
+            let corner =
+                |p: DVec2, out: f64| (wall.at(p.x, p.y, out), DVec2::new(p.x + out, p.y) / BRICKWORK);
             mesh.polygon(&[corner(a, 0.0), corner(b, 0.0), corner(b, -REVEAL), corner(a, -REVEAL)]);
         }
         pane(mesh, wall, hole, -REVEAL);
@@ -132,7 +133,8 @@ fn wall(mesh: &mut Mesh, wall: &Wall, openings: &[Opening]) {
 fn pane(mesh: &mut Mesh, wall: &Wall, hole: &Opening, depth: f64) {
     let Opening { low, high, filling } = *hole;
     mesh.set_material(filling);
-    let corner = |s: f64, t: f64| (wall.at(lerp(low.x, high.x, s), lerp(low.y, high.y, t), depth), DVec2::new(s, t));
+    let corner =
+        |s: f64, t: f64| (wall.at(lerp(low.x, high.x, s), lerp(low.y, high.y, t), depth), DVec2::new(s, t));
     mesh.polygon(&[corner(0.0, 0.0), corner(1.0, 0.0), corner(1.0, 1.0), corner(0.0, 1.0)]);
     mesh.set_material("trim");
     let at = |s: f64, t: f64| wall.at(s, t, depth);
@@ -149,7 +151,14 @@ fn pane(mesh: &mut Mesh, wall: &Wall, hole: &Opening, depth: f64) {
     if depth < 0.0 {
         mesh.set_material("stone");
         let lintel = wall.at(0.0, high.y + 0.11, 0.0);
-        beam(mesh, lintel + wall.along * (low.x - 0.14), lintel + wall.along * (high.x + 0.14), up, 0.11, 0.025);
+        beam(
+            mesh,
+            lintel + wall.along * (low.x - 0.14),
+            lintel + wall.along * (high.x + 0.14),
+            up,
+            0.11,
+            0.025,
+        );
         if filling == "window" {
             shutters(mesh, wall, low, high);
         }
@@ -167,7 +176,12 @@ fn shutters(mesh: &mut Mesh, wall: &Wall, low: DVec2, high: DVec2) {
             let (b, u) = around[(k + 1) % 4];
             let back = |a: f64, t: f64| wall.at(s + 0.48 * a, lerp(low.y, high.y, t), 0.0);
             let plain = DVec2::new(0.05, 0.5);
-            mesh.polygon(&[(corner(b, u).0, plain), (corner(a, t).0, plain), (back(a, t), plain), (back(b, u), plain)]);
+            mesh.polygon(&[
+                (corner(b, u).0, plain),
+                (corner(a, t).0, plain),
+                (back(a, t), plain),
+                (back(b, u), plain),
+            ]);
         }
     }
 }
@@ -206,7 +220,12 @@ fn roof(mesh: &mut Mesh, half_x: f64, half_z: f64, top: f64, thick: f64, at: DVe
         let tile = |s: f64, t: f64| DVec2::new(s * 2.0 * half_x / 1.5, (1.0 - t) * slope / 1.6);
         mesh.set_material(if tiles { "roof" } else { "trim" });
         // top, underside, eaves, two verges; the ridge closes the other long side
-        mesh.polygon(&[(l + down, tile(0.0, 1.0)), (r + down, tile(1.0, 1.0)), (r, tile(1.0, 0.0)), (l, tile(0.0, 0.0))]);
+        mesh.polygon(&[
+            (l + down, tile(0.0, 1.0)),
+            (r + down, tile(1.0, 1.0)),
+            (r, tile(1.0, 0.0)),
+            (l, tile(0.0, 0.0)),
+        ]);
         mesh.set_material("trim");
         let flat = |corners: [DVec3; 4]| corners.map(|p| (p, DVec2::ZERO));
         mesh.polygon(&flat([l - out, r - out, r + down - out, l + down - out]));
@@ -216,7 +235,12 @@ fn roof(mesh: &mut Mesh, half_x: f64, half_z: f64, top: f64, thick: f64, at: DVe
     }
     if tiles {
         mesh.set_material("ridge");
-        half_pipe(mesh, at + DVec3::new(-half_x, top - 0.03, 0.0), at + DVec3::new(half_x, top - 0.03, 0.0), 0.10);
+        half_pipe(
+            mesh,
+            at + DVec3::new(-half_x, top - 0.03, 0.0),
+            at + DVec3::new(half_x, top - 0.03, 0.0),
+            0.10,
+        );
     }
 }
 
@@ -244,7 +268,14 @@ fn bargeboards(mesh: &mut Mesh) {
     let low = ridge() - foot * PITCH;
     for z in [1.0, -1.0] {
         let gutter = DVec3::new(0.0, low - 0.04, z * (foot + 0.05));
-        beam(mesh, gutter - DVec3::X * (HALF.x + VERGE), gutter + DVec3::X * (HALF.x + VERGE), DVec3::Y, 0.05, 0.06);
+        beam(
+            mesh,
+            gutter - DVec3::X * (HALF.x + VERGE),
+            gutter + DVec3::X * (HALF.x + VERGE),
+            DVec3::Y,
+            0.05,
+            0.06,
+        );
         for x in [1.0, -1.0] {
             let wall = DVec3::new(x * (HALF.x - 0.12), 0.0, z * (HALF.z + 0.07));
             beam(mesh, wall + DVec3::Y * 0.05, wall + DVec3::Y * (low + 0.2), DVec3::X, 0.04, 0.04);
@@ -258,22 +289,31 @@ fn chimney(mesh: &mut Mesh, at: DVec3) {
     let (half, top) = (0.36, ridge() + 0.95);
     let base = HALF.y + 0.8;
     mesh.set_material("brick");
-        let stack = DVec3::new(half, 0.0, half);
+    let stack = DVec3::new(half, 0.0, half);
     mesh.cuboid(at - stack + DVec3::Y * base, at + stack + DVec3::Y * top, |p, n| metres(p, n) / BRICKWORK);
     let course = stack + DVec3::new(0.06, 0.0, 0.06);
-    mesh.cuboid(at - course + DVec3::Y * (top - 0.30), at + course + DVec3::Y * (top - 0.15), |p, n| metres(p, n) / BRICKWORK);
+    mesh.cuboid(at - course + DVec3::Y * (top - 0.30), at + course + DVec3::Y * (top - 0.15), |p, n| {
+        metres(p, n) / BRICKWORK
+    });
     mesh.set_material("stone");
-    mesh.cuboid(at - course + DVec3::Y * top, at + course + DVec3::Y * (top + 0.09), |p, n| metres(p, n) / 1.2);
+    mesh.cuboid(at - course + DVec3::Y * top, at + course + DVec3::Y * (top + 0.09), |p, n| {
+        metres(p, n) / 1.2
+    });
     mesh.set_material("pot");
     for x in [-0.16, 0.16] {
-        let profile = [(0.13, 0.0), (0.115, 0.36), (0.14, 0.38), (0.14, 0.44), (0.10, 0.44), (0.10, 0.20), (0.0, 0.20)];
+        let profile =
+            [(0.13, 0.0), (0.115, 0.36), (0.14, 0.38), (0.14, 0.44), (0.10, 0.44), (0.10, 0.20), (0.0, 0.20)];
         let foot = at + DVec3::new(x, top + 0.09, 0.0);
         for pair in profile.windows(2) {
             let slope = DVec2::new(pair[1].1 - pair[0].1, pair[0].0 - pair[1].0);
             mesh.grid(2, 17, |row, col| {
                 let (s, c) = sin_cos(-TAU * col as f64 / 16.0);
                 let (r, y) = pair[row];
-                (foot + DVec3::new(r * c, y, r * s), DVec3::new(slope.x * c, slope.y, slope.x * s), DVec2::ZERO)
+                (
+                    foot + DVec3::new(r * c, y, r * s),
+                    DVec3::new(slope.x * c, slope.y, slope.x * s),
+                    DVec2::ZERO,
+                )
             });
         }
     }
@@ -286,7 +326,11 @@ fn dormer(mesh: &mut Mesh, x: f64) {
     // the box reaches back into the roof
     let (a, b) = (DVec3::new(x - half, low, 0.3), DVec3::new(x + half, high, front));
     mesh.cuboid(a, b, |p, n| metres(p, n) / 2.0);
-    let face = Wall { origin: DVec3::new(x - half, 0.0, front), along: DVec3::X, size: DVec2::new(2.0 * half, high) };
+    let face = Wall {
+        origin: DVec3::new(x - half, 0.0, front),
+        along: DVec3::X,
+        size: DVec2::new(2.0 * half, high),
+    };
     let peak = high + half * PITCH;
     let corner = |s: f64, t: f64| (face.at(s, t, 0.0), DVec2::new(s, t) / 2.0);
     mesh.polygon(&[corner(0.0, high), corner(2.0 * half, high), corner(half, peak)]);
@@ -314,17 +358,35 @@ fn porch(mesh: &mut Mesh) {
         let k = f64::from(step);
         let (reach, high) = (front + 0.30 * k, PLINTH * (3.0 - k) / 3.0);
         let wide = half + 0.12 + 0.16 * k;
-        mesh.cuboid(DVec3::new(-wide, 0.0, HALF.z - 0.1), DVec3::new(wide, high, reach), |p, n| metres(p, n) / 1.2);
+        mesh.cuboid(DVec3::new(-wide, 0.0, HALF.z - 0.1), DVec3::new(wide, high, reach), |p, n| {
+            metres(p, n) / 1.2
+        });
     }
     mesh.set_material("trim");
     let (beam_y, eaves) = (2.72, 2.82);
     for x in [-half, half] {
-        beam(mesh, DVec3::new(x, PLINTH, front - 0.15), DVec3::new(x, beam_y, front - 0.15), DVec3::X, 0.065, 0.065);
+        beam(
+            mesh,
+            DVec3::new(x, PLINTH, front - 0.15),
+            DVec3::new(x, beam_y, front - 0.15),
+            DVec3::X,
+            0.065,
+            0.065,
+        );
         let foot = DVec3::new(x, PLINTH, front - 0.15);
-        mesh.cuboid(foot - DVec3::new(0.10, 0.0, 0.10), foot + DVec3::new(0.10, 0.16, 0.10), |_, _| DVec2::ZERO);
+        mesh.cuboid(foot - DVec3::new(0.10, 0.0, 0.10), foot + DVec3::new(0.10, 0.16, 0.10), |_, _| {
+            DVec2::ZERO
+        });
         beam(mesh, DVec3::new(x, beam_y, HALF.z), DVec3::new(x, beam_y, front), DVec3::Y, 0.07, 0.06);
     }
-    beam(mesh, DVec3::new(-half, beam_y, front - 0.15), DVec3::new(half, beam_y, front - 0.15), DVec3::Y, 0.07, 0.06);
+    beam(
+        mesh,
+        DVec3::new(-half, beam_y, front - 0.15),
+        DVec3::new(half, beam_y, front - 0.15),
+        DVec3::Y,
+        0.07,
+        0.06,
+    );
     let peak = eaves + half * PITCH;
     mesh.set_material("plaster");
     let corner = |x: f64, y: f64| (DVec3::new(x, y, front - 0.08), DVec2::new(x, y) / 2.0);

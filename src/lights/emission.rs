@@ -39,7 +39,10 @@ pub fn emit_photon(scene: &Scene, rng: &mut Rng) -> Emission {
         let local = sample_cone(across, 1.0 - light.cos_outer);
         ray.direction = unit(from_frame(light.direction, local));
         let solid_angle = TAU * (1.0 - light.cos_outer);
-        return Emission { ray, flux: light.color * (spot_falloff(light, local.z) * solid_angle / light.selection) };
+        return Emission {
+            ray,
+            flux: light.color * (spot_falloff(light, local.z) * solid_angle / light.selection),
+        };
     }
     // from infinity: through one of a row of discs, each twice as wide as the one before and half as likely
     ray.direction = light.direction;

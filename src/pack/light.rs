@@ -32,11 +32,8 @@ pub fn pack_lights(scene: &scene::Scene, n: &Normalization, emitters: &[Emitter]
         let unit_sq = n.unit * n.unit;
         lights.push(match l {
             scene::Light::Point { position, intensity } => {
-                let light = Light {
-                    kind: LIGHT_POINT,
-                    position: n.point(*position).as_vec3(),
-                    ..Light::zeroed()
-                };
+                let light =
+                    Light { kind: LIGHT_POINT, position: n.point(*position).as_vec3(), ..Light::zeroed() };
                 (light, DVec3::from(*intensity) / unit_sq, 4.0 * PI)
             }
             scene::Light::Spot { position, target, intensity, angle_degrees, blend } => {
@@ -145,7 +142,8 @@ fn image_distribution(out: &Scene, light: &mut Light, distributions: &mut Vec<f3
         let c: Vec3 = crate::materials::texture::eval_texture(out, light.reference, uv);
         ((c.x + c.y + c.z) / 3.0).max(0.0) as f64
     };
-    let values: Vec<f64> = (0..h).flat_map(|j| (0..w).map(move |i| (i, j))).map(|(i, j)| value(i, j)).collect();
+    let values: Vec<f64> =
+        (0..h).flat_map(|j| (0..w).map(move |i| (i, j))).map(|(i, j)| value(i, j)).collect();
     let spread = |i: i32, j: i32| {
         let mut most = 0.0f64;
         for y in (j - 1).max(0)..=(j + 1).min(h - 1) {
