@@ -17,6 +17,7 @@ use caustica::kernels::records::{PhotonRecord, VisiblePoint};
 use caustica::pack::{Packed, pack};
 use caustica::plan::{Kernel, Plan};
 use caustica::scene::parse;
+use caustica::settings::RenderSettings;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
@@ -26,12 +27,6 @@ version = 1
 position = [0.2, 1.3, 4.5]
 target = [0.0, 0.6, 0.0]
 fov = 36.0
-"#;
-
-const FILM: &str = r#"
-[film]
-width = 48
-height = 36
 "#;
 
 const FLOOR: &str = r#"
@@ -379,14 +374,23 @@ fn ball(columns: u32, rows: u32) -> String {
 }
 
 fn planned(settings: &str, rest: &str) -> (Packed, Plan) {
+    planned_at((48, 36), settings, rest)
+}
+
+fn planned_at((width, height): (u32, u32), settings: &str, rest: &str) -> (Packed, Plan) {
+    let film = format!("[film]\nwidth = {width}\nheight = {height}");
     let lens = if settings.contains("ppm") { "aperture = 0.1\nfocus = 4.3\n" } else { "" };
-    let text = format!("{HEAD}{lens}{FILM}\n[render]\nphotons = 6000\npasses = 3\n{settings}\n{FLOOR}{rest}");
+    let text = format!("{HEAD}{lens}{film}\n[render]\nphotons = 6000\npasses = 3\n{settings}\n{FLOOR}{rest}");
     let path = assets().join("scene.toml");
     let loaded =
         parse(&path, text.as_bytes()).unwrap_or_else(|e| panic!("{:?}\n{text}", miette::Report::new(e)));
     let packed = pack(&loaded.scene, loaded.scene.film.width, loaded.scene.film.height).unwrap();
     let plan = Plan::new(&packed, &loaded.settings);
     (packed, plan)
+}
+
+fn photons(photons: u32, plan: &Plan) -> RenderSettings {
+    RenderSettings { photons, ..plan.settings.clone() }
 }
 
 /// Three passes.
@@ -492,10 +496,37 @@ fn engines_agree_when_work_is_cut() {
     assert_eq!(difference(&whole, &on_driver(&packed, &chunked)), None, "chunks");
     let batched = Plan { batch_photons: 1000, ..plan.clone() };
     assert_eq!(difference(&on_cpu(&packed, &batched), &on_driver(&packed, &batched)), None, "batches");
-    let tight = Plan { capacity: 4096, buckets: 4096, ..plan };
+    // a batch of all photons leaves more records than fit
+    let (packed, plan) = planned("direct = \"photons\"", SCENES[0].2);
+    let tight =
+        Plan { capacity: 4096, buckets: 4096, batch_photons: 9000, settings: photons(9000, &plan), ..plan };
     let overflowing = on_cpu(&packed, &tight);
-    assert!(overflowing.0.iter().all(|r| r.records > 2 * 4096), "no batch overflows: {:?}", overflowing.0);
+    assert!(overflowing.0.iter().all(|r| r.records > 4096), "no batch overflows: {:?}", overflowing.0);
     assert_eq!(difference(&overflowing, &on_driver(&packed, &tight)), None, "overflow");
+}
+
+/// Mesa's software driver stops an invocation's loops after 65535 rounds. A pass whose visible points each sum over
+/// more photons is then found in smaller batches: the same records, and the same sums up to their grouping.
+#[test]
+fn long_gathers_are_whole() {
+    let settings = "direct = \"photons\"\nradius = { units = 3.0 }\nradius_rule = \"fixed\"";
+    let rest = "[[lights]]\ntype = \"spot\"\nposition = [0.0, 2.0, 0.0]\ntarget = [0.0, 0.0, 0.0]\n\
+                intensity = [9.0, 5.0, 3.0]\nangle = 2.0\n";
+    let (packed, plan) = planned_at((8, 6), settings, rest);
+    let settings = photons(150_000, &plan);
+    let plan = Plan { capacity: 1 << 18, buckets: 1 << 18, batch_photons: 150_000, settings, ..plan };
+    let (ours, theirs) = (on_cpu(&packed, &plan), on_driver(&packed, &plan));
+    assert_eq!(ours.0, theirs.0);
+    let rgb = |p: &Picture| p.rgb.iter().flatten().copied().collect::<Vec<_>>();
+    for (a, b) in rgb(&ours.1).into_iter().zip(rgb(&theirs.1)) {
+        assert!((a - b).abs() <= 1e-4 * a, "{a} and {b}");
+    }
+    let cut = Plan { batch_photons: 50_000, ..plan };
+    assert_eq!(
+        difference(&on_cpu(&packed, &cut), &on_driver(&packed, &cut)),
+        None,
+        "batches that need no cutting"
+    );
 }
 
 /// A pixel that is off by one bit, and a count that is off by one, are noticed.
