@@ -1,7 +1,7 @@
 //! A small rounded car of the fifties: a painted body with wheels, and its chrome apart.
 
 use crate::assets::car_shape::{
-    AXIS_HEIGHT, AXLES, SILL, Unwrapping, WHEEL_RADIUS, body_normal, in_arch, meet,
+    AXIS_HEIGHT, AXLES, FLOOR, Unwrapping, WHEEL_RADIUS, body_normal, in_arch, meet,
 };
 use crate::assets::mesh::Mesh;
 use crate::assets::numbers::{lerp, sin_cos};
@@ -94,7 +94,7 @@ pub fn chrome() -> Mesh {
 
 /// The closed shell: each section runs from the middle of the underside out, up the side and to the roof's
 /// middle, then down the other side. Wheel wells are where the lower edge is higher than the floor.
-fn body(unwrapping: &Unwrapping) -> Mesh {
+pub fn body(unwrapping: &Unwrapping) -> Mesh {
     const SIDE: usize = 25;
     const INNER: f64 = 0.42;
     let stations = unwrapping.stations();
@@ -109,25 +109,25 @@ fn body(unwrapping: &Unwrapping) -> Mesh {
     for side in [1.0, -1.0] {
         let outward = |p: DVec3| DVec3::new(p.x, p.y, p.z * side);
         // the left half is the mirror image: its columns run the other way, so that it winds outward too
-        let column = |col: usize| if side > 0.0 { SIDE - col } else { col };
+        let column = |col: usize| if side > 0.0 { col } else { SIDE - col };
         mesh.grid(stations.len(), SIDE + 1, |row, col| {
             let u = stations[row];
             let low = unwrapping.lower_edge(unwrapping.x(u));
             let v = lerp(low, 1.0, column(col) as f64 / SIDE as f64);
             let p = tip_or(row, u, v);
-            let p = if column(col) == SIDE { p.with_z(0.0) } else { p };
+            let p = if column(col) == SIDE || v == 0.0 { p.with_z(0.0) } else { p };
             (outward(p), outward(body_normal(p)), atlas(u, v))
         });
         // underside: from the edge in to the well's inner wall, down it, and to the middle
         let section = |row: usize| {
             let edge = tip_or(row, stations[row], unwrapping.lower_edge(unwrapping.x(stations[row])));
             let inner = edge.z.min(INNER);
-            let floor = if in_arch(edge.x) { SILL } else { edge.y };
+            let floor = if in_arch(edge.x) { FLOOR.min(edge.y) } else { edge.y };
             [edge, edge.with_z(inner), DVec3::new(edge.x, floor, inner), DVec3::new(edge.x, floor, 0.0)]
         };
         for (part, normal) in [-DVec3::Y, DVec3::Z, -DVec3::Y].into_iter().enumerate() {
             mesh.grid(stations.len(), 2, |row, col| {
-                let k = if side > 0.0 { part + col } else { part + 1 - col };
+                let k = if side > 0.0 { part + 1 - col } else { part + col };
                 (outward(section(row)[k]), outward(normal), BLACK)
             });
         }
@@ -178,7 +178,7 @@ fn lamp_frame((at, direction, radius): (DVec3, DVec3, f64), side: f64) -> (DMat3
     let x = y.cross(DVec3::Y).normalize();
     let away = DVec3::new(at.x, at.y, at.z * side) + y * 0.5;
     let on_body = meet(away, -y, 1.0).unwrap_or(away);
-    (DMat3::from_cols(x, y, x.cross(y)), on_body + y * (0.1 * radius))
+    (DMat3::from_cols(x, y, x.cross(y)), on_body + y * (0.3 * radius))
 }
 
 /// Turns a profile of (height, radius) about y. Smooth normals; the region is (u0, v0, u1, v1).
@@ -205,7 +205,7 @@ fn tube(mesh: &mut Mesh, path: &[DVec3], high: f64, deep: f64) {
     let rows = path.len() + 4;
     mesh.grid(rows, AROUND + 1, |row, col| {
         // two extra rows at each end round the tube off
-        let (k, cap) = match row {
+        let (k, cap): (usize, f64) = match row {
             0 => (0, 1.0),
             1 => (0, 0.6),
             r if r == rows - 2 => (last, -0.6),
@@ -216,8 +216,8 @@ fn tube(mesh: &mut Mesh, path: &[DVec3], high: f64, deep: f64) {
         let up = if forward.y.abs() > 0.5 { DVec3::Z } else { DVec3::Y };
         let across = forward.cross(up).normalize();
         let up = across.cross(forward);
-        let (s, c) = sin_cos(-TAU * col as f64 / AROUND as f64);
-        let shrink = (1.0 - cap * cap as f64).max(0.0).sqrt();
+        let (s, c) = sin_cos(TAU * col as f64 / AROUND as f64);
+        let shrink = (1.0 - cap * cap).max(0.0).sqrt();
         let out = up * (c / high) + across * (s / deep);
         let normal = out.normalize() * shrink - forward * cap;
         let p = path[k] + (up * (high * c) + across * (deep * s)) * shrink - forward * (cap * deep);

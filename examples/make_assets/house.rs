@@ -3,8 +3,9 @@
 
 use crate::assets::mesh::Mesh;
 use crate::assets::numbers::{lerp, sin_cos};
+use crate::assets::parts::{append_with_materials, beam, half_pipe, metres};
 use glam::{DMat3, DVec2, DVec3};
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 /// Half the length along x, half the depth along z, and the height of the eaves.
 const HALF: DVec3 = DVec3::new(3.7, 3.0, 2.5);
@@ -186,28 +187,6 @@ fn shutters(mesh: &mut Mesh, wall: &Wall, low: DVec2, high: DVec2) {
     }
 }
 
-/// A bar with a rectangular section from `a` to `b`: `high` to both sides of the line, `out` before and behind.
-fn beam(mesh: &mut Mesh, a: DVec3, b: DVec3, up: DVec3, high: f64, out: f64) {
-    let along = b - a;
-    let across = along.normalize().cross(up);
-    let frame = [along, up * (2.0 * high), across * (2.0 * out)];
-    let origin = a - up * high - across * out;
-    let mut bar = Mesh::default();
-    bar.cuboid(DVec3::ZERO, DVec3::ONE, |p, n| {
-        let size = DVec3::from_array(frame.map(|edge| edge.length()));
-        metres(p * size, n) / 1.2
-    });
-    let [fx, fy, fz] = frame;
-    for p in &mut bar.positions {
-        *p = fx * p.x + fy * p.y + fz * p.z;
-    }
-    let axes = frame.map(DVec3::normalize);
-    for n in &mut bar.normals {
-        *n = axes[0] * n.x + axes[1] * n.y + axes[2] * n.z;
-    }
-    mesh.append(&bar, DMat3::IDENTITY, origin);
-}
-
 /// A gable roof: two tiled slabs that meet at the ridge. `half_x` and `half_z` reach to their edges.
 fn roof(mesh: &mut Mesh, half_x: f64, half_z: f64, top: f64, thick: f64, at: DVec3, tiles: bool) {
     let drop = half_z * PITCH;
@@ -241,24 +220,6 @@ fn roof(mesh: &mut Mesh, half_x: f64, half_z: f64, top: f64, thick: f64, at: DVe
             at + DVec3::new(half_x, top - 0.03, 0.0),
             0.10,
         );
-    }
-}
-
-/// The upper half of a tube, for ridge tiles.
-fn half_pipe(mesh: &mut Mesh, a: DVec3, b: DVec3, radius: f64) {
-    let forward = (b - a).normalize();
-    let across = forward.cross(DVec3::Y);
-    mesh.grid(2, 9, |row, col| {
-        let (s, c) = sin_cos(PI * (col as f64 / 8.0 * 1.2 - 0.1));
-        let out = DVec3::Y * s - across * c;
-        (if row == 0 { a } else { b } + out * radius, out, DVec2::ZERO)
-    });
-    for (end, turn) in [(a, 1.0), (b, -1.0)] {
-        let rim = (0..9).map(|k| {
-            let (s, c) = sin_cos(PI * (f64::from(k) / 8.0 * 1.2 - 0.1));
-            (end + (DVec3::Y * s + across * (c * turn)) * radius, DVec2::ZERO)
-        });
-        mesh.polygon(&rim.collect::<Vec<_>>());
     }
 }
 
@@ -343,13 +304,6 @@ fn dormer(mesh: &mut Mesh, x: f64) {
     append_with_materials(mesh, &cover, turn, DVec3::new(x, 0.0, front + 0.22 - deep));
 }
 
-/// `mesh.append`, keeping the other's materials.
-fn append_with_materials(mesh: &mut Mesh, other: &Mesh, rotate: DMat3, translate: DVec3) {
-    let first = mesh.triangles.len();
-    mesh.groups.extend(other.groups.iter().map(|&(material, start)| (material, first + start)));
-    mesh.append(other, rotate, translate);
-}
-
 /// Steps to the door under a small roof on two posts.
 fn porch(mesh: &mut Mesh) {
     let (half, front) = (0.95, HALF.z + 1.25);
@@ -396,17 +350,6 @@ fn porch(mesh: &mut Mesh) {
     roof(&mut cover, deep, half + 0.22, peak + 0.14, 0.10, DVec3::ZERO, true);
     let turn = DMat3::from_cols(-DVec3::Z, DVec3::Y, DVec3::X);
     append_with_materials(mesh, &cover, turn, DVec3::new(0.0, 0.0, front + 0.18 - deep));
-}
-
-/// World metres along a flat side with this normal: across and up on walls, x and z on what is level.
-fn metres(p: DVec3, normal: DVec3) -> DVec2 {
-    if normal.y.abs() > 0.5 {
-        DVec2::new(p.x, -p.z)
-    } else if normal.x.abs() > 0.5 {
-        DVec2::new(-p.z * normal.x.signum(), p.y)
-    } else {
-        DVec2::new(p.x * normal.z.signum(), p.y)
-    }
 }
 
 /// The material library of the house: name, diffuse colour (linear) and texture.

@@ -10,6 +10,7 @@ pub mod house_paint;
 pub mod lettering;
 pub mod mesh;
 pub mod numbers;
+pub mod parts;
 pub mod sky;
 
 use canvas::Canvas;

@@ -55,7 +55,7 @@ pub fn eye_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, id: u32) -> 
                 break;
             }
             let ng = toward(s.normal, wo);
-            let n = shading_normal(&s, wo);
+            let n = shading_normal(scene, &s, wo);
             point.position = s.position;
             point.radius = start_radius(dispatch, camera.pixel * length);
             point.normal = oct_encode(ng);

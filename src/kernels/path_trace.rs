@@ -60,7 +60,7 @@ pub fn path_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, pixel: u32)
             let alpha = scene.materials[s.material as usize].alpha;
             let reflectance = reflectance_at(scene, s.material, s.uv);
             let ng = toward(s.normal, wo);
-            let n = shading_normal(&s, wo);
+            let n = shading_normal(scene, &s, wo);
             if sampled {
                 let u = rng_next(&mut rng);
                 let (direct, spent) = next_event(scene, &s, wo, n, ng, reflectance, medium, true, u);

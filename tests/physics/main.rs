@@ -1,0 +1,11 @@
+//! Light transport against closed forms: every test states its theory first, renders the scene in-process with several
+//! seeds, and holds region means against the answer within a t-test's interval (see [`lab`]).
+//!
+//! `CAUSTICA_DEVICE` chooses the device (default `cpu`).
+
+mod closed_forms;
+mod furnace;
+mod integrating_sphere;
+mod irradiance;
+mod lab;
+mod meshes;
