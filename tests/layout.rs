@@ -126,7 +126,18 @@ fn hosts() -> Vec<Layout> {
             strata,
             passes_done
         }),
-        layout!(VisiblePoint { position, radius, weight, normal, radiance, shading, reflectance, alpha, wo }),
+        layout!(VisiblePoint {
+            position,
+            radius,
+            weight,
+            normal,
+            radiance,
+            shading,
+            reflectance,
+            alpha,
+            wo,
+            stopped
+        }),
         layout!(PhotonRecord { position, key, flux, direction }),
         layout!(Gathered { flux, count }),
         layout!(Statistics { scale_sq, drop, count_low, count_high }),
