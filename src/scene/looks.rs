@@ -3,8 +3,9 @@
 use super::appearance::{Material, MaterialKind, Reflectance, Texels, Texture, TextureKind};
 use super::check::Item;
 use super::file::{ColorSpace, MaterialFile, TextureFile};
-use super::load::{Loader, nearest_file};
+use super::load::Loader;
 use super::numbers::Paint;
+use super::text::nearest_file;
 
 pub(super) fn texture(loader: &mut Loader, item: &Item, file: TextureFile) -> Option<Texture> {
     let kind = match file {

@@ -7,6 +7,7 @@ use super::check::Item;
 use super::file::{ShapeFile, SurfaceFile, TransformFile};
 use super::geometry::{Shape, ShapeKind, Transform};
 use super::load::Loader;
+use super::report::Report;
 use super::view::unit;
 use super::{mesh, profile};
 
@@ -61,13 +62,13 @@ pub(super) fn shapes(
             (ShapeKind::Cuboid { min: min.into(), max: max.into() }, material, surface)
         }
         ShapeFile::Revolution { profile, segments, material, transform, surface } => {
-            let segments = profile::segments(loader, item, profile, segments);
-            let transform = placed(loader, item, &transform)?;
+            let segments = profile::segments(loader.report, item, profile, segments);
+            let transform = placed(loader.report, item, &transform)?;
             let kind = ShapeKind::Revolution { segments: segments?, transform };
             (kind, material, surface)
         }
         ShapeFile::Mesh { file, smooth, material, transform, surface } => {
-            let transform = placed(loader, item, &transform)?;
+            let transform = placed(loader.report, item, &transform)?;
             let material = material.map(|name| loader.index("materials", &name));
             let request = mesh::Request { file: &file, smooth, material, transform };
             let parts = mesh::load(loader, item, &request, textures, materials)?;
@@ -87,15 +88,16 @@ fn shape(kind: ShapeKind, material: usize, emission: [f64; 3], surface: &Surface
     Shape { kind, material, emission, planar_uv: surface.uv.is_some() }
 }
 
-fn placed(loader: &mut Loader, item: &Item, file: &TransformFile) -> Option<Transform> {
+/// The transform, its axis a direction.
+pub(super) fn placed(report: &mut Report, item: &Item, file: &TransformFile) -> Option<Transform> {
     let rotation = match &file.rotate {
         None => DMat3::IDENTITY,
         Some(rotate) => {
             let Some(axis) = DVec3::from(rotate.axis).try_normalize() else {
-                let message = format!("`{}.transform.rotate.axis` has no direction", item.path);
+                let message = format!("`{}` has no direction", item.key("transform.rotate.axis"));
                 let node = item.node.get("transform").and_then(|node| node.get("rotate"));
                 let span = node.map_or(item.node.span(), |node| node.span_of("axis"));
-                loader.report.error(span, message, "expected a vector of a length other than 0", None);
+                report.error(span, message, "expected a vector of a length other than 0", None);
                 return None;
             };
             DMat3::from_axis_angle(axis, rotate.degrees.to_radians())
