@@ -6,6 +6,7 @@ use std::ops::Range;
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value as Json};
 
+use super::numbers::{LARGEST, SMALLEST};
 use super::report::{Report, did_you_mean, list};
 use super::schema::{alternatives, describe, has_type, in_range, listed_strings, tag};
 use super::tree::Node;
@@ -176,7 +177,18 @@ impl<'c> Checker<'c> {
             self.report.error(node.span(), message, format!("expected {expected}"), description(whole));
         }
         if !has_type(schema, "integer") {
-            return Some(Json::from(number));
+            let largest = schema["x-largest"].as_f64().unwrap_or(LARGEST);
+            let smallest = if schema["exclusiveMinimum"] == 0 { SMALLEST } else { 0.0 };
+            if fits && number.abs() > largest {
+                let message = format!("`{path}` = {number:e} is too large for single precision");
+                let label = format!("expected at most {largest:e} in magnitude");
+                self.report.error(node.span(), message, label, description(whole));
+            } else if fits && number < smallest && smallest > 0.0 {
+                let message = format!("`{path}` = {number:e} is too small for single precision");
+                let label = format!("expected at least {smallest:e}");
+                self.report.error(node.span(), message, label, description(whole));
+            }
+            return Some(Json::from(number.clamp(-largest, largest)));
         }
         let clamped = node.integer()?.clamp(0, i128::from(u32::MAX));
         let exact = node.integer().and_then(|integer| u64::try_from(integer).ok());
@@ -296,7 +308,7 @@ impl<'c> Checker<'c> {
             let property = &schema["properties"][*key];
             let message = format!("`{key}` is missing in {place}");
             let label = format!("expected `{key}`, {}", describe(self.root, property));
-            self.report.error(node.span(), message, label, description(property));
+            self.report.missing(node.span(), message, label, description(property));
         }
         missing.is_empty()
     }

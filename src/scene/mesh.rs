@@ -85,7 +85,7 @@ pub(super) fn load(
                     let (material, unused) =
                         mtl::material(name.clone(), own, folder, &mut loader.images, textures);
                     for key in unused {
-                        let message = format!("`{key}` of material {name} is not used");
+                        let message = format!("{key} of material {name} is not used");
                         loader.report.warn(named_at.clone(), message, "in this file's MTL");
                     }
                     materials.push(material);

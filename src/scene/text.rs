@@ -6,7 +6,7 @@ use std::path::Path;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::report::{Finding, Report, SceneErrors, SourceFile, nearest};
+use super::report::{Finding, Report, SceneErrors, SourceFile, nearest, once};
 use super::tree::Node;
 
 /// The bytes of a file.
@@ -52,14 +52,15 @@ pub(super) fn parse<T>(
     let span = table.span().start..table.span().start;
     let root = Spanned::new(span, DeValue::Table(table.into_inner()));
     match meaning(Node::new(&root), &mut report) {
-        Some(made) if report.errors.is_empty() => Ok((made, report.warnings)),
+        Some(made) if report.errors.is_empty() => Ok((made, once(report.warnings))),
         _ => Err(errors(path, report)),
     }
 }
 
 fn errors(path: &Path, mut report: Report) -> SceneErrors {
     report.errors.sort_by_key(|error| (error.file() != path.display().to_string(), error.line_column()));
-    SceneErrors { file: path.display().to_string(), errors: report.errors, warnings: report.warnings }
+    let (errors, warnings) = (once(report.errors), once(report.warnings));
+    SceneErrors { file: path.display().to_string(), errors, warnings }
 }
 
 /// The file in the same folder whose name is nearest.
