@@ -31,7 +31,7 @@ struct Arguments {
 const HELP: &str = "\
 Examples:
   caustica render scenes/caustics.toml -o picture.png -o picture.exr
-  caustica check scenes/*.toml
+  caustica check scenes/cornell.toml scenes/caustics.toml
 
 Exit codes: 0 done, 1 failed, 2 wrong use, 3 over a threshold, 4 no such device, 5 device lost with the picture so far \
 saved, 130 interrupted with the picture so far saved";

@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use caustica::scene::Scene;
+use caustica::scene::numbers::{LARGEST, SMALLEST};
 use caustica::settings::{Direct, Method, Radius, RadiusRule, RenderSettings};
 use clap::Args;
 use serde::de::DeserializeOwned;
@@ -32,7 +33,7 @@ pub struct Overrides {
     /// Where direct light comes from
     #[arg(long, value_name = "sampled|photons", value_parser = word::<Direct>)]
     direct: Option<Direct>,
-    /// Most scattering events on a photon path and on an eye path; 0 leaves direct light
+    /// Most scattering events on a photon path and on an eye path; with 0, direct light only
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..=65535))]
     max_bounces: Option<u32>,
     /// Fixed visible points per pixel (ppm only)
@@ -88,11 +89,17 @@ fn alpha(text: &str) -> Result<f64, String> {
 }
 
 fn radius(text: &str) -> Result<Radius, String> {
-    let radius = match text.strip_suffix("px") {
-        Some(pixels) => positive(pixels).map(Radius::Pixels),
-        None => positive(text).map(Radius::Units),
+    let (number, in_unit): (_, fn(f64) -> Radius) = match text.strip_suffix("px") {
+        Some(pixels) => (pixels, Radius::Pixels),
+        None => (text, Radius::Units),
     };
-    radius.map_err(|expected| format!("{expected}: pixels as in 2px, or scene units as in 0.01"))
+    let number = number.parse().ok().filter(|number| (SMALLEST..=LARGEST).contains(number));
+    let expected = || {
+        format!(
+            "expected a number from {SMALLEST:e} to {LARGEST:e}: pixels as in 2px, or scene units as in 0.01"
+        )
+    };
+    number.map(in_unit).ok_or_else(expected)
 }
 
 fn size(text: &str) -> Result<(u32, u32), String> {
@@ -123,7 +130,7 @@ mod tests {
     fn radius_in_pixels_or_units() {
         assert_eq!(radius("2px"), Ok(Radius::Pixels(2.0)));
         assert_eq!(radius("0.01"), Ok(Radius::Units(0.01)));
-        for bad in ["", "px", "0px", "-1", "nan", "inf", "2 cm"] {
+        for bad in ["", "px", "0px", "-1", "nan", "inf", "2 cm", "1e-16", "1e16px"] {
             assert!(radius(bad).is_err(), "{bad}");
         }
     }
