@@ -5,10 +5,14 @@ use thiserror::Error;
 use crate::cpu::CpuEngine;
 use crate::engine::{Engine, EngineError};
 use crate::gpu::{self, AdapterChoice, AdapterKind, AdapterSummary, GpuEngine};
+use crate::kernels::records::VisiblePoint;
 use crate::pack::pack;
 use crate::plan::Plan;
 use crate::scene::Scene;
 use crate::settings::{Method, RenderSettings};
+
+/// Most visible points of a picture: their numbers are 32 bits wide.
+const POINTS_MAX: u64 = 1 << 31;
 
 /// What a user asks for.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -174,7 +178,19 @@ fn start(
     scene: &Scene,
     settings: &RenderSettings,
 ) -> Result<Box<dyn Engine>, EngineError> {
-    let packed = pack(scene, scene.film.width, scene.film.height)?;
+    let film = &scene.film;
+    let samples = if settings.method == Method::Ppm { settings.eye_samples as u64 } else { 1 };
+    let points = film.width as u64 * film.height as u64 * samples;
+    if points > POINTS_MAX {
+        return Err(EngineError::TooLarge {
+            what: format!("a picture of {} x {} pixels", film.width, film.height),
+            needed: points * size_of::<VisiblePoint>() as u64,
+            device: device.name.clone(),
+            limit: POINTS_MAX * size_of::<VisiblePoint>() as u64,
+            mend: "make width, height or eye_samples smaller".to_owned(),
+        });
+    }
+    let packed = pack(scene, film.width, film.height)?;
     let plan = Plan::new(&packed, settings);
     match device.kind {
         DeviceKind::Cpu => Ok(Box::new(CpuEngine::new(packed, plan))),
