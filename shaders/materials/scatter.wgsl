@@ -10,6 +10,8 @@ struct Scatter {
 }
 
 //#if scene
+const COS_MIN: f32 = 1e-3;
+
 fn reflectance_at(material: u32, uv: vec2f) -> vec3f {
     let m = scene.materials[material];
     //#if textures
@@ -31,7 +33,8 @@ fn toward(v: vec3f, w: vec3f) -> vec3f {
 fn shading_normal(s: Surface, wo: vec3f) -> vec3f {
     let ng = toward(s.normal, wo);
     let ns = toward(s.shading, ng);
-    return select(ng, ns, dot(wo, ns) > 0.0);
+    let diffuse = scene.materials[s.material].kind == MATERIAL_DIFFUSE;
+    return select(ng, ns, diffuse || dot(wo, ns) > 0.0);
 }
 
 //#if specular
@@ -51,26 +54,35 @@ fn scatter_specular(s: Surface, wo: vec3f, medium: u32, u: f32, mode: u32) -> Sc
         if u >= interface_n.reflectance {
             var wi = refracted(wo, n, cos_i, interface_n.cos_t, eta);
             if dot(wi, ng) >= 0.0 {
+                n = ng;
                 let cos_g = dot(wo, ng);
                 let flat_ng = fresnel(cos_g, eta);
                 wi = refracted(wo, ng, cos_g, flat_ng.cos_t, eta);
             }
-            let weight = select(1.0, eta * eta, mode == RADIANCE);
+            var weight = eta * eta;
+            if mode != RADIANCE {
+                weight = shading_correction(s, n, ng, wo, wi);
+            }
             let beyond = select(NONE, s.material, outside);
             return Scatter(wi, beyond, vec3f(weight));
         }
-        var wi = mirrored(wo, n);
-        if dot(wi, ng) <= 0.0 {
-            wi = mirrored(wo, ng);
-        }
-        let here = select(s.material, medium, outside);
-        return Scatter(wi, here, vec3f(1.0));
     }
     //#end
     if dot(mirrored(wo, n), ng) <= 0.0 {
         n = ng;
     }
-    return Scatter(mirrored(wo, n), medium, reflectance_at(s.material, s.uv));
+    let wi = mirrored(wo, n);
+    var weight = vec3f(1.0);
+    if mode == IMPORTANCE {
+        weight *= shading_correction(s, n, ng, wo, wi);
+    }
+    //#if glass
+    if m.kind == MATERIAL_GLASS {
+        let here = select(s.material, medium, dot(wo, s.normal) >= 0.0);
+        return Scatter(wi, here, weight);
+    }
+    //#end
+    return Scatter(wi, medium, weight * reflectance_at(s.material, s.uv));
 }
 //#end
 
@@ -80,6 +92,7 @@ fn scatter_rough(s: Surface, wo: vec3f, medium: u32, u: vec2f, mode: u32) -> Sca
     let n = shading_normal(s, wo);
     var wi: vec3f;
     var weight = reflectance_at(s.material, s.uv);
+    var diffuse = true;
     //#if metal
     if m.kind == MATERIAL_METAL {
         let f = basis(n);
@@ -88,19 +101,31 @@ fn scatter_rough(s: Surface, wo: vec3f, medium: u32, u: vec2f, mode: u32) -> Sca
         let local_wi = mirrored(local_wo, h);
         weight = weight_metal(local_wo, h, local_wi, weight, m.alpha);
         wi = from_frame(n, local_wi);
-    } else {
+        diffuse = false;
+    }
+    //#end
+    if diffuse && mode == IMPORTANCE {
+        if any(s.shading != s.normal) {
+            weight *= max(dot(wo, n), 0.0) / max(dot(wo, ng), COS_MIN);
+        }
+        wi = from_frame(ng, sample_cosine(u));
+    } else if diffuse {
         wi = from_frame(n, sample_cosine(u));
     }
-    //#else
-    wi = from_frame(n, sample_cosine(u));
-    //#end
     wi *= 1.0 / sqrt(dot(wi, wi));
     let cos_g = dot(wi, ng);
     if cos_g <= 0.0 {
         weight = vec3f(0.0);
-    } else if mode == IMPORTANCE {
-        weight *= shading_correction(s, n, ng, wo, wi);
     }
+    //#if metal
+    if cos_g > 0.0 && mode == IMPORTANCE && m.kind == MATERIAL_METAL {
+        var correction = 0.0;
+        if dot(wo, toward(s.shading, ng)) > 0.0 {
+            correction = shading_correction(s, n, ng, wo, wi);
+        }
+        weight *= correction;
+    }
+    //#end
     return Scatter(wi, medium, weight);
 }
 
@@ -108,11 +133,11 @@ fn shading_correction(s: Surface, n: vec3f, ng: vec3f, wo: vec3f, wi: vec3f) -> 
     if all(s.shading == s.normal) {
         return 1.0;
     }
-    let denominator = dot(wo, ng) * dot(wi, n);
+    let denominator = abs(dot(wo, ng) * dot(wi, n));
     if denominator <= 1e-6 {
         return 0.0;
     }
-    return dot(wo, n) * dot(wi, ng) / denominator;
+    return abs(dot(wo, n) * dot(wi, ng)) / denominator;
 }
 //#end
 
