@@ -2,7 +2,7 @@
 
 const RADIANCE: u32 = 0u;
 const IMPORTANCE: u32 = 1u;
-const ADJOINT_COS_MIN: f32 = 1e-3;
+const ADJOINT_COS_MIN: f32 = 1e-2;
 
 struct Scatter {
     direction: vec3f,

@@ -15,7 +15,7 @@ pub const RADIANCE: u32 = 0;
 pub const IMPORTANCE: u32 = 1;
 
 /// Least cosine with the geometric normal for which a shading normal's correction is formed.
-const ADJOINT_COS_MIN: f32 = 1e-3;
+const ADJOINT_COS_MIN: f32 = 1e-2;
 
 /// Where a path goes on.
 #[derive(Clone, Copy, Debug)]

@@ -4,6 +4,7 @@
 //! `CAUSTICA_DEVICE` chooses the device (default `cpu`).
 
 mod closed_forms;
+mod dielectrics;
 mod furnace;
 mod integrating_sphere;
 mod irradiance;

@@ -88,7 +88,7 @@ fn agree(name: &str, material: &str, power: f64) {
 
 #[test]
 fn diffuse() {
-    agree("diffuse", "type = \"diffuse\"\nreflectance = 0.8", 0.015);
+    agree("diffuse", "type = \"diffuse\"\nreflectance = 0.8", 0.02);
 }
 
 #[test]
@@ -98,7 +98,7 @@ fn metal() {
 
 #[test]
 fn mirror() {
-    agree("mirror", "type = \"mirror\"\nreflectance = 0.9", 0.015);
+    agree("mirror", "type = \"mirror\"\nreflectance = 0.9", 0.02);
 }
 
 #[test]
