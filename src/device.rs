@@ -164,7 +164,11 @@ pub fn open(wanted: &Wanted, scene: &Scene, settings: &RenderSettings) -> Result
     Ok(Opened { engine: start(device, scene, settings)?, name: device.name.clone(), why })
 }
 
-fn start(device: &DeviceInfo, scene: &Scene, settings: &RenderSettings) -> Result<Box<dyn Engine>, EngineError> {
+fn start(
+    device: &DeviceInfo,
+    scene: &Scene,
+    settings: &RenderSettings,
+) -> Result<Box<dyn Engine>, EngineError> {
     let packed = pack(scene, scene.film.width, scene.film.height)?;
     let plan = Plan::new(&packed, settings);
     match device.kind {

@@ -74,9 +74,8 @@ impl Features {
         put("checker", scene.textures.iter().any(|t| t.kind == TEXTURE_CHECKER));
         put("texels", !scene.texels.is_empty());
         let light = |kind| scene.lights.iter().any(|l| l.kind == kind);
-        let area = |kind| {
-            scene.lights.iter().any(|l| l.kind == LIGHT_AREA && l.reference >> REFERENCE_BITS == kind)
-        };
+        let area =
+            |kind| scene.lights.iter().any(|l| l.kind == LIGHT_AREA && l.reference >> REFERENCE_BITS == kind);
         put("lights", !scene.lights.is_empty());
         put("area_triangle", area(KIND_TRIANGLE));
         put("area_sphere", area(KIND_SPHERE));

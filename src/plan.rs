@@ -88,7 +88,13 @@ impl Kernel {
             Self::GridScanSums => vec![("block_sums", true)],
             Self::GridScan => vec![("counts", true), ("block_sums", true), ("starts", true)],
             Self::GridScatter => {
-                vec![("records", false), ("counters", true), ("counts", true), ("starts", false), ("order", true)]
+                vec![
+                    ("records", false),
+                    ("counters", true),
+                    ("counts", true),
+                    ("starts", false),
+                    ("order", true),
+                ]
             }
             Self::GridSort => vec![("records", false), ("starts", false), ("order", true), ("sorted", true)],
             Self::Gather => {

@@ -45,8 +45,9 @@ impl Grid {
         let gpu = Gpu::open(&software::software()).unwrap();
         let recorder = Recorder::new(&gpu).unwrap();
         let features = Features::from(["photons"]);
-        let programs =
-            KERNELS.map(|kernel| Program::new(&gpu, kernel, &features, &SceneTables::default()).unwrap()).into();
+        let programs = KERNELS
+            .map(|kernel| Program::new(&gpu, kernel, &features, &SceneTables::default()).unwrap())
+            .into();
         Self { gpu, recorder, programs }
     }
 
@@ -176,7 +177,8 @@ fn agrees_with_a_naive_loop() {
 #[test]
 fn long_buckets_are_sorted() {
     let mut grid = Grid::new();
-    for (count, size) in [(20_000, 0.5), (31, 0.5), (32, 0.5), (33, 0.5), (64, 0.5), (65, 0.5), (30_000, 8.0)] {
+    for (count, size) in [(20_000, 0.5), (31, 0.5), (32, 0.5), (33, 0.5), (64, 0.5), (65, 0.5), (30_000, 8.0)]
+    {
         let mut records = scattered(count, size);
         if size < 1.0 {
             records.iter_mut().for_each(|r| r.position += Vec3::splat(0.5));

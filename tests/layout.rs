@@ -27,11 +27,28 @@ macro_rules! layout {
 fn hosts() -> Vec<Layout> {
     vec![
         layout!(World {
-            bounds_min, unit, bounds_max, near_radius, planar_origin, light_count, environment, unbounded_count,
+            bounds_min,
+            unit,
+            bounds_max,
+            near_radius,
+            planar_origin,
+            light_count,
+            environment,
+            unbounded_count,
             disc_levels
         }),
         layout!(Camera {
-            position, aperture, right, focus, up, pixel, forward, width, lens_right, height, lens_up
+            position,
+            aperture,
+            right,
+            focus,
+            up,
+            pixel,
+            forward,
+            width,
+            lens_right,
+            height,
+            lens_up
         }),
         layout!(Sphere { anchor, curvature, normal, radius, material, light, uv }),
         layout!(Rectangle { origin, material, normal, light, u, uv, v, area, dual_u, dual_v }),
@@ -39,27 +56,77 @@ fn hosts() -> Vec<Layout> {
         layout!(Cuboid { lower, material, upper, light, uv }),
         layout!(Plane { point, material, normal, uv, tangent, u0, bitangent, v0 }),
         layout!(Revolution {
-            x_axis, scale, y_axis, inv_scale, z_axis, segments, center, material, light, uv
+            x_axis,
+            scale,
+            y_axis,
+            inv_scale,
+            z_axis,
+            segments,
+            center,
+            material,
+            light,
+            uv
         }),
         layout!(Patch {
-            revolution, segment, first_point, degree, origin, axis, r_min, r_max, y_min, y_max, phi_min, phi_max,
-            slope, length, t0, t1, wobble
+            revolution,
+            segment,
+            first_point,
+            degree,
+            origin,
+            axis,
+            r_min,
+            r_max,
+            y_min,
+            y_max,
+            phi_min,
+            phi_max,
+            slope,
+            length,
+            t0,
+            t1,
+            wobble
         }),
         layout!(Triangle { p0, material, p1, light, p2, attributes }),
         layout!(Attributes { n0, u0, n1, v0, n2, u1, v1, u2, v2, smooth_normals }),
         layout!(Material { reflectance, kind, absorption, ior, texture, alpha }),
         layout!(Texture { scale, kind, flags, first, width, height, format, color0, color1 }),
         layout!(Light {
-            color, kind, position, selection, direction, area, reference, first, cos_outer, cos_inner, patch_first,
+            color,
+            kind,
+            position,
+            selection,
+            direction,
+            area,
+            reference,
+            first,
+            cos_outer,
+            cos_inner,
+            patch_first,
             patch_count
         }),
         layout!(Dispatch {
-            first, end, pass_number, seed, chunk_first, batch_first, key_bits, capacity, max_bounces, eye_samples,
-            mask, inv_cell, scale_sq, photons, alpha, radius_pixels, radius_units, radius_max, strata, passes_done
+            first,
+            end,
+            pass_number,
+            seed,
+            chunk_first,
+            batch_first,
+            key_bits,
+            capacity,
+            max_bounces,
+            eye_samples,
+            mask,
+            inv_cell,
+            scale_sq,
+            photons,
+            alpha,
+            radius_pixels,
+            radius_units,
+            radius_max,
+            strata,
+            passes_done
         }),
-        layout!(VisiblePoint {
-            position, radius, weight, normal, radiance, shading, reflectance, alpha, wo
-        }),
+        layout!(VisiblePoint { position, radius, weight, normal, radiance, shading, reflectance, alpha, wo }),
         layout!(PhotonRecord { position, key, flux, direction }),
         layout!(Gathered { flux, count }),
         layout!(Statistics { scale_sq, drop, count_low, count_high }),
@@ -161,7 +228,8 @@ fn scene_tables_agree() {
     let shader = compose(Kernel::EyeTrace, &mixture.features(), &tables).unwrap();
     let (module, _) = shader.validate().unwrap();
     let (members, span) = members(&module, "Scene").unwrap();
-    let theirs: Vec<_> = members.iter().map(|m| (m.name.as_deref().unwrap_or_default(), m.offset as usize)).collect();
+    let theirs: Vec<_> =
+        members.iter().map(|m| (m.name.as_deref().unwrap_or_default(), m.offset as usize)).collect();
     let ours: Vec<_> = tables.members.iter().map(|m| (m.name, m.offset)).collect();
     assert_eq!(ours, theirs);
     assert_eq!(tables.bytes.len(), span);

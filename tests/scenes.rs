@@ -43,9 +43,9 @@ fn render(path: &PathBuf, wanted: &Wanted, change: impl Fn(&mut RenderSettings))
 fn difference(a: &Picture, b: &Picture) -> (usize, f32) {
     assert_eq!((a.width, a.height), (b.width, b.height));
     let pairs = a.rgb.iter().flatten().zip(b.rgb.iter().flatten());
-    pairs.filter(|(x, y)| x.to_bits() != y.to_bits()).fold((0, 0.0), |(n, worst), (x, y)| {
-        (n + 1, f32::max(worst, (x - y).abs()))
-    })
+    pairs
+        .filter(|(x, y)| x.to_bits() != y.to_bits())
+        .fold((0, 0.0), |(n, worst), (x, y)| (n + 1, f32::max(worst, (x - y).abs())))
 }
 
 #[test]

@@ -72,11 +72,29 @@ fn only_what_is_required() {
         compose(Kernel::EyeTrace, &mixture.features(), &SceneTables::new(&mixture.scene)).unwrap().source
     };
     let plain = source(&["sphere", "unbounded"]);
-    for word in ["traverse", "Revolution", "sample_light", "fresnel", "ggx", "eval_texture", "triangles[", "camera.aperture"] {
+    for word in [
+        "traverse",
+        "Revolution",
+        "sample_light",
+        "fresnel",
+        "ggx",
+        "eval_texture",
+        "triangles[",
+        "camera.aperture",
+    ] {
         assert!(!plain.contains(word), "{word}");
     }
     let rich = source(&features::ALL);
-    for word in ["traverse", "Revolution", "sample_light", "fresnel", "ggx", "eval_texture", "triangles[", "camera.aperture"] {
+    for word in [
+        "traverse",
+        "Revolution",
+        "sample_light",
+        "fresnel",
+        "ggx",
+        "eval_texture",
+        "triangles[",
+        "camera.aperture",
+    ] {
         assert!(rich.contains(word), "{word}");
     }
 }
@@ -104,7 +122,8 @@ fn a_planted_error_is_found() {
     ] {
         let mut fragments = FRAGMENTS.to_vec();
         let fragment = fragments.iter_mut().find(|f| f.path == path).unwrap();
-        let (before, _) = fragment.text.split_once(right).unwrap_or_else(|| panic!("{path} has no `{right}`"));
+        let (before, _) =
+            fragment.text.split_once(right).unwrap_or_else(|| panic!("{path} has no `{right}`"));
         let line = before.matches('\n').count() + 1;
         fragment.text = Box::leak(fragment.text.replacen(right, wrong, 1).into_boxed_str());
         let list = faults(&fragments, 0);

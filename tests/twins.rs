@@ -72,8 +72,10 @@ fn rust_twins_name_shaders_that_exist() {
 /// Each kernel's module has exactly one entry point: the stem, which is also the file's name and the Rust function's.
 #[test]
 fn entry_points_are_stems() {
-    let rust: String =
-        files(&root().join("src/kernels"), "rs").iter().map(|path| fs::read_to_string(path).unwrap()).collect();
+    let rust: String = files(&root().join("src/kernels"), "rs")
+        .iter()
+        .map(|path| fs::read_to_string(path).unwrap())
+        .collect();
     let functions: BTreeSet<&str> =
         rust.split("pub fn ").skip(1).filter_map(|rest| rest.split(['(', '<']).next()).collect();
     let mixture = ingredients::Mixture::of(&["sphere", "unbounded", "point", "sampled"]);
@@ -84,7 +86,8 @@ fn entry_points_are_stems() {
         let (module, _) = shader.validate().unwrap();
         let entries: Vec<_> = module.entry_points.iter().map(|e| e.name.as_str()).collect();
         assert_eq!(entries, [stem]);
-        let function = if matches!(kernel, Kernel::GridScanReduce | Kernel::GridScanSums) { "grid_scan" } else { stem };
+        let function =
+            if matches!(kernel, Kernel::GridScanReduce | Kernel::GridScanSums) { "grid_scan" } else { stem };
         assert!(functions.contains(function), "no Rust function `{function}`");
     }
 }

@@ -1,6 +1,8 @@
 //! A small rounded car of the fifties: a painted body with wheels, and its chrome apart.
 
-use crate::assets::car_shape::{AXIS_HEIGHT, AXLES, SILL, Unwrapping, WHEEL_RADIUS, body_normal, in_arch, meet};
+use crate::assets::car_shape::{
+    AXIS_HEIGHT, AXLES, FLOOR, Unwrapping, WHEEL_RADIUS, body_normal, in_arch, meet,
+};
 use crate::assets::mesh::Mesh;
 use crate::assets::numbers::{lerp, sin_cos};
 use glam::{DMat3, DVec2, DVec3};
@@ -31,7 +33,16 @@ pub fn painted(unwrapping: &Unwrapping) -> Mesh {
     for side in [-1.0, 1.0] {
         for (lamp, region) in [(HEADLIGHTS, HEADLIGHT), (TAILLIGHTS, TAILLIGHT)] {
             let (turn, at) = lamp_frame(lamp, side);
-            mesh.append(&lathe(&[[0.0, 0.92], [0.12, 0.92], [0.22, 0.6], [0.28, 0.0]].map(|[y, r]| [y * lamp.2, r * lamp.2]), 20, region), turn, at);
+            mesh.append(
+                &lathe(
+                    &[[0.0, 0.92], [0.12, 0.92], [0.22, 0.6], [0.28, 0.0]]
+                        .map(|[y, r]| [y * lamp.2, r * lamp.2]),
+                    20,
+                    region,
+                ),
+                turn,
+                at,
+            );
         }
     }
     plate(&mut mesh, DVec3::new(2.045, 0.41, 0.0), 1.0);
@@ -53,7 +64,8 @@ pub fn chrome() -> Mesh {
         strip(&mut mesh, side);
         let handle = |u: f64| DVec3::new(lerp(-0.14, -0.27, u), 0.815, 0.0);
         if let Some(p) = meet(DVec3::new(-0.2, 0.815, 1.2), -DVec3::Z, 1.2) {
-            let path: Vec<DVec3> = (0..=8).map(|k| handle(f64::from(k) / 8.0) + DVec3::Z * (p.z + 0.02)).collect();
+            let path: Vec<DVec3> =
+                (0..=8).map(|k| handle(f64::from(k) / 8.0) + DVec3::Z * (p.z + 0.02)).collect();
             let path: Vec<DVec3> = path.iter().map(|&p| DVec3::new(p.x, p.y, p.z * side)).collect();
             tube(&mut mesh, &path, 0.013, 0.013);
         }
@@ -69,7 +81,11 @@ pub fn chrome() -> Mesh {
             .collect();
         tube(&mut mesh, &path, 0.05, 0.022);
         for z in [-0.33, 0.33] {
-            let guard = [DVec3::new(end * 2.03, 0.27, z), DVec3::new(end * 2.05, 0.37, z), DVec3::new(end * 2.03, 0.47, z)];
+            let guard = [
+                DVec3::new(end * 2.03, 0.27, z),
+                DVec3::new(end * 2.05, 0.37, z),
+                DVec3::new(end * 2.03, 0.47, z),
+            ];
             tube(&mut mesh, &guard, 0.028, 0.028);
         }
     }
@@ -78,12 +94,13 @@ pub fn chrome() -> Mesh {
 
 /// The closed shell: each section runs from the middle of the underside out, up the side and to the roof's
 /// middle, then down the other side. Wheel wells are where the lower edge is higher than the floor.
-fn body(unwrapping: &Unwrapping) -> Mesh {
+pub fn body(unwrapping: &Unwrapping) -> Mesh {
     const SIDE: usize = 25;
     const INNER: f64 = 0.42;
     let stations = unwrapping.stations();
     let mut mesh = Mesh::default();
-    let atlas = |u: f64, v: f64| DVec2::new(lerp(0.004, 0.996, u), lerp(BODY_V.0 + 0.004, BODY_V.1 - 0.004, v));
+    let atlas =
+        |u: f64, v: f64| DVec2::new(lerp(0.004, 0.996, u), lerp(BODY_V.0 + 0.004, BODY_V.1 - 0.004, v));
     // the first and the last section shrink to a point
     let tip_or = |row: usize, u: f64, v: f64| {
         let p = unwrapping.point(u, v);
@@ -92,25 +109,25 @@ fn body(unwrapping: &Unwrapping) -> Mesh {
     for side in [1.0, -1.0] {
         let outward = |p: DVec3| DVec3::new(p.x, p.y, p.z * side);
         // the left half is the mirror image: its columns run the other way, so that it winds outward too
-        let column = |col: usize| if side > 0.0 { SIDE - col } else { col };
+        let column = |col: usize| if side > 0.0 { col } else { SIDE - col };
         mesh.grid(stations.len(), SIDE + 1, |row, col| {
             let u = stations[row];
             let low = unwrapping.lower_edge(unwrapping.x(u));
             let v = lerp(low, 1.0, column(col) as f64 / SIDE as f64);
             let p = tip_or(row, u, v);
-            let p = if column(col) == SIDE { p.with_z(0.0) } else { p };
+            let p = if column(col) == SIDE || v == 0.0 { p.with_z(0.0) } else { p };
             (outward(p), outward(body_normal(p)), atlas(u, v))
         });
         // underside: from the edge in to the well's inner wall, down it, and to the middle
         let section = |row: usize| {
             let edge = tip_or(row, stations[row], unwrapping.lower_edge(unwrapping.x(stations[row])));
             let inner = edge.z.min(INNER);
-            let floor = if in_arch(edge.x) { SILL } else { edge.y };
+            let floor = if in_arch(edge.x) { FLOOR.min(edge.y) } else { edge.y };
             [edge, edge.with_z(inner), DVec3::new(edge.x, floor, inner), DVec3::new(edge.x, floor, 0.0)]
         };
         for (part, normal) in [-DVec3::Y, DVec3::Z, -DVec3::Y].into_iter().enumerate() {
             mesh.grid(stations.len(), 2, |row, col| {
-                let k = if side > 0.0 { part + col } else { part + 1 - col };
+                let k = if side > 0.0 { part + 1 - col } else { part + col };
                 (outward(section(row)[k]), outward(normal), BLACK)
             });
         }
@@ -120,11 +137,31 @@ fn body(unwrapping: &Unwrapping) -> Mesh {
 
 /// Profile of a wheel about its axle, as (outward along the axle, radius), from inside to hub.
 const TYRE: [[f64; 2]; 14] = [
-    [-0.085, 0.16], [-0.09, 0.24], [-0.08, 0.295], [-0.055, 0.313], [0.0, 0.315], [0.055, 0.313], [0.08, 0.295],
-    [0.09, 0.26], [0.088, 0.225], [0.075, 0.208], [0.06, 0.20], [0.045, 0.16], [0.05, 0.08], [0.05, 0.0],
+    [-0.085, 0.16],
+    [-0.09, 0.24],
+    [-0.08, 0.295],
+    [-0.055, 0.313],
+    [0.0, 0.315],
+    [0.055, 0.313],
+    [0.08, 0.295],
+    [0.09, 0.26],
+    [0.088, 0.225],
+    [0.075, 0.208],
+    [0.06, 0.20],
+    [0.045, 0.16],
+    [0.05, 0.08],
+    [0.05, 0.0],
 ];
-const HUBCAP: [[f64; 2]; 8] =
-    [[0.04, 0.145], [0.06, 0.142], [0.068, 0.13], [0.062, 0.112], [0.078, 0.085], [0.094, 0.055], [0.102, 0.025], [0.104, 0.0]];
+const HUBCAP: [[f64; 2]; 8] = [
+    [0.04, 0.145],
+    [0.06, 0.142],
+    [0.068, 0.13],
+    [0.062, 0.112],
+    [0.078, 0.085],
+    [0.094, 0.055],
+    [0.102, 0.025],
+    [0.104, 0.0],
+];
 
 fn place_wheels(mesh: &mut Mesh, wheel: &Mesh) {
     for x in AXLES {
@@ -141,7 +178,7 @@ fn lamp_frame((at, direction, radius): (DVec3, DVec3, f64), side: f64) -> (DMat3
     let x = y.cross(DVec3::Y).normalize();
     let away = DVec3::new(at.x, at.y, at.z * side) + y * 0.5;
     let on_body = meet(away, -y, 1.0).unwrap_or(away);
-    (DMat3::from_cols(x, y, x.cross(y)), on_body + y * (0.1 * radius))
+    (DMat3::from_cols(x, y, x.cross(y)), on_body + y * (0.3 * radius))
 }
 
 /// Turns a profile of (height, radius) about y. Smooth normals; the region is (u0, v0, u1, v1).
@@ -168,7 +205,7 @@ fn tube(mesh: &mut Mesh, path: &[DVec3], high: f64, deep: f64) {
     let rows = path.len() + 4;
     mesh.grid(rows, AROUND + 1, |row, col| {
         // two extra rows at each end round the tube off
-        let (k, cap) = match row {
+        let (k, cap): (usize, f64) = match row {
             0 => (0, 1.0),
             1 => (0, 0.6),
             r if r == rows - 2 => (last, -0.6),
@@ -179,8 +216,8 @@ fn tube(mesh: &mut Mesh, path: &[DVec3], high: f64, deep: f64) {
         let up = if forward.y.abs() > 0.5 { DVec3::Z } else { DVec3::Y };
         let across = forward.cross(up).normalize();
         let up = across.cross(forward);
-        let (s, c) = sin_cos(-TAU * col as f64 / AROUND as f64);
-        let shrink = (1.0 - cap * cap as f64).max(0.0).sqrt();
+        let (s, c) = sin_cos(TAU * col as f64 / AROUND as f64);
+        let shrink = (1.0 - cap * cap).max(0.0).sqrt();
         let out = up * (c / high) + across * (s / deep);
         let normal = out.normalize() * shrink - forward * cap;
         let p = path[k] + (up * (high * c) + across * (deep * s)) * shrink - forward * (cap * deep);
@@ -205,7 +242,10 @@ fn plate(mesh: &mut Mesh, at: DVec3, end: f64) {
     let [u0, v0, u1, v1] = PLATE;
     let (half, high) = (0.24 * end, 0.055);
     let corner = |s: f64, t: f64| {
-        (at + DVec3::new(0.0, high * t, -half * s), DVec2::new(lerp(u0, u1, 0.5 + 0.5 * s), lerp(v0, v1, 0.5 + 0.5 * t)))
+        (
+            at + DVec3::new(0.0, high * t, -half * s),
+            DVec2::new(lerp(u0, u1, 0.5 + 0.5 * s), lerp(v0, v1, 0.5 + 0.5 * t)),
+        )
     };
     mesh.polygon(&[corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)]);
     let behind = |s: f64, t: f64| (at + DVec3::new(-0.004 * end, high * t, -half * s), BLACK);

@@ -65,7 +65,7 @@ fn body(p: DVec3, n: DVec3) -> Color {
         // fuel cap and rocker panel
         let cap = side.distance(DVec2::new(-0.92, 0.815)) - 0.055;
         color = over(color, hex(SEAM), cap.abs() - 0.004);
-        color = over(color, hex(0x2a_2624), p.y - 0.262);
+        color = over(color, hex(0x2a_2624), p.y - 0.245);
     }
     if p.x > 0.1 && n.x > 0.35 && p.y > 0.86 {
         let pane = corners(&[(-0.47, 0.955), (0.47, 0.955), (0.40, 1.215), (-0.40, 1.215)]);
@@ -75,7 +75,7 @@ fn body(p: DVec3, n: DVec3) -> Color {
         let pane = corners(&[(-0.34, 1.01), (0.34, 1.01), (0.28, 1.20), (-0.28, 1.20)]);
         color = window(color, front, rounded_polygon(front, &pane, 0.04));
     }
-    lids(front, p, n, color)
+    if n.y < -0.6 && p.y < 0.4 { hex(0x2a_2624) } else { lids(front, p, n, color) }
 }
 
 /// Bonnet, boot lid, and the grille between the lamps.
@@ -122,7 +122,8 @@ fn wheel(q: DVec2) -> Color {
     let row = q.y * 13.0;
     if row < 9.0 {
         let groove = ((q.x * 48.0 + 0.5 * row) % 1.0 - 0.5).abs();
-        let tread = hex(0x20_1f20).lerp(hex(0x0d_0d0d), if row < 6.0 { smoothstep(0.36, 0.44, groove) } else { 0.0 });
+        let tread =
+            hex(0x20_1f20).lerp(hex(0x0d_0d0d), if row < 6.0 { smoothstep(0.36, 0.44, groove) } else { 0.0 });
         return tread.lerp(hex(0xe9_e3d6), smoothstep(6.55, 6.7, row) - smoothstep(8.3, 8.45, row));
     }
     if row < 10.0 {

@@ -1,7 +1,7 @@
 //! The body of the car as an implicit surface, and its unwrapping: x = forward, y = up, z = to the right,
 //! the ground at y = 0, in metres.
 
-use crate::assets::numbers::{lerp, sin_cos};
+use crate::assets::numbers::{lerp, sin_cos, smoothstep};
 use glam::{DVec2, DVec3};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -11,10 +11,14 @@ pub const AXLES: [f64; 2] = [1.22, -1.2];
 pub const WHEEL_RADIUS: f64 = 0.315;
 /// Radius of the wheel arches about the axles.
 const ARCH_RADIUS: f64 = 0.375;
-/// Height of the body's lower edge.
-pub const SILL: f64 = 0.22;
+/// Over what length, along x, the arches run out into the sill.
+const ARCH_FOOT: f64 = 0.06;
+/// Height of the underside between the wheel wells.
+pub const FLOOR: f64 = 0.2;
+/// The v of the sill in the unwrapping.
+const SILL_V: f64 = 0.33;
 /// The lowest and highest angle of the unwrapping, about the axis at height [`AXIS_HEIGHT`].
-const ANGLES: (f64, f64) = (-PI / 3.0, FRAC_PI_2);
+const ANGLES: (f64, f64) = (-FRAC_PI_2, FRAC_PI_2);
 /// Height of the axis about which the sections are unwrapped.
 pub const AXIS_HEIGHT: f64 = 0.57;
 
@@ -46,11 +50,11 @@ pub fn body(p: DVec3) -> f64 {
     };
     let bonnet = ellipsoid(DVec3::new(0.85, 0.56, 0.0), DVec3::new(1.14, 0.46, 0.58));
     let tail = ellipsoid(DVec3::new(-0.95, 0.58, 0.0), DVec3::new(1.10, 0.44, 0.60));
-    let front = ellipsoid(DVec3::new(AXLES[0] + 0.02, 0.45, 0.60), DVec3::new(0.62, 0.40, 0.20));
-    let rear = ellipsoid(DVec3::new(AXLES[1] + 0.02, 0.45, 0.60), DVec3::new(0.60, 0.40, 0.21));
+    let front = ellipsoid(DVec3::new(AXLES[0] + 0.02, 0.45, 0.57), DVec3::new(0.60, 0.40, 0.22));
+    let rear = ellipsoid(DVec3::new(AXLES[1] + 0.02, 0.45, 0.57), DVec3::new(0.58, 0.40, 0.23));
     let trunk = smooth_min(smooth_min(hull, bonnet, 0.16), tail, 0.16);
     let shell = smooth_min(trunk, cabin, 0.10);
-    smooth_min(smooth_min(shell, front, 0.09), rear, 0.09)
+    smooth_min(smooth_min(shell, front, 0.15), rear, 0.15)
 }
 
 /// The outward unit normal of [`body`] at `p`.
@@ -122,48 +126,50 @@ impl Unwrapping {
         at_angle(self.x(u), lerp(ANGLES.0, ANGLES.1, v))
     }
 
-    /// The v of the body's lower edge at `x`: the sill, or the rim of a wheel arch.
+    /// The v of the body's lower edge at `x`: the sill, which draws in under nose and tail, or the rim of a
+    /// wheel arch, which runs out into the sill.
     pub fn lower_edge(&self, x: f64) -> f64 {
-        let low = AXLES.iter().fold(SILL, |low, axle| {
-            let square = ARCH_RADIUS * ARCH_RADIUS - (x - axle) * (x - axle);
-            if square > 0.0 { low.max(WHEEL_RADIUS + square.sqrt()) } else { low }
-        });
-        let (mut below, mut above) = (0.0, 0.7);
+        let ends = smoothstep(1.66, 1.92, x).max(smoothstep(-1.66, -1.94, x));
+        let sill = SILL_V * (1.0 - ends);
+        let d = AXLES.iter().map(|axle| (x - axle).abs()).fold(f64::MAX, f64::min);
+        let rim = WHEEL_RADIUS + (ARCH_RADIUS * ARCH_RADIUS - d * d).max(0.0).sqrt();
+        let (mut below, mut above) = (0.2, 0.8);
         for _ in 0..40 {
             let v = 0.5 * (below + above);
-            if at_angle(x, lerp(ANGLES.0, ANGLES.1, v)).y < low { below = v } else { above = v }
+            if at_angle(x, lerp(ANGLES.0, ANGLES.1, v)).y < rim { below = v } else { above = v }
         }
-        above
+        lerp(above, sill, smoothstep(ARCH_RADIUS, ARCH_RADIUS + ARCH_FOOT, d))
     }
 
     /// Stations from nose to tail as u, with one at each edge of each arch and more beside these.
     pub fn stations(&self) -> Vec<f64> {
-        let half = (ARCH_RADIUS * ARCH_RADIUS - (WHEEL_RADIUS - SILL) * (WHEEL_RADIUS - SILL)).sqrt();
-        let mut stations = Vec::new();
-        let mut even = |from: f64, to: f64, count: u32| {
-            stations.extend((0..count).map(|k| lerp(from, to, f64::from(k) / f64::from(count))));
-        };
-        let edges = AXLES.map(|axle| (self.u(axle + half), self.u(axle - half)));
-        even(0.0, edges[0].0, 14);
-        let arch = |edges: (f64, f64)| -> Vec<f64> {
-            let c = |k: u32| 0.5 - 0.5 * sin_cos(FRAC_PI_2 - PI * f64::from(k) / 16.0).0;
-            (0..16).map(|k| lerp(edges.0, edges.1, c(k))).collect()
-        };
-        let mut middle = Vec::new();
-        let count = 16;
-        middle.extend((0..count).map(|k| lerp(edges[0].1, edges[1].0, f64::from(k) / f64::from(count))));
-        let tail: Vec<f64> = (0..=14).map(|k| lerp(edges[1].1, 1.0, f64::from(k) / 14.0)).collect();
-        stations.extend(arch(edges[0]));
-        stations.extend(middle);
-        stations.extend(arch(edges[1]));
-        stations.extend(tail);
+        // x where each stretch ends, into how many steps it is cut, and whether these crowd at its ends
+        let mut stretches = Vec::new();
+        for (axle, before) in AXLES.iter().zip([12, 16]) {
+            stretches.push((axle + ARCH_RADIUS + ARCH_FOOT, before, false));
+            stretches.push((axle + ARCH_RADIUS, 3, false));
+            stretches.push((axle - ARCH_RADIUS, 16, true));
+            stretches.push((axle - ARCH_RADIUS - ARCH_FOOT, 3, false));
+        }
+        stretches.push((-f64::INFINITY, 12, false));
+        let mut stations = vec![0.0];
+        let mut from = 0.0;
+        for (x, steps, crowded) in stretches {
+            let to = self.u(x.max(self.table[self.table.len() - 1].1));
+            for k in 1..=steps {
+                let t = f64::from(k) / f64::from(steps);
+                let t = if crowded { 0.5 - 0.5 * sin_cos(FRAC_PI_2 - PI * t).0 } else { t };
+                stations.push(lerp(from, to, t));
+            }
+            from = to;
+        }
         stations
     }
 }
 
 /// Whether the section at `x` passes through a wheel well.
 pub fn in_arch(x: f64) -> bool {
-    AXLES.iter().any(|axle| (x - axle).abs() < ARCH_RADIUS)
+    AXLES.iter().any(|axle| (x - axle).abs() < ARCH_RADIUS + ARCH_FOOT)
 }
 
 /// Bends [-1, 1] so that samples crowd at both ends.

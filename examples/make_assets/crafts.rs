@@ -25,7 +25,9 @@ pub fn planks() -> Canvas {
         let side = x.min(1.0 - x) * 0.2;
         let end = (y - from).min(to - y) * 3.2;
         let edge = side.min(end);
-        color * lerp(0.22, 1.0, smoothstep(0.0008, 0.0035, edge)) * lerp(0.88, 1.0, smoothstep(0.002, 0.012, edge))
+        color
+            * lerp(0.22, 1.0, smoothstep(0.0008, 0.0035, edge))
+            * lerp(0.88, 1.0, smoothstep(0.002, 0.012, edge))
     })
 }
 
@@ -43,7 +45,10 @@ fn oak(x: f64, y: f64, piece: i64) -> Color {
     let has_knot = hash(piece, 5, 15) < 0.45;
     let from_knot = ((x - knot.x) * (x - knot.x) + (y - knot.y) * (y - knot.y) * 90.0).sqrt();
     if has_knot {
-        across += 0.16 * bump(from_knot, 0.16) * if x > knot.x { 1.0 } else { -1.0 } * smoothstep(0.0, 0.1, (x - knot.x).abs());
+        across += 0.16
+            * bump(from_knot, 0.16)
+            * if x > knot.x { 1.0 } else { -1.0 }
+            * smoothstep(0.0, 0.1, (x - knot.x).abs());
     }
     let ring = (across * 7.0).rem_euclid(1.0);
     let late = smoothstep(0.15, 0.85, ring) * (1.0 - smoothstep(0.90, 1.0, ring));
@@ -72,7 +77,15 @@ pub fn porcelain() -> Canvas {
         let mut ink: f64 = 0.0;
         let mut put = |amount: f64| ink = ink.max(amount);
         // bands, as (v, half width)
-        for (at, half) in [(0.212, 0.004), (0.232, 0.002), (0.455, 0.003), (0.470, 0.0015), (0.560, 0.003), (0.655, 0.003), (0.785, 0.008)] {
+        for (at, half) in [
+            (0.212, 0.004),
+            (0.232, 0.002),
+            (0.455, 0.003),
+            (0.470, 0.0015),
+            (0.560, 0.003),
+            (0.655, 0.003),
+            (0.785, 0.008),
+        ] {
             put(1.0 - smoothstep(half, half + 0.002, (p.y - at).abs()));
         }
         put(petals(p, 0.236, 0.056, 24.0));
@@ -122,13 +135,22 @@ fn flowers(p: DVec2) -> f64 {
     // the stem is a wave that passes under the flowers; leaves sit along it
     let (s, _) = sin_cos(TAU * (p.x * COUNT + 0.25));
     ink = ink.max(line(q.y - 0.20 * s, 0.011));
-    for (x, y, lean) in [(-0.26, -0.27, 0.9), (0.26, -0.27, -0.9), (-0.27, 0.27, -0.9), (0.27, 0.27, 0.9), (0.0, 0.35, 0.0), (0.0, -0.35, 0.0)] {
+    for (x, y, lean) in [
+        (-0.26, -0.27, 0.9),
+        (0.26, -0.27, -0.9),
+        (-0.27, 0.27, -0.9),
+        (0.27, 0.27, 0.9),
+        (0.0, 0.35, 0.0),
+        (0.0, -0.35, 0.0),
+    ] {
         let d = q - DVec2::new(x, y);
         let along = DVec2::new(1.0, lean).normalize();
         let (a, b) = (d.dot(along) / 0.10, d.dot(along.perp()) / 0.036);
         let leaf = b.abs() - (1.0 - a * a);
         if a.abs() < 1.0 {
-            ink = ink.max((1.0 - smoothstep(-0.1, 0.1, leaf)) * (1.0 - 0.75 * (1.0 - smoothstep(0.06, 0.14, b.abs()))));
+            ink = ink.max(
+                (1.0 - smoothstep(-0.1, 0.1, leaf)) * (1.0 - 0.75 * (1.0 - smoothstep(0.06, 0.14, b.abs()))),
+            );
         }
     }
     ink

@@ -3,8 +3,9 @@
 
 use crate::assets::mesh::Mesh;
 use crate::assets::numbers::{lerp, sin_cos};
+use crate::assets::parts::{append_with_materials, beam, half_pipe, metres};
 use glam::{DMat3, DVec2, DVec3};
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 /// Half the length along x, half the depth along z, and the height of the eaves.
 const HALF: DVec3 = DVec3::new(3.7, 3.0, 2.5);
@@ -105,7 +106,7 @@ fn wall(mesh: &mut Mesh, wall: &Wall, openings: &[Opening]) {
         cuts.dedup();
         cuts
     };
-        let (columns, rows) = (cuts(|p| p.x, wall.size.x), cuts(|p| p.y, wall.size.y));
+    let (columns, rows) = (cuts(|p| p.x, wall.size.x), cuts(|p| p.y, wall.size.y));
     for s in columns.windows(2) {
         for t in rows.windows(2) {
             let middle = DVec2::new(s[0] + s[1], t[0] + t[1]) * 0.5;
@@ -121,7 +122,8 @@ fn wall(mesh: &mut Mesh, wall: &Wall, openings: &[Opening]) {
         let around = [hole.low, hole.high.with_y(hole.low.y), hole.high, hole.low.with_y(hole.high.y)];
         for (k, &a) in around.iter().enumerate() {
             let b = around[(k + 1) % 4];
-            let corner = |p: DVec2, out: f64| (wall.at(p.x, p.y, out), DVec2::new(p.x + out, p.y) / BRICKWORK);
+            let corner =
+                |p: DVec2, out: f64| (wall.at(p.x, p.y, out), DVec2::new(p.x + out, p.y) / BRICKWORK);
             mesh.polygon(&[corner(a, 0.0), corner(b, 0.0), corner(b, -REVEAL), corner(a, -REVEAL)]);
         }
         pane(mesh, wall, hole, -REVEAL);
@@ -132,7 +134,8 @@ fn wall(mesh: &mut Mesh, wall: &Wall, openings: &[Opening]) {
 fn pane(mesh: &mut Mesh, wall: &Wall, hole: &Opening, depth: f64) {
     let Opening { low, high, filling } = *hole;
     mesh.set_material(filling);
-    let corner = |s: f64, t: f64| (wall.at(lerp(low.x, high.x, s), lerp(low.y, high.y, t), depth), DVec2::new(s, t));
+    let corner =
+        |s: f64, t: f64| (wall.at(lerp(low.x, high.x, s), lerp(low.y, high.y, t), depth), DVec2::new(s, t));
     mesh.polygon(&[corner(0.0, 0.0), corner(1.0, 0.0), corner(1.0, 1.0), corner(0.0, 1.0)]);
     mesh.set_material("trim");
     let at = |s: f64, t: f64| wall.at(s, t, depth);
@@ -149,7 +152,14 @@ fn pane(mesh: &mut Mesh, wall: &Wall, hole: &Opening, depth: f64) {
     if depth < 0.0 {
         mesh.set_material("stone");
         let lintel = wall.at(0.0, high.y + 0.11, 0.0);
-        beam(mesh, lintel + wall.along * (low.x - 0.14), lintel + wall.along * (high.x + 0.14), up, 0.11, 0.025);
+        beam(
+            mesh,
+            lintel + wall.along * (low.x - 0.14),
+            lintel + wall.along * (high.x + 0.14),
+            up,
+            0.11,
+            0.025,
+        );
         if filling == "window" {
             shutters(mesh, wall, low, high);
         }
@@ -167,31 +177,14 @@ fn shutters(mesh: &mut Mesh, wall: &Wall, low: DVec2, high: DVec2) {
             let (b, u) = around[(k + 1) % 4];
             let back = |a: f64, t: f64| wall.at(s + 0.48 * a, lerp(low.y, high.y, t), 0.0);
             let plain = DVec2::new(0.05, 0.5);
-            mesh.polygon(&[(corner(b, u).0, plain), (corner(a, t).0, plain), (back(a, t), plain), (back(b, u), plain)]);
+            mesh.polygon(&[
+                (corner(b, u).0, plain),
+                (corner(a, t).0, plain),
+                (back(a, t), plain),
+                (back(b, u), plain),
+            ]);
         }
     }
-}
-
-/// A bar with a rectangular section from `a` to `b`: `high` to both sides of the line, `out` before and behind.
-fn beam(mesh: &mut Mesh, a: DVec3, b: DVec3, up: DVec3, high: f64, out: f64) {
-    let along = b - a;
-    let across = along.normalize().cross(up);
-    let frame = [along, up * (2.0 * high), across * (2.0 * out)];
-    let origin = a - up * high - across * out;
-    let mut bar = Mesh::default();
-    bar.cuboid(DVec3::ZERO, DVec3::ONE, |p, n| {
-        let size = DVec3::from_array(frame.map(|edge| edge.length()));
-        metres(p * size, n) / 1.2
-    });
-    let [fx, fy, fz] = frame;
-    for p in &mut bar.positions {
-        *p = fx * p.x + fy * p.y + fz * p.z;
-    }
-    let axes = frame.map(DVec3::normalize);
-    for n in &mut bar.normals {
-        *n = axes[0] * n.x + axes[1] * n.y + axes[2] * n.z;
-    }
-    mesh.append(&bar, DMat3::IDENTITY, origin);
 }
 
 /// A gable roof: two tiled slabs that meet at the ridge. `half_x` and `half_z` reach to their edges.
@@ -206,7 +199,12 @@ fn roof(mesh: &mut Mesh, half_x: f64, half_z: f64, top: f64, thick: f64, at: DVe
         let tile = |s: f64, t: f64| DVec2::new(s * 2.0 * half_x / 1.5, (1.0 - t) * slope / 1.6);
         mesh.set_material(if tiles { "roof" } else { "trim" });
         // top, underside, eaves, two verges; the ridge closes the other long side
-        mesh.polygon(&[(l + down, tile(0.0, 1.0)), (r + down, tile(1.0, 1.0)), (r, tile(1.0, 0.0)), (l, tile(0.0, 0.0))]);
+        mesh.polygon(&[
+            (l + down, tile(0.0, 1.0)),
+            (r + down, tile(1.0, 1.0)),
+            (r, tile(1.0, 0.0)),
+            (l, tile(0.0, 0.0)),
+        ]);
         mesh.set_material("trim");
         let flat = |corners: [DVec3; 4]| corners.map(|p| (p, DVec2::ZERO));
         mesh.polygon(&flat([l - out, r - out, r + down - out, l + down - out]));
@@ -216,25 +214,12 @@ fn roof(mesh: &mut Mesh, half_x: f64, half_z: f64, top: f64, thick: f64, at: DVe
     }
     if tiles {
         mesh.set_material("ridge");
-        half_pipe(mesh, at + DVec3::new(-half_x, top - 0.03, 0.0), at + DVec3::new(half_x, top - 0.03, 0.0), 0.10);
-    }
-}
-
-/// The upper half of a tube, for ridge tiles.
-fn half_pipe(mesh: &mut Mesh, a: DVec3, b: DVec3, radius: f64) {
-    let forward = (b - a).normalize();
-    let across = forward.cross(DVec3::Y);
-    mesh.grid(2, 9, |row, col| {
-        let (s, c) = sin_cos(PI * (col as f64 / 8.0 * 1.2 - 0.1));
-        let out = DVec3::Y * s - across * c;
-        (if row == 0 { a } else { b } + out * radius, out, DVec2::ZERO)
-    });
-    for (end, turn) in [(a, 1.0), (b, -1.0)] {
-        let rim = (0..9).map(|k| {
-            let (s, c) = sin_cos(PI * (f64::from(k) / 8.0 * 1.2 - 0.1));
-            (end + (DVec3::Y * s + across * (c * turn)) * radius, DVec2::ZERO)
-        });
-        mesh.polygon(&rim.collect::<Vec<_>>());
+        half_pipe(
+            mesh,
+            at + DVec3::new(-half_x, top - 0.03, 0.0),
+            at + DVec3::new(half_x, top - 0.03, 0.0),
+            0.10,
+        );
     }
 }
 
@@ -244,7 +229,14 @@ fn bargeboards(mesh: &mut Mesh) {
     let low = ridge() - foot * PITCH;
     for z in [1.0, -1.0] {
         let gutter = DVec3::new(0.0, low - 0.04, z * (foot + 0.05));
-        beam(mesh, gutter - DVec3::X * (HALF.x + VERGE), gutter + DVec3::X * (HALF.x + VERGE), DVec3::Y, 0.05, 0.06);
+        beam(
+            mesh,
+            gutter - DVec3::X * (HALF.x + VERGE),
+            gutter + DVec3::X * (HALF.x + VERGE),
+            DVec3::Y,
+            0.05,
+            0.06,
+        );
         for x in [1.0, -1.0] {
             let wall = DVec3::new(x * (HALF.x - 0.12), 0.0, z * (HALF.z + 0.07));
             beam(mesh, wall + DVec3::Y * 0.05, wall + DVec3::Y * (low + 0.2), DVec3::X, 0.04, 0.04);
@@ -258,22 +250,31 @@ fn chimney(mesh: &mut Mesh, at: DVec3) {
     let (half, top) = (0.36, ridge() + 0.95);
     let base = HALF.y + 0.8;
     mesh.set_material("brick");
-        let stack = DVec3::new(half, 0.0, half);
+    let stack = DVec3::new(half, 0.0, half);
     mesh.cuboid(at - stack + DVec3::Y * base, at + stack + DVec3::Y * top, |p, n| metres(p, n) / BRICKWORK);
     let course = stack + DVec3::new(0.06, 0.0, 0.06);
-    mesh.cuboid(at - course + DVec3::Y * (top - 0.30), at + course + DVec3::Y * (top - 0.15), |p, n| metres(p, n) / BRICKWORK);
+    mesh.cuboid(at - course + DVec3::Y * (top - 0.30), at + course + DVec3::Y * (top - 0.15), |p, n| {
+        metres(p, n) / BRICKWORK
+    });
     mesh.set_material("stone");
-    mesh.cuboid(at - course + DVec3::Y * top, at + course + DVec3::Y * (top + 0.09), |p, n| metres(p, n) / 1.2);
+    mesh.cuboid(at - course + DVec3::Y * top, at + course + DVec3::Y * (top + 0.09), |p, n| {
+        metres(p, n) / 1.2
+    });
     mesh.set_material("pot");
     for x in [-0.16, 0.16] {
-        let profile = [(0.13, 0.0), (0.115, 0.36), (0.14, 0.38), (0.14, 0.44), (0.10, 0.44), (0.10, 0.20), (0.0, 0.20)];
+        let profile =
+            [(0.13, 0.0), (0.115, 0.36), (0.14, 0.38), (0.14, 0.44), (0.10, 0.44), (0.10, 0.20), (0.0, 0.20)];
         let foot = at + DVec3::new(x, top + 0.09, 0.0);
         for pair in profile.windows(2) {
             let slope = DVec2::new(pair[1].1 - pair[0].1, pair[0].0 - pair[1].0);
             mesh.grid(2, 17, |row, col| {
                 let (s, c) = sin_cos(-TAU * col as f64 / 16.0);
                 let (r, y) = pair[row];
-                (foot + DVec3::new(r * c, y, r * s), DVec3::new(slope.x * c, slope.y, slope.x * s), DVec2::ZERO)
+                (
+                    foot + DVec3::new(r * c, y, r * s),
+                    DVec3::new(slope.x * c, slope.y, slope.x * s),
+                    DVec2::ZERO,
+                )
             });
         }
     }
@@ -286,7 +287,11 @@ fn dormer(mesh: &mut Mesh, x: f64) {
     // the box reaches back into the roof
     let (a, b) = (DVec3::new(x - half, low, 0.3), DVec3::new(x + half, high, front));
     mesh.cuboid(a, b, |p, n| metres(p, n) / 2.0);
-    let face = Wall { origin: DVec3::new(x - half, 0.0, front), along: DVec3::X, size: DVec2::new(2.0 * half, high) };
+    let face = Wall {
+        origin: DVec3::new(x - half, 0.0, front),
+        along: DVec3::X,
+        size: DVec2::new(2.0 * half, high),
+    };
     let peak = high + half * PITCH;
     let corner = |s: f64, t: f64| (face.at(s, t, 0.0), DVec2::new(s, t) / 2.0);
     mesh.polygon(&[corner(0.0, high), corner(2.0 * half, high), corner(half, peak)]);
@@ -299,13 +304,6 @@ fn dormer(mesh: &mut Mesh, x: f64) {
     append_with_materials(mesh, &cover, turn, DVec3::new(x, 0.0, front + 0.22 - deep));
 }
 
-/// `mesh.append`, keeping the other's materials.
-fn append_with_materials(mesh: &mut Mesh, other: &Mesh, rotate: DMat3, translate: DVec3) {
-    let first = mesh.triangles.len();
-    mesh.groups.extend(other.groups.iter().map(|&(material, start)| (material, first + start)));
-    mesh.append(other, rotate, translate);
-}
-
 /// Steps to the door under a small roof on two posts.
 fn porch(mesh: &mut Mesh) {
     let (half, front) = (0.95, HALF.z + 1.25);
@@ -314,17 +312,35 @@ fn porch(mesh: &mut Mesh) {
         let k = f64::from(step);
         let (reach, high) = (front + 0.30 * k, PLINTH * (3.0 - k) / 3.0);
         let wide = half + 0.12 + 0.16 * k;
-        mesh.cuboid(DVec3::new(-wide, 0.0, HALF.z - 0.1), DVec3::new(wide, high, reach), |p, n| metres(p, n) / 1.2);
+        mesh.cuboid(DVec3::new(-wide, 0.0, HALF.z - 0.1), DVec3::new(wide, high, reach), |p, n| {
+            metres(p, n) / 1.2
+        });
     }
     mesh.set_material("trim");
     let (beam_y, eaves) = (2.72, 2.82);
     for x in [-half, half] {
-        beam(mesh, DVec3::new(x, PLINTH, front - 0.15), DVec3::new(x, beam_y, front - 0.15), DVec3::X, 0.065, 0.065);
+        beam(
+            mesh,
+            DVec3::new(x, PLINTH, front - 0.15),
+            DVec3::new(x, beam_y, front - 0.15),
+            DVec3::X,
+            0.065,
+            0.065,
+        );
         let foot = DVec3::new(x, PLINTH, front - 0.15);
-        mesh.cuboid(foot - DVec3::new(0.10, 0.0, 0.10), foot + DVec3::new(0.10, 0.16, 0.10), |_, _| DVec2::ZERO);
+        mesh.cuboid(foot - DVec3::new(0.10, 0.0, 0.10), foot + DVec3::new(0.10, 0.16, 0.10), |_, _| {
+            DVec2::ZERO
+        });
         beam(mesh, DVec3::new(x, beam_y, HALF.z), DVec3::new(x, beam_y, front), DVec3::Y, 0.07, 0.06);
     }
-    beam(mesh, DVec3::new(-half, beam_y, front - 0.15), DVec3::new(half, beam_y, front - 0.15), DVec3::Y, 0.07, 0.06);
+    beam(
+        mesh,
+        DVec3::new(-half, beam_y, front - 0.15),
+        DVec3::new(half, beam_y, front - 0.15),
+        DVec3::Y,
+        0.07,
+        0.06,
+    );
     let peak = eaves + half * PITCH;
     mesh.set_material("plaster");
     let corner = |x: f64, y: f64| (DVec3::new(x, y, front - 0.08), DVec2::new(x, y) / 2.0);
@@ -334,17 +350,6 @@ fn porch(mesh: &mut Mesh) {
     roof(&mut cover, deep, half + 0.22, peak + 0.14, 0.10, DVec3::ZERO, true);
     let turn = DMat3::from_cols(-DVec3::Z, DVec3::Y, DVec3::X);
     append_with_materials(mesh, &cover, turn, DVec3::new(0.0, 0.0, front + 0.18 - deep));
-}
-
-/// World metres along a flat side with this normal: across and up on walls, x and z on what is level.
-fn metres(p: DVec3, normal: DVec3) -> DVec2 {
-    if normal.y.abs() > 0.5 {
-        DVec2::new(p.x, -p.z)
-    } else if normal.x.abs() > 0.5 {
-        DVec2::new(-p.z * normal.x.signum(), p.y)
-    } else {
-        DVec2::new(p.x * normal.z.signum(), p.y)
-    }
 }
 
 /// The material library of the house: name, diffuse colour (linear) and texture.

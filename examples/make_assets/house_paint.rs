@@ -16,10 +16,15 @@ pub fn brick() -> Canvas {
         let grain = fbm(p.x * 64.0, p.y * 64.0, (64, 64), 3);
         let stain = fbm(p.x * 4.0, p.y * 4.0, (4, 4), 21);
         let tone = hash(column, row as i64, 4);
-        let clay = hex(0x9c_4a36).lerp(hex(0xb8_6a48), tone).lerp(hex(0x70_342c), 0.8 * hash(column, row as i64, 9).powi(3));
+        let clay = hex(0x9c_4a36)
+            .lerp(hex(0xb8_6a48), tone)
+            .lerp(hex(0x70_342c), 0.8 * hash(column, row as i64, 9).powi(3));
         let face = clay * lerp(0.78, 1.14, grain) * lerp(0.94, 1.06, stain);
         let mortar = hex(0xb5_aa9a) * lerp(0.8, 1.0, grain);
-        mortar.lerp(face * lerp(0.75, 1.0, smoothstep(0.0, -0.006, d)), smoothstep(0.0015, -0.0015, d + 0.002 * (grain - 0.5)))
+        mortar.lerp(
+            face * lerp(0.75, 1.0, smoothstep(0.0, -0.006, d)),
+            smoothstep(0.0015, -0.0015, d + 0.002 * (grain - 0.5)),
+        )
     })
 }
 
@@ -41,7 +46,9 @@ pub fn roof() -> Canvas {
         let tone = hash(column, row as i64, 31);
         let grain = fbm(p.x * 24.0, p.y * 24.0, (24, 24), 33);
         let moss = smoothstep(0.62, 0.85, fbm(p.x * 3.0, p.y * 3.0, (3, 3), 35));
-        let clay = hex(0x8d_4a38).lerp(hex(0xad_6546), tone).lerp(hex(0x5e_3a34), 0.7 * hash(column, row as i64, 37).powi(2));
+        let clay = hex(0x8d_4a38)
+            .lerp(hex(0xad_6546), tone)
+            .lerp(hex(0x5e_3a34), 0.7 * hash(column, row as i64, 37).powi(2));
         let clay = clay.lerp(hex(0x6d_6a44), 0.35 * moss) * lerp(0.8, 1.12, grain);
         // each tile is rounded across, its lower end stands proud and throws a shadow on the next below
         let round = 1.0 - 1.1 * (x - 0.5) * (x - 0.5);
@@ -62,7 +69,8 @@ pub fn stone() -> Canvas {
         let d = brick_edge(DVec2::new(x - column, p.y * 3.0 - row), DVec2::new(0.40, 0.30), 0.007);
         let column = (column as i64).rem_euclid(3);
         let grain = fbm(p.x * 16.0, p.y * 16.0, (16, 16), 51);
-        let face = hex(0x9a_948a).lerp(hex(0xb7_ad9c), hash(column, row as i64, 53)) * lerp(0.80, 1.10, grain);
+        let face =
+            hex(0x9a_948a).lerp(hex(0xb7_ad9c), hash(column, row as i64, 53)) * lerp(0.80, 1.10, grain);
         (hex(0x74_6c62) * lerp(0.8, 1.0, grain)).lerp(face, smoothstep(0.003, -0.003, d))
     })
 }
@@ -98,7 +106,10 @@ pub fn door() -> Canvas {
         let plate = rounded_rectangle(q, DVec2::new(0.5, 0.755), DVec2::new(0.11, 0.03), 0.01);
         color = color.lerp(green * 0.4, smoothstep(0.012, 0.0, knob));
         color = color.lerp(brass, smoothstep(0.003, -0.003, knob.min(plate)));
-        color.lerp(hex(0x6b_5220), smoothstep(0.004, 0.0, (q.y - 0.755).abs() - 0.008) * smoothstep(0.0, -0.02, plate))
+        color.lerp(
+            hex(0x6b_5220),
+            smoothstep(0.004, 0.0, (q.y - 0.755).abs() - 0.008) * smoothstep(0.0, -0.02, plate),
+        )
     })
 }
 
@@ -112,7 +123,8 @@ pub fn window() -> Canvas {
         let drape = 0.34 - 0.16 * smoothstep(1.35, 0.45, q.y) + 0.05 * smoothstep(0.45, 0.1, q.y);
         let side = q.x.min(1.0 - q.x);
         let curtain = smoothstep(drape, drape - 0.015, side);
-        let valance = smoothstep(1.30, 1.315, q.y + 0.03 * (q.x * 8.0).fract().min(1.0 - (q.x * 8.0).fract()));
+        let valance =
+            smoothstep(1.30, 1.315, q.y + 0.03 * (q.x * 8.0).fract().min(1.0 - (q.x * 8.0).fract()));
         let cloth = hex(0xd8_d2c2) * lerp(0.66, 1.0, fold);
         let inside = room.lerp(cloth * 0.85, curtain.max(valance));
         // the sky, stronger above, with the edge of a cloud
@@ -120,7 +132,10 @@ pub fn window() -> Canvas {
         let sky = hex(0x8f_b0cc).lerp(hex(0xe4_eaee), cloud);
         let glass = inside.lerp(sky, lerp(0.16, 0.52, smoothstep(0.1, 1.5, q.y + 0.35 * q.x)));
         let bar = |x: f64, half: f64| x.abs() - half;
-        let bars = bar(q.x - 0.5, 0.014).min(bar(q.y - 0.75, 0.026)).min(bar(q.y - 1.13, 0.012)).min(bar(q.y - 0.38, 0.012));
+        let bars = bar(q.x - 0.5, 0.014)
+            .min(bar(q.y - 0.75, 0.026))
+            .min(bar(q.y - 1.13, 0.012))
+            .min(bar(q.y - 0.38, 0.012));
         let sash = rounded_rectangle(q, DVec2::new(0.5, 0.75), DVec2::new(0.46, 0.71), 0.0);
         let wood = (-sash).min(bars);
         let shade = lerp(0.62, 1.0, smoothstep(0.0, 0.02, wood));
@@ -136,7 +151,8 @@ pub fn shutter() -> Canvas {
         let field = |y: f64| rounded_rectangle(q, DVec2::new(0.25, y), DVec2::new(0.19, 0.32), 0.0);
         let d = field(0.38).min(field(1.12));
         let slat = (q.y * 22.0).fract();
-        let louvre = paint * lerp(0.40, 1.15, smoothstep(0.0, 0.9, slat)) * smoothstep(1.0, 0.93, slat).max(0.35);
+        let louvre =
+            paint * lerp(0.40, 1.15, smoothstep(0.0, 0.9, slat)) * smoothstep(1.0, 0.93, slat).max(0.35);
         let rim = smoothstep(0.010, 0.004, d.abs());
         (if d < 0.0 { louvre } else { paint }) * lerp(1.0, 0.55, rim)
     })

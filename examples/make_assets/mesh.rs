@@ -61,17 +61,33 @@ impl Mesh {
             for col in 1..cols {
                 let d = first + row * cols + col;
                 let (a, b, c) = (d - cols - 1, d - cols, d - 1);
-                self.triangle_with_area([a, b, d]);
-                self.triangle_with_area([a, d, c]);
+                // the diagonal along which the two halves agree best with the normals
+                let splits = [[[a, b, d], [a, d, c]], [[a, b, c], [b, d, c]]];
+                let [one, other] =
+                    splits.map(|s| s.map(|t| self.agreement(t)).into_iter().fold(1.0, f64::min));
+                let split = splits[usize::from(other > one + 1e-6)];
+                for triangle in split {
+                    if self.face(triangle).length() > 1e-9 {
+                        self.triangles.push(triangle);
+                    }
+                }
             }
         }
     }
 
-    fn triangle_with_area(&mut self, triangle: [usize; 3]) {
+    /// Twice the area of a triangle, as a vector along its normal.
+    fn face(&self, triangle: [usize; 3]) -> DVec3 {
         let [a, b, c] = triangle.map(|k| self.positions[k]);
-        if (b - a).cross(c - a).length() > 1e-9 {
-            self.triangles.push(triangle);
+        (b - a).cross(c - a)
+    }
+
+    /// The least cosine between a triangle's normal and those of its corners; 1 if it has no area.
+    fn agreement(&self, triangle: [usize; 3]) -> f64 {
+        let face = self.face(triangle);
+        if face.length() < 1e-9 {
+            return 1.0;
         }
+        triangle.map(|k| self.normals[k].dot(face) / face.length()).into_iter().fold(1.0, f64::min)
     }
 
     /// A box with flat sides; `uv` maps a point on the side with the given normal to the texture.

@@ -10,6 +10,7 @@ pub mod house_paint;
 pub mod lettering;
 pub mod mesh;
 pub mod numbers;
+pub mod parts;
 pub mod sky;
 
 use canvas::Canvas;
@@ -111,9 +112,10 @@ pub fn pictures() -> Vec<Asset> {
 /// Every asset.
 pub fn all() -> Vec<Asset> {
     let mut assets = pictures();
-    assets.extend(meshes().into_iter().map(|m| Asset {
-        name: m.name,
-        content: Content::Text(m.mesh.to_obj(m.comment, m.library)),
-    }));
+    assets.extend(
+        meshes()
+            .into_iter()
+            .map(|m| Asset { name: m.name, content: Content::Text(m.mesh.to_obj(m.comment, m.library)) }),
+    );
     assets
 }

@@ -53,9 +53,8 @@ pub fn hash(x: i64, y: i64, seed: u32) -> f64 {
 pub fn noise(x: f64, y: f64, period: (i64, i64), seed: u32) -> f64 {
     let (i, j) = (x.floor(), y.floor());
     let (u, v) = (smoothstep(0.0, 1.0, x - i), smoothstep(0.0, 1.0, y - j));
-    let at = |a: i64, b: i64| {
-        hash((i as i64 + a).rem_euclid(period.0), (j as i64 + b).rem_euclid(period.1), seed)
-    };
+    let at =
+        |a: i64, b: i64| hash((i as i64 + a).rem_euclid(period.0), (j as i64 + b).rem_euclid(period.1), seed);
     lerp(lerp(at(0, 0), at(1, 0), u), lerp(at(0, 1), at(1, 1), u), v)
 }
 

@@ -78,7 +78,7 @@ fn pdf_discs(r_sq: f32) -> f32 {
         if level == scene.world.disc_levels {
             probability *= 2.0;
         }
-        if r_sq <= radius * radius * (1.0 + 16.0 * EPS) {
+        if r_sq <= radius * (radius * (1.0 + 16.0 * EPS)) {
             sum += probability / (PI * radius * radius);
         }
         probability *= 0.5;

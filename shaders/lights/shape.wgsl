@@ -85,7 +85,7 @@ fn sample_shape(light: Light, u: vec2f, w: f32) -> ShapePoint {
             let end = patch_end(light, k);
             let v = start + (end - start) * u.x;
             let r = patch_point(light, k, v, TAU * u.y - PI);
-            return ShapePoint(r.position, r.error, r.normal, pdf_patch(light, k, end - start) / max(TAU * r.stretch, 1e-30));
+            return ShapePoint(r.position, r.error, r.normal, pdf_patch(light, k, end - start) / max(r.stretch, 1e-30));
         }
         //#end
         default: {
@@ -119,8 +119,7 @@ fn patch_point(light: Light, k: u32, v: f32, theta: f32) -> PatchPoint {
     let ring = ring_point(patch_data, theta, tau);
     let by_v = ring.d_tau * (f32(revolution.segments) / (patch_data.t1 - patch_data.t0));
     let stretch = cross(ring.d_theta, by_v);
-    let scale_sq = revolution.scale * revolution.scale;
-    return PatchPoint(s.position, s.error, s.normal, sqrt(dot(stretch, stretch)) * scale_sq);
+    return PatchPoint(s.position, s.error, s.normal, sqrt(dot(stretch, stretch)) * (TAU * revolution.scale * revolution.scale));
 }
 
 fn pdf_patch(light: Light, k: u32, width: f32) -> f32 {
@@ -154,7 +153,7 @@ fn pdf_shape(light: Light, v: f32) -> f32 {
         let start = scene.distributions[light.first + k];
         let end = patch_end(light, k);
         let r = patch_point(light, k, v, 0.0);
-        return pdf_patch(light, k, end - start) / max(TAU * r.stretch, 1e-30);
+        return pdf_patch(light, k, end - start) / max(r.stretch, 1e-30);
     }
     //#end
     return 1.0 / light.area;

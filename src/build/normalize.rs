@@ -65,7 +65,9 @@ fn extent(kind: &ShapeKind) -> Option<(DVec3, DVec3)> {
         ShapeKind::Sphere { center, radius } | ShapeKind::Disc { center, radius, .. } => {
             (*center - DVec3::splat(*radius), *center + DVec3::splat(*radius))
         }
-        ShapeKind::Rectangle { origin, u, v } => hull(&[*origin, *origin + *u, *origin + *v, *origin + *u + *v]),
+        ShapeKind::Rectangle { origin, u, v } => {
+            hull(&[*origin, *origin + *u, *origin + *v, *origin + *u + *v])
+        }
         ShapeKind::Cuboid { min, max } => (*min, *max),
         ShapeKind::Mesh(mesh) if mesh.positions.is_empty() => return None,
         ShapeKind::Mesh(mesh) => hull(&mesh.positions),

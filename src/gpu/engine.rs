@@ -47,7 +47,9 @@ impl GpuEngine {
     /// An engine for one scene and plan on the adapter of `choice`.
     pub fn new(choice: &AdapterChoice, packed: &Packed, plan: Plan) -> Result<Self, EngineError> {
         if plan.settings.method == Method::Path {
-            return Err(EngineError::Unsupported("path tracing runs on the CPU alone: take --device cpu".into()));
+            return Err(EngineError::Unsupported(
+                "path tracing runs on the CPU alone: take --device cpu".into(),
+            ));
         }
         let gpu = Gpu::open(choice)?;
         let scene = SceneTables::new(&packed.scene);
@@ -87,6 +89,13 @@ impl GpuEngine {
         Ok(engine)
     }
 
+    /// The content of a buffer of the plan (a chunk's, if it is one of those), for tests.
+    pub fn content(&self, name: &str, chunk: u32) -> Result<Vec<u8>, EngineError> {
+        let buffer =
+            self.chunks.get(chunk as usize).and_then(|own| own.get(name)).or_else(|| self.shared.get(name));
+        buffer.map_or(Ok(Vec::new()), |buffer| self.gpu.read(buffer, buffer.size()))
+    }
+
     /// Compiles the kernels of the plan. Each runs once over nothing, since some drivers compile at the first run.
     fn compile(&mut self, scene: &SceneTables) -> Result<(), EngineError> {
         for step in self.plan.steps(0, self.plan.batch_photons) {
@@ -103,7 +112,12 @@ impl GpuEngine {
             let buffer = |name: &str| chunk.get(name).or_else(|| self.shared.get(name));
             let group = program.bind(&self.gpu, &self.recorder.dispatches, buffer)?;
             if step.chunk == 0 {
-                self.recorder.dispatch(&self.gpu, program, &group, &Dispatch { first: 0, end: 0, ..step.dispatch });
+                self.recorder.dispatch(
+                    &self.gpu,
+                    program,
+                    &group,
+                    &Dispatch { first: 0, end: 0, ..step.dispatch },
+                );
             }
             self.groups.insert(key, group);
         }
@@ -196,7 +210,8 @@ impl Engine for GpuEngine {
         let mut batch = self.plan.batch_photons;
         loop {
             let steps = self.plan.steps(pass, batch);
-            let (resolve, trace): (Vec<_>, Vec<_>) = steps.into_iter().partition(|s| s.kernel == Kernel::Resolve);
+            let (resolve, trace): (Vec<_>, Vec<_>) =
+                steps.into_iter().partition(|s| s.kernel == Kernel::Resolve);
             let counted = self.trace(&trace)?;
             let photons = trace.iter().filter(|s| s.kernel == Kernel::PhotonTrace).map(|s| s.dispatch.end);
             let overflow = |(photons, records): (u32, &u32)| *records > self.plan.capacity && photons > 1;
@@ -210,7 +225,8 @@ impl Engine for GpuEngine {
             }
             self.flush()?;
             self.passes_done += 1;
-            let eye_paths = trace.iter().filter(|s| s.kernel == Kernel::EyeTrace).map(|s| s.dispatch.end as u64);
+            let eye_paths =
+                trace.iter().filter(|s| s.kernel == Kernel::EyeTrace).map(|s| s.dispatch.end as u64);
             return Ok(PassReport {
                 photons: self.plan.settings.photons as u64,
                 records: counted.records.iter().map(|r| *r as u64).sum(),

@@ -43,7 +43,11 @@ impl SceneTables {
         out.table("unbounded", "u32", &scene.unbounded);
         // shaders name the materials even where a scene has no surface
         let placeholder = [Material::zeroed()];
-        out.table("materials", "Material", if scene.materials.is_empty() { &placeholder } else { &scene.materials });
+        out.table(
+            "materials",
+            "Material",
+            if scene.materials.is_empty() { &placeholder } else { &scene.materials },
+        );
         out.table("textures", "Texture", &scene.textures);
         out.table("lights", "Light", &scene.lights);
         out.table("distributions", "f32", &scene.distributions);

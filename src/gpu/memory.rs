@@ -47,7 +47,8 @@ impl Gpu {
     pub fn buffer(&self, label: &str, bytes: u64, usage: BufferUsages) -> Result<wgpu::Buffer, EngineError> {
         let size = bytes.next_multiple_of(16).max(16);
         self.check_sizes(&[(label, size)], "make the picture or the scene smaller")?;
-        let descriptor = wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false };
+        let descriptor =
+            wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false };
         let buffer = self.device.create_buffer(&descriptor);
         self.check()?;
         Ok(buffer)
@@ -83,7 +84,8 @@ impl Gpu {
             // a failure shows in `wait` and in the view below
             staging.map_async(wgpu::MapMode::Read, ..size, |_| ());
             self.wait()?;
-            let view = staging.get_mapped_range(..size).map_err(|e| EngineError::DeviceLost(e.to_string()))?;
+            let view =
+                staging.get_mapped_range(..size).map_err(|e| EngineError::DeviceLost(e.to_string()))?;
             out.extend_from_slice(&view);
             drop(view);
             staging.unmap();

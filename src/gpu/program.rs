@@ -19,7 +19,12 @@ pub struct Program {
 
 impl Program {
     /// Composes and compiles `kernel`.
-    pub fn new(gpu: &Gpu, kernel: Kernel, features: &Features, scene: &SceneTables) -> Result<Self, EngineError> {
+    pub fn new(
+        gpu: &Gpu,
+        kernel: Kernel,
+        features: &Features,
+        scene: &SceneTables,
+    ) -> Result<Self, EngineError> {
         let shader = compose(kernel, features, scene).map_err(|e| EngineError::Shader(e.to_string()))?;
         shader.validate().map_err(|e| EngineError::Shader(e.to_string()))?;
         let bindings = bindings(kernel, features);

@@ -55,7 +55,8 @@ impl Recorder {
         self.staged.resize(offset + self.stride, 0);
         let items = (dispatch.end - dispatch.first).div_ceil(workgroup_items(program.kernel));
         let (columns, rows) = arrange(items);
-        let descriptor = wgpu::ComputePassDescriptor { label: Some(program.kernel.stem()), timestamp_writes: None };
+        let descriptor =
+            wgpu::ComputePassDescriptor { label: Some(program.kernel.stem()), timestamp_writes: None };
         let mut pass = self.encoder(gpu).begin_compute_pass(&descriptor);
         pass.set_pipeline(&program.pipeline);
         pass.set_bind_group(0, group, &[offset as u32]);

@@ -6,7 +6,9 @@ use super::direct::{direct_light, medium_before, transmittance};
 use super::records::{Dispatch, VisiblePoint};
 use crate::camera::camera_ray;
 use crate::lights::light::eval_environment;
-use crate::materials::scatter::{RADIANCE, is_specular, reflectance_at, scatter_specular, shading_normal, toward};
+use crate::materials::scatter::{
+    RADIANCE, is_specular, reflectance_at, scatter_specular, shading_normal, toward,
+};
 use crate::math::rng::{STREAM_EYE, rng_new, rng_next};
 use crate::math::{FAR, INV_PI, max_component, oct_encode, offset_origin};
 use crate::shapes::intersect::intersect_scene;

@@ -39,7 +39,10 @@ pub fn emit_photon(scene: &Scene, rng: &mut Rng) -> Emission {
         let local = sample_cone(across, 1.0 - light.cos_outer);
         ray.direction = unit(from_frame(light.direction, local));
         let solid_angle = TAU * (1.0 - light.cos_outer);
-        return Emission { ray, flux: light.color * (spot_falloff(light, local.z) * solid_angle / light.selection) };
+        return Emission {
+            ray,
+            flux: light.color * (spot_falloff(light, local.z) * solid_angle / light.selection),
+        };
     }
     // from infinity: through one of a row of discs, each twice as wide as the one before and half as likely
     ray.direction = light.direction;
@@ -82,7 +85,7 @@ pub fn pdf_discs(scene: &Scene, r_sq: f32) -> f32 {
         if level == scene.world.disc_levels {
             probability *= 2.0;
         }
-        if r_sq <= radius * radius * (1.0 + 16.0 * EPS) {
+        if r_sq <= radius * (radius * (1.0 + 16.0 * EPS)) {
             sum += probability / (PI * radius * radius);
         }
         probability *= 0.5;

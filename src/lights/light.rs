@@ -47,13 +47,8 @@ pub fn choose_light(scene: &Scene, u: f32) -> u32 {
 /// Light at `position` from the light that `u.x` chooses, sampled by the other three.
 pub fn sample_light(scene: &Scene, position: Vec3, u: Vec4) -> LightSample {
     let light = &scene.lights[choose_light(scene, u.x) as usize];
-    let none = LightSample {
-        direction: Vec3::Z,
-        distance: 0.0,
-        radiance: Vec3::ZERO,
-        pdf: 1.0,
-        extended: true,
-    };
+    let none =
+        LightSample { direction: Vec3::Z, distance: 0.0, radiance: Vec3::ZERO, pdf: 1.0, extended: true };
     if light.kind == LIGHT_AREA {
         let index = (light.reference & ((1 << REFERENCE_BITS) - 1)) as usize;
         if light.reference >> REFERENCE_BITS == KIND_SPHERE {
@@ -145,7 +140,15 @@ pub fn spot_falloff(light: &Light, cos: f32) -> f32 {
 
 /// Density with which [`sample_light`] at `from` would have looked along `direction` and met area light
 /// `index` at distance `t`, where the surface has unit normal `normal` and profile parameter `v`.
-pub fn pdf_light(scene: &Scene, index: u32, from: Vec3, direction: Vec3, t: f32, normal: Vec3, v: f32) -> f32 {
+pub fn pdf_light(
+    scene: &Scene,
+    index: u32,
+    from: Vec3,
+    direction: Vec3,
+    t: f32,
+    normal: Vec3,
+    v: f32,
+) -> f32 {
     let light = &scene.lights[index as usize];
     if light.reference >> REFERENCE_BITS == KIND_SPHERE {
         let sphere = &scene.spheres[(light.reference & ((1 << REFERENCE_BITS) - 1)) as usize];
@@ -190,11 +193,7 @@ pub fn sample_environment(scene: &Scene, light: &Light, u: Vec4) -> Vec3 {
     let (sin, cos) = sin_cos(down * PI);
     let x = sin * cos_phi;
     let z = sin * sin_phi;
-    Vec3::new(
-        light.cos_outer * x + light.cos_inner * z,
-        cos,
-        light.cos_outer * z - light.cos_inner * x,
-    )
+    Vec3::new(light.cos_outer * x + light.cos_inner * z, cos, light.cos_outer * z - light.cos_inner * x)
 }
 
 /// Density per solid angle of [`sample_environment`].

@@ -75,7 +75,13 @@ pub fn sample_shape(scene: &Scene, light: &Light, u: Vec2, w: f32) -> ShapePoint
             let pick = w * light.area;
             let upper = if u.x < 0.5 { 3.0 } else { 0.0 };
             let s = if u.x < 0.5 { 2.0 * u.x } else { 2.0 * u.x - 1.0 };
-            let axis = if pick < 2.0 * x { 0.0 } else if pick < 2.0 * (x + y) { 1.0 } else { 2.0 };
+            let axis = if pick < 2.0 * x {
+                0.0
+            } else if pick < 2.0 * (x + y) {
+                1.0
+            } else {
+                2.0
+            };
             let n = cuboid_normal(axis + upper);
             let face = upper * (1.0 / 3.0);
             let mut q = Vec3::new(s, u.y, face);
@@ -89,20 +95,24 @@ pub fn sample_shape(scene: &Scene, light: &Light, u: Vec2, w: f32) -> ShapePoint
         _ => {
             let k = find_interval(scene, light.first + light.patch_count, light.patch_count, w);
             let start = scene.distributions[(light.first + k) as usize];
-            let end = if k + 1 < light.patch_count { scene.distributions[(light.first + k + 1) as usize] } else { 1.0 };
+            let end = if k + 1 < light.patch_count {
+                scene.distributions[(light.first + k + 1) as usize]
+            } else {
+                1.0
+            };
             let v = start + (end - start) * u.x;
             let r = patch_point(scene, light, k, v, TAU * u.y - PI);
             ShapePoint {
                 position: r.position,
                 error: r.error,
                 normal: r.normal,
-                pdf: pdf_patch(scene, light, k, end - start) / (TAU * r.stretch).max(1e-30),
+                pdf: pdf_patch(scene, light, k, end - start) / r.stretch.max(1e-30),
             }
         }
     }
 }
 
-/// A point of a revolution and how much area a unit of v and of theta cover there.
+/// A point of a revolution and the area that a unit of v covers there, the whole way round.
 struct PatchPoint {
     position: Vec3,
     error: f32,
@@ -120,8 +130,12 @@ fn patch_point(scene: &Scene, light: &Light, k: u32, v: f32, theta: f32) -> Patc
     let ring = ring_point(&scene.profile_points, patch, theta, tau);
     let by_v = ring.d_tau * (revolution.segments as f32 / (patch.t1 - patch.t0));
     let stretch = ring.d_theta.cross(by_v);
-    let scale_sq = revolution.scale * revolution.scale;
-    PatchPoint { position: s.position, error: s.error, normal: s.normal, stretch: stretch.dot(stretch).sqrt() * scale_sq }
+    PatchPoint {
+        position: s.position,
+        error: s.error,
+        normal: s.normal,
+        stretch: stretch.dot(stretch).sqrt() * (TAU * revolution.scale * revolution.scale),
+    }
 }
 
 /// Density per v of patch `k`'s part, `width` long.
@@ -145,9 +159,10 @@ pub fn pdf_shape(scene: &Scene, light: &Light, v: f32) -> f32 {
         let k = find_interval(scene, light.first, light.patch_count, v);
         let k = if k > 0 && scene.distributions[(light.first + k) as usize] > v { k - 1 } else { k };
         let start = scene.distributions[(light.first + k) as usize];
-        let end = if k + 1 < light.patch_count { scene.distributions[(light.first + k + 1) as usize] } else { 1.0 };
+        let end =
+            if k + 1 < light.patch_count { scene.distributions[(light.first + k + 1) as usize] } else { 1.0 };
         let r = patch_point(scene, light, k, v, 0.0);
-        return pdf_patch(scene, light, k, end - start) / (TAU * r.stretch).max(1e-30);
+        return pdf_patch(scene, light, k, end - start) / r.stretch.max(1e-30);
     }
     1.0 / light.area
 }

@@ -31,7 +31,8 @@ pub fn eval_texture(scene: &Scene, index: u32, uv: Vec2) -> Vec3 {
     let i = x0 as i32;
     let j = y0 as i32;
     let top = eval_texel(scene, texture, i, j) * (1.0 - fx) + eval_texel(scene, texture, i + 1, j) * fx;
-    let bottom = eval_texel(scene, texture, i, j + 1) * (1.0 - fx) + eval_texel(scene, texture, i + 1, j + 1) * fx;
+    let bottom =
+        eval_texel(scene, texture, i, j + 1) * (1.0 - fx) + eval_texel(scene, texture, i + 1, j + 1) * fx;
     top * (1.0 - fy) + bottom * fy
 }
 
@@ -42,8 +43,20 @@ pub fn eval_texel(scene: &Scene, texture: &Texture, i: i32, j: i32) -> Vec3 {
     let mut x = i;
     let mut y = j;
     if texture.flags & TEXTURE_CLAMP == 0 {
-        x = if x < 0 { x + w } else if x >= w { x - w } else { x };
-        y = if y < 0 { y + h } else if y >= h { y - h } else { y };
+        x = if x < 0 {
+            x + w
+        } else if x >= w {
+            x - w
+        } else {
+            x
+        };
+        y = if y < 0 {
+            y + h
+        } else if y >= h {
+            y - h
+        } else {
+            y
+        };
     }
     x = x.clamp(0, w - 1);
     y = y.clamp(0, h - 1);

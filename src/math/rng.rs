@@ -48,5 +48,6 @@ pub fn pcg4d(mut v: [u32; 4]) -> [u32; 4] {
 pub fn rng_next(rng: &mut Rng) -> Vec4 {
     let h = pcg4d([rng.index, rng.pass_number, rng.dimension, rng.seed]);
     rng.dimension += 1;
-    Vec4::new((h[0] >> 8) as f32, (h[1] >> 8) as f32, (h[2] >> 8) as f32, (h[3] >> 8) as f32) * (1.0 / 16777216.0)
+    Vec4::new((h[0] >> 8) as f32, (h[1] >> 8) as f32, (h[2] >> 8) as f32, (h[3] >> 8) as f32)
+        * (1.0 / 16777216.0)
 }

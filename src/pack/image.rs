@@ -35,7 +35,12 @@ pub fn pack_textures(scene: &scene::Scene, out: &mut Scene) {
         });
     }
     if let Some(scene::Environment::Image { image, .. }) = &scene.environment {
-        out.textures.push(Texture { kind: TEXTURE_IMAGE, scale: Vec2::ONE, flags: TEXTURE_CLAMP, ..images[*image] });
+        out.textures.push(Texture {
+            kind: TEXTURE_IMAGE,
+            scale: Vec2::ONE,
+            flags: TEXTURE_CLAMP,
+            ..images[*image]
+        });
     }
 }
 

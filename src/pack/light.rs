@@ -32,11 +32,8 @@ pub fn pack_lights(scene: &scene::Scene, n: &Normalization, emitters: &[Emitter]
         let unit_sq = n.unit * n.unit;
         lights.push(match l {
             scene::Light::Point { position, intensity } => {
-                let light = Light {
-                    kind: LIGHT_POINT,
-                    position: n.point(*position).as_vec3(),
-                    ..Light::zeroed()
-                };
+                let light =
+                    Light { kind: LIGHT_POINT, position: n.point(*position).as_vec3(), ..Light::zeroed() };
                 (light, DVec3::from(*intensity) / unit_sq, 4.0 * PI)
             }
             scene::Light::Spot { position, target, intensity, angle_degrees, blend } => {

@@ -44,7 +44,8 @@ pub fn pack_shapes(scene: &scene::Scene, n: &Normalization, out: &mut Scene) -> 
             ShapeKind::Cuboid { min, max } => pack.cuboid(*min, *max, material, uv, emission),
             ShapeKind::Mesh(mesh) => pack.mesh(mesh, material, uv, emission),
             ShapeKind::Revolution { segments, transform } => {
-                let light = pack.light(emission, reference(KIND_REVOLUTION, revolutions.revolutions.len()), 0.0);
+                let light =
+                    pack.light(emission, reference(KIND_REVOLUTION, revolutions.revolutions.len()), 0.0);
                 let attributes = RevolutionAttributes { material, light, uv };
                 let placement = placement(transform, n);
                 let boxes = revolutions
@@ -120,7 +121,15 @@ impl Pack<'_> {
         }
     }
 
-    fn rectangle(&mut self, origin: DVec3, u: DVec3, v: DVec3, material: u32, uv: u32, emission: Option<DVec3>) {
+    fn rectangle(
+        &mut self,
+        origin: DVec3,
+        u: DVec3,
+        v: DVec3,
+        material: u32,
+        uv: u32,
+        emission: Option<DVec3>,
+    ) {
         let (o, u, v) = (self.n.point(origin), u / self.n.unit, v / self.n.unit);
         let normal = u.cross(v);
         let area_sq = normal.length_squared();
@@ -143,7 +152,15 @@ impl Pack<'_> {
         self.boxed(id, &[o.as_vec3(), (o + u).as_vec3(), (o + v).as_vec3(), (o + u + v).as_vec3()]);
     }
 
-    fn disc(&mut self, center: DVec3, normal: DVec3, radius: f64, material: u32, uv: u32, emission: Option<DVec3>) {
+    fn disc(
+        &mut self,
+        center: DVec3,
+        normal: DVec3,
+        radius: f64,
+        material: u32,
+        uv: u32,
+        emission: Option<DVec3>,
+    ) {
         let c = self.n.point(center);
         let r = radius / self.n.unit;
         let n = normal.normalize();

@@ -42,7 +42,9 @@ pub fn intersect_scene(scene: &Scene, ray: &Ray) -> Hit {
         intersect_primitive(scene, &shear, scene.unbounded[i as usize], ray, &mut hit);
     }
     if !scene.nodes.is_empty() {
-        traverse_closest(&tree(scene), ray, &mut hit, |r, ray, hit| intersect_primitive(scene, &shear, r, ray, hit));
+        traverse_closest(&tree(scene), ray, &mut hit, |r, ray, hit| {
+            intersect_primitive(scene, &shear, r, ray, hit)
+        });
     }
     hit
 }
@@ -58,7 +60,9 @@ pub fn occluded(scene: &Scene, ray: &Ray) -> bool {
         }
     }
     !scene.nodes.is_empty()
-        && traverse_any(&tree(scene), ray, &mut hit, |r, ray, hit| intersect_primitive(scene, &shear, r, ray, hit))
+        && traverse_any(&tree(scene), ray, &mut hit, |r, ray, hit| {
+            intersect_primitive(scene, &shear, r, ray, hit)
+        })
 }
 
 fn tree(scene: &Scene) -> Tree<'_> {

@@ -55,10 +55,8 @@ pub fn surface_at(scene: &Scene, ray: &Ray, hit: &Hit) -> Surface {
             if triangle.attributes != NONE {
                 let a = &scene.attributes[triangle.attributes as usize];
                 let w = 1.0 - hit.u - hit.v;
-                s.uv = Vec2::new(
-                    a.u0 * w + a.u1 * hit.u + a.u2 * hit.v,
-                    a.v0 * w + a.v1 * hit.u + a.v2 * hit.v,
-                );
+                s.uv =
+                    Vec2::new(a.u0 * w + a.u1 * hit.u + a.u2 * hit.v, a.v0 * w + a.v1 * hit.u + a.v2 * hit.v);
                 if a.smooth_normals == 1 {
                     let m = a.n0 * w + a.n1 * hit.u + a.n2 * hit.v;
                     if m.dot(m) > 0.0 {

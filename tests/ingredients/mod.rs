@@ -31,7 +31,10 @@ impl Mixture {
     /// The kernels that a plan of this scene has.
     pub fn kernels(&self) -> Vec<Kernel> {
         let photons = self.features().has("photons");
-        Kernel::ALL.into_iter().filter(|k| photons || matches!(k, Kernel::EyeTrace | Kernel::Resolve)).collect()
+        Kernel::ALL
+            .into_iter()
+            .filter(|k| photons || matches!(k, Kernel::EyeTrace | Kernel::Resolve))
+            .collect()
     }
 
     fn light(&mut self, kind: u32, reference: u32) {
@@ -45,7 +48,11 @@ impl Mixture {
     }
 
     fn material(&mut self, kind: u32, absorption: f32) {
-        self.scene.materials.push(Material { kind, absorption: Vec3::splat(absorption), ..Material::zeroed() });
+        self.scene.materials.push(Material {
+            kind,
+            absorption: Vec3::splat(absorption),
+            ..Material::zeroed()
+        });
     }
 
     fn add(&mut self, name: &str) {

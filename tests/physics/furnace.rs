@@ -28,7 +28,9 @@ fn closed_room() {
         "type = \"sphere\"\ncenter = [-0.6, -0.3, 0]\nradius = 0.4",
         "type = \"box\"\nmin = [0.3, -0.9, -0.5]\nmax = [0.8, -0.2, 0.2]",
         "type = \"revolution\"\nsegments = [[[0, 0], [0.3, 0]], [[0.3, 0], [0.6, 0.4], [0, 0.6]]]\ntransform = { translate = [-0.2, -0.8, 0.7] }",
-        &format!("type = \"mesh\"\nfile = \"{mesh}\"\ntransform = {{ scale = 0.4, rotate = {{ axis = [1, 1, 0], degrees = 30 }}, translate = [0.8, 0.1, 0.5] }}"),
+        &format!(
+            "type = \"mesh\"\nfile = \"{mesh}\"\ntransform = {{ scale = 0.4, rotate = {{ axis = [1, 1, 0], degrees = 30 }}, translate = [0.8, 0.1, 0.5] }}"
+        ),
     ];
     for shape in shapes {
         text += &format!("[[shapes]]\n{shape}\nmaterial = \"wall\"\nemission = {EMISSION}\n");
@@ -38,11 +40,17 @@ fn closed_room() {
     let room = view(DVec3::new(0.0, -0.2, 0.0), 60.0) + &text;
     let path = RenderSettings { method: Method::Path, passes: 4, ..settings(0.02) };
     runs_to(0.01, &room, &path).assert_picture("room, Path", &truth, 0.01);
-    for (place, target, fov) in [("wall", DVec3::new(-0.3, 0.7, -2.0), 9.0), ("ball", DVec3::new(-0.6, -0.2, 0.0), 9.0)] {
+    for (place, target, fov) in
+        [("wall", DVec3::new(-0.3, 0.7, -2.0), 9.0), ("ball", DVec3::new(-0.6, -0.2, 0.0), 9.0)]
+    {
         for direct in DIRECT {
             let settings = RenderSettings { direct, passes: 4, photons: 1 << 14, ..settings(0.02) };
             let text = view(target, fov) + &text;
-            runs_to(0.02, &text, &settings).assert_picture(&format!("{place} of the room, {direct:?}"), &truth, 0.02);
+            runs_to(0.02, &text, &settings).assert_picture(
+                &format!("{place} of the room, {direct:?}"),
+                &truth,
+                0.02,
+            );
         }
     }
 }
@@ -74,10 +82,15 @@ fn bodies() -> Vec<(&'static str, String)> {
 #[test]
 fn mirrors_and_glass_are_invisible() {
     for (name, body) in bodies() {
-        for (kind, material) in [("mirror", "type = \"mirror\"\nreflectance = 1.0"), ("glass", "type = \"glass\"\nior = 1.5")] {
-            let text = in_constant_light(&format!("[materials.m]\n{material}\n[[shapes]]\n{body}\nmaterial = \"m\"\n"));
+        for (kind, material) in
+            [("mirror", "type = \"mirror\"\nreflectance = 1.0"), ("glass", "type = \"glass\"\nior = 1.5")]
+        {
+            let text = in_constant_light(&format!(
+                "[materials.m]\n{material}\n[[shapes]]\n{body}\nmaterial = \"m\"\n"
+            ));
             for method in [Method::Sppm, Method::Path] {
-                let settings = RenderSettings { method, passes: 8, photons: 1, max_bounces: 1000, ..settings(0.02) };
+                let settings =
+                    RenderSettings { method, passes: 8, photons: 1, max_bounces: 1000, ..settings(0.02) };
                 // the path tracer's roulette is noisier inside glass, where radiance is lower
                 let power = if method == Method::Path { 0.02 } else { 0.002 };
                 let what = format!("{kind} {name}, {method:?}");
@@ -93,13 +106,20 @@ fn mirrors_and_glass_are_invisible() {
 fn diffuse_bodies() {
     const ALBEDO: f64 = 0.5;
     for (name, body) in &bodies()[..2] {
-        let camera = Camera { position: DVec3::new(0.4, 1.1, 3.0), target: DVec3::new(0.1, 0.1, 0.5), fov: 4.0, size: 12 };
+        let camera = Camera {
+            position: DVec3::new(0.4, 1.1, 3.0),
+            target: DVec3::new(0.1, 0.1, 0.5),
+            fov: 4.0,
+            size: 12,
+        };
         let text = camera.toml()
             + &format!(
                 "[environment]\nradiance = 1.0\n[materials.m]\ntype = \"diffuse\"\nreflectance = {ALBEDO}\n\
                  [[shapes]]\n{body}\nmaterial = \"m\"\n"
             );
-        for (method, direct) in [(Method::Sppm, Direct::Sampled), (Method::Ppm, Direct::Photons), (Method::Path, Direct::Photons)] {
+        for (method, direct) in
+            [(Method::Sppm, Direct::Sampled), (Method::Ppm, Direct::Photons), (Method::Path, Direct::Photons)]
+        {
             let settings = RenderSettings { method, direct, passes: 2, photons: 1 << 15, ..settings(0.02) };
             let what = format!("diffuse {name}, {method:?} {direct:?}");
             runs_to(0.02, &text, &settings).assert_picture(&what, &[ALBEDO; 144], 0.02);
@@ -139,7 +159,12 @@ fn metal_loses_what_single_scattering_loses() {
     for (roughness, elevation) in [(0.3f64, 60.0f64), (0.7, 35.0), (1.0, 50.0), (1.0, 12.0)] {
         let (sin, cos) = elevation.to_radians().sin_cos();
         // narrow: nearly one direction
-        let camera = Camera { position: DVec3::new(0.0, 4.0 * sin, 4.0 * cos), target: DVec3::ZERO, fov: 2.0, size: 8 };
+        let camera = Camera {
+            position: DVec3::new(0.0, 4.0 * sin, 4.0 * cos),
+            target: DVec3::ZERO,
+            fov: 2.0,
+            size: 8,
+        };
         let text = camera.toml()
             + &format!(
                 "[environment]\nradiance = 1.0\n[materials.m]\ntype = \"metal\"\nreflectance = 1.0\nroughness = {roughness:?}\n\
@@ -148,8 +173,13 @@ fn metal_loses_what_single_scattering_loses() {
         let pixels = 64;
         let at = |i: usize| DVec2::new((i % 8) as f64 + 0.5, (i / 8) as f64 + 0.5) / 8.0;
         let alpha = roughness * roughness;
-        let truth: Vec<f64> = (0..pixels).map(|i| ggx_albedo(-camera.direction(at(i)).normalize().y, alpha)).collect();
-        for (method, direct) in [(Method::Sppm, Direct::Sampled), (Method::Sppm, Direct::Photons), (Method::Path, Direct::Photons)] {
+        let truth: Vec<f64> =
+            (0..pixels).map(|i| ggx_albedo(-camera.direction(at(i)).normalize().y, alpha)).collect();
+        for (method, direct) in [
+            (Method::Sppm, Direct::Sampled),
+            (Method::Sppm, Direct::Photons),
+            (Method::Path, Direct::Photons),
+        ] {
             if direct == Direct::Photons && method == Method::Sppm && roughness < 0.5 {
                 continue; // photons seldom arrive within so narrow a lobe
             }

@@ -12,7 +12,12 @@ const ALBEDO: f64 = 0.7;
 const INTENSITY: f64 = 2.0;
 
 fn scene(source: DVec3) -> (Camera, String) {
-    let camera = Camera { position: DVec3::new(0.2, -0.3, 1.0), target: DVec3::new(0.0, 0.2, -1.0), fov: 50.0, size: 12 };
+    let camera = Camera {
+        position: DVec3::new(0.2, -0.3, 1.0),
+        target: DVec3::new(0.0, 0.2, -1.0),
+        fov: 50.0,
+        size: 12,
+    };
     let text = camera.toml()
         + &format!(
             "[materials.wall]\ntype = \"diffuse\"\nreflectance = {ALBEDO}\n\
@@ -54,9 +59,11 @@ fn total() {
             })
             .collect();
         for direct in DIRECT {
-            for (method, radius_rule) in
-                [(Method::Sppm, RadiusRule::Fixed), (Method::Ppm, RadiusRule::Global), (Method::Sppm, RadiusRule::Local)]
-            {
+            for (method, radius_rule) in [
+                (Method::Sppm, RadiusRule::Fixed),
+                (Method::Ppm, RadiusRule::Global),
+                (Method::Sppm, RadiusRule::Local),
+            ] {
                 let settings = RenderSettings {
                     method,
                     direct,
@@ -91,7 +98,8 @@ fn per_bounce() {
         // direct light falls away: the same picture without bounces
         let none = RenderSettings { max_bounces: 0, ..settings.clone() };
         let (with, without) = (runs(&text, &settings), runs(&text, &none));
-        let means = |r: &Runs| r.pixels.iter().map(|p| p.iter().sum::<f64>() / p.len() as f64).collect::<Vec<_>>();
+        let means =
+            |r: &Runs| r.pixels.iter().map(|p| p.iter().sum::<f64>() / p.len() as f64).collect::<Vec<_>>();
         let difference: Vec<f64> = means(&with).iter().zip(means(&without)).map(|(a, b)| a - b).collect();
         let truth = ALBEDO / PI * INTENSITY / (R * R) * sum;
         assert_agrees(&format!("{bounces} bounces"), Estimate::of(&difference), truth, 0.02);

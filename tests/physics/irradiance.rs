@@ -151,7 +151,12 @@ fn image_environment_seen() {
     write_exr("physics-sky-seen.exr", &picture);
     for degrees in [0.0, 75.0, -140.0] {
         let d = DVec3::new(0.5, 0.9, 0.3);
-        let camera = Camera { position: DVec3::new(1.0, 2.0, 3.0), target: DVec3::new(1.0, 2.0, 3.0) + d, fov: 90.0, size: 12 };
+        let camera = Camera {
+            position: DVec3::new(1.0, 2.0, 3.0),
+            target: DVec3::new(1.0, 2.0, 3.0) + d,
+            fov: 90.0,
+            size: 12,
+        };
         let light = format!("[environment]\nfile = \"physics-sky-seen.exr\"\nrotate = {degrees:?}\n");
         let settings = RenderSettings { passes: 16, photons: 1, ..settings(RADIUS) };
         let n = camera.size as usize;
@@ -166,7 +171,11 @@ fn image_environment_seen() {
                 points.sum::<f64>() / (sub * sub) as f64
             })
             .collect();
-        runs_to(0.01, &(camera.toml() + light.as_str()), &settings).assert_picture(&format!("sky turned by {degrees}"), &truth, 0.01);
+        runs_to(0.01, &(camera.toml() + light.as_str()), &settings).assert_picture(
+            &format!("sky turned by {degrees}"),
+            &truth,
+            0.01,
+        );
     }
 }
 
@@ -251,7 +260,9 @@ fn mesh() {
 fn revolution() {
     let base = DVec3::new(0.1, 0.35, -0.05);
     let egg = [[0.0, 0.0], [0.35, 0.0], [0.3, 0.4], [0.0, 0.4]];
-    let shape = |profile: String| format!("type = \"revolution\"\n{profile}\ntransform = {{ translate = {} }}", list(base));
+    let shape = |profile: String| {
+        format!("type = \"revolution\"\n{profile}\ntransform = {{ translate = {} }}", list(base))
+    };
     let one = shape(format!("profile = {egg:?}"));
     let point = form::revolution(base, egg);
     check("egg", &emitting(&one), |p| 5.0 * form::surface(p, DVec3::Y, &point, 24, 48));

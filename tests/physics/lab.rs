@@ -234,8 +234,12 @@ pub fn assert_same(what: &str, a: Estimate, b: Estimate, power: f64) {
     let difference = Estimate { mean: a.mean - b.mean, error: a.error.hypot(b.error) };
     let scale = 0.5 * (a.mean + b.mean).abs();
     let sigma = difference.mean / difference.error;
-    let report =
-        format!("{what}: {:.6} and {:.6}, off by {:+.3} % ({sigma:+.1} sigma)", a.mean, b.mean, 100.0 * difference.mean / scale);
+    let report = format!(
+        "{what}: {:.6} and {:.6}, off by {:+.3} % ({sigma:+.1} sigma)",
+        a.mean,
+        b.mean,
+        100.0 * difference.mean / scale
+    );
     println!("{report}");
     let bound = T * difference.error + ARITHMETIC * scale;
     assert!(difference.mean.abs() <= bound, "{report}");
@@ -251,7 +255,6 @@ pub fn file(name: &str, bytes: &[u8]) -> String {
     std::fs::rename(&beside, &path).unwrap();
     name.to_owned()
 }
-
 
 /// Two sets of runs agree over the whole picture (to `power`) and in each of 4x4 tiles (to six times that).
 pub fn assert_regions(what: &str, a: &Runs, b: &Runs, power: f64) {

@@ -30,7 +30,12 @@ fn torus(m: u32, n: u32) -> Vec<u8> {
 /// A room's corner with a torus of few faces under a small lamp and a dim sky.
 fn scene(name: &str, material: &str) -> String {
     let mesh = file(&format!("physics-torus-{name}.obj"), &torus(12, 8));
-    let camera = Camera { position: DVec3::new(0.3, 2.4, 3.2), target: DVec3::new(0.0, 0.1, 0.0), fov: 44.0, size: 24 };
+    let camera = Camera {
+        position: DVec3::new(0.3, 2.4, 3.2),
+        target: DVec3::new(0.0, 0.1, 0.0),
+        fov: 44.0,
+        size: 24,
+    };
     camera.toml()
         + &format!(
             r#"

@@ -1,0 +1,185 @@
+//! Holds renders of the reference scenes against pictures of other renderers, and prints one table.
+//!
+//!     cargo run --release --example hold [-- --device cpu --full --only mesh]
+//!     cargo run --release --example hold -- --make-truth FULL.exr tests/data/truth/NAME.exr [--relmse 3.3e-4]
+//!
+//! Exits with 1 when a render disagrees. docs/truth.md explains the table.
+
+use std::error::Error;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::Instant;
+
+use caustica::device;
+use caustica::film::{Development, Picture, Provenance, file};
+use caustica::hold::agreement::{CHANCE, LIMIT, LIMIT_FAR, MEAN_ERRORS, MEAN_LIMIT};
+use caustica::hold::truth::{BLOCK, PixelNoise};
+use caustica::hold::{Agreement, BlockTruth, hold, render_parts};
+use caustica::scene;
+use caustica::settings::{Direct, Method, Radius, RadiusRule, RenderSettings};
+use clap::Parser;
+
+/// Hold renders of the reference scenes against their truths
+#[derive(Parser)]
+struct Arguments {
+    /// Device to render on: auto, gpu, software, cpu, or a part of a device's name
+    #[arg(long, default_value = "auto")]
+    device: String,
+    /// Four times as many passes
+    #[arg(long)]
+    full: bool,
+    /// Only lines that hold this word, as in mesh or "ppm global"
+    #[arg(long, value_name = "WORD", default_value = "")]
+    only: String,
+    /// Write each line's deviations as a picture (.pfm, a pixel per block) into this folder
+    #[arg(long, value_name = "FOLDER")]
+    maps: Option<PathBuf>,
+    /// Instead: make the block truth OUT.exr of the picture FULL.exr
+    #[arg(long, num_args = 2, value_names = ["FULL.exr", "OUT.exr"])]
+    make_truth: Option<Vec<PathBuf>>,
+    /// With --make-truth: the noise of a picture that brings no standard errors
+    #[arg(long, value_name = "E", requires = "make_truth")]
+    relmse: Option<f64>,
+}
+
+/// Scene files and truths by these names lie in tests/data/reference and tests/data/truth.
+const SCENES: [&str; 4] = ["cornell", "drop", "drop-clear", "mesh"];
+/// Passes of a render.
+const PASSES: u32 = 32;
+/// Independent PPM renders that share those passes.
+const PPM_PARTS: u32 = 16;
+/// Allowance for density estimation's bias.
+const BIAS: f64 = 0.01;
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    let done = match &arguments.make_truth {
+        Some(files) => make_truth(&files[0], &files[1], arguments.relmse).map(|()| true),
+        None => hold_all(&arguments),
+    };
+    match done {
+        Ok(agrees) => ExitCode::from(u8::from(!agrees)),
+        Err(error) => {
+            eprintln!("hold: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn make_truth(full: &Path, out: &Path, relmse: Option<f64>) -> Result<(), Box<dyn Error>> {
+    let exr = file::read_exr(full)?;
+    let picture = exr.picture("").ok_or("it has no channels R, G and B")?;
+    let noise = match (exr.picture("SE."), relmse) {
+        (_, Some(e)) => PixelNoise::RelMse(e),
+        (Some(errors), None) => PixelNoise::Known(errors),
+        (None, None) => return Err("it has no standard errors SE.R, SE.G, SE.B; say --relmse".into()),
+    };
+    let truth = BlockTruth::from_picture(&picture, &noise)
+        .ok_or_else(|| format!("its sides are no multiples of {BLOCK}"))?;
+    Ok(truth.write(out)?)
+}
+
+/// What one line of the table renders, and the bias that it may have.
+fn lines() -> Vec<(String, RenderSettings, f64)> {
+    let mut lines = Vec::new();
+    let path = RenderSettings { method: Method::Path, passes: 8 * PASSES, ..RenderSettings::default() };
+    lines.push(("path".to_owned(), path, 0.0));
+    lines.push((
+        "sppm default".to_owned(),
+        RenderSettings { passes: PASSES, ..RenderSettings::default() },
+        BIAS,
+    ));
+    for (method, name) in [(Method::Sppm, "sppm"), (Method::Ppm, "ppm")] {
+        for (radius_rule, rule, pixels) in [
+            (RadiusRule::Global, "global", 1.0),
+            (RadiusRule::Local, "local", 1.0),
+            (RadiusRule::Fixed, "fixed", 0.5),
+        ] {
+            for (direct, light) in [(Direct::Sampled, "sampled"), (Direct::Photons, "photons")] {
+                let radius = Radius::Pixels(pixels);
+                let settings = RenderSettings {
+                    method,
+                    radius_rule,
+                    direct,
+                    radius,
+                    passes: PASSES,
+                    ..RenderSettings::default()
+                };
+                lines.push((format!("{name} {rule} {light}"), settings, BIAS));
+            }
+        }
+    }
+    lines
+}
+
+fn hold_all(arguments: &Arguments) -> Result<bool, Box<dyn Error>> {
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data");
+    let wanted = device::parse(&arguments.device);
+    println!(
+        "{:10} {:20} {:>8} {:>8} {:>8} {:>8} {:>8} {:>9} {:>13} {:>6} {:>6}",
+        "scene", "render", "R", "G", "B", "+- %", "truth %", "relMSE", "outside", "worst", "s"
+    );
+    let mut agrees = true;
+    for name in SCENES {
+        let scene = scene::load(&data.join(format!("reference/{name}.toml")))?.scene;
+        let truth = BlockTruth::read(&data.join(format!("truth/{name}.exr")))?;
+        for (line, mut settings, bias) in lines() {
+            if !format!("{name} {line}").contains(&arguments.only) {
+                continue;
+            }
+            settings.passes *= if arguments.full { 4 } else { 1 };
+            settings.passes /= if settings.method == Method::Ppm { PPM_PARTS } else { 1 };
+            let start = Instant::now();
+            let size = (truth.mean.width, truth.mean.height);
+            let rendered = render_parts(&wanted, &scene, &settings, PPM_PARTS, size)?;
+            let agreement = hold(&rendered.parts, &truth, bias);
+            print_line(name, &line, &agreement, start.elapsed().as_secs_f64());
+            agrees &= agreement.faults().is_empty();
+            if let Some(folder) = &arguments.maps {
+                let map = folder.join(format!("{name} {line}.pfm").replace(' ', "-"));
+                write_map(&map, &agreement, size, &settings)?;
+            }
+        }
+    }
+    println!(
+        "outside: blocks beyond {LIMIT} sigma, and how many may be (chance brings more in {} % of renders that agree); \
+         no block beyond {LIMIT_FAR} sigma.\nmean: within {} % and {MEAN_ERRORS} standard errors of the truth.",
+        100.0 * CHANCE,
+        100.0 * MEAN_LIMIT,
+    );
+    Ok(agrees)
+}
+
+fn print_line(scene: &str, line: &str, a: &Agreement, seconds: f64) {
+    let percent = |e: [f64; 3]| 100.0 * e[0].max(e[1]).max(e[2]);
+    let [r, g, b] = a.mean_ratio;
+    let outside = format!("{}/{} <= {}", a.outside(), a.deviations.len(), a.allowed);
+    let faults = a.faults();
+    let verdict =
+        if faults.is_empty() { "agrees".to_owned() } else { format!("FAILS: {}", faults.join(", ")) };
+    println!(
+        "{scene:10} {line:20} {r:8.4} {g:8.4} {b:8.4} {:8.3} {:8.3} {:9.2e} {outside:>13} {:6.1} {seconds:6.1} {verdict}",
+        percent(a.ratio_error),
+        percent(a.truth_error),
+        a.rel_mse,
+        a.worst(),
+    );
+}
+
+fn write_map(
+    path: &Path,
+    agreement: &Agreement,
+    (width, height): (u32, u32),
+    settings: &RenderSettings,
+) -> Result<(), Box<dyn Error>> {
+    let map =
+        Picture::from_fn(width, height, |x, y| [agreement.deviations[(y * width + x) as usize] as f32; 3]);
+    let provenance = Provenance {
+        scene: String::new(),
+        scene_text: String::new(),
+        settings: settings.clone(),
+        device: String::new(),
+        passes_done: settings.passes,
+    };
+    Ok(file::write(path, &map, &Development::default(), &provenance)?)
+}

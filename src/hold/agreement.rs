@@ -1,0 +1,123 @@
+//! Whether a render and a truth are two noisy pictures of the same thing.
+//!
+//! For every block and channel the difference `d` of the means is set against
+//!
+//!     sigma^2 = s^2 / K + SE^2 + (bias T)^2
+//!
+//! from the scatter `s` of the render's `K` parts (the larger of the block's own and the mean over the 3 x 3 blocks
+//! around it, since a few parts may all miss what is bright and rarely found), the truth's standard error, and an allowance for the bias of density
+//! estimation, a share of the truth `T`. Where both agree, `d / sigma` is about Student-t of `K - 1` degrees of
+//! freedom, or narrower. A block is outside when one of its channels is.
+
+use super::student::{poisson_limit, two_sided_tail};
+use super::truth::{BlockTruth, Blocks};
+use crate::film::metrics::compare;
+
+/// Deviation, in sigma, from which on a block is outside.
+pub const LIMIT: f64 = 4.0;
+/// Deviation that no block may have.
+pub const LIMIT_FAR: f64 = 8.0;
+/// Largest difference of a channel's mean over the picture, as a share of the truth.
+pub const MEAN_LIMIT: f64 = 0.005;
+/// Standard errors of the truth's picture mean that are allowed beside [`MEAN_LIMIT`].
+pub const MEAN_ERRORS: f64 = 3.0;
+/// Chance that an agreeing render has more blocks outside than allowed.
+pub const CHANCE: f64 = 1e-3;
+/// Rounding of f32 sums, as a share of the truth.
+const ROUNDING: f64 = 1e-5;
+
+/// How a render and a truth agree.
+#[derive(Clone, Debug)]
+pub struct Agreement {
+    /// Mean of the render over mean of the truth, per channel.
+    pub mean_ratio: [f64; 3],
+    /// Standard error of the ratio from the render's parts.
+    pub ratio_error: [f64; 3],
+    /// Standard error of the ratio from the truth.
+    pub truth_error: [f64; 3],
+    /// relMSE of the block means (see [`crate::film::metrics`]).
+    pub rel_mse: f64,
+    /// Per block, the deviation in sigma of the channel that deviates most.
+    pub deviations: Vec<f64>,
+    /// Number of blocks outside that chance alone may bring, at a rate of [`CHANCE`].
+    pub allowed: usize,
+    /// Number of blocks that chance alone brings.
+    pub expected: f64,
+}
+
+/// Holds the mean of `parts` (two at least) against `truth`. `bias` is the allowed bias as a share of a block's
+/// value.
+pub fn hold(parts: &[Blocks], truth: &BlockTruth, bias: f64) -> Agreement {
+    let k = parts.len() as f64;
+    let (mean, error) = mean_and_error(parts.iter().map(|part| part.mean()), k);
+    let truth_mean = truth.mean.mean();
+    let truth_mean_error = truth.mean_error();
+    let blocks: Vec<_> =
+        (0..truth.mean.rgb.len()).map(|i| mean_and_error(parts.iter().map(|part| part.rgb[i]), k)).collect();
+    let deviation = |i: usize| {
+        let (truth_value, truth_error) = (truth.mean.rgb[i], truth.standard_error.rgb[i]);
+        let ((mean, own), around) = (&blocks[i], neighbours(i, &truth.mean));
+        (0..3).fold(0.0, |largest: f64, c| {
+            let share = bias * bias + ROUNDING * ROUNDING;
+            let pooled = around.iter().map(|&j| blocks[j].1[c].powi(2)).sum::<f64>() / around.len() as f64;
+            let variance =
+                own[c].powi(2).max(pooled) + truth_error[c].powi(2) + share * truth_value[c].powi(2);
+            let deviation = (mean[c] - truth_value[c]) / (variance + f64::MIN_POSITIVE).sqrt();
+            if deviation.abs() > largest.abs() { deviation } else { largest }
+        })
+    };
+    let expected = 3.0 * two_sided_tail(LIMIT, parts.len() as u32 - 1) * blocks.len() as f64;
+    let render = Blocks { rgb: blocks.iter().map(|(mean, _)| *mean).collect(), ..truth.mean };
+    Agreement {
+        mean_ratio: [0, 1, 2].map(|c| mean[c] / truth_mean[c]),
+        ratio_error: [0, 1, 2].map(|c| error[c] / truth_mean[c]),
+        truth_error: [0, 1, 2].map(|c| truth_mean_error[c] / truth_mean[c]),
+        rel_mse: compare(&render.picture(), &truth.mean.picture()).map_or(f64::NAN, |c| c.rel_mse),
+        deviations: (0..blocks.len()).map(deviation).collect(),
+        allowed: poisson_limit(expected, CHANCE),
+        expected,
+    }
+}
+
+impl Agreement {
+    /// Number of blocks beyond [`LIMIT`].
+    pub fn outside(&self) -> usize {
+        self.deviations.iter().filter(|d| !(d.abs() <= LIMIT)).count()
+    }
+
+    /// The deviation that is largest in size.
+    pub fn worst(&self) -> f64 {
+        self.deviations.iter().fold(0.0, |worst: f64, &d| if d.abs() <= worst.abs() { worst } else { d })
+    }
+
+    /// What speaks against agreement; empty when nothing does.
+    pub fn faults(&self) -> Vec<&'static str> {
+        let mean = (0..3)
+            .all(|c| (self.mean_ratio[c] - 1.0).abs() <= MEAN_LIMIT + MEAN_ERRORS * self.truth_error[c]);
+        let found = [
+            (!mean, "mean"),
+            (self.outside() > self.allowed, "blocks"),
+            (!(self.worst().abs() <= LIMIT_FAR), "one block"),
+        ];
+        found.into_iter().filter(|(fault, _)| *fault).map(|(_, name)| name).collect()
+    }
+}
+
+/// Indices of the 3 x 3 blocks around block `i`, fewer at the picture's border.
+fn neighbours(i: usize, blocks: &Blocks) -> Vec<usize> {
+    let (width, height) = (blocks.width as usize, blocks.height as usize);
+    let (x, y) = (i % width, i / width);
+    let rows = y.saturating_sub(1)..(y + 2).min(height);
+    rows.flat_map(|row| (x.saturating_sub(1)..(x + 2).min(width)).map(move |column| row * width + column))
+        .collect()
+}
+
+/// Mean of `K` values per channel and its standard error.
+fn mean_and_error(values: impl Iterator<Item = [f64; 3]> + Clone, k: f64) -> ([f64; 3], [f64; 3]) {
+    let mean = [0, 1, 2].map(|c| values.clone().map(|v| v[c]).sum::<f64>() / k);
+    let error = [0, 1, 2].map(|c| {
+        let square = values.clone().map(|v| (v[c] - mean[c]).powi(2)).sum::<f64>();
+        (square / (k * (k - 1.0))).sqrt()
+    });
+    (mean, error)
+}
