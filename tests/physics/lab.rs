@@ -153,7 +153,15 @@ pub fn runs(text: &str, settings: &RenderSettings) -> Runs {
     };
     let start = std::time::Instant::now();
     let r = Runs { size: scene.film.width, pixels: (0..RUNS).map(grey).collect() };
-    println!("TIME {:?} {} passes {:?}", start.elapsed(), settings.passes, r.pixels.iter().map(|p|(p.iter().sum::<f64>()/p.len() as f64*1e5).round()/1e5).collect::<Vec<_>>());
+    println!(
+        "TIME {:?} {} passes {:?}",
+        start.elapsed(),
+        settings.passes,
+        r.pixels
+            .iter()
+            .map(|p| (p.iter().sum::<f64>() / p.len() as f64 * 1e5).round() / 1e5)
+            .collect::<Vec<_>>()
+    );
     r
 }
 
