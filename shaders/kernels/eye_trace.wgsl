@@ -14,7 +14,7 @@ fn eye_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
     let camera = scene.camera;
     var ray = camera_ray(camera, pixel % camera.width, pixel / camera.width, u);
     var throughput = vec3f(1.0);
-    var medium = NONE;
+    var medium = camera.medium;
     var length = 0.0;
     var rays = 0u;
     var point = VisiblePoint();

@@ -3,7 +3,7 @@
 // `gathered` and, where the driver stopped it, to `counters`.
 
 const FLATNESS: f32 = 0.25;
-const COS_MIN: f32 = 1e-3;
+const COS_MIN: f32 = 1e-2;
 
 @compute @workgroup_size(64)
 fn gather(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups) groups: vec3u) {

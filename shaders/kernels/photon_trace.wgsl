@@ -13,7 +13,7 @@ fn photon_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgrou
     let emission = emit_photon(&rng);
     var ray = emission.ray;
     var flux = emission.flux;
-    var medium = NONE;
+    var medium = emission.medium;
     var rays = 0u;
     for (var bounce = 0u; bounce < dispatch.max_bounces + 1u; bounce++) {
         if max_component(flux) <= 0.0 {

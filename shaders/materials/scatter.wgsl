@@ -2,6 +2,7 @@
 
 const RADIANCE: u32 = 0u;
 const IMPORTANCE: u32 = 1u;
+const ADJOINT_COS_MIN: f32 = 1e-2;
 
 struct Scatter {
     direction: vec3f,
@@ -10,8 +11,6 @@ struct Scatter {
 }
 
 //#if scene
-const COS_MIN: f32 = 1e-3;
-
 fn reflectance_at(material: u32, uv: vec2f) -> vec3f {
     let m = scene.materials[material];
     //#if textures
@@ -60,7 +59,7 @@ fn scatter_specular(s: Surface, wo: vec3f, medium: u32, u: f32, mode: u32) -> Sc
                 wi = refracted(wo, ng, cos_g, flat_ng.cos_t, eta);
             }
             var weight = eta * eta;
-            if mode != RADIANCE {
+            if mode == IMPORTANCE {
                 weight = shading_correction(s, n, ng, wo, wi);
             }
             let beyond = select(NONE, s.material, outside);
@@ -92,7 +91,6 @@ fn scatter_rough(s: Surface, wo: vec3f, medium: u32, u: vec2f, mode: u32) -> Sca
     let n = shading_normal(s, wo);
     var wi: vec3f;
     var weight = reflectance_at(s.material, s.uv);
-    var diffuse = true;
     //#if metal
     if m.kind == MATERIAL_METAL {
         let f = basis(n);
@@ -101,31 +99,27 @@ fn scatter_rough(s: Surface, wo: vec3f, medium: u32, u: vec2f, mode: u32) -> Sca
         let local_wi = mirrored(local_wo, h);
         weight = weight_metal(local_wo, h, local_wi, weight, m.alpha);
         wi = from_frame(n, local_wi);
-        diffuse = false;
     }
     //#end
-    if diffuse && mode == IMPORTANCE {
-        if any(s.shading != s.normal) {
-            weight *= max(dot(wo, n), 0.0) / max(dot(wo, ng), COS_MIN);
+    if m.kind == MATERIAL_DIFFUSE {
+        var axis = n;
+        if mode == IMPORTANCE {
+            axis = ng;
+            if any(s.shading != s.normal) {
+                weight *= max(dot(wo, n), 0.0) / max(dot(wo, ng), ADJOINT_COS_MIN);
+            }
         }
-        wi = from_frame(ng, sample_cosine(u));
-    } else if diffuse {
-        wi = from_frame(n, sample_cosine(u));
+        wi = from_frame(axis, sample_cosine(u));
     }
     wi *= 1.0 / sqrt(dot(wi, wi));
     let cos_g = dot(wi, ng);
     if cos_g <= 0.0 {
         weight = vec3f(0.0);
+    } else if mode == IMPORTANCE && m.kind == MATERIAL_METAL {
+        // from behind the shading normal an eye path would get nothing
+        let seen = dot(wo, toward(s.shading, ng)) > 0.0;
+        weight *= select(0.0, shading_correction(s, n, ng, wo, wi), seen);
     }
-    //#if metal
-    if cos_g > 0.0 && mode == IMPORTANCE && m.kind == MATERIAL_METAL {
-        var correction = 0.0;
-        if dot(wo, toward(s.shading, ng)) > 0.0 {
-            correction = shading_correction(s, n, ng, wo, wi);
-        }
-        weight *= correction;
-    }
-    //#end
     return Scatter(wi, medium, weight);
 }
 

@@ -27,7 +27,7 @@ pub fn eye_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, id: u32) -> 
     let camera = &scene.camera;
     let mut ray = camera_ray(camera, pixel % camera.width, pixel / camera.width, u);
     let mut throughput = Vec3::ONE;
-    let mut medium = NONE;
+    let mut medium = camera.medium;
     let mut length = 0.0;
     let mut rays = 0;
     let mut point = VisiblePoint::default();

@@ -15,7 +15,7 @@ pub const RADIANCE: u32 = 0;
 pub const IMPORTANCE: u32 = 1;
 
 /// Least cosine with the geometric normal for which a shading normal's correction is formed.
-const COS_MIN: f32 = 1e-3;
+const ADJOINT_COS_MIN: f32 = 1e-2;
 
 /// Where a path goes on.
 #[derive(Clone, Copy, Debug)]
@@ -75,7 +75,10 @@ pub fn scatter_specular(scene: &Scene, s: &Surface, wo: Vec3, medium: u32, u: f3
                 wi = refracted(wo, ng, cos_g, flat.cos_t, eta);
             }
             // radiance is compressed into a smaller solid angle inside (Veach 1997, section 5.2)
-            let weight = if mode == RADIANCE { eta * eta } else { shading_correction(s, n, ng, wo, wi) };
+            let mut weight = eta * eta;
+            if mode == IMPORTANCE {
+                weight = shading_correction(s, n, ng, wo, wi);
+            }
             let beyond = if outside { s.material } else { NONE };
             return Scatter { direction: wi, medium: beyond, weight: Vec3::splat(weight) };
         }
@@ -109,14 +112,16 @@ pub fn scatter_rough(scene: &Scene, s: &Surface, wo: Vec3, medium: u32, u: Vec2,
         let local_wi = mirrored(local_wo, h);
         weight = weight_metal(local_wo, h, local_wi, weight, m.alpha);
         wi = from_frame(n, local_wi);
-    } else if mode == IMPORTANCE {
-        // the adjoint of a diffuse surface scatters about the geometric normal what the shading one receives
-        if s.shading != s.normal {
-            weight *= wo.dot(n).max(0.0) / wo.dot(ng).max(COS_MIN);
-        }
-        wi = from_frame(ng, sample_cosine(u));
     } else {
-        wi = from_frame(n, sample_cosine(u));
+        let mut axis = n;
+        if mode == IMPORTANCE {
+            // the adjoint of a diffuse surface sends about the geometric normal what the shading one receives
+            axis = ng;
+            if s.shading != s.normal {
+                weight *= wo.dot(n).max(0.0) / wo.dot(ng).max(ADJOINT_COS_MIN);
+            }
+        }
+        wi = from_frame(axis, sample_cosine(u));
     }
     wi *= 1.0 / wi.dot(wi).sqrt();
     let cos_g = wi.dot(ng);

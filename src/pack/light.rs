@@ -2,6 +2,7 @@
 
 use super::shape::Emitter;
 use crate::build::normalize::Normalization;
+use crate::lights::shape::sample_shape;
 use crate::scene::{self, Environment};
 use crate::shapes::revolution::ring_point;
 use crate::tables::*;
@@ -98,6 +99,18 @@ pub fn pack_lights(scene: &scene::Scene, n: &Normalization, emitters: &[Emitter]
     out.distributions.extend(distributions);
     out.world.light_count = count as u32;
     radiance_unit
+}
+
+/// A point from which a light shines; nothing for light from infinity.
+pub fn place(out: &Scene, light: &Light) -> Option<Vec3> {
+    match light.kind {
+        LIGHT_AREA => {
+            let p = sample_shape(out, light, Vec2::splat(0.5), 0.5);
+            Some(p.position + p.normal * p.error)
+        }
+        LIGHT_POINT | LIGHT_SPOT => Some(light.position),
+        _ => None,
+    }
 }
 
 /// The parts of v by patch and the cumulative shares of area; returns the area. A patch overlaps its neighbour,

@@ -42,7 +42,7 @@ fn check(name: &str, light: &str, irradiance: impl Fn(DVec3) -> f64) {
         // shadow rays go to the visible point itself, photons are averaged over the disc
         let blur = if sampled { 0.0 } else { RADIUS };
         let truth = camera().floor_picture(blur, |p| ALBEDO / PI * irradiance(p));
-        let power = if sampled { 0.015 } else { 0.02 };
+        let power = if sampled { 0.02 } else { 0.03 };
         runs_to(power, &text, &settings).assert_picture(&format!("{name}, {direct:?}"), &truth, power);
     }
 }

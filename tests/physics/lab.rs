@@ -6,8 +6,12 @@
 
 use std::path::PathBuf;
 
+use caustica::cpu::CpuEngine;
 use caustica::device;
+use caustica::engine::Engine;
 use caustica::film::Picture;
+use caustica::pack::pack;
+use caustica::plan::Plan;
 use caustica::scene::{self, Scene};
 use caustica::settings::{Direct, Method, Radius, RadiusRule, RenderSettings};
 use glam::{DVec2, DVec3};
@@ -108,9 +112,14 @@ pub fn parse(text: &str) -> Scene {
 
 /// One run. The path tracer runs on the CPU, everything else on the device that is asked for.
 pub fn render(scene: &Scene, settings: &RenderSettings) -> Picture {
-    let name = std::env::var("CAUSTICA_DEVICE").unwrap_or_else(|_| "cpu".into());
-    let wanted = if settings.method == Method::Path { device::Wanted::Cpu } else { device::parse(&name) };
-    let mut engine = device::open(&wanted, scene, settings).unwrap_or_else(|e| panic!("{e}")).engine;
+    let device = std::env::var("CAUSTICA_DEVICE").unwrap_or_else(|_| "cpu".into());
+    let mut engine: Box<dyn Engine> = if settings.method == Method::Path || device == "cpu" {
+        let packed = pack(scene, scene.film.width, scene.film.height).unwrap_or_else(|e| panic!("{e}"));
+        let plan = Plan::new(&packed, settings);
+        Box::new(CpuEngine::new(packed, plan))
+    } else {
+        device::open(&device::parse(&device), scene, settings).unwrap_or_else(|e| panic!("{e}")).engine
+    };
     for _ in 0..settings.passes {
         engine.pass().unwrap();
     }
@@ -142,7 +151,18 @@ pub fn runs(text: &str, settings: &RenderSettings) -> Runs {
         let picture = render(&scene, &RenderSettings { seed: settings.seed + seed, ..settings.clone() });
         picture.rgb.iter().map(|c| c.iter().map(|&x| x as f64).sum::<f64>() / 3.0).collect()
     };
-    Runs { size: scene.film.width, pixels: (0..RUNS).map(grey).collect() }
+    let start = std::time::Instant::now();
+    let r = Runs { size: scene.film.width, pixels: (0..RUNS).map(grey).collect() };
+    println!(
+        "TIME {:?} {} passes {:?}",
+        start.elapsed(),
+        settings.passes,
+        r.pixels
+            .iter()
+            .map(|p| (p.iter().sum::<f64>() / p.len() as f64 * 1e5).round() / 1e5)
+            .collect::<Vec<_>>()
+    );
+    r
 }
 
 /// A mean and its standard error.

@@ -3,9 +3,14 @@
 //!
 //! `CAUSTICA_DEVICE` chooses the device (default `cpu`).
 
+mod agreement;
+mod caustics;
 mod closed_forms;
+mod densities;
+mod dielectrics;
 mod furnace;
 mod integrating_sphere;
+mod invariance;
 mod irradiance;
 mod lab;
 mod meshes;
