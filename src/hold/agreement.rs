@@ -19,7 +19,7 @@ pub const LIMIT: f64 = 4.0;
 pub const LIMIT_FAR: f64 = 8.0;
 /// Largest difference of a channel's mean over the picture, as a share of the truth.
 pub const MEAN_LIMIT: f64 = 0.005;
-/// Standard errors of the truth's picture mean that are allowed beside [`MEAN_LIMIT`].
+/// Standard errors of the ratio, the truth's and the render's joined, that are allowed beside [`MEAN_LIMIT`].
 pub const MEAN_ERRORS: f64 = 3.0;
 /// Chance that an agreeing render has more blocks outside than allowed.
 pub const CHANCE: f64 = 1e-3;
@@ -92,8 +92,10 @@ impl Agreement {
 
     /// What speaks against agreement; empty when nothing does.
     pub fn faults(&self) -> Vec<&'static str> {
-        let mean = (0..3)
-            .all(|c| (self.mean_ratio[c] - 1.0).abs() <= MEAN_LIMIT + MEAN_ERRORS * self.truth_error[c]);
+        let mean = (0..3).all(|c| {
+            let error = self.truth_error[c].hypot(self.ratio_error[c]);
+            (self.mean_ratio[c] - 1.0).abs() <= MEAN_LIMIT + MEAN_ERRORS * error
+        });
         let found = [
             (!mean, "mean"),
             (self.outside() > self.allowed, "blocks"),
