@@ -8,9 +8,10 @@ fn camera_ray(camera: Camera, x: u32, y: u32, u: vec4f) -> Ray {
     var direction = d;
     //#if lens
     let lens = sample_disc(vec2f(u.z, u.w)) * camera.aperture;
-    let offset = camera.lens_right * lens.x + camera.lens_up * lens.y;
-    origin = camera.position + offset;
-    direction = d * camera.focus - offset;
+    let right = camera.lens_right * lens.x;
+    let up = camera.lens_up * lens.y;
+    origin = camera.position + right + up;
+    direction = d * camera.focus - right - up;
     //#end
     return Ray(origin, 0.0, unit(direction), FAR);
 }

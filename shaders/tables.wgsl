@@ -57,7 +57,7 @@ struct Camera {
     lens_right: vec3f,
     height: u32,
     lens_up: vec3f,
-    pad: u32,
+    medium: u32,
 }
 
 struct Sphere {
@@ -170,6 +170,6 @@ struct Light {
     cos_inner: f32,
     patch_first: u32,
     patch_count: u32,
-    pad0: u32,
-    pad1: u32,
+    medium: u32,
+    pad: u32,
 }

@@ -15,9 +15,10 @@ pub fn camera_ray(camera: &Camera, x: u32, y: u32, u: Vec4) -> Ray {
     let mut direction = d;
     if camera.aperture > 0.0 {
         let lens = sample_disc(Vec2::new(u.z, u.w)) * camera.aperture;
-        let offset = camera.lens_right * lens.x + camera.lens_up * lens.y;
-        origin = camera.position + offset;
-        direction = d * camera.focus - offset;
+        let right = camera.lens_right * lens.x;
+        let up = camera.lens_up * lens.y;
+        origin = camera.position + right + up;
+        direction = d * camera.focus - right - up;
     }
     Ray { origin, t_min: 0.0, direction: unit(direction), t_max: FAR }
 }

@@ -4,10 +4,15 @@ use thiserror::Error;
 
 use crate::cpu::CpuEngine;
 use crate::engine::{Engine, EngineError};
+use crate::gpu::{self, AdapterChoice, AdapterKind, AdapterSummary, GpuEngine};
+use crate::kernels::records::VisiblePoint;
 use crate::pack::pack;
 use crate::plan::Plan;
 use crate::scene::Scene;
-use crate::settings::RenderSettings;
+use crate::settings::{Method, RenderSettings};
+
+/// Most visible points of a picture: their numbers are 32 bits wide.
+const POINTS_MAX: u64 = 1 << 31;
 
 /// What a user asks for.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -96,14 +101,29 @@ pub enum DeviceError {
     Engine(#[from] EngineError),
 }
 
-/// All devices.
+/// All devices, the CPU last.
 pub fn list() -> Vec<DeviceInfo> {
-    vec![DeviceInfo {
+    let adapters = gpu::list().into_iter().filter(AdapterSummary::fits).map(|a| DeviceInfo {
+        name: a.name.clone(),
+        kind: if a.kind == AdapterKind::Software { DeviceKind::Software } else { DeviceKind::Gpu },
+        driver: format!("{}, {}", a.backend, a.driver),
+        limits: vec![
+            ("bytes in a binding".to_owned(), a.binding_bytes),
+            ("bytes in a buffer".to_owned(), a.buffer_bytes),
+            ("storage buffers in a kernel".to_owned(), a.storage_buffers as u64),
+            ("invocations in a workgroup".to_owned(), a.workgroup_invocations as u64),
+        ],
+    });
+    adapters.chain([cpu()]).collect()
+}
+
+fn cpu() -> DeviceInfo {
+    DeviceInfo {
         name: "cpu".to_owned(),
         kind: DeviceKind::Cpu,
         driver: format!("{} threads", rayon::current_num_threads()),
         limits: Vec::new(),
-    }]
+    }
 }
 
 /// The device that a wish means, and why.
@@ -142,10 +162,14 @@ pub fn pick<'a>(wanted: &Wanted, devices: &'a [DeviceInfo]) -> Result<(&'a Devic
     }
 }
 
-/// Makes an engine for a scene on the device that is wanted.
+/// Makes an engine for a scene on the device that is wanted. Path tracing runs on the CPU alone, so `auto` takes it.
 pub fn open(wanted: &Wanted, scene: &Scene, settings: &RenderSettings) -> Result<Opened, DeviceError> {
-    let devices = list();
+    let path = settings.method == Method::Path && *wanted == Wanted::Auto;
+    let wanted = if path { &Wanted::Cpu } else { wanted };
+    // drivers take a while to answer and may write to standard error, so they are not asked for nothing
+    let devices = if *wanted == Wanted::Cpu { vec![cpu()] } else { list() };
     let (device, why) = pick(wanted, &devices)?;
+    let why = if path { "auto: path tracing runs on the CPU".to_owned() } else { why };
     Ok(Opened { engine: start(device, scene, settings)?, name: device.name.clone(), why })
 }
 
@@ -154,11 +178,23 @@ fn start(
     scene: &Scene,
     settings: &RenderSettings,
 ) -> Result<Box<dyn Engine>, EngineError> {
-    let packed = pack(scene, scene.film.width, scene.film.height)?;
+    let film = &scene.film;
+    let samples = if settings.method == Method::Ppm { settings.eye_samples as u64 } else { 1 };
+    let points = film.width as u64 * film.height as u64 * samples;
+    if points > POINTS_MAX {
+        return Err(EngineError::TooLarge {
+            what: format!("a picture of {} x {} pixels", film.width, film.height),
+            needed: points * size_of::<VisiblePoint>() as u64,
+            device: device.name.clone(),
+            limit: POINTS_MAX * size_of::<VisiblePoint>() as u64,
+            mend: "make width, height or eye_samples smaller".to_owned(),
+        });
+    }
+    let packed = pack(scene, film.width, film.height)?;
     let plan = Plan::new(&packed, settings);
     match device.kind {
         DeviceKind::Cpu => Ok(Box::new(CpuEngine::new(packed, plan))),
-        _ => Err(EngineError::Unsupported(format!("no engine runs on {}", device.name))),
+        _ => Ok(Box::new(GpuEngine::new(&AdapterChoice::Named(device.name.clone()), &packed, plan)?)),
     }
 }
 

@@ -1,4 +1,26 @@
-//! caustica: a photon mapper.
+//! caustica: a photon mapper for caustics, soft shadows and depth of field, on GPU, lavapipe and CPU.
+//!
+//! A scene file becomes a [`scene::Scene`] (f64, as written), [`pack::pack`] flattens it into the tables that the
+//! kernels read (f32, moved to its own centre), [`plan::Plan`] says what a pass does, and an [`engine::Engine`]
+//! carries it out: [`cpu::CpuEngine`] in Rust, [`gpu::GpuEngine`] in WGSL.
+//!
+//! ```
+//! use caustica::{device, scene};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let mut loaded = scene::load("scenes/cornell.toml".as_ref())?;
+//! (loaded.scene.film.width, loaded.scene.film.height) = (32, 32);
+//! loaded.settings.photons = 1000;
+//! let mut engine = device::open(&device::Wanted::Cpu, &loaded.scene, &loaded.settings)?.engine;
+//! engine.pass()?;
+//! assert!(engine.picture()?.rgb.iter().flatten().any(|radiance| *radiance > 0.0));
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! Modules depend on one another one way: [`math`], then [`tables`], [`shapes`], [`materials`], [`lights`],
+//! [`camera`] and [`grid`], then [`scene`], [`build`], [`pack`], then [`kernels`], [`probe`], [`plan`], then [`cpu`]
+//! and [`gpu`], then [`device`] and [`render`].
 
 pub mod build;
 pub mod camera;
@@ -7,8 +29,8 @@ pub mod device;
 pub mod engine;
 pub mod features;
 pub mod film;
+pub mod gpu;
 pub mod grid;
-pub mod hold;
 pub mod kernels;
 pub mod lights;
 pub mod materials;

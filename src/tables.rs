@@ -93,8 +93,8 @@ pub struct Camera {
     pub height: u32,
     /// Unit vector upward.
     pub lens_up: Vec3,
-    /// Padding.
-    pub pad: u32,
+    /// The glass material that the camera stands in, or [`NONE`].
+    pub medium: u32,
 }
 
 /// A sphere through `anchor` with outward normal `normal` there: exact in f32 for any radius.
@@ -352,8 +352,10 @@ pub struct Light {
     pub patch_first: u32,
     /// Revolution: number of its patches.
     pub patch_count: u32,
+    /// The glass material that it stands in, or [`NONE`].
+    pub medium: u32,
     /// Padding.
-    pub pad: [u32; 2],
+    pub pad: u32,
 }
 
 /// The flattened scene.

@@ -2,6 +2,7 @@
 
 const RADIANCE: u32 = 0u;
 const IMPORTANCE: u32 = 1u;
+const ADJOINT_COS_MIN: f32 = 1e-2;
 
 struct Scatter {
     direction: vec3f,
@@ -9,6 +10,7 @@ struct Scatter {
     weight: vec3f,
 }
 
+//#if scene
 fn reflectance_at(material: u32, uv: vec2f) -> vec3f {
     let m = scene.materials[material];
     //#if textures
@@ -30,7 +32,8 @@ fn toward(v: vec3f, w: vec3f) -> vec3f {
 fn shading_normal(s: Surface, wo: vec3f) -> vec3f {
     let ng = toward(s.normal, wo);
     let ns = toward(s.shading, ng);
-    return select(ng, ns, dot(wo, ns) > 0.0);
+    let diffuse = scene.materials[s.material].kind == MATERIAL_DIFFUSE;
+    return select(ng, ns, diffuse || dot(wo, ns) > 0.0);
 }
 
 //#if specular
@@ -50,26 +53,35 @@ fn scatter_specular(s: Surface, wo: vec3f, medium: u32, u: f32, mode: u32) -> Sc
         if u >= interface_n.reflectance {
             var wi = refracted(wo, n, cos_i, interface_n.cos_t, eta);
             if dot(wi, ng) >= 0.0 {
+                n = ng;
                 let cos_g = dot(wo, ng);
                 let flat_ng = fresnel(cos_g, eta);
                 wi = refracted(wo, ng, cos_g, flat_ng.cos_t, eta);
             }
-            let weight = select(1.0, eta * eta, mode == RADIANCE);
+            var weight = eta * eta;
+            if mode == IMPORTANCE {
+                weight = shading_correction(s, n, ng, wo, wi);
+            }
             let beyond = select(NONE, s.material, outside);
             return Scatter(wi, beyond, vec3f(weight));
         }
-        var wi = mirrored(wo, n);
-        if dot(wi, ng) <= 0.0 {
-            wi = mirrored(wo, ng);
-        }
-        let here = select(s.material, medium, outside);
-        return Scatter(wi, here, vec3f(1.0));
     }
     //#end
     if dot(mirrored(wo, n), ng) <= 0.0 {
         n = ng;
     }
-    return Scatter(mirrored(wo, n), medium, reflectance_at(s.material, s.uv));
+    let wi = mirrored(wo, n);
+    var weight = vec3f(1.0);
+    if mode == IMPORTANCE {
+        weight *= shading_correction(s, n, ng, wo, wi);
+    }
+    //#if glass
+    if m.kind == MATERIAL_GLASS {
+        let here = select(s.material, medium, dot(wo, s.normal) >= 0.0);
+        return Scatter(wi, here, weight);
+    }
+    //#end
+    return Scatter(wi, medium, weight * reflectance_at(s.material, s.uv));
 }
 //#end
 
@@ -83,21 +95,30 @@ fn scatter_rough(s: Surface, wo: vec3f, medium: u32, u: vec2f, mode: u32) -> Sca
     if m.kind == MATERIAL_METAL {
         let f = basis(n);
         let local_wo = vec3f(dot(wo, f.t), dot(wo, f.b), dot(wo, n));
-        let local_wi = sample_metal(local_wo, m.alpha, u);
-        weight = weight_metal(local_wo, local_wi, weight, m.alpha);
+        let h = sample_metal(local_wo, m.alpha, u);
+        let local_wi = mirrored(local_wo, h);
+        weight = weight_metal(local_wo, h, local_wi, weight, m.alpha);
         wi = from_frame(n, local_wi);
-    } else {
-        wi = from_frame(n, sample_cosine(u));
     }
-    //#else
-    wi = from_frame(n, sample_cosine(u));
     //#end
+    if m.kind == MATERIAL_DIFFUSE {
+        var axis = n;
+        if mode == IMPORTANCE {
+            axis = ng;
+            if any(s.shading != s.normal) {
+                weight *= max(dot(wo, n), 0.0) / max(dot(wo, ng), ADJOINT_COS_MIN);
+            }
+        }
+        wi = from_frame(axis, sample_cosine(u));
+    }
     wi *= 1.0 / sqrt(dot(wi, wi));
     let cos_g = dot(wi, ng);
     if cos_g <= 0.0 {
         weight = vec3f(0.0);
-    } else if mode == IMPORTANCE {
-        weight *= shading_correction(s, n, ng, wo, wi);
+    } else if mode == IMPORTANCE && m.kind == MATERIAL_METAL {
+        // from behind the shading normal an eye path would get nothing
+        let seen = dot(wo, toward(s.shading, ng)) > 0.0;
+        weight *= select(0.0, shading_correction(s, n, ng, wo, wi), seen);
     }
     return Scatter(wi, medium, weight);
 }
@@ -106,12 +127,13 @@ fn shading_correction(s: Surface, n: vec3f, ng: vec3f, wo: vec3f, wi: vec3f) -> 
     if all(s.shading == s.normal) {
         return 1.0;
     }
-    let denominator = dot(wo, ng) * dot(wi, n);
+    let denominator = abs(dot(wo, ng) * dot(wi, n));
     if denominator <= 1e-6 {
         return 0.0;
     }
-    return dot(wo, n) * dot(wi, ng) / denominator;
+    return abs(dot(wo, n) * dot(wi, ng)) / denominator;
 }
+//#end
 
 fn eval_rough(kind: u32, alpha: f32, reflectance: vec3f, n: vec3f, wo: vec3f, wi: vec3f) -> vec3f {
     let cos = dot(wi, n);

@@ -30,7 +30,12 @@ fn intersect_primitive(reference: u32, ray: Ray, hit: ptr<function, Hit>) {
         //#end
         //#if revolution
         case KIND_REVOLUTION: {
-            intersect_patch(index, reference, ray, hit);
+            let patch_data = scene.patches[index];
+            let revolution = scene.revolutions[patch_data.revolution];
+            let at = intersect_patch(revolution, patch_data, ray.origin, ray.direction, ray.t_min, (*hit).t);
+            if at.t < (*hit).t {
+                *hit = Hit(at.t, reference, at.theta, at.tau);
+            }
         }
         //#end
         //#if plane

@@ -99,7 +99,7 @@ fn surface_at(ray: Ray, hit: Hit) -> Surface {
         case KIND_REVOLUTION: {
             let patch_data = scene.patches[index];
             let revolution = scene.revolutions[patch_data.revolution];
-            let r = revolution_surface(index, ray, hit);
+            let r = revolution_surface(revolution, patch_data, hit.u, hit.v);
             s = Surface(r.position, r.error, r.normal, revolution.material, r.normal, revolution.light, r.uv, r.uv.y);
             planar = revolution.uv;
         }

@@ -102,7 +102,7 @@ fn triangle_normal(triangle: Triangle) -> vec3f {
 }
 
 fn triangle_point(triangle: Triangle, u: f32, v: f32) -> vec3f {
-    return triangle.p0 + ((triangle.p1 - triangle.p0) * u + (triangle.p2 - triangle.p0) * v);
+    return triangle.p0 + (triangle.p1 - triangle.p0) * u + (triangle.p2 - triangle.p0) * v;
 }
 
 fn triangle_error(triangle: Triangle) -> f32 {

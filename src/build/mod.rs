@@ -7,3 +7,4 @@ mod kdtree_clip;
 mod kdtree_sweep;
 pub mod normalize;
 pub mod revolution;
+pub mod tessellate;

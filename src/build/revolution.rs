@@ -161,10 +161,9 @@ impl RevolutionTables {
             DVec2::new(e.dot(q), e.y * q.x - e.x * q.y) / e.length_squared()
         };
         let local: Vec<DVec2> = piece.points.iter().map(|&p| chord(p)).collect();
-        let hull = |f: fn(f64, f64) -> f64, of: fn(&DVec2) -> f64, start: f64, points: &[DVec2]| {
-            points.iter().map(of).fold(start, f)
-        };
-        let (r, y): (fn(&DVec2) -> f64, fn(&DVec2) -> f64) = (|p| p.x, |p| p.y);
+        let low = piece.points.iter().fold(DVec2::INFINITY, |a, p| a.min(*p)) - BOUNDS_PAD;
+        let high = piece.points.iter().fold(DVec2::NEG_INFINITY, |a, p| a.max(*p)) + BOUNDS_PAD;
+        let (phi_min, phi_max) = local.iter().fold((0.0_f64, 0.0_f64), |(a, b), p| (a.min(p.y), b.max(p.y)));
         let patch = Patch {
             revolution: self.revolutions.len() as u32,
             segment,
@@ -172,12 +171,12 @@ impl RevolutionTables {
             degree: (local.len() - 1) as u32,
             origin,
             axis,
-            r_min: (hull(f64::min, r, f64::INFINITY, &piece.points) - BOUNDS_PAD).max(0.0) as f32,
-            r_max: (hull(f64::max, r, 0.0, &piece.points) + BOUNDS_PAD) as f32,
-            y_min: (hull(f64::min, y, f64::INFINITY, &piece.points) - BOUNDS_PAD) as f32,
-            y_max: (hull(f64::max, y, f64::NEG_INFINITY, &piece.points) + BOUNDS_PAD) as f32,
-            phi_min: (hull(f64::min, y, 0.0, &local) - 2e-7) as f32,
-            phi_max: (hull(f64::max, y, 0.0, &local) + 2e-7) as f32,
+            r_min: low.x.max(0.0) as f32,
+            r_max: high.x as f32,
+            y_min: low.y as f32,
+            y_max: high.y as f32,
+            phi_min: (phi_min - 2e-7) as f32,
+            phi_max: (phi_max + 2e-7) as f32,
             slope: (piece.slope * 1.001 + 1e-6) as f32,
             length: local[local.len() - 1].x as f32,
             t0: piece.t0 as f32,
@@ -248,7 +247,7 @@ fn pieces(segment: &[DVec2]) -> Vec<Piece> {
     cuts.extend(stops.filter(|&t| point(&velocity, t).length() < 1e-6 * speed));
     cuts.extend([0.0, 1.0]);
     cuts.sort_by(f64::total_cmp);
-    cuts.dedup_by(|b, a| *b - *a < 1e-9);
+    cuts.dedup_by(|b, a| *b - *a < 1e-6);
     for w in cuts.windows(2) {
         let side =
             if point(segment, 0.5 * (w[0] + w[1])).x < 0.0 { DVec2::new(-1.0, 1.0) } else { DVec2::ONE };
@@ -285,7 +284,7 @@ fn slopes(points: &[DVec2]) -> Option<(f64, f64)> {
     }
     let e = chord / length;
     // A leg of no length (at a cusp) turns no tangent.
-    let legs = points.windows(2).map(|w| w[1] - w[0]).filter(|leg| leg.length() > 1e-9 * length);
+    let legs = points.windows(2).map(|w| w[1] - w[0]).filter(|leg| leg.length() > 1e-7 * length);
     let slope = |leg: DVec2| if e.dot(leg) > 0.0 { leg.perp_dot(e) / e.dot(leg) } else { f64::INFINITY };
     let slopes: Vec<f64> = legs.map(slope).collect();
     let bound = slopes.iter().fold(0.0_f64, |a, x| a.max(x.abs()));

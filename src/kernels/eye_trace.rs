@@ -27,7 +27,7 @@ pub fn eye_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, id: u32) -> 
     let camera = &scene.camera;
     let mut ray = camera_ray(camera, pixel % camera.width, pixel / camera.width, u);
     let mut throughput = Vec3::ONE;
-    let mut medium = NONE;
+    let mut medium = camera.medium;
     let mut length = 0.0;
     let mut rays = 0;
     let mut point = VisiblePoint::default();
@@ -55,12 +55,12 @@ pub fn eye_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, id: u32) -> 
                 break;
             }
             let ng = toward(s.normal, wo);
-            let n = shading_normal(&s, wo);
+            let n = shading_normal(scene, &s, wo);
             point.position = s.position;
             point.radius = start_radius(dispatch, camera.pixel * length);
             point.normal = oct_encode(ng);
             point.shading = oct_encode(n);
-            point.weight = throughput * reflectance * INV_PI;
+            point.weight = throughput * INV_PI * reflectance;
             if kind == MATERIAL_METAL {
                 point.weight = throughput;
                 point.reflectance = reflectance;

@@ -12,7 +12,7 @@ use glam::{IVec3, Vec3};
 /// Photons farther than this from the tangent plane, in radii, lie on another surface.
 const FLATNESS: f32 = 0.25;
 /// Least cosine with the geometric normal for which the shading normal's correction is formed.
-const COS_MIN: f32 = 1e-3;
+const COS_MIN: f32 = 1e-2;
 
 /// Squared radius of this pass over the squared start radius.
 pub fn scale_sq(dispatch: &Dispatch, local: bool, statistics: &Statistics) -> f32 {

@@ -24,7 +24,7 @@ pub fn path_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, pixel: u32)
     let mut ray = camera_ray(camera, pixel % camera.width, pixel / camera.width, rng_next(&mut rng));
     let mut radiance = Vec3::ZERO;
     let mut throughput = Vec3::ONE;
-    let mut medium = NONE;
+    let mut medium = camera.medium;
     let mut rays = 0;
     // density of the last scattering; 0 where next-event estimation could not have found what is met now
     let mut pdf = 0.0;
@@ -60,7 +60,7 @@ pub fn path_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, pixel: u32)
             let alpha = scene.materials[s.material as usize].alpha;
             let reflectance = reflectance_at(scene, s.material, s.uv);
             let ng = toward(s.normal, wo);
-            let n = shading_normal(&s, wo);
+            let n = shading_normal(scene, &s, wo);
             if sampled {
                 let u = rng_next(&mut rng);
                 let (direct, spent) = next_event(scene, &s, wo, n, ng, reflectance, medium, true, u);
@@ -74,7 +74,8 @@ pub fn path_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, pixel: u32)
         };
         throughput *= scattered.weight;
         medium = scattered.medium;
-        let survival = max_component(throughput).min(1.0);
+        // as on eye paths: glass dims the throughput on the way in and undoes it on the way out
+        let survival = (4.0 * max_component(throughput)).min(1.0);
         if rng_next(&mut rng).x >= survival {
             break;
         }

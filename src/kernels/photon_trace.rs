@@ -27,7 +27,7 @@ pub fn photon_trace(
     let emission = emit_photon(scene, &mut rng);
     let mut ray = emission.ray;
     let mut flux = emission.flux;
-    let mut medium = NONE;
+    let mut medium = emission.medium;
     let mut rays = 0;
     for bounce in 0..dispatch.max_bounces + 1 {
         if max_component(flux) <= 0.0 {

@@ -19,8 +19,8 @@ pub fn pass_radiance(point: &VisiblePoint, gathered: &Gathered, scale_sq: f32, p
     if gathered.count == 0 {
         return point.radiance;
     }
-    let radius_sq = point.radius * point.radius * scale_sq;
-    point.radiance + gathered.flux * (1.0 / (photons * (PI * radius_sq)))
+    let area = PI * point.radius * point.radius * scale_sq;
+    point.radiance + gathered.flux * (1.0 / (photons * area))
 }
 
 /// Hachisuka's rule with `N = alpha T`, T photons so far: `R'^2 = R^2 alpha (T + m) / (alpha T + m)`.

@@ -2,7 +2,7 @@
 
 use super::light::find_interval;
 use crate::math::sampling::{sample_cone, sample_disc, sample_sphere, sample_triangle};
-use crate::math::{FAR, PI, TAU, from_frame, unit};
+use crate::math::{FAR, PI, TAU, basis, from_frame, unit};
 use crate::shapes::cuboid::{cuboid_error, cuboid_normal};
 use crate::shapes::disc::disc_error;
 use crate::shapes::rectangle::{rectangle_error, rectangle_point};
@@ -59,8 +59,9 @@ pub fn sample_shape(scene: &Scene, light: &Light, u: Vec2, w: f32) -> ShapePoint
         KIND_DISC => {
             let disc = &scene.discs[index];
             let d = sample_disc(u) * disc.radius;
+            let (t, b) = basis(disc.normal);
             ShapePoint {
-                position: disc.center + from_frame(disc.normal, Vec3::new(d.x, d.y, 0.0)),
+                position: disc.center + t * d.x + b * d.y,
                 error: disc_error(disc),
                 normal: disc.normal,
                 pdf,
@@ -105,13 +106,13 @@ pub fn sample_shape(scene: &Scene, light: &Light, u: Vec2, w: f32) -> ShapePoint
                 position: r.position,
                 error: r.error,
                 normal: r.normal,
-                pdf: pdf_patch(scene, light, k, end - start) / (TAU * r.stretch).max(1e-30),
+                pdf: pdf_patch(scene, light, k, end - start) / r.stretch.max(1e-30),
             }
         }
     }
 }
 
-/// A point of a revolution and how much area a unit of v and of theta cover there.
+/// A point of a revolution and the area that a unit of v covers there, the whole way round.
 struct PatchPoint {
     position: Vec3,
     error: f32,
@@ -129,12 +130,11 @@ fn patch_point(scene: &Scene, light: &Light, k: u32, v: f32, theta: f32) -> Patc
     let ring = ring_point(&scene.profile_points, patch, theta, tau);
     let by_v = ring.d_tau * (revolution.segments as f32 / (patch.t1 - patch.t0));
     let stretch = ring.d_theta.cross(by_v);
-    let scale_sq = revolution.scale * revolution.scale;
     PatchPoint {
         position: s.position,
         error: s.error,
         normal: s.normal,
-        stretch: stretch.dot(stretch).sqrt() * scale_sq,
+        stretch: stretch.dot(stretch).sqrt() * (TAU * revolution.scale * revolution.scale),
     }
 }
 
@@ -162,7 +162,7 @@ pub fn pdf_shape(scene: &Scene, light: &Light, v: f32) -> f32 {
         let end =
             if k + 1 < light.patch_count { scene.distributions[(light.first + k + 1) as usize] } else { 1.0 };
         let r = patch_point(scene, light, k, v, 0.0);
-        return pdf_patch(scene, light, k, end - start) / (TAU * r.stretch).max(1e-30);
+        return pdf_patch(scene, light, k, end - start) / r.stretch.max(1e-30);
     }
     1.0 / light.area
 }

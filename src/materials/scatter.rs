@@ -14,6 +14,9 @@ pub const RADIANCE: u32 = 0;
 /// Transport of importance, that is of flux: a photon path.
 pub const IMPORTANCE: u32 = 1;
 
+/// Least cosine with the geometric normal for which a shading normal's correction is formed.
+const ADJOINT_COS_MIN: f32 = 1e-2;
+
 /// Where a path goes on.
 #[derive(Clone, Copy, Debug)]
 pub struct Scatter {
@@ -44,18 +47,20 @@ pub fn toward(v: Vec3, w: Vec3) -> Vec3 {
     if v.dot(w) >= 0.0 { v } else { -v }
 }
 
-/// The shading normal on the side of `wo`, or the geometric one where `wo` lies behind the shading normal.
-pub fn shading_normal(s: &Surface, wo: Vec3) -> Vec3 {
+/// The shading normal on the side of `wo`. Where `wo` lies behind it: the geometric one, except on diffuse
+/// surfaces, which look the same from everywhere.
+pub fn shading_normal(scene: &Scene, s: &Surface, wo: Vec3) -> Vec3 {
     let ng = toward(s.normal, wo);
     let ns = toward(s.shading, ng);
-    if wo.dot(ns) > 0.0 { ns } else { ng }
+    let diffuse = scene.materials[s.material as usize].kind == MATERIAL_DIFFUSE;
+    if diffuse || wo.dot(ns) > 0.0 { ns } else { ng }
 }
 
 /// Mirror and glass. `u` decides between reflection and refraction.
 pub fn scatter_specular(scene: &Scene, s: &Surface, wo: Vec3, medium: u32, u: f32, mode: u32) -> Scatter {
     let m = &scene.materials[s.material as usize];
     let ng = toward(s.normal, wo);
-    let mut n = shading_normal(s, wo);
+    let mut n = shading_normal(scene, s, wo);
     if m.kind == MATERIAL_GLASS {
         let outside = wo.dot(s.normal) >= 0.0;
         let eta = if outside { 1.0 / m.ior } else { m.ior };
@@ -64,50 +69,68 @@ pub fn scatter_specular(scene: &Scene, s: &Surface, wo: Vec3, medium: u32, u: f3
         if u >= interface.reflectance {
             let mut wi = refracted(wo, n, cos_i, interface.cos_t, eta);
             if wi.dot(ng) >= 0.0 {
+                n = ng;
                 let cos_g = wo.dot(ng);
                 let flat = fresnel(cos_g, eta);
                 wi = refracted(wo, ng, cos_g, flat.cos_t, eta);
             }
             // radiance is compressed into a smaller solid angle inside (Veach 1997, section 5.2)
-            let weight = if mode == RADIANCE { eta * eta } else { 1.0 };
+            let mut weight = eta * eta;
+            if mode == IMPORTANCE {
+                weight = shading_correction(s, n, ng, wo, wi);
+            }
             let beyond = if outside { s.material } else { NONE };
             return Scatter { direction: wi, medium: beyond, weight: Vec3::splat(weight) };
         }
-        let mut wi = mirrored(wo, n);
-        if wi.dot(ng) <= 0.0 {
-            wi = mirrored(wo, ng);
-        }
-        let here = if outside { medium } else { s.material };
-        return Scatter { direction: wi, medium: here, weight: Vec3::ONE };
     }
     if mirrored(wo, n).dot(ng) <= 0.0 {
         n = ng;
     }
-    Scatter { direction: mirrored(wo, n), medium, weight: reflectance_at(scene, s.material, s.uv) }
+    let wi = mirrored(wo, n);
+    let mut weight = Vec3::ONE;
+    if mode == IMPORTANCE {
+        weight *= shading_correction(s, n, ng, wo, wi);
+    }
+    if m.kind == MATERIAL_GLASS {
+        let here = if wo.dot(s.normal) >= 0.0 { medium } else { s.material };
+        return Scatter { direction: wi, medium: here, weight };
+    }
+    Scatter { direction: wi, medium, weight: weight * reflectance_at(scene, s.material, s.uv) }
 }
 
 /// Diffuse and metal: a direction by the material's own density.
 pub fn scatter_rough(scene: &Scene, s: &Surface, wo: Vec3, medium: u32, u: Vec2, mode: u32) -> Scatter {
     let m = &scene.materials[s.material as usize];
     let ng = toward(s.normal, wo);
-    let n = shading_normal(s, wo);
+    let n = shading_normal(scene, s, wo);
     let mut wi: Vec3;
     let mut weight = reflectance_at(scene, s.material, s.uv);
     if m.kind == MATERIAL_METAL {
         let (t, b) = basis(n);
         let local_wo = Vec3::new(wo.dot(t), wo.dot(b), wo.dot(n));
-        let local_wi = sample_metal(local_wo, m.alpha, u);
-        weight = weight_metal(local_wo, local_wi, weight, m.alpha);
+        let h = sample_metal(local_wo, m.alpha, u);
+        let local_wi = mirrored(local_wo, h);
+        weight = weight_metal(local_wo, h, local_wi, weight, m.alpha);
         wi = from_frame(n, local_wi);
     } else {
-        wi = from_frame(n, sample_cosine(u));
+        let mut axis = n;
+        if mode == IMPORTANCE {
+            // the adjoint of a diffuse surface sends about the geometric normal what the shading one receives
+            axis = ng;
+            if s.shading != s.normal {
+                weight *= wo.dot(n).max(0.0) / wo.dot(ng).max(ADJOINT_COS_MIN);
+            }
+        }
+        wi = from_frame(axis, sample_cosine(u));
     }
     wi *= 1.0 / wi.dot(wi).sqrt();
     let cos_g = wi.dot(ng);
     if cos_g <= 0.0 {
         weight = Vec3::ZERO;
-    } else if mode == IMPORTANCE {
-        weight *= shading_correction(s, n, ng, wo, wi);
+    } else if mode == IMPORTANCE && m.kind == MATERIAL_METAL {
+        // from behind the shading normal an eye path would get nothing
+        let seen = wo.dot(toward(s.shading, ng)) > 0.0;
+        weight *= if seen { shading_correction(s, n, ng, wo, wi) } else { 0.0 };
     }
     Scatter { direction: wi, medium, weight }
 }
@@ -117,11 +140,11 @@ pub fn shading_correction(s: &Surface, n: Vec3, ng: Vec3, wo: Vec3, wi: Vec3) ->
     if s.shading == s.normal {
         return 1.0;
     }
-    let denominator = wo.dot(ng) * wi.dot(n);
+    let denominator = (wo.dot(ng) * wi.dot(n)).abs();
     if denominator <= 1e-6 {
         return 0.0;
     }
-    wo.dot(n) * wi.dot(ng) / denominator
+    (wo.dot(n) * wi.dot(ng)).abs() / denominator
 }
 
 /// BRDF of diffuse and metal times the cosine with the shading normal `n`, both directions on its side.

@@ -4,15 +4,21 @@
 
 use std::f32::consts::{FRAC_2_PI, FRAC_PI_2, FRAC_PI_4, LOG2_E, PI};
 
+/// `x` itself (a number below 1e30), hidden from compilers. Mesa's turns a b + a c into a (b + c),
+/// and (a + b) + constant into (a + constant) + b: the parts of a reduction, or the order of a sum, would be lost.
+pub fn kept(x: f32) -> f32 {
+    x.min(1e30)
+}
+
 /// `(sin x, cos x)` for x in radians; absolute error below 1e-7 for |x| <= 1e4.
 ///
 /// Cody-Waite reduction: pi/2 in three parts, the first two short enough for exact products.
 pub fn sin_cos(x: f32) -> (f32, f32) {
     let k = (x * FRAC_2_PI + 0.5).floor();
-    let r = ((x - k * 1.5703125) - k * 4.837_513e-4) - k * 7.549_79e-8;
+    let r = ((x - kept(k * 1.5703125)) - kept(k * 4.837_513e-4)) - kept(k * 7.549_79e-8);
     let z = r * r;
-    let s = ((-1.951_529_6e-4 * z + 8.332_161e-3) * z - 1.666_665_5e-1) * z * r + r;
-    let c = ((2.443_315_7e-5 * z - 1.388_731_6e-3) * z + 4.166_664_6e-2) * z * z - 0.5 * z + 1.0;
+    let s = kept(((-1.951_529_6e-4 * z + 8.332_161e-3) * z - 1.666_665_5e-1) * z * r) + r;
+    let c = (((2.443_315_7e-5 * z - 1.388_731_6e-3) * z + 4.166_664_6e-2) * z - 0.5) * z + 1.0;
     let quadrant = (k as i32) & 3;
     let odd = (quadrant & 1) == 1;
     let sin = if odd { c } else { s };
@@ -33,8 +39,9 @@ pub fn arctan2(y: f32, x: f32) -> f32 {
     let shifted = ratio > 0.414_213_57;
     let w = if shifted { (ratio - 1.0) / (ratio + 1.0) } else { ratio };
     let z = w * w;
-    let p = (((8.053_744_5e-2 * z - 1.387_768_6e-1) * z + 1.997_771_1e-1) * z - 3.333_295e-1) * z * w + w;
-    let octant = if shifted { p + FRAC_PI_4 } else { p };
+    let p =
+        kept((((8.053_744_5e-2 * z - 1.387_768_6e-1) * z + 1.997_771_1e-1) * z - 3.333_295e-1) * z * w) + w;
+    let octant = if shifted { kept(p) + FRAC_PI_4 } else { p };
     let quadrant = if ay > ax { FRAC_PI_2 - octant } else { octant };
     let half = if x < 0.0 { PI - quadrant } else { quadrant };
     if y < 0.0 { -half } else { half }
@@ -48,14 +55,14 @@ pub fn exponential(x: f32) -> f32 {
     }
     let y = x.min(88.0);
     let k = (y * LOG2_E + 0.5).floor();
-    let r = (y - k * 0.693_359_4) + k * 2.121_944_4e-4;
+    let r = (y - kept(k * 0.693_359_4)) + kept(k * 2.121_944_4e-4);
     let z = r * r;
     let p = ((((1.987_569_1e-4 * r + 1.398_2e-3) * r + 8.333_452e-3) * r + 4.166_579_6e-2) * r
         + 1.666_666_6e-1)
         * r
         + 0.5;
     let power_of_two = f32::from_bits(((k as i32 + 127) as u32) << 23);
-    (p * z + r + 1.0) * power_of_two
+    (kept(kept(p * z) + r) + 1.0) * power_of_two
 }
 
 /// Natural logarithm; absolute error below 1e-7 times max(1, |ln x|). Numbers below 2^-126, zero and
@@ -75,8 +82,8 @@ pub fn logarithm(x: f32) -> f32 {
     let high = (((low + 1.424_932_3e-1) * r - 1.666_805_7e-1) * r + 2.000_071_5e-1) * r;
     let p = ((high - 2.499_999_4e-1) * r + 3.333_333e-1) * r;
     let e = exponent as f32;
-    let tail = (p * z - e * 2.121_944_4e-4) - 0.5 * z;
-    (r + tail) + e * 0.693_359_4
+    let tail = (kept(p * z) - kept(e * 2.121_944_4e-4)) - kept(0.5 * z);
+    (r + tail) + kept(e * 0.693_359_4)
 }
 
 /// x^y for x >= 0 as exp(y ln x); relative error about 1e-7 (2 + |y ln x|). 0^y is 0 for y > 0, 1 for y = 0.

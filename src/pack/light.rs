@@ -2,6 +2,7 @@
 
 use super::shape::Emitter;
 use crate::build::normalize::Normalization;
+use crate::lights::shape::sample_shape;
 use crate::scene::{self, Environment};
 use crate::shapes::revolution::ring_point;
 use crate::tables::*;
@@ -100,6 +101,18 @@ pub fn pack_lights(scene: &scene::Scene, n: &Normalization, emitters: &[Emitter]
     radiance_unit
 }
 
+/// A point from which a light shines; nothing for light from infinity.
+pub fn place(out: &Scene, light: &Light) -> Option<Vec3> {
+    match light.kind {
+        LIGHT_AREA => {
+            let p = sample_shape(out, light, Vec2::splat(0.5), 0.5);
+            Some(p.position + p.normal * p.error)
+        }
+        LIGHT_POINT | LIGHT_SPOT => Some(light.position),
+        _ => None,
+    }
+}
+
 /// The parts of v by patch and the cumulative shares of area; returns the area. A patch overlaps its neighbour,
 /// so that its part ends where the next one starts.
 fn revolution_distribution(out: &Scene, light: &mut Light, distributions: &mut Vec<f32>) -> f64 {
@@ -131,37 +144,34 @@ fn revolution_distribution(out: &Scene, light: &mut Light, distributions: &mut V
 }
 
 /// The cumulative shares of rows and of columns within each row, by luminance times solid angle; returns the
-/// mean luminance, or nothing for a black picture. Each texel counts the brightest of its neighbours, since
-/// filtering lets them shine into it.
+/// mean luminance, or nothing for a black picture. A texel counts with the root mean square of the filtered picture
+/// inside it, the share with the least variance; its neighbours shine into it, so that it is dark only where they
+/// are, too.
 fn image_distribution(out: &Scene, light: &mut Light, distributions: &mut Vec<f32>) -> Option<f64> {
     let texture = &out.textures[light.reference as usize];
-    let (w, h) = (texture.width as i32, texture.height as i32);
+    let (w, h) = (texture.width, texture.height);
     light.first = distributions.len() as u32;
-    let value = |i: i32, j: i32| {
-        let uv = Vec2::new((i as f32 + 0.5) / w as f32, 1.0 - (j as f32 + 0.5) / h as f32);
+    let value = |x: f32, y: f32| {
+        let uv = Vec2::new(x / w as f32, 1.0 - y / h as f32);
         let c: Vec3 = crate::materials::texture::eval_texture(out, light.reference, uv);
         ((c.x + c.y + c.z) / 3.0).max(0.0) as f64
     };
-    let values: Vec<f64> =
-        (0..h).flat_map(|j| (0..w).map(move |i| (i, j))).map(|(i, j)| value(i, j)).collect();
-    let spread = |i: i32, j: i32| {
-        let mut most = 0.0f64;
-        for y in (j - 1).max(0)..=(j + 1).min(h - 1) {
-            for x in (i - 1).max(0)..=(i + 1).min(w - 1) {
-                most = most.max(values[(y * w + x) as usize]);
-            }
-        }
-        most
+    // (mean, root mean square) of the middles of the texel's quarters
+    let texel = |i: u32, j: u32| {
+        let quarters = [(0.25, 0.25), (0.75, 0.25), (0.25, 0.75), (0.75, 0.75)];
+        let values = quarters.map(|(x, y)| value(i as f32 + x, j as f32 + y));
+        let mean_of = |f: fn(f64) -> f64| values.iter().map(|v| f(*v)).sum::<f64>() / 4.0;
+        (mean_of(|v| v), mean_of(|v| v * v).sqrt())
     };
     let mut rows = Vec::new();
     let mut columns = Vec::new();
     let mut mean = 0.0;
     for j in 0..h {
-        let theta = |j: i32| PI * j as f64 / h as f64;
+        let theta = |j: u32| PI * j as f64 / h as f64;
         let solid = theta(j).cos() - theta(j + 1).cos();
-        let row: Vec<f64> = (0..w).map(|i| spread(i, j)).collect();
+        let (means, row): (Vec<f64>, Vec<f64>) = (0..w).map(|i| texel(i, j)).unzip();
         rows.push(row.iter().sum::<f64>() * solid);
-        mean += (0..w).map(|i| values[(j * w + i) as usize]).sum::<f64>() * solid / (2.0 * w as f64);
+        mean += means.iter().sum::<f64>() * solid / (2.0 * w as f64);
         push_cumulative(&row, &mut columns);
     }
     if mean <= 0.0 {

@@ -2,6 +2,7 @@
 
 mod image;
 mod light;
+mod medium;
 mod shape;
 
 use crate::build::normalize::Normalization;
@@ -77,6 +78,13 @@ pub fn pack(scene: &scene::Scene, width: u32, height: u32) -> Result<Packed, Pac
     out.world.disc_levels = (n.far_radius / n.near_radius).log2().ceil().max(0.0) as u32 + 1;
     out.world.unbounded_count = out.unbounded.len() as u32;
     let radiance_unit = light::pack_lights(scene, &n, &emitters, &mut out);
+    out.camera.medium = medium::medium_at(&out, out.camera.position);
+    for i in 0..out.lights.len() {
+        out.lights[i].medium = match light::place(&out, &out.lights[i]) {
+            Some(position) => medium::medium_at(&out, position),
+            None => NONE,
+        };
+    }
     Ok(Packed { scene: out, unit: n.unit, radiance_unit, tree: stats })
 }
 
@@ -126,7 +134,7 @@ fn camera(scene: &scene::Scene, n: &Normalization, width: u32, height: u32) -> C
         lens_right: right.as_vec3(),
         height,
         lens_up: up.as_vec3(),
-        pad: 0,
+        medium: NONE,
     }
 }
 

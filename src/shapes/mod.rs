@@ -8,6 +8,8 @@ pub mod kdtree;
 pub mod ray;
 pub mod rectangle;
 pub mod revolution;
+pub mod revolution_profile;
+pub mod revolution_roots;
 pub mod sphere;
 pub mod surface;
 pub mod triangle;

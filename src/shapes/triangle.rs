@@ -137,7 +137,7 @@ pub fn triangle_normal(triangle: &Triangle) -> Vec3 {
 
 /// The point with barycentric weights `(1 - u - v, u, v)`.
 pub fn triangle_point(triangle: &Triangle, u: f32, v: f32) -> Vec3 {
-    triangle.p0 + ((triangle.p1 - triangle.p0) * u + (triangle.p2 - triangle.p0) * v)
+    triangle.p0 + (triangle.p1 - triangle.p0) * u + (triangle.p2 - triangle.p0) * v
 }
 
 /// How far (scene units) a new ray must start from [`triangle_point`] along the normal so as not to meet the triangle

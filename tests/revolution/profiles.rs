@@ -30,6 +30,14 @@ pub fn profiles() -> Vec<Profile> {
             [0.5 + if i % 2 == 0 { 0.45 } else { -0.45 } * (1.0 - f64::from(i) / 20.0), f64::from(i) / 7.5]
         })
         .collect();
+    // r' = (t - 0.37)(3 - t), y' = (t - 0.37)(4 t - 2): a cusp that rounding to f32 opens.
+    let mut cusp = vec![[0.8, 0.3]];
+    for i in 0..3 {
+        let coefficient =
+            |a: f64, b: f64| [-0.37 * a, -0.37 * a + 0.5 * (a - 0.37 * b), 0.63 * (a + b)][i] / 3.0;
+        let last = cusp[i];
+        cusp.push([last[0] + coefficient(3.0, -1.0), last[1] + coefficient(-2.0, 4.0)]);
+    }
     vec![
         profile("cylinder", &[&[[0.5, 0.0], [0.5, 1.0]]]),
         profile("cone", &[&[[0.5, 0.0], [0.0, 1.0]]]),
@@ -48,6 +56,7 @@ pub fn profiles() -> Vec<Profile> {
                 &[[0.12, 1.1], [0.16, 1.12], [0.16, 1.2], [0.12, 1.22], [0.0, 1.22]],
             ],
         ),
+        profile("near cusp", &[&cusp]),
         profile("cusp", &[&[[0.2, 0.0], [1.2, 1.0], [0.2, 1.0], [1.2, 0.0]]]),
     ]
 }

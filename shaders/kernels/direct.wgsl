@@ -1,0 +1,120 @@
+// Direct light at a non-specular hit, and absorption on the way: twin of src/kernels/direct.rs.
+
+fn transmittance(medium: u32, distance: f32) -> vec3f {
+    //#if absorption
+    if medium == NONE {
+        return vec3f(1.0);
+    }
+    let depth = scene.materials[medium].absorption * -distance;
+    return vec3f(exponential(depth.x), exponential(depth.y), exponential(depth.z));
+    //#else
+    return vec3f(1.0);
+    //#end
+}
+
+fn medium_before(s: Surface, wo: vec3f, medium: u32) -> u32 {
+    let inside = scene.materials[s.material].kind == MATERIAL_GLASS && dot(wo, s.normal) < 0.0;
+    return select(medium, s.material, inside);
+}
+
+// Adds to the pass's rays; the low word may wrap.
+fn count_rays(rays: u32) {
+    let low = atomicAdd(&counters.rays_low, rays);
+    if low + rays < low {
+        atomicAdd(&counters.rays_high, 1u);
+    }
+}
+
+//#if sampled
+struct DirectLight {
+    radiance: vec3f,
+    rays: u32,
+}
+
+fn next_event(
+    s: Surface,
+    wo: vec3f,
+    n: vec3f,
+    ng: vec3f,
+    reflectance: vec3f,
+    medium: u32,
+    mis: bool,
+    u: vec4f,
+) -> DirectLight {
+    let kind = scene.materials[s.material].kind;
+    let alpha = scene.materials[s.material].alpha;
+    let origin = s.position + ng * s.error;
+    let light = sample_light(origin, u);
+    if dot(light.direction, ng) <= 0.0 || max_component(light.radiance) <= 0.0 {
+        return DirectLight(vec3f(0.0), 0u);
+    }
+    let f = eval_rough(kind, alpha, reflectance, n, wo, light.direction);
+    if max_component(f) <= 0.0 {
+        return DirectLight(vec3f(0.0), 0u);
+    }
+    let ray = Ray(origin, 0.0, light.direction, light.distance);
+    if occluded(ray) {
+        return DirectLight(vec3f(0.0), 1u);
+    }
+    var weight = 1.0 / light.pdf;
+    //#if metal
+    if mis && light.extended {
+        weight *= balance(light.pdf, pdf_rough(kind, alpha, n, wo, light.direction));
+    }
+    //#end
+    var radiance = f * light.radiance * weight;
+    if light.distance < FAR {
+        radiance *= transmittance(medium, light.distance);
+    }
+    return DirectLight(radiance, 1u);
+}
+
+fn direct_light(
+    s: Surface,
+    wo: vec3f,
+    n: vec3f,
+    ng: vec3f,
+    reflectance: vec3f,
+    medium: u32,
+    rng: ptr<function, Rng>,
+) -> DirectLight {
+    let kind = scene.materials[s.material].kind;
+    let metal = kind == MATERIAL_METAL;
+    var direct = next_event(s, wo, n, ng, reflectance, medium, metal, rng_next(rng));
+    //#if metal
+    if metal {
+        let alpha = scene.materials[s.material].alpha;
+        let u = rng_next(rng);
+        let scattered = scatter_rough(s, wo, medium, vec2f(u.x, u.y), RADIANCE);
+        if max_component(scattered.weight) > 0.0 {
+            direct.rays += 1u;
+            let pdf = pdf_rough(kind, alpha, n, wo, scattered.direction);
+            let start = offset_origin(s.position, s.error, ng, scattered.direction);
+            let ray = Ray(start, 0.0, scattered.direction, FAR);
+            let hit = intersect_scene(ray);
+            if hit.reference == NONE {
+                //#if environment
+                if scene.world.environment != NONE {
+                    let sky = scene.lights[scene.world.environment];
+                    let other = pdf_environment(sky, ray.direction) * sky.selection;
+                    let seen = eval_environment(sky, ray.direction);
+                    direct.radiance += scattered.weight * seen * balance(pdf, other);
+                }
+                //#end
+            } else {
+                //#if area
+                let at = surface_at(ray, hit);
+                if at.light != NONE && dot(ray.direction, at.normal) < 0.0 {
+                    let lamp = scene.lights[at.light];
+                    let other = pdf_light(at.light, start, ray.direction, hit.t, at.normal, at.v);
+                    let seen = lamp.color * transmittance(medium, hit.t);
+                    direct.radiance += scattered.weight * seen * balance(pdf, other);
+                }
+                //#end
+            }
+        }
+    }
+    //#end
+    return direct;
+}
+//#end

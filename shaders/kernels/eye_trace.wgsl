@@ -1,0 +1,115 @@
+// Eye path of one visible point: twin of src/kernels/eye_trace.rs. Run by one invocation per visible point of a
+// chunk; reads the scene, writes `visible_points`, adds to `counters`.
+
+@compute @workgroup_size(64)
+fn eye_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups) groups: vec3u) {
+    let id = invocation(gid, groups);
+    if id >= dispatch.end {
+        return;
+    }
+    let index = dispatch.chunk_first + id;
+    let pixel = index / dispatch.eye_samples;
+    var rng = rng_new(index, dispatch.pass_number, STREAM_EYE, dispatch.seed);
+    let u = stratified(rng_next(&rng), index - pixel * dispatch.eye_samples, pixel);
+    let camera = scene.camera;
+    var ray = camera_ray(camera, pixel % camera.width, pixel / camera.width, u);
+    var throughput = vec3f(1.0);
+    var medium = camera.medium;
+    var length = 0.0;
+    var rays = 0u;
+    var point = VisiblePoint();
+    for (var bounce = 0u; bounce < dispatch.max_bounces + 1u; bounce++) {
+        rays += 1u;
+        let hit = intersect_scene(ray);
+        if hit.reference == NONE {
+            //#if environment
+            if scene.world.environment != NONE {
+                let light = scene.lights[scene.world.environment];
+                point.radiance += throughput * eval_environment(light, ray.direction);
+            }
+            //#end
+            break;
+        }
+        let s = surface_at(ray, hit);
+        let wo = -ray.direction;
+        length += hit.t;
+        throughput *= transmittance(medium_before(s, wo, medium), hit.t);
+        //#if area
+        if s.light != NONE && dot(wo, s.normal) > 0.0 {
+            point.radiance += throughput * scene.lights[s.light].color;
+        }
+        //#end
+        let kind = scene.materials[s.material].kind;
+        if !is_specular(kind) {
+            let reflectance = reflectance_at(s.material, s.uv);
+            if max_component(reflectance) <= 0.0 {
+                break;
+            }
+            let ng = toward(s.normal, wo);
+            let n = shading_normal(s, wo);
+            point.position = s.position;
+            point.radius = start_radius(camera.pixel * length);
+            point.normal = oct_encode(ng);
+            point.shading = oct_encode(n);
+            point.weight = throughput * INV_PI * reflectance;
+            //#if metal
+            if kind == MATERIAL_METAL {
+                point.weight = throughput;
+                point.reflectance = reflectance;
+                point.alpha = scene.materials[s.material].alpha;
+                point.wo = wo;
+            }
+            //#end
+            //#if sampled
+            let direct = direct_light(s, wo, n, ng, reflectance, medium, &rng);
+            point.radiance += throughput * direct.radiance;
+            rays += direct.rays;
+            //#end
+            break;
+        }
+        //#if specular
+        if bounce == dispatch.max_bounces {
+            break;
+        }
+        let v = rng_next(&rng);
+        let scattered = scatter_specular(s, wo, medium, v.x, RADIANCE);
+        throughput *= scattered.weight;
+        medium = scattered.medium;
+        let survival = min(4.0 * max_component(throughput), 1.0);
+        if v.y >= survival {
+            break;
+        }
+        throughput *= 1.0 / survival;
+        let origin = offset_origin(s.position, s.error, s.normal, scattered.direction);
+        ray = Ray(origin, 0.0, scattered.direction, FAR);
+        //#end
+    }
+    if loops_stopped() {
+        point.stopped = 1u;
+    } else {
+        count_rays(rays);
+    }
+    visible_points[id] = point;
+}
+
+fn start_radius(footprint: f32) -> f32 {
+    if dispatch.radius_pixels > 0.0 {
+        return min(dispatch.radius_pixels * footprint, dispatch.radius_max);
+    }
+    return dispatch.radius_units;
+}
+
+fn stratified(u: vec4f, k: u32, pixel: u32) -> vec4f {
+    if dispatch.eye_samples == 1u {
+        return u;
+    }
+    let columns = dispatch.strata;
+    let rows = dispatch.eye_samples / columns;
+    let lens = (k + pixel * 7u + pixel / 3u) % dispatch.eye_samples;
+    return vec4f(
+        (f32(k % columns) + u.x) / f32(columns),
+        (f32(k / columns) + u.y) / f32(rows),
+        (f32(lens % columns) + u.z) / f32(columns),
+        (f32(lens / columns) + u.w) / f32(rows),
+    );
+}

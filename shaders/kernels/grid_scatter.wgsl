@@ -1,0 +1,13 @@
+// Records into bucket order: twin of `grid_scatter` in src/kernels/grid_build.rs. Run by one invocation per record of
+// the capacity, of which those beyond `counters.records` do nothing; reads `records` and `starts`, uses up `counts`,
+// writes `order`. Within a bucket the order is that of the invocations' arrival.
+
+@compute @workgroup_size(64)
+fn grid_scatter(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups) groups: vec3u) {
+    let id = invocation(gid, groups);
+    if id >= dispatch.end || id >= atomicLoad(&counters.records) {
+        return;
+    }
+    let bucket = grid_bucket(grid_cell(records[id].position, dispatch.inv_cell), dispatch.mask);
+    order[starts[bucket] + atomicSub(&counts[bucket], 1u) - 1u] = id;
+}

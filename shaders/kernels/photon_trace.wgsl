@@ -1,0 +1,78 @@
+// Path of one photon: twin of src/kernels/photon_trace.rs. Run by one invocation per photon of a batch; reads the
+// scene, appends to `records` (in any order) and adds to `counters`. Beyond the capacity it counts on but stores
+// nothing. A record with direction 0, which
+// no vector has, says that the driver stopped the loops of photon `key`, which is to be traced again.
+
+@compute @workgroup_size(64)
+fn photon_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups) groups: vec3u) {
+    let id = invocation(gid, groups);
+    if id >= dispatch.end {
+        return;
+    }
+    var rng = rng_new(dispatch.batch_first + id, dispatch.pass_number, STREAM_PHOTON, dispatch.seed);
+    let emission = emit_photon(&rng);
+    var ray = emission.ray;
+    var flux = emission.flux;
+    var medium = emission.medium;
+    var rays = 0u;
+    for (var bounce = 0u; bounce < dispatch.max_bounces + 1u; bounce++) {
+        if max_component(flux) <= 0.0 {
+            break;
+        }
+        rays += 1u;
+        let hit = intersect_scene(ray);
+        if hit.reference == NONE {
+            break;
+        }
+        let s = surface_at(ray, hit);
+        let wo = -ray.direction;
+        flux *= transmittance(medium_before(s, wo, medium), max(hit.t, 0.0));
+        let kind = scene.materials[s.material].kind;
+        let u = rng_next(&rng);
+        var scattered: Scatter;
+        //#if specular
+        if is_specular(kind) {
+            scattered = scatter_specular(s, wo, medium, u.x, IMPORTANCE);
+        } else {
+            store_record(id, bounce, s, wo, flux);
+            scattered = scatter_rough(s, wo, medium, vec2f(u.x, u.y), IMPORTANCE);
+        }
+        //#else
+        store_record(id, bounce, s, wo, flux);
+        scattered = scatter_rough(s, wo, medium, vec2f(u.x, u.y), IMPORTANCE);
+        //#end
+        let survival = min(max_component(scattered.weight), 1.0);
+        if u.w >= survival {
+            break;
+        }
+        scattered.weight *= 1.0 / survival;
+        flux *= scattered.weight;
+        medium = scattered.medium;
+        let origin = offset_origin(s.position, s.error, s.normal, scattered.direction);
+        ray = Ray(origin, 0.0, scattered.direction, FAR);
+    }
+    if loops_stopped() {
+        append(PhotonRecord(vec3f(0.0), id, vec3f(0.0), 0u));
+    } else {
+        count_rays(rays);
+    }
+}
+
+fn store_record(id: u32, bounce: u32, s: Surface, wo: vec3f, flux: vec3f) {
+    //#if sampled
+    let stored = bounce > 0u;
+    //#else
+    let stored = true;
+    //#end
+    if stored && max_component(reflectance_at(s.material, s.uv)) > 0.0 {
+        let key = (id << dispatch.key_bits) | bounce;
+        append(PhotonRecord(s.position, key, flux, oct_encode(wo)));
+    }
+}
+
+fn append(record: PhotonRecord) {
+    let slot = atomicAdd(&counters.records, 1u);
+    if slot < dispatch.capacity {
+        records[slot] = record;
+    }
+}

@@ -1,0 +1,100 @@
+// What kernels hand to one another: twin of src/kernels/records.rs, where each field is explained.
+
+struct Dispatch {
+    first: u32,
+    end: u32,
+    pass_number: u32,
+    seed: u32,
+    chunk_first: u32,
+    batch_first: u32,
+    key_bits: u32,
+    capacity: u32,
+    max_bounces: u32,
+    eye_samples: u32,
+    mask: u32,
+    inv_cell: f32,
+    scale_sq: f32,
+    photons: f32,
+    alpha: f32,
+    radius_pixels: f32,
+    radius_units: f32,
+    radius_max: f32,
+    strata: u32,
+    passes_done: u32,
+}
+
+struct VisiblePoint {
+    position: vec3f,
+    radius: f32,
+    weight: vec3f,
+    normal: u32,
+    radiance: vec3f,
+    shading: u32,
+    reflectance: vec3f,
+    alpha: f32,
+    wo: vec3f,
+    stopped: u32,
+}
+
+struct PhotonRecord {
+    position: vec3f,
+    key: u32,
+    flux: vec3f,
+    direction: u32,
+}
+
+struct Gathered {
+    flux: vec3f,
+    count: u32,
+}
+
+struct Statistics {
+    scale_sq: f32,
+    drop: f32,
+    count_low: u32,
+    count_high: u32,
+}
+
+struct FilmPixel {
+    mean: vec3f,
+    rejected: u32,
+}
+
+// Records appended to the batch (also those beyond the capacity, which are not stored), the pass's rays in two words,
+// and the invocations whose loops the driver stopped.
+struct Counters {
+    records: atomic<u32>,
+    rays_low: atomic<u32>,
+    rays_high: atomic<u32>,
+    stopped: atomic<u32>,
+}
+
+// Number of the invocation among those of a dispatch of workgroups of 64 laid out in rows.
+fn invocation(gid: vec3u, groups: vec3u) -> u32 {
+    return gid.y * groups.x * 64u + gid.x + dispatch.first;
+}
+
+//#if eye_trace || photon_trace || grid_sort || gather
+// Whether the driver has stopped running loops; counts it. Mesa's software driver leaves every loop, without a word, once all loops of an
+// invocation together have made 65535 rounds; from then on each is left after its first round, and so is this one.
+// (`end` is below 2^31, which no compiler knows.)
+fn loops_stopped() -> bool {
+    let wanted = 2u + (dispatch.end >> 31u);
+    var rounds = 0u;
+    while rounds < wanted {
+        rounds += 1u;
+    }
+    if rounds < wanted {
+        atomicAdd(&counters.stopped, 1u);
+        return true;
+    }
+    return false;
+}
+//#end
+
+//#if local
+// Twin of `scale_sq` in src/kernels/gather.rs.
+fn local_scale_sq(s: Statistics) -> f32 {
+    return select(s.scale_sq - s.drop, 1.0, s.scale_sq == 0.0);
+}
+//#end

@@ -1,0 +1,90 @@
+// Photon emission from every kind of light: twin of src/lights/emission.rs.
+
+struct Emission {
+    ray: Ray,
+    flux: vec3f,
+    medium: u32,
+}
+
+fn emit_photon(rng: ptr<function, Rng>) -> Emission {
+    let u = rng_next(rng);
+    let v = rng_next(rng);
+    let light = scene.lights[choose_light(u.x)];
+    let across = vec2f(v.x, v.y);
+    var ray = Ray(light.position, 0.0, vec3f(0.0, 0.0, 1.0), FAR);
+    //#if area
+    if light.kind == LIGHT_AREA {
+        let p = sample_shape(light, vec2f(u.y, u.z), u.w);
+        ray.direction = unit(from_frame(p.normal, sample_cosine(across)));
+        ray.origin = p.position + p.normal * p.error;
+        return Emission(ray, light.color * (PI / (p.pdf * light.selection)), light.medium);
+    }
+    //#end
+    //#if point
+    if light.kind == LIGHT_POINT {
+        ray.direction = unit(sample_sphere(across));
+        return Emission(ray, light.color * (2.0 * TAU / light.selection), light.medium);
+    }
+    //#end
+    //#if spot
+    if light.kind == LIGHT_SPOT {
+        let local = sample_cone(across, 1.0 - light.cos_outer);
+        ray.direction = unit(from_frame(light.direction, local));
+        let solid_angle = TAU * (1.0 - light.cos_outer);
+        return Emission(ray, light.color * (spot_falloff(light, local.z) * solid_angle / light.selection), light.medium);
+    }
+    //#end
+    //#if infinite
+    ray.direction = light.direction;
+    var radiance = light.color;
+    //#if environment
+    if light.kind != LIGHT_SUN {
+        let w = sample_environment(light, u);
+        ray.direction = -w;
+        radiance = eval_environment(light, w) * (1.0 / pdf_environment(light, w));
+    }
+    //#end
+    var radius = scene.world.near_radius;
+    var x = v.z;
+    for (var i = 1u; i < scene.world.disc_levels; i++) {
+        if x >= 0.5 {
+            break;
+        }
+        x *= 2.0;
+        radius *= 2.0;
+    }
+    let d = sample_disc(across) * radius;
+    ray.origin = from_frame(ray.direction, vec3f(d.x, d.y, 0.0));
+    ray.t_min = -4.0 * disc_radius_max();
+    return Emission(ray, radiance * (1.0 / (pdf_discs(dot(d, d)) * light.selection)), light.medium);
+    //#else
+    return Emission(ray, vec3f(0.0), NONE);
+    //#end
+}
+
+//#if infinite
+fn disc_radius_max() -> f32 {
+    var radius = scene.world.near_radius;
+    for (var i = 1u; i < scene.world.disc_levels; i++) {
+        radius *= 2.0;
+    }
+    return radius;
+}
+
+fn pdf_discs(r_sq: f32) -> f32 {
+    var radius = scene.world.near_radius;
+    var probability = 0.5;
+    var sum = 0.0;
+    for (var level = 1u; level < scene.world.disc_levels + 1u; level++) {
+        if level == scene.world.disc_levels {
+            probability *= 2.0;
+        }
+        if r_sq <= radius * (radius * (1.0 + 16.0 * EPS)) {
+            sum += probability / (PI * radius * radius);
+        }
+        probability *= 0.5;
+        radius *= 2.0;
+    }
+    return sum;
+}
+//#end

@@ -1,0 +1,208 @@
+// Choosing a light and sampling it from a surface point: twin of src/lights/light.rs.
+
+struct LightSample {
+    direction: vec3f,
+    distance: f32,
+    radiance: vec3f,
+    pdf: f32,
+    extended: bool,
+}
+
+fn find_interval(first: u32, count: u32, u: f32) -> u32 {
+    var low = 0u;
+    var high = count - 1u;
+    while low < high {
+        let middle = (low + high) / 2u;
+        if scene.distributions[first + middle] > u {
+            high = middle;
+        } else {
+            low = middle + 1u;
+        }
+    }
+    return low;
+}
+
+fn choose_light(u: f32) -> u32 {
+    return find_interval(0u, scene.world.light_count, u);
+}
+
+fn sample_light(position: vec3f, u: vec4f) -> LightSample {
+    let light = scene.lights[choose_light(u.x)];
+    let none = LightSample(vec3f(0.0, 0.0, 1.0), 0.0, vec3f(0.0), 1.0, true);
+    //#if area
+    if light.kind == LIGHT_AREA {
+        //#if area_sphere
+        let index = light.reference & ((1u << REFERENCE_BITS) - 1u);
+        if light.reference >> REFERENCE_BITS == KIND_SPHERE {
+            let sphere = scene.spheres[index];
+            if pdf_sphere_cone(sphere, position) > 0.0 {
+                let p = sample_sphere_cone(sphere, position, vec2f(u.y, u.z));
+                let to = p.position + p.normal * p.error - position;
+                let dist_sq = dot(to, to);
+                let distance = sqrt(dist_sq);
+                return LightSample(
+                    to * (1.0 / distance),
+                    distance * (1.0 - 16.0 * EPS),
+                    light.color,
+                    p.pdf * light.selection,
+                    true,
+                );
+            }
+        }
+        //#end
+        let p = sample_shape(light, vec2f(u.y, u.z), u.w);
+        let to = p.position + p.normal * p.error - position;
+        let dist_sq = dot(to, to);
+        if dist_sq == 0.0 {
+            return none;
+        }
+        let distance = sqrt(dist_sq);
+        let direction = to * (1.0 / distance);
+        let cos = -dot(direction, p.normal);
+        if cos <= 0.0 {
+            return none;
+        }
+        return LightSample(
+            direction,
+            distance * (1.0 - 16.0 * EPS),
+            light.color,
+            p.pdf * dist_sq / cos * light.selection,
+            true,
+        );
+    }
+    //#end
+    //#if point || spot
+    if light.kind == LIGHT_POINT || light.kind == LIGHT_SPOT {
+        let to = light.position - position;
+        let dist_sq = dot(to, to);
+        if dist_sq == 0.0 {
+            return none;
+        }
+        let distance = sqrt(dist_sq);
+        let direction = to * (1.0 / distance);
+        var radiance = light.color * (1.0 / dist_sq);
+        //#if spot
+        if light.kind == LIGHT_SPOT {
+            radiance *= spot_falloff(light, -dot(direction, light.direction));
+        }
+        //#end
+        return LightSample(direction, distance * (1.0 - 16.0 * EPS), radiance, light.selection, false);
+    }
+    //#end
+    //#if infinite
+    if light.kind == LIGHT_SUN {
+        return LightSample(-light.direction, FAR, light.color, light.selection, false);
+    }
+    //#end
+    //#if environment
+    let direction = sample_environment(light, u);
+    return LightSample(
+        direction,
+        FAR,
+        eval_environment(light, direction),
+        pdf_environment(light, direction) * light.selection,
+        true,
+    );
+    //#else
+    return none;
+    //#end
+}
+
+//#if spot
+fn spot_falloff(light: Light, cos: f32) -> f32 {
+    if cos >= light.cos_inner {
+        return 1.0;
+    }
+    if cos <= light.cos_outer {
+        return 0.0;
+    }
+    let x = (cos - light.cos_outer) / (light.cos_inner - light.cos_outer);
+    return x * x * (3.0 - 2.0 * x);
+}
+//#end
+
+//#if area
+fn pdf_light(index: u32, origin: vec3f, direction: vec3f, t: f32, normal: vec3f, v: f32) -> f32 {
+    let light = scene.lights[index];
+    //#if area_sphere
+    if light.reference >> REFERENCE_BITS == KIND_SPHERE {
+        let sphere = scene.spheres[light.reference & ((1u << REFERENCE_BITS) - 1u)];
+        let pdf = pdf_sphere_cone(sphere, origin);
+        if pdf > 0.0 {
+            return pdf * light.selection;
+        }
+    }
+    //#end
+    let cos = abs(dot(direction, normal));
+    return pdf_shape(light, v) * t * t / max(cos, 1e-12) * light.selection;
+}
+//#end
+
+//#if environment
+//#if environment_image
+fn environment_uv(light: Light, direction: vec3f) -> vec2f {
+    let x = light.cos_outer * direction.x - light.cos_inner * direction.z;
+    let z = light.cos_inner * direction.x + light.cos_outer * direction.z;
+    let r = sqrt(x * x + z * z);
+    return vec2f(0.5 - arctan2(z, x) * (1.0 / TAU), 1.0 - arctan2(r, direction.y) * (1.0 / PI));
+}
+//#end
+
+fn eval_environment(light: Light, direction: vec3f) -> vec3f {
+    //#if environment_image
+    if light.kind == LIGHT_CONSTANT {
+        return light.color;
+    }
+    return light.color * eval_texture(light.reference, environment_uv(light, direction));
+    //#else
+    return light.color;
+    //#end
+}
+
+fn sample_environment(light: Light, u: vec4f) -> vec3f {
+    //#if environment_image
+    if light.kind == LIGHT_CONSTANT {
+        return sample_sphere(vec2f(u.y, u.z));
+    }
+    let texture = scene.textures[light.reference];
+    let row = find_interval(light.first, texture.height, u.y);
+    let column = find_interval(light.first + texture.height + row * texture.width, texture.width, u.z);
+    let high = scene.distributions[light.first + row];
+    var low = 0.0;
+    if row > 0u {
+        low = scene.distributions[light.first + row - 1u];
+    }
+    let across = (f32(column) + u.w) / f32(texture.width);
+    let down = (f32(row) + clamp((u.y - low) / (high - low), 0.0, 1.0)) / f32(texture.height);
+    let phi = sin_cos((0.5 - across) * TAU);
+    let theta = sin_cos(down * PI);
+    let x = theta.x * phi.y;
+    let z = theta.x * phi.x;
+    return vec3f(
+        light.cos_outer * x + light.cos_inner * z,
+        theta.y,
+        light.cos_outer * z - light.cos_inner * x,
+    );
+    //#else
+    return sample_sphere(vec2f(u.y, u.z));
+    //#end
+}
+
+fn pdf_environment(light: Light, direction: vec3f) -> f32 {
+    //#if environment_image
+    if light.kind == LIGHT_CONSTANT {
+        return PDF_SPHERE;
+    }
+    let texture = scene.textures[light.reference];
+    let uv = environment_uv(light, direction);
+    let row = min(u32(floor((1.0 - uv.y) * f32(texture.height))), texture.height - 1u);
+    let column = min(u32(floor(uv.x * f32(texture.width))), texture.width - 1u);
+    let p = pdf_bin(light.first, row, texture.height)
+        * pdf_bin(light.first + texture.height + row * texture.width, column, texture.width);
+    let sin = sqrt(max(1.0 - direction.y * direction.y, 1e-12));
+    return p / (2.0 * PI * PI * sin);
+    //#else
+    return PDF_SPHERE;
+    //#end
+}
+//#end

@@ -1,0 +1,115 @@
+//! A kernel's shader from the files it needs, one after another, with the declarations of what it binds; and the way
+//! back from naga's line numbers to files.
+
+use super::fragments::{FRAGMENTS, Fragment, Names, preprocess};
+use super::layout::{SceneTables, bindings, declarations};
+use crate::features::{self, Features};
+use crate::plan::Kernel;
+use std::collections::BTreeSet;
+
+/// Path under which errors in the generated declarations are reported.
+pub const DECLARATIONS: &str = "(declarations)";
+
+/// A fault in a shader.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{file}:{line}: {message}")]
+pub struct ShaderError {
+    /// Path below `shaders/`, or [`DECLARATIONS`].
+    pub file: &'static str,
+    /// Line in that file, from 1.
+    pub line: u32,
+    /// What is wrong.
+    pub message: String,
+}
+
+/// The shader of one kernel.
+#[derive(Clone, Debug)]
+pub struct Shader {
+    /// WGSL.
+    pub source: String,
+    /// Path and first line within `source`, from 1, of each part.
+    parts: Vec<(&'static str, u32)>,
+}
+
+/// The names that fences may use for `kernel`: the features, `photons`, every kernel's stem, `scene` (the kernel reads
+/// the flattened scene) and `area` (some light is a shape).
+pub fn names(kernel: Kernel, features: &Features) -> Names {
+    let stems = Kernel::ALL.map(Kernel::stem);
+    let known = features::ALL.into_iter().chain(stems).chain(["photons", "scene", "area"]);
+    let mut held: BTreeSet<&'static str> = features.names().collect();
+    held.insert(kernel.stem());
+    if kernel.reads_scene() {
+        held.insert("scene");
+    }
+    if features.names().any(|name| name.starts_with("area_")) {
+        held.insert("area");
+    }
+    Names { known: known.collect(), held }
+}
+
+/// The shader of `kernel` for a scene that needs `features` and has the tables `scene`.
+pub fn compose(kernel: Kernel, features: &Features, scene: &SceneTables) -> Result<Shader, ShaderError> {
+    compose_from(FRAGMENTS, kernel, features, scene)
+}
+
+/// [`compose`] from given files.
+pub fn compose_from(
+    fragments: &[Fragment],
+    kernel: Kernel,
+    features: &Features,
+    scene: &SceneTables,
+) -> Result<Shader, ShaderError> {
+    let names = names(kernel, features);
+    let mut shader = Shader { source: String::new(), parts: Vec::new() };
+    let mut declared = declarations(&bindings(kernel, features));
+    if kernel.reads_scene() {
+        declared.insert_str(0, &scene.declaration());
+    }
+    shader.push(DECLARATIONS, &declared);
+    for fragment in fragments {
+        let fault = |line, message| ShaderError { file: fragment.path, line, message };
+        if names.holds(fragment.condition).map_err(|message| fault(0, message))? {
+            let text = preprocess(fragment.text, &names).map_err(|(line, message)| fault(line, message))?;
+            shader.push(fragment.path, &text);
+        }
+    }
+    Ok(shader)
+}
+
+impl Shader {
+    fn push(&mut self, path: &'static str, text: &str) {
+        self.parts.push((path, self.source.matches('\n').count() as u32 + 1));
+        self.source.push_str(text);
+    }
+
+    /// File and line of a line of `source`, both from 1.
+    pub fn locate(&self, line: u32) -> (&'static str, u32) {
+        let part = self.parts.iter().rev().find(|(_, first)| *first <= line);
+        part.map_or((DECLARATIONS, line), |(path, first)| (path, line - first + 1))
+    }
+
+    /// Parses and validates with naga.
+    pub fn validate(&self) -> Result<(naga::Module, naga::valid::ModuleInfo), ShaderError> {
+        let at = |location: Option<naga::SourceLocation>, message: String| {
+            let (file, line) = self.locate(location.map_or(1, |l| l.line_number));
+            ShaderError { file, line, message }
+        };
+        let module = naga::front::wgsl::parse_str(&self.source)
+            .map_err(|e| at(e.location(&self.source), e.message().to_string()))?;
+        let flags = naga::valid::ValidationFlags::all();
+        let info = naga::valid::Validator::new(flags, naga::valid::Capabilities::empty())
+            .validate(&module)
+            // the last span is the innermost
+            .map_err(|e| {
+                let location = e.spans().last().map(|(span, _)| span.location(&self.source));
+                at(location, causes(e.as_inner()))
+            })?;
+        Ok((module, info))
+    }
+}
+
+/// An error and its causes on one line.
+pub fn causes(error: &dyn std::error::Error) -> String {
+    let chain = std::iter::successors(error.source(), |e| e.source());
+    chain.fold(error.to_string(), |text, cause| format!("{text}: {cause}"))
+}

@@ -1,0 +1,185 @@
+//! Adapters, the choice among them, and an open device that reports failures as errors instead of panicking.
+
+use crate::engine::EngineError;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// What an adapter is made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum AdapterKind {
+    /// A graphics card of its own.
+    Discrete,
+    /// Part of the processor's chip.
+    Integrated,
+    /// A share of a GPU in a virtual machine.
+    Virtual,
+    /// Hardware that does not say what it is.
+    Other,
+    /// A driver that runs shaders on the CPU, such as lavapipe.
+    Software,
+}
+
+/// What there is to know of an adapter before opening it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct AdapterSummary {
+    /// Name.
+    pub name: String,
+    /// What it is made of.
+    pub kind: AdapterKind,
+    /// Graphics interface: vulkan, metal, dx12, ...
+    pub backend: String,
+    /// Driver and version.
+    pub driver: String,
+    /// Most bytes that a kernel can bind as one buffer.
+    pub binding_bytes: u64,
+    /// Most bytes of one buffer.
+    pub buffer_bytes: u64,
+    /// Most storage buffers that a kernel can bind.
+    pub storage_buffers: u32,
+    /// Most invocations of a workgroup.
+    pub workgroup_invocations: u32,
+}
+
+impl AdapterSummary {
+    /// Whether the kernels can run: 8 storage buffers and workgroups of 256.
+    pub fn fits(&self) -> bool {
+        self.storage_buffers >= 8 && self.workgroup_invocations >= 256
+    }
+}
+
+/// Which adapter to open.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum AdapterChoice {
+    /// The first hardware GPU.
+    Hardware,
+    /// The first software driver.
+    Software,
+    /// The first whose name holds this, in any case.
+    Named(String),
+}
+
+impl AdapterChoice {
+    fn takes(&self, summary: &AdapterSummary) -> bool {
+        match self {
+            Self::Hardware => summary.kind != AdapterKind::Software,
+            Self::Software => summary.kind == AdapterKind::Software,
+            Self::Named(name) => holds(&summary.name, name),
+        }
+    }
+}
+
+fn holds(text: &str, part: &str) -> bool {
+    text.to_lowercase().contains(&part.to_lowercase())
+}
+
+fn summarize(adapter: &wgpu::Adapter) -> AdapterSummary {
+    let info = adapter.get_info();
+    let limits = adapter.limits();
+    let kind = match info.device_type {
+        wgpu::DeviceType::DiscreteGpu => AdapterKind::Discrete,
+        wgpu::DeviceType::IntegratedGpu => AdapterKind::Integrated,
+        wgpu::DeviceType::VirtualGpu => AdapterKind::Virtual,
+        wgpu::DeviceType::Cpu => AdapterKind::Software,
+        wgpu::DeviceType::Other => AdapterKind::Other,
+    };
+    AdapterSummary {
+        name: info.name,
+        kind,
+        backend: info.backend.to_string(),
+        driver: format!("{} {}", info.driver, info.driver_info).trim().to_owned(),
+        binding_bytes: limits.max_storage_buffer_binding_size,
+        buffer_bytes: limits.max_buffer_size,
+        storage_buffers: limits.max_storage_buffers_per_shader_stage,
+        workgroup_invocations: limits.max_compute_invocations_per_workgroup,
+    }
+}
+
+/// Adapters that the kernels can run on, hardware first; those that `WGPU_BACKEND` and `WGPU_ADAPTER_NAME` allow.
+fn adapters() -> Vec<(wgpu::Adapter, AdapterSummary)> {
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
+    let backends = wgpu::Backends::from_env().unwrap_or(wgpu::Backends::all());
+    let name = std::env::var("WGPU_ADAPTER_NAME").unwrap_or_default();
+    let mut list: Vec<_> = pollster::block_on(instance.enumerate_adapters(backends))
+        .into_iter()
+        .map(|adapter| {
+            let summary = summarize(&adapter);
+            (adapter, summary)
+        })
+        .filter(|(_, summary)| summary.fits() && holds(&summary.name, &name))
+        .collect();
+    list.sort_by_key(|(_, summary)| summary.kind);
+    list
+}
+
+/// Adapters that the kernels can run on, hardware first; those that `WGPU_BACKEND` and `WGPU_ADAPTER_NAME` allow.
+pub fn list() -> Vec<AdapterSummary> {
+    adapters().into_iter().map(|(_, summary)| summary).collect()
+}
+
+/// What went wrong between two looks.
+type Failure = Arc<Mutex<Option<EngineError>>>;
+
+/// An open device.
+pub struct Gpu {
+    /// wgpu's device.
+    pub device: wgpu::Device,
+    /// Its queue.
+    pub queue: wgpu::Queue,
+    /// What it is.
+    pub summary: AdapterSummary,
+    failure: Failure,
+}
+
+impl Gpu {
+    /// Opens the adapter of `choice` with its own limits.
+    pub fn open(choice: &AdapterChoice) -> Result<Self, EngineError> {
+        let found = adapters().into_iter().find(|(_, summary)| choice.takes(summary));
+        let (adapter, summary) =
+            found.ok_or_else(|| EngineError::Unsupported(format!("there is no adapter for {choice:?}")))?;
+        let descriptor = wgpu::DeviceDescriptor {
+            label: Some("caustica"),
+            required_features: wgpu::Features::empty(),
+            required_limits: adapter.limits(),
+            ..Default::default()
+        };
+        let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
+            .map_err(|e| EngineError::DeviceLost(format!("{} does not open: {e}", summary.name)))?;
+        let failure = Failure::default();
+        let uncaptured = failure.clone();
+        device.on_uncaptured_error(Arc::new(move |error| record(&uncaptured, as_engine_error(&error))));
+        let lost = failure.clone();
+        device.set_device_lost_callback(move |reason, message| {
+            if reason != wgpu::DeviceLostReason::Destroyed {
+                record(&lost, EngineError::DeviceLost(message));
+            }
+        });
+        Ok(Self { device, queue, summary, failure })
+    }
+
+    /// The failure since the last look, if any.
+    pub fn check(&self) -> Result<(), EngineError> {
+        match self.failure.lock().unwrap_or_else(PoisonError::into_inner).take() {
+            Some(error) => Err(error),
+            None => Ok(()),
+        }
+    }
+
+    /// Waits until all submitted work is done.
+    pub fn wait(&self) -> Result<(), EngineError> {
+        let polled = self.device.poll(wgpu::PollType::wait_indefinitely());
+        self.check()?;
+        polled.map(|_| ()).map_err(|e| EngineError::DeviceLost(e.to_string()))
+    }
+}
+
+/// Keeps the first failure: what follows is its consequence.
+fn record(failure: &Failure, error: EngineError) {
+    failure.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
+}
+
+fn as_engine_error(error: &wgpu::Error) -> EngineError {
+    match error {
+        wgpu::Error::OutOfMemory { .. } => EngineError::DeviceLost(format!("out of memory: {error}")),
+        wgpu::Error::Validation { description, .. } => EngineError::Shader(description.clone()),
+        wgpu::Error::Internal { description, .. } => EngineError::DeviceLost(description.clone()),
+    }
+}

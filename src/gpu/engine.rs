@@ -1,0 +1,289 @@
+//! Carries out the steps of a plan, pass by pass.
+
+use super::context::{AdapterChoice, AdapterKind, Gpu};
+use super::layout::{SceneTables, long_tables};
+use super::mend::{mend_photons, mend_points};
+use super::pace::Pace;
+use super::program::{Program, workgroup_items};
+use super::recorder::Recorder;
+use crate::engine::{Engine, EngineError, PassReport};
+use crate::film::Picture;
+use crate::kernels::records::{Dispatch, FilmPixel};
+use crate::pack::Packed;
+use crate::plan::{Kernel, Plan, Step};
+use crate::settings::Method;
+use crate::tables::Scene;
+use std::collections::BTreeMap;
+
+/// Buffers of which each chunk of visible points has its own.
+const CHUNK_BUFFERS: [&str; 4] = ["visible_points", "gathered", "film", "statistics"];
+/// Bytes of `counters`: records of the batch, the pass's rays in two words, invocations that the driver stopped.
+const COUNTERS_BYTES: u64 = 16;
+/// What to change when the device is too small.
+const MEND: &str = "make the picture smaller, or take --device cpu";
+
+/// Passes over one scene on a GPU or a software driver.
+pub struct GpuEngine {
+    gpu: Gpu,
+    plan: Plan,
+    passes_done: u32,
+    recorder: Recorder,
+    pace: Pace,
+    programs: BTreeMap<Kernel, Program>,
+    /// By kernel and chunk (0 where it has none).
+    groups: BTreeMap<(Kernel, u32), wgpu::BindGroup>,
+    shared: BTreeMap<&'static str, wgpu::Buffer>,
+    chunks: Vec<BTreeMap<&'static str, wgpu::Buffer>>,
+    /// Copies of the pass's counters, 16 bytes, and of each batch's record count.
+    readings: wgpu::Buffer,
+    /// On a software driver: what to trace stopped paths again with.
+    scene: Option<Scene>,
+    device: String,
+}
+
+/// Records of each batch, rays of a pass, and invocations that the driver stopped.
+struct Counted {
+    records: Vec<u32>,
+    rays: u64,
+    stopped: u32,
+}
+
+impl GpuEngine {
+    /// An engine for one scene and plan on the adapter of `choice`.
+    pub fn new(choice: &AdapterChoice, packed: &Packed, plan: Plan) -> Result<Self, EngineError> {
+        if plan.settings.method == Method::Path {
+            return Err(EngineError::Unsupported(
+                "path tracing runs on the CPU alone: take --device cpu".into(),
+            ));
+        }
+        let gpu = Gpu::open(choice)?;
+        let scene = SceneTables::new(&packed.scene);
+        gpu.check_sizes(&sizes(&plan, packed, &scene), MEND)?;
+        let recorder = Recorder::new(&gpu)?;
+        let mut shared = BTreeMap::from([("scene", gpu.upload("scene", &scene.bytes)?)]);
+        for (name, _, content) in long_tables(&packed.scene) {
+            if !content.is_empty() {
+                shared.insert(name, gpu.upload(name, content)?);
+            }
+        }
+        let mut chunks = vec![BTreeMap::new(); plan.chunks() as usize];
+        for (name, bytes) in plan.buffers() {
+            if CHUNK_BUFFERS.contains(&name) {
+                for (chunk, buffers) in (0..).zip(&mut chunks) {
+                    buffers.insert(name, gpu.storage(name, chunk_bytes(&plan, bytes, chunk))?);
+                }
+            } else {
+                shared.insert(name, gpu.storage(name, bytes)?);
+            }
+        }
+        let readings = gpu.storage("readings", COUNTERS_BYTES)?;
+        let mut engine = Self {
+            scene: (gpu.summary.kind == AdapterKind::Software).then(|| packed.scene.clone()),
+            device: gpu.summary.name.clone(),
+            gpu,
+            passes_done: 0,
+            recorder,
+            pace: Pace::default(),
+            programs: BTreeMap::new(),
+            groups: BTreeMap::new(),
+            shared,
+            chunks,
+            readings,
+            plan,
+        };
+        engine.compile(&scene)?;
+        Ok(engine)
+    }
+
+    /// The content of a buffer of the plan (a chunk's, if it is one of those), for tests.
+    pub fn content(&self, name: &str, chunk: u32) -> Result<Vec<u8>, EngineError> {
+        let buffer =
+            self.chunks.get(chunk as usize).and_then(|own| own.get(name)).or_else(|| self.shared.get(name));
+        buffer.map_or(Ok(Vec::new()), |buffer| self.gpu.read(buffer, buffer.size()))
+    }
+
+    /// Compiles the kernels of the plan. Each runs once over nothing, since some drivers compile at the first run.
+    fn compile(&mut self, scene: &SceneTables) -> Result<(), EngineError> {
+        for step in self.plan.steps(0, self.plan.batch_photons) {
+            if !self.programs.contains_key(&step.kernel) {
+                let program = Program::new(&self.gpu, step.kernel, &self.plan.features, scene)?;
+                self.programs.insert(step.kernel, program);
+            }
+            let key = (step.kernel, step.chunk);
+            if self.groups.contains_key(&key) {
+                continue;
+            }
+            let program = &self.programs[&step.kernel];
+            let chunk = &self.chunks[step.chunk as usize];
+            let buffer = |name: &str| chunk.get(name).or_else(|| self.shared.get(name));
+            let group = program.bind(&self.gpu, &self.recorder.dispatches, buffer)?;
+            if step.chunk == 0 {
+                self.recorder.dispatch(
+                    &self.gpu,
+                    program,
+                    &group,
+                    &Dispatch { first: 0, end: 0, ..step.dispatch },
+                );
+            }
+            self.groups.insert(key, group);
+        }
+        self.recorder.finish(&self.gpu).map(|_| ())
+    }
+
+    /// Submits what was recorded.
+    fn flush(&mut self) -> Result<(), EngineError> {
+        let seconds = self.recorder.finish(&self.gpu)?;
+        self.pace.learn(seconds);
+        Ok(())
+    }
+
+    /// Runs a step in as many dispatches as the pace asks for.
+    fn run(&mut self, step: &Step) -> Result<(), EngineError> {
+        let Dispatch { mut first, end, .. } = step.dispatch;
+        let whole = step.kernel == Kernel::GridScanSums;
+        let granule = workgroup_items(step.kernel);
+        while first < end {
+            let fit = self.pace.fit(step.kernel, end - first);
+            if fit == 0 || self.recorder.is_full() {
+                self.flush()?;
+                continue;
+            }
+            let items = if whole { end } else { fit.next_multiple_of(granule).min(end - first) };
+            let dispatch = Dispatch { first, end: first + items, ..step.dispatch };
+            let group = &self.groups[&(step.kernel, step.chunk)];
+            self.recorder.dispatch(&self.gpu, &self.programs[&step.kernel], group, &dispatch);
+            self.pace.record(step.kernel, items);
+            first += items;
+        }
+        Ok(())
+    }
+
+    /// The steps of a pass up to `Resolve`, which do not touch what passes before have found.
+    fn trace(&mut self, steps: &[Step]) -> Result<Counted, EngineError> {
+        let batches = steps.iter().filter(|s| s.kernel == Kernel::PhotonTrace).count() as u64;
+        let bytes = COUNTERS_BYTES + 4 * batches;
+        if self.readings.size() < bytes {
+            self.readings = self.gpu.storage("readings", bytes)?;
+        }
+        for chunk in &self.chunks {
+            self.recorder.clear(&self.gpu, &chunk["gathered"], None);
+        }
+        self.recorder.clear(&self.gpu, &self.shared["counters"], None);
+        let mut offset = COUNTERS_BYTES;
+        let mut mended = 0;
+        for step in steps {
+            if step.kernel == Kernel::PhotonTrace {
+                self.recorder.clear(&self.gpu, &self.shared["counters"], Some(4));
+            }
+            self.run(step)?;
+            mended += self.mend(step)?;
+            if step.kernel == Kernel::PhotonTrace {
+                self.recorder.copy(&self.gpu, &self.shared["counters"], &self.readings, offset, 4);
+                offset += 4;
+            }
+        }
+        self.recorder.copy(&self.gpu, &self.shared["counters"], &self.readings, 0, COUNTERS_BYTES);
+        self.flush()?;
+        let words: Vec<u32> = bytemuck::pod_collect_to_vec(&self.gpu.read(&self.readings, bytes)?);
+        let rays = (words[1] as u64 | (words[2] as u64) << 32) + mended;
+        Ok(Counted { records: words[4..].to_vec(), rays, stopped: words[3] })
+    }
+
+    /// Traces again, on the CPU, the paths of a step that a software driver stopped; the number of their rays.
+    fn mend(&mut self, step: &Step) -> Result<u64, EngineError> {
+        if self.scene.is_none() || !matches!(step.kernel, Kernel::EyeTrace | Kernel::PhotonTrace) {
+            return Ok(0);
+        }
+        self.flush()?;
+        let counters = &self.shared["counters"];
+        let mut words: Vec<u32> = bytemuck::pod_collect_to_vec(&self.gpu.read(counters, COUNTERS_BYTES)?);
+        let Some(scene) = self.scene.as_ref().filter(|_| words[3] > 0) else {
+            return Ok(0);
+        };
+        let sampled = self.plan.features.has("sampled");
+        let rays = if step.kernel == Kernel::EyeTrace {
+            let buffer = &self.chunks[step.chunk as usize]["visible_points"];
+            mend_points(&self.gpu, scene, &step.dispatch, sampled, buffer)?
+        } else {
+            let (records, rays) =
+                mend_photons(&self.gpu, scene, &step.dispatch, sampled, &self.shared["records"], words[0])?;
+            words[0] = records;
+            rays
+        };
+        words[3] = 0;
+        self.gpu.write(counters, bytemuck::cast_slice(&words));
+        Ok(rays)
+    }
+}
+
+/// Bytes of a chunk's buffer, from those of the largest one.
+fn chunk_bytes(plan: &Plan, largest: u64, chunk: u32) -> u64 {
+    largest * plan.chunk(chunk).1 as u64 / plan.chunk(0).1.max(1) as u64
+}
+
+/// Name and bytes of everything that will be allocated.
+fn sizes(plan: &Plan, packed: &Packed, scene: &SceneTables) -> Vec<(&'static str, u64)> {
+    let mut list = vec![("scene", scene.bytes.len() as u64)];
+    list.extend(long_tables(&packed.scene).map(|(name, _, content)| (name, content.len() as u64)));
+    for (name, bytes) in plan.buffers() {
+        if CHUNK_BUFFERS.contains(&name) {
+            list.extend((0..plan.chunks()).map(|chunk| (name, chunk_bytes(plan, bytes, chunk))));
+        } else {
+            list.push((name, bytes));
+        }
+    }
+    list
+}
+
+impl Engine for GpuEngine {
+    fn device(&self) -> &str {
+        &self.device
+    }
+
+    fn pass(&mut self) -> Result<PassReport, EngineError> {
+        let pass = self.passes_done;
+        let mut batch = self.plan.batch_photons;
+        loop {
+            let steps = self.plan.steps(pass, batch);
+            let (resolve, trace): (Vec<_>, Vec<_>) =
+                steps.into_iter().partition(|s| s.kernel == Kernel::Resolve);
+            let counted = self.trace(&trace)?;
+            let photons = trace.iter().filter(|s| s.kernel == Kernel::PhotonTrace).map(|s| s.dispatch.end);
+            let overflow = |(photons, records): (u32, &u32)| *records > self.plan.capacity && photons > 1;
+            let overflows = photons.zip(&counted.records).any(overflow);
+            if counted.stopped > 0 && (batch == 1 || self.scene.is_none()) {
+                let text = format!("{} leaves long loops unfinished; take --device cpu", self.device);
+                return Err(EngineError::Unsupported(text));
+            }
+            if overflows || counted.stopped > 0 {
+                // thrown away and run again with batches half as large, which also shortens the loops over photons
+                batch = (batch / 2).max(1);
+                continue;
+            }
+            for step in &resolve {
+                self.run(step)?;
+            }
+            self.flush()?;
+            self.passes_done += 1;
+            let eye_paths =
+                trace.iter().filter(|s| s.kernel == Kernel::EyeTrace).map(|s| s.dispatch.end as u64);
+            return Ok(PassReport {
+                photons: self.plan.settings.photons as u64,
+                records: counted.records.iter().map(|r| *r as u64).sum(),
+                eye_paths: eye_paths.sum(),
+                rays: counted.rays,
+                radius: self.plan.radius(pass),
+            });
+        }
+    }
+
+    fn picture(&mut self) -> Result<Picture, EngineError> {
+        let mut film: Vec<FilmPixel> = Vec::with_capacity(self.plan.pixels as usize);
+        for (number, chunk) in (0..).zip(&self.chunks) {
+            let pixels = self.plan.chunk(number).1 / self.plan.eye_samples;
+            let bytes = self.gpu.read(&chunk["film"], pixels as u64 * size_of::<FilmPixel>() as u64)?;
+            film.extend(bytemuck::pod_collect_to_vec::<u8, FilmPixel>(&bytes));
+        }
+        Ok(self.plan.picture(&film))
+    }
+}

@@ -1,0 +1,15 @@
+//! The GPU engine: carries out a plan on wgpu. The only code that names wgpu or naga.
+
+pub mod compose;
+pub mod context;
+mod engine;
+pub mod fragments;
+pub mod layout;
+mod memory;
+mod mend;
+pub mod pace;
+pub mod program;
+pub mod recorder;
+
+pub use context::{AdapterChoice, AdapterKind, AdapterSummary, Gpu, list};
+pub use engine::GpuEngine;

@@ -1,0 +1,143 @@
+//! A kernel, compiled: its pipeline and what it binds.
+
+use super::compose::{causes, compose};
+use super::context::Gpu;
+use super::layout::{Access, Binding, SceneTables, bindings};
+use crate::engine::EngineError;
+use crate::features::Features;
+use crate::kernels::records::Dispatch;
+use crate::plan::{Kernel, SCAN_BLOCK};
+
+/// A compiled kernel.
+pub struct Program {
+    /// Which.
+    pub kernel: Kernel,
+    pub(super) pipeline: wgpu::ComputePipeline,
+    layout: wgpu::BindGroupLayout,
+    bindings: Vec<Binding>,
+}
+
+impl Program {
+    /// Composes and compiles `kernel`.
+    pub fn new(
+        gpu: &Gpu,
+        kernel: Kernel,
+        features: &Features,
+        scene: &SceneTables,
+    ) -> Result<Self, EngineError> {
+        let shader = compose(kernel, features, scene).map_err(|e| EngineError::Shader(e.to_string()))?;
+        shader.validate().map_err(|e| EngineError::Shader(e.to_string()))?;
+        let bindings = bindings(kernel, features);
+        let stem = kernel.stem();
+        let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
+        let entries: Vec<_> = (0..).zip(&bindings).map(|(i, b)| layout_entry(i, b)).collect();
+        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some(stem),
+            entries: &entries,
+        });
+        let pipeline_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some(stem),
+            bind_group_layouts: &[Some(&layout)],
+            immediate_size: 0,
+        });
+        let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some(stem),
+            source: wgpu::ShaderSource::Wgsl(shader.source.into()),
+        });
+        let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some(stem),
+            layout: Some(&pipeline_layout),
+            module: &module,
+            entry_point: Some(stem),
+            compilation_options: wgpu::PipelineCompilationOptions {
+                // each kernel writes its workgroup memory before it reads it
+                zero_initialize_workgroup_memory: false,
+                ..Default::default()
+            },
+            cache: None,
+        });
+        match pollster::block_on(scope.pop()) {
+            Some(error) => Err(EngineError::Shader(format!("{stem}: {}", causes(&error)))),
+            None => gpu.check().map(|()| Self { kernel, pipeline, layout, bindings }),
+        }
+    }
+
+    /// Binds the buffers that `buffer` finds by name; `dispatches` holds the numbers of the dispatches.
+    pub fn bind<'a>(
+        &self,
+        gpu: &Gpu,
+        dispatches: &wgpu::Buffer,
+        buffer: impl Fn(&str) -> Option<&'a wgpu::Buffer>,
+    ) -> Result<wgpu::BindGroup, EngineError> {
+        let mut entries = Vec::new();
+        for (number, binding) in (0..).zip(&self.bindings) {
+            let resource = match binding.access {
+                Access::Uniform => wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+                    buffer: dispatches,
+                    offset: 0,
+                    size: wgpu::BufferSize::new(size_of::<Dispatch>() as u64),
+                }),
+                _ => match buffer(binding.name) {
+                    Some(buffer) => buffer.as_entire_binding(),
+                    None => {
+                        let text = format!("{} has no buffer `{}`", self.kernel.stem(), binding.name);
+                        return Err(EngineError::Shader(text));
+                    }
+                },
+            };
+            entries.push(wgpu::BindGroupEntry { binding: number, resource });
+        }
+        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some(self.kernel.stem()),
+            layout: &self.layout,
+            entries: &entries,
+        });
+        gpu.check().map(|()| group)
+    }
+}
+
+/// Items that one workgroup of a kernel covers; dispatches begin at multiples of it.
+pub fn workgroup_items(kernel: Kernel) -> u32 {
+    match kernel {
+        Kernel::GridScanReduce | Kernel::GridScanSums | Kernel::GridScan => SCAN_BLOCK,
+        _ => 64,
+    }
+}
+
+/// Rows and columns of `groups` workgroups, at most 65535 in a row; surplus invocations find nothing to do.
+pub fn arrange(groups: u32) -> (u32, u32) {
+    const ROW: u32 = 65535;
+    let rows = groups.div_ceil(ROW).max(1);
+    (groups.div_ceil(rows).max(1), rows)
+}
+
+fn layout_entry(binding: u32, b: &Binding) -> wgpu::BindGroupLayoutEntry {
+    let uniform = b.access == Access::Uniform;
+    let ty = if uniform {
+        wgpu::BufferBindingType::Uniform
+    } else {
+        wgpu::BufferBindingType::Storage { read_only: b.access == Access::Read }
+    };
+    wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::COMPUTE,
+        ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset: uniform, min_binding_size: None },
+        count: None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every arrangement holds all groups, stays in the limit and wastes less than a row.
+    #[test]
+    fn arrangements() {
+        for groups in [0, 1, 65535, 65536, 131_070, 131_071, 1 << 22, u32::MAX / 64] {
+            let (columns, rows) = arrange(groups);
+            assert!((1..=65535).contains(&columns) && (1..=65535).contains(&rows));
+            let all = columns as u64 * rows as u64;
+            assert!(all >= groups as u64 && all < groups as u64 + rows as u64 + 1, "{groups}");
+        }
+    }
+}

@@ -1,0 +1,78 @@
+//! Commands on their way to the device. One submission at a time is under way, so that its time can be measured.
+
+use super::context::Gpu;
+use super::program::{Program, arrange, workgroup_items};
+use crate::engine::EngineError;
+use crate::kernels::records::Dispatch;
+use bytemuck::bytes_of;
+use std::time::Instant;
+
+/// Most dispatches of one submission.
+const SLOTS: usize = 64;
+
+/// Records one submission after another.
+pub struct Recorder {
+    /// The numbers of the submission's dispatches, one per slot.
+    pub dispatches: wgpu::Buffer,
+    stride: usize,
+    staged: Vec<u8>,
+    encoder: Option<wgpu::CommandEncoder>,
+}
+
+impl Recorder {
+    /// Nothing recorded.
+    pub fn new(gpu: &Gpu) -> Result<Self, EngineError> {
+        let alignment = gpu.device.limits().min_uniform_buffer_offset_alignment as usize;
+        let stride = size_of::<Dispatch>().next_multiple_of(alignment.max(1));
+        let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
+        let dispatches = gpu.buffer("dispatches", (SLOTS * stride) as u64, usage)?;
+        Ok(Self { dispatches, stride, staged: Vec::new(), encoder: None })
+    }
+
+    /// Whether no further dispatch has a slot.
+    pub fn is_full(&self) -> bool {
+        self.staged.len() >= SLOTS * self.stride
+    }
+
+    fn encoder(&mut self, gpu: &Gpu) -> &mut wgpu::CommandEncoder {
+        self.encoder.get_or_insert_with(|| gpu.device.create_command_encoder(&Default::default()))
+    }
+
+    /// Clears a buffer, or its first `bytes` bytes.
+    pub fn clear(&mut self, gpu: &Gpu, buffer: &wgpu::Buffer, bytes: Option<u64>) {
+        self.encoder(gpu).clear_buffer(buffer, 0, bytes);
+    }
+
+    /// Copies the first `bytes` bytes of `source` to `offset` in `target`.
+    pub fn copy(&mut self, gpu: &Gpu, source: &wgpu::Buffer, target: &wgpu::Buffer, offset: u64, bytes: u64) {
+        self.encoder(gpu).copy_buffer_to_buffer(source, 0, target, offset, bytes);
+    }
+
+    /// Records one dispatch; there must be a slot.
+    pub fn dispatch(&mut self, gpu: &Gpu, program: &Program, group: &wgpu::BindGroup, dispatch: &Dispatch) {
+        let offset = self.staged.len();
+        self.staged.extend_from_slice(bytes_of(dispatch));
+        self.staged.resize(offset + self.stride, 0);
+        let items = (dispatch.end - dispatch.first).div_ceil(workgroup_items(program.kernel));
+        let (columns, rows) = arrange(items);
+        let descriptor =
+            wgpu::ComputePassDescriptor { label: Some(program.kernel.stem()), timestamp_writes: None };
+        let mut pass = self.encoder(gpu).begin_compute_pass(&descriptor);
+        pass.set_pipeline(&program.pipeline);
+        pass.set_bind_group(0, group, &[offset as u32]);
+        pass.dispatch_workgroups(columns, rows, 1);
+    }
+
+    /// Submits what was recorded and waits for it; the seconds it took.
+    pub fn finish(&mut self, gpu: &Gpu) -> Result<f64, EngineError> {
+        let Some(encoder) = self.encoder.take() else {
+            return Ok(0.0);
+        };
+        gpu.write(&self.dispatches, &self.staged);
+        self.staged.clear();
+        let begun = Instant::now();
+        gpu.queue.submit([encoder.finish()]);
+        gpu.wait()?;
+        Ok(begun.elapsed().as_secs_f64())
+    }
+}

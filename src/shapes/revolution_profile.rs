@@ -1,0 +1,199 @@
+//! The profile of a surface of revolution, piece by piece, and a ray seen in the profile's half-plane.
+//! Twin: `shaders/shapes/revolution_profile.wgsl`.
+//!
+//! A surface is S(theta, tau) = (r cos theta, y, r sin theta) in a local frame whose axis is y and in which
+//! the profile has size about one. The host cuts the profile into *patches*: short Bezier curves that are
+//! graphs h = phi(s) over their chord, with |phi'| <= `slope` and phi within [`phi_min`, `phi_max`].
+
+use bytemuck::{Pod, Zeroable};
+use glam::{Vec2, Vec3, Vec4};
+
+use crate::math::trig::{kept, sin_cos};
+
+/// Largest degree of a profile segment.
+pub const MAX_DEGREE: usize = 15;
+
+/// A short piece of profile, a graph over its chord, turned about the axis. Local units. Chord coordinates
+/// (s, h) of a profile point (r, y): s along `axis`, h along (axis.y, -axis.x), from `origin`; so h grows
+/// outward on an upward chord.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct Patch {
+    /// Index of the revolution.
+    pub revolution: u32,
+    /// Segment of the profile.
+    pub segment: u32,
+    /// Index of the first control point; the points are chord coordinates.
+    pub first_point: u32,
+    /// Degree of the piece, 1 to 15.
+    pub degree: u32,
+    /// Chord start (r, y).
+    pub origin: Vec2,
+    /// Chord direction (r, y), unit.
+    pub axis: Vec2,
+    /// Least and largest radius, rounded outward.
+    pub r_min: f32,
+    /// See `r_min`.
+    pub r_max: f32,
+    /// Least and largest height, rounded outward.
+    pub y_min: f32,
+    /// See `y_min`.
+    pub y_max: f32,
+    /// Range of phi, rounded outward; holds 0.
+    pub phi_min: f32,
+    /// See `phi_min`.
+    pub phi_max: f32,
+    /// Bound on |phi'|.
+    pub slope: f32,
+    /// Length of the chord.
+    pub length: f32,
+    /// Curve parameter of the segment at tau = 0 and tau = 1.
+    pub t0: f32,
+    /// See `t0`.
+    pub t1: f32,
+    /// Between two points, phi' leaves the range of its values there by no more than this.
+    pub wobble: f32,
+    /// Zero.
+    pub padding: u32,
+}
+
+/// A ray in local units: `origin` is the point near the surface's center, `start` its distance along the
+/// scene's ray in scene units.
+#[derive(Clone, Copy, Debug)]
+pub struct LocalRay {
+    /// Local origin.
+    pub origin: Vec3,
+    /// Scene distance of `origin`.
+    pub start: f32,
+    /// Local direction, as long as the scene's.
+    pub direction: Vec3,
+    /// -1 for the part before the closest approach to the axis, 1 for the part after it.
+    pub side: f32,
+}
+
+/// A point of a ray in chord coordinates; s(l) and h(l) are convex or concave on each side of the axis.
+#[derive(Clone, Copy, Debug)]
+pub struct RayPoint {
+    /// Distance from the local origin.
+    pub l: f32,
+    /// Along the chord.
+    pub s: f32,
+    /// Across the chord.
+    pub h: f32,
+    /// ds/dl.
+    pub ds: f32,
+    /// dh/dl.
+    pub dh: f32,
+}
+
+/// A surface point with its two partial derivatives, local units.
+#[derive(Clone, Copy, Debug)]
+pub struct RingPoint {
+    /// S(theta, tau).
+    pub point: Vec3,
+    /// dS/dtheta.
+    pub d_theta: Vec3,
+    /// dS/dtau.
+    pub d_tau: Vec3,
+}
+
+/// The patch's profile at `tau` with its derivative, (s, h, ds/dtau, dh/dtau), by de Casteljau.
+pub fn profile_point(points: &[Vec2], piece: &Patch, tau: f32) -> Vec4 {
+    let n = piece.degree;
+    let mut b = [Vec2::ZERO; MAX_DEGREE + 1];
+    for i in 0..=n {
+        b[i as usize] = points[(piece.first_point + i) as usize];
+    }
+    for k in 1..n {
+        for i in 0..=n - k {
+            b[i as usize] += (b[i as usize + 1] - b[i as usize]) * tau;
+        }
+    }
+    let leg = b[1] - b[0];
+    let point = b[0] + leg * tau;
+    let tangent = leg * n as f32;
+    Vec4::new(point.x, point.y, tangent.x, tangent.y)
+}
+
+/// The ray at distance `l`.
+pub fn ray_point(piece: &Patch, ray: &LocalRay, l: f32) -> RayPoint {
+    let o = ray.origin;
+    let d = ray.direction;
+    let x = o.x + d.x * l;
+    let z = o.z + d.z * l;
+    let radius = (x * x + z * z).sqrt();
+    // On the axis the radius has a kink: its slope there is the one-sided one.
+    let outward =
+        if radius > 0.0 { (x * d.x + z * d.z) / radius } else { ray.side * (d.x * d.x + d.z * d.z).sqrt() };
+    let d_radius = if outward * ray.side > 0.0 { outward } else { 0.0 };
+    let r = radius - piece.origin.x;
+    let y = (o.y + d.y * l) - piece.origin.y;
+    RayPoint {
+        l,
+        s: kept(piece.axis.x * r + piece.axis.y * y),
+        h: kept(piece.axis.y * r - piece.axis.x * y),
+        ds: kept(piece.axis.x * d_radius + piece.axis.y * d.y),
+        dh: kept(piece.axis.y * d_radius - piece.axis.x * d.y),
+    }
+}
+
+/// The parameter at chord coordinate `s`: Newton on the monotone s(tau), kept inside a bracket.
+pub fn tau_at(points: &[Vec2], piece: &Patch, s: f32) -> f32 {
+    let mut low = 0.0;
+    let mut high = 1.0;
+    let mut tau = (s / piece.length).clamp(0.0, 1.0);
+    for _ in 0..20 {
+        let p = profile_point(points, piece, tau);
+        let error = p.x - s;
+        if error > 0.0 {
+            high = tau;
+        } else {
+            low = tau;
+        }
+        let step = if p.z > 0.0 { error / p.z } else { 2.0 };
+        let mut next = tau - step;
+        if next < low || next > high {
+            next = 0.5 * (low + high);
+        }
+        let moved = (next - tau).abs();
+        tau = next;
+        if moved <= 1e-7 {
+            break;
+        }
+    }
+    tau
+}
+
+/// (F, phi'(s), tau) with F = h - phi(s); phi is continued past the chord's ends by its tangents. Unless
+/// `exact`, +-1 stands for F outside the band that holds phi.
+pub fn profile_offset(points: &[Vec2], piece: &Patch, at: RayPoint, exact: bool) -> Vec3 {
+    let past = (-at.s).max(at.s - piece.length).max(0.0) * piece.slope;
+    if !exact && at.h > piece.phi_max + past {
+        return Vec3::new(1.0, 0.0, 0.0);
+    }
+    if !exact && at.h < piece.phi_min - past {
+        return Vec3::new(-1.0, 0.0, 0.0);
+    }
+    let s = at.s.clamp(0.0, piece.length);
+    let tau = tau_at(points, piece, s);
+    let p = profile_point(points, piece, tau);
+    let slope = if p.z > 0.0 { p.w / p.z } else { 0.0 };
+    let d_phi = slope.clamp(-piece.slope, piece.slope);
+    Vec3::new(at.h - (p.y + d_phi * (at.s - s)), d_phi, tau)
+}
+
+/// S and its derivatives at (theta, tau).
+pub fn ring_point(points: &[Vec2], piece: &Patch, theta: f32, tau: f32) -> RingPoint {
+    let p = profile_point(points, piece, tau);
+    let (sin, cos) = sin_cos(theta);
+    // Added one by one: Mesa rewrites e + (a b + c d).
+    let r = (piece.origin.x + piece.axis.x * p.x) + piece.axis.y * p.y;
+    let y = (piece.origin.y + piece.axis.y * p.x) - piece.axis.x * p.y;
+    let dr = piece.axis.x * p.z + piece.axis.y * p.w;
+    let dy = piece.axis.y * p.z - piece.axis.x * p.w;
+    RingPoint {
+        point: Vec3::new(r * cos, y, r * sin),
+        d_theta: Vec3::new(-r * sin, 0.0, r * cos),
+        d_tau: Vec3::new(dr * cos, dy, dr * sin),
+    }
+}

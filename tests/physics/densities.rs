@@ -1,0 +1,240 @@
+//! Every way of drawing a direction or a point against the density it claims.
+//!
+//! A sampler with density p draws a bin with the bin's integral of p. Counts of N draws over bins then follow a
+//! multinomial law, and sum (count - N P)^2 / (N P) is chi-square with (bins - 1) degrees of freedom: mean k, variance 2k.
+//! Bins expected to hold fewer than 10 are pooled.
+
+use std::f64::consts::PI;
+
+use caustica::lights::light::{
+    eval_environment, pdf_environment, pdf_light, sample_environment, sample_light,
+};
+use caustica::lights::shape::sample_shape;
+use caustica::materials::metal::{eval_metal, pdf_metal, sample_metal, weight_metal};
+use caustica::math::rng::{Rng, rng_new, rng_next};
+use caustica::math::sampling::*;
+use caustica::pack::pack;
+use caustica::shapes::intersect::intersect_scene;
+use caustica::shapes::ray::{NONE, Ray};
+use caustica::shapes::surface::surface_at;
+use glam::{DVec3, Vec2, Vec3};
+
+use super::lab::*;
+
+const DRAWS: u32 = 400_000;
+const ROWS: usize = 16;
+const COLUMNS: usize = 24;
+
+fn rng() -> Rng {
+    rng_new(5, 6, 7, 8)
+}
+
+/// Bin of a direction: equal steps of z and of the azimuth.
+fn bin(w: Vec3) -> usize {
+    let row = (((w.z as f64 + 1.0) * 0.5 * ROWS as f64) as usize).min(ROWS - 1);
+    let turn = (w.y as f64).atan2(w.x as f64) / (2.0 * PI) + 0.5;
+    row * COLUMNS + ((turn * COLUMNS as f64) as usize).min(COLUMNS - 1)
+}
+
+/// Integral of `pdf` over every bin, by the midpoint rule.
+fn shares(pdf: impl Fn(Vec3) -> f32) -> Vec<f64> {
+    const SUB: usize = 24;
+    let area = 4.0 * PI / (ROWS * COLUMNS * SUB * SUB) as f64;
+    let mut shares = vec![0.0; ROWS * COLUMNS];
+    for i in 0..ROWS * SUB {
+        for j in 0..COLUMNS * SUB {
+            let z = 2.0 * (i as f64 + 0.5) / (ROWS * SUB) as f64 - 1.0;
+            let (s, c) = (2.0 * PI * ((j as f64 + 0.5) / (COLUMNS * SUB) as f64 - 0.5)).sin_cos();
+            let r = (1.0 - z * z).sqrt();
+            let w = DVec3::new(r * c, r * s, z).as_vec3();
+            shares[i / SUB * COLUMNS + j / SUB] += pdf(w) as f64 * area;
+        }
+    }
+    shares
+}
+
+/// How many standard deviations chi-square lies above its mean; `slack` is the quadrature's relative error of a share.
+fn excess(counts: &[u32], shares: &[f64], slack: f64) -> f64 {
+    let (mut sum, mut bins, mut pool) = (0.0, 0.0, (0.0, 0.0));
+    let n = DRAWS as f64;
+    let mut add = |count: f64, expected: f64| {
+        let variance = expected + (slack * expected).powi(2);
+        sum += (count - expected).powi(2) / variance;
+        bins += 1.0;
+    };
+    for (count, share) in counts.iter().zip(shares) {
+        if n * share < 10.0 {
+            pool = (pool.0 + *count as f64, pool.1 + n * share);
+        } else {
+            add(*count as f64, n * share);
+        }
+    }
+    if pool.1 > 10.0 {
+        add(pool.0, pool.1);
+    } else {
+        assert!(pool.0 <= pool.1 + 30.0, "{} draws where {} are expected", pool.0, pool.1);
+    }
+    let k: f64 = bins - 1.0;
+    (sum - k) / (2.0 * k).sqrt()
+}
+
+/// Draws with `draw` follow `pdf`; a density of which half the sphere is scaled by 1.05 must be told from it.
+fn check(name: &str, draw: impl Fn(&mut Rng) -> Option<Vec3>, pdf: impl Fn(Vec3) -> f32) {
+    let mut rng = rng();
+    let mut counts = vec![0; ROWS * COLUMNS];
+    for _ in 0..DRAWS {
+        if let Some(w) = draw(&mut rng) {
+            counts[bin(w)] += 1;
+        }
+    }
+    let shares = shares(pdf);
+    let right = excess(&counts, &shares, 2e-3);
+    let total: f64 = shares.iter().sum();
+    let planted: Vec<f64> = shares
+        .iter()
+        .enumerate()
+        .map(|(i, s)| s * if i % COLUMNS < COLUMNS / 2 { 1.05 } else { 0.95 })
+        .collect();
+    let wrong = excess(&counts, &planted, 2e-3);
+    println!(
+        "{name}: chi-square {right:+.1} sigma, planted {wrong:+.1} sigma, the density's integral {total:.5}"
+    );
+    assert!(right < 6.0, "{name}: {right}");
+    assert!(wrong > 6.0, "{name}: a density off by 5 % is not found");
+}
+
+/// Theory: the densities in the functions' own words.
+#[test]
+fn basic_maps() {
+    let two = |rng: &mut Rng| {
+        let u = rng_next(rng);
+        Vec2::new(u.x, u.y)
+    };
+    check("cosine", |r| Some(sample_cosine(two(r))), |w| w.z.max(0.0) / PI as f32);
+    check("sphere", |r| Some(sample_sphere(two(r))), |_| PDF_SPHERE);
+    // a bin's edge lies at the cone's: 1 - cos = 4 / 8
+    check("cone", |r| Some(sample_cone(two(r), 0.5)), |w| if w.z > 0.5 { 1.0 / (PI as f32) } else { 0.0 });
+    let (mut disc, mut triangle) = ([0.0f64; 3], [0.0f64; 3]);
+    let mut rng = rng();
+    for _ in 0..DRAWS {
+        let d = sample_disc(two(&mut rng));
+        let b = sample_triangle(two(&mut rng));
+        assert!(d.length() <= 1.000001 && b.x >= 0.0 && b.y >= 0.0 && b.x + b.y <= 1.000001);
+        for (sum, p) in [(&mut disc, d), (&mut triangle, b)] {
+            sum[0] += (p.x * p.x) as f64;
+            sum[1] += (p.y * p.y) as f64;
+            sum[2] += (p.x * p.y) as f64;
+        }
+    }
+    // second moments: disc 1/4, 1/4, 0; triangle 1/6, 1/6, 1/12
+    let n = DRAWS as f64;
+    for (sum, truth) in [(disc, [0.25, 0.25, 0.0]), (triangle, [1.0 / 6.0, 1.0 / 6.0, 1.0 / 12.0])] {
+        for (s, t) in sum.iter().zip(truth) {
+            assert!((s / n - t).abs() < 6.0 * 0.3 / n.sqrt(), "{} {t}", s / n);
+        }
+    }
+}
+
+/// Theory: draws of the visible-normal sampler follow `pdf_metal` (what falls below the surface is no direction), and
+/// weight = eval cos / pdf for each.
+#[test]
+fn metal() {
+    for alpha in [0.3f32, 0.6, 1.0] {
+        for cos in [0.95f32, 0.6, 0.15] {
+            let wo = Vec3::new((1.0 - cos * cos).sqrt() * 0.8, (1.0 - cos * cos).sqrt() * 0.6, cos);
+            let draw = |r: &mut Rng| {
+                let u = rng_next(r);
+                let wi = sample_metal(wo, alpha, Vec2::new(u.x, u.y));
+                if wi.z <= 0.0 {
+                    return None;
+                }
+                let f0 = Vec3::new(0.9, 0.5, 0.2);
+                let weight = weight_metal(wo, wi, f0, alpha);
+                let ratio = eval_metal(wo, wi, f0, alpha) * (wi.z / pdf_metal(wo, wi, alpha));
+                assert!((weight - ratio).length() < 1e-4, "{weight} {ratio}");
+                Some(wi)
+            };
+            check(&format!("metal {alpha} at {cos}"), draw, |w| pdf_metal(wo, w, alpha));
+        }
+    }
+}
+
+fn packed(light: &str) -> caustica::tables::Scene {
+    let head = "version = 1\n[camera]\nposition = [0, -2, 0]\ntarget = [0, 0, 0]\nup = [1, 0, 0]\nfov = 40.0\n\
+                [materials.m]\ntype = \"diffuse\"\nreflectance = 0.0\n";
+    pack(&parse(&format!("{head}{light}")), 8, 8).unwrap().scene
+}
+
+/// Theory: directions to a light follow `pdf_light` over the sphere of directions: what a ray in direction w meets tells
+/// the density there. The same for the environment with `pdf_environment`.
+#[test]
+fn lights() {
+    let mesh = "v -1 1.2 0\nv 1 1 0.5\nv 0 1.5 -1\nv 0 0.6 0\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
+    let mesh = file("physics-light.obj", mesh.as_bytes());
+    let shapes = [
+        "type = \"sphere\"\ncenter = [0.3, 1, 0.2]\nradius = 0.7".to_owned(),
+        "type = \"rectangle\"\norigin = [-1, 0.7, -1]\nu = [2, 0.3, 0]\nv = [0, 0.2, 2]".into(),
+        "type = \"disc\"\ncenter = [0.2, 0.8, 0]\nnormal = [0.2, -1, 0.1]\nradius = 1.1".into(),
+        "type = \"box\"\nmin = [-0.8, 0.6, -0.6]\nmax = [0.6, 1.4, 0.8]".into(),
+        format!("type = \"mesh\"\nfile = \"{mesh}\"\nsmooth = false"),
+        "type = \"revolution\"\nsegments = [[[0, 0], [0.9, 0], [0.9, 0.5]], [[0.9, 0.5], [0.9, 1.2], [0, 1.2]]]\ntransform = { translate = [0, 0.5, 0], rotate = { axis = [1, 0, 1], degrees = 40 } }".into(),
+    ];
+    for shape in shapes {
+        let scene = packed(&format!("[[shapes]]\n{shape}\nmaterial = \"m\"\nemission = 1.0\n"));
+        let from = Vec3::new(0.05, -0.25, 0.1);
+        // z is bin()'s axis: put the upward axis there
+        let turn = |w: Vec3| Vec3::new(w.z, w.x, w.y);
+        let back = |w: Vec3| Vec3::new(w.y, w.z, w.x);
+        let draw = |r: &mut Rng| {
+            let s = sample_light(&scene, from, rng_next(r));
+            // a point on the far side is no direction to the light
+            let ray = Ray { origin: from, t_min: 0.0, direction: s.direction, t_max: s.distance };
+            (s.radiance.x > 0.0 && intersect_scene(&scene, &ray).reference == NONE).then(|| turn(s.direction))
+        };
+        let pdf = |w: Vec3| {
+            let ray = Ray { origin: from, t_min: 0.0, direction: back(w), t_max: 1e30 };
+            let hit = intersect_scene(&scene, &ray);
+            if hit.reference == NONE {
+                return 0.0;
+            }
+            let s = surface_at(&scene, &ray, &hit);
+            if s.normal.dot(ray.direction) >= 0.0 {
+                return 0.0;
+            }
+            pdf_light(&scene, s.light, from, ray.direction, hit.t, s.normal, s.v)
+        };
+        check(shape.split('"').nth(1).unwrap(), draw, pdf);
+        // and the areas: mean of 1 / pdf is the area that pdf stands for
+        let light = &scene.lights[0];
+        let mut r = rng();
+        let mean: f64 = (0..DRAWS)
+            .map(|_| {
+                let u = rng_next(&mut r);
+                1.0 / sample_shape(&scene, light, Vec2::new(u.x, u.y), u.z).pdf as f64
+            })
+            .sum::<f64>()
+            / DRAWS as f64;
+        assert!((mean / light.area as f64 - 1.0).abs() < 4e-3, "area {mean} {}", light.area);
+    }
+}
+
+#[test]
+fn environment() {
+    let texels: Vec<f32> =
+        (0..32 * 16).map(|i| if i % 37 == 5 { 4.0 } else { 0.25 + (i % 7) as f32 * 0.1 }).collect();
+    let at = |x: usize, y: usize| (texels[y * 32 + x], texels[y * 32 + x], texels[y * 32 + x]);
+    exr::prelude::write_rgb_file(folder().join("physics-density.exr"), 32, 16, at).unwrap();
+    for light in ["radiance = 1.0", "file = \"physics-density.exr\"\nrotate = 50.0"] {
+        let scene = packed(&format!("[environment]\n{light}\n"));
+        let light = &scene.lights[0];
+        // the picture's rows are bin()'s rings when y is its axis
+        let turn = |w: Vec3| Vec3::new(w.z, w.x, w.y);
+        let back = |w: Vec3| Vec3::new(w.y, w.z, w.x);
+        let draw = |r: &mut Rng| {
+            let w = sample_environment(&scene, light, rng_next(r));
+            assert!(eval_environment(&scene, light, w).x > 0.0);
+            Some(turn(w))
+        };
+        check("environment", draw, |w| pdf_environment(&scene, light, back(w)));
+    }
+}

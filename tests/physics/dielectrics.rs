@@ -1,0 +1,189 @@
+//! Glass: Fresnel, absorption, and where cameras, lights and other things are inside of it.
+
+use caustica::settings::{Direct, Method, RenderSettings};
+use glam::DVec3;
+
+use super::lab::*;
+
+const SPECULAR: [Method; 2] = [Method::Sppm, Method::Path];
+
+/// Eye paths only: what is seen needs no photon.
+fn seen(method: Method) -> RenderSettings {
+    RenderSettings { method, passes: 32, photons: 1, max_bounces: 200, ..settings(0.02) }
+}
+
+fn cube(size: f64) -> String {
+    let h = 0.5 * size;
+    let corner = |k: u32| [0, 1, 2].map(|b| if k >> b & 1 == 1 { h } else { -h });
+    let mut obj = String::new();
+    (0..8).map(corner).for_each(|c| obj += &format!("v {} {} {}\n", c[0], c[1], c[2]));
+    obj + "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n"
+}
+
+/// Bodies whose chord through the origin along z is 1.2 long.
+fn bodies() -> Vec<(&'static str, String)> {
+    let mesh = file("physics-glass-cube.obj", cube(1.2).as_bytes());
+    vec![
+        ("sphere", "type = \"sphere\"\ncenter = [0, 0, 0]\nradius = 0.6".into()),
+        ("box", "type = \"box\"\nmin = [-0.5, -0.7, -0.6]\nmax = [0.8, 0.6, 0.6]".into()),
+        ("revolution", "type = \"revolution\"\nsegments = [[[0, -0.5], [0.6, -0.5]], [[0.6, -0.5], [0.6, 0.5]], [[0.6, 0.5], [0, 0.5]]]".into()),
+        ("mesh", format!("type = \"mesh\"\nfile = \"{mesh}\"\nsmooth = false")),
+    ]
+}
+
+fn glass(body: &str, ior: f64, absorption: f64) -> String {
+    format!(
+        "[materials.glass]\ntype = \"glass\"\nior = {ior:?}\nabsorption = {absorption:?}\n[[shapes]]\n{body}\nmaterial = \"glass\"\n"
+    )
+}
+
+/// A narrow view along -z through the origin onto a constant sky.
+fn along_z() -> String {
+    let camera = Camera { position: DVec3::new(0.0, 0.0, 3.0), target: DVec3::ZERO, fov: 0.5, size: 8 };
+    camera.toml() + "[environment]\nradiance = 1.0\n"
+}
+
+/// Theory: with index 1 nothing is reflected, so radiance 1 arrives times exp(-sigma d) (Beer-Lambert).
+#[test]
+fn beer_lambert() {
+    for (name, body) in bodies() {
+        for sigma in [0.0, 0.5, 2.0] {
+            let text = along_z() + &glass(&body, 1.0, sigma);
+            for method in SPECULAR {
+                let truth = vec![(-sigma * 1.2f64).exp(); 64];
+                // roulette decides about little light
+                let power = if sigma < 1.0 { 0.002 } else { 0.03 };
+                let what = format!("{name}, sigma {sigma}, {method:?}");
+                runs_to(power, &text, &seen(method)).assert_picture(&what, &truth, power);
+            }
+        }
+    }
+}
+
+/// Theory: a slab has reflectance R at each face, and all the light that goes to and fro inside gets out: with
+/// a = exp(-sigma d) it transmits (1 - R)^2 a / (1 - R^2 a^2) and reflects R + R (1 - R)^2 a^2 / (1 - R^2 a^2). Without
+/// absorption that is (1 - R) / (1 + R) and 2 R / (1 + R). A bright wall in front of and behind the slab tells the two
+/// apart. The factor 1 / n^2 on the way in is undone on the way out.
+#[test]
+fn slab() {
+    for (ior, sigma) in [(1.5f64, 0.7), (2.4, 0.0), (1.0 / 1.5, 0.0)] {
+        let r = ((ior - 1.0) / (ior + 1.0)).powi(2);
+        {
+            let a = (-sigma * 0.5f64).exp();
+            let inside = (1.0 - r).powi(2) / (1.0 - r * r * a * a);
+            let (through, back) = (inside * a, r + r * inside * a * a);
+            for (emission, truth, name) in [([1.0, 0.0], through, "through"), ([0.0, 1.0], back, "back")] {
+                let camera =
+                    Camera { position: DVec3::new(0.0, 0.0, 2.0), target: DVec3::ZERO, fov: 0.5, size: 8 };
+                let mut text = camera.toml()
+                    + "[materials.black]\ntype = \"diffuse\"\nreflectance = 0.0\n"
+                    + &glass("type = \"box\"\nmin = [-9, -9, -0.25]\nmax = [9, 9, 0.25]", ior, sigma);
+                for (z, normal, e) in [(-2.0, 1.0, emission[0]), (3.0, -1.0, emission[1])] {
+                    text += &format!(
+                        "[[shapes]]\ntype = \"disc\"\ncenter = [0, 0, {z}]\nnormal = [0, 0, {normal}]\nradius = 9\nmaterial = \"black\"\nemission = {e:?}\n"
+                    );
+                }
+                for method in SPECULAR {
+                    let what = format!("slab {name}, ior {ior:.3}, sigma {sigma}, {method:?}");
+                    let settings = seen(method);
+                    runs_to(0.03, &text, &settings).assert_picture(&what, &[truth; 64], 0.03);
+                }
+            }
+        }
+    }
+}
+
+/// Theory: Snell and Fresnel at 60 degrees, unpolarised: R = (R_s + R_p) / 2, for one face alone (a disc of glass with
+/// nothing behind it that light is sent back from).
+#[test]
+fn fresnel_at_an_angle() {
+    let (cos_i, n) = (0.5f64, 1.5f64);
+    let cos_t = (1.0 - 0.75 / (n * n)).sqrt();
+    let s = (cos_i - n * cos_t) / (cos_i + n * cos_t);
+    let p = (n * cos_i - cos_t) / (n * cos_i + cos_t);
+    let truth = 0.5 * (s * s + p * p);
+    let d = DVec3::new(0.75f64.sqrt(), 0.5, 0.0);
+    let camera = Camera { position: d * 2.0, target: DVec3::ZERO, fov: 0.1, size: 8 };
+    let text = camera.toml()
+        + "[materials.black]\ntype = \"diffuse\"\nreflectance = 0.0\n"
+        + &glass("type = \"disc\"\ncenter = [0, 0, 0]\nnormal = [0, 1, 0]\nradius = 1", n, 0.0)
+        + &format!(
+            "[[shapes]]\ntype = \"disc\"\ncenter = {}\nnormal = {}\nradius = 1\nmaterial = \"black\"\nemission = 1.0\n",
+            list(DVec3::new(-d.x, d.y, 0.0) * 3.0),
+            list(DVec3::new(d.x, -d.y, 0.0))
+        );
+    for method in SPECULAR {
+        runs_to(0.02, &text, &seen(method)).assert_picture(
+            &format!("Fresnel, {method:?}"),
+            &[truth; 64],
+            0.02,
+        );
+    }
+}
+
+/// Theory: from inside an absorbing body of index 1, radiance 1 outside is seen through the rest of the way only.
+#[test]
+fn camera_inside_glass() {
+    let camera = Camera { position: DVec3::new(0.0, 0.0, 0.2), target: DVec3::ZERO, fov: 0.5, size: 8 };
+    for (name, body) in bodies() {
+        let text = camera.toml() + "[environment]\nradiance = 1.0\n" + &glass(&body, 1.0, 1.0);
+        for method in SPECULAR {
+            let truth = vec![(-0.8f64).exp(); 64];
+            runs(&text, &seen(method)).assert_picture(
+                &format!("camera in a {name}, {method:?}"),
+                &truth,
+                0.002,
+            );
+        }
+    }
+}
+
+/// Theory: camera, floor and point light inside one absorbing body of index 1: E = I h / d^3 exp(-sigma d), and the way
+/// to the camera takes exp(-sigma c). Glass that shines through from outside must not change that.
+#[test]
+fn all_inside_glass() {
+    const SIGMA: f64 = 0.8;
+    let camera = Camera { position: DVec3::new(0.0, 1.6, 3.0), target: DVec3::ZERO, fov: 6.0, size: 8 };
+    let at = DVec3::new(0.1, 0.5, -0.1);
+    let text = camera.toml()
+        + &glass("type = \"sphere\"\ncenter = [0, 0, 0]\nradius = 6.0", 1.0, SIGMA)
+        + "[materials.floor]\ntype = \"diffuse\"\nreflectance = 0.6\n[[shapes]]\ntype = \"disc\"\ncenter = [0, 0, 0]\nnormal = [0, 1, 0]\nradius = 1\nmaterial = \"floor\"\n"
+        + &format!("[[lights]]\ntype = \"point\"\nposition = {}\nintensity = 2.0\n", list(at));
+    let blur = |direct| if direct == Direct::Photons { 0.03 } else { 0.0 };
+    let picture = |direct| {
+        camera.floor_picture(blur(direct), |p| {
+            let d = (at - p).length();
+            let c = (camera.position - p).length();
+            0.6 / std::f64::consts::PI * 2.0 * at.y / d.powi(3) * (-SIGMA * (d + c)).exp()
+        })
+    };
+    for (method, direct) in
+        [(Method::Sppm, Direct::Sampled), (Method::Sppm, Direct::Photons), (Method::Path, Direct::Sampled)]
+    {
+        let settings = RenderSettings { method, direct, passes: 8, photons: 1 << 15, ..settings(0.03) };
+        runs_to(0.02, &text, &settings).assert_picture(
+            &format!("inside, {method:?} {direct:?}"),
+            &picture(direct),
+            0.02,
+        );
+    }
+}
+
+/// Theory: an absorbing ball of index 1 about a point light dims it by exp(-sigma R) and nothing else; only photons get
+/// through glass, in either direct mode.
+#[test]
+fn light_inside_glass() {
+    let camera = Camera { position: DVec3::new(0.0, 1.6, 3.0), target: DVec3::ZERO, fov: 6.0, size: 8 };
+    let at = DVec3::new(0.1, 0.5, -0.1);
+    let text = camera.toml()
+        + &glass(&format!("type = \"sphere\"\ncenter = {}\nradius = 0.2", list(at)), 1.0, 3.0)
+        + "[materials.floor]\ntype = \"diffuse\"\nreflectance = 0.6\n[[shapes]]\ntype = \"disc\"\ncenter = [0, 0, 0]\nnormal = [0, 1, 0]\nradius = 1\nmaterial = \"floor\"\n"
+        + &format!("[[lights]]\ntype = \"point\"\nposition = {}\nintensity = 2.0\n", list(at));
+    let truth = camera.floor_picture(0.03, |p| {
+        0.6 / std::f64::consts::PI * 2.0 * at.y / (at - p).length().powi(3) * (-0.6f64).exp()
+    });
+    for direct in DIRECT {
+        let settings = RenderSettings { direct, passes: 8, photons: 1 << 15, ..settings(0.03) };
+        runs_to(0.02, &text, &settings).assert_picture(&format!("light in a ball, {direct:?}"), &truth, 0.02);
+    }
+}

@@ -1,0 +1,191 @@
+//! Furnaces: scenes in which the radiance is the same everywhere, or in which a body must not be seen.
+
+use std::f64::consts::PI;
+
+use caustica::settings::{Direct, Method, RenderSettings};
+use glam::{DVec2, DVec3};
+
+use super::lab::*;
+
+/// Theory: in a closed room whose walls all emit Le and reflect rho, L = Le + rho L, so L = Le / (1 - rho) everywhere,
+/// whatever the room's form; cut off after b scatterings, Le (1 - rho^(b+1)) / (1 - rho). Every shape that can shine is
+/// a wall here: a room inside a box would have its emission outside, so six rectangles close it and the others stand in
+/// it.
+#[test]
+fn closed_room() {
+    const EMISSION: f64 = 0.25;
+    const ALBEDO: f64 = 0.6;
+    let mesh = file("physics-cube.obj", CUBE.as_bytes());
+    let view = |target, fov| Camera { position: DVec3::new(0.2, 0.8, 1.8), target, fov, size: 12 }.toml();
+    let mut text = format!("[materials.wall]\ntype = \"diffuse\"\nreflectance = {ALBEDO}\n");
+    let shapes = [
+        "type = \"rectangle\"\norigin = [-2, -1, -2]\nu = [0, 0, 4]\nv = [4, 0, 0]",
+        "type = \"rectangle\"\norigin = [-2, 1, -2]\nu = [4, 0, 0]\nv = [0, 0, 4]",
+        "type = \"rectangle\"\norigin = [-2, -1, -2]\nu = [4, 0, 0]\nv = [0, 2, 0]",
+        "type = \"rectangle\"\norigin = [-2, -1, 2]\nu = [0, 2, 0]\nv = [4, 0, 0]",
+        "type = \"rectangle\"\norigin = [-2, -1, -2]\nu = [0, 2, 0]\nv = [0, 0, 4]",
+        "type = \"rectangle\"\norigin = [2, -1, -2]\nu = [0, 0, 4]\nv = [0, 2, 0]",
+        "type = \"sphere\"\ncenter = [-0.6, -0.3, 0]\nradius = 0.4",
+        "type = \"box\"\nmin = [0.3, -0.9, -0.5]\nmax = [0.8, -0.2, 0.2]",
+        "type = \"revolution\"\nsegments = [[[0, 0], [0.3, 0]], [[0.3, 0], [0.6, 0.4], [0, 0.6]]]\ntransform = { translate = [-0.2, -0.8, 0.7] }",
+        &format!(
+            "type = \"mesh\"\nfile = \"{mesh}\"\ntransform = {{ scale = 0.4, rotate = {{ axis = [1, 1, 0], degrees = 30 }}, translate = [0.8, 0.1, 0.5] }}"
+        ),
+    ];
+    for shape in shapes {
+        text += &format!("[[shapes]]\n{shape}\nmaterial = \"wall\"\nemission = {EMISSION}\n");
+    }
+    let truth = vec![EMISSION / (1.0 - ALBEDO); 144];
+    // the whole room by path tracing; photons, whose discs lose light at edges, on a wall and on the ball
+    let room = view(DVec3::new(0.0, -0.2, 0.0), 60.0) + &text;
+    let path = RenderSettings { method: Method::Path, passes: 4, ..settings(0.02) };
+    runs_to(0.015, &room, &path).assert_picture("room, Path", &truth, 0.015);
+    for (place, target, fov) in
+        [("wall", DVec3::new(-0.3, 0.7, -2.0), 9.0), ("ball", DVec3::new(-0.6, -0.2, 0.0), 9.0)]
+    {
+        for direct in DIRECT {
+            let settings = RenderSettings { direct, passes: 4, photons: 1 << 14, ..settings(0.05) };
+            let text = view(target, fov) + &text;
+            runs_to(0.05, &text, &settings).assert_picture(
+                &format!("{place} of the room, {direct:?}"),
+                &truth,
+                0.05,
+            );
+        }
+    }
+}
+
+const CUBE: &str = "v -0.5 -0.5 -0.5\nv 0.5 -0.5 -0.5\nv 0.5 0.5 -0.5\nv -0.5 0.5 -0.5
+v -0.5 -0.5 0.5\nv 0.5 -0.5 0.5\nv 0.5 0.5 0.5\nv -0.5 0.5 0.5
+f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 3 4 8 7\nf 1 5 8 4\nf 2 3 7 6\n";
+
+/// A body alone in light of radiance 1 from everywhere, filling most of the picture.
+fn in_constant_light(body: &str) -> String {
+    let camera = Camera { position: DVec3::new(0.4, 1.1, 3.0), target: DVec3::ZERO, fov: 34.0, size: 12 };
+    camera.toml() + "[environment]\nradiance = 1.0\n" + body
+}
+
+/// Bodies of every closed form about the origin, of one material.
+fn bodies() -> Vec<(&'static str, String)> {
+    let mesh = file("physics-furnace-cube.obj", CUBE.as_bytes());
+    vec![
+        ("sphere", "type = \"sphere\"\ncenter = [0, 0, 0]\nradius = 0.8".into()),
+        ("box", "type = \"box\"\nmin = [-0.6, -0.5, -0.7]\nmax = [0.6, 0.4, 0.5]".into()),
+        ("revolution", "type = \"revolution\"\nprofile = [[0, 0], [0.9, 0], [0.7, 0.8], [0.1, 0.8], [0, 1.3]]\ntransform = { translate = [0, -0.6, 0] }".into()),
+        ("mesh", format!("type = \"mesh\"\nfile = \"{mesh}\"\nsmooth = false\ntransform = {{ scale = 1.2, rotate = {{ axis = [1, 2, 0], degrees = 35 }} }}")),
+    ]
+}
+
+/// Theory: a body that absorbs nothing reflects and refracts radiance 1 only, and radiance 1 comes out (the factor
+/// (n_i / n_t)^2 on the way in is undone on the way out): in constant light mirrors and clear glass cannot be seen. Light
+/// that goes on inside for more bounces than allowed would be lost; roulette must not lose it either.
+#[test]
+fn mirrors_and_glass_are_invisible() {
+    for (name, body) in bodies() {
+        for (kind, material) in
+            [("mirror", "type = \"mirror\"\nreflectance = 1.0"), ("glass", "type = \"glass\"\nior = 1.5")]
+        {
+            let text = in_constant_light(&format!(
+                "[materials.m]\n{material}\n[[shapes]]\n{body}\nmaterial = \"m\"\n"
+            ));
+            for method in [Method::Sppm, Method::Path] {
+                let settings =
+                    RenderSettings { method, passes: 8, photons: 1, max_bounces: 1000, ..settings(0.02) };
+                // the path tracer's roulette is noisier inside glass, where radiance is lower
+                let power = if method == Method::Path { 0.02 } else { 0.002 };
+                let what = format!("{kind} {name}, {method:?}");
+                runs_to(power, &text, &settings).assert_picture(&what, &[1.0; 144], power);
+            }
+        }
+    }
+}
+
+/// Theory: a convex diffuse body in constant light L has E = pi L everywhere, so its radiance is rho L; behind it the
+/// picture is L.
+#[test]
+fn diffuse_bodies() {
+    const ALBEDO: f64 = 0.5;
+    for (name, body) in &bodies()[..2] {
+        let camera = Camera {
+            position: DVec3::new(0.4, 1.1, 3.0),
+            target: DVec3::new(0.1, 0.1, 0.5),
+            fov: 4.0,
+            size: 12,
+        };
+        let text = camera.toml()
+            + &format!(
+                "[environment]\nradiance = 1.0\n[materials.m]\ntype = \"diffuse\"\nreflectance = {ALBEDO}\n\
+                 [[shapes]]\n{body}\nmaterial = \"m\"\n"
+            );
+        for (method, direct) in
+            [(Method::Sppm, Direct::Sampled), (Method::Ppm, Direct::Photons), (Method::Path, Direct::Photons)]
+        {
+            let settings = RenderSettings { method, direct, passes: 2, photons: 1 << 15, ..settings(0.03) };
+            let what = format!("diffuse {name}, {method:?} {direct:?}");
+            runs_to(0.04, &text, &settings).assert_picture(&what, &[ALBEDO; 144], 0.04);
+        }
+    }
+}
+
+/// Directional albedo of GGX with F = 1 and the height-correlated Smith term at cosine `mu`: the integral over the half
+/// vector's angle and azimuth of D G2 / (4 mu cos_i) cos_i, here as the integral over visible normals
+/// of G2 / G1 by stratified quadrature of Walter's (2007, eq. 35) sampling of D(h) cos h, which shares no code with
+/// the renderer: albedo = E_h[ G2 (wo.h) / (mu cos h) ].
+fn ggx_albedo(mu: f64, alpha: f64) -> f64 {
+    let wo = DVec3::new((1.0 - mu * mu).sqrt(), 0.0, mu);
+    let lambda = |c: f64| 0.5 * ((1.0 + alpha * alpha * (1.0 / (c * c) - 1.0)).sqrt() - 1.0);
+    let (n_theta, n_phi) = (600, 240);
+    let mut sum = 0.0;
+    for i in 0..n_theta {
+        let u = (i as f64 + 0.5) / n_theta as f64;
+        let tan = alpha * (u / (1.0 - u)).sqrt();
+        let cos = 1.0 / (1.0 + tan * tan).sqrt();
+        for k in 0..n_phi {
+            let (s, c) = (PI * (k as f64 + 0.5) / n_phi as f64).sin_cos();
+            let h = DVec3::new(tan * cos * c, tan * cos * s, cos);
+            let wi = h * (2.0 * wo.dot(h)) - wo;
+            if wo.dot(h) > 0.0 && wi.z > 0.0 {
+                sum += wo.dot(h) / ((1.0 + lambda(mu) + lambda(wi.z)) * mu * cos);
+            }
+        }
+    }
+    sum / (n_theta * n_phi) as f64
+}
+
+/// Theory: a plane of GGX metal with reflectance 1 in constant light shows its directional albedo, less than 1 by what
+/// the single-scattering model loses (Heitz et al. 2016); and that loss grows with roughness.
+#[test]
+fn metal_loses_what_single_scattering_loses() {
+    for (roughness, elevation) in [(0.3f64, 60.0f64), (0.7, 35.0), (1.0, 50.0), (1.0, 12.0)] {
+        let (sin, cos) = elevation.to_radians().sin_cos();
+        // narrow: nearly one direction
+        let camera = Camera {
+            position: DVec3::new(0.0, 4.0 * sin, 4.0 * cos),
+            target: DVec3::ZERO,
+            fov: 2.0,
+            size: 8,
+        };
+        let text = camera.toml()
+            + &format!(
+                "[environment]\nradiance = 1.0\n[materials.m]\ntype = \"metal\"\nreflectance = 1.0\nroughness = {roughness:?}\n\
+                 [[shapes]]\ntype = \"disc\"\ncenter = [0, 0, 0]\nnormal = [0, 1, 0]\nradius = 1.0\nmaterial = \"m\"\n"
+            );
+        let pixels = 64;
+        let at = |i: usize| DVec2::new((i % 8) as f64 + 0.5, (i / 8) as f64 + 0.5) / 8.0;
+        let alpha = roughness * roughness;
+        let truth: Vec<f64> =
+            (0..pixels).map(|i| ggx_albedo(-camera.direction(at(i)).normalize().y, alpha)).collect();
+        for (method, direct) in [
+            (Method::Sppm, Direct::Sampled),
+            (Method::Sppm, Direct::Photons),
+            (Method::Path, Direct::Photons),
+        ] {
+            if direct == Direct::Photons && method == Method::Sppm && roughness < 0.9 {
+                continue; // photons seldom arrive within so narrow a lobe
+            }
+            let settings = RenderSettings { method, direct, passes: 4, photons: 1 << 14, ..settings(0.05) };
+            let what = format!("metal {roughness} at {elevation} degrees, {method:?} {direct:?}");
+            runs_to(0.04, &text, &settings).assert_picture(&what, &truth, 0.04);
+        }
+    }
+}

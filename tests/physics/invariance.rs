@@ -1,0 +1,247 @@
+//! The same scene at another scale and place is the same picture.
+
+use caustica::settings::{Direct, Method, Radius, RenderSettings};
+use glam::DVec3;
+
+use super::lab::*;
+
+/// A scene with every shape and kind of light, `scale` times as large and moved by `shift` afterwards. Lengths scale;
+/// intensities scale by area, absorption by one over length; radiance and irradiance stay.
+pub fn everything(scale: f64, shift: DVec3, size: u32) -> String {
+    let p = |x: f64, y: f64, z: f64| list(DVec3::new(x, y, z) * scale + shift);
+    let v = |x: f64, y: f64, z: f64| list(DVec3::new(x, y, z) * scale);
+    let mesh = file("physics-everything.obj", MESH.as_bytes());
+    format!(
+        r#"version = 1
+[camera]
+position = {camera}
+target = {target}
+fov = 42.0
+[film]
+width = {size}
+height = {size}
+[textures.tiles]
+type = "checker"
+colors = [[0.7, 0.7, 0.7], [0.3, 0.3, 0.3]]
+scale = [6.0, 6.0]
+[materials.floor]
+type = "diffuse"
+reflectance = "tiles"
+[materials.clay]
+type = "diffuse"
+reflectance = 0.6
+[materials.steel]
+type = "metal"
+reflectance = 0.8
+roughness = 0.55
+[materials.chrome]
+type = "mirror"
+reflectance = 0.9
+[materials.glass]
+type = "glass"
+ior = 1.5
+absorption = {absorption:?}
+[materials.black]
+type = "diffuse"
+reflectance = 0.0
+[[shapes]]
+type = "rectangle"
+origin = {floor}
+u = {floor_u}
+v = {floor_v}
+material = "floor"
+[[shapes]]
+type = "rectangle"
+origin = {wall}
+u = {floor_u}
+v = {wall_v}
+material = "clay"
+[[shapes]]
+type = "sphere"
+center = {ball}
+radius = {ball_r:?}
+material = "glass"
+[[shapes]]
+type = "box"
+min = {box_min}
+max = {box_max}
+material = "clay"
+[[shapes]]
+type = "disc"
+center = {disc}
+normal = [0.3, 0.2, 1.0]
+radius = {disc_r:?}
+material = "chrome"
+[[shapes]]
+type = "mesh"
+file = "{mesh}"
+material = "clay"
+transform = {{ scale = {mesh_s:?}, translate = {mesh_t} }}
+[[shapes]]
+type = "revolution"
+profile = [[0.0, 0.0], [0.6, 0.0], [0.1, 0.6], [0.4, 0.9]]
+material = "steel"
+transform = {{ scale = {vase_s:?}, translate = {vase_t} }}
+[[shapes]]
+type = "disc"
+center = {lamp}
+normal = [0.0, -1.0, 0.1]
+radius = {lamp_r:?}
+material = "black"
+emission = 5.0
+[[lights]]
+type = "point"
+position = {point}
+intensity = {intensity:?}
+[[lights]]
+type = "spot"
+position = {spot}
+target = {spot_t}
+intensity = {intensity:?}
+angle = 30.0
+blend = 0.5
+[[lights]]
+type = "sun"
+direction = [0.4, -1.0, -0.5]
+irradiance = 0.5
+[environment]
+radiance = 0.2
+"#,
+        camera = p(0.0, 1.7, 4.2),
+        target = p(0.0, 0.6, 0.0),
+        absorption = 0.5 / scale,
+        floor = p(-2.0, 0.0, 2.0),
+        floor_u = v(4.0, 0.0, 0.0),
+        floor_v = v(0.0, 0.0, -4.0),
+        wall = p(-2.0, 0.0, -2.0),
+        wall_v = v(0.0, 2.5, 0.0),
+        ball = p(0.2, 0.4, 1.1),
+        ball_r = 0.4 * scale,
+        box_min = p(-1.5, 0.0, -1.0),
+        box_max = p(-0.9, 0.8, -0.4),
+        disc = p(0.1, 1.1, -1.4),
+        disc_r = 0.6 * scale,
+        mesh_s = 0.4 * scale,
+        mesh_t = p(1.2, 0.4, 0.4),
+        vase_s = scale,
+        vase_t = p(-0.4, 0.0, 0.2),
+        lamp = p(0.6, 2.2, 0.2),
+        lamp_r = 0.3 * scale,
+        point = p(-1.4, 1.6, 1.2),
+        spot = p(1.6, 1.9, 1.0),
+        spot_t = p(0.6, 0.0, -0.6),
+        intensity = 1.5 * scale * scale,
+    )
+}
+
+/// An octahedron; its normals are interpolated.
+const MESH: &str = "v 1 0 0\nv -1 0 0\nv 0 1 0\nv 0 -1 0\nv 0 0 1\nv 0 0 -1
+f 1 3 5\nf 3 2 5\nf 2 4 5\nf 4 1 5\nf 3 1 6\nf 2 3 6\nf 4 2 6\nf 1 4 6\n";
+
+fn settings_at(scale: f64, method: Method) -> RenderSettings {
+    RenderSettings {
+        method,
+        direct: Direct::Photons,
+        passes: 2,
+        photons: 1 << 13,
+        radius: Radius::Units(0.05 * scale),
+        ..settings(0.05)
+    }
+}
+
+/// Theory: a power of two changes no mantissa: not of lengths, and squares of powers of two not of intensities, so every
+/// bit of the picture stays.
+#[test]
+fn powers_of_two_change_no_bit() {
+    for method in [Method::Sppm, Method::Path] {
+        let picture =
+            |scale: f64| render(&parse(&everything(scale, DVec3::ZERO, 32)), &settings_at(scale, method));
+        let (one, other) = (picture(1.0), picture(3.0));
+        for scale in [1.0 / 1024.0, 0.5, 4096.0] {
+            let scaled = picture(scale);
+            let differ = one.rgb.iter().zip(&scaled.rgb).filter(|(a, b)| a != b).count();
+            assert_eq!(differ, 0, "{method:?}: pixels that scale {scale} changes");
+        }
+        assert_ne!(one.rgb, other.rgb, "the comparison sees what another scale does to rounding");
+    }
+}
+
+/// Theory: other scales and places change roundings only; paths part where they decide, so pictures agree within
+/// noise, which equal random numbers make small.
+#[test]
+fn scale_and_place_change_nothing() {
+    let size = 4.0;
+    for method in [Method::Sppm, Method::Path] {
+        let base = runs(&everything(1.0, DVec3::ZERO, 16), &settings_at(1.0, method));
+        for (scale, shift) in [
+            (1e-3, DVec3::ZERO),
+            (1e3, DVec3::ZERO),
+            (1.0, DVec3::new(1e4, -3e3, 5e3) * size),
+            (1e-3, DVec3::new(-1e4, 1e4, 2e3) * size * 1e-3),
+        ] {
+            let moved = runs(&everything(scale, shift, 16), &settings_at(scale, method));
+            let difference: Vec<f64> = (0..RUNS as usize)
+                .map(|k| {
+                    let (a, b) = (&base.pixels[k], &moved.pixels[k]);
+                    a.iter().sum::<f64>() / b.iter().sum::<f64>()
+                })
+                .collect();
+            // every run with its own numbers: far below the noise between runs
+            assert_agrees(
+                &format!("{method:?}, scale {scale}, shift {shift}"),
+                Estimate::of(&difference),
+                1.0,
+                0.01,
+            );
+            let worst = (0..256)
+                .map(|i| {
+                    let sum = |r: &Runs| r.pixels.iter().map(|p| p[i]).sum::<f64>();
+                    (sum(&base) / sum(&moved) - 1.0).abs()
+                })
+                .fold(0.0, f64::max);
+            println!("    worst pixel: {worst:.4}");
+        }
+    }
+}
+
+/// Theory: no point of a convex ball that faces a lamp is in shadow. Under a sun along the camera's axis every pixel
+/// on the ball has radiance rho E cos / pi > 0, and a shadowed one has 0: at any scale, and beside giants.
+#[test]
+fn no_ball_shadows_itself() {
+    for exponent in -6..=6 {
+        for place in [0.0, 1e3] {
+            let scale = 10f64.powi(exponent);
+            let at = DVec3::new(0.7, 0.4, -0.2) * place * scale;
+            let camera =
+                Camera { position: at + DVec3::new(0.0, 0.0, 4.0) * scale, target: at, fov: 20.0, size: 96 };
+            let text = camera.toml()
+                + &format!(
+                    "[materials.m]\ntype = \"diffuse\"\nreflectance = 1.0\n\
+                     [[shapes]]\ntype = \"sphere\"\ncenter = {}\nradius = {:?}\nmaterial = \"m\"\n\
+                     [[lights]]\ntype = \"sun\"\ndirection = [0.1, 0.05, -1.0]\nirradiance = 1.0\n",
+                    list(at),
+                    scale
+                );
+            let settings =
+                RenderSettings { method: Method::Path, passes: 1, max_bounces: 1, ..settings(scale) };
+            let scene = parse(&text);
+            let picture = render(&scene, &settings);
+            let to_sun = -DVec3::new(0.1, 0.05, -1.0).normalize();
+            let mut dark = 0;
+            for (i, c) in picture.rgb.iter().enumerate() {
+                let point = glam::DVec2::new((i % 96) as f64 + 0.5, (i / 96) as f64 + 0.5) / 96.0;
+                let d = camera.direction(point).normalize();
+                let o = camera.position - at;
+                let b = o.dot(d);
+                let discriminant = b * b - o.length_squared() + scale * scale;
+                // a pixel's width inside of the outline and of the terminator
+                let lit = discriminant > 0.0 && {
+                    let n = (o + d * (-b - discriminant.sqrt())) / scale;
+                    n.dot(to_sun) > 0.08 && n.dot(-d) > 0.2
+                };
+                dark += (lit && c[0] <= 0.0) as u32;
+            }
+            assert_eq!(dark, 0, "shadowed pixels at scale {scale:e}, place {place:e}");
+        }
+    }
+}

@@ -1,0 +1,275 @@
+//! Renders a scene with independent seeds and compares means per region with the theory or with one another.
+//!
+//! With K runs a region's mean m and standard error s satisfy |m - truth| <= T s with probability 1 - 1e-4 (Student's
+//! t with K - 1 degrees of freedom). A comparison also plants an error of stated size in the truth and fails unless the
+//! same test would reject it: a test too noisy to find such an error does not count.
+
+use std::path::PathBuf;
+
+use caustica::cpu::CpuEngine;
+use caustica::device;
+use caustica::engine::Engine;
+use caustica::film::Picture;
+use caustica::pack::pack;
+use caustica::plan::Plan;
+use caustica::scene::{self, Scene};
+use caustica::settings::{Direct, Method, Radius, RadiusRule, RenderSettings};
+use glam::{DVec2, DVec3};
+
+/// Independent runs of every comparison.
+pub const RUNS: u64 = 12;
+/// Two-sided quantile of Student's t with RUNS - 1 degrees of freedom at 1e-4.
+const T: f64 = 5.921;
+
+/// A pinhole camera, y up, over a square picture.
+#[derive(Clone, Copy)]
+pub struct Camera {
+    pub position: DVec3,
+    pub target: DVec3,
+    /// Vertical field of view, degrees.
+    pub fov: f64,
+    /// Pixels per row and per column.
+    pub size: u32,
+}
+
+impl Camera {
+    /// The head of a scene file.
+    pub fn toml(&self) -> String {
+        format!(
+            "version = 1\n[camera]\nposition = {}\ntarget = {}\nfov = {}\n[film]\nwidth = {}\nheight = {}\n",
+            list(self.position),
+            list(self.target),
+            self.fov,
+            self.size,
+            self.size
+        )
+    }
+
+    /// Direction through the picture at (x, y) in [0, 1]^2, row 0 on top; not unit.
+    pub fn direction(&self, at: DVec2) -> DVec3 {
+        let forward = (self.target - self.position).normalize();
+        let right = forward.cross(DVec3::Y).normalize();
+        let up = right.cross(forward);
+        let tan = (0.5 * self.fov).to_radians().tan();
+        forward + right * tan * (2.0 * at.x - 1.0) + up * tan * (1.0 - 2.0 * at.y)
+    }
+
+    /// Where the picture's point (x, y) lies on the plane y = 0.
+    pub fn on_floor(&self, at: DVec2) -> DVec3 {
+        let d = self.direction(at);
+        self.position - d * (self.position.y / d.y)
+    }
+
+    /// What the picture of a floor y = 0 with radiance `f` holds when photons are gathered from discs of radius `r`:
+    /// the mean over each pixel (3x3 points) and disc. For f = a quadratic the disc's mean is that over a ring of
+    /// radius r / sqrt 2.
+    pub fn floor_picture(&self, r: f64, f: impl Fn(DVec3) -> f64) -> Vec<f64> {
+        let n = self.size;
+        let ring = r * 0.5f64.sqrt();
+        let offsets = [DVec3::X, DVec3::NEG_X, DVec3::Z, DVec3::NEG_Z].map(|d| d * ring);
+        let point = |x: u32, y: u32, k: u32| {
+            let sub = DVec2::new((k % 3) as f64 + 0.5, (k / 3) as f64 + 0.5) / 3.0;
+            self.on_floor((DVec2::new(x as f64, y as f64) + sub) / n as f64)
+        };
+        let disc = |p: DVec3| offsets.iter().map(|o| f(p + *o)).sum::<f64>() / 4.0;
+        let pixels = (0..n * n).map(|i| (0..9).map(|k| disc(point(i % n, i / n, k))).sum::<f64>() / 9.0);
+        pixels.collect()
+    }
+}
+
+/// `v` as TOML and JSON write it.
+pub fn list(v: DVec3) -> String {
+    format!("[{:?}, {:?}, {:?}]", v.x, v.y, v.z)
+}
+
+/// The settings of all tests before they change any: photon mapping in a few passes, radius in scene units.
+pub fn settings(radius: f64) -> RenderSettings {
+    RenderSettings {
+        passes: 4,
+        photons: 1 << 15,
+        radius: Radius::Units(radius),
+        radius_rule: RadiusRule::Fixed,
+        max_bounces: 64,
+        ..RenderSettings::default()
+    }
+}
+
+/// Both ways of finding direct light.
+pub const DIRECT: [Direct; 2] = [Direct::Sampled, Direct::Photons];
+
+/// A folder for generated files.
+pub fn folder() -> PathBuf {
+    PathBuf::from(env!("CARGO_TARGET_TMPDIR"))
+}
+
+/// The scene that `text` describes; its files are relative to [`folder`].
+pub fn parse(text: &str) -> Scene {
+    match scene::parse(&folder().join("scene.toml"), text.as_bytes()) {
+        Ok(loaded) => loaded.scene,
+        Err(errors) => panic!("{errors:?}\n{text}"),
+    }
+}
+
+/// One run. The path tracer runs on the CPU, everything else on the device that is asked for.
+pub fn render(scene: &Scene, settings: &RenderSettings) -> Picture {
+    let device = std::env::var("CAUSTICA_DEVICE").unwrap_or_else(|_| "cpu".into());
+    let mut engine: Box<dyn Engine> = if settings.method == Method::Path || device == "cpu" {
+        let packed = pack(scene, scene.film.width, scene.film.height).unwrap_or_else(|e| panic!("{e}"));
+        let plan = Plan::new(&packed, settings);
+        Box::new(CpuEngine::new(packed, plan))
+    } else {
+        device::open(&device::parse(&device), scene, settings).unwrap_or_else(|e| panic!("{e}")).engine
+    };
+    for _ in 0..settings.passes {
+        engine.pass().unwrap();
+    }
+    let picture = engine.picture().unwrap();
+    assert_eq!(picture.not_finite(), 0, "NaN or infinity in the picture");
+    picture
+}
+
+/// Grey pixels of [`RUNS`] runs.
+pub struct Runs {
+    pub size: u32,
+    pub pixels: Vec<Vec<f64>>,
+}
+
+/// Renders `text` [`RUNS`] times with as many passes as a first look with other seeds, of `settings.passes`, says it takes
+/// for the whole picture's mean to be known to `power`.
+pub fn runs_to(power: f64, text: &str, settings: &RenderSettings) -> Runs {
+    let pilot = runs(text, &RenderSettings { seed: settings.seed + 1000, ..settings.clone() });
+    let Estimate { mean, error } = pilot.region(|_, _| true);
+    let needed = (T * error / (0.55 * (power - ARITHMETIC) * mean)).powi(2) * settings.passes as f64;
+    let passes = (needed.ceil() as u32).clamp(settings.passes, 128 * settings.passes);
+    runs(text, &RenderSettings { passes, ..settings.clone() })
+}
+
+/// Renders `text` [`RUNS`] times.
+pub fn runs(text: &str, settings: &RenderSettings) -> Runs {
+    let scene = parse(text);
+    let grey = |seed| {
+        let picture = render(&scene, &RenderSettings { seed: settings.seed + seed, ..settings.clone() });
+        picture.rgb.iter().map(|c| c.iter().map(|&x| x as f64).sum::<f64>() / 3.0).collect()
+    };
+    let start = std::time::Instant::now();
+    let r = Runs { size: scene.film.width, pixels: (0..RUNS).map(grey).collect() };
+    println!(
+        "TIME {:?} {} passes {:?}",
+        start.elapsed(),
+        settings.passes,
+        r.pixels
+            .iter()
+            .map(|p| (p.iter().sum::<f64>() / p.len() as f64 * 1e5).round() / 1e5)
+            .collect::<Vec<_>>()
+    );
+    r
+}
+
+/// A mean and its standard error.
+#[derive(Clone, Copy, Debug)]
+pub struct Estimate {
+    pub mean: f64,
+    pub error: f64,
+}
+
+impl Estimate {
+    /// Of independent values.
+    pub fn of(values: &[f64]) -> Self {
+        let n = values.len() as f64;
+        let mean = values.iter().sum::<f64>() / n;
+        let variance = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0);
+        Self { mean, error: (variance / n).sqrt() }
+    }
+
+    /// Whether the t-test lets `truth` pass; `slack` is a known numerical error of the truth or the arithmetic.
+    pub fn admits(&self, truth: f64, slack: f64) -> bool {
+        (self.mean - truth).abs() <= T * self.error + slack * truth.abs()
+    }
+}
+
+/// f32 sums and 16-bit directions: what no test can resolve.
+const ARITHMETIC: f64 = 2e-4;
+
+impl Runs {
+    /// The mean over the pixels for which `inside` holds.
+    pub fn region(&self, inside: impl Fn(u32, u32) -> bool) -> Estimate {
+        let means: Vec<f64> = self.pixels.iter().map(|p| region_mean(p, self.size, &inside)).collect();
+        Estimate::of(&means)
+    }
+
+    /// The whole picture and each of its quarters agree with `truth`, and would not with one that is off by `power`
+    /// (whole) or four times that (quarters). `what` names the case.
+    pub fn assert_picture(&self, what: &str, truth: &[f64], power: f64) {
+        let n = self.size;
+        assert_agrees(what, self.region(|_, _| true), region_mean(truth, n, &|_, _| true), power);
+        for quarter in 0..4 {
+            let inside = |x: u32, y: u32| (2 * x / n) + 2 * (2 * y / n) == quarter;
+            let name = format!("{what}, quarter {quarter}");
+            assert_agrees(&name, self.region(inside), region_mean(truth, n, &inside), 4.0 * power);
+        }
+    }
+}
+
+fn region_mean(pixels: &[f64], size: u32, inside: &impl Fn(u32, u32) -> bool) -> f64 {
+    let (mut sum, mut count) = (0.0, 0);
+    for (i, p) in pixels.iter().enumerate() {
+        if inside(i as u32 % size, i as u32 / size) {
+            sum += p;
+            count += 1;
+        }
+    }
+    sum / count as f64
+}
+
+/// `found` agrees with `truth`, and would not if the truth were off by the share `power`.
+pub fn assert_agrees(what: &str, found: Estimate, truth: f64, power: f64) {
+    let Estimate { mean, error } = found;
+    let report = format!(
+        "{what}: {mean:.6} +- {error:.6}, theory {truth:.6}: off by {:+.3} % ({:+.1} sigma)",
+        100.0 * (mean / truth - 1.0),
+        (mean - truth) / error
+    );
+    println!("{report}");
+    assert!(found.admits(truth, ARITHMETIC), "{report}");
+    for planted in [truth * (1.0 + power), truth * (1.0 - power)] {
+        let centred = Estimate { mean: truth, error };
+        assert!(!centred.admits(planted, ARITHMETIC), "{report}: too noisy to find an error of {power}");
+    }
+}
+
+/// Two estimates of one number agree, and would not if one were off by the share `power`.
+pub fn assert_same(what: &str, a: Estimate, b: Estimate, power: f64) {
+    let difference = Estimate { mean: a.mean - b.mean, error: a.error.hypot(b.error) };
+    let scale = 0.5 * (a.mean + b.mean).abs();
+    let sigma = difference.mean / difference.error;
+    let report = format!(
+        "{what}: {:.6} and {:.6}, off by {:+.3} % ({sigma:+.1} sigma)",
+        a.mean,
+        b.mean,
+        100.0 * difference.mean / scale
+    );
+    println!("{report}");
+    let bound = T * difference.error + ARITHMETIC * scale;
+    assert!(difference.mean.abs() <= bound, "{report}");
+    assert!(power * scale > bound, "{report}: too noisy to find an error of {power}");
+}
+
+/// A file in [`folder`], written once per name.
+pub fn file(name: &str, bytes: &[u8]) -> String {
+    let path = folder().join(name);
+    // tests run side by side: the file appears whole or not at all
+    let beside = path.with_extension(format!("{:?}.part", std::thread::current().id()));
+    std::fs::write(&beside, bytes).unwrap();
+    std::fs::rename(&beside, &path).unwrap();
+    name.to_owned()
+}
+
+/// Two sets of runs agree over the whole picture (to `power`) and in each of 4x4 tiles (to six times that).
+pub fn assert_regions(what: &str, a: &Runs, b: &Runs, power: f64) {
+    let n = a.size;
+    assert_same(what, a.region(|_, _| true), b.region(|_, _| true), 2.0 * power);
+    for tile in 0..16 {
+        let inside = |x: u32, y: u32| (4 * x / n) + 4 * (4 * y / n) == tile;
+        assert_same(&format!("{what}, tile {tile}"), a.region(inside), b.region(inside), 8.0 * power);
+    }
+}

@@ -1,0 +1,16 @@
+//! Light transport against closed forms: every test states its theory first, renders the scene in-process with several
+//! seeds, and holds region means against the answer within a t-test's interval (see [`lab`]).
+//!
+//! `CAUSTICA_DEVICE` chooses the device (default `cpu`).
+
+mod agreement;
+mod caustics;
+mod closed_forms;
+mod densities;
+mod dielectrics;
+mod furnace;
+mod integrating_sphere;
+mod invariance;
+mod irradiance;
+mod lab;
+mod meshes;

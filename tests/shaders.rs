@@ -1,0 +1,135 @@
+//! Every composition of the shaders parses and validates: each feature alone, all of them, and a spread of mixtures.
+//! Theory: naga is the compiler that wgpu uses, so what it accepts here it accepts in a render.
+
+mod ingredients;
+
+use caustica::features;
+use caustica::gpu::compose::{compose, compose_from};
+use caustica::gpu::fragments::{FRAGMENTS, Fragment};
+use caustica::gpu::layout::{Access, SceneTables, bindings};
+use caustica::plan::Kernel;
+use ingredients::Mixture;
+use std::collections::BTreeSet;
+
+/// Each feature alone, all of them, and `count` mixtures by a fixed sequence of random bits.
+fn mixtures(count: usize) -> Vec<Vec<&'static str>> {
+    let mut all: Vec<Vec<_>> = features::ALL.iter().map(|name| vec![*name]).collect();
+    all.push(Vec::new());
+    all.push(features::ALL.to_vec());
+    let mut state = 1u64;
+    for _ in 0..count {
+        all.push(
+            features::ALL
+                .into_iter()
+                .filter(|_| {
+                    state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+                    state >> 62 == 0
+                })
+                .collect(),
+        );
+    }
+    all
+}
+
+/// The faults of all compositions from `fragments`, each once, with the first mixture that shows it.
+fn faults(fragments: &[Fragment], count: usize) -> Vec<String> {
+    let mut seen = BTreeSet::new();
+    let mut list = Vec::new();
+    for names in mixtures(count) {
+        let mixture = Mixture::of(&names);
+        let tables = SceneTables::new(&mixture.scene);
+        for kernel in mixture.kernels() {
+            let shader = compose_from(fragments, kernel, &mixture.features(), &tables);
+            let fault = shader.and_then(|s| s.validate().map(|_| ())).err();
+            list.extend(
+                fault
+                    .filter(|e| seen.insert(e.to_string()))
+                    .map(|e| format!("{e} ({} with {names:?})", kernel.stem())),
+            );
+        }
+    }
+    list
+}
+
+#[test]
+fn every_composition_is_valid() {
+    let list = faults(FRAGMENTS, 150);
+    assert!(list.is_empty(), "{} faults:\n{}", list.len(), list.join("\n"));
+}
+
+/// The ingredients bring every feature, so that none goes untested.
+#[test]
+fn every_feature_is_mixed() {
+    for name in features::ALL {
+        assert!(Mixture::of(&[name]).features().has(name), "{name}");
+    }
+}
+
+/// A kernel's module has what the scene requires and nothing of what it does not.
+#[test]
+fn only_what_is_required() {
+    let source = |names: &[&str]| {
+        let mixture = Mixture::of(names);
+        compose(Kernel::EyeTrace, &mixture.features(), &SceneTables::new(&mixture.scene)).unwrap().source
+    };
+    let plain = source(&["sphere", "unbounded"]);
+    for word in [
+        "traverse",
+        "Revolution",
+        "sample_light",
+        "fresnel",
+        "ggx",
+        "eval_texture",
+        "triangles[",
+        "camera.aperture",
+    ] {
+        assert!(!plain.contains(word), "{word}");
+    }
+    let rich = source(&features::ALL);
+    for word in [
+        "traverse",
+        "Revolution",
+        "sample_light",
+        "fresnel",
+        "ggx",
+        "eval_texture",
+        "triangles[",
+        "camera.aperture",
+    ] {
+        assert!(rich.contains(word), "{word}");
+    }
+}
+
+/// WebGPU promises eight storage buffers.
+#[test]
+fn at_most_eight_storage_buffers() {
+    let features = Mixture::of(&features::ALL).features();
+    for kernel in Kernel::ALL {
+        let storage = bindings(kernel, &features).iter().filter(|b| b.access != Access::Uniform).count();
+        assert!(storage <= 8, "{}: {storage}", kernel.stem());
+    }
+}
+
+/// A typo planted in any file is found, and named with its file and line.
+#[test]
+fn a_planted_error_is_found() {
+    for (path, right, wrong) in [
+        ("shapes/sphere.wgsl", "let root = sqrt(discriminant);", "let root = sqrtt(discriminant);"),
+        ("kernels/gather.wgsl", "found.count += 1u;", "found.count += 1.0;"),
+        ("kernels/grid_sort.wgsl", "let key = records[item].key;", "let key = records[item].kez;"),
+        ("lights/light.wgsl", "fn choose_light(u: f32)", "fn choose_light(u: f33)"),
+        ("kernels/resolve.wgsl", "var sum = vec3f(0.0);", "var sum = vec3f(0.0)"),
+        ("materials/scatter.wgsl", "//#if glass", "//#if glas"),
+    ] {
+        let mut fragments = FRAGMENTS.to_vec();
+        let fragment = fragments.iter_mut().find(|f| f.path == path).unwrap();
+        let (before, _) =
+            fragment.text.split_once(right).unwrap_or_else(|| panic!("{path} has no `{right}`"));
+        let line = before.matches('\n').count() + 1;
+        fragment.text = Box::leak(fragment.text.replacen(right, wrong, 1).into_boxed_str());
+        let list = faults(&fragments, 0);
+        let at = [format!("{path}:{line}:"), format!("{path}:{}:", line + 1)];
+        assert!(list.iter().any(|f| at.iter().any(|at| f.starts_with(at))), "{path}:{line} not in {list:#?}");
+        assert!(list.iter().all(|f| f.starts_with(path)), "{list:#?}");
+    }
+}
