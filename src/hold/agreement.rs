@@ -79,7 +79,7 @@ impl Deviations {
 
     /// Number beyond [`LIMIT`].
     pub fn outside(&self) -> usize {
-        self.values.iter().filter(|d| !(d.abs() <= LIMIT)).count()
+        self.values.iter().filter(|d| d.is_nan() || d.abs() > LIMIT).count()
     }
 
     /// The one that is largest in size, or one that is no number.
@@ -123,7 +123,7 @@ impl Agreement {
             (!mean, "mean"),
             (self.blocks.outside() > self.blocks.allowed, "blocks"),
             (self.regions.outside() > self.regions.allowed, "regions"),
-            (!(self.blocks.worst().abs() <= LIMIT_FAR), "one block"),
+            (self.blocks.worst().is_nan() || self.blocks.worst().abs() > LIMIT_FAR, "one block"),
         ];
         found.into_iter().filter(|(fault, _)| *fault).map(|(_, name)| name).collect()
     }
