@@ -20,7 +20,7 @@
 //!
 //! Modules depend on one another one way: [`math`], then [`tables`], [`shapes`], [`materials`], [`lights`],
 //! [`camera`] and [`grid`], then [`scene`], [`build`], [`pack`], then [`kernels`], [`probe`], [`plan`], then [`cpu`]
-//! and [`gpu`], then [`device`] and [`render`].
+//! and [`gpu`], then [`device`] and [`render`], and last [`hold`].
 
 pub mod build;
 pub mod camera;
