@@ -31,6 +31,7 @@ pub mod features;
 pub mod film;
 pub mod gpu;
 pub mod grid;
+pub mod hold;
 pub mod kernels;
 pub mod lights;
 pub mod materials;
