@@ -20,8 +20,8 @@ use caustica::settings::{Direct, Method, Radius, RadiusRule, RenderSettings};
 const EDGE: u32 = 2;
 /// Allowance for the bias of density estimation.
 const BIAS: f64 = 0.01;
-/// Independent renders that a PPM picture is made of.
-const PPM_PARTS: u32 = 24;
+/// Independent renders that a picture is made of.
+const RENDERS: u32 = 24;
 
 fn load(name: &str) -> (Scene, BlockTruth) {
     let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data");
@@ -33,13 +33,13 @@ fn load(name: &str) -> (Scene, BlockTruth) {
 
 /// Half a pixel here is two of the truth's pixels.
 fn settings() -> RenderSettings {
-    RenderSettings { passes: 96, photons: 16_384, radius: Radius::Pixels(0.5), ..RenderSettings::default() }
+    RenderSettings { passes: 4, photons: 16_384, radius: Radius::Pixels(0.5), ..RenderSettings::default() }
 }
 
 fn rendered(name: &str, settings: &RenderSettings) -> (Rendered, BlockTruth) {
     let (scene, truth) = load(name);
     let size = (truth.mean.width, truth.mean.height);
-    (render_parts(&Wanted::Cpu, &scene, settings, PPM_PARTS, size).unwrap(), truth)
+    (render_parts(&Wanted::Cpu, &scene, settings, RENDERS, size).unwrap(), truth)
 }
 
 #[track_caller]
@@ -98,14 +98,14 @@ fn ppm_agrees_under_every_rule_and_in_both_direct_modes() {
         ("drop", RadiusRule::Fixed, Direct::Photons),
     ] {
         let small = Radius::Pixels(0.25);
-        let ppm = RenderSettings { method: Method::Ppm, passes: 4, radius: small, ..settings() };
+        let ppm = RenderSettings { method: Method::Ppm, radius: small, ..settings() };
         assert_agrees(name, &RenderSettings { radius_rule, direct, ..ppm }, BIAS);
     }
 }
 
 #[test]
 fn path_tracing_agrees_without_any_allowance() {
-    let path = RenderSettings { method: Method::Path, passes: 256, ..settings() };
+    let path = RenderSettings { method: Method::Path, passes: 16, ..settings() };
     assert_agrees("mesh", &path, 0.0);
 }
 
