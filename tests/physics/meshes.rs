@@ -93,20 +93,20 @@ fn agree(name: &str, material: &str, power: f64) {
 
 #[test]
 fn diffuse() {
-    agree("diffuse", "type = \"diffuse\"\nreflectance = 0.8", 0.02);
+    agree("diffuse", "type = \"diffuse\"\nreflectance = 0.8", 0.04);
 }
 
 #[test]
 fn metal() {
-    agree("metal", "type = \"metal\"\nreflectance = 0.9\nroughness = 0.6", 0.02);
+    agree("metal", "type = \"metal\"\nreflectance = 0.9\nroughness = 0.6", 0.04);
 }
 
 #[test]
 fn mirror() {
-    agree("mirror", "type = \"mirror\"\nreflectance = 0.9", 0.02);
+    agree("mirror", "type = \"mirror\"\nreflectance = 0.9", 0.04);
 }
 
 #[test]
 fn glass() {
-    agree("glass", "type = \"glass\"\nior = 1.5\nabsorption = 0.3", 0.02);
+    agree("glass", "type = \"glass\"\nior = 1.5\nabsorption = 0.3", 0.04);
 }
