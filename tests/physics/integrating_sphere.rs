@@ -59,11 +59,14 @@ fn total() {
             })
             .collect();
         for direct in DIRECT {
-            for (method, radius_rule) in [
+            let rules = [
                 (Method::Sppm, RadiusRule::Fixed),
                 (Method::Ppm, RadiusRule::Global),
                 (Method::Sppm, RadiusRule::Local),
-            ] {
+            ];
+            // the rules one by one with the source that is not in the middle
+            let count = if source == DVec3::ZERO { 1 } else { 3 };
+            for (method, radius_rule) in rules.into_iter().take(count) {
                 let settings = RenderSettings {
                     method,
                     direct,
