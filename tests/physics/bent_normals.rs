@@ -82,7 +82,7 @@ fn diffuse() {
 #[test]
 fn glass() {
     const N: f64 = 1.5;
-    let (to_sun, ns) = (at_degrees(60.0), at_degrees(75.0));
+    let (to_sun, ns) = (at_degrees(60.0), at_degrees(105.0));
     let face = [
         DVec3::new(-3.0, 1.2, 3.0),
         DVec3::new(3.0, 1.2, 3.0),

@@ -138,6 +138,20 @@ fn camera_inside_glass() {
     }
 }
 
+/// Theory: radiance over the squared index stays along a ray, and light that a clear body sends back to and fro
+/// inside comes from everywhere: in constant light 1 the inside holds n^2.
+#[test]
+fn camera_inside_clear_glass() {
+    let camera = Camera { position: DVec3::new(0.0, 0.0, 0.2), target: DVec3::ZERO, fov: 5.0, size: 8 };
+    for (name, body) in bodies() {
+        let text = camera.toml() + "[environment]\nradiance = 1.0\n" + &glass(&body, 1.5, 0.0);
+        for method in SPECULAR {
+            let what = format!("camera in a clear {name}, {method:?}");
+            runs_to(0.02, &text, &seen(method)).assert_picture(&what, &[2.25; 64], 0.02);
+        }
+    }
+}
+
 /// Theory: camera, floor and point light inside one absorbing body of index 1: E = I h / d^3 exp(-sigma d), and the way
 /// to the camera takes exp(-sigma c). Glass that shines through from outside must not change that.
 #[test]
