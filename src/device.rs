@@ -5,15 +5,19 @@ use thiserror::Error;
 use crate::cpu::CpuEngine;
 use crate::engine::{Engine, EngineError};
 use crate::gpu::{self, AdapterChoice, AdapterKind, AdapterSummary, GpuEngine};
+use crate::kernels::records::VisiblePoint;
 use crate::pack::pack;
 use crate::plan::Plan;
 use crate::scene::Scene;
 use crate::settings::{Method, RenderSettings};
 
+/// Most visible points of a picture: their numbers are 32 bits wide.
+const POINTS_MAX: u64 = 1 << 31;
+
 /// What a user asks for.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Wanted {
-    /// A hardware GPU, else a software driver, else the CPU.
+    /// A hardware GPU, else the CPU: a software driver would give the same bits, several times slower.
     Auto,
     /// The first hardware GPU.
     Gpu,
@@ -110,13 +114,16 @@ pub fn list() -> Vec<DeviceInfo> {
             ("invocations in a workgroup".to_owned(), a.workgroup_invocations as u64),
         ],
     });
-    let cpu = DeviceInfo {
+    adapters.chain([cpu()]).collect()
+}
+
+fn cpu() -> DeviceInfo {
+    DeviceInfo {
         name: "cpu".to_owned(),
         kind: DeviceKind::Cpu,
         driver: format!("{} threads", rayon::current_num_threads()),
         limits: Vec::new(),
-    };
-    adapters.chain([cpu]).collect()
+    }
 }
 
 /// The device that a wish means, and why.
@@ -130,15 +137,13 @@ pub fn pick<'a>(wanted: &Wanted, devices: &'a [DeviceInfo]) -> Result<(&'a Devic
             let name = name.to_lowercase();
             (devices.iter().find(|device| device.name.to_lowercase().contains(&name)), "asked for by name")
         }
-        Wanted::Auto => {
-            if let Some(device) = of_kind(DeviceKind::Gpu) {
-                (Some(device), "auto: a hardware GPU")
-            } else if let Some(device) = of_kind(DeviceKind::Software) {
-                (Some(device), "auto: no hardware GPU, but a software driver")
-            } else {
-                (of_kind(DeviceKind::Cpu), "auto: neither a GPU nor a software driver")
-            }
-        }
+        Wanted::Auto => match of_kind(DeviceKind::Gpu) {
+            Some(device) => (Some(device), "auto: a hardware GPU"),
+            None => (
+                of_kind(DeviceKind::Cpu),
+                "auto: no hardware GPU; a software driver gives the same bits slower",
+            ),
+        },
     };
     match found {
         Some(device) => Ok((device, why.to_owned())),
@@ -157,9 +162,11 @@ pub fn pick<'a>(wanted: &Wanted, devices: &'a [DeviceInfo]) -> Result<(&'a Devic
 
 /// Makes an engine for a scene on the device that is wanted. Path tracing runs on the CPU alone, so `auto` takes it.
 pub fn open(wanted: &Wanted, scene: &Scene, settings: &RenderSettings) -> Result<Opened, DeviceError> {
-    let devices = list();
     let path = settings.method == Method::Path && *wanted == Wanted::Auto;
-    let (device, why) = pick(if path { &Wanted::Cpu } else { wanted }, &devices)?;
+    let wanted = if path { &Wanted::Cpu } else { wanted };
+    // drivers take a while to answer and may write to standard error, so they are not asked for nothing
+    let devices = if *wanted == Wanted::Cpu { vec![cpu()] } else { list() };
+    let (device, why) = pick(wanted, &devices)?;
     let why = if path { "auto: path tracing runs on the CPU".to_owned() } else { why };
     Ok(Opened { engine: start(device, scene, settings)?, name: device.name.clone(), why })
 }
@@ -169,7 +176,19 @@ fn start(
     scene: &Scene,
     settings: &RenderSettings,
 ) -> Result<Box<dyn Engine>, EngineError> {
-    let packed = pack(scene, scene.film.width, scene.film.height)?;
+    let film = &scene.film;
+    let samples = if settings.method == Method::Ppm { settings.eye_samples as u64 } else { 1 };
+    let points = film.width as u64 * film.height as u64 * samples;
+    if points > POINTS_MAX {
+        return Err(EngineError::TooLarge {
+            what: format!("a picture of {} x {} pixels", film.width, film.height),
+            needed: points * size_of::<VisiblePoint>() as u64,
+            device: device.name.clone(),
+            limit: POINTS_MAX * size_of::<VisiblePoint>() as u64,
+            mend: "make width, height or eye_samples smaller".to_owned(),
+        });
+    }
+    let packed = pack(scene, film.width, film.height)?;
     let plan = Plan::new(&packed, settings);
     match device.kind {
         DeviceKind::Cpu => Ok(Box::new(CpuEngine::new(packed, plan))),
@@ -177,7 +196,7 @@ fn start(
     }
 }
 
-/// Theory: the order of preference is hardware, software driver, CPU, whatever the order of the list.
+/// Theory: the order of preference is hardware, then the CPU, whatever the order of the list.
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -202,7 +221,7 @@ mod tests {
             assert_eq!(picked(wanted, devices).as_deref(), Some(name), "{wanted}");
         };
         is("auto", &all, "NVIDIA X");
-        is("auto", &all[..2], "llvmpipe (LLVM 15)");
+        is("auto", &all[..2], "cpu");
         is("auto", &all[..1], "cpu");
         is("gpu", &all, "NVIDIA X");
         is("Software", &all, "llvmpipe (LLVM 15)");

@@ -20,7 +20,7 @@
 //!
 //! Modules depend on one another one way: [`math`], then [`tables`], [`shapes`], [`materials`], [`lights`],
 //! [`camera`] and [`grid`], then [`scene`], [`build`], [`pack`], then [`kernels`], [`probe`], [`plan`], then [`cpu`]
-//! and [`gpu`], then [`device`] and [`render`].
+//! and [`gpu`], then [`device`] and [`render`], and last [`hold`].
 
 pub mod build;
 pub mod camera;
@@ -31,6 +31,7 @@ pub mod features;
 pub mod film;
 pub mod gpu;
 pub mod grid;
+pub mod hold;
 pub mod kernels;
 pub mod lights;
 pub mod materials;

@@ -96,9 +96,21 @@ impl Kernel {
                     ("order", true),
                 ]
             }
-            Self::GridSort => vec![("records", false), ("starts", false), ("order", true), ("sorted", true)],
+            Self::GridSort => vec![
+                ("records", false),
+                ("counters", true),
+                ("starts", false),
+                ("order", true),
+                ("sorted", true),
+            ],
             Self::Gather => {
-                vec![("visible_points", false), ("starts", false), ("sorted", false), ("gathered", true)]
+                vec![
+                    ("visible_points", false),
+                    ("counters", true),
+                    ("starts", false),
+                    ("sorted", false),
+                    ("gathered", true),
+                ]
             }
             Self::Resolve => vec![("visible_points", false), ("gathered", false), ("film", true)],
         };

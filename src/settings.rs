@@ -74,9 +74,12 @@ pub struct RenderSettings {
     pub alpha: f64,
     /// Where direct light comes from.
     pub direct: Direct,
-    /// Most scattering events on a photon path and on an eye path.
+    /// Most scattering events on a photon path and on an eye path. With 0 only light seen directly and, but for path
+    /// tracing, light straight from lights is left.
+    #[schemars(range(max = 65535))]
     pub max_bounces: u32,
     /// PPM: fixed visible points per pixel, stratified over pixel and lens.
+    #[schemars(range(min = 1, max = 65536))]
     pub eye_samples: u32,
     /// Seed of the random numbers.
     pub seed: u64,

@@ -167,6 +167,10 @@ fn info_tells_what_is_needed_and_what_is_not() {
         "{shown}"
     );
     assert_eq!(line("triangles"), "", "no table that the scene does without: {shown}");
+    let path = text(&caustica(&folder, &["info", "ball.toml", "--method", "path"]).stdout);
+    assert!(path.contains("kernels needed: path_trace\n"), "{path}");
+    assert!(path.contains("\nfilm ") && !path.contains("\nrecords "), "{path}");
+    assert!(shown.contains("\nrecords "), "{shown}");
     let lens = SCENE.replace("fov = 40.0", "fov = 40.0\naperture = 0.1\nfocus = 4.0");
     fs::write(folder.join("lens.toml"), lens).unwrap();
     let shown = text(&caustica(&folder, &["info", "lens.toml"]).stdout);
@@ -183,7 +187,7 @@ fn help_lists_only_what_works() {
     let help = caustica(&folder, &["--help"]);
     assert_eq!(help.status.code(), Some(0));
     let help = text(&help.stdout);
-    for command in ["render", "compare", "info", "check", "devices"] {
+    for command in ["render", "compare", "info", "check", "devices", "tessellate"] {
         assert!(help.contains(&format!("\n  {command} ")), "{command}: {help}");
         let own = caustica(&folder, &[command, "--help"]);
         assert_eq!(own.status.code(), Some(0), "{command}");
@@ -198,4 +202,41 @@ fn help_lists_only_what_works() {
     }
     let version = caustica(&folder, &["--version"]);
     assert_eq!(text(&version.stdout), format!("caustica {}\n", env!("CARGO_PKG_VERSION")));
+}
+
+/// Every example that a help text gives runs; renders are made small.
+#[test]
+fn examples_of_the_help_texts_run() {
+    let folder = folder("examples");
+    fs::remove_file(folder.join("ball.toml")).unwrap();
+    let scenes = format!("{}/scenes/", env!("CARGO_MANIFEST_DIR"));
+    let mut run = 0;
+    for command in [
+        &["--help"][..],
+        &["render", "--help"],
+        &["info", "--help"],
+        &["check", "--help"],
+        &["tessellate", "--help"],
+    ] {
+        let help = text(&caustica(&folder, command).stdout);
+        let examples = help.lines().filter_map(|line| line.strip_prefix("  caustica "));
+        for example in examples {
+            let example = example.replace("scenes/", &scenes);
+            let mut arguments: Vec<_> = example.split(' ').collect();
+            if arguments[0] == "render" {
+                arguments.extend(["--size", "16x16", "--passes", "1", "--photons", "1000"]);
+                arguments.extend(["--device", "cpu"].iter().filter(|_| !example.contains("--device")));
+            }
+            let output = caustica(&folder, &arguments);
+            assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", text(&output.stderr));
+            run += 1;
+        }
+    }
+    assert_eq!(run, 7, "two, two, one, one and one");
+    let mut left: Vec<_> = fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    left.sort();
+    assert_eq!(
+        left,
+        ["caustics.png", "cornell.exr", "cornell.png", "picture.exr", "picture.png", "vase.obj"]
+    );
 }

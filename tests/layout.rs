@@ -48,7 +48,8 @@ fn hosts() -> Vec<Layout> {
             width,
             lens_right,
             height,
-            lens_up
+            lens_up,
+            medium
         }),
         layout!(Sphere { anchor, curvature, normal, radius, material, light, uv }),
         layout!(Rectangle { origin, material, normal, light, u, uv, v, area, dual_u, dual_v }),
@@ -102,7 +103,8 @@ fn hosts() -> Vec<Layout> {
             cos_outer,
             cos_inner,
             patch_first,
-            patch_count
+            patch_count,
+            medium
         }),
         layout!(Dispatch {
             first,
@@ -126,7 +128,18 @@ fn hosts() -> Vec<Layout> {
             strata,
             passes_done
         }),
-        layout!(VisiblePoint { position, radius, weight, normal, radiance, shading, reflectance, alpha, wo }),
+        layout!(VisiblePoint {
+            position,
+            radius,
+            weight,
+            normal,
+            radiance,
+            shading,
+            reflectance,
+            alpha,
+            wo,
+            stopped
+        }),
         layout!(PhotonRecord { position, key, flux, direction }),
         layout!(Gathered { flux, count }),
         layout!(Statistics { scale_sq, drop, count_low, count_high }),

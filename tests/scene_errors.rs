@@ -15,6 +15,13 @@ fn errors_of(text: &str) -> SceneErrors {
     }
 }
 
+/// A fresh folder for a test's own files.
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("scene_errors").join(name);
+    std::fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
 /// Line, column, and a part of the message with its caret's label and its help.
 type Expected = (usize, usize, &'static str);
 
@@ -56,7 +63,9 @@ fn one_fault_each() {
         ("[render]\npasses = 0\n", (7, 10, "at least 1")),
         ("[render]\nphotons = 5_000_000_000\n", (7, 11, "out of range")),
         ("[render]\nalpha = 1.5\n", (7, 9, "greater than 0 and at most 1")),
-        ("[render]\nradius = { pixels = -2 }\n", (7, 21, "greater than 0")),
+        ("[render]\nradius = { pixels = -2 }\n", (7, 21, "from 1e-15 to 1e15")),
+        ("[render]\neye_samples = 0\n", (7, 15, "from 1 to 65536")),
+        ("[render]\nmax_bounces = 70_000\n", (7, 15, "from 0 to 65535")),
         ("[render]\nradius = { pixel = 2 }\n", (7, 10, "{ pixels = ... } or { units = ... }")),
         ("[render]\nmethod = \"bdpt\"\n", (7, 10, "expected \"sppm\" or \"ppm\" or \"path\"")),
         ("[materials.a]\ntype = \"difuse\"\n", (7, 8, "did you mean `diffuse`?")),
@@ -95,6 +104,83 @@ fn one_fault_each() {
         .iter()
         .filter_map(|&(text, expected)| differs(&errors_of(&format!("{HEAD}{text}")).errors, &[expected]));
     assert_eq!(wrong.collect::<Vec<_>>().join("\n"), "");
+}
+
+/// What f32 cannot hold once the scene is scaled: lengths above 1e15 or, where 0 is none, below 1e-15; light above 1e30.
+/// The bounds themselves pass.
+#[test]
+fn numbers_beyond_single_precision() {
+    let cases: &[(&str, Expected)] = &[
+        ("up = [0, 1.1e15, 0]\n", (6, 10, "too large for single precision | expected at most 1e15")),
+        ("up = [0, -1e300, 0]\n", (6, 10, "too large")),
+        ("up = [0, 10_000_000_000_000_000, 0]\n", (6, 10, "too large")),
+        ("aperture = 1e16\nfocus = 1\n", (6, 12, "too large")),
+        ("focus = 1e-16\n", (6, 9, "too small for single precision | expected at least 1e-15")),
+        ("[render]\nradius = { units = 1e-16 }\n", (7, 20, "from 1e-15 to 1e15")),
+        ("[render]\nradius = { units = 1e16 }\n", (7, 20, "too large")),
+        ("[environment]\nradiance = [1, 2e30, 1]\n", (7, 16, "expected at most 1e30")),
+        (
+            "[[lights]]\ntype = \"point\"\nposition = [0, 0, 1e31]\nintensity = 1\n",
+            (8, 19, "expected at most 1e15"),
+        ),
+    ];
+    let wrong = cases
+        .iter()
+        .filter_map(|&(text, expected)| differs(&errors_of(&format!("{HEAD}{text}")).errors, &[expected]));
+    assert_eq!(wrong.collect::<Vec<_>>().join("\n"), "");
+    let shapes: &[(&str, Expected)] = &[
+        (
+            "type = \"rectangle\"\norigin = [0, 0, 0]\nu = [1e-20, 0, 0]\nv = [0, 1e-20, 0]",
+            (14, 5, "has no area"),
+        ),
+        ("type = \"box\"\nmin = [0, 0, 0]\nmax = [1, 1, 1e-16]", (13, 7, "is empty")),
+        (
+            "type = \"mesh\"\nfile = \"cube.obj\"\ntransform = { scale = 1e15, translate = [1e15, 0, 0] }",
+            (13, 13, "reaches to 2.0e15"),
+        ),
+        (
+            "type = \"revolution\"\nprofile = [[1e8, 0], [1e8, 1]]\ntransform = { scale = 1e8 }",
+            (13, 13, "reaches to 1.0e16"),
+        ),
+    ];
+    let wrong = shapes.iter().filter_map(|&(text, expected)| {
+        let text = format!("{HEAD}{MATERIAL}[[shapes]]\nmaterial = \"grey\"\n{text}\n");
+        differs(&errors_of(&text).errors, &[expected])
+    });
+    assert_eq!(wrong.collect::<Vec<_>>().join("\n"), "");
+    let bounds = format!(
+        "{HEAD}up = [0, 1e15, 0]\nfocus = 1e-15\n[environment]\nradiance = 1e30\n[render]\nseed = 9223372036854775807\n"
+    );
+    assert!(parse(&data("scene.toml"), bounds.as_bytes()).is_ok());
+    let folder = folder("large");
+    std::fs::write(folder.join("far.obj"), "v 0 0 0\nv 1e16 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+    let text =
+        format!("{HEAD}{MATERIAL}[[shapes]]\ntype = \"mesh\"\nfile = \"far.obj\"\nmaterial = \"grey\"\n");
+    let errors = parse(&folder.join("scene.toml"), text.as_bytes()).unwrap_err().errors;
+    assert_eq!(differs(&errors, &[(2, 3, "`1e16` is too large")]), None);
+}
+
+/// One value is told of once, by the check that comes first; keys that are missing in one table, and several faults of
+/// one word of a mesh, are told each.
+#[test]
+fn one_report_for_a_value() {
+    let plane = "[[shapes]]\ntype = \"plane\"\npoint = [0, 0, 0]\nnormal = [0, 1, 0]\nmaterial = \"grey\"\nemission = -1\n";
+    let errors = errors_of(&format!("{HEAD}{MATERIAL}{plane}")).errors;
+    assert_eq!(differs(&errors, &[(14, 12, "not below 0")]), None);
+    let errors = errors_of(&format!("{HEAD}[render]\nalpha = 1e20\n")).errors;
+    assert_eq!(differs(&errors, &[(7, 9, "too large")]), None);
+    let errors = errors_of("version = 1\n[camera]\nfov = 30\n").errors;
+    assert_eq!(differs(&errors, &[(2, 1, "`position` is missing"), (2, 1, "`target` is missing")]), None);
+
+    let folder = folder("twice");
+    std::fs::write(folder.join("bad.obj"), "v 0 0 0\nvt 0 0\nf 1 2/3 1\n").unwrap();
+    let mesh = "[[shapes]]\ntype = \"mesh\"\nfile = \"bad.obj\"\nmaterial = \"grey\"\n";
+    let once = format!("{HEAD}{MATERIAL}{mesh}");
+    let [once, twice] = [once.clone(), format!("{once}{mesh}")]
+        .map(|text| parse(&folder.join("scene.toml"), text.as_bytes()).unwrap_err().errors);
+    assert!(!once.is_empty());
+    let told_all = |errors: &[Finding]| errors.iter().map(told).collect::<Vec<_>>();
+    assert_eq!(told_all(&once), told_all(&twice));
 }
 
 /// As above, in a shape that starts at line 9.
@@ -269,6 +355,48 @@ fn warnings() {
     let found =
         warnings(&format!("{HEAD}[[lights]]\ntype = \"point\"\nposition = [0, 0, 0]\nintensity = 0\n"));
     assert_eq!(differs(&found, &[(9, 13, "gives no light")]), None);
+}
+
+/// An alpha channel is not used, and a warning says so where it would matter: not where it is 1 throughout.
+#[test]
+fn alpha_is_told_of() {
+    let folder = folder("alpha");
+    let save = |name: &str, alpha: u8| {
+        let pixel = |x, _| image::Rgba([200, 100, 50, if x == 1 { alpha } else { 255 }]);
+        image::ImageBuffer::from_fn(2, 2, pixel).save(folder.join(name)).unwrap();
+    };
+    save("clear.png", 254);
+    save("solid.png", 255);
+    let exr = |name: &str, alpha: f32| {
+        let pixel = move |x: usize, _| (0.5f32, 0.5f32, 0.5f32, if x == 2 { alpha } else { 1.0 });
+        exr::prelude::write_rgba_file(folder.join(name), 3, 2, pixel).unwrap();
+    };
+    exr("clear.exr", 0.5);
+    exr("solid.exr", 1.0);
+    exr::prelude::write_rgb_file(folder.join("none.exr"), 3, 2, |_, _| (0.5f32, 0.5f32, 0.5f32)).unwrap();
+    let warnings = |texture: &str| {
+        let text = format!(
+            "{HEAD}[textures.t]\ntype = \"image\"\nfile = \"{texture}\"\n[materials.m]\ntype = \"diffuse\"\nreflectance = \"t\"\n\
+             [[shapes]]\ntype = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1\nmaterial = \"m\"\nemission = 1\n"
+        );
+        parse(&folder.join("scene.toml"), text.as_bytes()).unwrap().warnings
+    };
+    for clear in ["clear.png", "clear.exr"] {
+        assert_eq!(differs(&warnings(clear), &[(8, 8, "alpha channel")]), None, "{clear}");
+    }
+    for solid in ["solid.png", "solid.exr", "none.exr"] {
+        assert_eq!(differs(&warnings(solid), &[]), None, "{solid}");
+    }
+    std::fs::write(
+        folder.join("leaf.obj"),
+        "mtllib leaf.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl leaf\nf 1 2 3\n",
+    )
+    .unwrap();
+    std::fs::write(folder.join("leaf.mtl"), "newmtl leaf\nmap_Kd clear.png\n").unwrap();
+    let text =
+        format!("{HEAD}[environment]\nradiance = 1\n[[shapes]]\ntype = \"mesh\"\nfile = \"leaf.obj\"\n");
+    let found = parse(&folder.join("scene.toml"), text.as_bytes()).unwrap().warnings;
+    assert_eq!(differs(&found, &[(10, 8, "alpha channel of map_Kd")]), None);
 }
 
 /// Whatever bytes a file holds, it loads or is refused; nothing panics, and every error has a place in the text.

@@ -8,7 +8,7 @@ use caustica::device::{self, Wanted};
 use caustica::film::Picture;
 use caustica::scene;
 use caustica::settings::{Direct, Method, RadiusRule, RenderSettings};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 fn shipped() -> Vec<PathBuf> {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes");
@@ -23,7 +23,7 @@ fn shipped() -> Vec<PathBuf> {
 }
 
 /// `scene` at 96 pixels across, two passes.
-fn render(path: &PathBuf, wanted: &Wanted, change: impl Fn(&mut RenderSettings)) -> Picture {
+fn render(path: &Path, wanted: &Wanted, change: impl Fn(&mut RenderSettings)) -> Picture {
     let mut loaded = scene::load(path).unwrap_or_else(|e| panic!("{}: {e:?}", path.display()));
     let film = &mut loaded.scene.film;
     (film.width, film.height) = (96, 96 * film.height / film.width);

@@ -40,11 +40,12 @@ fn faults(fragments: &[Fragment], count: usize) -> Vec<String> {
         let tables = SceneTables::new(&mixture.scene);
         for kernel in mixture.kernels() {
             let shader = compose_from(fragments, kernel, &mixture.features(), &tables);
-            if let Err(e) = shader.and_then(|s| s.validate().map(|_| ())) {
-                if seen.insert(e.to_string()) {
-                    list.push(format!("{e} ({} with {names:?})", kernel.stem()));
-                }
-            }
+            let fault = shader.and_then(|s| s.validate().map(|_| ())).err();
+            list.extend(
+                fault
+                    .filter(|e| seen.insert(e.to_string()))
+                    .map(|e| format!("{e} ({} with {names:?})", kernel.stem())),
+            );
         }
     }
     list

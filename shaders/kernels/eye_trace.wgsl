@@ -84,8 +84,12 @@ fn eye_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
         ray = Ray(origin, 0.0, scattered.direction, FAR);
         //#end
     }
+    if loops_stopped() {
+        point.stopped = 1u;
+    } else {
+        count_rays(rays);
+    }
     visible_points[id] = point;
-    count_rays(rays);
 }
 
 fn start_radius(footprint: f32) -> f32 {

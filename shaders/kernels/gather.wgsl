@@ -1,6 +1,6 @@
 // Density estimate at one visible point: twin of src/kernels/gather.rs. Run by one invocation per visible point of a
 // chunk and photon batch; reads `visible_points`, `starts`, `sorted` (and `statistics` under the local rule), adds to
-// `gathered`.
+// `gathered` and, where the driver stopped it, to `counters`.
 
 const FLATNESS: f32 = 0.25;
 const COS_MIN: f32 = 1e-2;
@@ -66,4 +66,5 @@ fn gather(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups) gr
         }
     }
     gathered[id] = found;
+    loops_stopped();
 }

@@ -46,6 +46,7 @@ fn grid_sort(
             sort_long(slice.x, slice.y, local);
         }
     }
+    loops_stopped();
 }
 
 // Insertion sort.

@@ -1,6 +1,7 @@
 // Path of one photon: twin of src/kernels/photon_trace.rs. Run by one invocation per photon of a batch; reads the
 // scene, appends to `records` (in any order) and adds to `counters`. Beyond the capacity it counts on but stores
-// nothing.
+// nothing. A record with direction 0, which
+// no vector has, says that the driver stopped the loops of photon `key`, which is to be traced again.
 
 @compute @workgroup_size(64)
 fn photon_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups) groups: vec3u) {
@@ -50,7 +51,11 @@ fn photon_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgrou
         let origin = offset_origin(s.position, s.error, s.normal, scattered.direction);
         ray = Ray(origin, 0.0, scattered.direction, FAR);
     }
-    count_rays(rays);
+    if loops_stopped() {
+        append(PhotonRecord(vec3f(0.0), id, vec3f(0.0), 0u));
+    } else {
+        count_rays(rays);
+    }
 }
 
 fn store_record(id: u32, bounce: u32, s: Surface, wo: vec3f, flux: vec3f) {
@@ -61,9 +66,13 @@ fn store_record(id: u32, bounce: u32, s: Surface, wo: vec3f, flux: vec3f) {
     //#end
     if stored && max_component(reflectance_at(s.material, s.uv)) > 0.0 {
         let key = (id << dispatch.key_bits) | bounce;
-        let slot = atomicAdd(&counters.records, 1u);
-        if slot < dispatch.capacity {
-            records[slot] = PhotonRecord(s.position, key, flux, oct_encode(wo));
-        }
+        append(PhotonRecord(s.position, key, flux, oct_encode(wo)));
+    }
+}
+
+fn append(record: PhotonRecord) {
+    let slot = atomicAdd(&counters.records, 1u);
+    if slot < dispatch.capacity {
+        records[slot] = record;
     }
 }

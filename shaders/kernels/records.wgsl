@@ -33,7 +33,7 @@ struct VisiblePoint {
     reflectance: vec3f,
     alpha: f32,
     wo: vec3f,
-    pad: u32,
+    stopped: u32,
 }
 
 struct PhotonRecord {
@@ -60,19 +60,37 @@ struct FilmPixel {
     rejected: u32,
 }
 
-// Records appended to the batch (also those beyond the capacity, which are not stored), and the pass's rays in
-// two words.
+// Records appended to the batch (also those beyond the capacity, which are not stored), the pass's rays in two words,
+// and the invocations whose loops the driver stopped.
 struct Counters {
     records: atomic<u32>,
     rays_low: atomic<u32>,
     rays_high: atomic<u32>,
-    pad: u32,
+    stopped: atomic<u32>,
 }
 
 // Number of the invocation among those of a dispatch of workgroups of 64 laid out in rows.
 fn invocation(gid: vec3u, groups: vec3u) -> u32 {
     return gid.y * groups.x * 64u + gid.x + dispatch.first;
 }
+
+//#if eye_trace || photon_trace || grid_sort || gather
+// Whether the driver has stopped running loops; counts it. Mesa's software driver leaves every loop, without a word, once all loops of an
+// invocation together have made 65535 rounds; from then on each is left after its first round, and so is this one.
+// (`end` is below 2^31, which no compiler knows.)
+fn loops_stopped() -> bool {
+    let wanted = 2u + (dispatch.end >> 31u);
+    var rounds = 0u;
+    while rounds < wanted {
+        rounds += 1u;
+    }
+    if rounds < wanted {
+        atomicAdd(&counters.stopped, 1u);
+        return true;
+    }
+    return false;
+}
+//#end
 
 //#if local
 // Twin of `scale_sq` in src/kernels/gather.rs.

@@ -44,8 +44,7 @@ fn sample_metal(wo: vec3f, alpha: f32, u: vec2f) -> vec3f {
     let s = 0.5 * (1.0 + vh.z);
     let p2 = (1.0 - s) * sqrt(max(1.0 - p1 * p1, 0.0)) + s * (r * sc.x);
     let nh = t1 * p1 + t2 * p2 + vh * sqrt(max(1.0 - p1 * p1 - p2 * p2, 0.0));
-    let h = unit(vec3f(alpha * nh.x, alpha * nh.y, max(nh.z, 1e-6)));
-    return h * (2.0 * dot(wo, h)) - wo;
+    return unit(vec3f(alpha * nh.x, alpha * nh.y, max(nh.z, 1e-6)));
 }
 
 fn pdf_metal(wo: vec3f, wi: vec3f, alpha: f32) -> f32 {
@@ -56,11 +55,10 @@ fn pdf_metal(wo: vec3f, wi: vec3f, alpha: f32) -> f32 {
     return ggx_d(h.z, alpha) / (4.0 * wo.z * (1.0 + ggx_lambda(wo.z, alpha)));
 }
 
-fn weight_metal(wo: vec3f, wi: vec3f, f0: vec3f, alpha: f32) -> vec3f {
+fn weight_metal(wo: vec3f, h: vec3f, wi: vec3f, f0: vec3f, alpha: f32) -> vec3f {
     if wi.z <= 0.0 {
         return vec3f(0.0);
     }
-    let h = unit(wo + wi);
     let lo = ggx_lambda(wo.z, alpha);
     return schlick(f0, dot(wo, h)) * ((1.0 + lo) / (1.0 + lo + ggx_lambda(wi.z, alpha)));
 }

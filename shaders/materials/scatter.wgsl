@@ -95,8 +95,9 @@ fn scatter_rough(s: Surface, wo: vec3f, medium: u32, u: vec2f, mode: u32) -> Sca
     if m.kind == MATERIAL_METAL {
         let f = basis(n);
         let local_wo = vec3f(dot(wo, f.t), dot(wo, f.b), dot(wo, n));
-        let local_wi = sample_metal(local_wo, m.alpha, u);
-        weight = weight_metal(local_wo, local_wi, weight, m.alpha);
+        let h = sample_metal(local_wo, m.alpha, u);
+        let local_wi = mirrored(local_wo, h);
+        weight = weight_metal(local_wo, h, local_wi, weight, m.alpha);
         wi = from_frame(n, local_wi);
     }
     //#end

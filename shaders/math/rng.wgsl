@@ -29,8 +29,32 @@ fn pcg4d(p: vec4u) -> vec4u {
     return v;
 }
 
+fn rng_step(k: u32) -> vec4u {
+    switch k {
+        case 0u: {
+            return vec4u(0x6a09e667u, 0xbb67ae85u, 0x3c6ef372u, 0xa54ff53au);
+        }
+        case 1u: {
+            return vec4u(0x510e527fu, 0x9b05688cu, 0x1f83d9abu, 0x5be0cd19u);
+        }
+        case 2u: {
+            return vec4u(0xcbbb9d5du, 0x629a292au, 0x9159015au, 0x152fecd8u);
+        }
+        default: {
+            return vec4u(0x67332667u, 0x8eb44a87u, 0xdb0c2e0du, 0x47b5481du);
+        }
+    }
+}
+
 fn rng_next(rng: ptr<function, Rng>) -> vec4f {
-    let h = pcg4d(vec4u((*rng).index, (*rng).pass_number, (*rng).dimension, (*rng).seed));
+    let k = (*rng).dimension - STREAM_EYE;
+    var h: vec4u;
+    if k < 4u {
+        h = pcg4d(vec4u((*rng).index, 0u, (*rng).dimension, (*rng).seed));
+        h += rng_step(k) * (*rng).pass_number;
+    } else {
+        h = pcg4d(vec4u((*rng).index, (*rng).pass_number, (*rng).dimension, (*rng).seed));
+    }
     (*rng).dimension += 1u;
     return vec4f(h >> vec4u(8u)) * (1.0 / 16777216.0);
 }

@@ -52,6 +52,7 @@ fn intersect_patch(
     t_min: f32,
     t_max: f32,
 ) -> PatchHit {
+    load_control_points(piece);
     var ray = local_ray(revolution, origin, direction);
     let o = ray.origin;
     let d = ray.direction;
@@ -98,6 +99,7 @@ fn intersect_patch(
 }
 
 fn revolution_surface(revolution: Revolution, piece: Patch, theta: f32, tau: f32) -> RevolutionSurface {
+    load_control_points(piece);
     var at = ring_point(piece, theta, tau);
     let p = at.point * revolution.scale;
     // The tangent alone gives the normal, on the axis too; at a cusp the tangent next to it stands in.

@@ -45,8 +45,50 @@ struct RingPoint {
     d_tau: vec3f,
 }
 
-// (s, h, ds/dtau, dh/dtau), by de Casteljau.
+// The first four control points of the patch at hand: some devices read buffers slowly, and a patch is evaluated often.
+struct ControlPoints {
+    b0: vec2f,
+    b1: vec2f,
+    b2: vec2f,
+    b3: vec2f,
+}
+
+var<private> control_points: ControlPoints;
+
+// To be called before the functions below are called with another patch.
+fn load_control_points(piece: Patch) {
+    let first = piece.first_point;
+    let last = first + piece.degree;
+    control_points = ControlPoints(
+        scene.profile_points[first],
+        scene.profile_points[first + 1u],
+        scene.profile_points[min(first + 2u, last)],
+        scene.profile_points[min(first + 3u, last)],
+    );
+}
+
+// (s, h, ds/dtau, dh/dtau), by de Casteljau. The usual degrees need no array and no loop, which are dear, too.
 fn profile_point(piece: Patch, tau: f32) -> vec4f {
+    let n = piece.degree;
+    if n > 3u {
+        return profile_point_high(piece, tau);
+    }
+    var b0 = control_points.b0;
+    var b1 = control_points.b1;
+    if n > 1u {
+        var b2 = control_points.b2;
+        if n > 2u {
+            b0 += (b1 - b0) * tau;
+            b1 += (b2 - b1) * tau;
+            b2 += (control_points.b3 - b2) * tau;
+        }
+        b0 += (b1 - b0) * tau;
+        b1 += (b2 - b1) * tau;
+    }
+    return profile_end(b0, b1, n, tau);
+}
+
+fn profile_point_high(piece: Patch, tau: f32) -> vec4f {
     let n = piece.degree;
     var b: array<vec2f, MAX_DEGREE + 1u>;
     for (var i = 0u; i <= n; i++) {
@@ -57,8 +99,13 @@ fn profile_point(piece: Patch, tau: f32) -> vec4f {
             b[i] += (b[i + 1u] - b[i]) * tau;
         }
     }
-    let leg = b[1] - b[0];
-    let point = b[0] + leg * tau;
+    return profile_end(b[0], b[1], n, tau);
+}
+
+// The last step, between the last two points.
+fn profile_end(b0: vec2f, b1: vec2f, n: u32, tau: f32) -> vec4f {
+    let leg = b1 - b0;
+    let point = b0 + leg * tau;
     let tangent = leg * f32(n);
     return vec4f(point.x, point.y, tangent.x, tangent.y);
 }

@@ -1,5 +1,5 @@
 //! A Bezier profile turned about the y axis as a triangle mesh with smooth normals and (u, v), as Wavefront
-//! OBJ text. In the profile's own coordinates; all in f64.
+//! OBJ text; all in f64.
 
 use std::collections::HashMap;
 use std::fmt::Write as _;
@@ -8,6 +8,7 @@ use glam::{DVec2, DVec3};
 
 use super::bezier::{derivative, point, split};
 use super::revolution::ProfileError;
+use crate::scene::Transform;
 use crate::shapes::revolution::MAX_DEGREE;
 
 /// How fine the mesh is.
@@ -50,7 +51,8 @@ struct Sample {
     v: f64,
 }
 
-/// The mesh of the surface that `segments` (control points (radius, height)) make about the y axis.
+/// The mesh of the surface that `segments` (control points (radius, height)) make about the y axis, in the profile's own
+/// coordinates.
 ///
 /// # Errors
 /// When the profile is no surface; see [`ProfileError`].
@@ -178,6 +180,14 @@ impl Builder {
 }
 
 impl RevolutionMesh {
+    /// The mesh in the world.
+    #[must_use]
+    pub fn transformed(mut self, world_from_object: &Transform) -> Self {
+        self.positions.iter_mut().for_each(|p| *p = world_from_object.point(*p));
+        self.normals.iter_mut().for_each(|n| *n = world_from_object.direction(*n));
+        self
+    }
+
     /// Wavefront OBJ text: `v`, `vt`, `vn` and `f v/vt/vn` lines, with `header` lines as comments.
     pub fn to_obj(&self, header: &str) -> String {
         let mut out = String::new();

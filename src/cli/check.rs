@@ -10,11 +10,18 @@ use super::{Done, Failure};
 
 /// Report all errors and warnings of scene files
 #[derive(clap::Args)]
+#[command(after_help = HELP)]
 pub struct Arguments {
     /// Scene files
     #[arg(required = true, value_name = "SCENE")]
     scenes: Vec<PathBuf>,
 }
+
+const HELP: &str = "\
+Every file is read with all the meshes and pictures that it names; nothing is rendered.
+
+Example:
+  caustica check scenes/cornell.toml scenes/caustics.toml";
 
 /// Checks each file; fails at the end if one has errors.
 pub fn run(arguments: Arguments) -> Result<Done, Failure> {

@@ -7,6 +7,7 @@ use caustica::engine::EngineError;
 use caustica::features;
 use caustica::pack::{Packed, pack};
 use caustica::plan::{Kernel, Plan};
+use caustica::settings::Method;
 use caustica::tables::Scene;
 
 use super::output::result;
@@ -16,12 +17,17 @@ use super::{Done, Failure};
 
 /// Show what a scene needs and what is left out: features, kernels, bytes of every buffer
 #[derive(clap::Args)]
+#[command(after_help = HELP)]
 pub struct Arguments {
     /// Scene file
     scene: PathBuf,
     #[command(flatten)]
     overrides: Overrides,
 }
+
+const HELP: &str = "\
+Example:
+  caustica info scenes/caustics.toml --method ppm --size 1920x1080";
 
 /// What a render of a scene is made of.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -52,9 +58,13 @@ fn report(packed: &Packed, plan: &Plan) -> InfoReport {
     let features = features::ALL.iter().map(|name| ((*name).to_owned(), plan.features.has(name)));
     let steps = plan.steps(0, plan.batch_photons);
     let used = |kernel| steps.iter().any(|step| step.kernel == kernel);
-    let kernels = Kernel::ALL.iter().map(|kernel| (kernel.stem().to_owned(), used(*kernel)));
+    // A path tracer is one kernel, of the CPU engine, and keeps nothing but the film.
+    let path = plan.settings.method == Method::Path;
+    let kernels = Kernel::ALL.iter().map(|kernel| (kernel.stem().to_owned(), !path && used(*kernel)));
+    let kernels = kernels.chain([("path_trace".to_owned(), path)]);
     let tables = scene_tables(&packed.scene).into_iter().filter(|(_, bytes)| *bytes > 0);
-    let buffers = tables.chain(plan.buffers()).map(|(name, bytes)| (name.to_owned(), bytes));
+    let own_buffers = plan.buffers().into_iter().filter(|(name, _)| !path || *name == "film");
+    let buffers = tables.chain(own_buffers).map(|(name, bytes)| (name.to_owned(), bytes));
     InfoReport { features: features.collect(), kernels: kernels.collect(), buffers: buffers.collect() }
 }
 
@@ -91,7 +101,7 @@ impl fmt::Display for InfoReport {
         for (title, entries, word, wanted) in [
             ("features", &self.features, "needed", true),
             ("features", &self.features, "left out", false),
-            ("kernels", &self.kernels, "compiled", true),
+            ("kernels", &self.kernels, "needed", true),
             ("kernels", &self.kernels, "left out", false),
         ] {
             let of_this_kind = entries.iter().filter(|(_, is)| *is == wanted);
@@ -124,7 +134,7 @@ mod tests {
         };
         let text = report.to_string();
         assert!(
-            text.contains("features needed: glass\nfeatures left out: lens\nkernels compiled: gather\n"),
+            text.contains("features needed: glass\nfeatures left out: lens\nkernels needed: gather\n"),
             "{text}"
         );
         assert!(text.lines().last().unwrap().ends_with(" 4104"), "{text}");

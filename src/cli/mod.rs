@@ -12,6 +12,7 @@ mod output;
 mod overrides;
 mod progress;
 mod render;
+mod tessellate;
 
 use std::process::ExitCode;
 
@@ -21,14 +22,19 @@ use failure::Failure;
 
 /// Renders scenes by photon mapping: caustics, soft shadows, depth of field.
 #[derive(Parser)]
-#[command(version, after_help = EXIT_CODES)]
+#[command(version, after_help = HELP)]
 struct Arguments {
     #[command(subcommand)]
     command: Command,
 }
 
-const EXIT_CODES: &str = "Exit codes: 0 done, 1 failed, 2 wrong use, 3 over a threshold, 4 no such device, \
-                          5 device lost with the picture so far saved, 130 interrupted with the picture so far saved";
+const HELP: &str = "\
+Examples:
+  caustica render scenes/caustics.toml -o picture.png -o picture.exr
+  caustica check scenes/cornell.toml scenes/caustics.toml
+
+Exit codes: 0 done, 1 failed, 2 wrong use, 3 over a threshold, 4 no such device, 5 device lost with the picture so far \
+saved, 130 interrupted with the picture so far saved";
 
 #[derive(Subcommand)]
 enum Command {
@@ -37,6 +43,7 @@ enum Command {
     Info(info::Arguments),
     Check(check::Arguments),
     Devices(devices::Arguments),
+    Tessellate(tessellate::Arguments),
 }
 
 /// How a command that did not fail ended.
@@ -60,6 +67,7 @@ pub fn run() -> ExitCode {
         Command::Info(arguments) => info::run(arguments),
         Command::Check(arguments) => check::run(arguments),
         Command::Devices(arguments) => devices::run(arguments),
+        Command::Tessellate(arguments) => tessellate::run(arguments),
     };
     match done {
         Ok(done) => ExitCode::from(done as u8),

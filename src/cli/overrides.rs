@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use caustica::scene::Scene;
+use caustica::scene::numbers::{LARGEST, SMALLEST};
 use caustica::settings::{Direct, Method, Radius, RadiusRule, RenderSettings};
 use clap::Args;
 use serde::de::DeserializeOwned;
@@ -11,7 +12,7 @@ use serde::de::DeserializeOwned;
 #[derive(Args, Debug, Default)]
 #[command(next_help_heading = "Instead of the scene file's settings")]
 pub struct Overrides {
-    /// Light transport: stochastic progressive photon mapping, progressive photon mapping, or path tracing
+    /// Light transport: stochastic progressive photon mapping, progressive photon mapping, or path tracing (CPU only)
     #[arg(long, value_name = "sppm|ppm|path", value_parser = word::<Method>)]
     method: Option<Method>,
     /// Number of passes
@@ -32,11 +33,11 @@ pub struct Overrides {
     /// Where direct light comes from
     #[arg(long, value_name = "sampled|photons", value_parser = word::<Direct>)]
     direct: Option<Direct>,
-    /// Most scattering events on a photon path and on an eye path
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    /// Most scattering events on a photon path and on an eye path; with 0, direct light only
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..=65535))]
     max_bounces: Option<u32>,
     /// Fixed visible points per pixel (ppm only)
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=65536))]
     eye_samples: Option<u32>,
     /// Seed of the random numbers
     #[arg(long, value_name = "S")]
@@ -88,17 +89,25 @@ fn alpha(text: &str) -> Result<f64, String> {
 }
 
 fn radius(text: &str) -> Result<Radius, String> {
-    let radius = match text.strip_suffix("px") {
-        Some(pixels) => positive(pixels).map(Radius::Pixels),
-        None => positive(text).map(Radius::Units),
+    let (number, in_unit): (_, fn(f64) -> Radius) = match text.strip_suffix("px") {
+        Some(pixels) => (pixels, Radius::Pixels),
+        None => (text, Radius::Units),
     };
-    radius.map_err(|expected| format!("{expected}: pixels as in 2px, or scene units as in 0.01"))
+    let number = number.parse().ok().filter(|number| (SMALLEST..=LARGEST).contains(number));
+    let expected = || {
+        format!(
+            "expected a number from {SMALLEST:e} to {LARGEST:e}: pixels as in 2px, or scene units as in 0.01"
+        )
+    };
+    number.map(in_unit).ok_or_else(expected)
 }
 
 fn size(text: &str) -> Result<(u32, u32), String> {
-    let side = |text: &str| text.parse::<u32>().ok().filter(|side| *side > 0);
+    let side = |text: &str| text.parse::<u32>().ok().filter(|side| (1..=65536).contains(side));
     let (width, height) = text.split_once('x').unwrap_or((text, ""));
-    side(width).zip(side(height)).ok_or("expected width x height in pixels, as in 640x480".to_owned())
+    side(width)
+        .zip(side(height))
+        .ok_or("expected width x height in pixels, 1 to 65536 each, as in 640x480".to_owned())
 }
 
 /// A duration such as 500ms, 30s, 5m or 1.5h.
@@ -121,7 +130,7 @@ mod tests {
     fn radius_in_pixels_or_units() {
         assert_eq!(radius("2px"), Ok(Radius::Pixels(2.0)));
         assert_eq!(radius("0.01"), Ok(Radius::Units(0.01)));
-        for bad in ["", "px", "0px", "-1", "nan", "inf", "2 cm"] {
+        for bad in ["", "px", "0px", "-1", "nan", "inf", "2 cm", "1e-16", "1e16px"] {
             assert!(radius(bad).is_err(), "{bad}");
         }
     }
@@ -129,7 +138,7 @@ mod tests {
     #[test]
     fn sizes_and_times() {
         assert_eq!(size("640x480"), Ok((640, 480)));
-        for bad in ["640", "640x", "x480", "0x480", "640x-1", "640 x 480", "1e3x5"] {
+        for bad in ["640", "640x", "x480", "0x480", "65537x1", "640x-1", "640 x 480", "1e3x5"] {
             assert!(size(bad).is_err(), "{bad}");
         }
         assert_eq!(duration("500ms"), Ok(Duration::from_millis(500)));

@@ -20,6 +20,7 @@ use super::{Done, Failure, interrupt};
 
 /// Render a scene into pictures
 #[derive(clap::Args)]
+#[command(after_help = HELP)]
 pub struct Arguments {
     /// Scene file
     scene: PathBuf,
@@ -38,6 +39,11 @@ pub struct Arguments {
     #[command(flatten)]
     overrides: Overrides,
 }
+
+const HELP: &str = "\
+Examples:
+  caustica render scenes/caustics.toml
+  caustica render scenes/cornell.toml -o cornell.exr -o cornell.png --time 30s --device cpu";
 
 /// How much is told, and in which form.
 #[derive(clap::Args)]

@@ -1,7 +1,8 @@
 //! Carries out the steps of a plan, pass by pass.
 
-use super::context::{AdapterChoice, Gpu};
+use super::context::{AdapterChoice, AdapterKind, Gpu};
 use super::layout::{SceneTables, long_tables};
+use super::mend::{mend_photons, mend_points};
 use super::pace::Pace;
 use super::program::{Program, workgroup_items};
 use super::recorder::Recorder;
@@ -11,11 +12,12 @@ use crate::kernels::records::{Dispatch, FilmPixel};
 use crate::pack::Packed;
 use crate::plan::{Kernel, Plan, Step};
 use crate::settings::Method;
+use crate::tables::Scene;
 use std::collections::BTreeMap;
 
 /// Buffers of which each chunk of visible points has its own.
 const CHUNK_BUFFERS: [&str; 4] = ["visible_points", "gathered", "film", "statistics"];
-/// Bytes of `counters`: records of the batch, then the pass's rays in two words.
+/// Bytes of `counters`: records of the batch, the pass's rays in two words, invocations that the driver stopped.
 const COUNTERS_BYTES: u64 = 16;
 /// What to change when the device is too small.
 const MEND: &str = "make the picture smaller, or take --device cpu";
@@ -34,13 +36,16 @@ pub struct GpuEngine {
     chunks: Vec<BTreeMap<&'static str, wgpu::Buffer>>,
     /// Copies of the pass's counters, 16 bytes, and of each batch's record count.
     readings: wgpu::Buffer,
+    /// On a software driver: what to trace stopped paths again with.
+    scene: Option<Scene>,
     device: String,
 }
 
-/// Records of each batch and rays of a pass.
+/// Records of each batch, rays of a pass, and invocations that the driver stopped.
 struct Counted {
     records: Vec<u32>,
     rays: u64,
+    stopped: u32,
 }
 
 impl GpuEngine {
@@ -73,6 +78,7 @@ impl GpuEngine {
         }
         let readings = gpu.storage("readings", COUNTERS_BYTES)?;
         let mut engine = Self {
+            scene: (gpu.summary.kind == AdapterKind::Software).then(|| packed.scene.clone()),
             device: gpu.summary.name.clone(),
             gpu,
             passes_done: 0,
@@ -164,11 +170,13 @@ impl GpuEngine {
         }
         self.recorder.clear(&self.gpu, &self.shared["counters"], None);
         let mut offset = COUNTERS_BYTES;
+        let mut mended = 0;
         for step in steps {
             if step.kernel == Kernel::PhotonTrace {
                 self.recorder.clear(&self.gpu, &self.shared["counters"], Some(4));
             }
             self.run(step)?;
+            mended += self.mend(step)?;
             if step.kernel == Kernel::PhotonTrace {
                 self.recorder.copy(&self.gpu, &self.shared["counters"], &self.readings, offset, 4);
                 offset += 4;
@@ -177,7 +185,34 @@ impl GpuEngine {
         self.recorder.copy(&self.gpu, &self.shared["counters"], &self.readings, 0, COUNTERS_BYTES);
         self.flush()?;
         let words: Vec<u32> = bytemuck::pod_collect_to_vec(&self.gpu.read(&self.readings, bytes)?);
-        Ok(Counted { records: words[4..].to_vec(), rays: words[1] as u64 | (words[2] as u64) << 32 })
+        let rays = (words[1] as u64 | (words[2] as u64) << 32) + mended;
+        Ok(Counted { records: words[4..].to_vec(), rays, stopped: words[3] })
+    }
+
+    /// Traces again, on the CPU, the paths of a step that a software driver stopped; the number of their rays.
+    fn mend(&mut self, step: &Step) -> Result<u64, EngineError> {
+        if self.scene.is_none() || !matches!(step.kernel, Kernel::EyeTrace | Kernel::PhotonTrace) {
+            return Ok(0);
+        }
+        self.flush()?;
+        let counters = &self.shared["counters"];
+        let mut words: Vec<u32> = bytemuck::pod_collect_to_vec(&self.gpu.read(counters, COUNTERS_BYTES)?);
+        let Some(scene) = self.scene.as_ref().filter(|_| words[3] > 0) else {
+            return Ok(0);
+        };
+        let sampled = self.plan.features.has("sampled");
+        let rays = if step.kernel == Kernel::EyeTrace {
+            let buffer = &self.chunks[step.chunk as usize]["visible_points"];
+            mend_points(&self.gpu, scene, &step.dispatch, sampled, buffer)?
+        } else {
+            let (records, rays) =
+                mend_photons(&self.gpu, scene, &step.dispatch, sampled, &self.shared["records"], words[0])?;
+            words[0] = records;
+            rays
+        };
+        words[3] = 0;
+        self.gpu.write(counters, bytemuck::cast_slice(&words));
+        Ok(rays)
     }
 }
 
@@ -215,8 +250,13 @@ impl Engine for GpuEngine {
             let counted = self.trace(&trace)?;
             let photons = trace.iter().filter(|s| s.kernel == Kernel::PhotonTrace).map(|s| s.dispatch.end);
             let overflow = |(photons, records): (u32, &u32)| *records > self.plan.capacity && photons > 1;
-            if photons.zip(&counted.records).any(overflow) {
-                // thrown away and run again with batches half as large
+            let overflows = photons.zip(&counted.records).any(overflow);
+            if counted.stopped > 0 && (batch == 1 || self.scene.is_none()) {
+                let text = format!("{} leaves long loops unfinished; take --device cpu", self.device);
+                return Err(EngineError::Unsupported(text));
+            }
+            if overflows || counted.stopped > 0 {
+                // thrown away and run again with batches half as large, which also shortens the loops over photons
                 batch = (batch / 2).max(1);
                 continue;
             }

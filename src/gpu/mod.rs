@@ -6,6 +6,7 @@ mod engine;
 pub mod fragments;
 pub mod layout;
 mod memory;
+mod mend;
 pub mod pace;
 pub mod program;
 pub mod recorder;

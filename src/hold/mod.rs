@@ -9,6 +9,6 @@ pub mod parts;
 pub mod student;
 pub mod truth;
 
-pub use agreement::{Agreement, hold};
+pub use agreement::{Agreement, Deviations, hold};
 pub use parts::{HoldError, Rendered, render_parts};
 pub use truth::{BlockTruth, Blocks};

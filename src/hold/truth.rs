@@ -48,6 +48,22 @@ impl Blocks {
         Self { width, height, rgb }
     }
 
+    /// Means over squares of `edge * edge` blocks, fewer at the right and bottom border.
+    pub fn coarser(&self, edge: u32) -> Self {
+        let size = |blocks: u32| blocks.div_ceil(edge);
+        Self::from_fn(size(self.width), size(self.height), |x, y| {
+            let (mut sum, mut count) = ([0.0; 3], 0.0);
+            for row in y * edge..((y + 1) * edge).min(self.height) {
+                for column in x * edge..((x + 1) * edge).min(self.width) {
+                    let rgb = self.rgb[(row * self.width + column) as usize];
+                    (0..3).for_each(|c| sum[c] += rgb[c]);
+                    count += 1.0;
+                }
+            }
+            sum.map(|value| value / count)
+        })
+    }
+
     /// Mean over the blocks.
     pub fn mean(&self) -> [f64; 3] {
         [0, 1, 2].map(|c| self.rgb.iter().map(|rgb| rgb[c]).sum::<f64>() / self.rgb.len() as f64)
@@ -101,6 +117,23 @@ impl BlockTruth {
         let standard_error =
             Blocks { rgb: variances.rgb.iter().map(|v| v.map(error)).collect(), ..variances };
         Some(Self { mean, standard_error })
+    }
+
+    /// The truth of squares of `edge * edge` blocks.
+    pub fn coarser(&self, edge: u32) -> Self {
+        let map = |blocks: &Blocks, f: &dyn Fn(f64) -> f64| Blocks {
+            rgb: blocks.rgb.iter().map(|rgb| rgb.map(f)).collect(),
+            ..*blocks
+        };
+        let variance = map(&self.standard_error, &|e| e * e).coarser(edge);
+        // mean of the n variances over n, and n from a square of ones
+        let count = Blocks::from_fn(variance.width, variance.height, |x, y| {
+            let side = |at: u32, blocks: u32| f64::from(((at + 1) * edge).min(blocks) - at * edge);
+            [side(x, self.mean.width) * side(y, self.mean.height); 3]
+        });
+        let error = |(v, n): (&[f64; 3], &[f64; 3])| [0, 1, 2].map(|c| (v[c] / n[c]).sqrt());
+        let rgb = variance.rgb.iter().zip(&count.rgb).map(error).collect();
+        Self { mean: self.mean.coarser(edge), standard_error: Blocks { rgb, ..variance } }
     }
 
     /// Standard error of the whole picture's mean.

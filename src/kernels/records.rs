@@ -71,8 +71,8 @@ pub struct VisiblePoint {
     pub alpha: f32,
     /// Metal: direction to the viewer.
     pub wo: Vec3,
-    /// Padding.
-    pub pad: u32,
+    /// 1 where the driver stopped the kernel's loops: the point is to be found again.
+    pub stopped: u32,
 }
 
 /// A photon at a non-specular hit.

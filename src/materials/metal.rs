@@ -41,7 +41,7 @@ pub fn eval_metal(wo: Vec3, wi: Vec3, f0: Vec3, alpha: f32) -> Vec3 {
     schlick(f0, wo.dot(h)) * (ggx_d(h.z, alpha) * g / (4.0 * wo.z * wi.z))
 }
 
-/// A direction by the distribution of visible normals (Heitz 2018).
+/// A microfacet normal `h` by the distribution of visible normals (Heitz 2018); the direction is `mirrored(wo, h)`.
 pub fn sample_metal(wo: Vec3, alpha: f32, u: Vec2) -> Vec3 {
     let vh = unit(Vec3::new(alpha * wo.x, alpha * wo.y, wo.z));
     let len_sq = vh.x * vh.x + vh.y * vh.y;
@@ -56,11 +56,10 @@ pub fn sample_metal(wo: Vec3, alpha: f32, u: Vec2) -> Vec3 {
     let s = 0.5 * (1.0 + vh.z);
     let p2 = (1.0 - s) * (1.0 - p1 * p1).max(0.0).sqrt() + s * (r * sin);
     let nh = t1 * p1 + t2 * p2 + vh * (1.0 - p1 * p1 - p2 * p2).max(0.0).sqrt();
-    let h = unit(Vec3::new(alpha * nh.x, alpha * nh.y, nh.z.max(1e-6)));
-    h * (2.0 * wo.dot(h)) - wo
+    unit(Vec3::new(alpha * nh.x, alpha * nh.y, nh.z.max(1e-6)))
 }
 
-/// Solid angle density of [`sample_metal`], sr^-1.
+/// Solid angle density of the directions of [`sample_metal`], sr^-1.
 pub fn pdf_metal(wo: Vec3, wi: Vec3, alpha: f32) -> f32 {
     if wo.z <= 0.0 || wi.z <= 0.0 {
         return 0.0;
@@ -69,12 +68,12 @@ pub fn pdf_metal(wo: Vec3, wi: Vec3, alpha: f32) -> f32 {
     ggx_d(h.z, alpha) / (4.0 * wo.z * (1.0 + ggx_lambda(wo.z, alpha)))
 }
 
-/// `eval_metal * cos / pdf_metal` in closed form: `F G2 / G1`.
-pub fn weight_metal(wo: Vec3, wi: Vec3, f0: Vec3, alpha: f32) -> Vec3 {
+/// `eval_metal * cos / pdf_metal` in closed form, `F G2 / G1`, for `wi` mirrored at `h`. (From `wo + wi` a shader
+/// compiler could cancel `wo` against the one in `wi`.)
+pub fn weight_metal(wo: Vec3, h: Vec3, wi: Vec3, f0: Vec3, alpha: f32) -> Vec3 {
     if wi.z <= 0.0 {
         return Vec3::ZERO;
     }
-    let h = unit(wo + wi);
     let lo = ggx_lambda(wo.z, alpha);
     schlick(f0, wo.dot(h)) * ((1.0 + lo) / (1.0 + lo + ggx_lambda(wi.z, alpha)))
 }

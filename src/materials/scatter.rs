@@ -108,8 +108,9 @@ pub fn scatter_rough(scene: &Scene, s: &Surface, wo: Vec3, medium: u32, u: Vec2,
     if m.kind == MATERIAL_METAL {
         let (t, b) = basis(n);
         let local_wo = Vec3::new(wo.dot(t), wo.dot(b), wo.dot(n));
-        let local_wi = sample_metal(local_wo, m.alpha, u);
-        weight = weight_metal(local_wo, local_wi, weight, m.alpha);
+        let h = sample_metal(local_wo, m.alpha, u);
+        let local_wi = mirrored(local_wo, h);
+        weight = weight_metal(local_wo, h, local_wi, weight, m.alpha);
         wi = from_frame(n, local_wi);
     } else {
         let mut axis = n;

@@ -44,9 +44,29 @@ pub fn pcg4d(mut v: [u32; 4]) -> [u32; 4] {
     v
 }
 
-/// Four uniform numbers in [0, 1), multiples of 2^-24.
+/// How far the first dimensions of an eye path move from pass to pass: the fractional parts of the square roots of
+/// the first primes, in units of 2^-32 (Richtmyer 1951).
+const STEPS: [[u32; 4]; 4] = [
+    [0x6a09e667, 0xbb67ae85, 0x3c6ef372, 0xa54ff53a],
+    [0x510e527f, 0x9b05688c, 0x1f83d9ab, 0x5be0cd19],
+    [0xcbbb9d5d, 0x629a292a, 0x9159015a, 0x152fecd8],
+    [0x67332667, 0x8eb44a87, 0xdb0c2e0d, 0x47b5481d],
+];
+
+/// Four uniform numbers in [0, 1), multiples of 2^-24. The first sixteen of an eye path are a random point per
+/// visible point that walks a fixed step each pass: every pass is uniform by itself, and the passes together
+/// cover the pixel, the lens and the lights more evenly than chance.
 pub fn rng_next(rng: &mut Rng) -> Vec4 {
-    let h = pcg4d([rng.index, rng.pass_number, rng.dimension, rng.seed]);
+    let k = rng.dimension.wrapping_sub(STREAM_EYE);
+    let mut h;
+    if k < 4 {
+        h = pcg4d([rng.index, 0, rng.dimension, rng.seed]);
+        for (x, step) in h.iter_mut().zip(STEPS[k as usize]) {
+            *x = x.wrapping_add(step.wrapping_mul(rng.pass_number));
+        }
+    } else {
+        h = pcg4d([rng.index, rng.pass_number, rng.dimension, rng.seed]);
+    }
     rng.dimension += 1;
     Vec4::new((h[0] >> 8) as f32, (h[1] >> 8) as f32, (h[2] >> 8) as f32, (h[3] >> 8) as f32)
         * (1.0 / 16777216.0)

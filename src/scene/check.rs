@@ -6,6 +6,7 @@ use std::ops::Range;
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value as Json};
 
+use super::numbers::{LARGEST, SMALLEST};
 use super::report::{Report, did_you_mean, list};
 use super::schema::{alternatives, describe, has_type, in_range, listed_strings, tag};
 use super::tree::Node;
@@ -13,7 +14,7 @@ use super::tree::Node;
 /// A part of the file that is checked and read on its own.
 #[derive(Debug)]
 pub(crate) struct Item<'a> {
-    /// As in messages: `shapes[3]`, `materials.glass`.
+    /// As in messages: `shapes[3]`, `materials.glass`; empty for the whole file.
     pub path: String,
     /// The last key, of a named part.
     pub name: &'a str,
@@ -23,13 +24,23 @@ pub(crate) struct Item<'a> {
 }
 
 impl Item<'_> {
+    /// What it is called in messages.
+    pub fn place(&self) -> &str {
+        place(&self.path)
+    }
+
+    /// What a key in it is called in messages.
+    pub fn key(&self, key: &str) -> String {
+        join(&self.path, key)
+    }
+
     /// The part as its type; `None` if its check has found it unreadable.
     pub fn read<T: DeserializeOwned>(&self, report: &mut Report) -> Option<T> {
         let json = self.json.clone()?;
         match serde_json::from_value(json) {
             Ok(value) => Some(value),
             Err(error) => {
-                let message = format!("{} cannot be read: {error}", self.path);
+                let message = format!("{} cannot be read: {error}", self.place());
                 report.error(self.node.span(), message, "in here", None);
                 None
             }
@@ -55,13 +66,19 @@ impl<'a> Document<'a> {
     }
 }
 
-/// Checks a whole file.
+/// Checks a file that is one part.
+pub(crate) fn whole<'a>(root: &Json, file: Node<'a>, report: &mut Report) -> Item<'a> {
+    let json = Checker { root, report }.value(root, file, "");
+    Item { path: String::new(), name: "", node: file, json }
+}
+
+/// Checks a file of many parts.
 pub(crate) fn document<'a>(root: &Json, file: Node<'a>, report: &mut Report) -> Document<'a> {
     let mut checker = Checker { root, report };
-    checker.missing_keys(root, file, "");
+    checker.missing_keys(root, file, THE_FILE);
     let mut items = Vec::new();
     for (key, key_span, node) in file.entries() {
-        let Some(schema) = checker.property(root, key, key_span, "the file") else {
+        let Some(schema) = checker.property(root, key, key_span, THE_FILE) else {
             continue;
         };
         let resolved = alternatives(root, schema);
@@ -85,6 +102,16 @@ pub(crate) fn document<'a>(root: &Json, file: Node<'a>, report: &mut Report) -> 
         }
     }
     Document { items }
+}
+
+const THE_FILE: &str = "the file";
+
+fn place(path: &str) -> &str {
+    if path.is_empty() { THE_FILE } else { path }
+}
+
+fn join(path: &str, key: &str) -> String {
+    if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") }
 }
 
 struct Checker<'c> {
@@ -150,7 +177,18 @@ impl<'c> Checker<'c> {
             self.report.error(node.span(), message, format!("expected {expected}"), description(whole));
         }
         if !has_type(schema, "integer") {
-            return Some(Json::from(number));
+            let largest = schema["x-largest"].as_f64().unwrap_or(LARGEST);
+            let smallest = if schema["exclusiveMinimum"] == 0 { SMALLEST } else { 0.0 };
+            if fits && number.abs() > largest {
+                let message = format!("`{path}` = {number:e} is too large for single precision");
+                let label = format!("expected at most {largest:e} in magnitude");
+                self.report.error(node.span(), message, label, description(whole));
+            } else if fits && number < smallest && smallest > 0.0 {
+                let message = format!("`{path}` = {number:e} is too small for single precision");
+                let label = format!("expected at least {smallest:e}");
+                self.report.error(node.span(), message, label, description(whole));
+            }
+            return Some(Json::from(number.clamp(-largest, largest)));
         }
         let clamped = node.integer()?.clamp(0, i128::from(u32::MAX));
         let exact = node.integer().and_then(|integer| u64::try_from(integer).ok());
@@ -197,7 +235,7 @@ impl<'c> Checker<'c> {
         let schema = self.variant(whole, fitting, node, path)?;
         let place = match tag(schema) {
             Some(kind) => format!("{path} ({kind})"),
-            None => path.to_owned(),
+            None => place(path).to_owned(),
         };
         let mut complete = self.missing_keys(schema, node, &place);
         let mut table = Map::new();
@@ -205,7 +243,7 @@ impl<'c> Checker<'c> {
             let Some(property) = self.property(schema, key, key_span, &place) else {
                 continue;
             };
-            match self.value(property, value, &format!("{path}.{key}")) {
+            match self.value(property, value, &join(path, key)) {
                 Some(json) => drop(table.insert(key.to_owned(), json)),
                 None => complete = false,
             }
@@ -268,12 +306,9 @@ impl<'c> Checker<'c> {
             required.filter_map(Json::as_str).filter(|key| node.get(key).is_none()).collect();
         for key in &missing {
             let property = &schema["properties"][*key];
-            let message = match place {
-                "" => format!("`{key}` is missing"),
-                _ => format!("`{key}` is missing in {place}"),
-            };
+            let message = format!("`{key}` is missing in {place}");
             let label = format!("expected `{key}`, {}", describe(self.root, property));
-            self.report.error(node.span(), message, label, description(property));
+            self.report.missing(node.span(), message, label, description(property));
         }
         missing.is_empty()
     }

@@ -10,7 +10,7 @@ use serde::Deserialize;
 
 use super::ToneMap;
 use super::appearance::{Filter, Wrap};
-use super::numbers::{NonNegative, Paint, Positive, Share, Spectrum};
+use super::numbers::{NonNegative, Paint, Positive, Share, Spectrum, Strength};
 use super::schema::close_variants;
 use crate::settings::RenderSettings;
 
@@ -297,7 +297,7 @@ pub struct Segments(#[schemars(length(min = 1), inner(length(min = 2, max = 16))
 pub struct SurfaceFile {
     /// Radiance in W sr^-1 m^-2 that leaves the side that the normal points to.
     #[serde(default)]
-    pub emission: Spectrum<NonNegative>,
+    pub emission: Spectrum<Strength>,
     /// Texture coordinates in place of the shape's own.
     pub uv: Option<Uv>,
 }
@@ -333,7 +333,7 @@ pub enum LightFile {
         /// Where it is.
         position: Vec3,
         /// Radiant intensity in W/sr.
-        intensity: Spectrum<NonNegative>,
+        intensity: Spectrum<Strength>,
     },
     /// Shines into a cone.
     Spot {
@@ -342,7 +342,7 @@ pub enum LightFile {
         /// A point on its axis.
         target: Vec3,
         /// Radiant intensity on the axis in W/sr.
-        intensity: Spectrum<NonNegative>,
+        intensity: Spectrum<Strength>,
         /// Degrees from the axis to where it is dark; at most 180.
         #[schemars(extend("exclusiveMinimum" = 0), range(max = 180))]
         angle: f64,
@@ -355,7 +355,7 @@ pub enum LightFile {
         /// In which the light travels; any length but 0.
         direction: Vec3,
         /// On a surface facing the sun, in W/m^2.
-        irradiance: Spectrum<NonNegative>,
+        irradiance: Spectrum<Strength>,
     },
 }
 
@@ -364,7 +364,7 @@ pub enum LightFile {
 #[serde(deny_unknown_fields)]
 pub struct EnvironmentFile {
     /// In W sr^-1 m^-2; with a file, what its values are multiplied by.
-    pub radiance: Option<Spectrum<NonNegative>>,
+    pub radiance: Option<Spectrum<Strength>>,
     /// An equirectangular picture: exr, hdr, png or jpg.
     pub file: Option<String>,
     /// Turn of the picture about y in degrees, by the right-hand rule.

@@ -1,6 +1,6 @@
 //! Image files: png and jpg (8 or 16 bits), hdr and exr.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use exr::prelude::{ReadChannels, ReadLayers};
@@ -21,6 +21,7 @@ pub(crate) struct ImageFault {
 pub(crate) struct ImageStore {
     pub images: Vec<ImageData>,
     known: BTreeMap<(PathBuf, Option<ColorSpace>), usize>,
+    transparent: BTreeSet<usize>,
 }
 
 impl ImageStore {
@@ -30,10 +31,19 @@ impl ImageStore {
         if let Some(&index) = self.known.get(&(canonical.clone(), space)) {
             return Ok(index);
         }
-        let image = read(path, space)?;
+        let (image, transparent) = read(path, space)?;
+        let index = self.images.len();
         self.images.push(image);
-        self.known.insert((canonical, space), self.images.len() - 1);
-        Ok(self.images.len() - 1)
+        self.known.insert((canonical, space), index);
+        if transparent {
+            self.transparent.insert(index);
+        }
+        Ok(index)
+    }
+
+    /// Whether an image has an alpha channel that is not 1 everywhere.
+    pub fn is_transparent(&self, index: usize) -> bool {
+        self.transparent.contains(&index)
     }
 }
 
@@ -47,9 +57,13 @@ fn fault(path: &Path, why: impl std::fmt::Display) -> ImageFault {
     }
 }
 
-fn read(path: &Path, space: Option<ColorSpace>) -> Result<ImageData, ImageFault> {
+/// A texel of an EXR file; alpha is 1 in a file without.
+type Rgba = (f32, f32, f32, f32);
+
+/// An image, and whether it has alpha below 1.
+fn read(path: &Path, space: Option<ColorSpace>) -> Result<(ImageData, bool), ImageFault> {
     let is_exr = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("exr"));
-    let data = if is_exr { read_exr(path)? } else { read_common(path, space)? };
+    let (data, transparent) = if is_exr { read_exr(path)? } else { read_common(path, space)? };
     if let Texels::Float(texels) = &data.texels {
         if space == Some(ColorSpace::Srgb) && is_linear_file(path) {
             return Err(ImageFault {
@@ -68,7 +82,7 @@ fn read(path: &Path, space: Option<ColorSpace>) -> Result<ImageData, ImageFault>
             ));
         }
     }
-    Ok(data)
+    Ok((data, transparent))
 }
 
 fn is_linear_file(path: &Path) -> bool {
@@ -76,13 +90,15 @@ fn is_linear_file(path: &Path) -> bool {
     extension.is_some_and(|extension| extension == "exr" || extension == "hdr")
 }
 
-fn read_common(path: &Path, space: Option<ColorSpace>) -> Result<ImageData, ImageFault> {
+fn read_common(path: &Path, space: Option<ColorSpace>) -> Result<(ImageData, bool), ImageFault> {
     let reader = ImageReader::open(path).and_then(ImageReader::with_guessed_format);
     let image = reader.map_err(|error| fault(path, error))?.decode().map_err(|error| fault(path, error))?;
     let (width, height) = (image.width(), image.height());
     if width == 0 || height == 0 {
         return Err(fault(path, "it has no pixels"));
     }
+    let transparent =
+        image.color().has_alpha() && image.to_rgba16().pixels().any(|pixel| pixel.0[3] < u16::MAX);
     let srgb = space != Some(ColorSpace::Linear);
     let texels = match image {
         DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_) => {
@@ -100,7 +116,7 @@ fn read_common(path: &Path, space: Option<ColorSpace>) -> Result<ImageData, Imag
         }
         _ => Texels::Rgba8 { srgb, data: image.to_rgba8().pixels().map(|pixel| pixel.0).collect() },
     };
-    Ok(ImageData { path: path.display().to_string(), width, height, texels })
+    Ok((ImageData { path: path.display().to_string(), width, height, texels }, transparent))
 }
 
 /// IEC 61966-2-1.
@@ -108,14 +124,15 @@ fn linear_from_srgb(value: f64) -> f64 {
     if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
 }
 
-fn read_exr(path: &Path) -> Result<ImageData, ImageFault> {
+fn read_exr(path: &Path) -> Result<(ImageData, bool), ImageFault> {
     let image = exr::prelude::read()
         .no_deep_data()
         .largest_resolution_level()
         .rgba_channels(
-            |size, _| (size.width(), vec![[0.0f32; 3]; size.area()]),
-            |(width, texels): &mut (usize, Vec<[f32; 3]>), at, (r, g, b, _): (f32, f32, f32, f32)| {
+            |size, _| (size.width(), vec![[0.0f32; 3]; size.area()], false),
+            |(width, texels, transparent): &mut (usize, Vec<[f32; 3]>, bool), at, (r, g, b, a): Rgba| {
                 texels[at.y() * *width + at.x()] = [r, g, b];
+                *transparent |= a < 1.0;
             },
         )
         .first_valid_layer()
@@ -123,11 +140,12 @@ fn read_exr(path: &Path) -> Result<ImageData, ImageFault> {
         .from_file(path)
         .map_err(|error| fault(path, error))?;
     let size = image.layer_data.size;
-    let (_, texels) = image.layer_data.channel_data.pixels;
-    Ok(ImageData {
+    let (_, texels, transparent) = image.layer_data.channel_data.pixels;
+    let data = ImageData {
         path: path.display().to_string(),
         width: size.width() as u32,
         height: size.height() as u32,
         texels: Texels::Float(texels),
-    })
+    };
+    Ok((data, transparent))
 }

@@ -1,18 +1,13 @@
 //! From a scene file to a [`Scene`]: parse, hold against the schema, resolve names, then check what the parts mean.
-//! Every stage goes on after an error, so that one run shows them all; only a file that is not TOML stops early.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use toml::Spanned;
-use toml::de::{DeTable, DeValue};
-
 use super::check::{Document, document};
-use super::file::{EnvironmentFile, LightFile, MaterialFile, ShapeFile, TextureFile};
+use super::file::{EnvironmentFile, LightFile, MaterialFile, SceneFile, ShapeFile, TextureFile};
 use super::images::ImageStore;
-use super::report::{Finding, Report, SceneErrors, SourceFile, did_you_mean, list};
-use super::tree::Node;
-use super::{Scene, looks, schema, surfaces, view};
+use super::report::{Finding, Report, SceneErrors, did_you_mean, list};
+use super::{Scene, looks, schema, surfaces, text, view};
 use crate::settings::RenderSettings;
 
 /// What a scene file holds.
@@ -31,15 +26,7 @@ pub struct Loaded {
 /// # Errors
 /// Everything that is wrong with them, at once.
 pub fn load(path: &Path) -> Result<Loaded, SceneErrors> {
-    match std::fs::read(path) {
-        Ok(bytes) => parse(path, &bytes),
-        Err(error) => {
-            let mut report = Report::new(path, SourceFile::new(path, String::new()));
-            let help = nearest_file(path).map(|near| format!("did you mean {near}?"));
-            report.unreadable(format!("cannot read {}: {error}", path.display()), help);
-            Err(errors(path, report))
-        }
-    }
+    parse(path, &text::read(path)?)
 }
 
 /// Reads a scene from a file's bytes; `path` names it in messages, and the files it names are relative to it.
@@ -47,40 +34,12 @@ pub fn load(path: &Path) -> Result<Loaded, SceneErrors> {
 /// # Errors
 /// As [`load`].
 pub fn parse(path: &Path, bytes: &[u8]) -> Result<Loaded, SceneErrors> {
-    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    let text = String::from_utf8_lossy(bytes).into_owned();
-    let source = SourceFile::new(path, text.clone());
-    let mut report = Report::new(path, source);
-    if let Err(error) = std::str::from_utf8(bytes) {
-        let at = error.valid_up_to();
-        report.error(at..at + 1, "the file is not UTF-8", "expected UTF-8 text", None);
-        return Err(errors(path, report));
-    }
-    let (table, faults) = DeTable::parse_recoverable(&text);
-    for fault in &faults {
-        let span = fault.span().unwrap_or(0..0);
-        let help = Some("the file is not TOML here; other checks follow once it is".to_owned());
-        report.error(span, fault.message(), "here", help);
-    }
-    if !report.errors.is_empty() {
-        return Err(errors(path, report));
-    }
-    let span = table.span().start..table.span().start;
-    let root = Spanned::new(span, DeValue::Table(table.into_inner()));
-    let schema = schema::root();
-    let document = document(&schema, Node::new(&root), &mut report);
-    let loaded = Loader::new(path, &document, &mut report).load();
-    match loaded {
-        Some((scene, settings)) if report.errors.is_empty() => {
-            Ok(Loaded { scene, settings, warnings: report.warnings })
-        }
-        _ => Err(errors(path, report)),
-    }
-}
-
-fn errors(path: &Path, mut report: Report) -> SceneErrors {
-    report.errors.sort_by_key(|error| (error.file() != path.display().to_string(), error.line_column()));
-    SceneErrors { file: path.display().to_string(), errors: report.errors, warnings: report.warnings }
+    let schema = schema::of::<SceneFile>();
+    let ((scene, settings), warnings) = text::parse(path, bytes, |root, report| {
+        let document = document(&schema, root, report);
+        Loader::new(path, &document, report).load()
+    })?;
+    Ok(Loaded { scene, settings, warnings })
 }
 
 /// What the parts of a scene share while they are read.
@@ -208,16 +167,4 @@ impl Scene {
             || self.environment.is_some()
             || self.shapes.iter().any(super::Shape::is_emitter)
     }
-}
-
-/// The file in the same folder whose name is nearest.
-pub(crate) fn nearest_file(path: &Path) -> Option<String> {
-    let wanted = path.file_name()?.to_string_lossy().into_owned();
-    let folder = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let mut names: Vec<_> = std::fs::read_dir(folder)
-        .ok()?
-        .filter_map(|entry| Some(entry.ok()?.file_name().to_string_lossy().into_owned()))
-        .collect();
-    names.sort();
-    super::report::nearest(&wanted, names.iter().map(String::as_str)).map(str::to_owned)
 }

@@ -3,8 +3,9 @@
 use super::appearance::{Material, MaterialKind, Reflectance, Texels, Texture, TextureKind};
 use super::check::Item;
 use super::file::{ColorSpace, MaterialFile, TextureFile};
-use super::load::{Loader, nearest_file};
+use super::load::Loader;
 use super::numbers::Paint;
+use super::text::nearest_file;
 
 pub(super) fn texture(loader: &mut Loader, item: &Item, file: TextureFile) -> Option<Texture> {
     let kind = match file {
@@ -46,7 +47,13 @@ impl Loader<'_, '_> {
     pub fn image(&mut self, item: &Item, file: &str, color_space: Option<ColorSpace>) -> Option<usize> {
         let path = self.resolve(file);
         match self.images.load(&path, color_space) {
-            Ok(image) => Some(image),
+            Ok(image) => {
+                if self.images.is_transparent(image) {
+                    let message = format!("the alpha channel of {file} is not used");
+                    self.report.warn(item.node.span_of("file"), message, "every texel counts as opaque");
+                }
+                Some(image)
+            }
             Err(fault) => {
                 let help = nearest_file(&path)
                     .filter(|_| !path.exists())

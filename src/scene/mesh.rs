@@ -8,8 +8,9 @@ use std::path::{Path, PathBuf};
 use super::appearance::{Material, Rgb, Texture};
 use super::check::Item;
 use super::geometry::{Mesh, Transform};
-use super::load::{Loader, nearest_file};
+use super::load::Loader;
 use super::report::{Fault, SourceFile, did_you_mean};
+use super::text::nearest_file;
 use super::triangles::{Builder, Polygon, vertex_normals};
 use super::{mtl, obj};
 
@@ -84,7 +85,7 @@ pub(super) fn load(
                     let (material, unused) =
                         mtl::material(name.clone(), own, folder, &mut loader.images, textures);
                     for key in unused {
-                        let message = format!("`{key}` of material {name} is not used");
+                        let message = format!("{key} of material {name} is not used");
                         loader.report.warn(named_at.clone(), message, "in this file's MTL");
                     }
                     materials.push(material);

@@ -17,9 +17,11 @@ mod mtl;
 pub mod numbers;
 mod obj;
 mod profile;
+mod profile_file;
 mod report;
 mod schema;
 mod surfaces;
+mod text;
 mod tree;
 mod triangles;
 mod view;
@@ -33,6 +35,7 @@ pub use appearance::{
 };
 pub use geometry::{Mesh, Shape, ShapeKind, Transform, Triangle};
 pub use load::{Loaded, load, parse};
+pub use profile_file::{LoadedProfile, ProfileFile, load_profile};
 pub use report::{Finding, SceneErrors};
 pub use schema::schema_json;
 

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use super::appearance::{Filter, Material, MaterialKind, Reflectance, Texels, Texture, TextureKind, Wrap};
 use super::images::ImageStore;
+use super::numbers::{BRIGHTEST, LARGEST};
 use super::obj::{Word, argument, words};
 use super::report::Fault;
 
@@ -53,8 +54,8 @@ impl<'t> Scan<'t> {
     fn numbers(&mut self, keyword: &str, at: &Range<usize>, rest: &[Word]) {
         let (count, most) = match keyword {
             "Kd" | "Ks" => (3, 1.0),
-            "Ka" | "Ke" => (3, f64::MAX),
-            "Ni" | "Ns" => (1, f64::MAX),
+            "Ka" | "Ke" => (3, BRIGHTEST),
+            "Ni" | "Ns" => (1, LARGEST),
             "d" => (1, 1.0),
             "illum" => (1, 255.0),
             _ => return,
@@ -67,10 +68,9 @@ impl<'t> Scan<'t> {
         for (word, at) in rest.iter().take(count) {
             let number = word.parse().ok().filter(|number| (0.0..=most).contains(number));
             if number.is_none_or(|number| keyword == "illum" && number.fract() != 0.0) {
-                let expected = match (keyword, most) {
-                    ("illum", _) => "expected a whole number",
-                    (_, 1.0) => "expected a number from 0 to 1",
-                    _ => "expected a number that is not negative",
+                let expected = match keyword {
+                    "illum" => "expected a whole number".to_owned(),
+                    _ => format!("expected a number from 0 to {most:e}"),
                 };
                 self.fault(at, format!("`{word}` is out of range or no number"), expected);
             }
@@ -136,22 +136,27 @@ pub(super) fn material(
         },
         _ => {
             if mtl.dissolve.is_some_and(|d| d < 1.0) {
-                unused.push("d");
+                unused.push("`d`");
             }
             let image =
                 mtl.diffuse_texture.as_ref().and_then(|file| images.load(&folder.join(file), None).ok());
             let reflectance = match image {
-                Some(image) => Reflectance::Texture(texture(&name, image, textures)),
+                Some(image) => {
+                    if images.is_transparent(image) {
+                        unused.push("the alpha channel of map_Kd");
+                    }
+                    Reflectance::Texture(texture(&name, image, textures))
+                }
                 None => Reflectance::Color(mtl.diffuse.unwrap_or(DEFAULT_DIFFUSE)),
             };
             MaterialKind::Diffuse { reflectance }
         }
     };
     let maps = [
-        ("map_Ks", &mtl.specular_texture),
-        ("map_Bump", &mtl.normal_texture),
-        ("map_Ns", &mtl.shininess_texture),
-        ("map_d", &mtl.dissolve_texture),
+        ("`map_Ks`", &mtl.specular_texture),
+        ("`map_Bump`", &mtl.normal_texture),
+        ("`map_Ns`", &mtl.shininess_texture),
+        ("`map_d`", &mtl.dissolve_texture),
     ];
     unused.extend(maps.into_iter().filter(|(_, map)| map.is_some()).map(|(key, _)| key));
     (Material { name, kind }, unused)

@@ -5,6 +5,15 @@ use serde::Deserialize;
 
 use super::appearance::Rgb;
 
+/// Largest magnitude of a length, a coordinate or any other number that is not the strength of a light, in the units of
+/// the file. Renderers work in f32, in units of about the scene's size; squares of lengths must stay below the
+/// 1e30 that stands for infinity there.
+pub const LARGEST: f64 = 1e15;
+/// Smallest number where 0 is none: a radius, a size, a scale, an angle. Its square is above f32's least normal number.
+pub const SMALLEST: f64 = 1e-15;
+/// Greatest strength of a light. Pictures hold radiance in f32, up to 3e38, and light adds up.
+pub const BRIGHTEST: f64 = 1e30;
+
 /// A number greater than 0.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(transparent)]
@@ -16,6 +25,12 @@ pub struct Positive(pub f64);
 #[serde(transparent)]
 #[schemars(inline, extend("minimum" = 0))]
 pub struct NonNegative(pub f64);
+
+/// Strength of light: not negative, and up to [`BRIGHTEST`].
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
+#[serde(transparent)]
+#[schemars(inline, extend("minimum" = 0, "x-largest" = BRIGHTEST))]
+pub struct Strength(pub f64);
 
 /// A number from 0 to 1.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
@@ -31,6 +46,12 @@ impl From<Positive> for f64 {
 
 impl From<NonNegative> for f64 {
     fn from(number: NonNegative) -> Self {
+        number.0
+    }
+}
+
+impl From<Strength> for f64 {
+    fn from(number: Strength) -> Self {
         number.0
     }
 }

@@ -4,6 +4,7 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
+use super::numbers::LARGEST;
 use super::report::Fault;
 
 /// A word of a file with the bytes that hold it.
@@ -116,8 +117,12 @@ impl<'t> Scan<'t> {
             return false;
         }
         for (word, at) in rest {
-            if !word.parse::<f64>().is_ok_and(f64::is_finite) {
+            let number = word.parse().unwrap_or(f64::NAN);
+            if !number.is_finite() {
                 self.fault(at.clone(), format!("`{word}` is not a finite number"), "expected a number");
+            } else if number.abs() > LARGEST {
+                let expected = format!("expected at most {LARGEST:e} in magnitude");
+                self.fault(at.clone(), format!("`{word}` is too large for single precision"), expected);
             }
         }
         if kind == 0 && rest.len() == 4 && rest[3].0.parse() == Ok(0.0) {

@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::check::Item;
 use super::file::Segments;
-use super::load::Loader;
+use super::report::Report;
 use super::tree::Node;
 
 /// Largest gap between two segments that counts as joined, over the extent of the profile.
@@ -16,7 +16,7 @@ const MOST_HALVINGS: u32 = 40;
 
 /// The profile's segments, checked: joined, off the axis somewhere, and with no negative radius.
 pub(super) fn segments(
-    loader: &mut Loader,
+    report: &mut Report,
     item: &Item,
     profile: Option<Vec<[f64; 2]>>,
     segments: Option<Segments>,
@@ -29,43 +29,43 @@ pub(super) fn segments(
             (curves, nodes.collect())
         }
         (Some(_), Some(_)) => {
-            let message = format!("{} has both `profile` and `segments`", item.path);
-            loader.report.error(item.node.span_of("segments"), message, one_of, None);
+            let message = format!("{} has both `profile` and `segments`", item.place());
+            report.error(item.node.span_of("segments"), message, one_of, None);
             return None;
         }
         (None, None) => {
-            let message = format!("{} has neither `profile` nor `segments`", item.path);
-            loader.report.error(item.node.span(), message, one_of, None);
+            let message = format!("{} has neither `profile` nor `segments`", item.place());
+            report.error(item.node.span(), message, one_of, None);
             return None;
         }
     };
     let mut curves: Vec<Vec<_>> =
         curves.into_iter().map(|curve| curve.into_iter().map(DVec2::from).collect()).collect();
-    let before = loader.report.errors.len();
+    let before = report.errors.len();
     for (curve, node) in curves.iter().zip(&nodes) {
-        check_curve(loader, curve, *node);
+        check_curve(report, curve, *node);
     }
-    join(loader, &mut curves, &nodes);
-    (loader.report.errors.len() == before).then_some(curves)
+    join(report, &mut curves, &nodes);
+    (report.errors.len() == before).then_some(curves)
 }
 
-fn check_curve(loader: &mut Loader, curve: &[DVec2], node: Node) {
+fn check_curve(report: &mut Report, curve: &[DVec2], node: Node) {
     let radii: Vec<_> = curve.iter().map(|point| point.x).collect();
     let largest = radii.iter().fold(0.0f64, |most, radius| most.max(radius.abs()));
     if largest == 0.0 {
         let message = "the profile lies on the axis and sweeps no surface";
         let label = "expected a control point with a radius above 0";
-        loader.report.error(node.span(), message, label, None);
+        report.error(node.span(), message, label, None);
     } else if curve.iter().all(|point| *point == curve[0]) {
         let message = "the profile is a single point";
-        loader.report.error(node.span(), message, "expected different control points", None);
+        report.error(node.span(), message, "expected different control points", None);
     } else if let Some(radius) = negative(&radii, RADIUS_TOLERANCE * largest, MOST_HALVINGS) {
         let worst = (0..radii.len()).min_by(|&a, &b| radii[a].total_cmp(&radii[b])).unwrap_or(0);
         let span = node.at(worst).map_or(node.span(), |point| point.span());
         let message = format!("the profile crosses the axis: its radius falls to {radius:.3e}");
         let help =
             Some("a control radius may be negative only if the curve stays right of the axis".to_owned());
-        loader.report.error(span, message, "expected a larger radius here", help);
+        report.error(span, message, "expected a larger radius here", help);
     }
 }
 
@@ -92,7 +92,7 @@ fn negative(coefficients: &[f64], tolerance: f64, halvings: u32) -> Option<f64> 
 }
 
 /// Makes each segment start exactly where the one before ends, or reports the gap.
-fn join(loader: &mut Loader, curves: &mut [Vec<DVec2>], nodes: &[Node]) {
+fn join(report: &mut Report, curves: &mut [Vec<DVec2>], nodes: &[Node]) {
     let extent = curves.iter().flatten().fold(0.0f64, |most, point| most.max(point.abs().max_element()));
     for index in 1..curves.len() {
         let (Some(&end), Some(&start)) = (curves[index - 1].last(), curves[index].first()) else {
@@ -102,7 +102,7 @@ fn join(loader: &mut Loader, curves: &mut [Vec<DVec2>], nodes: &[Node]) {
             let span = nodes.get(index).and_then(|node| node.at(0)).map(|point| point.span());
             let message = format!("segment {index} does not start where segment {} ends", index - 1);
             let label = format!("expected [{}, {}]", end.x, end.y);
-            loader.report.error(span.unwrap_or(0..0), message, label, None);
+            report.error(span.unwrap_or(0..0), message, label, None);
         }
         curves[index][0] = end;
     }

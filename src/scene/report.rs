@@ -1,5 +1,6 @@
 //! Errors and warnings that point into the files they are about.
 
+use std::collections::HashSet;
 use std::fmt;
 use std::ops::Range;
 use std::path::Path;
@@ -30,6 +31,8 @@ pub struct Finding {
     severity: miette::Severity,
     file: String,
     place: Option<Place>,
+    /// An error in a value of the scene file, as opposed to a key that is missing or an error in another file.
+    about_value: bool,
 }
 
 #[derive(Clone, Debug)]
@@ -58,6 +61,13 @@ impl Finding {
     /// Path of the file it is about.
     pub fn file(&self) -> &str {
         &self.file
+    }
+
+    /// What it is about. Two errors in one value are about the same: they say it in other words, or the later follows from
+    /// the earlier.
+    fn subject(&self) -> (String, Option<Range<usize>>, Option<String>) {
+        let span = self.place.as_ref().map(|place| place.span.clone());
+        (self.file.clone(), span, (!self.about_value).then(|| self.message.clone()))
     }
 
     /// Line and column, from 1, the column in characters; `None` when the file itself cannot be read.
@@ -118,6 +128,13 @@ impl Diagnostic for SceneErrors {
     }
 }
 
+/// The first finding about each subject.
+pub(crate) fn once(mut findings: Vec<Finding>) -> Vec<Finding> {
+    let mut known = HashSet::new();
+    findings.retain(|finding| known.insert(finding.subject()));
+    findings
+}
+
 /// Most errors of one mesh or material file that are listed one by one.
 const MOST_PER_ASSET: usize = 10;
 
@@ -144,7 +161,14 @@ impl Report {
         label: impl Into<String>,
         help: Option<String>,
     ) {
-        let finding = self.finding(miette::Severity::Error, span, message.into(), label.into(), help);
+        let mut finding = self.finding(miette::Severity::Error, span, message.into(), label.into(), help);
+        finding.about_value = true;
+        self.errors.push(finding);
+    }
+
+    /// A key that a table of the scene file lacks; a table may lack several.
+    pub fn missing(&mut self, span: Range<usize>, message: String, label: String, help: Option<String>) {
+        let finding = self.finding(miette::Severity::Error, span, message, label, help);
         self.errors.push(finding);
     }
 
@@ -162,6 +186,7 @@ impl Report {
             severity: miette::Severity::Error,
             file: self.path.clone(),
             place: None,
+            about_value: false,
         });
     }
 
@@ -177,6 +202,7 @@ impl Report {
                 severity: miette::Severity::Error,
                 file: file.clone(),
                 place: Some(Place { source: source.clone(), span: fault.span, label: fault.expected }),
+                about_value: false,
             });
         }
         if let (Some(last), Some(more @ 1..)) = (self.errors.last_mut(), count.checked_sub(MOST_PER_ASSET)) {
@@ -204,6 +230,7 @@ impl Report {
             severity,
             file: self.path.clone(),
             place: Some(Place { source: self.source.clone(), span: self.drawable(span), label }),
+            about_value: false,
         }
     }
 

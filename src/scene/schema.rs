@@ -6,14 +6,14 @@ use super::file::SceneFile;
 
 /// The JSON Schema of scene files, as kept in `scenes/schema.json`.
 pub fn schema_json() -> String {
-    let mut text = format!("{:#}", root());
+    let mut text = format!("{:#}", of::<SceneFile>());
     text.push('\n');
     text
 }
 
-/// The schema as a value.
-pub(crate) fn root() -> Json {
-    schemars::schema_for!(SceneFile).to_value()
+/// The schema of a type as a value.
+pub(crate) fn of<T: schemars::JsonSchema>() -> Json {
+    schemars::schema_for!(T).to_value()
 }
 
 /// Forbids keys beyond those listed in each variant; serde cannot say so where it flattens.

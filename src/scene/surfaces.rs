@@ -7,6 +7,8 @@ use super::check::Item;
 use super::file::{ShapeFile, SurfaceFile, TransformFile};
 use super::geometry::{Shape, ShapeKind, Transform};
 use super::load::Loader;
+use super::numbers::{LARGEST, SMALLEST};
+use super::report::Report;
 use super::view::unit;
 use super::{mesh, profile};
 
@@ -28,7 +30,8 @@ pub(super) fn shapes(
         }
         ShapeFile::Rectangle { origin, u, v, material, surface } => {
             let (u, v) = (DVec3::from(u), DVec3::from(v));
-            if u.cross(v).length() <= LEAST_SINE * u.length() * v.length() {
+            let least = (LEAST_SINE * u.length() * v.length()).max(SMALLEST * SMALLEST);
+            if u.cross(v).length() <= least {
                 let message = format!("{} has no area: `u` and `v` are parallel or 0", item.path);
                 let label = "expected an edge in another direction than `u`";
                 loader.report.error(item.node.span_of("v"), message, label, None);
@@ -51,7 +54,7 @@ pub(super) fn shapes(
             (ShapeKind::Plane { point: point.into(), normal }, material, surface)
         }
         ShapeFile::Box { min, max, material, surface } => {
-            if let Some(axis) = (0..3).find(|&axis| min[axis] >= max[axis]) {
+            if let Some(axis) = (0..3).find(|&axis| max[axis] - min[axis] < SMALLEST) {
                 let name = ["x", "y", "z"][axis];
                 let message =
                     format!("{} is empty: min.{name} = {}, max.{name} = {}", item.path, min[axis], max[axis]);
@@ -61,16 +64,22 @@ pub(super) fn shapes(
             (ShapeKind::Cuboid { min: min.into(), max: max.into() }, material, surface)
         }
         ShapeFile::Revolution { profile, segments, material, transform, surface } => {
-            let segments = profile::segments(loader, item, profile, segments);
-            let transform = placed(loader, item, &transform)?;
-            let kind = ShapeKind::Revolution { segments: segments?, transform };
+            let segments = profile::segments(loader.report, item, profile, segments);
+            let transform = placed(loader.report, item, &transform)?;
+            let segments = segments?;
+            let reach = segments.iter().flatten().map(|point| point.abs().max_element()).fold(0.0, f64::max);
+            within_reach(loader.report, item, reach * transform.scale);
+            let kind = ShapeKind::Revolution { segments, transform };
             (kind, material, surface)
         }
         ShapeFile::Mesh { file, smooth, material, transform, surface } => {
-            let transform = placed(loader, item, &transform)?;
+            let transform = placed(loader.report, item, &transform)?;
             let material = material.map(|name| loader.index("materials", &name));
             let request = mesh::Request { file: &file, smooth, material, transform };
             let parts = mesh::load(loader, item, &request, textures, materials)?;
+            let positions = parts.iter().flat_map(|part| &part.mesh.positions);
+            let reach = positions.map(|position| position.abs().max_element()).fold(0.0, f64::max);
+            within_reach(loader.report, item, reach);
             let shapes = parts.into_iter().map(|part| {
                 let own = surface.emission.rgb();
                 let emission = if own == [0.0; 3] { part.emission } else { own };
@@ -87,15 +96,25 @@ fn shape(kind: ShapeKind, material: usize, emission: [f64; 3], surface: &Surface
     Shape { kind, material, emission, planar_uv: surface.uv.is_some() }
 }
 
-fn placed(loader: &mut Loader, item: &Item, file: &TransformFile) -> Option<Transform> {
+/// Reports a shape that its transform blows up beyond what renderers can hold.
+fn within_reach(report: &mut Report, item: &Item, reach: f64) {
+    if reach > LARGEST {
+        let message = format!("{} reaches to {reach:.1e}, too large for single precision", item.path);
+        let label = format!("expected coordinates of at most {LARGEST:e} after the transform");
+        report.error(item.node.span_of("transform"), message, label, None);
+    }
+}
+
+/// The transform, its axis a direction.
+pub(super) fn placed(report: &mut Report, item: &Item, file: &TransformFile) -> Option<Transform> {
     let rotation = match &file.rotate {
         None => DMat3::IDENTITY,
         Some(rotate) => {
             let Some(axis) = DVec3::from(rotate.axis).try_normalize() else {
-                let message = format!("`{}.transform.rotate.axis` has no direction", item.path);
+                let message = format!("`{}` has no direction", item.key("transform.rotate.axis"));
                 let node = item.node.get("transform").and_then(|node| node.get("rotate"));
                 let span = node.map_or(item.node.span(), |node| node.span_of("axis"));
-                loader.report.error(span, message, "expected a vector of a length other than 0", None);
+                report.error(span, message, "expected a vector of a length other than 0", None);
                 return None;
             };
             DMat3::from_axis_angle(axis, rotate.degrees.to_radians())

@@ -5,6 +5,7 @@ use glam::DVec3;
 use super::check::Item;
 use super::file::{CameraFile, EnvironmentFile, FilmFile, LightFile};
 use super::load::Loader;
+use super::numbers::{LARGEST, SMALLEST};
 use super::{Camera, Environment, Film, Light};
 use crate::settings::RenderSettings;
 
@@ -64,10 +65,10 @@ pub(super) fn settings(loader: &mut Loader) -> Option<RenderSettings> {
             }
         }
     };
-    for count in ["passes", "photons", "eye_samples", "max_bounces"] {
+    for count in ["passes", "photons"] {
         require(count, "at least 1", |count| count != 0.0);
     }
-    require("radius", "a number greater than 0", |radius| radius > 0.0);
+    require("radius", "a number from 1e-15 to 1e15", |radius| (SMALLEST..=LARGEST).contains(&radius));
     require("alpha", "a number greater than 0 and at most 1", |alpha| alpha > 0.0 && alpha <= 1.0);
     item.read(loader.report)
 }

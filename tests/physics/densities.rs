@@ -11,6 +11,7 @@ use caustica::lights::light::{
 };
 use caustica::lights::shape::sample_shape;
 use caustica::materials::metal::{eval_metal, pdf_metal, sample_metal, weight_metal};
+use caustica::math::mirrored;
 use caustica::math::rng::{Rng, rng_new, rng_next};
 use caustica::math::sampling::*;
 use caustica::pack::pack;
@@ -146,12 +147,13 @@ fn metal() {
             let wo = Vec3::new((1.0 - cos * cos).sqrt() * 0.8, (1.0 - cos * cos).sqrt() * 0.6, cos);
             let draw = |r: &mut Rng| {
                 let u = rng_next(r);
-                let wi = sample_metal(wo, alpha, Vec2::new(u.x, u.y));
+                let h = sample_metal(wo, alpha, Vec2::new(u.x, u.y));
+                let wi = mirrored(wo, h);
                 if wi.z <= 0.0 {
                     return None;
                 }
                 let f0 = Vec3::new(0.9, 0.5, 0.2);
-                let weight = weight_metal(wo, wi, f0, alpha);
+                let weight = weight_metal(wo, h, wi, f0, alpha);
                 let ratio = eval_metal(wo, wi, f0, alpha) * (wi.z / pdf_metal(wo, wi, alpha));
                 assert!((weight - ratio).length() < 1e-4, "{weight} {ratio}");
                 Some(wi)

@@ -1,0 +1,80 @@
+//! `caustica tessellate`: a Bezier profile as a mesh of revolution.
+
+use std::path::{Path, PathBuf};
+
+use caustica::build::tessellate::{Fineness, tessellate};
+use caustica::film::FileError;
+use caustica::film::file::{check_place, write_whole};
+use caustica::scene;
+use miette::{Report, miette};
+
+use super::output::{message, result};
+use super::{Done, Failure};
+
+/// Turn a Bezier profile into a mesh of revolution
+#[derive(clap::Args)]
+#[command(after_help = HELP)]
+pub struct Arguments {
+    /// Profile file
+    profile: PathBuf,
+    /// Wavefront OBJ file to write [default: the profile's name with .obj, in the current folder]
+    #[arg(short, long, value_name = "FILE.obj")]
+    output: Option<PathBuf>,
+    /// Sectors around the axis, 3 to 4096
+    #[arg(long, value_name = "N", default_value_t = Fineness::default().sectors,
+          value_parser = clap::value_parser!(u32).range(3..=4096))]
+    sectors: u32,
+    /// Largest distance of the mesh's outline from the profile, as a share of the profile's size, 1e-6 to 0.1
+    #[arg(long, value_name = "F", default_value_t = Fineness::default().flatness, value_parser = flatness,
+          allow_negative_numbers = true)]
+    flatness: f64,
+}
+
+const HELP: &str = "\
+A profile file holds `profile = [[radius, height], ...]`, the control points of one Bezier curve of a degree up to 15, \
+or `segments = [[[radius, height], ...], ...]`, several that join; and if need be `transform`, as in a scene file.
+
+Example:
+  caustica tessellate scenes/profiles/vase.toml -o vase.obj --sectors 64";
+
+/// Reads, tessellates and writes.
+pub fn run(arguments: Arguments) -> Result<Done, Failure> {
+    let output = arguments.output.unwrap_or_else(|| default_output(&arguments.profile));
+    check_output(&output)?;
+    let loaded = scene::load_profile(&arguments.profile)?;
+    for warning in loaded.warnings {
+        message(format_args!("{:?}", Report::new(warning)));
+    }
+    let fineness = Fineness { sectors: arguments.sectors, flatness: arguments.flatness };
+    let mesh = tessellate(&loaded.segments, &fineness)
+        .map_err(|error| Failure::failed(miette!("{}: {error}", arguments.profile.display())))?
+        .transformed(&loaded.transform);
+    let (vertices, triangles) = (mesh.positions.len(), mesh.triangles.len());
+    let name = arguments.profile.file_name().unwrap_or_default().to_string_lossy();
+    let header = format!("{name} turned about its axis: {vertices} vertices, {triangles} triangles");
+    write_whole(&output, mesh.to_obj(&header).as_bytes())?;
+    message(format_args!("{vertices} vertices, {triangles} triangles"));
+    result(output.display())?;
+    Ok(Done::Fully)
+}
+
+fn default_output(profile: &Path) -> PathBuf {
+    Path::new(profile.file_stem().unwrap_or(profile.as_os_str())).with_extension("obj")
+}
+
+/// Finds out before the work whether the mesh can be written after it.
+fn check_output(output: &Path) -> Result<(), FileError> {
+    if !output.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("obj")) {
+        return Err(FileError::UnknownFormat {
+            file: output.to_owned(),
+            what: "a mesh is written as a Wavefront OBJ file".to_owned(),
+            known: ".obj",
+        });
+    }
+    check_place(output)
+}
+
+fn flatness(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|number| (1e-6..=0.1).contains(number));
+    number.ok_or("expected a number from 1e-6 to 0.1".to_owned())
+}

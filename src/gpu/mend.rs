@@ -1,0 +1,71 @@
+//! Paths that a software driver stopped, traced again by the Rust twins of the kernels.
+//!
+//! Mesa's software driver leaves all loops of an invocation, without a word, once they have made 65535 rounds together
+//! (`LP_MAX_TGSI_LOOP_ITERATIONS`); long paths through surfaces of revolution need more. The kernels notice and mark what
+//! they then wrote. The twins find the same bits as the driver would have.
+
+use super::context::Gpu;
+use crate::engine::EngineError;
+use crate::kernels::eye_trace::eye_trace;
+use crate::kernels::photon_trace::photon_trace;
+use crate::kernels::records::{Dispatch, PhotonRecord, VisiblePoint};
+use crate::tables::Scene;
+use bytemuck::{cast_slice, pod_collect_to_vec};
+use rayon::prelude::*;
+use std::collections::BTreeSet;
+
+/// Finds the marked points of a chunk again; the number of rays.
+pub fn mend_points(
+    gpu: &Gpu,
+    scene: &Scene,
+    dispatch: &Dispatch,
+    sampled: bool,
+    buffer: &wgpu::Buffer,
+) -> Result<u64, EngineError> {
+    let bytes = dispatch.end as u64 * size_of::<VisiblePoint>() as u64;
+    let mut points: Vec<VisiblePoint> = pod_collect_to_vec(&gpu.read(buffer, bytes)?);
+    let marked = points.par_iter_mut().enumerate().filter(|(_, point)| point.stopped == 1);
+    let rays = marked.map(|(id, point)| {
+        let (traced, rays) = eye_trace(scene, dispatch, sampled, id as u32);
+        *point = traced;
+        rays as u64
+    });
+    let rays = rays.sum();
+    gpu.write(buffer, cast_slice(&points));
+    Ok(rays)
+}
+
+/// Replaces the records of the marked photons, of `count` records; the number of records then, and of rays.
+pub fn mend_photons(
+    gpu: &Gpu,
+    scene: &Scene,
+    dispatch: &Dispatch,
+    sampled: bool,
+    buffer: &wgpu::Buffer,
+    count: u32,
+) -> Result<(u32, u64), EngineError> {
+    if count > dispatch.capacity {
+        // the batch has overflowed and will be traced again
+        return Ok((count, 0));
+    }
+    let bytes = count as u64 * size_of::<PhotonRecord>() as u64;
+    let mut records: Vec<PhotonRecord> = pod_collect_to_vec(&gpu.read(buffer, bytes)?);
+    // no direction has the code 0
+    let is_mark = |record: &PhotonRecord| record.direction == 0;
+    let marked: BTreeSet<u32> = records.iter().filter(|r| is_mark(r)).map(|mark| mark.key).collect();
+    records.retain(|r| !is_mark(r) && !marked.contains(&(r.key >> dispatch.key_bits)));
+    let traced: Vec<(Vec<PhotonRecord>, u32)> = marked
+        .into_par_iter()
+        .map(|id| {
+            let mut found = Vec::new();
+            let rays = photon_trace(scene, dispatch, sampled, id, |record| found.push(record));
+            (found, rays)
+        })
+        .collect();
+    let rays = traced.iter().map(|(_, rays)| *rays as u64).sum();
+    records.extend(traced.into_iter().flat_map(|(found, _)| found));
+    let count = records.len() as u32;
+    records.truncate(dispatch.capacity as usize);
+    gpu.write(buffer, cast_slice(&records));
+    Ok((count, rays))
+}

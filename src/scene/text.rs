@@ -1,0 +1,76 @@
+//! TOML files on the way in: from bytes to a tree whose values know their place, or to findings. Every stage goes on
+//! after an error, so that one run shows them all; only a file that is not TOML stops early.
+
+use std::path::Path;
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use super::report::{Finding, Report, SceneErrors, SourceFile, nearest, once};
+use super::tree::Node;
+
+/// The bytes of a file.
+///
+/// # Errors
+/// When it cannot be read; names the nearest file then.
+pub(super) fn read(path: &Path) -> Result<Vec<u8>, SceneErrors> {
+    std::fs::read(path).map_err(|error| {
+        let mut report = Report::new(path, SourceFile::new(path, String::new()));
+        let help = nearest_file(path).map(|near| format!("did you mean {near}?"));
+        report.unreadable(format!("cannot read {}: {error}", path.display()), help);
+        errors(path, report)
+    })
+}
+
+/// What `meaning` makes of the file's tree, and the warnings; `path` names the file in messages.
+///
+/// # Errors
+/// When the bytes are not TOML, and when `meaning` reports an error or makes nothing.
+pub(super) fn parse<T>(
+    path: &Path,
+    bytes: &[u8],
+    meaning: impl FnOnce(Node, &mut Report) -> Option<T>,
+) -> Result<(T, Vec<Finding>), SceneErrors> {
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let text = String::from_utf8_lossy(bytes).into_owned();
+    let source = SourceFile::new(path, text.clone());
+    let mut report = Report::new(path, source);
+    if let Err(error) = std::str::from_utf8(bytes) {
+        let at = error.valid_up_to();
+        report.error(at..at + 1, "the file is not UTF-8", "expected UTF-8 text", None);
+        return Err(errors(path, report));
+    }
+    let (table, faults) = DeTable::parse_recoverable(&text);
+    for fault in &faults {
+        let span = fault.span().unwrap_or(0..0);
+        let help = Some("the file is not TOML here; other checks follow once it is".to_owned());
+        report.error(span, fault.message(), "here", help);
+    }
+    if !report.errors.is_empty() {
+        return Err(errors(path, report));
+    }
+    let span = table.span().start..table.span().start;
+    let root = Spanned::new(span, DeValue::Table(table.into_inner()));
+    match meaning(Node::new(&root), &mut report) {
+        Some(made) if report.errors.is_empty() => Ok((made, once(report.warnings))),
+        _ => Err(errors(path, report)),
+    }
+}
+
+fn errors(path: &Path, mut report: Report) -> SceneErrors {
+    report.errors.sort_by_key(|error| (error.file() != path.display().to_string(), error.line_column()));
+    let (errors, warnings) = (once(report.errors), once(report.warnings));
+    SceneErrors { file: path.display().to_string(), errors, warnings }
+}
+
+/// The file in the same folder whose name is nearest.
+pub(super) fn nearest_file(path: &Path) -> Option<String> {
+    let wanted = path.file_name()?.to_string_lossy().into_owned();
+    let folder = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let mut names: Vec<_> = std::fs::read_dir(folder)
+        .ok()?
+        .filter_map(|entry| Some(entry.ok()?.file_name().to_string_lossy().into_owned()))
+        .collect();
+    names.sort();
+    nearest(&wanted, names.iter().map(String::as_str)).map(str::to_owned)
+}
