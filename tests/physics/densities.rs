@@ -189,12 +189,8 @@ fn lights() {
         // z is bin()'s axis: put the upward axis there
         let turn = |w: Vec3| Vec3::new(w.z, w.x, w.y);
         let back = |w: Vec3| Vec3::new(w.y, w.z, w.x);
-        let draw = |r: &mut Rng| {
-            let s = sample_light(&scene, from, rng_next(r));
-            // a point on the far side is no direction to the light
-            let ray = Ray { origin: from, t_min: 0.0, direction: s.direction, t_max: s.distance };
-            (s.radiance.x > 0.0 && intersect_scene(&scene, &ray).reference == NONE).then(|| turn(s.direction))
-        };
+        // what a direction meets: its density where the surface is turned to the point, and not so grazing that the
+        // density's pole spoils the quadrature
         let pdf = |w: Vec3| {
             let ray = Ray { origin: from, t_min: 0.0, direction: back(w), t_max: 1e30 };
             let hit = intersect_scene(&scene, &ray);
@@ -202,10 +198,18 @@ fn lights() {
                 return 0.0;
             }
             let s = surface_at(&scene, &ray, &hit);
-            if s.normal.dot(ray.direction) >= 0.0 {
+            if s.normal.dot(ray.direction) > -0.1 {
                 return 0.0;
             }
             pdf_light(&scene, s.light, from, ray.direction, hit.t, s.normal, s.v)
+        };
+        let draw = |r: &mut Rng| {
+            let s = sample_light(&scene, from, rng_next(r));
+            // a point on the far side is no direction to the light
+            let ray = Ray { origin: from, t_min: 0.0, direction: s.direction, t_max: s.distance };
+            let free = s.radiance.x > 0.0 && intersect_scene(&scene, &ray).reference == NONE;
+            let w = turn(s.direction);
+            (free && pdf(w) > 0.0).then_some(w)
         };
         check(shape.split('"').nth(1).unwrap(), draw, pdf);
         // and the areas: mean of 1 / pdf is the area that pdf stands for

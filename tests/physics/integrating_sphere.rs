@@ -59,11 +59,14 @@ fn total() {
             })
             .collect();
         for direct in DIRECT {
-            for (method, radius_rule) in [
+            let rules = [
                 (Method::Sppm, RadiusRule::Fixed),
                 (Method::Ppm, RadiusRule::Global),
                 (Method::Sppm, RadiusRule::Local),
-            ] {
+            ];
+            // the rules one by one with the source that is not in the middle
+            let count = if source == DVec3::ZERO { 1 } else { 3 };
+            for (method, radius_rule) in rules.into_iter().take(count) {
                 let settings = RenderSettings {
                     method,
                     direct,
@@ -73,7 +76,7 @@ fn total() {
                     ..settings(0.05)
                 };
                 let what = format!("source at {source}, {method:?} {direct:?} {radius_rule:?}");
-                runs_to(0.03, &text, &settings).assert_picture(&what, &truth, 0.03);
+                runs_to(0.05, &text, &settings).assert_picture(&what, &truth, 0.05);
             }
         }
         let path = RenderSettings { method: Method::Path, passes: 4, ..settings(0.05) };
@@ -91,7 +94,7 @@ fn per_bounce() {
         let settings = RenderSettings {
             direct: Direct::Sampled,
             max_bounces: bounces,
-            passes: 12,
+            passes: 8,
             photons: 1 << 14,
             ..settings(0.08)
         };
@@ -102,6 +105,6 @@ fn per_bounce() {
             |r: &Runs| r.pixels.iter().map(|p| p.iter().sum::<f64>() / p.len() as f64).collect::<Vec<_>>();
         let difference: Vec<f64> = means(&with).iter().zip(means(&without)).map(|(a, b)| a - b).collect();
         let truth = ALBEDO / PI * INTENSITY / (R * R) * sum;
-        assert_agrees(&format!("{bounces} bounces"), Estimate::of(&difference), truth, 0.04);
+        assert_agrees(&format!("{bounces} bounces"), Estimate::of(&difference), truth, 0.06);
     }
 }

@@ -151,18 +151,7 @@ pub fn runs(text: &str, settings: &RenderSettings) -> Runs {
         let picture = render(&scene, &RenderSettings { seed: settings.seed + seed, ..settings.clone() });
         picture.rgb.iter().map(|c| c.iter().map(|&x| x as f64).sum::<f64>() / 3.0).collect()
     };
-    let start = std::time::Instant::now();
-    let r = Runs { size: scene.film.width, pixels: (0..RUNS).map(grey).collect() };
-    println!(
-        "TIME {:?} {} passes {:?}",
-        start.elapsed(),
-        settings.passes,
-        r.pixels
-            .iter()
-            .map(|p| (p.iter().sum::<f64>() / p.len() as f64 * 1e5).round() / 1e5)
-            .collect::<Vec<_>>()
-    );
-    r
+    Runs { size: scene.film.width, pixels: (0..RUNS).map(grey).collect() }
 }
 
 /// A mean and its standard error.

@@ -4,6 +4,7 @@
 //! `CAUSTICA_DEVICE` chooses the device (default `cpu`).
 
 mod agreement;
+mod bent_normals;
 mod caustics;
 mod closed_forms;
 mod densities;
