@@ -2,7 +2,9 @@
 //!
 //! The mean luminance difference `d` of a block is set against its standard deviation
 //!
-//!     sigma^2 = s^2 / n + sum SE^2 / n^2 + (model * truth)^2
+//! ```text
+//! sigma^2 = s^2 / n + sum SE^2 / n^2 + (model * truth)^2
+//! ```
 //!
 //! from the scatter `s` of the difference inside the block (both pictures' noise, and detail that differs), the truth's
 //! standard errors `SE`, and an allowance for the bias of density estimation. For a render that agrees, `d / sigma` is

@@ -2,7 +2,9 @@
 //!
 //! For every block and channel the difference `d` of the means is set against
 //!
-//!     sigma^2 = s^2 / K + SE^2 + (bias T)^2
+//! ```text
+//! sigma^2 = s^2 / K + SE^2 + (bias T)^2
+//! ```
 //!
 //! from the scatter `s` of the render's `K` parts (the larger of the block's own and the mean over the 3 x 3 blocks
 //! around it, since a few parts may all miss what is bright and rarely found), the truth's standard error, and an
