@@ -120,7 +120,7 @@ fn diffuse_bodies() {
         for (method, direct) in
             [(Method::Sppm, Direct::Sampled), (Method::Ppm, Direct::Photons), (Method::Path, Direct::Photons)]
         {
-            let settings = RenderSettings { method, direct, passes: 2, photons: 1 << 15, ..settings(0.03) };
+            let settings = RenderSettings { method, direct, passes: 2, photons: 1 << 14, ..settings(0.03) };
             let what = format!("diffuse {name}, {method:?} {direct:?}");
             runs_to(0.06, &text, &settings).assert_picture(&what, &[ALBEDO; 144], 0.06);
         }

@@ -37,7 +37,7 @@ fn check(name: &str, light: &str, irradiance: impl Fn(DVec3) -> f64) {
     for direct in DIRECT {
         let sampled = direct == Direct::Sampled;
         let passes = if sampled { 8 } else { 1 };
-        let photons = if sampled { 1 } else { 1 << 16 };
+        let photons = if sampled { 1 } else { 1 << 15 };
         let settings = RenderSettings { direct, passes, photons, ..settings(RADIUS) };
         // shadow rays go to the visible point itself, photons are averaged over the disc
         let blur = if sampled { 0.0 } else { RADIUS };

@@ -17,9 +17,9 @@ use caustica::settings::{Direct, Method, Radius, RadiusRule, RenderSettings};
 use glam::{DVec2, DVec3};
 
 /// Independent runs of every comparison.
-pub const RUNS: u64 = 12;
+pub const RUNS: u64 = 20;
 /// Two-sided quantile of Student's t with RUNS - 1 degrees of freedom at 1e-4.
-const T: f64 = 5.921;
+const T: f64 = 4.897;
 
 /// A pinhole camera, y up, over a square picture.
 #[derive(Clone, Copy)]
@@ -140,7 +140,7 @@ pub struct Runs {
 pub fn runs_to(power: f64, text: &str, settings: &RenderSettings) -> Runs {
     let pilot = runs(text, &RenderSettings { seed: settings.seed + 1000, ..settings.clone() });
     let Estimate { mean, error } = pilot.region(|_, _| true);
-    let needed = (T * error / (0.55 * (power - ARITHMETIC) * mean)).powi(2) * settings.passes as f64;
+    let needed = (T * error / (0.6 * (power - ARITHMETIC) * mean)).powi(2) * settings.passes as f64;
     let passes = (needed.ceil() as u32).clamp(settings.passes, 128 * settings.passes);
     runs(text, &RenderSettings { passes, ..settings.clone() })
 }
