@@ -174,7 +174,7 @@ fn all_inside_glass() {
     for (method, direct) in
         [(Method::Sppm, Direct::Sampled), (Method::Sppm, Direct::Photons), (Method::Path, Direct::Sampled)]
     {
-        let settings = RenderSettings { method, direct, passes: 8, photons: 1 << 15, ..settings(0.03) };
+        let settings = RenderSettings { method, direct, passes: 8, photons: 1 << 14, ..settings(0.03) };
         runs_to(0.04, &text, &settings).assert_picture(
             &format!("inside, {method:?} {direct:?}"),
             &picture(direct),
@@ -197,7 +197,7 @@ fn light_inside_glass() {
         0.6 / std::f64::consts::PI * 2.0 * at.y / (at - p).length().powi(3) * (-0.6f64).exp()
     });
     for direct in DIRECT {
-        let settings = RenderSettings { direct, passes: 8, photons: 1 << 15, ..settings(0.03) };
+        let settings = RenderSettings { direct, passes: 8, photons: 1 << 14, ..settings(0.03) };
         runs_to(0.04, &text, &settings).assert_picture(&format!("light in a ball, {direct:?}"), &truth, 0.04);
     }
 }
