@@ -265,7 +265,7 @@ fn revolution() {
     };
     let one = shape(format!("profile = {egg:?}"));
     let point = form::revolution(base, egg);
-    check("egg", &emitting(&one), |p| 5.0 * form::surface(p, DVec3::Y, &point, 32, 48));
+    check("egg", &emitting(&one), |p| 5.0 * form::surface(p, DVec3::Y, &point, 128, 48));
     // a double cone drawn as two straight segments; a straight cubic has its control points evenly spaced
     let line = |a: [f64; 2], b: [f64; 2]| {
         let at = |s: f64| [a[0] + s * (b[0] - a[0]), a[1] + s * (b[1] - a[1])];
@@ -275,6 +275,6 @@ fn revolution() {
     let lower = form::revolution(base, line([0.0, 0.0], [0.25, 0.1]));
     let upper = form::revolution(base, line([0.25, 0.1], [0.0, 0.4]));
     check("double cone", &emitting(&two), |p| {
-        5.0 * (form::surface(p, DVec3::Y, &lower, 24, 48) + form::surface(p, DVec3::Y, &upper, 24, 48))
+        5.0 * (form::surface(p, DVec3::Y, &lower, 64, 48) + form::surface(p, DVec3::Y, &upper, 64, 48))
     });
 }
