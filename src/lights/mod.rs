@@ -1,5 +1,6 @@
 //! Sources of light: choice, shadow-ray samples and photon emission. Twins: `shaders/lights/`.
 
+pub mod aim;
 pub mod emission;
 pub mod light;
 pub mod shape;
