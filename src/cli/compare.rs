@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 
 use caustica::device;
 use caustica::film::metrics::{Comparison, compare};
-use caustica::film::{FileError, Picture, blocks, file, heat};
+use caustica::film::{Picture, blocks, file, heat};
 use caustica::render::{Ending, Stop, render};
 use caustica::scene::Scene;
 use caustica::settings::RenderSettings;
@@ -65,7 +65,7 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
         ));
     };
     if let Some(output) = &arguments.output {
-        check_difference_output(output)?;
+        file::check_png(output)?;
     }
     let (scene, settings) = load(&arguments.scene, &arguments.overrides)?;
     // A device that is not there should not show after the first render.
@@ -93,17 +93,6 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
         message(format_args!("over the threshold: {threshold}"));
     }
     Ok(if over.is_empty() { Done::Fully } else { Done::OverThreshold })
-}
-
-fn check_difference_output(output: &std::path::Path) -> Result<(), FileError> {
-    if file::Format::of(output) != Some(file::Format::Png) {
-        return Err(FileError::UnknownFormat {
-            file: output.to_owned(),
-            what: "a picture of the difference is a PNG file".to_owned(),
-            known: ".png",
-        });
-    }
-    file::check_place(output)
 }
 
 fn render_on(
