@@ -2,12 +2,13 @@
 //!
 //! Theory: pictures that formulas of exact binary fractions make are the same here and in Python. Their figures were
 //! computed by `tests/data/measures.py` with flip-evaluator 1.7, the FLIP authors' own program, which works in f32
-//! (hence five digits), and scikit-image 0.26.0 in f64 (ten digits).
+//! (hence a tolerance of 5e-6), and scikit-image 0.26.0 in f64.
 
+use caustica::film::colors::magma;
 use caustica::film::flip::{Exposures, PIXELS_PER_DEGREE, hdr_flip, ldr_flip};
 use caustica::film::metrics::MetricsError;
 use caustica::film::ssim::Similarity;
-use caustica::film::{Coding, Difference, Measures, Picture, Region};
+use caustica::film::{Coding, Difference, Measures, Picture, Region, luminance};
 
 const WIDTH: u32 = 96;
 const HEIGHT: u32 = 64;
@@ -130,7 +131,7 @@ fn flip_is_that_of_its_authors_program() {
         let map = ldr_flip(&test, &truth).unwrap();
         assert_close(name, map.mean(&Region::whole(&truth)), mean, 5e-6);
         for ((x, y), value) in [(0, 0), (40, 20), (95, 63)].into_iter().zip(pixels) {
-            assert_close(&format!("{name} at {x}, {y}"), map.values[y * WIDTH as usize + x], value, 2e-5);
+            assert_close(&format!("{name} at {x}, {y}"), map.values[y * WIDTH as usize + x], value, 5e-6);
         }
         let hdr = hdr_flip(&test, &truth).unwrap();
         assert_close(name, hdr.map.mean(&Region::whole(&truth)), hdr_mean, 5e-6);
@@ -244,4 +245,26 @@ fn regions_look_at_their_own_pixels() {
     for (x0, y0, x1, y1) in [(0, 0, 97, 64), (0, 0, 96, 65), (5, 5, 5, 9), (9, 9, 5, 12)] {
         assert!(matches!(at(x0, y0, x1, y1), Err(MetricsError::Region { .. })));
     }
+}
+
+/// Entries of matplotlib 3's table of magma, most of them between the stops kept here, and lightness that rises.
+#[test]
+fn magma_is_magma() {
+    for (entry, expected) in [
+        (0, [0, 0, 4]),
+        (25, [20, 14, 54]),
+        (60, [74, 16, 121]),
+        (100, [137, 40, 129]),
+        (128, [183, 55, 121]),
+        (180, [247, 114, 92]),
+        (222, [254, 193, 133]),
+        (255, [252, 253, 191]),
+    ] {
+        let found = magma(f64::from(entry) / 255.0);
+        let near = found.iter().zip(expected).all(|(a, b): (&u8, u8)| a.abs_diff(b) <= 3);
+        assert!(near, "{entry}: {found:?}, expected {expected:?}");
+    }
+    let light = |entry: u32| luminance(magma(f64::from(entry) / 255.0).map(f32::from));
+    assert!((0..248).all(|entry| light(entry) < light(entry + 8)), "more is lighter");
+    assert_eq!((magma(-1.0), magma(2.0)), (magma(0.0), magma(1.0)));
 }

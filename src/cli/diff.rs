@@ -47,8 +47,9 @@ series of exposures, from the one that brings the truth's brightest pixel to 0.8
 that brings its median there, one a stop; they are printed. FLIP is seen at 67 pixels per degree. docs/measures.md tells \
 more.
 
-Example:
-  caustica diff picture.exr truth.exr --region caustic=290,425,424,484 --max-FLIP 0.1 --max-relMSE caustic=0.02 -o flip.png";
+Examples:
+  caustica diff picture.exr truth.exr --max-FLIP 0.1 -o flip.png
+  caustica diff a.exr b.exr --region lamp=96,32,160,64 --max-relMSE lamp=0.02 --json";
 
 fn region(text: &str) -> Result<(String, Region), String> {
     let parsed = text.split_once('=').and_then(|(name, numbers)| {

@@ -50,8 +50,10 @@ impl Region {
     }
 }
 
+/// In words, with the last column and row that are in it.
 impl fmt::Display for Region {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        write!(f, "columns {} to {}, rows {} to {}", self.x0, self.x1, self.y0, self.y1)
+        let Self { x0, y0, x1, y1 } = *self;
+        write!(f, "columns {x0} to {}, rows {y0} to {}", x1.saturating_sub(1), y1.saturating_sub(1))
     }
 }
