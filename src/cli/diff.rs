@@ -60,7 +60,7 @@ fn region(text: &str) -> Result<(String, Region), String> {
     match parsed {
         Some((name, region)) if !name.is_empty() && !region.is_empty() => Ok((name, region)),
         _ => Err("expected a name and four whole numbers with x0 < x1 and y0 < y1, as in \
-                  caustic=290,425,424,484"
+                  caustic=290,425,425,485"
             .to_owned()),
     }
 }
