@@ -3,7 +3,7 @@
 //! they are, so that a picture of it and one of [`crate::cpu`] differ by what single precision costs, and by that
 //! alone.
 
-#![allow(clippy::useless_conversion, clippy::unnecessary_cast)]
+#![allow(clippy::duplicate_mod, clippy::useless_conversion, clippy::unnecessary_cast)]
 
 pub mod real;
 
