@@ -18,9 +18,10 @@
 //! # }
 //! ```
 //!
-//! Modules depend on one another one way: [`math`], then [`tables`], [`shapes`], [`materials`], [`lights`],
+//! Modules depend on one another one way: [`real`] and [`math`], then [`tables`], [`shapes`], [`materials`], [`lights`],
 //! [`camera`] and [`grid`], then [`scene`], [`build`], [`pack`], then [`kernels`], [`probe`], [`plan`], then [`cpu`]
 //! and [`gpu`], then [`device`] and [`render`], and last [`hold`].
+//! Those from [`real`] to [`cpu`] are compiled twice: [`double`] is the same in f64.
 
 pub mod build;
 pub mod camera;

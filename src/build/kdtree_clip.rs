@@ -24,7 +24,9 @@ pub(super) fn clipped(prim: &Primitive, cell: Aabb) -> Option<Aabb> {
 /// A triangle cut by the six planes of a cell has at most nine corners.
 const CORNERS: usize = 9;
 
-/// Cuts the polygon by each plane of the cell in turn (Sutherland & Hodgman 1974), in f64.
+/// Cuts the polygon by each plane of the cell in turn (Sutherland & Hodgman 1974), in f64. Where that is no more than the
+/// kernels have, the corners are off by some roundings, for which the slab about each plane has room
+/// (`shapes/kdtree.rs`).
 fn clipped_triangle(points: &[Vec3; 3], cell: Aabb) -> Option<Aabb> {
     let mut polygon = [DVec3::ZERO; CORNERS];
     for (corner, point) in polygon.iter_mut().zip(points) {
