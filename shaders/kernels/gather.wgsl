@@ -26,7 +26,8 @@ fn gather(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups) gr
     let n = oct_decode(point.shading);
     let low = grid_cell(point.position - vec3f(radius), dispatch.inv_cell);
     let high = grid_cell(point.position + vec3f(radius), dispatch.inv_cell);
-    var found = gathered[id];
+    var count = 0u;
+    var sum = vec3f(0.0);
     for (var z = low.z; z <= high.z; z++) {
         for (var y = low.y; y <= high.y; y++) {
             for (var x = low.x; x <= high.x; x++) {
@@ -42,29 +43,29 @@ fn gather(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups) gr
                     {
                         continue;
                     }
-                    let wi = oct_decode(record.direction);
-                    let cos_g = dot(wi, ng);
-                    if cos_g <= 0.0 {
+                    let toward_light = oct_vector(record.direction);
+                    if dot(toward_light, ng) <= 0.0 {
                         continue;
                     }
-                    found.count += 1u;
+                    count += 1u;
+                    if flat_normal && point.alpha <= 0.0 {
+                        sum += record.flux;
+                        continue;
+                    }
+                    let wi = unit(toward_light);
+                    let cos_g = max(dot(wi, ng), COS_MIN);
                     //#if metal
                     if point.alpha > 0.0 {
                         let f = eval_rough(MATERIAL_METAL, point.alpha, point.reflectance, n, point.wo, wi);
-                        found.flux += point.weight * f * record.flux * (1.0 / max(cos_g, COS_MIN));
+                        sum += f * record.flux * (1.0 / cos_g);
                         continue;
                     }
                     //#end
-                    if flat_normal {
-                        found.flux += point.weight * record.flux;
-                    } else {
-                        let ratio = max(dot(wi, n), 0.0) / max(cos_g, COS_MIN);
-                        found.flux += point.weight * record.flux * ratio;
-                    }
+                    sum += record.flux * (max(dot(wi, n), 0.0) / cos_g);
                 }
             }
         }
     }
-    gathered[id] = found;
+    gathered[id] = Gathered(gathered[id].flux + point.weight * sum, gathered[id].count + count);
     loops_stopped();
 }
