@@ -6,7 +6,7 @@ struct Interface {
 }
 
 fn fresnel(cos_i: f32, eta: f32) -> Interface {
-    let sin_t_sq = eta * eta * max(1.0 - cos_i * cos_i, 0.0);
+    let sin_t_sq = eta * eta * max((1.0 - cos_i) * (1.0 + cos_i), 0.0);
     if sin_t_sq >= 1.0 {
         return Interface(1.0, 0.0);
     }

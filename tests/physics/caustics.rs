@@ -101,3 +101,155 @@ fn slab_over_a_floor() {
     let settings = RenderSettings { passes: 4, photons: 1 << 14, ..settings(RADIUS) };
     runs_to(0.05, &text, &settings).assert_picture("slab", &truth, 0.05);
 }
+
+/// Theory: a ray from a source at (0, `h`) that leaves it at angle theta from straight down, and the plane y = 0: a
+/// one-dimensional map theta -> x (signed). E(b) = sum of I T sin(theta) / (b |dx/dtheta|) over all theta with |x| = b.
+/// `map` gives x and the transmittance T of a ray, if it arrives.
+fn mapped(b: f64, intensity: f64, map: &impl Fn(f64) -> Option<(f64, f64)>) -> f64 {
+    const STEPS: usize = 4000;
+    const WIDEST: f64 = 0.4;
+    let at = |k: usize| (k as f64 + 0.5) * WIDEST / STEPS as f64;
+    let mut sum = 0.0;
+    for sign in [-1.0, 1.0] {
+        let off = |theta: f64| map(theta).map(|(x, _)| sign * x - b);
+        for k in 0..STEPS - 1 {
+            let (mut low, mut high) = (at(k), at(k + 1));
+            let (Some(a), Some(z)) = (off(low), off(high)) else { continue };
+            // a jump of the map is no root
+            if a * z > 0.0 || (a - z).abs() > 0.1 {
+                continue;
+            }
+            for _ in 0..50 {
+                let middle = 0.5 * (low + high);
+                if off(middle).is_some_and(|m| m * a > 0.0) { low = middle } else { high = middle }
+            }
+            let theta = 0.5 * (low + high);
+            let (Some(right), Some(left), Some((_, t))) = (off(theta + 1e-6), off(theta - 1e-6), map(theta))
+            else {
+                continue;
+            };
+            sum += intensity * t * theta.sin() / (b * ((right - left) / 2e-6).abs());
+        }
+    }
+    sum
+}
+
+/// Theory: the map of [`mapped`] for a ball lens of index n and radius R about (0, c): two refractions by Snell's law,
+/// T = (1 - F)^2 with the Fresnel reflectance F of both polarisations' mean, the same at both faces. Light sent to and
+/// fro inside the ball leaves it upward, or less than F^2 of it. The views lie in the ball's shadow, inside and outside
+/// of the caustic's fold at 0.076.
+#[test]
+fn ball_lens() {
+    const N: f64 = 1.2;
+    const R: f64 = 0.3;
+    const C: f64 = 1.2;
+    const H: f64 = 2.4;
+    const I: f64 = 20.0;
+    let refract = |d: glam::DVec2, n: glam::DVec2, eta: f64| {
+        let cos_i = -d.dot(n);
+        let cos_t = (1.0 - eta * eta * (1.0 - cos_i * cos_i)).sqrt();
+        (d * eta + n * (eta * cos_i - cos_t), cos_i, cos_t)
+    };
+    let map = |theta: f64| -> Option<(f64, f64)> {
+        let (o, d) = (glam::DVec2::new(0.0, H), glam::DVec2::new(theta.sin(), -theta.cos()));
+        let centre = glam::DVec2::new(0.0, C);
+        let b = (o - centre).dot(d);
+        let inside = b * b - (o - centre).length_squared() + R * R;
+        if inside <= 0.0 {
+            return None;
+        }
+        let p = o + d * (-b - inside.sqrt());
+        let (w, cos_i, cos_t) = refract(d, (p - centre) / R, 1.0 / N);
+        let q = p - w * (2.0 * (p - centre).dot(w));
+        let (v, _, _) = refract(w, -(q - centre) / R, N);
+        let s = (cos_i - N * cos_t) / (cos_i + N * cos_t);
+        let u = (N * cos_i - cos_t) / (N * cos_i + cos_t);
+        let f = 0.5 * (s * s + u * u);
+        (v.y < 0.0).then(|| (q.x - v.x * q.y / v.y, (1.0 - f).powi(2)))
+    };
+    for (place, fov, radius) in [(0.035, 0.5, 0.006), (0.2, 1.0, 0.012)] {
+        let camera = Camera {
+            position: DVec3::new(place, 0.7, 2.2),
+            target: DVec3::new(place, 0.0, 0.0),
+            fov,
+            size: 8,
+        };
+        let text = floor(&camera)
+            + &format!(
+                "[materials.glass]\ntype = \"glass\"\nior = {N:?}\n\
+                 [[shapes]]\ntype = \"sphere\"\ncenter = [0, {C}, 0]\nradius = {R}\nmaterial = \"glass\"\n\
+                 [[lights]]\ntype = \"spot\"\nposition = [0, {H}, 0]\ntarget = [0, 0, 0]\nintensity = {I}\nangle = 20.0\nblend = 0.0\n"
+            );
+        let truth = camera.floor_picture(radius, |p| ALBEDO / PI * mapped(p.x.hypot(p.z), I, &map));
+        for radius_rule in [RadiusRule::Fixed, RadiusRule::Local] {
+            let settings = RenderSettings { radius_rule, passes: 4, photons: 1 << 14, ..settings(radius) };
+            let what = format!("ball lens at {place}, {radius_rule:?}");
+            runs_to(0.06, &text, &settings).assert_picture(&what, &truth, 0.06);
+        }
+    }
+}
+
+/// Theory: parallel light that falls into a mirror cylinder of radius R, seen along the axis, is turned at the wall's
+/// point R (cos phi, sin phi) into the direction -(cos 2 phi, sin 2 phi), and its tubes have the width |1 - 2 s / (R cos
+/// phi)| after the way s: they close at the caustic, a nephroid with its cusp at R / 2. Rays fall as far as they go
+/// (45 degrees), so that each place gets E_sun / sqrt 2 over the width from every turned ray through it that came in over
+/// the opposite rim and met the wall below its own, and as much from the sun itself where the rim throws no shadow.
+#[test]
+fn cylinder() {
+    const HEIGHT: f64 = 0.8;
+    const SUN: f64 = 3.0;
+    let irradiance = |p: DVec3| {
+        let off = |phi: f64| {
+            let (wall, turned) = (
+                glam::DVec2::new(phi.cos(), phi.sin()),
+                -glam::DVec2::new((2.0 * phi).cos(), (2.0 * phi).sin()),
+            );
+            let to = glam::DVec2::new(p.x, p.z) - wall;
+            (to.perp_dot(turned), to.dot(turned))
+        };
+        // the way back to the opposite wall along -x
+        let direct = p.x + (1.0 - p.z * p.z).sqrt() > HEIGHT;
+        let mut widths = f64::from(direct);
+        const STEPS: usize = 2000;
+        let at = |k: usize| (2.0 * (k as f64 + 0.37) / STEPS as f64 - 1.0) * 1.2;
+        for k in 0..STEPS - 1 {
+            let (mut low, mut high) = (at(k), at(k + 1));
+            let side = off(low).0;
+            if side * off(high).0 > 0.0 {
+                continue;
+            }
+            for _ in 0..50 {
+                let middle = 0.5 * (low + high);
+                if off(middle).0 * side > 0.0 { low = middle } else { high = middle }
+            }
+            let s = off(low).1;
+            let over_the_rim = s + 2.0 * low.cos() > HEIGHT;
+            if s > 0.0 && s < HEIGHT && over_the_rim {
+                widths += 1.0 / (1.0 - 2.0 * s / low.cos()).abs();
+            }
+        }
+        SUN * 0.5f64.sqrt() * widths
+    };
+    // on both sides of the cusp, and off the axis: the cusp itself lies between
+    for (x, z) in [(0.35, 0.0), (0.65, 0.0), (0.3, 0.35)] {
+        let camera = Camera {
+            position: DVec3::new(x, 2.5, z + 0.4),
+            target: DVec3::new(x, 0.0, z),
+            fov: 2.4,
+            size: 8,
+        };
+        let text = floor(&camera)
+            + &format!(
+                "[materials.mirror]\ntype = \"mirror\"\nreflectance = 1.0\n\
+                 [[shapes]]\ntype = \"revolution\"\nprofile = [[1, 0], [1, {HEIGHT}]]\nmaterial = \"mirror\"\n\
+                 [[lights]]\ntype = \"sun\"\ndirection = [1, -1, 0]\nirradiance = {SUN}\n"
+            );
+        let radius = 0.02;
+        let truth = camera.floor_picture(radius, |p| ALBEDO / PI * irradiance(p));
+        for direct in DIRECT {
+            let settings = RenderSettings { direct, passes: 4, photons: 1 << 15, ..settings(radius) };
+            let what = format!("cylinder at ({x}, {z}), {direct:?}");
+            runs_to(0.12, &text, &settings).assert_picture(&what, &truth, 0.12);
+        }
+    }
+}

@@ -201,3 +201,81 @@ fn light_inside_glass() {
         runs_to(0.04, &text, &settings).assert_picture(&format!("light in a ball, {direct:?}"), &truth, 0.04);
     }
 }
+
+/// Theory: a slab of index n transmits (1 - R) / (1 + R), R = ((n - 1) / (n + 1))^2: all but 5e-13 at n = 1.000001, 2e-6 at
+/// n = 1e6, which reflects the rest. At n = 1 the picture is that of the empty scene, to the bit.
+#[test]
+fn extreme_indices() {
+    let scene = |glass: &str, emission: [f64; 2]| {
+        let camera = Camera { position: DVec3::new(0.0, 0.0, 2.0), target: DVec3::ZERO, fov: 40.0, size: 8 };
+        let mut text = camera.toml() + "[materials.black]\ntype = \"diffuse\"\nreflectance = 0.0\n" + glass;
+        for (z, normal, e) in [(-2.0, 1.0, emission[0]), (3.0, -1.0, emission[1])] {
+            text += &format!(
+                "[[shapes]]\ntype = \"disc\"\ncenter = [0, 0, {z}]\nnormal = [0, 0, {normal}]\nradius = 90\nmaterial = \"black\"\nemission = {e:?}\n"
+            );
+        }
+        text
+    };
+    let slab = |ior| glass("type = \"box\"\nmin = [-90, -90, -0.25]\nmax = [90, 90, 0.25]", ior, 0.0);
+    for method in SPECULAR {
+        let picture = |text: &str| render(&parse(text), &seen(method)).rgb;
+        for emission in [[1.0, 0.0], [0.0, 1.0]] {
+            let empty = picture(&scene("", emission));
+            assert_eq!(picture(&scene(&slab(1.0), emission)), empty, "{method:?} {emission:?}: index 1");
+            let thin = picture(&scene(&slab(1.000001), emission));
+            for (a, b) in thin.iter().zip(&empty) {
+                assert!(
+                    (a[0] - b[0]).abs() < 1e-5,
+                    "{method:?} {emission:?}, index 1.000001: {a:?} for {b:?}"
+                );
+            }
+            // of 2,048 paths a refraction in 2e5 is seldom one
+            let dense = picture(&scene(&slab(1e6), emission));
+            for a in dense {
+                let off = (f64::from(a[0]) - emission[1]).abs();
+                assert!(off < 0.05, "{method:?} {emission:?}, index 1e6: {a:?}");
+            }
+        }
+    }
+}
+
+/// Theory: from inside glass of index n, total reflection begins where sin = 1 / n. Some roundings on either side of that
+/// angle the reflectance is that of Fresnel's equations in f64 at a squared cosine of the refracted ray that is off by
+/// a few roundings of 1 and no more, and exactly 1 beyond; the refracted ray is a direction. At once steep and short is the
+/// way from 1 down to Brewster's angle in dense glass, where `1 - cos^2` would have no digits left.
+#[test]
+fn critical_angle() {
+    use caustica::materials::glass::{fresnel, refracted};
+    use glam::Vec3;
+    const ROUNDINGS: f64 = 6.0 * 6e-8;
+    let exact = |cos: f64, n: f64, off: f64| {
+        let cos_t_sq = 1.0 - n * n * (1.0 - cos) * (1.0 + cos) + off;
+        if cos_t_sq <= 0.0 {
+            return 1.0;
+        }
+        let cos_t = cos_t_sq.sqrt();
+        let p = (cos - n * cos_t) / (cos + n * cos_t);
+        let s = (n * cos - cos_t) / (n * cos + cos_t);
+        0.5 * (p * p + s * s)
+    };
+    for n in [1.000001f32, 1.1, 1.33, 1.5, 2.4, 100.0, 1e6] {
+        let wide = f64::from(n);
+        let critical = (1.0 - 1.0 / (wide * wide)).sqrt() as f32;
+        for ulps in -40..=40i32 {
+            let cos = f32::from_bits(critical.to_bits().wrapping_add_signed(ulps)).min(1.0);
+            let interface = fresnel(cos, n);
+            let near: Vec<f64> =
+                (-20..=20).map(|k| exact(f64::from(cos), wide, ROUNDINGS * f64::from(k) / 20.0)).collect();
+            let (low, high) = near.iter().fold((1.0f64, 0.0f64), |(l, h), r| (l.min(*r), h.max(*r)));
+            let r = f64::from(interface.reflectance);
+            assert!(r >= low - 1e-6 && r <= high + 1e-6, "n {n}, {ulps} ulps: {r} not in {low} .. {high}");
+            if r < 1.0 {
+                let wo = Vec3::new(((1.0 - cos) * (1.0 + cos)).max(0.0).sqrt(), cos, 0.0);
+                let wi = refracted(wo, Vec3::Y, cos, interface.cos_t, n);
+                assert!(wi.is_finite() && wi.y <= 1e-6, "n {n}, {ulps} ulps: {wi}");
+                assert!((wi.length() - 1.0).abs() < 1e-5, "n {n}, {ulps} ulps: {wi}");
+            }
+        }
+    }
+    assert_eq!(fresnel(0.7, 1.5).reflectance, 1.0);
+}

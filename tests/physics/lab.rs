@@ -113,6 +113,11 @@ pub fn parse(text: &str) -> Scene {
 
 /// One run. The path tracer runs on the CPU, everything else on the device that is asked for.
 pub fn render(scene: &Scene, settings: &RenderSettings) -> Picture {
+    snapshots(scene, settings, &[settings.passes]).remove(0)
+}
+
+/// The picture of one run after each of the numbers of passes, which rise.
+pub fn snapshots(scene: &Scene, settings: &RenderSettings, passes: &[u32]) -> Vec<Picture> {
     let device = std::env::var("CAUSTICA_DEVICE").unwrap_or_else(|_| "cpu".into());
     let mut engine: Box<dyn Engine> = if settings.method == Method::Path || device == "cpu" {
         let packed = pack(scene, scene.film.width, scene.film.height).unwrap_or_else(|e| panic!("{e}"));
@@ -121,12 +126,17 @@ pub fn render(scene: &Scene, settings: &RenderSettings) -> Picture {
     } else {
         device::open(&device::parse(&device), scene, settings).unwrap_or_else(|e| panic!("{e}")).engine
     };
-    for _ in 0..settings.passes {
-        engine.pass().unwrap();
-    }
-    let picture = engine.picture().unwrap();
-    assert_eq!(picture.not_finite(), 0, "NaN or infinity in the picture");
-    picture
+    let mut done = 0;
+    let mut snapshot = |until: &u32| {
+        while done < *until {
+            engine.pass().unwrap();
+            done += 1;
+        }
+        let picture = engine.picture().unwrap();
+        assert_eq!(picture.not_finite(), 0, "NaN or infinity in the picture");
+        picture
+    };
+    passes.iter().map(&mut snapshot).collect()
 }
 
 /// Grey pixels of [`RUNS`] runs.
@@ -159,11 +169,14 @@ pub fn runs_to(power: f64, text: &str, settings: &RenderSettings) -> Runs {
 /// Renders `text` [`RUNS`] times.
 pub fn runs(text: &str, settings: &RenderSettings) -> Runs {
     let scene = parse(text);
-    let grey = |seed| {
-        let picture = render(&scene, &RenderSettings { seed: settings.seed + seed, ..settings.clone() });
-        picture.rgb.iter().map(|c| c.iter().map(|&x| x as f64).sum::<f64>() / 3.0).collect()
-    };
-    Runs { size: scene.film.width, pixels: (0..RUNS).map(grey).collect() }
+    let run =
+        |seed| grey(&render(&scene, &RenderSettings { seed: settings.seed + seed, ..settings.clone() }));
+    Runs { size: scene.film.width, pixels: (0..RUNS).map(run).collect() }
+}
+
+/// The mean of the three channels of every pixel.
+pub fn grey(picture: &Picture) -> Vec<f64> {
+    picture.rgb.iter().map(|c| c.iter().map(|&x| x as f64).sum::<f64>() / 3.0).collect()
 }
 
 /// A mean and its standard error.

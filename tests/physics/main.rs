@@ -7,6 +7,7 @@ mod agreement;
 mod bent_normals;
 mod caustics;
 mod closed_forms;
+mod convergence;
 mod densities;
 mod dielectrics;
 mod far_ground;
