@@ -9,6 +9,7 @@ mod caustics;
 mod closed_forms;
 mod densities;
 mod dielectrics;
+mod everything;
 mod furnace;
 mod integrating_sphere;
 mod invariance;

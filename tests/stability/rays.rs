@@ -1,0 +1,384 @@
+//! Rays against shapes of extreme size, slimness and angle.
+
+use caustica::build::kdtree::build;
+use caustica::build::normalize::Normalization;
+use caustica::math::offset_origin;
+use caustica::shapes::ray::Ray;
+use caustica::tables::{KIND_TRIANGLE, NONE, REFERENCE_BITS, Scene, Triangle, reference};
+use glam::{DVec3, Vec3};
+
+use super::bench::{Bench, parse};
+use super::table::{Figure, Row};
+use meshes::Rng;
+
+#[path = "../kdtree/scenes.rs"]
+#[allow(dead_code)] // the tests of the kd-tree use the rest
+mod meshes;
+
+pub fn rows() -> Vec<Row> {
+    vec![
+        Row {
+            name: "floor spheres of radius 1e3 to 1e8",
+            how: "Rays from a camera one unit above the floor to points up to 20 units away; t against the sphere's \
+                  quadratic in f64 about the point below the camera. A rounding of the origin's height moves t by 1 / sin of \
+                  the angle with the floor (0.05 at least), which is taken off.",
+            unit: "relative error of t, times sin",
+            bound: 5e-7,
+            measure: floors,
+        },
+        Row {
+            name: "a ball of radius 1e-5 on one of 1e5",
+            how: "Rays of a camera 6e-5 away over the whole picture against both spheres in f64. Wrong is a ray that meets \
+                  another one than in f64 (those that pass the ball's outline within 1e-3 of its radius are left out), or \
+                  whose t is off by more than 1e-5.",
+            unit: "wrong rays",
+            bound: 0.0,
+            measure: ball_on_giant,
+        },
+        Row {
+            name: "triangles of aspect 1e7",
+            how: "A closed unit cube, each face a fan about a point 1e-7 from one of its edges. A ray from inside \
+                  must meet it, at a point whose distance from the face's plane is within the hit's error bound.",
+            unit: "leaks and hits out of bounds",
+            bound: 0.0,
+            measure: slivers,
+        },
+        Row {
+            name: "rays at shared edges and vertices of closed meshes",
+            how: "Rays from inside a bumpy sphere and a bumpy torus, each aimed at a vertex or at a point of an edge: one \
+                  that meets nothing has leaked.",
+            unit: "leaks",
+            bound: 0.0,
+            measure: leaks,
+        },
+        Row {
+            name: "rays along axes, in splitting planes, at corners",
+            how: "Against coplanar grids, slivers, triangles of every size and a tilted plane: the nearest t must have the \
+                  bits of exhaustive search over all triangles.",
+            unit: "rays that differ",
+            bound: 0.0,
+            measure: exhaustive,
+        },
+        Row {
+            name: "grazing angles to 1e-6: the point",
+            how: "Every kind of shape is met at angles of 1e-6 to 1 with its surface. Distance of the point found from the \
+                  true surface, in f64, over the bound that the hit states.",
+            unit: "error bounds",
+            bound: 1.0,
+            measure: |b| grazing(b).0,
+        },
+        Row {
+            name: "grazing angles to 1e-6: leaving",
+            how: "A ray that leaves each of these points at an angle of 1e-6 to 1, away from the convex shape, must not \
+                  meet the shape again.",
+            unit: "rays that meet what they leave",
+            bound: 0.0,
+            measure: |b| grazing(b).1,
+        },
+    ]
+}
+
+/// Nearest distance above zero at which a ray meets the sphere through `anchor` with outward normal `n` and curvature `k`.
+fn sphere_t(o: DVec3, v: DVec3, anchor: DVec3, n: DVec3, k: f64) -> Option<f64> {
+    let d = o - anchor;
+    let (a, b, c) = (0.5 * k * v.length_squared(), v.dot(n) + k * d.dot(v), d.dot(n) + 0.5 * k * d.length_squared());
+    let root = b * b - 4.0 * a * c;
+    let q = -0.5 * (b + root.max(0.0).sqrt().copysign(b));
+    let both = [q / a, c / q];
+    (root >= 0.0).then_some(())?;
+    both.into_iter().filter(|t| *t > 0.0).min_by(f64::total_cmp)
+}
+
+fn ray(origin: DVec3, direction: DVec3) -> Ray {
+    Ray { origin: origin.as_vec3(), t_min: 0.0, direction: direction.normalize().as_vec3(), t_max: 1e30 }
+}
+
+fn floors(b: &Bench) -> Figure {
+    let mut worst = 0.0f64;
+    let radii = if b.long { &[1e3, 1e4, 1e5, 1e6, 1e7, 1e8][..] } else { &[1e3, 1e5, 1e8] };
+    let mut rng = Rng(3);
+    for radius in radii {
+        let text = format!(
+            "version = 1\n[camera]\nposition = [0, 1, 0]\ntarget = [0, 0.5, -4]\nfov = 40\n[film]\nwidth = 8\nheight = 8\n\
+             [materials.m]\ntype = \"diffuse\"\nreflectance = 0.5\n\
+             [[shapes]]\ntype = \"sphere\"\ncenter = [0, {:?}, 0]\nradius = {radius:?}\nmaterial = \"m\"\n",
+            -radius
+        );
+        let n = Normalization::of(&parse(&text));
+        let packed = b.packed(&text);
+        let rays: Vec<Ray> = (0..b.samples(20_000, 200_000))
+            .map(|_| {
+                let on = DVec3::new(f64::from(rng.signed()), 0.0, f64::from(rng.signed())) * 14.0;
+                ray(n.point(DVec3::Y), on - DVec3::Y)
+            })
+            .collect();
+        for (ray, found) in rays.iter().zip(b.trace(&packed.scene, &rays)) {
+            let (o, v) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
+            let k = n.unit / radius;
+            let truth = sphere_t(o, v, n.point(DVec3::ZERO), DVec3::Y, k).expect("the floor lies below");
+            // over the horizon of the smallest the ray may just touch
+            let at = o + v * truth - n.point(DVec3::ZERO);
+            let sin = -v.dot((DVec3::Y + at * k).normalize());
+            let error = if found.is_hit() { (f64::from(found.t) / truth - 1.0).abs() } else { 1.0 };
+            worst = worst.max(error * sin);
+        }
+    }
+    worst.into()
+}
+
+fn ball_on_giant(b: &Bench) -> Figure {
+    const R: f64 = 1e-5;
+    let text = "version = 1\n[camera]\nposition = [0, 2e-5, 6e-5]\ntarget = [0, 1e-5, 0]\nfov = 40\n[film]\nwidth = 8\nheight = 8\n\
+         [materials.m]\ntype = \"diffuse\"\nreflectance = 0.5\n\
+         [[shapes]]\ntype = \"sphere\"\ncenter = [0, 1e-5, 0]\nradius = 1e-5\nmaterial = \"m\"\n\
+         [[shapes]]\ntype = \"sphere\"\ncenter = [0, -1e5, 0]\nradius = 1e5\nmaterial = \"m\"\n";
+    let n = Normalization::of(&parse(text));
+    let packed = b.packed(text);
+    let mut rng = Rng(5);
+    let camera = DVec3::new(0.0, 2e-5, 6e-5);
+    let rays: Vec<Ray> = (0..b.samples(50_000, 500_000))
+        .map(|_| {
+            let (x, y) = (f64::from(rng.signed()), f64::from(rng.signed()));
+            ray(n.point(camera), DVec3::new(x * 2e-5, 1e-5 + y * 2e-5, 0.0) - camera)
+        })
+        .collect();
+    let (r, k) = (R / n.unit, n.unit / 1e5);
+    let (center, ground) = (n.point(DVec3::Y * R), n.point(DVec3::ZERO));
+    let mut wrong = 0;
+    for (ray, found) in rays.iter().zip(b.trace(&packed.scene, &rays)) {
+        let (o, v) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
+        let closest = (center - o) - v * (center - o).dot(v);
+        if (closest.length() / r - 1.0).abs() < 1e-3 {
+            continue;
+        }
+        let ball = sphere_t(o, v, center + DVec3::Y * r, DVec3::Y, 1.0 / r);
+        let floor = sphere_t(o, v, ground, DVec3::Y, k);
+        let met = [(ball, 0), (floor, 1)].into_iter().filter_map(|(t, i)| Some((t?, i)));
+        let truth = met.min_by(|a, b| a.0.total_cmp(&b.0));
+        let same = match truth {
+            None => !found.is_hit(),
+            Some((t, which)) => {
+                let index = found.reference & ((1 << REFERENCE_BITS) - 1);
+                // toward the horizon t has no bound
+                found.is_hit() && index == which && (t > 100.0 || (f64::from(found.t) / t - 1.0).abs() < 1e-5)
+            }
+        };
+        wrong += u32::from(!same);
+    }
+    f64::from(wrong).into()
+}
+
+/// A scene of triangles alone, already in scene space.
+fn of_triangles(mesh: &[[Vec3; 3]]) -> Scene {
+    let mut scene = Scene::empty();
+    let tree = build(&meshes::prims(mesh));
+    scene.world.bounds_min = tree.bounds.min;
+    scene.world.bounds_max = tree.bounds.max;
+    scene.nodes = tree.nodes;
+    scene.refs = tree.refs.iter().map(|&i| reference(KIND_TRIANGLE, i as usize)).collect();
+    let triangle = |p: &[Vec3; 3]| Triangle { p0: p[0], material: 0, p1: p[1], light: NONE, p2: p[2], attributes: NONE };
+    scene.triangles = mesh.iter().map(triangle).collect();
+    scene
+}
+
+/// The unit cube, each face a fan about a point 1e-7 from an edge.
+fn sliver_cube() -> Vec<[Vec3; 3]> {
+    let mut out = Vec::new();
+    for axis in 0..3 {
+        let unit = |k: usize| Vec3::from_array(std::array::from_fn(|i| if i == (axis + k) % 3 { 1.0 } else { 0.0 }));
+        for side in [0.0, 1.0] {
+            let (a, e1, e2) = (unit(0) * side, unit(1), unit(2));
+            let p = a + e1 * 0.5 + e2 * 1e-7;
+            let corners = [a, a + e1, a + e1 + e2, a + e2];
+            out.extend((0..4).map(|i| [corners[i], corners[(i + 1) % 4], p]));
+        }
+    }
+    out
+}
+
+fn slivers(b: &Bench) -> Figure {
+    let mesh = sliver_cube();
+    let scene = of_triangles(&mesh);
+    let mut rng = Rng(7);
+    let rays: Vec<Ray> = (0..b.samples(100_000, 1_000_000))
+        .map(|i| {
+            let origin = DVec3::splat(0.5) + rng.point().as_dvec3() * 0.49;
+            let t = mesh[rng.below(mesh.len())].map(|p| p.as_dvec3());
+            let (mut u, mut v) = (f64::from(rng.signed()).abs(), f64::from(rng.signed()).abs());
+            if u + v > 1.0 {
+                (u, v) = (1.0 - u, 1.0 - v);
+            }
+            // a third at edges, a third at vertices
+            (u, v) = [(u, v), (u, 0.0), (0.0, 0.0)][i as usize % 3];
+            ray(origin, t[0] + (t[1] - t[0]) * u + (t[2] - t[0]) * v - origin)
+        })
+        .collect();
+    let found = b.trace(&scene, &rays);
+    let bad = found.iter().filter(|f| {
+        let p = f.position.as_dvec3();
+        let off = p.to_array().iter().map(|x| x.abs().min((x - 1.0).abs())).fold(f64::MAX, f64::min);
+        !f.is_hit() || off > f64::from(f.error)
+    });
+    (bad.count() as f64).into()
+}
+
+fn leaks(b: &Bench) -> Figure {
+    let count = b.samples(50_000, 500_000);
+    let mut rng = Rng(11);
+    let mut sum = 0;
+    for torus in [false, true] {
+        let mesh = if torus { meshes::displaced_torus(120, 60) } else { meshes::displaced_sphere(120, 60) };
+        let scene = of_triangles(&mesh);
+        let rays: Vec<Ray> = (0..count)
+            .map(|_| {
+                let origin = if torus {
+                    let d = Vec3::new(rng.signed(), 0.0, rng.signed() + 1e-3);
+                    d / d.length() + rng.point() * 0.1
+                } else {
+                    rng.point() * 0.5
+                };
+                let t = mesh[rng.below(mesh.len())];
+                let (p, q) = (t[rng.below(3)], t[rng.below(3)]);
+                let along = if rng.below(3) == 0 { 0.0 } else { 0.5 + 0.5 * rng.signed() };
+                let d = p + (q - p) * along - origin;
+                Ray { origin, t_min: 0.0, direction: d / d.length(), t_max: 1e30 }
+            })
+            .collect();
+        sum += b.trace(&scene, &rays).iter().filter(|f| !f.is_hit()).count();
+    }
+    (sum as f64).into()
+}
+
+fn exhaustive(b: &Bench) -> Figure {
+    let mut rng = Rng(13);
+    let mut differ = 0;
+    for (name, prims) in meshes::scenes() {
+        if !["lattice of coplanar grids", "slivers", "every size", "all in a tilted plane"].contains(&name) {
+            continue;
+        }
+        let mesh: Vec<[Vec3; 3]> = prims
+            .iter()
+            .filter_map(|p| match p {
+                caustica::build::kdtree::Primitive::Triangle(t) => Some(*t),
+                caustica::build::kdtree::Primitive::Box(_) => None,
+            })
+            .collect();
+        let scene = of_triangles(&mesh);
+        let tree = build(&prims);
+        let rays = meshes::rays(&prims, &tree.view(), b.samples(8_000, 80_000) as usize, &mut rng);
+        let found = b.trace(&scene, &rays);
+        let same = |(ray, found): &(&Ray, &super::bench::Found)| {
+            found.t.to_bits() == meshes::exhaustive(&prims, ray).t.to_bits()
+        };
+        differ += rays.iter().zip(&found).filter(|pair| !same(pair)).count();
+    }
+    (differ as f64).into()
+}
+
+/// A convex shape with its true surface.
+struct Body {
+    toml: &'static str,
+    /// A point of the surface and its outward normal, from three numbers in [-1, 1].
+    at: fn(DVec3) -> (DVec3, DVec3),
+    /// Distance from the surface, near it.
+    distance: fn(DVec3) -> f64,
+}
+
+const TILT: DVec3 = DVec3::new(0.36, 0.48, 0.8);
+
+fn bodies() -> Vec<Body> {
+    let tilted = |u: DVec3| {
+        let (a, b) = TILT.any_orthonormal_pair();
+        (DVec3::new(0.3, 0.2, -0.1) + (a * u.x + b * u.y) * 0.5, TILT)
+    };
+    let off_tilted = |p: DVec3| (p - DVec3::new(0.3, 0.2, -0.1)).dot(TILT).abs();
+    vec![
+        Body {
+            toml: "type = \"plane\"\npoint = [0.3, 0.2, -0.1]\nnormal = [0.36, 0.48, 0.8]",
+            at: tilted,
+            distance: off_tilted,
+        },
+        Body {
+            toml: "type = \"disc\"\ncenter = [0.3, 0.2, -0.1]\nnormal = [0.36, 0.48, 0.8]\nradius = 1.5",
+            at: tilted,
+            distance: off_tilted,
+        },
+        Body {
+            toml: "type = \"rectangle\"\norigin = [-1, -0.25, -1]\nu = [0, 0, 2]\nv = [2, 1, 0]",
+            at: |u| {
+                let n = DVec3::new(-1.0, 2.0, 0.0).normalize();
+                (DVec3::new(u.x * 0.5, 0.25 + u.x * 0.25, u.y * 0.5), n)
+            },
+            distance: |p| (p - DVec3::Y * 0.25).dot(DVec3::new(-1.0, 2.0, 0.0).normalize()).abs(),
+        },
+        Body {
+            toml: "type = \"box\"\nmin = [-0.7, -0.6, -0.8]\nmax = [0.9, 0.5, 0.4]",
+            at: |u| (DVec3::new(u.x * 0.5, 0.5, u.y * 0.3), DVec3::Y),
+            distance: |p| (p.y - 0.5).abs().min((p.x - 0.9).abs()).min((p.z - 0.4).abs()),
+        },
+        Body {
+            toml: "type = \"sphere\"\ncenter = [0.2, 0.1, -0.3]\nradius = 0.8",
+            at: |u| {
+                let n = (u + DVec3::new(0.0, 1e-3, 0.0)).normalize();
+                (DVec3::new(0.2, 0.1, -0.3) + n * 0.8, n)
+            },
+            distance: |p| ((p - DVec3::new(0.2, 0.1, -0.3)).length() - 0.8).abs(),
+        },
+        Body {
+            toml: "type = \"revolution\"\nprofile = [[0.5, 0.0], [0.0, 1.0]]",
+            at: |u| {
+                let (s, c) = (3.1 * u.x).sin_cos();
+                let t = 0.5 + 0.4 * u.y;
+                let r = 0.5 * (1.0 - t);
+                (DVec3::new(r * c, t, r * s), DVec3::new(2.0 * c, 1.0, 2.0 * s).normalize())
+            },
+            distance: |p| ((p.x.hypot(p.z) - 0.5 * (1.0 - p.y)) * (0.8f64).sqrt()).abs(),
+        },
+    ]
+}
+
+/// Worst distance of points found at grazing incidence, in error bounds, and how many rays meet what they leave.
+fn grazing(b: &Bench) -> (Figure, Figure) {
+    let mut rng = Rng(17);
+    let (mut worst, mut again, mut met, mut all) = (0.0f64, 0, 0, 0);
+    for body in bodies() {
+        let text = format!(
+            "version = 1\n[camera]\nposition = [2, 1.5, 3]\ntarget = [0, 0.2, 0]\nfov = 40\n[film]\nwidth = 8\nheight = 8\n\
+             [materials.m]\ntype = \"diffuse\"\nreflectance = 0.5\n[[shapes]]\n{}\nmaterial = \"m\"\n",
+            body.toml
+        );
+        let n = Normalization::of(&parse(&text));
+        let packed = b.packed(&text);
+        let angle = |rng: &mut Rng| 10f64.powf(3.0 * f64::from(rng.signed()) - 3.0);
+        let rays: Vec<Ray> = (0..b.samples(20_000, 200_000))
+            .map(|_| {
+                let (p, normal) = (body.at)(rng.point().as_dvec3());
+                let (s, c) = angle(&mut rng).sin_cos();
+                let (e1, e2) = normal.any_orthonormal_pair();
+                let (sin, cos) = (3.2 * f64::from(rng.signed())).sin_cos();
+                let d = (e1 * cos + e2 * sin) * c - normal * s;
+                ray(n.point(p - d * 0.3), d)
+            })
+            .collect();
+        let found = b.trace(&packed.scene, &rays);
+        all += rays.len();
+        let mut leaving = Vec::new();
+        for f in found.iter().filter(|f| f.is_hit()) {
+            met += 1;
+            let world = f.position.as_dvec3() * n.unit + n.center;
+            worst = worst.max((body.distance)(world) / n.unit / f64::from(f.error));
+            let normal = f.normal.as_dvec3();
+            let (e1, e2) = normal.any_orthonormal_pair();
+            let (sin, cos) = (3.2 * f64::from(rng.signed())).sin_cos();
+            let (s, c) = angle(&mut rng).sin_cos();
+            let d = ((e1 * cos + e2 * sin) * c + normal * s).normalize().as_vec3();
+            if d.dot(f.normal) > 0.0 {
+                let origin = offset_origin(f.position, f.error, f.normal, d);
+                leaving.push(Ray { origin, t_min: 0.0, direction: d, t_max: 1e30 });
+            }
+        }
+        again += b.trace(&packed.scene, &leaving).iter().filter(|f| f.is_hit()).count();
+    }
+    let note = format!("{met} of {all} rays, from 0.3 units away, meet the shape.");
+    (Figure { value: worst, note }, (again as f64).into())
+}

@@ -1,0 +1,2 @@
+use super::table::Row;
+pub fn rows() -> Vec<Row> { vec![] }
