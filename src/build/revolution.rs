@@ -15,6 +15,8 @@ const MAX_DEPTH: u32 = 24;
 const OVERLAP: f64 = 1.0 / 64.0;
 /// Bounds are widened by this, in local units: more than the intersection's rounding errors.
 const BOUNDS_PAD: f64 = 2e-6;
+/// Pieces of profile that are no longer than this, in local units, are left out: two roundings of their ends.
+const SHORTEST: f64 = 1.2e-7;
 /// Sectors of a ring that is thin against its radius; others get one box.
 const SECTORS: u32 = 8;
 
@@ -149,7 +151,7 @@ impl RevolutionTables {
         let (first, last) = (piece.points[0], piece.points[piece.points.len() - 1]);
         let length = first.distance(last);
         let reach = piece.points.iter().fold(0.0_f64, |a, p| a.max(p.x));
-        if !(length > 1e-9 && reach > 1e-9) {
+        if !(length > SHORTEST && reach > 1e-9) {
             return;
         }
         // The origin and frame that f32 holds; the control points make up for their rounding.

@@ -1,19 +1,24 @@
 //! What the rows measure with: pictures, rays and film folds on the CPU and on the software driver.
 
+use std::cell::{OnceCell, RefCell};
+use std::collections::HashMap;
 use std::path::PathBuf;
+use std::rc::Rc;
 
 use bytemuck::{cast_slice, pod_collect_to_vec};
 use caustica::cpu::CpuEngine;
 use caustica::engine::Engine;
 use caustica::features::Features;
 use caustica::film::Picture;
-use caustica::gpu::compose::compose_from;
+use caustica::gpu::compose::{Shader, compose, compose_from};
 use caustica::gpu::fragments::{FRAGMENTS, Fragment};
 use caustica::gpu::layout::{SceneTables, long_tables};
 use caustica::gpu::program::Program;
 use caustica::gpu::recorder::Recorder;
 use caustica::gpu::{AdapterChoice, Gpu, GpuEngine};
-use caustica::kernels::records::{Dispatch, FilmPixel, Gathered, Statistics, VisiblePoint};
+use caustica::kernels::gather::gather;
+use caustica::kernels::grid_build::{grid_count, grid_scan, grid_scatter};
+use caustica::kernels::records::{Dispatch, FilmPixel, Gathered, PhotonRecord, Statistics, VisiblePoint};
 use caustica::kernels::resolve::resolve;
 use caustica::pack::{Packed, pack};
 use caustica::plan::{Kernel, Plan};
@@ -37,6 +42,13 @@ pub enum On {
 pub struct Bench {
     pub on: On,
     pub long: bool,
+    driver: OnceCell<Driver>,
+}
+
+/// The software driver with the kernels that it has compiled so far, by their text.
+struct Driver {
+    gpu: Gpu,
+    programs: RefCell<HashMap<String, Rc<Program>>>,
 }
 
 /// Where a ray met a scene.
@@ -68,6 +80,12 @@ pub fn parse(text: &str) -> Scene {
     }
 }
 
+/// What is wrong with the scene that `text` describes.
+pub fn parse_errors(text: &str) -> Vec<String> {
+    let errors = scene::parse(&folder().join("scene.toml"), text.as_bytes()).err();
+    errors.into_iter().flat_map(|e| e.errors).map(|e| e.message().to_owned()).collect()
+}
+
 /// A folder for generated files.
 pub fn folder() -> PathBuf {
     let folder = std::env::temp_dir().join("caustica-stability");
@@ -75,7 +93,32 @@ pub fn folder() -> PathBuf {
     folder
 }
 
+impl Driver {
+    fn program(&self, kernel: Kernel, features: &Features, shader: Shader) -> Rc<Program> {
+        let known = self.programs.borrow().get(&shader.source).cloned();
+        known.unwrap_or_else(|| {
+            let source = shader.source.clone();
+            let program =
+                Program::of_shader(&self.gpu, kernel, features, shader).expect("a kernel that compiles");
+            let program = Rc::new(program);
+            self.programs.borrow_mut().insert(source, program.clone());
+            program
+        })
+    }
+}
+
 impl Bench {
+    pub fn new(on: On, long: bool) -> Self {
+        Self { on, long, driver: OnceCell::new() }
+    }
+
+    fn driver(&self) -> &Driver {
+        self.driver.get_or_init(|| Driver {
+            gpu: Gpu::open(&AdapterChoice::Software).expect("the software driver"),
+            programs: RefCell::default(),
+        })
+    }
+
     /// `few` in tests, `many` for the table.
     pub fn samples(&self, few: u32, many: u32) -> u32 {
         if self.long { many } else { few }
@@ -95,9 +138,9 @@ impl Bench {
         let plan = Plan::new(&packed, settings);
         let mut engine: Box<dyn Engine> = match self.on {
             On::Cpu => Box::new(CpuEngine::new(packed, plan)),
-            On::Software => {
-                Box::new(GpuEngine::new(&AdapterChoice::Software, &packed, plan).expect("the software driver"))
-            }
+            On::Software => Box::new(
+                GpuEngine::new(&AdapterChoice::Software, &packed, plan).expect("the software driver"),
+            ),
         };
         for _ in 0..settings.passes {
             engine.pass().expect("a pass");
@@ -109,7 +152,7 @@ impl Bench {
     pub fn trace(&self, scene: &tables::Scene, rays: &[Ray]) -> Vec<Found> {
         match self.on {
             On::Cpu => rays.par_iter().map(|ray| trace(scene, ray)).collect(),
-            On::Software => trace_on_driver(scene, rays),
+            On::Software => trace_on_driver(self.driver(), scene, rays),
         }
     }
 
@@ -130,10 +173,11 @@ impl Bench {
             }
             return (statistics, film);
         }
-        let gpu = Gpu::open(&AdapterChoice::Software).expect("the software driver");
-        let mut recorder = Recorder::new(&gpu).expect("a recorder");
+        let gpu = &self.driver().gpu;
+        let mut recorder = Recorder::new(gpu).expect("a recorder");
         let features = Features::from(["local"]);
-        let program = Program::new(&gpu, Kernel::Resolve, &features, &SceneTables::default()).expect("resolve");
+        let shader = compose(Kernel::Resolve, &features, &SceneTables::default()).expect("composed");
+        let program = self.driver().program(Kernel::Resolve, &features, shader);
         let upload = |name, bytes: &[u8]| (name, gpu.upload(name, bytes).expect("a buffer"));
         let buffers = [
             upload("visible_points", bytemuck::bytes_of(&point)),
@@ -142,19 +186,94 @@ impl Bench {
             upload("film", bytemuck::bytes_of(&film)),
         ];
         let find = |name: &str| buffers.iter().find(|(n, _)| *n == name).map(|(_, b)| b);
-        let group = program.bind(&gpu, &recorder.dispatches, find).expect("bound");
+        let group = program.bind(gpu, &recorder.dispatches, find).expect("bound");
         for d in passes {
             if recorder.is_full() {
-                recorder.finish(&gpu).expect("done");
+                recorder.finish(gpu).expect("done");
             }
-            recorder.dispatch(&gpu, &program, &group, &Dispatch { first: 0, end: 1, ..*d });
+            recorder.dispatch(gpu, &program, &group, &Dispatch { first: 0, end: 1, ..*d });
         }
-        recorder.finish(&gpu).expect("done");
+        recorder.finish(gpu).expect("done");
         let read = |i: usize, bytes| gpu.read(&buffers[i].1, bytes).expect("read");
         let stats: Vec<Statistics> = pod_collect_to_vec(&read(2, size_of::<Statistics>() as u64));
         let pixels: Vec<FilmPixel> = pod_collect_to_vec(&read(3, size_of::<FilmPixel>() as u64));
         (stats[0], pixels[0])
     }
+}
+
+impl Bench {
+    /// What points gather from records in the grid of `dispatch`.
+    pub fn gather(
+        &self,
+        dispatch: &Dispatch,
+        points: &[VisiblePoint],
+        records: Vec<PhotonRecord>,
+    ) -> Vec<Gathered> {
+        self.gather_batches(dispatch, points, &[records])
+    }
+
+    /// The same, batch by batch.
+    pub fn gather_batches(
+        &self,
+        dispatch: &Dispatch,
+        points: &[VisiblePoint],
+        batches: &[Vec<PhotonRecord>],
+    ) -> Vec<Gathered> {
+        let mut sum = vec![Gathered::default(); points.len()];
+        let d = Dispatch { first: 0, end: points.len() as u32, eye_samples: 1, ..*dispatch };
+        for records in batches {
+            let (starts, sorted) = binned(&d, records);
+            match self.on {
+                On::Software => gather_on_driver(self.driver(), &d, points, &starts, &sorted, &mut sum),
+                On::Cpu => {
+                    for (point, gathered) in points.iter().zip(&mut sum) {
+                        gather(&d, point, d.scale_sq, &starts, &sorted, gathered);
+                    }
+                }
+            }
+        }
+        sum
+    }
+}
+
+fn binned(d: &Dispatch, records: &[PhotonRecord]) -> (Vec<u32>, Vec<PhotonRecord>) {
+    let mut counts = vec![0; d.mask as usize + 1];
+    let mut starts = vec![0; counts.len() + 1];
+    let mut order = vec![0; records.len()];
+    grid_count(d, records, &mut counts);
+    grid_scan(&counts, &mut starts);
+    grid_scatter(d, records, &starts, &mut counts, &mut order);
+    (starts, order.iter().map(|&i| records[i as usize]).collect())
+}
+
+fn gather_on_driver(
+    driver: &Driver,
+    d: &Dispatch,
+    points: &[VisiblePoint],
+    starts: &[u32],
+    sorted: &[PhotonRecord],
+    sum: &mut [Gathered],
+) {
+    let gpu = &driver.gpu;
+    let mut recorder = Recorder::new(gpu).expect("a recorder");
+    let shader = compose(Kernel::Gather, &Features::default(), &SceneTables::default()).expect("composed");
+    let program = driver.program(Kernel::Gather, &Features::default(), shader);
+    let upload = |name, bytes: &[u8]| (name, gpu.upload(name, bytes).expect("a buffer"));
+    let buffers = [
+        upload("visible_points", cast_slice(points)),
+        upload("counters", &[0; 16]),
+        upload("starts", cast_slice(starts)),
+        upload("sorted", cast_slice(sorted)),
+        upload("gathered", cast_slice(sum)),
+    ];
+    let find = |name: &str| buffers.iter().find(|(n, _)| *n == name).map(|(_, b)| b);
+    let group = program.bind(gpu, &recorder.dispatches, find).expect("bound");
+    recorder.dispatch(gpu, &program, &group, d);
+    recorder.finish(gpu).expect("done");
+    let counters: Vec<u32> = pod_collect_to_vec(&gpu.read(&buffers[1].1, 16).expect("read"));
+    assert_eq!(counters[3], 0, "the driver stopped a loop");
+    let bytes = gpu.read(&buffers[4].1, size_of_val(sum) as u64).expect("read");
+    sum.copy_from_slice(&pod_collect_to_vec::<u8, Gathered>(&bytes));
 }
 
 fn trace(scene: &tables::Scene, ray: &Ray) -> Found {
@@ -168,9 +287,9 @@ fn trace(scene: &tables::Scene, ray: &Ray) -> Found {
     found
 }
 
-fn trace_on_driver(scene: &tables::Scene, rays: &[Ray]) -> Vec<Found> {
-    let gpu = Gpu::open(&AdapterChoice::Software).expect("the software driver");
-    let mut recorder = Recorder::new(&gpu).expect("a recorder");
+fn trace_on_driver(driver: &Driver, scene: &tables::Scene, rays: &[Ray]) -> Vec<Found> {
+    let gpu = &driver.gpu;
+    let mut recorder = Recorder::new(gpu).expect("a recorder");
     let features = Features::of(scene, &RenderSettings::default());
     let tables = SceneTables::new(scene);
     let kernel = Kernel::EyeTrace;
@@ -180,7 +299,7 @@ fn trace_on_driver(scene: &tables::Scene, rays: &[Ray]) -> Vec<Found> {
     };
     let fragments: Vec<Fragment> = FRAGMENTS.iter().map(swapped).collect();
     let shader = compose_from(&fragments, kernel, &features, &tables).expect("composed");
-    let program = Program::of_shader(&gpu, kernel, &features, shader).expect("compiled");
+    let program = driver.program(kernel, &features, shader);
     let given = |ray: &Ray| VisiblePoint {
         position: ray.origin,
         radius: ray.t_min,
@@ -203,19 +322,22 @@ fn trace_on_driver(scene: &tables::Scene, rays: &[Ray]) -> Vec<Found> {
             }
         }
         let find = |name: &str| buffers.iter().find(|(n, _)| *n == name).map(|(_, b)| b);
-        let group = program.bind(&gpu, &recorder.dispatches, find).expect("bound");
+        let group = program.bind(gpu, &recorder.dispatches, find).expect("bound");
         let end = rays.len() as u32;
-        recorder.dispatch(&gpu, &program, &group, &Dispatch { first: 0, end, ..Dispatch::default() });
-        recorder.finish(&gpu).expect("done");
+        recorder.dispatch(gpu, &program, &group, &Dispatch { first: 0, end, ..Dispatch::default() });
+        recorder.finish(gpu).expect("done");
         let bytes = gpu.read(&buffers[1].1, (rays.len() * size_of::<VisiblePoint>()) as u64).expect("read");
         let answers: Vec<VisiblePoint> = pod_collect_to_vec(&bytes);
-        assert!(answers.iter().all(|a| a.stopped == 0), "the driver stopped a loop");
-        out.extend(answers.iter().map(|a| Found {
-            t: a.radius,
-            reference: a.normal,
-            position: a.position,
-            error: a.radiance.z,
-            normal: a.weight,
+        // the engine, too, traces again what the driver has stopped
+        out.extend(rays.iter().zip(&answers).map(|(ray, a)| match a.stopped {
+            0 => Found {
+                t: a.radius,
+                reference: a.normal,
+                position: a.position,
+                error: a.radiance.z,
+                normal: a.weight,
+            },
+            _ => trace(scene, ray),
         }));
     }
     out

@@ -20,14 +20,15 @@ fn hold(section: &str, on: On) {
     if on == On::Software {
         software::software();
     }
-    let bench = Bench { on, long: false };
+    let bench = Bench::new(on, false);
     let sections = sections();
     let rows = &sections.iter().find(|(name, _)| *name == section).expect("a section").1;
     let mut failed = Vec::new();
     for row in rows {
         let start = std::time::Instant::now();
         let figure = (row.measure)(&bench);
-        let report = format!("{}: {} {:e}, bound {:e} {}", row.name, row.unit, figure.value, row.bound, figure.note);
+        let report =
+            format!("{}: {} {:e}, bound {:e} {}", row.name, row.unit, figure.value, row.bound, figure.note);
         println!("{on:?} {:5.1} s {report}", start.elapsed().as_secs_f64());
         if !row.admits(&figure) {
             failed.push(report);

@@ -81,7 +81,8 @@ pub fn rows() -> Vec<Row> {
 /// Nearest distance above zero at which a ray meets the sphere through `anchor` with outward normal `n` and curvature `k`.
 fn sphere_t(o: DVec3, v: DVec3, anchor: DVec3, n: DVec3, k: f64) -> Option<f64> {
     let d = o - anchor;
-    let (a, b, c) = (0.5 * k * v.length_squared(), v.dot(n) + k * d.dot(v), d.dot(n) + 0.5 * k * d.length_squared());
+    let (a, b, c) =
+        (0.5 * k * v.length_squared(), v.dot(n) + k * d.dot(v), d.dot(n) + 0.5 * k * d.length_squared());
     let root = b * b - 4.0 * a * c;
     let q = -0.5 * (b + root.max(0.0).sqrt().copysign(b));
     let both = [q / a, c / q];
@@ -176,7 +177,8 @@ fn of_triangles(mesh: &[[Vec3; 3]]) -> Scene {
     scene.world.bounds_max = tree.bounds.max;
     scene.nodes = tree.nodes;
     scene.refs = tree.refs.iter().map(|&i| reference(KIND_TRIANGLE, i as usize)).collect();
-    let triangle = |p: &[Vec3; 3]| Triangle { p0: p[0], material: 0, p1: p[1], light: NONE, p2: p[2], attributes: NONE };
+    let triangle =
+        |p: &[Vec3; 3]| Triangle { p0: p[0], material: 0, p1: p[1], light: NONE, p2: p[2], attributes: NONE };
     scene.triangles = mesh.iter().map(triangle).collect();
     scene
 }
@@ -185,7 +187,8 @@ fn of_triangles(mesh: &[[Vec3; 3]]) -> Scene {
 fn sliver_cube() -> Vec<[Vec3; 3]> {
     let mut out = Vec::new();
     for axis in 0..3 {
-        let unit = |k: usize| Vec3::from_array(std::array::from_fn(|i| if i == (axis + k) % 3 { 1.0 } else { 0.0 }));
+        let unit =
+            |k: usize| Vec3::from_array(std::array::from_fn(|i| if i == (axis + k) % 3 { 1.0 } else { 0.0 }));
         for side in [0.0, 1.0] {
             let (a, e1, e2) = (unit(0) * side, unit(1), unit(2));
             let p = a + e1 * 0.5 + e2 * 1e-7;

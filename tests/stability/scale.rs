@@ -54,7 +54,8 @@ pub fn rows() -> Vec<Row> {
             unit: "shadowed pixels",
             bound: 0.0,
             measure: |b| {
-                let scales = if b.long { &[1e-6, 1e-4, 1e-2, 1.0, 1e2, 1e4, 1e6][..] } else { &[1e-6, 1.0, 1e6] };
+                let scales =
+                    if b.long { &[1e-6, 1e-4, 1e-2, 1.0, 1e2, 1e4, 1e6][..] } else { &[1e-6, 1.0, 1e6] };
                 let places = if b.long { &[0.0, 1.0, 1e3, 1e5, 1e7][..] } else { &[0.0, 1e7] };
                 let at = |&scale: &f64| places.iter().map(|&p| shadowed(b, scale, p)).sum::<u32>();
                 f64::from(scales.iter().map(at).sum::<u32>()).into()

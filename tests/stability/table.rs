@@ -51,11 +51,13 @@ pub fn sections() -> Vec<(&'static str, Vec<Row>)> {
 
 /// The table as Markdown, measured on both devices; and whether every row holds. `told` hears each row's name.
 pub fn markdown(long: bool, only: &str, mut told: impl FnMut(&str)) -> (String, bool) {
-    let benches = [On::Cpu, On::Software].map(|on| Bench { on, long });
+    let benches = [On::Cpu, On::Software].map(|on| Bench::new(on, long));
     let mut text = String::new();
     let mut holds = true;
     for (section, rows) in sections() {
-        text += &format!("## {section}\n\n| extreme | figure | CPU | lavapipe | bound |\n|---|---|---|---|---|\n");
+        text += &format!(
+            "## {section}\n\n| extreme | figure | CPU | lavapipe | bound |\n|---|---|---|---|---|\n"
+        );
         let mut notes = String::new();
         for row in rows.iter().filter(|row| row.name.contains(only)) {
             told(row.name);
@@ -65,7 +67,8 @@ pub fn markdown(long: bool, only: &str, mut told: impl FnMut(&str)) -> (String, 
                 let mark = if row.admits(figure) { "" } else { " **fails**" };
                 format!("{}{mark}", number(figure.value))
             });
-            text += &format!("| {} | {} | {cpu} | {software} | {} |\n", row.name, row.unit, number(row.bound));
+            text +=
+                &format!("| {} | {} | {cpu} | {software} | {} |\n", row.name, row.unit, number(row.bound));
             notes += &format!("- *{}*: {}", row.name, row.how);
             let [cpu, software] = figures.map(|figure| figure.note);
             if !cpu.is_empty() {
