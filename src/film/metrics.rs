@@ -11,6 +11,8 @@ pub struct Comparison {
     pub mean_ratio: [f64; 3],
     /// Mean over pixels of `(La - Lb)^2 / (Lb^2 + 0.01)`, the largest 0.1 % dropped (rounded up); `L` is luminance.
     pub rel_mse: f64,
+    /// Median over pixels of `|La - Lb| / Lb`: 0 where both are zero, infinite where `Lb` alone is.
+    pub median: f64,
     /// Root of the mean squared difference over all channel values, in W sr^-1 m^-2.
     pub rmse: f64,
     /// Peak signal-to-noise ratio in dB; the peak is the truth's largest value. Infinite for equal pictures.
@@ -69,12 +71,23 @@ pub fn compare(a: &Picture, b: &Picture) -> Result<Comparison, MetricsError> {
     Ok(Comparison {
         mean_ratio: mean_ratio(a, b),
         rel_mse: rel_mse(a, b),
+        median: median(a, b),
         rmse: mse.sqrt(),
         psnr: if mse == 0.0 { f64::INFINITY } else { 10.0 * (f64::from(peak).powi(2) / mse).log10() },
         worst,
         pixels_differing: a.rgb.iter().zip(&b.rgb).filter(|(a, b)| !same_bits(**a, **b)).count(),
         pixels: a.rgb.len(),
     })
+}
+
+fn median(a: &Picture, b: &Picture) -> f64 {
+    let share = |(&a, &b): (&[f32; 3], &[f32; 3])| {
+        let (a, b) = (luminance(a), luminance(b));
+        if a == b { 0.0 } else { (a - b).abs() / b.abs() }
+    };
+    let mut shares: Vec<f64> = a.rgb.iter().zip(&b.rgb).map(share).collect();
+    let middle = shares.len() / 2;
+    *shares.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
 impl Comparison {
