@@ -4,6 +4,7 @@
 
 const FLATNESS: f32 = 0.25;
 const COS_MIN: f32 = 1e-2;
+const BLOCK: u32 = 1024u;
 
 @compute @workgroup_size(64)
 fn gather(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups) groups: vec3u) {
@@ -33,34 +34,39 @@ fn gather(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups) gr
                 let cell = vec3i(x, y, z);
                 let bucket = grid_bucket(cell, dispatch.mask);
                 let end = starts[bucket + 1u];
-                for (var i = starts[bucket]; i < end; i++) {
-                    let record = sorted[i];
-                    let d = record.position - point.position;
-                    if dot(d, d) > radius_sq
-                        || abs(dot(d, ng)) > FLATNESS * radius
-                        || any(grid_cell(record.position, dispatch.inv_cell) != cell)
-                    {
-                        continue;
+                for (var first = starts[bucket]; first < end; first += BLOCK) {
+                    var block = vec3f(0.0);
+                    for (var i = first; i < min(first + BLOCK, end); i++) {
+                        let record = sorted[i];
+                        let d = record.position - point.position;
+                        if dot(d, d) > radius_sq
+                            || abs(dot(d, ng)) > FLATNESS * radius
+                            || any(grid_cell(record.position, dispatch.inv_cell) != cell)
+                        {
+                            continue;
+                        }
+                        let wi = oct_decode(record.direction);
+                        let cos_g = dot(wi, ng);
+                        if cos_g <= 0.0 {
+                            continue;
+                        }
+                        found.count += 1u;
+                        var is_metal = false;
+                        //#if metal
+                        if point.alpha > 0.0 {
+                            is_metal = true;
+                            let f = eval_rough(MATERIAL_METAL, point.alpha, point.reflectance, n, point.wo, wi);
+                            block += point.weight * f * record.flux * (1.0 / max(cos_g, COS_MIN));
+                        }
+                        //#end
+                        if !is_metal && flat_normal {
+                            block += point.weight * record.flux;
+                        } else if !is_metal {
+                            let ratio = max(dot(wi, n), 0.0) / max(cos_g, COS_MIN);
+                            block += point.weight * record.flux * ratio;
+                        }
                     }
-                    let wi = oct_decode(record.direction);
-                    let cos_g = dot(wi, ng);
-                    if cos_g <= 0.0 {
-                        continue;
-                    }
-                    found.count += 1u;
-                    //#if metal
-                    if point.alpha > 0.0 {
-                        let f = eval_rough(MATERIAL_METAL, point.alpha, point.reflectance, n, point.wo, wi);
-                        found.flux += point.weight * f * record.flux * (1.0 / max(cos_g, COS_MIN));
-                        continue;
-                    }
-                    //#end
-                    if flat_normal {
-                        found.flux += point.weight * record.flux;
-                    } else {
-                        let ratio = max(dot(wi, n), 0.0) / max(cos_g, COS_MIN);
-                        found.flux += point.weight * record.flux * ratio;
-                    }
+                    found.flux += block;
                 }
             }
         }

@@ -8,11 +8,13 @@ pub mod heat;
 pub mod metrics;
 pub mod pfm;
 pub mod provenance;
+pub mod rejections;
 pub mod tonemap;
 
 pub use error::FileError;
 pub use file::{check_outputs, read, write};
 pub use provenance::Provenance;
+pub use rejections::Rejections;
 pub use tonemap::Development;
 
 /// Linear Rec. 709 radiance, row 0 on top.

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 use std::rc::Rc;
 
-use bytemuck::{cast_slice, pod_collect_to_vec};
+use bytemuck::{Zeroable, cast_slice, pod_collect_to_vec};
 use caustica::cpu::CpuEngine;
 use caustica::engine::Engine;
 use caustica::features::Features;
@@ -219,7 +219,7 @@ impl Bench {
         points: &[VisiblePoint],
         batches: &[Vec<PhotonRecord>],
     ) -> Vec<Gathered> {
-        let mut sum = vec![Gathered::default(); points.len()];
+        let mut sum = vec![Gathered::zeroed(); points.len()];
         let d = Dispatch { first: 0, end: points.len() as u32, eye_samples: 1, ..*dispatch };
         for records in batches {
             let (starts, sorted) = binned(&d, records);
@@ -305,7 +305,7 @@ fn trace_on_driver(driver: &Driver, scene: &tables::Scene, rays: &[Ray]) -> Vec<
         radius: ray.t_min,
         weight: ray.direction,
         alpha: ray.t_max,
-        ..VisiblePoint::default()
+        ..VisiblePoint::zeroed()
     };
     let mut out = Vec::new();
     // a binding holds 128 MiB
@@ -324,12 +324,12 @@ fn trace_on_driver(driver: &Driver, scene: &tables::Scene, rays: &[Ray]) -> Vec<
         let find = |name: &str| buffers.iter().find(|(n, _)| *n == name).map(|(_, b)| b);
         let group = program.bind(gpu, &recorder.dispatches, find).expect("bound");
         let end = rays.len() as u32;
-        recorder.dispatch(gpu, &program, &group, &Dispatch { first: 0, end, ..Dispatch::default() });
+        recorder.dispatch(gpu, &program, &group, &Dispatch { first: 0, end, ..Dispatch::zeroed() });
         recorder.finish(gpu).expect("done");
         let bytes = gpu.read(&buffers[1].1, (rays.len() * size_of::<VisiblePoint>()) as u64).expect("read");
         let answers: Vec<VisiblePoint> = pod_collect_to_vec(&bytes);
         // the engine, too, traces again what the driver has stopped
-        out.extend(rays.iter().zip(&answers).map(|(ray, a)| match a.stopped {
+        out.extend(rays.iter().zip(&answers).map(|(ray, a)| match a.state {
             0 => Found {
                 t: a.radius,
                 reference: a.normal,

@@ -21,7 +21,7 @@ fn eye_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
         found.radiance = vec3f(hit.u, hit.v, s.error);
     }
     if loops_stopped() {
-        found.stopped = 1u;
+        found.state |= STOPPED;
     }
     visible_points[id] = found;
 }

@@ -36,7 +36,7 @@ pub fn rows() -> Vec<Row> {
                   b-th bounce give Le (1 - rho^(b+2)) / (1 - rho): 1.75 Le for one at rho 0.5 and 100 Le for 1000 at rho 0.99. \
                   Photons on the middle of a wall.",
             unit: "relative error",
-            bound: 3e-2,
+            bound: 4e-2,
             measure: bounces,
         },
         Row {
@@ -155,7 +155,7 @@ fn bounces(b: &Bench) -> Figure {
             );
         }
         let settings = RenderSettings {
-            passes: b.samples(2, 32),
+            passes: b.samples(4, 32),
             photons: 1 << 12,
             max_bounces: bounces,
             direct: Direct::Photons,
