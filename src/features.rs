@@ -5,7 +5,7 @@ use crate::settings::{Direct, Method, RadiusRule, RenderSettings};
 use std::collections::BTreeSet;
 
 /// Names that fence optional code in shaders (`//#if name`).
-pub const ALL: [&str; 33] = [
+pub const ALL: [&str; 34] = [
     "triangle",
     "attributes",
     "sphere",
@@ -34,6 +34,7 @@ pub const ALL: [&str; 33] = [
     "point",
     "spot",
     "infinite",
+    "far",
     "environment",
     "environment_image",
     "lens",
@@ -86,6 +87,7 @@ impl Features {
         put("point", light(LIGHT_POINT));
         put("spot", light(LIGHT_SPOT));
         put("infinite", light(LIGHT_SUN) || light(LIGHT_CONSTANT) || light(LIGHT_IMAGE));
+        put("far", scene.world.disc_levels > 1);
         put("environment", light(LIGHT_CONSTANT) || light(LIGHT_IMAGE));
         put("environment_image", light(LIGHT_IMAGE));
         put("lens", scene.camera.aperture > 0.0);

@@ -61,7 +61,7 @@ pub struct World {
     pub environment: u32,
     /// Shapes tested against every ray (planes and huge spheres).
     pub unbounded_count: u32,
-    /// Emission discs for light from infinity: radius `near_radius * 2^k`, k below this.
+    /// Emission discs for light from infinity: radius `near_radius * 2^k`, k below this; 1 without such light.
     pub disc_levels: u32,
     /// Padding.
     pub pad: [u32; 2],

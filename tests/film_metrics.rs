@@ -87,8 +87,8 @@ fn what_cannot_be_compared() {
     assert_eq!(compare(&good, &grey(4, 5, 1.0)), Err(MetricsError::Size { a: (4, 4), b: (4, 5) }));
     let mut bad = good.clone();
     bad.rgb[5] = [f32::NAN, 0.0, f32::INFINITY];
-    assert_eq!(compare(&good, &bad), Err(MetricsError::NotFinite { which: "second", count: 2 }));
-    assert_eq!(compare(&bad, &good), Err(MetricsError::NotFinite { which: "first", count: 2 }));
+    assert_eq!(compare(&good, &bad), Err(MetricsError::NotFinite { which: "second", count: 2, at: (1, 1) }));
+    assert_eq!(compare(&bad, &good), Err(MetricsError::NotFinite { which: "first", count: 2, at: (1, 1) }));
     assert_eq!(compare(&grey(0, 0, 0.0), &grey(0, 0, 0.0)), Err(MetricsError::Empty));
 }
 

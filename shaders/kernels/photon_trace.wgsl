@@ -13,6 +13,9 @@ fn photon_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgrou
     let emission = emit_photon(&rng);
     var ray = emission.ray;
     var flux = emission.flux;
+    //#if far
+    var excess = emission.excess;
+    //#end
     var medium = emission.medium;
     var rays = 0u;
     for (var bounce = 0u; bounce < dispatch.max_bounces + 1u; bounce++) {
@@ -34,14 +37,17 @@ fn photon_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgrou
         if is_specular(kind) {
             scattered = scatter_specular(s, wo, medium, u.x, IMPORTANCE);
         } else {
-            store_record(id, bounce, s, wo, flux);
-            scattered = scatter_rough(s, wo, medium, vec2f(u.x, u.y), IMPORTANCE);
+            scattered = stored_and_scattered(id, bounce, s, wo, medium, flux, u);
         }
         //#else
-        store_record(id, bounce, s, wo, flux);
-        scattered = scatter_rough(s, wo, medium, vec2f(u.x, u.y), IMPORTANCE);
+        scattered = stored_and_scattered(id, bounce, s, wo, medium, flux, u);
         //#end
-        let survival = min(max_component(scattered.weight), 1.0);
+        var relative = max_component(scattered.weight);
+        //#if far
+        relative *= excess;
+        excess = max(relative, 1.0);
+        //#end
+        let survival = min(relative, 1.0);
         if u.w >= survival {
             break;
         }
@@ -56,6 +62,16 @@ fn photon_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgrou
     } else {
         count_rays(rays);
     }
+}
+
+fn stored_and_scattered(id: u32, bounce: u32, s: Surface, wo: vec3f, medium: u32, flux: vec3f, u: vec4f) -> Scatter {
+    store_record(id, bounce, s, wo, flux);
+    let scattered = scatter_rough(s, wo, medium, vec2f(u.x, u.y), IMPORTANCE);
+    //#if far
+    return aimed_scatter(s, wo, u, scattered);
+    //#else
+    return scattered;
+    //#end
 }
 
 fn store_record(id: u32, bounce: u32, s: Surface, wo: vec3f, flux: vec3f) {

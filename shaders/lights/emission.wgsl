@@ -3,6 +3,7 @@
 struct Emission {
     ray: Ray,
     flux: vec3f,
+    excess: f32,
     medium: u32,
 }
 
@@ -17,13 +18,15 @@ fn emit_photon(rng: ptr<function, Rng>) -> Emission {
         let p = sample_shape(light, vec2f(u.y, u.z), u.w);
         ray.direction = unit(from_frame(p.normal, sample_cosine(across)));
         ray.origin = p.position + p.normal * p.error;
-        return Emission(ray, light.color * (PI / (p.pdf * light.selection)), light.medium);
+        let flux = light.color * (PI / (p.pdf * light.selection));
+        return Emission(ray, flux, 1.0, light.medium);
     }
     //#end
     //#if point
     if light.kind == LIGHT_POINT {
         ray.direction = unit(sample_sphere(across));
-        return Emission(ray, light.color * (2.0 * TAU / light.selection), light.medium);
+        let flux = light.color * (2.0 * TAU / light.selection);
+        return Emission(ray, flux, 1.0, light.medium);
     }
     //#end
     //#if spot
@@ -31,7 +34,8 @@ fn emit_photon(rng: ptr<function, Rng>) -> Emission {
         let local = sample_cone(across, 1.0 - light.cos_outer);
         ray.direction = unit(from_frame(light.direction, local));
         let solid_angle = TAU * (1.0 - light.cos_outer);
-        return Emission(ray, light.color * (spot_falloff(light, local.z) * solid_angle / light.selection), light.medium);
+        let flux = light.color * (spot_falloff(light, local.z) * solid_angle / light.selection);
+        return Emission(ray, flux, 1.0, light.medium);
     }
     //#end
     //#if infinite
@@ -56,9 +60,11 @@ fn emit_photon(rng: ptr<function, Rng>) -> Emission {
     let d = sample_disc(across) * radius;
     ray.origin = from_frame(ray.direction, vec3f(d.x, d.y, 0.0));
     ray.t_min = -4.0 * disc_radius_max();
-    return Emission(ray, radiance * (1.0 / (pdf_discs(dot(d, d)) * light.selection)), light.medium);
+    let pdf = pdf_discs(dot(d, d));
+    let flux = radiance * (1.0 / (pdf * light.selection));
+    return Emission(ray, flux, pdf_discs(0.0) / pdf, light.medium);
     //#else
-    return Emission(ray, vec3f(0.0), NONE);
+    return Emission(ray, vec3f(0.0), 1.0, NONE);
     //#end
 }
 

@@ -5,13 +5,14 @@ use std::sync::atomic::AtomicBool;
 
 use caustica::device;
 use caustica::film::metrics::{Comparison, compare};
-use caustica::film::{FileError, Picture, blocks, file, heat};
+use caustica::film::{Picture, blocks, file, heat};
 use caustica::render::{Ending, Stop, render};
 use caustica::scene::Scene;
 use caustica::settings::RenderSettings;
 use clap::builder::NonEmptyStringValueParser;
-use serde_json::json;
+use serde_json::{Value, json};
 
+use super::figures::comparison_json;
 use super::output::{message, result};
 use super::overrides::Overrides;
 use super::render::{Voice, begin, load};
@@ -32,7 +33,7 @@ pub struct Arguments {
     #[arg(long, value_name = "SHARE", value_parser = share, allow_negative_numbers = true)]
     max_mean_ratio: Option<f64>,
     /// Exit with 3 where relMSE is more than this
-    #[arg(long, value_name = "X", value_parser = share, allow_negative_numbers = true)]
+    #[arg(long, alias = "max-relMSE", value_name = "X", value_parser = share, allow_negative_numbers = true)]
     max_relmse: Option<f64>,
     /// Exit with 3 where a bit differs
     #[arg(long)]
@@ -65,7 +66,7 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
         ));
     };
     if let Some(output) = &arguments.output {
-        check_difference_output(output)?;
+        file::check_png(output)?;
     }
     let (scene, settings) = load(&arguments.scene, &arguments.overrides)?;
     // A device that is not there should not show after the first render.
@@ -93,17 +94,6 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
         message(format_args!("over the threshold: {threshold}"));
     }
     Ok(if over.is_empty() { Done::Fully } else { Done::OverThreshold })
-}
-
-fn check_difference_output(output: &std::path::Path) -> Result<(), FileError> {
-    if file::Format::of(output) != Some(file::Format::Png) {
-        return Err(FileError::UnknownFormat {
-            file: output.to_owned(),
-            what: "a picture of the difference is a PNG file".to_owned(),
-            known: ".png",
-        });
-    }
-    file::check_place(output)
 }
 
 fn render_on(
@@ -164,20 +154,11 @@ fn as_text(a: &str, b: &str, comparison: &Comparison, outside: f64) -> String {
 }
 
 /// The figures as a JSON object; those that are infinite are null.
-fn as_json(a: &str, b: &str, comparison: &Comparison, outside: f64) -> serde_json::Value {
-    let worst = &comparison.worst;
-    json!({
-        "event": "comparison",
-        "a": a,
-        "b": b,
-        "mean_ratio": comparison.mean_ratio,
-        "rel_mse": comparison.rel_mse,
-        "median_difference": comparison.median,
-        "rmse": comparison.rmse,
-        "psnr": comparison.psnr,
-        "blocks_outside": outside,
-        "pixels_differing": comparison.pixels_differing,
-        "pixels": comparison.pixels,
-        "worst": { "x": worst.x, "y": worst.y, "a": worst.a, "b": worst.b },
-    })
+fn as_json(a: &str, b: &str, comparison: &Comparison, outside: f64) -> Value {
+    let mut figures = comparison_json(comparison);
+    figures["event"] = json!("comparison");
+    figures["a"] = json!(a);
+    figures["b"] = json!(b);
+    figures["blocks_outside"] = json!(outside);
+    figures
 }

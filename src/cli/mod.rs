@@ -2,10 +2,13 @@
 //!
 //! Standard output carries results, standard error everything else.
 
+mod bounds;
 mod check;
 mod compare;
 mod devices;
+mod diff;
 mod failure;
+mod figures;
 mod info;
 mod interrupt;
 mod output;
@@ -40,6 +43,7 @@ saved, 130 interrupted with the picture so far saved";
 enum Command {
     Render(render::Arguments),
     Compare(compare::Arguments),
+    Diff(Box<diff::Arguments>),
     Info(info::Arguments),
     Check(check::Arguments),
     Devices(devices::Arguments),
@@ -64,6 +68,7 @@ pub fn run() -> ExitCode {
     let done = match Arguments::parse().command {
         Command::Render(arguments) => render::run(arguments),
         Command::Compare(arguments) => compare::run(arguments),
+        Command::Diff(arguments) => diff::run(*arguments),
         Command::Info(arguments) => info::run(arguments),
         Command::Check(arguments) => check::run(arguments),
         Command::Devices(arguments) => devices::run(arguments),

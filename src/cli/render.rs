@@ -6,6 +6,7 @@ use std::time::Duration;
 use caustica::device::{self, Opened};
 use caustica::engine::EngineError;
 use caustica::film::{self, Development, Provenance, Rejections, check_outputs};
+use caustica::limits;
 use caustica::render::{Ending, Outcome, Stop, render};
 use caustica::scene::{self, Scene};
 use caustica::settings::RenderSettings;
@@ -130,13 +131,14 @@ pub fn begin(
     Ok(reporter)
 }
 
-/// Reads the scene, prints its warnings, and puts the options in force.
+/// Reads the scene, puts the options in force, and prints the warnings.
 pub fn load(file: &Path, overrides: &Overrides) -> Result<(Scene, RenderSettings), Failure> {
     let mut loaded = scene::load(file)?;
-    for warning in loaded.warnings {
+    overrides.apply(&mut loaded.scene, &mut loaded.settings);
+    let limits = limits::warnings(&loaded.scene, &loaded.settings, &loaded.places);
+    for warning in loaded.warnings.into_iter().chain(limits) {
         message(format_args!("{:?}", Report::new(warning)));
     }
-    overrides.apply(&mut loaded.scene, &mut loaded.settings);
     Ok((loaded.scene, loaded.settings))
 }
 

@@ -63,6 +63,17 @@ pub enum FileError {
         /// The first thing that is wrong with it.
         what: String,
     },
+    /// Some of its pixels are not opaque.
+    #[error("{}: {pixels} pixels are not opaque, the first in column {}, row {}", file.display(), at.0, at.1)]
+    #[diagnostic(help("lay it over a background first: what is seen behind it is not in the file"))]
+    Transparent {
+        /// The file.
+        file: PathBuf,
+        /// How many.
+        pixels: usize,
+        /// Column and row of the first in reading order.
+        at: (u32, u32),
+    },
     /// The picture cannot be expressed in the format.
     #[error("{}: cannot be encoded: {what}", file.display())]
     #[diagnostic(help("try another format, such as .exr"))]

@@ -59,6 +59,25 @@ pub fn check_outputs(files: &[PathBuf]) -> Result<(), FileError> {
     Ok(())
 }
 
+/// Finds out whether a PNG file can be made of this name.
+pub fn check_png(file: &Path) -> Result<(), FileError> {
+    if Format::of(file) != Some(Format::Png) {
+        return Err(FileError::UnknownFormat {
+            file: file.to_owned(),
+            what: "a picture of the difference is a PNG file".to_owned(),
+            known: ".png",
+        });
+    }
+    check_place(file)
+}
+
+/// Writes display values, three to a pixel, as PNG.
+pub fn write_rgb8(file: &Path, width: u32, height: u32, rgb: &[u8]) -> Result<(), FileError> {
+    let bytes =
+        encode_rgb8(width, height, rgb).map_err(|what| FileError::Encode { file: file.to_owned(), what })?;
+    write_whole(file, &bytes)
+}
+
 /// Finds out whether a file can be made in its folder, and leaves nothing there.
 pub fn check_place(file: &Path) -> Result<(), FileError> {
     let folder = match file.parent() {
@@ -126,7 +145,7 @@ pub fn read_exr(file: &Path) -> Result<exr_file::ExrFile, FileError> {
     exr_file::decode(&read_bytes(file)?).map_err(|what| FileError::Malformed { file: file.to_owned(), what })
 }
 
-fn read_bytes(file: &Path) -> Result<Vec<u8>, FileError> {
+pub(super) fn read_bytes(file: &Path) -> Result<Vec<u8>, FileError> {
     fs::read(file).map_err(|source| FileError::Io { file: file.to_owned(), verb: "read", source })
 }
 
@@ -148,7 +167,7 @@ fn encode_png(picture: &Picture, development: &Development) -> Result<Vec<u8>, S
 }
 
 /// The bytes of a PNG file of `width * height * 3` display values.
-pub(super) fn encode_rgb8(width: u32, height: u32, rgb: &[u8]) -> Result<Vec<u8>, String> {
+fn encode_rgb8(width: u32, height: u32, rgb: &[u8]) -> Result<Vec<u8>, String> {
     let mut bytes = Vec::new();
     codecs::png::PngEncoder::new(&mut bytes)
         .write_image(rgb, width, height, ExtendedColorType::Rgb8)

@@ -1,6 +1,6 @@
 //! A picture of the difference of two pictures: logarithmic, with its scale written below.
 
-use super::file::encode_rgb8;
+use super::colors::gradient;
 use super::metrics::{MetricsError, check_comparable, difference, same_bits};
 use super::{Picture, file};
 
@@ -54,9 +54,7 @@ pub fn heat_map(a: &Picture, b: &Picture) -> Result<HeatMap, MetricsError> {
 
 /// Writes a difference picture as PNG.
 pub fn write(path: &std::path::Path, map: &HeatMap) -> Result<(), super::FileError> {
-    let bytes = encode_rgb8(map.width, map.height, map.rgb.as_flattened())
-        .map_err(|what| super::FileError::Encode { file: path.to_owned(), what })?;
-    file::write_whole(path, &bytes)
+    file::write_rgb8(path, map.width, map.height, map.rgb.as_flattened())
 }
 
 const BACKGROUND: [u8; 3] = [40; 3];
@@ -107,18 +105,9 @@ fn draw_scale(canvas: &mut Canvas, top_row: usize, top: i32) {
 
 /// Dark violet through red and yellow to white for `x` from 0 to 1, of rising luminance.
 fn heat(x: f64) -> [u8; 3] {
-    const STOPS: [[f64; 3]; 6] = [
-        [40.0, 11.0, 84.0],
-        [101.0, 21.0, 110.0],
-        [188.0, 55.0, 84.0],
-        [237.0, 105.0, 37.0],
-        [251.0, 180.0, 26.0],
-        [252.0, 255.0, 214.0],
-    ];
-    let at = x.clamp(0.0, 1.0) * (STOPS.len() - 1) as f64;
-    let left = (at as usize).min(STOPS.len() - 2);
-    let share = at - left as f64;
-    [0, 1, 2].map(|i| (STOPS[left][i] + share * (STOPS[left + 1][i] - STOPS[left][i])).round() as u8)
+    const STOPS: [[u8; 3]; 6] =
+        [[40, 11, 84], [101, 21, 110], [188, 55, 84], [237, 105, 37], [251, 180, 26], [252, 255, 214]];
+    gradient(&STOPS, x)
 }
 
 /// Rows of a 3 x 5 glyph, three bits each.

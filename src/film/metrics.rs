@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use super::{Picture, luminance};
+use super::{Picture, Region, luminance};
 
 /// Figures of a picture `a` against a truth `b`.
 #[derive(Clone, Debug, PartialEq)]
@@ -11,11 +11,13 @@ pub struct Comparison {
     pub mean_ratio: [f64; 3],
     /// Mean over pixels of `(La - Lb)^2 / (Lb^2 + 0.01)`, the largest 0.1 % dropped (rounded up); `L` is luminance.
     pub rel_mse: f64,
+    /// Mean squared difference over all channel values, in the square of their unit.
+    pub mse: f64,
     /// Median over pixels of `|La - Lb| / Lb`: 0 where both are zero, infinite where `Lb` alone is.
     pub median: f64,
     /// Root of the mean squared difference over all channel values, in W sr^-1 m^-2.
     pub rmse: f64,
-    /// Peak signal-to-noise ratio in dB; the peak is the truth's largest value. Infinite for equal pictures.
+    /// Peak signal-to-noise ratio in dB; the peak is the largest value of the whole truth. Infinite for equal pictures.
     pub psnr: f64,
     /// The pixel with the largest absolute difference in a channel; the first such in reading order.
     pub worst: WorstPixel,
@@ -50,34 +52,67 @@ pub enum MetricsError {
         b: (u32, u32),
     },
     /// There are values that no figure can be made of.
-    #[error("{count} values of the {which} picture are not finite")]
+    #[error("{count} values of the {which} picture are NaN or infinite, the first in column {}, row {}", .at.0, .at.1)]
     NotFinite {
         /// "first" or "second".
         which: &'static str,
         /// How many.
         count: usize,
+        /// Column and row of the first in reading order.
+        at: (u32, u32),
     },
     /// A picture has no pixels.
     #[error("the pictures have no pixels")]
     Empty,
+    /// A region has no pixels, or some that the pictures do not have.
+    #[error(
+        "the region ({region}) has no pixels, or reaches beyond the pictures' {width} columns and {height} rows"
+    )]
+    Region {
+        /// The region.
+        region: Region,
+        /// The pictures' columns.
+        width: u32,
+        /// The pictures' rows.
+        height: u32,
+    },
 }
 
 /// Compares `a` with the truth `b`.
 pub fn compare(a: &Picture, b: &Picture) -> Result<Comparison, MetricsError> {
     check_comparable(a, b)?;
-    let worst = worst_pixel(a, b);
+    Ok(figures(a, b, peak(b)))
+}
+
+/// Compares the pixels of a region.
+pub fn compare_in(a: &Picture, b: &Picture, region: &Region) -> Result<Comparison, MetricsError> {
+    check_comparable(a, b)?;
+    if !region.fits(b.width, b.height) {
+        return Err(MetricsError::Region { region: *region, width: b.width, height: b.height });
+    }
+    let mut comparison = figures(&region.crop(a), &region.crop(b), peak(b));
+    comparison.worst.x += region.x0;
+    comparison.worst.y += region.y0;
+    Ok(comparison)
+}
+
+fn peak(truth: &Picture) -> f32 {
+    truth.rgb.as_flattened().iter().fold(0.0, |peak: f32, &value| peak.max(value))
+}
+
+fn figures(a: &Picture, b: &Picture, peak: f32) -> Comparison {
     let mse = mean(a.rgb.as_flattened().iter().zip(b.rgb.as_flattened()).map(|(&a, &b)| squared(a, b)));
-    let peak = b.rgb.as_flattened().iter().fold(0.0, |peak: f32, &value| peak.max(value));
-    Ok(Comparison {
+    Comparison {
         mean_ratio: mean_ratio(a, b),
         rel_mse: rel_mse(a, b),
+        mse,
         median: median(a, b),
         rmse: mse.sqrt(),
         psnr: if mse == 0.0 { f64::INFINITY } else { 10.0 * (f64::from(peak).powi(2) / mse).log10() },
-        worst,
+        worst: worst_pixel(a, b),
         pixels_differing: a.rgb.iter().zip(&b.rgb).filter(|(a, b)| !same_bits(**a, **b)).count(),
         pixels: a.rgb.len(),
-    })
+    }
 }
 
 fn median(a: &Picture, b: &Picture) -> f64 {
@@ -106,9 +141,10 @@ pub(super) fn check_comparable(a: &Picture, b: &Picture) -> Result<(), MetricsEr
         return Err(MetricsError::Empty);
     }
     for (which, picture) in [("first", a), ("second", b)] {
-        let count = picture.not_finite();
-        if count > 0 {
-            return Err(MetricsError::NotFinite { which, count });
+        let first = picture.rgb.iter().position(|rgb| !rgb.iter().all(|value| value.is_finite()));
+        if let Some(first) = first {
+            let (count, at) = (picture.not_finite(), picture.position(first));
+            return Err(MetricsError::NotFinite { which, count, at });
         }
     }
     Ok(())

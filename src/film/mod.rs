@@ -1,19 +1,29 @@
 //! Pictures: files, tone mapping and measures.
 
+pub mod any_file;
 pub mod blocks;
+pub mod colors;
+pub mod difference;
 pub mod error;
 pub mod exr_file;
 pub mod file;
+pub mod flip;
 pub mod heat;
 pub mod metrics;
 pub mod pfm;
+pub mod plane;
 pub mod provenance;
+pub mod region;
 pub mod rejections;
+pub mod ssim;
 pub mod tonemap;
 
+pub use any_file::{Coding, read_any};
+pub use difference::{Difference, Measures};
 pub use error::FileError;
 pub use file::{check_outputs, read, write};
 pub use provenance::Provenance;
+pub use region::Region;
 pub use rejections::Rejections;
 pub use tonemap::Development;
 

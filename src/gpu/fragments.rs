@@ -53,6 +53,7 @@ pub const FRAGMENTS: &[Fragment] = fragments![
     "lights/shape.wgsl" if "scene && lights",
     "lights/light.wgsl" if "scene && lights",
     "lights/emission.wgsl" if "photon_trace",
+    "lights/aim.wgsl" if "photon_trace && far",
     "camera.wgsl" if "eye_trace",
     "grid.wgsl" if "grid_count || grid_scatter || gather",
     "kernels/records.wgsl" if "",

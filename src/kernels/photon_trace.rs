@@ -3,6 +3,7 @@
 //! `shaders/kernels/photon_trace.wgsl`.
 
 use super::direct::{medium_before, transmittance};
+use super::lights::aim::aimed_scatter;
 use super::lights::emission::emit_photon;
 use super::materials::scatter::{IMPORTANCE, is_specular, reflectance_at, scatter_rough, scatter_specular};
 use super::math::rng::{STREAM_PHOTON, rng_new, rng_next};
@@ -27,7 +28,9 @@ pub fn photon_trace(
     let emission = emit_photon(scene, &mut rng);
     let mut ray = emission.ray;
     let mut flux = emission.flux;
+    let mut excess = emission.excess;
     let mut medium = emission.medium;
+    let far = scene.world.disc_levels > 1;
     let mut rays = 0;
     for bounce in 0..dispatch.max_bounces + 1 {
         if max_component(flux) <= 0.0 {
@@ -54,8 +57,15 @@ pub fn photon_trace(
                 store(PhotonRecord { position: s.position, key, flux, direction: oct_encode(wo) });
             }
             scattered = scatter_rough(scene, &s, wo, medium, Vec2::new(u.x, u.y), IMPORTANCE);
+            if far {
+                scattered = aimed_scatter(scene, &s, wo, u, scattered);
+            }
         }
-        let survival = max_component(scattered.weight).min(1.0);
+        let relative = max_component(scattered.weight) * excess;
+        if far {
+            excess = relative.max(1.0);
+        }
+        let survival = relative.min(1.0);
         if u.w >= survival {
             break;
         }

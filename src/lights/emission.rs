@@ -16,6 +16,8 @@ pub struct Emission {
     pub ray: Ray,
     /// Flux in W times the number of photons emitted in the pass.
     pub flux: Vec3,
+    /// Flux over that of the same photon if it went through the narrowest emission disc; 1 for light from nearby.
+    pub excess: Real,
     /// The glass material that it starts in, or [`NONE`].
     pub medium: u32,
 }
@@ -31,21 +33,20 @@ pub fn emit_photon(scene: &Scene, rng: &mut Rng) -> Emission {
         let p = sample_shape(scene, light, Vec2::new(u.y, u.z), u.w);
         ray.direction = unit(from_frame(p.normal, sample_cosine(across)));
         ray.origin = p.position + p.normal * p.error;
-        return Emission { ray, flux: light.color * (PI / (p.pdf * light.selection)), medium: light.medium };
+        let flux = light.color * (PI / (p.pdf * light.selection));
+        return Emission { ray, flux, excess: 1.0, medium: light.medium };
     }
     if light.kind == LIGHT_POINT {
         ray.direction = unit(sample_sphere(across));
-        return Emission { ray, flux: light.color * (2.0 * TAU / light.selection), medium: light.medium };
+        let flux = light.color * (2.0 * TAU / light.selection);
+        return Emission { ray, flux, excess: 1.0, medium: light.medium };
     }
     if light.kind == LIGHT_SPOT {
         let local = sample_cone(across, 1.0 - light.cos_outer);
         ray.direction = unit(from_frame(light.direction, local));
         let solid_angle = TAU * (1.0 - light.cos_outer);
-        return Emission {
-            ray,
-            flux: light.color * (spot_falloff(light, local.z) * solid_angle / light.selection),
-            medium: light.medium,
-        };
+        let flux = light.color * (spot_falloff(light, local.z) * solid_angle / light.selection);
+        return Emission { ray, flux, excess: 1.0, medium: light.medium };
     }
     // from infinity: through one of a row of discs, each twice as wide as the one before and half as likely
     ray.direction = light.direction;
@@ -67,11 +68,9 @@ pub fn emit_photon(scene: &Scene, rng: &mut Rng) -> Emission {
     let d = sample_disc(across) * radius;
     ray.origin = from_frame(ray.direction, Vec3::new(d.x, d.y, 0.0));
     ray.t_min = -4.0 * disc_radius_max(scene);
-    Emission {
-        ray,
-        flux: radiance * (1.0 / (pdf_discs(scene, d.dot(d)) * light.selection)),
-        medium: light.medium,
-    }
+    let pdf = pdf_discs(scene, d.dot(d));
+    let flux = radiance * (1.0 / (pdf * light.selection));
+    Emission { ray, flux, excess: pdf_discs(scene, 0.0) / pdf, medium: light.medium }
 }
 
 /// Radius of the widest emission disc.

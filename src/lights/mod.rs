@@ -2,6 +2,7 @@
 
 use super::{materials, math, real, shapes, tables};
 
+pub mod aim;
 pub mod emission;
 pub mod light;
 pub mod shape;

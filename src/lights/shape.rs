@@ -175,11 +175,13 @@ pub fn sample_sphere_cone(sphere: &Sphere, from: Vec3, u: Vec2) -> ShapePoint {
     let dist_sq = d.dot(d);
     let sin_sq = sphere.radius * sphere.radius / dist_sq;
     let one_minus_cos = cone_one_minus_cos(sin_sq);
-    let w = from_frame(unit(d), sample_cone(u, one_minus_cos));
-    // nearest crossing of the ray with the sphere, clamped at the tangent
-    let along = d.dot(w);
-    let off_sq = (dist_sq - along * along).max(0.0);
-    let half = (sphere.radius * sphere.radius - off_sq).max(0.0).sqrt();
+    let local = sample_cone(u, one_minus_cos);
+    let w = from_frame(unit(d), local);
+    // nearest crossing of the ray with the sphere, clamped at the tangent; from the sine, since the distances of
+    // a small sphere's middle and rim differ by less than a rounding
+    let along = dist_sq.sqrt() * local.z;
+    let off_sq = (local.x * local.x + local.y * local.y) / sin_sq;
+    let half = sphere.radius * (1.0 - off_sq).max(0.0).sqrt();
     let p = sphere_project(sphere, from + w * (along - half));
     ShapePoint {
         position: p,

@@ -54,11 +54,9 @@ pub fn pack(scene: &scene::Scene, width: u32, height: u32) -> Result<Packed, Pac
     out.world.unit = n.unit as Real;
     out.world.planar_origin = Vec2::new(n.center.x as Real, n.center.z as Real);
     out.world.near_radius = n.near_radius as Real;
-    // rounding alone must not add a disc twice as wide
-    let doublings = (n.far_radius / n.near_radius).log2() - 1e-9;
-    out.world.disc_levels = doublings.ceil().max(0.0) as u32 + 1;
     out.world.unbounded_count = out.unbounded.len() as u32;
     let radiance_unit = light::pack_lights(scene, &n, &emitters, &mut out);
+    out.world.disc_levels = disc_levels(&out, &n);
     out.camera.medium = medium::medium_at(&out, out.camera.position);
     for i in 0..out.lights.len() {
         out.lights[i].medium = match light::place(&out, &out.lights[i]) {
@@ -95,6 +93,17 @@ impl Scene {
             texels: Vec::new(),
         }
     }
+}
+
+/// Emission discs that reach everything, if any light comes from infinity.
+fn disc_levels(out: &Scene, n: &Normalization) -> u32 {
+    let infinite = |l: &Light| matches!(l.kind, LIGHT_SUN | LIGHT_CONSTANT | LIGHT_IMAGE);
+    if !out.lights.iter().any(infinite) {
+        return 1;
+    }
+    // rounding alone must not add a disc twice as wide
+    let doublings = (n.far_radius / n.near_radius).log2() - 1e-9;
+    doublings.ceil().max(0.0) as u32 + 1
 }
 
 fn camera(scene: &scene::Scene, n: &Normalization, width: u32, height: u32) -> Camera {

@@ -96,6 +96,10 @@ impl Mixture {
             "lights" | "point" => self.light(LIGHT_POINT, 0),
             "spot" => self.light(LIGHT_SPOT, 0),
             "infinite" => self.light(LIGHT_SUN, 0),
+            "far" => {
+                self.add("infinite");
+                self.scene.world.disc_levels = 2;
+            }
             "environment" => self.light(LIGHT_CONSTANT, 0),
             "environment_image" => {
                 self.add("texels");

@@ -136,13 +136,24 @@ pub struct Runs {
 }
 
 /// Renders `text` [`RUNS`] times with as many passes as a first look with other seeds, of `settings.passes`, says it takes
-/// for the whole picture's mean to be known to `power`.
+/// for the whole picture's mean to be known to `power`, and with more where that was too few.
 pub fn runs_to(power: f64, text: &str, settings: &RenderSettings) -> Runs {
-    let pilot = runs(text, &RenderSettings { seed: settings.seed + 1000, ..settings.clone() });
-    let Estimate { mean, error } = pilot.region(|_, _| true);
-    let needed = (T * error / (0.6 * (power - ARITHMETIC) * mean)).powi(2) * settings.passes as f64;
-    let passes = (needed.ceil() as u32).clamp(settings.passes, 128 * settings.passes);
-    runs(text, &RenderSettings { passes, ..settings.clone() })
+    let reached = |runs: &Runs| {
+        let Estimate { mean, error } = runs.region(|_, _| true);
+        T * error / ((power - ARITHMETIC) * mean)
+    };
+    let with = |passes: f64, seed| {
+        let passes = (passes.ceil() as u32).clamp(settings.passes, 256 * settings.passes);
+        (passes as f64, runs(text, &RenderSettings { passes, seed, ..settings.clone() }))
+    };
+    let (mut passes, mut runs) = with(settings.passes as f64, settings.seed + 1000);
+    for _ in 0..3 {
+        (passes, runs) = with(passes * (reached(&runs) / 0.65).powi(2), settings.seed);
+        if reached(&runs) < 0.95 {
+            break;
+        }
+    }
+    runs
 }
 
 /// Renders `text` [`RUNS`] times.

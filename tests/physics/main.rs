@@ -10,6 +10,7 @@ mod closed_forms;
 mod densities;
 mod dielectrics;
 mod everything;
+mod far_ground;
 mod furnace;
 mod integrating_sphere;
 mod invariance;

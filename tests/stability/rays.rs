@@ -36,6 +36,15 @@ pub fn rows() -> Vec<Row> {
             measure: ball_on_giant,
         },
         Row {
+            name: "balls of radius 1e-5 in a scene of radius one",
+            how: "Balls at random places, each met by rays from the camera. Distance of the point found from the true surface in \
+                  f64, over the ball's radius: what is left of a shape's form when its place is rounded by 6e-8. `check` warns of \
+                  anything narrower.",
+            unit: "of the radius",
+            bound: 2e-2,
+            measure: small_balls,
+        },
+        Row {
             name: "triangles of aspect 1e7",
             how: "A closed unit cube, each face a fan about a point 1e-7 from one of its edges. A ray from inside \
                   must meet it, at a point whose distance from the face's plane is within the hit's error bound.",
@@ -125,6 +134,37 @@ fn floors(b: &Bench) -> Figure {
         }
     }
     worst.into()
+}
+
+fn small_balls(b: &Bench) -> Figure {
+    const R: f64 = 1e-5;
+    let mut rng = Rng(9);
+    let mut worst = 0.0f64;
+    let mut met = 0;
+    let balls: Vec<DVec3> = (0..20).map(|_| rng.point().as_dvec3() * 0.55).collect();
+    let mut text = "version = 1\n[camera]\nposition = [0, 0, 1]\ntarget = [0, 0, -1]\nfov = 90\n[film]\nwidth = 8\nheight = 8\n\
+         [materials.m]\ntype = \"diffuse\"\nreflectance = 0.5\n"
+        .to_owned();
+    for c in &balls {
+        text += &format!(
+            "[[shapes]]\ntype = \"sphere\"\ncenter = [{:?}, {:?}, {:?}]\nradius = {R:?}\nmaterial = \"m\"\n",
+            c.x, c.y, c.z
+        );
+    }
+    let n = Normalization::of(&parse(&text));
+    let packed = b.packed(&text);
+    let rays: Vec<Ray> = (0..b.samples(20_000, 200_000))
+        .map(|i| {
+            let aim = balls[i as usize % balls.len()] + rng.point().as_dvec3() * (0.6 * R);
+            ray(n.point(DVec3::Z), aim - DVec3::Z)
+        })
+        .collect();
+    for (i, found) in b.trace(&packed.scene, &rays).iter().enumerate().filter(|(_, f)| f.is_hit()) {
+        met += 1;
+        let world = found.position.as_dvec3() * n.unit + n.center;
+        worst = worst.max((world.distance(balls[i % balls.len()]) / R - 1.0).abs());
+    }
+    Figure { value: worst, note: format!("{met} of {} rays meet their ball.", rays.len()) }
 }
 
 fn ball_on_giant(b: &Bench) -> Figure {

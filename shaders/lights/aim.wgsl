@@ -1,0 +1,32 @@
+// Photons that scatter far outside, aimed back at the scene: twin of src/lights/aim.rs.
+
+const FAR_OUTSIDE_SQ: f32 = 4.0;
+
+fn aimed_scatter(s: Surface, wo: vec3f, u: vec4f, scattered: Scatter) -> Scatter {
+    let p = s.position;
+    let distance_sq = dot(p, p);
+    let radius_sq = scene.world.near_radius * scene.world.near_radius;
+    let diffuse = scene.materials[s.material].kind == MATERIAL_DIFFUSE;
+    if !diffuse || distance_sq < FAR_OUTSIDE_SQ * radius_sq {
+        return scattered;
+    }
+    let axis = -unit(p);
+    let sin_sq = radius_sq / distance_sq;
+    let one_minus_cos = sin_sq / (1.0 + sqrt(1.0 - sin_sq));
+    var wi = scattered.direction;
+    var in_cone = true;
+    if u.z < 0.5 {
+        wi = unit(from_frame(axis, sample_cone(u.xy, one_minus_cos)));
+    } else {
+        let across = cross(wi, axis);
+        in_cone = dot(wi, axis) > 0.0 && dot(across, across) < sin_sq;
+    }
+    let cos = dot(wi, toward(s.normal, wo));
+    if cos <= 0.0 {
+        return Scatter(wi, scattered.medium, vec3f(0.0));
+    }
+    let by_cosine = INV_PI * cos;
+    let by_cone = select(0.0, 1.0 / (TAU * one_minus_cos), in_cone);
+    let weight = scattered.weight * (by_cosine / (0.5 * by_cosine + 0.5 * by_cone));
+    return Scatter(wi, scattered.medium, weight);
+}

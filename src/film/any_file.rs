@@ -1,0 +1,82 @@
+//! Picture files of either kind: radiance, and 8- or 16-bit pictures for a display.
+
+use std::path::Path;
+
+use image::{DynamicImage, ImageFormat};
+
+use super::file::{Format, read, read_bytes, read_exr};
+use super::tonemap::linear_from_srgb;
+use super::{FileError, Picture};
+
+/// What the numbers of a file say.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Coding {
+    /// Linear light without an upper bound: .exr, .pfm, .hdr.
+    Radiance,
+    /// What a display shows, coded by the sRGB curve: .png, .jpg.
+    Display,
+}
+
+/// Reads a picture as linear light. That of a file for a display is its values without the sRGB curve, in [0, 1];
+/// a tone map that made them is not undone.
+///
+/// # Errors
+/// Beside those of [`read`], for pictures with pixels that are not opaque.
+pub fn read_any(file: &Path) -> Result<(Picture, Coding), FileError> {
+    let extension = file.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase);
+    match (Format::of(file), extension.as_deref()) {
+        (Some(Format::Exr), _) => Ok((read_opaque_exr(file)?, Coding::Radiance)),
+        (Some(Format::Pfm | Format::Hdr), _) => Ok((read(file)?, Coding::Radiance)),
+        (Some(Format::Png), _) => Ok((read_display(file, ImageFormat::Png)?, Coding::Display)),
+        (None, Some("jpg" | "jpeg")) => Ok((read_display(file, ImageFormat::Jpeg)?, Coding::Display)),
+        (None, _) => Err(FileError::UnknownFormat {
+            file: file.to_owned(),
+            what: "its extension names no kind of picture that can be read".to_owned(),
+            known: ".exr, .pfm, .hdr, .png or .jpg",
+        }),
+    }
+}
+
+fn read_opaque_exr(file: &Path) -> Result<Picture, FileError> {
+    let exr = read_exr(file)?;
+    let picture = exr.picture("").ok_or_else(|| FileError::Malformed {
+        file: file.to_owned(),
+        what: "it has no channels R, G and B".to_owned(),
+    })?;
+    match exr.channels.get("A") {
+        Some(alpha) => check_opaque(file, &picture, alpha.iter().map(|alpha| *alpha == 1.0)),
+        None => Ok(()),
+    }?;
+    Ok(picture)
+}
+
+fn read_display(file: &Path, format: ImageFormat) -> Result<Picture, FileError> {
+    let image = image::load_from_memory_with_format(&read_bytes(file)?, format)
+        .map_err(|error| FileError::Malformed { file: file.to_owned(), what: error.to_string() })?;
+    // Eight bits widen to sixteen without a loss: 65535 = 255 * 257.
+    let opaque = match image.color().has_alpha() {
+        true => Some(image.to_rgba16().pixels().map(|pixel| pixel.0[3] == u16::MAX).collect::<Vec<_>>()),
+        false => None,
+    };
+    let picture = decoded(&image);
+    check_opaque(file, &picture, opaque.into_iter().flatten())?;
+    Ok(picture)
+}
+
+fn decoded(image: &DynamicImage) -> Picture {
+    let pixels = image.to_rgb16();
+    let linear = |value: u16| linear_from_srgb(f64::from(value) / f64::from(u16::MAX)) as f32;
+    Picture::from_fn(pixels.width(), pixels.height(), |x, y| pixels.get_pixel(x, y).0.map(linear))
+}
+
+fn check_opaque(file: &Path, picture: &Picture, opaque: impl Iterator<Item = bool>) -> Result<(), FileError> {
+    let mut others = opaque.enumerate().filter(|(_, opaque)| !opaque).map(|(index, _)| index);
+    match others.next() {
+        Some(first) => Err(FileError::Transparent {
+            file: file.to_owned(),
+            pixels: 1 + others.count(),
+            at: picture.position(first),
+        }),
+        None => Ok(()),
+    }
+}
