@@ -31,7 +31,7 @@ fn hold(section: &str, on: On) {
             format!("{}: {} {:e}, bound {:e} {}", row.name, row.unit, figure.value, row.bound, figure.note);
         println!("{on:?} {:5.1} s {report}", start.elapsed().as_secs_f64());
         if !row.admits(&figure) {
-            failed.push(report);
+            failed.push(format!("{report} ({})", row.how));
         }
     }
     assert!(failed.is_empty(), "on {on:?}: {failed:#?}");

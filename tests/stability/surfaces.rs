@@ -18,7 +18,6 @@ use super::bench::{Bench, parse_errors};
 use super::table::{Figure, Row};
 
 #[path = "../revolution/mod.rs"]
-#[allow(dead_code)] // other tests use the rest
 mod revolution;
 
 const WRONG: &str = "wrong hits per million rays";
@@ -188,7 +187,7 @@ fn scene_of(placed: &Placed) -> Scene {
 
 fn rays_at(b: &Bench, placed: &Placed, classes: &[Class]) -> Vec<(Vec3, Vec3)> {
     let mut random = Random(41);
-    let count = b.samples(500, 20_000);
+    let count = b.samples(500, 4_000);
     classes
         .iter()
         .flat_map(|&class| (0..count).map(move |_| class))
