@@ -11,8 +11,6 @@ use crate::build::profile::{Piece, check, pieces};
 
 /// Bounds are widened by this, in local units: more than the intersection's rounding errors.
 const BOUNDS_PAD: f64 = 2e-6;
-/// Pieces of profile that are no longer than this, in local units, are left out: two roundings of their ends.
-const SHORTEST: f64 = 1.2e-7;
 /// Sectors of a ring that is thin against its radius; others get one box.
 const SECTORS: u32 = 8;
 
@@ -100,7 +98,7 @@ impl RevolutionTables {
         let (first, last) = (piece.points[0], piece.points[piece.points.len() - 1]);
         let length = first.distance(last);
         let reach = piece.points.iter().fold(0.0_f64, |a, p| a.max(p.x));
-        if !(length > SHORTEST && reach > 1e-9) {
+        if !(length > 1e-9 && reach > 1e-9) {
             return;
         }
         // The origin and frame that Real holds; the control points make up for their rounding.
@@ -112,6 +110,11 @@ impl RevolutionTables {
             DVec2::new(e.dot(q), e.y * q.x - e.x * q.y) / e.length_squared()
         };
         let local: Vec<DVec2> = piece.points.iter().map(|&p| chord(p)).collect();
+        let end = local[local.len() - 1].x as Real;
+        if end <= 0.0 {
+            // shorter than the rounding of its origin
+            return;
+        }
         let low = piece.points.iter().fold(DVec2::INFINITY, |a, p| a.min(*p)) - BOUNDS_PAD;
         let high = piece.points.iter().fold(DVec2::NEG_INFINITY, |a, p| a.max(*p)) + BOUNDS_PAD;
         let (phi_min, phi_max) = local.iter().fold((0.0_f64, 0.0_f64), |(a, b), p| (a.min(p.y), b.max(p.y)));
@@ -129,7 +132,7 @@ impl RevolutionTables {
             phi_min: (phi_min - 2e-7) as Real,
             phi_max: (phi_max + 2e-7) as Real,
             slope: (piece.slope * 1.001 + 1e-6) as Real,
-            length: local[local.len() - 1].x as Real,
+            length: end,
             t0: piece.t0 as Real,
             t1: piece.t1 as Real,
             wobble: (piece.wobble * 1.001 + 1e-6) as Real,

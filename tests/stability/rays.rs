@@ -18,7 +18,7 @@ mod meshes;
 pub fn rows() -> Vec<Row> {
     vec![
         Row {
-            name: "floor spheres of radius 1e3 to 1e8",
+            name: "floor spheres of radius 1e3 to 1e9",
             how: "Rays from a camera one unit above the floor to points up to 20 units away; t against the sphere's \
                   quadratic in f64 about the point below the camera. A rounding of the origin's height moves t by 1 / sin of \
                   the angle with the floor (0.05 at least), which is taken off.",
@@ -105,7 +105,7 @@ fn ray(origin: DVec3, direction: DVec3) -> Ray {
 
 fn floors(b: &Bench) -> Figure {
     let mut worst = 0.0f64;
-    let radii = if b.long { &[1e3, 1e4, 1e5, 1e6, 1e7, 1e8][..] } else { &[1e3, 1e5, 1e8] };
+    let radii = if b.long { &[1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9][..] } else { &[1e3, 1e5, 1e9] };
     let mut rng = Rng(3);
     for radius in radii {
         let text = format!(
