@@ -187,7 +187,7 @@ fn scene_of(placed: &Placed) -> Scene {
 
 fn rays_at(b: &Bench, placed: &Placed, classes: &[Class]) -> Vec<(Vec3, Vec3)> {
     let mut random = Random(41);
-    let count = b.samples(500, 4_000);
+    let count = b.samples(500, 2_000);
     classes
         .iter()
         .flat_map(|&class| (0..count).map(move |_| class))
