@@ -8,6 +8,8 @@
 mod bench;
 #[path = "../tests/stability/counts.rs"]
 mod counts;
+#[path = "../tests/stability/grazing.rs"]
+mod grazing;
 #[path = "../tests/stability/rays.rs"]
 mod rays;
 #[path = "../tests/stability/scale.rs"]

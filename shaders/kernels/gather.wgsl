@@ -27,7 +27,8 @@ fn gather(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups) gr
     let n = oct_decode(point.shading);
     let low = grid_cell(point.position - vec3f(radius), dispatch.inv_cell);
     let high = grid_cell(point.position + vec3f(radius), dispatch.inv_cell);
-    var found = gathered[id];
+    var count = 0u;
+    var sum = vec3f(0.0);
     for (var z = low.z; z <= high.z; z++) {
         for (var y = low.y; y <= high.y; y++) {
             for (var x = low.x; x <= high.x; x++) {
@@ -45,32 +46,31 @@ fn gather(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups) gr
                         {
                             continue;
                         }
-                        let wi = oct_decode(record.direction);
-                        let cos_g = dot(wi, ng);
-                        if cos_g <= 0.0 {
+                        let toward_light = oct_vector(record.direction);
+                        if dot(toward_light, ng) <= 0.0 {
                             continue;
                         }
-                        found.count += 1u;
-                        var is_metal = false;
+                        count += 1u;
+                        if flat_normal && point.alpha <= 0.0 {
+                            block += record.flux;
+                            continue;
+                        }
+                        let wi = unit(toward_light);
+                        let cos_g = max(dot(wi, ng), COS_MIN);
                         //#if metal
                         if point.alpha > 0.0 {
-                            is_metal = true;
                             let f = eval_rough(MATERIAL_METAL, point.alpha, point.reflectance, n, point.wo, wi);
-                            block += point.weight * f * record.flux * (1.0 / max(cos_g, COS_MIN));
+                            block += f * record.flux * (1.0 / cos_g);
+                            continue;
                         }
                         //#end
-                        if !is_metal && flat_normal {
-                            block += point.weight * record.flux;
-                        } else if !is_metal {
-                            let ratio = max(dot(wi, n), 0.0) / max(cos_g, COS_MIN);
-                            block += point.weight * record.flux * ratio;
-                        }
+                        block += record.flux * (max(dot(wi, n), 0.0) / cos_g);
                     }
-                    found.flux += block;
+                    sum += block;
                 }
             }
         }
     }
-    gathered[id] = found;
+    gathered[id] = Gathered(gathered[id].flux + point.weight * sum, gathered[id].count + count);
     loops_stopped();
 }

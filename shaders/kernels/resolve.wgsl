@@ -1,7 +1,7 @@
 // One pixel's estimate of the pass into the film: twin of src/kernels/resolve.rs. Run by one invocation per pixel of a
 // chunk; reads `visible_points` and `gathered`, updates `film` (and `statistics` under the local rule).
 
-const DROP_SHARE: f32 = 1.0 / 4096.0;
+const DROP_SHARE: f32 = 1.0 / 256.0;
 const CARRY_SHARE: f32 = 1.0 / 256.0;
 
 @compute @workgroup_size(64)

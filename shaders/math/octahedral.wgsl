@@ -14,6 +14,10 @@ fn oct_encode(v: vec3f) -> u32 {
 }
 
 fn oct_decode(code: u32) -> vec3f {
+    return unit(oct_vector(code));
+}
+
+fn oct_vector(code: u32) -> vec3f {
     let x = (f32(code & 0xffffu) - 32768.0) * (1.0 / 32767.0);
     let y = (f32(code >> 16u) - 32768.0) * (1.0 / 32767.0);
     var v = vec3f(x, y, 1.0 - abs(x) - abs(y));
@@ -21,5 +25,5 @@ fn oct_decode(code: u32) -> vec3f {
         v.x = (1.0 - abs(y)) * select(-1.0, 1.0, x >= 0.0);
         v.y = (1.0 - abs(x)) * select(-1.0, 1.0, y >= 0.0);
     }
-    return unit(v);
+    return v;
 }

@@ -14,3 +14,8 @@ pub fn oct_encode(v: Vec3) -> Direction {
 pub fn oct_decode(code: Direction) -> Vec3 {
     code
 }
+
+/// The direction of [`oct_decode`] at any length.
+pub fn oct_vector(code: Direction) -> Vec3 {
+    code
+}

@@ -4,7 +4,7 @@
 
 use super::grid::{grid_bucket, grid_cell};
 use super::materials::scatter::eval_rough;
-use super::math::oct_decode;
+use super::math::{oct_decode, oct_vector, unit};
 use super::real::{Real, Vec3};
 use super::records::{Dispatch, Gathered, PhotonRecord, Statistics, VisiblePoint};
 use super::tables::MATERIAL_METAL;
@@ -46,6 +46,7 @@ pub fn gather(
     let n = oct_decode(point.shading);
     let low = grid_cell(point.position - Vec3::splat(radius), dispatch.inv_cell);
     let high = grid_cell(point.position + Vec3::splat(radius), dispatch.inv_cell);
+    let mut sum = Vec3::ZERO;
     for z in low.z..=high.z {
         for y in low.y..=high.y {
             for x in low.x..=high.x {
@@ -62,27 +63,30 @@ pub fn gather(
                         {
                             continue;
                         }
-                        let wi = oct_decode(record.direction);
-                        let cos_g = wi.dot(ng);
-                        if cos_g <= 0.0 {
+                        let toward_light = oct_vector(record.direction);
+                        if toward_light.dot(ng) <= 0.0 {
                             continue;
                         }
                         gathered.count += 1;
+                        if flat && point.alpha <= 0.0 {
+                            block += record.flux;
+                            continue;
+                        }
+                        let wi = unit(toward_light);
+                        // flux arrives by the geometric cosine, the BRDF asks for the shading one
+                        let cos_g = wi.dot(ng).max(COS_MIN);
                         if point.alpha > 0.0 {
                             let f =
                                 eval_rough(MATERIAL_METAL, point.alpha, point.reflectance, n, point.wo, wi);
-                            block += point.weight * f * record.flux * (1.0 / cos_g.max(COS_MIN));
-                        } else if flat {
-                            block += point.weight * record.flux;
+                            block += f * record.flux * (1.0 / cos_g);
                         } else {
-                            // flux arrives by the geometric cosine, the BRDF asks for the shading one
-                            let ratio = wi.dot(n).max(0.0) / cos_g.max(COS_MIN);
-                            block += point.weight * record.flux * ratio;
+                            block += record.flux * (wi.dot(n).max(0.0) / cos_g);
                         }
                     }
-                    gathered.flux += block;
+                    sum += block;
                 }
             }
         }
     }
+    gathered.flux += point.weight * sum;
 }

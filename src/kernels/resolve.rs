@@ -12,7 +12,7 @@ use super::real::{Real, Vec3};
 use super::records::*;
 
 /// `drop` is taken from `scale_sq` when it exceeds this share of it.
-const DROP_SHARE: Real = 1.0 / 4096.0;
+const DROP_SHARE: Real = 1.0 / 256.0;
 
 /// `carry` is put into `mean` when it exceeds this share of it.
 const CARRY_SHARE: Real = 1.0 / 256.0;

@@ -22,6 +22,12 @@ pub fn oct_encode(v: Vec3) -> Direction {
 
 /// Inverse of [`oct_encode`].
 pub fn oct_decode(code: Direction) -> Vec3 {
+    unit(oct_vector(code))
+}
+
+/// The direction of [`oct_decode`] at any length.
+#[inline]
+pub fn oct_vector(code: Direction) -> Vec3 {
     let x = ((code & 0xffff) as f32 - 32768.0) * (1.0 / 32767.0);
     let y = ((code >> 16) as f32 - 32768.0) * (1.0 / 32767.0);
     let mut v = Vec3::new(x, y, 1.0 - x.abs() - y.abs());
@@ -29,5 +35,5 @@ pub fn oct_decode(code: Direction) -> Vec3 {
         v.x = (1.0 - y.abs()) * if x >= 0.0 { 1.0 } else { -1.0 };
         v.y = (1.0 - x.abs()) * if y >= 0.0 { 1.0 } else { -1.0 };
     }
-    unit(v)
+    v
 }

@@ -207,21 +207,11 @@ impl Bench {
         &self,
         dispatch: &Dispatch,
         points: &[VisiblePoint],
-        records: Vec<PhotonRecord>,
-    ) -> Vec<Gathered> {
-        self.gather_batches(dispatch, points, &[records])
-    }
-
-    /// The same, batch by batch.
-    pub fn gather_batches(
-        &self,
-        dispatch: &Dispatch,
-        points: &[VisiblePoint],
-        batches: &[Vec<PhotonRecord>],
+        records: &[PhotonRecord],
     ) -> Vec<Gathered> {
         let mut sum = vec![Gathered::zeroed(); points.len()];
         let d = Dispatch { first: 0, end: points.len() as u32, eye_samples: 1, ..*dispatch };
-        let mut left: Vec<&[PhotonRecord]> = batches.iter().rev().map(Vec::as_slice).collect();
+        let mut left = vec![records];
         while let Some(records) = left.pop() {
             let (starts, sorted) = binned(&d, records);
             if self.on == On::Cpu {

@@ -47,9 +47,9 @@ pub fn rows() -> Vec<Row> {
         Row {
             name: "means after 1e3, 1e6 and 2^24 passes",
             how: "A pixel whose mean so far is 1 gets further passes of values between 1 and 2, the counter started at that \
-                  number; the mean against f64. (Alone in f32 the mean stops following near 2^24.)",
+                  number; the mean against f64. (Its first part moves some hundred times, half a rounding each.) (Alone in f32 the mean stops following near 2^24.)",
             unit: "relative error of the mean",
-            bound: 2e-7,
+            bound: 1e-6,
             measure: means,
         },
         Row {
@@ -107,12 +107,13 @@ fn gathered_error(b: &Bench, radius: f64) -> f64 {
     let inv_cell = (0.5 / radius) as f32;
     let dispatch = Dispatch { inv_cell, mask: 63, scale_sq: 1.0, ..Dispatch::zeroed() };
     let n = normal.as_vec3();
-    let records = (0..).zip(&photons).map(|(key, (p, front))| PhotonRecord {
+    let record = |(key, (p, front)): (u32, &(DVec3, bool))| PhotonRecord {
         position: p.as_vec3(),
         key,
         flux: Vec3::ONE,
         direction: oct_encode(if *front { n } else { -n }),
-    });
+    };
+    let records: Vec<_> = (0..).zip(&photons).map(record).collect();
     let points: Vec<VisiblePoint> = centers
         .iter()
         .map(|c| VisiblePoint {
@@ -124,7 +125,7 @@ fn gathered_error(b: &Bench, radius: f64) -> f64 {
             ..VisiblePoint::zeroed()
         })
         .collect();
-    let gathered = b.gather(&dispatch, &points, records.collect());
+    let gathered = b.gather(&dispatch, &points, &records);
     let sum: f64 = gathered.iter().map(|g| f64::from(g.flux.x)).sum();
     sum / exact as f64 - 1.0
 }
@@ -249,9 +250,7 @@ fn photon_counts(b: &Bench) -> Figure {
 }
 
 fn many_equal(b: &Bench) -> Figure {
-    // the driver stops loops of 65535 rounds; the engine then cuts batches, so does this
-    let batches = 128;
-    let count = 1 << 13;
+    let count = 1 << 20;
     let dispatch = Dispatch { inv_cell: 0.25, mask: 0, scale_sq: 1.0, ..Dispatch::zeroed() };
     let up = oct_encode(Vec3::Z);
     // the middle of a cell that holds the disc
@@ -265,7 +264,8 @@ fn many_equal(b: &Bench) -> Figure {
         ..VisiblePoint::zeroed()
     };
     let record = |key| PhotonRecord { position, key, flux: Vec3::splat(0.7), direction: up };
-    let gathered = b.gather_batches(&dispatch, &[point], &vec![(0..count).map(record).collect(); batches]);
-    let truth = f64::from(0.7f32) * f64::from(count) * batches as f64;
+    let records: Vec<_> = (0..count).map(record).collect();
+    let gathered = b.gather(&dispatch, &[point], &records);
+    let truth = f64::from(0.7f32) * f64::from(count);
     (f64::from(gathered[0].flux.x) / truth - 1.0).abs().into()
 }

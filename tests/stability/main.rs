@@ -3,6 +3,7 @@
 
 mod bench;
 mod counts;
+mod grazing;
 mod rays;
 mod scale;
 mod surfaces;

@@ -204,6 +204,7 @@ fn tally(b: &Bench, profiles: &[Profile], classes: &[Class], placements: &[Place
     for placement in placements {
         for profile in profiles {
             let placed = place(profile, placement);
+            assert!(placed.tables.patches.iter().all(|p| p.length > 0.0), "{}", profile.name);
             let rays = rays_at(b, &placed, classes);
             let asked: Vec<Ray> = rays
                 .iter()

@@ -42,7 +42,7 @@ impl Row {
 pub fn sections() -> Vec<(&'static str, Vec<Row>)> {
     vec![
         ("Scale and place", super::scale::rows()),
-        ("Shapes and rays", super::rays::rows()),
+        ("Shapes and rays", super::rays::rows().into_iter().chain(super::grazing::rows()).collect()),
         ("Surfaces of revolution", super::surfaces::rows()),
         ("Radius, counts and means", super::counts::rows()),
         ("Light, film and camera", super::view::rows()),

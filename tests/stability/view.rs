@@ -200,7 +200,7 @@ fn fields(b: &Bench) -> Figure {
 fn apertures(b: &Bench) -> Figure {
     let fov = 30.0f64;
     let tan = (0.5 * fov).to_radians().tan();
-    let passes = b.samples(16, 128);
+    let passes = b.samples(256, 1024);
     let mut worst = 0.0f64;
     for (aperture, focus) in [(0.0, 1.0), (0.02, 0.05), (10.0, 0.97), (1e3, 0.9997)] {
         let lens = format!("aperture = {aperture:?}\nfocus = {focus:?}");
