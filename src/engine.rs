@@ -1,6 +1,6 @@
 //! What every engine (GPU or CPU) does for the render loop.
 
-use crate::film::Picture;
+use crate::film::{Picture, Rejections};
 
 /// What one pass did.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -56,4 +56,6 @@ pub trait Engine {
     fn pass(&mut self) -> Result<PassReport, EngineError>;
     /// The estimate after the passes so far, in the scene's own radiometric units.
     fn picture(&mut self) -> Result<Picture, EngineError>;
+    /// What the passes so far left out of it.
+    fn rejections(&mut self) -> Result<Rejections, EngineError>;
 }

@@ -19,7 +19,7 @@
 //! ```
 //!
 //! Modules depend on one another one way: [`real`] and [`math`], then [`tables`], [`shapes`], [`materials`], [`lights`],
-//! [`camera`] and [`grid`], then [`scene`], [`build`], [`pack`], then [`kernels`], [`probe`], [`plan`], then [`cpu`]
+//! [`camera`] and [`grid`], then [`scene`], [`build`], [`limits`], [`pack`], then [`kernels`], [`probe`], [`plan`], then [`cpu`]
 //! and [`gpu`], then [`device`] and [`render`], and last [`hold`].
 //! Those from [`real`] to [`cpu`] are compiled twice: [`double`] is the same in f64.
 
@@ -37,6 +37,7 @@ pub mod grid;
 pub mod hold;
 pub mod kernels;
 pub mod lights;
+pub mod limits;
 pub mod materials;
 pub mod math;
 pub mod pack;

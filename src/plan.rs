@@ -5,11 +5,11 @@
 //! same for every engine.
 
 use super::features::Features;
-use super::kernels::records::{Dispatch, FilmPixel, Gathered, PhotonRecord, Statistics, VisiblePoint};
+use super::kernels::records::*;
 use super::pack::Packed;
 use super::probe::{Probe, probe};
 use super::real::Real;
-use crate::film::Picture;
+use crate::film::{Picture, Rejections};
 use crate::settings::{Method, Radius, RadiusRule, RenderSettings};
 use bytemuck::Zeroable;
 
@@ -318,9 +318,30 @@ impl Plan {
     /// The picture that a film holds, in world units.
     pub fn picture(&self, film: &[FilmPixel]) -> Picture {
         let unit = self.radiance_unit;
-        let world = |p: &FilmPixel| p.mean.to_array().map(|x| (x as f64 * unit) as f32);
+        // numbers beyond f32 become its largest, and are counted as rejections
+        let held = |x: f64| (x * unit).clamp(f64::from(f32::MIN), f64::from(f32::MAX)) as f32;
+        let world = |p: &FilmPixel| mean(p).map(held);
         Picture { width: self.width, height: self.pixels / self.width, rgb: film.iter().map(world).collect() }
     }
+
+    /// What was left out of the picture that a film holds.
+    pub fn rejections(&self, film: &[FilmPixel]) -> Rejections {
+        let count = |cause: u32| film.iter().map(|p| u64::from(p.rejected[cause as usize])).sum();
+        let too_bright =
+            |p: &&FilmPixel| mean(p).iter().any(|x| x * self.radiance_unit > f64::from(f32::MAX));
+        Rejections {
+            eye_path: count(REJECTED_EYE),
+            direct_light: count(REJECTED_DIRECT),
+            photons: count(REJECTED_PHOTONS),
+            estimate: count(REJECTED_ESTIMATE),
+            too_bright: film.iter().filter(too_bright).count() as u64,
+        }
+    }
+}
+
+/// A pixel's mean over the passes, scene units.
+fn mean(pixel: &FilmPixel) -> [f64; 3] {
+    [0, 1, 2].map(|c| pixel.mean[c] as f64 + pixel.carry[c] as f64)
 }
 
 /// Bits that hold a bounce number.

@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use crate::engine::{Engine, EngineError, PassReport};
-use crate::film::Picture;
+use crate::film::{Picture, Rejections};
 
 /// When to stop; whichever comes first. At least one pass is made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -83,6 +83,8 @@ pub enum Ending {
 pub struct Outcome {
     /// The estimate.
     pub picture: Picture,
+    /// What was left out of it.
+    pub rejections: Rejections,
     /// The state after the picture's last pass.
     pub progress: Progress,
     /// Why there were no more passes.
@@ -122,7 +124,7 @@ fn render_keeping(
     let start = Instant::now();
     let mut progress =
         Progress { stop, passes: 0, photons: 0, eye_paths: 0, rays: 0, radius: 0.0, elapsed: Duration::ZERO };
-    let mut kept: Option<(Picture, Progress)> = None;
+    let mut kept: Option<Kept> = None;
     let mut next_keep = keep.every;
     progress.add(&engine.pass()?, start.elapsed());
     let ending = loop {
@@ -137,8 +139,8 @@ fn render_keeping(
             break Ending::Time;
         }
         if progress.elapsed >= next_keep {
-            match engine.picture() {
-                Ok(picture) => kept = Some((picture, progress)),
+            match take(engine) {
+                Ok((picture, rejections)) => kept = Some(Kept { picture, rejections, progress }),
                 Err(error) => break Ending::Failed(error),
             }
             let cost = start.elapsed() - progress.elapsed;
@@ -149,15 +151,28 @@ fn render_keeping(
             Err(error) => break Ending::Failed(error),
         }
     };
-    match (engine.picture(), ending) {
-        (Ok(picture), ending) => Ok(Outcome { picture, progress, ending }),
+    match (take(engine), ending) {
+        (Ok((picture, rejections)), ending) => Ok(Outcome { picture, rejections, progress, ending }),
         (Err(_), Ending::Failed(error)) | (Err(error), _) => last_kept(kept, error),
     }
 }
 
-fn last_kept(kept: Option<(Picture, Progress)>, error: EngineError) -> Result<Outcome, EngineError> {
+/// A picture in case that there will be no other.
+struct Kept {
+    picture: Picture,
+    rejections: Rejections,
+    progress: Progress,
+}
+
+fn take(engine: &mut dyn Engine) -> Result<(Picture, Rejections), EngineError> {
+    Ok((engine.picture()?, engine.rejections()?))
+}
+
+fn last_kept(kept: Option<Kept>, error: EngineError) -> Result<Outcome, EngineError> {
     match kept {
-        Some((picture, progress)) => Ok(Outcome { picture, progress, ending: Ending::Failed(error) }),
+        Some(Kept { picture, rejections, progress }) => {
+            Ok(Outcome { picture, rejections, progress, ending: Ending::Failed(error) })
+        }
         None => Err(error),
     }
 }
@@ -195,6 +210,10 @@ mod tests {
             self.passes += 1;
             let i = u64::from(self.passes);
             Ok(PassReport { photons: 10, records: 3, eye_paths: 7, rays: 100 * i, radius: 1.0 / i as f64 })
+        }
+
+        fn rejections(&mut self) -> Result<Rejections, EngineError> {
+            Ok(Rejections { photons: u64::from(self.passes), ..Rejections::default() })
         }
 
         fn picture(&mut self) -> Result<Picture, EngineError> {

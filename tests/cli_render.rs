@@ -210,3 +210,36 @@ fn interrupts_save_the_picture() {
     assert!(done["passes"].as_u64().unwrap() < 1_000_000);
     assert_eq!(read(&folder.join("a.exr")).unwrap().not_finite(), 0);
 }
+
+/// Theory: nothing is left out of a sound picture, and --strict changes nothing. Where a pixel is too bright for f32 the
+/// picture is written all the same, the cause is told, and --strict ends with 1.
+#[test]
+fn what_is_left_out_is_told() {
+    let folder = folder("strict");
+    let sound = caustica(&folder, &["render", "ball.toml", "--device", "cpu", "--json", "--strict"]);
+    assert_eq!(sound.status.code(), Some(0), "{}", text(&sound.stderr));
+    let causes = ["eye_path", "direct_light", "photons", "estimate", "too_bright"];
+    let rejected = |output: &Output| {
+        let done = json_lines(&output.stdout).pop().unwrap();
+        causes.map(|cause| done["rejected"][cause].as_u64().unwrap())
+    };
+    assert_eq!(rejected(&sound), [0; 5]);
+
+    // I / d^2 = 1e40 below the light
+    let bright = SCENE.replace("center = [0.0, 3.0, 1.0]", "center = [0.0, 3.0, -9.0]")
+        + "[[lights]]\ntype = \"point\"\nposition = [1.0, 1e-5, 1.0]\nintensity = 1e30\n";
+    let bright = bright.replace(
+        "position = [0.0, 1.0, 5.0]\ntarget = [0.0, 0.5, 0.0]\nfov = 40.0",
+        "position = [1.2, 1.0, 1.0]\ntarget = [1.0, 0.0, 1.0]\nfov = 0.001",
+    );
+    fs::write(folder.join("bright.toml"), bright).unwrap();
+    let told = caustica(&folder, &["render", "bright.toml", "--device", "cpu", "-o", "a.exr"]);
+    assert_eq!(told.status.code(), Some(0), "{}", text(&told.stderr));
+    assert!(text(&told.stderr).contains("pixels brighter than a picture can hold"), "{}", text(&told.stderr));
+    let strict =
+        caustica(&folder, &["render", "bright.toml", "--device", "cpu", "-o", "b.exr", "--json", "--strict"]);
+    assert_eq!(strict.status.code(), Some(1));
+    assert!(text(&strict.stderr).contains("--strict"), "{}", text(&strict.stderr));
+    assert!(rejected(&strict)[4] > 0);
+    assert_eq!(read(&folder.join("b.exr")).unwrap().not_finite(), 0);
+}

@@ -240,3 +240,25 @@ fn examples_of_the_help_texts_run() {
         ["caustics.png", "cornell.exr", "cornell.png", "picture.exr", "picture.png", "vase.obj"]
     );
 }
+
+/// Theory: what single precision cannot hold is no error: `check` counts it as a warning and shows number, file, line and
+/// column, and `render` says the same before it renders, also of what the command line asks for.
+#[test]
+fn limits_are_told() {
+    let folder = folder("limits");
+    let tiny = SCENE.replace("radius = 1.0", "radius = 1e-6");
+    fs::write(folder.join("tiny.toml"), tiny).unwrap();
+    let output = caustica(&folder, &["check", "tiny.toml"]);
+    assert_eq!(output.status.code(), Some(0));
+    assert!(text(&output.stdout).contains("tiny.toml: good, 2 warnings"), "{}", text(&output.stdout));
+    let error = text(&output.stderr);
+    for word in ["shapes[0] is", "tiny.toml:16:10", "expected at least 1e-5", "the camera is"] {
+        assert!(error.contains(word), "{word}: {error}");
+    }
+    let quick = ["--device", "cpu", "--passes", "1", "--photons", "10", "--quiet"];
+    let output = caustica(&folder, &[&["render", "ball.toml", "--radius", "1e-7"], &quick[..]].concat());
+    assert_eq!(output.status.code(), Some(0));
+    assert!(text(&output.stderr).contains("the gather radius is"), "{}", text(&output.stderr));
+    let output = caustica(&folder, &[&["render", "ball.toml"], &quick[..]].concat());
+    assert_eq!((output.status.code(), text(&output.stderr).as_str()), (Some(0), ""));
+}

@@ -521,7 +521,16 @@ fn long_gathers_are_whole() {
     for (a, b) in rgb(&ours.1).into_iter().zip(rgb(&theirs.1)) {
         assert!((a - b).abs() <= 1e-4 * a, "{a} and {b}");
     }
-    let cut = Plan { batch_photons: 50_000, ..plan };
+    // also where only the batches before the last are too long
+    for batch_photons in [20_000, 35_000, 40_000] {
+        let cut = Plan { batch_photons, ..plan.clone() };
+        let (ours, theirs) = (on_cpu(&packed, &cut), on_driver(&packed, &cut));
+        assert_eq!(ours.0, theirs.0);
+        for (a, b) in rgb(&ours.1).into_iter().zip(rgb(&theirs.1)) {
+            assert!((a - b).abs() <= 1e-4 * a, "{batch_photons} a batch: {a} and {b}");
+        }
+    }
+    let cut = Plan { batch_photons: 20_000, ..plan };
     assert_eq!(
         difference(&on_cpu(&packed, &cut), &on_driver(&packed, &cut)),
         None,

@@ -138,12 +138,12 @@ fn hosts() -> Vec<Layout> {
             reflectance,
             alpha,
             wo,
-            stopped
+            state
         }),
         layout!(PhotonRecord { position, key, flux, direction }),
         layout!(Gathered { flux, count }),
         layout!(Statistics { scale_sq, drop, count_low, count_high }),
-        layout!(FilmPixel { mean, rejected }),
+        layout!(FilmPixel { mean, carry, rejected }),
     ]
 }
 

@@ -5,18 +5,14 @@ mod revolution;
 use caustica::build::revolution::Placement;
 use caustica::math::FAR;
 use caustica::shapes::revolution::{BRACKETED, PatchHit, intersect_patch, patch_miss};
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 use rayon::prelude::*;
-use revolution::oracle::{self, OracleHit};
+use revolution::judge::{Tally, judge};
 use revolution::profiles::{Placed, place, profiles, skew};
-use revolution::rays::{CLASSES, Random, curve, ray};
+use revolution::rays::{CLASSES, Random, ray};
 
 /// Rays of each class at each placed profile; 100 such sets make 1.6 million.
 const RAYS: u64 = 16_000;
-/// Relative to the distance, or to the surface's size where that is larger.
-const DISTANCE: f64 = 1e-5;
-/// Four roundings of the ray's and surface's coordinates.
-const ROUNDINGS: f64 = 4.0 / 16_777_216.0;
 
 fn meets(min: Vec3, max: Vec3, o: Vec3, d: Vec3) -> bool {
     let (mut near, mut far) = (0.0_f32, FAR);
@@ -59,108 +55,16 @@ fn trace(placed: &Placed, o: Vec3, d: Vec3, t_min: f32) -> (PatchHit, u32) {
     best
 }
 
-#[derive(Clone, Default)]
-struct Tally {
-    rays: u64,
-    hits: u64,
-    lost: u64,
-    false_hits: u64,
-    off: u64,
-    /// Largest error of all, and of those not above [`DISTANCE`].
-    worst: f64,
-    worst_well: f64,
-    /// Hits whose distance differs by more for rounding of the ray.
-    ill_conditioned: u64,
-    bracketed: u64,
-    steps: [u64; 16],
-}
-
-impl Tally {
-    fn report(&self) -> String {
-        format!(
-            "{} rays, {} hits; lost {}, false {}, off {}; ill-conditioned {} (worst {:.1e}); others' worst {:.1e}; bracketed {}; Newton steps {:?}",
-            self.rays,
-            self.hits,
-            self.lost,
-            self.false_hits,
-            self.off,
-            self.ill_conditioned,
-            self.worst,
-            self.worst_well,
-            self.bracketed,
-            self.steps
-        )
-    }
-
-    fn add(mut self, o: Tally) -> Tally {
-        self.rays += o.rays;
-        self.hits += o.hits;
-        self.lost += o.lost;
-        self.false_hits += o.false_hits;
-        self.off += o.off;
-        self.worst = self.worst.max(o.worst);
-        self.worst_well = self.worst_well.max(o.worst_well);
-        self.ill_conditioned += o.ill_conditioned;
-        self.bracketed += o.bracketed;
-        self.steps.iter_mut().zip(o.steps).for_each(|(a, b)| *a += b);
-        self
-    }
-}
-
-/// Whether moving the ray by a few f32 roundings, across the surface it grazes, moves the true hit at least as
-/// far as `t`: then no f32 solver can be held to it.
-fn excused(placed: &Placed, o: Vec3, d: Vec3, t: f64, first: &OracleHit) -> bool {
-    let revolution = &placed.tables.revolutions[0];
-    let scale = f64::from(revolution.scale);
-    let (lo, ld) = oracle::local_ray(revolution, o, d);
-    let p = lo + ld * first.t;
-    let (_, v) = curve(&placed.segments[first.segment], first.parameter);
-    let r = p.x.hypot(p.z).max(1e-30);
-    let normal = DVec3::new(v.y * p.x / r, -v.x, v.y * p.z / r).normalize();
-    let size = scale + f64::from(revolution.center.abs().max_element().max(o.abs().max_element()));
-    let shift = normal * (ROUNDINGS * size / scale);
-    let moved =
-        [shift, -shift].map(|s| oracle::all_hits(&placed.segments, lo + s, ld).first().map_or(1e30, |h| h.t));
-    moved[0].min(moved[1]) <= t && t <= moved[0].max(moved[1])
-}
-
 fn compare(placed: &Placed, o: Vec3, d: Vec3) -> Tally {
-    let mut tally = Tally { rays: 1, ..Tally::default() };
-    let revolution = &placed.tables.revolutions[0];
     let (hit, _) = trace(placed, o, d, 0.0);
-    let (lo, ld) = oracle::local_ray(revolution, o, d);
-    let truth = oracle::all_hits(&placed.segments, lo, ld);
-    let found = hit.t < FAR;
-    if found {
+    let found = (hit.t < FAR).then_some(f64::from(hit.t));
+    let mut tally = judge(placed, o, d, found);
+    if found.is_some() {
         tally.steps[(hit.steps & 15) as usize] += 1;
         tally.bracketed += u64::from(hit.steps & BRACKETED != 0);
     }
-    match (found, truth.first()) {
-        (true, Some(first)) => {
-            tally.hits = 1;
-            let size = f64::from(revolution.scale).max(first.t);
-            let error = |t: f64| (f64::from(hit.t) - t).abs() / size;
-            let e = error(first.t);
-            if e > 1e-3 {
-                let other = f64::from(hit.t) > first.t;
-                tally.lost += u64::from(other);
-                tally.false_hits += u64::from(!other);
-            } else {
-                tally.worst = e;
-                if e > DISTANCE {
-                    tally.off = u64::from(!excused(placed, o, d, f64::from(hit.t), first));
-                    tally.ill_conditioned = 1 - tally.off;
-                } else {
-                    tally.worst_well = e;
-                }
-            }
-        }
-        (true, None) => tally.false_hits = 1,
-        (false, Some(_)) => tally.lost = 1,
-        (false, None) => {}
-    }
-    if std::env::var("SHOW").is_ok() && (tally.lost + tally.false_hits + tally.off) > 0 {
-        println!("{} {o:?} {d:?} {hit:?} {truth:?}", placed.name);
+    if std::env::var("SHOW").is_ok() && tally.wrong() > 0 {
+        println!("{} {o:?} {d:?} {hit:?}", placed.name);
     }
     tally
 }
@@ -196,7 +100,7 @@ fn agrees_with_the_oracle() {
     }
     println!("total: {}", total.report());
     assert!(total.rays >= 1_000_000);
-    let wrong = total.lost + total.false_hits + total.off;
+    let wrong = total.wrong();
     assert!(wrong * 100_000 < total.rays, "{wrong} of {} rays differ", total.rays);
     // Grazing rays are drawn on purpose, one class in five.
     assert!(total.ill_conditioned * 10_000 < total.rays);
@@ -217,7 +121,7 @@ fn the_comparison_notices_planted_errors() {
         })
     };
     let sound = run(&place(profile, &skew()));
-    assert_eq!(sound.lost + sound.false_hits + sound.off, 0);
+    assert_eq!(sound.wrong(), 0);
     let mut holed = place(profile, &skew());
     holed.boxes.retain(|b| b.patch != 5);
     assert!(run(&holed).lost > 10);

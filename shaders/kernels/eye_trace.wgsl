@@ -61,9 +61,14 @@ fn eye_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
             }
             //#end
             //#if sampled
-            let direct = direct_light(s, wo, n, ng, reflectance, medium, &rng);
-            point.radiance += throughput * direct.radiance;
-            rays += direct.rays;
+            let found = direct_light(s, wo, n, ng, reflectance, medium, &rng);
+            let direct = throughput * found.radiance;
+            rays += found.rays;
+            if is_finite(direct) {
+                point.radiance += direct;
+            } else {
+                point.state |= BAD_DIRECT;
+            }
             //#end
             break;
         }
@@ -84,8 +89,12 @@ fn eye_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
         ray = Ray(origin, 0.0, scattered.direction, FAR);
         //#end
     }
+    if !is_finite(point.radiance) {
+        point.radiance = vec3f(0.0);
+        point.state |= BAD_EYE;
+    }
     if loops_stopped() {
-        point.stopped = 1u;
+        point.state |= STOPPED;
     } else {
         count_rays(rays);
     }

@@ -4,6 +4,7 @@
 
 const FLATNESS: f32 = 0.25;
 const COS_MIN: f32 = 1e-2;
+const BLOCK: u32 = 1024u;
 
 @compute @workgroup_size(64)
 fn gather(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups) groups: vec3u) {
@@ -34,34 +35,38 @@ fn gather(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups) gr
                 let cell = vec3i(x, y, z);
                 let bucket = grid_bucket(cell, dispatch.mask);
                 let end = starts[bucket + 1u];
-                for (var i = starts[bucket]; i < end; i++) {
-                    let record = sorted[i];
-                    let d = record.position - point.position;
-                    if dot(d, d) > radius_sq
-                        || abs(dot(d, ng)) > FLATNESS * radius
-                        || any(grid_cell(record.position, dispatch.inv_cell) != cell)
-                    {
-                        continue;
+                for (var first = starts[bucket]; first < end; first += BLOCK) {
+                    var block = vec3f(0.0);
+                    for (var i = first; i < min(first + BLOCK, end); i++) {
+                        let record = sorted[i];
+                        let d = record.position - point.position;
+                        if dot(d, d) > radius_sq
+                            || abs(dot(d, ng)) > FLATNESS * radius
+                            || any(grid_cell(record.position, dispatch.inv_cell) != cell)
+                        {
+                            continue;
+                        }
+                        let toward_light = oct_vector(record.direction);
+                        if dot(toward_light, ng) <= 0.0 {
+                            continue;
+                        }
+                        count += 1u;
+                        if flat_normal && point.alpha <= 0.0 {
+                            block += record.flux;
+                            continue;
+                        }
+                        let wi = unit(toward_light);
+                        let cos_g = max(dot(wi, ng), COS_MIN);
+                        //#if metal
+                        if point.alpha > 0.0 {
+                            let f = eval_rough(MATERIAL_METAL, point.alpha, point.reflectance, n, point.wo, wi);
+                            block += f * record.flux * (1.0 / cos_g);
+                            continue;
+                        }
+                        //#end
+                        block += record.flux * (max(dot(wi, n), 0.0) / cos_g);
                     }
-                    let toward_light = oct_vector(record.direction);
-                    if dot(toward_light, ng) <= 0.0 {
-                        continue;
-                    }
-                    count += 1u;
-                    if flat_normal && point.alpha <= 0.0 {
-                        sum += record.flux;
-                        continue;
-                    }
-                    let wi = unit(toward_light);
-                    let cos_g = max(dot(wi, ng), COS_MIN);
-                    //#if metal
-                    if point.alpha > 0.0 {
-                        let f = eval_rough(MATERIAL_METAL, point.alpha, point.reflectance, n, point.wo, wi);
-                        sum += f * record.flux * (1.0 / cos_g);
-                        continue;
-                    }
-                    //#end
-                    sum += record.flux * (max(dot(wi, n), 0.0) / cos_g);
+                    sum += block;
                 }
             }
         }

@@ -23,6 +23,10 @@ struct Dispatch {
     passes_done: u32,
 }
 
+const STOPPED: u32 = 1u;
+const BAD_EYE: u32 = 2u;
+const BAD_DIRECT: u32 = 4u;
+
 struct VisiblePoint {
     position: vec3f,
     radius: f32,
@@ -33,7 +37,7 @@ struct VisiblePoint {
     reflectance: vec3f,
     alpha: f32,
     wo: vec3f,
-    stopped: u32,
+    state: u32,
 }
 
 struct PhotonRecord {
@@ -55,9 +59,18 @@ struct Statistics {
     count_high: u32,
 }
 
+const REJECTED_EYE: u32 = 0u;
+const REJECTED_DIRECT: u32 = 1u;
+const REJECTED_PHOTONS: u32 = 2u;
+const REJECTED_ESTIMATE: u32 = 3u;
+const ACCEPTED: u32 = 4u;
+
 struct FilmPixel {
     mean: vec3f,
-    rejected: u32,
+    pad0: u32,
+    carry: vec3f,
+    pad1: u32,
+    rejected: vec4u,
 }
 
 // Records appended to the batch (also those beyond the capacity, which are not stored), the pass's rays in two words,

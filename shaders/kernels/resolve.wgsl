@@ -1,7 +1,8 @@
 // One pixel's estimate of the pass into the film: twin of src/kernels/resolve.rs. Run by one invocation per pixel of a
 // chunk; reads `visible_points` and `gathered`, updates `film` (and `statistics` under the local rule).
 
-const DROP_SHARE: f32 = 1.0 / 4096.0;
+const DROP_SHARE: f32 = 1.0 / 256.0;
+const CARRY_SHARE: f32 = 1.0 / 256.0;
 
 @compute @workgroup_size(64)
 fn resolve(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups) groups: vec3u) {
@@ -10,8 +11,12 @@ fn resolve(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups) g
         return;
     }
     var sum = vec3f(0.0);
+    var state = 0u;
+    var photons_finite = true;
     for (var k = 0u; k < dispatch.eye_samples; k++) {
         let at = id * dispatch.eye_samples + k;
+        state |= visible_points[at].state;
+        photons_finite &= is_finite(gathered[at].flux);
         //#if local
         let scale = local_scale_sq(statistics[at]);
         sum += pass_radiance(at, scale);
@@ -20,16 +25,34 @@ fn resolve(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups) g
         sum += pass_radiance(at, dispatch.scale_sq);
         //#end
     }
-    fold(id, sum * (1.0 / f32(dispatch.eye_samples)));
+    fold(id, cause(state, photons_finite), sum * (1.0 / f32(dispatch.eye_samples)));
 }
 
-fn fold(id: u32, value: vec3f) {
-    if !is_finite(value) {
-        film[id].rejected += 1u;
+fn cause(state: u32, photons_finite: bool) -> u32 {
+    if (state & BAD_EYE) != 0u {
+        return REJECTED_EYE;
+    }
+    if (state & BAD_DIRECT) != 0u {
+        return REJECTED_DIRECT;
+    }
+    return select(REJECTED_PHOTONS, ACCEPTED, photons_finite);
+}
+
+fn fold(id: u32, cause: u32, value: vec3f) {
+    let found = select(cause, REJECTED_ESTIMATE, cause == ACCEPTED && !is_finite(value));
+    if found != ACCEPTED {
+        film[id].rejected[found] += 1u;
         return;
     }
-    let n = f32(dispatch.passes_done + 1u - film[id].rejected);
-    film[id].mean += (value - film[id].mean) * (1.0 / n);
+    let r = film[id].rejected;
+    let n = f32(dispatch.passes_done + 1u - (r.x + r.y + r.z + r.w));
+    var pixel = film[id];
+    pixel.carry += (value - (pixel.mean + pixel.carry)) * (1.0 / n);
+    if max_abs(pixel.carry) > CARRY_SHARE * max_abs(pixel.mean) {
+        pixel.mean += pixel.carry;
+        pixel.carry = vec3f(0.0);
+    }
+    film[id] = pixel;
 }
 
 fn pass_radiance(at: u32, scale_sq: f32) -> vec3f {
@@ -66,8 +89,3 @@ fn updated_statistics(before: Statistics, m: u32) -> Statistics {
     return s;
 }
 //#end
-
-fn is_finite(v: vec3f) -> bool {
-    let mask = vec3u(0x7f800000u);
-    return all((bitcast<vec3u>(v) & mask) != mask);
-}

@@ -45,3 +45,8 @@ fn offset_origin(position: vec3f, error: f32, normal: vec3f, direction: vec3f) -
     }
     return position - normal * error;
 }
+
+fn is_finite(v: vec3f) -> bool {
+    let mask = vec3u(0x7f800000u);
+    return all((bitcast<vec3u>(v) & mask) != mask);
+}

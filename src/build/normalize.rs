@@ -55,7 +55,7 @@ impl Normalization {
 }
 
 /// Bounding box of a finite shape, world space.
-fn extent(kind: &ShapeKind) -> Option<(DVec3, DVec3)> {
+pub fn extent(kind: &ShapeKind) -> Option<(DVec3, DVec3)> {
     let hull = |points: &[DVec3]| {
         let low = points.iter().copied().fold(DVec3::INFINITY, DVec3::min);
         let high = points.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);

@@ -110,6 +110,11 @@ impl RevolutionTables {
             DVec2::new(e.dot(q), e.y * q.x - e.x * q.y) / e.length_squared()
         };
         let local: Vec<DVec2> = piece.points.iter().map(|&p| chord(p)).collect();
+        let end = local[local.len() - 1].x as Real;
+        if end <= 0.0 {
+            // shorter than the rounding of its origin
+            return;
+        }
         let low = piece.points.iter().fold(DVec2::INFINITY, |a, p| a.min(*p)) - BOUNDS_PAD;
         let high = piece.points.iter().fold(DVec2::NEG_INFINITY, |a, p| a.max(*p)) + BOUNDS_PAD;
         let (phi_min, phi_max) = local.iter().fold((0.0_f64, 0.0_f64), |(a, b), p| (a.min(p.y), b.max(p.y)));
@@ -127,7 +132,7 @@ impl RevolutionTables {
             phi_min: (phi_min - 2e-7) as Real,
             phi_max: (phi_max + 2e-7) as Real,
             slope: (piece.slope * 1.001 + 1e-6) as Real,
-            length: local[local.len() - 1].x as Real,
+            length: end,
             t0: piece.t0 as Real,
             t1: piece.t1 as Real,
             wobble: (piece.wobble * 1.001 + 1e-6) as Real,

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use caustica::scene;
+use caustica::{limits, scene};
 use miette::{Report, miette};
 
 use super::output::{message, result};
@@ -29,12 +29,13 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     for file in &arguments.scenes {
         match scene::load(file) {
             Ok(loaded) => {
-                let warnings = match loaded.warnings.len() {
+                let limits = limits::warnings(&loaded.scene, &loaded.settings, &loaded.places);
+                let warnings = match loaded.warnings.len() + limits.len() {
                     0 => String::new(),
                     1 => ", 1 warning".to_owned(),
                     many => format!(", {many} warnings"),
                 };
-                for warning in loaded.warnings {
+                for warning in loaded.warnings.into_iter().chain(limits) {
                     message(format_args!("{:?}", Report::new(warning)));
                 }
                 result(format_args!("{}: good{warnings}", file.display()))?;

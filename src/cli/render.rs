@@ -5,12 +5,13 @@ use std::time::Duration;
 
 use caustica::device::{self, Opened};
 use caustica::engine::EngineError;
-use caustica::film::{self, Development, Provenance, check_outputs};
+use caustica::film::{self, Development, Provenance, Rejections, check_outputs};
+use caustica::limits;
 use caustica::render::{Ending, Outcome, Stop, render};
 use caustica::scene::{self, Scene};
 use caustica::settings::RenderSettings;
 use clap::builder::NonEmptyStringValueParser;
-use miette::Report;
+use miette::{Report, miette};
 use serde_json::json;
 
 use super::output::{message, result};
@@ -34,6 +35,9 @@ pub struct Arguments {
     /// Begin no pass after this time, as in 30s or 5m; without --passes, the only limit
     #[arg(long, value_name = "TIME", value_parser = duration)]
     time: Option<Duration>,
+    /// Fail, with the pictures written, if a sample had to be left out because it was not finite
+    #[arg(long)]
+    strict: bool,
     #[command(flatten)]
     voice: Voice,
     #[command(flatten)]
@@ -85,6 +89,9 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     };
     write(&outputs, &outcome, &scene, &provenance)?;
     tell(arguments.voice.json, &reporter, &outputs, &outcome)?;
+    if arguments.strict && !outcome.rejections.is_empty() {
+        return Err(Failure::failed(miette!("--strict: {}", left_out(&outcome.rejections))));
+    }
     match outcome.ending {
         Ending::Passes | Ending::Time => Ok(Done::Fully),
         Ending::Interrupted => Ok(Done::Interrupted),
@@ -124,13 +131,14 @@ pub fn begin(
     Ok(reporter)
 }
 
-/// Reads the scene, prints its warnings, and puts the options in force.
+/// Reads the scene, puts the options in force, and prints the warnings.
 pub fn load(file: &Path, overrides: &Overrides) -> Result<(Scene, RenderSettings), Failure> {
     let mut loaded = scene::load(file)?;
-    for warning in loaded.warnings {
+    overrides.apply(&mut loaded.scene, &mut loaded.settings);
+    let limits = limits::warnings(&loaded.scene, &loaded.settings, &loaded.places);
+    for warning in loaded.warnings.into_iter().chain(limits) {
         message(format_args!("{:?}", Report::new(warning)));
     }
-    overrides.apply(&mut loaded.scene, &mut loaded.settings);
     Ok((loaded.scene, loaded.settings))
 }
 
@@ -139,17 +147,21 @@ fn default_output(scene: &Path) -> PathBuf {
 }
 
 fn write(outputs: &[PathBuf], outcome: &Outcome, scene: &Scene, made: &Provenance) -> Result<(), Failure> {
-    let not_finite = outcome.picture.not_finite();
-    if not_finite > 0 {
-        message(format_args!(
-            "warning: {not_finite} values of the picture are not finite; please report this with the scene"
-        ));
+    if !outcome.rejections.is_empty() {
+        message(format_args!("warning: {}", left_out(&outcome.rejections)));
     }
     let development = Development { exposure: scene.film.exposure, tonemap: scene.film.tonemap };
     for output in outputs {
         film::write(output, &outcome.picture, &development, made)?;
     }
     Ok(())
+}
+
+/// What was left out of the picture and why.
+fn left_out(rejections: &Rejections) -> String {
+    let causes: Vec<_> =
+        rejections.causes().iter().map(|(count, cause)| format!("{count} {cause}")).collect();
+    format!("left out of the picture: {}", causes.join(", "))
 }
 
 fn tell(json: bool, reporter: &Reporter, outputs: &[PathBuf], outcome: &Outcome) -> Result<(), Failure> {
@@ -164,6 +176,7 @@ fn tell(json: bool, reporter: &Reporter, outputs: &[PathBuf], outcome: &Outcome)
         }
         .into();
         done["outputs"] = json!(outputs);
+        done["rejected"] = json!(outcome.rejections);
         return result(done);
     }
     reporter.note(&format!(

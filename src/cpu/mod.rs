@@ -5,14 +5,15 @@ use super::kernels::gather::{gather, scale_sq};
 use super::kernels::grid_build::{grid_count, grid_scan, grid_scatter};
 use super::kernels::path_trace::path_trace;
 use super::kernels::photon_trace::photon_trace;
-use super::kernels::records::{Dispatch, FilmPixel, Gathered, PhotonRecord, Statistics, VisiblePoint};
+use super::kernels::records::*;
 use super::kernels::resolve::{fold, resolve};
+use super::math::is_finite;
 use super::pack::Packed;
 use super::plan::{Kernel, Plan};
 use super::real::ENGINE;
 use super::tables::Scene;
 use crate::engine::{Engine, EngineError, PassReport};
-use crate::film::Picture;
+use crate::film::{Picture, Rejections};
 use crate::settings::Method;
 use bytemuck::Zeroable;
 use rayon::prelude::*;
@@ -161,7 +162,8 @@ impl CpuEngine {
             .enumerate()
             .map(|(pixel, film)| {
                 let (radiance, rays) = path_trace(scene, &d, sampled, pixel as u32);
-                fold(&d, radiance, film);
+                let cause = if is_finite(radiance) { ACCEPTED } else { REJECTED_EYE };
+                fold(&d, cause, radiance, film);
                 rays as u64
             })
             .sum();
@@ -207,5 +209,9 @@ impl Engine for CpuEngine {
 
     fn picture(&mut self) -> Result<Picture, EngineError> {
         Ok(self.plan.picture(&self.film))
+    }
+
+    fn rejections(&mut self) -> Result<Rejections, EngineError> {
+        Ok(self.plan.rejections(&self.film))
     }
 }

@@ -14,6 +14,7 @@ pub mod pfm;
 pub mod plane;
 pub mod provenance;
 pub mod region;
+pub mod rejections;
 pub mod ssim;
 pub mod tonemap;
 
@@ -23,6 +24,7 @@ pub use error::FileError;
 pub use file::{check_outputs, read, write};
 pub use provenance::Provenance;
 pub use region::Region;
+pub use rejections::Rejections;
 pub use tonemap::Development;
 
 /// Linear Rec. 709 radiance, row 0 on top.

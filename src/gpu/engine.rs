@@ -7,7 +7,7 @@ use super::pace::Pace;
 use super::program::{Program, workgroup_items};
 use super::recorder::Recorder;
 use crate::engine::{Engine, EngineError, PassReport};
-use crate::film::Picture;
+use crate::film::{Picture, Rejections};
 use crate::kernels::records::{Dispatch, FilmPixel};
 use crate::pack::Packed;
 use crate::plan::{Kernel, Plan, Step};
@@ -201,16 +201,17 @@ impl GpuEngine {
             return Ok(0);
         };
         let sampled = self.plan.features.has("sampled");
-        let rays = if step.kernel == Kernel::EyeTrace {
+        let (mended, rays) = if step.kernel == Kernel::EyeTrace {
             let buffer = &self.chunks[step.chunk as usize]["visible_points"];
             mend_points(&self.gpu, scene, &step.dispatch, sampled, buffer)?
         } else {
-            let (records, rays) =
+            let (records, photons, rays) =
                 mend_photons(&self.gpu, scene, &step.dispatch, sampled, &self.shared["records"], words[0])?;
             words[0] = records;
-            rays
+            (photons, rays)
         };
-        words[3] = 0;
+        // what is left are loops of the batches before, for which the pass is run again
+        words[3] -= mended.min(words[3]);
         self.gpu.write(counters, bytemuck::cast_slice(&words));
         Ok(rays)
     }
@@ -278,12 +279,23 @@ impl Engine for GpuEngine {
     }
 
     fn picture(&mut self) -> Result<Picture, EngineError> {
+        Ok(self.plan.picture(&self.film()?))
+    }
+
+    fn rejections(&mut self) -> Result<Rejections, EngineError> {
+        Ok(self.plan.rejections(&self.film()?))
+    }
+}
+
+impl GpuEngine {
+    /// The film, read back.
+    fn film(&self) -> Result<Vec<FilmPixel>, EngineError> {
         let mut film: Vec<FilmPixel> = Vec::with_capacity(self.plan.pixels as usize);
         for (number, chunk) in (0..).zip(&self.chunks) {
             let pixels = self.plan.chunk(number).1 / self.plan.eye_samples;
             let bytes = self.gpu.read(&chunk["film"], pixels as u64 * size_of::<FilmPixel>() as u64)?;
             film.extend(bytemuck::pod_collect_to_vec::<u8, FilmPixel>(&bytes));
         }
-        Ok(self.plan.picture(&film))
+        Ok(film)
     }
 }

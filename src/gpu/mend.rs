@@ -8,34 +8,35 @@ use super::context::Gpu;
 use crate::engine::EngineError;
 use crate::kernels::eye_trace::eye_trace;
 use crate::kernels::photon_trace::photon_trace;
-use crate::kernels::records::{Dispatch, PhotonRecord, VisiblePoint};
+use crate::kernels::records::{Dispatch, PhotonRecord, STOPPED, VisiblePoint};
 use crate::tables::Scene;
 use bytemuck::{cast_slice, pod_collect_to_vec};
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 
-/// Finds the marked points of a chunk again; the number of rays.
+/// Finds the marked points of a chunk again; their number and that of the rays.
 pub fn mend_points(
     gpu: &Gpu,
     scene: &Scene,
     dispatch: &Dispatch,
     sampled: bool,
     buffer: &wgpu::Buffer,
-) -> Result<u64, EngineError> {
+) -> Result<(u32, u64), EngineError> {
     let bytes = dispatch.end as u64 * size_of::<VisiblePoint>() as u64;
     let mut points: Vec<VisiblePoint> = pod_collect_to_vec(&gpu.read(buffer, bytes)?);
-    let marked = points.par_iter_mut().enumerate().filter(|(_, point)| point.stopped == 1);
+    let marked = points.par_iter_mut().enumerate().filter(|(_, point)| point.state & STOPPED != 0);
     let rays = marked.map(|(id, point)| {
         let (traced, rays) = eye_trace(scene, dispatch, sampled, id as u32);
         *point = traced;
-        rays as u64
+        (1, rays as u64)
     });
-    let rays = rays.sum();
+    let mended = rays.reduce(|| (0, 0), |a, b| (a.0 + b.0, a.1 + b.1));
     gpu.write(buffer, cast_slice(&points));
-    Ok(rays)
+    Ok(mended)
 }
 
-/// Replaces the records of the marked photons, of `count` records; the number of records then, and of rays.
+/// Replaces the records of the marked photons, of `count` records; the number of records then, of those photons, and of
+/// rays.
 pub fn mend_photons(
     gpu: &Gpu,
     scene: &Scene,
@@ -43,10 +44,10 @@ pub fn mend_photons(
     sampled: bool,
     buffer: &wgpu::Buffer,
     count: u32,
-) -> Result<(u32, u64), EngineError> {
+) -> Result<(u32, u32, u64), EngineError> {
     if count > dispatch.capacity {
         // the batch has overflowed and will be traced again
-        return Ok((count, 0));
+        return Ok((count, 0, 0));
     }
     let bytes = count as u64 * size_of::<PhotonRecord>() as u64;
     let mut records: Vec<PhotonRecord> = pod_collect_to_vec(&gpu.read(buffer, bytes)?);
@@ -54,6 +55,7 @@ pub fn mend_photons(
     let is_mark = |record: &PhotonRecord| record.direction == 0;
     let marked: BTreeSet<u32> = records.iter().filter(|r| is_mark(r)).map(|mark| mark.key).collect();
     records.retain(|r| !is_mark(r) && !marked.contains(&(r.key >> dispatch.key_bits)));
+    let photons = marked.len() as u32;
     let traced: Vec<(Vec<PhotonRecord>, u32)> = marked
         .into_par_iter()
         .map(|id| {
@@ -67,5 +69,5 @@ pub fn mend_photons(
     let count = records.len() as u32;
     records.truncate(dispatch.capacity as usize);
     gpu.write(buffer, cast_slice(&records));
-    Ok((count, rays))
+    Ok((count, photons, rays))
 }

@@ -1,6 +1,6 @@
 //! A kernel, compiled: its pipeline and what it binds.
 
-use super::compose::{causes, compose};
+use super::compose::{Shader, causes, compose};
 use super::context::Gpu;
 use super::layout::{Access, Binding, SceneTables, bindings};
 use crate::engine::EngineError;
@@ -26,6 +26,16 @@ impl Program {
         scene: &SceneTables,
     ) -> Result<Self, EngineError> {
         let shader = compose(kernel, features, scene).map_err(|e| EngineError::Shader(e.to_string()))?;
+        Self::of_shader(gpu, kernel, features, shader)
+    }
+
+    /// Compiles a shader that has the entry point and the bindings of `kernel`.
+    pub fn of_shader(
+        gpu: &Gpu,
+        kernel: Kernel,
+        features: &Features,
+        shader: Shader,
+    ) -> Result<Self, EngineError> {
         shader.validate().map_err(|e| EngineError::Shader(e.to_string()))?;
         let bindings = bindings(kernel, features);
         let stem = kernel.stem();

@@ -9,9 +9,9 @@ use super::materials::scatter::{
     RADIANCE, is_specular, reflectance_at, scatter_specular, shading_normal, toward,
 };
 use super::math::rng::{STREAM_EYE, rng_new, rng_next};
-use super::math::{FAR, INV_PI, max_component, oct_encode, offset_origin};
+use super::math::{FAR, INV_PI, is_finite, max_component, oct_encode, offset_origin};
 use super::real::{Real, Vec3, Vec4};
-use super::records::{Dispatch, VisiblePoint};
+use super::records::{BAD_DIRECT, BAD_EYE, Dispatch, VisiblePoint};
 use super::shapes::intersect::intersect_scene;
 use super::shapes::ray::Ray;
 use super::shapes::surface::surface_at;
@@ -70,8 +70,13 @@ pub fn eye_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, id: u32) -> 
             }
             if sampled {
                 let (radiance, spent) = direct_light(scene, &s, wo, n, ng, reflectance, medium, &mut rng);
-                point.radiance += throughput * radiance;
+                let direct = throughput * radiance;
                 rays += spent;
+                if is_finite(direct) {
+                    point.radiance += direct;
+                } else {
+                    point.state |= BAD_DIRECT;
+                }
             }
             break;
         }
@@ -90,6 +95,10 @@ pub fn eye_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, id: u32) -> 
         throughput *= 1.0 / survival;
         let origin = offset_origin(s.position, s.error, s.normal, scattered.direction);
         ray = Ray { origin, t_min: 0.0, direction: scattered.direction, t_max: FAR };
+    }
+    if !is_finite(point.radiance) {
+        point.radiance = Vec3::ZERO;
+        point.state |= BAD_EYE;
     }
     (point, rays)
 }

@@ -15,6 +15,10 @@ const FLATNESS: Real = 0.25;
 /// Least cosine with the geometric normal for which the shading normal's correction is formed.
 const COS_MIN: Real = 1e-2;
 
+/// Photons of a bucket that are summed up before they are added to the whole sum: so a million photons lose no more than
+/// some thousand roundings.
+const BLOCK: usize = 1024;
+
 /// Squared radius of this pass over the squared start radius.
 pub fn scale_sq(dispatch: &Dispatch, local: bool, statistics: &Statistics) -> Real {
     if !local {
@@ -48,32 +52,38 @@ pub fn gather(
             for x in low.x..=high.x {
                 let cell = IVec3::new(x, y, z);
                 let bucket = grid_bucket(cell, dispatch.mask) as usize;
-                for record in &sorted[starts[bucket] as usize..starts[bucket + 1] as usize] {
-                    let d = record.position - point.position;
-                    if d.dot(d) > radius_sq
-                        || d.dot(ng).abs() > FLATNESS * radius
-                        || grid_cell(record.position, dispatch.inv_cell) != cell
-                    {
-                        continue;
+                let records = &sorted[starts[bucket] as usize..starts[bucket + 1] as usize];
+                for some in records.chunks(BLOCK) {
+                    let mut block = Vec3::ZERO;
+                    for record in some {
+                        let d = record.position - point.position;
+                        if d.dot(d) > radius_sq
+                            || d.dot(ng).abs() > FLATNESS * radius
+                            || grid_cell(record.position, dispatch.inv_cell) != cell
+                        {
+                            continue;
+                        }
+                        let toward_light = oct_vector(record.direction);
+                        if toward_light.dot(ng) <= 0.0 {
+                            continue;
+                        }
+                        gathered.count += 1;
+                        if flat && point.alpha <= 0.0 {
+                            block += record.flux;
+                            continue;
+                        }
+                        let wi = unit(toward_light);
+                        // flux arrives by the geometric cosine, the BRDF asks for the shading one
+                        let cos_g = wi.dot(ng).max(COS_MIN);
+                        if point.alpha > 0.0 {
+                            let f =
+                                eval_rough(MATERIAL_METAL, point.alpha, point.reflectance, n, point.wo, wi);
+                            block += f * record.flux * (1.0 / cos_g);
+                        } else {
+                            block += record.flux * (wi.dot(n).max(0.0) / cos_g);
+                        }
                     }
-                    let toward_light = oct_vector(record.direction);
-                    if toward_light.dot(ng) <= 0.0 {
-                        continue;
-                    }
-                    gathered.count += 1;
-                    if flat && point.alpha <= 0.0 {
-                        sum += record.flux;
-                        continue;
-                    }
-                    let wi = unit(toward_light);
-                    // flux arrives by the geometric cosine, the BRDF asks for the shading one
-                    let cos_g = wi.dot(ng).max(COS_MIN);
-                    if point.alpha > 0.0 {
-                        let f = eval_rough(MATERIAL_METAL, point.alpha, point.reflectance, n, point.wo, wi);
-                        sum += f * record.flux * (1.0 / cos_g);
-                    } else {
-                        sum += record.flux * (wi.dot(n).max(0.0) / cos_g);
-                    }
+                    sum += block;
                 }
             }
         }

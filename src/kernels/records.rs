@@ -50,6 +50,13 @@ pub struct Dispatch {
     pub passes_done: u32,
 }
 
+/// The driver stopped the kernel's loops: the point is to be found again.
+pub const STOPPED: u32 = 1;
+/// What the eye path met on its way was not finite; it is left out of the radiance.
+pub const BAD_EYE: u32 = 2;
+/// The sampled direct light was not finite; it is left out of the radiance.
+pub const BAD_DIRECT: u32 = 4;
+
 /// First non-specular hit of an eye path.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Plain, Zeroable)]
@@ -72,8 +79,8 @@ pub struct VisiblePoint {
     pub alpha: Real,
     /// Metal: direction to the viewer.
     pub wo: Vec3,
-    /// 1 where the driver stopped the kernel's loops: the point is to be found again.
-    pub stopped: u32,
+    /// Sum of [`STOPPED`], [`BAD_EYE`] and [`BAD_DIRECT`].
+    pub state: u32,
 }
 
 /// A photon at a non-specular hit.
@@ -114,12 +121,29 @@ pub struct Statistics {
     pub count_high: u32,
 }
 
+/// Causes of a rejected pass, as indices: what the eye path met, ...
+pub const REJECTED_EYE: u32 = 0;
+/// ... sampled direct light, ...
+pub const REJECTED_DIRECT: u32 = 1;
+/// ... gathered photons, ...
+pub const REJECTED_PHOTONS: u32 = 2;
+/// ... or the estimate, though each of its parts was finite.
+pub const REJECTED_ESTIMATE: u32 = 3;
+/// No cause: the pass counts.
+pub const ACCEPTED: u32 = 4;
+
 /// A pixel's estimate so far.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Plain, Zeroable)]
 pub struct FilmPixel {
-    /// Mean over the passes, in W sr^-1 m^-2 of scene units.
+    /// Mean over the passes, in W sr^-1 m^-2 of scene units, less what `carry` still holds back.
     pub mean: Vec3,
-    /// Passes whose value was not finite and was left out.
-    pub rejected: u32,
+    /// Zero.
+    pub pad0: u32,
+    /// Change of the mean not yet put into `mean`: small terms are summed here first, so that they count.
+    pub carry: Vec3,
+    /// Zero.
+    pub pad1: u32,
+    /// Passes whose value was not finite and was left out, by cause: see `REJECTED_*`.
+    pub rejected: [u32; 4],
 }

@@ -7,12 +7,15 @@
 //! `tau_P / R_P^2 = tau_{P-1} / R_{P-1}^2 + Phi_P / R_{P-1}^2`.
 
 use super::gather::scale_sq;
-use super::math::PI;
-use super::real::{EXPONENT, Real, Vec3};
-use super::records::{Dispatch, FilmPixel, Gathered, Statistics, VisiblePoint};
+use super::math::{PI, is_finite, max_abs};
+use super::real::{Real, Vec3};
+use super::records::*;
 
 /// `drop` is taken from `scale_sq` when it exceeds this share of it.
-const DROP_SHARE: Real = 1.0 / 4096.0;
+const DROP_SHARE: Real = 1.0 / 256.0;
+
+/// `carry` is put into `mean` when it exceeds this share of it.
+const CARRY_SHARE: Real = 1.0 / 256.0;
 
 /// Radiance that one visible point found in this pass.
 pub fn pass_radiance(point: &VisiblePoint, gathered: &Gathered, scale_sq: Real, photons: Real) -> Vec3 {
@@ -45,11 +48,6 @@ pub fn update_statistics(statistics: &mut Statistics, m: u32, alpha: Real) {
     statistics.count_low = low;
 }
 
-/// Whether every component is a number (told from the bits, since a shader compiler may assume it).
-pub fn is_finite(v: Vec3) -> bool {
-    [v.x, v.y, v.z].iter().all(|x| x.to_bits() & EXPONENT != EXPONENT)
-}
-
 /// Folds a pixel's visible points of this pass into `film`. `statistics` holds one entry per visible point under
 /// the local rule.
 pub fn resolve(
@@ -60,23 +58,44 @@ pub fn resolve(
     film: &mut FilmPixel,
 ) {
     let mut sum = Vec3::ZERO;
+    let mut state = 0;
+    let mut photons_finite = true;
     for k in 0..dispatch.eye_samples as usize {
         let mut scale = dispatch.scale_sq;
         if let Some(all) = &mut statistics {
             scale = scale_sq(dispatch, true, &all[k]);
             update_statistics(&mut all[k], gathered[k].count, dispatch.alpha);
         }
+        state |= points[k].state;
+        photons_finite &= is_finite(gathered[k].flux);
         sum += pass_radiance(&points[k], &gathered[k], scale, dispatch.photons);
     }
-    fold(dispatch, sum * (1.0 / dispatch.eye_samples as Real), film);
+    fold(dispatch, cause(state, photons_finite), sum * (1.0 / dispatch.eye_samples as Real), film);
 }
 
-/// Adds one pass's value to a pixel's mean.
-pub fn fold(dispatch: &Dispatch, value: Vec3, film: &mut FilmPixel) {
-    if !is_finite(value) {
-        film.rejected += 1;
+/// Why a pass cannot count, as far as its parts show.
+pub fn cause(state: u32, photons_finite: bool) -> u32 {
+    if state & BAD_EYE != 0 {
+        return REJECTED_EYE;
+    }
+    if state & BAD_DIRECT != 0 {
+        return REJECTED_DIRECT;
+    }
+    if photons_finite { ACCEPTED } else { REJECTED_PHOTONS }
+}
+
+/// Adds one pass's value to a pixel's mean, or counts it under its cause.
+pub fn fold(dispatch: &Dispatch, cause: u32, value: Vec3, film: &mut FilmPixel) {
+    let found = if cause == ACCEPTED && !is_finite(value) { REJECTED_ESTIMATE } else { cause };
+    if found != ACCEPTED {
+        film.rejected[found as usize] += 1;
         return;
     }
-    let n = (dispatch.passes_done + 1 - film.rejected) as Real;
-    film.mean += (value - film.mean) * (1.0 / n);
+    let r = film.rejected;
+    let n = (dispatch.passes_done + 1 - (r[0] + r[1] + r[2] + r[3])) as Real;
+    film.carry += (value - (film.mean + film.carry)) * (1.0 / n);
+    if max_abs(film.carry) > CARRY_SHARE * max_abs(film.mean) {
+        film.mean += film.carry;
+        film.carry = Vec3::ZERO;
+    }
 }

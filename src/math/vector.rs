@@ -1,6 +1,6 @@
 //! Small vector functions. Twin: `shaders/math/vector.wgsl`.
 
-use super::real::{Real, Vec3, consts};
+use super::real::{EXPONENT, Real, Vec3, consts};
 
 /// pi.
 pub const PI: Real = consts::PI;
@@ -16,6 +16,11 @@ pub const EPS: Real = 0.5 * Real::EPSILON;
 /// `v` at length one.
 pub fn unit(v: Vec3) -> Vec3 {
     v * (1.0 / v.dot(v).sqrt())
+}
+
+/// Whether every component is a number (told from the bits, since a shader compiler may assume it).
+pub fn is_finite(v: Vec3) -> bool {
+    [v.x, v.y, v.z].iter().all(|x| x.to_bits() & EXPONENT != EXPONENT)
 }
 
 /// Greatest component.

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use super::check::{Document, document};
 use super::file::{EnvironmentFile, LightFile, MaterialFile, SceneFile, ShapeFile, TextureFile};
 use super::images::ImageStore;
+use super::places::Places;
 use super::report::{Finding, Report, SceneErrors, did_you_mean, list};
 use super::{Scene, looks, schema, surfaces, text, view};
 use crate::settings::RenderSettings;
@@ -19,6 +20,8 @@ pub struct Loaded {
     pub settings: RenderSettings,
     /// What is odd but no error.
     pub warnings: Vec<Finding>,
+    /// Where the parts stand in the file.
+    pub places: Places,
 }
 
 /// Reads a scene file with all the files it names.
@@ -35,11 +38,11 @@ pub fn load(path: &Path) -> Result<Loaded, SceneErrors> {
 /// As [`load`].
 pub fn parse(path: &Path, bytes: &[u8]) -> Result<Loaded, SceneErrors> {
     let schema = schema::of::<SceneFile>();
-    let ((scene, settings), warnings) = text::parse(path, bytes, |root, report| {
+    let ((scene, settings, places), warnings) = text::parse(path, bytes, |root, report| {
         let document = document(&schema, root, report);
         Loader::new(path, &document, report).load()
     })?;
-    Ok(Loaded { scene, settings, warnings })
+    Ok(Loaded { scene, settings, warnings, places })
 }
 
 /// What the parts of a scene share while they are read.
@@ -55,7 +58,7 @@ impl<'l, 'a> Loader<'l, 'a> {
         Self { document, report, images: ImageStore::default(), path }
     }
 
-    fn load(mut self) -> Option<(Scene, RenderSettings)> {
+    fn load(mut self) -> Option<(Scene, RenderSettings, Places)> {
         let document = self.document;
         if let Some(item) = document.item("version")
             && let Some(version) = item.read::<u32>(self.report)
@@ -66,6 +69,10 @@ impl<'l, 'a> Loader<'l, 'a> {
         }
         self.undefined("materials", "shapes", "material");
         self.undefined("textures", "materials", "reflectance");
+        let mut places = Places::new(self.path, self.report.source.clone());
+        for section in ["camera", "render", "materials", "shapes", "lights"] {
+            document.items(section).for_each(|item| places.add(item));
+        }
         let camera = view::camera(&mut self);
         let film = view::film(&mut self);
         let settings = view::settings(&mut self);
@@ -79,6 +86,7 @@ impl<'l, 'a> Loader<'l, 'a> {
         for item in document.items("materials") {
             if let Some(file) = item.read::<MaterialFile>(self.report) {
                 materials.push(looks::material(&self, item, file));
+                places.materials.push(item.path.clone());
             }
         }
         let mut shapes = Vec::new();
@@ -86,6 +94,7 @@ impl<'l, 'a> Loader<'l, 'a> {
             if let Some(file) = item.read::<ShapeFile>(self.report) {
                 let made = surfaces::shapes(&mut self, item, file, &mut textures, &mut materials);
                 shapes.extend(made.into_iter().flatten());
+                places.shapes.resize(shapes.len(), item.path.clone());
             }
         }
         let mut lights = Vec::new();
@@ -118,7 +127,7 @@ impl<'l, 'a> Loader<'l, 'a> {
                 self.report.warn(0..0, message, label);
             }
         }
-        Some((scene, settings?))
+        Some((scene, settings?, places))
     }
 
     /// Index of a named part; 0 for an unknown name, which [`Self::undefined`] has reported.

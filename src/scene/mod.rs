@@ -16,6 +16,7 @@ mod mesh;
 mod mtl;
 pub mod numbers;
 mod obj;
+mod places;
 mod profile;
 mod profile_file;
 mod report;
@@ -35,6 +36,7 @@ pub use appearance::{
 };
 pub use geometry::{Mesh, Shape, ShapeKind, Transform, Triangle};
 pub use load::{Loaded, load, parse};
+pub use places::Places;
 pub use profile_file::{LoadedProfile, ProfileFile, load_profile};
 pub use report::{Finding, SceneErrors};
 pub use schema::schema_json;

@@ -172,9 +172,14 @@ impl Report {
         self.errors.push(finding);
     }
 
+    /// A warning about the scene file, handed back.
+    pub fn warning(&self, span: Range<usize>, message: String, label: String) -> Finding {
+        self.finding(miette::Severity::Warning, span, message, label, None)
+    }
+
     /// A warning about the scene file.
     pub fn warn(&mut self, span: Range<usize>, message: impl Into<String>, label: impl Into<String>) {
-        let finding = self.finding(miette::Severity::Warning, span, message.into(), label.into(), None);
+        let finding = self.warning(span, message.into(), label.into());
         self.warnings.push(finding);
     }
 

@@ -2,6 +2,7 @@
 
 #![allow(dead_code)] // each test binary uses its part
 
+pub mod judge;
 pub mod oracle;
 pub mod profiles;
 pub mod rays;

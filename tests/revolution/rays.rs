@@ -42,6 +42,8 @@ pub enum Class {
     Random,
     /// The same from a thousand radii away.
     Far,
+    /// The same from a million radii away; not among [`CLASSES`].
+    VeryFar,
     /// Along a tangent of the surface, moved off it along the normal by up to 2 % of its size.
     Grazing,
     /// Parallel to the axis or nearly, along it, through points of it, and square to it.
@@ -67,8 +69,12 @@ pub fn curve(points: &[DVec2], t: f64) -> (DVec2, DVec2) {
 pub fn ray(placed: &Placed, class: Class, random: &mut Random) -> (Vec3, Vec3) {
     let ball = placed.segments.iter().flatten().fold(0.0_f64, |a, p| a.max(p.length()));
     let (origin, direction) = match class {
-        Class::Random | Class::Far => {
-            let distance = if class == Class::Far { 1000.0 } else { 3.0 };
+        Class::Random | Class::Far | Class::VeryFar => {
+            let distance = match class {
+                Class::VeryFar => 1e6,
+                Class::Far => 1000.0,
+                _ => 3.0,
+            };
             let origin = random.direction() * ball * distance;
             (origin, random.ball() * ball - origin)
         }

@@ -1,0 +1,78 @@
+//! Prints the table of docs/stability.md: every extreme with its figure on the CPU and on lavapipe, and its bound.
+//!
+//!     cargo run --release --example stability [WORD] > table.md
+//!
+//! With a word, only the rows whose names hold it. Exits with 1 when a bound does not hold.
+
+#[path = "../tests/stability/bench.rs"]
+mod bench;
+#[path = "../tests/stability/counts.rs"]
+mod counts;
+#[path = "../tests/stability/grazing.rs"]
+mod grazing;
+#[path = "../tests/stability/rays.rs"]
+mod rays;
+#[path = "../tests/stability/scale.rs"]
+mod scale;
+#[path = "../tests/stability/surfaces.rs"]
+mod surfaces;
+#[path = "../tests/stability/table.rs"]
+mod table;
+#[path = "../tests/stability/view.rs"]
+mod view;
+
+use std::process::ExitCode;
+
+use bench::{Bench, On};
+use table::sections;
+
+fn main() -> ExitCode {
+    let only = std::env::args().nth(1).unwrap_or_default();
+    let holds = print_table(&only);
+    ExitCode::from(u8::from(!holds))
+}
+
+/// Prints the table as Markdown, section by section, measured on both devices; whether every row holds.
+fn print_table(only: &str) -> bool {
+    let benches = [On::Cpu, On::Software].map(|on| Bench::new(on, true));
+    let mut holds = true;
+    for (section, rows) in sections() {
+        if rows.iter().all(|row| !row.name.contains(only)) {
+            continue;
+        }
+        let mut text =
+            format!("## {section}\n\n| extreme | figure | CPU | lavapipe | bound |\n|---|---|---|---|---|\n");
+        let mut notes = String::new();
+        for row in rows.iter().filter(|row| row.name.contains(only)) {
+            eprintln!("{}", row.name);
+            let figures = benches.each_ref().map(|bench| (row.measure)(bench));
+            holds &= figures.iter().all(|figure| row.admits(figure));
+            let [cpu, software] = figures.each_ref().map(|figure| {
+                let mark = if row.admits(figure) { "" } else { " **fails**" };
+                format!("{}{mark}", number(figure.value))
+            });
+            text +=
+                &format!("| {} | {} | {cpu} | {software} | {} |\n", row.name, row.unit, number(row.bound));
+            notes += &format!("- *{}*: {}", row.name, row.how);
+            let [cpu, software] = figures.map(|figure| figure.note);
+            if !cpu.is_empty() {
+                notes += &format!(" {cpu}");
+            }
+            if software != cpu && !software.is_empty() {
+                notes += &format!(" lavapipe: {software}");
+            }
+            notes += "\n";
+        }
+        println!("{text}\n{notes}");
+    }
+    holds
+}
+
+fn number(value: f64) -> String {
+    match value.abs() {
+        0.0 => "0".to_owned(),
+        1e-2..1e4 if value.fract() == 0.0 => format!("{value}"),
+        0.1..1e4 => format!("{value:.2}"),
+        _ => format!("{value:.1e}"),
+    }
+}

@@ -1,0 +1,188 @@
+//! What single precision cannot hold is told before it is rendered, at its place in the file.
+//!
+//! Theory: each case changes one number of a sound scene. Just inside the limit nothing is said; just beyond there is one
+//! warning, with the number that is out of range, at the value that makes it so.
+
+use caustica::limits::warnings;
+use caustica::scene::{Finding, load, parse};
+
+/// The scene's radius is half the diagonal of what holds camera, target and floor: sqrt(4 + 1 + 4) = 3.
+const SOUND: &str = r#"version = 1
+[camera]
+position = [0.0, 2.0, 0.0]
+target = [0.0, 0.0, 0.0]
+up = [0.0, 0.0, 1.0]
+fov = 40.0
+[film]
+width = 64
+height = 64
+[render]
+radius = { units = 0.01 }
+[materials.grey]
+type = "metal"
+reflectance = 0.5
+roughness = 0.5
+[[shapes]]
+type = "rectangle"
+origin = [-2.0, 0.0, 2.0]
+u = [4.0, 0.0, 0.0]
+v = [0.0, 0.0, -4.0]
+material = "grey"
+[[shapes]]
+type = "sphere"
+center = [0.0, 0.5, 0.0]
+radius = 0.25
+material = "grey"
+[[lights]]
+type = "point"
+position = [0.0, 1.5, 1.0]
+intensity = 1.0
+[[lights]]
+type = "point"
+position = [1.0, 1.5, 1.0]
+intensity = 2.0
+"#;
+
+fn told(text: &str) -> Vec<Finding> {
+    let loaded = parse("scene.toml".as_ref(), text.as_bytes()).unwrap_or_else(|e| panic!("{e:?}"));
+    warnings(&loaded.scene, &loaded.settings, &loaded.places)
+}
+
+/// The scene with one text replaced says nothing with `inside` and, with `beyond`, one warning that holds `words` and
+/// stands at the line of `at`.
+fn limit(from: &str, inside: &str, beyond: &str, at: &str, words: &[&str]) {
+    assert_eq!(SOUND.matches(from).count(), 1, "{from}");
+    let with = |to: &str| SOUND.replace(from, to);
+    let quiet = told(&with(inside));
+    assert!(quiet.is_empty(), "{inside}: {quiet:?}");
+    let text = with(beyond);
+    let found = told(&text);
+    assert_eq!(found.len(), 1, "{beyond}: {found:?}");
+    let said = format!("{} | {}", found[0].message(), found[0].label());
+    for word in words {
+        assert!(said.contains(word), "{beyond}: {said}");
+    }
+    let (line, column) = found[0].line_column().expect("a place");
+    let line = text.lines().nth(line - 1).unwrap();
+    assert!(line[column - 1..].starts_with(at), "{beyond}: column {column} of {line}");
+}
+
+#[test]
+fn a_sound_scene_says_nothing() {
+    assert!(told(SOUND).is_empty());
+    for name in ["caustics", "cornell", "depth-of-field", "soft-shadows", "still-life", "water-drop"] {
+        let file = format!("{}/scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+        let loaded = load(file.as_ref()).unwrap();
+        let found = warnings(&loaded.scene, &loaded.settings, &loaded.places);
+        assert!(found.is_empty(), "{name}: {found:?}");
+    }
+}
+
+#[test]
+fn gather_radius() {
+    limit(
+        "units = 0.01",
+        "units = 3.1e-6",
+        "units = 2.9e-6",
+        "{ units",
+        &["gather radius", "9.7e-7", "1e-6"],
+    );
+    // two pixels of 2 tan(fov / 2) / 64 at distance 2
+    let beyond = "pixels = 2e-6";
+    limit("units = 0.01", "pixels = 2e-3", beyond, "{ pixels", &["camera's target", "1e-6"]);
+}
+
+#[test]
+fn camera_and_field_of_view() {
+    // without a radius in the file the narrow view is the place
+    let narrow = |fov: &str| {
+        let text = SOUND.replace("[render]\nradius = { units = 0.01 }\n", "").replace("fov = 40.0", fov);
+        told(&text).len()
+    };
+    assert_eq!((narrow("fov = 0.01"), narrow("fov = 0.001")), (0, 1));
+    let found = told(
+        &SOUND.replace("[render]\nradius = { units = 0.01 }\n", "").replace("fov = 40.0", "fov = 0.001"),
+    );
+    assert_eq!(found[0].line_column(), Some((6, 7)), "{found:?}");
+    // half the way to the camera over half the diagonal of the shapes
+    let from = "position = [0.0, 2.0, 0.0]";
+    let words = ["camera is", "times as far", "1e4"];
+    let radius = SOUND.replace("units = 0.01", "units = 10.0").replace("radius = 0.25", "radius = 2.0");
+    let at = |y: &str| told(&radius.replace(from, &format!("position = [0.0, {y}, 0.0]")));
+    assert!(at("4e4").is_empty(), "{:?}", at("4e4"));
+    let found = at("8e4");
+    assert_eq!(found.len(), 1, "{found:?}");
+    let said = format!("{} | {}", found[0].message(), found[0].label());
+    assert!(words.iter().all(|word| said.contains(word)), "{said}");
+    assert_eq!(found[0].line_column(), Some((3, 12)));
+}
+
+#[test]
+fn small_and_giant_shapes() {
+    limit("radius = 0.25", "radius = 1.6e-5", "radius = 1.4e-5", "1.4e-5", &["shapes[1]", "9.3e-6", "1e-5"]);
+    limit("radius = 0.25", "radius = 2.9e9", "radius = 3.1e9", "3.1e9", &["shapes[1]", "1.0e9", "1e9"]);
+    let floor = "u = [4.0, 0.0, 0.0]";
+    limit(floor, "u = [4e-5, 0.0, 0.0]", "u = [1e-5, 0.0, 0.0]", "[1e-5", &["shapes[0]", "1e-5"]);
+    // a needle counts by its radius, a thin plate does not
+    let revolution = |profile: &str| {
+        format!(
+            "type = \"revolution\"\nprofile = {profile}\nmaterial = \"grey\"\n[[shapes]]\ntype = \"sphere\""
+        )
+    };
+    let needle = revolution("[[1e-5, 0.0], [0.0, 1.0]]");
+    limit("type = \"sphere\"", &revolution("[[1e-4, 0.0], [0.0, 1.0]]"), &needle, "[[1e-5", &["shapes[1]"]);
+    assert!(told(&SOUND.replace("type = \"sphere\"", &revolution("[[1.0, 0.0], [0.0, 1e-7]]"))).is_empty());
+}
+
+#[test]
+fn far_from_the_origin() {
+    let moved = |x: f64| {
+        let mut text = SOUND.to_owned();
+        for (key, v) in [
+            ("position", [0.0, 2.0, 0.0]),
+            ("target", [0.0, 0.0, 0.0]),
+            ("origin", [-2.0, 0.0, 2.0]),
+            ("center", [0.0, 0.5, 0.0]),
+        ] {
+            let line = |v: [f64; 3]| format!("{key} = {v:?}");
+            assert!(text.contains(&line(v)), "{key}");
+            text = text.replace(&line(v), &line([v[0] + x, v[1], v[2]]));
+        }
+        told(&text)
+    };
+    assert!(moved(2.9e8).is_empty(), "{:?}", moved(2.9e8));
+    let found = moved(3.1e8);
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert!(found[0].message().contains("1.0e8 times its own radius from the origin"), "{found:?}");
+}
+
+#[test]
+fn lights_and_lamps() {
+    limit(
+        "intensity = 1.0",
+        "intensity = 1.3e-7",
+        "intensity = 1.1e-7",
+        "1.1e-7",
+        &["lights[0]", "5.5e-8", "6e-8"],
+    );
+    // a square lamp at height 1 over the camera's target: its diagonal over its distance
+    let lamp = |side: f64| {
+        format!(
+            "[[shapes]]\ntype = \"rectangle\"\norigin = [{0:?}, 3.0, {0:?}]\nu = [{side:?}, 0.0, 0.0]\nv = [0.0, 0.0, {side:?}]\nmaterial = \"grey\"\nemission = 1.0\n[[lights]]\ntype = \"point\"\nposition = [0.0, 1.5, 1.0]",
+            -0.5 * side
+        )
+    };
+    let from = "[[lights]]\ntype = \"point\"\nposition = [0.0, 1.5, 1.0]";
+    limit(from, &lamp(200.0), &lamp(220.0), "1.0", &["shapes[2] shines", "1e2"]);
+}
+
+#[test]
+fn smooth_metal() {
+    limit(
+        "roughness = 0.5",
+        "roughness = 0.032",
+        "roughness = 0.031",
+        "0.031",
+        &["materials.grey", "0.031", "0.0316"],
+    );
+}
