@@ -20,7 +20,7 @@
 //!
 //! Modules depend on one another one way: [`math`], then [`tables`], [`shapes`], [`materials`], [`lights`],
 //! [`camera`] and [`grid`], then [`scene`], [`build`], [`pack`], then [`kernels`], [`probe`], [`plan`], then [`cpu`]
-//! and [`gpu`], then [`device`] and [`render`], and last [`hold`].
+//! and [`gpu`], then [`device`] and [`render`], and last [`hold`] and [`study`].
 
 pub mod build;
 pub mod camera;
@@ -43,4 +43,5 @@ pub mod render;
 pub mod scene;
 pub mod settings;
 pub mod shapes;
+pub mod study;
 pub mod tables;
