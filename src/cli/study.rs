@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use caustica::device;
+use caustica::device::{self, DeviceKind};
 use caustica::film::provenance::VERSION;
 use caustica::film::{Region, read};
 use caustica::scene::Scene;
@@ -198,11 +198,14 @@ fn about(
         product.push(Axis { name: "device".to_owned(), values: arguments.device.clone() });
     }
     let base = Config::new(settings, arguments.device.first().map_or("auto", String::as_str));
-    let configs = configs(&base, &product, &varied).map_err(StudyError::from)?;
+    let mut configs = configs(&base, &product, &varied).map_err(StudyError::from)?;
     // A device that is not there should not show after half of the time.
     let devices = device::list();
-    for config in &configs {
-        device::pick(&device::parse(&config.device), &devices)?;
+    for config in &mut configs {
+        let (picked, _) = device::pick(&device::parse(&config.device), &devices)?;
+        if picked.kind == DeviceKind::Cpu {
+            config.device = DeviceKind::Cpu.word().to_owned();
+        }
     }
     let mut lamps: Vec<_> = configs.iter().map(|config| config.lamp).collect();
     lamps.dedup();

@@ -1,6 +1,6 @@
 //! Goes through truths and renders, keeps each when it is finished, and can be stopped between any two passes.
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
 use super::StudyError;
@@ -103,38 +103,32 @@ impl Study<'_> {
         let start = Instant::now();
         let mut made = 0;
         let total = self.about.configs.len() * self.about.seeds as usize;
-        for (number, config) in self.about.configs.iter().enumerate() {
-            let place = lamps.iter().position(|lamp| *lamp == config.lamp).unwrap_or(0);
-            let place = Place { number, config, scene: &scenes[place], truth: &truths[place], crop };
-            for seed in 0..self.about.seeds {
-                if self.is_done(&results, number, seed) {
-                    continue;
+        // Seed by seed, so that a study that is stopped has something of everything, and so that what else the machine
+        // does in a while falls on all alike.
+        for seed in 0..self.about.seeds {
+            for (number, config) in self.about.configs.iter().enumerate() {
+                let place = lamps.iter().position(|lamp| *lamp == config.lamp).unwrap_or(0);
+                let place = Place { number, config, scene: &scenes[place], truth: &truths[place], crop };
+                if !self.is_done(&results, number, seed) {
+                    results.runs.retain(|run| (run.config, run.seed) != (number, seed));
+                    let passes = passes_of(&results, number);
+                    let Some(run) = self.run(&place, seed, passes)? else {
+                        return Ok(Conducted { results, crop, complete: false });
+                    };
+                    let last = run.points.last().copied();
+                    results.runs.push(run);
+                    self.folder.keep_runs(&results.runs)?;
+                    made += 1;
+                    let (done, label) = (results.runs.len(), config.label());
+                    let remaining = start.elapsed() / made * total.saturating_sub(done) as u32;
+                    observer(&Event::Run { done, of: total, label, seed: seed + 1, last, remaining });
                 }
-                results.runs.retain(|run| (run.config, run.seed) != (number, seed));
-                let passes = passes_of(&results, number);
-                let Some(run) = self.run(&place, seed, passes)? else {
-                    return Ok(Conducted { results, crop, complete: false });
-                };
-                let last = run.points.last().copied();
-                results.runs.push(run);
-                self.folder.keep_runs(&results.runs)?;
-                made += 1;
-                let done = results.runs.len();
-                let each = start.elapsed() / made;
-                let remaining = each * total.saturating_sub(done) as u32;
-                observer(&Event::Run {
-                    done,
-                    of: total,
-                    label: config.label(),
-                    seed: seed + 1,
-                    last,
-                    remaining,
-                });
+                if seed + 1 == self.about.seeds {
+                    self.finish(&mut results, number, place.truth)?;
+                }
             }
-            self.finish(&mut results, number, place.truth)?;
         }
-        let complete = !self.interrupted.load(Ordering::Relaxed) || results.runs.len() == total;
-        Ok(Conducted { results, crop, complete })
+        Ok(Conducted { results, crop, complete: true })
     }
 
     fn development(&self) -> Development {

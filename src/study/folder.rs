@@ -93,8 +93,8 @@ pub struct TruthRecord {
     pub lamp: Option<Lamp>,
     /// What it was made from.
     pub source: String,
-    /// Its own mean squared error, by the scatter of its parts; none where it has only one.
-    pub mse: Option<f64>,
+    /// Its own mean squared relative error, all pixels in it, by the scatter of its parts; none where it has only one.
+    pub variance: Option<f64>,
     /// Its own relMSE, likewise.
     pub rel_mse: Option<f64>,
 }

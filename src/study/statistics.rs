@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::film::Picture;
+use crate::film::{Picture, luminance};
 
 /// A line `ln y = intercept + slope ln x` through points by least squares.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -64,15 +64,16 @@ pub fn student_t_95(freedom: usize) -> f64 {
     z + first / f + second / f.powi(2) + third / f.powi(3)
 }
 
-/// Mean over pixels and channels of the products of the errors of renders with different seeds: entry (j, k) is
-/// `mean (x_j - t) (x_k - t)`. All that is said about variance and bias follows from it.
+/// Mean over pixels of the products of the relative errors of renders with different seeds: entry (j, k) is
+/// `mean e_j e_k` with `e = (L - T) / sqrt(T^2 + 0.01)`, luminance and the truth's, so that (k, k) is relMSE with all pixels
+/// in it. All that is said about variance and bias follows from it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Products(pub Vec<Vec<f64>>);
 
 /// Error of renders with different seeds, in parts.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Split {
-    /// Mean squared error of one render, without the truth's.
+    /// Mean squared relative error of one render, without the truth's.
     pub mse: f64,
     /// Its variance: mean over the seeds of the squared distance from their mean, times K / (K - 1).
     pub variance: f64,
@@ -86,19 +87,14 @@ pub struct Split {
 impl Products {
     /// Of pictures of one size against a truth of that size.
     pub fn of(pictures: &[Picture], truth: &Picture) -> Self {
-        let truth = truth.rgb.as_flattened();
-        let product = |a: &Picture, b: &Picture| {
-            let pairs = a.rgb.as_flattened().iter().zip(b.rgb.as_flattened()).zip(truth);
-            let sum: f64 = pairs
-                .map(|((a, b), t)| (f64::from(*a) - f64::from(*t)) * (f64::from(*b) - f64::from(*t)))
-                .sum();
-            sum / truth.len().max(1) as f64
-        };
-        Self(pictures.iter().map(|a| pictures.iter().map(|b| product(a, b)).collect()).collect())
+        let errors: Vec<Vec<f64>> = pictures.iter().map(|picture| relative_errors(picture, truth)).collect();
+        let product =
+            |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>() / a.len().max(1) as f64;
+        Self(errors.iter().map(|a| errors.iter().map(|b| product(a, b)).collect()).collect())
     }
 
-    /// Variance and squared bias; none for fewer than two seeds. `truth_variance` is the mean squared error of the truth
-    /// itself.
+    /// Variance and squared bias; none for fewer than two seeds. `truth_variance` is the mean squared relative error of the
+    /// truth itself.
     pub fn split(&self, truth_variance: f64) -> Option<Split> {
         let all: Vec<usize> = (0..self.0.len()).collect();
         let (mse, bias_sq) = self.parts(&all)?;
@@ -133,6 +129,12 @@ impl Products {
     }
 }
 
+/// `(L - T) / sqrt(T^2 + 0.01)` of each pixel.
+pub fn relative_errors(picture: &Picture, truth: &Picture) -> Vec<f64> {
+    let pairs = picture.rgb.iter().zip(&truth.rgb).map(|(a, t)| (luminance(*a), luminance(*t)));
+    pairs.map(|(a, t)| (a - t) / (t * t + 0.01).sqrt()).collect()
+}
+
 /// Mean, least and greatest of some values; none of none.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Spread {
@@ -163,14 +165,16 @@ mod tests {
         (*state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
     }
 
-    /// Renders of a grey truth: noise of amplitude `a` (variance a^2 / 3), all too bright by `bias`.
+    /// Renders of a grey truth: relative noise of amplitude `a` (variance a^2 / 3), all too bright by the share `bias`.
     fn renders(seeds: u64, a: f64, bias: f64) -> (Vec<Picture>, Picture) {
         let truth = Picture::from_fn(64, 64, |x, y| [0.3 + (x + y) as f32 / 128.0; 3]);
         let one = |seed: u64| {
             let mut state = seed * 7919 + 17;
             Picture::from_fn(64, 64, |x, y| {
                 let at = truth.rgb[(y * 64 + x) as usize];
-                at.map(|t| t + (bias + a * noise(&mut state)) as f32)
+                let weight = (f64::from(at[0]).powi(2) + 0.01).sqrt();
+                let error = weight * (bias + a * noise(&mut state));
+                at.map(|t| t + error as f32)
             })
         };
         ((0..seeds).map(one).collect(), truth)
@@ -236,8 +240,11 @@ mod tests {
             [0, 1, 2].map(|c| (pictures.iter().map(|p| f64::from(p.rgb[at][c])).sum::<f64>() / 5.0) as f32)
         });
         let distance = |a: &Picture, b: &Picture| {
-            let pairs = a.rgb.as_flattened().iter().zip(b.rgb.as_flattened());
-            pairs.map(|(a, b)| f64::from(a - b).powi(2)).sum::<f64>() / (64.0 * 64.0 * 3.0)
+            let pairs = a.rgb.iter().zip(&b.rgb).zip(&truth.rgb);
+            let squares = pairs.map(|((a, b), t)| {
+                (f64::from(a[1]) - f64::from(b[1])).powi(2) / (f64::from(t[1]).powi(2) + 0.01)
+            });
+            squares.sum::<f64>() / (64.0 * 64.0)
         };
         let variance = pictures.iter().map(|p| distance(p, &mean)).sum::<f64>() / 5.0 * 5.0 / 4.0;
         let bias_sq = distance(&mean, &truth) - variance / 5.0 - 0.002;
@@ -250,7 +257,7 @@ mod tests {
     fn planted_noise_and_bias_come_back() {
         let (pictures, truth) = renders(4, 0.3, 0.1);
         let split = Products::of(&pictures, &truth).split(0.0).unwrap();
-        // 12288 values: the variance is known to about a hundredth.
+        // 16384 values: the variance is known to about a hundredth.
         assert!((split.variance / 0.03 - 1.0).abs() < 0.03, "{split:?}");
         assert!((split.bias_sq / 0.01 - 1.0).abs() < 0.06, "{split:?}");
         let (pictures, truth) = renders(4, 0.3, 0.0);
@@ -269,7 +276,9 @@ mod tests {
         let (pictures, truth) = renders(4, 0.3, 0.0);
         let mut state = 99;
         let noisy = Picture::from_fn(64, 64, |x, y| {
-            truth.rgb[(y * 64 + x) as usize].map(|t| t + (0.2 * noise(&mut state)) as f32)
+            let at = truth.rgb[(y * 64 + x) as usize];
+            let error = 0.2 * (f64::from(at[0]).powi(2) + 0.01).sqrt() * noise(&mut state);
+            at.map(|t| t + error as f32)
         });
         let products = Products::of(&pictures, &noisy);
         let own = 0.04 / 3.0;

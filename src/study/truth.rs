@@ -9,6 +9,7 @@ use super::StudyError;
 use super::folder::{Folder, TruthRecord};
 use super::grid::Config;
 use super::render::{Until, progressive};
+use super::statistics::relative_errors;
 use crate::device;
 use crate::film::metrics::{MetricsError, compare};
 use crate::film::{Picture, luminance, read};
@@ -60,15 +61,15 @@ pub fn mean_of(pictures: &[Picture], source: String) -> Result<Truth, MetricsErr
         let at = pixel.next().unwrap_or(0);
         [0, 1, 2].map(|c| (pictures.iter().map(|p| f64::from(p.rgb[at][c])).sum::<f64>() / n) as f32)
     });
-    let (mut mse, mut rel_mse) = (0.0, 0.0);
+    let (mut variance, mut rel_mse) = (0.0, 0.0);
     for picture in pictures {
-        let comparison = compare(picture, &mean)?;
-        mse += comparison.mse / n / (n - 1.0);
-        rel_mse += comparison.rel_mse / n / (n - 1.0);
+        let errors = relative_errors(picture, &mean);
+        variance += errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64 / n / (n - 1.0);
+        rel_mse += compare(picture, &mean)?.rel_mse / n / (n - 1.0);
     }
     let several = pictures.len() > 1;
-    let record =
-        TruthRecord { lamp: None, source, mse: several.then_some(mse), rel_mse: several.then_some(rel_mse) };
+    let known = |value: f64| several.then_some(value);
+    let record = TruthRecord { lamp: None, source, variance: known(variance), rel_mse: known(rel_mse) };
     Ok(Truth { picture: mean, record })
 }
 
@@ -145,7 +146,7 @@ impl Maker<'_> {
                 pair.push(picture);
             }
             let truth = mean_of(&pair, String::new())?;
-            pilots.push((truth.record.mse.unwrap_or(0.0), mean_luminance(&truth.picture)));
+            pilots.push((truth.record.variance.unwrap_or(0.0), mean_luminance(&truth.picture)));
         }
         let [(path_error, path_mean), (sppm_error, sppm_mean)] = pilots[..] else { return Ok(None) };
         let studied = |path: bool| self.configs.iter().any(|c| (c.settings.method == Method::Path) == path);
@@ -229,17 +230,19 @@ mod tests {
         let mut noisy = || {
             Picture::from_fn(50, 40, |_, _| {
                 state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-                // Uniform in [0, 1): variance 1/12.
-                [(state >> 40) as f32 / (1u64 << 24) as f32; 3]
+                // Uniform in [1, 1.1): variance 1/1200.
+                [1.0 + 0.1 * (state >> 40) as f32 / (1u64 << 24) as f32; 3]
             })
         };
         let pictures: Vec<_> = (0..4).map(|_| noisy()).collect();
         let truth = mean_of(&pictures, String::new()).unwrap();
-        let mse = truth.record.mse.unwrap();
-        assert!((mse / (1.0 / 48.0) - 1.0).abs() < 0.06, "{mse}");
-        let real = compare(&truth.picture, &Picture::from_fn(50, 40, |_, _| [0.5; 3])).unwrap().mse;
-        assert!((mse / real - 1.0).abs() < 0.1, "{mse} {real}");
-        assert_eq!(mean_of(&pictures[..1], String::new()).unwrap().record.mse, None);
+        let variance = truth.record.variance.unwrap();
+        let expected = 1.0 / 4800.0 / (1.05_f64.powi(2) + 0.01);
+        assert!((variance / expected - 1.0).abs() < 0.06, "{variance} {expected}");
+        let real = compare(&truth.picture, &Picture::from_fn(50, 40, |_, _| [1.05; 3])).unwrap().rel_mse;
+        let rel_mse = truth.record.rel_mse.unwrap();
+        assert!((rel_mse / real - 1.0).abs() < 0.1, "{rel_mse} {real}");
+        assert_eq!(mean_of(&pictures[..1], String::new()).unwrap().record.variance, None);
         let other = Picture::from_fn(40, 50, |_, _| [0.0; 3]);
         assert!(mean_of(&[pictures[0].clone(), other], String::new()).is_err());
     }

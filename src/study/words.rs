@@ -102,19 +102,18 @@ pub fn recommendations(about: &About, part: &Part) -> Vec<String> {
     sentences
 }
 
+/// The seeds' range about the curve's error after so many seconds: that of the last picture by then, in proportion.
 fn range_at(curve: &Curve, seconds: f64) -> Option<Spread> {
-    curve.points.iter().rev().find(|point| point.seconds <= seconds * 1.05).map(|point| point.rel_mse)
+    let mean = curve.error_at(seconds)?;
+    let Spread { mean: own, low, high } =
+        curve.points.iter().rev().find(|point| point.seconds <= seconds * 1.001)?.rel_mse;
+    Some(Spread { mean, low: mean * low / own, high: mean * high / own })
 }
 
 /// Whether the seeds' ranges of two curves, each relative to its mean, leave open which is better.
 fn overlap(best: &Curve, other: &Curve, seconds: f64) -> bool {
-    let at = |curve: &Curve| Some((curve.error_at(seconds)?, range_at(curve, seconds)?));
-    match (at(best), at(other)) {
-        (Some((b, b_range)), Some((o, o_range))) => {
-            b * (b_range.high / b_range.mean) >= o * (o_range.low / o_range.mean)
-        }
-        _ => false,
-    }
+    let ranges = range_at(best, seconds).zip(range_at(other, seconds));
+    ranges.is_some_and(|(best, other)| best.high >= other.low)
 }
 
 /// Between which sizes of the lamp the best configuration changes.
