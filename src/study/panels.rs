@@ -125,10 +125,7 @@ fn panel(part: &Part, group: &Group) -> Panel {
         charts: [
             ("error", chart("relMSE over time", time, "relMSE", error, &[-1.0, -2.0 / 3.0])),
             ("flip", chart("FLIP over time", time, "LDR-FLIP", flip, &[])),
-            (
-                "parts",
-                chart("variance and squared bias", "passes", "variance, bias²", parts, &[-1.0, -2.0 / 3.0]),
-            ),
+            ("parts", chart("variance and squared bias", "passes", "variance, bias²", parts, &[])),
         ],
     }
 }

@@ -80,7 +80,7 @@ const LAYOUT: &str = "*{box-sizing:border-box}html{color-scheme:light dark}body{
     color:var(--soft)}.advice{border-left:4px solid var(--s0);padding:.2rem 1rem;margin:1rem 0}.scroll{overflow-x:auto}\
     table{border-collapse:collapse;font-size:.9rem;font-variant-numeric:tabular-nums}th,td{padding:.25rem .7rem;\
     text-align:right;border-bottom:1px solid var(--line);white-space:nowrap}th:first-child,td:first-child{text-align:left}\
-    .charts{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,30rem),1fr));gap:1rem}.charts figure{\
+    .charts{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,20rem),1fr));gap:1rem}.charts figure{\
     margin:0}figcaption{font-size:.9rem}svg{display:block;width:100%;height:auto}.narrow{display:none}\
     .one{max-width:52rem}.crops{display:grid;grid-template-columns:repeat(auto-fill,minmax(9.5rem,1fr));gap:.8rem}\
     .crops figure{margin:0}.crops img{width:100%;display:block;image-rendering:pixelated}.crops figcaption{\
@@ -185,7 +185,7 @@ fn section(conducted: &Conducted, part: &Part, number: usize, folder: &Folder, o
                 "flip" => "What the eye sees; the truth's own noise is in it.",
                 _ => "Solid: variance. Dashed, hollow: squared bias, where it is clear of its own error.",
             };
-            figure(chart, caption, out);
+            small_figure(chart, caption, out);
         }
         out.push_str("</div>");
     }
@@ -278,6 +278,14 @@ fn figure(chart: &Chart, caption: &str, out: &mut String) {
         chart.svg(Format::Narrow),
         escape(caption)
     );
+}
+
+/// One of several side by side, where there is never room for more than a narrow chart.
+fn small_figure(chart: &Chart, caption: &str, out: &mut String) {
+    if !chart.is_empty() {
+        let svg = chart.svg(Format::Narrow);
+        let _ = write!(out, "<figure>{svg}<figcaption>{}</figcaption></figure>", escape(caption));
+    }
 }
 
 fn table(rows: &[Vec<String>], out: &mut String) {

@@ -44,7 +44,7 @@ pub struct Truth {
 
 /// Seeds of truths begin here, far from those of the renders.
 const FIRST_SEED: u64 = 1 << 30;
-/// A method that is not studied itself is taken unless its variance is so many times larger.
+/// A method that is not studied itself is taken unless its error is so many times larger.
 const OTHER_METHOD: f64 = 4.0;
 /// Methods whose mean luminances differ by more see different light.
 const SAME_LIGHT: f64 = 0.02;
@@ -146,7 +146,7 @@ impl Maker<'_> {
                 pair.push(picture);
             }
             let truth = mean_of(&pair, String::new())?;
-            pilots.push((truth.record.variance.unwrap_or(0.0), mean_luminance(&truth.picture)));
+            pilots.push((truth.record.rel_mse.unwrap_or(0.0), mean_luminance(&truth.picture)));
         }
         let [(path_error, path_mean), (sppm_error, sppm_mean)] = pilots[..] else { return Ok(None) };
         let studied = |path: bool| self.configs.iter().any(|c| (c.settings.method == Method::Path) == path);
@@ -161,7 +161,7 @@ impl Maker<'_> {
             false => Method::Sppm,
         };
         note(&format!(
-            "truth: {} (mean of path tracing over photon mapping {:.4}, variances {path_error:.1e} and {sppm_error:.1e})",
+            "truth: {} (mean of path tracing over photon mapping {:.4}, relMSE {path_error:.1e} and {sppm_error:.1e})",
             described(method),
             path_mean / sppm_mean.max(1e-300),
         ));

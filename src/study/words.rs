@@ -16,6 +16,7 @@ pub fn short(value: f64) -> String {
         v if v == 0.0 => "0".to_owned(),
         v if v.abs() < 0.001 => format!("{v:.2e}"),
         v if v.abs() < 0.1 => format!("{v:.4}"),
+        v if v.abs() < 1.0 => format!("{v:.3}"),
         v if v.abs() < 10.0 => format!("{v:.2}"),
         v if v.abs() < 100.0 => format!("{v:.1}"),
         v => format!("{v:.0}"),
