@@ -85,9 +85,10 @@ impl Chart {
         let legend = if narrow { labels.len() as f64 * (LINE + 3.0) + 8.0 } else { 0.0 };
         let height = plot.bottom + 44.0 + legend;
         let mut out = String::new();
+        let xmlns = if format == Format::File { " xmlns=\"http://www.w3.org/2000/svg\"" } else { "" };
         let _ = write!(
             out,
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"chart\" viewBox=\"0 0 {width} {height:.0}\" \
+            "<svg{xmlns} class=\"chart\" viewBox=\"0 0 {width} {height:.0}\" \
              role=\"img\" aria-label=\"{}\">",
             escape(&self.title)
         );
