@@ -22,7 +22,7 @@ use clap::Parser;
 /// Hold renders of the reference scenes against their truths
 #[derive(Parser)]
 struct Arguments {
-    /// Device to render on: auto, gpu, software, cpu, or a part of a device's name
+    /// Device to render on: auto, gpu, software, cpu, cpu-f64, or a part of a device's name
     #[arg(long, default_value = "auto")]
     device: String,
     /// Four times as many passes

@@ -1,15 +1,15 @@
 //! Pinhole and thin-lens camera. Twin: `shaders/camera.wgsl`.
 
-use crate::math::sampling::sample_disc;
-use crate::math::{FAR, unit};
-use crate::shapes::ray::Ray;
-use crate::tables::Camera;
-use glam::{Vec2, Vec4};
+use super::math::sampling::sample_disc;
+use super::math::{FAR, unit};
+use super::real::{Real, Vec2, Vec4};
+use super::shapes::ray::Ray;
+use super::tables::Camera;
 
 /// A ray through pixel (x, y), row 0 on top: (u.x, u.y) is the place in the pixel, (u.z, u.w) that on the lens.
 pub fn camera_ray(camera: &Camera, x: u32, y: u32, u: Vec4) -> Ray {
-    let px = 2.0 * (x as f32 + u.x) / camera.width as f32 - 1.0;
-    let py = 1.0 - 2.0 * (y as f32 + u.y) / camera.height as f32;
+    let px = 2.0 * (x as Real + u.x) / camera.width as Real - 1.0;
+    let py = 1.0 - 2.0 * (y as Real + u.y) / camera.height as Real;
     let d = camera.forward + camera.right * px + camera.up * py;
     let mut origin = camera.position;
     let mut direction = d;

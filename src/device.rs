@@ -3,6 +3,7 @@
 use thiserror::Error;
 
 use crate::cpu::CpuEngine;
+use crate::double;
 use crate::engine::{Engine, EngineError};
 use crate::gpu::{self, AdapterChoice, AdapterKind, AdapterSummary, GpuEngine};
 use crate::kernels::records::VisiblePoint;
@@ -25,6 +26,8 @@ pub enum Wanted {
     Software,
     /// The Rust engine.
     Cpu,
+    /// The Rust engine in f64.
+    CpuDouble,
     /// The first device whose name holds this, in any case.
     Named(String),
 }
@@ -36,6 +39,7 @@ pub fn parse(text: &str) -> Wanted {
         "gpu" => Wanted::Gpu,
         "software" => Wanted::Software,
         "cpu" => Wanted::Cpu,
+        "cpu-f64" => Wanted::CpuDouble,
         _ => Wanted::Named(text.to_owned()),
     }
 }
@@ -49,6 +53,8 @@ pub enum DeviceKind {
     Software,
     /// The Rust engine.
     Cpu,
+    /// The Rust engine in f64: the same passes with the same random numbers, to measure what f32 costs.
+    CpuDouble,
 }
 
 impl DeviceKind {
@@ -58,6 +64,7 @@ impl DeviceKind {
             Self::Gpu => "gpu",
             Self::Software => "software",
             Self::Cpu => "cpu",
+            Self::CpuDouble => "cpu-f64",
         }
     }
 }
@@ -101,7 +108,7 @@ pub enum DeviceError {
     Engine(#[from] EngineError),
 }
 
-/// All devices, the CPU last.
+/// All devices, the CPU last, in f32 and in f64.
 pub fn list() -> Vec<DeviceInfo> {
     let adapters = gpu::list().into_iter().filter(AdapterSummary::fits).map(|a| DeviceInfo {
         name: a.name.clone(),
@@ -114,13 +121,13 @@ pub fn list() -> Vec<DeviceInfo> {
             ("invocations in a workgroup".to_owned(), a.workgroup_invocations as u64),
         ],
     });
-    adapters.chain([cpu()]).collect()
+    adapters.chain([cpu(DeviceKind::Cpu), cpu(DeviceKind::CpuDouble)]).collect()
 }
 
-fn cpu() -> DeviceInfo {
+fn cpu(kind: DeviceKind) -> DeviceInfo {
     DeviceInfo {
-        name: "cpu".to_owned(),
-        kind: DeviceKind::Cpu,
+        name: kind.word().to_owned(),
+        kind,
         driver: format!("{} threads", rayon::current_num_threads()),
         limits: Vec::new(),
     }
@@ -133,6 +140,7 @@ pub fn pick<'a>(wanted: &Wanted, devices: &'a [DeviceInfo]) -> Result<(&'a Devic
         Wanted::Gpu => (of_kind(DeviceKind::Gpu), "asked for"),
         Wanted::Software => (of_kind(DeviceKind::Software), "asked for"),
         Wanted::Cpu => (of_kind(DeviceKind::Cpu), "asked for"),
+        Wanted::CpuDouble => (of_kind(DeviceKind::CpuDouble), "asked for"),
         Wanted::Named(name) => {
             let name = name.to_lowercase();
             (devices.iter().find(|device| device.name.to_lowercase().contains(&name)), "asked for by name")
@@ -153,6 +161,7 @@ pub fn pick<'a>(wanted: &Wanted, devices: &'a [DeviceInfo]) -> Result<(&'a Devic
                 Wanted::Gpu => DeviceKind::Gpu.word().to_owned(),
                 Wanted::Software => DeviceKind::Software.word().to_owned(),
                 Wanted::Cpu => DeviceKind::Cpu.word().to_owned(),
+                Wanted::CpuDouble => DeviceKind::CpuDouble.word().to_owned(),
                 Wanted::Named(name) => name.clone(),
             },
             available: devices.iter().map(|device| device.name.clone()).collect(),
@@ -165,7 +174,11 @@ pub fn open(wanted: &Wanted, scene: &Scene, settings: &RenderSettings) -> Result
     let path = settings.method == Method::Path && *wanted == Wanted::Auto;
     let wanted = if path { &Wanted::Cpu } else { wanted };
     // drivers take a while to answer and may write to standard error, so they are not asked for nothing
-    let devices = if *wanted == Wanted::Cpu { vec![cpu()] } else { list() };
+    let devices = match wanted {
+        Wanted::Cpu => vec![cpu(DeviceKind::Cpu)],
+        Wanted::CpuDouble => vec![cpu(DeviceKind::CpuDouble)],
+        _ => list(),
+    };
     let (device, why) = pick(wanted, &devices)?;
     let why = if path { "auto: path tracing runs on the CPU".to_owned() } else { why };
     Ok(Opened { engine: start(device, scene, settings)?, name: device.name.clone(), why })
@@ -180,13 +193,22 @@ fn start(
     let samples = if settings.method == Method::Ppm { settings.eye_samples as u64 } else { 1 };
     let points = film.width as u64 * film.height as u64 * samples;
     if points > POINTS_MAX {
+        let bytes = match device.kind {
+            DeviceKind::CpuDouble => size_of::<double::kernels::records::VisiblePoint>(),
+            _ => size_of::<VisiblePoint>(),
+        } as u64;
         return Err(EngineError::TooLarge {
             what: format!("a picture of {} x {} pixels", film.width, film.height),
-            needed: points * size_of::<VisiblePoint>() as u64,
+            needed: points * bytes,
             device: device.name.clone(),
-            limit: POINTS_MAX * size_of::<VisiblePoint>() as u64,
+            limit: POINTS_MAX * bytes,
             mend: "make width, height or eye_samples smaller".to_owned(),
         });
+    }
+    if device.kind == DeviceKind::CpuDouble {
+        let packed = double::pack::pack(scene, film.width, film.height)?;
+        let plan = double::plan::Plan::new(&packed, settings);
+        return Ok(Box::new(double::cpu::CpuEngine::new(packed, plan)));
     }
     let packed = pack(scene, film.width, film.height)?;
     let plan = Plan::new(&packed, settings);
@@ -216,6 +238,7 @@ mod tests {
             device("llvmpipe (LLVM 15)", DeviceKind::Software),
             device("NVIDIA X", DeviceKind::Gpu),
             device("Radeon Y", DeviceKind::Gpu),
+            device("cpu-f64", DeviceKind::CpuDouble),
         ];
         let is = |wanted, devices: &[DeviceInfo], name: &str| {
             assert_eq!(picked(wanted, devices).as_deref(), Some(name), "{wanted}");
@@ -226,6 +249,7 @@ mod tests {
         is("gpu", &all, "NVIDIA X");
         is("Software", &all, "llvmpipe (LLVM 15)");
         is("cpu", &all, "cpu");
+        is("cpu-f64", &all, "cpu-f64");
         is("radeon", &all, "Radeon Y");
         assert_eq!(picked("gpu", &all[..2]), None);
         let Err(DeviceError::NoSuchDevice { wanted, available }) = pick(&parse("Arc"), &all[..2]) else {

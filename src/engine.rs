@@ -42,7 +42,7 @@ pub enum EngineError {
     Shader(String),
     /// The scene cannot be flattened.
     #[error(transparent)]
-    Pack(#[from] crate::pack::PackError),
+    Pack(#[from] crate::error::PackError),
     /// The engine cannot carry out this method.
     #[error("{0}")]
     Unsupported(String),

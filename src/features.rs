@@ -1,7 +1,7 @@
 //! What a scene and its settings require; whatever is not named here is neither compiled nor allocated.
 
+use super::tables::*;
 use crate::settings::{Direct, Method, RadiusRule, RenderSettings};
-use crate::tables::*;
 use std::collections::BTreeSet;
 
 /// Names that fence optional code in shaders (`//#if name`).

@@ -1,13 +1,14 @@
 //! The hash grid over photon records: cubes of one side length, hashed into a table of buckets. Two cells may
 //! share a bucket, so a reader compares the cell. Twin: `shaders/grid.wgsl`.
 
-use glam::{IVec3, Vec3};
+use super::real::{Real, Vec3};
+use glam::IVec3;
 
 /// Farthest cell from the origin; beyond it cells are merged, which costs time and nothing else.
-const CELL_MAX: f32 = 1e9;
+const CELL_MAX: Real = 1e9;
 
 /// Cell of a point; `inv_cell` is one over the side length. Monotone in each coordinate.
-pub fn grid_cell(position: Vec3, inv_cell: f32) -> IVec3 {
+pub fn grid_cell(position: Vec3, inv_cell: Real) -> IVec3 {
     let p = (position * inv_cell).floor().clamp(Vec3::splat(-CELL_MAX), Vec3::splat(CELL_MAX));
     p.as_ivec3()
 }

@@ -18,15 +18,18 @@
 //! # }
 //! ```
 //!
-//! Modules depend on one another one way: [`math`], then [`tables`], [`shapes`], [`materials`], [`lights`],
+//! Modules depend on one another one way: [`real`] and [`math`], then [`tables`], [`shapes`], [`materials`], [`lights`],
 //! [`camera`] and [`grid`], then [`scene`], [`build`], [`pack`], then [`kernels`], [`probe`], [`plan`], then [`cpu`]
 //! and [`gpu`], then [`device`] and [`render`], and last [`hold`] and [`study`].
+//! Those from [`real`] to [`cpu`] are compiled twice: [`double`] is the same in f64.
 
 pub mod build;
 pub mod camera;
 pub mod cpu;
 pub mod device;
+pub mod double;
 pub mod engine;
+pub mod error;
 pub mod features;
 pub mod film;
 pub mod gpu;
@@ -39,6 +42,7 @@ pub mod math;
 pub mod pack;
 pub mod plan;
 pub mod probe;
+pub mod real;
 pub mod render;
 pub mod scene;
 pub mod settings;

@@ -4,12 +4,14 @@
 //! device's binding limit. Neither changes a result but for the grouping of the photons' sum, and batches are the
 //! same for every engine.
 
-use crate::features::Features;
+use super::features::Features;
+use super::kernels::records::{Dispatch, FilmPixel, Gathered, PhotonRecord, Statistics, VisiblePoint};
+use super::pack::Packed;
+use super::probe::{Probe, probe};
+use super::real::Real;
 use crate::film::Picture;
-use crate::kernels::records::{Dispatch, FilmPixel, Gathered, PhotonRecord, Statistics, VisiblePoint};
-use crate::pack::Packed;
-use crate::probe::{Probe, probe};
 use crate::settings::{Method, Radius, RadiusRule, RenderSettings};
+use bytemuck::Zeroable;
 
 /// A kernel: the stem of its shader file, of its Rust twin and its entry point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -231,15 +233,15 @@ impl Plan {
             eye_samples: self.eye_samples,
             strata: strata(self.eye_samples),
             mask: self.buckets - 1,
-            inv_cell: (1.0 / (CELL_RADII * self.probe.radius * scale_sq.sqrt())) as f32,
-            scale_sq: scale_sq as f32,
-            photons: self.settings.photons as f32,
-            alpha: self.settings.alpha as f32,
-            radius_pixels: pixels as f32,
-            radius_units: units as f32,
-            radius_max: self.probe.radius_max as f32,
+            inv_cell: (1.0 / (CELL_RADII * self.probe.radius * scale_sq.sqrt())) as Real,
+            scale_sq: scale_sq as Real,
+            photons: self.settings.photons as Real,
+            alpha: self.settings.alpha as Real,
+            radius_pixels: pixels as Real,
+            radius_units: units as Real,
+            radius_max: self.probe.radius_max as Real,
             passes_done: pass,
-            ..Dispatch::default()
+            ..Dispatch::zeroed()
         }
     }
 

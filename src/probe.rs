@@ -1,11 +1,13 @@
 //! A short look at the scene before planning: how wide a pixel is where the picture is, and how many records a
 //! photon leaves. Always on the CPU, so that every engine plans alike.
 
-use crate::kernels::eye_trace::eye_trace;
-use crate::kernels::photon_trace::photon_trace;
-use crate::kernels::records::Dispatch;
-use crate::pack::Packed;
+use super::kernels::eye_trace::eye_trace;
+use super::kernels::photon_trace::photon_trace;
+use super::kernels::records::Dispatch;
+use super::pack::Packed;
+use super::real::Real;
 use crate::settings::{Direct, Radius, RenderSettings};
+use bytemuck::Zeroable;
 use rayon::prelude::*;
 
 /// Eye paths looked at.
@@ -37,14 +39,14 @@ pub fn probe(packed: &Packed, settings: &RenderSettings) -> Probe {
         eye_samples: 1,
         strata: 1,
         radius_pixels: 1.0,
-        radius_max: f32::MAX,
-        ..Dispatch::default()
+        radius_max: Real::MAX,
+        ..Dispatch::zeroed()
     };
     let (radius, radius_max) = match settings.radius {
         Radius::Units(units) => (units / packed.unit, units / packed.unit),
         Radius::Pixels(pixels) => {
             let total = scene.camera.width as u64 * scene.camera.height as u64;
-            let mut widths: Vec<f32> = (0..EYE_PATHS as u64)
+            let mut widths: Vec<Real> = (0..EYE_PATHS as u64)
                 .into_par_iter()
                 .map(|i| {
                     let id = ((i * total + total / 2) / EYE_PATHS as u64).min(total - 1) as u32;
@@ -52,7 +54,7 @@ pub fn probe(packed: &Packed, settings: &RenderSettings) -> Probe {
                 })
                 .filter(|r| *r > 0.0)
                 .collect();
-            widths.sort_unstable_by(f32::total_cmp);
+            widths.sort_unstable_by(Real::total_cmp);
             let median = widths.get(widths.len() / 2).copied().unwrap_or(scene.camera.pixel) as f64;
             (pixels * median, RADIUS_SPREAD * pixels * median)
         }

@@ -4,12 +4,12 @@
 //! Each struct is the twin of the WGSL struct of the same name in `shaders/tables.wgsl`; a test compares the
 //! layouts by name. The short tables travel in one storage buffer, `scene`; the long ones have their own.
 
-use bytemuck::{Pod, Zeroable};
-use glam::{Vec2, Vec3};
+use super::real::{Bits, Plain, Real, Vec2, Vec3};
+use bytemuck::Zeroable;
 
-pub use crate::shapes::kdtree::Node;
-pub use crate::shapes::revolution::{Patch, Revolution};
-pub use crate::shapes::triangle::Triangle;
+pub use super::shapes::kdtree::Node;
+pub use super::shapes::revolution::{Patch, Revolution};
+pub use super::shapes::triangle::Triangle;
 
 /// "No such index".
 pub const NONE: u32 = 0xffff_ffff;
@@ -43,16 +43,16 @@ pub const UV_PLANAR: u32 = 1;
 
 /// Facts about the scene as a whole.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[derive(Clone, Copy, Debug, Plain, Zeroable)]
 pub struct World {
     /// Least corner of the kd-tree's box.
     pub bounds_min: Vec3,
     /// World units in one scene unit.
-    pub unit: f32,
+    pub unit: Real,
     /// Greatest corner of the kd-tree's box.
     pub bounds_max: Vec3,
     /// Radius, about the origin, of the sphere that the finite scene and the camera lie in.
-    pub near_radius: f32,
+    pub near_radius: Real,
     /// World (x, z) of the origin: where planar uv starts.
     pub planar_origin: Vec2,
     /// Number of lights.
@@ -69,20 +69,20 @@ pub struct World {
 
 /// Pinhole or thin-lens camera.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[derive(Clone, Copy, Debug, Plain, Zeroable)]
 pub struct Camera {
     /// Centre of the lens.
     pub position: Vec3,
     /// Lens radius; 0 is a pinhole.
-    pub aperture: f32,
+    pub aperture: Real,
     /// Half the picture's width at distance one, to the right.
     pub right: Vec3,
     /// Distance in focus along `forward`.
-    pub focus: f32,
+    pub focus: Real,
     /// Half the picture's height at distance one, upward.
     pub up: Vec3,
     /// A pixel's height at distance one.
-    pub pixel: f32,
+    pub pixel: Real,
     /// Unit view direction.
     pub forward: Vec3,
     /// Pixels per row.
@@ -99,16 +99,16 @@ pub struct Camera {
 
 /// A sphere through `anchor` with outward normal `normal` there: exact in f32 for any radius.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[derive(Clone, Copy, Debug, Plain, Zeroable)]
 pub struct Sphere {
     /// The point of the sphere nearest to the scene's middle.
     pub anchor: Vec3,
     /// `k = 1 / radius`.
-    pub curvature: f32,
+    pub curvature: Real,
     /// Outward unit normal at the anchor.
     pub normal: Vec3,
     /// Radius.
-    pub radius: f32,
+    pub radius: Real,
     /// Material index.
     pub material: u32,
     /// Light index or [`NONE`].
@@ -121,7 +121,7 @@ pub struct Sphere {
 
 /// A parallelogram `origin + s u + t v`, s and t in [0, 1].
 #[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[derive(Clone, Copy, Debug, Plain, Zeroable)]
 pub struct Rectangle {
     /// Corner.
     pub origin: Vec3,
@@ -138,7 +138,7 @@ pub struct Rectangle {
     /// Second edge.
     pub v: Vec3,
     /// Area.
-    pub area: f32,
+    pub area: Real,
     /// In-plane vector with `dual_u . u = 1` and `dual_u . v = 0`.
     pub dual_u: Vec3,
     /// Padding.
@@ -151,12 +151,12 @@ pub struct Rectangle {
 
 /// A flat disc.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[derive(Clone, Copy, Debug, Plain, Zeroable)]
 pub struct Disc {
     /// Centre.
     pub center: Vec3,
     /// Radius.
-    pub radius: f32,
+    pub radius: Real,
     /// Unit normal.
     pub normal: Vec3,
     /// Material index.
@@ -171,7 +171,7 @@ pub struct Disc {
 
 /// An axis-parallel box.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[derive(Clone, Copy, Debug, Plain, Zeroable)]
 pub struct Cuboid {
     /// Least corner.
     pub lower: Vec3,
@@ -189,7 +189,7 @@ pub struct Cuboid {
 
 /// An infinite plane.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[derive(Clone, Copy, Debug, Plain, Zeroable)]
 pub struct Plane {
     /// The plane's point nearest to the scene's middle.
     pub point: Vec3,
@@ -202,35 +202,35 @@ pub struct Plane {
     /// First tangent, in world units per scene unit.
     pub tangent: Vec3,
     /// u at `point`.
-    pub u0: f32,
+    pub u0: Real,
     /// Second tangent, in world units per scene unit.
     pub bitangent: Vec3,
     /// v at `point`.
-    pub v0: f32,
+    pub v0: Real,
 }
 
 /// Smooth normals and texture coordinates of a triangle's corners.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[derive(Clone, Copy, Debug, Plain, Zeroable)]
 pub struct Attributes {
     /// Unit normal at `p0`.
     pub n0: Vec3,
     /// u at `p0`.
-    pub u0: f32,
+    pub u0: Real,
     /// Unit normal at `p1`.
     pub n1: Vec3,
     /// v at `p0`.
-    pub v0: f32,
+    pub v0: Real,
     /// Unit normal at `p2`.
     pub n2: Vec3,
     /// u at `p1`.
-    pub u1: f32,
+    pub u1: Real,
     /// v at `p1`.
-    pub v1: f32,
+    pub v1: Real,
     /// u at `p2`.
-    pub u2: f32,
+    pub u2: Real,
     /// v at `p2`.
-    pub v2: f32,
+    pub v2: Real,
     /// 1 where the corner normals are to be interpolated, else 0.
     pub smooth_normals: u32,
 }
@@ -246,7 +246,7 @@ pub const MATERIAL_METAL: u32 = 3;
 
 /// What a surface does with light.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[derive(Clone, Copy, Debug, Plain, Zeroable)]
 pub struct Material {
     /// Reflectance, in [0, 1]; at normal incidence for metal.
     pub reflectance: Vec3,
@@ -255,11 +255,11 @@ pub struct Material {
     /// Glass: absorption coefficient, per scene unit.
     pub absorption: Vec3,
     /// Glass: index of refraction against the outside.
-    pub ior: f32,
+    pub ior: Real,
     /// Texture that replaces `reflectance`, or [`NONE`].
     pub texture: u32,
     /// Metal: GGX width, `roughness^2`.
-    pub alpha: f32,
+    pub alpha: Real,
     /// Padding.
     pub pad: [u32; 2],
 }
@@ -283,7 +283,7 @@ pub const TEXELS_FLOAT: u32 = 2;
 
 /// A texture, read at `scale * (u, v)`.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[derive(Clone, Copy, Debug, Plain, Zeroable)]
 pub struct Texture {
     /// Factor on (u, v); for planks one over the board's size.
     pub scale: Vec2,
@@ -324,7 +324,7 @@ pub const LIGHT_IMAGE: u32 = 5;
 
 /// A source of light.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[derive(Clone, Copy, Debug, Plain, Zeroable)]
 pub struct Light {
     /// Radiance (area, constant: W sr^-1 m^-2; image: factor), intensity (point, spot: W/sr) or irradiance
     /// (sun: W m^-2), all in scene units.
@@ -334,20 +334,20 @@ pub struct Light {
     /// Point and spot.
     pub position: Vec3,
     /// Probability of being chosen.
-    pub selection: f32,
+    pub selection: Real,
     /// Spot and sun: unit direction in which light travels.
     pub direction: Vec3,
     /// Area of the shape.
-    pub area: f32,
+    pub area: Real,
     /// Area: the shape's reference; image: texture index.
     pub reference: u32,
     /// First entry in `distributions`: revolution: where each patch's part of v starts, then the cumulative share
     /// of the area by patch; image: cumulative rows, then each row's cumulative columns.
     pub first: u32,
     /// Spot: cosine of the angle where it is dark; image: cosine of the rotation about y.
-    pub cos_outer: f32,
+    pub cos_outer: Real,
     /// Spot: cosine of the angle up to which it is full; image: sine of the rotation.
-    pub cos_inner: f32,
+    pub cos_inner: Real,
     /// Revolution: its first patch.
     pub patch_first: u32,
     /// Revolution: number of its patches.
@@ -390,7 +390,7 @@ pub struct Scene {
     /// Lights.
     pub lights: Vec<Light>,
     /// Cumulative distributions: first the choice of a light, then what `Light::first` points at.
-    pub distributions: Vec<f32>,
+    pub distributions: Vec<Real>,
     /// kd-tree.
     pub nodes: Vec<Node>,
     /// References in the order of the kd-tree's leaves.
@@ -400,5 +400,5 @@ pub struct Scene {
     /// Corners of the triangles that have any.
     pub attributes: Vec<Attributes>,
     /// Pictures; the first 256 words are the sRGB decoding table when any is stored so.
-    pub texels: Vec<u32>,
+    pub texels: Vec<Bits>,
 }

@@ -160,6 +160,26 @@ fn compare_holds_its_thresholds() {
     assert_eq!(same.status.code(), Some(0), "{}", text(&same.stderr));
     assert!(text(&same.stdout).contains("pixels of other bits  0 of 768"), "{}", text(&same.stdout));
     assert!(text(&same.stdout).ends_with("map.png\n") && folder.join("map.png").exists());
+    // f32 against f64: other bits, the same picture
+    let rounded = |bound: &[&str]| {
+        let run = ["compare", "ball.toml", "--device", "cpu", "--device", "cpu-f64", "--quiet"];
+        caustica(&folder, &[&run[..], bound].concat())
+    };
+    for (bound, code) in [
+        (&["--bits"][..], 3),
+        (&["--max-relmse", "0"], 3),
+        (&["--max-mean-ratio", "0"], 3),
+        (&["--max-relmse", "0.01", "--max-mean-ratio", "0.01"], 0),
+    ] {
+        let output = rounded(bound);
+        assert_eq!(output.status.code(), Some(code), "{bound:?}: {}", text(&output.stderr));
+        assert_eq!(
+            text(&output.stderr).contains("over the threshold"),
+            code == 3,
+            "{}",
+            text(&output.stderr)
+        );
+    }
 }
 
 /// An interrupt while passes are being made: exit 130, and a picture of whole passes, fewer than asked for.

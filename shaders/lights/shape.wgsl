@@ -166,10 +166,11 @@ fn sample_sphere_cone(sphere: Sphere, origin: vec3f, u: vec2f) -> ShapePoint {
     let dist_sq = dot(d, d);
     let sin_sq = sphere.radius * sphere.radius / dist_sq;
     let one_minus_cos = cone_one_minus_cos(sin_sq);
-    let w = from_frame(unit(d), sample_cone(u, one_minus_cos));
-    let along = dot(d, w);
-    let off_sq = max(dist_sq - along * along, 0.0);
-    let half = sqrt(max(sphere.radius * sphere.radius - off_sq, 0.0));
+    let local = sample_cone(u, one_minus_cos);
+    let w = from_frame(unit(d), local);
+    let along = sqrt(dist_sq) * local.z;
+    let off_sq = (local.x * local.x + local.y * local.y) / sin_sq;
+    let half = sphere.radius * sqrt(max(1.0 - off_sq, 0.0));
     let p = sphere_project(sphere, origin + w * (along - half));
     return ShapePoint(p, sphere_error(sphere, p), unit(p - center), 1.0 / (TAU * one_minus_cos));
 }

@@ -8,9 +8,9 @@
 use super::kdtree_bins::{best_plane, partition};
 use super::kdtree_clip::whole;
 use super::kdtree_sweep::Sweep;
-use crate::shapes::aabb::Aabb;
-use crate::shapes::kdtree::{MAX_DEPTH, Node, Tree};
-use glam::Vec3;
+use super::real::{Bits, Real, ToDouble, Vec3};
+use super::shapes::aabb::Aabb;
+use super::shapes::kdtree::{MAX_DEPTH, Node, Tree};
 use rayon::prelude::*;
 
 /// What the tree is built over: f32 geometry as the kernels see it.
@@ -97,7 +97,7 @@ pub(super) struct Heuristic {
 impl Heuristic {
     /// None when the cell has no area.
     pub fn new(cell: Aabb, axis: usize) -> Option<Heuristic> {
-        let d = cell.max.as_dvec3() - cell.min.as_dvec3();
+        let d = cell.max.to_double() - cell.min.to_double();
         let (b, c) = (d[(axis + 1) % 3], d[(axis + 2) % 3]);
         let area = cell.half_area();
         (area > 0.0).then(|| Heuristic {
@@ -110,7 +110,7 @@ impl Heuristic {
 
     /// Expected cost of a split at `position` with so many primitives on either side.
     #[inline]
-    pub fn cost(&self, position: f32, left: usize, right: usize) -> f64 {
+    pub fn cost(&self, position: Real, left: usize, right: usize) -> f64 {
         let p_left = self.cut + (f64::from(position) - self.low) * self.growth;
         let p_right = self.cut + (self.high - f64::from(position)) * self.growth;
         let bonus = if left == 0 || right == 0 { EMPTY_BONUS } else { 1.0 };
@@ -145,7 +145,7 @@ fn subtree(prims: &[Primitive], items: Vec<Item>, cell: Aabb, levels: u32) -> Su
     joined(plane.axis, plane.position, left, right)
 }
 
-fn joined(axis: usize, position: f32, left: Subtree, right: Subtree) -> Subtree {
+fn joined(axis: usize, position: Real, left: Subtree, right: Subtree) -> Subtree {
     let mut nodes = Vec::with_capacity(1 + left.nodes.len() + right.nodes.len());
     nodes.push(Node::interior(axis, position, 1 + left.nodes.len() as u32));
     for (part, first_node, first_ref) in
@@ -153,7 +153,7 @@ fn joined(axis: usize, position: f32, left: Subtree, right: Subtree) -> Subtree 
     {
         nodes.extend(part.nodes.iter().map(|n| {
             if n.is_leaf() {
-                Node { word0: n.word0 + first_ref, word1: n.word1 }
+                Node { word0: n.word0 + first_ref as Bits, word1: n.word1 }
             } else {
                 Node { word0: n.word0, word1: n.word1 + (first_node << 2) }
             }

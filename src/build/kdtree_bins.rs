@@ -2,7 +2,8 @@
 
 use super::kdtree::{Heuristic, INTERSECTION_COST, Item, Primitive};
 use super::kdtree_clip::clipped;
-use crate::shapes::aabb::Aabb;
+use super::real::Real;
+use super::shapes::aabb::Aabb;
 
 /// Planes tried per axis, plus one.
 const BINS: usize = 256;
@@ -11,13 +12,13 @@ const BINS: usize = 256;
 #[derive(Clone, Copy)]
 pub(super) struct Plane {
     pub axis: usize,
-    pub position: f32,
+    pub position: Real,
 }
 
 /// The best of the evenly spaced planes, or none if no split is expected to pay.
 pub(super) fn best_plane(items: &[Item], cell: Aabb) -> Option<Plane> {
     let size = cell.max - cell.min;
-    let scale = size.map(|s| if s > 0.0 { BINS as f32 / s } else { 0.0 });
+    let scale = size.map(|s| if s > 0.0 { BINS as Real / s } else { 0.0 });
     let mut starts = [[0usize; BINS]; 3];
     let mut ends = [[0usize; BINS]; 3];
     for item in items {
@@ -37,7 +38,7 @@ pub(super) fn best_plane(items: &[Item], cell: Aabb) -> Option<Plane> {
         for bin in 1..BINS {
             left += starts[axis][bin - 1];
             right -= ends[axis][bin - 1];
-            let position = cell.min[axis] + size[axis] * (bin as f32 / BINS as f32);
+            let position = cell.min[axis] + size[axis] * (bin as Real / BINS as Real);
             let cost = heuristic.cost(position, left, right);
             if cost < best_cost && position > cell.min[axis] && position < cell.max[axis] {
                 best_cost = cost;

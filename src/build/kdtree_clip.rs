@@ -1,8 +1,9 @@
 //! The box about the part of a primitive that lies in a cell (perfect splits).
 
 use super::kdtree::Primitive;
-use crate::shapes::aabb::Aabb;
-use glam::{DVec3, Vec3};
+use super::real::{Real, ToDouble, Vec3};
+use super::shapes::aabb::Aabb;
+use glam::DVec3;
 
 /// The box about a whole primitive.
 pub(super) fn whole(prim: &Primitive) -> Aabb {
@@ -23,11 +24,13 @@ pub(super) fn clipped(prim: &Primitive, cell: Aabb) -> Option<Aabb> {
 /// A triangle cut by the six planes of a cell has at most nine corners.
 const CORNERS: usize = 9;
 
-/// Cuts the polygon by each plane of the cell in turn (Sutherland & Hodgman 1974), in f64.
+/// Cuts the polygon by each plane of the cell in turn (Sutherland & Hodgman 1974), in f64. Where that is no more than the
+/// kernels have, the corners are off by some roundings, for which the slab about each plane has room
+/// (`shapes/kdtree.rs`).
 fn clipped_triangle(points: &[Vec3; 3], cell: Aabb) -> Option<Aabb> {
     let mut polygon = [DVec3::ZERO; CORNERS];
     for (corner, point) in polygon.iter_mut().zip(points) {
-        *corner = point.as_dvec3();
+        *corner = point.to_double();
     }
     let mut count = 3;
     let bounds = Aabb::of_points(points);
@@ -74,12 +77,12 @@ fn cut(polygon: &mut [DVec3; CORNERS], count: usize, axis: usize, plane: f64, si
     kept
 }
 
-fn rounded_down(x: f64) -> f32 {
-    let y = x as f32;
+fn rounded_down(x: f64) -> Real {
+    let y = x as Real;
     if f64::from(y) > x { y.next_down() } else { y }
 }
 
-fn rounded_up(x: f64) -> f32 {
-    let y = x as f32;
+fn rounded_up(x: f64) -> Real {
+    let y = x as Real;
     if f64::from(y) < x { y.next_up() } else { y }
 }

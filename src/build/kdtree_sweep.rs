@@ -5,34 +5,36 @@
 
 use super::kdtree::{Heuristic, INTERSECTION_COST, Item, Primitive, Subtree};
 use super::kdtree_bins::parts;
-use crate::shapes::aabb::Aabb;
-use crate::shapes::kdtree::Node;
+use super::real::{Bits, Real, WideBits};
+use super::shapes::aabb::Aabb;
+use super::shapes::kdtree::Node;
 
 /// Order at equal positions: as the sweep meets them.
-const END: u64 = 0;
-const PLANAR: u64 = 1;
-const START: u64 = 2;
+const END: Event = 0;
+const PLANAR: Event = 1;
+const START: Event = 2;
 
 /// Position (in an order-preserving code), kind and item in one word, so that events sort as integers.
-type Event = u64;
+type Event = WideBits;
 /// Sorted events along each axis.
 type Events = [Vec<Event>; 3];
 
 const ITEM_BITS: u32 = 30;
+const SIGN: Bits = 1 << (Bits::BITS - 1);
 
-fn event(position: f32, kind: u64, item: usize) -> Event {
+fn event(position: Real, kind: Event, item: usize) -> Event {
     // Plus zero makes -0 into 0.
     let bits = (position + 0.0).to_bits();
-    let code = if bits >> 31 == 1 { !bits } else { bits | 1 << 31 };
-    u64::from(code) << 32 | kind << ITEM_BITS | item as u64
+    let code = if bits & SIGN != 0 { !bits } else { bits | SIGN };
+    Event::from(code) << 32 | kind << ITEM_BITS | item as Event
 }
 
-fn position(event: Event) -> f32 {
-    let code = (event >> 32) as u32;
-    f32::from_bits(if code >> 31 == 1 { code & !(1 << 31) } else { !code })
+fn position(event: Event) -> Real {
+    let code = (event >> 32) as Bits;
+    Real::from_bits(if code & SIGN != 0 { code & !SIGN } else { !code })
 }
 
-fn kind(event: Event) -> u64 {
+fn kind(event: Event) -> Event {
     event >> ITEM_BITS & 3
 }
 
@@ -63,7 +65,7 @@ enum Side {
 #[derive(Clone, Copy)]
 struct Split {
     axis: usize,
-    position: f32,
+    position: Real,
     planar_left: bool,
 }
 

@@ -1,10 +1,13 @@
 //! Host-only construction of what the kernels read, in f64.
 
+use super::{real, shapes};
+
 pub mod bezier;
 pub mod kdtree;
 mod kdtree_bins;
 mod kdtree_clip;
 mod kdtree_sweep;
 pub mod normalize;
+pub mod profile;
 pub mod revolution;
 pub mod tessellate;

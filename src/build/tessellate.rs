@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 use glam::{DVec2, DVec3};
 
 use super::bezier::{derivative, point, split};
-use super::revolution::ProfileError;
+use super::profile::ProfileError;
 use crate::scene::Transform;
 use crate::shapes::revolution::MAX_DEGREE;
 

@@ -143,6 +143,7 @@ fn as_text(a: &str, b: &str, comparison: &Comparison, outside: f64) -> String {
         format!("b                     {b}"),
         format!("mean ratio a/b        {red:.6} {green:.6} {blue:.6}"),
         format!("relMSE                {:.3e}", comparison.rel_mse),
+        format!("median difference     {:.3e}", comparison.median),
         format!("RMSE                  {:.3e}", comparison.rmse),
         format!("PSNR                  {:.2} dB", comparison.psnr),
         format!("blocks over 4 sigma   {:.2} %", 100.0 * outside),

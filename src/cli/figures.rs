@@ -12,6 +12,7 @@ pub fn comparison_json(comparison: &Comparison) -> Value {
     json!({
         "mean_ratio": comparison.mean_ratio,
         "rel_mse": comparison.rel_mse,
+        "median_difference": comparison.median,
         "mse": comparison.mse,
         "rmse": comparison.rmse,
         "psnr": comparison.psnr,

@@ -28,7 +28,7 @@ pub struct Arguments {
     /// [default: the scene's name with .png, in the current folder]
     #[arg(short, long, value_name = "FILE")]
     output: Vec<PathBuf>,
-    /// Device to render on: auto, gpu, software, cpu, or a part of a device's name
+    /// Device to render on: auto, gpu, software, cpu, cpu-f64, or a part of a device's name
     #[arg(long, value_name = "DEVICE", value_parser = NonEmptyStringValueParser::new(), default_value = "auto")]
     device: String,
     /// Begin no pass after this time, as in 30s or 5m; without --passes, the only limit

@@ -1,18 +1,20 @@
 //! The CPU engine: carries out a plan on vectors, with rayon. Needs no adapter.
 
+use super::kernels::eye_trace::eye_trace;
+use super::kernels::gather::{gather, scale_sq};
+use super::kernels::grid_build::{grid_count, grid_scan, grid_scatter};
+use super::kernels::path_trace::path_trace;
+use super::kernels::photon_trace::photon_trace;
+use super::kernels::records::{Dispatch, FilmPixel, Gathered, PhotonRecord, Statistics, VisiblePoint};
+use super::kernels::resolve::{fold, resolve};
+use super::pack::Packed;
+use super::plan::{Kernel, Plan};
+use super::real::ENGINE;
+use super::tables::Scene;
 use crate::engine::{Engine, EngineError, PassReport};
 use crate::film::Picture;
-use crate::kernels::eye_trace::eye_trace;
-use crate::kernels::gather::{gather, scale_sq};
-use crate::kernels::grid_build::{grid_count, grid_scan, grid_scatter};
-use crate::kernels::path_trace::path_trace;
-use crate::kernels::photon_trace::photon_trace;
-use crate::kernels::records::{Dispatch, FilmPixel, Gathered, PhotonRecord, Statistics, VisiblePoint};
-use crate::kernels::resolve::{fold, resolve};
-use crate::pack::Packed;
-use crate::plan::{Kernel, Plan};
 use crate::settings::Method;
-use crate::tables::Scene;
+use bytemuck::Zeroable;
 use rayon::prelude::*;
 
 /// Photons that one task traces.
@@ -48,16 +50,16 @@ impl CpuEngine {
         let points_kept = if path { 0 } else { points };
         Self {
             passes_done: 0,
-            visible_points: vec![VisiblePoint::default(); points_kept],
-            gathered: vec![Gathered::default(); points_kept],
-            statistics: vec![Statistics::default(); if plan.features.has("local") { points_kept } else { 0 }],
-            film: vec![FilmPixel::default(); plan.pixels as usize],
+            visible_points: vec![VisiblePoint::zeroed(); points_kept],
+            gathered: vec![Gathered::zeroed(); points_kept],
+            statistics: vec![Statistics::zeroed(); if plan.features.has("local") { points_kept } else { 0 }],
+            film: vec![FilmPixel::zeroed(); plan.pixels as usize],
             records: Vec::new(),
             sorted: Vec::new(),
             counts: vec![0; buckets],
             starts: vec![0; buckets + 1],
             order: Vec::new(),
-            device: format!("CPU, {} threads", rayon::current_num_threads()),
+            device: format!("{ENGINE}, {} threads", rayon::current_num_threads()),
             packed,
             plan,
         }
@@ -66,7 +68,7 @@ impl CpuEngine {
     fn photon_pass(&mut self, report: &mut PassReport) {
         let mut batch = self.plan.batch_photons;
         loop {
-            self.gathered.par_iter_mut().for_each(|g| *g = Gathered::default());
+            self.gathered.par_iter_mut().for_each(|g| *g = Gathered::zeroed());
             *report = PassReport { photons: self.plan.settings.photons as u64, ..PassReport::default() };
             match self.steps(batch, report) {
                 Ok(()) => return,
@@ -124,7 +126,7 @@ impl CpuEngine {
                         .zip(&self.visible_points[chunk])
                         .enumerate()
                         .for_each(|(i, (gathered, point))| {
-                            let none = Statistics::default();
+                            let none = Statistics::zeroed();
                             let scale = scale_sq(d, local, statistics.get(first + i).unwrap_or(&none));
                             gather(d, point, scale, &self.starts, &self.sorted, gathered);
                         });

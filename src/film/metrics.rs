@@ -13,6 +13,8 @@ pub struct Comparison {
     pub rel_mse: f64,
     /// Mean squared difference over all channel values, in the square of their unit.
     pub mse: f64,
+    /// Median over pixels of `|La - Lb| / Lb`: 0 where both are zero, infinite where `Lb` alone is.
+    pub median: f64,
     /// Root of the mean squared difference over all channel values, in W sr^-1 m^-2.
     pub rmse: f64,
     /// Peak signal-to-noise ratio in dB; the peak is the largest value of the whole truth. Infinite for equal pictures.
@@ -104,12 +106,23 @@ fn figures(a: &Picture, b: &Picture, peak: f32) -> Comparison {
         mean_ratio: mean_ratio(a, b),
         rel_mse: rel_mse(a, b),
         mse,
+        median: median(a, b),
         rmse: mse.sqrt(),
         psnr: if mse == 0.0 { f64::INFINITY } else { 10.0 * (f64::from(peak).powi(2) / mse).log10() },
         worst: worst_pixel(a, b),
         pixels_differing: a.rgb.iter().zip(&b.rgb).filter(|(a, b)| !same_bits(**a, **b)).count(),
         pixels: a.rgb.len(),
     }
+}
+
+fn median(a: &Picture, b: &Picture) -> f64 {
+    let share = |(&a, &b): (&[f32; 3], &[f32; 3])| {
+        let (a, b) = (luminance(a), luminance(b));
+        if a == b { 0.0 } else { (a - b).abs() / b.abs() }
+    };
+    let mut shares: Vec<f64> = a.rgb.iter().zip(&b.rgb).map(share).collect();
+    let middle = shares.len() / 2;
+    *shares.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
 impl Comparison {

@@ -30,6 +30,7 @@ macro_rules! fragments {
 pub const FRAGMENTS: &[Fragment] = fragments![
     "tables.wgsl" if "scene || gather && metal",
     "math/vector.wgsl" if "scene || gather || resolve",
+    "math/octahedral.wgsl" if "scene || gather",
     "math/trig.wgsl" if "scene || gather && metal",
     "math/rng.wgsl" if "scene",
     "math/sampling.wgsl" if "scene",

@@ -2,20 +2,20 @@
 //! material's density, joined by multiple importance sampling (Veach & Guibas 1995). Twin:
 //! `shaders/kernels/direct.wgsl`.
 
-use crate::lights::light::{eval_environment, pdf_environment, pdf_light, sample_light};
-use crate::materials::scatter::{RADIANCE, eval_rough, pdf_rough, scatter_rough};
-use crate::math::rng::{Rng, rng_next};
-use crate::math::sampling::balance;
-use crate::math::trig::exponential;
-use crate::math::{FAR, max_component, offset_origin};
-use crate::shapes::intersect::{intersect_scene, occluded};
-use crate::shapes::ray::Ray;
-use crate::shapes::surface::{Surface, surface_at};
-use crate::tables::*;
-use glam::{Vec2, Vec3, Vec4};
+use super::lights::light::{eval_environment, pdf_environment, pdf_light, sample_light};
+use super::materials::scatter::{RADIANCE, eval_rough, pdf_rough, scatter_rough};
+use super::math::rng::{Rng, rng_next};
+use super::math::sampling::balance;
+use super::math::trig::exponential;
+use super::math::{FAR, max_component, offset_origin};
+use super::real::{Real, Vec2, Vec3, Vec4};
+use super::shapes::intersect::{intersect_scene, occluded};
+use super::shapes::ray::Ray;
+use super::shapes::surface::{Surface, surface_at};
+use super::tables::*;
 
 /// Beer-Lambert transmittance over `distance` in a medium.
-pub fn transmittance(scene: &Scene, medium: u32, distance: f32) -> Vec3 {
+pub fn transmittance(scene: &Scene, medium: u32, distance: Real) -> Vec3 {
     if medium == NONE {
         return Vec3::ONE;
     }

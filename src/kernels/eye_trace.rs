@@ -2,20 +2,21 @@
 //! hit. Run by one invocation per visible point; reads the scene, writes `visible_points`. Twin:
 //! `shaders/kernels/eye_trace.wgsl`.
 
+use super::camera::camera_ray;
 use super::direct::{direct_light, medium_before, transmittance};
-use super::records::{Dispatch, VisiblePoint};
-use crate::camera::camera_ray;
-use crate::lights::light::eval_environment;
-use crate::materials::scatter::{
+use super::lights::light::eval_environment;
+use super::materials::scatter::{
     RADIANCE, is_specular, reflectance_at, scatter_specular, shading_normal, toward,
 };
-use crate::math::rng::{STREAM_EYE, rng_new, rng_next};
-use crate::math::{FAR, INV_PI, max_component, oct_encode, offset_origin};
-use crate::shapes::intersect::intersect_scene;
-use crate::shapes::ray::Ray;
-use crate::shapes::surface::surface_at;
-use crate::tables::*;
-use glam::{Vec3, Vec4};
+use super::math::rng::{STREAM_EYE, rng_new, rng_next};
+use super::math::{FAR, INV_PI, max_component, oct_encode, offset_origin};
+use super::real::{Real, Vec3, Vec4};
+use super::records::{Dispatch, VisiblePoint};
+use super::shapes::intersect::intersect_scene;
+use super::shapes::ray::Ray;
+use super::shapes::surface::surface_at;
+use super::tables::*;
+use bytemuck::Zeroable;
 
 /// Traces visible point `id` of the chunk; also returns the number of rays. `sampled`: direct light by shadow
 /// rays.
@@ -30,7 +31,7 @@ pub fn eye_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, id: u32) -> 
     let mut medium = camera.medium;
     let mut length = 0.0;
     let mut rays = 0;
-    let mut point = VisiblePoint::default();
+    let mut point = VisiblePoint::zeroed();
     for bounce in 0..dispatch.max_bounces + 1 {
         rays += 1;
         let hit = intersect_scene(scene, &ray);
@@ -94,7 +95,7 @@ pub fn eye_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, id: u32) -> 
 }
 
 /// Start radius at a visible point whose pixel covers `footprint`.
-fn start_radius(dispatch: &Dispatch, footprint: f32) -> f32 {
+fn start_radius(dispatch: &Dispatch, footprint: Real) -> Real {
     if dispatch.radius_pixels > 0.0 {
         return (dispatch.radius_pixels * footprint).min(dispatch.radius_max);
     }
@@ -110,9 +111,9 @@ fn stratified(u: Vec4, k: u32, pixel: u32, dispatch: &Dispatch) -> Vec4 {
     let rows = dispatch.eye_samples / columns;
     let lens = (k + pixel * 7 + pixel / 3) % dispatch.eye_samples;
     Vec4::new(
-        ((k % columns) as f32 + u.x) / columns as f32,
-        ((k / columns) as f32 + u.y) / rows as f32,
-        ((lens % columns) as f32 + u.z) / columns as f32,
-        ((lens / columns) as f32 + u.w) / rows as f32,
+        ((k % columns) as Real + u.x) / columns as Real,
+        ((k / columns) as Real + u.y) / rows as Real,
+        ((lens % columns) as Real + u.z) / columns as Real,
+        ((lens / columns) as Real + u.w) / rows as Real,
     )
 }

@@ -2,20 +2,21 @@
 //! visible point and photon batch; reads `visible_points`, `sorted`, `starts` (and `statistics` under the
 //! local rule), adds to `gathered`. Twin: `shaders/kernels/gather.wgsl`.
 
+use super::grid::{grid_bucket, grid_cell};
+use super::materials::scatter::eval_rough;
+use super::math::oct_decode;
+use super::real::{Real, Vec3};
 use super::records::{Dispatch, Gathered, PhotonRecord, Statistics, VisiblePoint};
-use crate::grid::{grid_bucket, grid_cell};
-use crate::materials::scatter::eval_rough;
-use crate::math::oct_decode;
-use crate::tables::MATERIAL_METAL;
-use glam::{IVec3, Vec3};
+use super::tables::MATERIAL_METAL;
+use glam::IVec3;
 
 /// Photons farther than this from the tangent plane, in radii, lie on another surface.
-const FLATNESS: f32 = 0.25;
+const FLATNESS: Real = 0.25;
 /// Least cosine with the geometric normal for which the shading normal's correction is formed.
-const COS_MIN: f32 = 1e-2;
+const COS_MIN: Real = 1e-2;
 
 /// Squared radius of this pass over the squared start radius.
-pub fn scale_sq(dispatch: &Dispatch, local: bool, statistics: &Statistics) -> f32 {
+pub fn scale_sq(dispatch: &Dispatch, local: bool, statistics: &Statistics) -> Real {
     if !local {
         return dispatch.scale_sq;
     }
@@ -26,7 +27,7 @@ pub fn scale_sq(dispatch: &Dispatch, local: bool, statistics: &Statistics) -> f3
 pub fn gather(
     dispatch: &Dispatch,
     point: &VisiblePoint,
-    scale_sq: f32,
+    scale_sq: Real,
     starts: &[u32],
     sorted: &[PhotonRecord],
     gathered: &mut Gathered,

@@ -4,8 +4,8 @@
 //! The result does not depend on the order in which threads arrive: within a bucket the records stand in the
 //! order of their keys.
 
+use super::grid::{grid_bucket, grid_cell};
 use super::records::{Dispatch, PhotonRecord};
-use crate::grid::{grid_bucket, grid_cell};
 
 /// Bucket of a record.
 pub fn record_bucket(dispatch: &Dispatch, record: &PhotonRecord) -> u32 {

@@ -1,21 +1,21 @@
 //! Path tracing with next-event estimation and multiple importance sampling: the independent check that photon
 //! mapping converges to the right picture wherever path tracing gets there. CPU engine only.
 
+use super::camera::camera_ray;
 use super::direct::{medium_before, next_event, transmittance};
-use super::records::Dispatch;
-use crate::camera::camera_ray;
-use crate::lights::light::{eval_environment, pdf_environment, pdf_light};
-use crate::materials::scatter::{
+use super::lights::light::{eval_environment, pdf_environment, pdf_light};
+use super::materials::scatter::{
     RADIANCE, is_specular, pdf_rough, reflectance_at, scatter_rough, scatter_specular, shading_normal, toward,
 };
-use crate::math::rng::{STREAM_EYE, rng_new, rng_next};
-use crate::math::sampling::balance;
-use crate::math::{FAR, max_component, offset_origin};
-use crate::shapes::intersect::intersect_scene;
-use crate::shapes::ray::Ray;
-use crate::shapes::surface::surface_at;
-use crate::tables::*;
-use glam::{Vec2, Vec3};
+use super::math::rng::{STREAM_EYE, rng_new, rng_next};
+use super::math::sampling::balance;
+use super::math::{FAR, max_component, offset_origin};
+use super::real::{Vec2, Vec3};
+use super::records::Dispatch;
+use super::shapes::intersect::intersect_scene;
+use super::shapes::ray::Ray;
+use super::shapes::surface::surface_at;
+use super::tables::*;
 
 /// One path through pixel `pixel`: its radiance and the number of rays. `sampled`: next-event estimation.
 pub fn path_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, pixel: u32) -> (Vec3, u32) {

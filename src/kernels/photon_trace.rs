@@ -3,17 +3,17 @@
 //! `shaders/kernels/photon_trace.wgsl`.
 
 use super::direct::{medium_before, transmittance};
+use super::lights::aim::aimed_scatter;
+use super::lights::emission::emit_photon;
+use super::materials::scatter::{IMPORTANCE, is_specular, reflectance_at, scatter_rough, scatter_specular};
+use super::math::rng::{STREAM_PHOTON, rng_new, rng_next};
+use super::math::{FAR, max_component, oct_encode, offset_origin};
+use super::real::Vec2;
 use super::records::{Dispatch, PhotonRecord};
-use crate::lights::aim::aimed_scatter;
-use crate::lights::emission::emit_photon;
-use crate::materials::scatter::{IMPORTANCE, is_specular, reflectance_at, scatter_rough, scatter_specular};
-use crate::math::rng::{STREAM_PHOTON, rng_new, rng_next};
-use crate::math::{FAR, max_component, oct_encode, offset_origin};
-use crate::shapes::intersect::intersect_scene;
-use crate::shapes::ray::Ray;
-use crate::shapes::surface::surface_at;
-use crate::tables::*;
-use glam::Vec2;
+use super::shapes::intersect::intersect_scene;
+use super::shapes::ray::Ray;
+use super::shapes::surface::surface_at;
+use super::tables::*;
 
 /// Traces photon `id` of the batch and hands each record to `store`; returns the number of rays. `sampled`:
 /// photons straight from a light are not stored, since shadow rays bring that light.

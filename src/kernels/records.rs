@@ -1,11 +1,12 @@
 //! What kernels hand to one another. Twin: `shaders/kernels/records.wgsl`.
 
-use bytemuck::{Pod, Zeroable};
-use glam::Vec3;
+use super::math::Direction;
+use super::real::{Plain, Real, Vec3};
+use bytemuck::Zeroable;
 
 /// Numbers of one dispatch.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[derive(Clone, Copy, Debug, Plain, Zeroable)]
 pub struct Dispatch {
     /// First item of this dispatch.
     pub first: u32,
@@ -30,19 +31,19 @@ pub struct Dispatch {
     /// Number of buckets less one.
     pub mask: u32,
     /// One over the side length of a grid cell.
-    pub inv_cell: f32,
+    pub inv_cell: Real,
     /// Squared radius of this pass over the squared start radius (fixed and global rules).
-    pub scale_sq: f32,
+    pub scale_sq: Real,
     /// `M`, photons emitted in a pass, as a float.
-    pub photons: f32,
+    pub photons: Real,
     /// `alpha` of the radius rule.
-    pub alpha: f32,
+    pub alpha: Real,
     /// Start radius in pixel footprints, or 0.
-    pub radius_pixels: f32,
+    pub radius_pixels: Real,
     /// Start radius in scene units where `radius_pixels` is 0.
-    pub radius_units: f32,
+    pub radius_units: Real,
     /// Greatest start radius, in scene units.
-    pub radius_max: f32,
+    pub radius_max: Real,
     /// Columns of the strata of a pixel's visible points.
     pub strata: u32,
     /// Passes that the film holds already.
@@ -51,24 +52,24 @@ pub struct Dispatch {
 
 /// First non-specular hit of an eye path.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[derive(Clone, Copy, Debug, PartialEq, Plain, Zeroable)]
 pub struct VisiblePoint {
     /// In scene space.
     pub position: Vec3,
     /// Start radius in scene units; 0 where the eye path met nothing.
-    pub radius: f32,
+    pub radius: Real,
     /// Diffuse: throughput times BRDF. Metal: throughput alone.
     pub weight: Vec3,
-    /// Geometric normal on the viewer's side, octahedral.
-    pub normal: u32,
+    /// Geometric normal on the viewer's side.
+    pub normal: Direction,
     /// Radiance met on the way: emission, environment and sampled direct light, times throughput.
     pub radiance: Vec3,
-    /// Shading normal on the viewer's side, octahedral.
-    pub shading: u32,
+    /// Shading normal on the viewer's side.
+    pub shading: Direction,
     /// Metal: reflectance at normal incidence.
     pub reflectance: Vec3,
     /// Metal: GGX width; 0 is diffuse.
-    pub alpha: f32,
+    pub alpha: Real,
     /// Metal: direction to the viewer.
     pub wo: Vec3,
     /// 1 where the driver stopped the kernel's loops: the point is to be found again.
@@ -77,7 +78,7 @@ pub struct VisiblePoint {
 
 /// A photon at a non-specular hit.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[derive(Clone, Copy, Debug, PartialEq, Plain, Zeroable)]
 pub struct PhotonRecord {
     /// In scene space.
     pub position: Vec3,
@@ -85,13 +86,13 @@ pub struct PhotonRecord {
     pub key: u32,
     /// Flux in W times the number of photons in the pass.
     pub flux: Vec3,
-    /// Direction to where it came from, octahedral.
-    pub direction: u32,
+    /// Direction to where it came from.
+    pub direction: Direction,
 }
 
 /// What a visible point gathered in one pass.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[derive(Clone, Copy, Debug, PartialEq, Plain, Zeroable)]
 pub struct Gathered {
     /// Sum of weight times BRDF times flux.
     pub flux: Vec3,
@@ -101,12 +102,12 @@ pub struct Gathered {
 
 /// Local rule: statistics of a pixel (SPPM) or visible point (PPM), with radii over the start radius.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[derive(Clone, Copy, Debug, PartialEq, Plain, Zeroable)]
 pub struct Statistics {
     /// `R^2` over the squared start radius, less what `drop` still holds back; 0 in fresh memory stands for 1.
-    pub scale_sq: f32,
+    pub scale_sq: Real,
     /// Decrease of `R^2` not yet taken from `scale_sq`: small terms are summed here first, so that they count.
-    pub drop: f32,
+    pub drop: Real,
     /// Photons so far, low word; `N = alpha` times this count.
     pub count_low: u32,
     /// Photons so far, high word.
@@ -115,7 +116,7 @@ pub struct Statistics {
 
 /// A pixel's estimate so far.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[derive(Clone, Copy, Debug, PartialEq, Plain, Zeroable)]
 pub struct FilmPixel {
     /// Mean over the passes, in W sr^-1 m^-2 of scene units.
     pub mean: Vec3,

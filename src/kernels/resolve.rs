@@ -7,15 +7,15 @@
 //! `tau_P / R_P^2 = tau_{P-1} / R_{P-1}^2 + Phi_P / R_{P-1}^2`.
 
 use super::gather::scale_sq;
+use super::math::PI;
+use super::real::{EXPONENT, Real, Vec3};
 use super::records::{Dispatch, FilmPixel, Gathered, Statistics, VisiblePoint};
-use crate::math::PI;
-use glam::Vec3;
 
 /// `drop` is taken from `scale_sq` when it exceeds this share of it.
-const DROP_SHARE: f32 = 1.0 / 4096.0;
+const DROP_SHARE: Real = 1.0 / 4096.0;
 
 /// Radiance that one visible point found in this pass.
-pub fn pass_radiance(point: &VisiblePoint, gathered: &Gathered, scale_sq: f32, photons: f32) -> Vec3 {
+pub fn pass_radiance(point: &VisiblePoint, gathered: &Gathered, scale_sq: Real, photons: Real) -> Vec3 {
     if gathered.count == 0 {
         return point.radiance;
     }
@@ -24,16 +24,16 @@ pub fn pass_radiance(point: &VisiblePoint, gathered: &Gathered, scale_sq: f32, p
 }
 
 /// Hachisuka's rule with `N = alpha T`, T photons so far: `R'^2 = R^2 alpha (T + m) / (alpha T + m)`.
-pub fn update_statistics(statistics: &mut Statistics, m: u32, alpha: f32) {
+pub fn update_statistics(statistics: &mut Statistics, m: u32, alpha: Real) {
     if statistics.scale_sq == 0.0 {
         statistics.scale_sq = 1.0;
     }
     if m == 0 {
         return;
     }
-    let t = statistics.count_high as f32 * 4294967296.0 + statistics.count_low as f32;
+    let t = statistics.count_high as Real * 4294967296.0 + statistics.count_low as Real;
     let scale_sq = statistics.scale_sq - statistics.drop;
-    statistics.drop += scale_sq * ((1.0 - alpha) * m as f32 / (alpha * t + m as f32));
+    statistics.drop += scale_sq * ((1.0 - alpha) * m as Real / (alpha * t + m as Real));
     if statistics.drop > DROP_SHARE * statistics.scale_sq {
         statistics.scale_sq -= statistics.drop;
         statistics.drop = 0.0;
@@ -47,8 +47,7 @@ pub fn update_statistics(statistics: &mut Statistics, m: u32, alpha: f32) {
 
 /// Whether every component is a number (told from the bits, since a shader compiler may assume it).
 pub fn is_finite(v: Vec3) -> bool {
-    let mask = 0x7f80_0000;
-    v.x.to_bits() & mask != mask && v.y.to_bits() & mask != mask && v.z.to_bits() & mask != mask
+    [v.x, v.y, v.z].iter().all(|x| x.to_bits() & EXPONENT != EXPONENT)
 }
 
 /// Folds a pixel's visible points of this pass into `film`. `statistics` holds one entry per visible point under
@@ -69,7 +68,7 @@ pub fn resolve(
         }
         sum += pass_radiance(&points[k], &gathered[k], scale, dispatch.photons);
     }
-    fold(dispatch, sum * (1.0 / dispatch.eye_samples as f32), film);
+    fold(dispatch, sum * (1.0 / dispatch.eye_samples as Real), film);
 }
 
 /// Adds one pass's value to a pixel's mean.
@@ -78,6 +77,6 @@ pub fn fold(dispatch: &Dispatch, value: Vec3, film: &mut FilmPixel) {
         film.rejected += 1;
         return;
     }
-    let n = (dispatch.passes_done + 1 - film.rejected) as f32;
+    let n = (dispatch.passes_done + 1 - film.rejected) as Real;
     film.mean += (value - film.mean) * (1.0 / n);
 }

@@ -6,15 +6,15 @@
 //! `near_radius`, by the one-sample model with the balance heuristic (Veach & Guibas 1995); roulette then measures
 //! the flux against what a photon through the narrowest emission disc carries.
 
-use crate::materials::scatter::{Scatter, toward};
-use crate::math::sampling::sample_cone;
-use crate::math::{INV_PI, TAU, from_frame, unit};
-use crate::shapes::surface::Surface;
-use crate::tables::*;
-use glam::{Vec2, Vec3, Vec4};
+use super::materials::scatter::{Scatter, toward};
+use super::math::sampling::sample_cone;
+use super::math::{INV_PI, TAU, from_frame, unit};
+use super::real::{Real, Vec2, Vec3, Vec4};
+use super::shapes::surface::Surface;
+use super::tables::*;
 
 /// Square of the distance, in near radii, from which on photons are aimed.
-const FAR_OUTSIDE_SQ: f32 = 4.0;
+const FAR_OUTSIDE_SQ: Real = 4.0;
 
 /// `scattered`, which a diffuse surface drew by its cosine from `u.xy`, or a direction into the cone about the
 /// scene in its place, `u.z` deciding, with the weight of the mixture of both.

@@ -1,13 +1,13 @@
 //! Photon emission from every kind of light. Twin: `shaders/lights/emission.wgsl`.
 
 use super::light::{choose_light, eval_environment, pdf_environment, sample_environment, spot_falloff};
+use super::math::rng::{Rng, rng_next};
+use super::math::sampling::{sample_cone, sample_cosine, sample_disc, sample_sphere};
+use super::math::{EPS, FAR, PI, TAU, from_frame, unit};
+use super::real::{Real, Vec2, Vec3};
 use super::shape::sample_shape;
-use crate::math::rng::{Rng, rng_next};
-use crate::math::sampling::{sample_cone, sample_cosine, sample_disc, sample_sphere};
-use crate::math::{EPS, FAR, PI, TAU, from_frame, unit};
-use crate::shapes::ray::Ray;
-use crate::tables::*;
-use glam::{Vec2, Vec3};
+use super::shapes::ray::Ray;
+use super::tables::*;
 
 /// A photon as it leaves its light.
 #[derive(Clone, Copy, Debug)]
@@ -17,7 +17,7 @@ pub struct Emission {
     /// Flux in W times the number of photons emitted in the pass.
     pub flux: Vec3,
     /// Flux over that of the same photon if it went through the narrowest emission disc; 1 for light from nearby.
-    pub excess: f32,
+    pub excess: Real,
     /// The glass material that it starts in, or [`NONE`].
     pub medium: u32,
 }
@@ -74,7 +74,7 @@ pub fn emit_photon(scene: &Scene, rng: &mut Rng) -> Emission {
 }
 
 /// Radius of the widest emission disc.
-pub fn disc_radius_max(scene: &Scene) -> f32 {
+pub fn disc_radius_max(scene: &Scene) -> Real {
     let mut radius = scene.world.near_radius;
     for _ in 1..scene.world.disc_levels {
         radius *= 2.0;
@@ -83,7 +83,7 @@ pub fn disc_radius_max(scene: &Scene) -> f32 {
 }
 
 /// Density per area, at squared distance `r_sq` from the middle, of a point on a disc so chosen.
-pub fn pdf_discs(scene: &Scene, r_sq: f32) -> f32 {
+pub fn pdf_discs(scene: &Scene, r_sq: Real) -> Real {
     let mut radius = scene.world.near_radius;
     let mut probability = 0.5;
     let mut sum = 0.0;

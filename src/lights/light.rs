@@ -1,13 +1,13 @@
 //! Choosing a light and sampling it from a surface point; densities per solid angle. Twin:
 //! `shaders/lights/light.wgsl`.
 
+use super::materials::texture::eval_texture;
+use super::math::sampling::{PDF_SPHERE, sample_sphere};
+use super::math::trig::{arctan2, sin_cos};
+use super::math::{EPS, FAR, PI, TAU};
+use super::real::{Real, Vec2, Vec3, Vec4};
 use super::shape::{pdf_bin, pdf_shape, pdf_sphere_cone, sample_shape, sample_sphere_cone};
-use crate::materials::texture::eval_texture;
-use crate::math::sampling::{PDF_SPHERE, sample_sphere};
-use crate::math::trig::{arctan2, sin_cos};
-use crate::math::{EPS, FAR, PI, TAU};
-use crate::tables::*;
-use glam::{Vec2, Vec3, Vec4};
+use super::tables::*;
 
 /// Light that reaches a point from a sampled direction, if nothing is in between.
 #[derive(Clone, Copy, Debug)]
@@ -15,17 +15,17 @@ pub struct LightSample {
     /// Unit direction to the light.
     pub direction: Vec3,
     /// Distance up to which the way must be free.
-    pub distance: f32,
+    pub distance: Real,
     /// Radiance, or irradiance at normal incidence for lights without extent.
     pub radiance: Vec3,
     /// Density per solid angle times the probability of this light; for lights without extent that probability.
-    pub pdf: f32,
+    pub pdf: Real,
     /// Whether a scattered ray could have met the same light.
     pub extended: bool,
 }
 
 /// First index at `first..first + count` whose cumulative value exceeds `u`.
-pub fn find_interval(scene: &Scene, first: u32, count: u32, u: f32) -> u32 {
+pub fn find_interval(scene: &Scene, first: u32, count: u32, u: Real) -> u32 {
     let mut low = 0;
     let mut high = count - 1;
     while low < high {
@@ -40,7 +40,7 @@ pub fn find_interval(scene: &Scene, first: u32, count: u32, u: f32) -> u32 {
 }
 
 /// A light by its share of the scene's power.
-pub fn choose_light(scene: &Scene, u: f32) -> u32 {
+pub fn choose_light(scene: &Scene, u: Real) -> u32 {
     find_interval(scene, 0, scene.world.light_count, u)
 }
 
@@ -127,7 +127,7 @@ pub fn sample_light(scene: &Scene, position: Vec3, u: Vec4) -> LightSample {
 }
 
 /// 1 inside the full cone of a spot, 0 outside the dark one, a smoothstep of the cosine between.
-pub fn spot_falloff(light: &Light, cos: f32) -> f32 {
+pub fn spot_falloff(light: &Light, cos: Real) -> Real {
     if cos >= light.cos_inner {
         return 1.0;
     }
@@ -145,10 +145,10 @@ pub fn pdf_light(
     index: u32,
     from: Vec3,
     direction: Vec3,
-    t: f32,
+    t: Real,
     normal: Vec3,
-    v: f32,
-) -> f32 {
+    v: Real,
+) -> Real {
     let light = &scene.lights[index as usize];
     if light.reference >> REFERENCE_BITS == KIND_SPHERE {
         let sphere = &scene.spheres[(light.reference & ((1 << REFERENCE_BITS) - 1)) as usize];
@@ -187,8 +187,8 @@ pub fn sample_environment(scene: &Scene, light: &Light, u: Vec4) -> Vec3 {
     let column = find_interval(scene, light.first + texture.height + row * texture.width, texture.width, u.z);
     let high = scene.distributions[(light.first + row) as usize];
     let low = if row > 0 { scene.distributions[(light.first + row - 1) as usize] } else { 0.0 };
-    let across = (column as f32 + u.w) / texture.width as f32;
-    let down = (row as f32 + ((u.y - low) / (high - low)).clamp(0.0, 1.0)) / texture.height as f32;
+    let across = (column as Real + u.w) / texture.width as Real;
+    let down = (row as Real + ((u.y - low) / (high - low)).clamp(0.0, 1.0)) / texture.height as Real;
     let (sin_phi, cos_phi) = sin_cos((0.5 - across) * TAU);
     let (sin, cos) = sin_cos(down * PI);
     let x = sin * cos_phi;
@@ -197,14 +197,14 @@ pub fn sample_environment(scene: &Scene, light: &Light, u: Vec4) -> Vec3 {
 }
 
 /// Density per solid angle of [`sample_environment`].
-pub fn pdf_environment(scene: &Scene, light: &Light, direction: Vec3) -> f32 {
+pub fn pdf_environment(scene: &Scene, light: &Light, direction: Vec3) -> Real {
     if light.kind == LIGHT_CONSTANT {
         return PDF_SPHERE;
     }
     let texture = &scene.textures[light.reference as usize];
     let uv = environment_uv(light, direction);
-    let row = (((1.0 - uv.y) * texture.height as f32).floor() as u32).min(texture.height - 1);
-    let column = ((uv.x * texture.width as f32).floor() as u32).min(texture.width - 1);
+    let row = (((1.0 - uv.y) * texture.height as Real).floor() as u32).min(texture.height - 1);
+    let column = ((uv.x * texture.width as Real).floor() as u32).min(texture.width - 1);
     let p = pdf_bin(scene, light.first, row, texture.height)
         * pdf_bin(scene, light.first + texture.height + row * texture.width, column, texture.width);
     let sin = (1.0 - direction.y * direction.y).max(1e-12).sqrt();

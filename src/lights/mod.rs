@@ -1,5 +1,7 @@
 //! Sources of light: choice, shadow-ray samples and photon emission. Twins: `shaders/lights/`.
 
+use super::{materials, math, real, shapes, tables};
+
 pub mod aim;
 pub mod emission;
 pub mod light;

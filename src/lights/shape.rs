@@ -1,16 +1,16 @@
 //! Points on emitting shapes. Twin: `shaders/lights/shape.wgsl`.
 
 use super::light::find_interval;
-use crate::math::sampling::{sample_cone, sample_disc, sample_sphere, sample_triangle};
-use crate::math::{FAR, PI, TAU, basis, from_frame, unit};
-use crate::shapes::cuboid::{cuboid_error, cuboid_normal};
-use crate::shapes::disc::disc_error;
-use crate::shapes::rectangle::{rectangle_error, rectangle_point};
-use crate::shapes::revolution::{revolution_surface, ring_point};
-use crate::shapes::sphere::{sphere_error, sphere_project};
-use crate::shapes::triangle::{triangle_error, triangle_normal, triangle_point};
-use crate::tables::*;
-use glam::{Vec2, Vec3};
+use super::math::sampling::{sample_cone, sample_disc, sample_sphere, sample_triangle};
+use super::math::{FAR, PI, TAU, basis, from_frame, unit};
+use super::real::{Real, Vec2, Vec3};
+use super::shapes::cuboid::{cuboid_error, cuboid_normal};
+use super::shapes::disc::disc_error;
+use super::shapes::rectangle::{rectangle_error, rectangle_point};
+use super::shapes::revolution::{revolution_surface, ring_point};
+use super::shapes::sphere::{sphere_error, sphere_project};
+use super::shapes::triangle::{triangle_error, triangle_normal, triangle_point};
+use super::tables::*;
 
 /// A point on a shape.
 #[derive(Clone, Copy, Debug)]
@@ -18,15 +18,15 @@ pub struct ShapePoint {
     /// In scene space.
     pub position: Vec3,
     /// Bound of the distance from the true surface.
-    pub error: f32,
+    pub error: Real,
     /// Unit normal on the emitting side.
     pub normal: Vec3,
     /// Density per area.
-    pub pdf: f32,
+    pub pdf: Real,
 }
 
 /// A point on the shape of an area light, by area. `w` is one more uniform number.
-pub fn sample_shape(scene: &Scene, light: &Light, u: Vec2, w: f32) -> ShapePoint {
+pub fn sample_shape(scene: &Scene, light: &Light, u: Vec2, w: Real) -> ShapePoint {
     let index = (light.reference & ((1 << REFERENCE_BITS) - 1)) as usize;
     let pdf = 1.0 / light.area;
     match light.reference >> REFERENCE_BITS {
@@ -115,20 +115,20 @@ pub fn sample_shape(scene: &Scene, light: &Light, u: Vec2, w: f32) -> ShapePoint
 /// A point of a revolution and the area that a unit of v covers there, the whole way round.
 struct PatchPoint {
     position: Vec3,
-    error: f32,
+    error: Real,
     normal: Vec3,
-    stretch: f32,
+    stretch: Real,
 }
 
 /// The point of a revolution light at profile parameter `v` in its patch `k`.
-fn patch_point(scene: &Scene, light: &Light, k: u32, v: f32, theta: f32) -> PatchPoint {
+fn patch_point(scene: &Scene, light: &Light, k: u32, v: Real, theta: Real) -> PatchPoint {
     let patch = &scene.patches[(light.patch_first + k) as usize];
     let revolution = &scene.revolutions[patch.revolution as usize];
-    let t = v * revolution.segments as f32 - patch.segment as f32;
+    let t = v * revolution.segments as Real - patch.segment as Real;
     let tau = ((t - patch.t0) / (patch.t1 - patch.t0)).clamp(0.0, 1.0);
     let s = revolution_surface(&scene.profile_points, revolution, patch, theta, tau);
     let ring = ring_point(&scene.profile_points, patch, theta, tau);
-    let by_v = ring.d_tau * (revolution.segments as f32 / (patch.t1 - patch.t0));
+    let by_v = ring.d_tau * (revolution.segments as Real / (patch.t1 - patch.t0));
     let stretch = ring.d_theta.cross(by_v);
     PatchPoint {
         position: s.position,
@@ -139,21 +139,21 @@ fn patch_point(scene: &Scene, light: &Light, k: u32, v: f32, theta: f32) -> Patc
 }
 
 /// Density per v of patch `k`'s part, `width` long.
-fn pdf_patch(scene: &Scene, light: &Light, k: u32, width: f32) -> f32 {
+fn pdf_patch(scene: &Scene, light: &Light, k: u32, width: Real) -> Real {
     let at = light.first + light.patch_count + k;
     let low = if k > 0 { scene.distributions[(at - 1) as usize] } else { 0.0 };
     (scene.distributions[at as usize] - low) / width
 }
 
 /// Density of bin `bin` of `count` equal bins on [0, 1), from the cumulative values at `first`.
-pub fn pdf_bin(scene: &Scene, first: u32, bin: u32, count: u32) -> f32 {
+pub fn pdf_bin(scene: &Scene, first: u32, bin: u32, count: u32) -> Real {
     let high = scene.distributions[(first + bin) as usize];
     let low = if bin > 0 { scene.distributions[(first + bin - 1) as usize] } else { 0.0 };
-    (high - low) * count as f32
+    (high - low) * count as Real
 }
 
 /// Density per area of [`sample_shape`] at a point with profile parameter `v` (revolutions only).
-pub fn pdf_shape(scene: &Scene, light: &Light, v: f32) -> f32 {
+pub fn pdf_shape(scene: &Scene, light: &Light, v: Real) -> Real {
     if light.reference >> REFERENCE_BITS == KIND_REVOLUTION {
         // the last patch whose part starts at or before v
         let k = find_interval(scene, light.first, light.patch_count, v);
@@ -175,11 +175,13 @@ pub fn sample_sphere_cone(sphere: &Sphere, from: Vec3, u: Vec2) -> ShapePoint {
     let dist_sq = d.dot(d);
     let sin_sq = sphere.radius * sphere.radius / dist_sq;
     let one_minus_cos = cone_one_minus_cos(sin_sq);
-    let w = from_frame(unit(d), sample_cone(u, one_minus_cos));
-    // nearest crossing of the ray with the sphere, clamped at the tangent
-    let along = d.dot(w);
-    let off_sq = (dist_sq - along * along).max(0.0);
-    let half = (sphere.radius * sphere.radius - off_sq).max(0.0).sqrt();
+    let local = sample_cone(u, one_minus_cos);
+    let w = from_frame(unit(d), local);
+    // nearest crossing of the ray with the sphere, clamped at the tangent; from the sine, since the distances of
+    // a small sphere's middle and rim differ by less than a rounding
+    let along = dist_sq.sqrt() * local.z;
+    let off_sq = (local.x * local.x + local.y * local.y) / sin_sq;
+    let half = sphere.radius * (1.0 - off_sq).max(0.0).sqrt();
     let p = sphere_project(sphere, from + w * (along - half));
     ShapePoint {
         position: p,
@@ -190,12 +192,12 @@ pub fn sample_sphere_cone(sphere: &Sphere, from: Vec3, u: Vec2) -> ShapePoint {
 }
 
 /// `1 - cos` of the half angle whose squared sine is `sin_sq`.
-pub fn cone_one_minus_cos(sin_sq: f32) -> f32 {
+pub fn cone_one_minus_cos(sin_sq: Real) -> Real {
     sin_sq / (1.0 + (1.0 - sin_sq).max(0.0).sqrt())
 }
 
 /// Density per solid angle with which [`sample_sphere_cone`] looks toward the sphere from `from`; 0 inside.
-pub fn pdf_sphere_cone(sphere: &Sphere, from: Vec3) -> f32 {
+pub fn pdf_sphere_cone(sphere: &Sphere, from: Vec3) -> Real {
     let d = sphere.anchor - sphere.normal * sphere.radius - from;
     let sin_sq = sphere.radius * sphere.radius / d.dot(d);
     if sin_sq >= 1.0 {

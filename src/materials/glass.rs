@@ -1,19 +1,19 @@
 //! Smooth dielectric: Fresnel reflection and refraction, total internal reflection. Twin:
 //! `shaders/materials/glass.wgsl`.
 
-use glam::Vec3;
+use super::real::{Real, Vec3};
 
 /// What a dielectric interface does with a ray.
 #[derive(Clone, Copy, Debug)]
 pub struct Interface {
     /// Fresnel reflectance for unpolarised light; 1 beyond the critical angle.
-    pub reflectance: f32,
+    pub reflectance: Real,
     /// Cosine of the refracted ray with the far side of the normal; 0 when there is none.
-    pub cos_t: f32,
+    pub cos_t: Real,
 }
 
 /// Fresnel's equations: `cos_i` > 0 on the side the ray comes from, `eta` = ior there / ior beyond.
-pub fn fresnel(cos_i: f32, eta: f32) -> Interface {
+pub fn fresnel(cos_i: Real, eta: Real) -> Interface {
     let sin_t_sq = eta * eta * (1.0 - cos_i * cos_i).max(0.0);
     if sin_t_sq >= 1.0 {
         return Interface { reflectance: 1.0, cos_t: 0.0 };
@@ -25,6 +25,6 @@ pub fn fresnel(cos_i: f32, eta: f32) -> Interface {
 }
 
 /// Direction of the refracted ray; `wo` away from the surface on the side of `n`.
-pub fn refracted(wo: Vec3, n: Vec3, cos_i: f32, cos_t: f32, eta: f32) -> Vec3 {
+pub fn refracted(wo: Vec3, n: Vec3, cos_i: Real, cos_t: Real, eta: Real) -> Vec3 {
     n * (eta * cos_i - cos_t) - wo * eta
 }

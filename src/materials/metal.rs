@@ -2,15 +2,15 @@
 //! al. 2007; Heitz 2014, 2018). The cosine is not in `eval_metal`. All directions are unit, point away from the
 //! surface and are given in the frame whose z is the shading normal. Twin: `shaders/materials/metal.wgsl`.
 
-use crate::math::trig::sin_cos;
-use crate::math::{PI, TAU, unit};
-use glam::{Vec2, Vec3};
+use super::math::trig::sin_cos;
+use super::math::{PI, TAU, unit};
+use super::real::{Real, Vec2, Vec3, root_roundings};
 
-/// Least `alpha`: below it f32 cannot hold the lobe's peak.
-pub const ALPHA_MIN: f32 = 1e-3;
+/// Least `alpha`: below it rounding spoils the lobe's peak.
+pub const ALPHA_MIN: Real = root_roundings(1e-3);
 
 /// Distribution of microfacet normals, GGX.
-pub fn ggx_d(cos: f32, alpha: f32) -> f32 {
+pub fn ggx_d(cos: Real, alpha: Real) -> Real {
     let a2 = alpha * alpha;
     let sin_sq = (1.0 - cos * cos).max(0.0);
     let d = cos * cos * a2 + sin_sq;
@@ -18,21 +18,21 @@ pub fn ggx_d(cos: f32, alpha: f32) -> f32 {
 }
 
 /// Smith's Lambda of GGX for a direction with cosine `cos`.
-pub fn ggx_lambda(cos: f32, alpha: f32) -> f32 {
+pub fn ggx_lambda(cos: Real, alpha: Real) -> Real {
     let c2 = cos * cos;
     let tan_sq = (1.0 - c2).max(0.0) / c2;
     0.5 * ((1.0 + alpha * alpha * tan_sq).sqrt() - 1.0)
 }
 
 /// Schlick's Fresnel term.
-pub fn schlick(f0: Vec3, cos: f32) -> Vec3 {
+pub fn schlick(f0: Vec3, cos: Real) -> Vec3 {
     let m = (1.0 - cos).max(0.0);
     let m2 = m * m;
     f0 + (Vec3::ONE - f0) * (m2 * m2 * m)
 }
 
 /// BRDF, sr^-1, without the cosine.
-pub fn eval_metal(wo: Vec3, wi: Vec3, f0: Vec3, alpha: f32) -> Vec3 {
+pub fn eval_metal(wo: Vec3, wi: Vec3, f0: Vec3, alpha: Real) -> Vec3 {
     if wo.z <= 0.0 || wi.z <= 0.0 {
         return Vec3::ZERO;
     }
@@ -42,7 +42,7 @@ pub fn eval_metal(wo: Vec3, wi: Vec3, f0: Vec3, alpha: f32) -> Vec3 {
 }
 
 /// A microfacet normal `h` by the distribution of visible normals (Heitz 2018); the direction is `mirrored(wo, h)`.
-pub fn sample_metal(wo: Vec3, alpha: f32, u: Vec2) -> Vec3 {
+pub fn sample_metal(wo: Vec3, alpha: Real, u: Vec2) -> Vec3 {
     let vh = unit(Vec3::new(alpha * wo.x, alpha * wo.y, wo.z));
     let len_sq = vh.x * vh.x + vh.y * vh.y;
     let mut t1 = Vec3::new(1.0, 0.0, 0.0);
@@ -60,7 +60,7 @@ pub fn sample_metal(wo: Vec3, alpha: f32, u: Vec2) -> Vec3 {
 }
 
 /// Solid angle density of the directions of [`sample_metal`], sr^-1.
-pub fn pdf_metal(wo: Vec3, wi: Vec3, alpha: f32) -> f32 {
+pub fn pdf_metal(wo: Vec3, wi: Vec3, alpha: Real) -> Real {
     if wo.z <= 0.0 || wi.z <= 0.0 {
         return 0.0;
     }
@@ -70,7 +70,7 @@ pub fn pdf_metal(wo: Vec3, wi: Vec3, alpha: f32) -> f32 {
 
 /// `eval_metal * cos / pdf_metal` in closed form, `F G2 / G1`, for `wi` mirrored at `h`. (From `wo + wi` a shader
 /// compiler could cancel `wo` against the one in `wi`.)
-pub fn weight_metal(wo: Vec3, h: Vec3, wi: Vec3, f0: Vec3, alpha: f32) -> Vec3 {
+pub fn weight_metal(wo: Vec3, h: Vec3, wi: Vec3, f0: Vec3, alpha: Real) -> Vec3 {
     if wi.z <= 0.0 {
         return Vec3::ZERO;
     }

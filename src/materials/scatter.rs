@@ -1,13 +1,13 @@
 //! Scattering at a surface: the dispatch over materials. Twin: `shaders/materials/scatter.wgsl`.
 
 use super::glass::{fresnel, refracted};
+use super::math::sampling::sample_cosine;
+use super::math::{INV_PI, basis, from_frame, mirrored};
 use super::metal::{eval_metal, pdf_metal, sample_metal, weight_metal};
+use super::real::{Real, Vec2, Vec3};
+use super::shapes::surface::Surface;
+use super::tables::*;
 use super::texture::eval_texture;
-use crate::math::sampling::sample_cosine;
-use crate::math::{INV_PI, basis, from_frame, mirrored};
-use crate::shapes::surface::Surface;
-use crate::tables::*;
-use glam::{Vec2, Vec3};
 
 /// Transport of radiance: an eye path.
 pub const RADIANCE: u32 = 0;
@@ -15,7 +15,7 @@ pub const RADIANCE: u32 = 0;
 pub const IMPORTANCE: u32 = 1;
 
 /// Least cosine with the geometric normal for which a shading normal's correction is formed.
-const ADJOINT_COS_MIN: f32 = 1e-2;
+const ADJOINT_COS_MIN: Real = 1e-2;
 
 /// Where a path goes on.
 #[derive(Clone, Copy, Debug)]
@@ -57,7 +57,7 @@ pub fn shading_normal(scene: &Scene, s: &Surface, wo: Vec3) -> Vec3 {
 }
 
 /// Mirror and glass. `u` decides between reflection and refraction.
-pub fn scatter_specular(scene: &Scene, s: &Surface, wo: Vec3, medium: u32, u: f32, mode: u32) -> Scatter {
+pub fn scatter_specular(scene: &Scene, s: &Surface, wo: Vec3, medium: u32, u: Real, mode: u32) -> Scatter {
     let m = &scene.materials[s.material as usize];
     let ng = toward(s.normal, wo);
     let mut n = shading_normal(scene, s, wo);
@@ -136,7 +136,7 @@ pub fn scatter_rough(scene: &Scene, s: &Surface, wo: Vec3, medium: u32, u: Vec2,
 }
 
 /// Adjoint correction of shading normals for particles (Veach 1997, eq. 5.19); 1 where both normals agree.
-pub fn shading_correction(s: &Surface, n: Vec3, ng: Vec3, wo: Vec3, wi: Vec3) -> f32 {
+pub fn shading_correction(s: &Surface, n: Vec3, ng: Vec3, wo: Vec3, wi: Vec3) -> Real {
     if s.shading == s.normal {
         return 1.0;
     }
@@ -148,7 +148,7 @@ pub fn shading_correction(s: &Surface, n: Vec3, ng: Vec3, wo: Vec3, wi: Vec3) ->
 }
 
 /// BRDF of diffuse and metal times the cosine with the shading normal `n`, both directions on its side.
-pub fn eval_rough(kind: u32, alpha: f32, reflectance: Vec3, n: Vec3, wo: Vec3, wi: Vec3) -> Vec3 {
+pub fn eval_rough(kind: u32, alpha: Real, reflectance: Vec3, n: Vec3, wo: Vec3, wi: Vec3) -> Vec3 {
     let cos = wi.dot(n);
     if cos <= 0.0 {
         return Vec3::ZERO;
@@ -163,7 +163,7 @@ pub fn eval_rough(kind: u32, alpha: f32, reflectance: Vec3, n: Vec3, wo: Vec3, w
 }
 
 /// Density of [`scatter_rough`], sr^-1.
-pub fn pdf_rough(kind: u32, alpha: f32, n: Vec3, wo: Vec3, wi: Vec3) -> f32 {
+pub fn pdf_rough(kind: u32, alpha: Real, n: Vec3, wo: Vec3, wi: Vec3) -> Real {
     let cos = wi.dot(n);
     if cos <= 0.0 {
         return 0.0;

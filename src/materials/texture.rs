@@ -1,8 +1,8 @@
 //! Textures: pictures live in a buffer and are filtered here, so that every engine filters alike.
 //! Twin: `shaders/materials/texture.wgsl`.
 
-use crate::tables::*;
-use glam::{Vec2, Vec3};
+use super::real::{Real, Vec2, Vec3};
+use super::tables::*;
 
 /// Colour of texture `index` at `uv`, linear Rec. 709.
 pub fn eval_texture(scene: &Scene, index: u32, uv: Vec2) -> Vec3 {
@@ -19,8 +19,8 @@ pub fn eval_texture(scene: &Scene, index: u32, uv: Vec2) -> Vec3 {
         st.y += 0.5 * odd;
     }
     let clamped = texture.flags & TEXTURE_CLAMP != 0;
-    let x = if clamped { st.x.clamp(0.0, 1.0) } else { st.x - st.x.floor() } * texture.width as f32;
-    let y = (1.0 - if clamped { st.y.clamp(0.0, 1.0) } else { st.y - st.y.floor() }) * texture.height as f32;
+    let x = if clamped { st.x.clamp(0.0, 1.0) } else { st.x - st.x.floor() } * texture.width as Real;
+    let y = (1.0 - if clamped { st.y.clamp(0.0, 1.0) } else { st.y - st.y.floor() }) * texture.height as Real;
     if texture.flags & TEXTURE_NEAREST != 0 {
         return eval_texel(scene, texture, x.floor() as i32, y.floor() as i32);
     }
@@ -64,9 +64,9 @@ pub fn eval_texel(scene: &Scene, texture: &Texture, i: i32, j: i32) -> Vec3 {
     if texture.format == TEXELS_FLOAT {
         let k = (texture.first + 3 * at) as usize;
         return Vec3::new(
-            f32::from_bits(scene.texels[k]),
-            f32::from_bits(scene.texels[k + 1]),
-            f32::from_bits(scene.texels[k + 2]),
+            Real::from_bits(scene.texels[k]),
+            Real::from_bits(scene.texels[k + 1]),
+            Real::from_bits(scene.texels[k + 2]),
         );
     }
     let word = scene.texels[(texture.first + at) as usize];
@@ -75,10 +75,10 @@ pub fn eval_texel(scene: &Scene, texture: &Texture, i: i32, j: i32) -> Vec3 {
     let b = (word >> 16) & 255;
     if texture.format == TEXELS_SRGB8 {
         return Vec3::new(
-            f32::from_bits(scene.texels[r as usize]),
-            f32::from_bits(scene.texels[g as usize]),
-            f32::from_bits(scene.texels[b as usize]),
+            Real::from_bits(scene.texels[r as usize]),
+            Real::from_bits(scene.texels[g as usize]),
+            Real::from_bits(scene.texels[b as usize]),
         );
     }
-    Vec3::new(r as f32, g as f32, b as f32) * (1.0 / 255.0)
+    Vec3::new(r as Real, g as Real, b as Real) * (1.0 / 255.0)
 }

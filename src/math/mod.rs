@@ -12,9 +12,13 @@
 //! Twins avoid these forms: a constant stands with one variable in the innermost bracket, and a sum of products
 //! begins with what is no product. Factors that are powers of two do no harm.
 
+use super::real;
+
+pub mod octahedral;
 pub mod rng;
 pub mod sampling;
 pub mod trig;
 pub mod vector;
 
+pub use octahedral::*;
 pub use vector::*;

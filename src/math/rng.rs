@@ -1,6 +1,6 @@
 //! Counter-based random numbers: an integer hash of (index, pass, dimension, seed), the same in every engine.
 
-use glam::Vec4;
+use super::real::{Real, Vec4};
 
 /// Stream of eye paths.
 pub const STREAM_EYE: u32 = 0x8000_0000;
@@ -68,6 +68,6 @@ pub fn rng_next(rng: &mut Rng) -> Vec4 {
         h = pcg4d([rng.index, rng.pass_number, rng.dimension, rng.seed]);
     }
     rng.dimension += 1;
-    Vec4::new((h[0] >> 8) as f32, (h[1] >> 8) as f32, (h[2] >> 8) as f32, (h[3] >> 8) as f32)
+    Vec4::new((h[0] >> 8) as Real, (h[1] >> 8) as Real, (h[2] >> 8) as Real, (h[3] >> 8) as Real)
         * (1.0 / 16777216.0)
 }

@@ -1,8 +1,8 @@
 //! Maps from uniform numbers to discs, spheres, hemispheres and triangles. Twin: `shaders/math/sampling.wgsl`.
 
+use super::real::{Real, Vec2, Vec3};
 use super::trig::sin_cos;
 use super::{PI, TAU};
-use glam::{Vec2, Vec3};
 
 /// Uniform on the unit disc.
 pub fn sample_disc(u: Vec2) -> Vec2 {
@@ -27,7 +27,7 @@ pub fn sample_sphere(u: Vec2) -> Vec3 {
 
 /// Uniform in the cone about +z with `one_minus_cos = 1 - cos(half angle)`; the density is
 /// `1 / (2 pi one_minus_cos)`.
-pub fn sample_cone(u: Vec2, one_minus_cos: f32) -> Vec3 {
+pub fn sample_cone(u: Vec2, one_minus_cos: Real) -> Vec3 {
     let h = u.x * one_minus_cos;
     let r = (h * (2.0 - h)).sqrt();
     let (s, c) = sin_cos(TAU * u.y);
@@ -41,9 +41,9 @@ pub fn sample_triangle(u: Vec2) -> Vec2 {
 }
 
 /// Weight of strategy `a` against `b` (balance heuristic, Veach & Guibas 1995).
-pub fn balance(a: f32, b: f32) -> f32 {
+pub fn balance(a: Real, b: Real) -> Real {
     a / (a + b)
 }
 
 /// Solid angle density of [`sample_sphere`].
-pub const PDF_SPHERE: f32 = 1.0 / (4.0 * PI);
+pub const PDF_SPHERE: Real = 1.0 / (4.0 * PI);

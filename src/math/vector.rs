@@ -1,17 +1,17 @@
 //! Small vector functions. Twin: `shaders/math/vector.wgsl`.
 
-use glam::{Vec2, Vec3};
+use super::real::{Real, Vec3, consts};
 
 /// pi.
-pub const PI: f32 = std::f32::consts::PI;
+pub const PI: Real = consts::PI;
 /// Twice pi.
-pub const TAU: f32 = std::f32::consts::TAU;
+pub const TAU: Real = consts::TAU;
 /// One over pi.
-pub const INV_PI: f32 = std::f32::consts::FRAC_1_PI;
+pub const INV_PI: Real = consts::FRAC_1_PI;
 /// Farther than anything in a scene; WGSL has no infinity to rely on.
-pub const FAR: f32 = 1e30;
+pub const FAR: Real = 1e30;
 /// Half an ulp of 1, the bound of one rounding.
-pub const EPS: f32 = 5.9604645e-8;
+pub const EPS: Real = 0.5 * Real::EPSILON;
 
 /// `v` at length one.
 pub fn unit(v: Vec3) -> Vec3 {
@@ -19,12 +19,12 @@ pub fn unit(v: Vec3) -> Vec3 {
 }
 
 /// Greatest component.
-pub fn max_component(v: Vec3) -> f32 {
+pub fn max_component(v: Vec3) -> Real {
     v.x.max(v.y).max(v.z)
 }
 
 /// Greatest absolute value of a component.
-pub fn max_abs(v: Vec3) -> f32 {
+pub fn max_abs(v: Vec3) -> Real {
     max_component(v.abs())
 }
 
@@ -49,32 +49,6 @@ pub fn mirrored(w: Vec3, n: Vec3) -> Vec3 {
 
 /// The origin of a ray that leaves `position` along `direction`, moved off the surface by the bound of the hit's
 /// error (the idea of pbrt-v4, section 6.8, with a scalar bound).
-pub fn offset_origin(position: Vec3, error: f32, normal: Vec3, direction: Vec3) -> Vec3 {
+pub fn offset_origin(position: Vec3, error: Real, normal: Vec3, direction: Vec3) -> Vec3 {
     if direction.dot(normal) >= 0.0 { position + normal * error } else { position - normal * error }
-}
-
-/// A unit vector in 32 bits: octahedral map, 16 bits each (Cigolle et al. 2014).
-pub fn oct_encode(v: Vec3) -> u32 {
-    let s = 1.0 / (v.x.abs() + v.y.abs() + v.z.abs());
-    let p = Vec2::new(v.x * s, v.y * s);
-    let mut q = p;
-    if v.z < 0.0 {
-        q.x = (1.0 - p.y.abs()) * if p.x >= 0.0 { 1.0 } else { -1.0 };
-        q.y = (1.0 - p.x.abs()) * if p.y >= 0.0 { 1.0 } else { -1.0 };
-    }
-    let x = (q.x * 32767.0 + 32768.5).floor() as u32;
-    let y = (q.y * 32767.0 + 32768.5).floor() as u32;
-    x | y << 16
-}
-
-/// Inverse of [`oct_encode`].
-pub fn oct_decode(code: u32) -> Vec3 {
-    let x = ((code & 0xffff) as f32 - 32768.0) * (1.0 / 32767.0);
-    let y = ((code >> 16) as f32 - 32768.0) * (1.0 / 32767.0);
-    let mut v = Vec3::new(x, y, 1.0 - x.abs() - y.abs());
-    if v.z < 0.0 {
-        v.x = (1.0 - y.abs()) * if x >= 0.0 { 1.0 } else { -1.0 };
-        v.y = (1.0 - x.abs()) * if y >= 0.0 { 1.0 } else { -1.0 };
-    }
-    unit(v)
 }

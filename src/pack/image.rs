@@ -1,9 +1,10 @@
 //! Textures and their pictures.
 
+use super::real::{Bits, Real, ToReal, Vec2};
+use super::tables::*;
 use crate::scene::{self, Filter, ImageData, Texels, TextureKind, Wrap};
-use crate::tables::*;
 use bytemuck::Zeroable;
-use glam::{DVec3, Vec2};
+use glam::DVec3;
 
 /// Fills `textures` and `texels`; an environment's picture becomes one more texture behind the scene's own.
 pub fn pack_textures(scene: &scene::Scene, out: &mut Scene) {
@@ -16,8 +17,8 @@ pub fn pack_textures(scene: &scene::Scene, out: &mut Scene) {
             TextureKind::Checker { colors, scale } => Texture {
                 kind: TEXTURE_CHECKER,
                 scale: vec2(*scale),
-                color0: DVec3::from(colors[0]).as_vec3(),
-                color1: DVec3::from(colors[1]).as_vec3(),
+                color0: DVec3::from(colors[0]).to_real(),
+                color1: DVec3::from(colors[1]).to_real(),
                 ..Texture::zeroed()
             },
             TextureKind::Image { image, filter, wrap, scale } => Texture {
@@ -45,22 +46,22 @@ pub fn pack_textures(scene: &scene::Scene, out: &mut Scene) {
 }
 
 fn vec2(v: [f64; 2]) -> Vec2 {
-    Vec2::new(v[0] as f32, v[1] as f32)
+    Vec2::new(v[0] as Real, v[1] as Real)
 }
 
 fn filter_flag(filter: Filter) -> u32 {
     if filter == Filter::Nearest { TEXTURE_NEAREST } else { 0 }
 }
 
-fn pack_image(image: &ImageData, texels: &mut Vec<u32>) -> Texture {
+fn pack_image(image: &ImageData, texels: &mut Vec<Bits>) -> Texture {
     let first = texels.len() as u32;
     let format = match &image.texels {
         Texels::Rgba8 { srgb, data } => {
-            texels.extend(data.iter().map(|p| u32::from_le_bytes(*p)));
+            texels.extend(data.iter().map(|p| u32::from_le_bytes(*p) as Bits));
             if *srgb { TEXELS_SRGB8 } else { TEXELS_LINEAR8 }
         }
         Texels::Float(data) => {
-            texels.extend(data.iter().flatten().map(|x| x.to_bits()));
+            texels.extend(data.iter().flatten().map(|x| (*x as Real).to_bits()));
             TEXELS_FLOAT
         }
     };
@@ -68,6 +69,6 @@ fn pack_image(image: &ImageData, texels: &mut Vec<u32>) -> Texture {
 }
 
 /// IEC 61966-2-1.
-fn srgb_to_linear(x: f64) -> f32 {
-    (if x <= 0.04045 { x / 12.92 } else { ((x + 0.055) / 1.055).powf(2.4) }) as f32
+fn srgb_to_linear(x: f64) -> Real {
+    (if x <= 0.04045 { x / 12.92 } else { ((x + 0.055) / 1.055).powf(2.4) }) as Real
 }

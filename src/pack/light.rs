@@ -1,13 +1,14 @@
 //! Lights: strengths in scene units and the distributions that they are sampled by.
 
+use super::lights::shape::sample_shape;
+use super::real::{Real, ToReal, Vec2, Vec3};
 use super::shape::Emitter;
+use super::shapes::revolution::ring_point;
+use super::tables::*;
 use crate::build::normalize::Normalization;
-use crate::lights::shape::sample_shape;
 use crate::scene::{self, Environment};
-use crate::shapes::revolution::ring_point;
-use crate::tables::*;
 use bytemuck::Zeroable;
-use glam::{DVec3, Vec2, Vec3};
+use glam::DVec3;
 use std::f64::consts::PI;
 
 /// Steps of the midpoint rule that measures a patch's area.
@@ -26,7 +27,7 @@ pub fn pack_lights(scene: &scene::Scene, n: &Normalization, emitters: &[Emitter]
         if e.reference >> REFERENCE_BITS == KIND_REVOLUTION {
             area = revolution_distribution(out, &mut light, &mut distributions);
         }
-        light.area = area as f32;
+        light.area = area as Real;
         lights.push((light, e.radiance, PI * area));
     }
     for l in &scene.lights {
@@ -34,7 +35,7 @@ pub fn pack_lights(scene: &scene::Scene, n: &Normalization, emitters: &[Emitter]
         lights.push(match l {
             scene::Light::Point { position, intensity } => {
                 let light =
-                    Light { kind: LIGHT_POINT, position: n.point(*position).as_vec3(), ..Light::zeroed() };
+                    Light { kind: LIGHT_POINT, position: n.point(*position).to_real(), ..Light::zeroed() };
                 (light, DVec3::from(*intensity) / unit_sq, 4.0 * PI)
             }
             scene::Light::Spot { position, target, intensity, angle_degrees, blend } => {
@@ -42,17 +43,17 @@ pub fn pack_lights(scene: &scene::Scene, n: &Normalization, emitters: &[Emitter]
                 let inner = (angle_degrees * (1.0 - blend)).to_radians().cos();
                 let light = Light {
                     kind: LIGHT_SPOT,
-                    position: n.point(*position).as_vec3(),
-                    direction: (*target - *position).normalize().as_vec3(),
-                    cos_outer: outer as f32,
-                    cos_inner: inner.max(outer) as f32,
+                    position: n.point(*position).to_real(),
+                    direction: (*target - *position).normalize().to_real(),
+                    cos_outer: outer as Real,
+                    cos_inner: inner.max(outer) as Real,
                     ..Light::zeroed()
                 };
                 (light, DVec3::from(*intensity) / unit_sq, PI * (2.0 - inner - outer))
             }
             scene::Light::Sun { direction, irradiance } => {
                 let light =
-                    Light { kind: LIGHT_SUN, direction: direction.normalize().as_vec3(), ..Light::zeroed() };
+                    Light { kind: LIGHT_SUN, direction: direction.normalize().to_real(), ..Light::zeroed() };
                 (light, DVec3::from(*irradiance), near)
             }
         });
@@ -71,8 +72,8 @@ pub fn pack_lights(scene: &scene::Scene, n: &Normalization, emitters: &[Emitter]
             let mut light = Light {
                 kind: LIGHT_IMAGE,
                 reference: out.textures.len() as u32 - 1,
-                cos_outer: cos as f32,
-                cos_inner: sin as f32,
+                cos_outer: cos as Real,
+                cos_inner: sin as Real,
                 ..Light::zeroed()
             };
             if let Some(mean) = image_distribution(out, &mut light, &mut distributions) {
@@ -89,11 +90,11 @@ pub fn pack_lights(scene: &scene::Scene, n: &Normalization, emitters: &[Emitter]
     let count = lights.len();
     let mut sum = 0.0;
     for ((mut light, color, _), power) in lights.into_iter().zip(&power) {
-        light.color = (color / radiance_unit).as_vec3();
-        light.selection = (power / total) as f32;
+        light.color = (color / radiance_unit).to_real();
+        light.selection = (power / total) as Real;
         light.first += count as u32;
         sum += power;
-        out.distributions.push((sum / total) as f32);
+        out.distributions.push((sum / total) as Real);
         out.lights.push(light);
     }
     out.distributions.extend(distributions);
@@ -115,24 +116,24 @@ pub fn place(out: &Scene, light: &Light) -> Option<Vec3> {
 
 /// The parts of v by patch and the cumulative shares of area; returns the area. A patch overlaps its neighbour,
 /// so that its part ends where the next one starts.
-fn revolution_distribution(out: &Scene, light: &mut Light, distributions: &mut Vec<f32>) -> f64 {
+fn revolution_distribution(out: &Scene, light: &mut Light, distributions: &mut Vec<Real>) -> f64 {
     let index = light.reference & ((1 << REFERENCE_BITS) - 1);
     let patches: Vec<&Patch> = out.patches.iter().filter(|p| p.revolution == index).collect();
     let revolution = &out.revolutions[index as usize];
     light.patch_first = out.patches.iter().position(|p| p.revolution == index).unwrap_or(0) as u32;
     light.patch_count = patches.len() as u32;
     light.first = distributions.len() as u32;
-    let v_of = |p: &Patch, t: f32| (p.segment as f32 + t) / revolution.segments as f32;
-    let starts: Vec<f32> = patches.iter().map(|p| v_of(p, p.t0)).collect();
+    let v_of = |p: &Patch, t: Real| (p.segment as Real + t) / revolution.segments as Real;
+    let starts: Vec<Real> = patches.iter().map(|p| v_of(p, p.t0)).collect();
     let mut areas = Vec::new();
     for (k, patch) in patches.iter().enumerate() {
         let end = starts.get(k + 1).copied().unwrap_or(1.0);
-        let end_t = (end * revolution.segments as f32 - patch.segment as f32).min(patch.t1);
+        let end_t = (end * revolution.segments as Real - patch.segment as Real).min(patch.t1);
         let end_tau = ((end_t - patch.t0) / (patch.t1 - patch.t0)) as f64;
         let mut area = 0.0;
         for i in 0..AREA_STEPS {
             let tau = (i as f64 + 0.5) / AREA_STEPS as f64 * end_tau;
-            let ring = ring_point(&out.profile_points, patch, 0.0, tau as f32);
+            let ring = ring_point(&out.profile_points, patch, 0.0, tau as Real);
             area += ring.d_theta.cross(ring.d_tau).length() as f64;
         }
         let scale = revolution.scale as f64;
@@ -147,19 +148,19 @@ fn revolution_distribution(out: &Scene, light: &mut Light, distributions: &mut V
 /// mean luminance, or nothing for a black picture. A texel counts with the root mean square of the filtered picture
 /// inside it, the share with the least variance; its neighbours shine into it, so that it is dark only where they
 /// are, too.
-fn image_distribution(out: &Scene, light: &mut Light, distributions: &mut Vec<f32>) -> Option<f64> {
+fn image_distribution(out: &Scene, light: &mut Light, distributions: &mut Vec<Real>) -> Option<f64> {
     let texture = &out.textures[light.reference as usize];
     let (w, h) = (texture.width, texture.height);
     light.first = distributions.len() as u32;
-    let value = |x: f32, y: f32| {
-        let uv = Vec2::new(x / w as f32, 1.0 - y / h as f32);
-        let c: Vec3 = crate::materials::texture::eval_texture(out, light.reference, uv);
+    let value = |x: Real, y: Real| {
+        let uv = Vec2::new(x / w as Real, 1.0 - y / h as Real);
+        let c: Vec3 = super::materials::texture::eval_texture(out, light.reference, uv);
         ((c.x + c.y + c.z) / 3.0).max(0.0) as f64
     };
     // (mean, root mean square) of the middles of the texel's quarters
     let texel = |i: u32, j: u32| {
         let quarters = [(0.25, 0.25), (0.75, 0.25), (0.25, 0.75), (0.75, 0.75)];
-        let values = quarters.map(|(x, y)| value(i as f32 + x, j as f32 + y));
+        let values = quarters.map(|(x, y)| value(i as Real + x, j as Real + y));
         let mean_of = |f: fn(f64) -> f64| values.iter().map(|v| f(*v)).sum::<f64>() / 4.0;
         (mean_of(|v| v), mean_of(|v| v * v).sqrt())
     };
@@ -182,13 +183,13 @@ fn image_distribution(out: &Scene, light: &mut Light, distributions: &mut Vec<f3
     Some(mean)
 }
 
-fn push_cumulative(values: &[f64], target: &mut Vec<f32>) {
+fn push_cumulative(values: &[f64], target: &mut Vec<Real>) {
     let total: f64 = values.iter().sum();
     let mut sum = 0.0;
     let count = values.len();
     for (k, v) in values.iter().enumerate() {
         sum += v;
         let share = if total > 0.0 { sum / total } else { (k + 1) as f64 / count as f64 };
-        target.push(if k + 1 == count { 1.0 } else { share as f32 });
+        target.push(if k + 1 == count { 1.0 } else { share as Real });
     }
 }

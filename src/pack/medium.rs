@@ -1,11 +1,11 @@
 //! The glass in which cameras and lights stand.
 
-use crate::math::{FAR, offset_origin, unit};
-use crate::shapes::intersect::intersect_scene;
-use crate::shapes::ray::Ray;
-use crate::shapes::surface::surface_at;
-use crate::tables::*;
-use glam::Vec3;
+use super::math::{FAR, offset_origin, unit};
+use super::real::Vec3;
+use super::shapes::intersect::intersect_scene;
+use super::shapes::ray::Ray;
+use super::shapes::surface::surface_at;
+use super::tables::*;
 
 /// Surfaces that one look passes through at most.
 const CROSSINGS: u32 = 1000;

@@ -5,36 +5,15 @@ mod light;
 mod medium;
 mod shape;
 
-use crate::build::normalize::Normalization;
-use crate::build::revolution::ProfileError;
-use crate::scene::{MaterialKind, Reflectance};
-use crate::tables::*;
-use crate::{build, scene};
-use bytemuck::Zeroable;
-use glam::{DVec3, Vec2, Vec3};
+pub use crate::error::PackError;
 
-/// Why a valid scene cannot be flattened.
-#[derive(Debug, thiserror::Error)]
-pub enum PackError {
-    /// More items than an index holds.
-    #[error("the scene has {count} {what}, but at most {limit} can be told apart")]
-    TooMany {
-        /// What there are too many of.
-        what: &'static str,
-        /// How many.
-        count: usize,
-        /// How many there may be.
-        limit: usize,
-    },
-    /// A profile that is no surface.
-    #[error("shape {shape}: {source}")]
-    Profile {
-        /// Index of the shape.
-        shape: usize,
-        /// What is wrong.
-        source: ProfileError,
-    },
-}
+use super::real::{Real, ToReal, Vec2, Vec3};
+use super::tables::*;
+use super::{build, lights, materials, math, real, shapes, tables};
+use crate::build::normalize::Normalization;
+use crate::scene::{self, MaterialKind, Reflectance};
+use bytemuck::Zeroable;
+use glam::DVec3;
 
 /// A flattened scene and what undoes its normalisation.
 #[derive(Clone, Debug)]
@@ -72,9 +51,9 @@ pub fn pack(scene: &scene::Scene, width: u32, height: u32) -> Result<Packed, Pac
         out.nodes = tree.nodes;
         out.refs = tree.refs.iter().map(|&i| references[i as usize]).collect();
     }
-    out.world.unit = n.unit as f32;
-    out.world.planar_origin = Vec2::new(n.center.x as f32, n.center.z as f32);
-    out.world.near_radius = n.near_radius as f32;
+    out.world.unit = n.unit as Real;
+    out.world.planar_origin = Vec2::new(n.center.x as Real, n.center.z as Real);
+    out.world.near_radius = n.near_radius as Real;
     out.world.unbounded_count = out.unbounded.len() as u32;
     let radiance_unit = light::pack_lights(scene, &n, &emitters, &mut out);
     out.world.disc_levels = disc_levels(&out, &n);
@@ -134,17 +113,17 @@ fn camera(scene: &scene::Scene, n: &Normalization, width: u32, height: u32) -> C
     let up = right.cross(forward);
     let tan = (0.5 * c.fov_degrees.to_radians()).tan();
     Camera {
-        position: n.point(c.position).as_vec3(),
-        aperture: (c.aperture / n.unit) as f32,
-        right: (right * (tan * width as f64 / height as f64)).as_vec3(),
-        focus: (c.focus / n.unit) as f32,
-        up: (up * tan).as_vec3(),
-        pixel: (2.0 * tan / height as f64) as f32,
-        forward: forward.as_vec3(),
+        position: n.point(c.position).to_real(),
+        aperture: (c.aperture / n.unit) as Real,
+        right: (right * (tan * width as f64 / height as f64)).to_real(),
+        focus: (c.focus / n.unit) as Real,
+        up: (up * tan).to_real(),
+        pixel: (2.0 * tan / height as f64) as Real,
+        forward: forward.to_real(),
         width,
-        lens_right: right.as_vec3(),
+        lens_right: right.to_real(),
         height,
-        lens_up: up.as_vec3(),
+        lens_up: up.to_real(),
         medium: NONE,
     }
 }
@@ -166,12 +145,12 @@ fn material(m: &scene::Material, unit: f64) -> Material {
         }
         MaterialKind::Glass { ior, absorption } => {
             out.kind = MATERIAL_GLASS;
-            out.ior = *ior as f32;
+            out.ior = *ior as Real;
             out.absorption = rgb(absorption.map(|a| a * unit));
         }
         MaterialKind::Metal { reflectance, roughness } => {
             out.kind = MATERIAL_METAL;
-            out.alpha = ((roughness * roughness) as f32).max(crate::materials::metal::ALPHA_MIN);
+            out.alpha = ((roughness * roughness) as Real).max(materials::metal::ALPHA_MIN);
             reflect(&mut out, reflectance);
         }
     }
@@ -179,5 +158,5 @@ fn material(m: &scene::Material, unit: f64) -> Material {
 }
 
 fn rgb(c: [f64; 3]) -> Vec3 {
-    DVec3::from(c).as_vec3()
+    DVec3::from(c).to_real()
 }

@@ -1,14 +1,15 @@
 //! Shapes: into tables, into the kd-tree's input, and which of them shine.
 
 use super::PackError;
-use crate::build::kdtree::Primitive;
+use super::build::kdtree::Primitive;
+use super::build::revolution::{Attributes as RevolutionAttributes, Placement, RevolutionTables};
+use super::math::EPS;
+use super::real::{Real, ToDouble, ToReal, Vec3};
+use super::shapes::aabb::Aabb;
+use super::tables::*;
 use crate::build::normalize::Normalization;
-use crate::build::revolution::{Attributes as RevolutionAttributes, Placement, RevolutionTables};
-use crate::math::EPS;
 use crate::scene::{self, Mesh, ShapeKind, Transform};
-use crate::shapes::aabb::Aabb;
-use crate::tables::*;
-use glam::{DQuat, DVec2, DVec3, Vec3};
+use glam::{DQuat, DVec2, DVec3};
 
 /// Spheres of a larger radius, in scene units, are tested outside of the kd-tree.
 const UNBOUNDED_RADIUS: f64 = 64.0;
@@ -92,7 +93,7 @@ impl Pack<'_> {
     fn boxed(&mut self, reference: u32, points: &[Vec3]) {
         let b = Aabb::of_points(points);
         let grow = b.min.abs().max(b.max.abs()).max_element() * (64.0 * EPS);
-        let grow = Vec3::splat(grow.max(f32::MIN_POSITIVE));
+        let grow = Vec3::splat(grow.max(Real::MIN_POSITIVE));
         self.primitives.push(Primitive::Box(Aabb { min: b.min - grow, max: b.max + grow }));
         self.references.push(reference);
     }
@@ -105,10 +106,10 @@ impl Pack<'_> {
         let id = reference(KIND_SPHERE, self.out.spheres.len());
         let light = self.light(emission, id, 4.0 * std::f64::consts::PI * r * r);
         self.out.spheres.push(Sphere {
-            anchor: (c + normal * r).as_vec3(),
-            curvature: (1.0 / r) as f32,
-            normal: normal.as_vec3(),
-            radius: r as f32,
+            anchor: (c + normal * r).to_real(),
+            curvature: (1.0 / r) as Real,
+            normal: normal.to_real(),
+            radius: r as Real,
             material,
             light,
             uv,
@@ -117,7 +118,7 @@ impl Pack<'_> {
         if r > UNBOUNDED_RADIUS {
             self.out.unbounded.push(id);
         } else {
-            self.boxed(id, &[(c - DVec3::splat(r)).as_vec3(), (c + DVec3::splat(r)).as_vec3()]);
+            self.boxed(id, &[(c - DVec3::splat(r)).to_real(), (c + DVec3::splat(r)).to_real()]);
         }
     }
 
@@ -136,20 +137,20 @@ impl Pack<'_> {
         let id = reference(KIND_RECTANGLE, self.out.rectangles.len());
         let light = self.light(emission, id, area_sq.sqrt());
         self.out.rectangles.push(Rectangle {
-            origin: o.as_vec3(),
+            origin: o.to_real(),
             material,
-            normal: normal.normalize().as_vec3(),
+            normal: normal.normalize().to_real(),
             light,
-            u: u.as_vec3(),
+            u: u.to_real(),
             uv,
-            v: v.as_vec3(),
-            area: area_sq.sqrt() as f32,
-            dual_u: (v.cross(normal) / area_sq).as_vec3(),
+            v: v.to_real(),
+            area: area_sq.sqrt() as Real,
+            dual_u: (v.cross(normal) / area_sq).to_real(),
             pad0: 0,
-            dual_v: (normal.cross(u) / area_sq).as_vec3(),
+            dual_v: (normal.cross(u) / area_sq).to_real(),
             pad1: 0,
         });
-        self.boxed(id, &[o.as_vec3(), (o + u).as_vec3(), (o + v).as_vec3(), (o + u + v).as_vec3()]);
+        self.boxed(id, &[o.to_real(), (o + u).to_real(), (o + v).to_real(), (o + u + v).to_real()]);
     }
 
     fn disc(
@@ -167,35 +168,35 @@ impl Pack<'_> {
         let id = reference(KIND_DISC, self.out.discs.len());
         let light = self.light(emission, id, std::f64::consts::PI * r * r);
         self.out.discs.push(Disc {
-            center: c.as_vec3(),
-            radius: r as f32,
-            normal: n.as_vec3(),
+            center: c.to_real(),
+            radius: r as Real,
+            normal: n.to_real(),
             material,
             light,
             uv,
             pad: [0; 2],
         });
         let half = (DVec3::ONE - n * n).max(DVec3::ZERO).map(f64::sqrt) * r;
-        self.boxed(id, &[(c - half).as_vec3(), (c + half).as_vec3()]);
+        self.boxed(id, &[(c - half).to_real(), (c + half).to_real()]);
     }
 
     fn plane(&mut self, point: DVec3, normal: DVec3, material: u32, uv: u32) {
         let n = normal.normalize();
         let p = self.n.point(point);
         let nearest = n * p.dot(n);
-        let (t, b) = crate::math::basis(n.as_vec3());
-        let (t, b) = (t.as_dvec3(), b.as_dvec3());
+        let (t, b) = super::math::basis(n.to_real());
+        let (t, b) = (t.to_double(), b.to_double());
         let d = (nearest - p) * self.n.unit;
         self.out.unbounded.push(reference(KIND_PLANE, self.out.planes.len()));
         self.out.planes.push(Plane {
-            point: nearest.as_vec3(),
+            point: nearest.to_real(),
             material,
-            normal: n.as_vec3(),
+            normal: n.to_real(),
             uv,
-            tangent: (t * self.n.unit).as_vec3(),
-            u0: d.dot(t) as f32,
-            bitangent: (b * self.n.unit).as_vec3(),
-            v0: d.dot(b) as f32,
+            tangent: (t * self.n.unit).to_real(),
+            u0: d.dot(t) as Real,
+            bitangent: (b * self.n.unit).to_real(),
+            v0: d.dot(b) as Real,
         });
     }
 
@@ -204,7 +205,7 @@ impl Pack<'_> {
         let e = upper - lower;
         let id = reference(KIND_CUBOID, self.out.cuboids.len());
         let light = self.light(emission, id, 2.0 * (e.x * e.y + e.y * e.z + e.z * e.x));
-        let (lower, upper) = (lower.as_vec3(), upper.as_vec3());
+        let (lower, upper) = (lower.to_real(), upper.to_real());
         self.out.cuboids.push(Cuboid { lower, material, upper, light, uv, pad: [0; 3] });
         self.boxed(id, &[lower, upper]);
     }
@@ -221,7 +222,7 @@ impl Pack<'_> {
             let uvs = if uv == UV_PLANAR { Some(planar) } else { uvs };
             let normals = triangle.normal.map(|t| t.map(|i| mesh.normals[i as usize]));
             let attributes = self.attributes(uvs, normals);
-            let p = p.map(|q| q.as_vec3());
+            let p = p.map(|q| q.to_real());
             self.out.triangles.push(Triangle { p0: p[0], material, p1: p[1], light, p2: p[2], attributes });
             self.primitives.push(Primitive::Triangle(p));
             self.references.push(id);
@@ -232,8 +233,8 @@ impl Pack<'_> {
         if uvs.is_none() && normals.is_none() {
             return NONE;
         }
-        let t = uvs.unwrap_or_default().map(|t| t.as_vec2());
-        let n = normals.unwrap_or_default().map(|n| n.as_vec3());
+        let t = uvs.unwrap_or_default().map(|t| t.to_real());
+        let n = normals.unwrap_or_default().map(|n| n.to_real());
         self.out.attributes.push(Attributes {
             n0: n[0],
             u0: t[0].x,

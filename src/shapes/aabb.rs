@@ -1,7 +1,8 @@
 //! Axis-aligned boxes (host side only).
 
-use crate::math::FAR;
-use glam::Vec3;
+use super::math::FAR;
+use super::real::{Real, ToDouble, Vec3};
+use glam::DVec3;
 
 /// A closed box; empty when a component of `min` exceeds that of `max`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,13 +44,13 @@ impl Aabb {
     /// Half the surface area, in squared scene units; 0 when empty.
     #[inline]
     pub fn half_area(self) -> f64 {
-        let d = (self.max.as_dvec3() - self.min.as_dvec3()).max(glam::DVec3::ZERO);
+        let d = (self.max.to_double() - self.min.to_double()).max(DVec3::ZERO);
         d.x * d.y + d.y * d.z + d.z * d.x
     }
 
     /// The parts at and below, and at and above, the plane `axis = position`, which must lie inside.
     #[inline]
-    pub fn split(self, axis: usize, position: f32) -> (Aabb, Aabb) {
+    pub fn split(self, axis: usize, position: Real) -> (Aabb, Aabb) {
         let (mut low, mut high) = (self, self);
         low.max[axis] = position;
         high.min[axis] = position;

@@ -1,9 +1,9 @@
 //! Axis-parallel box by slabs. Twin: `shaders/shapes/cuboid.wgsl`.
 
+use super::math::{EPS, FAR, max_abs};
 use super::ray::{Hit, Ray};
-use crate::math::{EPS, FAR, max_abs};
-use crate::tables::Cuboid;
-use glam::{Vec2, Vec3};
+use super::real::{Real, Vec2, Vec3};
+use super::tables::Cuboid;
 
 /// Nearest crossing in `(t_min, hit.t)`; `hit.u` is the face: axis, plus 3 on the upper side.
 pub fn intersect_cuboid(cuboid: &Cuboid, reference: u32, ray: &Ray, hit: &mut Hit) {
@@ -24,7 +24,7 @@ pub fn intersect_cuboid(cuboid: &Cuboid, reference: u32, ray: &Ray, hit: &mut Hi
         let upward = v > 0.0;
         let t0 = if upward { a } else { b } / v;
         let t1 = if upward { b } else { a } / v;
-        let face = axis as f32;
+        let face = axis as Real;
         if t0 > near {
             near = t0;
             near_face = if upward { face } else { face + 3.0 };
@@ -45,7 +45,7 @@ pub fn intersect_cuboid(cuboid: &Cuboid, reference: u32, ray: &Ray, hit: &mut Hi
 }
 
 /// Outward normal of a face.
-pub fn cuboid_normal(face: f32) -> Vec3 {
+pub fn cuboid_normal(face: Real) -> Vec3 {
     let s = if face >= 3.0 { 1.0 } else { -1.0 };
     let axis = if face >= 3.0 { face - 3.0 } else { face };
     Vec3::new(
@@ -56,19 +56,19 @@ pub fn cuboid_normal(face: f32) -> Vec3 {
 }
 
 /// `position` moved onto a face.
-pub fn cuboid_project(cuboid: &Cuboid, position: Vec3, face: f32) -> Vec3 {
+pub fn cuboid_project(cuboid: &Cuboid, position: Vec3, face: Real) -> Vec3 {
     let n = cuboid_normal(face);
     let corner = if face >= 3.0 { cuboid.upper } else { cuboid.lower };
     position + (corner - position) * n.abs()
 }
 
 /// Bound of the distance between a projected point and its face.
-pub fn cuboid_error(cuboid: &Cuboid) -> f32 {
+pub fn cuboid_error(cuboid: &Cuboid) -> Real {
     16.0 * EPS * max_abs(cuboid.lower).max(max_abs(cuboid.upper))
 }
 
 /// Each face is the unit square: (z, y), (x, z) and (x, y) for the faces across x, y and z.
-pub fn cuboid_uv(cuboid: &Cuboid, position: Vec3, face: f32) -> Vec2 {
+pub fn cuboid_uv(cuboid: &Cuboid, position: Vec3, face: Real) -> Vec2 {
     let q = (position - cuboid.lower) / (cuboid.upper - cuboid.lower);
     let n = cuboid_normal(face).abs();
     if n.x > 0.0 {

@@ -1,9 +1,9 @@
 //! Flat disc and infinite plane. Twin: `shaders/shapes/disc.wgsl`.
 
+use super::math::{EPS, basis, max_abs};
 use super::ray::{Hit, Ray};
-use crate::math::{EPS, basis, max_abs};
-use crate::tables::{Disc, Plane};
-use glam::{Vec2, Vec3};
+use super::real::{Real, Vec2, Vec3};
+use super::tables::{Disc, Plane};
 
 /// The crossing in `(t_min, hit.t)`.
 pub fn intersect_disc(disc: &Disc, reference: u32, ray: &Ray, hit: &mut Hit) {
@@ -23,7 +23,7 @@ pub fn intersect_disc(disc: &Disc, reference: u32, ray: &Ray, hit: &mut Hit) {
 }
 
 /// Bound of the distance between a projected point and the disc's plane.
-pub fn disc_error(disc: &Disc) -> f32 {
+pub fn disc_error(disc: &Disc) -> Real {
     16.0 * EPS * (max_abs(disc.center) + disc.radius)
 }
 
@@ -52,6 +52,6 @@ pub fn plane_project(position: Vec3, point: Vec3, normal: Vec3) -> Vec3 {
 }
 
 /// Bound of the distance between a projected point and the plane.
-pub fn plane_error(plane: &Plane, position: Vec3) -> f32 {
+pub fn plane_error(plane: &Plane, position: Vec3) -> Real {
     16.0 * EPS * (max_abs(plane.point) + max_abs(position))
 }

@@ -8,8 +8,8 @@ use super::ray::{Hit, Ray};
 use super::rectangle::intersect_rectangle;
 use super::revolution::intersect_patch;
 use super::sphere::intersect_sphere;
+use super::tables::*;
 use super::triangle::{RayShear, intersect_triangle};
-use crate::tables::*;
 
 /// A ray against the shape that `reference` names.
 #[inline]

@@ -9,9 +9,10 @@
 //! origin. So every plane is taken as a slab of half-width `SLACK` times that length: a ray that is in the slab
 //! visits both sides, and the nearest computed hit is found exactly as by trying all primitives.
 
+use super::math::EPS;
 use super::ray::{Hit, NONE, Ray};
-use bytemuck::{Pod, Zeroable};
-use glam::Vec3;
+use super::real::{Bits, Plain, Real, Vec3};
+use bytemuck::Zeroable;
 
 /// Entries of the short stack.
 pub const STACK: usize = 24;
@@ -20,30 +21,30 @@ pub const MAX_DEPTH: u32 = 32;
 /// Half-width of the slab about a plane, relative to the largest coordinate of the tree's box as seen from the ray's
 /// origin: 64 roundings. The watertight triangle test is bounded by about 30 (7 is the most seen), the plane's
 /// distance by 3.
-const SLACK: f32 = 3.814_697_3e-6;
+const SLACK: Real = 64.0 * EPS;
 /// Stands for a direction component that is (nearly) zero: so small that a slab which the ray runs beside is never
 /// reached within the tree, and one which the ray runs in is never left.
-const LEVEL: f32 = 1e-20;
+const LEVEL: Real = 1e-20;
 
-/// A node of the kd-tree in 8 bytes. A left child follows its parent in memory.
+/// A node of the kd-tree in 8 bytes (16 in f64). A left child follows its parent in memory.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain, Zeroable)]
 pub struct Node {
-    /// Interior: bits of the splitting plane's position (f32). Leaf: index of its first reference.
-    pub word0: u32,
+    /// Interior: bits of the splitting plane's position. Leaf: index of its first reference.
+    pub word0: Bits,
     /// Interior: index of the right child << 2 | axis. Leaf: number of references << 2 | 3.
     pub word1: u32,
 }
 
 impl Node {
     /// A node with two children, split at `axis = position`.
-    pub fn interior(axis: usize, position: f32, right: u32) -> Node {
+    pub fn interior(axis: usize, position: Real, right: u32) -> Node {
         Node { word0: position.to_bits(), word1: right << 2 | axis as u32 }
     }
 
     /// A leaf with `count` references from `first` on.
     pub fn leaf(first: u32, count: u32) -> Node {
-        Node { word0: first, word1: count << 2 | 3 }
+        Node { word0: first as Bits, word1: count << 2 | 3 }
     }
 
     /// Whether the node has no children.
@@ -54,8 +55,8 @@ impl Node {
 
     /// Interior: axis and position of the plane, and index of the right child.
     #[inline]
-    pub fn plane(self) -> (usize, f32, u32) {
-        ((self.word1 & 3) as usize, f32::from_bits(self.word0), self.word1 >> 2)
+    pub fn plane(self) -> (usize, Real, u32) {
+        ((self.word1 & 3) as usize, Real::from_bits(self.word0), self.word1 >> 2)
     }
 
     /// Leaf: the range of its references.
@@ -83,12 +84,12 @@ pub struct Tree<'a> {
 #[derive(Clone, Copy, Default)]
 struct Waiting {
     node: u32,
-    begin: f32,
-    end: f32,
+    begin: Real,
+    end: Real,
 }
 
 #[inline]
-fn reciprocal(d: f32) -> f32 {
+fn reciprocal(d: Real) -> Real {
     1.0 / if d.abs() < LEVEL { LEVEL } else { d }
 }
 
@@ -131,7 +132,7 @@ pub fn traverse<const SIZE: usize>(
         return;
     }
     // Per axis: origin, inverse direction, slack.
-    let axes: [[f32; 4]; 4] = [
+    let axes: [[Real; 4]; 4] = [
         [ray.origin.x, inverse.x, slack.x, 0.0],
         [ray.origin.y, inverse.y, slack.y, 0.0],
         [ray.origin.z, inverse.z, slack.z, 0.0],
@@ -156,7 +157,7 @@ pub fn traverse<const SIZE: usize>(
             let right = node.word1 >> 2;
             let near = if inverse > 0.0 { index + 1 } else { right };
             let far = if inverse > 0.0 { right } else { index + 1 };
-            let t = (f32::from_bits(node.word0) - origin) * inverse;
+            let t = (Real::from_bits(node.word0) - origin) * inverse;
             let t_first = t - slack;
             let t_last = t + slack;
             if t_first > end {

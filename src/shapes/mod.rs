@@ -1,5 +1,7 @@
 //! Shapes: what a ray meets, each the twin of a file in `shaders/shapes/`.
 
+use super::{math, real, tables};
+
 pub mod aabb;
 pub mod cuboid;
 pub mod disc;

@@ -1,13 +1,13 @@
 //! Parallelogram. Twin: `shaders/shapes/rectangle.wgsl`.
 
+use super::math::{EPS, max_abs};
 use super::ray::{Hit, Ray};
-use crate::math::{EPS, max_abs};
-use crate::tables::Rectangle;
-use glam::Vec3;
+use super::real::{Real, Vec3};
+use super::tables::Rectangle;
 
 /// How far beyond its edges, in edge lengths, a parallelogram still counts: neighbours that share an edge have
 /// no gap.
-const EDGE: f32 = 8.0 * EPS;
+const EDGE: Real = 8.0 * EPS;
 
 /// The crossing in `(t_min, hit.t)`; `hit.u`, `hit.v` are s and t.
 pub fn intersect_rectangle(rectangle: &Rectangle, reference: u32, ray: &Ray, hit: &mut Hit) {
@@ -30,11 +30,11 @@ pub fn intersect_rectangle(rectangle: &Rectangle, reference: u32, ray: &Ray, hit
 }
 
 /// The point at (s, t).
-pub fn rectangle_point(rectangle: &Rectangle, s: f32, t: f32) -> Vec3 {
+pub fn rectangle_point(rectangle: &Rectangle, s: Real, t: Real) -> Vec3 {
     rectangle.origin + rectangle.u * s + rectangle.v * t
 }
 
 /// Bound of the distance between [`rectangle_point`] and the plane.
-pub fn rectangle_error(rectangle: &Rectangle) -> f32 {
+pub fn rectangle_error(rectangle: &Rectangle) -> Real {
     16.0 * EPS * (max_abs(rectangle.origin) + max_abs(rectangle.u) + max_abs(rectangle.v))
 }

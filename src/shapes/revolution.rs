@@ -1,32 +1,32 @@
 //! Bezier surfaces of revolution: frame, ray intersection and surface data.
 //! Twin: `shaders/shapes/revolution.wgsl`.
 
-use bytemuck::{Pod, Zeroable};
-use glam::{Vec2, Vec3};
+use super::real::{LEADING, Plain, Real, Vec2, Vec3, roundings};
+use bytemuck::Zeroable;
 
 pub use super::revolution_profile::{LocalRay, MAX_DEGREE, Patch, profile_point, ring_point};
 pub use super::revolution_roots::{BRACKETED, PatchHit, patch_miss};
 
+use super::math::trig::sin_cos;
+use super::math::{FAR, TAU, unit};
 use super::revolution_roots::first_root;
-use crate::math::trig::sin_cos;
-use crate::math::{FAR, TAU, unit};
 
 /// Relative error of a hit's position, measured in the coordinates' and the surface's size: 16 roundings.
-const REVOLUTION_ERROR: f32 = 9.6e-7;
+const REVOLUTION_ERROR: Real = roundings(9.6e-7);
 
 /// A surface of revolution's frame and attributes. A scene point p has the local coordinates
 /// (x_axis . q, y_axis . q, z_axis . q) / scale with q = p - center; the axes are orthonormal.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[derive(Clone, Copy, Debug, PartialEq, Plain, Zeroable)]
 pub struct Revolution {
     /// Local x axis in the scene; theta = 0 lies along it.
     pub x_axis: Vec3,
     /// Scene units per local unit.
-    pub scale: f32,
+    pub scale: Real,
     /// The axis of revolution.
     pub y_axis: Vec3,
     /// Local units per scene unit.
-    pub inv_scale: f32,
+    pub inv_scale: Real,
     /// Local z axis; theta = pi / 2 lies along it.
     pub z_axis: Vec3,
     /// Number of profile segments, for v.
@@ -50,16 +50,16 @@ pub struct RevolutionSurface {
     pub position: Vec3,
     /// Bound on the distance from `position` to the true surface and to the ray's hit on it, across the
     /// surface, scene units.
-    pub error: f32,
+    pub error: Real,
     /// Unit normal; outward where the profile is drawn upward.
     pub normal: Vec3,
     /// u around the axis, v along the profile over all its segments.
     pub uv: Vec2,
 }
 
-/// `x` with its last 12 bits cleared: products of two such numbers are exact.
-fn leading_bits(x: f32) -> f32 {
-    f32::from_bits(x.to_bits() & 0xffff_f000)
+/// `x` with the last half of its bits cleared: products of two such numbers are exact.
+fn leading_bits(x: Real) -> Real {
+    Real::from_bits(x.to_bits() & LEADING)
 }
 
 /// The ray in the frame of `revolution`, its origin moved next to the center. The move is exact up to a
@@ -90,8 +90,8 @@ pub fn intersect_patch(
     piece: &Patch,
     origin: Vec3,
     direction: Vec3,
-    t_min: f32,
-    t_max: f32,
+    t_min: Real,
+    t_max: Real,
 ) -> PatchHit {
     let mut ray = local_ray(revolution, origin, direction);
     let o = ray.origin;
@@ -143,13 +143,13 @@ pub fn revolution_surface(
     points: &[Vec2],
     revolution: &Revolution,
     piece: &Patch,
-    theta: f32,
-    tau: f32,
+    theta: Real,
+    tau: Real,
 ) -> RevolutionSurface {
     let mut at = ring_point(points, piece, theta, tau);
     let p = at.point * revolution.scale;
     // The tangent alone gives the normal, on the axis too; at a cusp the tangent next to it stands in.
-    if at.d_tau.dot(at.d_tau) <= 1e-8 * piece.length * piece.length {
+    if at.d_tau.dot(at.d_tau) <= roundings(1e-8) * piece.length * piece.length {
         at = ring_point(points, piece, theta, tau + (0.5 - tau) * 0.001);
     }
     let (sin, cos) = sin_cos(theta);
@@ -167,6 +167,6 @@ pub fn revolution_surface(
         position,
         error: REVOLUTION_ERROR * size,
         normal,
-        uv: Vec2::new(u - u.floor(), (piece.segment as f32 + t) / revolution.segments as f32),
+        uv: Vec2::new(u - u.floor(), (piece.segment as Real + t) / revolution.segments as Real),
     }
 }

@@ -5,10 +5,10 @@
 //! the profile has size about one. The host cuts the profile into *patches*: short Bezier curves that are
 //! graphs h = phi(s) over their chord, with |phi'| <= `slope` and phi within [`phi_min`, `phi_max`].
 
-use bytemuck::{Pod, Zeroable};
-use glam::{Vec2, Vec3, Vec4};
+use super::real::{Plain, Real, Vec2, Vec3, Vec4, roundings};
+use bytemuck::Zeroable;
 
-use crate::math::trig::{kept, sin_cos};
+use super::math::trig::{kept, sin_cos};
 
 /// Largest degree of a profile segment.
 pub const MAX_DEGREE: usize = 15;
@@ -17,7 +17,7 @@ pub const MAX_DEGREE: usize = 15;
 /// (s, h) of a profile point (r, y): s along `axis`, h along (axis.y, -axis.x), from `origin`; so h grows
 /// outward on an upward chord.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[derive(Clone, Copy, Debug, PartialEq, Plain, Zeroable)]
 pub struct Patch {
     /// Index of the revolution.
     pub revolution: u32,
@@ -32,27 +32,27 @@ pub struct Patch {
     /// Chord direction (r, y), unit.
     pub axis: Vec2,
     /// Least and largest radius, rounded outward.
-    pub r_min: f32,
+    pub r_min: Real,
     /// See `r_min`.
-    pub r_max: f32,
+    pub r_max: Real,
     /// Least and largest height, rounded outward.
-    pub y_min: f32,
+    pub y_min: Real,
     /// See `y_min`.
-    pub y_max: f32,
+    pub y_max: Real,
     /// Range of phi, rounded outward; holds 0.
-    pub phi_min: f32,
+    pub phi_min: Real,
     /// See `phi_min`.
-    pub phi_max: f32,
+    pub phi_max: Real,
     /// Bound on |phi'|.
-    pub slope: f32,
+    pub slope: Real,
     /// Length of the chord.
-    pub length: f32,
+    pub length: Real,
     /// Curve parameter of the segment at tau = 0 and tau = 1.
-    pub t0: f32,
+    pub t0: Real,
     /// See `t0`.
-    pub t1: f32,
+    pub t1: Real,
     /// Between two points, phi' leaves the range of its values there by no more than this.
-    pub wobble: f32,
+    pub wobble: Real,
     /// Zero.
     pub padding: u32,
 }
@@ -64,26 +64,26 @@ pub struct LocalRay {
     /// Local origin.
     pub origin: Vec3,
     /// Scene distance of `origin`.
-    pub start: f32,
+    pub start: Real,
     /// Local direction, as long as the scene's.
     pub direction: Vec3,
     /// -1 for the part before the closest approach to the axis, 1 for the part after it.
-    pub side: f32,
+    pub side: Real,
 }
 
 /// A point of a ray in chord coordinates; s(l) and h(l) are convex or concave on each side of the axis.
 #[derive(Clone, Copy, Debug)]
 pub struct RayPoint {
     /// Distance from the local origin.
-    pub l: f32,
+    pub l: Real,
     /// Along the chord.
-    pub s: f32,
+    pub s: Real,
     /// Across the chord.
-    pub h: f32,
+    pub h: Real,
     /// ds/dl.
-    pub ds: f32,
+    pub ds: Real,
     /// dh/dl.
-    pub dh: f32,
+    pub dh: Real,
 }
 
 /// A surface point with its two partial derivatives, local units.
@@ -98,7 +98,7 @@ pub struct RingPoint {
 }
 
 /// The patch's profile at `tau` with its derivative, (s, h, ds/dtau, dh/dtau), by de Casteljau.
-pub fn profile_point(points: &[Vec2], piece: &Patch, tau: f32) -> Vec4 {
+pub fn profile_point(points: &[Vec2], piece: &Patch, tau: Real) -> Vec4 {
     let n = piece.degree;
     let mut b = [Vec2::ZERO; MAX_DEGREE + 1];
     for i in 0..=n {
@@ -111,12 +111,12 @@ pub fn profile_point(points: &[Vec2], piece: &Patch, tau: f32) -> Vec4 {
     }
     let leg = b[1] - b[0];
     let point = b[0] + leg * tau;
-    let tangent = leg * n as f32;
+    let tangent = leg * n as Real;
     Vec4::new(point.x, point.y, tangent.x, tangent.y)
 }
 
 /// The ray at distance `l`.
-pub fn ray_point(piece: &Patch, ray: &LocalRay, l: f32) -> RayPoint {
+pub fn ray_point(piece: &Patch, ray: &LocalRay, l: Real) -> RayPoint {
     let o = ray.origin;
     let d = ray.direction;
     let x = o.x + d.x * l;
@@ -138,7 +138,7 @@ pub fn ray_point(piece: &Patch, ray: &LocalRay, l: f32) -> RayPoint {
 }
 
 /// The parameter at chord coordinate `s`: Newton on the monotone s(tau), kept inside a bracket.
-pub fn tau_at(points: &[Vec2], piece: &Patch, s: f32) -> f32 {
+pub fn tau_at(points: &[Vec2], piece: &Patch, s: Real) -> Real {
     let mut low = 0.0;
     let mut high = 1.0;
     let mut tau = (s / piece.length).clamp(0.0, 1.0);
@@ -157,7 +157,7 @@ pub fn tau_at(points: &[Vec2], piece: &Patch, s: f32) -> f32 {
         }
         let moved = (next - tau).abs();
         tau = next;
-        if moved <= 1e-7 {
+        if moved <= roundings(1e-7) {
             break;
         }
     }
@@ -183,7 +183,7 @@ pub fn profile_offset(points: &[Vec2], piece: &Patch, at: RayPoint, exact: bool)
 }
 
 /// S and its derivatives at (theta, tau).
-pub fn ring_point(points: &[Vec2], piece: &Patch, theta: f32, tau: f32) -> RingPoint {
+pub fn ring_point(points: &[Vec2], piece: &Patch, theta: Real, tau: Real) -> RingPoint {
     let p = profile_point(points, piece, tau);
     let (sin, cos) = sin_cos(theta);
     // Added one by one: Mesa rewrites e + (a b + c d).

@@ -8,13 +8,13 @@
 //! from the chord's cone; where that system is singular (axis, silhouette, cusp) or leaves the interval, by a
 //! bracketed solve of F in l alone, which is regular everywhere.
 
-use glam::{Vec2, Vec3, Vec4};
+use super::real::{Real, Vec2, Vec3, Vec4, root_roundings, roundings};
 
+use super::math::FAR;
+use super::math::trig::arctan2;
 use super::revolution_profile::{
     LocalRay, Patch, RayPoint, RingPoint, profile_offset, ray_point, ring_point,
 };
-use crate::math::FAR;
-use crate::math::trig::arctan2;
 
 /// Newton steps at most.
 pub const NEWTON_STEPS: u32 = 15;
@@ -25,23 +25,23 @@ pub const BRACKETED: u32 = 256;
 /// Intervals looked at on one side of the axis at most.
 const MARCH_LIMIT: u32 = 256;
 /// Shortest interval, as a part of the first: nearer roots are a graze that rounding makes or undoes.
-const MARCH_LEAST: f32 = 1.0 / 8192.0;
+const MARCH_LEAST: Real = root_roundings(1.0 / 8192.0);
 /// Length by which a patch reaches past its ends, in local units; several roundings of a local coordinate.
-const END_TOLERANCE: f32 = 3e-7;
+const END_TOLERANCE: Real = roundings(3e-7);
 /// Newton steps shorter than this (local units) end the iteration.
-const STEP_TOLERANCE: f32 = 4e-7;
+const STEP_TOLERANCE: Real = roundings(4e-7);
 /// Residuals of this size may be rounding alone.
-const RESIDUAL_NOISE: f32 = 1e-6;
+const RESIDUAL_NOISE: Real = roundings(1e-6);
 
 /// Where a ray meets a patch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PatchHit {
     /// Distance along the ray, scene units; [`FAR`] when there is no hit.
-    pub t: f32,
+    pub t: Real,
     /// Angle about the axis, radians.
-    pub theta: f32,
+    pub theta: Real,
     /// Parameter of the patch, 0 to 1.
-    pub tau: f32,
+    pub tau: Real,
     /// Newton steps taken, plus [`BRACKETED`].
     pub steps: u32,
 }
@@ -55,7 +55,7 @@ pub fn patch_miss() -> PatchHit {
 /// as good as zero.
 pub fn newton_step(direction: Vec3, f: Vec3, at: &RingPoint) -> Vec4 {
     let det = direction.dot(at.d_theta.cross(at.d_tau));
-    if det * det <= (1e-8 * at.d_theta.dot(at.d_theta)) * at.d_tau.dot(at.d_tau) {
+    if det * det <= (roundings(1e-8) * at.d_theta.dot(at.d_theta)) * at.d_tau.dot(at.d_tau) {
         return Vec4::ZERO;
     }
     let g = at.d_tau.cross(f);
@@ -169,7 +169,7 @@ fn find_root(
     ray: &LocalRay,
     a: RayPoint,
     b: RayPoint,
-    slack: f32,
+    slack: Real,
 ) -> PatchHit {
     // h = 0 is the cone over the chord.
     let rise = b.h - a.h;
@@ -200,7 +200,7 @@ fn find_root(
 
 /// Range (low, high) of F' between two chord points, where h' and s' are monotone and phi' lies in
 /// [d_phi_low, d_phi_high].
-fn slope_range(a: RayPoint, b: RayPoint, d_phi_low: f32, d_phi_high: f32) -> Vec2 {
+fn slope_range(a: RayPoint, b: RayPoint, d_phi_low: Real, d_phi_high: Real) -> Vec2 {
     let s_low = a.ds.min(b.ds);
     let s_high = a.ds.max(b.ds);
     let least =
@@ -210,7 +210,7 @@ fn slope_range(a: RayPoint, b: RayPoint, d_phi_low: f32, d_phi_high: f32) -> Vec
 }
 
 /// The first root of F in [begin, end], which lies on one side of the closest approach to the axis.
-pub fn first_root(points: &[Vec2], piece: &Patch, ray: &LocalRay, begin: f32, end: f32) -> PatchHit {
+pub fn first_root(points: &[Vec2], piece: &Patch, ray: &LocalRay, begin: Real, end: Real) -> PatchHit {
     if begin >= end {
         return patch_miss();
     }

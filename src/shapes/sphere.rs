@@ -2,10 +2,10 @@
 //! With d = o - anchor and k = 1/R a ray meets it where
 //! `(k/2) t^2 + (v.n + k d.v) t + (d.n + k |d|^2 / 2) = 0`. Twin: `shaders/shapes/sphere.wgsl`.
 
+use super::math::{EPS, PI, TAU, max_abs, trig::arctan2, unit};
 use super::ray::{Hit, Ray};
-use crate::math::{EPS, PI, TAU, max_abs, trig::arctan2, unit};
-use crate::tables::Sphere;
-use glam::{Vec2, Vec3};
+use super::real::{Real, Vec2, Vec3};
+use super::tables::Sphere;
 
 /// Nearest crossing in `(t_min, hit.t)`.
 pub fn intersect_sphere(sphere: &Sphere, reference: u32, ray: &Ray, hit: &mut Hit) {
@@ -52,7 +52,7 @@ pub fn sphere_project(sphere: &Sphere, position: Vec3) -> Vec3 {
 }
 
 /// Bound of the distance between a projected point and the true sphere.
-pub fn sphere_error(sphere: &Sphere, position: Vec3) -> f32 {
+pub fn sphere_error(sphere: &Sphere, position: Vec3) -> Real {
     16.0 * EPS * (max_abs(sphere.anchor) + max_abs(position - sphere.anchor))
 }
 

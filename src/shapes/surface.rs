@@ -2,14 +2,14 @@
 
 use super::cuboid::{cuboid_error, cuboid_normal, cuboid_project, cuboid_uv};
 use super::disc::{disc_error, disc_uv, plane_error, plane_project};
+use super::math::unit;
 use super::ray::{Hit, Ray};
+use super::real::{Real, Vec2, Vec3};
 use super::rectangle::{rectangle_error, rectangle_point};
 use super::revolution::revolution_surface;
 use super::sphere::{sphere_error, sphere_normal, sphere_project, sphere_uv};
+use super::tables::*;
 use super::triangle::{triangle_error, triangle_normal, triangle_point};
-use crate::math::unit;
-use crate::tables::*;
-use glam::{Vec2, Vec3};
 
 /// The surface at a hit.
 #[derive(Clone, Copy, Debug)]
@@ -17,7 +17,7 @@ pub struct Surface {
     /// Point on the surface, in scene space.
     pub position: Vec3,
     /// Bound of its distance from the true surface.
-    pub error: f32,
+    pub error: Real,
     /// Geometric unit normal, on the shape's outer side.
     pub normal: Vec3,
     /// Material index.
@@ -29,7 +29,7 @@ pub struct Surface {
     /// Texture coordinates.
     pub uv: Vec2,
     /// Second coordinate of the shape's own (u, v): on revolutions the profile parameter.
-    pub v: f32,
+    pub v: Real,
 }
 
 /// The surface at `hit` of `ray`.

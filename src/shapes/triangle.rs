@@ -6,13 +6,14 @@
 //! the triangle is thin as the ray sees it, the rounding of the products (Dekker 1971) is added, which makes the signs
 //! exact and the weights accurate.
 
+use super::math::EPS;
 use super::ray::{Hit, Ray};
-use bytemuck::{Pod, Zeroable};
-use glam::Vec3;
+use super::real::{LEADING, Plain, Real, Vec3};
+use bytemuck::Zeroable;
 
 /// A triangle in scene space.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[derive(Clone, Copy, Debug, Plain, Zeroable)]
 pub struct Triangle {
     /// First vertex.
     pub p0: Vec3,
@@ -72,16 +73,16 @@ fn sheared(p: Vec3, shear: &RayShear, ray: &Ray) -> Vec3 {
 }
 
 /// `a * b - p` exactly, where `p` is the rounded product (Dekker 1971, with the halves cut by a mask).
-fn product_error(a: f32, b: f32, p: f32) -> f32 {
-    let a_high = f32::from_bits(a.to_bits() & 0xffff_f000);
-    let b_high = f32::from_bits(b.to_bits() & 0xffff_f000);
+fn product_error(a: Real, b: Real, p: Real) -> Real {
+    let a_high = Real::from_bits(a.to_bits() & LEADING);
+    let b_high = Real::from_bits(b.to_bits() & LEADING);
     let a_low = a - a_high;
     let b_low = b - b_high;
     ((a_high * b_high - p) + a_high * b_low + a_low * b_high) + a_low * b_low
 }
 
 /// `a * d - b * c` with the right sign and a few correct digits at least.
-fn exact_cross(a: f32, b: f32, c: f32, d: f32) -> f32 {
+fn exact_cross(a: Real, b: Real, c: Real, d: Real) -> Real {
     let p = a * d;
     let q = b * c;
     (p - q) + (product_error(a, d, p) - product_error(b, c, q))
@@ -136,14 +137,14 @@ pub fn triangle_normal(triangle: &Triangle) -> Vec3 {
 }
 
 /// The point with barycentric weights `(1 - u - v, u, v)`.
-pub fn triangle_point(triangle: &Triangle, u: f32, v: f32) -> Vec3 {
+pub fn triangle_point(triangle: &Triangle, u: Real, v: Real) -> Vec3 {
     triangle.p0 + (triangle.p1 - triangle.p0) * u + (triangle.p2 - triangle.p0) * v
 }
 
 /// How far (scene units) a new ray must start from [`triangle_point`] along the normal so as not to meet the triangle
 /// again: 16 roundings of the largest coordinate. The point itself is off by less than 6 of them, the
 /// moved origin by 2 more.
-pub fn triangle_error(triangle: &Triangle) -> f32 {
+pub fn triangle_error(triangle: &Triangle) -> Real {
     let m = triangle.p0.abs().max(triangle.p1.abs()).max(triangle.p2.abs());
-    9.536_743e-7 * m.x.max(m.y).max(m.z)
+    16.0 * EPS * m.x.max(m.y).max(m.z)
 }

@@ -1,0 +1,64 @@
+//! The CPU engine in f64: the sources of the f32 engine, compiled once more with `double/real.rs` in the place of
+//! `real.rs`. It draws the same random numbers, packs the scene without rounding it to f32 and keeps directions as
+//! they are, so that a picture of it and one of [`crate::cpu`] differ by what single precision costs, and by that
+//! alone.
+
+#![allow(clippy::duplicate_mod, clippy::useless_conversion, clippy::unnecessary_cast)]
+
+pub mod real;
+
+#[path = "../math"]
+pub mod math {
+    //! The twin of [`crate::math`] in f64.
+
+    use super::real;
+
+    #[path = "../double/octahedral.rs"]
+    pub mod octahedral;
+    pub mod rng;
+    pub mod sampling;
+    #[path = "../double/trig.rs"]
+    pub mod trig;
+    pub mod vector;
+
+    pub use octahedral::*;
+    pub use vector::*;
+}
+
+#[path = "../build"]
+pub mod build {
+    //! The twin of [`crate::build`] in f64: what depends on the kernels' numbers.
+
+    use super::{real, shapes};
+
+    pub mod kdtree;
+    mod kdtree_bins;
+    mod kdtree_clip;
+    mod kdtree_sweep;
+    pub mod revolution;
+}
+
+#[path = "../camera.rs"]
+pub mod camera;
+#[path = "../cpu/mod.rs"]
+pub mod cpu;
+#[path = "../features.rs"]
+pub mod features;
+#[path = "../grid.rs"]
+pub mod grid;
+#[path = "../kernels/mod.rs"]
+pub mod kernels;
+#[path = "../lights/mod.rs"]
+pub mod lights;
+#[path = "../materials/mod.rs"]
+pub mod materials;
+#[path = "../pack/mod.rs"]
+pub mod pack;
+#[path = "../plan.rs"]
+pub mod plan;
+#[path = "../probe.rs"]
+pub mod probe;
+#[path = "../shapes/mod.rs"]
+pub mod shapes;
+#[path = "../tables.rs"]
+pub mod tables;

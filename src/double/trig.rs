@@ -1,0 +1,22 @@
+//! Elementary functions in f64, from the standard library: no GPU has to give the same bits. The twin in f32 is
+//! `src/math/trig.rs`.
+
+/// `x` itself. In f32 it hides `x` from shader compilers.
+pub fn kept(x: f64) -> f64 {
+    x
+}
+
+/// `(sin x, cos x)` for x in radians.
+pub fn sin_cos(x: f64) -> (f64, f64) {
+    x.sin_cos()
+}
+
+/// Angle of (x, y) in (-pi, pi], radians. Zero for the origin.
+pub fn arctan2(y: f64, x: f64) -> f64 {
+    y.atan2(x)
+}
+
+/// e^x.
+pub fn exponential(x: f64) -> f64 {
+    x.exp()
+}
