@@ -20,10 +20,11 @@
 //!
 //! Modules depend on one another one way: [`real`] and [`math`], then [`tables`], [`shapes`], [`materials`], [`lights`],
 //! [`camera`] and [`grid`], then [`scene`], [`build`], [`pack`], then [`kernels`], [`probe`], [`plan`], then [`cpu`]
-//! and [`gpu`], then [`device`] and [`render`], and last [`hold`] and [`study`].
+//! and [`gpu`], then [`device`] and [`render`], and last [`burden`], [`hold`] and [`study`].
 //! Those from [`real`] to [`cpu`] are compiled twice: [`double`] is the same in f64.
 
 pub mod build;
+pub mod burden;
 pub mod camera;
 pub mod cpu;
 pub mod device;

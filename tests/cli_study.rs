@@ -183,10 +183,8 @@ fn an_interrupted_study_goes_on_to_the_same_end() {
     assert_eq!(ended.keys().collect::<Vec<_>>(), runs(&whole).keys().collect::<Vec<_>>());
     // What was finished was kept, not made again: its time is the same to the last digit.
     assert!(kept.iter().all(|(key, run)| ended[key] == *run));
-    assert_eq!(
-        json(&folder.join("out/study.json"))["results"]["products"].as_array().unwrap().is_empty(),
-        false
-    );
+    let study = json(&folder.join("out/study.json"));
+    assert!(!study["results"]["products"].as_array().unwrap().is_empty());
 }
 
 #[test]
@@ -271,4 +269,23 @@ fn lamps_shrink() {
     let output = caustica(&folder, &[&other[..], &grid].concat());
     assert_eq!(output.status.code(), Some(2));
     assert!(text(&output.stderr).contains("spheres"), "{}", text(&output.stderr));
+}
+
+/// The gain of leaving things out is a figure, and leaving them out changes no bit.
+#[test]
+fn info_measures_what_is_left_out() {
+    let folder = folder("measure");
+    let output = caustica(&folder, &["info", "ball.toml", "--measure", "--device", "cpu"]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    let said = text(&output.stdout);
+    let rows: Vec<&str> =
+        said.lines().filter(|line| line.starts_with("+ ") || line.starts_with("as it is")).collect();
+    assert!(rows.len() > 5 && rows.iter().all(|row| row.ends_with("yes")), "{said}");
+    for word in ["+ metal", "+ revolution", "+ all of these"] {
+        assert!(rows.iter().any(|row| row.starts_with(word)), "{word}: {said}");
+    }
+    assert!(!said.contains("+ glass"), "it has that: {said}");
+    let nothing =
+        caustica(&folder, &["info", "ball.toml", "--measure", "--device", "cpu", "--method", "path"]);
+    assert_eq!(nothing.status.code(), Some(2));
 }

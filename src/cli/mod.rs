@@ -11,6 +11,7 @@ mod failure;
 mod figures;
 mod info;
 mod interrupt;
+mod measure;
 mod output;
 mod overrides;
 mod progress;

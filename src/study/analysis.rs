@@ -131,9 +131,11 @@ impl Curve {
     /// Seconds to a relMSE that was not reached, if it goes on as it did.
     pub fn extrapolated_time_to(&self, rel_mse: f64) -> Option<f64> {
         let last = self.points.last()?;
-        let slope = self.rel_mse_by_time?.slope;
+        let law = self.rel_mse_by_time?;
+        let slope = law.slope;
         let seconds = last.seconds * (rel_mse / last.rel_mse.mean).powf(1.0 / slope);
-        (slope < -0.05 && seconds.is_finite()).then_some(seconds)
+        // Two points always lie on a line.
+        (law.half_width.is_some() && slope < -0.05 && seconds.is_finite()).then_some(seconds)
     }
 }
 

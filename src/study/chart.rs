@@ -294,7 +294,7 @@ fn has_values(series: &Series) -> bool {
 
 fn curve(series: &Series, plot: &Plot, out: &mut String) {
     let points = series.points.iter().filter(|(x, y, _)| *x > 0.0 && *y > 0.0);
-    let places: Vec<(f64, f64, Option<(f64, f64)>)> = points
+    let places: Vec<Value> = points
         .map(|(x, y, range)| {
             let range = range.map(|(low, high)| (plot.at_y(low.max(1e-300)), plot.at_y(high)));
             (plot.at_x(*x), plot.at_y(*y), range)

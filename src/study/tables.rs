@@ -62,7 +62,7 @@ pub fn json(results: &Results, parts: &[Part]) -> Value {
 
 /// Rows of a part's table: its head, then one for each configuration.
 pub fn rows(about: &About, part: &Part) -> Vec<Vec<String>> {
-    let (preview, goal) = (preview_seconds(about), part.common_error());
+    let (preview, goal) = (preview_seconds(about, part), part.common_error());
     let mut rows = vec![vec![
         "settings".to_owned(),
         "ms per pass".to_owned(),

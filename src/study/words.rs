@@ -13,7 +13,7 @@ pub fn configured(config: &Config) -> String {
 /// A positive number with three digits.
 pub fn short(value: f64) -> String {
     match value {
-        v if v == 0.0 => "0".to_owned(),
+        0.0 => "0".to_owned(),
         v if v.abs() < 0.001 => format!("{v:.2e}"),
         v if v.abs() < 0.1 => format!("{v:.4}"),
         v if v.abs() < 1.0 => format!("{v:.3}"),
@@ -43,14 +43,19 @@ pub fn theory(slope: &Slope) -> String {
     }
 }
 
-/// After how many seconds a preview is judged: two, or a quarter of the time where the renders are short.
-pub fn preview_seconds(about: &About) -> f64 {
-    if about.run_seconds >= 4.0 { 2.0 } else { about.run_seconds / 4.0 }
+/// After how many seconds a preview is judged: two, or a quarter of the time where the renders are short, but not before
+/// half of the settings have a picture.
+pub fn preview_seconds(about: &About, part: &Part) -> f64 {
+    let wanted = if about.run_seconds >= 4.0 { 2.0 } else { about.run_seconds / 4.0 };
+    let firsts = part.curves.iter().filter_map(|curve| Some(curve.points.first()?.seconds));
+    let mut firsts: Vec<f64> = firsts.collect();
+    firsts.sort_by(f64::total_cmp);
+    firsts.get(firsts.len() / 2).map_or(wanted, |half| wanted.max(*half))
 }
 
 /// What to take, in plain words: for a preview, for a final picture, and what not to.
 pub fn recommendations(about: &About, part: &Part) -> Vec<String> {
-    let (preview, end) = (preview_seconds(about), about.run_seconds);
+    let (preview, end) = (preview_seconds(about, part), about.run_seconds);
     let name = |curve: &Curve| configured(&about.configs[curve.config]);
     let mut sentences = Vec::new();
     let mut advise = |what: &str, seconds: f64| {
