@@ -20,7 +20,7 @@ pub const NAMES: [(&str, &str); 10] = [
     ("direct", "sampled,photons"),
     ("max_bounces", "4,8,32"),
     ("eye_samples", "1,4"),
-    ("device", "cpu,software,gpu"),
+    ("device", "cpu,cpu-f64,software"),
     ("lamp_area", "1,1e-2,1e-4,point"),
 ];
 

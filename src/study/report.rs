@@ -231,7 +231,7 @@ fn crops(conducted: &Conducted, part: &Part, number: usize, folder: &Folder, out
         let name = configured(&about.configs[curve.config]);
         match (seconds, curve.passes_to(goal)) {
             (Some(seconds), Some(passes)) => {
-                let figures = format!("after {} s; shown: {passes} passes", short(seconds));
+                let figures = format!("after {} s; shown: pass {passes}", short(seconds));
                 out.push_str(&picture(
                     folder,
                     &crop_name(curve.config, passes),
