@@ -3,10 +3,11 @@
 //!
 //! [`grid`] says which settings there are, [`truth`] what they are held against, [`render`] makes one progressive render
 //! with snapshots, [`conduct`] goes through all of them and keeps what it has in a [`folder`]. [`statistics`] and
-//! [`analysis`] make figures of that, [`chart`] and [`panels`] pictures, [`tables`] and [`report`] the files.
+//! [`analysis`] make figures of that, [`axis`], [`chart`] and [`panels`] pictures, [`tables`] and [`report`] the files.
 //! docs/study.md tells how to read them.
 
 pub mod analysis;
+pub mod axis;
 pub mod chart;
 pub mod conduct;
 pub mod crop;

@@ -204,7 +204,7 @@ pub fn lamp_chart(about: &About, parts: &[Part], seconds: f64) -> Option<Chart> 
     let mut ticks: Vec<(f64, String)> = parts
         .iter()
         .filter_map(|part| part.lamp())
-        .map(|lamp| (place(lamp), area(lamp).map_or("point".to_owned(), super::chart::number)))
+        .map(|lamp| (place(lamp), area(lamp).map_or("point".to_owned(), super::axis::number)))
         .collect();
     ticks.sort_by(|a, b| a.0.total_cmp(&b.0));
     (parts.len() > 1).then(|| Chart {

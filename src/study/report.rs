@@ -50,7 +50,7 @@ fn heading(lamp: Option<Lamp>) -> String {
     match lamp {
         None => String::new(),
         Some(Lamp::Point) => "Point lamp".to_owned(),
-        Some(Lamp::Area(area)) => format!("Lamp of area {}", super::chart::number(area)),
+        Some(Lamp::Area(area)) => format!("Lamp of area {}", super::axis::number(area)),
     }
 }
 

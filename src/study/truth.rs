@@ -24,7 +24,7 @@ pub enum TruthSpec {
     Files(Vec<PathBuf>),
     /// Renders of its own.
     Made {
-        /// By this method; none leaves the choice to [`choose`].
+        /// By this method; none leaves the choice to two short renders of each.
         method: Option<Method>,
         /// Seconds of rendering for each size of the lamps, all seeds together.
         seconds: f64,
