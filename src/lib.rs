@@ -20,10 +20,11 @@
 //!
 //! Modules depend on one another one way: [`real`] and [`math`], then [`tables`], [`shapes`], [`materials`], [`lights`],
 //! [`camera`] and [`grid`], then [`scene`], [`build`], [`limits`], [`pack`], then [`kernels`], [`probe`], [`plan`], then [`cpu`]
-//! and [`gpu`], then [`device`] and [`render`], and last [`hold`].
+//! and [`gpu`], then [`device`] and [`render`], and last [`burden`], [`hold`] and [`study`].
 //! Those from [`real`] to [`cpu`] are compiled twice: [`double`] is the same in f64.
 
 pub mod build;
+pub mod burden;
 pub mod camera;
 pub mod cpu;
 pub mod device;
@@ -48,4 +49,5 @@ pub mod render;
 pub mod scene;
 pub mod settings;
 pub mod shapes;
+pub mod study;
 pub mod tables;

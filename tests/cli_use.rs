@@ -187,13 +187,13 @@ fn help_lists_only_what_works() {
     let help = caustica(&folder, &["--help"]);
     assert_eq!(help.status.code(), Some(0));
     let help = text(&help.stdout);
-    for command in ["render", "compare", "diff", "info", "check", "devices", "tessellate"] {
+    for command in ["render", "compare", "diff", "study", "info", "check", "devices", "tessellate"] {
         assert!(help.contains(&format!("\n  {command} ")), "{command}: {help}");
         let own = caustica(&folder, &[command, "--help"]);
         assert_eq!(own.status.code(), Some(0), "{command}");
         assert!(text(&own.stdout).contains("Usage"), "{command}");
     }
-    for later in ["preview", "study", "--target-error", "--checkpoint", "--resume"] {
+    for later in ["preview", "--target-error", "--checkpoint", "--resume"] {
         assert!(!help.contains(&format!("\n  {later} ")), "{later}: {help}");
         assert!(!text(&caustica(&folder, &["render", "--help"]).stdout).contains(later), "{later}");
     }

@@ -7,6 +7,7 @@ use caustica::engine::EngineError;
 use caustica::film::FileError;
 use caustica::film::metrics::MetricsError;
 use caustica::scene::SceneErrors;
+use caustica::study::StudyError;
 use miette::{Report, miette};
 
 use super::output::message;
@@ -79,6 +80,19 @@ impl From<DeviceError> for Failure {
                 Self { code: Self::NO_SUCH_DEVICE, report: miette!(help = help, "{error}") }
             }
             DeviceError::Engine(_) => Self::failed(miette!("{error}")),
+        }
+    }
+}
+
+impl From<StudyError> for Failure {
+    fn from(error: StudyError) -> Self {
+        match error {
+            StudyError::Device(error) => error.into(),
+            StudyError::File(error) => error.into(),
+            StudyError::Grid(_) | StudyError::Folder { .. } | StudyError::Lamp { .. } => {
+                Self { code: Self::WRONG_USE, report: miette!("{error}") }
+            }
+            StudyError::Engine(_) | StudyError::Metrics(_) => Self::failed(miette!("{error}")),
         }
     }
 }

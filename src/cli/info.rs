@@ -9,7 +9,9 @@ use caustica::pack::{Packed, pack};
 use caustica::plan::{Kernel, Plan};
 use caustica::settings::Method;
 use caustica::tables::Scene;
+use clap::builder::NonEmptyStringValueParser;
 
+use super::measure;
 use super::output::result;
 use super::overrides::Overrides;
 use super::render::load;
@@ -21,13 +23,20 @@ use super::{Done, Failure};
 pub struct Arguments {
     /// Scene file
     scene: PathBuf,
+    /// Time every kernel with and without each thing that is left out, on each of these devices
+    #[arg(long)]
+    measure: bool,
+    /// Device to measure on: auto, gpu, software, cpu, or a part of a device's name; several are measured
+    #[arg(long, value_name = "DEVICE", value_parser = NonEmptyStringValueParser::new(), default_value = "auto", requires = "measure")]
+    device: Vec<String>,
     #[command(flatten)]
     overrides: Overrides,
 }
 
 const HELP: &str = "\
-Example:
-  caustica info scenes/caustics.toml --method ppm --size 1920x1080";
+Examples:
+  caustica info scenes/caustics.toml --method ppm --size 1920x1080
+  MESA_SHADER_CACHE_DISABLE=true caustica info scenes/cornell.toml --measure --device software --device cpu";
 
 /// What a render of a scene is made of.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -51,6 +60,11 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
         scene.name, film.width, film.height, settings.passes
     ))?;
     result(report(&packed, &plan))?;
+    if arguments.measure {
+        for device in &arguments.device {
+            measure::on_device(device, &packed, &settings)?;
+        }
+    }
     Ok(Done::Fully)
 }
 

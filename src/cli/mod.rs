@@ -11,10 +11,12 @@ mod failure;
 mod figures;
 mod info;
 mod interrupt;
+mod measure;
 mod output;
 mod overrides;
 mod progress;
 mod render;
+mod study;
 mod tessellate;
 
 use std::process::ExitCode;
@@ -44,6 +46,7 @@ enum Command {
     Render(render::Arguments),
     Compare(compare::Arguments),
     Diff(Box<diff::Arguments>),
+    Study(Box<study::Arguments>),
     Info(info::Arguments),
     Check(check::Arguments),
     Devices(devices::Arguments),
@@ -69,6 +72,7 @@ pub fn run() -> ExitCode {
         Command::Render(arguments) => render::run(arguments),
         Command::Compare(arguments) => compare::run(arguments),
         Command::Diff(arguments) => diff::run(*arguments),
+        Command::Study(arguments) => study::run(*arguments),
         Command::Info(arguments) => info::run(arguments),
         Command::Check(arguments) => check::run(arguments),
         Command::Devices(arguments) => devices::run(arguments),

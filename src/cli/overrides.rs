@@ -20,7 +20,7 @@ pub struct Overrides {
     pub passes: Option<u32>,
     /// Photons emitted per pass
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
-    photons: Option<u32>,
+    pub photons: Option<u32>,
     /// Start radius: pixels at the visible point as 2px, or scene units as 0.01
     #[arg(long, value_name = "R", value_parser = radius, allow_negative_numbers = true)]
     radius: Option<Radius>,
@@ -44,7 +44,7 @@ pub struct Overrides {
     seed: Option<u64>,
     /// Size of the picture in pixels; the vertical field of view stays
     #[arg(long, value_name = "WxH", value_parser = size)]
-    size: Option<(u32, u32)>,
+    pub size: Option<(u32, u32)>,
 }
 
 impl Overrides {
@@ -70,7 +70,7 @@ impl Overrides {
 }
 
 /// One of a setting's words, as scene files spell them.
-fn word<T: DeserializeOwned>(text: &str) -> Result<T, String> {
+pub fn word<T: DeserializeOwned>(text: &str) -> Result<T, String> {
     serde_json::from_value(text.into()).map_err(|error| error.to_string())
 }
 

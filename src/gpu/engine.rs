@@ -14,6 +14,7 @@ use crate::plan::{Kernel, Plan, Step};
 use crate::settings::Method;
 use crate::tables::Scene;
 use std::collections::BTreeMap;
+use std::time::Instant;
 
 /// Buffers of which each chunk of visible points has its own.
 const CHUNK_BUFFERS: [&str; 4] = ["visible_points", "gathered", "film", "statistics"];
@@ -39,6 +40,9 @@ pub struct GpuEngine {
     /// On a software driver: what to trace stopped paths again with.
     scene: Option<Scene>,
     device: String,
+    compile_seconds: BTreeMap<Kernel, f64>,
+    /// Seconds of each kernel in the pass at hand, where they are asked for.
+    run_seconds: Option<BTreeMap<Kernel, f64>>,
 }
 
 /// Records of each batch, rays of a pass, and invocations that the driver stopped.
@@ -90,6 +94,8 @@ impl GpuEngine {
             chunks,
             readings,
             plan,
+            compile_seconds: BTreeMap::new(),
+            run_seconds: None,
         };
         engine.compile(&scene)?;
         Ok(engine)
@@ -105,6 +111,7 @@ impl GpuEngine {
     /// Compiles the kernels of the plan. Each runs once over nothing, since some drivers compile at the first run.
     fn compile(&mut self, scene: &SceneTables) -> Result<(), EngineError> {
         for step in self.plan.steps(0, self.plan.batch_photons) {
+            let begun = Instant::now();
             if !self.programs.contains_key(&step.kernel) {
                 let program = Program::new(&self.gpu, step.kernel, &self.plan.features, scene)?;
                 self.programs.insert(step.kernel, program);
@@ -124,10 +131,25 @@ impl GpuEngine {
                     &group,
                     &Dispatch { first: 0, end: 0, ..step.dispatch },
                 );
+                self.recorder.finish(&self.gpu)?;
+                self.compile_seconds.entry(step.kernel).or_insert(begun.elapsed().as_secs_f64());
             }
             self.groups.insert(key, group);
         }
-        self.recorder.finish(&self.gpu).map(|_| ())
+        Ok(())
+    }
+
+    /// Seconds that each kernel took to compose, check and compile, until it had run over nothing.
+    pub fn compile_seconds(&self) -> &BTreeMap<Kernel, f64> {
+        &self.compile_seconds
+    }
+
+    /// Runs the next pass one kernel at a time; the seconds of each.
+    pub fn timed_pass(&mut self) -> Result<BTreeMap<Kernel, f64>, EngineError> {
+        self.run_seconds = Some(BTreeMap::new());
+        let done = self.pass();
+        let seconds = self.run_seconds.take().unwrap_or_default();
+        done.map(|_| seconds)
     }
 
     /// Submits what was recorded.
@@ -137,8 +159,23 @@ impl GpuEngine {
         Ok(())
     }
 
-    /// Runs a step in as many dispatches as the pace asks for.
+    /// Runs a step, by itself if its time is asked for.
     fn run(&mut self, step: &Step) -> Result<(), EngineError> {
+        if self.run_seconds.is_none() {
+            return self.record(step);
+        }
+        self.flush()?;
+        let begun = Instant::now();
+        self.record(step)?;
+        self.flush()?;
+        if let Some(seconds) = &mut self.run_seconds {
+            *seconds.entry(step.kernel).or_default() += begun.elapsed().as_secs_f64();
+        }
+        Ok(())
+    }
+
+    /// Records a step in as many dispatches as the pace asks for.
+    fn record(&mut self, step: &Step) -> Result<(), EngineError> {
         let Dispatch { mut first, end, .. } = step.dispatch;
         let whole = step.kernel == Kernel::GridScanSums;
         let granule = workgroup_items(step.kernel);

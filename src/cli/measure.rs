@@ -1,0 +1,78 @@
+//! `caustica info --measure`: what it gains to leave out what a scene does not require.
+
+use caustica::burden::{Costs, burdened, fully_burdened, left_out, on_cpu, on_gpu};
+use caustica::device::{self, DeviceKind};
+use caustica::features::Features;
+use caustica::gpu::AdapterChoice;
+use caustica::pack::Packed;
+use caustica::plan::Kernel;
+use caustica::settings::{Method, RenderSettings};
+
+use super::output::{message, result};
+use super::{Done, Failure};
+
+/// Passes of which the fastest counts.
+const PASSES: u32 = 5;
+/// Kernels whose code depends on the scene.
+const KERNELS: [Kernel; 3] = [Kernel::EyeTrace, Kernel::PhotonTrace, Kernel::Gather];
+
+/// Prints a table: the scene as it is, with each thing more, and with everything.
+pub fn on_device(wanted: &str, packed: &Packed, settings: &RenderSettings) -> Result<Done, Failure> {
+    let devices = device::list();
+    let (device, _) = device::pick(&device::parse(wanted), &devices)?;
+    if settings.method == Method::Path || device.kind == DeviceKind::CpuDouble {
+        return Err(Failure::wrong_use(
+            "there is nothing to measure: path tracing and the f64 engine are compiled once for all scenes",
+            "measure sppm or ppm on gpu, software or cpu",
+        ));
+    }
+    let cost = |packed: Packed| match device.kind {
+        DeviceKind::Cpu => on_cpu(packed, settings, PASSES),
+        _ => on_gpu(&AdapterChoice::Named(device.name.clone()), &packed, settings, PASSES),
+    };
+    if device.kind == DeviceKind::Software && std::env::var_os("MESA_SHADER_CACHE_DISABLE").is_none() {
+        message("warning: Mesa keeps compiled shaders; for true times say MESA_SHADER_CACHE_DISABLE=true");
+    }
+    let features = Features::of(&packed.scene, settings);
+    let with = |scene| Packed { scene, ..packed.clone() };
+    result(format_args!("\non {}, the fastest of {PASSES} passes:", device.name))?;
+    result(heading(device.kind))?;
+    let plain = cost(packed.clone())?;
+    result(line("as it is", &plain, &plain))?;
+    for feature in left_out(&features) {
+        let burdened = cost(with(burdened(&packed.scene, feature)))?;
+        result(line(&format!("+ {feature}"), &burdened, &plain))?;
+    }
+    let all = cost(with(fully_burdened(&packed.scene, &features)))?;
+    result(line("+ all of these", &all, &plain))?;
+    Ok(Done::Fully)
+}
+
+fn heading(kind: DeviceKind) -> String {
+    let mut line = format!("{:<18}", "");
+    if kind != DeviceKind::Cpu {
+        for kernel in KERNELS {
+            line += &format!("{:>25}", kernel.stem());
+        }
+    }
+    line += &format!("{:>12}", "all kernels");
+    if kind != DeviceKind::Cpu {
+        line += &format!("{:>12}", "compiling");
+    }
+    line + &format!("{:>12}", "same bits")
+}
+
+/// Compile and run time of the kernels in ms, then of all of them together.
+fn line(name: &str, costs: &Costs, plain: &Costs) -> String {
+    let ms = |seconds: f64| format!("{:.1} ms", 1000.0 * seconds);
+    let mut line = format!("{name:<18}");
+    for kernel in KERNELS.iter().filter_map(|kernel| costs.kernels.get(kernel)) {
+        line += &format!("{:>13} {:>11}", format!("c {}", ms(kernel.compile)), ms(kernel.run));
+    }
+    line += &format!("{:>12}", ms(costs.pass));
+    if !costs.kernels.is_empty() {
+        line += &format!("{:>12}", ms(costs.kernels.values().map(|cost| cost.compile).sum()));
+    }
+    let same = if costs.picture == plain.picture { "yes" } else { "no" };
+    line + &format!("{same:>12}")
+}

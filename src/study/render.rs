@@ -1,0 +1,131 @@
+//! One progressive render, with its picture at passes 1, 2, 4, 8, ... and at the end.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use crate::engine::{Engine, EngineError};
+use crate::film::Picture;
+
+/// A picture on its way.
+#[derive(Clone, Debug)]
+pub struct Snapshot {
+    /// Passes in it.
+    pub passes: u32,
+    /// Time that these passes took; reading and measuring pictures is not in it.
+    pub seconds: f64,
+    /// Photon paths emitted.
+    pub photons: u64,
+    /// Rays traced.
+    pub rays: u64,
+    /// The estimate.
+    pub picture: Picture,
+}
+
+/// Where a render ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Until {
+    /// No pass is begun after so many seconds of rendering.
+    Seconds(f64),
+    /// After so many passes.
+    Passes(u32),
+}
+
+/// Makes passes until the end, and hands over each power of two and the last. False where `interrupted` was set: the last
+/// snapshot is then missing.
+pub fn progressive(
+    engine: &mut dyn Engine,
+    until: Until,
+    interrupted: &AtomicBool,
+    take: &mut dyn FnMut(Snapshot),
+) -> Result<bool, EngineError> {
+    let (mut passes, mut photons, mut rays) = (0u32, 0, 0);
+    let mut time = Duration::ZERO;
+    loop {
+        let start = Instant::now();
+        let report = engine.pass()?;
+        time += start.elapsed();
+        passes += 1;
+        photons += report.photons;
+        rays += report.rays;
+        let last = match until {
+            Until::Seconds(seconds) => time.as_secs_f64() >= seconds || passes == u32::MAX,
+            Until::Passes(wanted) => passes >= wanted,
+        };
+        if last || passes.is_power_of_two() {
+            take(Snapshot { passes, seconds: time.as_secs_f64(), photons, rays, picture: engine.picture()? });
+        }
+        if last {
+            return Ok(true);
+        }
+        if interrupted.load(Ordering::Relaxed) {
+            return Ok(false);
+        }
+    }
+}
+
+/// Theory: an engine that counts its passes into the picture shows when each picture was taken.
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::engine::PassReport;
+
+    struct Counter {
+        passes: u32,
+        slow_picture: bool,
+    }
+
+    impl Engine for Counter {
+        fn device(&self) -> &str {
+            "counter"
+        }
+
+        fn pass(&mut self) -> Result<PassReport, EngineError> {
+            self.passes += 1;
+            std::thread::sleep(Duration::from_millis(2));
+            Ok(PassReport { photons: 5, rays: 3, ..PassReport::default() })
+        }
+
+        fn picture(&mut self) -> Result<Picture, EngineError> {
+            if self.slow_picture {
+                std::thread::sleep(Duration::from_millis(100));
+            }
+            Ok(Picture::from_fn(1, 1, |_, _| [self.passes as f32; 3]))
+        }
+    }
+
+    fn run(until: Until, interrupted: bool) -> (bool, Vec<Snapshot>) {
+        let mut taken = Vec::new();
+        let mut engine = Counter { passes: 0, slow_picture: true };
+        let flag = AtomicBool::new(interrupted);
+        let whole = progressive(&mut engine, until, &flag, &mut |snapshot| taken.push(snapshot)).unwrap();
+        (whole, taken)
+    }
+
+    #[test]
+    fn powers_of_two_and_the_last() {
+        let (whole, taken) = run(Until::Passes(11), false);
+        assert!(whole);
+        assert_eq!(taken.iter().map(|s| s.passes).collect::<Vec<_>>(), [1, 2, 4, 8, 11]);
+        assert!(
+            taken
+                .iter()
+                .all(|s| s.picture.rgb[0][0] == s.passes as f32 && s.photons == 5 * u64::from(s.passes))
+        );
+        assert!(taken.windows(2).all(|pair| pair[0].seconds < pair[1].seconds));
+        assert_eq!(run(Until::Passes(8), false).1.len(), 4, "the last is not taken twice");
+    }
+
+    /// Five pictures of 100 ms would end it after the first otherwise.
+    #[test]
+    fn taking_pictures_is_no_rendering() {
+        let (_, taken) = run(Until::Seconds(0.05), false);
+        let last = taken.last().unwrap();
+        assert!(last.passes >= 3 && last.seconds < 0.1, "{} passes in {} s", last.passes, last.seconds);
+    }
+
+    #[test]
+    fn an_interrupt_leaves_it_unfinished() {
+        let (whole, taken) = run(Until::Passes(5), true);
+        assert!(!whole && taken.len() == 1);
+    }
+}
