@@ -2,6 +2,36 @@
 
 use crate::film::{Picture, Rejections};
 
+/// Photon paths by how they ended; together those that were emitted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct PhotonEnds {
+    /// Met nothing any more.
+    pub escaped: u64,
+    /// Ended by roulette, with the probability of being absorbed.
+    pub absorbed: u64,
+    /// Ended by `max_bounces`.
+    pub cut: u64,
+}
+
+impl PhotonEnds {
+    /// From the counts at the places that `kernels::photon_trace` gives them.
+    pub fn of([escaped, absorbed, cut]: [u64; 3]) -> Self {
+        Self { escaped, absorbed, cut }
+    }
+
+    /// All of them.
+    pub fn total(&self) -> u64 {
+        self.escaped + self.absorbed + self.cut
+    }
+
+    /// Adds those of another pass.
+    pub fn add(&mut self, other: &Self) {
+        self.escaped += other.escaped;
+        self.absorbed += other.absorbed;
+        self.cut += other.cut;
+    }
+}
+
 /// What one pass did.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PassReport {
@@ -13,6 +43,8 @@ pub struct PassReport {
     pub eye_paths: u64,
     /// Rays traced in this pass: eye, shadow and photon segments.
     pub rays: u64,
+    /// How the photon paths ended.
+    pub ends: PhotonEnds,
     /// Gather radius of this pass in scene units: the mean over the visible points.
     pub radius: f64,
 }

@@ -292,7 +292,7 @@ impl Plan {
             ("visible_points", points * size_of::<VisiblePoint>() as u64),
             ("film", pixels * size_of::<FilmPixel>() as u64),
             ("gathered", points * size_of::<Gathered>() as u64),
-            ("counters", 16),
+            ("counters", 32),
         ];
         if self.features.has("local") {
             list.push(("statistics", points * size_of::<Statistics>() as u64));

@@ -67,7 +67,7 @@ pub fn probe(packed: &Packed, settings: &RenderSettings) -> Probe {
             .into_par_iter()
             .map(|id| {
                 let mut count = 0u64;
-                photon_trace(scene, &dispatch, sampled, id, |_| count += 1);
+                let _ = photon_trace(scene, &dispatch, sampled, id, |_| count += 1);
                 count
             })
             .sum()

@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use crate::engine::{Engine, EngineError, PassReport};
+use crate::engine::{Engine, EngineError, PassReport, PhotonEnds};
 use crate::film::{Picture, Rejections};
 
 /// When to stop; whichever comes first. At least one pass is made.
@@ -28,6 +28,8 @@ pub struct Progress {
     pub eye_paths: u64,
     /// Rays traced.
     pub rays: u64,
+    /// How the photon paths ended.
+    pub ends: PhotonEnds,
     /// Gather radius of the last pass in scene units, mean over the visible points.
     pub radius: f64,
     /// Since the first pass began.
@@ -60,6 +62,7 @@ impl Progress {
         self.photons += report.photons;
         self.eye_paths += report.eye_paths;
         self.rays += report.rays;
+        self.ends.add(&report.ends);
         self.radius = report.radius;
         self.elapsed = elapsed;
     }
@@ -122,8 +125,16 @@ fn render_keeping(
     keep: Keep,
 ) -> Result<Outcome, EngineError> {
     let start = Instant::now();
-    let mut progress =
-        Progress { stop, passes: 0, photons: 0, eye_paths: 0, rays: 0, radius: 0.0, elapsed: Duration::ZERO };
+    let mut progress = Progress {
+        stop,
+        passes: 0,
+        photons: 0,
+        eye_paths: 0,
+        rays: 0,
+        ends: PhotonEnds::default(),
+        radius: 0.0,
+        elapsed: Duration::ZERO,
+    };
     let mut kept: Option<Kept> = None;
     let mut next_keep = keep.every;
     progress.add(&engine.pass()?, start.elapsed());
@@ -209,7 +220,14 @@ mod tests {
             }
             self.passes += 1;
             let i = u64::from(self.passes);
-            Ok(PassReport { photons: 10, records: 3, eye_paths: 7, rays: 100 * i, radius: 1.0 / i as f64 })
+            Ok(PassReport {
+                photons: 10,
+                records: 3,
+                eye_paths: 7,
+                rays: 100 * i,
+                ends: PhotonEnds::default(),
+                radius: 1.0 / i as f64,
+            })
         }
 
         fn rejections(&mut self) -> Result<Rejections, EngineError> {

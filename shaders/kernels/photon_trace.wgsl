@@ -3,6 +3,10 @@
 // nothing. A record with direction 0, which
 // no vector has, says that the driver stopped the loops of photon `key`, which is to be traced again.
 
+const ESCAPED: u32 = 0u;
+const ABSORBED: u32 = 1u;
+const CUT: u32 = 2u;
+
 @compute @workgroup_size(64)
 fn photon_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups) groups: vec3u) {
     let id = invocation(gid, groups);
@@ -18,13 +22,16 @@ fn photon_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgrou
     //#end
     var medium = emission.medium;
     var rays = 0u;
+    var end = CUT;
     for (var bounce = 0u; bounce < dispatch.max_bounces + 1u; bounce++) {
         if max_component(flux) <= 0.0 {
+            end = ABSORBED;
             break;
         }
         rays += 1u;
         let hit = intersect_scene(ray);
         if hit.reference == NONE {
+            end = ESCAPED;
             break;
         }
         let s = surface_at(ray, hit);
@@ -49,6 +56,7 @@ fn photon_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgrou
         //#end
         let survival = min(relative, 1.0);
         if u.w >= survival {
+            end = ABSORBED;
             break;
         }
         scattered.weight *= 1.0 / survival;
@@ -61,6 +69,7 @@ fn photon_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgrou
         append(PhotonRecord(vec3f(0.0), id, vec3f(0.0), 0u));
     } else {
         count_rays(rays);
+        atomicAdd(&counters.ends[end], 1u);
     }
 }
 

@@ -74,12 +74,13 @@ struct FilmPixel {
 }
 
 // Records appended to the batch (also those beyond the capacity, which are not stored), the pass's rays in two words,
-// and the invocations whose loops the driver stopped.
+// the invocations whose loops the driver stopped, and the pass's photons by how they ended (the last is unused).
 struct Counters {
     records: atomic<u32>,
     rays_low: atomic<u32>,
     rays_high: atomic<u32>,
     stopped: atomic<u32>,
+    ends: array<atomic<u32>, 4>,
 }
 
 // Number of the invocation among those of a dispatch of workgroups of 64 laid out in rows.

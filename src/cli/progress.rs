@@ -87,6 +87,9 @@ pub fn event(name: &str, progress: &Progress) -> serde_json::Value {
         "photons": progress.photons,
         "eye_paths": progress.eye_paths,
         "rays": progress.rays,
+        "photons_escaped": progress.ends.escaped,
+        "photons_absorbed": progress.ends.absorbed,
+        "photons_cut": progress.ends.cut,
         "rays_per_second": progress.rays_per_second(),
         "radius": progress.radius,
         "share": progress.share(),
@@ -176,6 +179,7 @@ mod tests {
             photons: 1_234_567 * u64::from(passes),
             eye_paths: 0,
             rays: 5_000_000,
+            ends: Default::default(),
             radius: 0.012_34,
             elapsed: Duration::from_secs_f64(seconds),
         }

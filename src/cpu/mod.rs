@@ -12,7 +12,7 @@ use super::pack::Packed;
 use super::plan::{Kernel, Plan};
 use super::real::ENGINE;
 use super::tables::Scene;
-use crate::engine::{Engine, EngineError, PassReport};
+use crate::engine::{Engine, EngineError, PassReport, PhotonEnds};
 use crate::film::{Picture, Rejections};
 use crate::settings::Method;
 use bytemuck::Zeroable;
@@ -101,7 +101,9 @@ impl CpuEngine {
                         .sum::<u64>();
                 }
                 Kernel::PhotonTrace => {
-                    report.rays += trace_photons(scene, d, sampled, &mut self.records);
+                    let (rays, ends) = trace_photons(scene, d, sampled, &mut self.records);
+                    report.rays += rays;
+                    report.ends.add(&PhotonEnds::of(ends));
                     report.records += self.records.len() as u64;
                     if self.records.len() > d.capacity as usize && d.end > 1 {
                         return Err(Overflow);
@@ -170,23 +172,31 @@ impl CpuEngine {
     }
 }
 
-/// Photons of one batch; the records come in the order of their keys.
-fn trace_photons(scene: &Scene, d: &Dispatch, sampled: bool, records: &mut Vec<PhotonRecord>) -> u64 {
-    let tasks: Vec<(Vec<PhotonRecord>, u64)> = (0..d.end.div_ceil(PHOTON_TASK))
+/// Photons of one batch; the records come in the order of their keys. The number of rays, and of photons by how they ended.
+fn trace_photons(
+    scene: &Scene,
+    d: &Dispatch,
+    sampled: bool,
+    records: &mut Vec<PhotonRecord>,
+) -> (u64, [u64; 3]) {
+    let tasks: Vec<(Vec<PhotonRecord>, u64, [u64; 3])> = (0..d.end.div_ceil(PHOTON_TASK))
         .into_par_iter()
         .map(|task| {
             let mut found = Vec::new();
             let mut rays = 0;
+            let mut ends = [0; 3];
             for id in task * PHOTON_TASK..(task * PHOTON_TASK + PHOTON_TASK).min(d.end) {
-                rays += photon_trace(scene, d, sampled, id, |record| found.push(record)) as u64;
+                let path = photon_trace(scene, d, sampled, id, |record| found.push(record));
+                rays += path.rays as u64;
+                ends[path.end] += 1;
             }
-            (found, rays)
+            (found, rays, ends)
         })
         .collect();
     records.clear();
-    tasks.into_iter().fold(0, |sum, (found, rays)| {
+    tasks.into_iter().fold((0, [0; 3]), |(sum, all), (found, rays, ends)| {
         records.extend(found);
-        sum + rays
+        (sum + rays, std::array::from_fn(|k| all[k] + ends[k]))
     })
 }
 

@@ -6,7 +6,7 @@ use super::mend::{mend_photons, mend_points};
 use super::pace::Pace;
 use super::program::{Program, workgroup_items};
 use super::recorder::Recorder;
-use crate::engine::{Engine, EngineError, PassReport};
+use crate::engine::{Engine, EngineError, PassReport, PhotonEnds};
 use crate::film::{Picture, Rejections};
 use crate::kernels::records::{Dispatch, FilmPixel};
 use crate::pack::Packed;
@@ -18,8 +18,11 @@ use std::time::Instant;
 
 /// Buffers of which each chunk of visible points has its own.
 const CHUNK_BUFFERS: [&str; 4] = ["visible_points", "gathered", "film", "statistics"];
-/// Bytes of `counters`: records of the batch, the pass's rays in two words, invocations that the driver stopped.
-const COUNTERS_BYTES: u64 = 16;
+/// Bytes of `counters`: records of the batch, the pass's rays in two words, invocations that the driver stopped, photons by
+/// how they ended, and one unused.
+const COUNTERS_BYTES: u64 = 32;
+/// The first word of the photons' ends.
+const ENDS: usize = 4;
 /// What to change when the device is too small.
 const MEND: &str = "make the picture smaller, or take --device cpu";
 
@@ -35,7 +38,7 @@ pub struct GpuEngine {
     groups: BTreeMap<(Kernel, u32), wgpu::BindGroup>,
     shared: BTreeMap<&'static str, wgpu::Buffer>,
     chunks: Vec<BTreeMap<&'static str, wgpu::Buffer>>,
-    /// Copies of the pass's counters, 16 bytes, and of each batch's record count.
+    /// Copies of the pass's counters and of each batch's record count.
     readings: wgpu::Buffer,
     /// On a software driver: what to trace stopped paths again with.
     scene: Option<Scene>,
@@ -45,10 +48,11 @@ pub struct GpuEngine {
     run_seconds: Option<BTreeMap<Kernel, f64>>,
 }
 
-/// Records of each batch, rays of a pass, and invocations that the driver stopped.
+/// Records of each batch, rays and photons' ends of a pass, and invocations that the driver stopped.
 struct Counted {
     records: Vec<u32>,
     rays: u64,
+    ends: PhotonEnds,
     stopped: u32,
 }
 
@@ -223,7 +227,9 @@ impl GpuEngine {
         self.flush()?;
         let words: Vec<u32> = bytemuck::pod_collect_to_vec(&self.gpu.read(&self.readings, bytes)?);
         let rays = (words[1] as u64 | (words[2] as u64) << 32) + mended;
-        Ok(Counted { records: words[4..].to_vec(), rays, stopped: words[3] })
+        let ends = PhotonEnds::of([words[ENDS], words[ENDS + 1], words[ENDS + 2]].map(u64::from));
+        let records = words[COUNTERS_BYTES as usize / 4..].to_vec();
+        Ok(Counted { records, rays, ends, stopped: words[3] })
     }
 
     /// Traces again, on the CPU, the paths of a step that a software driver stopped; the number of their rays.
@@ -242,10 +248,13 @@ impl GpuEngine {
             let buffer = &self.chunks[step.chunk as usize]["visible_points"];
             mend_points(&self.gpu, scene, &step.dispatch, sampled, buffer)?
         } else {
-            let (records, photons, rays) =
+            let mended =
                 mend_photons(&self.gpu, scene, &step.dispatch, sampled, &self.shared["records"], words[0])?;
-            words[0] = records;
-            (photons, rays)
+            words[0] = mended.records;
+            for (word, count) in words[ENDS..].iter_mut().zip(mended.ends) {
+                *word += count;
+            }
+            (mended.photons, mended.rays)
         };
         // what is left are loops of the batches before, for which the pass is run again
         words[3] -= mended.min(words[3]);
@@ -310,6 +319,7 @@ impl Engine for GpuEngine {
                 records: counted.records.iter().map(|r| *r as u64).sum(),
                 eye_paths: eye_paths.sum(),
                 rays: counted.rays,
+                ends: counted.ends,
                 radius: self.plan.radius(pass),
             });
         }

@@ -7,7 +7,7 @@
 use super::context::Gpu;
 use crate::engine::EngineError;
 use crate::kernels::eye_trace::eye_trace;
-use crate::kernels::photon_trace::photon_trace;
+use crate::kernels::photon_trace::{PhotonPath, photon_trace};
 use crate::kernels::records::{Dispatch, PhotonRecord, STOPPED, VisiblePoint};
 use crate::tables::Scene;
 use bytemuck::{cast_slice, pod_collect_to_vec};
@@ -35,8 +35,19 @@ pub fn mend_points(
     Ok(mended)
 }
 
-/// Replaces the records of the marked photons, of `count` records; the number of records then, of those photons, and of
-/// rays.
+/// What [`mend_photons`] made good.
+pub struct MendedPhotons {
+    /// Records of the batch now.
+    pub records: u32,
+    /// Photons that were traced again.
+    pub photons: u32,
+    /// Their rays.
+    pub rays: u64,
+    /// How they ended.
+    pub ends: [u32; 3],
+}
+
+/// Replaces the records of the marked photons, of `count` records.
 pub fn mend_photons(
     gpu: &Gpu,
     scene: &Scene,
@@ -44,10 +55,10 @@ pub fn mend_photons(
     sampled: bool,
     buffer: &wgpu::Buffer,
     count: u32,
-) -> Result<(u32, u32, u64), EngineError> {
+) -> Result<MendedPhotons, EngineError> {
     if count > dispatch.capacity {
         // the batch has overflowed and will be traced again
-        return Ok((count, 0, 0));
+        return Ok(MendedPhotons { records: count, photons: 0, rays: 0, ends: [0; 3] });
     }
     let bytes = count as u64 * size_of::<PhotonRecord>() as u64;
     let mut records: Vec<PhotonRecord> = pod_collect_to_vec(&gpu.read(buffer, bytes)?);
@@ -56,18 +67,20 @@ pub fn mend_photons(
     let marked: BTreeSet<u32> = records.iter().filter(|r| is_mark(r)).map(|mark| mark.key).collect();
     records.retain(|r| !is_mark(r) && !marked.contains(&(r.key >> dispatch.key_bits)));
     let photons = marked.len() as u32;
-    let traced: Vec<(Vec<PhotonRecord>, u32)> = marked
+    let traced: Vec<(Vec<PhotonRecord>, PhotonPath)> = marked
         .into_par_iter()
         .map(|id| {
             let mut found = Vec::new();
-            let rays = photon_trace(scene, dispatch, sampled, id, |record| found.push(record));
-            (found, rays)
+            let path = photon_trace(scene, dispatch, sampled, id, |record| found.push(record));
+            (found, path)
         })
         .collect();
-    let rays = traced.iter().map(|(_, rays)| *rays as u64).sum();
+    let rays = traced.iter().map(|(_, path)| path.rays as u64).sum();
+    let mut ends = [0; 3];
+    traced.iter().for_each(|(_, path)| ends[path.end] += 1);
     records.extend(traced.into_iter().flat_map(|(found, _)| found));
     let count = records.len() as u32;
     records.truncate(dispatch.capacity as usize);
     gpu.write(buffer, cast_slice(&records));
-    Ok((count, photons, rays))
+    Ok(MendedPhotons { records: count, photons, rays, ends })
 }

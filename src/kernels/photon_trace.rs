@@ -15,7 +15,23 @@ use super::shapes::ray::Ray;
 use super::shapes::surface::surface_at;
 use super::tables::*;
 
-/// Traces photon `id` of the batch and hands each record to `store`; returns the number of rays. `sampled`:
+/// How a photon's path ended: in [`PhotonPath::end`], and the place of its count.
+pub const ESCAPED: usize = 0;
+/// Roulette ended it, or nothing was left of its flux.
+pub const ABSORBED: usize = 1;
+/// It had been scattered as often as allowed.
+pub const CUT: usize = 2;
+
+/// What became of one photon.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PhotonPath {
+    /// Rays traced.
+    pub rays: u32,
+    /// [`ESCAPED`], [`ABSORBED`] or [`CUT`].
+    pub end: usize,
+}
+
+/// Traces photon `id` of the batch and hands each record to `store`. `sampled`:
 /// photons straight from a light are not stored, since shadow rays bring that light.
 pub fn photon_trace(
     scene: &Scene,
@@ -23,7 +39,7 @@ pub fn photon_trace(
     sampled: bool,
     id: u32,
     mut store: impl FnMut(PhotonRecord),
-) -> u32 {
+) -> PhotonPath {
     let mut rng = rng_new(dispatch.batch_first + id, dispatch.pass_number, STREAM_PHOTON, dispatch.seed);
     let emission = emit_photon(scene, &mut rng);
     let mut ray = emission.ray;
@@ -32,13 +48,16 @@ pub fn photon_trace(
     let mut medium = emission.medium;
     let far = scene.world.disc_levels > 1;
     let mut rays = 0;
+    let mut end = CUT;
     for bounce in 0..dispatch.max_bounces + 1 {
         if max_component(flux) <= 0.0 {
+            end = ABSORBED;
             break;
         }
         rays += 1;
         let hit = intersect_scene(scene, &ray);
         if hit.reference == NONE {
+            end = ESCAPED;
             break;
         }
         let s = surface_at(scene, &ray, &hit);
@@ -67,6 +86,7 @@ pub fn photon_trace(
         }
         let survival = relative.min(1.0);
         if u.w >= survival {
+            end = ABSORBED;
             break;
         }
         scattered.weight *= 1.0 / survival;
@@ -75,5 +95,5 @@ pub fn photon_trace(
         let origin = offset_origin(s.position, s.error, s.normal, scattered.direction);
         ray = Ray { origin, t_min: 0.0, direction: scattered.direction, t_max: FAR };
     }
-    rays
+    PhotonPath { rays, end }
 }
