@@ -68,6 +68,7 @@ pub fn progressive(
 mod tests {
     use super::*;
     use crate::engine::PassReport;
+    use crate::film::Rejections;
 
     struct Counter {
         passes: u32,
@@ -83,6 +84,10 @@ mod tests {
             self.passes += 1;
             std::thread::sleep(Duration::from_millis(2));
             Ok(PassReport { photons: 5, rays: 3, ..PassReport::default() })
+        }
+
+        fn rejections(&mut self) -> Result<Rejections, EngineError> {
+            Ok(Rejections::default())
         }
 
         fn picture(&mut self) -> Result<Picture, EngineError> {
