@@ -62,7 +62,7 @@ impl Grid {
         all_records.resize(capacity * 8, POISON);
         let buffers = BTreeMap::from([
             upload("records", &all_records),
-            upload("counters", &[records.len() as u32, 0, 0, 0]),
+            upload("counters", &[records.len() as u32, 0, 0, 0, 0, 0, 0, 0]),
             upload("counts", &vec![0; buckets]),
             upload("starts", &poison(buckets + 1)),
             upload("block_sums", &poison(buckets / SCAN_BLOCK as usize + 1)),

@@ -254,7 +254,7 @@ fn gather_on_driver(
     let upload = |name, bytes: &[u8]| (name, gpu.upload(name, bytes).expect("a buffer"));
     let buffers = [
         upload("visible_points", cast_slice(points)),
-        upload("counters", &[0; 16]),
+        upload("counters", &[0; 32]),
         upload("starts", cast_slice(starts)),
         upload("sorted", cast_slice(sorted)),
         upload("gathered", cast_slice(sum)),
@@ -310,7 +310,7 @@ fn trace_on_driver(driver: &Driver, scene: &tables::Scene, rays: &[Ray]) -> Vec<
         let mut buffers = vec![
             ("scene", gpu.upload("scene", &tables.bytes).expect("a buffer")),
             ("visible_points", gpu.upload("visible_points", cast_slice(&points)).expect("a buffer")),
-            ("counters", gpu.storage("counters", 16).expect("a buffer")),
+            ("counters", gpu.storage("counters", 32).expect("a buffer")),
         ];
         for (name, _, content) in long_tables(scene) {
             if !content.is_empty() {
