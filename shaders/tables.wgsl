@@ -41,8 +41,8 @@ struct World {
     environment: u32,
     unbounded_count: u32,
     disc_levels: u32,
-    pad0: u32,
-    pad1: u32,
+    nested: u32,
+    pad: u32,
 }
 
 struct Camera {

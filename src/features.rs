@@ -5,7 +5,7 @@ use crate::settings::{Direct, Method, RadiusRule, RenderSettings};
 use std::collections::BTreeSet;
 
 /// Names that fence optional code in shaders (`//#if name`).
-pub const ALL: [&str; 34] = [
+pub const ALL: [&str; 35] = [
     "triangle",
     "attributes",
     "sphere",
@@ -21,6 +21,7 @@ pub const ALL: [&str; 34] = [
     "texels",
     "mirror",
     "glass",
+    "nested",
     "metal",
     "specular",
     "absorption",
@@ -68,6 +69,7 @@ impl Features {
         let material = |kind| scene.materials.iter().any(|m| m.kind == kind);
         put("mirror", material(MATERIAL_MIRROR));
         put("glass", material(MATERIAL_GLASS));
+        put("nested", scene.world.nested != 0);
         put("metal", material(MATERIAL_METAL));
         put("specular", material(MATERIAL_MIRROR) || material(MATERIAL_GLASS));
         put("absorption", scene.materials.iter().any(|m| m.absorption.max_element() > 0.0));

@@ -63,8 +63,10 @@ pub struct World {
     pub unbounded_count: u32,
     /// Emission discs for light from infinity: radius `near_radius * 2^k`, k below this; 1 without such light.
     pub disc_levels: u32,
+    /// 1 where bodies of glass may touch or hold one another, else 0.
+    pub nested: u32,
     /// Padding.
-    pub pad: [u32; 2],
+    pub pad: u32,
 }
 
 /// Pinhole or thin-lens camera.

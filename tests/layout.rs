@@ -35,7 +35,8 @@ fn hosts() -> Vec<Layout> {
             light_count,
             environment,
             unbounded_count,
-            disc_levels
+            disc_levels,
+            nested
         }),
         layout!(Camera {
             position,

@@ -48,6 +48,20 @@ fn scatter_specular(s: Surface, wo: vec3f, medium: u32, u: f32, mode: u32) -> Sc
         if outside {
             eta = 1.0 / m.ior;
         }
+        var beyond = select(NONE, s.material, outside);
+        //#if nested
+        var other = medium;
+        if !outside {
+            other = medium_beyond(s, wo);
+        }
+        if other != NONE {
+            let ior = scene.materials[other].ior;
+            eta *= select(1.0 / ior, ior, outside);
+        }
+        if !outside {
+            beyond = other;
+        }
+        //#end
         let cos_i = dot(wo, n);
         let interface_n = fresnel(cos_i, eta);
         if u >= interface_n.reflectance {
@@ -62,7 +76,6 @@ fn scatter_specular(s: Surface, wo: vec3f, medium: u32, u: f32, mode: u32) -> Sc
             if mode == IMPORTANCE {
                 weight = shading_correction(s, n, ng, wo, wi);
             }
-            let beyond = select(NONE, s.material, outside);
             return Scatter(wi, beyond, vec3f(weight));
         }
     }
@@ -82,6 +95,20 @@ fn scatter_specular(s: Surface, wo: vec3f, medium: u32, u: f32, mode: u32) -> Sc
     }
     //#end
     return Scatter(wi, medium, weight * reflectance_at(s.material, s.uv));
+}
+//#end
+
+//#if nested
+fn medium_beyond(s: Surface, wo: vec3f) -> u32 {
+    let origin = offset_origin(s.position, s.error, s.normal, -wo);
+    let ray = Ray(origin, 0.0, -wo, FAR);
+    let hit = intersect_scene(ray);
+    if hit.reference == NONE {
+        return NONE;
+    }
+    let next = surface_at(ray, hit);
+    let leaves = dot(wo, next.normal) < 0.0 && scene.materials[next.material].kind == MATERIAL_GLASS;
+    return select(NONE, next.material, leaves);
 }
 //#end
 

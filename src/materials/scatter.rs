@@ -2,10 +2,12 @@
 
 use super::glass::{fresnel, refracted};
 use super::math::sampling::sample_cosine;
-use super::math::{INV_PI, basis, from_frame, mirrored};
+use super::math::{FAR, INV_PI, basis, from_frame, mirrored, offset_origin};
 use super::metal::{eval_metal, pdf_metal, sample_metal, weight_metal};
 use super::real::{Real, Vec2, Vec3};
-use super::shapes::surface::Surface;
+use super::shapes::intersect::intersect_scene;
+use super::shapes::ray::Ray;
+use super::shapes::surface::{Surface, surface_at};
 use super::tables::*;
 use super::texture::eval_texture;
 
@@ -63,7 +65,18 @@ pub fn scatter_specular(scene: &Scene, s: &Surface, wo: Vec3, medium: u32, u: Re
     let mut n = shading_normal(scene, s, wo);
     if m.kind == MATERIAL_GLASS {
         let outside = wo.dot(s.normal) >= 0.0;
-        let eta = if outside { 1.0 / m.ior } else { m.ior };
+        let mut eta = if outside { 1.0 / m.ior } else { m.ior };
+        let mut beyond = if outside { s.material } else { NONE };
+        if scene.world.nested != 0 {
+            let other = if outside { medium } else { medium_beyond(scene, s, wo) };
+            if other != NONE {
+                let ior = scene.materials[other as usize].ior;
+                eta *= if outside { ior } else { 1.0 / ior };
+            }
+            if !outside {
+                beyond = other;
+            }
+        }
         let cos_i = wo.dot(n);
         let interface = fresnel(cos_i, eta);
         if u >= interface.reflectance {
@@ -79,7 +92,6 @@ pub fn scatter_specular(scene: &Scene, s: &Surface, wo: Vec3, medium: u32, u: Re
             if mode == IMPORTANCE {
                 weight = shading_correction(s, n, ng, wo, wi);
             }
-            let beyond = if outside { s.material } else { NONE };
             return Scatter { direction: wi, medium: beyond, weight: Vec3::splat(weight) };
         }
     }
@@ -96,6 +108,20 @@ pub fn scatter_specular(scene: &Scene, s: &Surface, wo: Vec3, medium: u32, u: Re
         return Scatter { direction: wi, medium: here, weight };
     }
     Scatter { direction: wi, medium, weight: weight * reflectance_at(scene, s.material, s.uv) }
+}
+
+/// The glass behind a face of glass that a ray leaves, where bodies of glass touch or hold one another: the one that a ray
+/// straight on leaves next without having entered it.
+fn medium_beyond(scene: &Scene, s: &Surface, wo: Vec3) -> u32 {
+    let origin = offset_origin(s.position, s.error, s.normal, -wo);
+    let ray = Ray { origin, t_min: 0.0, direction: -wo, t_max: FAR };
+    let hit = intersect_scene(scene, &ray);
+    if hit.reference == NONE {
+        return NONE;
+    }
+    let next = surface_at(scene, &ray, &hit);
+    let leaves = wo.dot(next.normal) < 0.0 && scene.materials[next.material as usize].kind == MATERIAL_GLASS;
+    if leaves { next.material } else { NONE }
 }
 
 /// Diffuse and metal: a direction by the material's own density.

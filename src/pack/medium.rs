@@ -6,6 +6,9 @@ use super::shapes::intersect::intersect_scene;
 use super::shapes::ray::Ray;
 use super::shapes::surface::surface_at;
 use super::tables::*;
+use crate::build::normalize::extent;
+use crate::scene;
+use glam::DVec3;
 
 /// Surfaces that one look passes through at most.
 const CROSSINGS: u32 = 1000;
@@ -53,4 +56,19 @@ fn innermost(scene: &Scene, position: Vec3, look: Vec3) -> u32 {
         origin = offset_origin(s.position, s.error, s.normal, direction);
     }
     NONE
+}
+
+/// Whether bodies of glass may touch or hold one another: boxes of two of them meet, within a rounding.
+pub fn glass_meets_glass(scene: &scene::Scene) -> bool {
+    let is_glass =
+        |s: &&scene::Shape| matches!(scene.materials[s.material].kind, scene::MaterialKind::Glass { .. });
+    let mut boxes: Vec<(DVec3, DVec3)> =
+        scene.shapes.iter().filter(is_glass).filter_map(|s| extent(&s.kind)).collect();
+    boxes.sort_by(|a, b| a.0.x.total_cmp(&b.0.x));
+    boxes.iter().enumerate().any(|(i, (low, high))| {
+        let slack = DVec3::splat(1e-6 * low.abs().max(high.abs()).max_element());
+        let (low, high) = (*low - slack, *high + slack);
+        let mut near = boxes[i + 1..].iter().take_while(|b| b.0.x <= high.x);
+        near.any(|b| b.0.cmple(high).all() && b.1.cmpge(low).all())
+    })
 }

@@ -57,6 +57,7 @@ pub fn pack(scene: &scene::Scene, width: u32, height: u32) -> Result<Packed, Pac
     out.world.unbounded_count = out.unbounded.len() as u32;
     let radiance_unit = light::pack_lights(scene, &n, &emitters, &mut out);
     out.world.disc_levels = disc_levels(&out, &n);
+    out.world.nested = medium::glass_meets_glass(scene) as u32;
     out.camera.medium = medium::medium_at(&out, out.camera.position);
     for i in 0..out.lights.len() {
         out.lights[i].medium = match light::place(&out, &out.lights[i]) {

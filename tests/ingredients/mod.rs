@@ -85,6 +85,10 @@ impl Mixture {
             "checker" => s.textures.push(Texture { kind: TEXTURE_CHECKER, ..Texture::zeroed() }),
             "mirror" | "specular" => self.material(MATERIAL_MIRROR, 0.0),
             "glass" => self.material(MATERIAL_GLASS, 0.0),
+            "nested" => {
+                self.add("glass");
+                self.scene.world.nested = 1;
+            }
             "absorption" => self.material(MATERIAL_GLASS, 1.0),
             "metal" => self.material(MATERIAL_METAL, 0.0),
             "area_triangle" => self.area("triangle", KIND_TRIANGLE),

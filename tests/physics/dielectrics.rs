@@ -239,6 +239,65 @@ fn extreme_indices() {
     }
 }
 
+/// Theory: two slabs that touch are one: between glass and the same glass there is no interface, so that both together
+/// transmit (1 - R) / (1 + R), not the (1 - R) / (1 + 3 R) of two slabs with air between. Glass 2 on glass 1 has the three
+/// interfaces 1 : n1 : n2 : 1, which transmit, to and fro counted, 1 / (1 + sum R_i / (1 - R_i)) (reflectances of plates add
+/// up as resistances R / (1 - R) do). A body inside another is met from its glass likewise.
+#[test]
+fn glass_on_glass() {
+    let resistance = |a: f64, b: f64| {
+        let r = ((a - b) / (a + b)).powi(2);
+        r / (1.0 - r)
+    };
+    let through =
+        |indices: &[f64]| 1.0 / (1.0 + indices.windows(2).map(|w| resistance(w[0], w[1])).sum::<f64>());
+    let slab = |name: &str, ior: f64, from: f64, to: f64, half: f64| {
+        format!(
+            "[materials.{name}]\ntype = \"glass\"\nior = {ior:?}\n\
+             [[shapes]]\ntype = \"box\"\nmin = [-{half}, -{half}, {from}]\nmax = [{half}, {half}, {to}]\nmaterial = \"{name}\"\n"
+        )
+    };
+    for (name, bodies, indices) in [
+        ("one", slab("a", 2.0, -0.25, 0.25, 9.0), vec![1.0, 2.0, 1.0]),
+        (
+            "two that touch",
+            slab("a", 2.0, -0.25, 0.1, 9.0) + &slab("b", 2.0, 0.1, 0.25, 9.0),
+            vec![1.0, 2.0, 1.0],
+        ),
+        (
+            "two of which the other comes first",
+            slab("b", 2.0, 0.1, 0.25, 9.0) + &slab("a", 2.0, -0.25, 0.1, 9.0),
+            vec![1.0, 2.0, 1.0],
+        ),
+        (
+            "two kinds",
+            slab("a", 1.5, -0.25, 0.1, 9.0) + &slab("b", 2.5, 0.1, 0.25, 9.0),
+            vec![1.0, 2.5, 1.5, 1.0],
+        ),
+        (
+            "one in another",
+            slab("a", 1.5, -0.5, 0.5, 9.0) + &slab("b", 2.5, -0.1, 0.1, 8.0),
+            vec![1.0, 1.5, 2.5, 1.5, 1.0],
+        ),
+        (
+            "two apart",
+            slab("a", 2.0, -0.25, -0.1, 9.0) + &slab("b", 2.0, 0.1, 0.25, 9.0),
+            vec![1.0, 2.0, 1.0, 2.0, 1.0],
+        ),
+    ] {
+        let camera = Camera { position: DVec3::new(0.0, 0.0, 2.0), target: DVec3::ZERO, fov: 0.5, size: 8 };
+        let text = camera.toml()
+            + "[materials.black]\ntype = \"diffuse\"\nreflectance = 0.0\n"
+            + &bodies
+            + "[[shapes]]\ntype = \"disc\"\ncenter = [0, 0, -2]\nnormal = [0, 0, 1]\nradius = 9\nmaterial = \"black\"\nemission = 1.0\n";
+        for method in SPECULAR {
+            let truth = [through(&indices); 64];
+            let what = format!("{name}, {method:?}");
+            runs_to(0.02, &text, &seen(method)).assert_picture(&what, &truth, 0.02);
+        }
+    }
+}
+
 /// Theory: from inside glass of index n, total reflection begins where sin = 1 / n. Some roundings on either side of that
 /// angle the reflectance is that of Fresnel's equations in f64 at a squared cosine of the refracted ray that is off by
 /// a few roundings of 1 and no more, and exactly 1 beyond; the refracted ray is a direction. At once steep and short is the
