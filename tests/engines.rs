@@ -271,7 +271,7 @@ const SCENES: [(&str, &str, &str); 9] = [
         "#,
     ),
     (
-        "an even sky, metal and glass",
+        "an even sky, metal, and glass in glass",
         "",
         r#"
         [materials.copper]
@@ -291,6 +291,14 @@ const SCENES: [(&str, &str, &str); 9] = [
         center = [0.6, 0.5, 0.0]
         radius = 0.5
         material = "glass"
+        [materials.water]
+        type = "glass"
+        ior = 1.33
+        [[shapes]]
+        type = "sphere"
+        center = [0.5, 0.45, 0.1]
+        radius = 0.25
+        material = "water"
         [environment]
         radiance = [0.5, 0.7, 1.0]
         "#,
