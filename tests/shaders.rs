@@ -115,7 +115,7 @@ fn at_most_eight_storage_buffers() {
 fn a_planted_error_is_found() {
     for (path, right, wrong) in [
         ("shapes/sphere.wgsl", "let root = sqrt(discriminant);", "let root = sqrtt(discriminant);"),
-        ("kernels/gather.wgsl", "found.count += 1u;", "found.count += 1.0;"),
+        ("kernels/gather.wgsl", "count += 1u;", "count += 1.0;"),
         ("kernels/grid_sort.wgsl", "let key = records[item].key;", "let key = records[item].kez;"),
         ("lights/light.wgsl", "fn choose_light(u: f32)", "fn choose_light(u: f33)"),
         ("kernels/resolve.wgsl", "var sum = vec3f(0.0);", "var sum = vec3f(0.0)"),
