@@ -9,7 +9,8 @@ use super::kernels::records::*;
 use super::pack::Packed;
 use super::probe::{Probe, probe};
 use super::real::Real;
-use crate::film::{Picture, Rejections};
+use crate::film::estimate::PixelError;
+use crate::film::{ErrorMap, Picture, Rejections, luminance_of};
 use crate::settings::{Method, Radius, RadiusRule, RenderSettings};
 use bytemuck::Zeroable;
 
@@ -322,6 +323,26 @@ impl Plan {
         let held = |x: f64| (x * unit).clamp(f64::from(f32::MIN), f64::from(f32::MAX)) as f32;
         let world = |p: &FilmPixel| mean(p).map(held);
         Picture { width: self.width, height: self.pixels / self.width, rgb: film.iter().map(world).collect() }
+    }
+
+    /// What a film after `passes` passes says of its error, in world units.
+    pub fn errors(&self, film: &[FilmPixel], passes: u32) -> ErrorMap {
+        let unit = self.radiance_unit;
+        let pixels = film.iter().map(|p| {
+            let n = f64::from(passes) - p.rejected.iter().map(|count| f64::from(*count)).sum::<f64>();
+            // one pass has no deviation
+            let free = (n - 1.0).max(1.0);
+            PixelError {
+                luminance: unit * luminance_of(mean(p)),
+                variance: unit * unit * f64::from(p.spread.max(0.0)) / free,
+                swing: unit * f64::from(p.swing) * (n / free).sqrt(),
+                ring: unit * f64::from(p.ring),
+                ring_swing: unit * f64::from(p.ring_swing),
+                halves: unit * f64::from(p.halves),
+                halves_swing: unit * f64::from(p.halves_swing),
+            }
+        });
+        ErrorMap { width: self.width, pixels: pixels.collect() }
     }
 
     /// What was left out of the picture that a film holds.

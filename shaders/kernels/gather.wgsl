@@ -27,7 +27,10 @@ fn gather(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups) gr
     let n = oct_decode(point.shading);
     let low = grid_cell(point.position - vec3f(radius), dispatch.inv_cell);
     let high = grid_cell(point.position + vec3f(radius), dispatch.inv_cell);
+    let inner_sq = 0.5 * radius_sq;
+    let tint = point.weight * LUMINANCE;
     var count = 0u;
+    var ring = gathered[id].ring;
     var sum = vec3f(0.0);
     for (var z = low.z; z <= high.z; z++) {
         for (var y = low.y; y <= high.y; y++) {
@@ -40,7 +43,8 @@ fn gather(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups) gr
                     for (var i = first; i < min(first + BLOCK, end); i++) {
                         let record = sorted[i];
                         let d = record.position - point.position;
-                        if dot(d, d) > radius_sq
+                        let distance_sq = dot(d, d);
+                        if distance_sq > radius_sq
                             || abs(dot(d, ng)) > FLATNESS * radius
                             || any(grid_cell(record.position, dispatch.inv_cell) != cell)
                         {
@@ -51,26 +55,32 @@ fn gather(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups) gr
                             continue;
                         }
                         count += 1u;
-                        if flat_normal && point.alpha <= 0.0 {
-                            block += record.flux;
-                            continue;
+                        var flux = record.flux;
+                        if !flat_normal || point.alpha > 0.0 {
+                            let wi = unit(toward_light);
+                            let cos_g = max(dot(wi, ng), COS_MIN);
+                            //#if metal
+                            if point.alpha > 0.0 {
+                                let reflectance = point.reflectance;
+                                let f = eval_rough(MATERIAL_METAL, point.alpha, reflectance, n, point.wo, wi);
+                                flux = f * record.flux * (1.0 / cos_g);
+                            } else {
+                                flux = record.flux * (max(dot(wi, n), 0.0) / cos_g);
+                            }
+                            //#else
+                            flux = record.flux * (max(dot(wi, n), 0.0) / cos_g);
+                            //#end
                         }
-                        let wi = unit(toward_light);
-                        let cos_g = max(dot(wi, ng), COS_MIN);
-                        //#if metal
-                        if point.alpha > 0.0 {
-                            let f = eval_rough(MATERIAL_METAL, point.alpha, point.reflectance, n, point.wo, wi);
-                            block += f * record.flux * (1.0 / cos_g);
-                            continue;
-                        }
-                        //#end
-                        block += record.flux * (max(dot(wi, n), 0.0) / cos_g);
+                        block += flux;
+                        let side = select(-1.0, 1.0, distance_sq > inner_sq);
+                        ring += side * dot(tint, flux);
                     }
                     sum += block;
                 }
             }
         }
     }
-    gathered[id] = Gathered(gathered[id].flux + point.weight * sum, gathered[id].count + count);
+    let before = gathered[id];
+    gathered[id] = Gathered(before.flux + point.weight * sum, before.count + count, ring, 0u, 0u, 0u);
     loops_stopped();
 }

@@ -4,7 +4,7 @@
 
 use super::grid::{grid_bucket, grid_cell};
 use super::materials::scatter::eval_rough;
-use super::math::{oct_decode, oct_vector, unit};
+use super::math::{LUMINANCE, oct_decode, oct_vector, unit};
 use super::real::{Real, Vec3};
 use super::records::{Dispatch, Gathered, PhotonRecord, Statistics, VisiblePoint};
 use super::tables::MATERIAL_METAL;
@@ -46,6 +46,8 @@ pub fn gather(
     let n = oct_decode(point.shading);
     let low = grid_cell(point.position - Vec3::splat(radius), dispatch.inv_cell);
     let high = grid_cell(point.position + Vec3::splat(radius), dispatch.inv_cell);
+    let inner_sq = 0.5 * radius_sq;
+    let tint = point.weight * LUMINANCE;
     let mut sum = Vec3::ZERO;
     for z in low.z..=high.z {
         for y in low.y..=high.y {
@@ -57,7 +59,8 @@ pub fn gather(
                     let mut block = Vec3::ZERO;
                     for record in some {
                         let d = record.position - point.position;
-                        if d.dot(d) > radius_sq
+                        let distance_sq = d.dot(d);
+                        if distance_sq > radius_sq
                             || d.dot(ng).abs() > FLATNESS * radius
                             || grid_cell(record.position, dispatch.inv_cell) != cell
                         {
@@ -68,20 +71,22 @@ pub fn gather(
                             continue;
                         }
                         gathered.count += 1;
-                        if flat && point.alpha <= 0.0 {
-                            block += record.flux;
-                            continue;
+                        let mut flux = record.flux;
+                        if !flat || point.alpha > 0.0 {
+                            let wi = unit(toward_light);
+                            // flux arrives by the geometric cosine, the BRDF asks for the shading one
+                            let cos_g = wi.dot(ng).max(COS_MIN);
+                            if point.alpha > 0.0 {
+                                let reflectance = point.reflectance;
+                                let f = eval_rough(MATERIAL_METAL, point.alpha, reflectance, n, point.wo, wi);
+                                flux = f * record.flux * (1.0 / cos_g);
+                            } else {
+                                flux = record.flux * (wi.dot(n).max(0.0) / cos_g);
+                            }
                         }
-                        let wi = unit(toward_light);
-                        // flux arrives by the geometric cosine, the BRDF asks for the shading one
-                        let cos_g = wi.dot(ng).max(COS_MIN);
-                        if point.alpha > 0.0 {
-                            let f =
-                                eval_rough(MATERIAL_METAL, point.alpha, point.reflectance, n, point.wo, wi);
-                            block += f * record.flux * (1.0 / cos_g);
-                        } else {
-                            block += record.flux * (wi.dot(n).max(0.0) / cos_g);
-                        }
+                        block += flux;
+                        let side = if distance_sq > inner_sq { 1.0 } else { -1.0 };
+                        gathered.ring += side * tint.dot(flux);
                     }
                     sum += block;
                 }
