@@ -9,7 +9,7 @@ use super::kernels::records::*;
 use super::pack::Packed;
 use super::probe::{Probe, probe};
 use super::real::Real;
-use crate::film::estimate::PixelError;
+use crate::film::estimate::{LEAST_PASSES, PixelError, early_passes, partition};
 use crate::film::{ErrorMap, Picture, Rejections, luminance_of};
 use crate::settings::{Method, Radius, RadiusRule, RenderSettings};
 use bytemuck::Zeroable;
@@ -329,17 +329,24 @@ impl Plan {
     pub fn errors(&self, film: &[FilmPixel], passes: u32) -> ErrorMap {
         let unit = self.radiance_unit;
         let pixels = film.iter().map(|p| {
-            let n = f64::from(passes) - p.rejected.iter().map(|count| f64::from(*count)).sum::<f64>();
-            // one pass has no deviation
-            let free = (n - 1.0).max(1.0);
+            let n = passes - p.rejected.iter().sum::<u32>();
+            if n < LEAST_PASSES {
+                return PixelError::UNKNOWN;
+            }
+            let luminance = unit * luminance_of(mean(p));
+            let [early, earlier] = [p.early, p.earlier].map(|x| unit * f64::from(x));
+            let part = early_passes(n);
+            let first = partition(luminance, early, part, n);
+            let second = partition(luminance, earlier, part / 2, n);
+            // the partition nearer to halves
+            let (least, rest) = if n - part >= part / 2 { (early, first.1) } else { (earlier, second.1) };
             PixelError {
-                luminance: unit * luminance_of(mean(p)),
-                variance: unit * unit * f64::from(p.spread.max(0.0)) / free,
-                swing: unit * f64::from(p.swing) * (n / free).sqrt(),
+                reference: least.min(rest).max(0.0),
+                variance: unit * unit * f64::from(p.spread.max(0.0)) / f64::from(n - 1),
+                deviations: [first.0, second.0],
+                halves: unit * f64::from(p.halves),
                 ring: unit * f64::from(p.ring),
                 ring_swing: unit * f64::from(p.ring_swing),
-                halves: unit * f64::from(p.halves),
-                halves_swing: unit * f64::from(p.halves_swing),
             }
         });
         ErrorMap { width: self.width, pixels: pixels.collect() }

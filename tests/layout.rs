@@ -148,12 +148,12 @@ fn hosts() -> Vec<Layout> {
             mean,
             spread,
             carry,
-            swing,
+            early,
             rejected,
             ring,
             ring_swing,
             halves,
-            halves_swing
+            earlier
         }),
     ]
 }

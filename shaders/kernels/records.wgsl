@@ -73,12 +73,12 @@ struct FilmPixel {
     mean: vec3f,
     spread: f32,
     carry: vec3f,
-    swing: f32,
+    early: f32,
     rejected: vec4u,
     ring: f32,
     ring_swing: f32,
     halves: f32,
-    halves_swing: f32,
+    earlier: f32,
 }
 
 // Records appended to the batch (also those beyond the capacity, which are not stored), the pass's rays in two words,

@@ -50,18 +50,21 @@ fn fold(id: u32, cause: u32, found: Found) {
         return;
     }
     let r = film[id].rejected;
-    let n = f32(dispatch.passes_done + 1u - (r.x + r.y + r.z + r.w));
+    let before = dispatch.passes_done - (r.x + r.y + r.z + r.w);
     var pixel = film[id];
+    if (before & (before - 1u)) == 0u {
+        pixel.earlier = pixel.early;
+        pixel.early = luminance(pixel.mean + pixel.carry);
+    }
+    let n = f32(before + 1u);
     let share = 1.0 / n;
     let delta = value - (pixel.mean + pixel.carry);
     let deviation = luminance(delta) * sqrt((n - 1.0) * share);
     let sign = select(-1.0, 1.0, (dispatch.passes_done & 1u) == 0u);
     pixel.spread += (deviation * deviation - pixel.spread) * share;
-    pixel.swing += (sign * deviation - pixel.swing) * share;
     pixel.ring += (found.ring - pixel.ring) * share;
     pixel.ring_swing += (sign * found.ring - pixel.ring_swing) * share;
     pixel.halves += (found.halves - pixel.halves) * share;
-    pixel.halves_swing += (sign * found.halves - pixel.halves_swing) * share;
     pixel.carry += delta * share;
     if max_abs(pixel.carry) > CARRY_SHARE * max_abs(pixel.mean) {
         pixel.mean += pixel.carry;

@@ -146,8 +146,8 @@ pub struct FilmPixel {
     pub spread: Real,
     /// Change of the mean not yet put into `mean`: small terms are summed here first, so that they count.
     pub carry: Vec3,
-    /// Luminance: mean of the passes' deviations, those of odd passes turned over.
-    pub swing: Real,
+    /// Luminance of the mean over the first 2^k passes, 2^k the greatest power of two below the number of passes.
+    pub early: Real,
     /// Passes whose value was not finite and was left out, by cause: see `REJECTED_*`.
     pub rejected: [u32; 4],
     /// Luminance: mean over the passes of the estimate in the whole disc less that in the inner half of its area.
@@ -157,6 +157,6 @@ pub struct FilmPixel {
     /// Luminance: mean over the passes of what two halves of the eye samples differ by, scaled so that its square is
     /// the variance of the mean over all.
     pub halves: Real,
-    /// The same mean with odd passes turned over.
-    pub halves_swing: Real,
+    /// Luminance of the mean over the first 2^(k-1) passes.
+    pub earlier: Real,
 }

@@ -119,8 +119,7 @@ pub fn cause(state: u32, photons_finite: bool) -> u32 {
 /// Adds what one pass found to a pixel's means, or counts it under its cause.
 ///
 /// The n-th pass deviates from the mean of those before by delta. `sqrt((n - 1) / n) delta` has mean zero and the
-/// variance of a pass, and does not correlate with its predecessors (Helmert 1876), so that both the mean of its
-/// squares and, times n, the square of its mean under any signs estimate that variance but for a factor `(n - 1) / n`.
+/// variance of a pass, and does not correlate with its predecessors (Helmert 1876).
 pub fn fold(dispatch: &Dispatch, cause: u32, found: Found, film: &mut FilmPixel) {
     let value = found.radiance;
     let counted = if cause == ACCEPTED && !is_finite(value) { REJECTED_ESTIMATE } else { cause };
@@ -129,17 +128,20 @@ pub fn fold(dispatch: &Dispatch, cause: u32, found: Found, film: &mut FilmPixel)
         return;
     }
     let r = film.rejected;
-    let n = (dispatch.passes_done + 1 - (r[0] + r[1] + r[2] + r[3])) as Real;
+    let before = dispatch.passes_done - (r[0] + r[1] + r[2] + r[3]);
+    if before & before.wrapping_sub(1) == 0 {
+        film.earlier = film.early;
+        film.early = luminance(film.mean + film.carry);
+    }
+    let n = (before + 1) as Real;
     let share = 1.0 / n;
     let delta = value - (film.mean + film.carry);
     let deviation = luminance(delta) * ((n - 1.0) * share).sqrt();
     let sign = if dispatch.passes_done & 1 == 0 { 1.0 } else { -1.0 };
     film.spread += (deviation * deviation - film.spread) * share;
-    film.swing += (sign * deviation - film.swing) * share;
     film.ring += (found.ring - film.ring) * share;
     film.ring_swing += (sign * found.ring - film.ring_swing) * share;
     film.halves += (found.halves - film.halves) * share;
-    film.halves_swing += (sign * found.halves - film.halves_swing) * share;
     film.carry += delta * share;
     if max_abs(film.carry) > CARRY_SHARE * max_abs(film.mean) {
         film.mean += film.carry;
