@@ -57,7 +57,11 @@ fn lines() -> Vec<(&'static str, RenderSettings, bool)> {
         ("sppm local", RenderSettings { radius_rule: RadiusRule::Local, ..sppm() }, false),
         ("sppm fixed", RenderSettings { radius_rule: RadiusRule::Fixed, ..sppm() }, false),
         ("ppm global", RenderSettings { method: Method::Ppm, ..sppm() }, true),
-        ("ppm local", RenderSettings { method: Method::Ppm, radius_rule: RadiusRule::Local, ..sppm() }, false),
+        (
+            "ppm local",
+            RenderSettings { method: Method::Ppm, radius_rule: RadiusRule::Local, ..sppm() },
+            false,
+        ),
         ("path", RenderSettings { method: Method::Path, ..sppm() }, false),
     ]
 }
@@ -76,7 +80,16 @@ fn hold_all(arguments: &Arguments) -> Result<bool, Box<dyn Error>> {
     let wanted = device::parse(&arguments.device);
     println!(
         "{:13} {:20} {:>6} {:>8} {:>8} {:>8} {:>8} {:>13} {:>13} {:>9}",
-        "scene", "render", "passes", "true %", "noise %", "bias %", "stated %", "estimate/true", "stated/true", "within"
+        "scene",
+        "render",
+        "passes",
+        "true %",
+        "noise %",
+        "bias %",
+        "stated %",
+        "estimate/true",
+        "stated/true",
+        "within"
     );
     let mut all = Vec::new();
     let mut kept = true;
@@ -108,7 +121,8 @@ fn hold_all(arguments: &Arguments) -> Result<bool, Box<dyn Error>> {
 }
 
 fn print_line(scene: &str, line: &str, passes: u32, promises: &[Promise]) -> bool {
-    let mean = |value: &dyn Fn(&Promise) -> f64| promises.iter().map(value).sum::<f64>() / promises.len() as f64;
+    let mean =
+        |value: &dyn Fn(&Promise) -> f64| promises.iter().map(value).sum::<f64>() / promises.len() as f64;
     let kept = promises.iter().filter(|promise| promise.kept()).count();
     let [truth, noise, bias, stated] = [
         mean(&|p| 100.0 * p.truth),

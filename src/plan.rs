@@ -336,14 +336,14 @@ impl Plan {
             let luminance = unit * luminance_of(mean(p));
             let [early, earlier] = [p.early, p.earlier].map(|x| unit * f64::from(x));
             let part = early_passes(n);
-            let first = partition(luminance, early, part, n);
-            let second = partition(luminance, earlier, part / 2, n);
-            // the partition nearer to halves
-            let (least, rest) = if n - part >= part / 2 { (early, first.1) } else { (earlier, second.1) };
+            let variance = unit * unit * f64::from(p.spread.max(0.0)) / f64::from(n - 1);
             PixelError {
-                reference: least.min(rest).max(0.0),
-                variance: unit * unit * f64::from(p.spread.max(0.0)) / f64::from(n - 1),
-                deviations: [first.0, second.0],
+                reference: (luminance - variance.sqrt()).max(0.0),
+                variance,
+                deviations: [
+                    partition(luminance, early, part, n),
+                    partition(luminance, earlier, part / 2, n),
+                ],
                 halves: unit * f64::from(p.halves),
                 ring: unit * f64::from(p.ring),
                 ring_swing: unit * f64::from(p.ring_swing),

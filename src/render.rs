@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use crate::engine::{Engine, EngineError, PassReport, PhotonEnds};
 use crate::film::estimate::LEAST_PASSES;
-use crate::film::{ErrorMap, Picture, RelativeError, Rejections};
+use crate::film::{ErrorMap, Picture, Rejections, RelativeError};
 
 /// When to stop; whichever comes first. At least one pass is made.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -144,17 +144,7 @@ fn hosts() -> Vec<Layout> {
         layout!(PhotonRecord { position, key, flux, direction }),
         layout!(Gathered { flux, count, ring }),
         layout!(Statistics { scale_sq, drop, count_low, count_high }),
-        layout!(FilmPixel {
-            mean,
-            spread,
-            carry,
-            early,
-            rejected,
-            ring,
-            ring_swing,
-            halves,
-            earlier
-        }),
+        layout!(FilmPixel { mean, spread, carry, early, rejected, ring, ring_swing, halves, earlier }),
     ]
 }
 

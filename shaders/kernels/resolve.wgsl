@@ -91,6 +91,9 @@ fn pass_found(at: u32, scale_sq: f32) -> Found {
 }
 
 fn half_weight(k: u32) -> f32 {
+    if dispatch.eye_samples == 1u {
+        return 0.0;
+    }
     let first = f32((dispatch.eye_samples + 1u) / 2u);
     let second = f32(dispatch.eye_samples / 2u);
     let row = k / dispatch.strata;

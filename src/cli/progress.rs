@@ -219,7 +219,10 @@ mod tests {
     #[test]
     fn a_line_has_all_its_parts() {
         let line = line(&at(16, 64, 10.0));
-        assert_eq!(line, "16/64 passes, 19.8 M photons, 500 k rays/s, radius 1.234e-2, error 2.34 %, 30.0 s left");
+        assert_eq!(
+            line,
+            "16/64 passes, 19.8 M photons, 500 k rays/s, radius 1.234e-2, error 2.34 %, 30.0 s left"
+        );
     }
 
     #[test]

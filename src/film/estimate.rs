@@ -28,8 +28,8 @@ const SMOOTHING: f64 = 2.0;
 /// What is known of one pixel's error: luminance, in W sr^-1 m^-2 or its square.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PixelError {
-    /// The estimate, or what part of the passes says, where that is less: a rare bright sample is then no reference
-    /// for its own error.
+    /// What the error is relative to: the estimate less its standard deviation. Where a single pass was bright this is what
+    /// the others found, so that a rare bright sample does not dwarf its own error.
     pub reference: f64,
     /// Variance of the mean over the passes from their mean squared deviation, as if they were independent.
     pub variance: f64,
@@ -67,15 +67,16 @@ pub fn early_passes(passes: u32) -> u32 {
     1 << (passes.max(2) - 1).ilog2()
 }
 
-/// Of `mean` over `all` passes, of which the first `part` have `part_mean`: its deviation, and the mean over the rest.
+/// Deviation of `mean` over `all` passes, of which the first `part` have `part_mean`.
 ///
-/// The difference of both means times `sqrt(a b) / (a + b)`, a and b passes in them, has the variance of the mean over
-/// all: exactly for independent passes, and for others as far as their sums over one part and over both behave alike.
-pub fn partition(mean: f64, part_mean: f64, part: u32, all: u32) -> (f64, f64) {
+/// The difference of the means over the first and over the other passes times `sqrt(a b) / (a + b)`, a and b passes in them,
+/// has the variance of the mean over all: exactly for independent passes, and for others as far as their sums over a part
+/// and over all behave alike.
+pub fn partition(mean: f64, part_mean: f64, part: u32, all: u32) -> f64 {
     let (n, a) = (f64::from(all), f64::from(part));
     let b = n - a;
     let rest = (n * mean - a * part_mean) / b;
-    ((part_mean - rest) * (a * b).sqrt() / n, rest)
+    (part_mean - rest) * (a * b).sqrt() / n
 }
 
 /// The errors of all pixels of a picture.
@@ -170,7 +171,7 @@ impl Term {
         let halves = p.halves * p.halves;
         let bias_off = BIAS_OVER_RING.powi(2) * 2.0 * p.ring * p.ring_swing;
         Self {
-            rank: (p.variance + halves) * share,
+            rank: p.variance * share,
             noise: (0.5 * (first + second) + halves) * share,
             bias: p.bias_sq() * share,
             off: (first - second + bias_off) * share,

@@ -46,7 +46,8 @@ pub fn encode(
         colors.map(|(c, name)| channel(name, picture.rgb.iter().map(|rgb| rgb[c]).collect())).collect();
     // numbers beyond f32 become its largest
     let held = |x: &f64| x.clamp(f64::from(f32::MIN), f64::from(f32::MAX)) as f32;
-    channels.extend(layers.iter().map(|(name, plane)| channel(name, plane.values.iter().map(held).collect())));
+    channels
+        .extend(layers.iter().map(|(name, plane)| channel(name, plane.values.iter().map(held).collect())));
     let mut layer = LayerAttributes {
         software_name: Some(Text::from(concat!("caustica ", env!("CARGO_PKG_VERSION")))),
         ..LayerAttributes::default()

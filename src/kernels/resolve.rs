@@ -42,6 +42,9 @@ pub fn pass_found(point: &VisiblePoint, gathered: &Gathered, scale_sq: Real, pho
 /// chessboard, so that a slope across the pixel is in both alike. With a and b samples in them the difference of
 /// their means times `sqrt(a b) / (a + b)` has the variance of the mean over all.
 pub fn half_weight(k: u32, eye_samples: u32, strata: u32) -> Real {
+    if eye_samples == 1 {
+        return 0.0;
+    }
     // an odd number of strata has one more of the first colour; an even number of columns has as many of both
     let first = eye_samples.div_ceil(2) as Real;
     let second = (eye_samples / 2) as Real;
