@@ -211,13 +211,13 @@ fn kept(promises: &[Promise]) -> usize {
     promises.iter().filter(|promise| promise.kept()).count()
 }
 
-/// Short form of the example `promise`: by noise (mesh, whose floor shows the shadow rays' noise) and by bias (drop by
+/// Short form of the example `promise`: by noise (mesh, whose floor shows the shadow rays' noise) and by bias (cornell by
 /// photons alone in wide discs), where an estimate that leaves either out is caught.
 #[test]
 fn promises_are_kept() {
     let noisy = RenderSettings { passes: 4, photons: 4096, ..RenderSettings::default() };
     let biased = RenderSettings {
-        passes: 8,
+        passes: 16,
         photons: 16_384,
         direct: Direct::Photons,
         radius: Radius::Pixels(4.0),
@@ -226,7 +226,7 @@ fn promises_are_kept() {
     let quarter = |p: &mut PixelError| p.deviations = p.deviations.map(|d| 0.5 * d);
     let no_bias = |p: &mut PixelError| p.ring = 0.0;
     for (name, settings, spoil) in
-        [("mesh", &noisy, quarter as fn(&mut PixelError)), ("drop", &biased, no_bias)]
+        [("mesh", &noisy, quarter as fn(&mut PixelError)), ("cornell", &biased, no_bias)]
     {
         let [right, wrong] = promised(name, settings, spoil);
         let ratio = right.iter().map(|p| p.said.stated / p.truth).sum::<f64>() / 20.0;
