@@ -10,7 +10,7 @@ use caustica::engine::Engine;
 use caustica::film::estimate::{LEAST_PASSES, PixelError, early_passes, partition};
 use caustica::hold::{BlockTruth, NoisyTruth, Promise};
 use caustica::kernels::gather::gather;
-use caustica::kernels::grid_build::{grid_count, grid_scan, grid_scatter};
+use caustica::kernels::grid_build::{SortedRecords, grid_count, grid_scan, grid_scatter, grid_sort};
 use caustica::kernels::records::{Dispatch, FilmPixel, Gathered, PhotonRecord, VisiblePoint};
 use caustica::kernels::resolve::{half_weight, resolve};
 use caustica::math::oct_encode;
@@ -151,7 +151,8 @@ fn ring(radius: f32, light: impl Fn(f64, f64) -> f64) -> f64 {
     grid_scan(&counts, &mut starts);
     let mut order = vec![0; records.len()];
     grid_scatter(&d, &records, &starts, &mut counts, &mut order);
-    let sorted: Vec<PhotonRecord> = order.iter().map(|i| records[*i as usize]).collect();
+    let mut sorted = SortedRecords::default();
+    grid_sort(&d, &records, &order, &mut sorted);
     let up = oct_encode(Vec3::Y);
     let point = VisiblePoint { radius, weight: Vec3::ONE, normal: up, shading: up, ..VisiblePoint::zeroed() };
     let mut gathered = Gathered::zeroed();

@@ -21,21 +21,45 @@ fn gather(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups) gr
     //#else
     let radius_sq = point.radius * point.radius * dispatch.scale_sq;
     //#end
+    //#if split
+    var found = Gathered();
+    let wider_sq = dispatch.indirect_radius * dispatch.indirect_radius;
+    // a loop, so that the function is there once: software drivers write out every call
+    for (var family = 0u; family < 2u; family++) {
+        let one = gather_family(point, family, select(radius_sq, radius_sq * wider_sq, family == 1u));
+        found.flux += select(one.flux, one.flux * (1.0 / wider_sq), family == 1u);
+        found.count += one.count;
+        found.ring += select(one.ring, one.ring * (1.0 / wider_sq), family == 1u);
+    }
+    //#else
+    let found = gather_family(point, 0u, radius_sq);
+    //#end
+    gathered[id].flux += point.weight * found.flux;
+    gathered[id].count += found.count;
+    gathered[id].ring += found.ring;
+    loops_stopped();
+}
+
+fn gather_family(point: VisiblePoint, family: u32, radius_sq: f32) -> Gathered {
+    //#if split
+    let inv_cell = select(dispatch.inv_cell, dispatch.inv_cell_indirect, family == 1u);
+    //#else
+    let inv_cell = dispatch.inv_cell;
+    //#end
     let radius = sqrt(radius_sq);
     let ng = oct_decode(point.normal);
     let flat_normal = point.normal == point.shading;
     let n = oct_decode(point.shading);
-    let low = grid_cell(point.position - vec3f(radius), dispatch.inv_cell);
-    let high = grid_cell(point.position + vec3f(radius), dispatch.inv_cell);
-    let inner_sq = 0.5 * radius_sq;
-    let tint = point.weight * LUMINANCE;
+    let low = grid_cell(point.position - vec3f(radius), inv_cell);
+    let high = grid_cell(point.position + vec3f(radius), inv_cell);
     var count = 0u;
-    var ring = gathered[id].ring;
     var sum = vec3f(0.0);
+    var ring = vec3f(0.0);
     for (var z = low.z; z <= high.z; z++) {
         for (var y = low.y; y <= high.y; y++) {
             for (var x = low.x; x <= high.x; x++) {
                 let cell = vec3i(x, y, z);
+                let code = grid_code(cell, family);
                 let bucket = grid_bucket(cell, dispatch.mask);
                 let end = starts[bucket + 1u];
                 for (var first = starts[bucket]; first < end; first += BLOCK) {
@@ -44,10 +68,7 @@ fn gather(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups) gr
                         let record = sorted[i];
                         let d = record.position - point.position;
                         let distance_sq = dot(d, d);
-                        if distance_sq > radius_sq
-                            || abs(dot(d, ng)) > FLATNESS * radius
-                            || any(grid_cell(record.position, dispatch.inv_cell) != cell)
-                        {
+                        if record.key != code || distance_sq > radius_sq || abs(dot(d, ng)) > FLATNESS * radius {
                             continue;
                         }
                         let toward_light = oct_vector(record.direction);
@@ -61,26 +82,22 @@ fn gather(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups) gr
                             let cos_g = max(dot(wi, ng), COS_MIN);
                             //#if metal
                             if point.alpha > 0.0 {
-                                let reflectance = point.reflectance;
-                                let f = eval_rough(MATERIAL_METAL, point.alpha, reflectance, n, point.wo, wi);
-                                flux = f * record.flux * (1.0 / cos_g);
+                                let f = eval_rough(MATERIAL_METAL, point.alpha, point.reflectance, n, point.wo, wi);
+                                flux = f * flux * (1.0 / cos_g);
                             } else {
-                                flux = record.flux * (max(dot(wi, n), 0.0) / cos_g);
+                                flux *= max(dot(wi, n), 0.0) / cos_g;
                             }
                             //#else
-                            flux = record.flux * (max(dot(wi, n), 0.0) / cos_g);
+                            flux *= max(dot(wi, n), 0.0) / cos_g;
                             //#end
                         }
                         block += flux;
-                        let side = select(-1.0, 1.0, distance_sq > inner_sq);
-                        ring += side * dot(tint, flux);
+                        ring += flux * select(-1.0, 1.0, distance_sq > 0.5 * radius_sq);
                     }
                     sum += block;
                 }
             }
         }
     }
-    let before = gathered[id];
-    gathered[id] = Gathered(before.flux + point.weight * sum, before.count + count, ring, 0u, 0u, 0u);
-    loops_stopped();
+    return Gathered(sum, count, dot(point.weight * LUMINANCE, ring), 0u, 0u, 0u);
 }
