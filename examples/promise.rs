@@ -39,13 +39,12 @@ const PROMISED: f64 = 0.9;
 const TRUTH: (u32, u32, f64) = (512, 131_072, 0.5);
 
 /// Scene and film: of tests/data/reference as large as their truths, of scenes/ as long as it does not take long.
-const SCENES: [(&str, Option<(u32, u32)>); 6] = [
+const SCENES: [(&str, Option<(u32, u32)>); 5] = [
     ("cornell", None),
     ("drop", None),
     ("mesh", None),
     ("caustics", Some((96, 63))),
     ("soft-shadows", Some((96, 60))),
-    ("water-drop", Some((96, 64))),
 ];
 
 /// Renders of every scene, and whether other scenes than the first are rendered so.

@@ -349,7 +349,7 @@ impl Plan {
             let part = early_passes(n);
             let variance = unit * unit * f64::from(p.spread.max(0.0)) / f64::from(n - 1);
             PixelError {
-                reference: (luminance - variance.sqrt()).max(0.0),
+                luminance,
                 variance,
                 deviations: [
                     partition(luminance, early, part, n),

@@ -300,7 +300,7 @@ mod tests {
 
         fn errors(&mut self) -> Result<ErrorMap, EngineError> {
             let deviations = [1.0 / f64::from(self.passes); 2];
-            let pixel = PixelError { reference: 0.99_f64.sqrt(), deviations, ..PixelError::default() };
+            let pixel = PixelError { luminance: 0.99_f64.sqrt(), deviations, ..PixelError::default() };
             self.errors_taken += 1;
             Ok(ErrorMap { width: 2, pixels: vec![pixel; 2] })
         }

@@ -28,9 +28,8 @@ const SMOOTHING: f64 = 2.0;
 /// What is known of one pixel's error: luminance, in W sr^-1 m^-2 or its square.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PixelError {
-    /// What the error is relative to: the estimate less its standard deviation. Where a single pass was bright this is what
-    /// the others found, so that a rare bright sample does not dwarf its own error.
-    pub reference: f64,
+    /// The estimate.
+    pub luminance: f64,
     /// Variance of the mean over the passes from their mean squared deviation, as if they were independent.
     pub variance: f64,
     /// Deviations of the mean, from two partitions of the passes into earlier and later ones. Each has mean zero and the
@@ -47,7 +46,7 @@ pub struct PixelError {
 impl PixelError {
     /// Of a pixel with too few passes.
     pub const UNKNOWN: Self = Self {
-        reference: 0.0,
+        luminance: 0.0,
         variance: f64::INFINITY,
         deviations: [f64::INFINITY; 2],
         halves: 0.0,
@@ -123,7 +122,10 @@ impl ErrorMap {
 
     /// The whole picture's error.
     pub fn relative(&self) -> RelativeError {
-        let terms: Vec<Term> = self.pixels.iter().map(Term::of).collect();
+        // a single pixel's halves may agree by chance
+        let halves_sq = self.plane(|p| p.halves * p.halves).along_x(&[1.0 / 3.0; 3]).along_y(&[1.0 / 3.0; 3]);
+        let terms: Vec<Term> =
+            self.pixels.iter().zip(&halves_sq.values).map(|(p, around)| Term::of(p, *around)).collect();
         let kept = kept(&terms);
         let count = kept.iter().filter(|kept| **kept).count().max(1) as f64;
         let sum = |part: fn(&Term) -> f64| {
@@ -165,8 +167,11 @@ struct Term {
 }
 
 impl Term {
-    fn of(p: &PixelError) -> Self {
-        let share = 1.0 / (p.reference * p.reference + DARK);
+    /// Relative to the estimate less its standard deviation: where a single pass, or eye sample, was bright this is what the
+    /// others found, so that a rare bright sample does not dwarf its own error. `halves_sq` is the mean around the pixel.
+    fn of(p: &PixelError, halves_sq: f64) -> Self {
+        let reference = (p.luminance - (p.variance + halves_sq).sqrt()).max(0.0);
+        let share = 1.0 / (reference * reference + DARK);
         let [first, second] = p.deviations.map(|deviation| deviation * deviation);
         let halves = p.halves * p.halves;
         let bias_off = BIAS_OVER_RING.powi(2) * 2.0 * p.ring * p.ring_swing;
