@@ -202,7 +202,7 @@ fn width(kind: &ShapeKind) -> Option<(f64, &'static str)> {
             }
         }
         ShapeKind::Cuboid { min, max } => ((*max - *min).min_element(), "max"),
-        ShapeKind::Revolution { segments, transform } => {
+        ShapeKind::Revolution { segments, transform, .. } => {
             let radius = segments.iter().flatten().map(|p| p.x).fold(0.0, f64::max);
             (2.0 * radius * transform.scale, "profile")
         }
