@@ -86,6 +86,7 @@ impl Limits<'_> {
     fn radius(&self, settings: &RenderSettings) -> Option<Finding> {
         let camera = &self.scene.camera;
         let (radius, from) = match settings.radius {
+            Radius::Auto => return None,
             Radius::Units(units) => (units, "the gather radius"),
             Radius::Pixels(pixels) => {
                 let tan = (0.5 * camera.fov_degrees.to_radians()).tan();

@@ -144,7 +144,7 @@ pub struct Step {
 pub struct Plan {
     /// What the scene and the settings need.
     pub features: Features,
-    /// The settings.
+    /// The settings, with a radius in the place of "auto".
     pub settings: RenderSettings,
     /// Pixels per row.
     pub width: u32,
@@ -173,6 +173,8 @@ impl Plan {
     pub fn new(packed: &Packed, settings: &RenderSettings) -> Self {
         let features = Features::of(&packed.scene, settings);
         let probe = probe(packed, settings);
+        let chosen = probe.automatic.map_or(settings.radius, |automatic| Radius::Pixels(automatic.pixels));
+        let settings = &RenderSettings { radius: chosen, ..settings.clone() };
         let camera = &packed.scene.camera;
         let eye_samples = if settings.method == Method::Ppm { settings.eye_samples } else { 1 };
         let wanted = (settings.photons as f64 * probe.records_per_photon * 1.25).max(1024.0);
@@ -221,6 +223,8 @@ impl Plan {
     pub fn dispatch(&self, pass: u32) -> Dispatch {
         let scale_sq = self.scale_sq(pass);
         let (pixels, units) = match self.settings.radius {
+            // Never: a plan's settings name what was chosen.
+            Radius::Auto => (1.0, 0.0),
             Radius::Pixels(p) => (p, 0.0),
             Radius::Units(u) => (0.0, u / self.unit),
         };

@@ -17,6 +17,7 @@ use crate::film::file::write_rgb8;
 use crate::film::flip::ldr_flip;
 use crate::film::metrics::compare;
 use crate::film::{Development, FileError, Picture, Region};
+use crate::quality::one_pass_error;
 use crate::scene::Scene;
 
 /// What a watcher is told.
@@ -202,6 +203,8 @@ impl Study<'_> {
             seed,
             device: device.to_owned(),
             setup_seconds: start.elapsed().as_secs_f64(),
+            automatic_radius: None,
+            one_pass: None,
             points: Vec::new(),
             failed: Some(what),
         };
@@ -210,6 +213,7 @@ impl Study<'_> {
             Err(error @ DeviceError::NoSuchDevice { .. }) => return Err(error.into()),
             Err(error) => return Ok(Some(failed(error.to_string(), &config.device))),
         };
+        let automatic_radius = opened.radius.map(|radius| radius.pixels);
         let (name, mut engine) = (opened.name, opened.engine);
         let setup_seconds = start.elapsed().as_secs_f64();
         let until = passes.map_or(Until::Seconds(self.about.run_seconds), Until::Passes);
@@ -220,6 +224,10 @@ impl Study<'_> {
             Ok(false) => return Ok(None),
             Err(error) => return Ok(Some(failed(error.to_string(), &name))),
         }
+        let one_pass = match snapshots.as_slice() {
+            [first, both, ..] if both.passes == 2 => one_pass_error(&first.picture, &both.picture).ok(),
+            _ => None,
+        };
         let mut points = Vec::new();
         for snapshot in &snapshots {
             match measure(snapshot, &truth.picture) {
@@ -233,7 +241,16 @@ impl Study<'_> {
                 self.write_crop(&crop_name(number, snapshot.passes), &snapshot.picture, crop)?;
             }
         }
-        Ok(Some(RunRecord { config: number, seed, device: name, setup_seconds, points, failed: None }))
+        Ok(Some(RunRecord {
+            config: number,
+            seed,
+            device: name,
+            setup_seconds,
+            automatic_radius,
+            one_pass,
+            points,
+            failed: None,
+        }))
     }
 
     /// When all renders of a configuration are there: the products of their errors, after which the pictures can go.

@@ -15,7 +15,7 @@ pub const NAMES: [(&str, &str); 12] = [
     ("method", "sppm,ppm,path"),
     ("radius_rule", "global,local,fixed"),
     ("alpha", "0.5,0.66,0.8"),
-    ("radius", "1px,2px,0.01"),
+    ("radius", "auto,2px,0.01"),
     ("photons", "65536,262144"),
     ("direct", "sampled,photons"),
     ("max_bounces", "4,8,32"),
@@ -148,6 +148,7 @@ impl Config {
             ("lamp_area", _) => self.variant.lamp.map_or("own".to_owned(), |lamp| lamp.to_string()),
             ("revolutions", _) => self.variant.revolutions.to_string(),
             ("newton_tolerance", _) => self.variant.newton.to_string(),
+            ("radius", Radius::Auto) => "auto".to_owned(),
             ("radius", Radius::Pixels(r)) => format!("{r}px"),
             ("radius", Radius::Units(r)) => format!("{r}"),
             _ => match serde_json::to_value(&self.settings).map(|settings| settings[name].clone()) {
@@ -237,6 +238,8 @@ pub fn default_axes(base: &RenderSettings) -> Vec<Axis> {
     let axis = |name: &str, values: Vec<String>| Axis { name: name.to_owned(), values };
     let words = |words: &[&str]| words.iter().map(|word| (*word).to_owned()).collect::<Vec<_>>();
     let times = |factor: f64| match base.radius {
+        // About what is chosen in most scenes.
+        Radius::Auto => format!("{}px", 4.0 * factor),
         Radius::Pixels(r) => format!("{}px", r * factor),
         Radius::Units(r) => format!("{}", r * factor),
     };
@@ -252,12 +255,15 @@ pub fn default_axes(base: &RenderSettings) -> Vec<Axis> {
 }
 
 fn radius(text: &str) -> Result<Radius, String> {
+    if text == "auto" {
+        return Ok(Radius::Auto);
+    }
     let (number, unit): (_, fn(f64) -> Radius) = match text.strip_suffix("px") {
         Some(pixels) => (pixels, Radius::Pixels),
         None => (text, Radius::Units),
     };
     let number = number.parse().ok().filter(|number| (SMALLEST..=LARGEST).contains(number));
-    number.map(unit).ok_or("expected pixels as in 2px, or scene units as in 0.01".to_owned())
+    number.map(unit).ok_or("expected auto, pixels as in 2px, or scene units as in 0.01".to_owned())
 }
 
 /// Settings with one of their fields read from text, as a scene file would.
