@@ -187,8 +187,7 @@ pub fn open(wanted: &Wanted, scene: &Scene, settings: &RenderSettings) -> Result
     let (device, why) = pick(wanted, &devices)?;
     let why = if path { "auto: path tracing runs on the CPU".to_owned() } else { why };
     let (engine, settings, automatic) = start(device, scene, settings)?;
-    let radius = automatic.filter(|_| settings.method != Method::Path);
-    Ok(Opened { engine, name: device.name.clone(), why, settings, radius })
+    Ok(Opened { engine, name: device.name.clone(), why, settings, radius: automatic })
 }
 
 type Started = (Box<dyn Engine>, RenderSettings, Option<Automatic>);
@@ -213,12 +212,12 @@ fn start(device: &DeviceInfo, scene: &Scene, settings: &RenderSettings) -> Resul
     if device.kind == DeviceKind::CpuDouble {
         let packed = double::pack::pack(scene, film.width, film.height)?;
         let plan = double::plan::Plan::new(&packed, settings);
-        let (settings, automatic) = (plan.settings.clone(), plan.probe.automatic);
+        let (settings, automatic) = (plan.settings.clone(), plan.told_radius());
         return Ok((Box::new(double::cpu::CpuEngine::new(packed, plan)), settings, automatic));
     }
     let packed = pack(scene, film.width, film.height)?;
     let plan = Plan::new(&packed, settings);
-    let (settings, automatic) = (plan.settings.clone(), plan.probe.automatic);
+    let (settings, automatic) = (plan.settings.clone(), plan.told_radius());
     let engine: Box<dyn Engine> = match device.kind {
         DeviceKind::Cpu => Box::new(CpuEngine::new(packed, plan)),
         _ => Box::new(GpuEngine::new(&AdapterChoice::Named(device.name.clone()), &packed, plan)?),

@@ -10,6 +10,7 @@ use super::pack::Packed;
 use super::probe::{Probe, probe};
 use super::real::Real;
 use crate::film::{Picture, Rejections};
+use crate::radius::Automatic;
 use crate::settings::{Method, Radius, RadiusRule, RenderSettings};
 use bytemuck::Zeroable;
 
@@ -196,6 +197,11 @@ impl Plan {
             unit: packed.unit,
             radiance_unit: packed.radiance_unit,
         }
+    }
+
+    /// Why the radius is what it is, where the settings left it open and photons are gathered at all.
+    pub fn told_radius(&self) -> Option<Automatic> {
+        self.probe.automatic.filter(|_| self.features.has("photons"))
     }
 
     /// Number of chunks.

@@ -44,7 +44,7 @@ pub enum Direct {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Radius {
-    /// Chosen by a look at the scene; see [`crate::radius`].
+    /// Chosen by a look at the scene, from how many photons fall on a pixel and whether they are caustics.
     #[default]
     Auto,
     /// In widths of a pixel's footprint at the visible point.
