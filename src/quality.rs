@@ -43,7 +43,7 @@ impl Quality {
     pub fn passes(self) -> u32 {
         match self {
             Self::Draft => 4,
-            Self::Preview => 32,
+            Self::Preview => 16,
             Self::Final => 256,
             Self::Reference => 4096,
         }

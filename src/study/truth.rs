@@ -187,7 +187,7 @@ impl Maker<'_> {
         let all = || self.configs.iter().map(|config| &config.settings);
         RenderSettings {
             method,
-            photons: all().map(|s| s.photons).min().unwrap_or(RenderSettings::default().photons),
+            photons: all().map(|s| s.photons).max().unwrap_or(RenderSettings::default().photons),
             radius: Radius::Pixels(1.0),
             radius_rule: RadiusRule::Global,
             direct: Direct::Sampled,
