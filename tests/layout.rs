@@ -36,7 +36,8 @@ fn hosts() -> Vec<Layout> {
             environment,
             unbounded_count,
             disc_levels,
-            nested
+            nested,
+            guided
         }),
         layout!(Camera {
             position,
@@ -106,7 +107,8 @@ fn hosts() -> Vec<Layout> {
             cos_inner,
             patch_first,
             patch_count,
-            medium
+            medium,
+            guide
         }),
         layout!(Dispatch {
             first,
@@ -128,7 +130,10 @@ fn hosts() -> Vec<Layout> {
             radius_units,
             radius_max,
             strata,
-            passes_done
+            passes_done,
+            families,
+            indirect_radius,
+            inv_cell_indirect
         }),
         layout!(VisiblePoint {
             position,
