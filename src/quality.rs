@@ -73,8 +73,14 @@ pub fn one_pass_error(first: &Picture, both: &Picture) -> Result<f64, MetricsErr
     Ok(2.0 * compare(first, both)?.rel_mse)
 }
 
-/// Exponent with which relMSE falls from one pass to many: over the shipped scenes the median, the least and the greatest.
-const DECAY: [f64; 3] = [0.80, 0.65, 1.0];
+/// Passes, and the exponent with which relMSE falls from one pass to so many: over the shipped scenes the median, the least
+/// and the greatest.
+const DECAY: [(u32, [f64; 3]); 4] = [
+    (4, [1.01, 0.54, 1.13]),
+    (16, [0.98, 0.55, 1.36]),
+    (256, [0.82, 0.55, 1.07]),
+    (4096, [0.74, 0.55, 0.90]),
+];
 /// That of path tracing, whose passes are independent and have no bias.
 const DECAY_OF_PATHS: [f64; 3] = [1.0; 3];
 
@@ -91,9 +97,20 @@ pub struct Expected {
 
 /// What to expect after so many passes where one pass has the relMSE `one_pass`.
 pub fn expected(one_pass: f64, passes: u32, method: Method) -> Expected {
-    let decay = if method == Method::Path { DECAY_OF_PATHS } else { DECAY };
+    let decay = if method == Method::Path { DECAY_OF_PATHS } else { decay(passes) };
     let [rel_mse, high, low] = decay.map(|slope| one_pass * f64::from(passes).powf(-slope));
     Expected { rel_mse, low, high }
+}
+
+/// The exponents for a number of passes: between those of the table in proportion to its logarithm.
+fn decay(passes: u32) -> [f64; 3] {
+    let (first, last) = (DECAY[0], DECAY[DECAY.len() - 1]);
+    let between = DECAY.windows(2).find(|pair| (pair[0].0..=pair[1].0).contains(&passes));
+    let Some([(low, from), (high, to)]) = between else {
+        return if passes < first.0 { first.1 } else { last.1 };
+    };
+    let part = (f64::from(passes) / f64::from(*low)).ln() / (f64::from(*high) / f64::from(*low)).ln();
+    [0, 1, 2].map(|i| from[i] + part * (to[i] - from[i]))
 }
 
 /// Theory: two pictures of independent passes with variance V each have the mean squared distance 2 V; the first's from
@@ -129,6 +146,13 @@ mod tests {
         assert!(errors.windows(2).all(|pair| pair[1].high < pair[0].high && pair[1].low < pair[0].low));
         assert!(errors.iter().all(|e| e.low <= e.rel_mse && e.rel_mse <= e.high));
         assert_eq!(expected(0.1, 1, Method::Sppm).rel_mse, 0.1);
+        // Between the table's lines the exponent lies between theirs, on them it is theirs, beyond them the last.
+        let exponent =
+            |passes: u32| -(expected(1.0, passes, Method::Sppm).rel_mse).ln() / f64::from(passes).ln();
+        assert!((exponent(64) - 0.5 * (exponent(16) + exponent(256))).abs() < 1e-9);
+        assert!(
+            (exponent(2) - exponent(4)).abs() < 1e-9 && (exponent(1 << 20) - exponent(4096)).abs() < 1e-9
+        );
         assert!((expected(0.1, 10, Method::Path).rel_mse - 0.01).abs() < 1e-12);
     }
 

@@ -124,7 +124,9 @@ impl Maker<'_> {
                         return Ok(None);
                     };
                     folder.keep_picture(&name, &picture)?;
-                    note(&format!("truth: {}, seed {} of {}", word(method), seed + 1, self.seeds));
+                    let left = seconds * f64::from(self.seeds - seed - 1);
+                    let (method, of) = (word(method), self.seeds);
+                    note(&format!("truth: {method}, seed {} of {of}; {left:.0} s left for it", seed + 1));
                     picture
                 }
             };
