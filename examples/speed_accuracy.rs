@@ -193,7 +193,8 @@ fn page(studies: &[Studied]) -> String {
             about["seeds"]
         );
         for sentence in study.star["recommendations"][0].as_array().into_iter().flatten() {
-            let _ = writeln!(out, "- {}", sentence.as_str().unwrap_or(""));
+            let sentence = sentence.as_str().unwrap_or("");
+            let _ = writeln!(out, "- {}", sentence.replace("the scene's own", "the presets' settings"));
         }
         let _ = write!(
             out,

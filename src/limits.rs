@@ -86,9 +86,10 @@ impl Limits<'_> {
     fn radius(&self, settings: &RenderSettings) -> Option<Finding> {
         let camera = &self.scene.camera;
         let (radius, from) = match settings.radius {
-            Radius::Auto => return None,
             Radius::Units(units) => (units, "the gather radius"),
-            Radius::Pixels(pixels) => {
+            Radius::Auto | Radius::Pixels(_) => {
+                // The least that is chosen is one pixel.
+                let pixels = if let Radius::Pixels(pixels) = settings.radius { pixels } else { 1.0 };
                 let tan = (0.5 * camera.fov_degrees.to_radians()).tan();
                 let width = 2.0 * tan / f64::from(self.scene.film.height);
                 let radius = pixels * width * (camera.target - camera.position).length();
