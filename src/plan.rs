@@ -178,8 +178,9 @@ impl Plan {
         let features = Features::of(&packed.scene, settings);
         let probe = probe(packed, settings);
         let chosen = probe.automatic.map_or(settings.radius, |automatic| Radius::Pixels(automatic.pixels));
-        let settings = &RenderSettings { radius: chosen, ..settings.clone() };
-        let widening = if features.has("first") { 1.0 } else { settings.indirect_radius };
+        let wider = settings.indirect_radius.or(probe.automatic.map(|a| a.indirect)).unwrap_or(1.0);
+        let settings = &RenderSettings { radius: chosen, indirect_radius: Some(wider), ..settings.clone() };
+        let widening = if features.has("first") { 1.0 } else { wider };
         let camera = &packed.scene.camera;
         let eye_samples = if settings.method == Method::Ppm { settings.eye_samples } else { 1 };
         let wanted = (settings.photons as f64 * probe.records_per_photon * 1.25).max(1024.0);
@@ -240,7 +241,7 @@ impl Plan {
             Radius::Units(u) => (0.0, u * self.widening / self.unit),
         };
         let split = self.features.has("split");
-        let wider = if split { self.settings.indirect_radius } else { 1.0 };
+        let wider = if split { self.settings.wider() } else { 1.0 };
         let cell = CELL_RADII * self.widening * self.probe.radius * scale_sq.sqrt();
         Dispatch {
             pass_number: pass,

@@ -75,7 +75,7 @@ pub fn probe(packed: &Packed, settings: &RenderSettings) -> Probe {
     };
     let automatic = (settings.radius == Radius::Auto).then(|| {
         let density = density(&points, &records) * settings.photons as f64 / PHOTONS as f64;
-        automatic(density, caustic_share(scene, &dispatch, photons))
+        automatic(density, settings.photons as f64 / total as f64, caustic_share(scene, &dispatch, photons))
     });
     let widths = points.iter().map(|point| point.radius).collect();
     let width = median(widths).unwrap_or(scene.camera.pixel) as f64;

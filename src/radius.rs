@@ -7,10 +7,14 @@
 
 use std::fmt;
 
-/// Start radius in pixels for one photon a pass on each pixel, where photons bring caustics: a wide disc blurs their edges.
-const CAUSTIC: f64 = 2.4;
-/// The same where their light has met a diffuse surface and is smooth.
-const SMOOTH: f64 = 4.0;
+/// Start radius in pixels, for one photon a pass on each pixel, of photons that a diffuse surface has scattered: their light is
+/// smooth.
+const INDIRECT: f64 = 5.5;
+/// The same of the others where they bring caustics, for one photon a pass emitted for each pixel: a wide disc blurs their
+/// edges, and maps send photons enough.
+const CAUSTIC: f64 = 2.0;
+/// Radius of the first over that of the others where there are no caustics.
+const SMOOTH: f64 = 3.0;
 /// Least share of caustics in the photons' light that counts.
 const LEAST_SHARE: f64 = 0.01;
 /// Pixels that are chosen; steps of about a square root of two, so that the choice hangs on no rounding and can be said.
@@ -21,25 +25,34 @@ const STEPS: [f64; 9] = [1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0];
 pub struct Automatic {
     /// Start radius in widths of a pixel's footprint.
     pub pixels: f64,
+    /// That of photons that a diffuse surface has scattered, over it.
+    pub indirect: f64,
     /// Photons of a pass that fall on a pixel's footprint, median over the picture.
     pub density: f64,
     /// Share of caustics in the light that photons bring.
     pub caustics: f64,
 }
 
-/// Chooses for `density` photons of a pass on a pixel.
-pub fn automatic(density: f64, caustics: f64) -> Automatic {
-    let one = if caustics < LEAST_SHARE { SMOOTH } else { CAUSTIC };
+/// Chooses for `density` photons of a pass on a pixel and `emitted` that are emitted for each pixel.
+pub fn automatic(density: f64, emitted: f64, caustics: f64) -> Automatic {
     // No photon at all asks for the widest disc.
-    let best = one * density.max(1e-9).powf(-1.0 / 6.0);
-    let far = |step: &f64| (step / best).ln().abs();
-    let pixels = STEPS.into_iter().min_by(|a, b| far(a).total_cmp(&far(b))).unwrap_or(one);
-    Automatic { pixels, density, caustics }
+    let best = |one: f64, photons: f64| one * photons.max(1e-9).powf(-1.0 / 6.0);
+    let wide = step(best(INDIRECT, density));
+    let sharp = if caustics < LEAST_SHARE { wide / SMOOTH } else { best(CAUSTIC, emitted) };
+    let pixels = step(sharp.min(wide));
+    Automatic { pixels, indirect: (wide / pixels).max(1.0), density, caustics }
+}
+
+/// The nearest of [`STEPS`], by ratio.
+fn step(radius: f64) -> f64 {
+    let far = |step: &f64| (step / radius).ln().abs();
+    STEPS.into_iter().min_by(|a, b| far(a).total_cmp(&far(b))).unwrap_or(radius)
 }
 
 impl fmt::Display for Automatic {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let Self { pixels, density, caustics } = self;
+        let Self { pixels, indirect, density, caustics } = self;
+        let wide = pixels * indirect;
         let density = match density {
             d if *d < 1e-4 => "hardly any".to_owned(),
             d if *d < 0.095 => format!("{d:.1e}"),
@@ -49,7 +62,7 @@ impl fmt::Display for Automatic {
         let share = 100.0 * caustics;
         write!(
             f,
-            "{pixels} px, for {density} photons of a pass on each pixel, of whose light {share:.0} % is caustics"
+            "{pixels} px, {wide} px for light that a diffuse surface has scattered, for {density} photons of a pass on each pixel, of whose light {share:.0} % is caustics"
         )
     }
 }
@@ -61,23 +74,25 @@ mod tests {
 
     #[test]
     fn denser_photons_make_narrower_discs() {
-        let px = |density: f64| automatic(density, 0.5).pixels;
-        let one = px(1.0);
-        assert_eq!((px(1.0 / 64.0), px(64.0)), (2.0 * one, 0.5 * one));
+        let px = |photons: f64| automatic(photons, photons, 0.5).pixels;
+        let wide = |photons: f64| automatic(photons, photons, 0.5).indirect * px(photons);
+        assert_eq!((px(1.0 / 64.0), px(64.0)), (2.0 * px(1.0), 0.5 * px(1.0)));
+        assert_eq!((wide(1.0 / 64.0), wide(64.0)), (2.0 * wide(1.0), 0.5 * wide(1.0)));
         let all: Vec<f64> = (-60..60).map(|k| px(10f64.powf(0.1 * f64::from(k)))).collect();
         assert!(all.windows(2).all(|pair| pair[0] >= pair[1]), "{all:?}");
         assert!(all.iter().all(|pixels| STEPS.contains(pixels)));
         assert_eq!((px(0.0), px(f64::INFINITY)), (16.0, 1.0), "nothing seen, and everything");
-        assert!(automatic(1.0, 0.0).pixels > automatic(1.0, 1.0).pixels, "nothing to keep sharp");
+        let smooth = automatic(1.0, 1.0, 0.0);
+        assert_eq!((smooth.pixels, smooth.indirect), (2.0, 3.0), "one disc of six pixels");
     }
 
     #[test]
     fn a_choice_says_why() {
-        let said = automatic(0.314, 0.42).to_string();
+        let said = automatic(0.314, 1.0, 0.42).to_string();
         assert!(
             said.ends_with(" px, for 0.3 photons of a pass on each pixel, of whose light 42 % is caustics"),
             "{said}"
         );
-        assert!(automatic(0.0, 0.0).to_string().contains("for hardly any photons"));
+        assert!(automatic(0.0, 1.0, 0.0).to_string().contains("for hardly any photons"));
     }
 }

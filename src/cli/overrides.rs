@@ -72,7 +72,7 @@ impl Overrides {
         set(&mut settings.passes, self.passes);
         set(&mut settings.photons, self.photons);
         set(&mut settings.radius, self.radius);
-        set(&mut settings.indirect_radius, self.indirect_radius);
+        settings.indirect_radius = self.indirect_radius.or(settings.indirect_radius);
         set(&mut settings.radius_rule, self.radius_rule);
         set(&mut settings.alpha, self.alpha);
         set(&mut settings.direct, self.direct);

@@ -11,11 +11,12 @@ use crate::scene::numbers::{LARGEST, SMALLEST};
 use crate::settings::{Radius, RenderSettings};
 
 /// Settings that a grid may vary, with examples of their values.
-pub const NAMES: [(&str, &str); 12] = [
+pub const NAMES: [(&str, &str); 13] = [
     ("method", "sppm,ppm,path"),
     ("radius_rule", "global,local,fixed"),
     ("alpha", "0.5,0.66,0.8"),
     ("radius", "auto,2px,0.01"),
+    ("indirect_radius", "1,2,4"),
     ("photons", "65536,262144"),
     ("direct", "sampled,photons"),
     ("max_bounces", "4,8,32"),
@@ -151,6 +152,8 @@ impl Config {
             ("radius", Radius::Auto) => "auto".to_owned(),
             ("radius", Radius::Pixels(r)) => format!("{r}px"),
             ("radius", Radius::Units(r)) => format!("{r}"),
+            ("indirect_radius", Radius::Auto) if self.settings.indirect_radius.is_none() => "auto".to_owned(),
+            ("indirect_radius", _) => format!("{}", self.settings.wider()),
             _ => match serde_json::to_value(&self.settings).map(|settings| settings[name].clone()) {
                 Ok(Value::String(word)) => word,
                 Ok(Value::Number(number)) => format!("{:.4}", number.as_f64().unwrap_or(0.0))
@@ -177,6 +180,7 @@ pub fn label(name: &str, value: &str) -> String {
         "radius_rule" => format!("{value} rule"),
         "alpha" => format!("α {value}"),
         "radius" => format!("r {value}"),
+        "indirect_radius" => format!("indirect r × {value}"),
         "photons" => format!("{} photons", value.parse().map_or(value.to_owned(), thousands)),
         "direct" => match value {
             "photons" => "direct by photons".to_owned(),
@@ -281,6 +285,9 @@ fn with_setting(settings: &RenderSettings, name: &str, text: &str) -> Result<Ren
         false => Err(format!("expected a whole number from {least} to {most}")),
     };
     within(1, changed.photons, u32::MAX)?;
+    if !(1.0..=16.0).contains(&changed.wider()) {
+        return Err("expected a number from 1 to 16".to_owned());
+    }
     within(0, changed.max_bounces, 65535)?;
     within(1, changed.eye_samples, 65536)?;
     match changed.alpha > 0.0 && changed.alpha <= 1.0 {

@@ -83,6 +83,7 @@ fn title(name: &str) -> &str {
         "radius_rule" => "Radius rule",
         "alpha" => "Alpha",
         "radius" => "Start radius",
+        "indirect_radius" => "Indirect radius",
         "photons" => "Photons per pass",
         "direct" => "Direct light",
         "max_bounces" => "Most bounces",
