@@ -225,6 +225,7 @@ mod tests {
                 records: 3,
                 eye_paths: 7,
                 rays: 100 * i,
+                eye_rays: 0,
                 ends: PhotonEnds::default(),
                 radius: 1.0 / i as f64,
             })

@@ -8,7 +8,7 @@ use caustica::engine::EngineError;
 use caustica::film::{self, Development, Provenance, Rejections, check_outputs};
 use caustica::limits;
 use caustica::render::{Ending, Outcome, Stop, render};
-use caustica::scene::{self, Scene};
+use caustica::scene::{self, Loaded, Scene};
 use caustica::settings::RenderSettings;
 use clap::builder::NonEmptyStringValueParser;
 use miette::{Report, miette};
@@ -133,7 +133,11 @@ pub fn begin(
 
 /// Reads the scene, puts the options in force, and prints the warnings.
 pub fn load(file: &Path, overrides: &Overrides) -> Result<(Scene, RenderSettings), Failure> {
-    let mut loaded = scene::load(file)?;
+    in_force(scene::load(file)?, overrides)
+}
+
+/// Puts the options in force and prints the warnings.
+pub fn in_force(mut loaded: Loaded, overrides: &Overrides) -> Result<(Scene, RenderSettings), Failure> {
     overrides.apply(&mut loaded.scene, &mut loaded.settings);
     let limits = limits::warnings(&loaded.scene, &loaded.settings, &loaded.places);
     for warning in loaded.warnings.into_iter().chain(limits) {

@@ -12,6 +12,7 @@ use super::pack::Packed;
 use super::plan::{Kernel, Plan};
 use super::real::ENGINE;
 use super::tables::Scene;
+use crate::clock::{Clock, KernelSeconds};
 use crate::engine::{Engine, EngineError, PassReport, PhotonEnds};
 use crate::film::{Picture, Rejections};
 use crate::settings::Method;
@@ -36,6 +37,7 @@ pub struct CpuEngine {
     starts: Vec<u32>,
     order: Vec<u32>,
     device: String,
+    clock: Clock,
 }
 
 /// A batch left more records than the buffers hold.
@@ -61,6 +63,7 @@ impl CpuEngine {
             starts: vec![0; buckets + 1],
             order: Vec::new(),
             device: format!("{ENGINE}, {} threads", rayon::current_num_threads()),
+            clock: Clock::default(),
             packed,
             plan,
         }
@@ -84,6 +87,7 @@ impl CpuEngine {
         let local = self.plan.features.has("local");
         let scene = &self.packed.scene;
         for step in self.plan.steps(self.passes_done, batch_photons) {
+            self.clock.begin(step.kernel.stem());
             let d = &step.dispatch;
             let (first, points) = self.plan.chunk(step.chunk);
             let chunk = first as usize..(first + points) as usize;
@@ -99,6 +103,7 @@ impl CpuEngine {
                             rays as u64
                         })
                         .sum::<u64>();
+                    report.eye_rays = report.rays;
                 }
                 Kernel::PhotonTrace => {
                     let (rays, ends) = trace_photons(scene, d, sampled, &mut self.records);
@@ -154,6 +159,7 @@ impl CpuEngine {
     }
 
     fn path_pass(&mut self, report: &mut PassReport) {
+        self.clock.begin("path_trace");
         let d = self.plan.dispatch(self.passes_done);
         let sampled = self.plan.features.has("sampled");
         let scene = &self.packed.scene;
@@ -169,6 +175,7 @@ impl CpuEngine {
                 rays as u64
             })
             .sum();
+        report.eye_rays = report.rays;
     }
 }
 
@@ -213,8 +220,16 @@ impl Engine for CpuEngine {
             self.photon_pass(&mut report);
             report.radius = self.plan.radius(self.passes_done);
         }
+        self.clock.end();
         self.passes_done += 1;
         Ok(report)
+    }
+
+    fn timed_pass(&mut self) -> Result<(PassReport, KernelSeconds), EngineError> {
+        self.clock.wind();
+        let report = self.pass();
+        let seconds = self.clock.take();
+        Ok((report?, seconds))
     }
 
     fn picture(&mut self) -> Result<Picture, EngineError> {

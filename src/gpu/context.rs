@@ -137,7 +137,8 @@ impl Gpu {
             found.ok_or_else(|| EngineError::Unsupported(format!("there is no adapter for {choice:?}")))?;
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("caustica"),
-            required_features: wgpu::Features::empty(),
+            // a clock, where there is one, for those who ask for times
+            required_features: adapter.features() & wgpu::Features::TIMESTAMP_QUERY,
             required_limits: adapter.limits(),
             ..Default::default()
         };
@@ -153,6 +154,11 @@ impl Gpu {
             }
         });
         Ok(Self { device, queue, summary, failure })
+    }
+
+    /// Whether it has a clock that kernels can be timed with.
+    pub fn has_clock(&self) -> bool {
+        self.device.features().contains(wgpu::Features::TIMESTAMP_QUERY)
     }
 
     /// The failure since the last look, if any.
