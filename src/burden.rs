@@ -129,7 +129,7 @@ pub fn on_gpu(
     settings: &RenderSettings,
     passes: u32,
 ) -> Result<Costs, EngineError> {
-    let mut engine = GpuEngine::new(choice, packed, Plan::new(packed, settings))?;
+    let mut engine = GpuEngine::measured(choice, packed, Plan::new(packed, settings))?;
     let compiled = engine.compile_seconds().clone();
     let mut kernels: BTreeMap<&'static str, KernelCost> = compiled
         .iter()

@@ -97,4 +97,12 @@ pub trait Engine {
     fn picture(&mut self) -> Result<Picture, EngineError>;
     /// What the passes so far left out of it.
     fn rejections(&mut self) -> Result<Rejections, EngineError>;
+    /// Both.
+    fn results(&mut self) -> Result<(Picture, Rejections), EngineError> {
+        Ok((self.picture()?, self.rejections()?))
+    }
+    /// Photons that the last pass found around all visible points; 0 where the engine does not tell.
+    fn gathered(&mut self) -> Result<u64, EngineError> {
+        Ok(0)
+    }
 }

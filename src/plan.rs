@@ -30,8 +30,10 @@ pub enum Kernel {
     GridScan,
     /// Records into bucket order.
     GridScatter,
-    /// Each bucket into the order of its keys.
+    /// Each short bucket into the order of its keys.
     GridSort,
+    /// Each long one.
+    GridSortLong,
     /// Density estimates.
     Gather,
     /// Estimates into the film.
@@ -40,6 +42,8 @@ pub enum Kernel {
 
 /// Buckets that one workgroup of the scan kernels covers; the same number of blocks is the most there may be.
 pub const SCAN_BLOCK: u32 = 4096;
+/// Buckets that one workgroup of [`Kernel::GridSortLong`] looks through.
+pub const SORT_BUCKETS: u32 = 1024;
 /// Bytes that one storage binding may have on every device (WebGPU's default limit).
 pub const BINDING_LIMIT: u64 = 128 << 20;
 /// Most visible points in a chunk.
@@ -51,7 +55,7 @@ const CELL_RADII: f64 = 2.0;
 
 impl Kernel {
     /// All kernels, in the order of a pass.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::EyeTrace,
         Self::PhotonTrace,
         Self::GridCount,
@@ -60,6 +64,7 @@ impl Kernel {
         Self::GridScan,
         Self::GridScatter,
         Self::GridSort,
+        Self::GridSortLong,
         Self::Gather,
         Self::Resolve,
     ];
@@ -75,6 +80,7 @@ impl Kernel {
             Self::GridScan => "grid_scan",
             Self::GridScatter => "grid_scatter",
             Self::GridSort => "grid_sort",
+            Self::GridSortLong => "grid_sort_long",
             Self::Gather => "gather",
             Self::Resolve => "resolve",
         }
@@ -98,7 +104,10 @@ impl Kernel {
                     ("order", true),
                 ]
             }
-            Self::GridSort => vec![
+            Self::GridSort => {
+                vec![("records", false), ("starts", false), ("order", true), ("sorted", true)]
+            }
+            Self::GridSortLong => vec![
                 ("records", false),
                 ("counters", true),
                 ("starts", false),
@@ -269,6 +278,7 @@ impl Plan {
             step(Kernel::GridScan, 0, over(self.buckets));
             step(Kernel::GridScatter, 0, over(self.capacity));
             step(Kernel::GridSort, 0, over(self.buckets));
+            step(Kernel::GridSortLong, 0, over(self.buckets));
             for c in 0..self.chunks() {
                 let (chunk_first, end) = self.chunk(c);
                 step(Kernel::Gather, c, Dispatch { end, chunk_first, ..common });

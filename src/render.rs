@@ -176,7 +176,7 @@ struct Kept {
 }
 
 fn take(engine: &mut dyn Engine) -> Result<(Picture, Rejections), EngineError> {
-    Ok((engine.picture()?, engine.rejections()?))
+    engine.results()
 }
 
 fn last_kept(kept: Option<Kept>, error: EngineError) -> Result<Outcome, EngineError> {

@@ -17,12 +17,14 @@ use serde::Serialize;
 
 use crate::device::{DeviceError, DeviceInfo, DeviceKind};
 use crate::engine::{EngineError, PassReport};
+use crate::gpu::program::Compiling;
+use crate::plan::Plan;
 use crate::scene::Scene;
 use crate::settings::{Method, RenderSettings};
 use setup::{Ready, SetupSeconds};
 use spread::Spread;
 use to_error::Approach;
-use work::{GatherCounts, gather_counts, least_bytes};
+use work::Work;
 
 /// How a bench goes.
 #[derive(Clone, Debug, PartialEq)]
@@ -66,7 +68,7 @@ pub struct DeviceReport {
     pub rest: Spread,
     /// The kernels, in the order of their names.
     pub kernels: BTreeMap<&'static str, KernelReport>,
-    /// What a pass did: the last timed one, and of those in the gather the middle one.
+    /// What a pass did: the last timed one, and of what is gathered the middle one.
     pub work: Work,
     /// Passes by how they were split; none on the CPU.
     pub slices: Vec<SliceReport>,
@@ -94,23 +96,6 @@ pub struct KernelReport {
     pub share: f64,
     /// What it does a second, by its median.
     pub rates: BTreeMap<&'static str, f64>,
-}
-
-/// What a pass did.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Work {
-    /// Eye paths.
-    pub eye_paths: u64,
-    /// Their rays, shadow rays among them.
-    pub eye_rays: u64,
-    /// Photon paths.
-    pub photons: u64,
-    /// Their rays.
-    pub photon_rays: u64,
-    /// Photon records.
-    pub records: u64,
-    /// Around the visible points.
-    pub gather: GatherCounts,
 }
 
 /// Passes that were split in one way.
@@ -153,22 +138,10 @@ pub fn device_report(
     conduct: &Conduct,
 ) -> Result<DeviceReport, DeviceError> {
     machine::forget_peak();
-    let mut ready = setup::ready(device, scene, settings)?;
+    let mut ready = setup::ready(device, scene, settings, Compiling::OneByOne)?;
     let run = run(&mut ready, conduct)?;
     let peak_resident = machine::peak_resident_bytes();
-    let gather = match settings.method {
-        Method::Path => GatherCounts::default(),
-        _ => gather_counts(&ready.packed, &ready.plan, run.middle),
-    };
-    let report = &run.report;
-    let work = Work {
-        eye_paths: report.eye_paths,
-        eye_rays: report.eye_rays,
-        photons: report.photons,
-        photon_rays: report.rays - report.eye_rays,
-        records: report.records,
-        gather,
-    };
+    let work = Work::of(&ready.plan, &run.report, run.gathered);
     let pass = run.slices.first().map(|slice| slice.pass).unwrap_or_default();
     Ok(DeviceReport {
         name: device.name.clone(),
@@ -194,7 +167,7 @@ pub fn device_report(
         rates: pass_rates(&work, pass.median),
         timed_pass: Spread::of(&run.timed),
         rest: Spread::of(&run.rest),
-        kernels: kernel_reports(&run.kernels, &work, &least_bytes(&ready.plan, report)),
+        kernels: kernel_reports(&run.kernels, &work, &ready.plan),
         work,
         slices: if ready.runner.gpu().is_some() { run.slices } else { Vec::new() },
         memory: Memory { peak_resident, ..memory(&ready) },
@@ -211,8 +184,8 @@ struct Run {
     slices: Vec<SliceReport>,
     /// Of the last timed pass.
     report: PassReport,
-    /// Number of the middle timed pass, from 0.
-    middle: u32,
+    /// Photons gathered in the middle timed pass.
+    gathered: u64,
 }
 
 fn run(ready: &mut Ready, conduct: &Conduct) -> Result<Run, EngineError> {
@@ -222,6 +195,7 @@ fn run(ready: &mut Ready, conduct: &Conduct) -> Result<Run, EngineError> {
         (Some(_), []) => &[crate::gpu::pace::SLICE],
         (None, _) => &[f64::INFINITY],
     };
+    let cpu = runner.gpu().is_none();
     let mut first_pass = 0.0;
     for pass in 0..conduct.warm_up.max(1) {
         set_slice(runner, slices[0]);
@@ -233,7 +207,7 @@ fn run(ready: &mut Ready, conduct: &Conduct) -> Result<Run, EngineError> {
     }
     let begun = Instant::now();
     let mut kernels: BTreeMap<&'static str, Vec<f64>> = BTreeMap::new();
-    let (mut timed, mut rest) = (Vec::new(), Vec::new());
+    let (mut timed, mut rest, mut gathered) = (Vec::new(), Vec::new(), Vec::new());
     let mut plain: Vec<(Vec<f64>, u64, crate::gpu::Submissions)> = vec![Default::default(); slices.len()];
     let mut last = PassReport::default();
     for round in 0..conduct.passes.max(1) {
@@ -246,10 +220,14 @@ fn run(ready: &mut Ready, conduct: &Conduct) -> Result<Run, EngineError> {
         let whole = start.elapsed().as_secs_f64();
         timed.push(whole);
         rest.push((whole - seconds.values().sum::<f64>()).max(0.0));
-        for (kernel, seconds) in seconds {
+        // the CPU engine scans and sorts in one go
+        let skipped =
+            |kernel: &str| cpu && ["grid_scan_reduce", "grid_scan_sums", "grid_sort_long"].contains(&kernel);
+        for (kernel, seconds) in seconds.into_iter().filter(|(kernel, _)| !skipped(kernel)) {
             kernels.entry(kernel).or_default().push(seconds);
         }
         last = report;
+        gathered.push(runner.engine().gathered()?);
         for (slice, (passes, count, longest)) in slices.iter().zip(&mut plain) {
             set_slice(runner, *slice);
             runner.gpu().map(|gpu| gpu.take_submissions());
@@ -278,9 +256,9 @@ fn run(ready: &mut Ready, conduct: &Conduct) -> Result<Run, EngineError> {
         }
     };
     let slices = slices.iter().zip(&plain).map(report).collect();
-    let rounds = timed.len() as u32;
-    let middle = conduct.warm_up.max(1) + rounds / 2 * (1 + plain.len() as u32);
-    Ok(Run { first_pass, kernels, timed, rest, slices, report: last, middle })
+    gathered.sort_unstable();
+    let gathered = gathered[gathered.len() / 2];
+    Ok(Run { first_pass, kernels, timed, rest, slices, report: last, gathered })
 }
 
 fn set_slice(runner: &mut setup::Runner, seconds: f64) {
@@ -303,28 +281,16 @@ fn pass_rates(work: &Work, seconds: f64) -> BTreeMap<&'static str, f64> {
 fn kernel_reports(
     kernels: &BTreeMap<&'static str, Vec<f64>>,
     work: &Work,
-    bytes: &BTreeMap<&'static str, f64>,
+    plan: &Plan,
 ) -> BTreeMap<&'static str, KernelReport> {
-    let spreads: BTreeMap<_, _> = kernels.iter().map(|(name, seconds)| (*name, Spread::of(seconds))).collect();
+    let spreads: BTreeMap<_, _> =
+        kernels.iter().map(|(name, seconds)| (*name, Spread::of(seconds))).collect();
     let all: f64 = spreads.values().map(|spread| spread.median).sum();
     let report = |(name, seconds): (&&'static str, &Spread)| {
-        let counts: Vec<(&'static str, f64)> = match *name {
-            "eye_trace" | "path_trace" => {
-                vec![("paths_per_second", work.eye_paths as f64), ("rays_per_second", work.eye_rays as f64)]
-            }
-            "photon_trace" => {
-                vec![("photons_per_second", work.photons as f64), ("rays_per_second", work.photon_rays as f64)]
-            }
-            "gather" => vec![
-                ("points_per_second", work.gather.points),
-                ("photons_tested_per_second", work.gather.tested),
-                ("photons_accepted_per_second", work.gather.accepted),
-            ],
-            other => bytes.get(other).map(|bytes| ("bytes_per_second", *bytes)).into_iter().collect(),
-        };
-        let rates = counts.into_iter().map(|(rate, count)| (rate, count / seconds.median.max(1e-9)));
+        let counts = work.counts(plan, name).into_iter();
+        let rates = counts.map(|(rate, count)| (rate, count / seconds.median.max(1e-9))).collect();
         let share = seconds.median / all.max(1e-12);
-        (*name, KernelReport { seconds: *seconds, share, rates: rates.collect() })
+        (*name, KernelReport { seconds: *seconds, share, rates })
     };
     spreads.iter().map(report).collect()
 }

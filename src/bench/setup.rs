@@ -8,6 +8,7 @@ use crate::cpu::CpuEngine;
 use crate::device::{self, DeviceError, DeviceInfo, DeviceKind};
 use crate::double;
 use crate::engine::{Engine, EngineError};
+use crate::gpu::program::Compiling;
 use crate::gpu::{AdapterChoice, GpuEngine};
 use crate::pack::{Packed, pack};
 use crate::plan::Plan;
@@ -65,13 +66,19 @@ pub struct Ready {
     pub seconds: SetupSeconds,
 }
 
-/// Makes an engine on `device`.
-pub fn ready(device: &DeviceInfo, scene: &Scene, settings: &RenderSettings) -> Result<Ready, DeviceError> {
+/// Makes an engine on `device`, and if kernels are to be compiled one by one, after its time was taken another.
+pub fn ready(
+    device: &DeviceInfo,
+    scene: &Scene,
+    settings: &RenderSettings,
+    compiling: Compiling,
+) -> Result<Ready, DeviceError> {
     device::check_points(device, scene, settings)?;
     let (width, height) = (scene.film.width, scene.film.height);
     let (packed, pack_seconds) = timed(|| pack(scene, width, height).map_err(EngineError::from))?;
     let (plan, plan_seconds) = timed(|| Ok(Plan::new(&packed, settings)))?;
     let mut buffers = plan.buffers();
+    let choice = AdapterChoice::Named(device.name.clone());
     let (runner, engine) = timed(|| match device.kind {
         DeviceKind::Cpu => Ok(Runner::Cpu(Box::new(CpuEngine::new(packed.clone(), plan.clone())))),
         DeviceKind::CpuDouble => {
@@ -81,10 +88,16 @@ pub fn ready(device: &DeviceInfo, scene: &Scene, settings: &RenderSettings) -> R
             Ok(Runner::Cpu(Box::new(double::cpu::CpuEngine::new(packed, plan))))
         }
         DeviceKind::Gpu | DeviceKind::Software => {
-            let choice = AdapterChoice::Named(device.name.clone());
-            Ok(Runner::Gpu(Box::new(GpuEngine::new(&choice, &packed, plan.clone())?)))
+            GpuEngine::new(&choice, &packed, plan.clone()).map(|made| Runner::Gpu(Box::new(made)))
         }
     })?;
+    let runner = match runner {
+        Runner::Gpu(made) if compiling == Compiling::OneByOne => {
+            drop(made);
+            Runner::Gpu(Box::new(GpuEngine::measured(&choice, &packed, plan.clone())?))
+        }
+        runner => runner,
+    };
     let seconds = SetupSeconds { pack: pack_seconds, plan: plan_seconds, engine };
     Ok(Ready { runner, packed, plan, buffers, seconds })
 }

@@ -8,6 +8,7 @@ use caustica::bench::{Conduct, DeviceReport, can_run, device_report, machine::Ma
 use caustica::device::{self, DeviceInfo, DeviceKind};
 use caustica::film::metrics::MetricsError;
 use caustica::film::{Coding, Picture, Region, read_any};
+use caustica::gpu::program::Compiling;
 use caustica::scene::{self, Loaded, Scene};
 use caustica::settings::RenderSettings;
 use clap::builder::NonEmptyStringValueParser;
@@ -166,7 +167,9 @@ fn measure(
 ) -> Result<DeviceReport, Failure> {
     let cached = std::env::var_os("MESA_SHADER_CACHE_DISABLE").is_none();
     if device.kind == DeviceKind::Software && cached {
-        message("note: Mesa keeps compiled shaders; for cold compile times say MESA_SHADER_CACHE_DISABLE=true");
+        message(
+            "note: Mesa keeps compiled shaders; for cold compile times say MESA_SHADER_CACHE_DISABLE=true",
+        );
     }
     let wanted = arguments.overrides.passes;
     let conduct = Conduct {
@@ -177,7 +180,7 @@ fn measure(
     };
     let mut report = device_report(device, scene, settings, &conduct)?;
     if let Some(truth) = truth {
-        let mut ready = setup::ready(device, scene, settings)?;
+        let mut ready = setup::ready(device, scene, settings, Compiling::Together)?;
         if let (Some(gpu), Some(slice)) = (ready.runner.gpu(), arguments.slice.first()) {
             gpu.set_slice(*slice);
         }

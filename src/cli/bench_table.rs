@@ -84,7 +84,8 @@ fn kernel_table(report: &DeviceReport) -> Vec<String> {
         if compiled {
             let cell = |seconds: Option<f64>| seconds.map_or("-".to_owned(), time);
             let compile = report.compile.get(stem);
-            line += &format!("{:>10}{:>10}", cell(compile.map(|c| c.checking)), cell(compile.map(|c| c.driver)));
+            line +=
+                &format!("{:>10}{:>10}", cell(compile.map(|c| c.checking)), cell(compile.map(|c| c.driver)));
         }
         line + &kernel_cells(kernel)
     }));
@@ -114,12 +115,7 @@ fn kernel_cells(kernel: &KernelReport) -> String {
         format!("{} {what}", count(*rate).trim_end())
     });
     let rates: Vec<String> = rates.collect();
-    format!(
-        "{:>10}{range:>20}{:>5.0} %   {}",
-        time(seconds.median),
-        100.0 * kernel.share,
-        rates.join(", ")
-    )
+    format!("{:>10}{range:>20}{:>5.0} %   {}", time(seconds.median), 100.0 * kernel.share, rates.join(", "))
 }
 
 fn slice_line(slice: &SliceReport) -> String {
@@ -140,7 +136,8 @@ fn slice_line(slice: &SliceReport) -> String {
 fn approach_line(approach: &Approach) -> Option<String> {
     let last = approach.series.last()?;
     let place = approach.region.as_ref().map(|name| format!(" of {name}")).unwrap_or_default();
-    let end = format!("relMSE{place} {:.3e} after {} passes, {}", last.rel_mse, last.passes, time(last.seconds));
+    let end =
+        format!("relMSE{place} {:.3e} after {} passes, {}", last.rel_mse, last.passes, time(last.seconds));
     Some(match (approach.goal, approach.reached_seconds) {
         (None, _) => end,
         (Some(goal), Some(seconds)) => format!("time to relMSE{place} {goal}: {} ({end})", time(seconds)),

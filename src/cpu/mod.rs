@@ -121,6 +121,7 @@ impl CpuEngine {
                     self.order.resize(self.records.len(), 0);
                     grid_scatter(d, &self.records, &self.starts, &mut self.counts, &mut self.order);
                 }
+                Kernel::GridSortLong => {}
                 // the scatter above leaves each bucket sorted
                 Kernel::GridSort => {
                     let records = &self.records;
@@ -238,5 +239,9 @@ impl Engine for CpuEngine {
 
     fn rejections(&mut self) -> Result<Rejections, EngineError> {
         Ok(self.plan.rejections(&self.film))
+    }
+
+    fn gathered(&mut self) -> Result<u64, EngineError> {
+        Ok(self.gathered.par_iter().map(|gathered| u64::from(gathered.count)).sum())
     }
 }

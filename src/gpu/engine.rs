@@ -4,16 +4,16 @@ use super::context::{AdapterChoice, AdapterKind, AdapterSummary, Gpu};
 use super::layout::{SceneTables, long_tables};
 use super::mend::{mend_photons, mend_points};
 use super::pace::Pace;
-use super::program::{Program, workgroup_items};
+use super::program::{Compiling, Program, make_programs, workgroup_items};
 use super::recorder::Recorder;
+use crate::clock::{Clock, KernelSeconds};
 use crate::engine::{Engine, EngineError, PassReport, PhotonEnds};
 use crate::film::{Picture, Rejections};
-use crate::kernels::records::{Dispatch, FilmPixel};
+use crate::kernels::records::{Dispatch, FilmPixel, Gathered};
 use crate::pack::Packed;
 use crate::plan::{Kernel, Plan, Step};
 use crate::settings::Method;
 use crate::tables::Scene;
-use crate::clock::{Clock, KernelSeconds};
 use std::collections::BTreeMap;
 use std::time::Instant;
 
@@ -93,6 +93,20 @@ struct Counted {
 impl GpuEngine {
     /// An engine for one scene and plan on the adapter of `choice`.
     pub fn new(choice: &AdapterChoice, packed: &Packed, plan: Plan) -> Result<Self, EngineError> {
+        Self::with(choice, packed, plan, Compiling::Together)
+    }
+
+    /// The same, more slowly: the kernels are made ready one after another, so that [`Self::compile_seconds`] can tell.
+    pub fn measured(choice: &AdapterChoice, packed: &Packed, plan: Plan) -> Result<Self, EngineError> {
+        Self::with(choice, packed, plan, Compiling::OneByOne)
+    }
+
+    fn with(
+        choice: &AdapterChoice,
+        packed: &Packed,
+        plan: Plan,
+        compiling: Compiling,
+    ) -> Result<Self, EngineError> {
         if plan.settings.method == Method::Path {
             return Err(EngineError::Unsupported(
                 "path tracing runs on the CPU alone: take --device cpu".into(),
@@ -137,7 +151,7 @@ impl GpuEngine {
             clock: Clock::default(),
             stamped: false,
         };
-        engine.compile(&scene)?;
+        engine.compile(&scene, compiling)?;
         Ok(engine)
     }
 
@@ -148,40 +162,41 @@ impl GpuEngine {
         buffer.map_or(Ok(Vec::new()), |buffer| self.gpu.read(buffer, buffer.size()))
     }
 
-    /// Compiles the kernels of the plan. Each runs once over nothing, since some drivers compile at the first run.
-    fn compile(&mut self, scene: &SceneTables) -> Result<(), EngineError> {
-        for step in self.plan.steps(0, self.plan.batch_photons) {
+    /// Makes the kernels of the plan ready. Each runs once over nothing, since some drivers compile at the first run, and do
+    /// so while the next kernels are checked.
+    fn compile(&mut self, scene: &SceneTables, compiling: Compiling) -> Result<(), EngineError> {
+        let steps = self.plan.steps(0, self.plan.batch_photons);
+        let kernels: Vec<Kernel> =
+            Kernel::ALL.into_iter().filter(|k| steps.iter().any(|step| step.kernel == *k)).collect();
+        let Self { gpu, plan, recorder, programs, groups, shared, chunks, compile_seconds, .. } = self;
+        make_programs(gpu, &kernels, &plan.features, scene, compiling, |program, checking| {
             let begun = Instant::now();
-            if !self.programs.contains_key(&step.kernel) {
-                let program = Program::new(&self.gpu, step.kernel, &self.plan.features, scene)?;
-                self.programs.insert(step.kernel, program);
+            for (number, own) in (0..).zip(chunks.iter()) {
+                let Some(step) = steps.iter().find(|s| (s.kernel, s.chunk) == (program.kernel, number))
+                else {
+                    continue;
+                };
+                let buffer = |name: &str| own.get(name).or_else(|| shared.get(name));
+                let group = program.bind(gpu, &recorder.dispatches, buffer)?;
+                if number == 0 {
+                    let nothing = Dispatch { first: 0, end: 0, ..step.dispatch };
+                    recorder.dispatch(gpu, &program, &group, &nothing);
+                    recorder.submit(gpu);
+                }
+                groups.insert((program.kernel, number), group);
             }
-            let checking = begun.elapsed().as_secs_f64();
-            let key = (step.kernel, step.chunk);
-            if self.groups.contains_key(&key) {
-                continue;
+            if compiling == Compiling::OneByOne {
+                gpu.wait()?;
+                let driver = begun.elapsed().as_secs_f64();
+                compile_seconds.insert(program.kernel, CompileSeconds { checking, driver });
             }
-            let program = &self.programs[&step.kernel];
-            let chunk = &self.chunks[step.chunk as usize];
-            let buffer = |name: &str| chunk.get(name).or_else(|| self.shared.get(name));
-            let group = program.bind(&self.gpu, &self.recorder.dispatches, buffer)?;
-            if step.chunk == 0 {
-                self.recorder.dispatch(
-                    &self.gpu,
-                    program,
-                    &group,
-                    &Dispatch { first: 0, end: 0, ..step.dispatch },
-                );
-                self.recorder.finish(&self.gpu)?;
-                let driver = begun.elapsed().as_secs_f64() - checking;
-                self.compile_seconds.entry(step.kernel).or_insert(CompileSeconds { checking, driver });
-            }
-            self.groups.insert(key, group);
-        }
-        Ok(())
+            programs.insert(program.kernel, program);
+            Ok(())
+        })?;
+        self.gpu.wait()
     }
 
-    /// What each kernel took to be made ready.
+    /// What each kernel took to be made ready, if this was [measured](Self::measured).
     pub fn compile_seconds(&self) -> &BTreeMap<Kernel, CompileSeconds> {
         &self.compile_seconds
     }
@@ -416,6 +431,20 @@ impl Engine for GpuEngine {
 
     fn rejections(&mut self) -> Result<Rejections, EngineError> {
         Ok(self.plan.rejections(&self.film()?))
+    }
+
+    fn results(&mut self) -> Result<(Picture, Rejections), EngineError> {
+        let film = self.film()?;
+        Ok((self.plan.picture(&film), self.plan.rejections(&film)))
+    }
+
+    fn gathered(&mut self) -> Result<u64, EngineError> {
+        let mut photons = 0;
+        for chunk in 0..self.plan.chunks() {
+            let gathered: Vec<Gathered> = bytemuck::pod_collect_to_vec(&self.content("gathered", chunk)?);
+            photons += gathered.iter().map(|gathered| u64::from(gathered.count)).sum::<u64>();
+        }
+        Ok(photons)
     }
 }
 

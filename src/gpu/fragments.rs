@@ -66,7 +66,9 @@ pub const FRAGMENTS: &[Fragment] = fragments![
     "kernels/grid_scan_sums.wgsl" if "grid_scan_sums",
     "kernels/grid_scan.wgsl" if "grid_scan",
     "kernels/grid_scatter.wgsl" if "grid_scatter",
+    "kernels/sort.wgsl" if "grid_sort || grid_sort_long",
     "kernels/grid_sort.wgsl" if "grid_sort",
+    "kernels/grid_sort_long.wgsl" if "grid_sort_long",
     "kernels/gather.wgsl" if "gather",
     "kernels/resolve.wgsl" if "resolve",
 ];

@@ -75,7 +75,7 @@ impl Pace {
             let measured = seconds.max(1e-7) / items.max(1) as f64;
             self.seconds_per_item
                 .entry(kernel)
-                .and_modify(|old| *old *= (seconds / estimate).clamp(1.0 / STEP, STEP))
+                .and_modify(|old| *old *= correction(seconds / estimate))
                 .or_insert(measured);
         }
     }
@@ -86,6 +86,12 @@ impl Pace {
         };
         self.recorded.iter().map(cost).sum::<f64>().max(1e-9)
     }
+}
+
+/// By what an estimate is multiplied after a submission took `ratio` times as long: at once where it took longer, by the root
+/// where it was quicker, since the next items may be dearer again and too long a submission costs more than too short a one.
+fn correction(ratio: f64) -> f64 {
+    if ratio > 1.0 { ratio.min(STEP) } else { ratio.sqrt().max(1.0 / STEP) }
 }
 
 /// Theory: a device of known cost per item is filled slice by slice, without losing an item.

@@ -83,18 +83,26 @@ impl Recorder {
 
     /// Submits what was recorded and waits for it; the seconds it took.
     pub fn finish(&mut self, gpu: &Gpu) -> Result<f64, EngineError> {
-        let Some(mut encoder) = self.encoder.take() else {
+        let begun = Instant::now();
+        if !self.submit(gpu) {
             return Ok(0.0);
+        }
+        gpu.wait()?;
+        Ok(begun.elapsed().as_secs_f64())
+    }
+
+    /// Submits what was recorded; whether there was anything.
+    pub fn submit(&mut self, gpu: &Gpu) -> bool {
+        let Some(mut encoder) = self.encoder.take() else {
+            return false;
         };
         if let Some(stamps) = &self.stamps {
             stamps.resolve(&mut encoder);
         }
         gpu.write(&self.dispatches, &self.staged);
         self.staged.clear();
-        let begun = Instant::now();
         gpu.queue.submit([encoder.finish()]);
-        gpu.wait()?;
-        Ok(begun.elapsed().as_secs_f64())
+        true
     }
 
     /// Seconds of each dispatch of the last submission by the device's clock, where dispatches are stamped.
