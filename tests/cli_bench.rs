@@ -26,12 +26,18 @@ height = 16
 photons = 3000
 [materials.white]
 type = "diffuse"
-reflectance = 0.5
+reflectance = 0.8
 [[shapes]]
 type = "disc"
 center = [0.0, 0.0, 0.0]
 normal = [0.0, 1.0, 0.0]
 radius = 3.0
+material = "white"
+[[shapes]]
+type = "disc"
+center = [0.0, 4.0, 0.0]
+normal = [0.0, -1.0, 0.0]
+radius = 6.0
 material = "white"
 [[shapes]]
 type = "sphere"
@@ -239,7 +245,7 @@ fn mistakes_are_told_before_the_work() {
     };
     fails(&["no.toml"], 1, &["no.toml"]);
     fails(&["ball.toml", "--device", "toaster"], 4, &["toaster"]);
-    fails(&["ball.toml", "--slice", "fast"], 2, &["50ms", "none"]);
+    fails(&["ball.toml", "--slice", "fast"], 2, &["500ms", "or none"]);
     fails(&["ball.toml", "--warm-up", "0"], 2, &["--warm-up"]);
     fails(&["ball.toml", "--max-relMSE", "0.1"], 2, &["--truth"]);
     let truth = ["ball.toml", "--device", "cpu", "--truth", "dark.pfm"];

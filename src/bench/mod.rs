@@ -35,7 +35,8 @@ pub struct Conduct {
     pub passes: u32,
     /// No round is begun after this time.
     pub time: Option<Duration>,
-    /// Seconds that a submission to a GPU is to take, infinite for no splitting; at least one. The first one's passes count.
+    /// Seconds that a submission to a GPU is to take, infinite for no splitting; 50 ms where there are none. The first one's
+    /// passes count. The CPU engine makes as many passes, so that those of all devices are the same.
     pub slices: Vec<f64>,
 }
 
@@ -190,10 +191,9 @@ struct Run {
 
 fn run(ready: &mut Ready, conduct: &Conduct) -> Result<Run, EngineError> {
     let runner = &mut ready.runner;
-    let slices: &[f64] = match (runner.gpu(), conduct.slices.as_slice()) {
-        (Some(_), [_, ..]) => &conduct.slices,
-        (Some(_), []) => &[crate::gpu::pace::SLICE],
-        (None, _) => &[f64::INFINITY],
+    let slices = match conduct.slices.as_slice() {
+        [] => &[crate::gpu::pace::SLICE],
+        slices => slices,
     };
     let cpu = runner.gpu().is_none();
     let mut first_pass = 0.0;
