@@ -5,7 +5,7 @@
 
 use bytemuck::Zeroable;
 use caustica::kernels::gather::gather;
-use caustica::kernels::grid_build::{grid_count, grid_scan, grid_scatter};
+use caustica::kernels::grid_build::{SortedRecords, grid_count, grid_scan, grid_scatter, grid_sort};
 use caustica::kernels::records::{Dispatch, Gathered, PhotonRecord, VisiblePoint};
 use caustica::math::oct_encode;
 use divan::{Bencher, counter::ItemsCount};
@@ -31,7 +31,14 @@ fn photons_in_a_disc(bencher: Bencher, photons: u32) {
     // a wall of area one; cells as wide as a disc
     let radius = (photons as f32 / RECORDS as f32 / std::f32::consts::PI).sqrt();
     let mask = RECORDS - 1;
-    let d = Dispatch { capacity: RECORDS, mask, inv_cell: 0.5 / radius, scale_sq: 1.0, ..Dispatch::zeroed() };
+    let d = Dispatch {
+        capacity: RECORDS,
+        mask,
+        inv_cell: 0.5 / radius,
+        scale_sq: 1.0,
+        families: 1,
+        ..Dispatch::zeroed()
+    };
     let mut on_the_wall = || Vec3::new(random(), 0.0, random());
     let records: Vec<_> = (0..RECORDS)
         .map(|key| PhotonRecord { position: on_the_wall(), key, flux: Vec3::ONE, direction: up })
@@ -42,7 +49,8 @@ fn photons_in_a_disc(bencher: Bencher, photons: u32) {
     grid_count(&d, &records, &mut counts);
     grid_scan(&counts, &mut starts);
     grid_scatter(&d, &records, &starts, &mut counts, &mut order);
-    let sorted: Vec<_> = order.iter().map(|&i| records[i as usize]).collect();
+    let mut sorted = SortedRecords::default();
+    grid_sort(&d, &records, &order, &mut sorted);
     let points: Vec<_> = (0..POINTS)
         .map(|_| VisiblePoint {
             position: on_the_wall(),

@@ -4,7 +4,7 @@
 //! of some, and 2^22, as many as a batch may have, none. There are as many buckets as records, as in a plan.
 
 use bytemuck::Zeroable;
-use caustica::kernels::grid_build::{grid_count, grid_scan, grid_scatter};
+use caustica::kernels::grid_build::{SortedRecords, grid_count, grid_scan, grid_scatter, grid_sort};
 use caustica::kernels::records::{Dispatch, PhotonRecord};
 use divan::{Bencher, counter::ItemsCount};
 use glam::Vec3;
@@ -28,7 +28,7 @@ fn records(count: u32) -> (Dispatch, Vec<PhotonRecord>) {
         position[key as usize % 3] = (key / 3 % 2) as f32;
         PhotonRecord { position: position * side, key, ..PhotonRecord::zeroed() }
     };
-    let d = Dispatch { capacity: count, mask: count - 1, inv_cell: 1.0, ..Dispatch::zeroed() };
+    let d = Dispatch { capacity: count, mask: count - 1, inv_cell: 1.0, families: 1, ..Dispatch::zeroed() };
     (d, (0..count).map(record).collect())
 }
 
@@ -62,4 +62,18 @@ fn scatter(bencher: Bencher, n: u32) {
         .counter(ItemsCount::new(n))
         .with_inputs(|| counts.clone())
         .bench_local_refs(|counts| grid_scatter(&d, &records, &starts, counts, &mut order));
+}
+
+/// Buckets are sorted by the scatter already: what is left is the copy.
+#[divan::bench(args = RECORDS)]
+fn sort(bencher: Bencher, n: u32) {
+    let (d, records) = records(n);
+    let mut counts = vec![0; n as usize];
+    grid_count(&d, &records, &mut counts);
+    let mut starts = vec![0; n as usize + 1];
+    grid_scan(&counts, &mut starts);
+    let mut order = vec![0; n as usize];
+    grid_scatter(&d, &records, &starts, &mut counts, &mut order);
+    let mut sorted = SortedRecords::default();
+    bencher.counter(ItemsCount::new(n)).bench_local(|| grid_sort(&d, &records, &order, &mut sorted));
 }

@@ -27,6 +27,6 @@ fn sort_short(begin: u32, end: u32) {
         order[j] = item;
     }
     for (var i = begin; i < end; i++) {
-        sorted[i] = records[order[i]];
+        copy_record(i);
     }
 }

@@ -86,7 +86,7 @@ fn sort_long(begin: u32, end: u32, local: u32) {
         workgroupBarrier();
     }
     for (var i = first; i < last; i++) {
-        sorted[i] = records[order[i]];
+        copy_record(i);
     }
     workgroupBarrier();
 }

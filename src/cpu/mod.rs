@@ -2,7 +2,7 @@
 
 use super::kernels::eye_trace::eye_trace;
 use super::kernels::gather::{gather, scale_sq};
-use super::kernels::grid_build::{grid_count, grid_scan, grid_scatter};
+use super::kernels::grid_build::{SortedRecords, grid_count, grid_scan, grid_scatter, grid_sort};
 use super::kernels::path_trace::path_trace;
 use super::kernels::photon_trace::photon_trace;
 use super::kernels::records::*;
@@ -32,7 +32,7 @@ pub struct CpuEngine {
     statistics: Vec<Statistics>,
     film: Vec<FilmPixel>,
     records: Vec<PhotonRecord>,
-    sorted: Vec<PhotonRecord>,
+    sorted: SortedRecords,
     counts: Vec<u32>,
     starts: Vec<u32>,
     order: Vec<u32>,
@@ -58,7 +58,7 @@ impl CpuEngine {
             statistics: vec![Statistics::zeroed(); if plan.features.has("local") { points_kept } else { 0 }],
             film: vec![FilmPixel::zeroed(); plan.pixels as usize],
             records: Vec::new(),
-            sorted: Vec::new(),
+            sorted: SortedRecords::default(),
             counts: vec![0; buckets],
             starts: vec![0; buckets + 1],
             order: Vec::new(),
@@ -123,10 +123,7 @@ impl CpuEngine {
                 }
                 Kernel::GridSortLong => {}
                 // the scatter above leaves each bucket sorted
-                Kernel::GridSort => {
-                    let records = &self.records;
-                    self.order.par_iter().map(|&i| records[i as usize]).collect_into_vec(&mut self.sorted);
-                }
+                Kernel::GridSort => grid_sort(d, &self.records, &self.order, &mut self.sorted),
                 Kernel::Gather => {
                     let statistics = &self.statistics;
                     let first = chunk.start;
