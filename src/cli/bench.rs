@@ -39,7 +39,8 @@ pub struct Arguments {
     /// Device to measure, as for `render`; several are measured one after another
     #[arg(long, value_name = "DEVICE", value_parser = NonEmptyStringValueParser::new(), default_value = "auto")]
     device: Vec<String>,
-    /// Begin no pass after this time, as in 30s; for the kernels and for each run to a truth
+    /// Begin no pass after this time, as in 30s; each run to a truth has the same time, and then no other limit [default: 60s
+    /// for a run to a truth, unless --passes limits it]
     #[arg(long, value_name = "TIME", value_parser = duration)]
     time: Option<Duration>,
     /// Passes before those that count
@@ -184,7 +185,11 @@ fn measure(
         if let (Some(gpu), Some(slice)) = (ready.runner.gpu(), arguments.slice.first()) {
             gpu.set_slice(*slice);
         }
-        let limit = Limit { time: arguments.time.unwrap_or(TO_ERROR), passes: wanted.unwrap_or(u32::MAX) };
+        let limit = match (arguments.time, wanted) {
+            (Some(time), _) => Limit { time, passes: u32::MAX },
+            (None, Some(passes)) => Limit { time: Duration::MAX, passes },
+            (None, None) => Limit { time: TO_ERROR, passes: u32::MAX },
+        };
         report.to_error =
             approach(ready.runner.engine(), truth, &goals(&arguments.truth), limit).map_err(|error| {
                 match error {
