@@ -19,6 +19,8 @@ use crate::settings::Method;
 use bytemuck::Zeroable;
 use rayon::prelude::*;
 
+/// Visible points that one task gathers for.
+const GATHER_TASK: usize = 1024;
 /// Photons that one task traces.
 const PHOTON_TASK: u32 = 1024;
 
@@ -38,10 +40,38 @@ pub struct CpuEngine {
     order: Vec<u32>,
     device: String,
     clock: Clock,
+    /// What vectors the processor has.
+    arch: pulp::Arch,
 }
 
 /// A batch left more records than the buffers hold.
 struct Overflow;
+
+/// Gathers of one task.
+struct Gathers<'a> {
+    dispatch: &'a Dispatch,
+    points: &'a [VisiblePoint],
+    /// Under the local rule.
+    statistics: Option<&'a [Statistics]>,
+    starts: &'a [u32],
+    sorted: &'a SortedRecords,
+    gathered: &'a mut [Gathered],
+}
+
+impl pulp::WithSimd for Gathers<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) {
+        for (i, (point, gathered)) in self.points.iter().zip(self.gathered).enumerate() {
+            let scale = match self.statistics {
+                Some(statistics) => scale_sq(self.dispatch, true, &statistics[i]),
+                None => self.dispatch.scale_sq,
+            };
+            gather(self.dispatch, point, scale, self.starts, self.sorted, gathered);
+        }
+    }
+}
 
 impl CpuEngine {
     /// An engine for one scene and plan.
@@ -64,6 +94,7 @@ impl CpuEngine {
             order: Vec::new(),
             device: format!("{ENGINE}, {} threads", rayon::current_num_threads()),
             clock: Clock::default(),
+            arch: pulp::Arch::new(),
             packed,
             plan,
         }
@@ -125,17 +156,21 @@ impl CpuEngine {
                 // the scatter above leaves each bucket sorted
                 Kernel::GridSort => grid_sort(d, &self.records, &self.order, &mut self.sorted),
                 Kernel::Gather => {
-                    let statistics = &self.statistics;
-                    let first = chunk.start;
-                    self.gathered[chunk.clone()]
-                        .par_iter_mut()
-                        .zip(&self.visible_points[chunk])
-                        .enumerate()
-                        .for_each(|(i, (gathered, point))| {
-                            let none = Statistics::zeroed();
-                            let scale = scale_sq(d, local, statistics.get(first + i).unwrap_or(&none));
-                            gather(d, point, scale, &self.starts, &self.sorted, gathered);
+                    let points = self.visible_points[chunk.clone()].par_chunks(GATHER_TASK);
+                    let gathered = self.gathered[chunk.clone()].par_chunks_mut(GATHER_TASK);
+                    let mut statistics = self.statistics.get(chunk).unwrap_or_default().chunks(GATHER_TASK);
+                    let statistics: Vec<_> = (0..points.len()).map(|_| statistics.next()).collect();
+                    gathered.zip(points).zip(statistics).for_each(|((gathered, points), statistics)| {
+                        let (starts, sorted) = (&self.starts, &self.sorted);
+                        self.arch.dispatch(Gathers {
+                            dispatch: d,
+                            points,
+                            statistics,
+                            starts,
+                            sorted,
+                            gathered,
                         });
+                    });
                 }
                 Kernel::Resolve => {
                     let samples = d.eye_samples as usize;

@@ -32,7 +32,9 @@ pub fn scale_sq(dispatch: &Dispatch, local: bool, statistics: &Statistics) -> Re
     if statistics.scale_sq == 0.0 { 1.0 } else { statistics.scale_sq - statistics.drop }
 }
 
-/// Adds the photons of one batch around a visible point to `gathered`.
+/// Adds the photons of one batch around a visible point to `gathered`. Inlined, so that it becomes code for the processor's
+/// widest vectors inside of [`pulp::Arch::dispatch`].
+#[inline(always)]
 pub fn gather(
     dispatch: &Dispatch,
     point: &VisiblePoint,
@@ -57,6 +59,7 @@ pub fn gather(
 }
 
 /// The photons of one family: their BRDF times flux, but for the point's weight, and their number.
+#[inline(always)]
 fn gather_family(
     dispatch: &Dispatch,
     point: &VisiblePoint,
@@ -126,7 +129,7 @@ fn gather_family(
 
 /// Which of the photons from `first` on, up to [`LANES`] of them and before `last`, lie in the disc and in the cell and come
 /// from the side that is seen: a byte of one for each.
-#[inline]
+#[inline(always)]
 fn near(
     sorted: &SortedRecords,
     first: usize,
