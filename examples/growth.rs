@@ -21,8 +21,8 @@ use caustica::study::statistics::fit;
 
 /// Seconds over which passes are timed at least: the system counts in steps of some milliseconds.
 const WINDOW: f64 = 0.5;
-/// Seconds below which a kernel's growth is not told.
-const NOTICEABLE: f64 = 1e-3;
+/// Share of a pass, or of reading and building, below which growth is not told.
+const NOTICEABLE: f64 = 0.05;
 
 /// Something that grows.
 struct Axis {
@@ -239,9 +239,12 @@ fn run() -> Result<(), Box<dyn Error>> {
                 series.entry(what).or_default().push((size, seconds));
             }
         }
+        let largest = |points: &Vec<(f64, f64)>| points[points.len() - 1].1;
+        let of_the_pass = |what: &str| !what.starts_with('(');
+        let pass: f64 = series.iter().filter(|(what, _)| of_the_pass(what)).map(|(_, p)| largest(p)).sum();
         for (what, points) in series {
             let (first, last) = (points[0], points[points.len() - 1]);
-            if last.1 < NOTICEABLE {
+            if last.1 < NOTICEABLE * pass {
                 continue;
             }
             let upper = &points[(points.len() - 1) / 2..];

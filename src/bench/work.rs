@@ -36,7 +36,7 @@ impl Work {
             eye_paths: report.eye_paths,
             eye_rays: report.eye_rays,
             photons: report.photons,
-            photon_rays: report.rays - report.eye_rays,
+            photon_rays: report.rays.saturating_sub(report.eye_rays),
             records: report.records,
             gathers: u64::from(plan.pixels) * u64::from(plan.eye_samples) * batches,
             gathered,
