@@ -49,6 +49,8 @@ pub struct DeviceReport {
     pub kind: &'static str,
     /// Graphics interface, driver and version; for the CPU, how many threads.
     pub driver: String,
+    /// The settings in force, with a radius in the place of "auto".
+    pub settings: RenderSettings,
     /// Where the kernels' times come from.
     pub clock: &'static str,
     /// Passes that were not counted.
@@ -148,6 +150,7 @@ pub fn device_report(
         name: device.name.clone(),
         kind: device.kind.word(),
         driver: device.driver.clone(),
+        settings: ready.plan.settings.clone(),
         clock: match ready.runner.gpu() {
             None => "around each kernel",
             Some(gpu) if gpu.has_clock() => "timestamp queries",
