@@ -190,9 +190,12 @@ pub fn open(wanted: &Wanted, scene: &Scene, settings: &RenderSettings) -> Result
     Ok(Opened { engine, name: device.name.clone(), why, settings, radius: automatic })
 }
 
-type Started = (Box<dyn Engine>, RenderSettings, Option<Automatic>);
-
-fn start(device: &DeviceInfo, scene: &Scene, settings: &RenderSettings) -> Result<Started, EngineError> {
+/// Fails where a picture has more visible points than can be numbered.
+pub fn check_points(
+    device: &DeviceInfo,
+    scene: &Scene,
+    settings: &RenderSettings,
+) -> Result<(), EngineError> {
     let film = &scene.film;
     let samples = if settings.method == Method::Ppm { settings.eye_samples as u64 } else { 1 };
     let points = film.width as u64 * film.height as u64 * samples;
@@ -209,6 +212,14 @@ fn start(device: &DeviceInfo, scene: &Scene, settings: &RenderSettings) -> Resul
             mend: "make width, height or eye_samples smaller".to_owned(),
         });
     }
+    Ok(())
+}
+
+type Started = (Box<dyn Engine>, RenderSettings, Option<Automatic>);
+
+fn start(device: &DeviceInfo, scene: &Scene, settings: &RenderSettings) -> Result<Started, EngineError> {
+    check_points(device, scene, settings)?;
+    let film = &scene.film;
     if device.kind == DeviceKind::CpuDouble {
         let packed = double::pack::pack(scene, film.width, film.height)?;
         let plan = double::plan::Plan::new(&packed, settings);

@@ -31,8 +31,10 @@ pub enum Kernel {
     GridScan,
     /// Records into bucket order.
     GridScatter,
-    /// Each bucket into the order of its keys.
+    /// Each short bucket into the order of its keys.
     GridSort,
+    /// Each long one.
+    GridSortLong,
     /// Density estimates.
     Gather,
     /// Estimates into the film.
@@ -41,6 +43,8 @@ pub enum Kernel {
 
 /// Buckets that one workgroup of the scan kernels covers; the same number of blocks is the most there may be.
 pub const SCAN_BLOCK: u32 = 4096;
+/// Buckets that one workgroup of [`Kernel::GridSortLong`] looks through.
+pub const SORT_BUCKETS: u32 = 1024;
 /// Bytes that one storage binding may have on every device (WebGPU's default limit).
 pub const BINDING_LIMIT: u64 = 128 << 20;
 /// Most visible points in a chunk.
@@ -52,7 +56,7 @@ const CELL_RADII: f64 = 2.0;
 
 impl Kernel {
     /// All kernels, in the order of a pass.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::EyeTrace,
         Self::PhotonTrace,
         Self::GridCount,
@@ -61,6 +65,7 @@ impl Kernel {
         Self::GridScan,
         Self::GridScatter,
         Self::GridSort,
+        Self::GridSortLong,
         Self::Gather,
         Self::Resolve,
     ];
@@ -76,6 +81,7 @@ impl Kernel {
             Self::GridScan => "grid_scan",
             Self::GridScatter => "grid_scatter",
             Self::GridSort => "grid_sort",
+            Self::GridSortLong => "grid_sort_long",
             Self::Gather => "gather",
             Self::Resolve => "resolve",
         }
@@ -99,7 +105,10 @@ impl Kernel {
                     ("order", true),
                 ]
             }
-            Self::GridSort => vec![
+            Self::GridSort => {
+                vec![("records", false), ("starts", false), ("order", true), ("sorted", true)]
+            }
+            Self::GridSortLong => vec![
                 ("records", false),
                 ("counters", true),
                 ("starts", false),
@@ -291,6 +300,7 @@ impl Plan {
             step(Kernel::GridScan, 0, over(self.buckets));
             step(Kernel::GridScatter, 0, over(self.capacity));
             step(Kernel::GridSort, 0, over(self.buckets));
+            step(Kernel::GridSortLong, 0, over(self.buckets));
             for c in 0..self.chunks() {
                 let (chunk_first, end) = self.chunk(c);
                 step(Kernel::Gather, c, Dispatch { end, chunk_first, ..common });

@@ -176,7 +176,7 @@ struct Kept {
 }
 
 fn take(engine: &mut dyn Engine) -> Result<(Picture, Rejections), EngineError> {
-    Ok((engine.picture()?, engine.rejections()?))
+    engine.results()
 }
 
 fn last_kept(kept: Option<Kept>, error: EngineError) -> Result<Outcome, EngineError> {
@@ -225,6 +225,7 @@ mod tests {
                 records: 3,
                 eye_paths: 7,
                 rays: 100 * i,
+                eye_rays: 0,
                 ends: PhotonEnds::default(),
                 radius: 1.0 / i as f64,
             })

@@ -11,7 +11,7 @@ use caustica::film::{self, Development, Provenance, Rejections, check_outputs};
 use caustica::limits;
 use caustica::quality::{Expected, Quality, expected};
 use caustica::render::{Ending, Outcome, Progress, Stop, render};
-use caustica::scene::{self, Scene};
+use caustica::scene::{self, Loaded, Scene};
 use caustica::settings::RenderSettings;
 use clap::builder::NonEmptyStringValueParser;
 use miette::{Report, miette};
@@ -190,7 +190,11 @@ impl Promise<'_> {
 
 /// Reads the scene, puts the options in force, and prints the warnings.
 pub fn load(file: &Path, overrides: &Overrides) -> Result<(Scene, RenderSettings), Failure> {
-    let mut loaded = scene::load(file)?;
+    in_force(scene::load(file)?, overrides)
+}
+
+/// Puts the options in force and prints the warnings.
+pub fn in_force(mut loaded: Loaded, overrides: &Overrides) -> Result<(Scene, RenderSettings), Failure> {
     overrides.apply(&mut loaded.scene, &mut loaded.settings);
     let limits = limits::warnings(&loaded.scene, &loaded.settings, &loaded.places);
     for warning in loaded.warnings.into_iter().chain(limits) {

@@ -1,5 +1,6 @@
 //! The hash grid's construction: count, scan, scatter, sort. Twins: `shaders/kernels/grid_count.wgsl`,
-//! `grid_scan_reduce.wgsl`, `grid_scan_sums.wgsl`, `grid_scan.wgsl`, `grid_scatter.wgsl` and `grid_sort.wgsl`.
+//! `grid_scan_reduce.wgsl`, `grid_scan_sums.wgsl`, `grid_scan.wgsl`, `grid_scatter.wgsl`, `grid_sort.wgsl` and
+//! `grid_sort_long.wgsl`.
 //!
 //! The result does not depend on the order in which threads arrive: within a bucket the records stand in the
 //! order of their keys.
