@@ -184,5 +184,5 @@ fn write_map(
         device: String::new(),
         passes_done: settings.passes,
     };
-    Ok(file::write(path, &map, &Development::default(), &provenance)?)
+    Ok(file::write(path, &map, &[], &Development::default(), &provenance)?)
 }

@@ -1,7 +1,7 @@
 //! What every engine (GPU or CPU) does for the render loop.
 
 use crate::clock::KernelSeconds;
-use crate::film::{Picture, Rejections};
+use crate::film::{ErrorMap, Picture, Rejections};
 
 /// Photon paths by how they ended; together those that were emitted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -95,6 +95,8 @@ pub trait Engine {
     }
     /// The estimate after the passes so far, in the scene's own radiometric units.
     fn picture(&mut self) -> Result<Picture, EngineError>;
+    /// What the passes so far say of its error, in the same units.
+    fn errors(&mut self) -> Result<ErrorMap, EngineError>;
     /// What the passes so far left out of it.
     fn rejections(&mut self) -> Result<Rejections, EngineError>;
     /// Both.

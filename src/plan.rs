@@ -9,7 +9,8 @@ use super::kernels::records::*;
 use super::pack::Packed;
 use super::probe::{Probe, probe};
 use super::real::Real;
-use crate::film::{Picture, Rejections};
+use crate::film::estimate::{LEAST_PASSES, PixelError, early_passes, partition};
+use crate::film::{ErrorMap, Picture, Rejections, luminance_of};
 use crate::radius::Automatic;
 use crate::settings::{Method, Radius, RadiusRule, RenderSettings};
 use bytemuck::Zeroable;
@@ -354,6 +355,33 @@ impl Plan {
         let held = |x: f64| (x * unit).clamp(f64::from(f32::MIN), f64::from(f32::MAX)) as f32;
         let world = |p: &FilmPixel| mean(p).map(held);
         Picture { width: self.width, height: self.pixels / self.width, rgb: film.iter().map(world).collect() }
+    }
+
+    /// What a film after `passes` passes says of its error, in world units.
+    pub fn errors(&self, film: &[FilmPixel], passes: u32) -> ErrorMap {
+        let unit = self.radiance_unit;
+        let pixels = film.iter().map(|p| {
+            let n = passes - p.rejected.iter().sum::<u32>();
+            if n < LEAST_PASSES {
+                return PixelError::UNKNOWN;
+            }
+            let luminance = unit * luminance_of(mean(p));
+            let [early, earlier] = [p.early, p.earlier].map(|x| unit * f64::from(x));
+            let part = early_passes(n);
+            let variance = unit * unit * f64::from(p.spread.max(0.0)) / f64::from(n - 1);
+            PixelError {
+                luminance,
+                variance,
+                deviations: [
+                    partition(luminance, early, part, n),
+                    partition(luminance, earlier, part / 2, n),
+                ],
+                halves: unit * f64::from(p.halves),
+                ring: unit * f64::from(p.ring),
+                ring_swing: unit * f64::from(p.ring_swing),
+            }
+        });
+        ErrorMap { width: self.width, pixels: pixels.collect() }
     }
 
     /// What was left out of the picture that a film holds.

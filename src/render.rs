@@ -4,15 +4,18 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use crate::engine::{Engine, EngineError, PassReport, PhotonEnds};
-use crate::film::{Picture, Rejections};
+use crate::film::estimate::LEAST_PASSES;
+use crate::film::{ErrorMap, Picture, Rejections, RelativeError};
 
 /// When to stop; whichever comes first. At least one pass is made.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stop {
     /// After this many passes.
     pub passes: u32,
     /// No pass is begun after this time.
     pub time: Option<Duration>,
+    /// Once the stated relative error (see [`RelativeError::stated`]) is no larger.
+    pub target_error: Option<f64>,
 }
 
 /// How far a render is, after a pass.
@@ -34,6 +37,8 @@ pub struct Progress {
     pub radius: f64,
     /// Since the first pass began.
     pub elapsed: Duration,
+    /// The newest estimate of the picture's error; none in the first passes.
+    pub error: Option<RelativeError>,
 }
 
 impl Progress {
@@ -47,7 +52,12 @@ impl Progress {
         let passes = f64::from(self.passes) / f64::from(self.stop.passes.max(1));
         let time =
             self.stop.time.map_or(0.0, |time| self.elapsed.as_secs_f64() / time.as_secs_f64().max(1e-9));
-        passes.max(time).min(1.0)
+        // the error of progressive photon mapping falls as N^(-1/3) (Kaplanyan & Dachsbacher 2013), or a little faster
+        let error = match (self.stop.target_error, self.error) {
+            (Some(target), Some(error)) => (target / error.stated).powi(3),
+            _ => 0.0,
+        };
+        passes.max(time).max(error).min(1.0)
     }
 
     /// Time left if the passes go on as they did.
@@ -66,6 +76,11 @@ impl Progress {
         self.radius = report.radius;
         self.elapsed = elapsed;
     }
+
+    fn reached(&self) -> bool {
+        let (target, error) = (self.stop.target_error, self.error);
+        target.zip(error).is_some_and(|(target, error)| error.stated <= target)
+    }
 }
 
 /// Why a render ended.
@@ -75,6 +90,8 @@ pub enum Ending {
     Passes,
     /// The time is up.
     Time,
+    /// The stated error is no larger than the one aimed at.
+    TargetError,
     /// The user asked for it.
     Interrupted,
     /// The engine failed after at least one pass.
@@ -86,6 +103,8 @@ pub enum Ending {
 pub struct Outcome {
     /// The estimate.
     pub picture: Picture,
+    /// What it says of its own error; none for fewer passes than an estimate needs.
+    pub errors: Option<ErrorMap>,
     /// What was left out of it.
     pub rejections: Rejections,
     /// The state after the picture's last pass.
@@ -134,14 +153,27 @@ fn render_keeping(
         ends: PhotonEnds::default(),
         radius: 0.0,
         elapsed: Duration::ZERO,
+        error: None,
     };
     let mut kept: Option<Kept> = None;
     let mut next_keep = keep.every;
+    let mut estimates = Estimates::new();
     progress.add(&engine.pass()?, start.elapsed());
     let ending = loop {
+        if estimates.due(&progress) {
+            let begun = Instant::now();
+            match engine.errors() {
+                Ok(errors) => progress.error = Some(errors.relative()),
+                Err(error) => break Ending::Failed(error),
+            }
+            estimates.made(&progress, begun.elapsed());
+        }
         observer(&progress);
         if interrupted.load(Ordering::Relaxed) {
             break Ending::Interrupted;
+        }
+        if progress.reached() {
+            break Ending::TargetError;
         }
         if progress.passes >= stop.passes {
             break Ending::Passes;
@@ -150,8 +182,8 @@ fn render_keeping(
             break Ending::Time;
         }
         if progress.elapsed >= next_keep {
-            match take(engine) {
-                Ok((picture, rejections)) => kept = Some(Kept { picture, rejections, progress }),
+            match take(engine, progress) {
+                Ok(taken) => kept = Some(taken),
                 Err(error) => break Ending::Failed(error),
             }
             let cost = start.elapsed() - progress.elapsed;
@@ -162,30 +194,64 @@ fn render_keeping(
             Err(error) => break Ending::Failed(error),
         }
     };
-    match (take(engine), ending) {
-        (Ok((picture, rejections)), ending) => Ok(Outcome { picture, rejections, progress, ending }),
-        (Err(_), Ending::Failed(error)) | (Err(error), _) => last_kept(kept, error),
+    match (take(engine, progress), ending) {
+        (Ok(taken), ending) => Ok(taken.outcome(ending)),
+        (Err(_), Ending::Failed(error)) | (Err(error), _) => match kept {
+            Some(kept) => Ok(kept.outcome(Ending::Failed(error))),
+            None => Err(error),
+        },
     }
 }
 
-/// A picture in case that there will be no other.
+/// Which passes are followed by an estimate of the error. Each reads the film and takes about as long as a picture.
+struct Estimates {
+    next: u32,
+    spent: Duration,
+}
+
+/// Estimates take at most this share of the time.
+const ESTIMATES_SHARE: u32 = 50;
+
+impl Estimates {
+    fn new() -> Self {
+        Self { next: LEAST_PASSES, spent: Duration::ZERO }
+    }
+
+    /// With a target the passes depend on their number alone, since the picture's bits may not depend on a clock.
+    fn due(&self, progress: &Progress) -> bool {
+        let cheap = || self.spent * ESTIMATES_SHARE <= progress.elapsed;
+        progress.passes >= self.next && (progress.stop.target_error.is_some() || cheap())
+    }
+
+    fn made(&mut self, progress: &Progress, cost: Duration) {
+        self.next = progress.passes.saturating_add((progress.passes / 8).max(1));
+        self.spent += cost;
+    }
+}
+
+/// A picture with what belongs to it.
 struct Kept {
     picture: Picture,
+    errors: Option<ErrorMap>,
     rejections: Rejections,
     progress: Progress,
 }
 
-fn take(engine: &mut dyn Engine) -> Result<(Picture, Rejections), EngineError> {
-    engine.results()
+impl Kept {
+    fn outcome(self, ending: Ending) -> Outcome {
+        let Self { picture, errors, rejections, progress } = self;
+        Outcome { picture, errors, rejections, progress, ending }
+    }
 }
 
-fn last_kept(kept: Option<Kept>, error: EngineError) -> Result<Outcome, EngineError> {
-    match kept {
-        Some(Kept { picture, rejections, progress }) => {
-            Ok(Outcome { picture, rejections, progress, ending: Ending::Failed(error) })
-        }
-        None => Err(error),
-    }
+fn take(engine: &mut dyn Engine, mut progress: Progress) -> Result<Kept, EngineError> {
+    let (picture, rejections) = engine.results()?;
+    let errors = match progress.passes {
+        LEAST_PASSES.. => Some(engine.errors()?),
+        _ => None,
+    };
+    progress.error = errors.as_ref().map(ErrorMap::relative);
+    Ok(Kept { picture, errors, rejections, progress })
 }
 
 /// Theory: an engine that counts its passes into the picture shows by the picture alone how many were made, and the
@@ -193,6 +259,7 @@ fn last_kept(kept: Option<Kept>, error: EngineError) -> Result<Outcome, EngineEr
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::film::estimate::PixelError;
 
     /// Each pixel of its picture is the number of passes made. It fails in pass `fails_in`, and after that gives its
     /// picture only if `survives`.
@@ -201,12 +268,13 @@ mod tests {
         fails_in: u32,
         survives: bool,
         pictures_taken: u32,
+        errors_taken: u32,
     }
 
     const NEVER: u32 = u32::MAX;
 
     fn counter(fails_in: u32, survives: bool) -> Counter {
-        Counter { passes: 0, fails_in, survives, pictures_taken: 0 }
+        Counter { passes: 0, fails_in, survives, pictures_taken: 0, errors_taken: 0 }
     }
 
     impl Engine for Counter {
@@ -231,6 +299,13 @@ mod tests {
             })
         }
 
+        fn errors(&mut self) -> Result<ErrorMap, EngineError> {
+            let deviations = [1.0 / f64::from(self.passes); 2];
+            let pixel = PixelError { luminance: 0.99_f64.sqrt(), deviations, ..PixelError::default() };
+            self.errors_taken += 1;
+            Ok(ErrorMap { width: 2, pixels: vec![pixel; 2] })
+        }
+
         fn rejections(&mut self) -> Result<Rejections, EngineError> {
             Ok(Rejections { photons: u64::from(self.passes), ..Rejections::default() })
         }
@@ -245,7 +320,7 @@ mod tests {
     }
 
     fn passes(passes: u32) -> Stop {
-        Stop { passes, time: None }
+        Stop { passes, time: None, target_error: None }
     }
 
     fn run(engine: &mut Counter, stop: Stop, keep: Keep) -> Result<Outcome, EngineError> {
@@ -287,14 +362,36 @@ mod tests {
 
     #[test]
     fn time_ends_it_between_passes() {
-        let stop = Stop { passes: u32::MAX, time: Some(Duration::from_millis(20)) };
+        let stop = Stop { passes: u32::MAX, time: Some(Duration::from_millis(20)), target_error: None };
         let mut slow = |_: &Progress| std::thread::sleep(Duration::from_millis(8));
         let outcome = render(&mut counter(NEVER, true), stop, &AtomicBool::new(false), &mut slow).unwrap();
         assert!(matches!(outcome.ending, Ending::Time));
         assert!((2..=4).contains(&outcome.progress.passes), "{:?}", outcome.progress);
         assert_eq!(outcome.progress.share(), 1.0);
-        let none = Stop { passes: 9, time: Some(Duration::ZERO) };
+        let none = Stop { passes: 9, time: Some(Duration::ZERO), target_error: None };
         assert_eq!(shown(&run(&mut counter(NEVER, true), none, KEEP).unwrap()), 1.0);
+    }
+
+    /// The error after N passes is 1 / N, so that 0.05 takes 20 passes, or one or two more where no estimate comes then.
+    #[test]
+    fn an_error_ends_it() {
+        let stop = Stop { passes: u32::MAX, time: None, target_error: Some(0.05) };
+        let mut engine = counter(NEVER, true);
+        let outcome = run(&mut engine, stop, KEEP).unwrap();
+        assert!(matches!(outcome.ending, Ending::TargetError));
+        assert!((20..=22).contains(&outcome.progress.passes), "{:?}", outcome.progress);
+        assert!(outcome.progress.error.unwrap().stated <= 0.05 && outcome.errors.is_some());
+        assert_eq!(outcome.progress.share(), 1.0);
+        // after 4 to 16 passes one by one, then after 18, 20 and perhaps 22, and once more at the end
+        assert!(engine.errors_taken <= 16, "{}", engine.errors_taken);
+        // no estimate, no end: three passes never are enough
+        let eager = Stop { target_error: Some(1.0), ..stop };
+        assert_eq!(run(&mut counter(NEVER, true), eager, KEEP).unwrap().progress.passes, LEAST_PASSES);
+        // passes come first where they are fewer
+        let few = Stop { passes: 8, ..stop };
+        assert!(matches!(run(&mut counter(NEVER, true), few, KEEP).unwrap().ending, Ending::Passes));
+        let fewer = run(&mut counter(NEVER, true), Stop { passes: 3, ..stop }, KEEP).unwrap();
+        assert!(fewer.errors.is_none() && fewer.progress.error.is_none());
     }
 
     #[test]

@@ -149,6 +149,46 @@ fn time_ends_a_render() {
     assert!(done["passes"].as_u64().unwrap() >= 1 && done["elapsed"].as_f64().unwrap() >= 0.3, "{done}");
 }
 
+/// Theory: the passes after which the error is estimated are the same in every run, and so is the one that ends it.
+#[test]
+fn an_error_aimed_at_ends_a_render() {
+    let folder = folder("target_error");
+    let aimed = |target: &str, output: &str| {
+        let options = ["--device", "cpu", "--json", "--target-error", target, "-o", output];
+        let output = caustica(&folder, &[&["render", "ball.toml"][..], &options].concat());
+        (output.status.code(), text(&output.stderr), json_lines(&output.stdout))
+    };
+    let (code, error, lines) = aimed("20%", "a.exr");
+    assert_eq!(code, Some(0), "{error}");
+    let done = lines.last().unwrap();
+    assert_eq!(done["ended"], "target_error");
+    let (passes, stated) = (done["passes"].as_u64().unwrap(), done["error"].as_f64().unwrap());
+    assert!(passes >= 4 && stated <= 0.2 && stated > 0.0, "{done}");
+    let legs = ["error_noise", "error_bias"].map(|leg| done[leg].as_f64().unwrap());
+    assert!(legs[0] > 0.0 && legs[0].hypot(legs[1]) <= stated, "{done}");
+    let progress: Vec<_> = lines.iter().filter(|line| line["event"] == "progress").collect();
+    assert!(progress.iter().all(|line| line["error"].is_null() == (line["passes"].as_u64().unwrap() < 4)));
+    // the layers stand beside the picture, which reads as ever
+    let exr = file::read_exr(&folder.join("a.exr")).unwrap();
+    assert!(exr.channels["Variance.Y"].iter().all(|variance| *variance >= 0.0));
+    assert!(exr.channels["Bias.Y"].iter().any(|bias| *bias != 0.0));
+    assert_eq!(read(&folder.join("a.exr")).unwrap(), exr.picture("").unwrap());
+    // again, and nearer to the truth
+    aimed("0.2", "b.exr");
+    assert!(fs::read(folder.join("a.exr")).unwrap() == fs::read(folder.join("b.exr")).unwrap());
+    let (_, _, lines) = aimed("0.15", "c.pfm");
+    assert!(lines.last().unwrap()["passes"].as_u64().unwrap() > passes);
+    // fewer passes than an estimate needs: none is told, and no layers are written
+    let output = caustica(&folder, &["render", "ball.toml", "--device", "cpu", "--json", "-o", "d.exr"]);
+    assert!(json_lines(&output.stdout).pop().unwrap()["error"].is_null());
+    assert_eq!(file::read_exr(&folder.join("d.exr")).unwrap().channels.len(), 3);
+    for wrong in ["0", "0%", "-1%", "-0.5", "nan", "200%", "2", "much"] {
+        let (code, error, _) = aimed(wrong, "e.exr");
+        assert_eq!(code, Some(2), "{wrong}: {error}");
+        assert!(error.contains("as in 2% or 0.02"), "{wrong}: {error}");
+    }
+}
+
 #[test]
 fn compare_holds_its_thresholds() {
     let folder = folder("compare");

@@ -9,7 +9,8 @@ use bytemuck::{bytes_of, pod_collect_to_vec};
 use caustica::cpu::CpuEngine;
 use caustica::engine::{Engine, PassReport};
 use caustica::features;
-use caustica::film::Picture;
+use caustica::film::estimate::LEAST_PASSES;
+use caustica::film::{ErrorMap, Picture};
 use caustica::gpu::GpuEngine;
 use caustica::kernels::eye_trace::eye_trace;
 use caustica::kernels::photon_trace::photon_trace;
@@ -401,29 +402,35 @@ fn photons(photons: u32, plan: &Plan) -> RenderSettings {
     RenderSettings { photons, ..plan.settings.clone() }
 }
 
-/// Three passes.
-fn rendered(mut engine: impl Engine) -> (Vec<PassReport>, Picture) {
-    let reports = (0..3).map(|_| engine.pass().unwrap()).collect();
-    (reports, engine.picture().unwrap())
+/// Reports, picture, and the picture's errors.
+type Rendered = (Vec<PassReport>, Picture, ErrorMap);
+
+/// Four passes, the fewest that have an estimate of their error.
+fn rendered(mut engine: impl Engine) -> Rendered {
+    let reports = (0..LEAST_PASSES).map(|_| engine.pass().unwrap()).collect();
+    (reports, engine.picture().unwrap(), engine.errors().unwrap())
 }
 
-fn on_cpu(packed: &Packed, plan: &Plan) -> (Vec<PassReport>, Picture) {
+fn on_cpu(packed: &Packed, plan: &Plan) -> Rendered {
     rendered(CpuEngine::new(packed.clone(), plan.clone()))
 }
 
-fn on_driver(packed: &Packed, plan: &Plan) -> (Vec<PassReport>, Picture) {
+fn on_driver(packed: &Packed, plan: &Plan) -> Rendered {
     rendered(GpuEngine::new(&software::software(), packed, plan.clone()).unwrap())
 }
 
 /// How two renders differ, if they do.
-fn difference(a: &(Vec<PassReport>, Picture), b: &(Vec<PassReport>, Picture)) -> Option<String> {
+fn difference(a: &Rendered, b: &Rendered) -> Option<String> {
     if a.0 != b.0 {
         return Some(format!("reports {:?} and {:?}", a.0, b.0));
     }
     let bits = |p: &Picture| p.rgb.iter().map(|c| c.map(f32::to_bits)).collect::<Vec<_>>();
     let (first, second) = (bits(&a.1), bits(&b.1));
     let wrong: Vec<usize> = (0..first.len()).filter(|i| first[*i] != second[*i]).collect();
-    let i = *wrong.first()?;
+    let Some(&i) = wrong.first() else {
+        let unlike = a.2.pixels.iter().zip(&b.2.pixels).find(|(a, b)| a != b);
+        return unlike.map(|(a, b)| format!("errors {a:?} and {b:?}"));
+    };
     Some(format!(
         "{} of {} pixels, the first {:?} and {:?}",
         wrong.len(),
@@ -436,7 +443,7 @@ fn difference(a: &(Vec<PassReport>, Picture), b: &(Vec<PassReport>, Picture)) ->
 /// Which visible point and which photon record differ first: tells the kernel that is at fault.
 fn explain(packed: &Packed, plan: &Plan) -> String {
     let mut engine = GpuEngine::new(&software::software(), packed, plan.clone()).unwrap();
-    (0..3).map(|pass| explain_pass(packed, plan, &mut engine, pass)).collect()
+    (0..LEAST_PASSES).map(|pass| explain_pass(packed, plan, &mut engine, pass)).collect()
 }
 
 fn explain_pass(packed: &Packed, plan: &Plan, engine: &mut GpuEngine, pass: u32) -> String {
@@ -556,6 +563,9 @@ fn planted_differences_are_found() {
     let mut wrong = right.clone();
     let green = &mut wrong.1.rgb[777][1];
     *green = f32::from_bits(green.to_bits() ^ 1);
+    assert!(difference(&right, &wrong).is_some());
+    let mut wrong = right.clone();
+    wrong.2.pixels[777].variance += 1e-9;
     assert!(difference(&right, &wrong).is_some());
     let mut wrong = right.clone();
     wrong.0[2].records += 1;

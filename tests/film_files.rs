@@ -46,7 +46,7 @@ fn bits(picture: &Picture) -> Vec<u32> {
 }
 
 fn write_sample(file: &Path, picture: &Picture) {
-    write(file, picture, &Development::default(), &provenance()).unwrap();
+    write(file, picture, &[], &Development::default(), &provenance()).unwrap();
 }
 
 #[test]
@@ -118,12 +118,12 @@ fn exr_attributes_tell_how_the_picture_was_made() {
 #[test]
 fn equal_pictures_give_equal_bytes() {
     let attributes = provenance().attributes();
-    let first = exr_file::encode(&sample(), &attributes).unwrap();
+    let first = exr_file::encode(&sample(), &[], &attributes).unwrap();
     for _ in 0..20 {
-        assert!(exr_file::encode(&sample(), &attributes).unwrap() == first);
+        assert!(exr_file::encode(&sample(), &[], &attributes).unwrap() == first);
     }
     let other = Provenance { passes_done: 18, ..provenance() };
-    assert!(exr_file::encode(&sample(), &other.attributes()).unwrap() != first);
+    assert!(exr_file::encode(&sample(), &[], &other.attributes()).unwrap() != first);
 }
 
 /// Mistakes about outputs come before the work, each with its name.
@@ -160,7 +160,7 @@ fn nothing_half_written_is_left() {
     write_sample(&file, &sample());
     assert_eq!(bits(&read(&file).unwrap()), bits(&sample()));
     fs::create_dir(folder.join("b.pfm")).unwrap();
-    let refused = write(&folder.join("b.pfm"), &sample(), &Development::default(), &provenance());
+    let refused = write(&folder.join("b.pfm"), &sample(), &[], &Development::default(), &provenance());
     assert!(matches!(refused, Err(FileError::Io { verb: "written", .. })), "{refused:?}");
     let mut left: Vec<_> = fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name()).collect();
     left.sort();

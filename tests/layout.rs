@@ -148,9 +148,9 @@ fn hosts() -> Vec<Layout> {
             state
         }),
         layout!(PhotonRecord { position, key, flux, direction }),
-        layout!(Gathered { flux, count }),
+        layout!(Gathered { flux, count, ring }),
         layout!(Statistics { scale_sq, drop, count_low, count_high }),
-        layout!(FilmPixel { mean, carry, rejected }),
+        layout!(FilmPixel { mean, spread, carry, early, rejected, ring, ring_swing, halves, earlier }),
     ]
 }
 

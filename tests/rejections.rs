@@ -134,16 +134,16 @@ fn an_estimate_that_overflows_is_left_out() {
     let d = Dispatch { eye_samples: 1, scale_sq: 1.0, photons: 1.0, ..Dispatch::zeroed() };
     let point = VisiblePoint { radius: 1e-19, radiance: Vec3::ONE, ..VisiblePoint::zeroed() };
     let mut film = FilmPixel::zeroed();
-    resolve(&d, &[point], &[Gathered { flux: Vec3::splat(1e9), count: 1 }], None, &mut film);
-    assert_eq!((film.rejected, film.mean), ([0, 0, 0, 1], Vec3::ZERO));
-    // the next pass is the first that counts
     resolve(
-        &Dispatch { passes_done: 1, ..d },
+        &d,
         &[point],
-        &[Gathered { flux: Vec3::ZERO, count: 0 }],
+        &[Gathered { flux: Vec3::splat(1e9), count: 1, ..Gathered::zeroed() }],
         None,
         &mut film,
     );
+    assert_eq!((film.rejected, film.mean), ([0, 0, 0, 1], Vec3::ZERO));
+    // the next pass is the first that counts
+    resolve(&Dispatch { passes_done: 1, ..d }, &[point], &[Gathered::zeroed()], None, &mut film);
     assert_eq!((film.rejected, film.mean + film.carry), ([0, 0, 0, 1], Vec3::ONE));
 }
 

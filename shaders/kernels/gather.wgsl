@@ -22,18 +22,21 @@ fn gather(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups) gr
     let radius_sq = point.radius * point.radius * dispatch.scale_sq;
     //#end
     //#if split
-    var found = Gathered(vec3f(0.0), 0u);
+    var found = Gathered();
     let wider_sq = dispatch.indirect_radius * dispatch.indirect_radius;
     // a loop, so that the function is there once: software drivers write out every call
     for (var family = 0u; family < 2u; family++) {
         let one = gather_family(point, family, select(radius_sq, radius_sq * wider_sq, family == 1u));
         found.flux += select(one.flux, one.flux * (1.0 / wider_sq), family == 1u);
         found.count += one.count;
+        found.ring += select(one.ring, one.ring * (1.0 / wider_sq), family == 1u);
     }
     //#else
     let found = gather_family(point, 0u, radius_sq);
     //#end
-    gathered[id] = Gathered(gathered[id].flux + point.weight * found.flux, gathered[id].count + found.count);
+    gathered[id].flux += point.weight * found.flux;
+    gathered[id].count += found.count;
+    gathered[id].ring += found.ring;
     loops_stopped();
 }
 
@@ -51,6 +54,7 @@ fn gather_family(point: VisiblePoint, family: u32, radius_sq: f32) -> Gathered {
     let high = grid_cell(point.position + vec3f(radius), inv_cell);
     var count = 0u;
     var sum = vec3f(0.0);
+    var ring = vec3f(0.0);
     for (var z = low.z; z <= high.z; z++) {
         for (var y = low.y; y <= high.y; y++) {
             for (var x = low.x; x <= high.x; x++) {
@@ -63,7 +67,8 @@ fn gather_family(point: VisiblePoint, family: u32, radius_sq: f32) -> Gathered {
                     for (var i = first; i < min(first + BLOCK, end); i++) {
                         let record = sorted[i];
                         let d = record.position - point.position;
-                        if record.key != code || dot(d, d) > radius_sq || abs(dot(d, ng)) > FLATNESS * radius {
+                        let distance_sq = dot(d, d);
+                        if record.key != code || distance_sq > radius_sq || abs(dot(d, ng)) > FLATNESS * radius {
                             continue;
                         }
                         let toward_light = oct_vector(record.direction);
@@ -71,25 +76,28 @@ fn gather_family(point: VisiblePoint, family: u32, radius_sq: f32) -> Gathered {
                             continue;
                         }
                         count += 1u;
-                        if flat_normal && point.alpha <= 0.0 {
-                            block += record.flux;
-                            continue;
+                        var flux = record.flux;
+                        if !flat_normal || point.alpha > 0.0 {
+                            let wi = unit(toward_light);
+                            let cos_g = max(dot(wi, ng), COS_MIN);
+                            //#if metal
+                            if point.alpha > 0.0 {
+                                let f = eval_rough(MATERIAL_METAL, point.alpha, point.reflectance, n, point.wo, wi);
+                                flux = f * flux * (1.0 / cos_g);
+                            } else {
+                                flux *= max(dot(wi, n), 0.0) / cos_g;
+                            }
+                            //#else
+                            flux *= max(dot(wi, n), 0.0) / cos_g;
+                            //#end
                         }
-                        let wi = unit(toward_light);
-                        let cos_g = max(dot(wi, ng), COS_MIN);
-                        //#if metal
-                        if point.alpha > 0.0 {
-                            let f = eval_rough(MATERIAL_METAL, point.alpha, point.reflectance, n, point.wo, wi);
-                            block += f * record.flux * (1.0 / cos_g);
-                            continue;
-                        }
-                        //#end
-                        block += record.flux * (max(dot(wi, n), 0.0) / cos_g);
+                        block += flux;
+                        ring += flux * select(-1.0, 1.0, distance_sq > 0.5 * radius_sq);
                     }
                     sum += block;
                 }
             }
         }
     }
-    return Gathered(sum, count);
+    return Gathered(sum, count, dot(point.weight * LUMINANCE, ring), 0u, 0u, 0u);
 }

@@ -53,6 +53,10 @@ struct PhotonRecord {
 struct Gathered {
     flux: vec3f,
     count: u32,
+    ring: f32,
+    pad0: u32,
+    pad1: u32,
+    pad2: u32,
 }
 
 struct Statistics {
@@ -70,10 +74,14 @@ const ACCEPTED: u32 = 4u;
 
 struct FilmPixel {
     mean: vec3f,
-    pad0: u32,
+    spread: f32,
     carry: vec3f,
-    pad1: u32,
+    early: f32,
     rejected: vec4u,
+    ring: f32,
+    ring_swing: f32,
+    halves: f32,
+    earlier: f32,
 }
 
 // Records appended to the batch (also those beyond the capacity, which are not stored), the pass's rays in two words,

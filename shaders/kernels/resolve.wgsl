@@ -10,7 +10,7 @@ fn resolve(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups) g
     if id >= dispatch.end {
         return;
     }
-    var sum = vec3f(0.0);
+    var sum = Found(vec3f(0.0), 0.0, 0.0);
     var state = 0u;
     var photons_finite = true;
     for (var k = 0u; k < dispatch.eye_samples; k++) {
@@ -19,13 +19,17 @@ fn resolve(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups) g
         photons_finite &= is_finite(gathered[at].flux);
         //#if local
         let scale = local_scale_sq(statistics[at]);
-        sum += pass_radiance(at, scale);
         statistics[at] = updated_statistics(statistics[at], gathered[at].count);
         //#else
-        sum += pass_radiance(at, dispatch.scale_sq);
+        let scale = dispatch.scale_sq;
         //#end
+        let found = pass_found(at, scale);
+        sum.radiance += found.radiance;
+        sum.ring += found.ring;
+        sum.halves += half_weight(k) * luminance(found.radiance);
     }
-    fold(id, cause(state, photons_finite), sum * (1.0 / f32(dispatch.eye_samples)));
+    let share = 1.0 / f32(dispatch.eye_samples);
+    fold(id, cause(state, photons_finite), Found(sum.radiance * share, sum.ring * share, sum.halves));
 }
 
 fn cause(state: u32, photons_finite: bool) -> u32 {
@@ -38,16 +42,30 @@ fn cause(state: u32, photons_finite: bool) -> u32 {
     return select(REJECTED_PHOTONS, ACCEPTED, photons_finite);
 }
 
-fn fold(id: u32, cause: u32, value: vec3f) {
-    let found = select(cause, REJECTED_ESTIMATE, cause == ACCEPTED && !is_finite(value));
-    if found != ACCEPTED {
-        film[id].rejected[found] += 1u;
+fn fold(id: u32, cause: u32, found: Found) {
+    let value = found.radiance;
+    let counted = select(cause, REJECTED_ESTIMATE, cause == ACCEPTED && !is_finite(value));
+    if counted != ACCEPTED {
+        film[id].rejected[counted] += 1u;
         return;
     }
     let r = film[id].rejected;
-    let n = f32(dispatch.passes_done + 1u - (r.x + r.y + r.z + r.w));
+    let before = dispatch.passes_done - (r.x + r.y + r.z + r.w);
     var pixel = film[id];
-    pixel.carry += (value - (pixel.mean + pixel.carry)) * (1.0 / n);
+    if (before & (before - 1u)) == 0u {
+        pixel.earlier = pixel.early;
+        pixel.early = luminance(pixel.mean + pixel.carry);
+    }
+    let n = f32(before + 1u);
+    let share = 1.0 / n;
+    let delta = value - (pixel.mean + pixel.carry);
+    let deviation = luminance(delta) * sqrt((n - 1.0) * share);
+    let sign = select(-1.0, 1.0, (dispatch.passes_done & 1u) == 0u);
+    pixel.spread += (deviation * deviation - pixel.spread) * share;
+    pixel.ring += (found.ring - pixel.ring) * share;
+    pixel.ring_swing += (sign * found.ring - pixel.ring_swing) * share;
+    pixel.halves += (found.halves - pixel.halves) * share;
+    pixel.carry += delta * share;
     if max_abs(pixel.carry) > CARRY_SHARE * max_abs(pixel.mean) {
         pixel.mean += pixel.carry;
         pixel.carry = vec3f(0.0);
@@ -55,14 +73,34 @@ fn fold(id: u32, cause: u32, value: vec3f) {
     film[id] = pixel;
 }
 
-fn pass_radiance(at: u32, scale_sq: f32) -> vec3f {
+struct Found {
+    radiance: vec3f,
+    ring: f32,
+    halves: f32,
+}
+
+fn pass_found(at: u32, scale_sq: f32) -> Found {
     let radiance = visible_points[at].radiance;
     if gathered[at].count == 0u {
-        return radiance;
+        return Found(radiance, 0.0, 0.0);
     }
     let radius = visible_points[at].radius;
     let radius_sq = radius * radius * scale_sq;
-    return radiance + gathered[at].flux * (1.0 / (dispatch.photons * (PI * radius_sq)));
+    let share = 1.0 / (dispatch.photons * (PI * radius_sq));
+    return Found(radiance + gathered[at].flux * share, gathered[at].ring * share, 0.0);
+}
+
+fn half_weight(k: u32) -> f32 {
+    if dispatch.eye_samples == 1u {
+        return 0.0;
+    }
+    let first = f32((dispatch.eye_samples + 1u) / 2u);
+    let second = f32(dispatch.eye_samples / 2u);
+    let row = k / dispatch.strata;
+    let odd = (k - row * dispatch.strata + row) & 1u;
+    let ratio = select(first / second, second / first, odd == 0u);
+    let size = sqrt(ratio) / (first + second);
+    return select(-size, size, odd == 0u);
 }
 
 //#if local

@@ -5,6 +5,7 @@ const TAU: f32 = 6.28318530717959;
 const INV_PI: f32 = 0.318309886183791;
 const FAR: f32 = 1e30;
 const EPS: f32 = 5.9604645e-8;
+const LUMINANCE = vec3f(0.2126, 0.7152, 0.0722);
 
 fn unit(v: vec3f) -> vec3f {
     return v * (1.0 / sqrt(dot(v, v)));
@@ -16,6 +17,10 @@ fn max_component(v: vec3f) -> f32 {
 
 fn max_abs(v: vec3f) -> f32 {
     return max_component(abs(v));
+}
+
+fn luminance(v: vec3f) -> f32 {
+    return dot(v, LUMINANCE);
 }
 
 struct Basis {

@@ -104,7 +104,7 @@ fn render_on(
 ) -> Result<Rendered, Failure> {
     let opened = device::open(&device::parse(wanted), scene, settings)?;
     let mut reporter = begin(voice, scene, &opened)?;
-    let stop = Stop { passes: settings.passes, time: None };
+    let stop = Stop { passes: settings.passes, time: None, target_error: None };
     let mut engine = opened.engine;
     let never = AtomicBool::new(false);
     let outcome = render(engine.as_mut(), stop, &never, &mut |progress| reporter.show(progress));
@@ -112,7 +112,7 @@ fn render_on(
     let outcome = outcome?;
     match outcome.ending {
         Ending::Failed(error) => Err(error.into()),
-        Ending::Passes | Ending::Time | Ending::Interrupted => {
+        Ending::Passes | Ending::Time | Ending::TargetError | Ending::Interrupted => {
             Ok(Rendered { device: opened.name, picture: outcome.picture })
         }
     }

@@ -150,6 +150,18 @@ pub fn duration(text: &str) -> Result<Duration, String> {
         .ok_or("expected a time with its unit, as in 500ms, 30s, 5m or 1.5h".to_owned())
 }
 
+/// A relative error such as 2% or 0.02.
+pub fn target_error(text: &str) -> Result<f64, String> {
+    let number = match text.strip_suffix('%') {
+        Some(percent) => positive(percent).map(|number| number / 100.0),
+        None => positive(text),
+    };
+    match number {
+        Ok(error) if error <= 1.0 => Ok(error),
+        _ => Err("expected a relative error above 0 and up to 100 %, as in 2% or 0.02".to_owned()),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -175,6 +187,16 @@ mod tests {
         assert_eq!(duration("1.5h"), Ok(Duration::from_secs(5400)));
         for bad in ["30", "s", "-1s", "infs", "30 days", "1e30h"] {
             assert!(duration(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn errors_are_shares_or_percentages() {
+        for good in ["2%", "0.02", "2e-2"] {
+            assert_eq!(target_error(good), Ok(0.02), "{good}");
+        }
+        for bad in ["", "%", "0", "0%", "-1%", "-0.02", "nan", "inf%", "2", "200%", "2 %%", "two"] {
+            assert!(target_error(bad).is_err(), "{bad}");
         }
     }
 

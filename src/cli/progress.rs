@@ -79,7 +79,8 @@ impl Reporter {
     }
 }
 
-/// The progress as a JSON object with the name of an event; times in seconds, the radius in scene units.
+/// The progress as a JSON object with the name of an event; times in seconds, the radius in scene units, errors relative (null
+/// where there is no estimate yet).
 pub fn event(name: &str, progress: &Progress) -> serde_json::Value {
     json!({
         "event": name,
@@ -92,6 +93,9 @@ pub fn event(name: &str, progress: &Progress) -> serde_json::Value {
         "photons_cut": progress.ends.cut,
         "rays_per_second": progress.rays_per_second(),
         "radius": progress.radius,
+        "error": progress.error.map(|error| error.stated),
+        "error_noise": progress.error.map(|error| error.noise),
+        "error_bias": progress.error.map(|error| error.bias),
         "share": progress.share(),
         "elapsed": progress.elapsed.as_secs_f64(),
         "remaining": progress.remaining().as_secs_f64(),
@@ -138,8 +142,18 @@ fn line(progress: &Progress) -> String {
     if progress.radius > 0.0 {
         parts.push(format!("radius {:.3e}", progress.radius));
     }
+    if let Some(error) = progress.error {
+        parts.push(format!("error {}", percent(error.stated)));
+    }
     parts.push(format!("{} left", time(progress.remaining())));
     parts.join(", ")
+}
+
+/// A share as a percentage with three digits.
+pub fn percent(share: f64) -> String {
+    let number = 100.0 * share;
+    let decimals = if number < 9.995 { 2 } else { usize::from(number < 99.95) };
+    format!("{number:.decimals$} %")
 }
 
 /// A number with three digits and a unit prefix.
@@ -170,11 +184,12 @@ pub fn time(duration: Duration) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use caustica::film::RelativeError;
     use caustica::render::Stop;
 
     fn at(passes: u32, of: u32, seconds: f64) -> Progress {
         Progress {
-            stop: Stop { passes: of, time: None },
+            stop: Stop { passes: of, time: None, target_error: None },
             passes,
             photons: 1_234_567 * u64::from(passes),
             eye_paths: 0,
@@ -182,6 +197,7 @@ mod tests {
             ends: Default::default(),
             radius: 0.012_34,
             elapsed: Duration::from_secs_f64(seconds),
+            error: Some(RelativeError { noise: 0.02, bias: 0.01, stated: 0.0234 }),
         }
     }
 
@@ -203,7 +219,10 @@ mod tests {
     #[test]
     fn a_line_has_all_its_parts() {
         let line = line(&at(16, 64, 10.0));
-        assert_eq!(line, "16/64 passes, 19.8 M photons, 500 k rays/s, radius 1.234e-2, 30.0 s left");
+        assert_eq!(
+            line,
+            "16/64 passes, 19.8 M photons, 500 k rays/s, radius 1.234e-2, error 2.34 %, 30.0 s left"
+        );
     }
 
     #[test]
@@ -212,6 +231,7 @@ mod tests {
         assert_eq!(count(1000.0), "1.00 k");
         assert_eq!(count(99_940.0), "99.9 k");
         assert_eq!(count(2.5e9), "2.50 G");
+        assert_eq!([0.000_12, 0.0234, 0.123, 1.5].map(percent), ["0.01 %", "2.34 %", "12.3 %", "150 %"]);
         assert_eq!(time(Duration::from_millis(3210)), "3.2 s");
         assert_eq!(time(Duration::from_secs(125)), "2 min 05 s");
         assert_eq!(time(Duration::from_secs(4800)), "1 h 20 min");

@@ -6,7 +6,7 @@ use super::kernels::grid_build::{SortedRecords, grid_count, grid_scan, grid_scat
 use super::kernels::path_trace::path_trace;
 use super::kernels::photon_trace::photon_trace;
 use super::kernels::records::*;
-use super::kernels::resolve::{fold, resolve};
+use super::kernels::resolve::{Found, fold, resolve};
 use super::math::is_finite;
 use super::pack::Packed;
 use super::plan::{Kernel, Plan};
@@ -14,7 +14,7 @@ use super::real::ENGINE;
 use super::tables::Scene;
 use crate::clock::{Clock, KernelSeconds};
 use crate::engine::{Engine, EngineError, PassReport, PhotonEnds};
-use crate::film::{Picture, Rejections};
+use crate::film::{ErrorMap, Picture, Rejections};
 use crate::settings::Method;
 use bytemuck::Zeroable;
 use rayon::prelude::*;
@@ -204,7 +204,7 @@ impl CpuEngine {
             .map(|(pixel, film)| {
                 let (radiance, rays) = path_trace(scene, &d, sampled, pixel as u32);
                 let cause = if is_finite(radiance) { ACCEPTED } else { REJECTED_EYE };
-                fold(&d, cause, radiance, film);
+                fold(&d, cause, Found { radiance, ring: 0.0, halves: 0.0 }, film);
                 rays as u64
             })
             .sum();
@@ -267,6 +267,10 @@ impl Engine for CpuEngine {
 
     fn picture(&mut self) -> Result<Picture, EngineError> {
         Ok(self.plan.picture(&self.film))
+    }
+
+    fn errors(&mut self) -> Result<ErrorMap, EngineError> {
+        Ok(self.plan.errors(&self.film, self.passes_done))
     }
 
     fn rejections(&mut self) -> Result<Rejections, EngineError> {

@@ -5,7 +5,7 @@ use std::io::Cursor;
 
 use exr::prelude::*;
 
-use super::Picture;
+use super::{Picture, Plane};
 
 /// What an EXR file's first layer holds.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -31,16 +31,23 @@ impl ExrFile {
     }
 }
 
-/// The bytes of a losslessly compressed EXR file. Equal arguments give equal bytes.
+/// A channel beside R, G and B, by its full name, as `Variance.Y`.
+pub type NamedPlane = (&'static str, Plane);
+
+/// The bytes of a losslessly compressed EXR file with the layers' channels beside R, G and B. Equal arguments give equal bytes.
 pub fn encode(
     picture: &Picture,
+    layers: &[NamedPlane],
     attributes: &BTreeMap<String, String>,
 ) -> std::result::Result<Vec<u8>, String> {
-    let width = picture.width as usize;
-    let pixel = |at: Vec2<usize>| {
-        let [r, g, b] = picture.rgb[at.y() * width + at.x()];
-        (r, g, b)
-    };
+    let channel = |name: &str, values| AnyChannel::new(Text::from(name), FlatSamples::F32(values));
+    let colors = ["R", "G", "B"].into_iter().enumerate();
+    let mut channels: SmallVec<[_; 4]> =
+        colors.map(|(c, name)| channel(name, picture.rgb.iter().map(|rgb| rgb[c]).collect())).collect();
+    // numbers beyond f32 become its largest
+    let held = |x: &f64| x.clamp(f64::from(f32::MIN), f64::from(f32::MAX)) as f32;
+    channels
+        .extend(layers.iter().map(|(name, plane)| channel(name, plane.values.iter().map(held).collect())));
     let mut layer = LayerAttributes {
         software_name: Some(Text::from(concat!("caustica ", env!("CARGO_PKG_VERSION")))),
         ..LayerAttributes::default()
@@ -50,10 +57,10 @@ pub fn encode(
         layer.other.insert(Text::from_slice_unchecked(name.as_bytes()), value);
     }
     let layer = Layer::new(
-        (width, picture.height as usize),
+        (picture.width as usize, picture.height as usize),
         layer,
         Encoding::SMALL_LOSSLESS,
-        SpecificChannels::rgb(pixel),
+        AnyChannels::sort(channels),
     );
     let mut bytes = Vec::new();
     Image::from_layer(layer)

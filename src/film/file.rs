@@ -9,7 +9,8 @@ use std::path::{Path, PathBuf};
 use image::{DynamicImage, ExtendedColorType, ImageEncoder, ImageFormat, codecs};
 use rayon::prelude::*;
 
-use super::{Development, FileError, Picture, Provenance, exr_file, pfm};
+use super::exr_file::{self, NamedPlane};
+use super::{Development, FileError, Picture, Provenance, pfm};
 
 /// A kind of picture file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -95,16 +96,18 @@ pub fn check_place(file: &Path) -> Result<(), FileError> {
     fs::write(&unfinished, []).and_then(|()| fs::remove_file(&unfinished)).map_err(|e| not_written(file, e))
 }
 
-/// Writes a picture in the format that the extension names. `development` counts for PNG, `provenance` for EXR.
+/// Writes a picture in the format that the extension names. `development` counts for PNG, `layers` and `provenance` for
+/// EXR.
 pub fn write(
     file: &Path,
     picture: &Picture,
+    layers: &[NamedPlane],
     development: &Development,
     provenance: &Provenance,
 ) -> Result<(), FileError> {
     let bytes = match Format::of_output(file)? {
         Format::Png => encode_png(picture, development),
-        Format::Exr => exr_file::encode(picture, &provenance.attributes()),
+        Format::Exr => exr_file::encode(picture, layers, &provenance.attributes()),
         Format::Pfm => Ok(pfm::encode(picture)),
         Format::Hdr => encode_hdr(picture),
     };

@@ -5,6 +5,7 @@ pub mod blocks;
 pub mod colors;
 pub mod difference;
 pub mod error;
+pub mod estimate;
 pub mod exr_file;
 pub mod file;
 pub mod flip;
@@ -21,7 +22,9 @@ pub mod tonemap;
 pub use any_file::{Coding, read_any};
 pub use difference::{Difference, Measures};
 pub use error::FileError;
+pub use estimate::{ErrorMap, RelativeError};
 pub use file::{check_outputs, read, write};
+pub use plane::Plane;
 pub use provenance::Provenance;
 pub use region::Region;
 pub use rejections::Rejections;
@@ -64,5 +67,10 @@ impl Picture {
 
 /// Rec. 709 luminance of linear Rec. 709 values, in their unit.
 pub fn luminance(rgb: [f32; 3]) -> f64 {
-    0.2126 * f64::from(rgb[0]) + 0.7152 * f64::from(rgb[1]) + 0.0722 * f64::from(rgb[2])
+    luminance_of(rgb.map(f64::from))
+}
+
+/// The same in f64.
+pub fn luminance_of([r, g, b]: [f64; 3]) -> f64 {
+    0.2126 * r + 0.7152 * g + 0.0722 * b
 }

@@ -8,7 +8,7 @@ use super::program::{Compiling, Program, make_programs, workgroup_items};
 use super::recorder::Recorder;
 use crate::clock::{Clock, KernelSeconds};
 use crate::engine::{Engine, EngineError, PassReport, PhotonEnds};
-use crate::film::{Picture, Rejections};
+use crate::film::{ErrorMap, Picture, Rejections};
 use crate::kernels::records::{Dispatch, FilmPixel, Gathered};
 use crate::pack::Packed;
 use crate::plan::{Kernel, Plan, Step};
@@ -427,6 +427,10 @@ impl Engine for GpuEngine {
 
     fn picture(&mut self) -> Result<Picture, EngineError> {
         Ok(self.plan.picture(&self.film()?))
+    }
+
+    fn errors(&mut self) -> Result<ErrorMap, EngineError> {
+        Ok(self.plan.errors(&self.film()?, self.passes_done))
     }
 
     fn rejections(&mut self) -> Result<Rejections, EngineError> {

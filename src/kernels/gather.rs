@@ -7,11 +7,12 @@
 use super::grid::{grid_bucket, grid_cell, grid_code};
 use super::grid_build::SortedRecords;
 use super::materials::scatter::eval_rough;
-use super::math::{oct_decode, unit};
+use super::math::{LUMINANCE, oct_decode, unit};
 use super::real::{Real, Vec3, Vec4};
 use super::records::{Dispatch, Gathered, Statistics, VisiblePoint};
 use super::tables::MATERIAL_METAL;
 use glam::IVec3;
+use std::ops::Range;
 
 /// Photons farther than this from the tangent plane, in radii, lie on another surface.
 const FLATNESS: Real = 0.25;
@@ -53,12 +54,14 @@ pub fn gather(
         let wide = gather_family(dispatch, point, 1, radius_sq * wider_sq, starts, sorted);
         found.flux += wide.flux * (1.0 / wider_sq);
         found.count += wide.count;
+        found.ring += wide.ring * (1.0 / wider_sq);
     }
     gathered.flux += point.weight * found.flux;
     gathered.count += found.count;
+    gathered.ring += found.ring;
 }
 
-/// The photons of one family: their BRDF times flux, but for the point's weight, and their number.
+/// The photons of one family: their BRDF times flux, but for the point's weight, their number, and their ring.
 #[inline(always)]
 fn gather_family(
     dispatch: &Dispatch,
@@ -77,6 +80,8 @@ fn gather_family(
     let high = grid_cell(point.position + Vec3::splat(radius), inv_cell);
     let mut count = 0;
     let mut sum = Vec4::ZERO;
+    let mut ring = Vec4::ZERO;
+    let mut sides = [0.0; LANES];
     for z in low.z..=high.z {
         for y in low.y..=high.y {
             for x in low.x..=high.x {
@@ -88,33 +93,30 @@ fn gather_family(
                     let mut block = Vec4::ZERO;
                     let last = (first + BLOCK).min(end);
                     while first < last {
-                        let mut near = near(sorted, first, last, code, point.position, ng, radius_sq, radius);
+                        let lanes = first..last;
+                        let mut near =
+                            near(sorted, lanes, code, point.position, ng, radius_sq, radius, &mut sides);
                         while near != 0 {
-                            let i = first + near.trailing_zeros() as usize / 8;
+                            let k = near.trailing_zeros() as usize / 8;
+                            let i = first + k;
                             near &= near - 1;
                             count += 1;
-                            let flux = sorted.fluxes[i];
-                            if flat && point.alpha <= 0.0 {
-                                block += flux;
-                                continue;
+                            let mut flux = sorted.fluxes[i];
+                            if !flat || point.alpha > 0.0 {
+                                let [us, vs, ws] = &sorted.directions;
+                                let wi = unit(Vec3::new(us[i], vs[i], ws[i]));
+                                // flux arrives by the geometric cosine, the BRDF asks for the shading one
+                                let cos_g = wi.dot(ng).max(COS_MIN);
+                                if point.alpha > 0.0 {
+                                    let (alpha, reflectance) = (point.alpha, point.reflectance);
+                                    let f = eval_rough(MATERIAL_METAL, alpha, reflectance, n, point.wo, wi);
+                                    flux = f.extend(0.0) * flux * (1.0 / cos_g);
+                                } else {
+                                    flux *= wi.dot(n).max(0.0) / cos_g;
+                                }
                             }
-                            let [us, vs, ws] = &sorted.directions;
-                            let wi = unit(Vec3::new(us[i], vs[i], ws[i]));
-                            // flux arrives by the geometric cosine, the BRDF asks for the shading one
-                            let cos_g = wi.dot(ng).max(COS_MIN);
-                            if point.alpha > 0.0 {
-                                let f = eval_rough(
-                                    MATERIAL_METAL,
-                                    point.alpha,
-                                    point.reflectance,
-                                    n,
-                                    point.wo,
-                                    wi,
-                                );
-                                block += f.extend(0.0) * flux * (1.0 / cos_g);
-                            } else {
-                                block += flux * (wi.dot(n).max(0.0) / cos_g);
-                            }
+                            block += flux;
+                            ring += flux * sides[k];
                         }
                         first += LANES;
                     }
@@ -124,21 +126,22 @@ fn gather_family(
             }
         }
     }
-    Gathered { flux: sum.truncate(), count }
+    let ring = (point.weight * LUMINANCE).dot(ring.truncate());
+    Gathered { flux: sum.truncate(), count, ring, pad: [0; 3] }
 }
 
-/// Which of the photons from `first` on, up to [`LANES`] of them and before `last`, lie in the disc and in the cell and come
-/// from the side that is seen: a byte of one for each.
+/// Which of the first [`LANES`] photons of `range` lie in the disc and in the cell and come from the side that is seen: a byte
+/// of one for each. `sides` becomes 1 in the outer half of the disc's area and -1 in the inner one.
 #[inline(always)]
 fn near(
     sorted: &SortedRecords,
-    first: usize,
-    last: usize,
+    Range { start: first, end: last }: Range<usize>,
     code: u32,
     position: Vec3,
     ng: Vec3,
     radius_sq: Real,
     radius: Real,
+    sides: &mut [Real; LANES],
 ) -> u128 {
     // `SortedRecords` ends with entries of no cell, so that these lanes are there
     let lanes = first..first + LANES;
@@ -149,7 +152,9 @@ fn near(
     for k in 0..LANES {
         let d = Vec3::new(xs[k], ys[k], zs[k]) - position;
         let toward_light = Vec3::new(us[k], vs[k], ws[k]);
-        let inside = (d.dot(d) <= radius_sq) & (d.dot(ng).abs() <= FLATNESS * radius);
+        let distance_sq = d.dot(d);
+        let inside = (distance_sq <= radius_sq) & (d.dot(ng).abs() <= FLATNESS * radius);
+        sides[k] = if distance_sq > 0.5 * radius_sq { 1.0 } else { -1.0 };
         near[k] = (inside & (codes[k] == code) & (toward_light.dot(ng) > 0.0)) as u8;
     }
     let beyond = 8 * (LANES - (last - first).min(LANES)) as u32;

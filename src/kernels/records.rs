@@ -113,6 +113,10 @@ pub struct Gathered {
     pub flux: Vec3,
     /// Photons inside the disc, on the right side of the surface.
     pub count: u32,
+    /// Luminance of what the outer half of the disc's area holds of `flux`, less that of the inner half.
+    pub ring: Real,
+    /// Padding.
+    pub pad: [u32; 3],
 }
 
 /// Local rule: statistics of a pixel (SPPM) or visible point (PPM), with radii over the start radius.
@@ -146,12 +150,21 @@ pub const ACCEPTED: u32 = 4;
 pub struct FilmPixel {
     /// Mean over the passes, in W sr^-1 m^-2 of scene units, less what `carry` still holds back.
     pub mean: Vec3,
-    /// Zero.
-    pub pad0: u32,
+    /// Luminance: mean square of the passes' deviations (see [`super::resolve::fold`]).
+    pub spread: Real,
     /// Change of the mean not yet put into `mean`: small terms are summed here first, so that they count.
     pub carry: Vec3,
-    /// Zero.
-    pub pad1: u32,
+    /// Luminance of the mean over the first 2^k passes, 2^k the greatest power of two below the number of passes.
+    pub early: Real,
     /// Passes whose value was not finite and was left out, by cause: see `REJECTED_*`.
     pub rejected: [u32; 4],
+    /// Luminance: mean over the passes of the estimate in the whole disc less that in the inner half of its area.
+    pub ring: Real,
+    /// The same mean with odd passes turned over.
+    pub ring_swing: Real,
+    /// Luminance: mean over the passes of what two halves of the eye samples differ by, scaled so that its square is
+    /// the variance of the mean over all.
+    pub halves: Real,
+    /// Luminance of the mean over the first 2^(k-1) passes.
+    pub earlier: Real,
 }

@@ -7,7 +7,7 @@
 //! `tau_P / R_P^2 = tau_{P-1} / R_{P-1}^2 + Phi_P / R_{P-1}^2`.
 
 use super::gather::scale_sq;
-use super::math::{PI, is_finite, max_abs};
+use super::math::{PI, is_finite, luminance, max_abs};
 use super::real::{Real, Vec3};
 use super::records::*;
 
@@ -17,13 +17,42 @@ const DROP_SHARE: Real = 1.0 / 256.0;
 /// `carry` is put into `mean` when it exceeds this share of it.
 const CARRY_SHARE: Real = 1.0 / 256.0;
 
-/// Radiance that one visible point found in this pass.
-pub fn pass_radiance(point: &VisiblePoint, gathered: &Gathered, scale_sq: Real, photons: Real) -> Vec3 {
+/// What visible points found in one pass.
+#[derive(Clone, Copy)]
+pub struct Found {
+    /// Radiance.
+    pub radiance: Vec3,
+    /// Luminance of the estimate in the whole disc less that in the inner half of its area.
+    pub ring: Real,
+    /// Luminance by which two halves of the points differ, as [`FilmPixel::halves`].
+    pub halves: Real,
+}
+
+/// What one visible point found in this pass; it is no half of anything.
+pub fn pass_found(point: &VisiblePoint, gathered: &Gathered, scale_sq: Real, photons: Real) -> Found {
     if gathered.count == 0 {
-        return point.radiance;
+        return Found { radiance: point.radiance, ring: 0.0, halves: 0.0 };
     }
     let area = PI * point.radius * point.radius * scale_sq;
-    point.radiance + gathered.flux * (1.0 / (photons * area))
+    let share = 1.0 / (photons * area);
+    Found { radiance: point.radiance + gathered.flux * share, ring: gathered.ring * share, halves: 0.0 }
+}
+
+/// What sample `k` of a pixel weighs in [`Found::halves`]. The halves are the strata's fields of either colour of a
+/// chessboard, so that a slope across the pixel is in both alike. With a and b samples in them the difference of
+/// their means times `sqrt(a b) / (a + b)` has the variance of the mean over all.
+pub fn half_weight(k: u32, eye_samples: u32, strata: u32) -> Real {
+    if eye_samples == 1 {
+        return 0.0;
+    }
+    // an odd number of strata has one more of the first colour; an even number of columns has as many of both
+    let first = eye_samples.div_ceil(2) as Real;
+    let second = (eye_samples / 2) as Real;
+    let row = k / strata;
+    let odd = (k - row * strata + row) & 1;
+    let ratio = if odd == 0 { second / first } else { first / second };
+    let size = ratio.sqrt() / (first + second);
+    if odd == 0 { size } else { -size }
 }
 
 /// Hachisuka's rule with `N = alpha T`, T photons so far: `R'^2 = R^2 alpha (T + m) / (alpha T + m)`.
@@ -57,7 +86,7 @@ pub fn resolve(
     mut statistics: Option<&mut [Statistics]>,
     film: &mut FilmPixel,
 ) {
-    let mut sum = Vec3::ZERO;
+    let mut sum = Found { radiance: Vec3::ZERO, ring: 0.0, halves: 0.0 };
     let mut state = 0;
     let mut photons_finite = true;
     for k in 0..dispatch.eye_samples as usize {
@@ -68,9 +97,15 @@ pub fn resolve(
         }
         state |= points[k].state;
         photons_finite &= is_finite(gathered[k].flux);
-        sum += pass_radiance(&points[k], &gathered[k], scale, dispatch.photons);
+        let found = pass_found(&points[k], &gathered[k], scale, dispatch.photons);
+        sum.radiance += found.radiance;
+        sum.ring += found.ring;
+        sum.halves +=
+            half_weight(k as u32, dispatch.eye_samples, dispatch.strata) * luminance(found.radiance);
     }
-    fold(dispatch, cause(state, photons_finite), sum * (1.0 / dispatch.eye_samples as Real), film);
+    let share = 1.0 / dispatch.eye_samples as Real;
+    let mean = Found { radiance: sum.radiance * share, ring: sum.ring * share, halves: sum.halves };
+    fold(dispatch, cause(state, photons_finite), mean, film);
 }
 
 /// Why a pass cannot count, as far as its parts show.
@@ -84,16 +119,33 @@ pub fn cause(state: u32, photons_finite: bool) -> u32 {
     if photons_finite { ACCEPTED } else { REJECTED_PHOTONS }
 }
 
-/// Adds one pass's value to a pixel's mean, or counts it under its cause.
-pub fn fold(dispatch: &Dispatch, cause: u32, value: Vec3, film: &mut FilmPixel) {
-    let found = if cause == ACCEPTED && !is_finite(value) { REJECTED_ESTIMATE } else { cause };
-    if found != ACCEPTED {
-        film.rejected[found as usize] += 1;
+/// Adds what one pass found to a pixel's means, or counts it under its cause.
+///
+/// The n-th pass deviates from the mean of those before by delta. `sqrt((n - 1) / n) delta` has mean zero and the
+/// variance of a pass, and does not correlate with its predecessors (Helmert 1876).
+pub fn fold(dispatch: &Dispatch, cause: u32, found: Found, film: &mut FilmPixel) {
+    let value = found.radiance;
+    let counted = if cause == ACCEPTED && !is_finite(value) { REJECTED_ESTIMATE } else { cause };
+    if counted != ACCEPTED {
+        film.rejected[counted as usize] += 1;
         return;
     }
     let r = film.rejected;
-    let n = (dispatch.passes_done + 1 - (r[0] + r[1] + r[2] + r[3])) as Real;
-    film.carry += (value - (film.mean + film.carry)) * (1.0 / n);
+    let before = dispatch.passes_done - (r[0] + r[1] + r[2] + r[3]);
+    if before & before.wrapping_sub(1) == 0 {
+        film.earlier = film.early;
+        film.early = luminance(film.mean + film.carry);
+    }
+    let n = (before + 1) as Real;
+    let share = 1.0 / n;
+    let delta = value - (film.mean + film.carry);
+    let deviation = luminance(delta) * ((n - 1.0) * share).sqrt();
+    let sign = if dispatch.passes_done & 1 == 0 { 1.0 } else { -1.0 };
+    film.spread += (deviation * deviation - film.spread) * share;
+    film.ring += (found.ring - film.ring) * share;
+    film.ring_swing += (sign * found.ring - film.ring_swing) * share;
+    film.halves += (found.halves - film.halves) * share;
+    film.carry += delta * share;
     if max_abs(film.carry) > CARRY_SHARE * max_abs(film.mean) {
         film.mean += film.carry;
         film.carry = Vec3::ZERO;

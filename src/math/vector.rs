@@ -13,6 +13,9 @@ pub const FAR: Real = 1e30;
 /// Half an ulp of 1, the bound of one rounding.
 pub const EPS: Real = 0.5 * Real::EPSILON;
 
+/// What linear Rec. 709 values weigh in luminance.
+pub const LUMINANCE: Vec3 = Vec3::new(0.2126, 0.7152, 0.0722);
+
 /// `v` at length one.
 pub fn unit(v: Vec3) -> Vec3 {
     v * (1.0 / v.dot(v).sqrt())
@@ -31,6 +34,11 @@ pub fn max_component(v: Vec3) -> Real {
 /// Greatest absolute value of a component.
 pub fn max_abs(v: Vec3) -> Real {
     max_component(v.abs())
+}
+
+/// Rec. 709 luminance of linear Rec. 709 values.
+pub fn luminance(v: Vec3) -> Real {
+    v.dot(LUMINANCE)
 }
 
 /// Two unit vectors that complete `n` to a right-handed frame (Duff et al. 2017).

@@ -68,7 +68,7 @@ pub fn progressive(
 mod tests {
     use super::*;
     use crate::engine::PassReport;
-    use crate::film::Rejections;
+    use crate::film::{ErrorMap, Rejections};
 
     struct Counter {
         passes: u32,
@@ -84,6 +84,10 @@ mod tests {
             self.passes += 1;
             std::thread::sleep(Duration::from_millis(2));
             Ok(PassReport { photons: 5, rays: 3, ..PassReport::default() })
+        }
+
+        fn errors(&mut self) -> Result<ErrorMap, EngineError> {
+            Ok(ErrorMap { width: 1, pixels: Vec::new() })
         }
 
         fn rejections(&mut self) -> Result<Rejections, EngineError> {

@@ -170,7 +170,7 @@ fn local_rule(b: &Bench) -> (Figure, Figure) {
             count_low: start as u32,
             count_high: (start >> 32) as u32,
         };
-        let gathered = Gathered { flux: Vec3::ONE, count: m };
+        let gathered = Gathered { flux: Vec3::ONE, count: m, ..Gathered::zeroed() };
         let point = VisiblePoint { radius: 1.0, ..VisiblePoint::zeroed() };
         let list: Vec<Dispatch> = (0..passes)
             .map(|i| Dispatch { eye_samples: 1, alpha, photons: 1e6, passes_done: i, ..Dispatch::zeroed() })
@@ -197,7 +197,7 @@ fn means(b: &Bench) -> Figure {
         let film = FilmPixel { mean: Vec3::ONE, ..FilmPixel::zeroed() };
         // values 1 / (pi photons): the number of photons makes them
         let point = VisiblePoint { radius: 1.0, ..VisiblePoint::zeroed() };
-        let gathered = Gathered { flux: Vec3::splat(std::f32::consts::PI), count: 1 };
+        let gathered = Gathered { flux: Vec3::splat(std::f32::consts::PI), count: 1, ..Gathered::zeroed() };
         let value = |i: u32| 2.0 - f64::from(i % 7) / 7.0;
         let list: Vec<Dispatch> = (0..count)
             .map(|i| Dispatch {
