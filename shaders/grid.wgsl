@@ -1,4 +1,4 @@
-// The hash grid over photon records: twin of src/grid.rs.
+// The hash grid over photon records: twin of src/grid.rs, and of what src/kernels/grid_build.rs says of a record.
 
 const CELL_MAX: f32 = 1e9;
 
@@ -13,3 +13,34 @@ fn grid_bucket(cell: vec3i, mask: u32) -> u32 {
     h ^= h >> 15u;
     return h & mask;
 }
+
+fn grid_code(cell: vec3i, family: u32) -> u32 {
+    return (u32(cell.x) & 0x3ffu) | ((u32(cell.y) & 0x3ffu) << 10u) | ((u32(cell.z) & 0x3ffu) << 20u) | (family << 30u);
+}
+
+//#if grid_count || grid_scatter || grid_sort
+fn record_family(record: PhotonRecord) -> u32 {
+    //#if split
+    return record.key & 1u;
+    //#else
+    return 0u;
+    //#end
+}
+
+fn record_cell(record: PhotonRecord) -> vec3i {
+    //#if split
+    let indirect = record_family(record) == 1u;
+    return grid_cell(record.position, select(dispatch.inv_cell, dispatch.inv_cell_indirect, indirect));
+    //#else
+    return grid_cell(record.position, dispatch.inv_cell);
+    //#end
+}
+
+fn record_bucket(record: PhotonRecord) -> u32 {
+    return grid_bucket(record_cell(record), dispatch.mask);
+}
+
+fn record_code(record: PhotonRecord) -> u32 {
+    return grid_code(record_cell(record), record_family(record));
+}
+//#end

@@ -42,7 +42,7 @@ struct World {
     unbounded_count: u32,
     disc_levels: u32,
     nested: u32,
-    pad: u32,
+    guided: u32,
 }
 
 struct Camera {
@@ -171,5 +171,5 @@ struct Light {
     patch_first: u32,
     patch_count: u32,
     medium: u32,
-    pad: u32,
+    guide: u32,
 }

@@ -5,7 +5,7 @@ use crate::settings::{Direct, Method, RadiusRule, RenderSettings};
 use std::collections::BTreeSet;
 
 /// Names that fence optional code in shaders (`//#if name`).
-pub const ALL: [&str; 35] = [
+pub const ALL: [&str; 37] = [
     "triangle",
     "attributes",
     "sphere",
@@ -26,6 +26,7 @@ pub const ALL: [&str; 35] = [
     "specular",
     "absorption",
     "lights",
+    "guided",
     "area_triangle",
     "area_sphere",
     "area_rectangle",
@@ -41,9 +42,11 @@ pub const ALL: [&str; 35] = [
     "lens",
     "sampled",
     "local",
+    "split",
 ];
 
-/// A set of names from [`ALL`], and "photons" where photons are traced at all.
+/// A set of names from [`ALL`], and "photons" where photons are traced at all, "first" where such are stored that no
+/// diffuse surface has scattered.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Features(BTreeSet<&'static str>);
 
@@ -86,6 +89,7 @@ impl Features {
         put("area_disc", area(KIND_DISC));
         put("area_cuboid", area(KIND_CUBOID));
         put("area_revolution", area(KIND_REVOLUTION));
+        put("guided", scene.world.guided != 0);
         put("point", light(LIGHT_POINT));
         put("spot", light(LIGHT_SPOT));
         put("infinite", light(LIGHT_SUN) || light(LIGHT_CONSTANT) || light(LIGHT_IMAGE));
@@ -95,7 +99,13 @@ impl Features {
         put("lens", scene.camera.aperture > 0.0);
         put("sampled", settings.direct == Direct::Sampled && !scene.lights.is_empty());
         put("local", settings.radius_rule == RadiusRule::Local);
-        put("photons", !scene.lights.is_empty() && settings.method != Method::Path);
+        let photons = !scene.lights.is_empty() && settings.method != Method::Path;
+        // photons that no diffuse surface has scattered are stored
+        let rough = scene.materials.iter().all(|m| m.kind == MATERIAL_DIFFUSE);
+        let first = settings.direct == Direct::Photons || !rough;
+        put("photons", photons);
+        put("first", photons && first);
+        put("split", photons && first && settings.indirect_radius != 1.0);
         Self(set)
     }
 

@@ -1,5 +1,5 @@
 //! The hash grid over photon records: cubes of one side length, hashed into a table of buckets. Two cells may
-//! share a bucket, so a reader compares the cell. Twin: `shaders/grid.wgsl`.
+//! share a bucket, so a reader compares the cell's code. Twin: `shaders/grid.wgsl`.
 
 use super::real::{Real, Vec3};
 use glam::IVec3;
@@ -22,4 +22,10 @@ pub fn grid_bucket(cell: IVec3, mask: u32) -> u32 {
     h = h.wrapping_mul(0x7feb352d);
     h ^= h >> 15;
     h & mask
+}
+
+/// A cell and a family in one word. Cells less than 1024 apart have different codes, so that two that share a bucket
+/// are told apart by whoever visits fewer in a row.
+pub fn grid_code(cell: IVec3, family: u32) -> u32 {
+    (cell.x as u32 & 0x3ff) | (cell.y as u32 & 0x3ff) << 10 | (cell.z as u32 & 0x3ff) << 20 | family << 30
 }

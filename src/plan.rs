@@ -162,6 +162,9 @@ pub struct Plan {
     pub buckets: u32,
     /// What was found by looking at the scene before planning.
     pub probe: Probe,
+    /// Radius of the first family of photons over [`RenderSettings::radius`]: one, or where diffuse surfaces have scattered
+    /// all that are stored [`RenderSettings::indirect_radius`].
+    pub widening: f64,
     /// World units in one scene unit.
     pub unit: f64,
     /// Scene radiance times this is world radiance.
@@ -173,12 +176,13 @@ impl Plan {
     pub fn new(packed: &Packed, settings: &RenderSettings) -> Self {
         let features = Features::of(&packed.scene, settings);
         let probe = probe(packed, settings);
+        let widening = if features.has("first") { 1.0 } else { settings.indirect_radius };
         let camera = &packed.scene.camera;
         let eye_samples = if settings.method == Method::Ppm { settings.eye_samples } else { 1 };
         let wanted = (settings.photons as f64 * probe.records_per_photon * 1.25).max(1024.0);
         let capacity = (wanted.min(CAPACITY_MAX as f64) as u32).next_power_of_two().max(SCAN_BLOCK);
         let fit = (capacity as f64 * 0.8 / probe.records_per_photon.max(1e-3)) as u64;
-        // a key has 32 bits for (photon of the batch, bounce)
+        // a key has 32 bits for (photon of the batch, bounce, family)
         let key_room = 1u64 << (32 - key_bits(settings.max_bounces));
         Self {
             features,
@@ -191,6 +195,7 @@ impl Plan {
             capacity,
             buckets: capacity,
             probe,
+            widening,
             unit: packed.unit,
             radiance_unit: packed.radiance_unit,
         }
@@ -221,9 +226,12 @@ impl Plan {
     pub fn dispatch(&self, pass: u32) -> Dispatch {
         let scale_sq = self.scale_sq(pass);
         let (pixels, units) = match self.settings.radius {
-            Radius::Pixels(p) => (p, 0.0),
-            Radius::Units(u) => (0.0, u / self.unit),
+            Radius::Pixels(p) => (p * self.widening, 0.0),
+            Radius::Units(u) => (0.0, u * self.widening / self.unit),
         };
+        let split = self.features.has("split");
+        let wider = if split { self.settings.indirect_radius } else { 1.0 };
+        let cell = CELL_RADII * self.widening * self.probe.radius * scale_sq.sqrt();
         Dispatch {
             pass_number: pass,
             seed: (self.settings.seed ^ (self.settings.seed >> 32)) as u32,
@@ -233,14 +241,17 @@ impl Plan {
             eye_samples: self.eye_samples,
             strata: strata(self.eye_samples),
             mask: self.buckets - 1,
-            inv_cell: (1.0 / (CELL_RADII * self.probe.radius * scale_sq.sqrt())) as Real,
+            inv_cell: (1.0 / cell) as Real,
             scale_sq: scale_sq as Real,
             photons: self.settings.photons as Real,
             alpha: self.settings.alpha as Real,
             radius_pixels: pixels as Real,
             radius_units: units as Real,
-            radius_max: self.probe.radius_max as Real,
+            radius_max: (self.widening * self.probe.radius_max) as Real,
             passes_done: pass,
+            families: 1 + split as u32,
+            indirect_radius: wider as Real,
+            inv_cell_indirect: (1.0 / (cell * wider)) as Real,
             ..Dispatch::zeroed()
         }
     }
@@ -310,9 +321,9 @@ impl Plan {
         list
     }
 
-    /// Typical gather radius of pass `pass` in world units.
+    /// Typical gather radius of pass `pass` in world units; of the first family, where there are two.
     pub fn radius(&self, pass: u32) -> f64 {
-        self.probe.radius * self.scale_sq(pass).sqrt() * self.unit
+        self.widening * self.probe.radius * self.scale_sq(pass).sqrt() * self.unit
     }
 
     /// The picture that a film holds, in world units.
@@ -344,9 +355,9 @@ fn mean(pixel: &FilmPixel) -> [f64; 3] {
     [0, 1, 2].map(|c| pixel.mean[c] as f64 + pixel.carry[c] as f64)
 }
 
-/// Bits that hold a bounce number.
+/// Bits that hold a bounce number and a family.
 fn key_bits(max_bounces: u32) -> u32 {
-    32 - max_bounces.leading_zeros()
+    33 - max_bounces.leading_zeros()
 }
 
 /// Columns of the most nearly square arrangement of `n` strata.

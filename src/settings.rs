@@ -68,6 +68,10 @@ pub struct RenderSettings {
     pub photons: u32,
     /// Start radius, `r_1`.
     pub radius: Radius,
+    /// Start radius of photons that a diffuse surface has scattered before, over `radius`. Their light changes more slowly
+    /// from place to place than that of the others. Under the local rule one count shrinks both.
+    #[schemars(range(min = 1.0, max = 16.0))]
+    pub indirect_radius: f64,
     /// How the radius shrinks.
     pub radius_rule: RadiusRule,
     /// Share of the photons kept when the radius shrinks, `alpha` in (0, 1].
@@ -92,6 +96,7 @@ impl Default for RenderSettings {
             passes: 64,
             photons: 262_144,
             radius: Radius::default(),
+            indirect_radius: 1.0,
             radius_rule: RadiusRule::default(),
             alpha: 2.0 / 3.0,
             direct: Direct::default(),

@@ -65,8 +65,8 @@ pub struct World {
     pub disc_levels: u32,
     /// 1 where bodies of glass may touch or hold one another, else 0.
     pub nested: u32,
-    /// Padding.
-    pub pad: u32,
+    /// 1 where some light has a map of where its photons meet glass and mirrors, else 0.
+    pub guided: u32,
 }
 
 /// Pinhole or thin-lens camera.
@@ -356,8 +356,9 @@ pub struct Light {
     pub patch_count: u32,
     /// The glass material that it stands in, or [`NONE`].
     pub medium: u32,
-    /// Padding.
-    pub pad: u32,
+    /// First entry in `distributions` of the map of where its photons meet glass and mirrors (see
+    /// `lights::guide`), or 0.
+    pub guide: u32,
 }
 
 /// The flattened scene.

@@ -252,7 +252,7 @@ const SCENES: [(&str, &str, &str); 9] = [
     ),
     (
         "the sky's picture by photons, and the sun",
-        "direct = \"photons\"",
+        "direct = \"photons\"\nindirect_radius = 2.5",
         r#"
         [materials.mirror]
         type = "mirror"

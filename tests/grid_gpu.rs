@@ -11,7 +11,7 @@ use caustica::gpu::Gpu;
 use caustica::gpu::layout::SceneTables;
 use caustica::gpu::program::{Program, workgroup_items};
 use caustica::gpu::recorder::Recorder;
-use caustica::kernels::grid_build::record_bucket;
+use caustica::kernels::grid_build::{record_bucket, record_code};
 use caustica::kernels::records::{Dispatch, PhotonRecord};
 use caustica::plan::{Kernel, SCAN_BLOCK};
 use glam::Vec3;
@@ -113,7 +113,7 @@ fn faults(records: &[PhotonRecord], d: &Dispatch, built: &Built) -> Vec<String> 
         let mut own = by_bucket.remove(&bucket).unwrap_or_default();
         own.sort_by_key(|record| record.key);
         for record in own {
-            if built.sorted[place] != *record {
+            if built.sorted[place] != (PhotonRecord { key: record_code(d, record), ..*record }) {
                 list.push(format!("place {place} of bucket {bucket} holds another record"));
             }
             place += 1;

@@ -36,7 +36,8 @@ fn hosts() -> Vec<Layout> {
             environment,
             unbounded_count,
             disc_levels,
-            nested
+            nested,
+            guided
         }),
         layout!(Camera {
             position,
@@ -105,7 +106,8 @@ fn hosts() -> Vec<Layout> {
             cos_inner,
             patch_first,
             patch_count,
-            medium
+            medium,
+            guide
         }),
         layout!(Dispatch {
             first,
@@ -127,7 +129,10 @@ fn hosts() -> Vec<Layout> {
             radius_units,
             radius_max,
             strata,
-            passes_done
+            passes_done,
+            families,
+            indirect_radius,
+            inv_cell_indirect
         }),
         layout!(VisiblePoint {
             position,

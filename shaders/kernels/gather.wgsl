@@ -21,18 +21,41 @@ fn gather(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups) gr
     //#else
     let radius_sq = point.radius * point.radius * dispatch.scale_sq;
     //#end
+    //#if split
+    var found = Gathered(vec3f(0.0), 0u);
+    let wider_sq = dispatch.indirect_radius * dispatch.indirect_radius;
+    // a loop, so that the function is there once: software drivers write out every call
+    for (var family = 0u; family < 2u; family++) {
+        let one = gather_family(point, family, select(radius_sq, radius_sq * wider_sq, family == 1u));
+        found.flux += select(one.flux, one.flux * (1.0 / wider_sq), family == 1u);
+        found.count += one.count;
+    }
+    //#else
+    let found = gather_family(point, 0u, radius_sq);
+    //#end
+    gathered[id] = Gathered(gathered[id].flux + point.weight * found.flux, gathered[id].count + found.count);
+    loops_stopped();
+}
+
+fn gather_family(point: VisiblePoint, family: u32, radius_sq: f32) -> Gathered {
+    //#if split
+    let inv_cell = select(dispatch.inv_cell, dispatch.inv_cell_indirect, family == 1u);
+    //#else
+    let inv_cell = dispatch.inv_cell;
+    //#end
     let radius = sqrt(radius_sq);
     let ng = oct_decode(point.normal);
     let flat_normal = point.normal == point.shading;
     let n = oct_decode(point.shading);
-    let low = grid_cell(point.position - vec3f(radius), dispatch.inv_cell);
-    let high = grid_cell(point.position + vec3f(radius), dispatch.inv_cell);
+    let low = grid_cell(point.position - vec3f(radius), inv_cell);
+    let high = grid_cell(point.position + vec3f(radius), inv_cell);
     var count = 0u;
     var sum = vec3f(0.0);
     for (var z = low.z; z <= high.z; z++) {
         for (var y = low.y; y <= high.y; y++) {
             for (var x = low.x; x <= high.x; x++) {
                 let cell = vec3i(x, y, z);
+                let code = grid_code(cell, family);
                 let bucket = grid_bucket(cell, dispatch.mask);
                 let end = starts[bucket + 1u];
                 for (var first = starts[bucket]; first < end; first += BLOCK) {
@@ -40,10 +63,7 @@ fn gather(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups) gr
                     for (var i = first; i < min(first + BLOCK, end); i++) {
                         let record = sorted[i];
                         let d = record.position - point.position;
-                        if dot(d, d) > radius_sq
-                            || abs(dot(d, ng)) > FLATNESS * radius
-                            || any(grid_cell(record.position, dispatch.inv_cell) != cell)
-                        {
+                        if record.key != code || dot(d, d) > radius_sq || abs(dot(d, ng)) > FLATNESS * radius {
                             continue;
                         }
                         let toward_light = oct_vector(record.direction);
@@ -71,6 +91,5 @@ fn gather(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups) gr
             }
         }
     }
-    gathered[id] = Gathered(gathered[id].flux + point.weight * sum, gathered[id].count + count);
-    loops_stopped();
+    return Gathered(sum, count);
 }

@@ -7,6 +7,6 @@ fn grid_count(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups
     if id >= dispatch.end || id >= atomicLoad(&counters.records) {
         return;
     }
-    let bucket = grid_bucket(grid_cell(records[id].position, dispatch.inv_cell), dispatch.mask);
+    let bucket = record_bucket(records[id]);
     atomicAdd(&counts[bucket], 1u);
 }

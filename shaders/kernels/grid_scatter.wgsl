@@ -8,6 +8,6 @@ fn grid_scatter(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgrou
     if id >= dispatch.end || id >= atomicLoad(&counters.records) {
         return;
     }
-    let bucket = grid_bucket(grid_cell(records[id].position, dispatch.inv_cell), dispatch.mask);
+    let bucket = record_bucket(records[id]);
     order[starts[bucket] + atomicSub(&counts[bucket], 1u) - 1u] = id;
 }

@@ -62,7 +62,7 @@ fn sort_short(begin: u32, end: u32) {
         order[j] = item;
     }
     for (var i = begin; i < end; i++) {
-        sorted[i] = records[order[i]];
+        copy_record(i);
     }
 }
 
@@ -111,9 +111,15 @@ fn sort_long(begin: u32, end: u32, local: u32) {
         workgroupBarrier();
     }
     for (var i = first; i < last; i++) {
-        sorted[i] = records[order[i]];
+        copy_record(i);
     }
     workgroupBarrier();
+}
+
+// What readers need to know of the key is the cell.
+fn copy_record(i: u32) {
+    let record = records[order[i]];
+    sorted[i] = PhotonRecord(record.position, record_code(record), record.flux, record.direction);
 }
 
 fn item_at(i: u32, odd: bool) -> u32 {

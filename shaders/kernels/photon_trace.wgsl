@@ -17,10 +17,11 @@ fn photon_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgrou
     let emission = emit_photon(&rng);
     var ray = emission.ray;
     var flux = emission.flux;
-    //#if far
+    //#if far || guided
     var excess = emission.excess;
     //#end
     var medium = emission.medium;
+    var family = 0u;
     var rays = 0u;
     var end = CUT;
     for (var bounce = 0u; bounce < dispatch.max_bounces + 1u; bounce++) {
@@ -44,17 +45,19 @@ fn photon_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgrou
         if is_specular(kind) {
             scattered = scatter_specular(s, wo, medium, u.x, IMPORTANCE);
         } else {
-            scattered = stored_and_scattered(id, bounce, s, wo, medium, flux, u);
+            scattered = stored_and_scattered(id, bounce, &family, s, wo, medium, flux, u);
         }
         //#else
-        scattered = stored_and_scattered(id, bounce, s, wo, medium, flux, u);
+        scattered = stored_and_scattered(id, bounce, &family, s, wo, medium, flux, u);
         //#end
-        var relative = max_component(scattered.weight);
-        //#if far
-        relative *= excess;
-        excess = max(relative, 1.0);
+        let weight = max_component(scattered.weight);
+        //#if far || guided
+        let kept = select(excess, max(excess, 1.0), is_specular(kind));
+        let survival = min(weight * kept, 1.0);
+        excess *= weight / survival;
+        //#else
+        let survival = min(weight, 1.0);
         //#end
-        let survival = min(relative, 1.0);
         if u.w >= survival {
             end = ABSORBED;
             break;
@@ -73,9 +76,23 @@ fn photon_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgrou
     }
 }
 
-fn stored_and_scattered(id: u32, bounce: u32, s: Surface, wo: vec3f, medium: u32, flux: vec3f, u: vec4f) -> Scatter {
-    store_record(id, bounce, s, wo, flux);
+fn stored_and_scattered(
+    id: u32,
+    bounce: u32,
+    family: ptr<function, u32>,
+    s: Surface,
+    wo: vec3f,
+    medium: u32,
+    flux: vec3f,
+    u: vec4f,
+) -> Scatter {
+    store_record(id, bounce, *family, s, wo, flux);
     let scattered = scatter_rough(s, wo, medium, vec2f(u.x, u.y), IMPORTANCE);
+    //#if split
+    if scene.materials[s.material].kind == MATERIAL_DIFFUSE {
+        *family = 1u;
+    }
+    //#end
     //#if far
     return aimed_scatter(s, wo, u, scattered);
     //#else
@@ -83,14 +100,14 @@ fn stored_and_scattered(id: u32, bounce: u32, s: Surface, wo: vec3f, medium: u32
     //#end
 }
 
-fn store_record(id: u32, bounce: u32, s: Surface, wo: vec3f, flux: vec3f) {
+fn store_record(id: u32, bounce: u32, family: u32, s: Surface, wo: vec3f, flux: vec3f) {
     //#if sampled
     let stored = bounce > 0u;
     //#else
     let stored = true;
     //#end
     if stored && max_component(reflectance_at(s.material, s.uv)) > 0.0 {
-        let key = (id << dispatch.key_bits) | bounce;
+        let key = (id << dispatch.key_bits) | (bounce << 1u) | family;
         append(PhotonRecord(s.position, key, flux, oct_encode(wo)));
     }
 }

@@ -21,6 +21,9 @@ struct Dispatch {
     radius_max: f32,
     strata: u32,
     passes_done: u32,
+    families: u32,
+    indirect_radius: f32,
+    inv_cell_indirect: f32,
 }
 
 const STOPPED: u32 = 1u;

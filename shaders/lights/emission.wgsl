@@ -11,8 +11,28 @@ fn emit_photon(rng: ptr<function, Rng>) -> Emission {
     let u = rng_next(rng);
     let v = rng_next(rng);
     let light = scene.lights[choose_light(u.x)];
-    let across = vec2f(v.x, v.y);
+    //#if guided
+    let sent = guided(light, vec2f(v.x, v.y), v.w);
+    var emission = emit_from(light, u, v, sent.across);
+    emission.flux *= sent.scale;
+    emission.excess *= sent.scale;
+    return emission;
+    //#else
+    return emit_from(light, u, v, vec2f(v.x, v.y));
+    //#end
+}
+
+fn emit_from(light: Light, u: vec4f, v: vec4f, across: vec2f) -> Emission {
     var ray = Ray(light.position, 0.0, vec3f(0.0, 0.0, 1.0), FAR);
+    //#if area_sphere
+    if light.kind == LIGHT_AREA && light.reference >> REFERENCE_BITS == KIND_SPHERE {
+        ray.direction = sample_sphere(across);
+        let p = sample_sphere_facing(light, vec2f(u.y, u.z), ray.direction);
+        ray.origin = p.position + p.normal * p.error;
+        let flux = light.color * (PI / (p.pdf * light.selection));
+        return Emission(ray, flux, 1.0, light.medium);
+    }
+    //#end
     //#if area
     if light.kind == LIGHT_AREA {
         let p = sample_shape(light, vec2f(u.y, u.z), u.w);

@@ -7,6 +7,17 @@ struct ShapePoint {
     pdf: f32,
 }
 
+//#if area_sphere && photon_trace
+fn sample_sphere_facing(light: Light, u: vec2f, direction: vec3f) -> ShapePoint {
+    let sphere = scene.spheres[light.reference & ((1u << REFERENCE_BITS) - 1u)];
+    let d = sample_disc(u);
+    let n = unit(from_frame(direction, vec3f(d.x, d.y, sqrt(1.0 - u.x))));
+    let center = sphere.anchor - sphere.normal * sphere.radius;
+    let p = sphere_project(sphere, center + n * sphere.radius);
+    return ShapePoint(p, sphere_error(sphere, p), n, 1.0 / light.area);
+}
+//#end
+
 //#if area
 fn sample_shape(light: Light, u: vec2f, w: f32) -> ShapePoint {
     let index = light.reference & ((1u << REFERENCE_BITS) - 1u);
@@ -132,7 +143,7 @@ fn pdf_patch(light: Light, k: u32, width: f32) -> f32 {
 }
 //#end
 
-//#if environment_image
+//#if environment_image || guided && photon_trace
 fn pdf_bin(first: u32, bin: u32, count: u32) -> f32 {
     let high = scene.distributions[first + bin];
     var low = 0.0;

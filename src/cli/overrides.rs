@@ -24,6 +24,9 @@ pub struct Overrides {
     /// Start radius: pixels at the visible point as 2px, or scene units as 0.01
     #[arg(long, value_name = "R", value_parser = radius, allow_negative_numbers = true)]
     radius: Option<Radius>,
+    /// Start radius of photons that a diffuse surface has scattered, over that of the others, from 1 to 16
+    #[arg(long, value_name = "X", value_parser = times, allow_negative_numbers = true)]
+    indirect_radius: Option<f64>,
     /// How the radius shrinks
     #[arg(long, value_name = "global|local|fixed", value_parser = word::<RadiusRule>)]
     radius_rule: Option<RadiusRule>,
@@ -57,6 +60,7 @@ impl Overrides {
         set(&mut settings.passes, self.passes);
         set(&mut settings.photons, self.photons);
         set(&mut settings.radius, self.radius);
+        set(&mut settings.indirect_radius, self.indirect_radius);
         set(&mut settings.radius_rule, self.radius_rule);
         set(&mut settings.alpha, self.alpha);
         set(&mut settings.direct, self.direct);
@@ -86,6 +90,13 @@ fn alpha(text: &str) -> Result<f64, String> {
         .ok()
         .filter(|alpha| *alpha <= 1.0)
         .ok_or("expected a number above 0 and up to 1".to_owned())
+}
+
+fn times(text: &str) -> Result<f64, String> {
+    positive(text)
+        .ok()
+        .filter(|times| (1.0..=16.0).contains(times))
+        .ok_or("expected a number from 1 to 16".to_owned())
 }
 
 fn radius(text: &str) -> Result<Radius, String> {

@@ -2,7 +2,7 @@
 
 use super::kernels::eye_trace::eye_trace;
 use super::kernels::gather::{gather, scale_sq};
-use super::kernels::grid_build::{grid_count, grid_scan, grid_scatter};
+use super::kernels::grid_build::{SortedRecords, grid_count, grid_scan, grid_scatter, grid_sort};
 use super::kernels::path_trace::path_trace;
 use super::kernels::photon_trace::photon_trace;
 use super::kernels::records::*;
@@ -18,6 +18,8 @@ use crate::settings::Method;
 use bytemuck::Zeroable;
 use rayon::prelude::*;
 
+/// Visible points that one task gathers for.
+const GATHER_TASK: usize = 1024;
 /// Photons that one task traces.
 const PHOTON_TASK: u32 = 1024;
 
@@ -31,15 +33,43 @@ pub struct CpuEngine {
     statistics: Vec<Statistics>,
     film: Vec<FilmPixel>,
     records: Vec<PhotonRecord>,
-    sorted: Vec<PhotonRecord>,
+    sorted: SortedRecords,
     counts: Vec<u32>,
     starts: Vec<u32>,
     order: Vec<u32>,
     device: String,
+    /// What vectors the processor has.
+    arch: pulp::Arch,
 }
 
 /// A batch left more records than the buffers hold.
 struct Overflow;
+
+/// Gathers of one task.
+struct Gathers<'a> {
+    dispatch: &'a Dispatch,
+    points: &'a [VisiblePoint],
+    /// Under the local rule.
+    statistics: Option<&'a [Statistics]>,
+    starts: &'a [u32],
+    sorted: &'a SortedRecords,
+    gathered: &'a mut [Gathered],
+}
+
+impl pulp::WithSimd for Gathers<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) {
+        for (i, (point, gathered)) in self.points.iter().zip(self.gathered).enumerate() {
+            let scale = match self.statistics {
+                Some(statistics) => scale_sq(self.dispatch, true, &statistics[i]),
+                None => self.dispatch.scale_sq,
+            };
+            gather(self.dispatch, point, scale, self.starts, self.sorted, gathered);
+        }
+    }
+}
 
 impl CpuEngine {
     /// An engine for one scene and plan.
@@ -56,11 +86,12 @@ impl CpuEngine {
             statistics: vec![Statistics::zeroed(); if plan.features.has("local") { points_kept } else { 0 }],
             film: vec![FilmPixel::zeroed(); plan.pixels as usize],
             records: Vec::new(),
-            sorted: Vec::new(),
+            sorted: SortedRecords::default(),
             counts: vec![0; buckets],
             starts: vec![0; buckets + 1],
             order: Vec::new(),
             device: format!("{ENGINE}, {} threads", rayon::current_num_threads()),
+            arch: pulp::Arch::new(),
             packed,
             plan,
         }
@@ -117,22 +148,23 @@ impl CpuEngine {
                     grid_scatter(d, &self.records, &self.starts, &mut self.counts, &mut self.order);
                 }
                 // the scatter above leaves each bucket sorted
-                Kernel::GridSort => {
-                    let records = &self.records;
-                    self.order.par_iter().map(|&i| records[i as usize]).collect_into_vec(&mut self.sorted);
-                }
+                Kernel::GridSort => grid_sort(d, &self.records, &self.order, &mut self.sorted),
                 Kernel::Gather => {
-                    let statistics = &self.statistics;
-                    let first = chunk.start;
-                    self.gathered[chunk.clone()]
-                        .par_iter_mut()
-                        .zip(&self.visible_points[chunk])
-                        .enumerate()
-                        .for_each(|(i, (gathered, point))| {
-                            let none = Statistics::zeroed();
-                            let scale = scale_sq(d, local, statistics.get(first + i).unwrap_or(&none));
-                            gather(d, point, scale, &self.starts, &self.sorted, gathered);
+                    let points = self.visible_points[chunk.clone()].par_chunks(GATHER_TASK);
+                    let gathered = self.gathered[chunk.clone()].par_chunks_mut(GATHER_TASK);
+                    let mut statistics = self.statistics.get(chunk).unwrap_or_default().chunks(GATHER_TASK);
+                    let statistics: Vec<_> = (0..points.len()).map(|_| statistics.next()).collect();
+                    gathered.zip(points).zip(statistics).for_each(|((gathered, points), statistics)| {
+                        let (starts, sorted) = (&self.starts, &self.sorted);
+                        self.arch.dispatch(Gathers {
+                            dispatch: d,
+                            points,
+                            statistics,
+                            starts,
+                            sorted,
+                            gathered,
                         });
+                    });
                 }
                 Kernel::Resolve => {
                     let samples = d.eye_samples as usize;

@@ -1,12 +1,15 @@
-//! Density estimate at one visible point: the sum over the photons in its disc. Run by one invocation per
-//! visible point and photon batch; reads `visible_points`, `sorted`, `starts` (and `statistics` under the
-//! local rule), adds to `gathered`. Twin: `shaders/kernels/gather.wgsl`.
+//! Density estimate at one visible point: the sum over the photons in its disc, or in two discs where photons that a
+//! diffuse surface has scattered have a wider one. Run by one invocation per visible point and photon batch; reads
+//! `visible_points`, `sorted`, `starts` (and `statistics` under the local rule), adds to `gathered`. Twin:
+//! `shaders/kernels/gather.wgsl`, which tests photons one at a time; here some are tested at once, and those that are
+//! near are taken in the same order.
 
-use super::grid::{grid_bucket, grid_cell};
+use super::grid::{grid_bucket, grid_cell, grid_code};
+use super::grid_build::SortedRecords;
 use super::materials::scatter::eval_rough;
-use super::math::{oct_decode, oct_vector, unit};
-use super::real::{Real, Vec3};
-use super::records::{Dispatch, Gathered, PhotonRecord, Statistics, VisiblePoint};
+use super::math::{oct_decode, unit};
+use super::real::{Real, Vec3, Vec4};
+use super::records::{Dispatch, Gathered, Statistics, VisiblePoint};
 use super::tables::MATERIAL_METAL;
 use glam::IVec3;
 
@@ -18,6 +21,8 @@ const COS_MIN: Real = 1e-2;
 /// Photons of a bucket that are summed up before they are added to the whole sum: so a million photons lose no more than
 /// some thousand roundings.
 const BLOCK: usize = 1024;
+/// Photons that are tested at once.
+const LANES: usize = 16;
 
 /// Squared radius of this pass over the squared start radius.
 pub fn scale_sq(dispatch: &Dispatch, local: bool, statistics: &Statistics) -> Real {
@@ -27,66 +32,126 @@ pub fn scale_sq(dispatch: &Dispatch, local: bool, statistics: &Statistics) -> Re
     if statistics.scale_sq == 0.0 { 1.0 } else { statistics.scale_sq - statistics.drop }
 }
 
-/// Adds the photons of one batch around a visible point to `gathered`.
+/// Adds the photons of one batch around a visible point to `gathered`. Inlined, so that it becomes code for the processor's
+/// widest vectors inside of [`pulp::Arch::dispatch`].
+#[inline(always)]
 pub fn gather(
     dispatch: &Dispatch,
     point: &VisiblePoint,
     scale_sq: Real,
     starts: &[u32],
-    sorted: &[PhotonRecord],
+    sorted: &SortedRecords,
     gathered: &mut Gathered,
 ) {
     if point.radius <= 0.0 {
         return;
     }
     let radius_sq = point.radius * point.radius * scale_sq;
+    let mut found = gather_family(dispatch, point, 0, radius_sq, starts, sorted);
+    if dispatch.families == 2 {
+        let wider_sq = dispatch.indirect_radius * dispatch.indirect_radius;
+        let wide = gather_family(dispatch, point, 1, radius_sq * wider_sq, starts, sorted);
+        found.flux += wide.flux * (1.0 / wider_sq);
+        found.count += wide.count;
+    }
+    gathered.flux += point.weight * found.flux;
+    gathered.count += found.count;
+}
+
+/// The photons of one family: their BRDF times flux, but for the point's weight, and their number.
+#[inline(always)]
+fn gather_family(
+    dispatch: &Dispatch,
+    point: &VisiblePoint,
+    family: u32,
+    radius_sq: Real,
+    starts: &[u32],
+    sorted: &SortedRecords,
+) -> Gathered {
+    let inv_cell = if family == 1 { dispatch.inv_cell_indirect } else { dispatch.inv_cell };
     let radius = radius_sq.sqrt();
     let ng = oct_decode(point.normal);
     let flat = point.normal == point.shading;
     let n = oct_decode(point.shading);
-    let low = grid_cell(point.position - Vec3::splat(radius), dispatch.inv_cell);
-    let high = grid_cell(point.position + Vec3::splat(radius), dispatch.inv_cell);
-    let mut sum = Vec3::ZERO;
+    let low = grid_cell(point.position - Vec3::splat(radius), inv_cell);
+    let high = grid_cell(point.position + Vec3::splat(radius), inv_cell);
+    let mut count = 0;
+    let mut sum = Vec4::ZERO;
     for z in low.z..=high.z {
         for y in low.y..=high.y {
             for x in low.x..=high.x {
                 let cell = IVec3::new(x, y, z);
+                let code = grid_code(cell, family);
                 let bucket = grid_bucket(cell, dispatch.mask) as usize;
-                let records = &sorted[starts[bucket] as usize..starts[bucket + 1] as usize];
-                for some in records.chunks(BLOCK) {
-                    let mut block = Vec3::ZERO;
-                    for record in some {
-                        let d = record.position - point.position;
-                        if d.dot(d) > radius_sq
-                            || d.dot(ng).abs() > FLATNESS * radius
-                            || grid_cell(record.position, dispatch.inv_cell) != cell
-                        {
-                            continue;
+                let (mut first, end) = (starts[bucket] as usize, starts[bucket + 1] as usize);
+                while first < end {
+                    let mut block = Vec4::ZERO;
+                    let last = (first + BLOCK).min(end);
+                    while first < last {
+                        let mut near = near(sorted, first, last, code, point.position, ng, radius_sq, radius);
+                        while near != 0 {
+                            let i = first + near.trailing_zeros() as usize / 8;
+                            near &= near - 1;
+                            count += 1;
+                            let flux = sorted.fluxes[i];
+                            if flat && point.alpha <= 0.0 {
+                                block += flux;
+                                continue;
+                            }
+                            let [us, vs, ws] = &sorted.directions;
+                            let wi = unit(Vec3::new(us[i], vs[i], ws[i]));
+                            // flux arrives by the geometric cosine, the BRDF asks for the shading one
+                            let cos_g = wi.dot(ng).max(COS_MIN);
+                            if point.alpha > 0.0 {
+                                let f = eval_rough(
+                                    MATERIAL_METAL,
+                                    point.alpha,
+                                    point.reflectance,
+                                    n,
+                                    point.wo,
+                                    wi,
+                                );
+                                block += f.extend(0.0) * flux * (1.0 / cos_g);
+                            } else {
+                                block += flux * (wi.dot(n).max(0.0) / cos_g);
+                            }
                         }
-                        let toward_light = oct_vector(record.direction);
-                        if toward_light.dot(ng) <= 0.0 {
-                            continue;
-                        }
-                        gathered.count += 1;
-                        if flat && point.alpha <= 0.0 {
-                            block += record.flux;
-                            continue;
-                        }
-                        let wi = unit(toward_light);
-                        // flux arrives by the geometric cosine, the BRDF asks for the shading one
-                        let cos_g = wi.dot(ng).max(COS_MIN);
-                        if point.alpha > 0.0 {
-                            let f =
-                                eval_rough(MATERIAL_METAL, point.alpha, point.reflectance, n, point.wo, wi);
-                            block += f * record.flux * (1.0 / cos_g);
-                        } else {
-                            block += record.flux * (wi.dot(n).max(0.0) / cos_g);
-                        }
+                        first += LANES;
                     }
                     sum += block;
+                    first = last;
                 }
             }
         }
     }
-    gathered.flux += point.weight * sum;
+    Gathered { flux: sum.truncate(), count }
+}
+
+/// Which of the photons from `first` on, up to [`LANES`] of them and before `last`, lie in the disc and in the cell and come
+/// from the side that is seen: a byte of one for each.
+#[inline(always)]
+fn near(
+    sorted: &SortedRecords,
+    first: usize,
+    last: usize,
+    code: u32,
+    position: Vec3,
+    ng: Vec3,
+    radius_sq: Real,
+    radius: Real,
+) -> u128 {
+    // `SortedRecords` ends with entries of no cell, so that these lanes are there
+    let lanes = first..first + LANES;
+    let codes = &sorted.codes[lanes.clone()];
+    let [xs, ys, zs] = sorted.positions.each_ref().map(|values| &values[lanes.clone()]);
+    let [us, vs, ws] = sorted.directions.each_ref().map(|values| &values[lanes.clone()]);
+    let mut near = [0u8; LANES];
+    for k in 0..LANES {
+        let d = Vec3::new(xs[k], ys[k], zs[k]) - position;
+        let toward_light = Vec3::new(us[k], vs[k], ws[k]);
+        let inside = (d.dot(d) <= radius_sq) & (d.dot(ng).abs() <= FLATNESS * radius);
+        near[k] = (inside & (codes[k] == code) & (toward_light.dot(ng) > 0.0)) as u8;
+    }
+    let beyond = 8 * (LANES - (last - first).min(LANES)) as u32;
+    u128::from_le_bytes(near) & (u128::MAX >> beyond)
 }

@@ -4,12 +4,48 @@
 //! The result does not depend on the order in which threads arrive: within a bucket the records stand in the
 //! order of their keys.
 
-use super::grid::{grid_bucket, grid_cell};
+use super::grid::{grid_bucket, grid_cell, grid_code};
+use super::math::oct_vector;
+use super::real::{Real, Vec4};
 use super::records::{Dispatch, PhotonRecord};
+use glam::IVec3;
+use rayon::prelude::*;
+
+/// Records in the order of their buckets, each field by itself.
+#[derive(Clone, Debug, Default)]
+pub struct SortedRecords {
+    /// Positions: x, y, z.
+    pub positions: [Vec<Real>; 3],
+    /// Directions to where photons came from, at any length: x, y, z.
+    pub directions: [Vec<Real>; 3],
+    /// Cells and families, as [`grid_code`] gives them.
+    pub codes: Vec<u32>,
+    /// See [`PhotonRecord::flux`]; the fourth is 0.
+    pub fluxes: Vec<Vec4>,
+}
+
+/// Entries after the last record, for those who read some at once.
+const TAIL: usize = 16;
+
+/// A record's family: 1 for photons with a disc of their own (see [`Dispatch::indirect_radius`]).
+fn record_family(dispatch: &Dispatch, record: &PhotonRecord) -> u32 {
+    if dispatch.families == 2 { record.key & 1 } else { 0 }
+}
+
+/// Cell of a record in the grid of its family.
+fn record_cell(dispatch: &Dispatch, record: &PhotonRecord) -> IVec3 {
+    let indirect = record_family(dispatch, record) == 1;
+    grid_cell(record.position, if indirect { dispatch.inv_cell_indirect } else { dispatch.inv_cell })
+}
 
 /// Bucket of a record.
 pub fn record_bucket(dispatch: &Dispatch, record: &PhotonRecord) -> u32 {
-    grid_bucket(grid_cell(record.position, dispatch.inv_cell), dispatch.mask)
+    grid_bucket(record_cell(dispatch, record), dispatch.mask)
+}
+
+/// Cell and family of a record in one word: what stands for its key once it is sorted.
+pub fn record_code(dispatch: &Dispatch, record: &PhotonRecord) -> u32 {
+    grid_code(record_cell(dispatch, record), record_family(dispatch, record))
 }
 
 /// Counts the records of each bucket.
@@ -46,10 +82,17 @@ pub fn grid_scatter(
     }
 }
 
-/// Sorts one bucket's slice of `order` by key and copies its records to `sorted`.
-pub fn grid_sort(records: &[PhotonRecord], order: &mut [u32], sorted: &mut [PhotonRecord]) {
-    order.sort_unstable_by_key(|&i| records[i as usize].key);
-    for (target, &i) in sorted.iter_mut().zip(order.iter()) {
-        *target = records[i as usize];
+/// Copies the records to `sorted` in the order of `order`, in which buckets are sorted by key already.
+pub fn grid_sort(dispatch: &Dispatch, records: &[PhotonRecord], order: &[u32], sorted: &mut SortedRecords) {
+    let at = |i: &u32| &records[*i as usize];
+    for axis in 0..3 {
+        let (position, direction) = (&mut sorted.positions[axis], &mut sorted.directions[axis]);
+        order.par_iter().map(|i| at(i).position[axis]).collect_into_vec(position);
+        order.par_iter().map(|i| oct_vector(at(i).direction)[axis]).collect_into_vec(direction);
+        position.resize(order.len() + TAIL, 0.0);
+        direction.resize(order.len() + TAIL, 0.0);
     }
+    order.par_iter().map(|i| record_code(dispatch, at(i))).collect_into_vec(&mut sorted.codes);
+    sorted.codes.resize(order.len() + TAIL, u32::MAX);
+    order.par_iter().map(|i| at(i).flux.extend(0.0)).collect_into_vec(&mut sorted.fluxes);
 }

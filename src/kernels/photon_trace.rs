@@ -47,6 +47,8 @@ pub fn photon_trace(
     let mut excess = emission.excess;
     let mut medium = emission.medium;
     let far = scene.world.disc_levels > 1;
+    let tracked = far || scene.world.guided != 0;
+    let mut family = 0;
     let mut rays = 0;
     let mut end = CUT;
     for bounce in 0..dispatch.max_bounces + 1 {
@@ -72,19 +74,25 @@ pub fn photon_trace(
         } else {
             let stored = bounce > 0 || !sampled;
             if stored && max_component(reflectance_at(scene, s.material, s.uv)) > 0.0 {
-                let key = id << dispatch.key_bits | bounce;
+                let key = id << dispatch.key_bits | bounce << 1 | family;
                 store(PhotonRecord { position: s.position, key, flux, direction: oct_encode(wo) });
             }
             scattered = scatter_rough(scene, &s, wo, medium, Vec2::new(u.x, u.y), IMPORTANCE);
             if far {
                 scattered = aimed_scatter(scene, &s, wo, u, scattered);
             }
+            if dispatch.families == 2 && kind == MATERIAL_DIFFUSE {
+                family = 1;
+            }
         }
-        let relative = max_component(scattered.weight) * excess;
-        if far {
-            excess = relative.max(1.0);
+        let weight = max_component(scattered.weight);
+        // a faint photon, one of many that a map sends at glass and mirrors, is to get through them
+        let mut survival = weight.min(1.0);
+        if tracked {
+            let kept = if is_specular(kind) { excess.max(1.0) } else { excess };
+            survival = (weight * kept).min(1.0);
+            excess *= weight / survival;
         }
-        let survival = relative.min(1.0);
         if u.w >= survival {
             end = ABSORBED;
             break;

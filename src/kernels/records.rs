@@ -20,7 +20,7 @@ pub struct Dispatch {
     pub chunk_first: u32,
     /// First photon of the batch within the pass's.
     pub batch_first: u32,
-    /// Low bits of a record's key that hold the bounce.
+    /// Low bits of a record's key that hold the bounce and the family.
     pub key_bits: u32,
     /// Records that the buffers hold.
     pub capacity: u32,
@@ -48,6 +48,13 @@ pub struct Dispatch {
     pub strata: u32,
     /// Passes that the film holds already.
     pub passes_done: u32,
+    /// Classes of photons with a disc and a grid of their own: 1, or 2 where those that a diffuse surface has scattered
+    /// have a wider disc.
+    pub families: u32,
+    /// Radius of the second family over that of the first.
+    pub indirect_radius: Real,
+    /// One over the side length of the second family's cells.
+    pub inv_cell_indirect: Real,
 }
 
 /// The driver stopped the kernel's loops: the point is to be found again.
@@ -89,7 +96,8 @@ pub struct VisiblePoint {
 pub struct PhotonRecord {
     /// In scene space.
     pub position: Vec3,
-    /// (photon within the batch, bounce): the order of summation.
+    /// (photon within the batch, bounce, family): the order of summation. On the GPU the cell's code stands here once the
+    /// record is sorted.
     pub key: u32,
     /// Flux in W times the number of photons in the pass.
     pub flux: Vec3,

@@ -1,11 +1,12 @@
 //! Photon emission from every kind of light. Twin: `shaders/lights/emission.wgsl`.
 
+use super::guide::guided;
 use super::light::{choose_light, eval_environment, pdf_environment, sample_environment, spot_falloff};
 use super::math::rng::{Rng, rng_next};
 use super::math::sampling::{sample_cone, sample_cosine, sample_disc, sample_sphere};
 use super::math::{EPS, FAR, PI, TAU, from_frame, unit};
-use super::real::{Real, Vec2, Vec3};
-use super::shape::sample_shape;
+use super::real::{Real, Vec2, Vec3, Vec4};
+use super::shape::{sample_shape, sample_sphere_facing};
 use super::shapes::ray::Ray;
 use super::tables::*;
 
@@ -16,7 +17,7 @@ pub struct Emission {
     pub ray: Ray,
     /// Flux in W times the number of photons emitted in the pass.
     pub flux: Vec3,
-    /// Flux over that of the same photon if it went through the narrowest emission disc; 1 for light from nearby.
+    /// Flux over that of the same photon if no map had sent it and it went through the narrowest emission disc.
     pub excess: Real,
     /// The glass material that it starts in, or [`NONE`].
     pub medium: u32,
@@ -27,8 +28,25 @@ pub fn emit_photon(scene: &Scene, rng: &mut Rng) -> Emission {
     let u = rng_next(rng);
     let v = rng_next(rng);
     let light = &scene.lights[choose_light(scene, u.x) as usize];
-    let across = Vec2::new(v.x, v.y);
+    let (across, scale) = guided(scene, light, Vec2::new(v.x, v.y), v.w);
+    let mut emission = emit_from(scene, light, u, v, across);
+    emission.flux *= scale;
+    emission.excess *= scale;
+    emission
+}
+
+/// A photon of one light; `across` are the two numbers that matter most for where it goes.
+pub fn emit_from(scene: &Scene, light: &Light, u: Vec4, v: Vec4, across: Vec2) -> Emission {
     let mut ray = Ray { origin: light.position, t_min: 0.0, direction: Vec3::Z, t_max: FAR };
+    if light.kind == LIGHT_AREA && light.reference >> REFERENCE_BITS == KIND_SPHERE {
+        // first the direction, then the point on the disc that is seen from there: the same density, and `across` says
+        // where in the scene the photon goes
+        ray.direction = sample_sphere(across);
+        let p = sample_sphere_facing(scene, light, Vec2::new(u.y, u.z), ray.direction);
+        ray.origin = p.position + p.normal * p.error;
+        let flux = light.color * (PI / (p.pdf * light.selection));
+        return Emission { ray, flux, excess: 1.0, medium: light.medium };
+    }
     if light.kind == LIGHT_AREA {
         let p = sample_shape(scene, light, Vec2::new(u.y, u.z), u.w);
         ray.direction = unit(from_frame(p.normal, sample_cosine(across)));

@@ -4,5 +4,6 @@ use super::{materials, math, real, shapes, tables};
 
 pub mod aim;
 pub mod emission;
+pub mod guide;
 pub mod light;
 pub mod shape;

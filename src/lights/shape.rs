@@ -112,6 +112,16 @@ pub fn sample_shape(scene: &Scene, light: &Light, u: Vec2, w: Real) -> ShapePoin
     }
 }
 
+/// A point on the hemisphere of a spherical light that faces `direction`, even on the disc that is seen from there.
+pub fn sample_sphere_facing(scene: &Scene, light: &Light, u: Vec2, direction: Vec3) -> ShapePoint {
+    let sphere = &scene.spheres[(light.reference & ((1 << REFERENCE_BITS) - 1)) as usize];
+    let d = sample_disc(u);
+    let n = unit(from_frame(direction, Vec3::new(d.x, d.y, (1.0 - u.x).sqrt())));
+    let center = sphere.anchor - sphere.normal * sphere.radius;
+    let p = sphere_project(sphere, center + n * sphere.radius);
+    ShapePoint { position: p, error: sphere_error(sphere, p), normal: n, pdf: 1.0 / light.area }
+}
+
 /// A point of a revolution and the area that a unit of v covers there, the whole way round.
 struct PatchPoint {
     position: Vec3,

@@ -67,6 +67,7 @@ pub fn pack(scene: &scene::Scene, width: u32, height: u32) -> Result<Packed, Pac
             None => NONE,
         };
     }
+    lights::guide::learn_guides(&mut out);
     Ok(Packed { scene: out, unit: n.unit, radiance_unit, tree: stats })
 }
 

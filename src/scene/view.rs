@@ -69,6 +69,7 @@ pub(super) fn settings(loader: &mut Loader) -> Option<RenderSettings> {
         require(count, "at least 1", |count| count != 0.0);
     }
     require("radius", "a number from 1e-15 to 1e15", |radius| (SMALLEST..=LARGEST).contains(&radius));
+    require("indirect_radius", "a number from 1 to 16", |times| (1.0..=16.0).contains(&times));
     require("alpha", "a number greater than 0 and at most 1", |alpha| alpha > 0.0 && alpha <= 1.0);
     item.read(loader.report)
 }

@@ -115,6 +115,14 @@ impl Mixture {
                 self.settings.direct = Direct::Sampled;
             }
             "local" => self.settings.radius_rule = RadiusRule::Local,
+            "split" => {
+                self.settings.indirect_radius = 2.0;
+                self.light(LIGHT_POINT, 0);
+            }
+            "guided" => {
+                self.light(LIGHT_POINT, 0);
+                self.scene.world.guided = 1;
+            }
             _ => panic!("no ingredient brings the feature `{name}`"),
         }
     }

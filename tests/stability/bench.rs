@@ -17,7 +17,9 @@ use caustica::gpu::program::Program;
 use caustica::gpu::recorder::Recorder;
 use caustica::gpu::{AdapterChoice, Gpu, GpuEngine};
 use caustica::kernels::gather::gather;
-use caustica::kernels::grid_build::{grid_count, grid_scan, grid_scatter};
+use caustica::kernels::grid_build::{
+    SortedRecords, grid_count, grid_scan, grid_scatter, grid_sort, record_code,
+};
 use caustica::kernels::records::{Dispatch, FilmPixel, Gathered, PhotonRecord, Statistics, VisiblePoint};
 use caustica::kernels::resolve::resolve;
 use caustica::pack::{Packed, pack};
@@ -213,12 +215,12 @@ impl Bench {
         let d = Dispatch { first: 0, end: points.len() as u32, eye_samples: 1, ..*dispatch };
         let mut left = vec![records];
         while let Some(records) = left.pop() {
-            let (starts, sorted) = binned(&d, records);
+            let (starts, coded, sorted) = binned(&d, records);
             if self.on == On::Cpu {
                 for (point, gathered) in points.iter().zip(&mut sum) {
                     gather(&d, point, d.scale_sq, &starts, &sorted, gathered);
                 }
-            } else if !gather_on_driver(self.driver(), &d, points, &starts, &sorted, &mut sum) {
+            } else if !gather_on_driver(self.driver(), &d, points, &starts, &coded, &mut sum) {
                 // the engine, too, takes smaller batches where the driver stops a loop
                 let (first, second) = records.split_at(records.len() / 2);
                 left.extend([second, first]);
@@ -228,14 +230,18 @@ impl Bench {
     }
 }
 
-fn binned(d: &Dispatch, records: &[PhotonRecord]) -> (Vec<u32>, Vec<PhotonRecord>) {
+/// Where each bucket starts, and the records in order as the driver and as the CPU reads them.
+fn binned(d: &Dispatch, records: &[PhotonRecord]) -> (Vec<u32>, Vec<PhotonRecord>, SortedRecords) {
     let mut counts = vec![0; d.mask as usize + 1];
     let mut starts = vec![0; counts.len() + 1];
     let mut order = vec![0; records.len()];
     grid_count(d, records, &mut counts);
     grid_scan(&counts, &mut starts);
     grid_scatter(d, records, &starts, &mut counts, &mut order);
-    (starts, order.iter().map(|&i| records[i as usize]).collect())
+    let coded = |record: &PhotonRecord| PhotonRecord { key: record_code(d, record), ..*record };
+    let mut sorted = SortedRecords::default();
+    grid_sort(d, records, &order, &mut sorted);
+    (starts, order.iter().map(|&i| coded(&records[i as usize])).collect(), sorted)
 }
 
 /// False, and nothing added, where the driver stopped a loop.
