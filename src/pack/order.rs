@@ -16,6 +16,10 @@ pub fn triangles_as_met(out: &mut Scene, emitters: &mut [Emitter]) {
         }
         *reference = *place;
     }
+    for (place, triangle) in places.iter_mut().zip(&out.triangles).filter(|(place, _)| **place == NONE) {
+        *place = ordered.len() as u32;
+        ordered.push(*triangle);
+    }
     for emitter in emitters.iter_mut().filter(|e| is_triangle(e.reference)) {
         emitter.reference = places[emitter.reference as usize];
     }

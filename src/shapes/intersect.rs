@@ -39,12 +39,7 @@ pub fn intersect_primitive(scene: &Scene, shear: &RayShear, reference: u32, ray:
 /// may stop at one.
 #[inline]
 fn intersect_leaf(scene: &Scene, shear: &RayShear, references: &[u32], any: bool, ray: &Ray, hit: &mut Hit) {
-    let is_triangle = |r: &u32| r >> REFERENCE_BITS == KIND_TRIANGLE;
-    let count = if references.last().is_some_and(is_triangle) {
-        references.len()
-    } else {
-        references.iter().take_while(|r| is_triangle(r)).count()
-    };
+    let count = references.iter().take_while(|&r| r >> REFERENCE_BITS == KIND_TRIANGLE).count();
     let (triangles, others) = references.split_at(count);
     if !triangles.is_empty() {
         intersect_triangles(&scene.triangles, triangles, shear, ray, hit);
