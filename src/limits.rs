@@ -86,6 +86,7 @@ impl Limits<'_> {
     fn radius(&self, settings: &RenderSettings) -> Option<Finding> {
         let camera = &self.scene.camera;
         let (radius, from) = match settings.radius {
+            Radius::Auto => return None,
             Radius::Units(units) => (units, "the gather radius"),
             Radius::Pixels(pixels) => {
                 let tan = (0.5 * camera.fov_degrees.to_radians()).tan();
@@ -202,7 +203,7 @@ fn width(kind: &ShapeKind) -> Option<(f64, &'static str)> {
             }
         }
         ShapeKind::Cuboid { min, max } => ((*max - *min).min_element(), "max"),
-        ShapeKind::Revolution { segments, transform } => {
+        ShapeKind::Revolution { segments, transform, .. } => {
             let radius = segments.iter().flatten().map(|p| p.x).fold(0.0, f64::max);
             (2.0 * radius * transform.scale, "profile")
         }

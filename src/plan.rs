@@ -10,6 +10,7 @@ use super::pack::Packed;
 use super::probe::{Probe, probe};
 use super::real::Real;
 use crate::film::{Picture, Rejections};
+use crate::radius::Automatic;
 use crate::settings::{Method, Radius, RadiusRule, RenderSettings};
 use bytemuck::Zeroable;
 
@@ -144,7 +145,7 @@ pub struct Step {
 pub struct Plan {
     /// What the scene and the settings need.
     pub features: Features,
-    /// The settings.
+    /// The settings, with a radius in the place of "auto".
     pub settings: RenderSettings,
     /// Pixels per row.
     pub width: u32,
@@ -176,6 +177,8 @@ impl Plan {
     pub fn new(packed: &Packed, settings: &RenderSettings) -> Self {
         let features = Features::of(&packed.scene, settings);
         let probe = probe(packed, settings);
+        let chosen = probe.automatic.map_or(settings.radius, |automatic| Radius::Pixels(automatic.pixels));
+        let settings = &RenderSettings { radius: chosen, ..settings.clone() };
         let widening = if features.has("first") { 1.0 } else { settings.indirect_radius };
         let camera = &packed.scene.camera;
         let eye_samples = if settings.method == Method::Ppm { settings.eye_samples } else { 1 };
@@ -199,6 +202,11 @@ impl Plan {
             unit: packed.unit,
             radiance_unit: packed.radiance_unit,
         }
+    }
+
+    /// Why the radius is what it is, where the settings left it open and photons are gathered at all.
+    pub fn told_radius(&self) -> Option<Automatic> {
+        self.probe.automatic.filter(|_| self.features.has("photons"))
     }
 
     /// Number of chunks.
@@ -226,6 +234,8 @@ impl Plan {
     pub fn dispatch(&self, pass: u32) -> Dispatch {
         let scale_sq = self.scale_sq(pass);
         let (pixels, units) = match self.settings.radius {
+            // Never: a plan's settings name what was chosen.
+            Radius::Auto => (1.0, 0.0),
             Radius::Pixels(p) => (p * self.widening, 0.0),
             Radius::Units(u) => (0.0, u * self.widening / self.unit),
         };

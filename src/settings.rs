@@ -41,19 +41,16 @@ pub enum Direct {
 }
 
 /// The start radius of the gather disc.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Radius {
+    /// Chosen by a look at the scene, from how many photons fall on a pixel and whether they are caustics.
+    #[default]
+    Auto,
     /// In widths of a pixel's footprint at the visible point.
     Pixels(f64),
     /// In scene units.
     Units(f64),
-}
-
-impl Default for Radius {
-    fn default() -> Self {
-        Self::Pixels(2.0)
-    }
 }
 
 /// Everything that decides the bits of a picture beside the scene and the device.

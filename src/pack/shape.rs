@@ -44,10 +44,11 @@ pub fn pack_shapes(scene: &scene::Scene, n: &Normalization, out: &mut Scene) -> 
             ShapeKind::Plane { point, normal } => pack.plane(*point, *normal, material, uv),
             ShapeKind::Cuboid { min, max } => pack.cuboid(*min, *max, material, uv, emission),
             ShapeKind::Mesh(mesh) => pack.mesh(mesh, material, uv, emission),
-            ShapeKind::Revolution { segments, transform } => {
+            ShapeKind::Revolution { segments, transform, newton_tolerance } => {
                 let light =
                     pack.light(emission, reference(KIND_REVOLUTION, revolutions.revolutions.len()), 0.0);
-                let attributes = RevolutionAttributes { material, light, uv };
+                let attributes =
+                    RevolutionAttributes { material, light, uv, step_tolerance: *newton_tolerance };
                 let placement = placement(transform, n);
                 let boxes = revolutions
                     .push(segments, &placement, attributes)

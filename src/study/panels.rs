@@ -88,6 +88,8 @@ fn title(name: &str) -> &str {
         "max_bounces" => "Most bounces",
         "eye_samples" => "Eye samples",
         "device" => "Device",
+        "revolutions" => "Surfaces of revolution",
+        "newton_tolerance" => "Newton tolerance",
         _ => name,
     }
 }
