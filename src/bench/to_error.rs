@@ -131,7 +131,7 @@ pub fn approach(
 mod tests {
     use super::*;
     use crate::engine::PassReport;
-    use crate::film::Rejections;
+    use crate::film::{ErrorMap, Rejections};
 
     fn falling(times: &[f64], error: impl Fn(f64) -> f64) -> Vec<Point> {
         (1..).zip(times).map(|(passes, &t)| Point { passes, seconds: t, rel_mse: error(t) }).collect()
@@ -172,6 +172,9 @@ mod tests {
         fn picture(&mut self) -> Result<Picture, EngineError> {
             // the left half starts twice as far away
             Ok(Picture::from_fn(4, 4, |x, _| [1.0 + self.0 * if x < 2 { 2.0 } else { 1.0 }; 3]))
+        }
+        fn errors(&mut self) -> Result<ErrorMap, EngineError> {
+            Ok(ErrorMap::default())
         }
         fn rejections(&mut self) -> Result<Rejections, EngineError> {
             Ok(Rejections::default())

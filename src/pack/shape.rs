@@ -60,7 +60,11 @@ pub fn pack_shapes(scene: &scene::Scene, n: &Normalization, out: &mut Scene) -> 
             }
         }
     }
-    let (primitives, references, emitters) = (pack.primitives, pack.references, pack.emitters);
+    let Pack { primitives, references, emitters, .. } = pack;
+    // By kind, so that each leaf names its triangles first.
+    let mut items: Vec<_> = references.into_iter().zip(primitives).collect();
+    items.sort_unstable_by_key(|item| item.0);
+    let (references, primitives) = items.into_iter().unzip();
     out.revolutions = revolutions.revolutions;
     out.patches = revolutions.patches;
     out.profile_points = revolutions.profile_points;
