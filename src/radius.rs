@@ -90,7 +90,9 @@ mod tests {
     fn a_choice_says_why() {
         let said = automatic(0.314, 1.0, 0.42).to_string();
         assert!(
-            said.ends_with(" px, for 0.3 photons of a pass on each pixel, of whose light 42 % is caustics"),
+            said.ends_with(
+                "scattered, for 0.3 photons of a pass on each pixel, of whose light 42 % is caustics"
+            ),
             "{said}"
         );
         assert!(automatic(0.0, 1.0, 0.0).to_string().contains("for hardly any photons"));
