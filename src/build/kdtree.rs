@@ -54,7 +54,7 @@ pub struct KdTree {
 }
 
 impl KdTree {
-    /// The tree as [`crate::shapes::kdtree::traverse`] takes it.
+    /// The tree as [`crate::shapes::kdtree::traverse_closest`] takes it.
     pub fn view(&self) -> Tree<'_> {
         Tree {
             nodes: &self.nodes,
