@@ -18,7 +18,7 @@ fn grid_code(cell: vec3i, family: u32) -> u32 {
     return (u32(cell.x) & 0x3ffu) | ((u32(cell.y) & 0x3ffu) << 10u) | ((u32(cell.z) & 0x3ffu) << 20u) | (family << 30u);
 }
 
-//#if grid_count || grid_scatter || grid_sort
+//#if grid_count || grid_scatter || grid_sort || grid_sort_long
 fn record_family(record: PhotonRecord) -> u32 {
     //#if split
     return record.key & 1u;

@@ -13,7 +13,7 @@ use crate::features::Features;
 use crate::film::Picture;
 use crate::gpu::{AdapterChoice, GpuEngine};
 use crate::pack::Packed;
-use crate::plan::{Kernel, Plan};
+use crate::plan::Plan;
 use crate::settings::RenderSettings;
 use crate::tables::*;
 
@@ -114,8 +114,8 @@ pub struct KernelCost {
 
 /// A scene on a device: what each kernel takes, and the picture.
 pub struct Costs {
-    /// By kernel; on the CPU, whose code is compiled once for all scenes, by none.
-    pub kernels: BTreeMap<Kernel, KernelCost>,
+    /// By the kernels' stems; on the CPU, whose code is compiled once for all scenes, by none.
+    pub kernels: BTreeMap<&'static str, KernelCost>,
     /// Seconds of a pass, the least of several.
     pub pass: f64,
     /// The estimate after these passes.
@@ -129,15 +129,15 @@ pub fn on_gpu(
     settings: &RenderSettings,
     passes: u32,
 ) -> Result<Costs, EngineError> {
-    let mut engine = GpuEngine::new(choice, packed, Plan::new(packed, settings))?;
+    let mut engine = GpuEngine::measured(choice, packed, Plan::new(packed, settings))?;
     let compiled = engine.compile_seconds().clone();
-    let mut kernels: BTreeMap<Kernel, KernelCost> = compiled
+    let mut kernels: BTreeMap<&'static str, KernelCost> = compiled
         .iter()
-        .map(|(kernel, seconds)| (*kernel, KernelCost { compile: *seconds, run: f64::INFINITY }))
+        .map(|(kernel, seconds)| (kernel.stem(), KernelCost { compile: seconds.total(), run: f64::INFINITY }))
         .collect();
     let mut pass = f64::INFINITY;
     for _ in 0..passes.max(1) {
-        let seconds = engine.timed_pass()?;
+        let (_, seconds) = engine.timed_pass()?;
         pass = pass.min(seconds.values().sum());
         for (kernel, seconds) in seconds {
             let cost = kernels.entry(kernel).or_default();

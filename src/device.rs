@@ -9,6 +9,7 @@ use crate::gpu::{self, AdapterChoice, AdapterKind, AdapterSummary, GpuEngine};
 use crate::kernels::records::VisiblePoint;
 use crate::pack::pack;
 use crate::plan::Plan;
+use crate::radius::Automatic;
 use crate::scene::Scene;
 use crate::settings::{Method, RenderSettings};
 
@@ -90,6 +91,10 @@ pub struct Opened {
     pub name: String,
     /// Why this device.
     pub why: String,
+    /// The settings in force: as asked for, with a radius in the place of "auto".
+    pub settings: RenderSettings,
+    /// Why that radius, where the settings left it open and it counts.
+    pub radius: Option<Automatic>,
 }
 
 /// No engine.
@@ -181,14 +186,16 @@ pub fn open(wanted: &Wanted, scene: &Scene, settings: &RenderSettings) -> Result
     };
     let (device, why) = pick(wanted, &devices)?;
     let why = if path { "auto: path tracing runs on the CPU".to_owned() } else { why };
-    Ok(Opened { engine: start(device, scene, settings)?, name: device.name.clone(), why })
+    let (engine, settings, automatic) = start(device, scene, settings)?;
+    Ok(Opened { engine, name: device.name.clone(), why, settings, radius: automatic })
 }
 
-fn start(
+/// Fails where a picture has more visible points than can be numbered.
+pub fn check_points(
     device: &DeviceInfo,
     scene: &Scene,
     settings: &RenderSettings,
-) -> Result<Box<dyn Engine>, EngineError> {
+) -> Result<(), EngineError> {
     let film = &scene.film;
     let samples = if settings.method == Method::Ppm { settings.eye_samples as u64 } else { 1 };
     let points = film.width as u64 * film.height as u64 * samples;
@@ -205,17 +212,28 @@ fn start(
             mend: "make width, height or eye_samples smaller".to_owned(),
         });
     }
+    Ok(())
+}
+
+type Started = (Box<dyn Engine>, RenderSettings, Option<Automatic>);
+
+fn start(device: &DeviceInfo, scene: &Scene, settings: &RenderSettings) -> Result<Started, EngineError> {
+    check_points(device, scene, settings)?;
+    let film = &scene.film;
     if device.kind == DeviceKind::CpuDouble {
         let packed = double::pack::pack(scene, film.width, film.height)?;
         let plan = double::plan::Plan::new(&packed, settings);
-        return Ok(Box::new(double::cpu::CpuEngine::new(packed, plan)));
+        let (settings, automatic) = (plan.settings.clone(), plan.told_radius());
+        return Ok((Box::new(double::cpu::CpuEngine::new(packed, plan)), settings, automatic));
     }
     let packed = pack(scene, film.width, film.height)?;
     let plan = Plan::new(&packed, settings);
-    match device.kind {
-        DeviceKind::Cpu => Ok(Box::new(CpuEngine::new(packed, plan))),
-        _ => Ok(Box::new(GpuEngine::new(&AdapterChoice::Named(device.name.clone()), &packed, plan)?)),
-    }
+    let (settings, automatic) = (plan.settings.clone(), plan.told_radius());
+    let engine: Box<dyn Engine> = match device.kind {
+        DeviceKind::Cpu => Box::new(CpuEngine::new(packed, plan)),
+        _ => Box::new(GpuEngine::new(&AdapterChoice::Named(device.name.clone()), &packed, plan)?),
+    };
+    Ok((engine, settings, automatic))
 }
 
 /// Theory: the order of preference is hardware, then the CPU, whatever the order of the list.

@@ -1,5 +1,6 @@
 //! What every engine (GPU or CPU) does for the render loop.
 
+use crate::clock::KernelSeconds;
 use crate::film::{ErrorMap, Picture, Rejections};
 
 /// Photon paths by how they ended; together those that were emitted.
@@ -43,6 +44,8 @@ pub struct PassReport {
     pub eye_paths: u64,
     /// Rays traced in this pass: eye, shadow and photon segments.
     pub rays: u64,
+    /// Of these, those of eye paths and of their shadow rays.
+    pub eye_rays: u64,
     /// How the photon paths ended.
     pub ends: PhotonEnds,
     /// Gather radius of this pass in scene units: the mean over the visible points.
@@ -86,10 +89,22 @@ pub trait Engine {
     fn device(&self) -> &str;
     /// Runs the next pass.
     fn pass(&mut self) -> Result<PassReport, EngineError>;
+    /// The same, and the seconds of each kernel in it; none where the engine cannot tell.
+    fn timed_pass(&mut self) -> Result<(PassReport, KernelSeconds), EngineError> {
+        Ok((self.pass()?, KernelSeconds::new()))
+    }
     /// The estimate after the passes so far, in the scene's own radiometric units.
     fn picture(&mut self) -> Result<Picture, EngineError>;
     /// What the passes so far say of its error, in the same units.
     fn errors(&mut self) -> Result<ErrorMap, EngineError>;
     /// What the passes so far left out of it.
     fn rejections(&mut self) -> Result<Rejections, EngineError>;
+    /// Both.
+    fn results(&mut self) -> Result<(Picture, Rejections), EngineError> {
+        Ok((self.picture()?, self.rejections()?))
+    }
+    /// Photons that the last pass found around all visible points; 0 where the engine does not tell.
+    fn gathered(&mut self) -> Result<u64, EngineError> {
+        Ok(0)
+    }
 }

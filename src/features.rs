@@ -105,7 +105,7 @@ impl Features {
         let first = settings.direct == Direct::Photons || !rough;
         put("photons", photons);
         put("first", photons && first);
-        put("split", photons && first && settings.indirect_radius != 1.0);
+        put("split", photons && first && settings.has_wider());
         Self(set)
     }
 

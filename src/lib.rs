@@ -19,13 +19,16 @@
 //! ```
 //!
 //! Modules depend on one another one way: [`real`] and [`math`], then [`tables`], [`shapes`], [`materials`], [`lights`],
-//! [`camera`] and [`grid`], then [`scene`], [`build`], [`limits`], [`pack`], then [`kernels`], [`probe`], [`plan`], then [`cpu`]
-//! and [`gpu`], then [`device`] and [`render`], and last [`burden`], [`hold`] and [`study`].
+//! [`camera`] and [`grid`], then [`scene`], [`build`], [`limits`], [`pack`], then [`kernels`], [`radius`], [`probe`], [`plan`], then [`cpu`]
+//! and [`gpu`], then [`device`], [`quality`], [`calibration`] and [`render`], and last [`bench`], [`burden`], [`hold`] and [`study`].
 //! Those from [`real`] to [`cpu`] are compiled twice: [`double`] is the same in f64.
 
+pub mod bench;
 pub mod build;
 pub mod burden;
+pub mod calibration;
 pub mod camera;
+pub mod clock;
 pub mod cpu;
 pub mod device;
 pub mod double;
@@ -44,6 +47,8 @@ pub mod math;
 pub mod pack;
 pub mod plan;
 pub mod probe;
+pub mod quality;
+pub mod radius;
 pub mod real;
 pub mod render;
 pub mod scene;

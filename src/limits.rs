@@ -87,7 +87,9 @@ impl Limits<'_> {
         let camera = &self.scene.camera;
         let (radius, from) = match settings.radius {
             Radius::Units(units) => (units, "the gather radius"),
-            Radius::Pixels(pixels) => {
+            Radius::Auto | Radius::Pixels(_) => {
+                // The least that is chosen is one pixel.
+                let pixels = if let Radius::Pixels(pixels) = settings.radius { pixels } else { 1.0 };
                 let tan = (0.5 * camera.fov_degrees.to_radians()).tan();
                 let width = 2.0 * tan / f64::from(self.scene.film.height);
                 let radius = pixels * width * (camera.target - camera.position).length();
@@ -202,7 +204,7 @@ fn width(kind: &ShapeKind) -> Option<(f64, &'static str)> {
             }
         }
         ShapeKind::Cuboid { min, max } => ((*max - *min).min_element(), "max"),
-        ShapeKind::Revolution { segments, transform } => {
+        ShapeKind::Revolution { segments, transform, .. } => {
             let radius = segments.iter().flatten().map(|p| p.x).fold(0.0, f64::max);
             (2.0 * radius * transform.scale, "profile")
         }

@@ -11,6 +11,7 @@ use super::probe::{Probe, probe};
 use super::real::Real;
 use crate::film::estimate::{LEAST_PASSES, PixelError, early_passes, partition};
 use crate::film::{ErrorMap, Picture, Rejections, luminance_of};
+use crate::radius::Automatic;
 use crate::settings::{Method, Radius, RadiusRule, RenderSettings};
 use bytemuck::Zeroable;
 
@@ -31,8 +32,10 @@ pub enum Kernel {
     GridScan,
     /// Records into bucket order.
     GridScatter,
-    /// Each bucket into the order of its keys.
+    /// Each short bucket into the order of its keys.
     GridSort,
+    /// Each long one.
+    GridSortLong,
     /// Density estimates.
     Gather,
     /// Estimates into the film.
@@ -41,6 +44,8 @@ pub enum Kernel {
 
 /// Buckets that one workgroup of the scan kernels covers; the same number of blocks is the most there may be.
 pub const SCAN_BLOCK: u32 = 4096;
+/// Buckets that one workgroup of [`Kernel::GridSortLong`] looks through.
+pub const SORT_BUCKETS: u32 = 1024;
 /// Bytes that one storage binding may have on every device (WebGPU's default limit).
 pub const BINDING_LIMIT: u64 = 128 << 20;
 /// Most visible points in a chunk.
@@ -52,7 +57,7 @@ const CELL_RADII: f64 = 2.0;
 
 impl Kernel {
     /// All kernels, in the order of a pass.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::EyeTrace,
         Self::PhotonTrace,
         Self::GridCount,
@@ -61,6 +66,7 @@ impl Kernel {
         Self::GridScan,
         Self::GridScatter,
         Self::GridSort,
+        Self::GridSortLong,
         Self::Gather,
         Self::Resolve,
     ];
@@ -76,6 +82,7 @@ impl Kernel {
             Self::GridScan => "grid_scan",
             Self::GridScatter => "grid_scatter",
             Self::GridSort => "grid_sort",
+            Self::GridSortLong => "grid_sort_long",
             Self::Gather => "gather",
             Self::Resolve => "resolve",
         }
@@ -99,7 +106,10 @@ impl Kernel {
                     ("order", true),
                 ]
             }
-            Self::GridSort => vec![
+            Self::GridSort => {
+                vec![("records", false), ("starts", false), ("order", true), ("sorted", true)]
+            }
+            Self::GridSortLong => vec![
                 ("records", false),
                 ("counters", true),
                 ("starts", false),
@@ -145,7 +155,7 @@ pub struct Step {
 pub struct Plan {
     /// What the scene and the settings need.
     pub features: Features,
-    /// The settings.
+    /// The settings, with a radius in the place of "auto".
     pub settings: RenderSettings,
     /// Pixels per row.
     pub width: u32,
@@ -177,7 +187,10 @@ impl Plan {
     pub fn new(packed: &Packed, settings: &RenderSettings) -> Self {
         let features = Features::of(&packed.scene, settings);
         let probe = probe(packed, settings);
-        let widening = if features.has("first") { 1.0 } else { settings.indirect_radius };
+        let chosen = probe.automatic.map_or(settings.radius, |automatic| Radius::Pixels(automatic.pixels));
+        let wider = settings.indirect_radius.or(probe.automatic.map(|a| a.indirect)).unwrap_or(1.0);
+        let settings = &RenderSettings { radius: chosen, indirect_radius: Some(wider), ..settings.clone() };
+        let widening = if features.has("first") { 1.0 } else { wider };
         let camera = &packed.scene.camera;
         let eye_samples = if settings.method == Method::Ppm { settings.eye_samples } else { 1 };
         let wanted = (settings.photons as f64 * probe.records_per_photon * 1.25).max(1024.0);
@@ -200,6 +213,11 @@ impl Plan {
             unit: packed.unit,
             radiance_unit: packed.radiance_unit,
         }
+    }
+
+    /// Why the radius is what it is, where the settings left it open and photons are gathered at all.
+    pub fn told_radius(&self) -> Option<Automatic> {
+        self.probe.automatic.filter(|_| self.features.has("photons"))
     }
 
     /// Number of chunks.
@@ -227,11 +245,13 @@ impl Plan {
     pub fn dispatch(&self, pass: u32) -> Dispatch {
         let scale_sq = self.scale_sq(pass);
         let (pixels, units) = match self.settings.radius {
+            // Never: a plan's settings name what was chosen.
+            Radius::Auto => (1.0, 0.0),
             Radius::Pixels(p) => (p * self.widening, 0.0),
             Radius::Units(u) => (0.0, u * self.widening / self.unit),
         };
         let split = self.features.has("split");
-        let wider = if split { self.settings.indirect_radius } else { 1.0 };
+        let wider = if split { self.settings.wider() } else { 1.0 };
         let cell = CELL_RADII * self.widening * self.probe.radius * scale_sq.sqrt();
         Dispatch {
             pass_number: pass,
@@ -281,6 +301,7 @@ impl Plan {
             step(Kernel::GridScan, 0, over(self.buckets));
             step(Kernel::GridScatter, 0, over(self.capacity));
             step(Kernel::GridSort, 0, over(self.buckets));
+            step(Kernel::GridSortLong, 0, over(self.buckets));
             for c in 0..self.chunks() {
                 let (chunk_first, end) = self.chunk(c);
                 step(Kernel::Gather, c, Dispatch { end, chunk_first, ..common });

@@ -245,7 +245,7 @@ impl Kept {
 }
 
 fn take(engine: &mut dyn Engine, mut progress: Progress) -> Result<Kept, EngineError> {
-    let (picture, rejections) = (engine.picture()?, engine.rejections()?);
+    let (picture, rejections) = engine.results()?;
     let errors = match progress.passes {
         LEAST_PASSES.. => Some(engine.errors()?),
         _ => None,
@@ -293,6 +293,7 @@ mod tests {
                 records: 3,
                 eye_paths: 7,
                 rays: 100 * i,
+                eye_rays: 0,
                 ends: PhotonEnds::default(),
                 radius: 1.0 / i as f64,
             })

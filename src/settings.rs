@@ -41,19 +41,16 @@ pub enum Direct {
 }
 
 /// The start radius of the gather disc.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Radius {
+    /// Chosen by a look at the scene, from how many photons fall on a pixel and whether they are caustics.
+    #[default]
+    Auto,
     /// In widths of a pixel's footprint at the visible point.
     Pixels(f64),
     /// In scene units.
     Units(f64),
-}
-
-impl Default for Radius {
-    fn default() -> Self {
-        Self::Pixels(2.0)
-    }
 }
 
 /// Everything that decides the bits of a picture beside the scene and the device.
@@ -69,9 +66,11 @@ pub struct RenderSettings {
     /// Start radius, `r_1`.
     pub radius: Radius,
     /// Start radius of photons that a diffuse surface has scattered before, over `radius`. Their light changes more slowly
-    /// from place to place than that of the others. Under the local rule one count shrinks both.
+    /// from place to place than that of the others. Under the local rule one count shrinks both. Where it is not given it
+    /// goes with `radius`: 1 beside a number, chosen beside "auto".
     #[schemars(range(min = 1.0, max = 16.0))]
-    pub indirect_radius: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub indirect_radius: Option<f64>,
     /// How the radius shrinks.
     pub radius_rule: RadiusRule,
     /// Share of the photons kept when the radius shrinks, `alpha` in (0, 1].
@@ -96,7 +95,7 @@ impl Default for RenderSettings {
             passes: 64,
             photons: 262_144,
             radius: Radius::default(),
-            indirect_radius: 1.0,
+            indirect_radius: None,
             radius_rule: RadiusRule::default(),
             alpha: 2.0 / 3.0,
             direct: Direct::default(),
@@ -104,5 +103,18 @@ impl Default for RenderSettings {
             eye_samples: 4,
             seed: 0,
         }
+    }
+}
+
+impl RenderSettings {
+    /// Start radius of photons that a diffuse surface has scattered over that of the others, but for one that is still to be
+    /// chosen.
+    pub fn wider(&self) -> f64 {
+        self.indirect_radius.unwrap_or(1.0)
+    }
+
+    /// Whether they have a radius of their own.
+    pub fn has_wider(&self) -> bool {
+        self.indirect_radius.map_or(self.radius == Radius::Auto, |wider| wider != 1.0)
     }
 }

@@ -222,6 +222,75 @@ fn compare_holds_its_thresholds() {
     }
 }
 
+/// Theory: a preset is a set of settings, and what it promises is told from passes that the picture holds anyway: the
+/// same settings without a preset give the same bytes. Options change single settings.
+#[test]
+fn presets_promise_and_keep_their_passes() {
+    let folder = folder("quality");
+    let render = |options: &[&str]| {
+        let run = ["render", "ball.toml", "--device", "cpu", "--json"];
+        let output = caustica(&folder, &[&run[..], options].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+        json_lines(&output.stdout)
+    };
+    let draft = render(&["--quality", "draft", "-o", "draft.pfm"]);
+    let of = |lines: &[serde_json::Value], event: &str| {
+        lines.iter().find(|line| line["event"] == event).cloned().unwrap_or_default()
+    };
+    let (settings, told) = (of(&draft, "start")["settings"].clone(), of(&draft, "calibration"));
+    // One photon for each of 32 x 24 pixels, and a radius in numbers.
+    assert_eq!((&settings["photons"], &settings["passes"]), (&768.into(), &4.into()));
+    let pixels = settings["radius"]["pixels"].as_f64().unwrap();
+    assert!(of(&draft, "start")["radius_why"].as_str().unwrap().starts_with(&format!("{pixels} px, ")));
+    assert_eq!((&told["quality"], &told["passes"]), (&"draft".into(), &4.into()));
+    let error = |key: &str| told["expected_relMSE"][key].as_f64().unwrap();
+    assert!(0.0 < error("low") && error("low") <= error("rel_mse") && error("rel_mse") <= error("high"));
+    assert!(error("high") < told["one_pass_relMSE"].as_f64().unwrap(), "{told}");
+    assert!(told["expected_seconds"].as_f64().unwrap() > 0.0);
+    assert_eq!(of(&draft, "done")["passes"], 4, "the calibration's passes are among them");
+    let radius = format!("{pixels}px");
+    let by_hand = ["--photons", "768", "--passes", "4", "--radius", &radius, "-o", "hand.pfm"];
+    assert_eq!(of(&render(&by_hand), "calibration"), serde_json::Value::Null);
+    assert!(fs::read(folder.join("draft.pfm")).unwrap() == fs::read(folder.join("hand.pfm")).unwrap());
+    // Options are stronger than the preset, which is stronger than the scene; it knows the size that options set.
+    let changed = render(&[
+        "--quality",
+        "preview",
+        "--passes",
+        "3",
+        "--alpha",
+        "0.5",
+        "--radius",
+        "2px",
+        "--size",
+        "16x10",
+        "-o",
+        "c.pfm",
+    ]);
+    let settings = &of(&changed, "start")["settings"];
+    assert_eq!((&settings["passes"], &settings["photons"]), (&3.into(), &160.into()));
+    assert_eq!((&settings["alpha"], &settings["radius"]["pixels"]), (&0.5.into(), &2.0.into()));
+    assert_eq!(of(&changed, "start")["radius_why"], serde_json::Value::Null);
+    assert_eq!(of(&changed, "calibration")["passes"], 3);
+    // For people.
+    let output = caustica(&folder, &["render", "ball.toml", "--device", "cpu", "--quality", "draft"]);
+    let error = text(&output.stderr);
+    for word in [
+        "start radius",
+        "px, for",
+        "draft: 4 passes of 768 photons",
+        "expected",
+        "% (",
+        "relMSE",
+        "4/4 passes",
+    ] {
+        assert!(error.contains(word), "{word}: {error}");
+    }
+    let output = caustica(&folder, &["render", "ball.toml", "--quality", "finl"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(text(&output.stderr).contains("'final'"), "{}", text(&output.stderr));
+}
+
 /// An interrupt while passes are being made: exit 130, and a picture of whole passes, fewer than asked for.
 #[cfg(unix)]
 #[test]

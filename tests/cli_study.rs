@@ -271,6 +271,35 @@ fn lamps_shrink() {
     assert!(text(&output.stderr).contains("spheres"), "{}", text(&output.stderr));
 }
 
+/// What surfaces of revolution are made of is an axis; all are held against one truth, of the exact surfaces. A scene that has
+/// none is told before any time is spent.
+#[test]
+fn revolutions_become_meshes() {
+    let folder = folder("revolutions");
+    let study =
+        ["study", "ball.toml", "-o", "out", "--device", "cpu", "--budget", "4s", "--seeds", "2", "--quiet"];
+    let vary = ["--vary", "revolutions=exact,16", "--vary", "newton_tolerance=1e-2"];
+    let output = caustica(&folder, &[&study[..], &vary].concat());
+    assert_eq!(output.status.code(), Some(2));
+    let error = text(&output.stderr).split_whitespace().filter(|w| *w != "│").collect::<Vec<_>>().join(" ");
+    assert!(error.contains("there is no surface of revolution in this scene"), "{error}");
+    let with = SCENE.to_owned()
+        + "[[shapes]]\ntype = \"revolution\"\nprofile = [[0.0, 0.0], [0.6, 0.3], [0.0, 1.0]]\nmaterial = \"white\"\n";
+    fs::write(folder.join("ball.toml"), with).unwrap();
+    let other: Vec<&str> = study.iter().map(|word| if *word == "out" { "with" } else { word }).collect();
+    let output = caustica(&folder, &[&other[..], &vary].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    let study_json = json(&folder.join("with/study.json"));
+    let labels: Vec<&str> =
+        study_json["labels"].as_array().unwrap().iter().map(|l| l.as_str().unwrap()).collect();
+    assert_eq!(labels, ["the scene's own", "meshes of 16 sectors", "Newton tolerance 1e-2"]);
+    assert_eq!(study_json["parts"].as_array().unwrap().len(), 1, "one truth");
+    let csv = fs::read_to_string(folder.join("with/study.csv")).unwrap();
+    assert!(
+        csv.lines().next().unwrap().contains("revolutions,newton_tolerance") && csv.contains(",16,least,")
+    );
+}
+
 /// The gain of leaving things out is a figure, and leaving them out changes no bit.
 #[test]
 fn info_measures_what_is_left_out() {

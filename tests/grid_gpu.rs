@@ -18,13 +18,14 @@ use glam::Vec3;
 use std::collections::BTreeMap;
 
 const POISON: u32 = 0xdead_beef;
-const KERNELS: [Kernel; 6] = [
+const KERNELS: [Kernel; 7] = [
     Kernel::GridCount,
     Kernel::GridScanReduce,
     Kernel::GridScanSums,
     Kernel::GridScan,
     Kernel::GridScatter,
     Kernel::GridSort,
+    Kernel::GridSortLong,
 ];
 
 struct Grid {

@@ -87,7 +87,8 @@ fn hosts() -> Vec<Layout> {
             length,
             t0,
             t1,
-            wobble
+            wobble,
+            step_tolerance
         }),
         layout!(Triangle { p0, material, p1, light, p2, attributes }),
         layout!(Attributes { n0, u0, n1, v0, n2, u1, v1, u2, v2, smooth_normals }),

@@ -191,7 +191,7 @@ struct Scene { patches: array<Patch, 1>, profile_points: array<vec2f, 1> }
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if id.x >= arrayLength(&arguments) { return; }
-    let a = arguments[id.x] + vec2f(f32(scene.patches[0].padding));
+    let a = arguments[id.x] + vec2f(f32(scene.patches[0].revolution));
     let sc = sin_cos(a.x);
     answers[id.x] = array<f32, 6>(sc.x, sc.y, arctan2(a.x, a.y), exponential(a.y), logarithm(a.x), power(abs(a.x), a.y));
 }
@@ -293,7 +293,7 @@ fn wgsl_is_valid_and_laid_out_like_the_host() {
             t0,
             t1,
             wobble,
-            padding
+            step_tolerance
         }
     );
     // A member moved by four bytes would not pass.

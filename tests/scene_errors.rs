@@ -66,6 +66,7 @@ fn one_fault_each() {
         ("[render]\nradius = { pixels = -2 }\n", (7, 21, "from 1e-15 to 1e15")),
         ("[render]\neye_samples = 0\n", (7, 15, "from 1 to 65536")),
         ("[render]\nmax_bounces = 70_000\n", (7, 15, "from 0 to 65535")),
+        ("[render]\nradius = \"aut\"\n", (7, 10, "did you mean `auto`?")),
         ("[render]\nradius = { pixel = 2 }\n", (7, 10, "{ pixels = ... } or { units = ... }")),
         ("[render]\nmethod = \"bdpt\"\n", (7, 10, "expected \"sppm\" or \"ppm\" or \"path\"")),
         ("[materials.a]\ntype = \"difuse\"\n", (7, 8, "did you mean `diffuse`?")),

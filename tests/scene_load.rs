@@ -185,6 +185,13 @@ fn render_settings() {
         ..RenderSettings::default()
     };
     assert_eq!(loaded.settings, expected);
+    // A radius that nobody names is chosen, and so is one that is left open in as many words.
+    let radius = |render: &str| {
+        let text = format!("{HEAD}[environment]\nradiance = 1\n[render]\n{render}\n");
+        parse_text(&text).unwrap().settings.radius
+    };
+    assert_eq!([radius(""), radius("radius = \"auto\"")], [Radius::Auto; 2]);
+    assert_eq!(radius("radius = { pixels = 2 }"), Radius::Pixels(2.0));
 }
 
 /// The schema that editors read is the one that the types give.

@@ -28,13 +28,15 @@ fn root() -> PathBuf {
 }
 
 /// Shader files that implement one Rust module together, and the one helper that Rust does in a loop.
-const PARTS: [(&str, &str); 7] = [
+const PARTS: [(&str, &str); 9] = [
     ("kernels/grid_count", "kernels/grid_build"),
     ("kernels/grid_scan_reduce", "kernels/grid_build"),
     ("kernels/grid_scan_sums", "kernels/grid_build"),
     ("kernels/grid_scan", "kernels/grid_build"),
     ("kernels/grid_scatter", "kernels/grid_build"),
     ("kernels/grid_sort", "kernels/grid_build"),
+    ("kernels/grid_sort_long", "kernels/grid_build"),
+    ("kernels/sort", "kernels/grid_build"),
     ("kernels/scan", "kernels/grid_build"),
 ];
 
@@ -86,8 +88,11 @@ fn entry_points_are_stems() {
         let (module, _) = shader.validate().unwrap();
         let entries: Vec<_> = module.entry_points.iter().map(|e| e.name.as_str()).collect();
         assert_eq!(entries, [stem]);
-        let function =
-            if matches!(kernel, Kernel::GridScanReduce | Kernel::GridScanSums) { "grid_scan" } else { stem };
+        let function = match kernel {
+            Kernel::GridScanReduce | Kernel::GridScanSums => "grid_scan",
+            Kernel::GridSortLong => "grid_sort",
+            _ => stem,
+        };
         assert!(functions.contains(function), "no Rust function `{function}`");
     }
 }

@@ -99,7 +99,7 @@ fn invocation(gid: vec3u, groups: vec3u) -> u32 {
     return gid.y * groups.x * 64u + gid.x + dispatch.first;
 }
 
-//#if eye_trace || photon_trace || grid_sort || gather
+//#if eye_trace || photon_trace || grid_sort_long || gather
 // Whether the driver has stopped running loops; counts it. Mesa's software driver leaves every loop, without a word, once all loops of an
 // invocation together have made 65535 rounds; from then on each is left after its first round, and so is this one.
 // (`end` is below 2^31, which no compiler knows.)

@@ -2,9 +2,11 @@
 // Reads `nodes: array<vec2u>`, `refs: array<u32>` and `scene.world.bounds_min`, `bounds_max`; calls
 // `intersect_primitive(reference, ray, hit)`.
 
-const STACK: u32 = 24u;
+const MAX_DEPTH: u32 = 32u;
 const SLACK: f32 = 3.8146973e-6;
 const LEVEL: f32 = 1e-20;
+const EMPTY: u32 = 3u;
+const NOTHING: u32 = 1u;
 
 struct Waiting {
     node: u32,
@@ -44,12 +46,10 @@ fn traverse(ray: Ray, any_hit: bool, hit: ptr<function, Hit>) {
         return;
     }
 
-    var stack: array<Waiting, STACK>;
-    var top = 0u;
-    var stored = 0u;
+    let backward = select(vec3u(0u), vec3u(1u), inverse < vec3f(0.0));
+
+    var stack: array<Waiting, MAX_DEPTH>;
     var waiting = 0u;
-    var known = 0u;
-    var level = 0u;
     var index = 0u;
     var begin = root_begin;
     var end = root_end;
@@ -57,37 +57,28 @@ fn traverse(ray: Ray, any_hit: bool, hit: ptr<function, Hit>) {
         var node = nodes[index];
         while (node.y & 3u) != 3u {
             let axis = node.y & 3u;
-            let right = node.y >> 2u;
-            let forward = inverse[axis] > 0.0;
-            let near = select(right, index + 1u, forward);
-            let far = select(index + 1u, right, forward);
+            let near = node.y >> 2u | backward[axis];
+            let far = near ^ 1u;
             let t = (bitcast<f32>(node.x) - ray.origin[axis]) * inverse[axis];
             let t_first = t - slack[axis];
             let t_last = t + slack[axis];
-            if t_first > end {
+            let enter_near = (t_last >= begin) & (nodes[near].y != EMPTY);
+            let enter_far = (t_first <= end) & (nodes[far].y != EMPTY);
+            if enter_near {
+                if enter_far {
+                    stack[waiting] = Waiting(far, max(begin, t_first), end);
+                    waiting++;
+                }
                 index = near;
-            } else if t_last < begin {
+                end = min(end, t_last);
+            } else if enter_far {
                 index = far;
+                begin = max(begin, t_first);
             } else {
-                let bit = 1u << level;
-                if level >= known {
-                    waiting |= bit;
-                }
-                if (waiting & bit) != 0u {
-                    top = select(top + 1u, 0u, top + 1u == STACK);
-                    stack[top] = Waiting(far, max(begin, t_first), end);
-                    stored = select(stored + 1u, STACK, stored == STACK);
-                    index = near;
-                    end = min(end, t_last);
-                } else {
-                    index = far;
-                    begin = max(begin, t_first);
-                }
+                index = NOTHING;
             }
-            level++;
             node = nodes[index];
         }
-        known = 0u;
 
         let last = node.x + (node.y >> 2u);
         for (var i = node.x; i < last; i++) {
@@ -101,22 +92,10 @@ fn traverse(ray: Ray, any_hit: bool, hit: ptr<function, Hit>) {
             if waiting == 0u {
                 return;
             }
-            level = firstLeadingBit(waiting);
-            waiting ^= 1u << level;
-            if stored == 0u {
-                known = level + 1u;
-                level = 0u;
-                index = 0u;
-                begin = root_begin;
-                end = root_end;
-                break;
-            }
-            index = stack[top].node;
-            begin = stack[top].begin;
-            end = stack[top].end;
-            top = select(top - 1u, STACK - 1u, top == 0u);
-            stored--;
-            level++;
+            waiting--;
+            index = stack[waiting].node;
+            begin = stack[waiting].begin;
+            end = stack[waiting].end;
             if begin <= (*hit).t {
                 break;
             }

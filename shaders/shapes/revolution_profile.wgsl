@@ -21,7 +21,7 @@ struct Patch {
     t0: f32,
     t1: f32,
     wobble: f32,
-    padding: u32,
+    step_tolerance: f32,
 }
 
 struct LocalRay {

@@ -7,7 +7,6 @@ const BRACKETED: u32 = 256u;
 const MARCH_LIMIT: u32 = 256u;
 const MARCH_LEAST: f32 = 1.0 / 8192.0;
 const END_TOLERANCE: f32 = 3e-7;
-const STEP_TOLERANCE: f32 = 4e-7;
 const RESIDUAL_NOISE: f32 = 1e-6;
 
 struct PatchHit {
@@ -58,7 +57,7 @@ fn newton(piece: Patch, ray: LocalRay, start: PatchHit) -> PatchHit {
             x.steps += 1u;
             let moved = (abs(advance.x) + abs(advance.y) * sqrt(dot(at.d_theta, at.d_theta)))
                 + abs(advance.z) * sqrt(dot(at.d_tau, at.d_tau));
-            if moved <= STEP_TOLERANCE {
+            if moved <= piece.step_tolerance {
                 return PatchHit(x.t + advance.x, x.theta + advance.y, x.tau + advance.z, x.steps);
             }
             part = 1.0;

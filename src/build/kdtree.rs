@@ -3,10 +3,12 @@
 //!
 //! Large nodes are split at one of some evenly spaced planes (`kdtree_bins`); below a few thousand primitives
 //! all planes that bound a primitive are tried, from sorted lists that are kept sorted (`kdtree_sweep`). Both
-//! clip the primitives to the cells that they fall in ("perfect splits", `kdtree_clip`).
+//! clip the primitives to the cells that they fall in ("perfect splits", `kdtree_clip`). Last, the nodes are put in the
+//! order that rays like (`kdtree_layout`).
 
 use super::kdtree_bins::{best_plane, partition};
 use super::kdtree_clip::whole;
+use super::kdtree_layout::laid_out;
 use super::kdtree_sweep::Sweep;
 use super::real::{Bits, Real, ToDouble, Vec3};
 use super::shapes::aabb::Aabb;
@@ -41,7 +43,7 @@ pub struct Stats {
 /// A kd-tree in the form that the kernels read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct KdTree {
-    /// Nodes, the root first, each left child right after its parent.
+    /// Nodes, the root first and an empty leaf beside it, then pairs of siblings.
     pub nodes: Vec<Node>,
     /// Indices into the primitives, in the order of the leaves.
     pub refs: Vec<u32>,
@@ -52,7 +54,7 @@ pub struct KdTree {
 }
 
 impl KdTree {
-    /// The tree as [`crate::shapes::kdtree::traverse`] takes it.
+    /// The tree as [`crate::shapes::kdtree::traverse_closest`] takes it.
     pub fn view(&self) -> Tree<'_> {
         Tree {
             nodes: &self.nodes,
@@ -77,7 +79,8 @@ pub(super) struct Item {
     pub bounds: Aabb,
 }
 
-/// A subtree on its own: right children and first references count from its own start.
+/// A subtree on its own, depth first: a lower child follows its parent, whose `Node` names the upper one. Upper children and
+/// first references count from its own start.
 #[derive(Default)]
 pub(super) struct Subtree {
     pub nodes: Vec<Node>,
@@ -128,6 +131,7 @@ pub fn build(prims: &[Primitive]) -> KdTree {
     };
     let levels = 8.0 + 1.3 * (prims.len().max(1) as f64).log2();
     let Subtree { nodes, refs } = subtree(prims, items, bounds, MAX_DEPTH.min(levels.round() as u32));
+    let nodes = laid_out(&nodes, bounds);
     let stats = stats(&nodes, bounds);
     KdTree { nodes, refs, bounds, stats }
 }
@@ -179,11 +183,11 @@ fn stats(nodes: &[Node], bounds: Aabb) -> Stats {
             stats.largest_leaf = stats.largest_leaf.max(count);
             stats.depth = stats.depth.max(depth);
         } else {
-            let (axis, position, right) = node.plane();
+            let (axis, position, lower) = node.plane();
             let (low, high) = cell.split(axis, position);
             stats.cost += p;
-            open.push((right as usize, high, depth + 1));
-            open.push((index + 1, low, depth + 1));
+            open.push((lower as usize + 1, high, depth + 1));
+            open.push((lower as usize, low, depth + 1));
         }
     }
     stats

@@ -6,6 +6,7 @@ pub mod bezier;
 pub mod kdtree;
 mod kdtree_bins;
 mod kdtree_clip;
+mod kdtree_layout;
 mod kdtree_sweep;
 pub mod normalize;
 pub mod profile;

@@ -71,7 +71,7 @@ pub fn extent(kind: &ShapeKind) -> Option<(DVec3, DVec3)> {
         ShapeKind::Cuboid { min, max } => (*min, *max),
         ShapeKind::Mesh(mesh) if mesh.positions.is_empty() => return None,
         ShapeKind::Mesh(mesh) => hull(&mesh.positions),
-        ShapeKind::Revolution { segments, transform } => {
+        ShapeKind::Revolution { segments, transform, .. } => {
             let points = || segments.iter().flatten();
             let r = points().map(|p| p.x.abs()).fold(0.0, f64::max);
             let bottom = points().map(|p| p.y).fold(f64::INFINITY, f64::min);

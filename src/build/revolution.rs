@@ -7,6 +7,7 @@ use glam::{DMat3, DVec2, DVec3};
 pub use crate::build::profile::{Placement, ProfileError};
 
 use super::shapes::revolution::{Patch, Revolution};
+use super::shapes::revolution_roots::STEP_TOLERANCE;
 use crate::build::profile::{Piece, check, pieces};
 
 /// Bounds are widened by this, in local units: more than the intersection's rounding errors.
@@ -23,6 +24,8 @@ pub struct Attributes {
     pub light: u32,
     /// The caller's uv mode.
     pub uv: u32,
+    /// Newton steps shorter than this, in sizes of the profile, end the search of a hit; 0 leaves it to the precision.
+    pub step_tolerance: f64,
 }
 
 /// An axis-aligned box that encloses an angular sector of a patch, scene units.
@@ -71,12 +74,13 @@ impl RevolutionTables {
         // The kernels' frame is what Real leaves of this one.
         let revolution = frame(placement, middle, size, segments.len(), attributes);
         let to_local = |p: &DVec2| DVec2::new(p.x, p.y - middle) / size;
+        let step_tolerance = STEP_TOLERANCE.max(attributes.step_tolerance as Real);
         let mut boxes = Vec::new();
         let before = (self.patches.len(), self.profile_points.len());
         for (index, segment) in segments.iter().enumerate() {
             let local: Vec<DVec2> = segment.iter().map(to_local).collect();
             for piece in pieces(&local) {
-                self.push_piece(&piece, index as u32, &revolution, &mut boxes);
+                self.push_piece(&piece, index as u32, &revolution, step_tolerance, &mut boxes);
             }
         }
         if boxes.is_empty() {
@@ -93,6 +97,7 @@ impl RevolutionTables {
         piece: &Piece,
         segment: u32,
         revolution: &Revolution,
+        step_tolerance: Real,
         boxes: &mut Vec<PatchBox>,
     ) {
         let (first, last) = (piece.points[0], piece.points[piece.points.len() - 1]);
@@ -136,7 +141,7 @@ impl RevolutionTables {
             t0: piece.t0 as Real,
             t1: piece.t1 as Real,
             wobble: (piece.wobble * 1.001 + 1e-6) as Real,
-            padding: 0,
+            step_tolerance,
         };
         let index = self.patches.len() as u32;
         self.patches.push(patch);

@@ -26,6 +26,16 @@ impl Default for Fineness {
     }
 }
 
+impl Fineness {
+    /// So many sectors, and along the profile as fine as around the axis: a circle leaves its chords by the square of
+    /// their number.
+    pub fn of_sectors(sectors: u32) -> Self {
+        let Self { sectors: own, flatness } = Self::default();
+        let coarser = f64::from(own) / f64::from(sectors.max(3));
+        Self { sectors, flatness: (flatness * coarser * coarser).clamp(1e-6, 0.1) }
+    }
+}
+
 /// A corner of a triangle: indices into positions, uvs and normals.
 pub type Corner = [u32; 3];
 

@@ -8,8 +8,8 @@ use super::Failure;
 /// A bound as in `0.1`, for the whole picture, or `caustic=0.1`, for a region.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bound {
-    region: Option<String>,
-    limit: f64,
+    pub region: Option<String>,
+    pub limit: f64,
 }
 
 /// Bounds for every measure; each may be given several times, for several regions.
@@ -53,7 +53,7 @@ fn bound(text: &str) -> Result<Bound, String> {
     }
 }
 
-fn upper(text: &str) -> Result<Bound, String> {
+pub fn upper(text: &str) -> Result<Bound, String> {
     bound(text).and_then(|bound| match bound.limit >= 0.0 {
         true => Ok(bound),
         false => Err("expected a number of zero or more".to_owned()),
@@ -115,18 +115,7 @@ impl Bounds {
     /// Fails for a bound on a region that is none of `regions`.
     pub fn check_regions(&self, regions: &[&str]) -> Result<(), Failure> {
         let bounds = self.rules().into_iter().flat_map(|(_, _, bounds, _)| bounds);
-        let unknown = bounds.filter_map(|bound| bound.region.as_deref()).find(|name| !regions.contains(name));
-        match (unknown, regions) {
-            (None, _) => Ok(()),
-            (Some(name), []) => Err(Failure::wrong_use(
-                &format!("there is no region `{name}`"),
-                &format!("define it, as in --region {name}=0,0,64,64"),
-            )),
-            (Some(name), _) => Err(Failure::wrong_use(
-                &format!("there is no region `{name}`"),
-                &format!("the regions are {}", regions.join(", ")),
-            )),
-        }
+        check_regions(bounds, regions)
     }
 
     /// The bounds that are passed. Fails for one on a figure that there is none of.
@@ -152,6 +141,19 @@ impl Bounds {
         }
         Ok(passed)
     }
+}
+
+/// Fails for a bound on a region that is none of `regions`.
+pub fn check_regions<'a>(bounds: impl Iterator<Item = &'a Bound>, regions: &[&str]) -> Result<(), Failure> {
+    let mut named = bounds.filter_map(|bound| bound.region.as_deref());
+    let Some(unknown) = named.find(|name| !regions.contains(name)) else {
+        return Ok(());
+    };
+    let help = match regions {
+        [] => format!("define it, as in --region {unknown}=0,0,64,64"),
+        _ => format!("the regions are {}", regions.join(", ")),
+    };
+    Err(Failure::wrong_use(&format!("there is no region `{unknown}`"), &help))
 }
 
 fn no_figure(measure: &str, region: Option<&str>) -> Failure {

@@ -103,7 +103,7 @@ fn render_on(
     voice: &Voice,
 ) -> Result<Rendered, Failure> {
     let opened = device::open(&device::parse(wanted), scene, settings)?;
-    let mut reporter = begin(voice, scene, settings, &opened)?;
+    let mut reporter = begin(voice, scene, &opened)?;
     let stop = Stop { passes: settings.passes, time: None, target_error: None };
     let mut engine = opened.engine;
     let never = AtomicBool::new(false);

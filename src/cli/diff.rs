@@ -51,7 +51,8 @@ Examples:
   caustica diff picture.exr truth.exr --max-FLIP 0.1 -o flip.png
   caustica diff a.exr b.exr --region lamp=96,32,160,64 --max-relMSE lamp=0.02 --json";
 
-fn region(text: &str) -> Result<(String, Region), String> {
+/// A named region, as in `caustic=290,425,425,485`.
+pub fn region(text: &str) -> Result<(String, Region), String> {
     let parsed = text.split_once('=').and_then(|(name, numbers)| {
         let numbers: Vec<u32> = numbers.split(',').map(|n| n.trim().parse().ok()).collect::<Option<_>>()?;
         let [x0, y0, x1, y1] = numbers[..] else { return None };
@@ -96,14 +97,7 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
 
 /// Finds mistakes in the arguments before the work.
 fn check(arguments: &Arguments) -> Result<(), Failure> {
-    let names: Vec<&str> = arguments.region.iter().map(|(name, _)| name.as_str()).collect();
-    if let Some((i, name)) = names.iter().enumerate().find(|(i, name)| names[..*i].contains(name)) {
-        let first = &arguments.region[names.iter().position(|other| other == name).unwrap_or(i)].1;
-        return Err(Failure::wrong_use(
-            &format!("there are two regions `{name}`"),
-            &format!("give one of them another name; the first has {first}"),
-        ));
-    }
+    let names = region_names(&arguments.region)?;
     arguments.bounds.check_regions(&names)?;
     let outputs: Vec<&PathBuf> = [&arguments.output, &arguments.hdr_map].into_iter().flatten().collect();
     for output in &outputs {
@@ -124,6 +118,19 @@ fn check(arguments: &Arguments) -> Result<(), Failure> {
         [first, second] if first == second => Err(FileError::Repeated { file: first.clone() }.into()),
         _ => Ok(()),
     }
+}
+
+/// The names of regions; fails where two have the same.
+pub fn region_names(regions: &[(String, Region)]) -> Result<Vec<&str>, Failure> {
+    let names: Vec<&str> = regions.iter().map(|(name, _)| name.as_str()).collect();
+    if let Some((i, name)) = names.iter().enumerate().find(|(i, name)| names[..*i].contains(name)) {
+        let first = &regions[names.iter().position(|other| other == name).unwrap_or(i)].1;
+        return Err(Failure::wrong_use(
+            &format!("there are two regions `{name}`"),
+            &format!("give one of them another name; the first has {first}"),
+        ));
+    }
+    Ok(names)
 }
 
 fn read_both(arguments: &Arguments) -> Result<(Picture, Picture, Coding), Failure> {

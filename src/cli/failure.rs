@@ -89,7 +89,7 @@ impl From<StudyError> for Failure {
         match error {
             StudyError::Device(error) => error.into(),
             StudyError::File(error) => error.into(),
-            StudyError::Grid(_) | StudyError::Folder { .. } | StudyError::Lamp { .. } => {
+            StudyError::Grid(_) | StudyError::Folder { .. } | StudyError::Variant { .. } => {
                 Self { code: Self::WRONG_USE, report: miette!("{error}") }
             }
             StudyError::Engine(_) | StudyError::Metrics(_) => Self::failed(miette!("{error}")),

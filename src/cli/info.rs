@@ -59,6 +59,9 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
         "{}: {} x {} pixels, {} passes",
         scene.name, film.width, film.height, settings.passes
     ))?;
+    if let Some(radius) = plan.told_radius() {
+        result(format_args!("start radius: {radius}"))?;
+    }
     result(report(&packed, &plan))?;
     if arguments.measure {
         for device in &arguments.device {

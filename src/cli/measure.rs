@@ -66,7 +66,7 @@ fn heading(kind: DeviceKind) -> String {
 fn line(name: &str, costs: &Costs, plain: &Costs) -> String {
     let ms = |seconds: f64| format!("{:.1} ms", 1000.0 * seconds);
     let mut line = format!("{name:<18}");
-    for kernel in KERNELS.iter().filter_map(|kernel| costs.kernels.get(kernel)) {
+    for kernel in KERNELS.iter().filter_map(|kernel| costs.kernels.get(kernel.stem())) {
         line += &format!("{:>13} {:>11}", format!("c {}", ms(kernel.compile)), ms(kernel.run));
     }
     line += &format!("{:>12}", ms(costs.pass));

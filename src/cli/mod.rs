@@ -2,6 +2,8 @@
 //!
 //! Standard output carries results, standard error everything else.
 
+mod bench;
+mod bench_table;
 mod bounds;
 mod check;
 mod compare;
@@ -48,6 +50,7 @@ enum Command {
     Diff(Box<diff::Arguments>),
     Study(Box<study::Arguments>),
     Info(info::Arguments),
+    Bench(Box<bench::Arguments>),
     Check(check::Arguments),
     Devices(devices::Arguments),
     Tessellate(tessellate::Arguments),
@@ -74,6 +77,7 @@ pub fn run() -> ExitCode {
         Command::Diff(arguments) => diff::run(*arguments),
         Command::Study(arguments) => study::run(*arguments),
         Command::Info(arguments) => info::run(arguments),
+        Command::Bench(arguments) => bench::run(*arguments),
         Command::Check(arguments) => check::run(arguments),
         Command::Devices(arguments) => devices::run(arguments),
         Command::Tessellate(arguments) => tessellate::run(arguments),

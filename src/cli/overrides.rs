@@ -2,16 +2,22 @@
 
 use std::time::Duration;
 
+use caustica::quality::Quality;
 use caustica::scene::Scene;
 use caustica::scene::numbers::{LARGEST, SMALLEST};
 use caustica::settings::{Direct, Method, Radius, RadiusRule, RenderSettings};
 use clap::Args;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use serde::de::DeserializeOwned;
 
 /// Options of commands that render; each replaces the scene file's own value.
 #[derive(Args, Debug, Default)]
 #[command(next_help_heading = "Instead of the scene file's settings")]
 pub struct Overrides {
+    /// Settings by what the picture is for, in the place of the scene's method, passes, photons, radius, rule, alpha and
+    /// direct; other options change them further
+    #[arg(long, value_name = "draft|preview|final|reference", value_parser = quality(), hide_possible_values = true)]
+    pub quality: Option<Quality>,
     /// Light transport: stochastic progressive photon mapping, progressive photon mapping, or path tracing (CPU only)
     #[arg(long, value_name = "sppm|ppm|path", value_parser = word::<Method>)]
     method: Option<Method>,
@@ -21,7 +27,7 @@ pub struct Overrides {
     /// Photons emitted per pass
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub photons: Option<u32>,
-    /// Start radius: pixels at the visible point as 2px, or scene units as 0.01
+    /// Start radius: pixels at the visible point as 2px, scene units as 0.01, or auto
     #[arg(long, value_name = "R", value_parser = radius, allow_negative_numbers = true)]
     radius: Option<Radius>,
     /// Start radius of photons that a diffuse surface has scattered, over that of the others, from 1 to 16
@@ -56,21 +62,29 @@ impl Overrides {
         fn set<T: Copy>(target: &mut T, value: Option<T>) {
             *target = value.unwrap_or(*target);
         }
+        if let Some((width, height)) = self.size {
+            (scene.film.width, scene.film.height) = (width, height);
+        }
+        if let Some(quality) = self.quality {
+            quality.apply(u64::from(scene.film.width) * u64::from(scene.film.height), settings);
+        }
         set(&mut settings.method, self.method);
         set(&mut settings.passes, self.passes);
         set(&mut settings.photons, self.photons);
         set(&mut settings.radius, self.radius);
-        set(&mut settings.indirect_radius, self.indirect_radius);
+        settings.indirect_radius = self.indirect_radius.or(settings.indirect_radius);
         set(&mut settings.radius_rule, self.radius_rule);
         set(&mut settings.alpha, self.alpha);
         set(&mut settings.direct, self.direct);
         set(&mut settings.max_bounces, self.max_bounces);
         set(&mut settings.eye_samples, self.eye_samples);
         set(&mut settings.seed, self.seed);
-        if let Some((width, height)) = self.size {
-            (scene.film.width, scene.film.height) = (width, height);
-        }
     }
+}
+
+/// The presets' words; clap names the nearest of them.
+fn quality() -> impl TypedValueParser<Value = Quality> {
+    PossibleValuesParser::new(Quality::ALL.map(Quality::word)).try_map(|text| word(&text))
 }
 
 /// One of a setting's words, as scene files spell them.
@@ -100,6 +114,9 @@ fn times(text: &str) -> Result<f64, String> {
 }
 
 fn radius(text: &str) -> Result<Radius, String> {
+    if text == "auto" {
+        return Ok(Radius::Auto);
+    }
     let (number, in_unit): (_, fn(f64) -> Radius) = match text.strip_suffix("px") {
         Some(pixels) => (pixels, Radius::Pixels),
         None => (text, Radius::Units),
@@ -107,7 +124,7 @@ fn radius(text: &str) -> Result<Radius, String> {
     let number = number.parse().ok().filter(|number| (SMALLEST..=LARGEST).contains(number));
     let expected = || {
         format!(
-            "expected a number from {SMALLEST:e} to {LARGEST:e}: pixels as in 2px, or scene units as in 0.01"
+            "expected auto, or a number from {SMALLEST:e} to {LARGEST:e}: pixels as in 2px, or scene units as in 0.01"
         )
     };
     number.map(in_unit).ok_or_else(expected)
@@ -153,6 +170,7 @@ mod tests {
     fn radius_in_pixels_or_units() {
         assert_eq!(radius("2px"), Ok(Radius::Pixels(2.0)));
         assert_eq!(radius("0.01"), Ok(Radius::Units(0.01)));
+        assert_eq!(radius("auto"), Ok(Radius::Auto));
         for bad in ["", "px", "0px", "-1", "nan", "inf", "2 cm", "1e-16", "1e16px"] {
             assert!(radius(bad).is_err(), "{bad}");
         }

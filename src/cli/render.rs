@@ -1,14 +1,17 @@
 //! `caustica render`: a scene in, pictures out.
 
+use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+use caustica::calibration::{Calibrating, Calibration};
 use caustica::device::{self, Opened};
 use caustica::engine::EngineError;
 use caustica::film::{self, Development, ErrorMap, Provenance, Rejections, check_outputs};
 use caustica::limits;
-use caustica::render::{Ending, Outcome, Stop, render};
-use caustica::scene::{self, Scene};
+use caustica::quality::{Expected, Quality, expected};
+use caustica::render::{Ending, Outcome, Progress, Stop, render};
+use caustica::scene::{self, Loaded, Scene};
 use caustica::settings::RenderSettings;
 use clap::builder::NonEmptyStringValueParser;
 use miette::{Report, miette};
@@ -76,19 +79,30 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     check_outputs(&outputs)?;
     let (scene, settings) = load(&arguments.scene, &arguments.overrides)?;
     let opened = device::open(&device::parse(&arguments.device), &scene, &settings)?;
-    let mut reporter = begin(&arguments.voice, &scene, &settings, &opened)?;
+    let reporter = begin(&arguments.voice, &scene, &opened)?;
     let Arguments { time, target_error, .. } = arguments;
     let limited = time.is_none() && target_error.is_none() || arguments.overrides.passes.is_some();
     let stop = Stop { passes: if limited { settings.passes } else { u32::MAX }, time, target_error };
     let mut engine = opened.engine;
-    let outcome = render(engine.as_mut(), stop, interrupt::flag(), &mut |progress| reporter.show(progress));
+    let reporter = RefCell::new(reporter);
+    let mut show = |progress: &Progress| reporter.borrow_mut().show(progress);
+    let outcome = match arguments.overrides.quality {
+        Some(quality) => {
+            let promise = Promise { quality, stop, settings: &opened.settings, json: arguments.voice.json };
+            let mut tell = |calibration: &Calibration| promise.tell(calibration, &reporter.borrow());
+            let mut watched = Calibrating::new(engine.as_mut(), &mut tell);
+            render(&mut watched, stop, interrupt::flag(), &mut show)
+        }
+        None => render(engine.as_mut(), stop, interrupt::flag(), &mut show),
+    };
+    let mut reporter = reporter.into_inner();
     reporter.finish();
     let outcome = outcome?;
 
     let provenance = Provenance {
         scene: scene.name.clone(),
         scene_text: std::fs::read_to_string(&arguments.scene).unwrap_or_default(),
-        settings,
+        settings: opened.settings,
         device: opened.name,
         passes_done: outcome.progress.passes,
     };
@@ -114,14 +128,12 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
 }
 
 /// Says what is rendered where, before it is.
-pub fn begin(
-    voice: &Voice,
-    scene: &Scene,
-    settings: &RenderSettings,
-    opened: &Opened,
-) -> Result<Reporter, Failure> {
+pub fn begin(voice: &Voice, scene: &Scene, opened: &Opened) -> Result<Reporter, Failure> {
     let reporter = Reporter::new(voice.quiet, voice.json);
     reporter.note(&format!("{}: {} ({})", scene.name, opened.name, opened.why));
+    if let Some(radius) = &opened.radius {
+        reporter.note(&format!("start radius {radius}"));
+    }
     if voice.json {
         result(json!({
             "event": "start",
@@ -130,15 +142,64 @@ pub fn begin(
             "why": opened.why,
             "width": scene.film.width,
             "height": scene.film.height,
-            "settings": settings,
+            "settings": opened.settings,
+            "radius_why": opened.radius.map(|radius| radius.to_string()),
         }))?;
     }
     Ok(reporter)
 }
 
+/// A preset, of which the first passes tell what it will cost and give.
+struct Promise<'a> {
+    quality: Quality,
+    stop: Stop,
+    settings: &'a RenderSettings,
+    json: bool,
+}
+
+impl Promise<'_> {
+    /// Tells the expected error and time of the whole render.
+    fn tell(&self, calibration: &Calibration, reporter: &Reporter) {
+        let Calibration { seconds_per_pass, one_pass } = *calibration;
+        let in_time = self.stop.time.map_or(f64::MAX, |time| time.as_secs_f64() / seconds_per_pass.max(1e-9));
+        let passes = f64::from(self.stop.passes).min(in_time.max(2.0)) as u32;
+        let seconds = seconds_per_pass * f64::from(passes);
+        let expected = expected(one_pass, passes, self.settings.method);
+        if self.json {
+            // Standard output that takes nothing fails the results at the end.
+            let _ = result(json!({
+                "event": "calibration",
+                "quality": self.quality,
+                "passes": passes,
+                "seconds_per_pass": seconds_per_pass,
+                "one_pass_relMSE": one_pass,
+                "expected_relMSE": expected,
+                "expected_seconds": seconds,
+            }));
+            return;
+        }
+        let Expected { rel_mse, low, high } = expected;
+        let percent = |rel_mse: f64| 100.0 * rel_mse.sqrt();
+        reporter.note(&format!(
+            "{}: {passes} passes of {} photons; after two of them, expected are {} in all and an error of {:.1} % \
+             ({:.1} to {:.1} %, relMSE {rel_mse:.1e})",
+            self.quality.word(),
+            count(f64::from(self.settings.photons)),
+            time(Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX)),
+            percent(rel_mse),
+            percent(low),
+            percent(high),
+        ));
+    }
+}
+
 /// Reads the scene, puts the options in force, and prints the warnings.
 pub fn load(file: &Path, overrides: &Overrides) -> Result<(Scene, RenderSettings), Failure> {
-    let mut loaded = scene::load(file)?;
+    in_force(scene::load(file)?, overrides)
+}
+
+/// Puts the options in force and prints the warnings.
+pub fn in_force(mut loaded: Loaded, overrides: &Overrides) -> Result<(Scene, RenderSettings), Failure> {
     overrides.apply(&mut loaded.scene, &mut loaded.settings);
     let limits = limits::warnings(&loaded.scene, &loaded.settings, &loaded.places);
     for warning in loaded.warnings.into_iter().chain(limits) {

@@ -207,7 +207,7 @@ fn about(
             config.device = DeviceKind::Cpu.word().to_owned();
         }
     }
-    let mut lamps: Vec<_> = configs.iter().map(|config| config.lamp).collect();
+    let mut lamps: Vec<_> = configs.iter().map(|config| config.variant.lamp).collect();
     lamps.dedup();
     let lamps = lamps.len().max(1) as f64;
     let budget = arguments.budget.as_secs_f64();

@@ -12,6 +12,7 @@ use super::pack::Packed;
 use super::plan::{Kernel, Plan};
 use super::real::ENGINE;
 use super::tables::Scene;
+use crate::clock::{Clock, KernelSeconds};
 use crate::engine::{Engine, EngineError, PassReport, PhotonEnds};
 use crate::film::{ErrorMap, Picture, Rejections};
 use crate::settings::Method;
@@ -38,6 +39,7 @@ pub struct CpuEngine {
     starts: Vec<u32>,
     order: Vec<u32>,
     device: String,
+    clock: Clock,
     /// What vectors the processor has.
     arch: pulp::Arch,
 }
@@ -91,6 +93,7 @@ impl CpuEngine {
             starts: vec![0; buckets + 1],
             order: Vec::new(),
             device: format!("{ENGINE}, {} threads", rayon::current_num_threads()),
+            clock: Clock::default(),
             arch: pulp::Arch::new(),
             packed,
             plan,
@@ -115,6 +118,7 @@ impl CpuEngine {
         let local = self.plan.features.has("local");
         let scene = &self.packed.scene;
         for step in self.plan.steps(self.passes_done, batch_photons) {
+            self.clock.begin(step.kernel.stem());
             let d = &step.dispatch;
             let (first, points) = self.plan.chunk(step.chunk);
             let chunk = first as usize..(first + points) as usize;
@@ -130,6 +134,7 @@ impl CpuEngine {
                             rays as u64
                         })
                         .sum::<u64>();
+                    report.eye_rays = report.rays;
                 }
                 Kernel::PhotonTrace => {
                     let (rays, ends) = trace_photons(scene, d, sampled, &mut self.records);
@@ -147,6 +152,7 @@ impl CpuEngine {
                     self.order.resize(self.records.len(), 0);
                     grid_scatter(d, &self.records, &self.starts, &mut self.counts, &mut self.order);
                 }
+                Kernel::GridSortLong => {}
                 // the scatter above leaves each bucket sorted
                 Kernel::GridSort => grid_sort(d, &self.records, &self.order, &mut self.sorted),
                 Kernel::Gather => {
@@ -186,6 +192,7 @@ impl CpuEngine {
     }
 
     fn path_pass(&mut self, report: &mut PassReport) {
+        self.clock.begin("path_trace");
         let d = self.plan.dispatch(self.passes_done);
         let sampled = self.plan.features.has("sampled");
         let scene = &self.packed.scene;
@@ -201,6 +208,7 @@ impl CpuEngine {
                 rays as u64
             })
             .sum();
+        report.eye_rays = report.rays;
     }
 }
 
@@ -245,8 +253,16 @@ impl Engine for CpuEngine {
             self.photon_pass(&mut report);
             report.radius = self.plan.radius(self.passes_done);
         }
+        self.clock.end();
         self.passes_done += 1;
         Ok(report)
+    }
+
+    fn timed_pass(&mut self) -> Result<(PassReport, KernelSeconds), EngineError> {
+        self.clock.wind();
+        let report = self.pass();
+        let seconds = self.clock.take();
+        Ok((report?, seconds))
     }
 
     fn picture(&mut self) -> Result<Picture, EngineError> {
@@ -259,5 +275,9 @@ impl Engine for CpuEngine {
 
     fn rejections(&mut self) -> Result<Rejections, EngineError> {
         Ok(self.plan.rejections(&self.film))
+    }
+
+    fn gathered(&mut self) -> Result<u64, EngineError> {
+        Ok(self.gathered.par_iter().map(|gathered| u64::from(gathered.count)).sum())
     }
 }

@@ -34,6 +34,7 @@ pub mod build {
     pub mod kdtree;
     mod kdtree_bins;
     mod kdtree_clip;
+    mod kdtree_layout;
     mod kdtree_sweep;
     pub mod revolution;
 }

@@ -7,6 +7,7 @@ use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
 use image::{DynamicImage, ExtendedColorType, ImageEncoder, ImageFormat, codecs};
+use rayon::prelude::*;
 
 use super::exr_file::{self, NamedPlane};
 use super::{Development, FileError, Picture, Provenance, pfm};
@@ -165,8 +166,8 @@ fn unfinished_name(file: &Path) -> PathBuf {
 }
 
 fn encode_png(picture: &Picture, development: &Development) -> Result<Vec<u8>, String> {
-    let rgb: Vec<u8> = picture.rgb.iter().flat_map(|&radiance| development.bytes(radiance)).collect();
-    encode_rgb8(picture.width, picture.height, &rgb)
+    let rgb: Vec<[u8; 3]> = picture.rgb.par_iter().map(|&radiance| development.bytes(radiance)).collect();
+    encode_rgb8(picture.width, picture.height, rgb.as_flattened())
 }
 
 /// The bytes of a PNG file of `width * height * 3` display values.

@@ -1,7 +1,7 @@
 //! Adapters, the choice among them, and an open device that reports failures as errors instead of panicking.
 
 use crate::engine::EngineError;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 /// What an adapter is made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -94,8 +94,17 @@ fn summarize(adapter: &wgpu::Adapter) -> AdapterSummary {
 }
 
 /// Adapters that the kernels can run on, hardware first; those that `WGPU_BACKEND` and `WGPU_ADAPTER_NAME` allow.
-fn adapters() -> Vec<(wgpu::Adapter, AdapterSummary)> {
-    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
+/// They are looked for once, since drivers take a while to answer.
+fn adapters() -> &'static [(wgpu::Adapter, AdapterSummary)] {
+    static ADAPTERS: OnceLock<Vec<(wgpu::Adapter, AdapterSummary)>> = OnceLock::new();
+    ADAPTERS.get_or_init(find_adapters)
+}
+
+fn find_adapters() -> Vec<(wgpu::Adapter, AdapterSummary)> {
+    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
+    // no dispatch here takes its size from a buffer, so no kernel is needed that checks such sizes
+    descriptor.flags.remove(wgpu::InstanceFlags::VALIDATION_INDIRECT_CALL);
+    let instance = wgpu::Instance::new(descriptor);
     let backends = wgpu::Backends::from_env().unwrap_or(wgpu::Backends::all());
     let name = std::env::var("WGPU_ADAPTER_NAME").unwrap_or_default();
     let mut list: Vec<_> = pollster::block_on(instance.enumerate_adapters(backends))
@@ -112,7 +121,7 @@ fn adapters() -> Vec<(wgpu::Adapter, AdapterSummary)> {
 
 /// Adapters that the kernels can run on, hardware first; those that `WGPU_BACKEND` and `WGPU_ADAPTER_NAME` allow.
 pub fn list() -> Vec<AdapterSummary> {
-    adapters().into_iter().map(|(_, summary)| summary).collect()
+    adapters().iter().map(|(_, summary)| summary.clone()).collect()
 }
 
 /// What went wrong between two looks.
@@ -132,12 +141,13 @@ pub struct Gpu {
 impl Gpu {
     /// Opens the adapter of `choice` with its own limits.
     pub fn open(choice: &AdapterChoice) -> Result<Self, EngineError> {
-        let found = adapters().into_iter().find(|(_, summary)| choice.takes(summary));
+        let found = adapters().iter().find(|(_, summary)| choice.takes(summary));
         let (adapter, summary) =
             found.ok_or_else(|| EngineError::Unsupported(format!("there is no adapter for {choice:?}")))?;
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("caustica"),
-            required_features: wgpu::Features::empty(),
+            // a clock, where there is one, for those who ask for times
+            required_features: adapter.features() & wgpu::Features::TIMESTAMP_QUERY,
             required_limits: adapter.limits(),
             ..Default::default()
         };
@@ -152,7 +162,12 @@ impl Gpu {
                 record(&lost, EngineError::DeviceLost(message));
             }
         });
-        Ok(Self { device, queue, summary, failure })
+        Ok(Self { device, queue, summary: summary.clone(), failure })
+    }
+
+    /// Whether it has a clock that kernels can be timed with.
+    pub fn has_clock(&self) -> bool {
+        self.device.features().contains(wgpu::Features::TIMESTAMP_QUERY)
     }
 
     /// The failure since the last look, if any.

@@ -1,14 +1,15 @@
 //! Carries out the steps of a plan, pass by pass.
 
-use super::context::{AdapterChoice, AdapterKind, Gpu};
+use super::context::{AdapterChoice, AdapterKind, AdapterSummary, Gpu};
 use super::layout::{SceneTables, long_tables};
 use super::mend::{mend_photons, mend_points};
 use super::pace::Pace;
-use super::program::{Program, workgroup_items};
+use super::program::{Compiling, Program, make_programs, workgroup_items};
 use super::recorder::Recorder;
+use crate::clock::{Clock, KernelSeconds};
 use crate::engine::{Engine, EngineError, PassReport, PhotonEnds};
 use crate::film::{ErrorMap, Picture, Rejections};
-use crate::kernels::records::{Dispatch, FilmPixel};
+use crate::kernels::records::{Dispatch, FilmPixel, Gathered};
 use crate::pack::Packed;
 use crate::plan::{Kernel, Plan, Step};
 use crate::settings::Method;
@@ -21,6 +22,8 @@ const CHUNK_BUFFERS: [&str; 4] = ["visible_points", "gathered", "film", "statist
 /// Bytes of `counters`: records of the batch, the pass's rays in two words, invocations that the driver stopped, photons by
 /// how they ended, and one unused.
 const COUNTERS_BYTES: u64 = 32;
+/// What is read back of a pass: the counters, their two words of rays before the first photon, and each batch's records.
+const READINGS_BYTES: u64 = COUNTERS_BYTES + 8;
 /// The first word of the photons' ends.
 const ENDS: usize = 4;
 /// What to change when the device is too small.
@@ -43,15 +46,46 @@ pub struct GpuEngine {
     /// On a software driver: what to trace stopped paths again with.
     scene: Option<Scene>,
     device: String,
-    compile_seconds: BTreeMap<Kernel, f64>,
+    compile_seconds: BTreeMap<Kernel, CompileSeconds>,
+    submissions: Submissions,
     /// Seconds of each kernel in the pass at hand, where they are asked for.
-    run_seconds: Option<BTreeMap<Kernel, f64>>,
+    clock: Clock,
+    /// Whether these come from the device's own clock, not from waiting for each kernel.
+    stamped: bool,
+}
+
+/// What it took to make a kernel ready.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CompileSeconds {
+    /// To put its shader together, check it and hand it to the driver.
+    pub checking: f64,
+    /// Of the driver, until the kernel had run over nothing.
+    pub driver: f64,
+}
+
+impl CompileSeconds {
+    /// Both.
+    pub fn total(&self) -> f64 {
+        self.checking + self.driver
+    }
+}
+
+/// What was handed to the device.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Submissions {
+    /// How many.
+    pub count: u64,
+    /// Seconds from handing over the longest one until it was known to be done.
+    pub longest_seconds: f64,
+    /// The kernels in that.
+    pub longest: Vec<Kernel>,
 }
 
 /// Records of each batch, rays and photons' ends of a pass, and invocations that the driver stopped.
 struct Counted {
     records: Vec<u32>,
     rays: u64,
+    eye_rays: u64,
     ends: PhotonEnds,
     stopped: u32,
 }
@@ -59,6 +93,20 @@ struct Counted {
 impl GpuEngine {
     /// An engine for one scene and plan on the adapter of `choice`.
     pub fn new(choice: &AdapterChoice, packed: &Packed, plan: Plan) -> Result<Self, EngineError> {
+        Self::with(choice, packed, plan, Compiling::Together)
+    }
+
+    /// The same, more slowly: the kernels are made ready one after another, so that [`Self::compile_seconds`] can tell.
+    pub fn measured(choice: &AdapterChoice, packed: &Packed, plan: Plan) -> Result<Self, EngineError> {
+        Self::with(choice, packed, plan, Compiling::OneByOne)
+    }
+
+    fn with(
+        choice: &AdapterChoice,
+        packed: &Packed,
+        plan: Plan,
+        compiling: Compiling,
+    ) -> Result<Self, EngineError> {
         if plan.settings.method == Method::Path {
             return Err(EngineError::Unsupported(
                 "path tracing runs on the CPU alone: take --device cpu".into(),
@@ -84,7 +132,7 @@ impl GpuEngine {
                 shared.insert(name, gpu.storage(name, bytes)?);
             }
         }
-        let readings = gpu.storage("readings", COUNTERS_BYTES)?;
+        let readings = gpu.storage("readings", READINGS_BYTES)?;
         let mut engine = Self {
             scene: (gpu.summary.kind == AdapterKind::Software).then(|| packed.scene.clone()),
             device: gpu.summary.name.clone(),
@@ -99,9 +147,11 @@ impl GpuEngine {
             readings,
             plan,
             compile_seconds: BTreeMap::new(),
-            run_seconds: None,
+            submissions: Submissions::default(),
+            clock: Clock::default(),
+            stamped: false,
         };
-        engine.compile(&scene)?;
+        engine.compile(&scene, compiling)?;
         Ok(engine)
     }
 
@@ -112,69 +162,95 @@ impl GpuEngine {
         buffer.map_or(Ok(Vec::new()), |buffer| self.gpu.read(buffer, buffer.size()))
     }
 
-    /// Compiles the kernels of the plan. Each runs once over nothing, since some drivers compile at the first run.
-    fn compile(&mut self, scene: &SceneTables) -> Result<(), EngineError> {
-        for step in self.plan.steps(0, self.plan.batch_photons) {
+    /// Makes the kernels of the plan ready. Each runs once over nothing, since some drivers compile at the first run, and do
+    /// so while the next kernels are checked.
+    fn compile(&mut self, scene: &SceneTables, compiling: Compiling) -> Result<(), EngineError> {
+        let steps = self.plan.steps(0, self.plan.batch_photons);
+        let kernels: Vec<Kernel> =
+            Kernel::ALL.into_iter().filter(|k| steps.iter().any(|step| step.kernel == *k)).collect();
+        let Self { gpu, plan, recorder, programs, groups, shared, chunks, compile_seconds, .. } = self;
+        make_programs(gpu, &kernels, &plan.features, scene, compiling, |program, checking| {
             let begun = Instant::now();
-            if !self.programs.contains_key(&step.kernel) {
-                let program = Program::new(&self.gpu, step.kernel, &self.plan.features, scene)?;
-                self.programs.insert(step.kernel, program);
+            for (number, own) in (0..).zip(chunks.iter()) {
+                let Some(step) = steps.iter().find(|s| (s.kernel, s.chunk) == (program.kernel, number))
+                else {
+                    continue;
+                };
+                let buffer = |name: &str| own.get(name).or_else(|| shared.get(name));
+                let group = program.bind(gpu, &recorder.dispatches, buffer)?;
+                if number == 0 {
+                    let nothing = Dispatch { first: 0, end: 0, ..step.dispatch };
+                    recorder.dispatch(gpu, &program, &group, &nothing);
+                    recorder.submit(gpu);
+                }
+                groups.insert((program.kernel, number), group);
             }
-            let key = (step.kernel, step.chunk);
-            if self.groups.contains_key(&key) {
-                continue;
+            if compiling == Compiling::OneByOne {
+                gpu.wait()?;
+                let driver = begun.elapsed().as_secs_f64();
+                compile_seconds.insert(program.kernel, CompileSeconds { checking, driver });
             }
-            let program = &self.programs[&step.kernel];
-            let chunk = &self.chunks[step.chunk as usize];
-            let buffer = |name: &str| chunk.get(name).or_else(|| self.shared.get(name));
-            let group = program.bind(&self.gpu, &self.recorder.dispatches, buffer)?;
-            if step.chunk == 0 {
-                self.recorder.dispatch(
-                    &self.gpu,
-                    program,
-                    &group,
-                    &Dispatch { first: 0, end: 0, ..step.dispatch },
-                );
-                self.recorder.finish(&self.gpu)?;
-                self.compile_seconds.entry(step.kernel).or_insert(begun.elapsed().as_secs_f64());
-            }
-            self.groups.insert(key, group);
-        }
-        Ok(())
+            programs.insert(program.kernel, program);
+            Ok(())
+        })?;
+        self.gpu.wait()
     }
 
-    /// Seconds that each kernel took to compose, check and compile, until it had run over nothing.
-    pub fn compile_seconds(&self) -> &BTreeMap<Kernel, f64> {
+    /// What each kernel took to be made ready, if this was [measured](Self::measured).
+    pub fn compile_seconds(&self) -> &BTreeMap<Kernel, CompileSeconds> {
         &self.compile_seconds
     }
 
-    /// Runs the next pass one kernel at a time; the seconds of each.
-    pub fn timed_pass(&mut self) -> Result<BTreeMap<Kernel, f64>, EngineError> {
-        self.run_seconds = Some(BTreeMap::new());
-        let done = self.pass();
-        let seconds = self.run_seconds.take().unwrap_or_default();
-        done.map(|_| seconds)
+    /// What it runs on.
+    pub fn adapter(&self) -> &AdapterSummary {
+        &self.gpu.summary
+    }
+
+    /// Sets how many seconds a submission is to take; with infinity, no pass is split for its time.
+    pub fn set_slice(&mut self, seconds: f64) {
+        self.pace.set_slice(seconds);
+    }
+
+    /// What was handed to the device since this was last asked for; counting begins anew.
+    pub fn take_submissions(&mut self) -> Submissions {
+        std::mem::take(&mut self.submissions)
+    }
+
+    /// Whether [`Engine::timed_pass`] reads the device's own clock. If not, it waits for each kernel, and the times hold
+    /// the way to the device and back.
+    pub fn has_clock(&self) -> bool {
+        self.gpu.has_clock()
     }
 
     /// Submits what was recorded.
     fn flush(&mut self) -> Result<(), EngineError> {
         let seconds = self.recorder.finish(&self.gpu)?;
+        if self.stamped {
+            for (kernel, seconds) in self.recorder.stamped(&self.gpu)? {
+                self.clock.add(kernel.stem(), seconds);
+            }
+        }
+        if seconds > 0.0 {
+            self.submissions.count += 1;
+        }
+        if seconds > self.submissions.longest_seconds {
+            self.submissions.longest_seconds = seconds;
+            self.submissions.longest = self.pace.kernels().collect();
+        }
         self.pace.learn(seconds);
         Ok(())
     }
 
-    /// Runs a step, by itself if its time is asked for.
+    /// Runs a step, by itself if its time is asked for and the device has no clock.
     fn run(&mut self, step: &Step) -> Result<(), EngineError> {
-        if self.run_seconds.is_none() {
+        if self.stamped || !self.clock.is_wound() {
             return self.record(step);
         }
         self.flush()?;
-        let begun = Instant::now();
+        self.clock.begin(step.kernel.stem());
         self.record(step)?;
         self.flush()?;
-        if let Some(seconds) = &mut self.run_seconds {
-            *seconds.entry(step.kernel).or_default() += begun.elapsed().as_secs_f64();
-        }
+        self.clock.end();
         Ok(())
     }
 
@@ -202,7 +278,7 @@ impl GpuEngine {
     /// The steps of a pass up to `Resolve`, which do not touch what passes before have found.
     fn trace(&mut self, steps: &[Step]) -> Result<Counted, EngineError> {
         let batches = steps.iter().filter(|s| s.kernel == Kernel::PhotonTrace).count() as u64;
-        let bytes = COUNTERS_BYTES + 4 * batches;
+        let bytes = READINGS_BYTES + 4 * batches;
         if self.readings.size() < bytes {
             self.readings = self.gpu.storage("readings", bytes)?;
         }
@@ -210,26 +286,40 @@ impl GpuEngine {
             self.recorder.clear(&self.gpu, &chunk["gathered"], None);
         }
         self.recorder.clear(&self.gpu, &self.shared["counters"], None);
-        let mut offset = COUNTERS_BYTES;
-        let mut mended = 0;
+        let mut offset = READINGS_BYTES;
+        let (mut mended, mut mended_eyes) = (0, 0);
         for step in steps {
             if step.kernel == Kernel::PhotonTrace {
                 self.recorder.clear(&self.gpu, &self.shared["counters"], Some(4));
             }
             self.run(step)?;
             mended += self.mend(step)?;
+            if step.kernel == Kernel::EyeTrace {
+                mended_eyes = mended;
+                self.recorder.copy(
+                    &self.gpu,
+                    (&self.shared["counters"], 4),
+                    (&self.readings, COUNTERS_BYTES),
+                    8,
+                );
+            }
             if step.kernel == Kernel::PhotonTrace {
-                self.recorder.copy(&self.gpu, &self.shared["counters"], &self.readings, offset, 4);
+                self.recorder.copy(&self.gpu, (&self.shared["counters"], 0), (&self.readings, offset), 4);
                 offset += 4;
             }
         }
-        self.recorder.copy(&self.gpu, &self.shared["counters"], &self.readings, 0, COUNTERS_BYTES);
+        let counters = &self.shared["counters"];
+        self.recorder.copy(&self.gpu, (counters, 0), (&self.readings, 0), COUNTERS_BYTES);
         self.flush()?;
         let words: Vec<u32> = bytemuck::pod_collect_to_vec(&self.gpu.read(&self.readings, bytes)?);
-        let rays = (words[1] as u64 | (words[2] as u64) << 32) + mended;
+        let wide = |at: usize| words[at] as u64 | (words[at + 1] as u64) << 32;
+        let rays = wide(1) + mended;
+        // a pass that traces no eye path leaves what stood here
+        let eyes = steps.iter().any(|step| step.kernel == Kernel::EyeTrace);
+        let eye_rays = if eyes { wide(COUNTERS_BYTES as usize / 4) + mended_eyes } else { 0 };
         let ends = PhotonEnds::of([words[ENDS], words[ENDS + 1], words[ENDS + 2]].map(u64::from));
-        let records = words[COUNTERS_BYTES as usize / 4..].to_vec();
-        Ok(Counted { records, rays, ends, stopped: words[3] })
+        let records = words[READINGS_BYTES as usize / 4..].to_vec();
+        Ok(Counted { records, rays, eye_rays, ends, stopped: words[3] })
     }
 
     /// Traces again, on the CPU, the paths of a step that a software driver stopped; the number of their rays.
@@ -319,10 +409,20 @@ impl Engine for GpuEngine {
                 records: counted.records.iter().map(|r| *r as u64).sum(),
                 eye_paths: eye_paths.sum(),
                 rays: counted.rays,
+                eye_rays: counted.eye_rays,
                 ends: counted.ends,
                 radius: self.plan.radius(pass),
             });
         }
+    }
+
+    fn timed_pass(&mut self) -> Result<(PassReport, KernelSeconds), EngineError> {
+        self.stamped = self.recorder.stamp(&self.gpu, true)?;
+        self.clock.wind();
+        let report = self.pass();
+        let seconds = self.clock.take();
+        self.stamped = self.recorder.stamp(&self.gpu, false)?;
+        Ok((report?, seconds))
     }
 
     fn picture(&mut self) -> Result<Picture, EngineError> {
@@ -335,6 +435,20 @@ impl Engine for GpuEngine {
 
     fn rejections(&mut self) -> Result<Rejections, EngineError> {
         Ok(self.plan.rejections(&self.film()?))
+    }
+
+    fn results(&mut self) -> Result<(Picture, Rejections), EngineError> {
+        let film = self.film()?;
+        Ok((self.plan.picture(&film), self.plan.rejections(&film)))
+    }
+
+    fn gathered(&mut self) -> Result<u64, EngineError> {
+        let mut photons = 0;
+        for chunk in 0..self.plan.chunks() {
+            let gathered: Vec<Gathered> = bytemuck::pod_collect_to_vec(&self.content("gathered", chunk)?);
+            photons += gathered.iter().map(|gathered| u64::from(gathered.count)).sum::<u64>();
+        }
+        Ok(photons)
     }
 }
 

@@ -56,7 +56,7 @@ pub const FRAGMENTS: &[Fragment] = fragments![
     "lights/emission.wgsl" if "photon_trace",
     "lights/aim.wgsl" if "photon_trace && far",
     "camera.wgsl" if "eye_trace",
-    "grid.wgsl" if "grid_count || grid_scatter || grid_sort || gather",
+    "grid.wgsl" if "grid_count || grid_scatter || grid_sort || grid_sort_long || gather",
     "kernels/records.wgsl" if "",
     "kernels/direct.wgsl" if "scene",
     "kernels/scan.wgsl" if "grid_scan_reduce || grid_scan_sums || grid_scan",
@@ -67,7 +67,9 @@ pub const FRAGMENTS: &[Fragment] = fragments![
     "kernels/grid_scan_sums.wgsl" if "grid_scan_sums",
     "kernels/grid_scan.wgsl" if "grid_scan",
     "kernels/grid_scatter.wgsl" if "grid_scatter",
+    "kernels/sort.wgsl" if "grid_sort || grid_sort_long",
     "kernels/grid_sort.wgsl" if "grid_sort",
+    "kernels/grid_sort_long.wgsl" if "grid_sort_long",
     "kernels/gather.wgsl" if "gather",
     "kernels/resolve.wgsl" if "resolve",
 ];

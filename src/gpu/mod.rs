@@ -10,6 +10,7 @@ mod mend;
 pub mod pace;
 pub mod program;
 pub mod recorder;
+mod stamps;
 
 pub use context::{AdapterChoice, AdapterKind, AdapterSummary, Gpu, list};
-pub use engine::GpuEngine;
+pub use engine::{CompileSeconds, GpuEngine, Submissions};

@@ -4,33 +4,53 @@
 use crate::plan::Kernel;
 use std::collections::BTreeMap;
 
-/// Seconds that a submission is to take.
-const SLICE: f64 = 0.05;
+/// Seconds that a submission is to take, if nothing else is asked for.
+pub const SLICE: f64 = 0.05;
 /// Items of a kernel's first submission, when nothing is known of it.
 const FIRST_ITEMS: u32 = 1 << 14;
 /// Factor by which one measurement can change an estimate.
 const STEP: f64 = 8.0;
 
 /// Estimated seconds per item of each kernel, and what the submission under way holds.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Pace {
+    slice: f64,
     seconds_per_item: BTreeMap<Kernel, f64>,
     recorded: Vec<(Kernel, u32)>,
 }
 
+impl Default for Pace {
+    fn default() -> Self {
+        Self { slice: SLICE, seconds_per_item: BTreeMap::new(), recorded: Vec::new() }
+    }
+}
+
 impl Pace {
+    /// Sets how many seconds a submission is to take; with infinity, nothing is split for its time.
+    pub fn set_slice(&mut self, seconds: f64) {
+        self.slice = seconds;
+    }
+
+    /// Whether submissions end by their time.
+    fn splits(&self) -> bool {
+        self.slice.is_finite()
+    }
+
     /// How many of `items` items of `kernel` still fit; 0 when the submission is full. A kernel of which nothing is
     /// known gets a submission of its own.
     pub fn fit(&self, kernel: Kernel, items: u32) -> u32 {
+        if !self.splits() {
+            return items;
+        }
         let Some(seconds) = self.seconds_per_item.get(&kernel) else {
             return if self.recorded.is_empty() { items.min(FIRST_ITEMS) } else { 0 };
         };
         let spent = self.estimate();
         let unknown = self.recorded.iter().any(|(k, _)| !self.seconds_per_item.contains_key(k));
-        if unknown || !self.recorded.is_empty() && spent + 0.1 * SLICE > SLICE {
+        if unknown || !self.recorded.is_empty() && spent + 0.1 * self.slice > self.slice {
             return 0;
         }
-        ((SLICE - spent) / seconds).clamp(1.0, items as f64) as u32
+        ((self.slice - spent) / seconds).clamp(1.0, items as f64) as u32
     }
 
     /// Notes that `items` items of `kernel` were put into the submission.
@@ -38,14 +58,24 @@ impl Pace {
         self.recorded.push((kernel, items));
     }
 
+    /// The kernels of the submission, in order.
+    pub fn kernels(&self) -> impl Iterator<Item = Kernel> + '_ {
+        self.recorded.iter().map(|(kernel, _)| *kernel)
+    }
+
     /// Learns from the time that the submission took, and begins a new one.
     pub fn learn(&mut self, seconds: f64) {
         let estimate = self.estimate();
-        for (kernel, items) in std::mem::take(&mut self.recorded) {
+        let recorded = std::mem::take(&mut self.recorded);
+        if !self.splits() {
+            // one submission of everything tells nothing of its kernels
+            return;
+        }
+        for (kernel, items) in recorded {
             let measured = seconds.max(1e-7) / items.max(1) as f64;
             self.seconds_per_item
                 .entry(kernel)
-                .and_modify(|old| *old *= (seconds / estimate).clamp(1.0 / STEP, STEP))
+                .and_modify(|old| *old *= correction(seconds / estimate))
                 .or_insert(measured);
         }
     }
@@ -58,19 +88,22 @@ impl Pace {
     }
 }
 
+/// By what an estimate is multiplied after a submission took `ratio` times as long: at once where it took longer, by the root
+/// where it was quicker, since the next items may be dearer again and too long a submission costs more than too short a one.
+fn correction(ratio: f64) -> f64 {
+    if ratio > 1.0 { ratio.min(STEP) } else { ratio.sqrt().max(1.0 / STEP) }
+}
+
+/// Theory: a device of known cost per item is filled slice by slice, without losing an item.
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// A device with fixed costs: after a few submissions each takes about a slice, none ten times as long, and no
-    /// item is lost.
-    #[test]
-    fn slices_settle() {
+    /// Times of the submissions in which `rounds` rounds of two kernels of a million items run.
+    fn submissions(pace: &mut Pace, rounds: usize) -> Vec<f64> {
         let cost = |kernel| if kernel == Kernel::Gather { 3e-6 } else { 2e-8 };
-        let mut pace = Pace::default();
-        let mut times = Vec::new();
-        let mut time = 0.0;
-        for kernel in [Kernel::EyeTrace, Kernel::Gather].repeat(4) {
+        let (mut times, mut time) = (Vec::new(), 0.0);
+        for kernel in [Kernel::EyeTrace, Kernel::Gather].repeat(rounds) {
             let mut left = 1_000_000;
             while left > 0 {
                 let items = pace.fit(kernel, left);
@@ -86,9 +119,34 @@ mod tests {
                 left -= items;
             }
         }
-        assert!(times.iter().all(|t| *t < 10.0 * SLICE), "{times:?}");
-        let late = &times[times.len() / 2..];
-        assert!(late.iter().all(|t| *t < 2.0 * SLICE), "{late:?}");
-        assert!(late.len() as f64 * SLICE < 2.0 * late.iter().sum::<f64>() + SLICE, "{late:?}");
+        times.push(time);
+        pace.learn(time);
+        times
+    }
+
+    /// After a few submissions each takes about a slice, none ten times as long.
+    #[test]
+    fn slices_settle() {
+        for slice in [SLICE, 0.2 * SLICE] {
+            let mut pace = Pace::default();
+            pace.set_slice(slice);
+            let times = submissions(&mut pace, 4);
+            assert!(times.iter().all(|t| *t < 10.0 * SLICE), "{times:?}");
+            let late = &times[times.len() / 2..];
+            assert!(late.iter().all(|t| *t < 2.0 * slice), "{late:?}");
+            assert!(late.len() as f64 * slice < 2.0 * late.iter().sum::<f64>() + slice, "{late:?}");
+        }
+    }
+
+    /// Without a limit everything is one submission, and what was learned before it holds after it.
+    #[test]
+    fn without_a_slice_nothing_is_split() {
+        let mut pace = Pace::default();
+        let split = submissions(&mut pace, 4).len();
+        pace.set_slice(f64::INFINITY);
+        assert_eq!(submissions(&mut pace, 4).len(), 1);
+        pace.set_slice(SLICE);
+        let again = submissions(&mut pace, 4);
+        assert!(again.len() <= split && again.iter().all(|t| *t < 2.0 * SLICE), "{again:?}");
     }
 }

@@ -6,7 +6,10 @@ use super::layout::{Access, Binding, SceneTables, bindings};
 use crate::engine::EngineError;
 use crate::features::Features;
 use crate::kernels::records::Dispatch;
-use crate::plan::{Kernel, SCAN_BLOCK};
+use crate::plan::{Kernel, SCAN_BLOCK, SORT_BUCKETS};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc;
+use std::time::Instant;
 
 /// A compiled kernel.
 pub struct Program {
@@ -36,7 +39,6 @@ impl Program {
         features: &Features,
         shader: Shader,
     ) -> Result<Self, EngineError> {
-        shader.validate().map_err(|e| EngineError::Shader(e.to_string()))?;
         let bindings = bindings(kernel, features);
         let stem = kernel.stem();
         let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
@@ -52,7 +54,7 @@ impl Program {
         });
         let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some(stem),
-            source: wgpu::ShaderSource::Wgsl(shader.source.into()),
+            source: wgpu::ShaderSource::Wgsl(shader.source.as_str().into()),
         });
         let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
             label: Some(stem),
@@ -67,7 +69,11 @@ impl Program {
             cache: None,
         });
         match pollster::block_on(scope.pop()) {
-            Some(error) => Err(EngineError::Shader(format!("{stem}: {}", causes(&error)))),
+            Some(error) => Err(EngineError::Shader(match shader.validate() {
+                // with file and line
+                Err(fault) => fault.to_string(),
+                Ok(_) => format!("{stem}: {}", causes(&error)),
+            })),
             None => gpu.check().map(|()| Self { kernel, pipeline, layout, bindings }),
         }
     }
@@ -106,10 +112,56 @@ impl Program {
     }
 }
 
+/// How kernels are made ready.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Compiling {
+    /// On several threads.
+    Together,
+    /// One after another, so that the times of each can be told.
+    OneByOne,
+}
+
+/// Composes and compiles kernels, and hands each over as soon as it is ready, with the seconds that it took.
+pub fn make_programs(
+    gpu: &Gpu,
+    kernels: &[Kernel],
+    features: &Features,
+    scene: &SceneTables,
+    compiling: Compiling,
+    mut take: impl FnMut(Program, f64) -> Result<(), EngineError>,
+) -> Result<(), EngineError> {
+    let make = |kernel: &Kernel| {
+        let begun = Instant::now();
+        Program::new(gpu, *kernel, features, scene).map(|made| (made, begun.elapsed().as_secs_f64()))
+    };
+    if compiling == Compiling::OneByOne {
+        return kernels.iter().try_for_each(|kernel| make(kernel).and_then(|(made, time)| take(made, time)));
+    }
+    let threads = std::thread::available_parallelism().map_or(1, |n| n.get()).min(kernels.len());
+    let next = AtomicUsize::new(0);
+    let (sender, receiver) = mpsc::channel();
+    std::thread::scope(|scope| {
+        for _ in 0..threads {
+            let (sender, next, make) = (sender.clone(), &next, &make);
+            scope.spawn(move || {
+                while let Some(kernel) = kernels.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    // nobody listens any more after a failure
+                    if sender.send(make(kernel)).is_err() {
+                        break;
+                    }
+                }
+            });
+        }
+        drop(sender);
+        receiver.into_iter().try_for_each(|made| made.and_then(|(made, time)| take(made, time)))
+    })
+}
+
 /// Items that one workgroup of a kernel covers; dispatches begin at multiples of it.
 pub fn workgroup_items(kernel: Kernel) -> u32 {
     match kernel {
         Kernel::GridScanReduce | Kernel::GridScanSums | Kernel::GridScan => SCAN_BLOCK,
+        Kernel::GridSortLong => SORT_BUCKETS,
         _ => 64,
     }
 }

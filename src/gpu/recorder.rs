@@ -2,8 +2,10 @@
 
 use super::context::Gpu;
 use super::program::{Program, arrange, workgroup_items};
+use super::stamps::Stamps;
 use crate::engine::EngineError;
 use crate::kernels::records::Dispatch;
+use crate::plan::Kernel;
 use bytemuck::bytes_of;
 use std::time::Instant;
 
@@ -17,6 +19,7 @@ pub struct Recorder {
     stride: usize,
     staged: Vec<u8>,
     encoder: Option<wgpu::CommandEncoder>,
+    stamps: Option<Stamps>,
 }
 
 impl Recorder {
@@ -26,12 +29,18 @@ impl Recorder {
         let stride = size_of::<Dispatch>().next_multiple_of(alignment.max(1));
         let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
         let dispatches = gpu.buffer("dispatches", (SLOTS * stride) as u64, usage)?;
-        Ok(Self { dispatches, stride, staged: Vec::new(), encoder: None })
+        Ok(Self { dispatches, stride, staged: Vec::new(), encoder: None, stamps: None })
     }
 
     /// Whether no further dispatch has a slot.
     pub fn is_full(&self) -> bool {
         self.staged.len() >= SLOTS * self.stride
+    }
+
+    /// Begins or ends to time every dispatch by the device's clock; whether it can.
+    pub fn stamp(&mut self, gpu: &Gpu, on: bool) -> Result<bool, EngineError> {
+        self.stamps = if on { Stamps::new(gpu, SLOTS as u32)? } else { None };
+        Ok(self.stamps.is_some())
     }
 
     fn encoder(&mut self, gpu: &Gpu) -> &mut wgpu::CommandEncoder {
@@ -43,9 +52,15 @@ impl Recorder {
         self.encoder(gpu).clear_buffer(buffer, 0, bytes);
     }
 
-    /// Copies the first `bytes` bytes of `source` to `offset` in `target`.
-    pub fn copy(&mut self, gpu: &Gpu, source: &wgpu::Buffer, target: &wgpu::Buffer, offset: u64, bytes: u64) {
-        self.encoder(gpu).copy_buffer_to_buffer(source, 0, target, offset, bytes);
+    /// Copies `bytes` bytes from an offset in one buffer to an offset in another.
+    pub fn copy(
+        &mut self,
+        gpu: &Gpu,
+        (source, from): (&wgpu::Buffer, u64),
+        (target, to): (&wgpu::Buffer, u64),
+        bytes: u64,
+    ) {
+        self.encoder(gpu).copy_buffer_to_buffer(source, from, target, to, bytes);
     }
 
     /// Records one dispatch; there must be a slot.
@@ -55,9 +70,12 @@ impl Recorder {
         self.staged.resize(offset + self.stride, 0);
         let items = (dispatch.end - dispatch.first).div_ceil(workgroup_items(program.kernel));
         let (columns, rows) = arrange(items);
-        let descriptor =
-            wgpu::ComputePassDescriptor { label: Some(program.kernel.stem()), timestamp_writes: None };
-        let mut pass = self.encoder(gpu).begin_compute_pass(&descriptor);
+        let Self { encoder, stamps, .. } = self;
+        let encoder = encoder.get_or_insert_with(|| gpu.device.create_command_encoder(&Default::default()));
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: Some(program.kernel.stem()),
+            timestamp_writes: stamps.as_mut().map(|stamps| stamps.next(program.kernel)),
+        });
         pass.set_pipeline(&program.pipeline);
         pass.set_bind_group(0, group, &[offset as u32]);
         pass.dispatch_workgroups(columns, rows, 1);
@@ -65,14 +83,30 @@ impl Recorder {
 
     /// Submits what was recorded and waits for it; the seconds it took.
     pub fn finish(&mut self, gpu: &Gpu) -> Result<f64, EngineError> {
-        let Some(encoder) = self.encoder.take() else {
-            return Ok(0.0);
-        };
-        gpu.write(&self.dispatches, &self.staged);
-        self.staged.clear();
         let begun = Instant::now();
-        gpu.queue.submit([encoder.finish()]);
+        if !self.submit(gpu) {
+            return Ok(0.0);
+        }
         gpu.wait()?;
         Ok(begun.elapsed().as_secs_f64())
+    }
+
+    /// Submits what was recorded; whether there was anything.
+    pub fn submit(&mut self, gpu: &Gpu) -> bool {
+        let Some(mut encoder) = self.encoder.take() else {
+            return false;
+        };
+        if let Some(stamps) = &self.stamps {
+            stamps.resolve(&mut encoder);
+        }
+        gpu.write(&self.dispatches, &self.staged);
+        self.staged.clear();
+        gpu.queue.submit([encoder.finish()]);
+        true
+    }
+
+    /// Seconds of each dispatch of the last submission by the device's clock, where dispatches are stamped.
+    pub fn stamped(&mut self, gpu: &Gpu) -> Result<Vec<(Kernel, f64)>, EngineError> {
+        self.stamps.as_mut().map_or(Ok(Vec::new()), |stamps| stamps.read(gpu))
     }
 }

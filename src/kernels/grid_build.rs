@@ -1,5 +1,6 @@
 //! The hash grid's construction: count, scan, scatter, sort. Twins: `shaders/kernels/grid_count.wgsl`,
-//! `grid_scan_reduce.wgsl`, `grid_scan_sums.wgsl`, `grid_scan.wgsl`, `grid_scatter.wgsl` and `grid_sort.wgsl`.
+//! `grid_scan_reduce.wgsl`, `grid_scan_sums.wgsl`, `grid_scan.wgsl`, `grid_scatter.wgsl`, `grid_sort.wgsl` and
+//! `grid_sort_long.wgsl`.
 //!
 //! The result does not depend on the order in which threads arrive: within a bucket the records stand in the
 //! order of their keys.
@@ -24,6 +25,8 @@ pub struct SortedRecords {
     pub fluxes: Vec<Vec4>,
 }
 
+/// Records that one task copies, at the least.
+const SORT_TASK: usize = 4096;
 /// Entries after the last record, for those who read some at once.
 const TAIL: usize = 16;
 
@@ -84,15 +87,20 @@ pub fn grid_scatter(
 
 /// Copies the records to `sorted` in the order of `order`, in which buckets are sorted by key already.
 pub fn grid_sort(dispatch: &Dispatch, records: &[PhotonRecord], order: &[u32], sorted: &mut SortedRecords) {
-    let at = |i: &u32| &records[*i as usize];
-    for axis in 0..3 {
-        let (position, direction) = (&mut sorted.positions[axis], &mut sorted.directions[axis]);
-        order.par_iter().map(|i| at(i).position[axis]).collect_into_vec(position);
-        order.par_iter().map(|i| oct_vector(at(i).direction)[axis]).collect_into_vec(direction);
-        position.resize(order.len() + TAIL, 0.0);
-        direction.resize(order.len() + TAIL, 0.0);
-    }
-    order.par_iter().map(|i| record_code(dispatch, at(i))).collect_into_vec(&mut sorted.codes);
-    sorted.codes.resize(order.len() + TAIL, u32::MAX);
-    order.par_iter().map(|i| at(i).flux.extend(0.0)).collect_into_vec(&mut sorted.fluxes);
+    let length = order.len() + TAIL;
+    let SortedRecords { positions, directions, codes, fluxes } = sorted;
+    positions.iter_mut().chain(directions.iter_mut()).for_each(|values| values.resize(length, 0.0));
+    codes.resize(length, u32::MAX);
+    codes[order.len()..].fill(u32::MAX);
+    fluxes.resize(length, Vec4::ZERO);
+    let ([xs, ys, zs], [us, vs, ws]) = (positions, directions);
+    (order, xs, ys, zs, us, vs, ws, codes, fluxes).into_par_iter().with_min_len(SORT_TASK).for_each(
+        |(i, x, y, z, u, v, w, code, flux)| {
+            let record = &records[*i as usize];
+            [*x, *y, *z] = record.position.to_array();
+            [*u, *v, *w] = oct_vector(record.direction).to_array();
+            *code = record_code(dispatch, record);
+            *flux = record.flux.extend(0.0);
+        },
+    );
 }

@@ -3,6 +3,7 @@
 mod image;
 mod light;
 mod medium;
+mod order;
 mod shape;
 
 pub use crate::error::PackError;
@@ -37,7 +38,7 @@ pub fn pack(scene: &scene::Scene, width: u32, height: u32) -> Result<Packed, Pac
     for m in &scene.materials {
         out.materials.push(material(m, n.unit));
     }
-    let (primitives, references, emitters) = shape::pack_shapes(scene, &n, &mut out)?;
+    let (primitives, references, mut emitters) = shape::pack_shapes(scene, &n, &mut out)?;
     let limit = 1 << REFERENCE_BITS;
     if references.len() >= limit {
         return Err(PackError::TooMany { what: "primitives", count: references.len(), limit });
@@ -50,6 +51,7 @@ pub fn pack(scene: &scene::Scene, width: u32, height: u32) -> Result<Packed, Pac
         out.world.bounds_max = tree.bounds.max;
         out.nodes = tree.nodes;
         out.refs = tree.refs.iter().map(|&i| references[i as usize]).collect();
+        order::triangles_as_met(&mut out, &mut emitters);
     }
     out.world.unit = n.unit as Real;
     out.world.planar_origin = Vec2::new(n.center.x as Real, n.center.z as Real);

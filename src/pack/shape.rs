@@ -44,10 +44,11 @@ pub fn pack_shapes(scene: &scene::Scene, n: &Normalization, out: &mut Scene) -> 
             ShapeKind::Plane { point, normal } => pack.plane(*point, *normal, material, uv),
             ShapeKind::Cuboid { min, max } => pack.cuboid(*min, *max, material, uv, emission),
             ShapeKind::Mesh(mesh) => pack.mesh(mesh, material, uv, emission),
-            ShapeKind::Revolution { segments, transform } => {
+            ShapeKind::Revolution { segments, transform, newton_tolerance } => {
                 let light =
                     pack.light(emission, reference(KIND_REVOLUTION, revolutions.revolutions.len()), 0.0);
-                let attributes = RevolutionAttributes { material, light, uv };
+                let attributes =
+                    RevolutionAttributes { material, light, uv, step_tolerance: *newton_tolerance };
                 let placement = placement(transform, n);
                 let boxes = revolutions
                     .push(segments, &placement, attributes)
@@ -59,7 +60,11 @@ pub fn pack_shapes(scene: &scene::Scene, n: &Normalization, out: &mut Scene) -> 
             }
         }
     }
-    let (primitives, references, emitters) = (pack.primitives, pack.references, pack.emitters);
+    let Pack { primitives, references, emitters, .. } = pack;
+    // By kind, so that each leaf names its triangles first.
+    let mut items: Vec<_> = references.into_iter().zip(primitives).collect();
+    items.sort_unstable_by_key(|item| item.0);
+    let (references, primitives) = items.into_iter().unzip();
     out.revolutions = revolutions.revolutions;
     out.patches = revolutions.patches;
     out.profile_points = revolutions.profile_points;

@@ -77,6 +77,9 @@ pub enum ShapeKind {
         segments: Vec<Vec<DVec2>>,
         /// World from object.
         transform: Transform,
+        /// Newton steps shorter than this, in sizes of the profile, end the search of a ray's hit; 0, which scene files
+        /// mean, goes on as far as the precision allows.
+        newton_tolerance: f64,
     },
 }
 

@@ -69,7 +69,7 @@ pub(super) fn shapes(
             let segments = segments?;
             let reach = segments.iter().flatten().map(|point| point.abs().max_element()).fold(0.0, f64::max);
             within_reach(loader.report, item, reach * transform.scale);
-            let kind = ShapeKind::Revolution { segments, transform };
+            let kind = ShapeKind::Revolution { segments, transform, newton_tolerance: 0.0 };
             (kind, material, surface)
         }
         ShapeFile::Mesh { file, smooth, material, transform, surface } => {

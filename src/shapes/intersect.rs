@@ -10,6 +10,7 @@ use super::revolution::intersect_patch;
 use super::sphere::intersect_sphere;
 use super::tables::*;
 use super::triangle::{RayShear, intersect_triangle};
+use super::triangles::intersect_triangles;
 
 /// A ray against the shape that `reference` names.
 #[inline]
@@ -34,6 +35,23 @@ pub fn intersect_primitive(scene: &Scene, shear: &RayShear, reference: u32, ray:
     }
 }
 
+/// A ray against what the references of a leaf name, triangles first and several at a time; in search of any hit it
+/// may stop at one.
+#[inline]
+fn intersect_leaf(scene: &Scene, shear: &RayShear, references: &[u32], any: bool, ray: &Ray, hit: &mut Hit) {
+    let count = references.iter().take_while(|&r| r >> REFERENCE_BITS == KIND_TRIANGLE).count();
+    let (triangles, others) = references.split_at(count);
+    if !triangles.is_empty() {
+        intersect_triangles(&scene.triangles, triangles, shear, ray, hit);
+    }
+    for &reference in others {
+        if any && hit.reference != NONE {
+            return;
+        }
+        intersect_primitive(scene, shear, reference, ray, hit);
+    }
+}
+
 /// The nearest hit of a ray, or a hit whose reference is [`NONE`].
 pub fn intersect_scene(scene: &Scene, ray: &Ray) -> Hit {
     let mut hit = Hit { t: ray.t_max, reference: NONE, u: 0.0, v: 0.0 };
@@ -42,8 +60,8 @@ pub fn intersect_scene(scene: &Scene, ray: &Ray) -> Hit {
         intersect_primitive(scene, &shear, scene.unbounded[i as usize], ray, &mut hit);
     }
     if !scene.nodes.is_empty() {
-        traverse_closest(&tree(scene), ray, &mut hit, |r, ray, hit| {
-            intersect_primitive(scene, &shear, r, ray, hit)
+        traverse_closest(&tree(scene), ray, &mut hit, |leaf, ray, hit| {
+            intersect_leaf(scene, &shear, leaf, false, ray, hit)
         });
     }
     hit
@@ -60,8 +78,8 @@ pub fn occluded(scene: &Scene, ray: &Ray) -> bool {
         }
     }
     !scene.nodes.is_empty()
-        && traverse_any(&tree(scene), ray, &mut hit, |r, ray, hit| {
-            intersect_primitive(scene, &shear, r, ray, hit)
+        && traverse_any(&tree(scene), ray, &mut hit, |leaf, ray, hit| {
+            intersect_leaf(scene, &shear, leaf, true, ray, hit)
         })
 }
 

@@ -1,9 +1,8 @@
 //! Rays through the kd-tree. Twin: `shaders/shapes/kdtree.wgsl`.
 //!
-//! A short stack in a ring (Horn et al. 2007) remembers the far children that wait; when it is full it forgets its
-//! oldest entry. One bit per level of the tree says at which levels a far child still waits (the restart trail of
-//! Laine 2010), so a forgotten entry is found again by a walk down from the root: no node is ever dropped, and the
-//! bits, read as a number, fall with every walk, so it ends whatever the rounding.
+//! The far children that wait lie on a stack as deep as the tree. Siblings lie side by side, so that a glance at them
+//! costs nothing: empty leaves, which are more than half of all, are neither entered nor put on the stack. Both twins test
+//! the same leaves in the same order, so that ties in the distance end alike.
 //!
 //! A computed hit may lie off its primitive by a few roundings of the largest coordinate relative to the ray's
 //! origin. So every plane is taken as a slab of half-width `SLACK` times that length: a ray that is in the slab
@@ -14,9 +13,7 @@ use super::ray::{Hit, NONE, Ray};
 use super::real::{Bits, Plain, Real, Vec3};
 use bytemuck::Zeroable;
 
-/// Entries of the short stack.
-pub const STACK: usize = 24;
-/// Greatest number of interior nodes above a leaf: one bit each in a word.
+/// Greatest number of interior nodes above a leaf, and so of children that wait.
 pub const MAX_DEPTH: u32 = 32;
 /// Half-width of the slab about a plane, relative to the largest coordinate of the tree's box as seen from the ray's
 /// origin: 64 roundings. The watertight triangle test is bounded by about 30 (7 is the most seen), the plane's
@@ -26,20 +23,25 @@ const SLACK: Real = 64.0 * EPS;
 /// reached within the tree, and one which the ray runs in is never left.
 const LEVEL: Real = 1e-20;
 
-/// A node of the kd-tree in 8 bytes (16 in f64). A left child follows its parent in memory.
+/// A node of the kd-tree in 8 bytes (16 in f64). Two siblings lie side by side, the lower one at an even index.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain, Zeroable)]
 pub struct Node {
     /// Interior: bits of the splitting plane's position. Leaf: index of its first reference.
     pub word0: Bits,
-    /// Interior: index of the right child << 2 | axis. Leaf: number of references << 2 | 3.
+    /// Interior: index of the lower child << 2 | axis. Leaf: number of references << 2 | 3.
     pub word1: u32,
 }
 
+/// `word1` of a leaf without references.
+const EMPTY: u32 = 3;
+/// Index of an empty leaf: the place beside the root.
+const NOTHING: u32 = 1;
+
 impl Node {
-    /// A node with two children, split at `axis = position`.
-    pub fn interior(axis: usize, position: Real, right: u32) -> Node {
-        Node { word0: position.to_bits(), word1: right << 2 | axis as u32 }
+    /// A node with two children, at `children` and after it, split at `axis = position`.
+    pub fn interior(axis: usize, position: Real, children: u32) -> Node {
+        Node { word0: position.to_bits(), word1: children << 2 | axis as u32 }
     }
 
     /// A leaf with `count` references from `first` on.
@@ -53,7 +55,7 @@ impl Node {
         self.word1 & 3 == 3
     }
 
-    /// Interior: axis and position of the plane, and index of the right child.
+    /// Interior: axis and position of the plane, and index of the lower child.
     #[inline]
     pub fn plane(self) -> (usize, Real, u32) {
         ((self.word1 & 3) as usize, Real::from_bits(self.word0), self.word1 >> 2)
@@ -67,10 +69,10 @@ impl Node {
     }
 }
 
-/// A kd-tree as the kernels see it; `nodes` has at least the root.
+/// A kd-tree as the kernels see it; `nodes` has at least the first two.
 #[derive(Clone, Copy, Debug)]
 pub struct Tree<'a> {
-    /// Nodes, the root first.
+    /// Nodes, the root first and an empty leaf beside it, then pairs of siblings.
     pub nodes: &'a [Node],
     /// References in the order of the leaves.
     pub refs: &'a [u32],
@@ -88,105 +90,112 @@ struct Waiting {
     end: Real,
 }
 
+/// The larger of two numbers in one instruction; `Real::max` takes four, in case one is none.
+#[inline]
+fn larger(a: Real, b: Real) -> Real {
+    if a > b { a } else { b }
+}
+
+/// The smaller of two numbers.
+#[inline]
+fn smaller(a: Real, b: Real) -> Real {
+    if a < b { a } else { b }
+}
+
 #[inline]
 fn reciprocal(d: Real) -> Real {
     1.0 / if d.abs() < LEVEL { LEVEL } else { d }
 }
 
-/// Lowers `hit` to the nearest hit with a primitive of the tree. `intersect(reference, ray, hit)` tests one
-/// primitive and replaces `hit` by anything nearer.
-#[inline]
-pub fn traverse_closest(tree: &Tree, ray: &Ray, hit: &mut Hit, intersect: impl Fn(u32, &Ray, &mut Hit)) {
-    traverse::<STACK>(tree, ray, false, hit, intersect);
+/// What the walk needs to know of a ray along one axis.
+#[derive(Clone, Copy)]
+struct Axis {
+    origin: Real,
+    inverse: Real,
+    slack: Real,
+    /// 1 where the ray meets the upper child first.
+    backward: u32,
 }
 
-/// Whether `hit` is not [`NONE`] after testing primitives of the tree until one is hit.
+/// Lowers `hit` to the nearest hit with a primitive of the tree. `intersect(references, ray, hit)` tests the primitives of
+/// a leaf and replaces `hit` by anything nearer.
 #[inline]
-pub fn traverse_any(tree: &Tree, ray: &Ray, hit: &mut Hit, intersect: impl Fn(u32, &Ray, &mut Hit)) -> bool {
-    traverse::<STACK>(tree, ray, true, hit, intersect);
+pub fn traverse_closest(tree: &Tree, ray: &Ray, hit: &mut Hit, intersect: impl Fn(&[u32], &Ray, &mut Hit)) {
+    traverse(tree, ray, false, hit, intersect);
+}
+
+/// Whether `hit` is not [`NONE`] after testing the leaves of the tree until something is hit.
+#[inline]
+pub fn traverse_any(
+    tree: &Tree,
+    ray: &Ray,
+    hit: &mut Hit,
+    intersect: impl Fn(&[u32], &Ray, &mut Hit),
+) -> bool {
+    traverse(tree, ray, true, hit, intersect);
     hit.reference != NONE
 }
 
-/// [`traverse_closest`], or [`traverse_any`] if `any`, with a stack of `SIZE` entries; the answer does not depend on it.
 #[inline]
-pub fn traverse<const SIZE: usize>(
-    tree: &Tree,
-    ray: &Ray,
-    any: bool,
-    hit: &mut Hit,
-    intersect: impl Fn(u32, &Ray, &mut Hit),
-) {
+fn traverse(tree: &Tree, ray: &Ray, any: bool, hit: &mut Hit, intersect: impl Fn(&[u32], &Ray, &mut Hit)) {
     let inverse =
         Vec3::new(reciprocal(ray.direction.x), reciprocal(ray.direction.y), reciprocal(ray.direction.z));
     let to_min = tree.bounds_min - ray.origin;
     let to_max = tree.bounds_max - ray.origin;
     let reach = to_min.abs().max(to_max.abs());
-    let slack = (SLACK * reach.x.max(reach.y).max(reach.z)) * inverse.abs();
+    let slack = (SLACK * larger(larger(reach.x, reach.y), reach.z)) * inverse.abs();
     let t0 = to_min * inverse;
     let t1 = to_max * inverse;
     let enter = t0.min(t1) - slack;
     let leave = t0.max(t1) + slack;
-    let root_begin = ray.t_min.max(enter.x).max(enter.y).max(enter.z);
-    let root_end = hit.t.min(leave.x).min(leave.y).min(leave.z);
+    let root_begin = larger(larger(larger(ray.t_min, enter.x), enter.y), enter.z);
+    let root_end = smaller(smaller(smaller(hit.t, leave.x), leave.y), leave.z);
     if root_begin > root_end {
         return;
     }
-    // Per axis: origin, inverse direction, slack.
-    let axes: [[Real; 4]; 4] = [
-        [ray.origin.x, inverse.x, slack.x, 0.0],
-        [ray.origin.y, inverse.y, slack.y, 0.0],
-        [ray.origin.z, inverse.z, slack.z, 0.0],
-        [0.0; 4],
-    ];
+    let axis = |i: usize| Axis {
+        origin: ray.origin[i],
+        inverse: inverse[i],
+        slack: slack[i],
+        backward: u32::from(inverse[i] < 0.0),
+    };
+    let axes = [axis(0), axis(1), axis(2), axis(2)];
 
-    let mut stack = [Waiting::default(); SIZE];
-    let mut top = 0;
-    let mut stored = 0;
-    // Bit `level`: a far child of this level's node on the path waits.
-    let mut waiting = 0u32;
-    // Above this level the path is known from `waiting`.
-    let mut known = 0u32;
-    let mut level = 0u32;
+    let mut stack = [Waiting::default(); MAX_DEPTH as usize];
+    let mut waiting = 0;
     let mut index = 0u32;
     let mut begin = root_begin;
     let mut end = root_end;
     loop {
         let mut node = tree.nodes[index as usize];
         while !node.is_leaf() {
-            let [origin, inverse, slack, _] = axes[(node.word1 & 3) as usize];
-            let right = node.word1 >> 2;
-            let near = if inverse > 0.0 { index + 1 } else { right };
-            let far = if inverse > 0.0 { right } else { index + 1 };
+            let Axis { origin, inverse, slack, backward } = axes[(node.word1 & 3) as usize];
+            let near = node.word1 >> 2 | backward;
+            let far = near ^ 1;
             let t = (Real::from_bits(node.word0) - origin) * inverse;
             let t_first = t - slack;
             let t_last = t + slack;
-            if t_first > end {
+            let enter_near = (t_last >= begin) & (tree.nodes[near as usize].word1 != EMPTY);
+            let enter_far = (t_first <= end) & (tree.nodes[far as usize].word1 != EMPTY);
+            if enter_near {
+                if enter_far {
+                    stack[waiting] = Waiting { node: far, begin: larger(begin, t_first), end };
+                    waiting += 1;
+                }
                 index = near;
-            } else if t_last < begin {
+                end = smaller(end, t_last);
+            } else if enter_far {
                 index = far;
+                begin = larger(begin, t_first);
             } else {
-                let bit = 1u32 << level;
-                if level >= known {
-                    waiting |= bit;
-                }
-                if waiting & bit != 0 {
-                    top = if top + 1 == SIZE { 0 } else { top + 1 };
-                    stack[top] = Waiting { node: far, begin: begin.max(t_first), end };
-                    stored = if stored == SIZE { SIZE } else { stored + 1 };
-                    index = near;
-                    end = end.min(t_last);
-                } else {
-                    index = far;
-                    begin = begin.max(t_first);
-                }
+                index = NOTHING;
             }
-            level += 1;
             node = tree.nodes[index as usize];
         }
-        known = 0;
 
-        for &reference in &tree.refs[node.range()] {
-            intersect(reference, ray, hit);
+        let references = &tree.refs[node.range()];
+        if !references.is_empty() {
+            intersect(references, ray, hit);
             if any && hit.reference != NONE {
                 return;
             }
@@ -196,20 +205,8 @@ pub fn traverse<const SIZE: usize>(
             if waiting == 0 {
                 return;
             }
-            level = 31 - waiting.leading_zeros();
-            waiting ^= 1u32 << level;
-            if stored == 0 {
-                known = level + 1;
-                level = 0;
-                index = 0;
-                begin = root_begin;
-                end = root_end;
-                break;
-            }
-            Waiting { node: index, begin, end } = stack[top];
-            top = if top == 0 { SIZE - 1 } else { top - 1 };
-            stored -= 1;
-            level += 1;
+            waiting -= 1;
+            Waiting { node: index, begin, end } = stack[waiting];
             if begin <= hit.t {
                 break;
             }

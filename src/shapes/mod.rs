@@ -15,3 +15,4 @@ pub mod revolution_roots;
 pub mod sphere;
 pub mod surface;
 pub mod triangle;
+pub mod triangles;

@@ -53,8 +53,8 @@ pub struct Patch {
     pub t1: Real,
     /// Between two points, phi' leaves the range of its values there by no more than this.
     pub wobble: Real,
-    /// Zero.
-    pub padding: u32,
+    /// Newton steps shorter than this, local units, end the search of a hit.
+    pub step_tolerance: Real,
 }
 
 /// A ray in local units: `origin` is the point near the surface's center, `start` its distance along the

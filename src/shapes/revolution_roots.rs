@@ -28,8 +28,8 @@ const MARCH_LIMIT: u32 = 256;
 const MARCH_LEAST: Real = root_roundings(1.0 / 8192.0);
 /// Length by which a patch reaches past its ends, in local units; several roundings of a local coordinate.
 const END_TOLERANCE: Real = roundings(3e-7);
-/// Newton steps shorter than this (local units) end the iteration.
-const STEP_TOLERANCE: Real = roundings(4e-7);
+/// Newton steps shorter than this (local units) may be rounding alone; see [`Patch::step_tolerance`].
+pub const STEP_TOLERANCE: Real = roundings(4e-7);
 /// Residuals of this size may be rounding alone.
 const RESIDUAL_NOISE: Real = roundings(1e-6);
 
@@ -90,7 +90,7 @@ fn newton(points: &[Vec2], piece: &Patch, ray: &LocalRay, start: PatchHit) -> Pa
             x.steps += 1;
             let moved = (step.x.abs() + step.y.abs() * at.d_theta.dot(at.d_theta).sqrt())
                 + step.z.abs() * at.d_tau.dot(at.d_tau).sqrt();
-            if moved <= STEP_TOLERANCE {
+            if moved <= piece.step_tolerance {
                 return PatchHit {
                     t: x.t + step.x,
                     theta: x.theta + step.y,

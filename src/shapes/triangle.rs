@@ -56,8 +56,8 @@ impl RayShear {
 }
 
 /// `v` with its components turned so that `axis` comes last.
-#[inline]
-fn permuted(v: Vec3, axis: u32) -> Vec3 {
+#[inline(always)]
+pub(super) fn permuted(v: Vec3, axis: u32) -> Vec3 {
     match axis {
         0 => Vec3::new(v.y, v.z, v.x),
         1 => Vec3::new(v.z, v.x, v.y),

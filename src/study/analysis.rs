@@ -143,7 +143,7 @@ impl Curve {
 pub fn analyse(results: &Results) -> Vec<Part> {
     let part = |truth: &TruthRecord| {
         let configs = results.about.configs.iter().enumerate();
-        let of_truth = configs.filter(|(_, config)| config.lamp == truth.lamp);
+        let of_truth = configs.filter(|(_, config)| config.variant.lamp == truth.lamp);
         let curves: Vec<Curve> =
             of_truth.filter_map(|(number, config)| curve(results, number, config, truth)).collect();
         Part { truth: truth.clone(), front: front(&curves), curves }

@@ -7,15 +7,17 @@ use super::StudyError;
 use super::crop;
 use super::folder::{About, Folder, Point, ProductsRecord, Results, RunRecord};
 use super::grid::Config;
-use super::lamps::{Lamp, with_lamp};
+use super::lamps::Lamp;
 use super::render::{Snapshot, Until, progressive};
 use super::statistics::Products;
 use super::truth::{Maker, Truth, TruthSpec, from_files, mean_luminance};
+use super::variant::Variant;
 use crate::device::{self, DeviceError};
 use crate::film::file::write_rgb8;
 use crate::film::flip::ldr_flip;
 use crate::film::metrics::compare;
 use crate::film::{Development, FileError, Picture, Region};
+use crate::quality::one_pass_error;
 use crate::scene::Scene;
 
 /// What a watcher is told.
@@ -85,10 +87,19 @@ impl Study<'_> {
             products: self.folder.products(),
         };
         let lamps = self.lamps();
-        let scenes = lamps.iter().map(|lamp| self.lit(*lamp)).collect::<Result<Vec<_>, _>>()?;
+        let mut variants: Vec<Variant> = Vec::new();
+        for config in &self.about.configs {
+            if !variants.contains(&config.variant) {
+                variants.push(config.variant);
+            }
+        }
+        // All of them before the truth, since a scene may lack what is to be varied.
+        let scenes = variants.iter().map(|v| v.of(self.scene)).collect::<Result<Vec<_>, _>>()?;
         let mut truths = Vec::new();
-        for (number, (lamp, scene)) in lamps.iter().zip(&scenes).enumerate() {
-            let Some(truth) = self.truth(number, *lamp, scene, observer)? else {
+        for (number, lamp) in lamps.iter().enumerate() {
+            // Whatever else is varied is held against the exact surfaces.
+            let exact = Variant { lamp: *lamp, ..Variant::default() }.of(self.scene)?;
+            let Some(truth) = self.truth(number, *lamp, &exact, observer)? else {
                 return Ok(Conducted { results, crop: self.crop.unwrap_or(whole), complete: false });
             };
             results.truths.push(truth.record.clone());
@@ -107,8 +118,9 @@ impl Study<'_> {
         // does in a while falls on all alike.
         for seed in 0..self.about.seeds {
             for (number, config) in self.about.configs.iter().enumerate() {
-                let place = lamps.iter().position(|lamp| *lamp == config.lamp).unwrap_or(0);
-                let place = Place { number, config, scene: &scenes[place], truth: &truths[place], crop };
+                let lamp = lamps.iter().position(|lamp| *lamp == config.variant.lamp).unwrap_or(0);
+                let scene = variants.iter().position(|v| *v == config.variant).unwrap_or(0);
+                let place = Place { number, config, scene: &scenes[scene], truth: &truths[lamp], crop };
                 if !self.is_done(&results, number, seed) {
                     results.runs.retain(|run| (run.config, run.seed) != (number, seed));
                     let passes = passes_of(&results, number);
@@ -139,18 +151,11 @@ impl Study<'_> {
     fn lamps(&self) -> Vec<Option<Lamp>> {
         let mut lamps = Vec::new();
         for config in &self.about.configs {
-            if !lamps.contains(&config.lamp) {
-                lamps.push(config.lamp);
+            if !lamps.contains(&config.variant.lamp) {
+                lamps.push(config.variant.lamp);
             }
         }
         lamps
-    }
-
-    fn lit(&self, lamp: Option<Lamp>) -> Result<Scene, StudyError> {
-        match lamp {
-            None => Ok(self.scene.clone()),
-            Some(lamp) => with_lamp(self.scene, lamp).map_err(|what| StudyError::Lamp { lamp, what }),
-        }
     }
 
     fn truth(
@@ -163,7 +168,7 @@ impl Study<'_> {
         let truth = match &self.about.truth {
             TruthSpec::Files(files) => Some(from_files(files)?),
             TruthSpec::Made { method, seconds, seeds } => {
-                let of_lamp = self.about.configs.iter().filter(|config| config.lamp == lamp);
+                let of_lamp = self.about.configs.iter().filter(|config| config.variant.lamp == lamp);
                 let configs: Vec<&Config> = of_lamp.collect();
                 let (seconds, seeds) = (*seconds, *seeds);
                 let interrupted = self.interrupted;
@@ -198,6 +203,8 @@ impl Study<'_> {
             seed,
             device: device.to_owned(),
             setup_seconds: start.elapsed().as_secs_f64(),
+            automatic_radius: None,
+            one_pass: None,
             points: Vec::new(),
             failed: Some(what),
         };
@@ -206,6 +213,7 @@ impl Study<'_> {
             Err(error @ DeviceError::NoSuchDevice { .. }) => return Err(error.into()),
             Err(error) => return Ok(Some(failed(error.to_string(), &config.device))),
         };
+        let automatic_radius = opened.radius.map(|radius| radius.pixels);
         let (name, mut engine) = (opened.name, opened.engine);
         let setup_seconds = start.elapsed().as_secs_f64();
         let until = passes.map_or(Until::Seconds(self.about.run_seconds), Until::Passes);
@@ -216,6 +224,10 @@ impl Study<'_> {
             Ok(false) => return Ok(None),
             Err(error) => return Ok(Some(failed(error.to_string(), &name))),
         }
+        let one_pass = match snapshots.as_slice() {
+            [first, both, ..] if both.passes == 2 => one_pass_error(&first.picture, &both.picture).ok(),
+            _ => None,
+        };
         let mut points = Vec::new();
         for snapshot in &snapshots {
             match measure(snapshot, &truth.picture) {
@@ -229,7 +241,16 @@ impl Study<'_> {
                 self.write_crop(&crop_name(number, snapshot.passes), &snapshot.picture, crop)?;
             }
         }
-        Ok(Some(RunRecord { config: number, seed, device: name, setup_seconds, points, failed: None }))
+        Ok(Some(RunRecord {
+            config: number,
+            seed,
+            device: name,
+            setup_seconds,
+            automatic_radius,
+            one_pass,
+            points,
+            failed: None,
+        }))
     }
 
     /// When all renders of a configuration are there: the products of their errors, after which the pictures can go.

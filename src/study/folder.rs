@@ -69,6 +69,12 @@ pub struct RunRecord {
     pub device: String,
     /// Seconds before the first pass: flattening, probing, compiling.
     pub setup_seconds: f64,
+    /// The start radius in pixels that was chosen where the settings left it open.
+    #[serde(default)]
+    pub automatic_radius: Option<f64>,
+    /// relMSE of one pass, as two tell it without a truth; none where only one was made.
+    #[serde(default)]
+    pub one_pass: Option<f64>,
     /// In the order of passes.
     pub points: Vec<Point>,
     /// Why there are no points, if there are none.

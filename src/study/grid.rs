@@ -6,22 +6,25 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use thiserror::Error;
 
-use super::lamps::Lamp;
+use super::variant::Variant;
 use crate::scene::numbers::{LARGEST, SMALLEST};
 use crate::settings::{Radius, RenderSettings};
 
 /// Settings that a grid may vary, with examples of their values.
-pub const NAMES: [(&str, &str); 10] = [
+pub const NAMES: [(&str, &str); 13] = [
     ("method", "sppm,ppm,path"),
     ("radius_rule", "global,local,fixed"),
     ("alpha", "0.5,0.66,0.8"),
-    ("radius", "1px,2px,0.01"),
+    ("radius", "auto,2px,0.01"),
+    ("indirect_radius", "1,2,4"),
     ("photons", "65536,262144"),
     ("direct", "sampled,photons"),
     ("max_bounces", "4,8,32"),
     ("eye_samples", "1,4"),
     ("device", "cpu,cpu-f64,software"),
     ("lamp_area", "1,1e-2,1e-4,point"),
+    ("revolutions", "exact,32,128"),
+    ("newton_tolerance", "least,1e-4,1e-2"),
 ];
 
 /// A setting and the values to try.
@@ -95,14 +98,14 @@ pub struct Config {
     pub settings: RenderSettings,
     /// As `--device` takes it.
     pub device: String,
-    /// The size that the lamps are given; none leaves them as they are.
-    pub lamp: Option<Lamp>,
+    /// How the scene differs from its file.
+    pub variant: Variant,
 }
 
 impl Config {
     /// The scene's own settings.
     pub fn new(settings: RenderSettings, device: &str) -> Self {
-        Self { choices: Vec::new(), settings, device: device.to_owned(), lamp: None }
+        Self { choices: Vec::new(), settings, device: device.to_owned(), variant: Variant::default() }
     }
 
     /// The same with one more choice.
@@ -117,7 +120,9 @@ impl Config {
         let fault = |what: String| GridError::Value { name: name.to_owned(), value: text.to_owned(), what };
         match name {
             "device" => self.device = text.to_owned(),
-            "lamp_area" => self.lamp = Some(text.parse().map_err(fault)?),
+            "lamp_area" => self.variant.lamp = Some(text.parse().map_err(fault)?),
+            "revolutions" => self.variant.revolutions = text.parse().map_err(fault)?,
+            "newton_tolerance" => self.variant.newton = text.parse().map_err(fault)?,
             "radius" => self.settings.radius = radius(text).map_err(fault)?,
             _ => self.settings = with_setting(&self.settings, name, text).map_err(fault)?,
         }
@@ -141,9 +146,14 @@ impl Config {
     pub fn value(&self, name: &str) -> String {
         match (name, self.settings.radius) {
             ("device", _) => self.device.clone(),
-            ("lamp_area", _) => self.lamp.map_or("own".to_owned(), |lamp| lamp.to_string()),
+            ("lamp_area", _) => self.variant.lamp.map_or("own".to_owned(), |lamp| lamp.to_string()),
+            ("revolutions", _) => self.variant.revolutions.to_string(),
+            ("newton_tolerance", _) => self.variant.newton.to_string(),
+            ("radius", Radius::Auto) => "auto".to_owned(),
             ("radius", Radius::Pixels(r)) => format!("{r}px"),
             ("radius", Radius::Units(r)) => format!("{r}"),
+            ("indirect_radius", Radius::Auto) if self.settings.indirect_radius.is_none() => "auto".to_owned(),
+            ("indirect_radius", _) => format!("{}", self.settings.wider()),
             _ => match serde_json::to_value(&self.settings).map(|settings| settings[name].clone()) {
                 Ok(Value::String(word)) => word,
                 Ok(Value::Number(number)) => format!("{:.4}", number.as_f64().unwrap_or(0.0))
@@ -170,6 +180,7 @@ pub fn label(name: &str, value: &str) -> String {
         "radius_rule" => format!("{value} rule"),
         "alpha" => format!("α {value}"),
         "radius" => format!("r {value}"),
+        "indirect_radius" => format!("indirect r × {value}"),
         "photons" => format!("{} photons", value.parse().map_or(value.to_owned(), thousands)),
         "direct" => match value {
             "photons" => "direct by photons".to_owned(),
@@ -180,6 +191,14 @@ pub fn label(name: &str, value: &str) -> String {
         "lamp_area" => match value {
             "point" => "point lamp".to_owned(),
             _ => format!("lamp {value}"),
+        },
+        "revolutions" => match value {
+            "exact" => "exact surfaces".to_owned(),
+            _ => format!("meshes of {value} sectors"),
+        },
+        "newton_tolerance" => match value {
+            "least" => "least Newton tolerance".to_owned(),
+            _ => format!("Newton tolerance {value}"),
         },
         _ => format!("{name} {value}"),
     }
@@ -207,8 +226,8 @@ pub fn configs(base: &Config, product: &[Axis], varied: &[Axis]) -> Result<Vec<C
         for value in &axis.values {
             let config = base.with(&axis.name, value)?;
             let same = |other: &Config| {
-                (&other.settings, &other.device, &other.lamp)
-                    == (&config.settings, &config.device, &config.lamp)
+                (&other.settings, &other.device, &other.variant)
+                    == (&config.settings, &config.device, &config.variant)
             };
             if !configs.iter().any(same) {
                 configs.push(config);
@@ -223,6 +242,8 @@ pub fn default_axes(base: &RenderSettings) -> Vec<Axis> {
     let axis = |name: &str, values: Vec<String>| Axis { name: name.to_owned(), values };
     let words = |words: &[&str]| words.iter().map(|word| (*word).to_owned()).collect::<Vec<_>>();
     let times = |factor: f64| match base.radius {
+        // About what is chosen in most scenes.
+        Radius::Auto => format!("{}px", 4.0 * factor),
         Radius::Pixels(r) => format!("{}px", r * factor),
         Radius::Units(r) => format!("{}", r * factor),
     };
@@ -238,12 +259,15 @@ pub fn default_axes(base: &RenderSettings) -> Vec<Axis> {
 }
 
 fn radius(text: &str) -> Result<Radius, String> {
+    if text == "auto" {
+        return Ok(Radius::Auto);
+    }
     let (number, unit): (_, fn(f64) -> Radius) = match text.strip_suffix("px") {
         Some(pixels) => (pixels, Radius::Pixels),
         None => (text, Radius::Units),
     };
     let number = number.parse().ok().filter(|number| (SMALLEST..=LARGEST).contains(number));
-    number.map(unit).ok_or("expected pixels as in 2px, or scene units as in 0.01".to_owned())
+    number.map(unit).ok_or("expected auto, pixels as in 2px, or scene units as in 0.01".to_owned())
 }
 
 /// Settings with one of their fields read from text, as a scene file would.
@@ -261,6 +285,9 @@ fn with_setting(settings: &RenderSettings, name: &str, text: &str) -> Result<Ren
         false => Err(format!("expected a whole number from {least} to {most}")),
     };
     within(1, changed.photons, u32::MAX)?;
+    if !(1.0..=16.0).contains(&changed.wider()) {
+        return Err("expected a number from 1 to 16".to_owned());
+    }
     within(0, changed.max_bounces, 65535)?;
     within(1, changed.eye_samples, 65536)?;
     match changed.alpha > 0.0 && changed.alpha <= 1.0 {
@@ -293,6 +320,14 @@ mod tests {
         assert_eq!(labels, ["the scene's own", "path", "r 1px", "r 0.02"]);
         assert_eq!(star[1].settings.method, Method::Path);
         assert_eq!(star[2].settings.method, Method::Sppm);
+        // What differs in the scene alone is another point of the grid too.
+        let star =
+            configs(&base, &[], &axes(&["revolutions=exact,16", "newton_tolerance=1e-3", "lamp_area=point"]));
+        let labels: Vec<_> = star.unwrap().iter().map(Config::label).collect();
+        assert_eq!(
+            labels,
+            ["the scene's own", "meshes of 16 sectors", "Newton tolerance 1e-3", "point lamp"]
+        );
     }
 
     #[test]
@@ -301,6 +336,9 @@ mod tests {
         assert!(fault("radius").contains("radius=1px,2px"));
         assert!(fault("radius=1px,").contains("expected"));
         assert!(fault("radios=1px").contains("did you mean `radius`"));
+        assert!(fault("revolution=64").contains("did you mean `revolutions`"));
+        assert!(fault("revolutions=2").contains("exact, or a number of sectors from 3 to 4096"));
+        assert!(fault("newton_tolerance=0").contains("least, or a length from 1e-7 to 1"));
         assert!(fault("seed=1").contains("a study may vary method, "));
         for bad in [
             "alpha=0",
@@ -315,6 +353,11 @@ mod tests {
             "direct=1",
             "lamp_area=-1",
             "lamp_area=dot",
+            "revolutions=2",
+            "revolutions=5000",
+            "revolutions=round",
+            "newton_tolerance=0",
+            "newton_tolerance=2",
             "alpha=nan",
         ] {
             assert!(bad.parse::<Axis>().is_err(), "{bad}");

@@ -18,9 +18,11 @@ pub mod palette;
 pub mod panels;
 pub mod render;
 pub mod report;
+pub mod revolutions;
 pub mod statistics;
 pub mod tables;
 pub mod truth;
+pub mod variant;
 pub mod words;
 
 use std::path::PathBuf;
@@ -58,11 +60,11 @@ pub enum StudyError {
         /// What it holds.
         what: String,
     },
-    /// Lamps that cannot have the size that the grid asks for.
-    #[error("lamp_area={lamp}: {what}")]
-    Lamp {
-        /// The size.
-        lamp: lamps::Lamp,
+    /// Surfaces that the scene lacks, or that cannot be as the grid asks.
+    #[error("{choice}: {what}")]
+    Variant {
+        /// As the grid has it, as in `lamp_area=point`.
+        choice: String,
         /// Why not.
         what: String,
     },

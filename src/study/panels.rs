@@ -83,11 +83,14 @@ fn title(name: &str) -> &str {
         "radius_rule" => "Radius rule",
         "alpha" => "Alpha",
         "radius" => "Start radius",
+        "indirect_radius" => "Indirect radius",
         "photons" => "Photons per pass",
         "direct" => "Direct light",
         "max_bounces" => "Most bounces",
         "eye_samples" => "Eye samples",
         "device" => "Device",
+        "revolutions" => "Surfaces of revolution",
+        "newton_tolerance" => "Newton tolerance",
         _ => name,
     }
 }

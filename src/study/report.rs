@@ -141,6 +141,17 @@ fn introduction(results: &Results, complete: bool, out: &mut String) {
             )
         }
     );
+    let mut radii: Vec<(usize, f64)> =
+        results.runs.iter().filter_map(|run| Some((run.config, run.automatic_radius?))).collect();
+    radii.sort_by_key(|(config, _)| *config);
+    radii.dedup();
+    if !radii.is_empty() {
+        let radii = radii
+            .iter()
+            .map(|(config, radius)| format!("{}: {radius} px", configured(&about.configs[*config])));
+        let radii: Vec<String> = radii.collect();
+        let _ = write!(out, "<p>Start radii that were left open: {}.</p>", escape(&radii.join("; ")));
+    }
     let failed = results.runs.iter().filter_map(|run| Some((run.config, run.failed.as_ref()?)));
     let mut failed: Vec<_> = failed.collect();
     failed.dedup();

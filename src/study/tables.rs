@@ -11,7 +11,7 @@ use super::words::{configured, fitted, preview_seconds, recommendations, short, 
 /// One line for each picture: configuration, seed, passes and its figures. The truth's own error is in them.
 pub fn csv(results: &Results) -> String {
     let mut out = String::from(
-        "config,label,lamp,method,radius_rule,alpha,radius,photons_per_pass,direct,max_bounces,device,seed,passes,seconds,\
+        "config,label,lamp,method,radius_rule,alpha,radius,photons_per_pass,direct,max_bounces,revolutions,newton_tolerance,device,seed,passes,seconds,\
          photons,rays,relMSE,MSE,FLIP,mean_ratio\n",
     );
     for run in &results.runs {
@@ -20,7 +20,7 @@ pub fn csv(results: &Results) -> String {
         for p in &run.points {
             let _ = writeln!(
                 out,
-                "{},\"{}\",{},{},{},{},{},{},{},{},\"{}\",{},{},{:.6},{},{},{:.6e},{:.6e},{:.6e},{:.6}",
+                "{},\"{}\",{},{},{},{},{},{},{},{},{},{},\"{}\",{},{},{:.6},{},{},{:.6e},{:.6e},{:.6e},{:.6}",
                 run.config,
                 configured(config).replace('"', "\"\""),
                 of("lamp_area"),
@@ -31,6 +31,8 @@ pub fn csv(results: &Results) -> String {
                 config.settings.photons,
                 of("direct"),
                 config.settings.max_bounces,
+                of("revolutions"),
+                of("newton_tolerance"),
                 run.device.replace('"', "\"\""),
                 config.settings.seed.wrapping_add(u64::from(run.seed)),
                 p.passes,

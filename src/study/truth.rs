@@ -124,7 +124,9 @@ impl Maker<'_> {
                         return Ok(None);
                     };
                     folder.keep_picture(&name, &picture)?;
-                    note(&format!("truth: {}, seed {} of {}", word(method), seed + 1, self.seeds));
+                    let left = seconds * f64::from(self.seeds - seed - 1);
+                    let (method, of) = (word(method), self.seeds);
+                    note(&format!("truth: {method}, seed {} of {of}; {left:.0} s left for it", seed + 1));
                     picture
                 }
             };
@@ -187,7 +189,7 @@ impl Maker<'_> {
         let all = || self.configs.iter().map(|config| &config.settings);
         RenderSettings {
             method,
-            photons: all().map(|s| s.photons).min().unwrap_or(RenderSettings::default().photons),
+            photons: all().map(|s| s.photons).max().unwrap_or(RenderSettings::default().photons),
             radius: Radius::Pixels(1.0),
             radius_rule: RadiusRule::Global,
             direct: Direct::Sampled,

@@ -116,7 +116,7 @@ impl Mixture {
             }
             "local" => self.settings.radius_rule = RadiusRule::Local,
             "split" => {
-                self.settings.indirect_radius = 2.0;
+                self.settings.indirect_radius = Some(2.0);
                 self.light(LIGHT_POINT, 0);
             }
             "guided" => {

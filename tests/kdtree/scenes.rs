@@ -2,7 +2,7 @@
 
 use caustica::build::kdtree::Primitive;
 use caustica::shapes::aabb::Aabb;
-use caustica::shapes::kdtree::{Tree, traverse};
+use caustica::shapes::kdtree::{Tree, traverse_any, traverse_closest};
 use caustica::shapes::ray::{Hit, Ray};
 use caustica::shapes::triangle::{RayShear, Triangle, intersect_triangle};
 use glam::Vec3;
@@ -75,17 +75,21 @@ pub fn intersect(prims: &[Primitive], shear: &RayShear, reference: u32, ray: &Ra
     }
 }
 
-pub fn closest<const SIZE: usize>(prims: &[Primitive], tree: &Tree, ray: &Ray) -> Hit {
+pub fn closest(prims: &[Primitive], tree: &Tree, ray: &Ray) -> Hit {
     let mut hit = Hit::none(ray);
     let shear = RayShear::new(ray);
-    traverse::<SIZE>(tree, ray, false, &mut hit, |r, ray, hit| intersect(prims, &shear, r, ray, hit));
+    traverse_closest(tree, ray, &mut hit, |leaf, ray, hit| {
+        leaf.iter().for_each(|&r| intersect(prims, &shear, r, ray, hit));
+    });
     hit
 }
 
-pub fn any<const SIZE: usize>(prims: &[Primitive], tree: &Tree, ray: &Ray) -> Hit {
+pub fn any(prims: &[Primitive], tree: &Tree, ray: &Ray) -> Hit {
     let mut hit = Hit::none(ray);
     let shear = RayShear::new(ray);
-    traverse::<SIZE>(tree, ray, true, &mut hit, |r, ray, hit| intersect(prims, &shear, r, ray, hit));
+    traverse_any(tree, ray, &mut hit, |leaf, ray, hit| {
+        leaf.iter().for_each(|&r| intersect(prims, &shear, r, ray, hit));
+    });
     hit
 }
 

@@ -4,6 +4,7 @@ use crate::scenes::*;
 use caustica::math::unit;
 use caustica::shapes::ray::{Hit, NONE, Ray};
 use caustica::shapes::triangle::*;
+use caustica::shapes::triangles::intersect_triangles;
 use glam::{DVec3, Vec3};
 
 fn trace(t: &[Vec3; 3], ray: &Ray) -> Hit {
@@ -182,4 +183,57 @@ fn normals() {
     let unit_triangle = triangle([Vec3::ZERO, Vec3::X, Vec3::Y]);
     assert_eq!(triangle_normal(&unit_triangle), Vec3::Z);
     assert_eq!(triangle_point(&unit_triangle, 0.25, 0.5), Vec3::new(0.25, 0.5, 0.0));
+}
+
+/// Triangles for which every branch is taken: near and far, thin, the same several times, and without area.
+fn crowd(rng: &mut Rng) -> Vec<Triangle> {
+    let mut out: Vec<Triangle> = Vec::new();
+    for _ in 0..200 {
+        let t = match rng.below(6) {
+            0 if !out.is_empty() => out[rng.below(out.len())],
+            1 => triangle([rng.point(); 3]),
+            2 => triangle([rng.point(), Vec3::ZERO, rng.point()]),
+            _ => triangle(random_triangle(rng)),
+        };
+        out.push(t);
+    }
+    out
+}
+
+/// Rays for which four at a time is not the same, bit for bit and ties included, as one after the other.
+fn differences(one: &[Triangle], many: &[Triangle], rng: &mut Rng) -> usize {
+    (0..20_000)
+        .filter(|_| {
+            let references: Vec<u32> = (0..1 + rng.below(11)).map(|_| rng.below(one.len()) as u32).collect();
+            let t = &one[references[rng.below(references.len())] as usize];
+            let aim = if rng.below(3) == 0 { t.p1 } else { inside(&[t.p0, t.p1, t.p2], rng) };
+            let mut d = aim - rng.point() * 2.0;
+            if rng.below(8) == 0 {
+                d[rng.below(3)] = 0.0;
+            }
+            let ray = Ray { origin: aim - d, t_min: 0.0, direction: unit(d), t_max: 3.0 };
+            let shear = RayShear::new(&ray);
+            let (mut first, mut second) = (Hit::none(&ray), Hit::none(&ray));
+            for &r in &references {
+                intersect_triangle(&one[r as usize], r, &shear, &ray, &mut first);
+            }
+            intersect_triangles(many, &references, &shear, &ray, &mut second);
+            bytemuck::bytes_of(&first) != bytemuck::bytes_of(&second)
+        })
+        .count()
+}
+
+/// Theory: each lane carries out the operations of the test of one triangle, and lanes are taken in their order.
+#[test]
+fn four_at_a_time_give_the_same_bits() {
+    let mut rng = Rng(39);
+    let mut moved = 0;
+    for _ in 0..20 {
+        let mesh = crowd(&mut rng);
+        assert_eq!(differences(&mesh, &mesh, &mut rng), 0);
+        let mut other = mesh.clone();
+        other.iter_mut().for_each(|t| t.p2.y = t.p2.y.next_up());
+        moved += differences(&mesh, &other, &mut rng);
+    }
+    assert!(moved > 1000, "planted: one corner moved by a rounding");
 }

@@ -1,0 +1,73 @@
+//! The density estimate at a visible point on the CPU. `cargo bench --bench gather`.
+//!
+//! Sizes: a disc holds about one photon where a picture is dark or a radius has shrunk, ten to a hundred where it is tuned, and
+//! a thousand in a caustic or at the start of a render.
+
+use bytemuck::Zeroable;
+use caustica::kernels::gather::gather;
+use caustica::kernels::grid_build::{SortedRecords, grid_count, grid_scan, grid_scatter, grid_sort};
+use caustica::kernels::records::{Dispatch, Gathered, PhotonRecord, VisiblePoint};
+use caustica::math::oct_encode;
+use divan::{Bencher, counter::ItemsCount};
+use glam::Vec3;
+
+/// Records on a square wall; enough that they do not all stay in the first-level cache.
+const RECORDS: u32 = 1 << 18;
+/// Visible points in a row of a measurement.
+const POINTS: u32 = 1 << 10;
+
+fn main() {
+    divan::main();
+}
+
+#[divan::bench(args = [1, 10, 100, 1000])]
+fn photons_in_a_disc(bencher: Bencher, photons: u32) {
+    let mut state = 1u32;
+    let mut random = || {
+        state = state.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
+        (state >> 8) as f32 / 16_777_216.0
+    };
+    let up = oct_encode(Vec3::Y);
+    // a wall of area one; cells as wide as a disc
+    let radius = (photons as f32 / RECORDS as f32 / std::f32::consts::PI).sqrt();
+    let mask = RECORDS - 1;
+    let d = Dispatch {
+        capacity: RECORDS,
+        mask,
+        inv_cell: 0.5 / radius,
+        scale_sq: 1.0,
+        families: 1,
+        ..Dispatch::zeroed()
+    };
+    let mut on_the_wall = || Vec3::new(random(), 0.0, random());
+    let records: Vec<_> = (0..RECORDS)
+        .map(|key| PhotonRecord { position: on_the_wall(), key, flux: Vec3::ONE, direction: up })
+        .collect();
+    let mut counts = vec![0; RECORDS as usize];
+    let mut starts = vec![0; RECORDS as usize + 1];
+    let mut order = vec![0; RECORDS as usize];
+    grid_count(&d, &records, &mut counts);
+    grid_scan(&counts, &mut starts);
+    grid_scatter(&d, &records, &starts, &mut counts, &mut order);
+    let mut sorted = SortedRecords::default();
+    grid_sort(&d, &records, &order, &mut sorted);
+    let points: Vec<_> = (0..POINTS)
+        .map(|_| VisiblePoint {
+            position: on_the_wall(),
+            radius,
+            weight: Vec3::ONE,
+            normal: up,
+            shading: up,
+            ..VisiblePoint::zeroed()
+        })
+        .collect();
+    bencher.counter(ItemsCount::new(POINTS)).bench_local(|| {
+        let mut found = 0;
+        for point in &points {
+            let mut gathered = Gathered::zeroed();
+            gather(&d, point, 1.0, &starts, &sorted, &mut gathered);
+            found += gathered.count;
+        }
+        found
+    });
+}

@@ -1,0 +1,86 @@
+//! Rays and trees: each test of a shape, rays through the kd-tree, and its construction. Rates are rays or triangles
+//! per second on one thread; the build uses all.
+
+mod workload;
+
+use caustica::build::kdtree::{self, Primitive};
+use caustica::real::Real;
+use caustica::shapes::intersect::{intersect_primitive, intersect_scene, occluded};
+use caustica::shapes::ray::{Hit, Ray};
+use caustica::shapes::triangle::RayShear;
+use caustica::tables::*;
+use divan::{Bencher, black_box, counter::ItemsCount};
+
+fn main() {
+    divan::main();
+}
+
+/// Enough rays that each size of tree is walked all over, few enough for a run in a second.
+const RAYS: usize = 1 << 14;
+
+/// One shape in the middle that many of the rays meet; the triangle is one of six. The profile is a cubic, whose patch takes
+/// Newton.
+const SHAPES: [(&str, u32, &str); 6] = [
+    ("sphere", KIND_SPHERE, "type = \"sphere\"\ncenter = [0, 0, 0]\nradius = 0.6"),
+    (
+        "rectangle",
+        KIND_RECTANGLE,
+        "type = \"rectangle\"\norigin = [-0.6, 0, -0.6]\nu = [0, 0, 1.2]\nv = [1.2, 0, 0]",
+    ),
+    ("triangle", KIND_TRIANGLE, ""),
+    ("cuboid", KIND_CUBOID, "type = \"box\"\nmin = [-0.5, -0.5, -0.5]\nmax = [0.5, 0.5, 0.5]"),
+    ("disc", KIND_DISC, "type = \"disc\"\ncenter = [0, 0, 0]\nnormal = [0, 1, 0]\nradius = 0.7"),
+    (
+        "revolution",
+        KIND_REVOLUTION,
+        "type = \"revolution\"\nprofile = [[0.3, -0.6], [0.9, -0.2], [0.1, 0.2], [0.6, 0.6]]",
+    ),
+];
+
+#[divan::bench(args = SHAPES.map(|s| s.0))]
+fn shape(bencher: Bencher, name: &str) {
+    let Some((_, kind, text)) = SHAPES.iter().find(|s| s.0 == name) else { return };
+    let packed = if text.is_empty() { workload::displaced_sphere(3, 2) } else { workload::packed(text) };
+    let rays = workload::incoherent_rays(&packed, RAYS);
+    let reference = reference(*kind, 0);
+    bencher.counter(ItemsCount::new(RAYS)).bench_local(|| {
+        let mut sum: Real = 0.0;
+        for ray in black_box(&rays) {
+            let mut hit = Hit::none(ray);
+            intersect_primitive(&packed.scene, &RayShear::new(ray), reference, ray, &mut hit);
+            sum += hit.u;
+        }
+        sum
+    });
+}
+
+/// (nu, nv) of a mesh of about 1e3 triangles (the tree fits the first-level cache), 1e4 (the second level), 1e5 (the
+/// size of the comparison with Embree; the triangles do not fit the second level) and 1e6 (little fits).
+const MESHES: [(u32, u32); 4] = [(32, 17), (100, 51), (316, 159), (1000, 501)];
+
+fn trace(bencher: Bencher, (nu, nv): (u32, u32), hit: impl Fn(&Scene, &Ray) -> bool) {
+    let packed = workload::displaced_sphere(nu, nv);
+    let rays = workload::incoherent_rays(&packed, RAYS);
+    bencher
+        .counter(ItemsCount::new(RAYS))
+        .bench_local(|| black_box(&rays).iter().filter(|r| hit(&packed.scene, r)).count());
+}
+
+#[divan::bench(args = MESHES)]
+fn closest_hit(bencher: Bencher, size: (u32, u32)) {
+    trace(bencher, size, |scene, ray| intersect_scene(scene, ray).reference != NONE);
+}
+
+#[divan::bench(args = MESHES)]
+fn any_hit(bencher: Bencher, size: (u32, u32)) {
+    trace(bencher, size, occluded);
+}
+
+/// As above without the smallest, whose tree is built before it can be timed.
+#[divan::bench(args = [MESHES[1], MESHES[2], MESHES[3]], sample_count = 10)]
+fn build(bencher: Bencher, (nu, nv): (u32, u32)) {
+    let packed = workload::displaced_sphere(nu, nv);
+    let triangles: Vec<Primitive> =
+        packed.scene.triangles.iter().map(|t| Primitive::Triangle([t.p0, t.p1, t.p2])).collect();
+    bencher.counter(ItemsCount::new(triangles.len())).bench_local(|| kdtree::build(black_box(&triangles)));
+}

@@ -1,0 +1,103 @@
+// Each long bucket into the order of its keys, by a whole workgroup (radix sort, four bits at a time): the rest of the twin
+// of `grid_sort` in src/kernels/grid_build.rs. Run by one workgroup per 1024 buckets, since most have no long one and
+// barriers are dear on a software driver; reads `records` and `starts`, sorts slices of `order`, writes `sorted`.
+
+const RADIX: u32 = 16u;
+const SORT_BUCKETS: u32 = 1024u;
+
+var<workgroup> found: atomic<u32>;
+// in any order, which the result does not show
+var<workgroup> long_buckets: array<u32, SORT_BUCKETS>;
+// how many items each invocation has of each digit, then where they go
+var<workgroup> tallies: array<u32, 1024>;
+var<workgroup> totals: array<u32, 16>;
+
+@compute @workgroup_size(64)
+fn grid_sort_long(
+    @builtin(workgroup_id) group: vec3u,
+    @builtin(num_workgroups) groups: vec3u,
+    @builtin(local_invocation_index) local: u32,
+) {
+    if local == 0u {
+        atomicStore(&found, 0u);
+    }
+    workgroupBarrier();
+    let first = dispatch.first + (group.y * groups.x + group.x) * SORT_BUCKETS;
+    for (var i = local; i < SORT_BUCKETS; i += 64u) {
+        let bucket = first + i;
+        if bucket < dispatch.end && starts[bucket + 1u] - starts[bucket] > SORT_SHORT {
+            long_buckets[atomicAdd(&found, 1u)] = bucket;
+        }
+    }
+    workgroupBarrier();
+    if local == 0u {
+        totals[0] = atomicLoad(&found);
+    }
+    let count = workgroupUniformLoad(&totals[0]);
+    for (var i = 0u; i < count; i++) {
+        let bucket = workgroupUniformLoad(&long_buckets[i]);
+        sort_long(starts[bucket], starts[bucket + 1u], local);
+    }
+    loops_stopped();
+}
+
+// Items go to and fro between `order` and the keys of `sorted`, which are not needed yet.
+fn sort_long(begin: u32, end: u32, local: u32) {
+    let share = (end - begin + 63u) / 64u;
+    let first = min(begin + local * share, end);
+    let last = min(first + share, end);
+    for (var shift = 0u; shift < 32u; shift += 4u) {
+        let odd = (shift & 4u) != 0u;
+        for (var digit = 0u; digit < RADIX; digit++) {
+            tallies[digit * 64u + local] = 0u;
+        }
+        for (var i = first; i < last; i++) {
+            tallies[digit_of(item_at(i, odd), shift) * 64u + local] += 1u;
+        }
+        workgroupBarrier();
+        if local < RADIX {
+            var sum = 0u;
+            for (var i = 0u; i < 64u; i++) {
+                let at = local * 64u + i;
+                let tally = tallies[at];
+                tallies[at] = sum;
+                sum += tally;
+            }
+            totals[local] = sum;
+        }
+        workgroupBarrier();
+        var base = begin;
+        for (var digit = 0u; digit < RADIX; digit++) {
+            tallies[digit * 64u + local] += base;
+            base += totals[digit];
+        }
+        for (var i = first; i < last; i++) {
+            let item = item_at(i, odd);
+            let slot = digit_of(item, shift) * 64u + local;
+            let place = tallies[slot];
+            tallies[slot] = place + 1u;
+            if odd {
+                order[place] = item;
+            } else {
+                sorted[place].key = item;
+            }
+        }
+        storageBarrier();
+        workgroupBarrier();
+    }
+    for (var i = first; i < last; i++) {
+        copy_record(i);
+    }
+    workgroupBarrier();
+}
+
+fn item_at(i: u32, odd: bool) -> u32 {
+    if odd {
+        return sorted[i].key;
+    }
+    return order[i];
+}
+
+fn digit_of(item: u32, shift: u32) -> u32 {
+    return (records[item].key >> shift) & (RADIX - 1u);
+}

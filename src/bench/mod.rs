@@ -1,0 +1,330 @@
+//! What a device does with a scene, in figures: times and rates of the kernels, compile times, memory, what splitting costs,
+//! and time to error. The same figures on every device, in a form that can be sent on.
+//!
+//! [`setup`] makes an engine, [`device_report`] runs passes on it, [`work`] counts what they do, [`to_error`] holds a render
+//! against a truth, [`spread`] and [`machine`] are what they say.
+
+pub mod machine;
+pub mod setup;
+pub mod spread;
+pub mod to_error;
+pub mod work;
+
+use std::collections::BTreeMap;
+use std::time::{Duration, Instant};
+
+use serde::Serialize;
+
+use crate::device::{DeviceError, DeviceInfo, DeviceKind};
+use crate::engine::{EngineError, PassReport};
+use crate::gpu::program::Compiling;
+use crate::plan::Plan;
+use crate::scene::Scene;
+use crate::settings::{Method, RenderSettings};
+use setup::{Ready, SetupSeconds};
+use spread::Spread;
+use to_error::Approach;
+use work::Work;
+
+/// How a bench goes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Conduct {
+    /// Passes that are not counted; at least one.
+    pub warm_up: u32,
+    /// Rounds that are: a pass by kernels and one as it is for each slice.
+    pub passes: u32,
+    /// No round is begun after this time.
+    pub time: Option<Duration>,
+    /// Seconds that a submission to a GPU is to take, infinite for no splitting; 50 ms where there are none. The first one's
+    /// passes count. The CPU engine makes as many passes, so that those of all devices are the same.
+    pub slices: Vec<f64>,
+}
+
+/// A device's figures for one scene.
+#[derive(Clone, Debug, Serialize)]
+pub struct DeviceReport {
+    /// Its name.
+    pub name: String,
+    /// Its `--device` word.
+    pub kind: &'static str,
+    /// Graphics interface, driver and version; for the CPU, how many threads.
+    pub driver: String,
+    /// The settings in force, with a radius in the place of "auto".
+    pub settings: RenderSettings,
+    /// Where the kernels' times come from.
+    pub clock: &'static str,
+    /// Passes that were not counted.
+    pub warm_up: u32,
+    /// Seconds of the steps to the first pass.
+    pub setup: SetupSeconds,
+    /// Seconds to compile the kernels, one after another; none on the CPU.
+    pub compile: BTreeMap<&'static str, Compile>,
+    /// Seconds of the first pass, which is not counted elsewhere.
+    pub first_pass: f64,
+    /// Seconds of a pass.
+    pub pass: Spread,
+    /// Figures of a pass by the clock on the wall.
+    pub rates: BTreeMap<&'static str, f64>,
+    /// Seconds of a pass whose kernels are timed.
+    pub timed_pass: Spread,
+    /// Of these, the seconds in no kernel.
+    pub rest: Spread,
+    /// The kernels, in the order of their names.
+    pub kernels: BTreeMap<&'static str, KernelReport>,
+    /// What a pass did: the last timed one, and of what is gathered the middle one.
+    pub work: Work,
+    /// Passes by how they were split; none on the CPU.
+    pub slices: Vec<SliceReport>,
+    /// Bytes.
+    pub memory: Memory,
+    /// How the picture came closer to the truth, if there is one.
+    pub to_error: Vec<Approach>,
+}
+
+/// Seconds to make a kernel ready.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Compile {
+    /// To put its shader together, check it and hand it to the driver.
+    pub checking: f64,
+    /// Of the driver, until the kernel had run over nothing.
+    pub driver: f64,
+}
+
+/// One kernel's figures.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct KernelReport {
+    /// Seconds in a pass.
+    pub seconds: Spread,
+    /// Its part of the seconds of all kernels, by the medians.
+    pub share: f64,
+    /// What it does a second, by its median.
+    pub rates: BTreeMap<&'static str, f64>,
+}
+
+/// Passes that were split in one way.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SliceReport {
+    /// Seconds that a submission was to take; none for no splitting.
+    pub slice: Option<f64>,
+    /// Seconds of a pass.
+    pub pass: Spread,
+    /// Submissions in a pass.
+    pub submissions: f64,
+    /// Seconds of the longest submission.
+    pub longest: f64,
+    /// The kernels in that.
+    pub longest_kernels: Vec<&'static str>,
+    /// Seconds of a pass over those of a pass that is not split, less one, by the medians; none where there is none.
+    pub loss: Option<f64>,
+}
+
+/// Bytes.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Memory {
+    /// Of each buffer beside the scene's; those of chunks, of all chunks.
+    pub buffers: BTreeMap<&'static str, u64>,
+    /// Of those that go with the picture, by pixel.
+    pub per_pixel: f64,
+    /// Of those that go with the photons, by photon of a batch.
+    pub per_photon: f64,
+    /// Of these, by record that fits.
+    pub per_record: f64,
+    /// The most main memory that the program held from before the setup until after the passes, where the system tells.
+    pub peak_resident: Option<u64>,
+}
+
+/// Runs passes and counts. With a truth, see [`to_error::approach`].
+pub fn device_report(
+    device: &DeviceInfo,
+    scene: &Scene,
+    settings: &RenderSettings,
+    conduct: &Conduct,
+) -> Result<DeviceReport, DeviceError> {
+    machine::forget_peak();
+    let mut ready = setup::ready(device, scene, settings, Compiling::OneByOne)?;
+    let run = run(&mut ready, conduct)?;
+    let peak_resident = machine::peak_resident_bytes();
+    let work = Work::of(&ready.plan, &run.report, run.gathered);
+    let pass = run.slices.first().map(|slice| slice.pass).unwrap_or_default();
+    Ok(DeviceReport {
+        name: device.name.clone(),
+        kind: device.kind.word(),
+        driver: device.driver.clone(),
+        settings: ready.plan.settings.clone(),
+        clock: match ready.runner.gpu() {
+            None => "around each kernel",
+            Some(gpu) if gpu.has_clock() => "timestamp queries",
+            Some(_) => "waiting for each kernel",
+        },
+        warm_up: conduct.warm_up,
+        setup: ready.seconds,
+        compile: match ready.runner.gpu() {
+            None => BTreeMap::new(),
+            Some(gpu) => gpu
+                .compile_seconds()
+                .iter()
+                .map(|(kernel, c)| (kernel.stem(), Compile { checking: c.checking, driver: c.driver }))
+                .collect(),
+        },
+        first_pass: run.first_pass,
+        pass,
+        rates: pass_rates(&work, pass.median),
+        timed_pass: Spread::of(&run.timed),
+        rest: Spread::of(&run.rest),
+        kernels: kernel_reports(&run.kernels, &work, &ready.plan),
+        work,
+        slices: if ready.runner.gpu().is_some() { run.slices } else { Vec::new() },
+        memory: Memory { peak_resident, ..memory(&ready) },
+        to_error: Vec::new(),
+    })
+}
+
+/// What was measured of the passes.
+struct Run {
+    first_pass: f64,
+    kernels: BTreeMap<&'static str, Vec<f64>>,
+    timed: Vec<f64>,
+    rest: Vec<f64>,
+    slices: Vec<SliceReport>,
+    /// Of the last timed pass.
+    report: PassReport,
+    /// Photons gathered in the middle timed pass.
+    gathered: u64,
+}
+
+fn run(ready: &mut Ready, conduct: &Conduct) -> Result<Run, EngineError> {
+    let runner = &mut ready.runner;
+    let slices = match conduct.slices.as_slice() {
+        [] => &[crate::gpu::pace::SLICE],
+        slices => slices,
+    };
+    let cpu = runner.gpu().is_none();
+    let mut first_pass = 0.0;
+    for pass in 0..conduct.warm_up.max(1) {
+        set_slice(runner, slices[0]);
+        let begun = Instant::now();
+        runner.engine().pass()?;
+        if pass == 0 {
+            first_pass = begun.elapsed().as_secs_f64();
+        }
+    }
+    let begun = Instant::now();
+    let mut kernels: BTreeMap<&'static str, Vec<f64>> = BTreeMap::new();
+    let (mut timed, mut rest, mut gathered) = (Vec::new(), Vec::new(), Vec::new());
+    let mut plain: Vec<(Vec<f64>, u64, crate::gpu::Submissions)> = vec![Default::default(); slices.len()];
+    let mut last = PassReport::default();
+    for round in 0..conduct.passes.max(1) {
+        if round > 0 && conduct.time.is_some_and(|time| begun.elapsed() >= time) {
+            break;
+        }
+        set_slice(runner, slices[0]);
+        let start = Instant::now();
+        let (report, seconds) = runner.engine().timed_pass()?;
+        let whole = start.elapsed().as_secs_f64();
+        timed.push(whole);
+        rest.push((whole - seconds.values().sum::<f64>()).max(0.0));
+        // the CPU engine scans and sorts in one go
+        let skipped =
+            |kernel: &str| cpu && ["grid_scan_reduce", "grid_scan_sums", "grid_sort_long"].contains(&kernel);
+        for (kernel, seconds) in seconds.into_iter().filter(|(kernel, _)| !skipped(kernel)) {
+            kernels.entry(kernel).or_default().push(seconds);
+        }
+        last = report;
+        gathered.push(runner.engine().gathered()?);
+        for (slice, (passes, count, longest)) in slices.iter().zip(&mut plain) {
+            set_slice(runner, *slice);
+            runner.gpu().map(|gpu| gpu.take_submissions());
+            let start = Instant::now();
+            runner.engine().pass()?;
+            passes.push(start.elapsed().as_secs_f64());
+            if let Some(made) = runner.gpu().map(|gpu| gpu.take_submissions()) {
+                *count += made.count;
+                if made.longest_seconds > longest.longest_seconds {
+                    *longest = made;
+                }
+            }
+        }
+    }
+    let unsplit = slices.iter().position(|slice| slice.is_infinite());
+    let whole = unsplit.map(|at| Spread::of(&plain[at].0).median);
+    let report = |(slice, (passes, count, longest)): (&f64, &(Vec<f64>, u64, crate::gpu::Submissions))| {
+        let pass = Spread::of(passes);
+        SliceReport {
+            slice: slice.is_finite().then_some(*slice),
+            submissions: *count as f64 / passes.len() as f64,
+            longest: longest.longest_seconds,
+            longest_kernels: longest.longest.iter().map(|kernel| kernel.stem()).collect(),
+            loss: whole.map(|whole| pass.median / whole - 1.0),
+            pass,
+        }
+    };
+    let slices = slices.iter().zip(&plain).map(report).collect();
+    gathered.sort_unstable();
+    let gathered = gathered[gathered.len() / 2];
+    Ok(Run { first_pass, kernels, timed, rest, slices, report: last, gathered })
+}
+
+fn set_slice(runner: &mut setup::Runner, seconds: f64) {
+    if let Some(gpu) = runner.gpu() {
+        gpu.set_slice(seconds);
+    }
+}
+
+fn pass_rates(work: &Work, seconds: f64) -> BTreeMap<&'static str, f64> {
+    let per_second = |count: u64| count as f64 / seconds.max(1e-9);
+    BTreeMap::from([
+        ("passes_per_second", per_second(1)),
+        ("rays_per_second", per_second(work.eye_rays + work.photon_rays)),
+        ("photons_per_second", per_second(work.photons)),
+        ("eye_paths_per_second", per_second(work.eye_paths)),
+        ("paths_per_second", per_second(work.photons + work.eye_paths)),
+    ])
+}
+
+fn kernel_reports(
+    kernels: &BTreeMap<&'static str, Vec<f64>>,
+    work: &Work,
+    plan: &Plan,
+) -> BTreeMap<&'static str, KernelReport> {
+    let spreads: BTreeMap<_, _> =
+        kernels.iter().map(|(name, seconds)| (*name, Spread::of(seconds))).collect();
+    let all: f64 = spreads.values().map(|spread| spread.median).sum();
+    let report = |(name, seconds): (&&'static str, &Spread)| {
+        let counts = work.counts(plan, name).into_iter();
+        let rates = counts.map(|(rate, count)| (rate, count / seconds.median.max(1e-9))).collect();
+        let share = seconds.median / all.max(1e-12);
+        (*name, KernelReport { seconds: *seconds, share, rates })
+    };
+    spreads.iter().map(report).collect()
+}
+
+/// Buffers that go with the picture; of those with chunks, each chunk has its own.
+const OF_THE_PICTURE: [&str; 4] = ["visible_points", "gathered", "film", "statistics"];
+
+fn memory(ready: &Ready) -> Memory {
+    let plan = &ready.plan;
+    // a path tracer keeps nothing but the film
+    let path = plan.settings.method == Method::Path;
+    let largest = f64::from(plan.chunk(0).1);
+    let chunks = f64::from(plan.pixels) * f64::from(plan.eye_samples) / largest;
+    let (mut picture, mut photons) = (0.0, 0.0);
+    let mut buffers = BTreeMap::new();
+    for &(name, bytes) in ready.buffers.iter().filter(|(name, _)| !path || *name == "film") {
+        let of_the_picture = OF_THE_PICTURE.contains(&name);
+        let all = if of_the_picture { bytes as f64 * chunks } else { bytes as f64 };
+        *(if of_the_picture { &mut picture } else { &mut photons }) += all;
+        buffers.insert(name, all.round() as u64);
+    }
+    Memory {
+        buffers,
+        per_pixel: picture / f64::from(plan.pixels),
+        per_photon: photons / f64::from(plan.batch_photons.max(1)),
+        per_record: photons / f64::from(plan.capacity.max(1)),
+        peak_resident: None,
+    }
+}
+
+/// Whether a device can run a method at all.
+pub fn can_run(device: &DeviceInfo, settings: &RenderSettings) -> bool {
+    settings.method != Method::Path || matches!(device.kind, DeviceKind::Cpu | DeviceKind::CpuDouble)
+}

@@ -1,0 +1,211 @@
+//! Time to error: how long passes must go on until a picture is so close to the truth.
+
+use serde::Serialize;
+
+use crate::engine::{Engine, EngineError};
+use crate::film::metrics::{MetricsError, compare, compare_in};
+use crate::film::{Picture, Region};
+use std::time::{Duration, Instant};
+
+/// A place of the picture and the relMSE to reach there.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Goal {
+    /// The region's name; none for the whole picture.
+    pub region: Option<(String, Region)>,
+    /// relMSE to reach; none where the error is only told.
+    pub rel_mse: Option<f64>,
+    /// The truth's own noise there: its relMSE against the exact picture, taken off.
+    pub truth_noise: f64,
+}
+
+/// The error of a place after some passes.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Point {
+    /// Passes.
+    pub passes: u32,
+    /// Seconds that they took; measuring is not in it.
+    pub seconds: f64,
+    /// relMSE less the truth's noise.
+    pub rel_mse: f64,
+}
+
+/// How a place came closer to the truth.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Approach {
+    /// The region's name; none for the whole picture.
+    pub region: Option<String>,
+    /// relMSE to reach, if any.
+    pub goal: Option<f64>,
+    /// When it was reached; none if it was not.
+    pub reached_seconds: Option<f64>,
+    /// The errors on the way.
+    pub series: Vec<Point>,
+}
+
+/// Where a run to a truth ends, if not where all goals are reached.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limit {
+    /// No pass is begun after this time.
+    pub time: Duration,
+    /// Passes.
+    pub passes: u32,
+}
+
+/// Why there is no time to error.
+#[derive(Debug, thiserror::Error)]
+pub enum ToErrorError {
+    /// The engine failed.
+    #[error(transparent)]
+    Engine(#[from] EngineError),
+    /// The picture and the truth cannot be compared.
+    #[error(transparent)]
+    Metrics(#[from] MetricsError),
+}
+
+/// When the error of a series passes `goal` for good: between the last measurement above it and the next, by a power law
+/// through both; from the first on if none is above; none if the last is.
+pub fn reached(series: &[Point], goal: f64) -> Option<f64> {
+    // an error that is no number is above every goal
+    let above = |point: &Point| point.rel_mse.is_nan() || point.rel_mse > goal;
+    let Some(last) = series.iter().rposition(above) else {
+        return series.first().map(|first| first.seconds);
+    };
+    let (before, after) = (&series[last], series.get(last + 1)?);
+    if !(before.rel_mse.is_finite() && after.rel_mse > 0.0 && goal > 0.0 && before.seconds > 0.0) {
+        return Some(after.seconds);
+    }
+    let share = (before.rel_mse / goal).ln() / (before.rel_mse / after.rel_mse).ln();
+    Some(before.seconds * (after.seconds / before.seconds).powf(share))
+}
+
+/// Makes passes with an engine that has made none until all goals are reached or the limit is, and measures after each of
+/// the first sixteen, then whenever there are an eighth more.
+pub fn approach(
+    engine: &mut dyn Engine,
+    truth: &Picture,
+    goals: &[Goal],
+    limit: Limit,
+) -> Result<Vec<Approach>, ToErrorError> {
+    let mut approaches: Vec<Approach> = goals
+        .iter()
+        .map(|goal| Approach {
+            region: goal.region.as_ref().map(|(name, _)| name.clone()),
+            goal: goal.rel_mse,
+            reached_seconds: None,
+            series: Vec::new(),
+        })
+        .collect();
+    let mut time = Duration::ZERO;
+    let mut next = 1;
+    for passes in 1..=limit.passes.max(1) {
+        let begun = Instant::now();
+        engine.pass()?;
+        time += begun.elapsed();
+        let last = passes >= limit.passes || time >= limit.time;
+        if passes < next && !last {
+            continue;
+        }
+        next = passes + (passes / 8).max(1);
+        let picture = engine.picture()?;
+        for (goal, approach) in goals.iter().zip(&mut approaches) {
+            let comparison = match &goal.region {
+                Some((_, region)) => compare_in(&picture, truth, region)?,
+                None => compare(&picture, truth)?,
+            };
+            let rel_mse = comparison.rel_mse - goal.truth_noise;
+            approach.series.push(Point { passes, seconds: time.as_secs_f64(), rel_mse });
+            approach.reached_seconds = goal.rel_mse.and_then(|goal| reached(&approach.series, goal));
+        }
+        let open = |a: &Approach| a.goal.is_some() && a.reached_seconds.is_none();
+        let sought = approaches.iter().any(|a| a.goal.is_some());
+        if last || sought && !approaches.iter().any(open) {
+            break;
+        }
+    }
+    Ok(approaches)
+}
+
+/// Theory: an error that falls as `c / t` passes `g` at `c / g`, wherever it is measured; noise on it that lifts it above the
+/// goal again moves the time to the last such place.
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::engine::PassReport;
+    use crate::film::{ErrorMap, Rejections};
+
+    fn falling(times: &[f64], error: impl Fn(f64) -> f64) -> Vec<Point> {
+        (1..).zip(times).map(|(passes, &t)| Point { passes, seconds: t, rel_mse: error(t) }).collect()
+    }
+
+    #[test]
+    fn planted_series_are_read_right() {
+        let series = falling(&[1.0, 2.0, 5.0, 11.0, 20.0], |t| 0.7 / t);
+        for goal in [0.5, 0.14, 0.1, 0.0351] {
+            assert!((reached(&series, goal).unwrap() - 0.7 / goal).abs() < 1e-9, "{goal}");
+        }
+        assert_eq!(reached(&series, 0.9), Some(1.0));
+        assert_eq!(reached(&series, 0.03), None);
+        assert_eq!(reached(&[], 1.0), None);
+        let mut bumpy = series.clone();
+        bumpy[3].rel_mse = 0.2;
+        assert!(reached(&bumpy, 0.15).unwrap() > 11.0);
+        bumpy[3].rel_mse = f64::NAN;
+        assert_eq!(reached(&bumpy, 0.15), Some(20.0));
+        bumpy[4].rel_mse = f64::NAN;
+        assert_eq!(reached(&bumpy, 0.15), None);
+        // below the truth's own noise the difference may be negative
+        let past = falling(&[1.0, 2.0], |t| 1.5 - t);
+        assert_eq!(reached(&past, 0.1), Some(2.0));
+    }
+
+    /// Each pass halves the picture's distance from one.
+    struct Halver(f32);
+
+    impl Engine for Halver {
+        fn device(&self) -> &str {
+            "halver"
+        }
+        fn pass(&mut self) -> Result<PassReport, EngineError> {
+            self.0 *= 0.5;
+            Ok(PassReport::default())
+        }
+        fn picture(&mut self) -> Result<Picture, EngineError> {
+            // the left half starts twice as far away
+            Ok(Picture::from_fn(4, 4, |x, _| [1.0 + self.0 * if x < 2 { 2.0 } else { 1.0 }; 3]))
+        }
+        fn errors(&mut self) -> Result<ErrorMap, EngineError> {
+            Ok(ErrorMap::default())
+        }
+        fn rejections(&mut self) -> Result<Rejections, EngineError> {
+            Ok(Rejections::default())
+        }
+    }
+
+    #[test]
+    fn it_ends_where_all_goals_are_reached() {
+        let truth = Picture::from_fn(4, 4, |_, _| [1.0; 3]);
+        let right = Region { x0: 2, y0: 0, x1: 4, y1: 4 };
+        // relMSE of the right half after p passes: 4^-p / 1.01; of the left one, four times that
+        let goal = |region, rel_mse, truth_noise| Goal { region, rel_mse, truth_noise };
+        let goals = [
+            goal(Some(("right".to_owned(), right)), Some(0.3), 0.0),
+            goal(None, Some(1.0e-3), 0.0),
+            goal(None, None, 0.0),
+        ];
+        let endless = Limit { time: Duration::from_secs(1000), passes: 1000 };
+        let found = approach(&mut Halver(1.0), &truth, &goals, endless).unwrap();
+        let passes = |a: &Approach| a.series.last().unwrap().passes;
+        // the mean of both halves, less the largest pixel, 36 / 15 4^-p / 1.01, is below 0.001 from the sixth pass on
+        assert_eq!(found.iter().map(passes).collect::<Vec<_>>(), [6, 6, 6]);
+        assert!((found[0].series[0].rel_mse - 0.25 / 1.01).abs() < 1e-6);
+        assert_eq!(found[0].reached_seconds, Some(found[0].series[0].seconds));
+        assert!(found[1].reached_seconds.unwrap() <= found[1].series[5].seconds);
+        assert_eq!((found[2].goal, found[2].reached_seconds), (None, None));
+        // the limit, and noise that is taken off
+        let short = Limit { passes: 3, ..endless };
+        let found = approach(&mut Halver(1.0), &truth, &[goal(None, Some(1e-3), 0.01)], short).unwrap();
+        assert_eq!((passes(&found[0]), found[0].reached_seconds), (3, None));
+        let error = found[0].series[2].rel_mse;
+        assert!((error - (36.0 / 15.0 / 64.0 / 1.01 - 0.01)).abs() < 1e-6, "{error}");
+    }
+}

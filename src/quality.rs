@@ -1,0 +1,177 @@
+//! Presets: settings by what a picture is for, and how far its error is from that of its first passes.
+//!
+//! The numbers are those of docs/speed-accuracy.md, which `scenes/studies/run` makes again.
+
+use serde::{Deserialize, Serialize};
+
+use crate::film::Picture;
+use crate::film::metrics::{MetricsError, compare};
+use crate::settings::{Direct, Method, Radius, RadiusRule, RenderSettings};
+
+/// What a picture is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Quality {
+    /// To see where things are.
+    Draft,
+    /// To judge light and materials.
+    Preview,
+    /// To show.
+    Final,
+    /// To hold others against.
+    Reference,
+}
+
+/// Photons of a pass for each pixel.
+const PHOTONS_PER_PIXEL: f64 = 1.0;
+
+impl Quality {
+    /// All of them, by growing cost.
+    pub const ALL: [Self; 4] = [Self::Draft, Self::Preview, Self::Final, Self::Reference];
+
+    /// As the command line has it.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Draft => "draft",
+            Self::Preview => "preview",
+            Self::Final => "final",
+            Self::Reference => "reference",
+        }
+    }
+
+    /// Passes.
+    pub fn passes(self) -> u32 {
+        match self {
+            Self::Draft => 4,
+            Self::Preview => 16,
+            Self::Final => 256,
+            Self::Reference => 4096,
+        }
+    }
+
+    /// Puts the preset in force for a picture of so many pixels. Bounces, eye samples and seed stay.
+    pub fn apply(self, pixels: u64, settings: &mut RenderSettings) {
+        *settings = RenderSettings {
+            method: Method::Sppm,
+            passes: self.passes(),
+            photons: (pixels as f64 * PHOTONS_PER_PIXEL).clamp(1.0, f64::from(u32::MAX)) as u32,
+            radius: Radius::Auto,
+            radius_rule: RadiusRule::Global,
+            alpha: 2.0 / 3.0,
+            direct: Direct::Sampled,
+            ..settings.clone()
+        };
+    }
+}
+
+/// relMSE of a picture of one pass, by two pictures, the second of which holds the pass of the first and one more: the mean
+/// of both lies half of their distance from either.
+///
+/// # Errors
+/// Where the pictures cannot be compared.
+pub fn one_pass_error(first: &Picture, both: &Picture) -> Result<f64, MetricsError> {
+    Ok(2.0 * compare(first, both)?.rel_mse)
+}
+
+/// Passes, and the exponent with which relMSE falls from one pass to so many: over the shipped scenes the median, the least
+/// and the greatest.
+const DECAY: [(u32, [f64; 3]); 4] = [
+    (4, [1.01, 0.54, 1.13]),
+    (16, [0.98, 0.55, 1.36]),
+    (256, [0.82, 0.55, 1.07]),
+    (4096, [0.74, 0.55, 0.90]),
+];
+/// That of path tracing, whose passes are independent and have no bias.
+const DECAY_OF_PATHS: [f64; 3] = [1.0; 3];
+
+/// An error that is to be expected.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Expected {
+    /// relMSE, by the median scene.
+    pub rel_mse: f64,
+    /// By the scene in which it falls fastest.
+    pub low: f64,
+    /// By the scene in which it falls slowest.
+    pub high: f64,
+}
+
+/// What to expect after so many passes where one pass has the relMSE `one_pass`.
+pub fn expected(one_pass: f64, passes: u32, method: Method) -> Expected {
+    let decay = if method == Method::Path { DECAY_OF_PATHS } else { decay(passes) };
+    let [rel_mse, high, low] = decay.map(|slope| one_pass * f64::from(passes).powf(-slope));
+    Expected { rel_mse, low, high }
+}
+
+/// The exponents for a number of passes: between those of the table in proportion to its logarithm.
+fn decay(passes: u32) -> [f64; 3] {
+    let (first, last) = (DECAY[0], DECAY[DECAY.len() - 1]);
+    let between = DECAY.windows(2).find(|pair| (pair[0].0..=pair[1].0).contains(&passes));
+    let Some([(low, from), (high, to)]) = between else {
+        return if passes < first.0 { first.1 } else { last.1 };
+    };
+    let part = (f64::from(passes) / f64::from(*low)).ln() / (f64::from(*high) / f64::from(*low)).ln();
+    [0, 1, 2].map(|i| from[i] + part * (to[i] - from[i]))
+}
+
+/// Theory: two pictures of independent passes with variance V each have the mean squared distance 2 V; the first's from
+/// their mean is half of either's from the other.
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn two_passes_tell_the_error_of_one() {
+        let mut state = 5u64;
+        let mut noisy = || {
+            Picture::from_fn(100, 80, |_, _| {
+                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                // Uniform in [1, 1.2): variance 1/300.
+                [1.0 + 0.2 * (state >> 40) as f32 / (1u64 << 24) as f32; 3]
+            })
+        };
+        let (first, second) = (noisy(), noisy());
+        let mut pixels =
+            first.rgb.iter().zip(&second.rgb).map(|(a, b)| [0, 1, 2].map(|c| 0.5 * (a[c] + b[c])));
+        let both = Picture::from_fn(100, 80, |_, _| pixels.next().unwrap());
+        let told = one_pass_error(&first, &both).unwrap();
+        let exact = 1.0 / 300.0 / (1.1f64.powi(2) + 0.01);
+        assert!((told / exact - 1.0).abs() < 0.05, "{told} {exact}");
+        // The second pass alone in the place of the mean of both would tell four times as much.
+        assert!(one_pass_error(&first, &second).unwrap() > 3.0 * exact);
+    }
+
+    #[test]
+    fn more_passes_and_better_presets_promise_less_error() {
+        let errors = Quality::ALL.map(|quality| expected(0.1, quality.passes(), Method::Sppm));
+        assert!(errors.windows(2).all(|pair| pair[1].high < pair[0].high && pair[1].low < pair[0].low));
+        assert!(errors.iter().all(|e| e.low <= e.rel_mse && e.rel_mse <= e.high));
+        assert_eq!(expected(0.1, 1, Method::Sppm).rel_mse, 0.1);
+        // Between the table's lines the exponent lies between theirs, on them it is theirs, beyond them the last.
+        let exponent =
+            |passes: u32| -(expected(1.0, passes, Method::Sppm).rel_mse).ln() / f64::from(passes).ln();
+        assert!((exponent(64) - 0.5 * (exponent(16) + exponent(256))).abs() < 1e-9);
+        assert!(
+            (exponent(2) - exponent(4)).abs() < 1e-9 && (exponent(1 << 20) - exponent(4096)).abs() < 1e-9
+        );
+        assert!((expected(0.1, 10, Method::Path).rel_mse - 0.01).abs() < 1e-12);
+    }
+
+    #[test]
+    fn presets_leave_what_is_not_theirs() {
+        let own = RenderSettings {
+            seed: 7,
+            max_bounces: 5,
+            eye_samples: 9,
+            method: Method::Ppm,
+            ..Default::default()
+        };
+        for quality in Quality::ALL {
+            let mut settings = own.clone();
+            quality.apply(640 * 400, &mut settings);
+            assert_eq!((settings.seed, settings.max_bounces, settings.eye_samples), (7, 5, 9));
+            assert_eq!((settings.method, settings.radius), (Method::Sppm, Radius::Auto));
+            assert_eq!(settings.photons, (640.0 * 400.0 * PHOTONS_PER_PIXEL) as u32);
+            assert_eq!(serde_json::to_value(quality).unwrap(), quality.word());
+        }
+    }
+}
