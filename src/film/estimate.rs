@@ -122,10 +122,10 @@ impl ErrorMap {
 
     /// The whole picture's error.
     pub fn relative(&self) -> RelativeError {
-        // a single pixel's halves may agree by chance
-        let halves_sq = self.plane(|p| p.halves * p.halves).along_x(&[1.0 / 3.0; 3]).along_y(&[1.0 / 3.0; 3]);
+        let third = [1.0 / 3.0; 3];
+        let around = self.plane(|p| p.luminance).along_x(&third).along_y(&third);
         let terms: Vec<Term> =
-            self.pixels.iter().zip(&halves_sq.values).map(|(p, around)| Term::of(p, *around)).collect();
+            self.pixels.iter().zip(&around.values).map(|(p, around)| Term::of(p, *around)).collect();
         let kept = kept(&terms);
         let count = kept.iter().filter(|kept| **kept).count().max(1) as f64;
         let sum = |part: fn(&Term) -> f64| {
@@ -167,21 +167,22 @@ struct Term {
 }
 
 impl Term {
-    /// Relative to the estimate less its standard deviation: where a single pass, or eye sample, was bright this is what the
-    /// others found, so that a rare bright sample does not dwarf its own error. `halves_sq` is the mean around the pixel.
-    fn of(p: &PixelError, halves_sq: f64) -> Self {
-        let reference = (p.luminance - (p.variance + halves_sq).sqrt()).max(0.0);
-        let share = 1.0 / (reference * reference + DARK);
+    /// Noise of the passes and bias are relative to the estimate less its standard deviation: where a single pass was bright
+    /// this is what the others found, so that a rare bright sample does not dwarf its own error. That of some few eye
+    /// samples is relative to the mean of the pixels around, for where all of them agree by chance the estimate is far off.
+    fn of(p: &PixelError, around: f64) -> Self {
+        let share_of = |reference: f64| 1.0 / (reference * reference + DARK);
+        let share = share_of((p.luminance - p.variance.sqrt()).max(0.0));
         let [first, second] = p.deviations.map(|deviation| deviation * deviation);
-        let halves = p.halves * p.halves;
+        let halves = p.halves * p.halves * share_of(around);
         let bias_off = BIAS_OVER_RING.powi(2) * 2.0 * p.ring * p.ring_swing;
         Self {
             rank: p.variance * share,
-            noise: (0.5 * (first + second) + halves) * share,
+            noise: 0.5 * (first + second) * share + halves,
             bias: p.bias_sq() * share,
             off: (first - second + bias_off) * share,
             // of the estimate and of the true error, each of which has a square of this size
-            alone_sq: 2.0 * (halves * share).powi(2),
+            alone_sq: 2.0 * halves * halves,
         }
     }
 }
