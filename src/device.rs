@@ -11,7 +11,7 @@ use crate::pack::pack;
 use crate::plan::Plan;
 use crate::radius::Automatic;
 use crate::scene::Scene;
-use crate::settings::{Method, RenderSettings};
+use crate::settings::{Method, Radius, RenderSettings};
 
 /// Most visible points of a picture: their numbers are 32 bits wide.
 const POINTS_MAX: u64 = 1 << 31;
@@ -222,6 +222,11 @@ fn start(device: &DeviceInfo, scene: &Scene, settings: &RenderSettings) -> Resul
     let film = &scene.film;
     if device.kind == DeviceKind::CpuDouble {
         let packed = double::pack::pack(scene, film.width, film.height)?;
+        // what is left open is chosen by the look of the f32 engine, since both are to render the same
+        let settings = &match settings.radius {
+            Radius::Auto => Plan::new(&pack(scene, film.width, film.height)?, settings).settings,
+            _ => settings.clone(),
+        };
         let plan = double::plan::Plan::new(&packed, settings);
         let (settings, automatic) = (plan.settings.clone(), plan.told_radius());
         return Ok((Box::new(double::cpu::CpuEngine::new(packed, plan)), settings, automatic));

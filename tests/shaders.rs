@@ -118,7 +118,7 @@ fn a_planted_error_is_found() {
         ("kernels/gather.wgsl", "count += 1u;", "count += 1.0;"),
         ("kernels/grid_sort.wgsl", "let key = records[item].key;", "let key = records[item].kez;"),
         ("lights/light.wgsl", "fn choose_light(u: f32)", "fn choose_light(u: f33)"),
-        ("kernels/resolve.wgsl", "var sum = vec3f(0.0);", "var sum = vec3f(0.0)"),
+        ("kernels/resolve.wgsl", "var state = 0u;", "var state = 0u"),
         ("materials/scatter.wgsl", "//#if glass", "//#if glas"),
     ] {
         let mut fragments = FRAGMENTS.to_vec();
