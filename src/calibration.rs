@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use crate::engine::{Engine, EngineError, PassReport};
-use crate::film::{Picture, Rejections};
+use crate::film::{ErrorMap, Picture, Rejections};
 use crate::quality::one_pass_error;
 
 /// What two passes told.
@@ -60,8 +60,16 @@ impl Engine for Calibrating<'_> {
         self.inner.picture()
     }
 
+    fn errors(&mut self) -> Result<ErrorMap, EngineError> {
+        self.inner.errors()
+    }
+
     fn rejections(&mut self) -> Result<Rejections, EngineError> {
         self.inner.rejections()
+    }
+
+    fn results(&mut self) -> Result<(Picture, Rejections), EngineError> {
+        self.inner.results()
     }
 }
 
@@ -86,6 +94,10 @@ mod tests {
             self.sum += if self.passes.is_multiple_of(2) { 1.0 } else { 3.0 };
             self.passes += 1;
             Ok(PassReport { photons: 5, ..PassReport::default() })
+        }
+
+        fn errors(&mut self) -> Result<ErrorMap, EngineError> {
+            Ok(ErrorMap::default())
         }
 
         fn rejections(&mut self) -> Result<Rejections, EngineError> {

@@ -79,7 +79,7 @@ pub fn partition(mean: f64, part_mean: f64, part: u32, all: u32) -> f64 {
 }
 
 /// The errors of all pixels of a picture.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct ErrorMap {
     /// Pixels per row.
     pub width: u32,
