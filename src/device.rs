@@ -7,6 +7,7 @@ use crate::double;
 use crate::engine::{Engine, EngineError};
 use crate::gpu::{self, AdapterChoice, AdapterKind, AdapterSummary, GpuEngine};
 use crate::kernels::records::VisiblePoint;
+use crate::lights::guide::guides;
 use crate::pack::pack;
 use crate::plan::Plan;
 use crate::radius::Automatic;
@@ -221,10 +222,12 @@ fn start(device: &DeviceInfo, scene: &Scene, settings: &RenderSettings) -> Resul
     check_points(device, scene, settings)?;
     let film = &scene.film;
     if device.kind == DeviceKind::CpuDouble {
-        let packed = double::pack::pack(scene, film.width, film.height)?;
-        // what is left open is chosen by the look of the f32 engine, since both are to render the same
+        let mut packed = double::pack::pack(scene, film.width, film.height)?;
+        // maps and what is left open are those of the f32 engine, since both are to render the same
+        let single = pack(scene, film.width, film.height)?;
+        double::lights::guide::take_guides(&mut packed.scene, &guides(&single.scene));
         let settings = &match settings.radius {
-            Radius::Auto => Plan::new(&pack(scene, film.width, film.height)?, settings).settings,
+            Radius::Auto => Plan::new(&single, settings).settings,
             _ => settings.clone(),
         };
         let plan = double::plan::Plan::new(&packed, settings);
