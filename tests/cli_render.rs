@@ -279,7 +279,7 @@ fn presets_promise_and_keep_their_passes() {
     let error = text(&output.stderr);
     for word in [
         "start radius",
-        "px, for",
+        "px for light that a diffuse surface has scattered, for",
         "draft: 4 passes of 768 photons",
         "expected",
         "% (",
