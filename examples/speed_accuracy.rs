@@ -18,11 +18,11 @@ const SCENES: [&str; 6] =
 /// Settings beside the presets' and what they are.
 const CHOICES: [(&str, &str); 13] = [
     ("method=path", "path tracing"),
-    ("radius=1px", "start radius 1 px"),
-    ("radius=2px", "2 px"),
-    ("radius=4px", "4 px"),
-    ("radius=8px", "8 px"),
-    ("radius=16px", "16 px"),
+    ("radius=1px", "one disc of 1 px"),
+    ("radius=2px", "one disc of 2 px"),
+    ("radius=4px", "one disc of 4 px"),
+    ("radius=8px", "one disc of 8 px"),
+    ("radius=16px", "one disc of 16 px"),
     ("photons/4", "a quarter of the photons"),
     ("photons*4", "four times the photons"),
     ("radius_rule=local", "local rule"),
@@ -146,7 +146,7 @@ fn page(studies: &[Studied]) -> String {
     let _ =
         write!(out, "\n## The automatic radius\n\n{RADIUS}\n| |{columns}\n|---|{ruler}\n| automatic, px |");
     studies.iter().for_each(|s| write!(out, " {} |", s.automatic()).unwrap_or(()));
-    out.push_str("\n| best of those tried, px |");
+    out.push_str("\n| best single disc of those tried, px |");
     let widths = ["1px", "2px", "4px", "8px", "16px"];
     let best = |study: &Studied| {
         let tried = widths.iter().filter_map(|px| Some((study.end(&format!("radius={px}"))?, *px)));
@@ -155,7 +155,7 @@ fn page(studies: &[Studied]) -> String {
     for study in studies {
         let _ = write!(out, " {} |", best(study).map_or("–", |(_, px)| px.trim_end_matches("px")));
     }
-    out.push_str("\n| error with the automatic one over the best one's |");
+    out.push_str("\n| error with the automatic two over the best single one's |");
     for study in studies {
         let ratio = best(study).zip(study.end("")).map(|((best, _), own)| own / best);
         let _ = write!(out, " {} |", ratio.map_or("–".to_owned(), |ratio| format!("{ratio:.2}")));
@@ -226,8 +226,8 @@ pictures: a tenth is noise.
 ";
 
 const RADIUS: &str = "\
-Chosen before the first pass from how many photons fall on a pixel and whether they are caustics (`src/radius.rs`). The best
-one is known only after the study; steps of two are tried.
+Chosen before the first pass from how many photons fall on a pixel and whether they are caustics (`src/radius.rs`): a start radius,
+and a wider one for photons that a diffuse surface has scattered. Beside it, the best single disc of those tried.
 ";
 
 const PRESETS: &str = "\

@@ -172,6 +172,7 @@ mod tests {
         let mut loaded = scene::load("scenes/soft-shadows.toml".as_ref()).unwrap();
         (loaded.scene.film.width, loaded.scene.film.height) = (24, 16);
         loaded.settings.photons = 500;
+        loaded.settings.indirect_radius = Some(1.0);
         let packed = pack(&loaded.scene, 24, 16).unwrap();
         let features = Features::of(&packed.scene, &loaded.settings);
         let missing = left_out(&features);

@@ -7,11 +7,12 @@ use crate::double;
 use crate::engine::{Engine, EngineError};
 use crate::gpu::{self, AdapterChoice, AdapterKind, AdapterSummary, GpuEngine};
 use crate::kernels::records::VisiblePoint;
+use crate::lights::guide::guides;
 use crate::pack::pack;
 use crate::plan::Plan;
 use crate::radius::Automatic;
 use crate::scene::Scene;
-use crate::settings::{Method, RenderSettings};
+use crate::settings::{Method, Radius, RenderSettings};
 
 /// Most visible points of a picture: their numbers are 32 bits wide.
 const POINTS_MAX: u64 = 1 << 31;
@@ -221,7 +222,14 @@ fn start(device: &DeviceInfo, scene: &Scene, settings: &RenderSettings) -> Resul
     check_points(device, scene, settings)?;
     let film = &scene.film;
     if device.kind == DeviceKind::CpuDouble {
-        let packed = double::pack::pack(scene, film.width, film.height)?;
+        let mut packed = double::pack::pack(scene, film.width, film.height)?;
+        // maps and what is left open are those of the f32 engine, since both are to render the same
+        let single = pack(scene, film.width, film.height)?;
+        double::lights::guide::take_guides(&mut packed.scene, &guides(&single.scene));
+        let settings = &match settings.radius {
+            Radius::Auto => Plan::new(&single, settings).settings,
+            _ => settings.clone(),
+        };
         let plan = double::plan::Plan::new(&packed, settings);
         let (settings, automatic) = (plan.settings.clone(), plan.told_radius());
         return Ok((Box::new(double::cpu::CpuEngine::new(packed, plan)), settings, automatic));

@@ -249,7 +249,9 @@ fn presets_promise_and_keep_their_passes() {
     assert!(told["expected_seconds"].as_f64().unwrap() > 0.0);
     assert_eq!(of(&draft, "done")["passes"], 4, "the calibration's passes are among them");
     let radius = format!("{pixels}px");
-    let by_hand = ["--photons", "768", "--passes", "4", "--radius", &radius, "-o", "hand.pfm"];
+    let indirect = settings["indirect_radius"].to_string();
+    let discs = ["--radius", &radius, "--indirect-radius", &indirect];
+    let by_hand = [&["--photons", "768", "--passes", "4", "-o", "hand.pfm"][..], &discs].concat();
     assert_eq!(of(&render(&by_hand), "calibration"), serde_json::Value::Null);
     assert!(fs::read(folder.join("draft.pfm")).unwrap() == fs::read(folder.join("hand.pfm")).unwrap());
     // Options are stronger than the preset, which is stronger than the scene; it knows the size that options set.
@@ -277,7 +279,7 @@ fn presets_promise_and_keep_their_passes() {
     let error = text(&output.stderr);
     for word in [
         "start radius",
-        "px, for",
+        "px for light that a diffuse surface has scattered, for",
         "draft: 4 passes of 768 photons",
         "expected",
         "% (",

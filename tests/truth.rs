@@ -99,7 +99,9 @@ fn ppm_agrees_under_every_rule_and_in_both_direct_modes() {
     ] {
         let small = Radius::Pixels(0.25);
         let ppm = RenderSettings { method: Method::Ppm, radius: small, ..settings() };
-        assert_agrees(name, &RenderSettings { radius_rule, direct, ..ppm }, BIAS);
+        // of a thousand eye paths at the drop's tip one or two see the lamp, and bring two thirds of the light there
+        let eye_samples = if name == "drop" { 64 } else { ppm.eye_samples };
+        assert_agrees(name, &RenderSettings { radius_rule, direct, eye_samples, ..ppm }, BIAS);
     }
 }
 

@@ -114,7 +114,8 @@ fn stratified(u: vec4f, k: u32, pixel: u32) -> vec4f {
     }
     let columns = dispatch.strata;
     let rows = dispatch.eye_samples / columns;
-    let lens = (k + pixel * 7u + pixel / 3u) % dispatch.eye_samples;
+    let shift = pcg4d(vec4u(pixel, 0u, STREAM_STRATA, dispatch.seed)).x % dispatch.eye_samples;
+    let lens = (k + shift) % dispatch.eye_samples;
     return vec4f(
         (f32(k % columns) + u.x) / f32(columns),
         (f32(k / columns) + u.y) / f32(rows),

@@ -2,6 +2,7 @@
 
 const STREAM_EYE: u32 = 0x80000000u;
 const STREAM_PHOTON: u32 = 0u;
+const STREAM_STRATA: u32 = 0x40000000u;
 
 struct Rng {
     index: u32,

@@ -26,6 +26,8 @@ pub fn on_device(wanted: &str, packed: &Packed, settings: &RenderSettings) -> Re
             "measure sppm or ppm on gpu, software or cpu",
         ));
     }
+    // one disc: what is added may bring photons that ask for a second, in which sums are rounded otherwise
+    let settings = &RenderSettings { indirect_radius: Some(1.0), ..settings.clone() };
     let cost = |packed: Packed| match device.kind {
         DeviceKind::Cpu => on_cpu(packed, settings, PASSES),
         _ => on_gpu(&AdapterChoice::Named(device.name.clone()), &packed, settings, PASSES),

@@ -8,7 +8,7 @@ use super::lights::light::eval_environment;
 use super::materials::scatter::{
     RADIANCE, is_specular, reflectance_at, scatter_specular, shading_normal, toward,
 };
-use super::math::rng::{STREAM_EYE, rng_new, rng_next};
+use super::math::rng::{STREAM_EYE, STREAM_STRATA, pcg4d, rng_new, rng_next};
 use super::math::{FAR, INV_PI, is_finite, max_component, oct_encode, offset_origin};
 use super::real::{Real, Vec3, Vec4};
 use super::records::{BAD_DIRECT, BAD_EYE, Dispatch, VisiblePoint};
@@ -118,7 +118,9 @@ fn stratified(u: Vec4, k: u32, pixel: u32, dispatch: &Dispatch) -> Vec4 {
     }
     let columns = dispatch.strata;
     let rows = dispatch.eye_samples / columns;
-    let lens = (k + pixel * 7 + pixel / 3) % dispatch.eye_samples;
+    // by chance, so that no pixel looks through the same parts of the lens in every render
+    let shift = pcg4d([pixel, 0, STREAM_STRATA, dispatch.seed])[0] % dispatch.eye_samples;
+    let lens = (k + shift) % dispatch.eye_samples;
     Vec4::new(
         ((k % columns) as Real + u.x) / columns as Real,
         ((k / columns) as Real + u.y) / rows as Real,

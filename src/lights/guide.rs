@@ -68,6 +68,22 @@ pub fn learn_guides(scene: &mut Scene) {
     }
 }
 
+/// The cumulative shares of each light's map, for an engine of other precision that is to send its photons alike.
+pub fn guides(scene: &Scene) -> Vec<Option<Vec<f64>>> {
+    let map =
+        |first: usize| scene.distributions[first..first + GUIDE_CELLS as usize].iter().map(|x| *x as f64);
+    scene.lights.iter().map(|light| (light.guide != 0).then(|| map(light.guide as usize).collect())).collect()
+}
+
+/// Puts maps in the place of those that the scene has.
+pub fn take_guides(scene: &mut Scene, maps: &[Option<Vec<f64>>]) {
+    for (light, map) in scene.lights.iter_mut().zip(maps) {
+        light.guide = map.as_ref().map_or(0, |_| scene.distributions.len() as u32);
+        scene.distributions.extend(map.iter().flatten().map(|x| *x as Real));
+    }
+    scene.world.guided = scene.lights.iter().any(|light| light.guide != 0) as u32;
+}
+
 /// Pilots in a cell.
 #[derive(Clone, Copy, Default)]
 struct Tally {

@@ -6,6 +6,8 @@ use super::real::{Real, Vec4};
 pub const STREAM_EYE: u32 = 0x8000_0000;
 /// Stream of photon paths.
 pub const STREAM_PHOTON: u32 = 0;
+/// Stream of what a pixel's visible points have in common.
+pub const STREAM_STRATA: u32 = 0x4000_0000;
 
 /// The position of one path in its sequence.
 #[derive(Clone, Copy, Debug)]
