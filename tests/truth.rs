@@ -87,6 +87,19 @@ fn every_rule_agrees_in_both_direct_modes() {
     }
 }
 
+/// Photons that a diffuse surface has scattered have a disc three times as wide, and half of the photons are sent by a map.
+#[test]
+fn two_discs_agree_under_every_rule_and_in_both_direct_modes() {
+    for (radius_rule, direct) in [
+        (RadiusRule::Global, Direct::Sampled),
+        (RadiusRule::Global, Direct::Photons),
+        (RadiusRule::Local, Direct::Sampled),
+    ] {
+        let discs = RenderSettings { indirect_radius: Some(3.0), radius: Radius::Pixels(0.25), ..settings() };
+        assert_agrees("cornell", &RenderSettings { radius_rule, direct, ..discs }, BIAS);
+    }
+}
+
 #[test]
 fn ppm_agrees_under_every_rule_and_in_both_direct_modes() {
     for (name, radius_rule, direct) in [
