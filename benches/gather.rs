@@ -8,6 +8,7 @@ use caustica::kernels::gather::gather;
 use caustica::kernels::grid_build::{SortedRecords, grid_count, grid_scan, grid_scatter, grid_sort};
 use caustica::kernels::records::{Dispatch, Gathered, PhotonRecord, VisiblePoint};
 use caustica::math::oct_encode;
+use caustica::tables::NONE;
 use divan::{Bencher, counter::ItemsCount};
 use glam::Vec3;
 
@@ -56,6 +57,7 @@ fn photons_in_a_disc(bencher: Bencher, photons: u32) {
             position: on_the_wall(),
             radius,
             weight: Vec3::ONE,
+            facet: NONE,
             normal: up,
             shading: up,
             ..VisiblePoint::zeroed()
@@ -65,7 +67,7 @@ fn photons_in_a_disc(bencher: Bencher, photons: u32) {
         let mut found = 0;
         for point in &points {
             let mut gathered = Gathered::zeroed();
-            gather(&d, point, 1.0, &starts, &sorted, &mut gathered);
+            gather(&[], &d, point, 1.0, &starts, &sorted, &mut gathered);
             found += gathered.count;
         }
         found

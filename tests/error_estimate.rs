@@ -14,6 +14,7 @@ use caustica::kernels::grid_build::{SortedRecords, grid_count, grid_scan, grid_s
 use caustica::kernels::records::{Dispatch, FilmPixel, Gathered, PhotonRecord, VisiblePoint};
 use caustica::kernels::resolve::{half_weight, resolve};
 use caustica::math::oct_encode;
+use caustica::tables::NONE;
 use caustica::pack::pack;
 use caustica::plan::Plan;
 use caustica::render::{Ending, Stop, render};
@@ -153,9 +154,16 @@ fn ring(radius: f32, light: impl Fn(f64, f64) -> f64) -> f64 {
     let mut sorted = SortedRecords::default();
     grid_sort(&d, &records, &order, &mut sorted);
     let up = oct_encode(Vec3::Y);
-    let point = VisiblePoint { radius, weight: Vec3::ONE, normal: up, shading: up, ..VisiblePoint::zeroed() };
+    let point = VisiblePoint {
+        radius,
+        facet: NONE,
+        weight: Vec3::ONE,
+        normal: up,
+        shading: up,
+        ..VisiblePoint::zeroed()
+    };
     let mut gathered = Gathered::zeroed();
-    gather(&d, &point, d.scale_sq, &starts, &sorted, &mut gathered);
+    gather(&[], &d, &point, d.scale_sq, &starts, &sorted, &mut gathered);
     assert!(gathered.count > 100_000);
     f64::from(gathered.ring) / (PI * f64::from(radius).powi(2))
 }

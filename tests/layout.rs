@@ -54,9 +54,10 @@ fn hosts() -> Vec<Layout> {
             medium
         }),
         layout!(Sphere { anchor, curvature, normal, radius, material, light, uv }),
-        layout!(Rectangle { origin, material, normal, light, u, uv, v, area, dual_u, dual_v }),
-        layout!(Disc { center, radius, normal, material, light, uv }),
-        layout!(Cuboid { lower, material, upper, light, uv }),
+        layout!(Rectangle { origin, material, normal, light, u, uv, v, area, dual_u, facet, dual_v }),
+        layout!(Disc { center, radius, normal, material, light, uv, facet }),
+        layout!(Cuboid { lower, material, upper, light, uv, facet }),
+        layout!(Facet { origin, radius, u, error, v, dual_u, dual_v }),
         layout!(Plane { point, material, normal, uv, tangent, u0, bitangent, v0 }),
         layout!(Revolution {
             x_axis,
@@ -145,6 +146,7 @@ fn hosts() -> Vec<Layout> {
             reflectance,
             alpha,
             wo,
+            facet,
             state
         }),
         layout!(PhotonRecord { position, key, flux, direction }),

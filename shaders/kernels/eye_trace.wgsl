@@ -48,6 +48,7 @@ fn eye_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
             let ng = toward(s.normal, wo);
             let n = shading_normal(s, wo);
             point.position = s.position;
+            point.facet = s.facet;
             point.radius = start_radius(camera.pixel * length);
             point.normal = oct_encode(ng);
             point.shading = oct_encode(n);
@@ -57,7 +58,7 @@ fn eye_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
                 point.weight = throughput;
                 point.reflectance = reflectance;
                 point.alpha = scene.materials[s.material].alpha;
-                point.wo = wo;
+                point.wo = oct_encode(wo);
             }
             //#end
             //#if sampled

@@ -39,8 +39,10 @@ struct VisiblePoint {
     shading: u32,
     reflectance: vec3f,
     alpha: f32,
-    wo: vec3f,
+    wo: u32,
+    facet: u32,
     state: u32,
+    pad: u32,
 }
 
 struct PhotonRecord {

@@ -11,7 +11,7 @@ use super::math::is_finite;
 use super::pack::Packed;
 use super::plan::{Kernel, Plan};
 use super::real::ENGINE;
-use super::tables::Scene;
+use super::tables::{Facet, Scene};
 use crate::clock::{Clock, KernelSeconds};
 use crate::engine::{Engine, EngineError, PassReport, PhotonEnds};
 use crate::film::{ErrorMap, Picture, Rejections};
@@ -49,6 +49,7 @@ struct Overflow;
 
 /// Gathers of one task.
 struct Gathers<'a> {
+    facets: &'a [Facet],
     dispatch: &'a Dispatch,
     points: &'a [VisiblePoint],
     /// Under the local rule.
@@ -68,7 +69,7 @@ impl pulp::WithSimd for Gathers<'_> {
                 Some(statistics) => scale_sq(self.dispatch, true, &statistics[i]),
                 None => self.dispatch.scale_sq,
             };
-            gather(self.dispatch, point, scale, self.starts, self.sorted, gathered);
+            gather(self.facets, self.dispatch, point, scale, self.starts, self.sorted, gathered);
         }
     }
 }
@@ -163,6 +164,7 @@ impl CpuEngine {
                     gathered.zip(points).zip(statistics).for_each(|((gathered, points), statistics)| {
                         let (starts, sorted) = (&self.starts, &self.sorted);
                         self.arch.dispatch(Gathers {
+                            facets: &scene.facets,
                             dispatch: d,
                             points,
                             statistics,

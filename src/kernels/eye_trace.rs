@@ -58,6 +58,7 @@ pub fn eye_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, id: u32) -> 
             let ng = toward(s.normal, wo);
             let n = shading_normal(scene, &s, wo);
             point.position = s.position;
+            point.facet = s.facet;
             point.radius = start_radius(dispatch, camera.pixel * length);
             point.normal = oct_encode(ng);
             point.shading = oct_encode(n);
@@ -66,7 +67,7 @@ pub fn eye_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, id: u32) -> 
                 point.weight = throughput;
                 point.reflectance = reflectance;
                 point.alpha = scene.materials[s.material as usize].alpha;
-                point.wo = wo;
+                point.wo = oct_encode(wo);
             }
             if sampled {
                 let (radiance, spent) = direct_light(scene, &s, wo, n, ng, reflectance, medium, &mut rng);

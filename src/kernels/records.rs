@@ -85,9 +85,13 @@ pub struct VisiblePoint {
     /// Metal: GGX width; 0 is diffuse.
     pub alpha: Real,
     /// Metal: direction to the viewer.
-    pub wo: Vec3,
+    pub wo: Direction,
+    /// The outline that it lies in, among the facets, or `NONE`.
+    pub facet: u32,
     /// Sum of [`STOPPED`], [`BAD_EYE`] and [`BAD_DIRECT`].
     pub state: u32,
+    /// Padding.
+    pub pad: u32,
 }
 
 /// A photon at a non-specular hit.

@@ -94,6 +94,7 @@ impl Scene {
             refs: Vec::new(),
             triangles: Vec::new(),
             attributes: Vec::new(),
+            facets: Vec::new(),
             texels: Vec::new(),
         }
     }
