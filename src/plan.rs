@@ -273,6 +273,7 @@ impl Plan {
             families: 1 + split as u32,
             indirect_radius: wider as Real,
             inv_cell_indirect: (1.0 / (cell * wider)) as Real,
+            points: crate::sobol::points(pass),
             ..Dispatch::zeroed()
         }
     }

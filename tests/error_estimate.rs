@@ -14,12 +14,12 @@ use caustica::kernels::grid_build::{SortedRecords, grid_count, grid_scan, grid_s
 use caustica::kernels::records::{Dispatch, FilmPixel, Gathered, PhotonRecord, VisiblePoint};
 use caustica::kernels::resolve::{half_weight, resolve};
 use caustica::math::oct_encode;
-use caustica::tables::NONE;
 use caustica::pack::pack;
 use caustica::plan::Plan;
 use caustica::render::{Ending, Stop, render};
 use caustica::scene;
 use caustica::settings::{Direct, Radius, RenderSettings};
+use caustica::tables::NONE;
 use glam::Vec3;
 use std::f64::consts::PI;
 use std::path::Path;

@@ -134,7 +134,8 @@ fn hosts() -> Vec<Layout> {
             passes_done,
             families,
             indirect_radius,
-            inv_cell_indirect
+            inv_cell_indirect,
+            points
         }),
         layout!(VisiblePoint {
             position,

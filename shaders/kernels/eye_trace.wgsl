@@ -9,7 +9,7 @@ fn eye_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
     }
     let index = dispatch.chunk_first + id;
     let pixel = index / dispatch.eye_samples;
-    var rng = rng_new(index, dispatch.pass_number, STREAM_EYE, dispatch.seed);
+    var rng = rng_eye(index, dispatch.pass_number, dispatch.seed);
     let u = stratified(rng_next(&rng), index - pixel * dispatch.eye_samples, pixel);
     let camera = scene.camera;
     var ray = camera_ray(camera, pixel % camera.width, pixel / camera.width, u);

@@ -24,6 +24,8 @@ struct Dispatch {
     families: u32,
     indirect_radius: f32,
     inv_cell_indirect: f32,
+    pad: u32,
+    points: array<vec4u, 4>,
 }
 
 const STOPPED: u32 = 1u;

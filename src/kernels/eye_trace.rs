@@ -8,7 +8,7 @@ use super::lights::light::eval_environment;
 use super::materials::scatter::{
     RADIANCE, is_specular, reflectance_at, scatter_specular, shading_normal, toward,
 };
-use super::math::rng::{STREAM_EYE, STREAM_STRATA, pcg4d, rng_new, rng_next};
+use super::math::rng::{STREAM_STRATA, pcg4d, rng_eye, rng_next};
 use super::math::{FAR, INV_PI, is_finite, max_component, oct_encode, offset_origin};
 use super::real::{Real, Vec3, Vec4};
 use super::records::{BAD_DIRECT, BAD_EYE, Dispatch, VisiblePoint};
@@ -23,7 +23,7 @@ use bytemuck::Zeroable;
 pub fn eye_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, id: u32) -> (VisiblePoint, u32) {
     let index = dispatch.chunk_first + id;
     let pixel = index / dispatch.eye_samples;
-    let mut rng = rng_new(index, dispatch.pass_number, STREAM_EYE, dispatch.seed);
+    let mut rng = rng_eye(index, dispatch.pass_number, dispatch.seed, dispatch.points);
     let u = stratified(rng_next(&mut rng), index - pixel * dispatch.eye_samples, pixel, dispatch);
     let camera = &scene.camera;
     let mut ray = camera_ray(camera, pixel % camera.width, pixel / camera.width, u);

@@ -7,7 +7,7 @@ use super::lights::light::{eval_environment, pdf_environment, pdf_light};
 use super::materials::scatter::{
     RADIANCE, is_specular, pdf_rough, reflectance_at, scatter_rough, scatter_specular, shading_normal, toward,
 };
-use super::math::rng::{STREAM_EYE, rng_new, rng_next};
+use super::math::rng::{rng_eye, rng_next};
 use super::math::sampling::balance;
 use super::math::{FAR, max_component, offset_origin};
 use super::real::{Vec2, Vec3};
@@ -19,7 +19,7 @@ use super::tables::*;
 
 /// One path through pixel `pixel`: its radiance and the number of rays. `sampled`: next-event estimation.
 pub fn path_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, pixel: u32) -> (Vec3, u32) {
-    let mut rng = rng_new(pixel, dispatch.pass_number, STREAM_EYE, dispatch.seed);
+    let mut rng = rng_eye(pixel, dispatch.pass_number, dispatch.seed, dispatch.points);
     let camera = &scene.camera;
     let mut ray = camera_ray(camera, pixel % camera.width, pixel / camera.width, rng_next(&mut rng));
     let mut radiance = Vec3::ZERO;

@@ -1,6 +1,7 @@
 //! What kernels hand to one another. Twin: `shaders/kernels/records.wgsl`.
 
 use super::math::Direction;
+use super::math::rng::Points;
 use super::real::{Plain, Real, Vec3};
 use bytemuck::Zeroable;
 
@@ -55,6 +56,10 @@ pub struct Dispatch {
     pub indirect_radius: Real,
     /// One over the side length of the second family's cells.
     pub inv_cell_indirect: Real,
+    /// Padding.
+    pub pad: u32,
+    /// The pass's point for the first dimensions of eye paths.
+    pub points: Points,
 }
 
 /// The driver stopped the kernel's loops: the point is to be found again.

@@ -3,9 +3,9 @@
 use bytemuck::Zeroable;
 use caustica::kernels::records::{Dispatch, FilmPixel, Gathered, PhotonRecord, Statistics, VisiblePoint};
 use caustica::math::oct_encode;
-use caustica::tables::NONE;
 use caustica::plan::global_scale_sq;
 use caustica::settings::{Direct, Radius, RadiusRule, RenderSettings};
+use caustica::tables::NONE;
 use glam::{DVec3, Vec3};
 
 use super::bench::Bench;
