@@ -25,7 +25,7 @@ struct Clip {
 }
 
 fn turn(distance: f32, start: f32, end: f32) -> f32 {
-    return arctan2(distance * (end - start), distance * distance + start * end);
+    return arctan2(distance * (kept(end) - start), distance * distance + start * end);
 }
 
 fn wedge(distance: f32, start: f32, end: f32) -> f32 {
@@ -46,7 +46,7 @@ fn cross_2d(a: vec2f, b: vec2f) -> f32 {
 
 fn parallelogram_area(corner: vec2f, width: f32, v: vec2f) -> f32 {
     let length = sqrt(dot(v, v));
-    let along = v / length;
+    let along = v * (1.0 / length);
     let far = corner + v;
     let side = vec2f(corner.x + width, corner.y);
     let left_start = dot(corner, along);

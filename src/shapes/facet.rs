@@ -1,7 +1,7 @@
 //! Facets: flat outlines. A disc about a point near the outline reaches beyond it, where no photon can lie; what is
 //! found in it belongs to the part that the facet covers. Twin: `shaders/shapes/facet.wgsl`.
 
-use super::math::trig::arctan2;
+use super::math::trig::{arctan2, kept};
 use super::math::{PI, unit};
 use super::real::{Plain, Real, Vec2, Vec3};
 use super::tables::NONE;
@@ -55,7 +55,7 @@ pub struct Clip {
 
 /// Angle, seen from the origin, from place `start` to place `end` on a line that passes it at `distance`.
 fn turn(distance: Real, start: Real, end: Real) -> Real {
-    arctan2(distance * (end - start), distance * distance + start * end)
+    arctan2(distance * (kept(end) - start), distance * distance + start * end)
 }
 
 /// Signed area that the unit circle about the origin shares with the triangle of the origin and a piece of a line: the
@@ -79,7 +79,7 @@ fn cross_2d(a: Vec2, b: Vec2) -> Real {
 /// Area that the unit circle about the origin shares with the parallelogram `corner + s (width, 0) + t v`.
 fn parallelogram_area(corner: Vec2, width: Real, v: Vec2) -> Real {
     let length = v.dot(v).sqrt();
-    let along = v / length;
+    let along = v * (1.0 / length);
     let far = corner + v;
     let side = Vec2::new(corner.x + width, corner.y);
     let left_start = corner.dot(along);
