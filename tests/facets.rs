@@ -134,7 +134,15 @@ impl Room {
             };
             PhotonRecord { position, key, flux: Vec3::splat(flux), direction: towards }
         });
-        Self { facets: vec![floor], records: records.collect(), radius }
+        let skewed = parallelogram(Vec3::ZERO, Vec3::new(0.3, 0.0, 0.9), Vec3::new(0.8, 0.0, 0.1));
+        let circles = [0.5, 0.05, 4.0].map(|radius| Facet {
+            origin: Vec3::new(0.4, 0.0, 0.5),
+            radius,
+            error: 1e-6,
+            ..Facet::zeroed()
+        });
+        let facets = [floor, skewed].into_iter().chain(circles).collect();
+        Self { facets, records: records.collect(), radius }
     }
 
     fn dispatch(&self) -> Dispatch {
@@ -210,7 +218,7 @@ fn the_driver_gathers_the_same() {
     let points: Vec<VisiblePoint> = (0..4096)
         .map(|i| {
             let u = random(i);
-            room.point(u.x * u.x, u.y * u.y, if u.z < 0.9 { 0 } else { NONE })
+            room.point(u.x * u.x, u.y * u.y, if u.z < 0.9 { i % 5 } else { NONE })
         })
         .collect();
     let gpu = Gpu::open(&software::software()).unwrap();

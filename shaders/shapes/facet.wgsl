@@ -70,7 +70,7 @@ fn discs_area(distance: f32, radius: f32) -> f32 {
     let near = arctan2(y, x) - x * y;
     if radius < SLIM {
         let rest = distance - x;
-        return near + (radius * radius * arctan2(y, rest) - rest * y);
+        return near + (kept(radius * radius * arctan2(y, rest)) - rest * y);
     }
     return near + 0.6666667 * (y * y) * (y / radius);
 }

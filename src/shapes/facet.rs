@@ -104,7 +104,7 @@ fn discs_area(distance: Real, radius: Real) -> Real {
     let near = arctan2(y, x) - x * y;
     if radius < SLIM {
         let rest = distance - x;
-        return near + (radius * radius * arctan2(y, rest) - rest * y);
+        return near + (kept(radius * radius * arctan2(y, rest)) - rest * y);
     }
     // the other segment is too slim for a difference: the first term of its series
     near + 0.666_666_7 * (y * y) * (y / radius)
