@@ -5,6 +5,7 @@ use super::{math, real, tables};
 pub mod aabb;
 pub mod cuboid;
 pub mod disc;
+pub mod fours;
 pub mod intersect;
 pub mod kdtree;
 pub mod ray;
