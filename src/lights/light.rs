@@ -26,15 +26,13 @@ pub struct LightSample {
 
 /// First index at `first..first + count` whose cumulative value exceeds `u`.
 pub fn find_interval(scene: &Scene, first: u32, count: u32, u: Real) -> u32 {
+    // without a branch on what is found, which no processor foresees
     let mut low = 0;
-    let mut high = count - 1;
-    while low < high {
-        let middle = (low + high) / 2;
-        if scene.distributions[(first + middle) as usize] > u {
-            high = middle;
-        } else {
-            low = middle + 1;
-        }
+    let mut length = count;
+    while length > 1 {
+        let half = length / 2;
+        low += if scene.distributions[(first + low + half - 1) as usize] > u { 0 } else { half };
+        length -= half;
     }
     low
 }

@@ -26,7 +26,7 @@ pub struct Surface {
     pub shading: Vec3,
     /// Light index or [`NONE`].
     pub light: u32,
-    /// Texture coordinates.
+    /// Texture coordinates; on spheres where the material has a texture.
     pub uv: Vec2,
     /// Second coordinate of the shape's own (u, v): on revolutions the profile parameter.
     pub v: Real,
@@ -81,7 +81,8 @@ pub fn surface_at(scene: &Scene, ray: &Ray, hit: &Hit) -> Surface {
                 v: 0.0,
             };
             planar = sphere.uv;
-            if planar == UV_NATURAL {
+            // two arctangents, which most spheres have no use for
+            if planar == UV_NATURAL && scene.materials[sphere.material as usize].texture != NONE {
                 s.uv = sphere_uv(n);
             }
         }
