@@ -18,9 +18,12 @@ use crate::film::{ErrorMap, Picture, Rejections};
 use crate::settings::Method;
 use bytemuck::Zeroable;
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Visible points that one task gathers for.
 const GATHER_TASK: usize = 1024;
+/// Visible points that one task finds.
+const EYE_TASK: usize = 512;
 /// Photons that one task traces, at the least and at the most, and tasks between.
 const PHOTON_TASK: (u32, u32) = (1024, 8192);
 const PHOTON_TASKS: u32 = 256;
@@ -71,6 +74,60 @@ impl pulp::WithSimd for Gathers<'_> {
             };
             gather(self.dispatch, point, scale, self.starts, self.sorted, gathered);
         }
+    }
+}
+
+/// Eye paths of one task.
+struct EyePaths<'a> {
+    scene: &'a Scene,
+    dispatch: &'a Dispatch,
+    sampled: bool,
+    first: u32,
+    points: &'a mut [VisiblePoint],
+}
+
+impl pulp::WithSimd for EyePaths<'_> {
+    /// Rays.
+    type Output = u64;
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) -> u64 {
+        let mut all = 0;
+        for (id, point) in (self.first..).zip(self.points) {
+            let (traced, rays) = eye_trace(self.scene, self.dispatch, self.sampled, id);
+            *point = traced;
+            all += rays as u64;
+        }
+        all
+    }
+}
+
+/// Photons of one task.
+struct Photons<'a> {
+    scene: &'a Scene,
+    dispatch: &'a Dispatch,
+    sampled: bool,
+    ids: Range<u32>,
+    list: &'a mut RecordList,
+}
+
+impl pulp::WithSimd for Photons<'_> {
+    /// Rays, and photons by how they ended.
+    type Output = (u64, [u64; 3]);
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) -> Self::Output {
+        let records = &mut self.list.records;
+        records.clear();
+        let mut rays = 0;
+        let mut ends = [0; 3];
+        for id in self.ids {
+            let path =
+                photon_trace(self.scene, self.dispatch, self.sampled, id, |record| records.push(record));
+            rays += path.rays as u64;
+            ends[path.end] += 1;
+        }
+        (rays, ends)
     }
 }
 
@@ -126,18 +183,17 @@ impl CpuEngine {
                 Kernel::EyeTrace => {
                     report.eye_paths += d.end as u64;
                     report.rays += self.visible_points[chunk]
-                        .par_iter_mut()
+                        .par_chunks_mut(EYE_TASK)
                         .enumerate()
-                        .map(|(id, point)| {
-                            let (traced, rays) = eye_trace(scene, d, sampled, id as u32);
-                            *point = traced;
-                            rays as u64
+                        .map(|(task, points)| {
+                            let first = (task * EYE_TASK) as u32;
+                            self.arch.dispatch(EyePaths { scene, dispatch: d, sampled, first, points })
                         })
                         .sum::<u64>();
                     report.eye_rays = report.rays;
                 }
                 Kernel::PhotonTrace => {
-                    let (rays, ends) = trace_photons(scene, d, sampled, &mut self.records);
+                    let (rays, ends) = trace_photons(self.arch, scene, d, sampled, &mut self.records);
                     report.rays += rays;
                     report.ends.add(&PhotonEnds::of(ends));
                     let records = self.records.iter().map(|list| list.records.len() as u64).sum::<u64>();
@@ -214,6 +270,7 @@ impl CpuEngine {
 
 /// Photons of one batch; the lists come in the order of their keys. The number of rays, and of photons by how they ended.
 fn trace_photons(
+    arch: pulp::Arch,
     scene: &Scene,
     d: &Dispatch,
     sampled: bool,
@@ -222,16 +279,14 @@ fn trace_photons(
     let photons = d.end.div_ceil(PHOTON_TASKS).clamp(PHOTON_TASK.0, PHOTON_TASK.1);
     records.resize_with(d.end.div_ceil(photons) as usize, RecordList::default);
     let traced = records.par_iter_mut().enumerate().map(|(task, list)| {
-        list.records.clear();
-        let mut rays = 0;
-        let mut ends = [0; 3];
         let first = task as u32 * photons;
-        for id in first..first + photons.min(d.end - first) {
-            let path = photon_trace(scene, d, sampled, id, |record| list.records.push(record));
-            rays += path.rays as u64;
-            ends[path.end] += 1;
-        }
-        (rays, ends)
+        arch.dispatch(Photons {
+            scene,
+            dispatch: d,
+            sampled,
+            ids: first..first + photons.min(d.end - first),
+            list,
+        })
     });
     let sum = |(sum, all): (u64, [u64; 3]), (rays, ends): (u64, [u64; 3])| {
         (sum + rays, std::array::from_fn(|k| all[k] + ends[k]))

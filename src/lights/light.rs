@@ -25,6 +25,7 @@ pub struct LightSample {
 }
 
 /// First index at `first..first + count` whose cumulative value exceeds `u`.
+#[inline(always)]
 pub fn find_interval(scene: &Scene, first: u32, count: u32, u: Real) -> u32 {
     // without a branch on what is found, which no processor foresees
     let mut low = 0;
@@ -38,11 +39,13 @@ pub fn find_interval(scene: &Scene, first: u32, count: u32, u: Real) -> u32 {
 }
 
 /// A light by its share of the scene's power.
+#[inline(always)]
 pub fn choose_light(scene: &Scene, u: Real) -> u32 {
     find_interval(scene, 0, scene.world.light_count, u)
 }
 
 /// Light at `position` from the light that `u.x` chooses, sampled by the other three.
+#[inline(always)]
 pub fn sample_light(scene: &Scene, position: Vec3, u: Vec4) -> LightSample {
     let light = &scene.lights[choose_light(scene, u.x) as usize];
     let none =

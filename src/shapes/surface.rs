@@ -33,6 +33,7 @@ pub struct Surface {
 }
 
 /// The surface at `hit` of `ray`.
+#[inline(always)]
 pub fn surface_at(scene: &Scene, ray: &Ray, hit: &Hit) -> Surface {
     let index = (hit.reference & ((1 << REFERENCE_BITS) - 1)) as usize;
     let p = ray.origin + ray.direction * hit.t;
