@@ -35,7 +35,7 @@ fn lists(count: u32) -> (Dispatch, Vec<RecordList>) {
         PhotonRecord { position: position * side, key, ..PhotonRecord::zeroed() }
     };
     let records: Vec<_> = (0..count).map(record).collect();
-    let list = |records: &[PhotonRecord]| RecordList { records: records.to_vec(), ..RecordList::default() };
+    let list = |records: &[PhotonRecord]| RecordList::new(records.to_vec());
     let d = Dispatch { capacity: count, mask: count - 1, inv_cell: 1.0, families: 1, ..Dispatch::zeroed() };
     (d, records.chunks(LIST).map(list).collect())
 }

@@ -30,6 +30,13 @@ pub struct RecordList {
     parts: Vec<u32>,
 }
 
+impl RecordList {
+    /// A list of records in the order of their keys.
+    pub fn new(records: Vec<PhotonRecord>) -> Self {
+        Self { records, ..Self::default() }
+    }
+}
+
 /// Records in the order of their buckets, each field by itself.
 #[derive(Clone, Debug, Default)]
 pub struct SortedRecords {
@@ -172,7 +179,7 @@ pub fn grid_sort(
 
 /// The whole construction from records in the order of their keys: `starts` and the sorted records.
 pub fn build_grid(dispatch: &Dispatch, records: Vec<PhotonRecord>) -> (Vec<u32>, SortedRecords) {
-    let mut lists = [RecordList { records, ..RecordList::default() }];
+    let mut lists = [RecordList::new(records)];
     let mut starts = vec![0; dispatch.mask as usize + 2];
     let mut sorted = SortedRecords::default();
     grid_count(dispatch, &mut lists);
@@ -238,4 +245,71 @@ fn cut<'a, T>(values: &mut &'a mut [T], count: usize) -> &'a mut [T] {
     let (first, rest) = take(values).split_at_mut(count);
     *values = rest;
     first
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::math::oct_encode;
+    use super::super::real::Vec3;
+    use super::*;
+
+    /// Records in a cube of `side` cells, some of them in one place.
+    fn random_records(count: u32, side: Real) -> Vec<PhotonRecord> {
+        let mut state = 1u32;
+        let mut random = || {
+            state = state.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
+            (state >> 8) as Real / 16_777_216.0
+        };
+        let record = |key| {
+            let at = Vec3::new(random(), random(), random()) * if key % 5 == 0 { 0.0 } else { side };
+            PhotonRecord { position: at, key, flux: at, direction: oct_encode(Vec3::new(0.6, 0.0, -0.8)) }
+        };
+        (0..count).map(record).collect()
+    }
+
+    /// Whether a grid is what the definition says: the records stably sorted by bucket, and the number of records in the
+    /// buckets before each.
+    fn is_grid(d: &Dispatch, mut records: Vec<PhotonRecord>, starts: &[u32], sorted: &SortedRecords) -> bool {
+        records.sort_by_key(|record| record_bucket(d, record));
+        let before = |b: u32| records.partition_point(|record| record_bucket(d, record) < b) as u32;
+        let same = |(i, record): (usize, &PhotonRecord)| {
+            let place = |values: &[Vec<Real>; 3]| values.each_ref().map(|v| v[i]);
+            place(&sorted.positions) == record.position.to_array()
+                && place(&sorted.directions) == oct_vector(record.direction).to_array()
+                && sorted.codes[i] == record_code(d, record)
+                && sorted.fluxes[i] == record.flux.extend(0.0)
+        };
+        starts.iter().zip(0..).all(|(start, b)| *start == before(b))
+            && records.iter().enumerate().all(same)
+            && sorted.codes[records.len()..] == [u32::MAX; TAIL]
+    }
+
+    // Theory: the grid is defined by its records alone, however they are cut into lists and the buckets into parts.
+    // What is left from a larger grid must not show.
+    #[test]
+    fn grid_is_its_definition() {
+        let mut sorted = SortedRecords::default();
+        for (count, buckets, list) in
+            [(70_000, 1 << 16, 1000), (5000, 1 << 12, 5000), (900, 64, 7), (3, 1, 1)]
+        {
+            let d = Dispatch { mask: buckets - 1, inv_cell: 1.0, families: 2, ..Dispatch::zeroed() };
+            let d = Dispatch { inv_cell_indirect: 0.3, ..d };
+            let records = random_records(count, (count as Real).sqrt());
+            let mut lists: Vec<_> = records.chunks(list).map(|r| RecordList::new(r.to_vec())).collect();
+            lists.push(RecordList::default());
+            let mut starts = vec![7; buckets as usize + 1];
+            grid_count(&d, &mut lists);
+            let part_starts = grid_scan(&lists);
+            grid_scatter(&d, &mut lists);
+            grid_sort(&d, &lists, &part_starts, &mut starts, &mut sorted);
+            assert!(is_grid(&d, records.clone(), &starts, &sorted), "{count} records, {buckets} buckets");
+            // the comparator notices two neighbours that changed places, and a bucket that begins late
+            let last = count as usize - 1;
+            let mut planted = sorted.clone();
+            planted.fluxes.swap(0, last);
+            assert!(!is_grid(&d, records.clone(), &starts, &planted));
+            starts[buckets as usize] += 1;
+            assert!(!is_grid(&d, records, &starts, &sorted));
+        }
+    }
 }
