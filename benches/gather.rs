@@ -5,7 +5,7 @@
 
 use bytemuck::Zeroable;
 use caustica::kernels::gather::gather;
-use caustica::kernels::grid_build::{SortedRecords, grid_count, grid_scan, grid_scatter, grid_sort};
+use caustica::kernels::grid_build::build_grid;
 use caustica::kernels::records::{Dispatch, Gathered, PhotonRecord, VisiblePoint};
 use caustica::math::oct_encode;
 use caustica::tables::NONE;
@@ -44,14 +44,7 @@ fn photons_in_a_disc(bencher: Bencher, photons: u32) {
     let records: Vec<_> = (0..RECORDS)
         .map(|key| PhotonRecord { position: on_the_wall(), key, flux: Vec3::ONE, direction: up })
         .collect();
-    let mut counts = vec![0; RECORDS as usize];
-    let mut starts = vec![0; RECORDS as usize + 1];
-    let mut order = vec![0; RECORDS as usize];
-    grid_count(&d, &records, &mut counts);
-    grid_scan(&counts, &mut starts);
-    grid_scatter(&d, &records, &starts, &mut counts, &mut order);
-    let mut sorted = SortedRecords::default();
-    grid_sort(&d, &records, &order, &mut sorted);
+    let (starts, sorted) = build_grid(&d, records);
     let points: Vec<_> = (0..POINTS)
         .map(|_| VisiblePoint {
             position: on_the_wall(),

@@ -5,6 +5,7 @@
 //! layouts by name. The short tables travel in one storage buffer, `scene`; the long ones have their own.
 
 use super::real::{Bits, Plain, Real, Vec2, Vec3};
+use super::shapes::fours::{FourRectangles, FourSpheres};
 use bytemuck::Zeroable;
 
 pub use super::shapes::facet::Facet;
@@ -409,6 +410,10 @@ pub struct Scene {
     pub attributes: Vec<Attributes>,
     /// Outlines of flat shapes.
     pub facets: Vec<Facet>,
+    /// The rectangles, four at a time: for the CPU alone, as are the spheres. Where they are missing, one at a time is taken.
+    pub four_rectangles: Vec<FourRectangles>,
+    /// The spheres, four at a time.
+    pub four_spheres: Vec<FourSpheres>,
     /// Pictures; the first 256 words are the sRGB decoding table when any is stored so.
     pub texels: Vec<Bits>,
 }

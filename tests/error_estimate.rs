@@ -10,7 +10,7 @@ use caustica::engine::Engine;
 use caustica::film::estimate::{LEAST_PASSES, PixelError, early_passes, partition};
 use caustica::hold::{BlockTruth, NoisyTruth, Promise};
 use caustica::kernels::gather::gather;
-use caustica::kernels::grid_build::{SortedRecords, grid_count, grid_scan, grid_scatter, grid_sort};
+use caustica::kernels::grid_build::build_grid;
 use caustica::kernels::records::{Dispatch, FilmPixel, Gathered, PhotonRecord, VisiblePoint};
 use caustica::kernels::resolve::{half_weight, resolve};
 use caustica::math::oct_encode;
@@ -146,13 +146,7 @@ fn ring(radius: f32, light: impl Fn(f64, f64) -> f64) -> f64 {
         }
     }
     let d = Dispatch { mask: 1023, inv_cell: 1.0 / (2.0 * radius), scale_sq: 1.0, ..Dispatch::zeroed() };
-    let (mut counts, mut starts) = (vec![0; 1024], vec![0; 1025]);
-    grid_count(&d, &records, &mut counts);
-    grid_scan(&counts, &mut starts);
-    let mut order = vec![0; records.len()];
-    grid_scatter(&d, &records, &starts, &mut counts, &mut order);
-    let mut sorted = SortedRecords::default();
-    grid_sort(&d, &records, &order, &mut sorted);
+    let (starts, sorted) = build_grid(&d, records);
     let up = oct_encode(Vec3::Y);
     let point = VisiblePoint {
         radius,

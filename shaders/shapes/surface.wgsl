@@ -59,7 +59,8 @@ fn surface_at(ray: Ray, hit: Hit) -> Surface {
             let n = sphere_normal(sphere, q);
             s = Surface(q, sphere_error(sphere, q), n, sphere.material, n, sphere.light, vec2f(0.0), 0.0, NONE);
             planar = sphere.uv;
-            if planar == UV_NATURAL {
+            // two arctangents, which most spheres have no use for
+            if planar == UV_NATURAL && scene.materials[sphere.material].texture != NONE {
                 s.uv = sphere_uv(n);
             }
         }

@@ -20,6 +20,7 @@ use bytemuck::Zeroable;
 
 /// Traces visible point `id` of the chunk; also returns the number of rays. `sampled`: direct light by shadow
 /// rays.
+#[inline(always)]
 pub fn eye_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, id: u32) -> (VisiblePoint, u32) {
     let index = dispatch.chunk_first + id;
     let pixel = index / dispatch.eye_samples;
@@ -113,6 +114,7 @@ fn start_radius(dispatch: &Dispatch, footprint: Real) -> Real {
 }
 
 /// Sample `k` of a pixel in its stratum of the pixel and, shuffled, of the lens square.
+#[inline(always)]
 fn stratified(u: Vec4, k: u32, pixel: u32, dispatch: &Dispatch) -> Vec4 {
     if dispatch.eye_samples == 1 {
         return u;

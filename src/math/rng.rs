@@ -38,6 +38,7 @@ pub fn rng_eye(index: u32, pass_number: u32, seed: u32, points: Points) -> Rng {
 }
 
 /// pcg4d (Jarzynski & Olano 2020, "Hash Functions for GPU Rendering").
+#[inline(always)]
 pub fn pcg4d(mut v: [u32; 4]) -> [u32; 4] {
     for x in &mut v {
         *x = x.wrapping_mul(1664525).wrapping_add(1013904223);
@@ -59,6 +60,7 @@ pub fn pcg4d(mut v: [u32; 4]) -> [u32; 4] {
 /// Owen's scrambling of a digital net: a hash that lets each bit depend on those above it alone. `reversed` holds a
 /// coordinate's bits in reverse (Laine & Karras 2011, "Stratified Sampling for Stochastic Transparency"; Burley 2020,
 /// "Practical Hash-based Owen Scrambling"; constants of Vegdahl 2021).
+#[inline(always)]
 fn scrambled(reversed: u32, seed: u32) -> u32 {
     let mut x = reversed;
     x ^= x.wrapping_mul(0x3d20adea);
@@ -72,6 +74,7 @@ fn scrambled(reversed: u32, seed: u32) -> u32 {
 /// Four uniform numbers in [0, 1), multiples of 2^-24. The first sixteen of an eye path are the pass's Sobol point,
 /// scrambled for each visible point: every pass is uniform by itself, and the passes together cover the pixel, the lens,
 /// the ways through glass and the lights more evenly than chance.
+#[inline(always)]
 pub fn rng_next(rng: &mut Rng) -> Vec4 {
     let k = rng.dimension.wrapping_sub(STREAM_EYE);
     let h = if k < 4 {

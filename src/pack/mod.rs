@@ -9,6 +9,7 @@ mod shape;
 pub use crate::error::PackError;
 
 use super::real::{Real, ToReal, Vec2, Vec3};
+use super::shapes::fours::{FourRectangles, FourSpheres, LANES};
 use super::tables::*;
 use super::{build, lights, materials, math, real, shapes, tables};
 use crate::build::normalize::Normalization;
@@ -53,6 +54,8 @@ pub fn pack(scene: &scene::Scene, width: u32, height: u32) -> Result<Packed, Pac
         out.refs = tree.refs.iter().map(|&i| references[i as usize]).collect();
         order::triangles_as_met(&mut out, &mut emitters);
     }
+    out.four_rectangles = out.rectangles.chunks(LANES).map(FourRectangles::new).collect();
+    out.four_spheres = out.spheres.chunks(LANES).map(FourSpheres::new).collect();
     out.world.unit = n.unit as Real;
     out.world.planar_origin = Vec2::new(n.center.x as Real, n.center.z as Real);
     out.world.near_radius = n.near_radius as Real;
@@ -96,6 +99,8 @@ impl Scene {
             attributes: Vec::new(),
             facets: Vec::new(),
             texels: Vec::new(),
+            four_rectangles: Vec::new(),
+            four_spheres: Vec::new(),
         }
     }
 }

@@ -6,6 +6,7 @@ pub mod aabb;
 pub mod cuboid;
 pub mod disc;
 pub mod facet;
+pub mod fours;
 pub mod intersect;
 pub mod kdtree;
 pub mod ray;

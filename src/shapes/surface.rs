@@ -26,7 +26,7 @@ pub struct Surface {
     pub shading: Vec3,
     /// Light index or [`NONE`].
     pub light: u32,
-    /// Texture coordinates.
+    /// Texture coordinates; on spheres where the material has a texture.
     pub uv: Vec2,
     /// Second coordinate of the shape's own (u, v): on revolutions the profile parameter.
     pub v: Real,
@@ -35,6 +35,7 @@ pub struct Surface {
 }
 
 /// The surface at `hit` of `ray`.
+#[inline(always)]
 pub fn surface_at(scene: &Scene, ray: &Ray, hit: &Hit) -> Surface {
     let index = (hit.reference & ((1 << REFERENCE_BITS) - 1)) as usize;
     let p = ray.origin + ray.direction * hit.t;
@@ -85,7 +86,8 @@ pub fn surface_at(scene: &Scene, ray: &Ray, hit: &Hit) -> Surface {
                 facet: NONE,
             };
             planar = sphere.uv;
-            if planar == UV_NATURAL {
+            // two arctangents, which most spheres have no use for
+            if planar == UV_NATURAL && scene.materials[sphere.material as usize].texture != NONE {
                 s.uv = sphere_uv(n);
             }
         }
