@@ -35,13 +35,28 @@ pub struct Progress {
     pub ends: PhotonEnds,
     /// Gather radius of the last pass in scene units, mean over the visible points.
     pub radius: f64,
-    /// Since the first pass began.
+    /// Since the first pass began; of a render that was gone on from, that of all its parts together.
     pub elapsed: Duration,
     /// The newest estimate of the picture's error; none in the first passes.
     pub error: Option<RelativeError>,
 }
 
 impl Progress {
+    /// Before the first pass.
+    pub fn before(stop: Stop) -> Self {
+        Self {
+            stop,
+            passes: 0,
+            photons: 0,
+            eye_paths: 0,
+            rays: 0,
+            ends: PhotonEnds::default(),
+            radius: 0.0,
+            elapsed: Duration::ZERO,
+            error: None,
+        }
+    }
+
     /// Rays per second so far.
     pub fn rays_per_second(&self) -> f64 {
         self.rays as f64 / self.elapsed.as_secs_f64().max(1e-9)
@@ -124,6 +139,14 @@ struct Keep {
 
 const KEEP: Keep = Keep { every: Duration::from_secs(10), times_cost: 20 };
 
+/// Where a render is kept, so that it can be gone on from.
+pub struct Saving<'a> {
+    /// Time between two calls.
+    pub every: Duration,
+    /// Keeps what [`Engine::save`] gives. Called between passes, and at the end unless the engine failed.
+    pub save: &'a mut dyn FnMut(&mut dyn Engine, &Progress) -> Result<(), EngineError>,
+}
+
 /// Makes passes until a stop condition holds or `interrupted` is set, which ends it after the pass in hand; calls
 /// `observer` after each. Fails only where there is no picture to give; an engine that fails later gives the picture
 /// of the passes before, or the last one kept of them.
@@ -133,32 +156,39 @@ pub fn render(
     interrupted: &AtomicBool,
     observer: &mut dyn FnMut(&Progress),
 ) -> Result<Outcome, EngineError> {
-    render_keeping(engine, stop, interrupted, observer, KEEP)
+    resume(engine, Progress::before(stop), interrupted, observer, None)
+}
+
+/// The same from where `progress` is, with an engine that holds its passes, saved now and then. Time counts on. With nothing left
+/// to do it makes no pass.
+pub fn resume(
+    engine: &mut dyn Engine,
+    progress: Progress,
+    interrupted: &AtomicBool,
+    observer: &mut dyn FnMut(&Progress),
+    saving: Option<Saving>,
+) -> Result<Outcome, EngineError> {
+    render_keeping(engine, progress, interrupted, observer, saving, KEEP)
 }
 
 fn render_keeping(
     engine: &mut dyn Engine,
-    stop: Stop,
+    mut progress: Progress,
     interrupted: &AtomicBool,
     observer: &mut dyn FnMut(&Progress),
+    mut saving: Option<Saving>,
     keep: Keep,
 ) -> Result<Outcome, EngineError> {
     let start = Instant::now();
-    let mut progress = Progress {
-        stop,
-        passes: 0,
-        photons: 0,
-        eye_paths: 0,
-        rays: 0,
-        ends: PhotonEnds::default(),
-        radius: 0.0,
-        elapsed: Duration::ZERO,
-        error: None,
-    };
+    let (stop, before) = (progress.stop, progress.elapsed);
+    let elapsed = || before + start.elapsed();
     let mut kept: Option<Kept> = None;
-    let mut next_keep = keep.every;
-    let mut estimates = Estimates::new();
-    progress.add(&engine.pass()?, start.elapsed());
+    let mut next_keep = before + keep.every;
+    let mut next_save = saving.as_ref().map(|saving| before + saving.every);
+    let mut estimates = Estimates::after(progress.passes);
+    if progress.passes == 0 {
+        progress.add(&engine.pass()?, elapsed());
+    }
     let ending = loop {
         if estimates.due(&progress) {
             let begun = Instant::now();
@@ -186,13 +216,27 @@ fn render_keeping(
                 Ok(taken) => kept = Some(taken),
                 Err(error) => break Ending::Failed(error),
             }
-            let cost = start.elapsed() - progress.elapsed;
-            next_keep = start.elapsed() + keep.every.max(keep.times_cost * cost);
+            let cost = elapsed() - progress.elapsed;
+            next_keep = elapsed() + keep.every.max(keep.times_cost * cost);
+        }
+        if let Some(saving) = &mut saving
+            && next_save.is_some_and(|next| progress.elapsed >= next)
+        {
+            if let Err(error) = (saving.save)(engine, &progress) {
+                break Ending::Failed(error);
+            }
+            next_save = Some(elapsed() + saving.every);
         }
         match engine.pass() {
-            Ok(report) => progress.add(&report, start.elapsed()),
+            Ok(report) => progress.add(&report, elapsed()),
             Err(error) => break Ending::Failed(error),
         }
+    };
+    // what an engine holds that failed in the middle of a pass is no whole number of passes
+    let ending = match (ending, saving) {
+        (Ending::Failed(error), _) => Ending::Failed(error),
+        (ending, None) => ending,
+        (ending, Some(saving)) => (saving.save)(engine, &progress).map_or_else(Ending::Failed, |()| ending),
     };
     match (take(engine, progress), ending) {
         (Ok(taken), ending) => Ok(taken.outcome(ending)),
@@ -213,8 +257,11 @@ struct Estimates {
 const ESTIMATES_SHARE: u32 = 50;
 
 impl Estimates {
-    fn new() -> Self {
-        Self { next: LEAST_PASSES, spent: Duration::ZERO }
+    /// Those still to come after so many passes; also the one after the last of them, which may not have been made.
+    fn after(passes: u32) -> Self {
+        let places = std::iter::successors(Some(LEAST_PASSES), |place| Some(following(*place)));
+        let next = places.into_iter().find(|place| *place >= passes || *place == u32::MAX);
+        Self { next: next.unwrap_or(u32::MAX), spent: Duration::ZERO }
     }
 
     /// With a target the passes depend on their number alone, since the picture's bits may not depend on a clock.
@@ -224,9 +271,14 @@ impl Estimates {
     }
 
     fn made(&mut self, progress: &Progress, cost: Duration) {
-        self.next = progress.passes.saturating_add((progress.passes / 8).max(1));
+        self.next = following(progress.passes);
         self.spent += cost;
     }
+}
+
+/// Passes at the estimate after the one at `passes`.
+fn following(passes: u32) -> u32 {
+    passes.saturating_add((passes / 8).max(1))
 }
 
 /// A picture with what belongs to it.
@@ -324,7 +376,7 @@ mod tests {
     }
 
     fn run(engine: &mut Counter, stop: Stop, keep: Keep) -> Result<Outcome, EngineError> {
-        render_keeping(engine, stop, &AtomicBool::new(false), &mut |_| (), keep)
+        render_keeping(engine, Progress::before(stop), &AtomicBool::new(false), &mut |_| (), None, keep)
     }
 
     fn shown(outcome: &Outcome) -> f32 {
