@@ -106,7 +106,9 @@ mod tests {
         assert_eq!(same.differences(&of(|s| s.camera.fov_degrees *= 1.0 + 1e-6)), ["camera"]);
         let redder = of(|s| {
             let first = s.materials.iter_mut().find_map(|material| match &mut material.kind {
-                MaterialKind::Diffuse { reflectance: Reflectance::Color(color) } if color[0] > 0.1 => Some(color),
+                MaterialKind::Diffuse { reflectance: Reflectance::Color(color) } if color[0] > 0.1 => {
+                    Some(color)
+                }
                 _ => None,
             });
             first.unwrap()[0] -= 1e-6;

@@ -230,11 +230,13 @@ impl Plan {
     pub fn take_over(&mut self, state: &State) -> Result<(), EngineError> {
         let local = self.features.has("local") && self.settings.method != Method::Path;
         if local && state.first_pass > 0 {
-            let text = "under the local rule a pass needs the photon counts of all before it: start with pass 0";
+            let text =
+                "under the local rule a pass needs the photon counts of all before it: start with pass 0";
             return Err(EngineError::Unsupported(text.into()));
         }
         let points = if local { self.pixels as usize * self.eye_samples as usize } else { 0 };
-        let wanted = (8 * size_of::<Real>() as u32, self.pixels as usize * FILM_BYTES, points * STATISTICS_BYTES);
+        let wanted =
+            (8 * size_of::<Real>() as u32, self.pixels as usize * FILM_BYTES, points * STATISTICS_BYTES);
         if state.passes > 0 && (state.bits, state.film.len(), state.statistics.len()) != wanted {
             let text = "what is to be gone on from is of another picture size, radius rule or precision";
             return Err(EngineError::Unsupported(text.into()));

@@ -75,6 +75,10 @@ impl Origin {
                 where_texts_differ(&self.scene_text, &found.scene_text)
             ));
         }
+        if self.radiance_unit != found.radiance_unit {
+            let [expected, found] = [self.radiance_unit, found.radiance_unit];
+            list.push(format!("the unit of radiance: expected {expected:e}, found {found:e}"));
+        }
         list.extend(setting_differences(&self.settings, &found.settings));
         list
     }
@@ -83,7 +87,8 @@ impl Origin {
 /// The first line in which two scene files differ.
 fn where_texts_differ(expected: &str, found: &str) -> String {
     let lines = expected.lines().count().max(found.lines().count());
-    let line = |text: &str, at: usize| text.lines().nth(at).map_or("its end".to_owned(), |line| format!("`{line}`"));
+    let line =
+        |text: &str, at: usize| text.lines().nth(at).map_or("its end".to_owned(), |line| format!("`{line}`"));
     match (0..lines).find(|at| line(expected, *at) != line(found, *at)) {
         Some(at) => {
             let [expected, found] = [line(expected, at), line(found, at)];
@@ -96,7 +101,8 @@ fn where_texts_differ(expected: &str, found: &str) -> String {
 /// All settings but the number of passes, as scene files spell them.
 fn setting_differences(expected: &RenderSettings, found: &RenderSettings) -> Vec<String> {
     let [expected, found] = [expected, found].map(|settings| serde_json::json!(settings));
-    let names = |settings: &Value| settings.as_object().into_iter().flatten().map(|(name, _)| name.clone()).collect();
+    let names =
+        |settings: &Value| settings.as_object().into_iter().flatten().map(|(name, _)| name.clone()).collect();
     let names: BTreeSet<String> = BTreeSet::union(&names(&expected), &names(&found)).cloned().collect();
     let other = names.into_iter().filter(|name| name != "passes" && expected[name] != found[name]);
     other.map(|name| format!("`{name}`: expected {}, found {}", expected[&name], found[&name])).collect()
@@ -122,7 +128,10 @@ mod tests {
         assert_eq!(told(|s| s.indirect_radius = Some(2.0)), ["`indirect_radius`: expected null, found 2.0"]);
         assert_eq!(
             told(|s| (s.radius, s.alpha) = (Radius::Pixels(2.0), 0.5)),
-            ["`alpha`: expected 0.6666666666666666, found 0.5", "`radius`: expected \"auto\", found {\"pixels\":2.0}"]
+            [
+                "`alpha`: expected 0.6666666666666666, found 0.5",
+                "`radius`: expected \"auto\", found {\"pixels\":2.0}"
+            ]
         );
     }
 

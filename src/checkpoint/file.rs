@@ -199,7 +199,8 @@ fn decode(file: &Path, bytes: &[u8]) -> Result<Checkpoint, CheckpointError> {
     }
     let short = || damaged("its parts are longer than it is".to_owned());
     let (header, mut rest) = content[PREFIX..].split_at_checked(word(12) as usize).ok_or_else(short)?;
-    let header: Header = serde_json::from_slice(header).map_err(|error| damaged(format!("its header: {error}")))?;
+    let header: Header =
+        serde_json::from_slice(header).map_err(|error| damaged(format!("its header: {error}")))?;
     let mut section = |length: u64| {
         let (section, others) = rest.split_at_checked(usize::try_from(length).ok()?)?;
         rest = others;

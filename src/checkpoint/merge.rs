@@ -31,7 +31,11 @@ pub fn merge(checkpoints: Vec<(PathBuf, Checkpoint)>) -> Result<Checkpoint, Chec
     let mut rest = sorted.into_iter();
     let Some((mut file, mut all)) = rest.next() else {
         let what = "nothing to merge".to_owned();
-        return Err(CheckpointError::Unfit { file: PathBuf::new(), what, mend: "name checkpoints".to_owned() });
+        return Err(CheckpointError::Unfit {
+            file: PathBuf::new(),
+            what,
+            mend: "name checkpoints".to_owned(),
+        });
     };
     for (next_file, next) in rest {
         check_follows((&file, &all), (&next_file, &next))?;
@@ -240,7 +244,8 @@ mod tests {
     /// Luminance of the mean over the first passes that count.
     fn mean_of_first(count: u32) -> f64 {
         let counting = (0..).map(found).filter(|(cause, _)| *cause == ACCEPTED);
-        counting.take(count as usize).map(|(_, found)| luminance(found.radiance)).sum::<f64>() / f64::from(count)
+        counting.take(count as usize).map(|(_, found)| luminance(found.radiance)).sum::<f64>()
+            / f64::from(count)
     }
 
     /// Largest difference of what is to be the same; counts must be.
@@ -257,7 +262,8 @@ mod tests {
     #[test]
     fn two_ranges_are_one() {
         let mut worst = 0f64;
-        for (cut, end) in [(1, 2), (1, 40), (39, 40), (5, 6), (6, 12), (500, 1000), (333, 1000), (512, 1024)] {
+        for (cut, end) in [(1, 2), (1, 40), (39, 40), (5, 6), (6, 12), (500, 1000), (333, 1000), (512, 1024)]
+        {
             let joined = Part::joined(&range(0, cut), &range(cut, end));
             worst = worst.max(distance(&joined, &range(0, end)));
             for (passes, mean) in joined.cuts.into_iter().zip([joined.film.early, joined.film.earlier]) {

@@ -139,9 +139,6 @@ mod tests {
         let point = Statistics { scale_sq: x(1), drop: x(2), count_low: u32::MAX, count_high: 7 };
         assert_eq!(statistics_bytes(&[point; 3]).len(), 3 * STATISTICS_BYTES);
         assert_eq!(statistics_of(&statistics_bytes(&[point; 3])), [point; 3]);
-        assert_ne!(
-            statistics_bytes(&[Statistics { count_high: 0, ..point }]),
-            statistics_bytes(&[point])
-        );
+        assert_ne!(statistics_bytes(&[Statistics { count_high: 0, ..point }]), statistics_bytes(&[point]));
     }
 }
