@@ -28,9 +28,9 @@ impl PhotonEnds {
 
     /// Adds those of another pass.
     pub fn add(&mut self, other: &Self) {
-        self.escaped += other.escaped;
-        self.absorbed += other.absorbed;
-        self.cut += other.cut;
+        self.escaped = self.escaped.saturating_add(other.escaped);
+        self.absorbed = self.absorbed.saturating_add(other.absorbed);
+        self.cut = self.cut.saturating_add(other.cut);
     }
 }
 

@@ -84,9 +84,9 @@ impl Progress {
 
     fn add(&mut self, report: &PassReport, elapsed: Duration) {
         self.passes += 1;
-        self.photons += report.photons;
-        self.eye_paths += report.eye_paths;
-        self.rays += report.rays;
+        self.photons = self.photons.saturating_add(report.photons);
+        self.eye_paths = self.eye_paths.saturating_add(report.eye_paths);
+        self.rays = self.rays.saturating_add(report.rays);
         self.ends.add(&report.ends);
         self.radius = report.radius;
         self.elapsed = elapsed;
@@ -184,7 +184,7 @@ fn render_keeping(
     let elapsed = || before + start.elapsed();
     let mut kept: Option<Kept> = None;
     let mut next_keep = before + keep.every;
-    let mut next_save = saving.as_ref().map(|saving| before + saving.every);
+    let mut next_save = saving.as_ref().map(|saving| before.saturating_add(saving.every));
     let mut estimates = Estimates::after(progress.passes);
     if progress.passes == 0 {
         progress.add(&engine.pass()?, elapsed());
@@ -225,7 +225,7 @@ fn render_keeping(
             if let Err(error) = (saving.save)(engine, &progress) {
                 break Ending::Failed(error);
             }
-            next_save = Some(elapsed() + saving.every);
+            next_save = Some(elapsed().saturating_add(saving.every));
         }
         match engine.pass() {
             Ok(report) => progress.add(&report, elapsed()),
@@ -477,5 +477,70 @@ mod tests {
         let mut engine = counter(NEVER, true);
         run(&mut engine, passes(50), KEEP).unwrap();
         assert_eq!(engine.pictures_taken, 1);
+    }
+
+    /// With no time between them it is saved after each pass that another one follows, and at the end.
+    #[test]
+    fn saved_between_passes_and_at_the_end() {
+        let saved_at = |fails_in: u32, every: Duration, from: u32| {
+            let mut saved = Vec::new();
+            let mut save = |engine: &mut dyn Engine, progress: &Progress| {
+                saved.push(progress.passes);
+                // the engine holds what the progress says
+                assert_eq!(engine.picture().unwrap().rgb[0][0], progress.passes as f32);
+                Ok(())
+            };
+            let mut engine = Counter { passes: from, ..counter(fails_in, true) };
+            let progress = Progress { passes: from, ..Progress::before(passes(4)) };
+            let saving = Saving { every, save: &mut save };
+            let outcome =
+                resume(&mut engine, progress, &AtomicBool::new(false), &mut |_| (), Some(saving)).unwrap();
+            (saved, outcome.progress.passes, engine.passes)
+        };
+        assert_eq!(saved_at(NEVER, Duration::ZERO, 0), (vec![1, 2, 3, 4], 4, 4));
+        assert_eq!(saved_at(NEVER, Duration::MAX, 0), (vec![4], 4, 4));
+        assert_eq!(saved_at(3, Duration::ZERO, 0), (vec![1, 2], 2, 2), "nothing of a pass that failed");
+        assert_eq!(saved_at(NEVER, Duration::ZERO, 2), (vec![2, 3, 4], 4, 4));
+        assert_eq!(saved_at(NEVER, Duration::ZERO, 4), (vec![4], 4, 4), "no pass beyond");
+    }
+
+    #[test]
+    fn what_cannot_be_saved_for_want_of_the_engine_ends_it() {
+        let mut save = |_: &mut dyn Engine, _: &Progress| Err(EngineError::DeviceLost("saving".into()));
+        let saving = Saving { every: Duration::ZERO, save: &mut save };
+        let mut engine = counter(NEVER, true);
+        let progress = Progress::before(passes(4));
+        let outcome =
+            resume(&mut engine, progress, &AtomicBool::new(false), &mut |_| (), Some(saving)).unwrap();
+        assert!(matches!(outcome.ending, Ending::Failed(EngineError::DeviceLost(_))));
+        assert_eq!(outcome.progress.passes, 1);
+    }
+
+    /// Time and totals count on.
+    #[test]
+    fn a_resumed_render_counts_on() {
+        let hour = Duration::from_secs(3600);
+        let stop = Stop { passes: u32::MAX, time: Some(hour), target_error: None };
+        let begun = Progress { passes: 3, photons: 30, elapsed: hour, ..Progress::before(stop) };
+        let mut engine = Counter { passes: 3, ..counter(NEVER, true) };
+        let flag = AtomicBool::new(false);
+        let outcome = resume(&mut engine, begun, &flag, &mut |_| (), None).unwrap();
+        assert!(matches!(outcome.ending, Ending::Time) && outcome.progress.passes == 3);
+        let longer = Progress { stop: passes(5), ..begun };
+        let outcome = resume(&mut engine, longer, &flag, &mut |_| (), None).unwrap();
+        assert_eq!((outcome.progress.passes, outcome.progress.photons), (5, 50));
+        assert!(outcome.progress.elapsed >= hour);
+    }
+
+    /// Estimates come after the passes after which they would have come without a stop.
+    #[test]
+    fn estimates_keep_their_places() {
+        let places: Vec<u32> =
+            std::iter::successors(Some(LEAST_PASSES), |p| Some(following(*p))).take(60).collect();
+        for passes in 0..places[50] {
+            let next = places.iter().find(|place| **place >= passes);
+            assert_eq!(Some(&Estimates::after(passes).next), next, "{passes}");
+        }
+        assert_eq!(Estimates::after(u32::MAX).next, u32::MAX);
     }
 }

@@ -30,6 +30,8 @@ const PREFIX: usize = 24;
 const SUM: usize = 16;
 /// Bytes of a pixel's `parts`.
 const PARTS_BYTES: usize = 8;
+/// No render takes longer, in seconds: 35,000 years.
+const ELAPSED_MAX: u64 = 1 << 40;
 
 /// What stands before the sections.
 #[derive(Serialize, Deserialize)]
@@ -245,6 +247,9 @@ fn check_header(header: &Header) -> Result<(), String> {
     }
     if header.parts != 0 && Some(header.parts) != pixels.checked_mul(PARTS_BYTES as u64) {
         return Err(format!("{} bytes of parts for {pixels} pixels", header.parts));
+    }
+    if header.totals.elapsed.as_secs() > ELAPSED_MAX {
+        return Err(format!("{} s of rendering", header.totals.elapsed.as_secs()));
     }
     if header.passes == 0 || header.first_pass.checked_add(header.passes).is_none() {
         return Err(format!("{} passes from pass {}", header.passes, header.first_pass));

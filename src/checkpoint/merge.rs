@@ -5,8 +5,8 @@
 //! `ring`, `ring_swing` and `halves` are those of one render but for rounding.
 //!
 //! `early` and `earlier` are not: those means over the first passes that a render of all would have kept are in no file. Any
-//! other two cuts into first and later passes serve the estimate alike, so those are taken that lie nearest to a half and a quarter of
-//! the passes among the five that the files know: where one begins, and where either was cut itself.
+//! other two cuts into first and later passes serve the estimate alike, so of the five that the files know, where one ends and where either
+//! was cut itself, those are taken that are nearest to the middle and to a quarter of the passes from either end.
 
 use std::path::PathBuf;
 
@@ -111,9 +111,9 @@ fn join(first: &Checkpoint, next: &Checkpoint) -> Checkpoint {
     Checkpoint {
         origin,
         totals: Totals {
-            photons: a.photons + b.photons,
-            eye_paths: a.eye_paths + b.eye_paths,
-            rays: a.rays + b.rays,
+            photons: a.photons.saturating_add(b.photons),
+            eye_paths: a.eye_paths.saturating_add(b.eye_paths),
+            rays: a.rays.saturating_add(b.rays),
             ends,
             radius: b.radius,
             elapsed: a.elapsed.saturating_add(b.elapsed),
@@ -166,7 +166,7 @@ impl Part {
     }
 }
 
-/// The cut nearest to the middle and the other one nearest to the middle of what is before it, each with the mean before it.
+/// The cut nearest to the middle and the other one nearest to a quarter from either end, each with the mean before it.
 /// With too few passes for two of them, 0 stands for none. Each part has its passes that count and its mean.
 fn joined_cuts((a, na, mean_a): (&Part, u32, f64), (b, nb, mean_b): (&Part, u32, f64)) -> [(u32, f64); 2] {
     let n = na + nb;
@@ -174,19 +174,23 @@ fn joined_cuts((a, na, mean_a): (&Part, u32, f64), (b, nb, mean_b): (&Part, u32,
         let all = f64::from(na) + f64::from(cut);
         (na + cut, (f64::from(na) * mean_a + f64::from(cut) * mean) / all.max(1.0))
     };
+    // the cut of a single pass has nothing before it
+    let before_a = |cut: u32, mean: f64| if cut < na { (cut, mean) } else { (0, 0.0) };
     let known = [
-        (a.cuts[0], a.film.early),
-        (a.cuts[1], a.film.earlier),
+        before_a(a.cuts[0], a.film.early),
+        before_a(a.cuts[1], a.film.earlier),
         after_a(0, mean_b),
         after_a(b.cuts[0].min(nb), b.film.early),
         after_a(b.cuts[1].min(nb), b.film.earlier),
     ];
-    let nearest = |to: u32, but: u32| {
-        let inside = known.into_iter().filter(|(cut, _)| 0 < *cut && *cut < n && *cut != but);
-        inside.min_by_key(|(cut, _)| (2 * u64::from(*cut)).abs_diff(u64::from(to))).unwrap_or((0, 0.0))
+    let inside = known.into_iter().filter(|(cut, _)| (1..n).contains(cut));
+    let shorter = |cut: u32| u64::from(cut.min(n - cut));
+    let nearest = |part: u64, but: u32| {
+        let others = inside.clone().filter(|(cut, _)| *cut != but);
+        others.min_by_key(|(cut, _)| (part * shorter(*cut)).abs_diff(u64::from(n))).unwrap_or((0, 0.0))
     };
-    let middle = nearest(n, 0);
-    [middle, nearest(middle.0, middle.0)]
+    let middle = nearest(2, 0);
+    [middle, nearest(4, middle.0)]
 }
 
 /// What reads the films of an origin.
@@ -297,5 +301,7 @@ mod tests {
         assert_eq!(cuts(990, 10), [512, 256]);
         assert_eq!(cuts(1, 3), [2, 1]);
         assert_eq!(cuts(1, 1), [1, 0]);
+        // a single pass at the start is no quarter
+        assert_eq!(cuts(1, 39), [17, 33]);
     }
 }

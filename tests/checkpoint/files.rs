@@ -94,7 +94,7 @@ fn forged_headers_are_refused() {
         forged(header.as_bytes(), header.len() as u32)
     };
     assert!(told(&header).is_none(), "the forger's hand is right");
-    let changes: [(&str, serde_json::Value); 13] = [
+    let changes: [(&str, serde_json::Value); 14] = [
         ("/film", u64::MAX.into()),
         ("/film", 0.into()),
         ("/statistics", u64::MAX.into()),
@@ -108,6 +108,7 @@ fn forged_headers_are_refused() {
         ("/origin/width", u32::MAX.into()),
         ("/origin/height", 0.into()),
         ("/origin/settings/photons", "many".into()),
+        ("/totals/elapsed/secs", u64::MAX.into()),
     ];
     for (place, value) in changes {
         let mut lying = header.clone();
