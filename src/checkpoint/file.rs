@@ -172,8 +172,11 @@ impl<W: Write> Write for Summing<W> {
     }
 }
 
-/// The checkpoint in a file's bytes; `file` names it in messages.
-fn decode(file: &Path, bytes: &[u8]) -> Result<Checkpoint, CheckpointError> {
+/// Reads a checkpoint from a file's bytes; `file` names it in messages.
+///
+/// # Errors
+/// As [`read`].
+pub fn decode(file: &Path, bytes: &[u8]) -> Result<Checkpoint, CheckpointError> {
     let not_one = |what: &str| CheckpointError::NotOne { file: file.to_owned(), what: what.to_owned() };
     let damaged = |what: String| CheckpointError::Damaged { file: file.to_owned(), what };
     if !bytes.starts_with(&MAGIC) {

@@ -20,7 +20,7 @@ use crate::scene::ToneMap;
 use crate::settings::RenderSettings;
 
 pub use error::CheckpointError;
-pub use file::{EXTENSION, check_place, read, write};
+pub use file::{EXTENSION, check_place, decode, read, write};
 pub use merge::merge;
 
 /// A render between two passes.

@@ -3,8 +3,9 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use caustica::checkpoint::{Checkpoint, CheckpointError, read, write};
+use caustica::checkpoint::{Checkpoint, CheckpointError, decode, merge, read, write};
 use caustica::device::Wanted;
+use caustica::render::Stop;
 use xxhash_rust::xxh3::xxh3_128;
 
 use super::{checkpoint, folder, open};
@@ -13,6 +14,7 @@ const SIZE: (u32, u32) = (4, 3);
 /// Bytes before the header, and of the checksum.
 const PREFIX: usize = 24;
 const SUM: usize = 16;
+const NO_STOP: Stop = Stop { passes: u32::MAX, time: None, target_error: None };
 
 fn made(name: &str) -> (PathBuf, Checkpoint) {
     let mut opened = open(&Wanted::Cpu, SIZE, |s| s.photons = 50);
@@ -25,8 +27,7 @@ fn made(name: &str) -> (PathBuf, Checkpoint) {
 }
 
 fn refusal(file: &Path, bytes: &[u8]) -> Option<CheckpointError> {
-    fs::write(file, bytes).unwrap();
-    read(file).err()
+    decode(file, bytes).err()
 }
 
 /// Theory: a checksum of 128 bits over everything before it, and a length, leave no prefix and no flipped bit unseen.
@@ -127,6 +128,50 @@ fn forged_headers_are_refused() {
     // deep nesting is refused by the parser, not by the stack
     let deep = [vec![b'['; 100_000], vec![b']'; 100_000]].concat();
     assert!(matches!(forged(&deep, deep.len() as u32), Some(CheckpointError::Damaged { .. })));
+}
+
+/// Any bytes at any places, with the right checksum: what is refused is refused with a reason, and what is taken for a checkpoint
+/// can be developed and merged, whatever comes of it. Nothing panics.
+#[test]
+fn forged_bytes_do_no_harm() {
+    let (file, _) = made("chance");
+    let bytes = fs::read(&file).unwrap();
+    let mut state = 3u64;
+    let mut below = |end: usize| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        ((state >> 33) as usize) % end
+    };
+    let digits = b"0123456789.-e,:{}[]\"tn";
+    let (mut taken, mut refused) = (0, 0);
+    for round in 0..20_000 {
+        let mut content = bytes[..bytes.len() - SUM].to_vec();
+        for _ in 0..1 + below(4) {
+            // half of them in the numbers at the header's end, where a digit for a digit is still a header
+            let header = PREFIX + u32::from_le_bytes(bytes[12..16].try_into().unwrap()) as usize;
+            let at = if round % 2 == 0 { header - 1 - below(420) } else { below(content.len()) };
+            let in_header = (PREFIX..header).contains(&at);
+            content[at] = if in_header { digits[below(digits.len())] } else { below(256) as u8 };
+        }
+        let sum = xxh3_128(&content).to_le_bytes();
+        match decode(&file, &[&content[..], &sum].concat()) {
+            Ok(checkpoint) => {
+                let (picture, errors, _) = checkpoint.develop();
+                assert_eq!((picture.rgb.len(), errors.pixels.len()), (12, 12));
+                let _ = (errors.relative(), errors.layers(), checkpoint.progress(NO_STOP).share());
+                let mut next = checkpoint.clone();
+                next.state.first_pass = checkpoint.end();
+                next.state.passes = 1;
+                let _ =
+                    merge(vec![(file.clone(), checkpoint), (file.clone(), next)]).map(|all| all.develop());
+                taken += 1;
+            }
+            Err(error) => {
+                assert!(!error.to_string().is_empty());
+                refused += 1;
+            }
+        }
+    }
+    assert!(taken > 1000 && refused > 1000, "{taken} {refused}");
 }
 
 /// Theory: what cannot be written leaves what was there.

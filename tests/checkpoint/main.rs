@@ -66,6 +66,7 @@ material = "white"
 emission = [20.0, 20.0, 20.0]
 "#;
 
+/// The wall behind it.
 pub const MESH: &str = "v -2 0 -1.5\nv 2 0 -1.5\nv 0 2 -1.5\nf 1 2 3\n";
 
 /// An empty folder with the scene in it.
@@ -80,12 +81,14 @@ pub fn folder(name: &str) -> PathBuf {
     folder
 }
 
+/// The program with the words of `line`.
 pub fn command(folder: &Path, line: &str) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_caustica"));
     command.args(line.split_whitespace()).current_dir(folder).env("NO_COLOR", "1");
     command
 }
 
+/// Runs it.
 pub fn caustica(folder: &Path, line: &str) -> Output {
     command(folder, line).output().unwrap()
 }
@@ -97,6 +100,7 @@ pub fn good(folder: &Path, line: &str) -> String {
     text(&output.stdout)
 }
 
+/// Output as text.
 pub fn text(bytes: &[u8]) -> String {
     String::from_utf8(bytes.to_vec()).unwrap()
 }
