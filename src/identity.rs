@@ -1,10 +1,23 @@
-//! Which scene a render is of: digests of everything that its kernels read.
+//! Which scene a render is of, and which program makes it: digests of everything that kernels read, and of the kernels.
 
 use bytemuck::{NoUninit, cast_slice};
 use serde::{Deserialize, Serialize};
 use xxhash_rust::xxh3::Xxh3;
 
+use crate::film::provenance::VERSION;
+use crate::gpu::fragments::FRAGMENTS;
 use crate::pack::Packed;
+
+/// This program: its version, and a digest of its kernels' text, since programs on the way from one version to the next may make
+/// other bits. The text is that of the shaders, which the Rust twins follow; line ends do not count.
+pub fn program() -> String {
+    let mut digest = Xxh3::new();
+    for line in FRAGMENTS.iter().flat_map(|fragment| fragment.text.lines()) {
+        digest.update(line.as_bytes());
+        digest.update(b"\n");
+    }
+    format!("{VERSION}, kernels {:016x}", digest.digest())
+}
 
 /// Digests of the parts of a flattened scene, 128 bits each. Pictures of scenes with equal ones are equal, if settings, device
 /// and program are. A part's numbers count from the scene's middle in the scene's unit, so a shape that moves may change them all.

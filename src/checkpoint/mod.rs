@@ -39,7 +39,7 @@ pub struct Checkpoint {
 /// Which render a checkpoint is of.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Origin {
-    /// The program's version.
+    /// The program; see [`crate::identity::program`].
     pub version: String,
     /// The scene's name.
     pub scene: String,

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use caustica::checkpoint::{Checkpoint, CheckpointError, Origin, Totals, check_place, read, write};
 use caustica::device::Opened;
 use caustica::engine::{Engine, EngineError};
-use caustica::film::provenance::VERSION;
+use caustica::identity::program;
 use caustica::render::Progress;
 use caustica::scene::Scene;
 use serde_json::json;
@@ -80,7 +80,7 @@ impl Files {
 pub fn origin(opened: &Opened, scene: &Scene, scene_text: &str) -> Origin {
     let film = &scene.film;
     Origin {
-        version: VERSION.to_owned(),
+        version: program(),
         scene: scene.name.clone(),
         scene_text: scene_text.to_owned(),
         identity: opened.identity.clone(),

@@ -139,7 +139,9 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     };
     write(&outputs, &outcome, &scene, &provenance)?;
     tell(arguments.voice.json, &reporter, &outputs, &outcome)?;
-    keeper.end()?;
+    if !matches!(outcome.ending, Ending::Failed(_)) {
+        keeper.end()?;
+    }
     if arguments.strict && !outcome.rejections.is_empty() {
         return Err(Failure::failed(miette!("--strict: {}", left_out(&outcome.rejections))));
     }

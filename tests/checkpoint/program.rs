@@ -57,6 +57,7 @@ fn other_renders_are_refused_with_the_reason() {
     // the version, which no other program is at hand to write
     let file = folder.join("a.checkpoint");
     let sound = read(&file).unwrap();
+    assert!(sound.origin.version.starts_with(concat!(env!("CARGO_PKG_VERSION"), ", kernels ")));
     let mut other = sound.clone();
     other.origin.version = "0.0.9".into();
     write(&file, &other).unwrap();
