@@ -19,8 +19,8 @@
 //! ```
 //!
 //! Modules depend on one another one way: [`real`] and [`math`], then [`tables`], [`shapes`], [`materials`], [`lights`],
-//! [`camera`] and [`grid`], then [`scene`], [`build`], [`limits`], [`pack`], then [`kernels`], [`radius`], [`sobol`], [`probe`], [`plan`], then [`cpu`]
-//! and [`gpu`], then [`device`], [`quality`], [`calibration`] and [`render`], and last [`bench`](mod@bench), [`burden`], [`hold`] and [`study`].
+//! [`camera`] and [`grid`], then [`scene`], [`build`], [`limits`], [`pack`], then [`kernels`], [`radius`], [`sobol`], [`probe`], [`readout`], [`plan`], then [`cpu`]
+//! and [`gpu`], then [`identity`], [`device`], [`quality`], [`calibration`], [`render`] and [`checkpoint`], and last [`bench`](mod@bench), [`burden`], [`hold`] and [`study`].
 //! Those from [`real`] to [`cpu`] are compiled twice: [`double`] is the same in f64.
 
 pub mod bench;
@@ -28,6 +28,7 @@ pub mod build;
 pub mod burden;
 pub mod calibration;
 pub mod camera;
+pub mod checkpoint;
 pub mod clock;
 pub mod cpu;
 pub mod device;
@@ -39,6 +40,7 @@ pub mod film;
 pub mod gpu;
 pub mod grid;
 pub mod hold;
+pub mod identity;
 pub mod kernels;
 pub mod lights;
 pub mod limits;
@@ -49,6 +51,7 @@ pub mod plan;
 pub mod probe;
 pub mod quality;
 pub mod radius;
+pub mod readout;
 pub mod real;
 pub mod render;
 pub mod scene;

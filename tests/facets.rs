@@ -10,9 +10,7 @@ use caustica::gpu::layout::SceneTables;
 use caustica::gpu::program::Program;
 use caustica::gpu::recorder::Recorder;
 use caustica::kernels::gather::gather;
-use caustica::kernels::grid_build::{
-    SortedRecords, grid_count, grid_scan, grid_scatter, grid_sort, record_code,
-};
+use caustica::kernels::grid_build::{build_grid, record_bucket, record_code};
 use caustica::kernels::records::{Dispatch, Gathered, PhotonRecord, VisiblePoint};
 use caustica::math::rng::{STREAM_PHOTON, rng_new, rng_next};
 use caustica::math::{basis, oct_decode, oct_encode};
@@ -150,18 +148,6 @@ impl Room {
         Dispatch { mask: 4095, inv_cell, scale_sq: 1.0, eye_samples: 1, ..Dispatch::zeroed() }
     }
 
-    fn sorted(&self) -> (Vec<u32>, Vec<u32>, SortedRecords) {
-        let d = self.dispatch();
-        let (mut counts, mut starts) = (vec![0; 4096], vec![0; 4097]);
-        let mut order = vec![0; self.records.len()];
-        grid_count(&d, &self.records, &mut counts);
-        grid_scan(&counts, &mut starts);
-        grid_scatter(&d, &self.records, &starts, &mut counts, &mut order);
-        let mut sorted = SortedRecords::default();
-        grid_sort(&d, &self.records, &order, &mut sorted);
-        (starts, order, sorted)
-    }
-
     fn point(&self, x: f32, z: f32, facet: u32) -> VisiblePoint {
         let up = oct_encode(Vec3::Y);
         let position = Vec3::new(x, 0.0, z);
@@ -178,7 +164,7 @@ impl Room {
     }
 
     fn gather(&self, points: &[VisiblePoint]) -> Vec<Gathered> {
-        let (starts, _, sorted) = self.sorted();
+        let (starts, sorted) = build_grid(&self.dispatch(), self.records.clone());
         let one = |point: &VisiblePoint| {
             let mut gathered = Gathered::zeroed();
             gather(&self.facets, &self.dispatch(), point, 1.0, &starts, &sorted, &mut gathered);
@@ -226,13 +212,12 @@ fn the_driver_gathers_the_same() {
     let features = Features::from(["photons", "facets"]);
     let shader = compose(Kernel::Gather, &features, &SceneTables::default()).unwrap();
     let program = Program::of_shader(&gpu, Kernel::Gather, &features, shader).unwrap();
-    let (starts, order, _) = room.sorted();
+    let (starts, _) = build_grid(&room.dispatch(), room.records.clone());
     let d = Dispatch { end: points.len() as u32, ..room.dispatch() };
-    let coded = |i: &u32| {
-        let record = &room.records[*i as usize];
-        PhotonRecord { key: record_code(&d, record), ..*record }
-    };
-    let sorted: Vec<PhotonRecord> = order.iter().map(coded).collect();
+    let coded = |record: &PhotonRecord| PhotonRecord { key: record_code(&d, record), ..*record };
+    let mut ordered = room.records.clone();
+    ordered.sort_by_key(|record| record_bucket(&d, record));
+    let sorted: Vec<PhotonRecord> = ordered.iter().map(coded).collect();
     let upload = |name, bytes: &[u8]| (name, gpu.upload(name, bytes).unwrap());
     let buffers = [
         upload("visible_points", cast_slice(&points)),

@@ -6,6 +6,7 @@ mod bench;
 mod bench_table;
 mod bounds;
 mod check;
+mod checkpoint;
 mod compare;
 mod devices;
 mod diff;
@@ -14,6 +15,7 @@ mod figures;
 mod info;
 mod interrupt;
 mod measure;
+mod merge;
 mod output;
 mod overrides;
 mod progress;
@@ -45,7 +47,8 @@ saved, 130 interrupted with the picture so far saved";
 
 #[derive(Subcommand)]
 enum Command {
-    Render(render::Arguments),
+    Render(Box<render::Arguments>),
+    Merge(merge::Arguments),
     Compare(compare::Arguments),
     Diff(Box<diff::Arguments>),
     Study(Box<study::Arguments>),
@@ -72,7 +75,8 @@ enum Done {
 /// Carries out the command line.
 pub fn run() -> ExitCode {
     let done = match Arguments::parse().command {
-        Command::Render(arguments) => render::run(arguments),
+        Command::Render(arguments) => render::run(*arguments),
+        Command::Merge(arguments) => merge::run(arguments),
         Command::Compare(arguments) => compare::run(arguments),
         Command::Diff(arguments) => diff::run(*arguments),
         Command::Study(arguments) => study::run(*arguments),

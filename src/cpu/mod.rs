@@ -1,5 +1,6 @@
 //! The CPU engine: carries out a plan on vectors, with rayon. Needs no adapter.
 
+use super::kernels::bytes::{film_bytes, film_of, statistics_bytes, statistics_of};
 use super::kernels::eye_trace::eye_trace;
 use super::kernels::gather::{gather, scale_sq};
 use super::kernels::grid_build::{RecordList, SortedRecords, grid_count, grid_scan, grid_scatter, grid_sort};
@@ -10,10 +11,10 @@ use super::kernels::resolve::{Found, fold, resolve};
 use super::math::is_finite;
 use super::pack::Packed;
 use super::plan::{Kernel, Plan};
-use super::real::ENGINE;
+use super::real::{ENGINE, Real};
 use super::tables::{Facet, Scene};
 use crate::clock::{Clock, KernelSeconds};
-use crate::engine::{Engine, EngineError, PassReport, PhotonEnds};
+use crate::engine::{Engine, EngineError, PassReport, PhotonEnds, State};
 use crate::film::{ErrorMap, Picture, Rejections};
 use crate::settings::Method;
 use bytemuck::Zeroable;
@@ -331,6 +332,26 @@ impl Engine for CpuEngine {
 
     fn rejections(&mut self) -> Result<Rejections, EngineError> {
         Ok(self.plan.rejections(&self.film))
+    }
+
+    fn save(&mut self) -> Result<State, EngineError> {
+        Ok(State {
+            first_pass: self.plan.first_pass,
+            passes: self.passes_done,
+            bits: 8 * size_of::<Real>() as u32,
+            film: film_bytes(&self.film),
+            statistics: statistics_bytes(&self.statistics),
+        })
+    }
+
+    fn restore(&mut self, state: &State) -> Result<(), EngineError> {
+        self.plan.take_over(state)?;
+        if state.passes > 0 {
+            self.passes_done = state.passes;
+            self.film = film_of(&state.film);
+            self.statistics = statistics_of(&state.statistics);
+        }
+        Ok(())
     }
 
     fn gathered(&mut self) -> Result<u64, EngineError> {

@@ -15,6 +15,8 @@ pub struct Provenance {
     pub settings: RenderSettings,
     /// The device's name.
     pub device: String,
+    /// Number of the picture's first pass; 0 but where a range of passes was asked for.
+    pub first_pass: u32,
     /// Passes in the picture; fewer than `settings.passes` when the render was stopped early.
     pub passes_done: u32,
 }
@@ -35,6 +37,9 @@ impl Provenance {
             ("caustica.passes_done".to_owned(), self.passes_done.to_string()),
             ("caustica.settings".to_owned(), settings.to_string()),
         ]);
+        if self.first_pass > 0 {
+            attributes.insert("caustica.first_pass".to_owned(), self.first_pass.to_string());
+        }
         for (key, value) in settings.as_object().into_iter().flatten() {
             let text = value.as_str().map_or_else(|| value.to_string(), str::to_owned);
             attributes.insert(format!("caustica.{key}"), text);

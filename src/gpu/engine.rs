@@ -7,8 +7,9 @@ use super::pace::Pace;
 use super::program::{Compiling, Program, make_programs, workgroup_items};
 use super::recorder::Recorder;
 use crate::clock::{Clock, KernelSeconds};
-use crate::engine::{Engine, EngineError, PassReport, PhotonEnds};
+use crate::engine::{Engine, EngineError, PassReport, PhotonEnds, State};
 use crate::film::{ErrorMap, Picture, Rejections};
+use crate::kernels::bytes::{FILM_BYTES, STATISTICS_BYTES};
 use crate::kernels::records::{Dispatch, FilmPixel, Gathered};
 use crate::pack::Packed;
 use crate::plan::{Kernel, Plan, Step};
@@ -442,6 +443,29 @@ impl Engine for GpuEngine {
         Ok((self.plan.picture(&film), self.plan.rejections(&film)))
     }
 
+    fn save(&mut self) -> Result<State, EngineError> {
+        Ok(State {
+            first_pass: self.plan.first_pass,
+            passes: self.passes_done,
+            bits: 8 * size_of::<f32>() as u32,
+            film: self.read_chunks("film")?,
+            statistics: self.read_chunks("statistics")?,
+        })
+    }
+
+    fn restore(&mut self, state: &State) -> Result<(), EngineError> {
+        self.plan.take_over(state)?;
+        self.passes_done = state.passes;
+        for (name, bytes) in [("film", &state.film), ("statistics", &state.statistics)] {
+            for (number, chunk) in (0..).zip(&self.chunks) {
+                if let (Some(buffer), Some(part)) = (chunk.get(name), bytes.get(self.place(name, number))) {
+                    self.gpu.write(buffer, part);
+                }
+            }
+        }
+        self.gpu.check()
+    }
+
     fn gathered(&mut self) -> Result<u64, EngineError> {
         let mut photons = 0;
         for chunk in 0..self.plan.chunks() {
@@ -455,12 +479,28 @@ impl Engine for GpuEngine {
 impl GpuEngine {
     /// The film, read back.
     fn film(&self) -> Result<Vec<FilmPixel>, EngineError> {
-        let mut film: Vec<FilmPixel> = Vec::with_capacity(self.plan.pixels as usize);
+        Ok(bytemuck::pod_collect_to_vec(&self.read_chunks("film")?))
+    }
+
+    /// All chunks' parts of a buffer, one after another; nothing where the plan has no such buffer.
+    fn read_chunks(&self, name: &str) -> Result<Vec<u8>, EngineError> {
+        let mut bytes = Vec::new();
         for (number, chunk) in (0..).zip(&self.chunks) {
-            let pixels = self.plan.chunk(number).1 / self.plan.eye_samples;
-            let bytes = self.gpu.read(&chunk["film"], pixels as u64 * size_of::<FilmPixel>() as u64)?;
-            film.extend(bytemuck::pod_collect_to_vec::<u8, FilmPixel>(&bytes));
+            if let Some(buffer) = chunk.get(name) {
+                bytes.extend(self.gpu.read(buffer, self.place(name, number).len() as u64)?);
+            }
         }
-        Ok(film)
+        Ok(bytes)
+    }
+
+    /// Where a chunk's `film` or `statistics` stand among those of all.
+    fn place(&self, name: &str, chunk: u32) -> std::ops::Range<usize> {
+        let (first, points) = self.plan.chunk(chunk);
+        let samples = self.plan.eye_samples;
+        let (first, end, size) = match name {
+            "film" => (first / samples, (first + points) / samples, FILM_BYTES),
+            _ => (first, first + points, STATISTICS_BYTES),
+        };
+        first as usize * size..end as usize * size
     }
 }

@@ -3,6 +3,7 @@
 
 use super::{camera, grid, lights, materials, math, real, shapes, tables};
 
+pub mod bytes;
 pub mod direct;
 pub mod eye_trace;
 pub mod gather;
