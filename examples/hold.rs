@@ -183,6 +183,7 @@ fn write_map(
         settings: settings.clone(),
         device: String::new(),
         passes_done: settings.passes,
+        ..Provenance::default()
     };
     Ok(file::write(path, &map, &[], &Development::default(), &provenance)?)
 }

@@ -186,6 +186,7 @@ fn truth_half(wanted: &Wanted, scene: &Scene, name: &str, seed: u64) -> Result<P
         settings,
         device: opened.name,
         passes_done: passes,
+        ..Provenance::default()
     };
     film::write(&file, &picture, &[], &Development::default(), &provenance)?;
     Ok(picture)

@@ -230,12 +230,12 @@ fn start(device: &DeviceInfo, scene: &Scene, settings: &RenderSettings) -> Resul
             Radius::Auto => Plan::new(&single, settings).settings,
             _ => settings.clone(),
         };
-        let plan = double::plan::Plan::new(&packed, settings);
+        let plan = double::plan::Plan::new(&packed, settings).on(film);
         let (settings, automatic) = (plan.settings.clone(), plan.told_radius());
         return Ok((Box::new(double::cpu::CpuEngine::new(packed, plan)), settings, automatic));
     }
     let packed = pack(scene, film.width, film.height)?;
-    let plan = Plan::new(&packed, settings);
+    let plan = Plan::new(&packed, settings).on(film);
     let (settings, automatic) = (plan.settings.clone(), plan.told_radius());
     let engine: Box<dyn Engine> = match device.kind {
         DeviceKind::Cpu => Box::new(CpuEngine::new(packed, plan)),

@@ -1,6 +1,7 @@
 //! What every engine (GPU or CPU) does for the render loop.
 
 use crate::clock::KernelSeconds;
+use crate::film::exr_file::Channel;
 use crate::film::{ErrorMap, Picture, Rejections};
 
 /// Photon paths by how they ended; together those that were emitted.
@@ -102,6 +103,10 @@ pub trait Engine {
     /// Both.
     fn results(&mut self) -> Result<(Picture, Rejections), EngineError> {
         Ok((self.picture()?, self.rejections()?))
+    }
+    /// What the film asks for beside radiance, in world units.
+    fn layers(&mut self) -> Result<Vec<Channel>, EngineError> {
+        Ok(Vec::new())
     }
     /// Photons that the last pass found around all visible points; 0 where the engine does not tell.
     fn gathered(&mut self) -> Result<u64, EngineError> {

@@ -40,6 +40,7 @@ pub mod gpu;
 pub mod grid;
 pub mod hold;
 pub mod kernels;
+pub mod layers;
 pub mod lights;
 pub mod limits;
 pub mod materials;

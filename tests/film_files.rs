@@ -38,6 +38,7 @@ fn provenance() -> Provenance {
         settings: RenderSettings { seed: u64::MAX, photons: 12_345, ..RenderSettings::default() },
         device: "a device".into(),
         passes_done: 17,
+        ..Provenance::default()
     }
 }
 
@@ -118,12 +119,17 @@ fn exr_attributes_tell_how_the_picture_was_made() {
 #[test]
 fn equal_pictures_give_equal_bytes() {
     let attributes = provenance().attributes();
-    let first = exr_file::encode(&sample(), &[], &attributes).unwrap();
+    let first = exr_file::encode(&sample(), exr_file::Frame::of(&sample()), &[], &attributes).unwrap();
     for _ in 0..20 {
-        assert!(exr_file::encode(&sample(), &[], &attributes).unwrap() == first);
+        assert!(
+            exr_file::encode(&sample(), exr_file::Frame::of(&sample()), &[], &attributes).unwrap() == first
+        );
     }
     let other = Provenance { passes_done: 18, ..provenance() };
-    assert!(exr_file::encode(&sample(), &[], &other.attributes()).unwrap() != first);
+    assert!(
+        exr_file::encode(&sample(), exr_file::Frame::of(&sample()), &[], &other.attributes()).unwrap()
+            != first
+    );
 }
 
 /// Mistakes about outputs come before the work, each with its name.

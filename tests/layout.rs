@@ -8,6 +8,7 @@ use bytemuck::Zeroable;
 use caustica::features;
 use caustica::gpu::compose::compose;
 use caustica::gpu::layout::SceneTables;
+use caustica::kernels::aov_trace::AovPixel;
 use caustica::kernels::records::*;
 use caustica::plan::Kernel;
 use caustica::tables::*;
@@ -133,7 +134,9 @@ fn hosts() -> Vec<Layout> {
             passes_done,
             families,
             indirect_radius,
-            inv_cell_indirect
+            inv_cell_indirect,
+            window_first,
+            window_width
         }),
         layout!(VisiblePoint {
             position,
@@ -155,8 +158,12 @@ fn hosts() -> Vec<Layout> {
 }
 
 fn everything() -> (Mixture, naga::Module) {
+    everything_of(Kernel::EyeTrace)
+}
+
+fn everything_of(kernel: Kernel) -> (Mixture, naga::Module) {
     let mixture = Mixture::of(&features::ALL);
-    let shader = compose(Kernel::EyeTrace, &mixture.features(), &SceneTables::new(&mixture.scene)).unwrap();
+    let shader = compose(kernel, &mixture.features(), &SceneTables::new(&mixture.scene)).unwrap();
     let (module, _) = shader.validate().unwrap();
     (mixture, module)
 }
@@ -197,6 +204,26 @@ fn structs_agree() {
     let (_, module) = everything();
     let list = differences(&module, &hosts());
     assert!(list.is_empty(), "{}", list.join("\n"));
+    // that of one kernel alone
+    let (_, module) = everything_of(Kernel::AovTrace);
+    let list = differences(&module, &[aov_pixel()]);
+    assert!(list.is_empty(), "{}", list.join("\n"));
+}
+
+fn aov_pixel() -> Layout {
+    layout!(AovPixel {
+        albedo,
+        depth,
+        normal,
+        hits,
+        position,
+        points,
+        emission,
+        radius,
+        reference,
+        material,
+        state
+    })
 }
 
 /// Every struct that the scene or a buffer is made of has its host struct in the list.

@@ -9,6 +9,7 @@ mod check;
 mod compare;
 mod devices;
 mod diff;
+mod extent;
 mod failure;
 mod figures;
 mod info;

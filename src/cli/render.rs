@@ -17,6 +17,7 @@ use clap::builder::NonEmptyStringValueParser;
 use miette::{Report, miette};
 use serde_json::json;
 
+use super::extent::Extent;
 use super::output::{message, result};
 use super::overrides::{Overrides, duration, target_error};
 use super::progress::{Reporter, count, event, percent, time};
@@ -44,6 +45,8 @@ pub struct Arguments {
     /// Fail, with the pictures written, if a sample had to be left out because it was not finite
     #[arg(long)]
     strict: bool,
+    #[command(flatten)]
+    extent: Extent,
     #[command(flatten)]
     voice: Voice,
     #[command(flatten)]
@@ -77,7 +80,8 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
         named => named.to_vec(),
     };
     check_outputs(&outputs)?;
-    let (scene, settings) = load(&arguments.scene, &arguments.overrides)?;
+    let (mut scene, settings) = load(&arguments.scene, &arguments.overrides)?;
+    arguments.extent.apply(&mut scene.film, &outputs)?;
     let opened = device::open(&device::parse(&arguments.device), &scene, &settings)?;
     let reporter = begin(&arguments.voice, &scene, &opened)?;
     let Arguments { time, target_error, .. } = arguments;
@@ -101,7 +105,12 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
 
     let provenance = Provenance {
         scene: scene.name.clone(),
+        scene_file: arguments.scene.display().to_string(),
         scene_text: std::fs::read_to_string(&arguments.scene).unwrap_or_default(),
+        digest: Some(scene.digest()),
+        film: Some(scene.film),
+        materials: scene.materials.iter().map(|material| material.name.clone()).collect(),
+        asked: Some(settings),
         settings: opened.settings,
         device: opened.name,
         passes_done: outcome.progress.passes,
@@ -217,7 +226,8 @@ fn write(outputs: &[PathBuf], outcome: &Outcome, scene: &Scene, made: &Provenanc
         message(format_args!("warning: {}", left_out(&outcome.rejections)));
     }
     let development = Development { exposure: scene.film.exposure, tonemap: scene.film.tonemap };
-    let layers = outcome.errors.as_ref().map_or(Vec::new(), ErrorMap::layers);
+    let mut layers = outcome.errors.as_ref().map_or(Vec::new(), ErrorMap::layers);
+    layers.extend_from_slice(&outcome.layers);
     for output in outputs {
         film::write(output, &outcome.picture, &layers, &development, made)?;
     }

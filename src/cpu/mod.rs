@@ -1,5 +1,6 @@
 //! The CPU engine: carries out a plan on vectors, with rayon. Needs no adapter.
 
+use super::kernels::aov_trace::{AovPixel, aov_trace};
 use super::kernels::eye_trace::eye_trace;
 use super::kernels::gather::{gather, scale_sq};
 use super::kernels::grid_build::{SortedRecords, grid_count, grid_scan, grid_scatter, grid_sort};
@@ -7,6 +8,7 @@ use super::kernels::path_trace::path_trace;
 use super::kernels::photon_trace::photon_trace;
 use super::kernels::records::*;
 use super::kernels::resolve::{Found, fold, resolve};
+use super::layers::Found as Layers;
 use super::math::is_finite;
 use super::pack::Packed;
 use super::plan::{Kernel, Plan};
@@ -14,6 +16,7 @@ use super::real::ENGINE;
 use super::tables::Scene;
 use crate::clock::{Clock, KernelSeconds};
 use crate::engine::{Engine, EngineError, PassReport, PhotonEnds};
+use crate::film::exr_file::Channel;
 use crate::film::{ErrorMap, Picture, Rejections};
 use crate::settings::Method;
 use bytemuck::Zeroable;
@@ -33,6 +36,7 @@ pub struct CpuEngine {
     gathered: Vec<Gathered>,
     statistics: Vec<Statistics>,
     film: Vec<FilmPixel>,
+    aovs: Vec<AovPixel>,
     records: Vec<PhotonRecord>,
     sorted: SortedRecords,
     counts: Vec<u32>,
@@ -87,6 +91,7 @@ impl CpuEngine {
             gathered: vec![Gathered::zeroed(); points_kept],
             statistics: vec![Statistics::zeroed(); if plan.features.has("local") { points_kept } else { 0 }],
             film: vec![FilmPixel::zeroed(); plan.pixels as usize],
+            aovs: vec![AovPixel::zeroed(); if plan.aovs.are_traced() { plan.pixels as usize } else { 0 }],
             records: Vec::new(),
             sorted: SortedRecords::default(),
             counts: vec![0; buckets],
@@ -172,6 +177,7 @@ impl CpuEngine {
                         });
                     });
                 }
+                Kernel::AovTrace => trace_aovs(scene, d, &mut self.aovs),
                 Kernel::Resolve => {
                     let samples = d.eye_samples as usize;
                     let pixels = d.chunk_first as usize / samples..chunk.end / samples;
@@ -209,7 +215,18 @@ impl CpuEngine {
             })
             .sum();
         report.eye_rays = report.rays;
+        for step in self.plan.aov_steps(self.passes_done) {
+            self.clock.begin(step.kernel.stem());
+            trace_aovs(scene, &step.dispatch, &mut self.aovs);
+        }
     }
+}
+
+/// One sample of each pixel of a chunk.
+fn trace_aovs(scene: &Scene, d: &Dispatch, aovs: &mut [AovPixel]) {
+    let first = (d.chunk_first / d.eye_samples) as usize;
+    let pixels = aovs[first..first + d.end as usize].par_iter_mut();
+    pixels.enumerate().for_each(|(id, pixel)| aov_trace(scene, d, id as u32, pixel));
 }
 
 /// Photons of one batch; the records come in the order of their keys. The number of rays, and of photons by how they ended.
@@ -275,6 +292,11 @@ impl Engine for CpuEngine {
 
     fn rejections(&mut self) -> Result<Rejections, EngineError> {
         Ok(self.plan.rejections(&self.film))
+    }
+
+    fn layers(&mut self) -> Result<Vec<Channel>, EngineError> {
+        let Self { aovs, gathered, statistics, passes_done, .. } = self;
+        Ok(self.plan.layers(&Layers { aovs, gathered, statistics, passes: *passes_done }))
     }
 
     fn gathered(&mut self) -> Result<u64, EngineError> {

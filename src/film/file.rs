@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use image::{DynamicImage, ExtendedColorType, ImageEncoder, ImageFormat, codecs};
 use rayon::prelude::*;
 
-use super::exr_file::{self, NamedPlane};
+use super::exr_file::{self, Channel};
 use super::{Development, FileError, Picture, Provenance, pfm};
 
 /// A kind of picture file.
@@ -101,13 +101,13 @@ pub fn check_place(file: &Path) -> Result<(), FileError> {
 pub fn write(
     file: &Path,
     picture: &Picture,
-    layers: &[NamedPlane],
+    layers: &[Channel],
     development: &Development,
     provenance: &Provenance,
 ) -> Result<(), FileError> {
     let bytes = match Format::of_output(file)? {
         Format::Png => encode_png(picture, development),
-        Format::Exr => exr_file::encode(picture, layers, &provenance.attributes()),
+        Format::Exr => exr_file::encode(picture, provenance.frame(picture), layers, &provenance.attributes()),
         Format::Pfm => Ok(pfm::encode(picture)),
         Format::Hdr => encode_hdr(picture),
     };

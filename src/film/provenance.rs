@@ -2,16 +2,29 @@
 
 use std::collections::BTreeMap;
 
+use super::Picture;
+use super::exr_file::Frame;
+use crate::scene::{Aov, Film};
 use crate::settings::RenderSettings;
 
 /// How a picture came about; written into EXR files as text attributes named `caustica.*`.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Provenance {
     /// The scene's name.
     pub scene: String,
+    /// The scene file's name, as it was given.
+    pub scene_file: String,
     /// The scene file's text.
     pub scene_text: String,
-    /// All settings, with the command line's overrides.
+    /// [`crate::scene::Scene::digest`]; none where nobody is to make it again.
+    pub digest: Option<u64>,
+    /// What it was taken on; none for a whole picture with nothing but radiance.
+    pub film: Option<Film>,
+    /// The materials' names, in the order of their numbers.
+    pub materials: Vec<String>,
+    /// All settings, with the command line's overrides, but with "auto" where the render chose.
+    pub asked: Option<RenderSettings>,
+    /// The same with what was chosen.
     pub settings: RenderSettings,
     /// The device's name.
     pub device: String,
@@ -39,6 +52,34 @@ impl Provenance {
             let text = value.as_str().map_or_else(|| value.to_string(), str::to_owned);
             attributes.insert(format!("caustica.{key}"), text);
         }
+        let mut put = |name: &str, value: String| attributes.insert(format!("caustica.{name}"), value);
+        if let Some(digest) = self.digest {
+            put("scene_file", self.scene_file.clone());
+            put("scene_digest", format!("{digest:016x}"));
+        }
+        if let Some(asked) = &self.asked {
+            put("asked", serde_json::json!(asked).to_string());
+        }
+        if let Some(film) = &self.film {
+            put("size", format!("{}x{}", film.width, film.height));
+            if !film.aovs.is_empty() {
+                put("aov", film.aovs.to_string());
+            }
+            if film.aovs.has(Aov::Material) {
+                put("materials", serde_json::json!(self.materials).to_string());
+            }
+            if let Some([x0, y0, x1, y1]) = film.window {
+                put("crop", format!("{x0},{y0},{x1},{y1}"));
+            }
+        }
         attributes
+    }
+
+    /// Where the picture lies in the whole that it is a window of.
+    pub fn frame(&self, picture: &Picture) -> Frame {
+        match self.film {
+            Some(Film { width, height, window: Some([x, y, _, _]), .. }) => Frame { x, y, width, height },
+            _ => Frame::of(picture),
+        }
     }
 }

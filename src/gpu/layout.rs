@@ -138,6 +138,7 @@ fn buffer_type(kernel: Kernel, name: &str) -> &'static str {
         "records" | "sorted" => "array<PhotonRecord>",
         "gathered" => "array<Gathered>",
         "film" => "array<FilmPixel>",
+        "aovs" => "array<AovPixel>",
         "statistics" => "array<Statistics>",
         "counters" => "Counters",
         "counts" if matches!(kernel, Kernel::GridCount | Kernel::GridScatter) => "array<atomic<u32>>",

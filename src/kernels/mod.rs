@@ -3,7 +3,9 @@
 
 use super::{camera, grid, lights, materials, math, real, shapes, tables};
 
+pub mod aov_trace;
 pub mod direct;
+pub mod eye_sample;
 pub mod eye_trace;
 pub mod gather;
 pub mod grid_build;

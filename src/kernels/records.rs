@@ -55,6 +55,10 @@ pub struct Dispatch {
     pub indirect_radius: Real,
     /// One over the side length of the second family's cells.
     pub inv_cell_indirect: Real,
+    /// First pixel of the window that is rendered, counted in the whole picture.
+    pub window_first: u32,
+    /// Pixels per row of the window.
+    pub window_width: u32,
 }
 
 /// The driver stopped the kernel's loops: the point is to be found again.
