@@ -20,7 +20,7 @@
 //!
 //! Modules depend on one another one way: [`real`] and [`math`], then [`tables`], [`shapes`], [`materials`], [`lights`],
 //! [`camera`] and [`grid`], then [`scene`], [`build`], [`limits`], [`pack`], then [`kernels`], [`radius`], [`probe`], [`plan`], then [`cpu`]
-//! and [`gpu`], then [`device`], [`quality`], [`calibration`] and [`render`], and last [`bench`](mod@bench), [`burden`], [`hold`] and [`study`].
+//! and [`gpu`], then [`device`], [`quality`], [`calibration`], [`showing`] and [`render`], and last [`bench`](mod@bench), [`burden`], [`hold`] and [`study`].
 //! Those from [`real`] to [`cpu`] are compiled twice: [`double`] is the same in f64.
 
 pub mod bench;
@@ -55,5 +55,6 @@ pub mod render;
 pub mod scene;
 pub mod settings;
 pub mod shapes;
+pub mod showing;
 pub mod study;
 pub mod tables;

@@ -3,13 +3,14 @@
 use std::path::PathBuf;
 
 use caustica::film::file::Format;
+use caustica::film::tonemap::Bits;
 use caustica::scene::{Aovs, Film};
 use clap::Args;
 
 use super::Failure;
 
 /// Options about what a picture file holds.
-#[derive(Args, Debug, Default)]
+#[derive(Args, Debug)]
 pub struct Extent {
     /// Channels of .exr files beside radiance, names divided by commas, or all
     #[arg(long, value_name = "NAME,...", value_parser = Aovs::parse)]
@@ -17,6 +18,9 @@ pub struct Extent {
     /// Render a window alone: columns x0 to x1 and rows y0 to y1 from the top left, x1 and y1 left out
     #[arg(long, value_name = "x0,y0,x1,y1", value_parser = window, allow_hyphen_values = true)]
     pub crop: Option<[u32; 4]>,
+    /// Bits of each channel in .png files
+    #[arg(long, value_name = "8|16", value_parser = bits, default_value = "8")]
+    pub bits: Bits,
 }
 
 impl Extent {
@@ -39,6 +43,14 @@ impl Extent {
             )),
             _ => Ok(()),
         }
+    }
+}
+
+fn bits(text: &str) -> Result<Bits, String> {
+    match text {
+        "8" => Ok(Bits::Eight),
+        "16" => Ok(Bits::Sixteen),
+        _ => Err("expected 8 or 16".to_owned()),
     }
 }
 

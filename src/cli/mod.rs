@@ -14,6 +14,7 @@ mod failure;
 mod figures;
 mod info;
 mod interrupt;
+mod like;
 mod measure;
 mod output;
 mod overrides;
@@ -21,6 +22,7 @@ mod progress;
 mod render;
 mod study;
 mod tessellate;
+mod tev;
 
 use std::process::ExitCode;
 
@@ -46,7 +48,7 @@ saved, 130 interrupted with the picture so far saved";
 
 #[derive(Subcommand)]
 enum Command {
-    Render(render::Arguments),
+    Render(Box<render::Arguments>),
     Compare(compare::Arguments),
     Diff(Box<diff::Arguments>),
     Study(Box<study::Arguments>),
@@ -73,7 +75,7 @@ enum Done {
 /// Carries out the command line.
 pub fn run() -> ExitCode {
     let done = match Arguments::parse().command {
-        Command::Render(arguments) => render::run(arguments),
+        Command::Render(arguments) => render::run(*arguments),
         Command::Compare(arguments) => compare::run(arguments),
         Command::Diff(arguments) => diff::run(*arguments),
         Command::Study(arguments) => study::run(*arguments),

@@ -6,21 +6,25 @@ use std::time::Duration;
 
 use caustica::calibration::{Calibrating, Calibration};
 use caustica::device::{self, Opened};
-use caustica::engine::EngineError;
-use caustica::film::{self, Development, ErrorMap, Provenance, Rejections, check_outputs};
+use caustica::engine::{Engine, EngineError};
+use caustica::film::tev::ADDRESS;
+use caustica::film::{self, Development, ErrorMap, Picture, Provenance, Rejections, check_outputs};
 use caustica::limits;
 use caustica::quality::{Expected, Quality, expected};
 use caustica::render::{Ending, Outcome, Progress, Stop, render};
-use caustica::scene::{self, Loaded, Scene};
+use caustica::scene::{self, Aovs, Loaded, Scene};
 use caustica::settings::RenderSettings;
+use caustica::showing::Showing;
 use clap::builder::NonEmptyStringValueParser;
 use miette::{Report, miette};
 use serde_json::json;
 
 use super::extent::Extent;
+use super::like::Like;
 use super::output::{message, result};
 use super::overrides::{Overrides, duration, target_error};
 use super::progress::{Reporter, count, event, percent, time};
+use super::tev::Viewer;
 use super::{Done, Failure, interrupt};
 
 /// Render a scene into pictures
@@ -28,14 +32,22 @@ use super::{Done, Failure, interrupt};
 #[command(after_help = HELP)]
 pub struct Arguments {
     /// Scene file
-    scene: PathBuf,
+    #[arg(required_unless_present = "like")]
+    scene: Option<PathBuf>,
     /// Picture to write, by its extension: .png (tone-mapped), .exr, .pfm, .hdr; may be given several times
     /// [default: the scene's name with .png, in the current folder]
     #[arg(short, long, value_name = "FILE")]
     output: Vec<PathBuf>,
-    /// Device to render on: auto, gpu, software, cpu, cpu-f64, or a part of a device's name
-    #[arg(long, value_name = "DEVICE", value_parser = NonEmptyStringValueParser::new(), default_value = "auto")]
-    device: String,
+    /// Device to render on: auto, gpu, software, cpu, cpu-f64, or a part of a device's name [default: auto]
+    #[arg(long, value_name = "DEVICE", value_parser = NonEmptyStringValueParser::new())]
+    device: Option<String>,
+    /// Make the picture of an .exr file again, with its scene, settings, size, passes and device; other options change single
+    /// ones [default output: the file's name with -again.exr, in the current folder]
+    #[arg(long, value_name = "FILE")]
+    like: Option<PathBuf>,
+    /// Send the picture while it is rendered to the viewer tev that listens there [without an address: 127.0.0.1:14158]
+    #[arg(long, value_name = "HOST:PORT", num_args = 0..=1, require_equals = true, default_missing_value = ADDRESS)]
+    tev: Option<String>,
     /// Begin no pass after this time, as in 30s or 5m; without --passes, the only limit
     #[arg(long, value_name = "TIME", value_parser = duration)]
     time: Option<Duration>,
@@ -75,38 +87,61 @@ pub struct Voice {
 
 /// Renders and writes.
 pub fn run(arguments: Arguments) -> Result<Done, Failure> {
+    let like = arguments.like.as_deref().map(Like::read).transpose()?;
+    let file = arguments.scene.clone().or(like.as_ref().map(Like::scene)).unwrap_or_default();
     let outputs = match arguments.output.as_slice() {
-        [] => vec![default_output(&arguments.scene)],
+        [] => vec![like.as_ref().map_or_else(|| default_output(&file), Like::output)],
         named => named.to_vec(),
     };
     check_outputs(&outputs)?;
-    let (mut scene, settings) = load(&arguments.scene, &arguments.overrides)?;
+    let loaded = match &like {
+        Some(like) => {
+            let mut loaded = like.load(&file)?;
+            like.apply(&mut loaded);
+            loaded
+        }
+        None => scene::load(&file)?,
+    };
+    let asked = loaded.scene.film.aovs;
+    let (mut scene, settings) = in_force(loaded, &arguments.overrides)?;
+    scene.film.aovs = asked;
     arguments.extent.apply(&mut scene.film, &outputs)?;
-    let opened = device::open(&device::parse(&arguments.device), &scene, &settings)?;
+    let device = arguments.device.as_deref().or(like.as_ref().map(Like::device)).unwrap_or("auto");
+    let opened = device::open(&device::parse(device), &scene, &settings)?;
+    let mut viewer = Viewer::connect(arguments.tev.as_deref(), &scene)?;
     let reporter = begin(&arguments.voice, &scene, &opened)?;
     let Arguments { time, target_error, .. } = arguments;
     let limited = time.is_none() && target_error.is_none() || arguments.overrides.passes.is_some();
     let stop = Stop { passes: if limited { settings.passes } else { u32::MAX }, time, target_error };
     let mut engine = opened.engine;
+    let mut shown = |picture: &Picture| viewer.show(picture);
+    let mut showing;
+    let engine: &mut dyn Engine = if arguments.tev.is_some() {
+        showing = Showing::new(engine.as_mut(), &mut shown);
+        &mut showing
+    } else {
+        engine.as_mut()
+    };
     let reporter = RefCell::new(reporter);
     let mut show = |progress: &Progress| reporter.borrow_mut().show(progress);
     let outcome = match arguments.overrides.quality {
         Some(quality) => {
             let promise = Promise { quality, stop, settings: &opened.settings, json: arguments.voice.json };
             let mut tell = |calibration: &Calibration| promise.tell(calibration, &reporter.borrow());
-            let mut watched = Calibrating::new(engine.as_mut(), &mut tell);
+            let mut watched = Calibrating::new(engine, &mut tell);
             render(&mut watched, stop, interrupt::flag(), &mut show)
         }
-        None => render(engine.as_mut(), stop, interrupt::flag(), &mut show),
+        None => render(engine, stop, interrupt::flag(), &mut show),
     };
     let mut reporter = reporter.into_inner();
     reporter.finish();
     let outcome = outcome?;
+    viewer.show(&outcome.picture);
 
     let provenance = Provenance {
         scene: scene.name.clone(),
-        scene_file: arguments.scene.display().to_string(),
-        scene_text: std::fs::read_to_string(&arguments.scene).unwrap_or_default(),
+        scene_file: file.display().to_string(),
+        scene_text: std::fs::read_to_string(&file).unwrap_or_default(),
         digest: Some(scene.digest()),
         film: Some(scene.film),
         materials: scene.materials.iter().map(|material| material.name.clone()).collect(),
@@ -115,7 +150,10 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
         device: opened.name,
         passes_done: outcome.progress.passes,
     };
-    write(&outputs, &outcome, &scene, &provenance)?;
+    let film = &scene.film;
+    let development =
+        Development { exposure: film.exposure, tonemap: film.tonemap, bits: arguments.extent.bits };
+    write(&outputs, &outcome, &development, &provenance)?;
     tell(arguments.voice.json, &reporter, &outputs, &outcome)?;
     if arguments.strict && !outcome.rejections.is_empty() {
         return Err(Failure::failed(miette!("--strict: {}", left_out(&outcome.rejections))));
@@ -207,9 +245,10 @@ pub fn load(file: &Path, overrides: &Overrides) -> Result<(Scene, RenderSettings
     in_force(scene::load(file)?, overrides)
 }
 
-/// Puts the options in force and prints the warnings.
+/// Puts the options in force and prints the warnings. What the film asks for beside radiance is left out.
 pub fn in_force(mut loaded: Loaded, overrides: &Overrides) -> Result<(Scene, RenderSettings), Failure> {
     overrides.apply(&mut loaded.scene, &mut loaded.settings);
+    loaded.scene.film.aovs = Aovs::default();
     let limits = limits::warnings(&loaded.scene, &loaded.settings, &loaded.places);
     for warning in loaded.warnings.into_iter().chain(limits) {
         message(format_args!("{:?}", Report::new(warning)));
@@ -221,15 +260,19 @@ fn default_output(scene: &Path) -> PathBuf {
     Path::new(scene.file_stem().unwrap_or(scene.as_os_str())).with_extension("png")
 }
 
-fn write(outputs: &[PathBuf], outcome: &Outcome, scene: &Scene, made: &Provenance) -> Result<(), Failure> {
+fn write(
+    outputs: &[PathBuf],
+    outcome: &Outcome,
+    development: &Development,
+    made: &Provenance,
+) -> Result<(), Failure> {
     if !outcome.rejections.is_empty() {
         message(format_args!("warning: {}", left_out(&outcome.rejections)));
     }
-    let development = Development { exposure: scene.film.exposure, tonemap: scene.film.tonemap };
     let mut layers = outcome.errors.as_ref().map_or(Vec::new(), ErrorMap::layers);
     layers.extend_from_slice(&outcome.layers);
     for output in outputs {
-        film::write(output, &outcome.picture, &layers, &development, made)?;
+        film::write(output, &outcome.picture, &layers, development, made)?;
     }
     Ok(())
 }
