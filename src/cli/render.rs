@@ -70,6 +70,11 @@ Examples:
   caustica render scenes/caustics.toml
   caustica render scenes/cornell.toml -o cornell.exr -o cornell.png --time 30s --device cpu
   caustica render scenes/cornell.toml --target-error 2%
+  caustica render scenes/cornell.toml -o layers.exr --aov albedo,normal,depth --crop 0,0,256,256
+  caustica render --like layers.exr -o again.exr
+
+Layers for --aov: albedo, normal (both behind mirrors and glass), depth, position, object, material, emission, radius, \
+photons, variance; docs/pictures.md tells more.
 
 The error is the root of relMSE, noise and bias: nine of ten pictures are no farther from the truth than stated.
 It is told from the fourth pass on; .exr files hold each pixel's variance and bias (docs/error-estimate.md).";
