@@ -2,12 +2,13 @@
 
 use super::kernels::aov_trace::AovPixel;
 use super::kernels::records::{Gathered, Statistics};
+use super::kernels::resolve_parts::PartsPixel;
 use super::plan::Plan;
 use super::real::{Real, Vec3};
 use crate::film::Plane;
 use crate::film::exr_file::{Channel, Numbers};
 use crate::scene::Aov;
-use crate::settings::RadiusRule;
+use crate::settings::{Method, RadiusRule};
 
 /// Depth where a pixel's samples hit nothing, as Blender writes it.
 pub const NO_DEPTH: f64 = 1e10;
@@ -16,6 +17,8 @@ pub const NO_DEPTH: f64 = 1e10;
 pub struct Found<'a> {
     /// By pixel; empty where no [`Aov`] takes it.
     pub aovs: &'a [AovPixel],
+    /// By pixel; empty where photons are not parted.
+    pub parts: &'a [PartsPixel],
     /// By visible point, of the last pass; empty for path tracing.
     pub gathered: &'a [Gathered],
     /// By visible point; empty but for the local rule.
@@ -52,6 +55,12 @@ impl Plan {
             Aov::Emission => vector(["emission.R", "emission.G", "emission.B"], &|p| {
                 wide(p.emission).map(|x| x * self.radiance_unit)
             }),
+            Aov::Direct if self.settings.method == Method::Path => Vec::new(),
+            Aov::Direct => vector(["direct.R", "direct.G", "direct.B"], &|p| {
+                wide(p.direct).map(|x| x * self.radiance_unit)
+            }),
+            Aov::Caustic => self.part(["caustic.R", "caustic.G", "caustic.B"], found, |p| p.caustic),
+            Aov::Indirect => self.part(["indirect.R", "indirect.G", "indirect.B"], found, |p| p.indirect),
             Aov::Depth => {
                 let depth = |p: &AovPixel| if hit(p) { one(p.depth) * self.unit } else { NO_DEPTH };
                 float("depth.Z", found.aovs.iter().map(depth).collect())
@@ -63,6 +72,20 @@ impl Plan {
             // a part of what the picture says of its error, which files hold anyway
             Aov::Variance => Vec::new(),
         }
+    }
+
+    /// What photons bring in one way; nothing where path tracing brings it, 0 where there are no photons.
+    fn part(&self, names: [&'static str; 3], found: &Found, of: fn(&PartsPixel) -> Vec3) -> Vec<Channel> {
+        if self.settings.method == Method::Path {
+            return Vec::new();
+        }
+        let plane = |c: usize| {
+            let mut values: Vec<f64> =
+                found.parts.iter().map(|p| wide(of(p))[c] * self.radiance_unit).collect();
+            values.resize(self.pixels as usize, 0.0);
+            self.plane(values.into_iter())
+        };
+        (0..3).map(|c| Channel::float(names[c], plane(c))).collect()
     }
 
     fn plane(&self, values: impl Iterator<Item = f64>) -> Plane {

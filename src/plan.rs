@@ -7,13 +7,14 @@
 use super::features::Features;
 use super::kernels::aov_trace::AovPixel;
 use super::kernels::records::*;
+use super::kernels::resolve_parts::PartsPixel;
 use super::pack::{Objects, Packed};
 use super::probe::{Probe, probe};
 use super::real::Real;
 use crate::film::estimate::{LEAST_PASSES, PixelError, early_passes, partition};
 use crate::film::{ErrorMap, Picture, Rejections, luminance_of};
 use crate::radius::Automatic;
-use crate::scene::{Aovs, Film};
+use crate::scene::{Aov, Aovs, Film};
 use crate::settings::{Method, Radius, RadiusRule, RenderSettings};
 use bytemuck::Zeroable;
 use glam::DVec3;
@@ -43,6 +44,8 @@ pub enum Kernel {
     GridSortLong,
     /// Density estimates.
     Gather,
+    /// What photons bring, by the way they came.
+    ResolveParts,
     /// Estimates into the film.
     Resolve,
 }
@@ -62,7 +65,7 @@ const CELL_RADII: f64 = 2.0;
 
 impl Kernel {
     /// All kernels, in the order of a pass.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::EyeTrace,
         Self::AovTrace,
         Self::PhotonTrace,
@@ -74,6 +77,7 @@ impl Kernel {
         Self::GridSort,
         Self::GridSortLong,
         Self::Gather,
+        Self::ResolveParts,
         Self::Resolve,
     ];
 
@@ -91,6 +95,7 @@ impl Kernel {
             Self::GridSort => "grid_sort",
             Self::GridSortLong => "grid_sort_long",
             Self::Gather => "gather",
+            Self::ResolveParts => "resolve_parts",
             Self::Resolve => "resolve",
         }
     }
@@ -133,9 +138,10 @@ impl Kernel {
                     ("gathered", true),
                 ]
             }
+            Self::ResolveParts => vec![("visible_points", false), ("gathered", false), ("parts", true)],
             Self::Resolve => vec![("visible_points", false), ("gathered", false), ("film", true)],
         };
-        if features.has("local") && matches!(self, Self::Gather | Self::Resolve) {
+        if features.has("local") && matches!(self, Self::Gather | Self::ResolveParts | Self::Resolve) {
             list.push(("statistics", self == Self::Resolve));
         }
         list
@@ -243,7 +249,19 @@ impl Plan {
             self.pixels = (x1 - x0) * (y1 - y0);
         }
         self.aovs = film.aovs;
+        if self.aovs.has(Aov::Direct) {
+            self.features = self.features.with("direct_layer");
+        }
+        // what tells caustics from the rest is their family
+        if self.parts_photons() && self.features.has("first") {
+            self.features = self.features.with("split");
+        }
         self
+    }
+
+    /// Whether what photons bring is parted by the way they came.
+    pub fn parts_photons(&self) -> bool {
+        self.features.has("photons") && (self.aovs.has(Aov::Caustic) || self.aovs.has(Aov::Indirect))
     }
 
     /// Why the radius is what it is, where the settings left it open and photons are gathered at all.
@@ -312,7 +330,7 @@ impl Plan {
 
     /// Pass `pass` with `batch_photons` photons a batch (fewer than planned when a batch overflowed). Before its
     /// first step an engine clears `gathered`, before each [`Kernel::PhotonTrace`] the record counter. The steps from the
-    /// first [`Kernel::Resolve`] on add to what passes before have found.
+    /// first [`Kernel::ResolveParts`] or [`Kernel::Resolve`] on add to what passes before have found.
     pub fn steps(&self, pass: u32, batch_photons: u32) -> Vec<Step> {
         let common = self.dispatch(pass);
         let mut steps = Vec::new();
@@ -345,6 +363,9 @@ impl Plan {
         for c in 0..self.chunks() {
             let (chunk_first, points) = self.chunk(c);
             let end = points / self.eye_samples;
+            if self.parts_photons() {
+                step(Kernel::ResolveParts, c, Dispatch { end, chunk_first, ..common });
+            }
             step(Kernel::Resolve, c, Dispatch { end, chunk_first, ..common });
         }
         steps.extend(self.aov_steps(pass));
@@ -386,6 +407,9 @@ impl Plan {
         }
         if self.aovs.are_traced() {
             list.push(("aovs", pixels * size_of::<AovPixel>() as u64));
+        }
+        if self.parts_photons() {
+            list.push(("parts", pixels * size_of::<PartsPixel>() as u64));
         }
         if self.features.has("photons") {
             list.extend([

@@ -101,7 +101,8 @@ fn layers_stand_beside_radiance() {
     let (plain, all) = (exr(&folder, "plain.exr"), exr(&folder, "all.exr"));
     assert_eq!(plain.picture(""), all.picture(""));
     let names: Vec<&str> = all.channels.keys().map(String::as_str).collect();
-    let expected = "B Bias.Y G R Variance.Y albedo.B albedo.G albedo.R depth.Z emission.B emission.G emission.R \
+    let expected = "B Bias.Y G R Variance.Y albedo.B albedo.G albedo.R caustic.B caustic.G caustic.R depth.Z direct.B direct.G \
+                    direct.R emission.B emission.G emission.R indirect.B indirect.G indirect.R \
                     material.ID normal.X normal.Y normal.Z object.ID photons.Y position.X position.Y position.Z radius.Y";
     assert_eq!(names, expected.split_whitespace().collect::<Vec<_>>());
     assert_eq!(plain.channels.len(), 5);
@@ -114,7 +115,7 @@ fn layers_stand_beside_radiance() {
     assert_eq!(all.attributes["caustica.materials"], "[\"glass\",\"white\"]");
     assert_eq!(
         all.attributes["caustica.aov"],
-        "albedo,normal,depth,position,object,material,emission,radius,photons,variance"
+        "albedo,normal,depth,position,object,material,emission,direct,caustic,indirect,radius,photons,variance"
     );
     // the scene file asks as well, unless the command line does, and a PNG holds none
     fs::write(

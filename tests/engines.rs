@@ -18,7 +18,7 @@ use caustica::kernels::photon_trace::photon_trace;
 use caustica::kernels::records::{PhotonRecord, VisiblePoint};
 use caustica::pack::{Packed, pack};
 use caustica::plan::{Kernel, Plan};
-use caustica::scene::{Aovs, parse};
+use caustica::scene::{Aovs, Film, ToneMap, parse};
 use caustica::settings::RenderSettings;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -485,7 +485,10 @@ fn engines_agree_to_the_bit() {
     let mut faults = Vec::new();
     for (name, settings, rest) in SCENES {
         let (packed, plan) = planned(settings, rest);
-        let plan = Plan { aovs: Aovs::parse("all").unwrap(), ..plan };
+        let aovs = Aovs::parse("all").unwrap();
+        let (width, height) = (48, 36);
+        let film = Film { width, height, exposure: 0.0, tonemap: ToneMap::Srgb, aovs, window: None };
+        let plan = plan.on(&film);
         used.extend(plan.features.names());
         let cpu = on_cpu(&packed, &plan);
         assert!(cpu.1.rgb.iter().flatten().all(|x| x.is_finite()), "{name}");

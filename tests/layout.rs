@@ -10,6 +10,7 @@ use caustica::gpu::compose::compose;
 use caustica::gpu::layout::SceneTables;
 use caustica::kernels::aov_trace::AovPixel;
 use caustica::kernels::records::*;
+use caustica::kernels::resolve_parts::PartsPixel;
 use caustica::plan::Kernel;
 use caustica::tables::*;
 use ingredients::Mixture;
@@ -151,7 +152,7 @@ fn hosts() -> Vec<Layout> {
             state
         }),
         layout!(PhotonRecord { position, key, flux, direction }),
-        layout!(Gathered { flux, count, ring }),
+        layout!(Gathered { flux, count, caustic, ring }),
         layout!(Statistics { scale_sq, drop, count_low, count_high }),
         layout!(FilmPixel { mean, spread, carry, early, rejected, ring, ring_swing, halves, earlier }),
     ]
@@ -208,6 +209,9 @@ fn structs_agree() {
     let (_, module) = everything_of(Kernel::AovTrace);
     let list = differences(&module, &[aov_pixel()]);
     assert!(list.is_empty(), "{}", list.join("\n"));
+    let (_, module) = everything_of(Kernel::ResolveParts);
+    let list = differences(&module, &[layout!(PartsPixel { caustic, passes, indirect })]);
+    assert!(list.is_empty(), "{}", list.join("\n"));
 }
 
 fn aov_pixel() -> Layout {
@@ -220,6 +224,7 @@ fn aov_pixel() -> Layout {
         points,
         emission,
         radius,
+        direct,
         reference,
         material,
         state

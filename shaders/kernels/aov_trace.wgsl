@@ -10,10 +10,12 @@ struct AovPixel {
     points: f32,
     emission: vec3f,
     radius: f32,
+    direct: vec3f,
     reference: u32,
     material: u32,
     state: u32,
-    pad: u32,
+    pad0: u32,
+    pad1: u32,
 }
 
 @compute @workgroup_size(64)
@@ -45,6 +47,7 @@ fn aov_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
     var albedo = vec3f(0.0);
     var normal = vec3f(0.0);
     var emission = vec3f(0.0);
+    var direct = vec3f(0.0);
     for (var bounce = 0u; bounce < dispatch.max_bounces + 1u; bounce++) {
         let hit = intersect_scene(ray);
         if hit.reference == NONE {
@@ -78,6 +81,10 @@ fn aov_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
             if max_component(reflectance) > 0.0 {
                 next.points += 1.0;
                 next.radius += (start_radius(camera.pixel * length) - next.radius) * (1.0 / next.points);
+                //#if sampled && direct_layer
+                let ng = toward(s.normal, wo);
+                direct = throughput * direct_light(s, wo, normal, ng, reflectance, medium, &rng).radiance;
+                //#end
             }
             break;
         }
@@ -104,6 +111,9 @@ fn aov_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
     if !is_finite(albedo) {
         albedo = vec3f(0.0);
     }
+    if !is_finite(direct) {
+        direct = vec3f(0.0);
+    }
     if loops_stopped() {
         aovs[id].state |= STOPPED;
         return;
@@ -112,5 +122,6 @@ fn aov_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
     next.albedo += (albedo - next.albedo) * share;
     next.normal += (normal - next.normal) * share;
     next.emission += (emission - next.emission) * share;
+    next.direct += (direct - next.direct) * share;
     aovs[id] = next;
 }

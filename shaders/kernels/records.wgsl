@@ -55,10 +55,8 @@ struct PhotonRecord {
 struct Gathered {
     flux: vec3f,
     count: u32,
+    caustic: vec3f,
     ring: f32,
-    pad0: u32,
-    pad1: u32,
-    pad2: u32,
 }
 
 struct Statistics {

@@ -73,8 +73,8 @@ Examples:
   caustica render scenes/cornell.toml -o layers.exr --aov albedo,normal,depth --crop 0,0,256,256
   caustica render --like layers.exr -o again.exr
 
-Layers for --aov: albedo, normal (both behind mirrors and glass), depth, position, object, material, emission, radius, \
-photons, variance; docs/pictures.md tells more.
+Layers for --aov: albedo, normal (both behind mirrors and glass), depth, position, object, material, radius, photons, \
+variance, and the parts that add up to the picture, emission, direct, caustic, indirect; docs/pictures.md tells more.
 
 The error is the root of relMSE, noise and bias: nine of ten pictures are no farther from the truth than stated.
 It is told from the fourth pass on; .exr files hold each pixel's variance and bias (docs/error-estimate.md).";

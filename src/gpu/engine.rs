@@ -20,7 +20,7 @@ use std::collections::BTreeMap;
 use std::time::Instant;
 
 /// Buffers of which each chunk of visible points has its own.
-const CHUNK_BUFFERS: [&str; 5] = ["visible_points", "gathered", "film", "statistics", "aovs"];
+const CHUNK_BUFFERS: [&str; 6] = ["visible_points", "gathered", "film", "statistics", "aovs", "parts"];
 /// Bytes of `counters`: records of the batch, the pass's rays in two words, invocations that the driver stopped, photons by
 /// how they ended, and one unused.
 const COUNTERS_BYTES: u64 = 32;
@@ -372,7 +372,8 @@ impl GpuEngine {
         let Some(scene) = &self.scene else {
             return Err(self.unfinished());
         };
-        mend_aovs(&self.gpu, scene, &step.dispatch, &self.chunks[step.chunk as usize]["aovs"])?;
+        let sampled = self.plan.features.has("sampled") && self.plan.features.has("direct_layer");
+        mend_aovs(&self.gpu, scene, &step.dispatch, sampled, &self.chunks[step.chunk as usize]["aovs"])?;
         words[STOPPED_COUNT] = 0;
         self.gpu.write(counters, bytemuck::cast_slice(&words));
         Ok(())
@@ -381,6 +382,11 @@ impl GpuEngine {
     fn unfinished(&self) -> EngineError {
         EngineError::Unsupported(format!("{} leaves long loops unfinished; take --device cpu", self.device))
     }
+}
+
+/// Whether a kernel adds to what passes before have found, so that it must not run in a pass that is thrown away.
+fn adds_up(kernel: Kernel) -> bool {
+    matches!(kernel, Kernel::ResolveParts | Kernel::Resolve | Kernel::AovTrace)
 }
 
 /// Bytes of a chunk's buffer, from those of the largest one.
@@ -412,8 +418,7 @@ impl Engine for GpuEngine {
         let mut batch = self.plan.batch_photons;
         loop {
             let steps = self.plan.steps(pass, batch);
-            let (resolve, trace): (Vec<_>, Vec<_>) =
-                steps.into_iter().partition(|s| matches!(s.kernel, Kernel::Resolve | Kernel::AovTrace));
+            let (resolve, trace): (Vec<_>, Vec<_>) = steps.into_iter().partition(|s| adds_up(s.kernel));
             let counted = self.trace(&trace)?;
             let photons = trace.iter().filter(|s| s.kernel == Kernel::PhotonTrace).map(|s| s.dispatch.end);
             let overflow = |(photons, records): (u32, &u32)| *records > self.plan.capacity && photons > 1;
@@ -479,6 +484,7 @@ impl Engine for GpuEngine {
         let (samples, passes) = (self.plan.eye_samples, self.passes_done);
         Ok(self.plan.layers(&Found {
             aovs: &self.chunked("aovs", samples)?,
+            parts: &self.chunked("parts", samples)?,
             gathered: &self.chunked("gathered", 1)?,
             statistics: &self.chunked("statistics", 1)?,
             passes,

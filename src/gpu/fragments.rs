@@ -29,7 +29,7 @@ macro_rules! fragments {
 /// All shader files, in the order in which they are put together.
 pub const FRAGMENTS: &[Fragment] = fragments![
     "tables.wgsl" if "scene || gather && metal",
-    "math/vector.wgsl" if "scene || gather || resolve",
+    "math/vector.wgsl" if "scene || gather || resolve || resolve_parts",
     "math/octahedral.wgsl" if "scene || gather",
     "math/trig.wgsl" if "scene || gather && metal",
     "math/rng.wgsl" if "scene",
@@ -74,6 +74,7 @@ pub const FRAGMENTS: &[Fragment] = fragments![
     "kernels/grid_sort_long.wgsl" if "grid_sort_long",
     "kernels/gather.wgsl" if "gather",
     "kernels/resolve.wgsl" if "resolve",
+    "kernels/resolve_parts.wgsl" if "resolve_parts",
 ];
 
 /// The names that conditions may use, and those that hold.

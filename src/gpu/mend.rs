@@ -41,6 +41,7 @@ pub fn mend_aovs(
     gpu: &Gpu,
     scene: &Scene,
     dispatch: &Dispatch,
+    sampled: bool,
     buffer: &wgpu::Buffer,
 ) -> Result<(), EngineError> {
     let bytes = dispatch.end as u64 * size_of::<AovPixel>() as u64;
@@ -48,7 +49,7 @@ pub fn mend_aovs(
     let marked = aovs.par_iter_mut().enumerate().filter(|(_, aov)| aov.state & STOPPED != 0);
     marked.for_each(|(id, aov)| {
         aov.state &= !STOPPED;
-        aov_trace(scene, dispatch, id as u32, aov);
+        aov_trace(scene, dispatch, sampled, id as u32, aov);
     });
     gpu.write(buffer, cast_slice(&aovs));
     Ok(())

@@ -3,10 +3,12 @@
 //! updates `aovs`. Twin: `shaders/kernels/aov_trace.wgsl`.
 
 use super::camera::camera_ray;
-use super::direct::{medium_before, transmittance};
+use super::direct::{direct_light, medium_before, transmittance};
 use super::eye_sample::{start_radius, stratified, window_pixel};
 use super::lights::light::eval_environment;
-use super::materials::scatter::{RADIANCE, is_specular, reflectance_at, scatter_specular, shading_normal};
+use super::materials::scatter::{
+    RADIANCE, is_specular, reflectance_at, scatter_specular, shading_normal, toward,
+};
 use super::math::rng::{STREAM_EYE, rng_new, rng_next};
 use super::math::{FAR, is_finite, max_component, offset_origin};
 use super::real::{Plain, Real, Vec3, Vec4};
@@ -37,6 +39,8 @@ pub struct AovPixel {
     pub emission: Vec3,
     /// Start radius, over the samples that end at a visible point.
     pub radius: Real,
+    /// Sampled direct light, times throughput.
+    pub direct: Vec3,
     /// What the ray through the middles of pixel and lens hits; [`NONE`] for nothing.
     pub reference: u32,
     /// Its material or [`NONE`].
@@ -44,11 +48,12 @@ pub struct AovPixel {
     /// [`super::records::STOPPED`] where a sample is still to be taken, or 0.
     pub state: u32,
     /// Padding.
-    pub pad: u32,
+    pub pad: [u32; 2],
 }
 
-/// Adds to pixel `id` of the chunk the sample after the `passes_done` that it holds.
-pub fn aov_trace(scene: &Scene, dispatch: &Dispatch, id: u32, aov: &mut AovPixel) {
+/// Adds to pixel `id` of the chunk the sample after the `passes_done` that it holds. `sampled`: with direct light by shadow
+/// rays.
+pub fn aov_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, id: u32, aov: &mut AovPixel) {
     let camera = &scene.camera;
     let pixel = window_pixel(dispatch, camera, dispatch.chunk_first / dispatch.eye_samples + id);
     let x = pixel % camera.width;
@@ -72,6 +77,7 @@ pub fn aov_trace(scene: &Scene, dispatch: &Dispatch, id: u32, aov: &mut AovPixel
     let mut albedo = Vec3::ZERO;
     let mut normal = Vec3::ZERO;
     let mut emission = Vec3::ZERO;
+    let mut direct = Vec3::ZERO;
     for bounce in 0..dispatch.max_bounces + 1 {
         let hit = intersect_scene(scene, &ray);
         if hit.reference == NONE {
@@ -102,6 +108,12 @@ pub fn aov_trace(scene: &Scene, dispatch: &Dispatch, id: u32, aov: &mut AovPixel
                 next.points += 1.0;
                 next.radius +=
                     (start_radius(dispatch, camera.pixel * length) - next.radius) * (1.0 / next.points);
+                if sampled {
+                    let ng = toward(s.normal, wo);
+                    let (radiance, _) =
+                        direct_light(scene, &s, wo, normal, ng, reflectance, medium, &mut rng);
+                    direct = throughput * radiance;
+                }
             }
             break;
         }
@@ -127,9 +139,13 @@ pub fn aov_trace(scene: &Scene, dispatch: &Dispatch, id: u32, aov: &mut AovPixel
     if !is_finite(albedo) {
         albedo = Vec3::ZERO;
     }
+    if !is_finite(direct) {
+        direct = Vec3::ZERO;
+    }
     let share = 1.0 / (dispatch.passes_done + 1) as Real;
     next.albedo += (albedo - next.albedo) * share;
     next.normal += (normal - next.normal) * share;
     next.emission += (emission - next.emission) * share;
+    next.direct += (direct - next.direct) * share;
     *aov = next;
 }

@@ -11,6 +11,7 @@ use super::math::{LUMINANCE, oct_decode, unit};
 use super::real::{Real, Vec3, Vec4};
 use super::records::{Dispatch, Gathered, Statistics, VisiblePoint};
 use super::tables::MATERIAL_METAL;
+use bytemuck::Zeroable;
 use glam::IVec3;
 use std::ops::Range;
 
@@ -50,6 +51,7 @@ pub fn gather(
     let radius_sq = point.radius * point.radius * scale_sq;
     let mut found = gather_family(dispatch, point, 0, radius_sq, starts, sorted);
     if dispatch.families == 2 {
+        gathered.caustic += point.weight * found.flux;
         let wider_sq = dispatch.indirect_radius * dispatch.indirect_radius;
         let wide = gather_family(dispatch, point, 1, radius_sq * wider_sq, starts, sorted);
         found.flux += wide.flux * (1.0 / wider_sq);
@@ -127,7 +129,7 @@ fn gather_family(
         }
     }
     let ring = (point.weight * LUMINANCE).dot(ring.truncate());
-    Gathered { flux: sum.truncate(), count, ring, pad: [0; 3] }
+    Gathered { flux: sum.truncate(), count, ring, ..Gathered::zeroed() }
 }
 
 /// Which of the first [`LANES`] photons of `range` lie in the disc and in the cell and come from the side that is seen: a byte

@@ -13,3 +13,4 @@ pub mod path_trace;
 pub mod photon_trace;
 pub mod records;
 pub mod resolve;
+pub mod resolve_parts;

@@ -117,10 +117,10 @@ pub struct Gathered {
     pub flux: Vec3,
     /// Photons inside the disc, on the right side of the surface.
     pub count: u32,
+    /// The part of `flux` of the first of two families.
+    pub caustic: Vec3,
     /// Luminance of what the outer half of the disc's area holds of `flux`, less that of the inner half.
     pub ring: Real,
-    /// Padding.
-    pub pad: [u32; 3],
 }
 
 /// Local rule: statistics of a pixel (SPPM) or visible point (PPM), with radii over the start radius.

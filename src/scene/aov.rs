@@ -21,6 +21,13 @@ pub enum Aov {
     Material,
     /// Light that comes to the eye straight or by mirrors and glass alone.
     Emission,
+    /// Light straight from lamps to the first hit that is neither mirror nor glass, found by shadow rays.
+    Direct,
+    /// Light that photons bring which no diffuse surface has scattered: caustics, and where there are no shadow rays also
+    /// light straight from lamps.
+    Caustic,
+    /// Light that photons bring which diffuse surfaces have scattered.
+    Indirect,
     /// Gather radius, scene units.
     Radius,
     /// Photons gathered in the last pass.
@@ -31,7 +38,7 @@ pub enum Aov {
 
 impl Aov {
     /// All of them.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 13] = [
         Self::Albedo,
         Self::Normal,
         Self::Depth,
@@ -39,6 +46,9 @@ impl Aov {
         Self::Object,
         Self::Material,
         Self::Emission,
+        Self::Direct,
+        Self::Caustic,
+        Self::Indirect,
         Self::Radius,
         Self::Photons,
         Self::Variance,
@@ -54,6 +64,9 @@ impl Aov {
             Self::Object => "object",
             Self::Material => "material",
             Self::Emission => "emission",
+            Self::Direct => "direct",
+            Self::Caustic => "caustic",
+            Self::Indirect => "indirect",
             Self::Radius => "radius",
             Self::Photons => "photons",
             Self::Variance => "variance",
@@ -62,7 +75,7 @@ impl Aov {
 
     /// Whether it takes the kernel `aov_trace`.
     pub fn is_traced(self) -> bool {
-        !matches!(self, Self::Photons | Self::Variance)
+        !matches!(self, Self::Caustic | Self::Indirect | Self::Photons | Self::Variance)
     }
 }
 
@@ -128,7 +141,7 @@ impl std::fmt::Display for Aovs {
     }
 }
 
-fn words() -> [&'static str; 10] {
+fn words() -> [&'static str; 13] {
     Aov::ALL.map(Aov::word)
 }
 
