@@ -184,6 +184,7 @@ fn write_map(
         device: String::new(),
         first_pass: 0,
         passes_done: settings.passes,
+        ..Provenance::default()
     };
     Ok(file::write(path, &map, &[], &Development::default(), &provenance)?)
 }

@@ -187,6 +187,7 @@ fn truth_half(wanted: &Wanted, scene: &Scene, name: &str, seed: u64) -> Result<P
         device: opened.name,
         first_pass: 0,
         passes_done: passes,
+        ..Provenance::default()
     };
     film::write(&file, &picture, &[], &Development::default(), &provenance)?;
     Ok(picture)

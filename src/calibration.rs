@@ -3,6 +3,7 @@
 use std::time::Instant;
 
 use crate::engine::{Engine, EngineError, PassReport, State};
+use crate::film::exr_file::Channel;
 use crate::film::{ErrorMap, Picture, Rejections};
 use crate::quality::one_pass_error;
 
@@ -66,6 +67,10 @@ impl Engine for Calibrating<'_> {
 
     fn rejections(&mut self) -> Result<Rejections, EngineError> {
         self.inner.rejections()
+    }
+
+    fn layers(&mut self) -> Result<Vec<Channel>, EngineError> {
+        self.inner.layers()
     }
 
     fn results(&mut self) -> Result<(Picture, Rejections), EngineError> {

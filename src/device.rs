@@ -255,11 +255,11 @@ fn start(
             Radius::Auto => Plan::new(&packed, settings).settings,
             _ => settings.clone(),
         };
-        let plan = double::plan::Plan::new(&wide, settings);
+        let plan = double::plan::Plan::new(&wide, settings).on(film);
         let (settings, automatic, unit) = (plan.settings.clone(), plan.told_radius(), plan.radiance_unit);
         return Ok(opened(Box::new(double::cpu::CpuEngine::new(wide, plan)), settings, automatic, unit));
     }
-    let plan = Plan::new(&packed, settings);
+    let plan = Plan::new(&packed, settings).on(film);
     let (settings, automatic, unit) = (plan.settings.clone(), plan.told_radius(), plan.radiance_unit);
     let engine: Box<dyn Engine> = match device.kind {
         DeviceKind::Cpu => Box::new(CpuEngine::new(packed, plan)),

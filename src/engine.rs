@@ -1,6 +1,7 @@
 //! What every engine (GPU or CPU) does for the render loop.
 
 use crate::clock::KernelSeconds;
+use crate::film::exr_file::Channel;
 use crate::film::{ErrorMap, Picture, Rejections};
 use serde::{Deserialize, Serialize};
 
@@ -136,6 +137,10 @@ pub trait Engine {
     fn restore(&mut self, state: &State) -> Result<(), EngineError> {
         let _ = state;
         Err(EngineError::Unsupported(format!("{} cannot take over what another one holds", self.device())))
+    }
+    /// What the film asks for beside radiance, in world units.
+    fn layers(&mut self) -> Result<Vec<Channel>, EngineError> {
+        Ok(Vec::new())
     }
     /// Photons that the last pass found around all visible points; 0 where the engine does not tell.
     fn gathered(&mut self) -> Result<u64, EngineError> {

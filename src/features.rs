@@ -47,7 +47,7 @@ pub const ALL: [&str; 38] = [
 ];
 
 /// A set of names from [`ALL`], and "photons" where photons are traced at all, "first" where such are stored that no
-/// diffuse surface has scattered.
+/// diffuse surface has scattered, and "direct_layer" where direct light is to be told by itself.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Features(BTreeSet<&'static str>);
 
@@ -109,6 +109,12 @@ impl Features {
         put("first", photons && first);
         put("split", photons && first && settings.has_wider());
         Self(set)
+    }
+
+    /// The same and `name`.
+    pub fn with(mut self, name: &'static str) -> Self {
+        self.0.insert(name);
+        self
     }
 
     /// Whether `name` is required.

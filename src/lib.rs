@@ -20,7 +20,7 @@
 //!
 //! Modules depend on one another one way: [`real`] and [`math`], then [`tables`], [`shapes`], [`materials`], [`lights`],
 //! [`camera`] and [`grid`], then [`scene`], [`build`], [`limits`], [`pack`], then [`kernels`], [`radius`], [`sobol`], [`probe`], [`readout`], [`plan`], then [`cpu`]
-//! and [`gpu`], then [`identity`], [`device`], [`quality`], [`calibration`], [`render`] and [`checkpoint`], and last [`bench`](mod@bench), [`burden`], [`hold`] and [`study`].
+//! and [`gpu`], then [`identity`], [`device`], [`quality`], [`calibration`], [`showing`], [`render`] and [`checkpoint`], and last [`bench`](mod@bench), [`burden`], [`hold`] and [`study`].
 //! Those from [`real`] to [`cpu`] are compiled twice: [`double`] is the same in f64.
 
 pub mod bench;
@@ -42,6 +42,7 @@ pub mod grid;
 pub mod hold;
 pub mod identity;
 pub mod kernels;
+pub mod layers;
 pub mod lights;
 pub mod limits;
 pub mod materials;
@@ -57,6 +58,7 @@ pub mod render;
 pub mod scene;
 pub mod settings;
 pub mod shapes;
+pub mod showing;
 pub mod sobol;
 pub mod study;
 pub mod tables;

@@ -5,23 +5,29 @@
 //! same for every engine.
 
 use super::features::Features;
+use super::kernels::aov_trace::AovPixel;
 use super::kernels::bytes::{FILM_BYTES, STATISTICS_BYTES};
 use super::kernels::records::*;
-use super::pack::Packed;
+use super::kernels::resolve_parts::PartsPixel;
+use super::pack::{Objects, Packed};
 use super::probe::{Probe, probe};
 use super::readout::Readout;
 use super::real::Real;
 use crate::engine::{EngineError, State};
 use crate::film::{ErrorMap, Picture, Rejections};
 use crate::radius::Automatic;
+use crate::scene::{Aov, Aovs, Film};
 use crate::settings::{Method, Radius, RadiusRule, RenderSettings};
 use bytemuck::Zeroable;
+use glam::DVec3;
 
 /// A kernel: the stem of its shader file, of its Rust twin and its entry point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Kernel {
     /// Eye paths to visible points.
     EyeTrace,
+    /// Eye paths to what a picture shows beside radiance.
+    AovTrace,
     /// Photon paths to records.
     PhotonTrace,
     /// Records per bucket.
@@ -40,6 +46,8 @@ pub enum Kernel {
     GridSortLong,
     /// Density estimates.
     Gather,
+    /// What photons bring, by the way they came.
+    ResolveParts,
     /// Estimates into the film.
     Resolve,
 }
@@ -59,8 +67,9 @@ const CELL_RADII: f64 = 2.0;
 
 impl Kernel {
     /// All kernels, in the order of a pass.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 13] = [
         Self::EyeTrace,
+        Self::AovTrace,
         Self::PhotonTrace,
         Self::GridCount,
         Self::GridScanReduce,
@@ -70,6 +79,7 @@ impl Kernel {
         Self::GridSort,
         Self::GridSortLong,
         Self::Gather,
+        Self::ResolveParts,
         Self::Resolve,
     ];
 
@@ -77,6 +87,7 @@ impl Kernel {
     pub fn stem(self) -> &'static str {
         match self {
             Self::EyeTrace => "eye_trace",
+            Self::AovTrace => "aov_trace",
             Self::PhotonTrace => "photon_trace",
             Self::GridCount => "grid_count",
             Self::GridScanReduce => "grid_scan_reduce",
@@ -86,6 +97,7 @@ impl Kernel {
             Self::GridSort => "grid_sort",
             Self::GridSortLong => "grid_sort_long",
             Self::Gather => "gather",
+            Self::ResolveParts => "resolve_parts",
             Self::Resolve => "resolve",
         }
     }
@@ -94,6 +106,7 @@ impl Kernel {
     pub fn buffers(self, features: &Features) -> Vec<(&'static str, bool)> {
         let mut list = match self {
             Self::EyeTrace => vec![("visible_points", true), ("counters", true)],
+            Self::AovTrace => vec![("aovs", true), ("counters", true)],
             Self::PhotonTrace => vec![("records", true), ("counters", true)],
             Self::GridCount => vec![("records", false), ("counters", true), ("counts", true)],
             Self::GridScanReduce => vec![("counts", true), ("block_sums", true)],
@@ -127,9 +140,10 @@ impl Kernel {
                     ("gathered", true),
                 ]
             }
+            Self::ResolveParts => vec![("visible_points", false), ("gathered", false), ("parts", true)],
             Self::Resolve => vec![("visible_points", false), ("gathered", false), ("film", true)],
         };
-        if features.has("local") && matches!(self, Self::Gather | Self::Resolve) {
+        if features.has("local") && matches!(self, Self::Gather | Self::ResolveParts | Self::Resolve) {
             list.push(("statistics", self == Self::Resolve));
         }
         list
@@ -137,7 +151,7 @@ impl Kernel {
 
     /// Whether it reads the flattened scene.
     pub fn reads_scene(self) -> bool {
-        matches!(self, Self::EyeTrace | Self::PhotonTrace)
+        matches!(self, Self::EyeTrace | Self::AovTrace | Self::PhotonTrace)
     }
 }
 
@@ -159,10 +173,14 @@ pub struct Plan {
     pub features: Features,
     /// The settings, with a radius in the place of "auto".
     pub settings: RenderSettings,
-    /// Pixels per row.
+    /// Pixels per row of the window that is rendered.
     pub width: u32,
-    /// Pixels.
+    /// Pixels of the window.
     pub pixels: u32,
+    /// The window's first pixel, counted in the whole picture.
+    pub window_first: u32,
+    /// What is found beside radiance.
+    pub aovs: Aovs,
     /// Visible points per pixel.
     pub eye_samples: u32,
     /// Visible points per chunk, a multiple of `eye_samples`.
@@ -178,6 +196,10 @@ pub struct Plan {
     /// Radius of the first family of photons over [`RenderSettings::radius`]: one, or where diffuse surfaces have scattered
     /// all that are stored [`RenderSettings::indirect_radius`].
     pub widening: f64,
+    /// The world point at the scene's origin.
+    pub center: DVec3,
+    /// Which shape of the scene a reference belongs to, where that is asked for.
+    pub objects: Objects,
     /// World units in one scene unit.
     pub unit: f64,
     /// Scene radiance times this is world radiance.
@@ -209,6 +231,8 @@ impl Plan {
             settings: settings.clone(),
             width: camera.width,
             pixels: camera.width * camera.height,
+            window_first: 0,
+            aovs: Aovs::default(),
             eye_samples,
             chunk_points: CHUNK_POINTS / eye_samples * eye_samples,
             batch_photons: fit.min(key_room).clamp(1, settings.photons as u64) as u32,
@@ -216,11 +240,36 @@ impl Plan {
             buckets: capacity,
             probe,
             widening,
+            center: packed.center,
+            objects: packed.objects.clone(),
             unit: packed.unit,
             radiance_unit: packed.radiance_unit,
             first_pass: 0,
             taken_over: 0,
         }
+    }
+
+    /// The same for a film: for its window alone, and with what it asks for beside radiance.
+    pub fn on(mut self, film: &Film) -> Self {
+        if let Some([x0, y0, x1, y1]) = film.window {
+            self.window_first = y0 * film.width + x0;
+            self.width = x1 - x0;
+            self.pixels = (x1 - x0) * (y1 - y0);
+        }
+        self.aovs = film.aovs;
+        if self.aovs.has(Aov::Direct) && self.settings.method != Method::Path {
+            self.features = self.features.with("direct_layer");
+        }
+        // what tells caustics from the rest is their family
+        if self.parts_photons() && self.features.has("first") {
+            self.features = self.features.with("split");
+        }
+        self
+    }
+
+    /// Whether what photons bring is parted by the way they came.
+    pub fn parts_photons(&self) -> bool {
+        self.features.has("photons") && (self.aovs.has(Aov::Caustic) || self.aovs.has(Aov::Indirect))
     }
 
     /// Plans to go on from `state`.
@@ -308,13 +357,16 @@ impl Plan {
             families: 1 + split as u32,
             indirect_radius: wider as Real,
             inv_cell_indirect: (1.0 / (cell * wider)) as Real,
+            window_first: self.window_first,
+            window_width: self.width,
             points: crate::sobol::points(pass),
             ..Dispatch::zeroed()
         }
     }
 
     /// Pass `pass` of this render, from 0, with `batch_photons` photons a batch (fewer than planned when a batch overflowed). Before its
-    /// first step an engine clears `gathered`, before each [`Kernel::PhotonTrace`] the record counter.
+    /// first step an engine clears `gathered`, before each [`Kernel::PhotonTrace`] the record counter. The steps from the
+    /// first [`Kernel::ResolveParts`] or [`Kernel::Resolve`] on add to what passes before have found.
     pub fn steps(&self, pass: u32, batch_photons: u32) -> Vec<Step> {
         let common = self.dispatch(pass);
         let mut steps = Vec::new();
@@ -349,9 +401,32 @@ impl Plan {
         for c in 0..self.chunks() {
             let (chunk_first, points) = self.chunk(c);
             let end = points / self.eye_samples;
+            if self.parts_photons() {
+                step(Kernel::ResolveParts, c, Dispatch { end, chunk_first, ..common });
+            }
             step(Kernel::Resolve, c, Dispatch { end, chunk_first, ..common });
         }
+        steps.extend(self.aov_steps(pass));
         steps
+    }
+
+    /// The steps of [`Kernel::AovTrace`] in pass `pass`, one for each sample of the pixels that the pass traces eye paths
+    /// through.
+    pub fn aov_steps(&self, pass: u32) -> Vec<Step> {
+        let ppm = self.settings.method == Method::Ppm;
+        if !self.aovs.are_traced() || ppm && pass > 0 {
+            return Vec::new();
+        }
+        let common = self.dispatch(pass);
+        let step = |c, sample| {
+            let (chunk_first, points) = self.chunk(c);
+            let end = points / self.eye_samples;
+            let passes_done = common.passes_done * self.eye_samples + sample;
+            let dispatch = Dispatch { end, chunk_first, passes_done, ..common };
+            Step { kernel: Kernel::AovTrace, chunk: c, dispatch }
+        };
+        let samples = 0..self.eye_samples;
+        (0..self.chunks()).flat_map(|c| samples.clone().map(move |sample| step(c, sample))).collect()
     }
 
     /// Name and bytes of every buffer beside the scene's; those of chunks for the largest chunk.
@@ -367,6 +442,12 @@ impl Plan {
         ];
         if self.features.has("local") {
             list.push(("statistics", points * size_of::<Statistics>() as u64));
+        }
+        if self.aovs.are_traced() {
+            list.push(("aovs", pixels * size_of::<AovPixel>() as u64));
+        }
+        if self.parts_photons() {
+            list.push(("parts", pixels * size_of::<PartsPixel>() as u64));
         }
         if self.features.has("photons") {
             list.extend([

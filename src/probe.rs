@@ -51,6 +51,7 @@ pub fn probe(packed: &Packed, settings: &RenderSettings) -> Probe {
         strata: 1,
         radius_pixels: 1.0,
         radius_max: Real::MAX,
+        window_width: scene.camera.width,
         ..Dispatch::zeroed()
     };
     let sampled = settings.direct == Direct::Sampled;

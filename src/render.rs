@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 
 use crate::engine::{Engine, EngineError, PassReport, PhotonEnds};
 use crate::film::estimate::LEAST_PASSES;
+use crate::film::exr_file::Channel;
 use crate::film::{ErrorMap, Picture, Rejections, RelativeError};
 
 /// When to stop; whichever comes first. At least one pass is made.
@@ -120,6 +121,8 @@ pub struct Outcome {
     pub picture: Picture,
     /// What it says of its own error; none for fewer passes than an estimate needs.
     pub errors: Option<ErrorMap>,
+    /// What the film asks for beside radiance.
+    pub layers: Vec<Channel>,
     /// What was left out of it.
     pub rejections: Rejections,
     /// The state after the picture's last pass.
@@ -285,14 +288,15 @@ fn following(passes: u32) -> u32 {
 struct Kept {
     picture: Picture,
     errors: Option<ErrorMap>,
+    layers: Vec<Channel>,
     rejections: Rejections,
     progress: Progress,
 }
 
 impl Kept {
     fn outcome(self, ending: Ending) -> Outcome {
-        let Self { picture, errors, rejections, progress } = self;
-        Outcome { picture, errors, rejections, progress, ending }
+        let Self { picture, errors, layers, rejections, progress } = self;
+        Outcome { picture, errors, layers, rejections, progress, ending }
     }
 }
 
@@ -303,7 +307,7 @@ fn take(engine: &mut dyn Engine, mut progress: Progress) -> Result<Kept, EngineE
         _ => None,
     };
     progress.error = errors.as_ref().map(ErrorMap::relative);
-    Ok(Kept { picture, errors, rejections, progress })
+    Ok(Kept { picture, errors, layers: engine.layers()?, rejections, progress })
 }
 
 /// Theory: an engine that counts its passes into the picture shows by the picture alone how many were made, and the

@@ -18,7 +18,11 @@ fn picture(width: u32, bright: u32) -> Picture {
 }
 
 fn write_exr(folder: &Path, name: &str, picture: &Picture) {
-    fs::write(folder.join(name), exr_file::encode(picture, &[], &BTreeMap::new()).unwrap()).unwrap();
+    fs::write(
+        folder.join(name),
+        exr_file::encode(picture, exr_file::Frame::of(picture), &[], &BTreeMap::new()).unwrap(),
+    )
+    .unwrap();
 }
 
 /// A fresh folder with pictures to compare. `a.exr` and `b.exr` differ in the columns 32 to 39 of 40.

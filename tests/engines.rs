@@ -10,6 +10,7 @@ use caustica::cpu::CpuEngine;
 use caustica::engine::{Engine, PassReport};
 use caustica::features;
 use caustica::film::estimate::LEAST_PASSES;
+use caustica::film::exr_file::Channel;
 use caustica::film::{ErrorMap, Picture};
 use caustica::gpu::GpuEngine;
 use caustica::kernels::eye_trace::eye_trace;
@@ -17,7 +18,7 @@ use caustica::kernels::photon_trace::photon_trace;
 use caustica::kernels::records::{PhotonRecord, VisiblePoint};
 use caustica::pack::{Packed, pack};
 use caustica::plan::{Kernel, Plan};
-use caustica::scene::parse;
+use caustica::scene::{Aovs, Film, ToneMap, parse};
 use caustica::settings::RenderSettings;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -391,8 +392,9 @@ fn planned_at((width, height): (u32, u32), settings: &str, rest: &str) -> (Packe
     let lens = if settings.contains("ppm") { "aperture = 0.1\nfocus = 4.3\n" } else { "" };
     let text = format!("{HEAD}{lens}{film}\n[render]\nphotons = 6000\npasses = 3\n{settings}\n{FLOOR}{rest}");
     let path = assets().join("scene.toml");
-    let loaded =
+    let mut loaded =
         parse(&path, text.as_bytes()).unwrap_or_else(|e| panic!("{:?}\n{text}", miette::Report::new(e)));
+    loaded.scene.film.aovs = Aovs::parse("object").unwrap();
     let packed = pack(&loaded.scene, loaded.scene.film.width, loaded.scene.film.height).unwrap();
     let plan = Plan::new(&packed, &loaded.settings);
     (packed, plan)
@@ -402,13 +404,13 @@ fn photons(photons: u32, plan: &Plan) -> RenderSettings {
     RenderSettings { photons, ..plan.settings.clone() }
 }
 
-/// Reports, picture, and the picture's errors.
-type Rendered = (Vec<PassReport>, Picture, ErrorMap);
+/// Reports, picture, the picture's errors, and what is found beside radiance.
+type Rendered = (Vec<PassReport>, Picture, ErrorMap, Vec<Channel>);
 
 /// Four passes, the fewest that have an estimate of their error.
 fn rendered(mut engine: impl Engine) -> Rendered {
     let reports = (0..LEAST_PASSES).map(|_| engine.pass().unwrap()).collect();
-    (reports, engine.picture().unwrap(), engine.errors().unwrap())
+    (reports, engine.picture().unwrap(), engine.errors().unwrap(), engine.layers().unwrap())
 }
 
 fn on_cpu(packed: &Packed, plan: &Plan) -> Rendered {
@@ -429,7 +431,9 @@ fn difference(a: &Rendered, b: &Rendered) -> Option<String> {
     let wrong: Vec<usize> = (0..first.len()).filter(|i| first[*i] != second[*i]).collect();
     let Some(&i) = wrong.first() else {
         let unlike = a.2.pixels.iter().zip(&b.2.pixels).find(|(a, b)| a != b);
-        return unlike.map(|(a, b)| format!("errors {a:?} and {b:?}"));
+        let errors = unlike.map(|(a, b)| format!("errors {a:?} and {b:?}"));
+        let unlike = a.3.iter().zip(&b.3).find(|(a, b)| a != b);
+        return errors.or(unlike.map(|(layer, _)| format!("the layer {}", layer.name)));
     };
     Some(format!(
         "{} of {} pixels, the first {:?} and {:?}",
@@ -481,6 +485,10 @@ fn engines_agree_to_the_bit() {
     let mut faults = Vec::new();
     for (name, settings, rest) in SCENES {
         let (packed, plan) = planned(settings, rest);
+        let aovs = Aovs::parse("all").unwrap();
+        let (width, height) = (48, 36);
+        let film = Film { width, height, exposure: 0.0, tonemap: ToneMap::Srgb, aovs, window: None };
+        let plan = plan.on(&film);
         used.extend(plan.features.names());
         let cpu = on_cpu(&packed, &plan);
         assert!(cpu.1.rgb.iter().flatten().all(|x| x.is_finite()), "{name}");
@@ -567,6 +575,11 @@ fn planted_differences_are_found() {
     let mut wrong = right.clone();
     wrong.2.pixels[777].variance += 1e-9;
     assert!(difference(&right, &wrong).is_some());
+    let with_layers = on_cpu(&packed, &Plan { aovs: Aovs::parse("normal").unwrap(), ..plan });
+    assert_eq!(difference(&right, &with_layers), None, "what is found beside radiance changes no bit of it");
+    let mut wrong = with_layers.clone();
+    wrong.3[2].plane.values[777] += 1e-9;
+    assert!(difference(&with_layers, &wrong).is_some());
     let mut wrong = right.clone();
     wrong.0[2].records += 1;
     assert!(difference(&right, &wrong).is_some());

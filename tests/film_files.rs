@@ -39,6 +39,7 @@ fn provenance() -> Provenance {
         device: "a device".into(),
         first_pass: 0,
         passes_done: 17,
+        ..Provenance::default()
     }
 }
 
@@ -119,12 +120,17 @@ fn exr_attributes_tell_how_the_picture_was_made() {
 #[test]
 fn equal_pictures_give_equal_bytes() {
     let attributes = provenance().attributes();
-    let first = exr_file::encode(&sample(), &[], &attributes).unwrap();
+    let first = exr_file::encode(&sample(), exr_file::Frame::of(&sample()), &[], &attributes).unwrap();
     for _ in 0..20 {
-        assert!(exr_file::encode(&sample(), &[], &attributes).unwrap() == first);
+        assert!(
+            exr_file::encode(&sample(), exr_file::Frame::of(&sample()), &[], &attributes).unwrap() == first
+        );
     }
     let other = Provenance { passes_done: 18, ..provenance() };
-    assert!(exr_file::encode(&sample(), &[], &other.attributes()).unwrap() != first);
+    assert!(
+        exr_file::encode(&sample(), exr_file::Frame::of(&sample()), &[], &other.attributes()).unwrap()
+            != first
+    );
 }
 
 /// Mistakes about outputs come before the work, each with its name.

@@ -5,13 +5,14 @@
 //! curve is that of IEC 61966-2-1.
 
 use caustica::film::Development;
+use caustica::film::tonemap::Bits;
 use caustica::film::tonemap::srgb_from_linear;
 use caustica::scene::ToneMap;
 
 const BOTH: [ToneMap; 2] = [ToneMap::Agx, ToneMap::Srgb];
 
 fn development(tonemap: ToneMap) -> Development {
-    Development { exposure: 0.0, tonemap }
+    Development { exposure: 0.0, tonemap, bits: Bits::Eight }
 }
 
 /// Radiances from 2^-16 to 2^8 in 32nds of a stop.
@@ -90,7 +91,7 @@ fn known_values() {
 #[test]
 fn exposure_counts_in_stops() {
     for tonemap in BOTH {
-        let brighter = Development { exposure: 2.0, tonemap };
+        let brighter = Development { exposure: 2.0, ..development(tonemap) };
         assert_eq!(
             brighter.bytes([0.05, 0.1, 0.2]),
             development(tonemap).bytes([0.2, 0.4, 0.8]),

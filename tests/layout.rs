@@ -8,7 +8,9 @@ use bytemuck::Zeroable;
 use caustica::features;
 use caustica::gpu::compose::compose;
 use caustica::gpu::layout::SceneTables;
+use caustica::kernels::aov_trace::AovPixel;
 use caustica::kernels::records::*;
+use caustica::kernels::resolve_parts::PartsPixel;
 use caustica::plan::Kernel;
 use caustica::tables::*;
 use ingredients::Mixture;
@@ -134,6 +136,8 @@ fn hosts() -> Vec<Layout> {
             families,
             indirect_radius,
             inv_cell_indirect,
+            window_first,
+            window_width,
             points
         }),
         layout!(VisiblePoint {
@@ -150,7 +154,7 @@ fn hosts() -> Vec<Layout> {
             state
         }),
         layout!(PhotonRecord { position, key, flux, direction }),
-        layout!(Gathered { flux, count, ring }),
+        layout!(Gathered { flux, count, caustic, ring }),
         layout!(Statistics { scale_sq, drop, count_low, count_high }),
         layout!(FilmPixel { mean, spread, carry, early, rejected, ring, ring_swing, halves, earlier }),
     ]
@@ -209,6 +213,30 @@ fn structs_agree() {
     let mut list = differences(&module, &hosts());
     list.extend(differences(&everything_of(Kernel::Gather).1, &hosts_of_gather()));
     assert!(list.is_empty(), "{}", list.join("\n"));
+    // that of one kernel alone
+    let (_, module) = everything_of(Kernel::AovTrace);
+    let list = differences(&module, &[aov_pixel()]);
+    assert!(list.is_empty(), "{}", list.join("\n"));
+    let (_, module) = everything_of(Kernel::ResolveParts);
+    let list = differences(&module, &[layout!(PartsPixel { caustic, passes, indirect })]);
+    assert!(list.is_empty(), "{}", list.join("\n"));
+}
+
+fn aov_pixel() -> Layout {
+    layout!(AovPixel {
+        albedo,
+        depth,
+        normal,
+        hits,
+        position,
+        points,
+        emission,
+        radius,
+        direct,
+        reference,
+        material,
+        state
+    })
 }
 
 /// Every struct that the scene or a buffer is made of has its host struct in the list.

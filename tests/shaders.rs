@@ -3,7 +3,7 @@
 
 mod ingredients;
 
-use caustica::features;
+use caustica::features::{self, Features};
 use caustica::gpu::compose::{compose, compose_from};
 use caustica::gpu::fragments::{FRAGMENTS, Fragment};
 use caustica::gpu::layout::{Access, SceneTables, bindings};
@@ -55,6 +55,22 @@ fn faults(fragments: &[Fragment], count: usize) -> Vec<String> {
 fn every_composition_is_valid() {
     let list = faults(FRAGMENTS, 150);
     assert!(list.is_empty(), "{} faults:\n{}", list.len(), list.join("\n"));
+}
+
+/// The layer of direct light takes code that nothing else of its kernel does.
+#[test]
+fn the_layer_of_direct_light_is_valid() {
+    for names in mixtures(20) {
+        let mixture = Mixture::of(&names);
+        let (features, tables) = (mixture.features(), SceneTables::new(&mixture.scene));
+        let source = |features: &Features| {
+            let shader = compose(Kernel::AovTrace, features, &tables).unwrap();
+            shader.validate().unwrap_or_else(|e| panic!("{e} with {names:?}"));
+            shader.source
+        };
+        let (without, with) = (source(&features), source(&features.clone().with("direct_layer")));
+        assert_eq!(without != with, features.has("sampled"), "{names:?}");
+    }
 }
 
 /// The ingredients bring every feature, so that none goes untested.

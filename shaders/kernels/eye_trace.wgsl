@@ -7,11 +7,12 @@ fn eye_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
     if id >= dispatch.end {
         return;
     }
-    let index = dispatch.chunk_first + id;
-    let pixel = index / dispatch.eye_samples;
-    var rng = rng_eye(index, dispatch.pass_number, dispatch.seed);
-    let u = stratified(rng_next(&rng), index - pixel * dispatch.eye_samples, pixel);
     let camera = scene.camera;
+    let place = (dispatch.chunk_first + id) / dispatch.eye_samples;
+    let k = dispatch.chunk_first + id - place * dispatch.eye_samples;
+    let pixel = window_pixel(camera, place);
+    var rng = rng_eye(pixel * dispatch.eye_samples + k, dispatch.pass_number, dispatch.seed);
+    let u = stratified(rng_next(&rng), k, pixel);
     var ray = camera_ray(camera, pixel % camera.width, pixel / camera.width, u);
     var throughput = vec3f(1.0);
     var medium = camera.medium;
@@ -100,27 +101,4 @@ fn eye_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
         count_rays(rays);
     }
     visible_points[id] = point;
-}
-
-fn start_radius(footprint: f32) -> f32 {
-    if dispatch.radius_pixels > 0.0 {
-        return min(dispatch.radius_pixels * footprint, dispatch.radius_max);
-    }
-    return dispatch.radius_units;
-}
-
-fn stratified(u: vec4f, k: u32, pixel: u32) -> vec4f {
-    if dispatch.eye_samples == 1u {
-        return u;
-    }
-    let columns = dispatch.strata;
-    let rows = dispatch.eye_samples / columns;
-    let shift = pcg4d(vec4u(pixel, 0u, STREAM_STRATA, dispatch.seed)).x % dispatch.eye_samples;
-    let lens = (k + shift) % dispatch.eye_samples;
-    return vec4f(
-        (f32(k % columns) + u.x) / f32(columns),
-        (f32(k / columns) + u.y) / f32(rows),
-        (f32(lens % columns) + u.z) / f32(columns),
-        (f32(lens / columns) + u.w) / f32(rows),
-    );
 }

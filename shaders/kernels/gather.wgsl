@@ -27,6 +27,9 @@ fn gather(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups) gr
     // a loop, so that the function is there once: software drivers write out every call
     for (var family = 0u; family < 2u; family++) {
         let one = gather_family(point, family, select(radius_sq, radius_sq * wider_sq, family == 1u));
+        if family == 0u {
+            gathered[id].caustic += point.weight * one.flux;
+        }
         found.flux += select(one.flux, one.flux * (1.0 / wider_sq), family == 1u);
         found.count += one.count;
         found.ring += select(one.ring, one.ring * (1.0 / wider_sq), family == 1u);
@@ -121,5 +124,5 @@ fn gather_family(point: VisiblePoint, family: u32, radius_sq: f32) -> Gathered {
     //#if facets
     sum *= clip.whole;
     //#end
-    return Gathered(sum, count, dot(point.weight * LUMINANCE, ring), 0u, 0u, 0u);
+    return Gathered(sum, count, vec3f(0.0), dot(point.weight * LUMINANCE, ring));
 }

@@ -24,7 +24,11 @@ struct Dispatch {
     families: u32,
     indirect_radius: f32,
     inv_cell_indirect: f32,
-    pad: u32,
+    window_first: u32,
+    window_width: u32,
+    pad0: u32,
+    pad1: u32,
+    pad2: u32,
     points: array<vec4u, 4>,
 }
 
@@ -57,10 +61,8 @@ struct PhotonRecord {
 struct Gathered {
     flux: vec3f,
     count: u32,
+    caustic: vec3f,
     ring: f32,
-    pad0: u32,
-    pad1: u32,
-    pad2: u32,
 }
 
 struct Statistics {
@@ -103,7 +105,7 @@ fn invocation(gid: vec3u, groups: vec3u) -> u32 {
     return gid.y * groups.x * 64u + gid.x + dispatch.first;
 }
 
-//#if eye_trace || photon_trace || grid_sort_long || gather
+//#if eye_trace || aov_trace || photon_trace || grid_sort_long || gather
 // Whether the driver has stopped running loops; counts it. Mesa's software driver leaves every loop, without a word, once all loops of an
 // invocation together have made 65535 rounds; from then on each is left after its first round, and so is this one.
 // (`end` is below 2^31, which no compiler knows.)

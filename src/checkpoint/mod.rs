@@ -115,7 +115,7 @@ impl Checkpoint {
 
     /// How its pictures are tone-mapped.
     pub fn development(&self) -> Development {
-        Development { exposure: self.origin.exposure, tonemap: self.origin.tonemap }
+        Development { exposure: self.origin.exposure, tonemap: self.origin.tonemap, ..Development::default() }
     }
 
     /// How its pictures came about.
@@ -127,6 +127,7 @@ impl Checkpoint {
             device: self.origin.device.clone(),
             first_pass: self.state.first_pass,
             passes_done: self.state.passes,
+            ..Provenance::default()
         }
     }
 }

@@ -7,7 +7,7 @@ use caustica::device::Opened;
 use caustica::engine::{Engine, EngineError};
 use caustica::identity::program;
 use caustica::render::Progress;
-use caustica::scene::Scene;
+use caustica::scene::{Film, Scene};
 use serde_json::json;
 
 use super::Failure;
@@ -60,6 +60,22 @@ impl Files {
             checkpoint.check_resumes(file, origin, bits, passes.first, passes.end)?;
         }
         Ok(())
+    }
+
+    /// Fails where the film asks for what no checkpoint holds.
+    pub fn check_film(&self, film: &Film) -> Result<(), Failure> {
+        let what = match film {
+            Film { window: Some(_), .. } => "--crop",
+            film if !film.aovs.is_empty() => "--aov",
+            _ => return Ok(()),
+        };
+        if self.kept.is_none() && self.resumed.is_none() {
+            return Ok(());
+        }
+        Err(Failure::wrong_use(
+            &format!("{what}: checkpoints hold the whole picture's radiance alone"),
+            &format!("leave out {what} and film.{}, or --checkpoint and --resume", &what[2..]),
+        ))
     }
 
     /// Tells what is gone on from, if anything is.

@@ -10,10 +10,12 @@ mod checkpoint;
 mod compare;
 mod devices;
 mod diff;
+mod extent;
 mod failure;
 mod figures;
 mod info;
 mod interrupt;
+mod like;
 mod measure;
 mod merge;
 mod output;
@@ -22,6 +24,7 @@ mod progress;
 mod render;
 mod study;
 mod tessellate;
+mod tev;
 
 use std::process::ExitCode;
 

@@ -7,19 +7,24 @@ use std::time::Duration;
 use caustica::calibration::{Calibrating, Calibration};
 use caustica::device::{self, Opened};
 use caustica::engine::{Engine, EngineError, State};
-use caustica::film::{self, Development, ErrorMap, Provenance, Rejections, check_outputs};
+use caustica::film::tev::ADDRESS;
+use caustica::film::{self, Development, ErrorMap, Picture, Provenance, Rejections, check_outputs};
 use caustica::limits;
 use caustica::quality::{Expected, Quality, expected};
 use caustica::render::{Ending, Outcome, Progress, Saving, Stop, resume};
-use caustica::scene::{self, Loaded, Scene};
+use caustica::scene::{self, Aovs, Loaded, Scene};
 use caustica::settings::{Method, RadiusRule, RenderSettings};
+use caustica::showing::Showing;
 use clap::builder::NonEmptyStringValueParser;
 use miette::{Report, miette};
 use serde_json::json;
 
+use super::extent::Extent;
+use super::like::Like;
 use super::output::{message, result};
 use super::overrides::{Overrides, Passes, duration, target_error};
 use super::progress::{Reporter, count, event, percent, time};
+use super::tev::Viewer;
 use super::{Done, Failure, checkpoint, interrupt};
 
 /// Render a scene into pictures
@@ -27,14 +32,22 @@ use super::{Done, Failure, checkpoint, interrupt};
 #[command(after_help = HELP)]
 pub struct Arguments {
     /// Scene file
-    scene: PathBuf,
+    #[arg(required_unless_present = "like")]
+    scene: Option<PathBuf>,
     /// Picture to write, by its extension: .png (tone-mapped), .exr, .pfm, .hdr; may be given several times
     /// [default: the scene's name with .png, in the current folder]
     #[arg(short, long, value_name = "FILE")]
     output: Vec<PathBuf>,
-    /// Device to render on: auto, gpu, software, cpu, cpu-f64, or a part of a device's name
-    #[arg(long, value_name = "DEVICE", value_parser = NonEmptyStringValueParser::new(), default_value = "auto")]
-    device: String,
+    /// Device to render on: auto, gpu, software, cpu, cpu-f64, or a part of a device's name [default: auto]
+    #[arg(long, value_name = "DEVICE", value_parser = NonEmptyStringValueParser::new())]
+    device: Option<String>,
+    /// Make the picture of an .exr file again, with its scene, settings, size, passes and device; other options change single
+    /// ones [default output: the file's name with -again.exr, in the current folder]
+    #[arg(long, value_name = "FILE")]
+    like: Option<PathBuf>,
+    /// Send the picture while it is rendered to the viewer tev that listens there [without an address: 127.0.0.1:14158]
+    #[arg(long, value_name = "HOST:PORT", num_args = 0..=1, require_equals = true, default_missing_value = ADDRESS)]
+    tev: Option<String>,
     /// Begin no pass after this time, as in 30s or 5m; without --passes, the only limit
     #[arg(long, value_name = "TIME", value_parser = duration)]
     time: Option<Duration>,
@@ -54,6 +67,8 @@ pub struct Arguments {
     #[arg(long)]
     strict: bool,
     #[command(flatten)]
+    extent: Extent,
+    #[command(flatten)]
     voice: Voice,
     #[command(flatten)]
     overrides: Overrides,
@@ -66,6 +81,11 @@ Examples:
   caustica render scenes/cornell.toml --target-error 2%
   caustica render scenes/cornell.toml --checkpoint cornell.checkpoint
   caustica render scenes/cornell.toml --resume cornell.checkpoint --checkpoint cornell.checkpoint
+  caustica render scenes/cornell.toml -o layers.exr --aov albedo,normal,depth --crop 0,0,256,256
+  caustica render --like layers.exr -o again.exr
+
+Layers for --aov: albedo, normal (both behind mirrors and glass), depth, position, object, material, radius, photons, \
+variance, and the parts that add up to the picture, emission, direct, caustic, indirect; docs/pictures.md tells more.
 
 The error is the root of relMSE, noise and bias: nine of ten pictures are no farther from the truth than stated.
 It is told from the fourth pass on; .exr files hold each pixel's variance and bias (docs/error-estimate.md).
@@ -85,18 +105,34 @@ pub struct Voice {
 
 /// Renders and writes.
 pub fn run(arguments: Arguments) -> Result<Done, Failure> {
+    let like = arguments.like.as_deref().map(Like::read).transpose()?;
+    let file = arguments.scene.clone().or(like.as_ref().map(Like::scene)).unwrap_or_default();
     let outputs = match arguments.output.as_slice() {
-        [] => vec![default_output(&arguments.scene)],
+        [] => vec![like.as_ref().map_or_else(|| default_output(&file), Like::output)],
         named => named.to_vec(),
     };
     check_outputs(&outputs)?;
     let files = checkpoint::Files::new(arguments.checkpoint.as_deref(), arguments.resume.as_deref())?;
-    let (scene, settings) = put_in_force(scene::load(&arguments.scene)?, &arguments.overrides);
+    let loaded = match &like {
+        Some(like) => {
+            let mut loaded = like.load(&file)?;
+            like.apply(&mut loaded);
+            loaded
+        }
+        None => scene::load(&file)?,
+    };
+    let asked = loaded.scene.film.aovs;
+    let (mut scene, settings) = put_in_force(loaded, &arguments.overrides);
+    scene.film.aovs = asked;
+    arguments.extent.apply(&mut scene.film, &outputs)?;
+    files.check_film(&scene.film)?;
     let passes = arguments.overrides.passes();
-    let first_pass = passes.map_or(0, |passes| passes.first);
+    let first_pass = passes.map_or(like.as_ref().map_or(0, Like::first_pass), |passes| passes.first);
     check_range(first_pass, &settings)?;
-    let opened = device::open(&device::parse(&arguments.device), &scene, &settings)?;
-    let scene_text = std::fs::read_to_string(&arguments.scene).unwrap_or_default();
+    let device = arguments.device.as_deref().or(like.as_ref().map(Like::device)).unwrap_or("auto");
+    let opened = device::open(&device::parse(device), &scene, &settings)?;
+    let mut viewer = Viewer::connect(arguments.tev.as_deref(), &scene)?;
+    let scene_text = std::fs::read_to_string(&file).unwrap_or_default();
     let origin = checkpoint::origin(&opened, &scene, &scene_text);
     let Arguments { time, target_error, .. } = arguments;
     let limited = time.is_none() && target_error.is_none() || passes.is_some();
@@ -109,6 +145,14 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     engine.restore(from.map_or(&State::before(first_pass), |from| &from.state))?;
     let progress = from.map_or(Progress::before(stop), |from| from.progress(stop));
     files.tell(arguments.voice.json, &reporter)?;
+    let mut shown = |picture: &Picture| viewer.show(picture);
+    let mut showing;
+    let engine: &mut dyn Engine = if arguments.tev.is_some() {
+        showing = Showing::new(engine.as_mut(), &mut shown);
+        &mut showing
+    } else {
+        engine.as_mut()
+    };
     let reporter = RefCell::new(reporter);
     let mut show = |progress: &Progress| reporter.borrow_mut().show(progress);
     let mut keeper = checkpoint::Keeper::new(&files, origin, arguments.voice.json);
@@ -120,24 +164,33 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
         Some(quality) => {
             let promise = Promise { quality, stop, settings: &opened.settings, json: arguments.voice.json };
             let mut tell = |calibration: &Calibration| promise.tell(calibration, &reporter.borrow());
-            let mut watched = Calibrating::new(engine.as_mut(), &mut tell);
+            let mut watched = Calibrating::new(engine, &mut tell);
             resume(&mut watched, progress, interrupt::flag(), &mut show, saving)
         }
-        None => resume(engine.as_mut(), progress, interrupt::flag(), &mut show, saving),
+        None => resume(engine, progress, interrupt::flag(), &mut show, saving),
     };
     let mut reporter = reporter.into_inner();
     reporter.finish();
     let outcome = outcome?;
+    viewer.show(&outcome.picture);
 
     let provenance = Provenance {
         scene: scene.name.clone(),
+        scene_file: file.display().to_string(),
         scene_text,
+        digest: Some(scene.digest()),
+        film: Some(scene.film),
+        materials: scene.materials.iter().map(|material| material.name.clone()).collect(),
+        asked: Some(settings),
         settings: opened.settings,
         device: opened.name,
         first_pass,
         passes_done: outcome.progress.passes,
     };
-    write(&outputs, &outcome, &scene, &provenance)?;
+    let film = &scene.film;
+    let development =
+        Development { exposure: film.exposure, tonemap: film.tonemap, bits: arguments.extent.bits };
+    write(&outputs, &outcome, &development, &provenance)?;
     tell(arguments.voice.json, &reporter, &outputs, &outcome)?;
     if !matches!(outcome.ending, Ending::Failed(_)) {
         keeper.end()?;
@@ -246,7 +299,8 @@ pub fn load(file: &Path, overrides: &Overrides) -> Result<(Scene, RenderSettings
     in_force(scene::load(file)?, overrides)
 }
 
-/// Puts the options in force and prints the warnings, for commands that begin with the first pass.
+/// Puts the options in force and prints the warnings, for commands that begin with the first pass. What the film asks for beside radiance is
+/// left out.
 pub fn in_force(loaded: Loaded, overrides: &Overrides) -> Result<(Scene, RenderSettings), Failure> {
     if overrides.begins_later() {
         return Err(Failure::wrong_use(
@@ -259,6 +313,7 @@ pub fn in_force(loaded: Loaded, overrides: &Overrides) -> Result<(Scene, RenderS
 
 fn put_in_force(mut loaded: Loaded, overrides: &Overrides) -> (Scene, RenderSettings) {
     overrides.apply(&mut loaded.scene, &mut loaded.settings);
+    loaded.scene.film.aovs = Aovs::default();
     let limits = limits::warnings(&loaded.scene, &loaded.settings, &loaded.places);
     for warning in loaded.warnings.into_iter().chain(limits) {
         message(format_args!("{:?}", Report::new(warning)));
@@ -270,14 +325,19 @@ fn default_output(scene: &Path) -> PathBuf {
     Path::new(scene.file_stem().unwrap_or(scene.as_os_str())).with_extension("png")
 }
 
-fn write(outputs: &[PathBuf], outcome: &Outcome, scene: &Scene, made: &Provenance) -> Result<(), Failure> {
+fn write(
+    outputs: &[PathBuf],
+    outcome: &Outcome,
+    development: &Development,
+    made: &Provenance,
+) -> Result<(), Failure> {
     if !outcome.rejections.is_empty() {
         message(format_args!("warning: {}", left_out(&outcome.rejections)));
     }
-    let development = Development { exposure: scene.film.exposure, tonemap: scene.film.tonemap };
-    let layers = outcome.errors.as_ref().map_or(Vec::new(), ErrorMap::layers);
+    let mut layers = outcome.errors.as_ref().map_or(Vec::new(), ErrorMap::layers);
+    layers.extend_from_slice(&outcome.layers);
     for output in outputs {
-        film::write(output, &outcome.picture, &layers, &development, made)?;
+        film::write(output, &outcome.picture, &layers, development, made)?;
     }
     Ok(())
 }

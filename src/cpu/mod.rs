@@ -1,5 +1,7 @@
 //! The CPU engine: carries out a plan on vectors, with rayon. Needs no adapter.
 
+use super::features::Features;
+use super::kernels::aov_trace::{AovPixel, aov_trace};
 use super::kernels::bytes::{film_bytes, film_of, statistics_bytes, statistics_of};
 use super::kernels::eye_trace::eye_trace;
 use super::kernels::gather::{gather, scale_sq};
@@ -8,6 +10,8 @@ use super::kernels::path_trace::path_trace;
 use super::kernels::photon_trace::photon_trace;
 use super::kernels::records::*;
 use super::kernels::resolve::{Found, fold, resolve};
+use super::kernels::resolve_parts::{PartsPixel, resolve_parts};
+use super::layers::Found as Layers;
 use super::math::is_finite;
 use super::pack::Packed;
 use super::plan::{Kernel, Plan};
@@ -15,6 +19,7 @@ use super::real::{ENGINE, Real};
 use super::tables::{Facet, Scene};
 use crate::clock::{Clock, KernelSeconds};
 use crate::engine::{Engine, EngineError, PassReport, PhotonEnds, State};
+use crate::film::exr_file::Channel;
 use crate::film::{ErrorMap, Picture, Rejections};
 use crate::settings::Method;
 use bytemuck::Zeroable;
@@ -38,6 +43,8 @@ pub struct CpuEngine {
     gathered: Vec<Gathered>,
     statistics: Vec<Statistics>,
     film: Vec<FilmPixel>,
+    aovs: Vec<AovPixel>,
+    parts: Vec<PartsPixel>,
     records: Vec<RecordList>,
     /// Records before each part of the buckets.
     part_starts: Vec<u32>,
@@ -147,6 +154,8 @@ impl CpuEngine {
             gathered: vec![Gathered::zeroed(); points_kept],
             statistics: vec![Statistics::zeroed(); if plan.features.has("local") { points_kept } else { 0 }],
             film: vec![FilmPixel::zeroed(); plan.pixels as usize],
+            aovs: vec![AovPixel::zeroed(); if plan.aovs.are_traced() { plan.pixels as usize } else { 0 }],
+            parts: vec![PartsPixel::zeroed(); if plan.parts_photons() { plan.pixels as usize } else { 0 }],
             records: Vec::new(),
             part_starts: Vec::new(),
             starts: vec![0; buckets + 1],
@@ -231,6 +240,18 @@ impl CpuEngine {
                         });
                     });
                 }
+                Kernel::AovTrace => trace_aovs(scene, d, &self.plan.features, &mut self.aovs),
+                Kernel::ResolveParts => {
+                    let samples = d.eye_samples as usize;
+                    let pixels = d.chunk_first as usize / samples..chunk.end / samples;
+                    let parts = self.parts[pixels].par_iter_mut().enumerate();
+                    parts.for_each(|(i, parts)| {
+                        let at = chunk.start + i * samples..chunk.start + (i + 1) * samples;
+                        let statistics = self.statistics.get(at.clone()).filter(|_| local);
+                        let points = &self.visible_points[at.clone()];
+                        resolve_parts(d, points, &self.gathered[at], statistics, parts);
+                    });
+                }
                 Kernel::Resolve => {
                     let samples = d.eye_samples as usize;
                     let pixels = d.chunk_first as usize / samples..chunk.end / samples;
@@ -268,7 +289,19 @@ impl CpuEngine {
             })
             .sum();
         report.eye_rays = report.rays;
+        for step in self.plan.aov_steps(self.passes_done) {
+            self.clock.begin(step.kernel.stem());
+            trace_aovs(scene, &step.dispatch, &self.plan.features, &mut self.aovs);
+        }
     }
+}
+
+/// One sample of each pixel of a chunk.
+fn trace_aovs(scene: &Scene, d: &Dispatch, features: &Features, aovs: &mut [AovPixel]) {
+    let sampled = features.has("sampled") && features.has("direct_layer");
+    let first = (d.chunk_first / d.eye_samples) as usize;
+    let pixels = aovs[first..first + d.end as usize].par_iter_mut();
+    pixels.enumerate().for_each(|(id, pixel)| aov_trace(scene, d, sampled, id as u32, pixel));
 }
 
 /// Photons of one batch; the lists come in the order of their keys. The number of rays, and of photons by how they ended.
@@ -352,6 +385,11 @@ impl Engine for CpuEngine {
             self.statistics = statistics_of(&state.statistics);
         }
         Ok(())
+    }
+
+    fn layers(&mut self) -> Result<Vec<Channel>, EngineError> {
+        let Self { aovs, parts, gathered, statistics, passes_done, .. } = self;
+        Ok(self.plan.layers(&Layers { aovs, parts, gathered, statistics, passes: *passes_done }))
     }
 
     fn gathered(&mut self) -> Result<u64, EngineError> {

@@ -49,6 +49,8 @@ pub mod features;
 pub mod grid;
 #[path = "../kernels/mod.rs"]
 pub mod kernels;
+#[path = "../layers.rs"]
+pub mod layers;
 #[path = "../lights/mod.rs"]
 pub mod lights;
 #[path = "../materials/mod.rs"]

@@ -2,7 +2,7 @@
 //! docs/error-estimate.md tells the method and how good it is.
 
 use super::Plane;
-use super::exr_file::NamedPlane;
+use super::exr_file::Channel;
 use super::plane::{gaussian, normalized};
 
 /// Least number of passes whose picture has an estimate: with three the earlier part is a single pass.
@@ -112,8 +112,8 @@ impl ErrorMap {
     }
 
     /// Both maps as layers of a picture file.
-    pub fn layers(&self) -> Vec<NamedPlane> {
-        vec![("Variance.Y", self.variance()), ("Bias.Y", self.bias())]
+    pub fn layers(&self) -> Vec<Channel> {
+        vec![Channel::float("Variance.Y", self.variance()), Channel::float("Bias.Y", self.bias())]
     }
 
     fn plane(&self, value: impl Fn(&PixelError) -> f64) -> Plane {

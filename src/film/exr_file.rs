@@ -14,6 +14,8 @@ pub struct ExrFile {
     pub width: u32,
     /// Rows.
     pub height: u32,
+    /// Where these lie in the whole picture.
+    pub frame: Frame,
     /// Values of each channel, row 0 on top.
     pub channels: BTreeMap<String, Vec<f32>>,
     /// Text attributes.
@@ -31,25 +33,76 @@ impl ExrFile {
     }
 }
 
-/// A channel beside R, G and B, by its full name, as `Variance.Y`.
-pub type NamedPlane = (&'static str, Plane);
+/// A channel beside R, G and B.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Channel {
+    /// Full name, as `Variance.Y`.
+    pub name: &'static str,
+    /// Its values.
+    pub plane: Plane,
+    /// How they are stored.
+    pub numbers: Numbers,
+}
 
-/// The bytes of a losslessly compressed EXR file with the layers' channels beside R, G and B. Equal arguments give equal bytes.
+/// What a channel's values are stored as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Numbers {
+    /// 32-bit floats.
+    Float,
+    /// 32-bit whole numbers.
+    Whole,
+}
+
+impl Channel {
+    /// A channel of floats.
+    pub fn float(name: &'static str, plane: Plane) -> Self {
+        Self { name, plane, numbers: Numbers::Float }
+    }
+}
+
+/// Where a window lies in a picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Frame {
+    /// The window's first column.
+    pub x: u32,
+    /// Its first row.
+    pub y: u32,
+    /// Pixels per row of the whole picture.
+    pub width: u32,
+    /// Rows of the whole picture.
+    pub height: u32,
+}
+
+impl Frame {
+    /// That of a picture without a frame around it.
+    pub fn of(picture: &Picture) -> Self {
+        Self { x: 0, y: 0, width: picture.width, height: picture.height }
+    }
+}
+
+/// The bytes of a losslessly compressed EXR file with the layers' channels beside R, G and B: the picture is the data window,
+/// the frame the display window. Equal arguments give equal bytes.
 pub fn encode(
     picture: &Picture,
-    layers: &[NamedPlane],
+    frame: Frame,
+    layers: &[Channel],
     attributes: &BTreeMap<String, String>,
 ) -> std::result::Result<Vec<u8>, String> {
-    let channel = |name: &str, values| AnyChannel::new(Text::from(name), FlatSamples::F32(values));
+    let channel = |name: &str, values| AnyChannel::new(Text::from(name), values);
     let colors = ["R", "G", "B"].into_iter().enumerate();
-    let mut channels: SmallVec<[_; 4]> =
-        colors.map(|(c, name)| channel(name, picture.rgb.iter().map(|rgb| rgb[c]).collect())).collect();
+    let mut channels: SmallVec<[_; 4]> = colors
+        .map(|(c, name)| channel(name, FlatSamples::F32(picture.rgb.iter().map(|rgb| rgb[c]).collect())))
+        .collect();
     // numbers beyond f32 become its largest
     let held = |x: &f64| x.clamp(f64::from(f32::MIN), f64::from(f32::MAX)) as f32;
-    channels
-        .extend(layers.iter().map(|(name, plane)| channel(name, plane.values.iter().map(held).collect())));
+    let samples = |layer: &Channel| match layer.numbers {
+        Numbers::Float => FlatSamples::F32(layer.plane.values.iter().map(held).collect()),
+        Numbers::Whole => FlatSamples::U32(layer.plane.values.iter().map(|x| *x as u32).collect()),
+    };
+    channels.extend(layers.iter().map(|layer| channel(layer.name, samples(layer))));
     let mut layer = LayerAttributes {
         software_name: Some(Text::from(concat!("caustica ", env!("CARGO_PKG_VERSION")))),
+        layer_position: Vec2(frame.x as i32, frame.y as i32),
         ..LayerAttributes::default()
     };
     for (name, value) in attributes {
@@ -62,12 +115,11 @@ pub fn encode(
         Encoding::SMALL_LOSSLESS,
         AnyChannels::sort(channels),
     );
+    let mut image = Image::from_layer(layer);
+    image.attributes.display_window =
+        IntegerBounds::new((0, 0), (frame.width as usize, frame.height as usize));
     let mut bytes = Vec::new();
-    Image::from_layer(layer)
-        .write()
-        .non_parallel()
-        .to_buffered(Cursor::new(&mut bytes))
-        .map_err(|error| error.to_string())?;
+    image.write().non_parallel().to_buffered(Cursor::new(&mut bytes)).map_err(|error| error.to_string())?;
     sort_attributes(&mut bytes).ok_or("the header's attributes do not end")?;
     Ok(bytes)
 }
@@ -84,6 +136,14 @@ pub fn decode(bytes: &[u8]) -> std::result::Result<ExrFile, String> {
         .from_buffered(Cursor::new(bytes))
         .map_err(|error| error.to_string())?;
     let layer = image.layer_data;
+    let (whole, corner) = (image.attributes.display_window, layer.attributes.layer_position);
+    let offset = |data: i32, display: i32| data.saturating_sub(display).max(0) as u32;
+    let frame = Frame {
+        x: offset(corner.x(), whole.position.x()),
+        y: offset(corner.y(), whole.position.y()),
+        width: whole.size.width() as u32,
+        height: whole.size.height() as u32,
+    };
     let text = |text: &Text| String::from_utf8_lossy(text.bytes()).into_owned();
     let attributes = layer.attributes.other.iter().filter_map(|(name, value)| match value {
         AttributeValue::Text(value) => Some((text(name), text(value))),
@@ -94,6 +154,7 @@ pub fn decode(bytes: &[u8]) -> std::result::Result<ExrFile, String> {
     Ok(ExrFile {
         width: layer.size.width() as u32,
         height: layer.size.height() as u32,
+        frame,
         channels: channels.collect(),
         attributes: attributes.collect(),
     })

@@ -9,13 +9,14 @@ use std::path::{Path, PathBuf};
 use image::{DynamicImage, ExtendedColorType, ImageEncoder, ImageFormat, codecs};
 use rayon::prelude::*;
 
-use super::exr_file::{self, NamedPlane};
+use super::exr_file::{self, Channel};
+use super::tonemap::Bits;
 use super::{Development, FileError, Picture, Provenance, pfm};
 
 /// A kind of picture file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
-    /// 8 bits per channel, tone-mapped.
+    /// 8 or 16 bits per channel, tone-mapped.
     Png,
     /// 32-bit float radiance with attributes.
     Exr,
@@ -101,13 +102,13 @@ pub fn check_place(file: &Path) -> Result<(), FileError> {
 pub fn write(
     file: &Path,
     picture: &Picture,
-    layers: &[NamedPlane],
+    layers: &[Channel],
     development: &Development,
     provenance: &Provenance,
 ) -> Result<(), FileError> {
     let bytes = match Format::of_output(file)? {
         Format::Png => encode_png(picture, development),
-        Format::Exr => exr_file::encode(picture, layers, &provenance.attributes()),
+        Format::Exr => exr_file::encode(picture, provenance.frame(picture), layers, &provenance.attributes()),
         Format::Pfm => Ok(pfm::encode(picture)),
         Format::Hdr => encode_hdr(picture),
     };
@@ -166,15 +167,29 @@ fn unfinished_name(file: &Path) -> PathBuf {
 }
 
 fn encode_png(picture: &Picture, development: &Development) -> Result<Vec<u8>, String> {
-    let rgb: Vec<[u8; 3]> = picture.rgb.par_iter().map(|&radiance| development.bytes(radiance)).collect();
-    encode_rgb8(picture.width, picture.height, rgb.as_flattened())
+    let Picture { width, height, ref rgb } = *picture;
+    match development.bits {
+        Bits::Eight => {
+            let rgb: Vec<[u8; 3]> = rgb.par_iter().map(|&radiance| development.bytes(radiance)).collect();
+            encode_rgb8(width, height, rgb.as_flattened())
+        }
+        Bits::Sixteen => {
+            let rgb: Vec<[u16; 3]> = rgb.par_iter().map(|&radiance| development.words(radiance)).collect();
+            // the encoder takes words as they lie in memory
+            encode_rgb(width, height, bytemuck::cast_slice(&rgb), ExtendedColorType::Rgb16)
+        }
+    }
 }
 
 /// The bytes of a PNG file of `width * height * 3` display values.
 fn encode_rgb8(width: u32, height: u32, rgb: &[u8]) -> Result<Vec<u8>, String> {
+    encode_rgb(width, height, rgb, ExtendedColorType::Rgb8)
+}
+
+fn encode_rgb(width: u32, height: u32, rgb: &[u8], color: ExtendedColorType) -> Result<Vec<u8>, String> {
     let mut bytes = Vec::new();
     codecs::png::PngEncoder::new(&mut bytes)
-        .write_image(rgb, width, height, ExtendedColorType::Rgb8)
+        .write_image(rgb, width, height, color)
         .map_err(|error| error.to_string())?;
     Ok(bytes)
 }

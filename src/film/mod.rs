@@ -17,6 +17,7 @@ pub mod provenance;
 pub mod region;
 pub mod rejections;
 pub mod ssim;
+pub mod tev;
 pub mod tonemap;
 
 pub use any_file::{Coding, read_any};

@@ -2,16 +2,29 @@
 
 use std::collections::BTreeMap;
 
+use super::Picture;
+use super::exr_file::Frame;
+use crate::scene::{Aov, Aovs, Film, ToneMap};
 use crate::settings::RenderSettings;
 
 /// How a picture came about; written into EXR files as text attributes named `caustica.*`.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Provenance {
     /// The scene's name.
     pub scene: String,
+    /// The scene file's name, as it was given.
+    pub scene_file: String,
     /// The scene file's text.
     pub scene_text: String,
-    /// All settings, with the command line's overrides.
+    /// [`crate::scene::Scene::digest`]; none where nobody is to make it again.
+    pub digest: Option<u64>,
+    /// What it was taken on; none for a whole picture with nothing but radiance.
+    pub film: Option<Film>,
+    /// The materials' names, in the order of their numbers.
+    pub materials: Vec<String>,
+    /// All settings, with the command line's overrides, but with "auto" where the render chose.
+    pub asked: Option<RenderSettings>,
+    /// The same with what was chosen.
     pub settings: RenderSettings,
     /// The device's name.
     pub device: String,
@@ -44,6 +57,91 @@ impl Provenance {
             let text = value.as_str().map_or_else(|| value.to_string(), str::to_owned);
             attributes.insert(format!("caustica.{key}"), text);
         }
+        let mut put = |name: &str, value: String| attributes.insert(format!("caustica.{name}"), value);
+        if let Some(digest) = self.digest {
+            put("scene_file", self.scene_file.clone());
+            put("scene_digest", format!("{digest:016x}"));
+        }
+        if let Some(asked) = &self.asked {
+            put("asked", serde_json::json!(asked).to_string());
+        }
+        if let Some(film) = &self.film {
+            put("size", format!("{}x{}", film.width, film.height));
+            if !film.aovs.is_empty() {
+                put("aov", film.aovs.to_string());
+            }
+            if film.aovs.has(Aov::Material) {
+                put("materials", serde_json::json!(self.materials).to_string());
+            }
+            if let Some([x0, y0, x1, y1]) = film.window {
+                put("crop", format!("{x0},{y0},{x1},{y1}"));
+            }
+        }
         attributes
+    }
+
+    /// Reads what [`Self::attributes`] wrote, but for exposure, tone map and the materials' names; an error says what is
+    /// missing or not understood.
+    pub fn read(attributes: &BTreeMap<String, String>) -> Result<Self, String> {
+        let get = |name: &str| attributes.get(&format!("caustica.{name}"));
+        let need = |name: &str| {
+            get(name).ok_or_else(|| {
+                format!("it lacks the attribute caustica.{name}, which `caustica render` writes")
+            })
+        };
+        let wrong =
+            |name: &str, what: &str| format!("its attribute caustica.{name} is not understood: {what}");
+        let settings = |name: &str| match get(name) {
+            Some(text) => serde_json::from_str(text).map(Some).map_err(|e| wrong(name, &e.to_string())),
+            None => Ok(None),
+        };
+        let numbers = |name: &str, text: &str, between: char| {
+            let all: Option<Vec<u32>> = text.split(between).map(|number| number.parse().ok()).collect();
+            all.ok_or_else(|| wrong(name, "no whole numbers"))
+        };
+        let digest = u64::from_str_radix(need("scene_digest")?, 16);
+        let [width, height] = numbers("size", need("size")?, 'x')?[..] else {
+            return Err(wrong("size", "not two numbers"));
+        };
+        let window = match get("crop") {
+            Some(text) => match numbers("crop", text, ',')?[..] {
+                [x0, y0, x1, y1] if x0 < x1 && y0 < y1 && x1 <= width && y1 <= height => {
+                    Some([x0, y0, x1, y1])
+                }
+                _ => return Err(wrong("crop", "no window of the picture")),
+            },
+            None => None,
+        };
+        let aovs = get("aov").map_or(Ok(Aovs::default()), |text| Aovs::parse(text));
+        let first_pass = get("first_pass").map_or(Ok(0), |text| text.parse());
+        let passes = need("passes_done")?.parse::<u32>().ok().filter(|passes| *passes > 0);
+        Ok(Self {
+            scene: need("scene")?.clone(),
+            scene_file: need("scene_file")?.clone(),
+            scene_text: need("scene_text")?.clone(),
+            digest: Some(digest.map_err(|e| wrong("scene_digest", &e.to_string()))?),
+            film: Some(Film {
+                width,
+                height,
+                exposure: 0.0,
+                tonemap: ToneMap::default(),
+                aovs: aovs.map_err(|what| wrong("aov", &what))?,
+                window,
+            }),
+            materials: Vec::new(),
+            asked: settings("asked")?,
+            settings: settings("settings")?.ok_or_else(|| wrong("settings", "it is missing"))?,
+            device: need("device")?.clone(),
+            first_pass: first_pass.map_err(|_| wrong("first_pass", "no number of a pass"))?,
+            passes_done: passes.ok_or_else(|| wrong("passes_done", "no number of passes"))?,
+        })
+    }
+
+    /// Where the picture lies in the whole that it is a window of.
+    pub fn frame(&self, picture: &Picture) -> Frame {
+        match self.film {
+            Some(Film { width, height, window: Some([x, y, _, _]), .. }) => Frame { x, y, width, height },
+            _ => Frame::of(picture),
+        }
     }
 }

@@ -6,13 +6,25 @@ use glam::{DMat3, DVec3};
 
 use crate::scene::ToneMap;
 
-/// How radiance is developed into an 8-bit picture.
+/// How radiance is developed into a picture for a display.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Development {
     /// Exposure in stops (powers of two).
     pub exposure: f64,
     /// The curve.
     pub tonemap: ToneMap,
+    /// Bits of each channel in a file.
+    pub bits: Bits,
+}
+
+/// Bits of each channel of a picture for a display.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Bits {
+    /// As a screen shows.
+    #[default]
+    Eight,
+    /// To work on.
+    Sixteen,
 }
 
 impl Development {
@@ -29,6 +41,11 @@ impl Development {
     /// Display values as 8-bit numbers.
     pub fn bytes(&self, radiance: [f32; 3]) -> [u8; 3] {
         self.display(radiance).map(|value| (255.0 * value).round() as u8)
+    }
+
+    /// Display values as 16-bit numbers.
+    pub fn words(&self, radiance: [f32; 3]) -> [u16; 3] {
+        self.display(radiance).map(|value| (65535.0 * value).round() as u16)
     }
 }
 

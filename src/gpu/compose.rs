@@ -31,11 +31,11 @@ pub struct Shader {
     parts: Vec<(&'static str, u32)>,
 }
 
-/// The names that fences may use for `kernel`: the features, `photons`, every kernel's stem, `scene` (the kernel reads
+/// The names that fences may use for `kernel`: the features, `photons`, `direct_layer`, every kernel's stem, `scene` (the kernel reads
 /// the flattened scene) and `area` (some light is a shape).
 pub fn names(kernel: Kernel, features: &Features) -> Names {
     let stems = Kernel::ALL.map(Kernel::stem);
-    let known = features::ALL.into_iter().chain(stems).chain(["photons", "scene", "area"]);
+    let known = features::ALL.into_iter().chain(stems).chain(["photons", "scene", "area", "direct_layer"]);
     let mut held: BTreeSet<&'static str> = features.names().collect();
     held.insert(kernel.stem());
     if kernel.reads_scene() {

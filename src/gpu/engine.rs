@@ -2,15 +2,17 @@
 
 use super::context::{AdapterChoice, AdapterKind, AdapterSummary, Gpu};
 use super::layout::{SceneTables, long_tables};
-use super::mend::{mend_photons, mend_points};
+use super::mend::{mend_aovs, mend_photons, mend_points};
 use super::pace::Pace;
 use super::program::{Compiling, Program, make_programs, workgroup_items};
 use super::recorder::Recorder;
 use crate::clock::{Clock, KernelSeconds};
 use crate::engine::{Engine, EngineError, PassReport, PhotonEnds, State};
+use crate::film::exr_file::Channel;
 use crate::film::{ErrorMap, Picture, Rejections};
 use crate::kernels::bytes::{FILM_BYTES, STATISTICS_BYTES};
 use crate::kernels::records::{Dispatch, FilmPixel, Gathered};
+use crate::layers::Found;
 use crate::pack::Packed;
 use crate::plan::{Kernel, Plan, Step};
 use crate::settings::Method;
@@ -19,12 +21,14 @@ use std::collections::BTreeMap;
 use std::time::Instant;
 
 /// Buffers of which each chunk of visible points has its own.
-const CHUNK_BUFFERS: [&str; 4] = ["visible_points", "gathered", "film", "statistics"];
+const CHUNK_BUFFERS: [&str; 6] = ["visible_points", "gathered", "film", "statistics", "aovs", "parts"];
 /// Bytes of `counters`: records of the batch, the pass's rays in two words, invocations that the driver stopped, photons by
 /// how they ended, and one unused.
 const COUNTERS_BYTES: u64 = 32;
 /// What is read back of a pass: the counters, their two words of rays before the first photon, and each batch's records.
 const READINGS_BYTES: u64 = COUNTERS_BYTES + 8;
+/// The word of the invocations that the driver stopped.
+const STOPPED_COUNT: usize = 3;
 /// The first word of the photons' ends.
 const ENDS: usize = 4;
 /// What to change when the device is too small.
@@ -354,6 +358,38 @@ impl GpuEngine {
     }
 }
 
+impl GpuEngine {
+    /// Traces again, on the CPU, the samples of a step that a software driver stopped; fails where there is another driver.
+    fn mend_aovs(&mut self, step: &Step) -> Result<(), EngineError> {
+        if step.kernel != Kernel::AovTrace {
+            return Ok(());
+        }
+        self.flush()?;
+        let counters = &self.shared["counters"];
+        let mut words: Vec<u32> = bytemuck::pod_collect_to_vec(&self.gpu.read(counters, COUNTERS_BYTES)?);
+        if words[STOPPED_COUNT] == 0 {
+            return Ok(());
+        }
+        let Some(scene) = &self.scene else {
+            return Err(self.unfinished());
+        };
+        let sampled = self.plan.features.has("sampled") && self.plan.features.has("direct_layer");
+        mend_aovs(&self.gpu, scene, &step.dispatch, sampled, &self.chunks[step.chunk as usize]["aovs"])?;
+        words[STOPPED_COUNT] = 0;
+        self.gpu.write(counters, bytemuck::cast_slice(&words));
+        Ok(())
+    }
+
+    fn unfinished(&self) -> EngineError {
+        EngineError::Unsupported(format!("{} leaves long loops unfinished; take --device cpu", self.device))
+    }
+}
+
+/// Whether a kernel adds to what passes before have found, so that it must not run in a pass that is thrown away.
+fn adds_up(kernel: Kernel) -> bool {
+    matches!(kernel, Kernel::ResolveParts | Kernel::Resolve | Kernel::AovTrace)
+}
+
 /// Bytes of a chunk's buffer, from those of the largest one.
 fn chunk_bytes(plan: &Plan, largest: u64, chunk: u32) -> u64 {
     largest * plan.chunk(chunk).1 as u64 / plan.chunk(0).1.max(1) as u64
@@ -383,15 +419,13 @@ impl Engine for GpuEngine {
         let mut batch = self.plan.batch_photons;
         loop {
             let steps = self.plan.steps(pass, batch);
-            let (resolve, trace): (Vec<_>, Vec<_>) =
-                steps.into_iter().partition(|s| s.kernel == Kernel::Resolve);
+            let (resolve, trace): (Vec<_>, Vec<_>) = steps.into_iter().partition(|s| adds_up(s.kernel));
             let counted = self.trace(&trace)?;
             let photons = trace.iter().filter(|s| s.kernel == Kernel::PhotonTrace).map(|s| s.dispatch.end);
             let overflow = |(photons, records): (u32, &u32)| *records > self.plan.capacity && photons > 1;
             let overflows = photons.zip(&counted.records).any(overflow);
             if counted.stopped > 0 && (batch == 1 || self.scene.is_none()) {
-                let text = format!("{} leaves long loops unfinished; take --device cpu", self.device);
-                return Err(EngineError::Unsupported(text));
+                return Err(self.unfinished());
             }
             if overflows || counted.stopped > 0 {
                 // thrown away and run again with batches half as large, which also shortens the loops over photons
@@ -400,6 +434,7 @@ impl Engine for GpuEngine {
             }
             for step in &resolve {
                 self.run(step)?;
+                self.mend_aovs(step)?;
             }
             self.flush()?;
             self.passes_done += 1;
@@ -466,20 +501,44 @@ impl Engine for GpuEngine {
         self.gpu.check()
     }
 
-    fn gathered(&mut self) -> Result<u64, EngineError> {
-        let mut photons = 0;
-        for chunk in 0..self.plan.chunks() {
-            let gathered: Vec<Gathered> = bytemuck::pod_collect_to_vec(&self.content("gathered", chunk)?);
-            photons += gathered.iter().map(|gathered| u64::from(gathered.count)).sum::<u64>();
+    fn layers(&mut self) -> Result<Vec<Channel>, EngineError> {
+        if self.plan.aovs.is_empty() {
+            return Ok(Vec::new());
         }
-        Ok(photons)
+        let (samples, passes) = (self.plan.eye_samples, self.passes_done);
+        Ok(self.plan.layers(&Found {
+            aovs: &self.chunked("aovs", samples)?,
+            parts: &self.chunked("parts", samples)?,
+            gathered: &self.chunked("gathered", 1)?,
+            statistics: &self.chunked("statistics", 1)?,
+            passes,
+        }))
+    }
+
+    fn gathered(&mut self) -> Result<u64, EngineError> {
+        let gathered: Vec<Gathered> = self.chunked("gathered", 1)?;
+        Ok(gathered.iter().map(|gathered| u64::from(gathered.count)).sum())
     }
 }
 
 impl GpuEngine {
     /// The film, read back.
     fn film(&self) -> Result<Vec<FilmPixel>, EngineError> {
-        Ok(bytemuck::pod_collect_to_vec(&self.read_chunks("film")?))
+        self.chunked("film", self.plan.eye_samples)
+    }
+
+    /// What all chunks hold in a buffer of theirs, an item for each `samples` visible points; nothing where there is no such
+    /// buffer.
+    fn chunked<T: bytemuck::Pod>(&self, name: &str, samples: u32) -> Result<Vec<T>, EngineError> {
+        let mut all = Vec::new();
+        for (number, chunk) in (0..).zip(&self.chunks) {
+            if let Some(buffer) = chunk.get(name) {
+                let items = self.plan.chunk(number).1 / samples;
+                let bytes = self.gpu.read(buffer, items as u64 * size_of::<T>() as u64)?;
+                all.extend(bytemuck::pod_collect_to_vec::<u8, T>(&bytes));
+            }
+        }
+        Ok(all)
     }
 
     /// All chunks' parts of a buffer, one after another; nothing where the plan has no such buffer.

@@ -29,7 +29,7 @@ macro_rules! fragments {
 /// All shader files, in the order in which they are put together.
 pub const FRAGMENTS: &[Fragment] = fragments![
     "tables.wgsl" if "scene || gather && metal || gather && facets",
-    "math/vector.wgsl" if "scene || gather || resolve",
+    "math/vector.wgsl" if "scene || gather || resolve || resolve_parts",
     "math/octahedral.wgsl" if "scene || gather",
     "math/trig.wgsl" if "scene || gather && metal || gather && facets",
     "math/rng.wgsl" if "scene",
@@ -56,12 +56,14 @@ pub const FRAGMENTS: &[Fragment] = fragments![
     "lights/guide.wgsl" if "photon_trace && guided",
     "lights/emission.wgsl" if "photon_trace",
     "lights/aim.wgsl" if "photon_trace && far",
-    "camera.wgsl" if "eye_trace",
+    "camera.wgsl" if "eye_trace || aov_trace",
     "grid.wgsl" if "grid_count || grid_scatter || grid_sort || grid_sort_long || gather",
     "kernels/records.wgsl" if "",
     "kernels/direct.wgsl" if "scene",
     "kernels/scan.wgsl" if "grid_scan_reduce || grid_scan_sums || grid_scan",
+    "kernels/eye_sample.wgsl" if "eye_trace || aov_trace",
     "kernels/eye_trace.wgsl" if "eye_trace",
+    "kernels/aov_trace.wgsl" if "aov_trace",
     "kernels/photon_trace.wgsl" if "photon_trace",
     "kernels/grid_count.wgsl" if "grid_count",
     "kernels/grid_scan_reduce.wgsl" if "grid_scan_reduce",
@@ -73,6 +75,7 @@ pub const FRAGMENTS: &[Fragment] = fragments![
     "kernels/grid_sort_long.wgsl" if "grid_sort_long",
     "kernels/gather.wgsl" if "gather",
     "kernels/resolve.wgsl" if "resolve",
+    "kernels/resolve_parts.wgsl" if "resolve_parts",
 ];
 
 /// The names that conditions may use, and those that hold.

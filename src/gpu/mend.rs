@@ -6,6 +6,7 @@
 
 use super::context::Gpu;
 use crate::engine::EngineError;
+use crate::kernels::aov_trace::{AovPixel, aov_trace};
 use crate::kernels::eye_trace::eye_trace;
 use crate::kernels::photon_trace::{PhotonPath, photon_trace};
 use crate::kernels::records::{Dispatch, PhotonRecord, STOPPED, VisiblePoint};
@@ -33,6 +34,25 @@ pub fn mend_points(
     let mended = rays.reduce(|| (0, 0), |a, b| (a.0 + b.0, a.1 + b.1));
     gpu.write(buffer, cast_slice(&points));
     Ok(mended)
+}
+
+/// Takes the samples of the marked pixels of a chunk.
+pub fn mend_aovs(
+    gpu: &Gpu,
+    scene: &Scene,
+    dispatch: &Dispatch,
+    sampled: bool,
+    buffer: &wgpu::Buffer,
+) -> Result<(), EngineError> {
+    let bytes = dispatch.end as u64 * size_of::<AovPixel>() as u64;
+    let mut aovs: Vec<AovPixel> = pod_collect_to_vec(&gpu.read(buffer, bytes)?);
+    let marked = aovs.par_iter_mut().enumerate().filter(|(_, aov)| aov.state & STOPPED != 0);
+    marked.for_each(|(id, aov)| {
+        aov.state &= !STOPPED;
+        aov_trace(scene, dispatch, sampled, id as u32, aov);
+    });
+    gpu.write(buffer, cast_slice(&aovs));
+    Ok(())
 }
 
 /// What [`mend_photons`] made good.

@@ -4,13 +4,14 @@
 
 use super::camera::camera_ray;
 use super::direct::{direct_light, medium_before, transmittance};
+use super::eye_sample::{start_radius, stratified, window_pixel};
 use super::lights::light::eval_environment;
 use super::materials::scatter::{
     RADIANCE, is_specular, reflectance_at, scatter_specular, shading_normal, toward,
 };
-use super::math::rng::{STREAM_STRATA, pcg4d, rng_eye, rng_next};
+use super::math::rng::{rng_eye, rng_next};
 use super::math::{FAR, INV_PI, is_finite, max_component, oct_encode, offset_origin};
-use super::real::{Real, Vec3, Vec4};
+use super::real::Vec3;
 use super::records::{BAD_DIRECT, BAD_EYE, Dispatch, VisiblePoint};
 use super::shapes::intersect::intersect_scene;
 use super::shapes::ray::Ray;
@@ -22,11 +23,13 @@ use bytemuck::Zeroable;
 /// rays.
 #[inline(always)]
 pub fn eye_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, id: u32) -> (VisiblePoint, u32) {
-    let index = dispatch.chunk_first + id;
-    let pixel = index / dispatch.eye_samples;
-    let mut rng = rng_eye(index, dispatch.pass_number, dispatch.seed, dispatch.points);
-    let u = stratified(rng_next(&mut rng), index - pixel * dispatch.eye_samples, pixel, dispatch);
     let camera = &scene.camera;
+    let place = (dispatch.chunk_first + id) / dispatch.eye_samples;
+    let k = dispatch.chunk_first + id - place * dispatch.eye_samples;
+    let pixel = window_pixel(dispatch, camera, place);
+    let mut rng =
+        rng_eye(pixel * dispatch.eye_samples + k, dispatch.pass_number, dispatch.seed, dispatch.points);
+    let u = stratified(rng_next(&mut rng), k, pixel, dispatch);
     let mut ray = camera_ray(camera, pixel % camera.width, pixel / camera.width, u);
     let mut throughput = Vec3::ONE;
     let mut medium = camera.medium;
@@ -103,31 +106,4 @@ pub fn eye_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, id: u32) -> 
         point.state |= BAD_EYE;
     }
     (point, rays)
-}
-
-/// Start radius at a visible point whose pixel covers `footprint`.
-fn start_radius(dispatch: &Dispatch, footprint: Real) -> Real {
-    if dispatch.radius_pixels > 0.0 {
-        return (dispatch.radius_pixels * footprint).min(dispatch.radius_max);
-    }
-    dispatch.radius_units
-}
-
-/// Sample `k` of a pixel in its stratum of the pixel and, shuffled, of the lens square.
-#[inline(always)]
-fn stratified(u: Vec4, k: u32, pixel: u32, dispatch: &Dispatch) -> Vec4 {
-    if dispatch.eye_samples == 1 {
-        return u;
-    }
-    let columns = dispatch.strata;
-    let rows = dispatch.eye_samples / columns;
-    // by chance, so that no pixel looks through the same parts of the lens in every render
-    let shift = pcg4d([pixel, 0, STREAM_STRATA, dispatch.seed])[0] % dispatch.eye_samples;
-    let lens = (k + shift) % dispatch.eye_samples;
-    Vec4::new(
-        ((k % columns) as Real + u.x) / columns as Real,
-        ((k / columns) as Real + u.y) / rows as Real,
-        ((lens % columns) as Real + u.z) / columns as Real,
-        ((lens / columns) as Real + u.w) / rows as Real,
-    )
 }

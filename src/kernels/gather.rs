@@ -12,6 +12,7 @@ use super::real::{Real, Vec3, Vec4};
 use super::records::{Dispatch, Gathered, Statistics, VisiblePoint};
 use super::shapes::facet::{clip_at, on_facet};
 use super::tables::{Facet, MATERIAL_METAL};
+use bytemuck::Zeroable;
 use glam::IVec3;
 use std::ops::Range;
 
@@ -52,6 +53,7 @@ pub fn gather(
     let radius_sq = point.radius * point.radius * scale_sq;
     let mut found = gather_family(facets, dispatch, point, 0, radius_sq, starts, sorted);
     if dispatch.families == 2 {
+        gathered.caustic += point.weight * found.flux;
         let wider_sq = dispatch.indirect_radius * dispatch.indirect_radius;
         let wide = gather_family(facets, dispatch, point, 1, radius_sq * wider_sq, starts, sorted);
         found.flux += wide.flux * (1.0 / wider_sq);
@@ -141,7 +143,7 @@ fn gather_family(
         }
     }
     let ring = (point.weight * LUMINANCE).dot(ring.truncate());
-    Gathered { flux: sum.truncate() * clip.whole, count, ring, pad: [0; 3] }
+    Gathered { flux: sum.truncate() * clip.whole, count, ring, ..Gathered::zeroed() }
 }
 
 /// Which of the first [`LANES`] photons of `range` lie in the disc and in the cell, no farther than `depth` from its plane, and

@@ -3,8 +3,10 @@
 
 use super::{camera, grid, lights, materials, math, real, shapes, tables};
 
+pub mod aov_trace;
 pub mod bytes;
 pub mod direct;
+pub mod eye_sample;
 pub mod eye_trace;
 pub mod gather;
 pub mod grid_build;
@@ -12,3 +14,4 @@ pub mod path_trace;
 pub mod photon_trace;
 pub mod records;
 pub mod resolve;
+pub mod resolve_parts;

@@ -3,6 +3,7 @@
 
 use super::camera::camera_ray;
 use super::direct::{medium_before, next_event, transmittance};
+use super::eye_sample::window_pixel;
 use super::lights::light::{eval_environment, pdf_environment, pdf_light};
 use super::materials::scatter::{
     RADIANCE, is_specular, pdf_rough, reflectance_at, scatter_rough, scatter_specular, shading_normal, toward,
@@ -17,10 +18,11 @@ use super::shapes::ray::Ray;
 use super::shapes::surface::surface_at;
 use super::tables::*;
 
-/// One path through pixel `pixel`: its radiance and the number of rays. `sampled`: next-event estimation.
-pub fn path_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, pixel: u32) -> (Vec3, u32) {
-    let mut rng = rng_eye(pixel, dispatch.pass_number, dispatch.seed, dispatch.points);
+/// One path through the pixel at place `place` of the window: its radiance and the number of rays. `sampled`: next-event estimation.
+pub fn path_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, place: u32) -> (Vec3, u32) {
     let camera = &scene.camera;
+    let pixel = window_pixel(dispatch, camera, place);
+    let mut rng = rng_eye(pixel, dispatch.pass_number, dispatch.seed, dispatch.points);
     let mut ray = camera_ray(camera, pixel % camera.width, pixel / camera.width, rng_next(&mut rng));
     let mut radiance = Vec3::ZERO;
     let mut throughput = Vec3::ONE;

@@ -56,8 +56,12 @@ pub struct Dispatch {
     pub indirect_radius: Real,
     /// One over the side length of the second family's cells.
     pub inv_cell_indirect: Real,
+    /// First pixel of the window that is rendered, counted in the whole picture.
+    pub window_first: u32,
+    /// Pixels per row of the window.
+    pub window_width: u32,
     /// Padding.
-    pub pad: u32,
+    pub pad: [u32; 3],
     /// The pass's point for the first dimensions of eye paths.
     pub points: Points,
 }
@@ -122,10 +126,10 @@ pub struct Gathered {
     pub flux: Vec3,
     /// Photons inside the disc, on the right side of the surface.
     pub count: u32,
+    /// The part of `flux` of the first of two families.
+    pub caustic: Vec3,
     /// Luminance of what the outer half of the disc's area holds of `flux`, less that of the inner half.
     pub ring: Real,
-    /// Padding.
-    pub pad: [u32; 3],
 }
 
 /// Local rule: statistics of a pixel (SPPM) or visible point (PPM), with radii over the start radius.

@@ -3,10 +3,12 @@
 mod image;
 mod light;
 mod medium;
+mod objects;
 mod order;
 mod shape;
 
 pub use crate::error::PackError;
+pub use objects::Objects;
 
 use super::real::{Real, ToReal, Vec2, Vec3};
 use super::shapes::fours::{FourRectangles, FourSpheres, LANES};
@@ -22,12 +24,16 @@ use glam::DVec3;
 pub struct Packed {
     /// The tables.
     pub scene: Scene,
+    /// The world point at the scene's origin.
+    pub center: DVec3,
     /// World units in one scene unit.
     pub unit: f64,
     /// Scene radiance times this is world radiance: brings the brightest light near one.
     pub radiance_unit: f64,
     /// Facts about the kd-tree.
     pub tree: build::kdtree::Stats,
+    /// Which shape each reference belongs to; empty unless the film asks for it.
+    pub objects: Objects,
 }
 
 /// Flattens `scene` for a picture of `width` by `height` pixels.
@@ -39,7 +45,8 @@ pub fn pack(scene: &scene::Scene, width: u32, height: u32) -> Result<Packed, Pac
     for m in &scene.materials {
         out.materials.push(material(m, n.unit));
     }
-    let (primitives, references, mut emitters) = shape::pack_shapes(scene, &n, &mut out)?;
+    let mut objects = Objects::default();
+    let (primitives, references, mut emitters) = shape::pack_shapes(scene, &n, &mut out, &mut objects)?;
     let limit = 1 << REFERENCE_BITS;
     if references.len() >= limit {
         return Err(PackError::TooMany { what: "primitives", count: references.len(), limit });
@@ -52,7 +59,8 @@ pub fn pack(scene: &scene::Scene, width: u32, height: u32) -> Result<Packed, Pac
         out.world.bounds_max = tree.bounds.max;
         out.nodes = tree.nodes;
         out.refs = tree.refs.iter().map(|&i| references[i as usize]).collect();
-        order::triangles_as_met(&mut out, &mut emitters);
+        let places = order::triangles_as_met(&mut out, &mut emitters);
+        objects.move_triangles(&places);
     }
     out.four_rectangles = out.rectangles.chunks(LANES).map(FourRectangles::new).collect();
     out.four_spheres = out.spheres.chunks(LANES).map(FourSpheres::new).collect();
@@ -71,7 +79,7 @@ pub fn pack(scene: &scene::Scene, width: u32, height: u32) -> Result<Packed, Pac
         };
     }
     lights::guide::learn_guides(&mut out);
-    Ok(Packed { scene: out, unit: n.unit, radiance_unit, tree: stats })
+    Ok(Packed { scene: out, center: n.center, unit: n.unit, radiance_unit, tree: stats, objects })
 }
 
 impl Scene {

@@ -3,8 +3,8 @@
 use super::shape::Emitter;
 use super::tables::*;
 
-/// Puts the triangles in the order in which the leaves name them first, and renames them everywhere.
-pub fn triangles_as_met(out: &mut Scene, emitters: &mut [Emitter]) {
+/// Puts the triangles in the order in which the leaves name them first, and renames them everywhere. Where each went.
+pub fn triangles_as_met(out: &mut Scene, emitters: &mut [Emitter]) -> Vec<u32> {
     let is_triangle = |reference: u32| reference >> REFERENCE_BITS == KIND_TRIANGLE;
     let mut places = vec![NONE; out.triangles.len()];
     let mut ordered = Vec::with_capacity(out.triangles.len());
@@ -24,4 +24,5 @@ pub fn triangles_as_met(out: &mut Scene, emitters: &mut [Emitter]) {
         emitter.reference = places[emitter.reference as usize];
     }
     out.triangles = ordered;
+    places
 }

@@ -1,6 +1,5 @@
 //! Shapes: into tables, into the kd-tree's input, and which of them shine.
 
-use super::PackError;
 use super::build::kdtree::Primitive;
 use super::build::revolution::{Attributes as RevolutionAttributes, Placement, RevolutionTables};
 use super::math::EPS;
@@ -10,8 +9,9 @@ use super::shapes::cuboid::cuboid_error;
 use super::shapes::disc::disc_error;
 use super::shapes::rectangle::rectangle_error;
 use super::tables::*;
+use super::{Objects, PackError};
 use crate::build::normalize::Normalization;
-use crate::scene::{self, Mesh, ShapeKind, Transform};
+use crate::scene::{self, Aov, Mesh, ShapeKind, Transform};
 use bytemuck::Zeroable;
 use glam::{DQuat, DVec2, DVec3};
 
@@ -31,8 +31,13 @@ pub struct Emitter {
 type Flattened = (Vec<Primitive>, Vec<u32>, Vec<Emitter>);
 
 /// Fills the shape tables; returns the kd-tree's primitives, the reference of each, and the emitters. An
-/// emitter's number is its light's.
-pub fn pack_shapes(scene: &scene::Scene, n: &Normalization, out: &mut Scene) -> Result<Flattened, PackError> {
+/// emitter's number is its light's. Where the film asks for shapes' numbers, `objects` tells them.
+pub fn pack_shapes(
+    scene: &scene::Scene,
+    n: &Normalization,
+    out: &mut Scene,
+    objects: &mut Objects,
+) -> Result<Flattened, PackError> {
     let mut pack = Pack { n, out, primitives: Vec::new(), references: Vec::new(), emitters: Vec::new() };
     let mut revolutions = RevolutionTables::default();
     for (i, shape) in scene.shapes.iter().enumerate() {
@@ -62,6 +67,9 @@ pub fn pack_shapes(scene: &scene::Scene, n: &Normalization, out: &mut Scene) -> 
                     pack.references.push(reference(KIND_REVOLUTION, b.patch as usize));
                 }
             }
+        }
+        if scene.film.aovs.has(Aov::Object) {
+            objects.mark(pack.out, revolutions.patches.len(), i as u32);
         }
     }
     let Pack { primitives, references, emitters, .. } = pack;

@@ -8,10 +8,10 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::ToneMap;
 use super::appearance::{Filter, Wrap};
 use super::numbers::{NonNegative, Paint, Positive, Share, Spectrum, Strength};
 use super::schema::close_variants;
+use super::{Aov, ToneMap};
 use crate::settings::RenderSettings;
 
 /// Three coordinates.
@@ -84,11 +84,13 @@ pub struct FilmFile {
     pub exposure: f64,
     /// Curve of tone-mapped outputs.
     pub tonemap: ToneMap,
+    /// What EXR files hold beside radiance.
+    pub aov: Vec<Aov>,
 }
 
 impl Default for FilmFile {
     fn default() -> Self {
-        Self { width: 512, height: 512, exposure: 0.0, tonemap: ToneMap::default() }
+        Self { width: 512, height: 512, exposure: 0.0, tonemap: ToneMap::default(), aov: Vec::new() }
     }
 }
 

@@ -5,8 +5,10 @@
 //!
 //! Conventions: right-handed, y up; linear Rec. 709 RGB; one scene unit is one metre; angles in degrees.
 
+mod aov;
 mod appearance;
 mod check;
+mod digest;
 pub mod file;
 mod geometry;
 mod images;
@@ -31,6 +33,7 @@ use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+pub use aov::{Aov, Aovs};
 pub use appearance::{
     Filter, ImageData, Material, MaterialKind, Reflectance, Rgb, Texels, Texture, TextureKind, Wrap,
 };
@@ -92,6 +95,11 @@ pub struct Film {
     pub exposure: f64,
     /// Curve of tone-mapped outputs.
     pub tonemap: ToneMap,
+    /// What EXR files hold beside radiance.
+    pub aovs: Aovs,
+    /// The window that is rendered, columns x0 to x1 and rows y0 to y1 as `[x0, y0, x1, y1]`, x1 and y1 left out; inside
+    /// of the picture and not empty. None is all of it.
+    pub window: Option<[u32; 4]>,
 }
 
 /// How radiance becomes display values in 8-bit files.

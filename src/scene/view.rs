@@ -46,7 +46,14 @@ pub(super) fn film(loader: &mut Loader) -> Option<Film> {
         Some(item) => item.read(loader.report)?,
         None => FilmFile::default(),
     };
-    Some(Film { width: file.width, height: file.height, exposure: file.exposure, tonemap: file.tonemap })
+    Some(Film {
+        width: file.width,
+        height: file.height,
+        exposure: file.exposure,
+        tonemap: file.tonemap,
+        aovs: file.aov.into_iter().collect(),
+        window: None,
+    })
 }
 
 pub(super) fn settings(loader: &mut Loader) -> Option<RenderSettings> {

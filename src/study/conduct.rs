@@ -144,7 +144,11 @@ impl Study<'_> {
     }
 
     fn development(&self) -> Development {
-        Development { exposure: self.scene.film.exposure, tonemap: self.scene.film.tonemap }
+        Development {
+            exposure: self.scene.film.exposure,
+            tonemap: self.scene.film.tonemap,
+            ..Development::default()
+        }
     }
 
     /// Sizes of the lamps, each once.

@@ -1,0 +1,90 @@
+//! `caustica render --like`: what made a picture, from its file.
+
+use std::path::{Path, PathBuf};
+
+use caustica::film::provenance::VERSION;
+use caustica::film::{FileError, Provenance, file};
+use caustica::scene::{self, Loaded, Scene};
+
+use super::Failure;
+use super::output::message;
+
+/// A picture that is to be made again.
+pub struct Like {
+    file: PathBuf,
+    made: Provenance,
+    version: String,
+}
+
+impl Like {
+    /// Reads the attributes of an EXR file that this program wrote.
+    pub fn read(path: &Path) -> Result<Self, Failure> {
+        let attributes = file::read_exr(path)?.attributes;
+        let made = Provenance::read(&attributes).map_err(|what| FileError::Malformed {
+            file: path.to_owned(),
+            what: format!("for --like, {what}"),
+        })?;
+        let version = attributes.get("caustica.version").cloned().unwrap_or_default();
+        Ok(Self { file: path.to_owned(), made, version })
+    }
+
+    /// The scene file's name, as it was given.
+    pub fn scene(&self) -> PathBuf {
+        PathBuf::from(&self.made.scene_file)
+    }
+
+    /// Its first pass.
+    pub fn first_pass(&self) -> u32 {
+        self.made.first_pass
+    }
+
+    /// The device that it was made on.
+    pub fn device(&self) -> &str {
+        &self.made.device
+    }
+
+    /// Where it goes where no name is given: beside nothing that is there by this program's own naming.
+    pub fn output(&self) -> PathBuf {
+        let stem = self.file.file_stem().unwrap_or_default().to_string_lossy();
+        PathBuf::from(format!("{stem}-again.exr"))
+    }
+
+    /// The scene, from its file or, where that is gone, from the text in the picture.
+    pub fn load(&self, path: &Path) -> Result<Loaded, Failure> {
+        if path.exists() {
+            return Ok(scene::load(path)?);
+        }
+        message(format_args!(
+            "{}: not there; the scene is read from the text in {}",
+            path.display(),
+            self.file.display()
+        ));
+        Ok(scene::parse(path, self.made.scene_text.as_bytes())?)
+    }
+
+    /// Puts the picture's film and settings in force, and warns of what is not as it was.
+    pub fn apply(&self, loaded: &mut Loaded) {
+        let Loaded { scene, settings, .. } = loaded;
+        if let Some(film) = self.made.film {
+            let scene::Film { exposure, tonemap, .. } = scene.film;
+            scene.film = scene::Film { exposure, tonemap, ..film };
+        }
+        *settings = self.made.asked.clone().unwrap_or_else(|| self.made.settings.clone());
+        settings.passes = self.made.first_pass + self.made.passes_done;
+        for warning in self.differences(scene) {
+            message(format_args!("warning: {}: {warning}", self.file.display()));
+        }
+    }
+
+    fn differences(&self, scene: &Scene) -> Vec<String> {
+        let version = (self.version != VERSION).then(|| {
+            format!(
+                "made by version {}, and this is {VERSION}: the picture may have other bits",
+                self.version
+            )
+        });
+        let other = self.made.digest.is_some_and(|digest| digest != scene.digest());
+        let scene = other.then(|| "the scene, or a file that it names, has changed since".to_owned());
+        version.into_iter().chain(scene).collect()
+    }
+}

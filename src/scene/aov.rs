@@ -1,0 +1,187 @@
+//! What a picture may hold beside radiance: arbitrary output variables, for denoisers and compositing.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A group of channels beside R, G and B.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Aov {
+    /// Reflectance of the first hit that is neither mirror nor glass, times what mirrors and glass before it let through.
+    Albedo,
+    /// Shading normal of that hit, world space, toward the viewer.
+    Normal,
+    /// Distance of the first hit along the view direction, scene units.
+    Depth,
+    /// Place of the first hit, world space.
+    Position,
+    /// Number of the surface seen through the pixel's centre, counted from 1 in the order of the file.
+    Object,
+    /// Number of its material, counted from 1 in the order of names; the file's attribute `caustica.materials` has these.
+    Material,
+    /// Light that comes to the eye straight or by mirrors and glass alone.
+    Emission,
+    /// Light straight from lamps to the first hit that is neither mirror nor glass, found by shadow rays.
+    Direct,
+    /// Light that photons bring which no diffuse surface has scattered: caustics, and where there are no shadow rays also
+    /// light straight from lamps.
+    Caustic,
+    /// Light that photons bring which diffuse surfaces have scattered.
+    Indirect,
+    /// Gather radius, scene units.
+    Radius,
+    /// Photons gathered in the last pass.
+    Photons,
+    /// Variance and bias of the luminance, which files hold anyway from the fourth pass on.
+    Variance,
+}
+
+impl Aov {
+    /// All of them.
+    pub const ALL: [Self; 13] = [
+        Self::Albedo,
+        Self::Normal,
+        Self::Depth,
+        Self::Position,
+        Self::Object,
+        Self::Material,
+        Self::Emission,
+        Self::Direct,
+        Self::Caustic,
+        Self::Indirect,
+        Self::Radius,
+        Self::Photons,
+        Self::Variance,
+    ];
+
+    /// The name in scene files and on the command line.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Albedo => "albedo",
+            Self::Normal => "normal",
+            Self::Depth => "depth",
+            Self::Position => "position",
+            Self::Object => "object",
+            Self::Material => "material",
+            Self::Emission => "emission",
+            Self::Direct => "direct",
+            Self::Caustic => "caustic",
+            Self::Indirect => "indirect",
+            Self::Radius => "radius",
+            Self::Photons => "photons",
+            Self::Variance => "variance",
+        }
+    }
+
+    /// Whether it takes the kernel `aov_trace`.
+    pub fn is_traced(self) -> bool {
+        !matches!(self, Self::Caustic | Self::Indirect | Self::Photons | Self::Variance)
+    }
+}
+
+/// A set of [`Aov`]s.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Aovs(u32);
+
+impl Aovs {
+    /// Whether it is in the set.
+    pub fn has(self, aov: Aov) -> bool {
+        self.0 >> aov as u32 & 1 == 1
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(self) -> bool {
+        self.0 == 0
+    }
+
+    /// Those of either set.
+    pub fn union(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+
+    /// Those in the set, in the order of [`Aov::ALL`].
+    pub fn iter(self) -> impl Iterator<Item = Aov> {
+        Aov::ALL.into_iter().filter(move |aov| self.has(*aov))
+    }
+
+    /// Whether any takes the kernel `aov_trace`.
+    pub fn are_traced(self) -> bool {
+        self.iter().any(Aov::is_traced)
+    }
+
+    /// Reads names divided by commas, or `all`; an error names what is not known and what is.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        let of_word = |word: &str| match word {
+            "all" => Ok(Aov::ALL.into_iter().collect()),
+            _ => Aov::ALL
+                .into_iter()
+                .find(|aov| aov.word() == word)
+                .map(|aov| Self(1 << aov as u32))
+                .ok_or_else(|| match nearest(word) {
+                    Some(near) => format!("there is no `{word}`; did you mean `{near}`?"),
+                    None => format!("there is no `{word}`; there is: {}, all", words().join(", ")),
+                }),
+        };
+        text.split(',')
+            .map(|word| of_word(word.trim()))
+            .try_fold(Self::default(), |set, one| Ok(set.union(one?)))
+    }
+}
+
+impl FromIterator<Aov> for Aovs {
+    fn from_iter<T: IntoIterator<Item = Aov>>(aovs: T) -> Self {
+        Self(aovs.into_iter().fold(0, |set, aov| set | 1 << aov as u32))
+    }
+}
+
+/// The names divided by commas, as [`Aovs::parse`] reads them.
+impl std::fmt::Display for Aovs {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        f.write_str(&self.iter().map(Aov::word).collect::<Vec<_>>().join(","))
+    }
+}
+
+fn words() -> [&'static str; 13] {
+    Aov::ALL.map(Aov::word)
+}
+
+/// The known name nearest to `word`, if it is near enough for a slip.
+fn nearest(word: &str) -> Option<&'static str> {
+    let distance = |known: &&str| strsim::damerau_levenshtein(word, known);
+    words()
+        .into_iter()
+        .chain(["all"])
+        .min_by_key(distance)
+        .filter(|near| distance(near) <= 1 + word.len() / 4)
+}
+
+/// Theory: a set reads back as it is printed, whatever it holds.
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sets_read_back_as_printed() {
+        for bits in 1..1 << Aov::ALL.len() {
+            assert_eq!(Aovs::parse(&Aovs(bits).to_string()), Ok(Aovs(bits)));
+        }
+        assert_eq!(Aovs::parse("all").unwrap().iter().count(), Aov::ALL.len());
+        assert_eq!(Aovs::parse(" depth, albedo").unwrap().to_string(), "albedo,depth");
+    }
+
+    #[test]
+    fn slips_are_named() {
+        assert_eq!(Aovs::parse("albedo,nornal").unwrap_err(), "there is no `nornal`; did you mean `normal`?");
+        for far in ["", "albedo,", "cryptomatte"] {
+            assert!(Aovs::parse(far).unwrap_err().contains("there is: albedo, normal"), "{far}");
+        }
+    }
+
+    /// Files know them by the same words.
+    #[test]
+    fn words_are_those_of_scene_files() {
+        for aov in Aov::ALL {
+            assert_eq!(serde_json::json!(aov), aov.word());
+        }
+    }
+}
