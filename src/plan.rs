@@ -359,9 +359,17 @@ impl Plan {
             inv_cell_indirect: (1.0 / (cell * wider)) as Real,
             window_first: self.window_first,
             window_width: self.width,
-            points: crate::sobol::points(pass),
+            points: crate::sobol::points(self.first_pass + pass),
             ..Dispatch::zeroed()
         }
+    }
+
+    /// The numbers of a pass for its eye paths: fixed visible points are those of pass 0, whoever makes the first pass.
+    fn eye_dispatch(&self, common: Dispatch) -> Dispatch {
+        if self.settings.method != Method::Ppm {
+            return common;
+        }
+        Dispatch { pass_number: 0, points: crate::sobol::points(0), ..common }
     }
 
     /// Pass `pass` of this render, from 0, with `batch_photons` photons a batch (fewer than planned when a batch overflowed). Before its
@@ -373,12 +381,11 @@ impl Plan {
         let mut step = |kernel, chunk, dispatch| steps.push(Step { kernel, chunk, dispatch });
         let over = |end| Dispatch { end, ..common };
         let ppm = self.settings.method == Method::Ppm;
-        // fixed visible points are those of pass 0, whoever makes the first pass
-        let pass_number = if ppm { 0 } else { common.pass_number };
+        let eye = self.eye_dispatch(common);
         if !ppm || pass == self.taken_over {
             for c in 0..self.chunks() {
                 let (chunk_first, end) = self.chunk(c);
-                step(Kernel::EyeTrace, c, Dispatch { end, chunk_first, pass_number, ..common });
+                step(Kernel::EyeTrace, c, Dispatch { end, chunk_first, ..eye });
             }
         }
         let mut batch_first = 0;
@@ -417,7 +424,7 @@ impl Plan {
         if !self.aovs.are_traced() || ppm && pass > 0 {
             return Vec::new();
         }
-        let common = self.dispatch(pass);
+        let common = self.eye_dispatch(self.dispatch(pass));
         let step = |c, sample| {
             let (chunk_first, points) = self.chunk(c);
             let end = points / self.eye_samples;

@@ -230,7 +230,11 @@ fn examples_of_the_help_texts_run() {
             let example = example.replace("scenes/", &scenes);
             let mut arguments: Vec<_> = example.split(' ').collect();
             if arguments[0] == "render" {
-                arguments.extend(["--size", "16x16", "--passes", "1", "--photons", "1000"]);
+                arguments.extend(["--passes", "1", "--photons", "1000"]);
+                // a window of the whole, and what is made like it, keep the size
+                if !["--crop", "--like"].iter().any(|option| example.contains(option)) {
+                    arguments.extend(["--size", "16x16"]);
+                }
                 arguments.extend(["--device", "cpu"].iter().filter(|_| !example.contains("--device")));
             }
             let output = caustica(&folder, &arguments);
