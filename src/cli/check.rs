@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use caustica::{limits, scene};
 use miette::{Report, miette};
 
+use super::allowed::Allowed;
 use super::output::{message, result};
 use super::{Done, Failure};
 
@@ -15,6 +16,8 @@ pub struct Arguments {
     /// Scene files
     #[arg(required = true, value_name = "SCENE")]
     scenes: Vec<PathBuf>,
+    #[command(flatten)]
+    allowed: Allowed,
 }
 
 const HELP: &str = "\
@@ -25,9 +28,10 @@ Example:
 
 /// Checks each file; fails at the end if one has errors.
 pub fn run(arguments: Arguments) -> Result<Done, Failure> {
+    let allowance = arguments.allowed.allowance()?;
     let mut bad = 0;
     for file in &arguments.scenes {
-        match scene::load(file) {
+        match scene::load_within(file, &allowance) {
             Ok(loaded) => {
                 let limits = limits::warnings(&loaded.scene, &loaded.settings, &loaded.places);
                 let warnings = match loaded.warnings.len() + limits.len() {
