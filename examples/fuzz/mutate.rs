@@ -113,7 +113,7 @@ impl Mutator {
     pub fn mutate(&mut self, corpus: &[Vec<u8>], longest: usize) -> Vec<u8> {
         let pick = self.below(corpus.len());
         let mut input = corpus.get(pick).cloned().unwrap_or_default();
-        for _ in 0..1 << self.below(4) {
+        for _ in 0..1 << self.below(3) {
             self.once(&mut input, corpus);
         }
         input.truncate(longest);
@@ -122,7 +122,8 @@ impl Mutator {
 
     fn once(&mut self, input: &mut Vec<u8>, corpus: &[Vec<u8>]) {
         let at = self.below(input.len() + 1);
-        let length = 1 + self.below(1 << (1 + self.below(6)));
+        let longest = 2 << self.below(6);
+        let length = 1 + self.below(longest);
         let end = (at + length).min(input.len());
         match self.below(12) {
             0 if at < input.len() => input[at] ^= 1 << self.below(8),
@@ -165,12 +166,11 @@ impl Mutator {
     }
 
     fn token(&mut self) -> Vec<u8> {
-        let of_schema = self.below(2) == 0 && !self.words.is_empty();
-        let text = if of_schema {
-            self.words[self.below(self.words.len())].as_str()
-        } else {
-            TOKENS[self.below(TOKENS.len())]
-        };
+        if self.below(2) == 0 {
+            let pick = self.below(self.words.len());
+            return self.words.get(pick).map_or(Vec::new(), |word| word.clone().into_bytes());
+        }
+        let text = TOKENS[self.below(TOKENS.len())];
         text.as_bytes().to_vec()
     }
 

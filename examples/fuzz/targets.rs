@@ -169,15 +169,20 @@ fn plan(loaded: &Loaded) -> String {
     }
 }
 
-/// The outcome of a scene: its errors without names and numbers.
+/// Ends the outcome of what has several errors, which is too broken to go on from.
+pub const MORE: &str = "..";
+
+/// The outcome of a scene: its first error without names and numbers.
 fn told(outcome: Result<String, SceneErrors>) -> String {
     match outcome {
         Ok(told) => told,
         Err(errors) => {
-            let report =
-                errors.errors.iter().map(|error| general(error.message())).collect::<Vec<_>>().join("|");
-            let _ = format!("{:?}", miette::Report::new(errors));
-            report
+            let first = errors.errors.first().map_or(String::new(), |error| general(error.message()));
+            let others = if errors.errors.len() > 1 { MORE } else { "" };
+            if first.len() % 4 == 0 {
+                let _ = format!("{:?}", miette::Report::new(errors));
+            }
+            format!("{first}.{others}")
         }
     }
 }
@@ -185,5 +190,6 @@ fn told(outcome: Result<String, SceneErrors>) -> String {
 /// A message without numbers and what stands in quotes.
 fn general(message: &str) -> String {
     let unquoted = message.split(['`', '"']).step_by(2).collect::<String>();
-    unquoted.chars().filter(|c| !c.is_ascii_digit()).take(60).collect()
+    let words = unquoted.split(' ').filter(|word| !word.contains(['/', '.', '[', '{']));
+    words.flat_map(str::chars).filter(char::is_ascii_alphabetic).take(60).collect()
 }

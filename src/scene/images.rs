@@ -61,6 +61,9 @@ impl ImageStore {
     }
 }
 
+/// Bytes that a decoder may take beside the pixels.
+const DECODER_BYTES: u64 = 64 << 20;
+
 const EXPECTED: &str = "expected a png, jpg, hdr or exr file";
 
 fn fault(path: &Path, why: impl std::fmt::Display) -> ImageFault {
@@ -133,8 +136,8 @@ impl ImageStore {
         let mut reader =
             ImageReader::new(self.open(path)?).with_guessed_format().map_err(|error| fault(path, error))?;
         let mut limits = Limits::no_limits();
-        // Decoders need some memory beside the pixels, which are counted here.
-        limits.max_alloc = Some(self.allowance.texture_bytes.saturating_mul(2));
+        // For what decoders need beside the pixels, which are counted here.
+        limits.max_alloc = Some(self.allowance.texture_bytes.saturating_add(DECODER_BYTES));
         reader.limits(limits);
         let decoder = reader.into_decoder().map_err(|error| fault(path, error))?;
         let (width, height) = decoder.dimensions();
