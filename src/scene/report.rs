@@ -48,7 +48,7 @@ impl SourceCode for SourceFile {
         let start = boundary(at.saturating_sub(MOST_SHOWN / 4).max(line_start));
         let end = boundary((at + span.len().min(MOST_SHOWN / 2) + MOST_SHOWN / 4).min(line_end));
         let line = text[..at].matches('\n').count();
-        let (cut, shown) = (SourceSpan::from(start..end), text[start..end].as_bytes());
+        let (cut, shown) = (SourceSpan::from(start..end), &text.as_bytes()[start..end]);
         let name = self.0.name().to_owned();
         Ok(Box::new(MietteSpanContents::new_named(name, shown, cut, line, start - line_start, 1)))
     }
