@@ -75,7 +75,7 @@ impl Camera {
         let offsets: Vec<DVec3> = if r > 0.0 { (0..24).map(offset).collect() } else { vec![DVec3::ZERO] };
         let gauss = |k: usize| {
             0.5 * (k / 2) as f64
-                + if k % 2 == 0 { 0.25 - 0.25 / 3f64.sqrt() } else { 0.25 + 0.25 / 3f64.sqrt() }
+                + if k.is_multiple_of(2) { 0.25 - 0.25 / 3f64.sqrt() } else { 0.25 + 0.25 / 3f64.sqrt() }
         };
         let point = |i: u32, k: usize| {
             let pixel = DVec2::new((i % n) as f64, (i / n) as f64);
