@@ -18,7 +18,7 @@
 //! # }
 //! ```
 //!
-//! Modules depend on one another one way: [`real`] and [`math`], then [`tables`], [`shapes`], [`materials`], [`lights`],
+//! Modules depend on one another one way: [`stage`], [`real`] and [`math`], then [`tables`], [`shapes`], [`materials`], [`lights`],
 //! [`camera`] and [`grid`], then [`scene`], [`build`], [`limits`], [`pack`], then [`kernels`], [`radius`], [`sobol`], [`probe`], [`readout`], [`plan`], then [`cpu`]
 //! and [`gpu`], then [`identity`], [`device`], [`quality`], [`calibration`], [`showing`], [`render`] and [`checkpoint`], and last [`bench`](mod@bench), [`burden`], [`hold`] and [`study`].
 //! Those from [`real`] to [`cpu`] are compiled twice: [`double`] is the same in f64.
@@ -60,5 +60,6 @@ pub mod settings;
 pub mod shapes;
 pub mod showing;
 pub mod sobol;
+pub mod stage;
 pub mod study;
 pub mod tables;
