@@ -242,16 +242,18 @@ fn examples_of_the_help_texts_run() {
             run += 1;
         }
     }
-    assert_eq!(run, 10, "two, five, one, one and one");
+    assert_eq!(run, 12, "two, seven, one, one and one");
     let mut left: Vec<_> = fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name()).collect();
     left.sort();
     assert_eq!(
         left,
         [
+            "again.exr",
             "caustics.png",
             "cornell.checkpoint",
             "cornell.exr",
             "cornell.png",
+            "layers.exr",
             "picture.exr",
             "picture.png",
             "vase.obj"

@@ -114,16 +114,15 @@ fn discs_area(distance: Real, radius: Real) -> Real {
 pub fn facet_share(facet: &Facet, position: Vec3, normal: Vec3, radius: Real) -> Real {
     let scale = 1.0 / radius;
     let d = (facet.origin - position) * scale;
-    let area;
-    if facet.radius > 0.0 {
-        area = discs_area(d.dot(d).sqrt(), facet.radius * scale);
+    let area = if facet.radius > 0.0 {
+        discs_area(d.dot(d).sqrt(), facet.radius * scale)
     } else {
         let first = unit(facet.u);
         let second = normal.cross(first);
         let corner = Vec2::new(d.dot(first), d.dot(second));
         let v = Vec2::new(facet.v.dot(first), facet.v.dot(second)) * scale;
-        area = parallelogram_area(corner, facet.u.dot(first) * scale, v);
-    }
+        parallelogram_area(corner, facet.u.dot(first) * scale, v)
+    };
     (area / PI).clamp(SHARE_MIN, 1.0)
 }
 
