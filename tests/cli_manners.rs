@@ -98,7 +98,11 @@ fn manual_pages() {
     let folder = folder("man");
     let page = done(&folder, &["man"]);
     let listed = done(&folder, &["man", "."]);
-    assert_eq!(listed.lines().count(), COMMANDS.len() + 1);
+    assert_eq!(
+        listed.lines().count(),
+        page.matches("(1)").count() + 1,
+        "one for each that the program's own names"
+    );
     assert_eq!(fs::read_to_string(folder.join("caustica.1")).unwrap(), page);
     for command in COMMANDS {
         assert!(page.contains(&format!("caustica\\-{command}(1)")), "{command}");

@@ -106,8 +106,10 @@ fn the_same_scene() {
     assert_ne!(planted, expected, "another profile has another identity");
 }
 
-/// Where and what.
-fn told(errors: &[Finding]) -> Vec<(Option<(usize, usize)>, String, String)> {
+/// Line and column, message, label.
+type Told = (Option<(usize, usize)>, String, String);
+
+fn told(errors: &[Finding]) -> Vec<Told> {
     errors.iter().map(|e| (e.line_column(), e.message().to_owned(), e.label().to_owned())).collect()
 }
 
