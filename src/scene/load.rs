@@ -10,6 +10,7 @@ use super::places::Places;
 use super::report::{Finding, Report, SceneErrors, did_you_mean, list};
 use super::{Scene, looks, schema, surfaces, text, view};
 use crate::settings::RenderSettings;
+use crate::stage::stage;
 
 /// What a scene file holds.
 #[derive(Clone, Debug)]
@@ -37,6 +38,7 @@ pub fn load(path: &Path) -> Result<Loaded, SceneErrors> {
 /// # Errors
 /// As [`load`].
 pub fn parse(path: &Path, bytes: &[u8]) -> Result<Loaded, SceneErrors> {
+    let _stage = stage("parse");
     let schema = schema::of::<SceneFile>();
     let ((scene, settings, places), warnings) = text::parse(path, bytes, |root, report| {
         let document = document(&schema, root, report);

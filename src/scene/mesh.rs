@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use super::appearance::{Material, Rgb, Texture};
 use super::check::Item;
+use super::encoding::{Foreign, unmarked};
 use super::geometry::{Mesh, Transform};
 use super::load::Loader;
 use super::report::{Fault, SourceFile, did_you_mean};
@@ -106,7 +107,15 @@ pub(super) fn load(
 
 fn read(loader: &mut Loader, item: &Item, path: &Path) -> Option<SourceFile> {
     match std::fs::read(path) {
-        Ok(bytes) => Some(SourceFile::new(path, String::from_utf8_lossy(&bytes).into_owned())),
+        Ok(bytes) => match source(path, &bytes) {
+            Ok(source) => Some(source),
+            Err(foreign) => {
+                let message = format!("{}: {foreign}", path.display());
+                let label = "expected a Wavefront OBJ file";
+                loader.report.error(item.node.span_of("file"), message, label, Some(foreign.help()));
+                None
+            }
+        },
         Err(error) => {
             let help = nearest_file(path).map(|near| format!("did you mean {near}?"));
             let message = format!("cannot read mesh {}: {error}", path.display());
@@ -114,6 +123,11 @@ fn read(loader: &mut Loader, item: &Item, path: &Path) -> Option<SourceFile> {
             None
         }
     }
+}
+
+/// The text of a file; of names and comments in an encoding of one byte a character, what is not ASCII is lost.
+fn source(path: &Path, bytes: &[u8]) -> Result<SourceFile, Foreign> {
+    Ok(SourceFile::new(path, String::from_utf8_lossy(unmarked(bytes)?).into_owned()))
 }
 
 fn libraries(loader: &mut Loader, path: &Path, scan: &mut obj::Scan, named_at: &Range<usize>) -> Libraries {
@@ -131,7 +145,14 @@ fn libraries(loader: &mut Loader, path: &Path, scan: &mut obj::Scan, named_at: &
                 continue;
             }
         };
-        let source = SourceFile::new(&library, String::from_utf8_lossy(&bytes).into_owned());
+        let source = match source(&library, &bytes) {
+            Ok(source) => source,
+            Err(foreign) => {
+                let message = format!("{}: {foreign}", library.display());
+                scan.faults.push(Fault { span, message, expected: foreign.help() });
+                continue;
+            }
+        };
         let folder = library.parent().unwrap_or(Path::new(""));
         let found = mtl::scan(source.text(), folder, &mut loader.images);
         let materials = match tobj_materials(&found) {

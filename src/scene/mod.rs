@@ -9,6 +9,7 @@ mod aov;
 mod appearance;
 mod check;
 mod digest;
+mod encoding;
 pub mod file;
 mod geometry;
 mod images;
