@@ -199,6 +199,10 @@ pub fn open(wanted: &Wanted, scene: &Scene, settings: &RenderSettings) -> Result
     };
     let (device, why) = pick(wanted, &devices)?;
     let why = if path { "auto: path tracing runs on the CPU".to_owned() } else { why };
+    for DeviceInfo { name, kind, driver, .. } in &devices {
+        log::debug!("there is {name} [{}] {driver}", kind.word());
+    }
+    log::info!("{} [{}] {} ({why})", device.name, device.kind.word(), device.driver);
     Ok(start(device, why, scene, settings)?)
 }
 

@@ -18,6 +18,7 @@ use crate::film::{ErrorMap, Picture, Rejections};
 use crate::radius::Automatic;
 use crate::scene::{Aov, Aovs, Film};
 use crate::settings::{Method, Radius, RadiusRule, RenderSettings};
+use crate::stage::stage;
 use bytemuck::Zeroable;
 use glam::DVec3;
 
@@ -213,6 +214,7 @@ pub struct Plan {
 impl Plan {
     /// Plans a render.
     pub fn new(packed: &Packed, settings: &RenderSettings) -> Self {
+        let _stage = stage("plan");
         let features = Features::of(&packed.scene, settings);
         let probe = probe(packed, settings);
         let chosen = probe.automatic.map_or(settings.radius, |automatic| Radius::Pixels(automatic.pixels));

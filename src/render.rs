@@ -7,6 +7,7 @@ use crate::engine::{Engine, EngineError, PassReport, PhotonEnds};
 use crate::film::estimate::LEAST_PASSES;
 use crate::film::exr_file::Channel;
 use crate::film::{ErrorMap, Picture, Rejections, RelativeError};
+use crate::stage::stage;
 
 /// When to stop; whichever comes first. At least one pass is made.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -90,6 +91,14 @@ impl Progress {
         self.rays = self.rays.saturating_add(report.rays);
         self.ends.add(&report.ends);
         self.radius = report.radius;
+        log::debug!(
+            "pass {}: {:.3} s, {} photons, {} rays, radius {:.3e}",
+            self.passes,
+            elapsed.saturating_sub(self.elapsed).as_secs_f64(),
+            report.photons,
+            report.rays,
+            report.radius
+        );
         self.elapsed = elapsed;
     }
 
@@ -182,6 +191,7 @@ fn render_keeping(
     mut saving: Option<Saving>,
     keep: Keep,
 ) -> Result<Outcome, EngineError> {
+    let _stage = stage("passes");
     let start = Instant::now();
     let (stop, before) = (progress.stop, progress.elapsed);
     let elapsed = || before + start.elapsed();

@@ -70,7 +70,12 @@ fn text(bytes: &[u8]) -> String {
 fn json(folder: &Path, arguments: &[&str]) -> Value {
     let output = bench(folder, arguments);
     assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
-    serde_json::from_slice(&output.stdout).unwrap()
+    report(&output)
+}
+
+/// The last event.
+fn report(output: &Output) -> Value {
+    serde_json::from_str(text(&output.stdout).lines().last().unwrap()).unwrap()
 }
 
 fn number(value: &Value) -> f64 {
@@ -223,7 +228,7 @@ fn time_to_error() {
     let output = bench(&folder, &[&common[..], &["--max-relMSE", "floor=1e-9", "--json"]].concat());
     assert_eq!(output.status.code(), Some(3), "{}", text(&output.stderr));
     assert!(text(&output.stderr).contains("not reached: relMSE of floor"), "{}", text(&output.stderr));
-    let missed: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let missed: Value = report(&output);
     let series = missed["devices"][0]["to_error"][1]["series"].as_array().unwrap();
     assert_eq!(series.iter().map(|p| number(&p["passes"])).collect::<Vec<_>>(), [1.0, 2.0, 3.0, 4.0]);
     let noise = json(&folder, &[&common[..], &["--truth-noise", "0.5", "--json"]].concat());

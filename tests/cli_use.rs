@@ -194,9 +194,20 @@ fn help_lists_only_what_works() {
     let help = caustica(&folder, &["--help"]);
     assert_eq!(help.status.code(), Some(0));
     let help = text(&help.stdout);
-    for command in
-        ["render", "merge", "compare", "diff", "study", "bench", "info", "check", "devices", "tessellate"]
-    {
+    for command in [
+        "render",
+        "merge",
+        "compare",
+        "diff",
+        "study",
+        "bench",
+        "info",
+        "check",
+        "devices",
+        "tessellate",
+        "completions",
+        "man",
+    ] {
         assert!(help.contains(&format!("\n  {command} ")), "{command}: {help}");
         let own = caustica(&folder, &[command, "--help"]);
         assert_eq!(own.status.code(), Some(0), "{command}");

@@ -51,7 +51,7 @@ fn case(i: u32) -> (Facet, Vec3, Vec3, f32) {
     let normal = Vec3::new(a.x - 0.5, a.y - 0.5, a.z - 0.5).normalize();
     let (t, s) = basis(normal);
     let radius = 2f32.powf(6.0 * a.w - 4.0);
-    if i % 3 == 0 {
+    if i.is_multiple_of(3) {
         let facet = Facet { origin: Vec3::new(b.x, b.y, b.z), radius: 0.5 + b.w, ..Facet::zeroed() };
         let turn = c.x * 6.0;
         let place = (t * turn.cos() + s * turn.sin()) * (0.999 * c.y.sqrt() * facet.radius);

@@ -183,7 +183,7 @@ impl Shared {
             self.keep(&format!("a run of {:.0} s", took.as_secs_f64()), input);
         }
         self.accepted.fetch_add(u64::from(outcome.is_empty()), Ordering::Relaxed);
-        if outcome.ends_with(MORE) {
+        if outcome.contains(MORE) {
             return;
         }
         let mut hasher = DefaultHasher::new();

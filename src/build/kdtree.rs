@@ -13,6 +13,7 @@ use super::kdtree_sweep::Sweep;
 use super::real::{Bits, Real, ToDouble, Vec3};
 use super::shapes::aabb::Aabb;
 use super::shapes::kdtree::{MAX_DEPTH, Node, Tree};
+use crate::stage::stage;
 use rayon::prelude::*;
 
 /// What the tree is built over: f32 geometry as the kernels see it.
@@ -123,6 +124,7 @@ impl Heuristic {
 
 /// Builds the tree. The same input gives the same tree, whatever the number of threads.
 pub fn build(prims: &[Primitive]) -> KdTree {
+    let _stage = stage("kd-tree");
     let items: Vec<Item> =
         prims.par_iter().enumerate().map(|(i, p)| Item { prim: i as u32, bounds: whole(p) }).collect();
     let bounds = match items.iter().map(|i| i.bounds).reduce(Aabb::union) {

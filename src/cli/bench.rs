@@ -50,7 +50,7 @@ pub struct Arguments {
     /// measured with each, and the first one's count
     #[arg(long, value_name = "TIME|none", value_parser = slice, default_value = "50ms")]
     slice: Vec<f64>,
-    /// Print the figures as a JSON object: times in seconds, memory in bytes
+    /// Print one JSON object per line: what is measured, then all figures, times in seconds, memory in bytes
     #[arg(long)]
     json: bool,
     #[command(flatten)]
@@ -125,7 +125,11 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
         result(heading(&scene, &settings, &machine))?;
     }
     let mut reports = Vec::new();
-    for device in chosen {
+    let of = chosen.len();
+    for (done, device) in chosen.into_iter().enumerate() {
+        if arguments.json {
+            result(json!({ "event": "measuring", "device": device.name, "done": done, "of": of }))?;
+        }
         let report = measure(device, &scene, &settings, truth.as_ref(), &arguments)?;
         if !arguments.json {
             result(device_text(&report))?;

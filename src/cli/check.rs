@@ -1,9 +1,11 @@
 //! `caustica check`: everything that is wrong with scene files, and nothing rendered.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
+use caustica::scene::{Finding, SceneErrors};
 use caustica::{limits, scene};
 use miette::{Report, miette};
+use serde_json::{Value, json};
 
 use super::allowed::Allowed;
 use super::output::{message, result};
@@ -18,6 +20,9 @@ pub struct Arguments {
     scenes: Vec<PathBuf>,
     #[command(flatten)]
     allowed: Allowed,
+    /// Print a JSON object for each file, with its errors and warnings
+    #[arg(long)]
+    json: bool,
 }
 
 const HELP: &str = "\
@@ -31,28 +36,62 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     let allowance = arguments.allowed.allowance()?;
     let mut bad = 0;
     for file in &arguments.scenes {
-        match scene::load_within(file, &allowance) {
+        let (errors, warnings) = match scene::load_within(file, &allowance) {
             Ok(loaded) => {
                 let limits = limits::warnings(&loaded.scene, &loaded.settings, &loaded.places);
-                let warnings = match loaded.warnings.len() + limits.len() {
-                    0 => String::new(),
-                    1 => ", 1 warning".to_owned(),
-                    many => format!(", {many} warnings"),
-                };
-                for warning in loaded.warnings.into_iter().chain(limits) {
-                    message(format_args!("{:?}", Report::new(warning)));
-                }
-                result(format_args!("{}: good{warnings}", file.display()))?;
+                (None, loaded.warnings.into_iter().chain(limits).collect())
             }
-            Err(errors) => {
-                bad += 1;
-                result(format_args!("{}: bad", file.display()))?;
-                message(format_args!("{:?}", Report::new(errors)));
-            }
+            Err(errors) => (Some(errors), Vec::new()),
+        };
+        bad += usize::from(errors.is_some());
+        match arguments.json {
+            true => result(as_json(file, errors.as_ref(), &warnings))?,
+            false => tell(file, errors, warnings)?,
         }
     }
     match bad {
         0 => Ok(Done::Fully),
         _ => Err(Failure::failed(miette!("{bad} of {} scenes cannot be rendered", arguments.scenes.len()))),
     }
+}
+
+fn tell(file: &Path, errors: Option<SceneErrors>, warnings: Vec<Finding>) -> Result<(), Failure> {
+    if let Some(errors) = errors {
+        result(format_args!("{}: bad", file.display()))?;
+        message(format_args!("{:?}", Report::new(errors)));
+        return Ok(());
+    }
+    let count = match warnings.len() {
+        0 => String::new(),
+        1 => ", 1 warning".to_owned(),
+        many => format!(", {many} warnings"),
+    };
+    for warning in warnings {
+        message(format_args!("{:?}", Report::new(warning)));
+    }
+    result(format_args!("{}: good{count}", file.display()))
+}
+
+/// Lines and columns count from 1, columns in characters; they are null where a whole file is meant.
+fn as_json(file: &Path, errors: Option<&SceneErrors>, warnings: &[Finding]) -> Value {
+    let finding = |finding: &Finding| {
+        let place = finding.line_column();
+        json!({
+            "message": finding.message(),
+            "label": finding.label(),
+            "help": finding.help(),
+            "file": finding.file(),
+            "line": place.map(|(line, _)| line),
+            "column": place.map(|(_, column)| column),
+        })
+    };
+    let warnings = errors.map_or(warnings, |errors| &errors.warnings);
+    json!({
+        "event": "checked",
+        "scene": file,
+        "good": errors.is_none(),
+        "more_errors": errors.map_or(0, |errors| errors.more),
+        "errors": errors.map_or(&[][..], |errors| &errors.errors).iter().map(finding).collect::<Vec<_>>(),
+        "warnings": warnings.iter().map(finding).collect::<Vec<_>>(),
+    })
 }

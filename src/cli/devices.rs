@@ -1,24 +1,38 @@
 //! `caustica devices`: what there is to render on.
 
-use caustica::device;
+use caustica::device::{self, DeviceInfo};
+use serde_json::{Value, json};
 
 use super::output::result;
 use super::{Done, Failure};
 
 /// List the devices, their drivers and limits, and what --device auto takes
 #[derive(clap::Args)]
-pub struct Arguments {}
+pub struct Arguments {
+    /// Print the list as a JSON object
+    #[arg(long)]
+    json: bool,
+}
 
 /// Prints the list.
-pub fn run(_: Arguments) -> Result<Done, Failure> {
+pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     let devices = device::list();
+    let (auto, why) = device::pick(&device::Wanted::Auto, &devices)?;
+    if arguments.json {
+        let each = devices.iter().map(|DeviceInfo { name, kind, driver, limits }| {
+            let limits = Value::from_iter(limits.iter().cloned());
+            json!({ "name": name, "kind": kind.word(), "driver": driver, "limits": limits })
+        });
+        let each: Vec<_> = each.collect();
+        result(json!({ "event": "devices", "devices": each, "auto": auto.name, "why": why }))?;
+        return Ok(Done::Fully);
+    }
     for device in &devices {
         result(format_args!("{} [{}] {}", device.name, device.kind.word(), device.driver))?;
         for (limit, value) in &device.limits {
             result(format_args!("    {limit:<32} {value}"))?;
         }
     }
-    let (device, why) = device::pick(&device::Wanted::Auto, &devices)?;
-    result(format_args!("--device auto takes {} ({why})", device.name))?;
+    result(format_args!("--device auto takes {} ({why})", auto.name))?;
     Ok(Done::Fully)
 }

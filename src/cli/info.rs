@@ -10,6 +10,7 @@ use caustica::plan::{Kernel, Plan};
 use caustica::settings::Method;
 use caustica::tables::Scene;
 use clap::builder::NonEmptyStringValueParser;
+use serde_json::{Value, json};
 
 use super::measure;
 use super::output::result;
@@ -29,6 +30,9 @@ pub struct Arguments {
     /// Device to measure on: auto, gpu, software, cpu, or a part of a device's name; several are measured
     #[arg(long, value_name = "DEVICE", value_parser = NonEmptyStringValueParser::new(), default_value = "auto", requires = "measure")]
     device: Vec<String>,
+    /// Print the figures as one JSON object per line: bytes, seconds
+    #[arg(long)]
+    json: bool,
     #[command(flatten)]
     overrides: Overrides,
 }
@@ -55,17 +59,27 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     let film = scene.film;
     let packed = pack(&scene, film.width, film.height).map_err(EngineError::from)?;
     let plan = Plan::new(&packed, &settings);
-    result(format_args!(
-        "{}: {} x {} pixels, {} passes",
-        scene.name, film.width, film.height, settings.passes
-    ))?;
-    if let Some(radius) = plan.told_radius() {
-        result(format_args!("start radius: {radius}"))?;
+    if arguments.json {
+        let mut figures = report(&packed, &plan).as_json();
+        figures["scene"] = json!(scene.name);
+        figures["width"] = json!(film.width);
+        figures["height"] = json!(film.height);
+        figures["settings"] = json!(plan.settings);
+        figures["radius_why"] = json!(plan.told_radius().map(|radius| radius.to_string()));
+        result(figures)?;
+    } else {
+        result(format_args!(
+            "{}: {} x {} pixels, {} passes",
+            scene.name, film.width, film.height, settings.passes
+        ))?;
+        if let Some(radius) = plan.told_radius() {
+            result(format_args!("start radius: {radius}"))?;
+        }
+        result(report(&packed, &plan))?;
     }
-    result(report(&packed, &plan))?;
     if arguments.measure {
         for device in &arguments.device {
-            measure::on_device(device, &packed, &settings)?;
+            measure::on_device(device, &packed, &settings, arguments.json)?;
         }
     }
     Ok(Done::Fully)
@@ -110,6 +124,19 @@ fn scene_tables(scene: &Scene) -> Vec<(&'static str, u64)> {
         ("attributes", bytes(&scene.attributes)),
         ("texels", bytes(&scene.texels)),
     ]
+}
+
+impl InfoReport {
+    fn as_json(&self) -> Value {
+        let needed = |entries: &[(String, bool)]| Value::from_iter(entries.iter().cloned());
+        json!({
+            "event": "info",
+            "features": needed(&self.features),
+            "kernels": needed(&self.kernels),
+            "buffers": Value::from_iter(self.buffers.iter().cloned()),
+            "bytes": self.buffers.iter().map(|(_, bytes)| bytes).sum::<u64>(),
+        })
+    }
 }
 
 impl fmt::Display for InfoReport {

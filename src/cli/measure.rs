@@ -7,6 +7,7 @@ use caustica::gpu::AdapterChoice;
 use caustica::pack::Packed;
 use caustica::plan::Kernel;
 use caustica::settings::{Method, RenderSettings};
+use serde_json::{Map, Value, json};
 
 use super::output::{message, result};
 use super::{Done, Failure};
@@ -16,8 +17,13 @@ const PASSES: u32 = 5;
 /// Kernels whose code depends on the scene.
 const KERNELS: [Kernel; 3] = [Kernel::EyeTrace, Kernel::PhotonTrace, Kernel::Gather];
 
-/// Prints a table: the scene as it is, with each thing more, and with everything.
-pub fn on_device(wanted: &str, packed: &Packed, settings: &RenderSettings) -> Result<Done, Failure> {
+/// Prints a table, or a JSON object for each of its lines: the scene as it is, with each thing more, and with everything.
+pub fn on_device(
+    wanted: &str,
+    packed: &Packed,
+    settings: &RenderSettings,
+    json: bool,
+) -> Result<Done, Failure> {
     let devices = device::list();
     let (device, _) = device::pick(&device::parse(wanted), &devices)?;
     if settings.method == Method::Path || device.kind == DeviceKind::CpuDouble {
@@ -37,17 +43,38 @@ pub fn on_device(wanted: &str, packed: &Packed, settings: &RenderSettings) -> Re
     }
     let features = Features::of(&packed.scene, settings);
     let with = |scene| Packed { scene, ..packed.clone() };
-    result(format_args!("\non {}, the fastest of {PASSES} passes:", device.name))?;
-    result(heading(device.kind))?;
+    let tell = |added: &str, costs: &Costs, plain: &Costs| match json {
+        true => result(as_json(&device.name, added, costs, plain)),
+        false => result(line(added, costs, plain)),
+    };
+    if !json {
+        result(format_args!("\non {}, the fastest of {PASSES} passes:", device.name))?;
+        result(heading(device.kind))?;
+    }
     let plain = cost(packed.clone())?;
-    result(line("as it is", &plain, &plain))?;
+    tell("as it is", &plain, &plain)?;
     for feature in left_out(&features) {
         let burdened = cost(with(burdened(&packed.scene, feature)))?;
-        result(line(&format!("+ {feature}"), &burdened, &plain))?;
+        tell(&format!("+ {feature}"), &burdened, &plain)?;
     }
     let all = cost(with(fully_burdened(&packed.scene, &features)))?;
-    result(line("+ all of these", &all, &plain))?;
+    tell("+ all of these", &all, &plain)?;
     Ok(Done::Fully)
+}
+
+/// A line of the table; times in seconds, of all kernels of the fastest pass and of each whose code depends on the scene.
+fn as_json(device: &str, added: &str, costs: &Costs, plain: &Costs) -> Value {
+    let kernels = costs.kernels.iter().map(|(name, cost)| {
+        (name.to_string(), json!({ "compile_seconds": cost.compile, "seconds": cost.run }))
+    });
+    json!({
+        "event": "measured",
+        "device": device,
+        "added": added,
+        "pass_seconds": costs.pass,
+        "kernels": kernels.collect::<Map<_, _>>(),
+        "same_bits": costs.picture == plain.picture,
+    })
 }
 
 fn heading(kind: DeviceKind) -> String {

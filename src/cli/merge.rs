@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use caustica::checkpoint::{self, Checkpoint, EXTENSION, merge};
 use caustica::film::estimate::LEAST_PASSES;
 use caustica::film::file::Format;
-use caustica::film::{self, FileError};
+use caustica::film::{self, FileError, RelativeError};
+use serde_json::{Value, json};
 
 use super::output::{message, result};
 use super::progress::{count, percent};
@@ -23,6 +24,9 @@ pub struct Arguments {
     /// times
     #[arg(short, long, required = true, value_name = "FILE")]
     output: Vec<PathBuf>,
+    /// Print the result as a JSON object
+    #[arg(long)]
+    json: bool,
 }
 
 const HELP: &str = "\
@@ -35,7 +39,7 @@ The picture is that of a render of all passes, but for rounding (docs/checkpoint
 
 /// Merges and writes.
 pub fn run(arguments: Arguments) -> Result<Done, Failure> {
-    let Arguments { checkpoints, output: outputs } = arguments;
+    let Arguments { checkpoints, output: outputs, json } = arguments;
     let (merged, pictures): (Vec<PathBuf>, Vec<PathBuf>) =
         outputs.iter().cloned().partition(|output| output.extension().is_some_and(|e| e == EXTENSION));
     if let Some(file) = pictures.iter().find(|picture| Format::of(picture).is_none()) {
@@ -55,12 +59,17 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     for file in &merged {
         checkpoint::write(file, &all)?;
     }
-    write_pictures(&pictures, &all)?;
+    let error = write_pictures(&pictures, &all)?;
+    if json {
+        result(as_json(&all, error, &outputs))?;
+        return Ok(Done::Fully);
+    }
+    message(as_text(&all, error));
     outputs.iter().try_for_each(|output| result(output.display()))?;
     Ok(Done::Fully)
 }
 
-fn write_pictures(pictures: &[impl AsRef<Path>], all: &Checkpoint) -> Result<(), Failure> {
+fn write_pictures(pictures: &[impl AsRef<Path>], all: &Checkpoint) -> Result<Option<RelativeError>, Failure> {
     let (picture, errors, rejections) = all.develop();
     if !rejections.is_empty() {
         message(format_args!("warning: {}", left_out(&rejections)));
@@ -70,17 +79,35 @@ fn write_pictures(pictures: &[impl AsRef<Path>], all: &Checkpoint) -> Result<(),
     for output in pictures {
         film::write(output.as_ref(), &picture, &layers, &all.development(), &all.provenance())?;
     }
-    let error = errors.map_or(String::new(), |errors| {
-        let error = errors.relative();
+    Ok(errors.map(|errors| errors.relative()))
+}
+
+fn as_text(all: &Checkpoint, error: Option<RelativeError>) -> String {
+    let error = error.map_or(String::new(), |error| {
         let [stated, noise, bias] = [error.stated, error.noise, error.bias].map(percent);
         format!(", error {stated} (noise {noise}, bias {bias})")
     });
     let (passes, photons) = (all.state.passes, count(all.totals.photons as f64));
-    message(format_args!(
+    format!(
         "{}: passes {}..{}, {passes} in all, {photons} photons{error}",
         all.origin.scene,
         all.state.first_pass,
         all.end()
-    ));
-    Ok(())
+    )
+}
+
+/// The same as a JSON object; errors are null for fewer passes than an estimate needs.
+fn as_json(all: &Checkpoint, error: Option<RelativeError>, outputs: &[PathBuf]) -> Value {
+    json!({
+        "event": "merged",
+        "scene": all.origin.scene,
+        "first_pass": all.state.first_pass,
+        "end": all.end(),
+        "passes": all.state.passes,
+        "photons": all.totals.photons,
+        "error": error.map(|error| error.stated),
+        "error_noise": error.map(|error| error.noise),
+        "error_bias": error.map(|error| error.bias),
+        "outputs": outputs,
+    })
 }

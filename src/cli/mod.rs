@@ -8,7 +8,9 @@ mod bench_table;
 mod bounds;
 mod check;
 mod checkpoint;
+mod colors;
 mod compare;
+mod completions;
 mod devices;
 mod diff;
 mod extent;
@@ -17,6 +19,8 @@ mod figures;
 mod info;
 mod interrupt;
 mod like;
+mod log;
+mod man;
 mod measure;
 mod merge;
 mod output;
@@ -29,7 +33,7 @@ mod tev;
 
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{ArgAction, CommandFactory, Parser, Subcommand};
 
 use failure::Failure;
 
@@ -37,6 +41,9 @@ use failure::Failure;
 #[derive(Parser)]
 #[command(version, after_help = HELP)]
 struct Arguments {
+    /// Log to standard error: which device and why, stages with their seconds; -vv each pass too
+    #[arg(short, long, global = true, action = ArgAction::Count)]
+    verbose: u8,
     #[command(subcommand)]
     command: Command,
 }
@@ -61,6 +68,8 @@ enum Command {
     Check(check::Arguments),
     Devices(devices::Arguments),
     Tessellate(tessellate::Arguments),
+    Completions(completions::Arguments),
+    Man(man::Arguments),
 }
 
 /// How a command that did not fail ended.
@@ -76,9 +85,17 @@ enum Done {
     Interrupted = 130,
 }
 
+/// The parser, for completions and manual pages.
+fn command() -> clap::Command {
+    Arguments::command()
+}
+
 /// Carries out the command line.
 pub fn run() -> ExitCode {
-    let done = match Arguments::parse().command {
+    colors::begin();
+    let arguments = Arguments::parse();
+    log::begin(arguments.verbose);
+    let done = match arguments.command {
         Command::Render(arguments) => render::run(*arguments),
         Command::Merge(arguments) => merge::run(arguments),
         Command::Compare(arguments) => compare::run(arguments),
@@ -89,6 +106,8 @@ pub fn run() -> ExitCode {
         Command::Check(arguments) => check::run(arguments),
         Command::Devices(arguments) => devices::run(arguments),
         Command::Tessellate(arguments) => tessellate::run(arguments),
+        Command::Completions(arguments) => completions::run(arguments),
+        Command::Man(arguments) => man::run(arguments),
     };
     match done {
         Ok(done) => ExitCode::from(done as u8),

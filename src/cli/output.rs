@@ -8,7 +8,17 @@ use super::Failure;
 
 /// Prints a line of results to standard output.
 pub fn result(line: impl Display) -> Result<(), Failure> {
-    match writeln!(io::stdout(), "{line}") {
+    written(writeln!(io::stdout(), "{line}"))
+}
+
+/// Prints a whole text to standard output.
+pub fn bytes(text: &[u8]) -> Result<(), Failure> {
+    let mut out = io::stdout();
+    written(out.write_all(text).and_then(|()| out.flush()))
+}
+
+fn written(outcome: io::Result<()>) -> Result<(), Failure> {
+    match outcome {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
             Err(Failure::failed(miette::miette!("standard output cannot be written: {error}")))
         }

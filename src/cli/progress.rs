@@ -7,6 +7,7 @@ use caustica::render::Progress;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::json;
 
+use super::log;
 use super::output::{message, result};
 
 /// Where progress goes.
@@ -31,7 +32,7 @@ impl Reporter {
             Self::Json(Pace::new(Duration::from_millis(200), 0.0))
         } else if quiet {
             Self::Silent
-        } else if std::io::stderr().is_terminal() {
+        } else if std::io::stderr().is_terminal() && !log::is_on() {
             let bar = ProgressBar::with_draw_target(Some(BAR_LENGTH), ProgressDrawTarget::stderr());
             let style =
                 ProgressStyle::with_template("{bar:16} {wide_msg}").unwrap_or(ProgressStyle::default_bar());

@@ -16,6 +16,7 @@ use crate::layers::Found;
 use crate::pack::Packed;
 use crate::plan::{Kernel, Plan, Step};
 use crate::settings::Method;
+use crate::stage::stage;
 use crate::tables::Scene;
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -170,6 +171,7 @@ impl GpuEngine {
     /// Makes the kernels of the plan ready. Each runs once over nothing, since some drivers compile at the first run, and do
     /// so while the next kernels are checked.
     fn compile(&mut self, scene: &SceneTables, compiling: Compiling) -> Result<(), EngineError> {
+        let _stage = stage("compile");
         let steps = self.plan.steps(0, self.plan.batch_photons);
         let kernels: Vec<Kernel> =
             Kernel::ALL.into_iter().filter(|k| steps.iter().any(|step| step.kernel == *k)).collect();
@@ -195,6 +197,7 @@ impl GpuEngine {
                 let driver = begun.elapsed().as_secs_f64();
                 compile_seconds.insert(program.kernel, CompileSeconds { checking, driver });
             }
+            log::debug!("{}: checked in {checking:.3} s", program.kernel.stem());
             programs.insert(program.kernel, program);
             Ok(())
         })?;

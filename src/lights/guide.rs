@@ -14,6 +14,7 @@ use super::shapes::intersect::intersect_scene;
 use super::shapes::ray::Ray;
 use super::shapes::surface::surface_at;
 use super::tables::*;
+use crate::stage::stage;
 use rayon::prelude::*;
 
 /// Cells along each side of a map.
@@ -48,6 +49,7 @@ pub fn learn_guides(scene: &mut Scene) {
     if !scene.materials.iter().any(|m| is_specular(m.kind)) {
         return;
     }
+    let _stage = stage("maps");
     let mut strongest: Vec<usize> = (0..scene.lights.len()).collect();
     strongest.sort_by(|a, b| scene.lights[*b].selection.total_cmp(&scene.lights[*a].selection));
     strongest.truncate(LIGHTS);

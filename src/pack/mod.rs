@@ -16,6 +16,7 @@ use super::tables::*;
 use super::{build, lights, materials, math, real, shapes, tables};
 use crate::build::normalize::Normalization;
 use crate::scene::{self, MaterialKind, Reflectance};
+use crate::stage::stage;
 use bytemuck::Zeroable;
 use glam::DVec3;
 
@@ -38,6 +39,7 @@ pub struct Packed {
 
 /// Flattens `scene` for a picture of `width` by `height` pixels.
 pub fn pack(scene: &scene::Scene, width: u32, height: u32) -> Result<Packed, PackError> {
+    let _stage = stage("pack");
     let n = Normalization::of(scene);
     let mut out = Scene::empty();
     out.camera = camera(scene, &n, width, height);

@@ -14,6 +14,7 @@ use super::places::Places;
 use super::report::{Finding, Report, SceneErrors, list};
 use super::{Scene, looks, mesh, schema, surfaces, text, view};
 use crate::settings::RenderSettings;
+use crate::stage::stage;
 
 /// What a scene file holds.
 #[derive(Clone, Debug)]
@@ -59,6 +60,7 @@ pub fn parse(path: &Path, bytes: &[u8]) -> Result<Loaded, SceneErrors> {
 /// # Errors
 /// As [`load_within`].
 pub fn parse_within(path: &Path, bytes: &[u8], allowance: &Allowance) -> Result<Loaded, SceneErrors> {
+    let _stage = stage("parse");
     let ((scene, settings, places), warnings) = text::parse(path, bytes, allowance, |root, report| {
         let count = root.get("shapes").map_or(0, |shapes| shapes.elements().count() as u64);
         if let Err(refusal) = within("shapes", "shapes", count, allowance.shapes) {

@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use super::allowance::{Refusal, within};
 use super::appearance::{Material, Rgb, Texture};
 use super::check::Item;
+use super::encoding::{Foreign, unmarked};
 use super::geometry::{Mesh, Transform};
 use super::load::Loader;
 use super::report::{SourceFile, did_you_mean};
@@ -135,7 +136,15 @@ const MOST_KEYWORDS: usize = 20;
 
 fn read(loader: &mut Loader, item: &Item, path: &Path) -> Option<SourceFile> {
     match bytes(loader, path) {
-        Ok(bytes) => Some(SourceFile::new(path, text(bytes))),
+        Ok(bytes) => match source(path, &bytes) {
+            Ok(source) => Some(source),
+            Err(foreign) => {
+                let message = format!("{}: {foreign}", path.display());
+                let label = "expected a Wavefront OBJ file";
+                loader.report.error(item.node.span_of("file"), message, label, Some(foreign.help()));
+                None
+            }
+        },
         Err(error) => {
             let advise = error.is_missing() && !loader.report.errors.is_full();
             let near = || nearest_file(path).filter(|_| advise);
@@ -155,8 +164,9 @@ fn bytes(loader: &mut Loader, path: &Path) -> Result<Vec<u8>, Refusal> {
     Ok(bytes)
 }
 
-fn text(bytes: Vec<u8>) -> String {
-    String::from_utf8(bytes).unwrap_or_else(|error| String::from_utf8_lossy(error.as_bytes()).into_owned())
+/// The text of a file; of names and comments in an encoding of one byte a character, what is not ASCII is lost.
+fn source(path: &Path, bytes: &[u8]) -> Result<SourceFile, Foreign> {
+    Ok(SourceFile::new(path, String::from_utf8_lossy(unmarked(bytes)?).into_owned()))
 }
 
 fn libraries(loader: &mut Loader, path: &Path, scan: &mut obj::Scan, named_at: &Range<usize>) -> Libraries {
@@ -173,7 +183,14 @@ fn libraries(loader: &mut Loader, path: &Path, scan: &mut obj::Scan, named_at: &
                 continue;
             }
         };
-        let source = SourceFile::new(&library, text(bytes));
+        let source = match source(&library, &bytes) {
+            Ok(source) => source,
+            Err(foreign) => {
+                let message = format!("{}: {foreign}", library.display());
+                scan.faults.push(span, message, foreign.help());
+                continue;
+            }
+        };
         let folder = library.parent().unwrap_or(Path::new(""));
         let found = mtl::scan(source.text(), folder, &mut loader.images);
         let materials = match tobj_materials(&found) {

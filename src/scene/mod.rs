@@ -10,6 +10,7 @@ mod aov;
 mod appearance;
 mod check;
 mod digest;
+mod encoding;
 pub mod file;
 mod findings;
 mod geometry;

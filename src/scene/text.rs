@@ -7,6 +7,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::allowance::Allowance;
+use super::encoding::unmarked;
 use super::report::{Finding, Report, SceneErrors, SourceFile, nearest};
 use super::tree::Node;
 
@@ -34,7 +35,14 @@ pub(super) fn parse<T>(
     allowance: &Allowance,
     meaning: impl FnOnce(Node, &mut Report) -> Option<T>,
 ) -> Result<(T, Vec<Finding>), SceneErrors> {
-    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let bytes = match unmarked(bytes) {
+        Ok(bytes) => bytes,
+        Err(foreign) => {
+            let mut report = Report::new(path, SourceFile::new(path, String::new()), 1);
+            report.unreadable(format!("{}: {foreign}", path.display()), Some(foreign.help()));
+            return Err(errors(path, report));
+        }
+    };
     let text = String::from_utf8_lossy(bytes).into_owned();
     let source = SourceFile::new(path, text.clone());
     let mut report = Report::new(path, source, allowance.errors);

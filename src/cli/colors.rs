@@ -1,0 +1,54 @@
+//! Whether reports on standard error have colours. Usage and help, which clap prints, follow the same rule by themselves.
+
+use std::ffi::OsString;
+use std::io::IsTerminal;
+
+use miette::MietteHandlerOpts;
+
+/// Sets it for all reports of errors and warnings.
+pub fn begin() {
+    let colored = colored(|name| std::env::var_os(name), std::io::stderr().is_terminal());
+    let handler = move |_: &_| -> Box<dyn miette::ReportHandler> {
+        Box::new(MietteHandlerOpts::new().color(colored).terminal_links(false).build())
+    };
+    // Fails where a handler is set already, which then stays.
+    let _ = miette::set_hook(Box::new(handler));
+}
+
+/// `NO_COLOR`, set to anything but nothing, says no (<https://no-color.org>); `CLICOLOR_FORCE` says yes, even where there is no
+/// terminal (<https://bixense.com/clicolors>); else a terminal that knows colours has them.
+fn colored(variable: impl Fn(&str) -> Option<OsString>, terminal: bool) -> bool {
+    let set = |name| variable(name).is_some_and(|value| !value.is_empty());
+    let is = |name, word: &str| variable(name).is_some_and(|value| value == word);
+    if set("NO_COLOR") {
+        false
+    } else if set("CLICOLOR_FORCE") && !is("CLICOLOR_FORCE", "0") {
+        true
+    } else {
+        terminal && !is("TERM", "dumb") && !is("CLICOLOR", "0")
+    }
+}
+
+/// Theory: the variables' own pages.
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn who_decides() {
+        let with = |set: &[(&str, &str)], terminal| {
+            let find = |name: &str| set.iter().find(|(key, _)| *key == name).map(|(_, v)| OsString::from(v));
+            colored(find, terminal)
+        };
+        assert!(with(&[], true) && !with(&[], false));
+        for value in ["1", "0", "no", " "] {
+            assert!(!with(&[("NO_COLOR", value)], true), "{value}");
+            assert!(!with(&[("NO_COLOR", value), ("CLICOLOR_FORCE", "1")], true), "{value}");
+        }
+        assert!(with(&[("NO_COLOR", "")], true), "empty is as if not set");
+        assert!(with(&[("CLICOLOR_FORCE", "1")], false));
+        assert!(!with(&[("CLICOLOR_FORCE", "0")], false) && !with(&[("CLICOLOR_FORCE", "")], false));
+        assert!(!with(&[("TERM", "dumb")], true) && with(&[("TERM", "xterm")], true));
+        assert!(!with(&[("CLICOLOR", "0")], true));
+    }
+}

@@ -1,0 +1,77 @@
+//! Logs on standard error: `-v` tells the device and the stages with their seconds, `-vv` every pass too.
+
+use std::sync::OnceLock;
+use std::time::Instant;
+
+use log::{Level, LevelFilter, Log, Metadata, Record};
+
+use super::output::message;
+
+/// The program's own name, with which the targets of its records begin.
+const OWN: &str = "caustica";
+
+/// Writes records that are wanted as lines: seconds since the start, level, target, text.
+struct Writer {
+    begun: OnceLock<Instant>,
+}
+
+static WRITER: Writer = Writer { begun: OnceLock::new() };
+
+/// Begins to write what `-v`, said so many times, asks for.
+pub fn begin(verbosity: u8) {
+    if verbosity == 0 {
+        return;
+    }
+    WRITER.begun.get_or_init(Instant::now);
+    if log::set_logger(&WRITER).is_ok() {
+        log::set_max_level(if verbosity == 1 { LevelFilter::Info } else { LevelFilter::Debug });
+    }
+}
+
+/// Whether logs are written.
+pub fn is_on() -> bool {
+    log::max_level() > LevelFilter::Off
+}
+
+/// Libraries are heard one level later than the program itself: `-v` has their warnings, `-vv` what they find worth telling.
+fn wanted(level: Level, target: &str, most: LevelFilter) -> bool {
+    let own = target.split("::").next() == Some(OWN);
+    let most = match (own, most) {
+        (true, most) => most,
+        (false, LevelFilter::Debug | LevelFilter::Trace) => LevelFilter::Info,
+        (false, _) => LevelFilter::Warn,
+    };
+    level <= most
+}
+
+impl Log for Writer {
+    fn enabled(&self, metadata: &Metadata) -> bool {
+        wanted(metadata.level(), metadata.target(), log::max_level())
+    }
+
+    fn log(&self, record: &Record) {
+        if self.enabled(record.metadata()) {
+            let seconds = self.begun.get().map_or(0.0, |begun| begun.elapsed().as_secs_f64());
+            let level = record.level().as_str().to_ascii_lowercase();
+            message(format_args!("{seconds:9.3} s {level:<5} {}: {}", record.target(), record.args()));
+        }
+    }
+
+    fn flush(&self) {}
+}
+
+/// Theory: a library's records are as welcome as the program's own of the level above.
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn libraries_are_quieter() {
+        let (v, vv) = (LevelFilter::Info, LevelFilter::Debug);
+        assert!(wanted(Level::Info, "caustica::stage", v) && !wanted(Level::Debug, "caustica::device", v));
+        assert!(wanted(Level::Debug, "caustica::device", vv));
+        assert!(wanted(Level::Warn, "wgpu_hal::vulkan", v) && !wanted(Level::Info, "wgpu_core", v));
+        assert!(wanted(Level::Info, "wgpu_core", vv) && !wanted(Level::Debug, "wgpu_core", vv));
+        assert!(!wanted(Level::Info, "caustically", v), "a name that begins alike is another's");
+    }
+}
