@@ -8,7 +8,7 @@ use crate::engine::{Engine, EngineError};
 use crate::gpu::{self, AdapterChoice, AdapterKind, AdapterSummary, GpuEngine};
 use crate::kernels::records::VisiblePoint;
 use crate::lights::guide::guides;
-use crate::pack::pack;
+use crate::pack::{Packed, pack};
 use crate::plan::Plan;
 use crate::radius::Automatic;
 use crate::scene::Scene;
@@ -221,20 +221,12 @@ type Started = (Box<dyn Engine>, RenderSettings, Option<Automatic>);
 fn start(device: &DeviceInfo, scene: &Scene, settings: &RenderSettings) -> Result<Started, EngineError> {
     check_points(device, scene, settings)?;
     let film = &scene.film;
+    let packed = pack(scene, film.width, film.height)?;
     if device.kind == DeviceKind::CpuDouble {
-        let mut packed = double::pack::pack(scene, film.width, film.height)?;
-        // maps and what is left open are those of the f32 engine, since both are to render the same
-        let single = pack(scene, film.width, film.height)?;
-        double::lights::guide::take_guides(&mut packed.scene, &guides(&single.scene));
-        let settings = &match settings.radius {
-            Radius::Auto => Plan::new(&single, settings).settings,
-            _ => settings.clone(),
-        };
-        let plan = double::plan::Plan::new(&packed, settings).on(film);
+        let (packed, plan) = in_double(scene, &packed, settings)?;
         let (settings, automatic) = (plan.settings.clone(), plan.told_radius());
         return Ok((Box::new(double::cpu::CpuEngine::new(packed, plan)), settings, automatic));
     }
-    let packed = pack(scene, film.width, film.height)?;
     let plan = Plan::new(&packed, settings).on(film);
     let (settings, automatic) = (plan.settings.clone(), plan.told_radius());
     let engine: Box<dyn Engine> = match device.kind {
@@ -242,6 +234,24 @@ fn start(device: &DeviceInfo, scene: &Scene, settings: &RenderSettings) -> Resul
         _ => Box::new(GpuEngine::new(&AdapterChoice::Named(device.name.clone()), &packed, plan)?),
     };
     Ok((engine, settings, automatic))
+}
+
+/// What the engine in f64 takes; `single` is the scene flattened in f32.
+pub fn in_double(
+    scene: &Scene,
+    single: &Packed,
+    settings: &RenderSettings,
+) -> Result<(double::pack::Packed, double::plan::Plan), EngineError> {
+    let film = &scene.film;
+    let mut packed = double::pack::pack(scene, film.width, film.height)?;
+    // maps and what is left open are those of the f32 engine, since both are to render the same
+    double::lights::guide::take_guides(&mut packed.scene, &guides(&single.scene));
+    let settings = &match settings.radius {
+        Radius::Auto => Plan::new(single, settings).settings,
+        _ => settings.clone(),
+    };
+    let plan = double::plan::Plan::new(&packed, settings).on(film);
+    Ok((packed, plan))
 }
 
 /// Theory: the order of preference is hardware, then the CPU, whatever the order of the list.

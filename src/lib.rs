@@ -20,7 +20,7 @@
 //!
 //! Modules depend on one another one way: [`real`] and [`math`], then [`tables`], [`shapes`], [`materials`], [`lights`],
 //! [`camera`] and [`grid`], then [`scene`], [`build`], [`limits`], [`pack`], then [`kernels`], [`radius`], [`probe`], [`plan`], then [`cpu`]
-//! and [`gpu`], then [`device`], [`quality`], [`calibration`], [`showing`] and [`render`], and last [`bench`](mod@bench), [`burden`], [`hold`] and [`study`].
+//! and [`gpu`], then [`device`], [`quality`], [`calibration`], [`showing`] and [`render`], and last [`bench`](mod@bench), [`burden`], [`hold`], [`study`] and, where it is not left out, `preview`.
 //! Those from [`real`] to [`cpu`] are compiled twice: [`double`] is the same in f64.
 
 pub mod bench;
@@ -47,6 +47,8 @@ pub mod materials;
 pub mod math;
 pub mod pack;
 pub mod plan;
+#[cfg(feature = "preview")]
+pub mod preview;
 pub mod probe;
 pub mod quality;
 pub mod radius;

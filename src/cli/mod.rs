@@ -18,6 +18,8 @@ mod like;
 mod measure;
 mod output;
 mod overrides;
+#[cfg(feature = "preview")]
+mod preview;
 mod progress;
 mod render;
 mod study;
@@ -49,6 +51,8 @@ saved, 130 interrupted with the picture so far saved";
 #[derive(Subcommand)]
 enum Command {
     Render(Box<render::Arguments>),
+    #[cfg(feature = "preview")]
+    Preview(Box<preview::Arguments>),
     Compare(compare::Arguments),
     Diff(Box<diff::Arguments>),
     Study(Box<study::Arguments>),
@@ -76,6 +80,8 @@ enum Done {
 pub fn run() -> ExitCode {
     let done = match Arguments::parse().command {
         Command::Render(arguments) => render::run(*arguments),
+        #[cfg(feature = "preview")]
+        Command::Preview(arguments) => preview::run(*arguments),
         Command::Compare(arguments) => compare::run(arguments),
         Command::Diff(arguments) => diff::run(*arguments),
         Command::Study(arguments) => study::run(*arguments),

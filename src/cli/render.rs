@@ -261,7 +261,8 @@ pub fn in_force(mut loaded: Loaded, overrides: &Overrides) -> Result<(Scene, Ren
     Ok((loaded.scene, loaded.settings))
 }
 
-fn default_output(scene: &Path) -> PathBuf {
+/// The picture that is written where none is named.
+pub fn default_output(scene: &Path) -> PathBuf {
     Path::new(scene.file_stem().unwrap_or(scene.as_os_str())).with_extension("png")
 }
 

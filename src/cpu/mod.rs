@@ -23,6 +23,7 @@ use crate::film::{ErrorMap, Picture, Rejections};
 use crate::settings::Method;
 use bytemuck::Zeroable;
 use rayon::prelude::*;
+use std::sync::Arc;
 
 /// Visible points that one task gathers for.
 const GATHER_TASK: usize = 1024;
@@ -31,7 +32,7 @@ const PHOTON_TASK: u32 = 1024;
 
 /// Passes over one scene on the processor's cores.
 pub struct CpuEngine {
-    packed: Packed,
+    packed: Arc<Packed>,
     plan: Plan,
     passes_done: u32,
     visible_points: Vec<VisiblePoint>,
@@ -82,7 +83,7 @@ impl pulp::WithSimd for Gathers<'_> {
 
 impl CpuEngine {
     /// An engine for one scene and plan.
-    pub fn new(packed: Packed, plan: Plan) -> Self {
+    pub fn new(packed: impl Into<Arc<Packed>>, plan: Plan) -> Self {
         let points = (plan.pixels * plan.eye_samples) as usize;
         let photons = plan.features.has("photons");
         let buckets = if photons { plan.buckets as usize } else { 0 };
@@ -104,7 +105,7 @@ impl CpuEngine {
             device: format!("{ENGINE}, {} threads", rayon::current_num_threads()),
             clock: Clock::default(),
             arch: pulp::Arch::new(),
-            packed,
+            packed: packed.into(),
             plan,
         }
     }
