@@ -9,6 +9,7 @@ use super::keys::{Command, TABLE};
 use super::session::{Action, Session};
 use super::view::{Scale, View};
 use crate::device::{self, Wanted};
+use crate::film::Picture;
 use crate::scene::ToneMap;
 use crate::settings::{Direct, Method, Radius, RadiusRule};
 
@@ -178,11 +179,13 @@ fn camera(ui: &mut Ui, session: &mut Session) {
     });
 }
 
-/// The line of figures below the picture.
-pub fn figures(frame: &Frame, passes: u32, paused: bool) -> String {
+/// The lines of figures below the picture: how far it is and how fast, and how good with what.
+pub fn figures(frame: &Frame, passes: u32, paused: bool) -> [String; 2] {
     let per_second = f64::from(frame.passes) / frame.elapsed.as_secs_f64().max(1e-9);
     let made = if frame.quick {
-        format!("small picture, {} × {}, pass {}", frame.picture.width, frame.picture.height, frame.passes)
+        let halted = if paused { "halted" } else { "the whole one follows" };
+        let Picture { width, height, .. } = frame.picture;
+        format!("small picture, {width} × {height}, pass {}; {halted}", frame.passes)
     } else {
         let rest = match frame.passes >= passes {
             true => ", done",
@@ -195,13 +198,12 @@ pub fn figures(frame: &Frame, passes: u32, paused: bool) -> String {
         let [stated, noise, bias] = [error.stated, error.noise, error.bias].map(|share| 100.0 * share);
         format!("error {stated:.1} % (noise {noise:.1} %, bias {bias:.1} %)")
     });
-    format!(
-        "{made}  ·  {per_second:.1} passes/s, {:.1} M rays/s  ·  {error}  ·  radius {:.4}  ·  {:.0} MiB  ·  {}",
-        frame.rays_per_second() / 1e6,
-        frame.radius,
-        frame.setup.bytes as f64 / f64::from(1 << 20),
-        frame.setup.device,
-    )
+    let rays = frame.rays_per_second() / 1e6;
+    let mebibytes = frame.setup.bytes as f64 / f64::from(1 << 20);
+    [
+        format!("{made}  ·  {per_second:.1} passes/s, {rays:.1} M rays/s  ·  {}", frame.setup.device),
+        format!("{error}  ·  radius {:.4}  ·  {mebibytes:.0} MiB", frame.radius),
+    ]
 }
 
 /// What a view's colors stand for, drawn where there is room.
@@ -237,11 +239,14 @@ fn number(x: f64) -> String {
 
 /// The help.
 pub fn help(ui: &mut Ui) {
-    Grid::new("help").num_columns(2).spacing([16.0, 3.0]).show(ui, |ui| {
-        for line in TABLE {
-            ui.label(RichText::new(line.keys).strong());
-            ui.add(egui::Label::new(line.what).wrap_mode(egui::TextWrapMode::Extend));
-            ui.end_row();
-        }
+    let room = ui.ctx().content_rect().height() - 80.0;
+    ScrollArea::vertical().max_height(room).show(ui, |ui| {
+        Grid::new("help").num_columns(2).spacing([16.0, 1.0]).min_row_height(14.0).show(ui, |ui| {
+            for line in TABLE {
+                ui.label(RichText::new(line.keys).strong());
+                ui.add(egui::Label::new(line.what).wrap_mode(egui::TextWrapMode::Extend));
+                ui.end_row();
+            }
+        });
     });
 }

@@ -164,9 +164,11 @@ impl Window {
         let session = &self.session;
         let figures = match session.frame() {
             Some(frame) => panels::figures(&frame, session.now.settings.passes, session.paused),
-            None => "the first picture is on its way".to_owned(),
+            None => ["the first picture is on its way".to_owned(), String::new()],
         };
-        ui.add(egui::Label::new(figures).truncate());
+        for line in figures {
+            ui.add(egui::Label::new(line).truncate());
+        }
         let notice = if session.notice.is_empty() { "F1: help" } else { &session.notice };
         ui.add(egui::Label::new(egui::RichText::new(notice).weak()).truncate());
         ui.add_space(2.0);
@@ -179,7 +181,7 @@ impl Window {
             return;
         };
         let title = match self.session.trouble {
-            Some(_) => "The scene has an error; the picture is the last one without",
+            Some(_) => "Error in the scene; the last picture stays",
             None => "There are no more pictures",
         };
         egui::Window::new(title)
