@@ -20,7 +20,7 @@ pub struct Beside {
 enum What {
     File(Picture, Coding),
     Kept(Arc<Frame>),
-    Device(Worker, Wanted),
+    Device(Box<Worker>, Wanted),
 }
 
 impl Beside {
@@ -39,7 +39,7 @@ impl Beside {
 
     /// Another device, which is to be told of wishes.
     pub fn device(name: &str, worker: Worker, wanted: Wanted) -> Self {
-        Self { name: name.to_owned(), what: What::Device(worker, wanted) }
+        Self { name: name.to_owned(), what: What::Device(Box::new(worker), wanted) }
     }
 
     /// The worker of another device, and which that is.

@@ -65,6 +65,7 @@ pub fn save(file: &Path, before: &Edits, after: &Edits) -> Result<(), SaveError>
 /// The text with what differs between `before` and `after`; an error says why it is no TOML.
 pub fn edited(text: &str, before: &Edits, after: &Edits) -> Result<String, String> {
     let mut document: DocumentMut = text.parse().map_err(|error: toml_edit::TomlError| error.to_string())?;
+    let focus = document.get("camera").and_then(|camera| number(camera.get("focus")?.as_value()?));
     let mut put = |section: &str, key: &str, differs: bool, new: Value| {
         if !differs {
             return;
@@ -80,9 +81,10 @@ pub fn edited(text: &str, before: &Edits, after: &Edits) -> Result<String, Strin
     put("camera", "up", a.up != b.up, point(b.up));
     put("camera", "fov", a.fov_degrees != b.fov_degrees, b.fov_degrees.into());
     put("camera", "aperture", a.aperture != b.aperture, b.aperture.into());
-    // a lens with an aperture needs it
-    let opened = a.aperture == 0.0 && b.aperture > 0.0;
-    put("camera", "focus", a.focus != b.focus && b.aperture > 0.0 || opened, b.focus.into());
+    // without a focus that of the target is read, and a lens with an aperture needs one
+    let without = (b.target - b.position).length();
+    let needed = b.aperture > 0.0 && focus.is_none() || b.focus != focus.unwrap_or(without);
+    put("camera", "focus", needed, b.focus.into());
     let (a, b) = (&before.film, &after.film);
     put("film", "exposure", a.exposure != b.exposure, b.exposure.into());
     put("film", "tonemap", a.tonemap != b.tonemap, written(&b.tonemap));
@@ -124,8 +126,11 @@ fn replace(old: &mut Value, mut new: Value) {
 
 /// Whether two numbers are equal, so that the way one is written can stay.
 fn same(old: &Value, new: &Value) -> bool {
-    let number = |value: &Value| value.as_float().or(value.as_integer().map(|whole| whole as f64));
     number(old).zip(number(new)).is_some_and(|(old, new)| old == new)
+}
+
+fn number(value: &Value) -> Option<f64> {
+    value.as_float().or(value.as_integer().map(|whole| whole as f64))
 }
 
 fn point(p: DVec3) -> Value {
@@ -230,6 +235,7 @@ photons = 1000 # few
         let before = of(TEXT);
         let mut after = before.clone();
         after.camera.position.y = 1.5;
+        after.camera.focus = (after.camera.target - after.camera.position).length();
         after.settings.photons = 2000;
         let text = edited(TEXT, &before, &after).unwrap();
         assert_eq!(changed(TEXT, &text), ["  1.5, 4]        # and out", "photons = 2000 # few"]);
@@ -260,6 +266,17 @@ photons = 1000 # few
             };
             assert_eq!(comments(&text), comments(TEXT));
         }
+    }
+
+    #[test]
+    fn a_focus_of_its_own_is_saved_for_a_pinhole_too() {
+        let before = of(TEXT);
+        let mut after = before.clone();
+        after.camera.focus = 2.5;
+        let text = edited(TEXT, &before, &after).unwrap();
+        assert_eq!(changed(TEXT, &text), ["focus = 2.5"]);
+        assert_eq!(of(&text), after);
+        assert_eq!(of(&edited(&text, &after, &before).unwrap()), before, "and the one of the target");
     }
 
     /// An aperture needs its focus, also where that is what it was without being written.

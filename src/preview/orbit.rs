@@ -80,18 +80,17 @@ pub fn aperture(camera: &Camera, factor: f64) -> Camera {
     tidy(&Camera { aperture, ..*camera })
 }
 
-/// The same camera in numbers of six digits, counted from the first one of its distance; lens and focus have six of their own.
+/// The same camera in numbers of six digits, counted from the first one of its distance; lens and focus have six of their own. The
+/// focus of a pinhole that is about at the target is just there, where scene files without a focus have it.
 pub fn tidy(camera: &Camera) -> Camera {
     let places = DIGITS - 1 - distance(camera).log10().floor() as i32;
     let point = |p: DVec3| DVec3::from(p.to_array().map(|x| rounded(x, places)));
     let own = |x: f64| if x > 0.0 { rounded(x, DIGITS - 1 - x.log10().floor() as i32) } else { x };
-    Camera {
-        position: point(camera.position),
-        target: point(camera.target),
-        aperture: own(camera.aperture),
-        focus: own(camera.focus),
-        ..*camera
-    }
+    let (position, target) = (point(camera.position), point(camera.target));
+    let distance = (target - position).length();
+    let at_target = camera.aperture == 0.0 && (camera.focus - distance).abs() < 1e-4 * distance;
+    let focus = if at_target { distance } else { own(camera.focus) };
+    Camera { position, target, aperture: own(camera.aperture), focus, ..*camera }
 }
 
 /// The number nearest to `x` that is written with so many places after the point, or with so many zeros before it.
@@ -215,6 +214,11 @@ mod tests {
             assert!(x.to_string().len() <= 9, "{x}");
         }
         assert_eq!(tidy(&turned), turned);
+        let pinhole = Camera { focus: distance(&camera()), ..camera() };
+        let turned = orbit(&pinhole, 0.123, 0.04);
+        assert_eq!(turned.focus, distance(&turned), "as a file without a focus has it");
+        let lens = orbit(&Camera { aperture: 0.1, ..pinhole }, 0.123, 0.04);
+        assert!(lens.focus != turned.focus && lens.focus.to_string().len() <= 9);
         let far = Camera { position: DVec3::new(1.234_567_89e9, 0.0, 0.0), ..camera() };
         assert!((tidy(&far).position.x / far.position.x - 1.0).abs() < 1e-5);
     }

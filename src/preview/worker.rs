@@ -94,8 +94,10 @@ impl Worker {
     }
 
     fn send(&self, command: Command) {
-        // The thread ends after its commands do, so there is someone to take it.
-        let _ = self.commands.as_ref().map(|commands| commands.send(command));
+        if let Some(commands) = &self.commands {
+            // The thread ends after its commands do, so there is someone to take it.
+            let _ = commands.send(command);
+        }
     }
 }
 
