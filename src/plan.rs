@@ -249,7 +249,7 @@ impl Plan {
             self.pixels = (x1 - x0) * (y1 - y0);
         }
         self.aovs = film.aovs;
-        if self.aovs.has(Aov::Direct) {
+        if self.aovs.has(Aov::Direct) && self.settings.method != Method::Path {
             self.features = self.features.with("direct_layer");
         }
         // what tells caustics from the rest is their family
