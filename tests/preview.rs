@@ -340,6 +340,26 @@ fn pictures_and_scenes_are_saved() {
 }
 
 #[test]
+fn views_that_were_there_before_begin_nothing_anew() {
+    let mut session = session(&folder("again"));
+    let first = ticked(&mut session, "the picture", done);
+    session.act(Action::View(View::Depth));
+    let depth = ticked(&mut session, "the depth", |s| done(s).filter(|f| f.number != first.number));
+    for view in [View::Picture, View::Variance, View::Depth] {
+        session.act(Action::View(view));
+        session.tick();
+        assert!(Arc::ptr_eq(&session.whole().unwrap(), &depth), "{view:?}");
+        assert!(show(&depth, view, &session.development()).is_some());
+    }
+    assert!(bits(&depth.picture) == bits(&first.picture), "layers change no bit");
+    // another camera asks for what is looked at alone
+    session.act(Action::View(View::Picture));
+    session.act(Action::Orbit(0.1, 0.0));
+    let turned = ticked(&mut session, "the picture turned", |s| done(s).filter(|f| f.number != depth.number));
+    assert!(turned.layers.is_empty() && !depth.layers.is_empty());
+}
+
+#[test]
 fn pictures_are_held_against_others() {
     let folder = folder("beside");
     let mut session = session(&folder);

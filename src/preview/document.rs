@@ -297,7 +297,7 @@ photons = 1000 # few
         let file = folder.join("scene.toml");
         let before = of(TEXT);
         let mut after = before.clone();
-        after.settings.photons = 2000;
+        after.settings.photons = 20_000;
         for (text, word) in
             [("version = ", "not TOML"), (&TEXT.replace("0.5", "1.5"), "would not be a scene")]
         {

@@ -23,6 +23,7 @@ const NAP: Duration = Duration::from_millis(50);
 #[derive(Default)]
 struct Control {
     ended: AtomicBool,
+    made: AtomicBool,
     paused: AtomicBool,
     passes: AtomicU32,
 }
@@ -48,6 +49,7 @@ impl Full {
         let thread = thread::spawn(move || match make(&ground, &wish, spare) {
             Ok((engine, setup)) => {
                 drop(ground);
+                own.made.store(true, Ordering::Relaxed);
                 rendered(engine, Passes::new(number, false, setup), &own, number, &board)
             }
             Err(error) => {
@@ -74,6 +76,11 @@ impl Full {
     pub fn end(&self) {
         self.control.ended.store(true, Ordering::Relaxed);
         self.thread.thread().unpark();
+    }
+
+    /// Whether its engine is ready, so that the cores are its own.
+    pub fn is_made(&self) -> bool {
+        self.control.made.load(Ordering::Relaxed)
     }
 
     /// Whether [`Self::join`] would not wait.

@@ -254,12 +254,21 @@ impl Session {
             self.now.camera = orbit::focus(&self.now.camera, depth);
             self.notice = format!("focus at {:.4}", self.now.camera.focus);
         }
-        let wish = wish(&self.now, self.view, &self.device);
+        let wish = self.wish();
         if wish != self.sent {
             self.number = self.worker.change(wish.clone());
             self.sent = wish;
             self.tell_beside(None);
         }
+    }
+
+    /// What is to be rendered now. Where nothing else has changed, layers that were asked for before stay, so that to look at
+    /// them again begins nothing anew.
+    fn wish(&self) -> Wish {
+        let mut wish = wish(&self.now, self.view, &self.device);
+        let own = std::mem::replace(&mut wish.film.aovs, self.sent.film.aovs);
+        wish.film.aovs = if wish.same_passes(&self.sent) { own.union(self.sent.film.aovs) } else { own };
+        wish
     }
 
     fn tell_beside(&mut self, scene: Option<&Arc<Scene>>) {

@@ -1,6 +1,9 @@
 //! What is shown of a picture: radiance developed for a display, one of its parts, or what a picture file holds beside it, in
 //! colors with a scale.
 
+use std::num::NonZero;
+use std::thread;
+
 use super::frame::Frame;
 use crate::film::exr_file::Channel;
 use crate::film::heat::heat;
@@ -8,7 +11,6 @@ use crate::film::tonemap::srgb_from_linear;
 use crate::film::{Development, Picture};
 use crate::layers::NO_DEPTH;
 use crate::scene::{Aov, Aovs};
-use rayon::prelude::*;
 
 /// A way to look at a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -124,7 +126,7 @@ pub fn show(frame: &Frame, view: View, development: &Development) -> Option<Show
     let triple = |names: [&str; 3], color: &(dyn Fn([f64; 3]) -> [u8; 3] + Sync)| {
         let [r, g, b] = names.map(plane);
         let (r, g, b) = (r?, g?, b?);
-        Some((0..r.len()).into_par_iter().map(|i| color([r[i], g[i], b[i]])).collect::<Vec<_>>())
+        Some(mapped(r.len(), |i| color([r[i], g[i], b[i]])))
     };
     let light = |rgb: [f64; 3]| development.bytes(rgb.map(|x| x as f32));
     let byte = |x: f64| (255.0 * x.clamp(0.0, 1.0)).round() as u8;
@@ -162,7 +164,25 @@ pub fn show(frame: &Frame, view: View, development: &Development) -> Option<Show
 
 /// A picture's radiance as display values.
 pub fn developed(picture: &Picture, development: &Development) -> Vec<[u8; 3]> {
-    picture.rgb.par_iter().map(|&rgb| development.bytes(rgb)).collect()
+    mapped(picture.rgb.len(), |i| development.bytes(picture.rgb[i]))
+}
+
+/// Colors by number, on threads of their own: those that render may be busy for as long as a pass takes, and a window must not
+/// wait for them.
+fn mapped(count: usize, color: impl Fn(usize) -> [u8; 3] + Sync) -> Vec<[u8; 3]> {
+    const LEAST: usize = 1 << 14;
+    let threads = thread::available_parallelism().map_or(1, NonZero::get);
+    let chunk = count.div_ceil(threads).max(LEAST);
+    let mut colors = vec![[0; 3]; count];
+    thread::scope(|scope| {
+        for (number, part) in colors.chunks_mut(chunk).enumerate() {
+            let color = &color;
+            scope.spawn(move || {
+                part.iter_mut().enumerate().for_each(|(i, rgb)| *rgb = color(number * chunk + i));
+            });
+        }
+    });
+    colors
 }
 
 fn scaled(
@@ -175,7 +195,7 @@ fn scaled(
 }
 
 fn colors(values: &[f64], scale: &Scale) -> Vec<[u8; 3]> {
-    values.par_iter().map(|value| scale.color(*value)).collect()
+    mapped(values.len(), |i| scale.color(values[i]))
 }
 
 /// All but one in two hundred are below it; above zero.

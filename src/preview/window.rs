@@ -2,6 +2,7 @@
 
 use std::f32::consts::PI;
 use std::sync::Arc;
+use std::time::Instant;
 
 use eframe::egui::{
     self, Align2, CentralPanel, Color32, ColorImage, Context, FontId, Panel, PointerButton, Pos2, Rect,
@@ -19,6 +20,8 @@ use crate::film::{Development, FileError};
 
 /// Width of the settings, points.
 const PANEL: f32 = 250.0;
+/// Making pictures for the display takes at most one part in so many of the window's time, or the hand would wait.
+const SHARE: u32 = 4;
 /// How near the hand must be to the line between two pictures, points.
 const GRIP: f32 = 8.0;
 
@@ -96,6 +99,8 @@ struct Painted {
     scale: Option<Scale>,
     /// Keeps the address in `source` from being used again.
     frame: Option<Arc<Frame>>,
+    /// Before this a newer picture alone is no reason to make the texture anew.
+    next: Option<Instant>,
 }
 
 impl Painted {
@@ -112,7 +117,14 @@ impl Painted {
         if self.source.as_ref() == Some(&source) {
             return;
         }
-        let same_view = self.source.as_ref().is_some_and(|before| before.view == view);
+        let begun = Instant::now();
+        let before = self.source.as_ref();
+        let same_view = before.is_some_and(|before| before.view == view);
+        let same_look = same_view && before.is_some_and(|before| before.development == development);
+        if let Some(next) = self.next.filter(|next| same_look && begun < *next) {
+            context.request_repaint_after(next - begun);
+            return;
+        }
         let smooth = frame.as_ref().is_some_and(|frame| frame.quick);
         (self.source, self.frame) = (Some(source), frame);
         let Some(shown) = shown() else {
@@ -131,6 +143,7 @@ impl Painted {
             None => self.texture = Some(context.load_texture(name, image, options)),
         }
         self.scale = shown.scale;
+        self.next = Some(Instant::now() + SHARE * begun.elapsed());
     }
 }
 

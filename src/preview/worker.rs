@@ -46,13 +46,21 @@ impl Worker {
         let (sender, receiver) = mpsc::channel();
         let board = Arc::new(Board::new(wake));
         let own = board.clone();
-        let thread = thread::spawn(move || Hand::new(own).work(&receiver));
+        let thread = thread::spawn(move || {
+            // threads of its own, since the others may be busy with the whole picture for as long as a pass takes
+            let work = move || Hand::new(own).work(&receiver);
+            match rayon::ThreadPoolBuilder::new().build() {
+                Ok(pool) => pool.install(work),
+                Err(_) => work(),
+            }
+        });
         Self { commands: Some(sender), board, number: 0, last: None, thread: Some(thread) }
     }
 
     /// Renders another scene; the wish's number.
     pub fn scene(&mut self, scene: Arc<Scene>, wish: Wish) -> u64 {
         self.number += 1;
+        self.board.begin(self.number);
         self.last = Some(wish.clone());
         self.send(Command::Scene(self.number, scene, wish));
         self.number
@@ -66,6 +74,7 @@ impl Worker {
             Some(last) if last.same_passes(&wish) => Command::Passes(passes),
             _ => {
                 self.number += 1;
+                self.board.begin(self.number);
                 Command::Change(self.number, wish)
             }
         };
@@ -221,10 +230,9 @@ impl Hand {
         self.full.iter().for_each(|full| full.set_passes(passes));
     }
 
-    /// From now on, pictures count for `number` alone.
+    /// Ends what is rendered; what comes is for `number`.
     fn halt(&mut self, number: u64) {
         self.number = number;
-        self.board.begin(number);
         self.quick = None;
         self.settle = None;
         if let Some(full) = self.full.take() {
@@ -268,7 +276,7 @@ impl Hand {
                 self.full = Some(Full::start(self.number, ground, wish.clone(), spare, board));
             }
         }
-        let whole = self.frame_is_whole();
+        let whole = self.full.as_ref().is_some_and(Full::is_made);
         if let Some(quick) = &mut self.quick {
             if whole || quick.is_done() {
                 self.quick = None;
@@ -277,9 +285,5 @@ impl Hand {
                 self.board.fail(self.number, error.to_string());
             }
         }
-    }
-
-    fn frame_is_whole(&self) -> bool {
-        self.board.frame().is_some_and(|frame| frame.number == self.number && !frame.quick)
     }
 }
