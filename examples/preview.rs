@@ -7,6 +7,9 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use caustica::device::Wanted;
+use caustica::gpu::{AdapterChoice, GpuEngine};
+use caustica::pack::pack;
+use caustica::plan::Plan;
 use caustica::preview::frame::Wish;
 use caustica::preview::orbit::orbit;
 use caustica::preview::worker::Worker;
@@ -57,7 +60,29 @@ fn main() -> Result<(), Box<dyn Error>> {
             println!("| {} | {device:?} | {} |", scene.name, middle.join(" | "));
         }
     }
+    println!("\n| scene | packing | GPU engine: new | with the programs of another |\n|---|---|---|---|");
+    for file in &files {
+        println!("| {file} | {} |", renewal(file)?);
+    }
     Ok(())
+}
+
+/// What it takes to flatten a scene, to make an engine on the software driver, and to make it again.
+fn renewal(file: &str) -> Result<String, Box<dyn Error>> {
+    let loaded = scene::load(file.as_ref())?;
+    let film = loaded.scene.film;
+    let begun = Instant::now();
+    let packed = pack(&loaded.scene, film.width, film.height)?;
+    let mut times = vec![begun.elapsed()];
+    let plan = Plan::new(&packed, &loaded.settings).on(&film);
+    let begun = Instant::now();
+    let engine = GpuEngine::new(&AdapterChoice::Software, &packed, plan.clone())?;
+    times.push(begun.elapsed());
+    let begun = Instant::now();
+    engine.renewed(&packed, plan)?;
+    times.push(begun.elapsed());
+    let times = times.iter().map(|time| format!("{:.3} s", time.as_secs_f64()));
+    Ok(times.collect::<Vec<_>>().join(" | "))
 }
 
 /// Since `begun`, until a picture for wish `number` is there; the whole one's first pass, or any.

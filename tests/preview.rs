@@ -18,7 +18,7 @@ use caustica::film::{Picture, read};
 use caustica::preview::frame::{Frame, Wish};
 use caustica::preview::orbit;
 use caustica::preview::session::{Action, Session, Start};
-use caustica::preview::view::{View, show};
+use caustica::preview::view::{Scale, View, show};
 use caustica::preview::worker::Worker;
 use caustica::scene::{self, Aov, Loaded};
 use caustica::settings::{Direct, Method, Radius, RadiusRule};
@@ -228,13 +228,18 @@ fn every_view_shows_something() {
         wish.film.aovs = view.aovs();
         let number = worker.change(wish.clone());
         let frame = whole(&worker, number, 4);
-        let shown = show(&frame, view, &Default::default()).unwrap();
+        let shown = show(&frame, view, &Default::default(), None).unwrap();
         assert_eq!((shown.width, shown.height, shown.rgb.len()), (48, 32, 48 * 32), "{view:?}");
         assert!(shown.rgb.iter().any(|rgb| *rgb != shown.rgb[0]), "{view:?} is of one color");
         assert!(!seen.contains(&shown.rgb), "{view:?} is another view");
         if view.aov().is_some_and(|aov| aov != Aov::Variance) {
             let bare = Frame { layers: Vec::new(), ..Frame::clone(&frame) };
-            assert_eq!(show(&bare, view, &Default::default()), None, "{view:?} without its layer");
+            assert_eq!(show(&bare, view, &Default::default(), None), None, "{view:?} without its layer");
+        }
+        if let Some(scale) = shown.scale {
+            let wide = Scale { high: 2.0 * scale.high, ..scale };
+            let other = show(&frame, view, &Default::default(), Some(wide)).unwrap();
+            assert!(other.scale == Some(wide) && other.rgb != shown.rgb, "{view:?} by another scale");
         }
         seen.push(shown.rgb);
     }
@@ -349,7 +354,7 @@ fn views_that_were_there_before_begin_nothing_anew() {
         session.act(Action::View(view));
         session.tick();
         assert!(Arc::ptr_eq(&session.whole().unwrap(), &depth), "{view:?}");
-        assert!(show(&depth, view, &session.development()).is_some());
+        assert!(show(&depth, view, &session.development(), None).is_some());
     }
     assert!(bits(&depth.picture) == bits(&first.picture), "layers change no bit");
     // another camera asks for what is looked at alone
@@ -368,9 +373,9 @@ fn pictures_are_held_against_others() {
     session.act(Action::Expose(1.0));
     session.act(Action::Orbit(0.3, 0.0));
     let development = session.development();
-    let beside = session.beside.as_ref().unwrap().show(View::Picture, &development).unwrap();
+    let beside = session.beside.as_ref().unwrap().show(View::Picture, &development, None).unwrap();
     let own = ticked(&mut session, "the picture turned", done);
-    let own = show(&own, View::Picture, &development).unwrap();
+    let own = show(&own, View::Picture, &development, None).unwrap();
     assert!(session.split == Some(0.5) && own.rgb != beside.rgb);
     session.act(Action::Keep);
     assert!(session.beside.is_none() && session.split.is_none());

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::frame::Frame;
-use super::view::{Shown, View, developed, show};
+use super::view::{Scale, Shown, View, developed, show};
 use super::worker::Worker;
 use crate::device::Wanted;
 use crate::film::tonemap::srgb_from_linear;
@@ -67,11 +67,11 @@ impl Beside {
         }
     }
 
-    /// What there is to see of it. A file has radiance, or display values that are shown as they are, and nothing else.
-    pub fn show(&self, view: View, development: &Development) -> Option<Shown> {
+    /// What there is to see of it, by the scale of the picture that it is held against. A file has radiance, or display values that are shown as they are, and nothing else.
+    pub fn show(&self, view: View, development: &Development, scale: Option<Scale>) -> Option<Shown> {
         let (picture, coding) = match &self.what {
             What::File(picture, coding) => (picture, coding),
-            _ => return show(&*self.frame()?, view, development),
+            _ => return show(&*self.frame()?, view, development, scale),
         };
         let coded = |x: f32| (255.0 * srgb_from_linear(f64::from(x))).round() as u8;
         let rgb = match coding {

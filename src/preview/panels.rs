@@ -240,11 +240,11 @@ fn number(x: f64) -> String {
 /// The help.
 pub fn help(ui: &mut Ui) {
     let room = ui.ctx().content_rect().height() - 80.0;
-    ScrollArea::vertical().max_height(room).show(ui, |ui| {
+    ScrollArea::vertical().max_height(room).min_scrolled_height(room).show(ui, |ui| {
         Grid::new("help").num_columns(2).spacing([16.0, 1.0]).min_row_height(14.0).show(ui, |ui| {
             for line in TABLE {
                 ui.label(RichText::new(line.keys).strong());
-                ui.add(egui::Label::new(line.what).wrap_mode(egui::TextWrapMode::Extend));
+                ui.add(egui::Label::new(format!("{}  ", line.what)).wrap_mode(egui::TextWrapMode::Extend));
                 ui.end_row();
             }
         });

@@ -115,8 +115,9 @@ impl Scale {
     }
 }
 
-/// Shows a frame; nothing where it does not have what the view needs, as before the fourth pass for the variance.
-pub fn show(frame: &Frame, view: View, development: &Development) -> Option<Shown> {
+/// Shows a frame, in the colors of `scale` where another has one; nothing where it does not have what the view needs, as before
+/// the fourth pass for the variance.
+pub fn show(frame: &Frame, view: View, development: &Development, scale: Option<Scale>) -> Option<Shown> {
     let Picture { width, height, .. } = frame.picture;
     let of = |rgb, scale| Some(Shown { width, height, rgb, scale });
     let plane = |name: &str| {
@@ -148,15 +149,23 @@ pub fn show(frame: &Frame, view: View, development: &Development) -> Option<Show
             let values = plane("depth.Z")?;
             let far = values.iter().filter(|z| **z < NO_DEPTH).fold(0.0f64, |far, z| far.max(*z));
             let near = values.iter().fold(far, |near, z| near.min(*z));
-            let scale = Scale { low: near, high: far, logarithmic: true, unit: "units" };
+            let own = Scale { low: near, high: far, logarithmic: true, unit: "units" };
+            let scale = scale.unwrap_or(own);
             of(colors(values, &scale), Some(scale))
         }
-        View::Radius => scaled(plane("radius.Y")?, "units", &of),
-        View::Photons => scaled(plane("photons.Y")?, "photons", &of),
+        View::Radius | View::Photons => {
+            let (name, unit) =
+                if view == View::Radius { ("radius.Y", "units") } else { ("photons.Y", "photons") };
+            let values = plane(name)?;
+            let own = || Scale { low: 0.0, high: high(values), logarithmic: false, unit };
+            let scale = scale.unwrap_or_else(own);
+            of(colors(values, &scale), Some(scale))
+        }
         View::Variance => {
             let variance = frame.errors.as_ref()?.variance();
             let high = high(&variance.values);
-            let scale = Scale { low: 1e-6 * high, high, logarithmic: true, unit: "(W/sr/m²)²" };
+            let own = Scale { low: 1e-6 * high, high, logarithmic: true, unit: "(W/sr/m²)²" };
+            let scale = scale.unwrap_or(own);
             of(colors(&variance.values, &scale), Some(scale))
         }
     }
@@ -183,15 +192,6 @@ fn mapped(count: usize, color: impl Fn(usize) -> [u8; 3] + Sync) -> Vec<[u8; 3]>
         }
     });
     colors
-}
-
-fn scaled(
-    values: &[f64],
-    unit: &'static str,
-    of: &impl Fn(Vec<[u8; 3]>, Option<Scale>) -> Option<Shown>,
-) -> Option<Shown> {
-    let scale = Scale { low: 0.0, high: high(values), logarithmic: false, unit };
-    of(colors(values, &scale), Some(scale))
 }
 
 fn colors(values: &[f64], scale: &Scale) -> Vec<[u8; 3]> {

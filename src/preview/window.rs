@@ -89,6 +89,8 @@ struct Source {
     frame: Option<*const Frame>,
     view: View,
     development: Development,
+    /// The scale of another picture.
+    scale: Option<Scale>,
 }
 
 /// A picture on the graphics device.
@@ -110,10 +112,10 @@ impl Painted {
         context: &Context,
         name: &str,
         frame: Option<Arc<Frame>>,
-        (view, development): (View, Development),
+        (view, development, scale): (View, Development, Option<Scale>),
         shown: impl FnOnce() -> Option<Shown>,
     ) {
-        let source = Source { frame: frame.as_ref().map(Arc::as_ptr), view, development };
+        let source = Source { frame: frame.as_ref().map(Arc::as_ptr), view, development, scale };
         if self.source.as_ref() == Some(&source) {
             return;
         }
@@ -226,8 +228,8 @@ impl Window {
         let (view, development) = (session.view, session.development());
         let context = ui.ctx();
         let frame = session.frame();
-        self.picture.update(context, "picture", frame.clone(), (view, development), || {
-            show(&*frame?, view, &development)
+        self.picture.update(context, "picture", frame.clone(), (view, development, None), || {
+            show(&*frame?, view, &development, None)
         });
         let all = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
         let painter = ui.painter_at(rect);
@@ -249,8 +251,9 @@ impl Window {
         let (Some(split), Some(beside)) = (session.split, &session.beside) else {
             return;
         };
-        self.other.update(context, "other", beside.frame(), (view, development), || {
-            beside.show(view, &development)
+        let scale = self.picture.scale;
+        self.other.update(context, "other", beside.frame(), (view, development, scale), || {
+            beside.show(view, &development, scale)
         });
         let line = rect.left() + split * rect.width();
         let right = Rect::from_min_max(Pos2::new(line, rect.top()), rect.max);
