@@ -234,7 +234,10 @@ fn examples_of_the_help_texts_run() {
             let example = example.replace("scenes/", &scenes);
             let mut arguments: Vec<_> = example.split(' ').collect();
             if arguments[0] == "render" {
-                arguments.extend(["--size", "16x16", "--passes", "1", "--photons", "1000"]);
+                // a window has to fit
+                let windowed = example.contains("--crop") || example.contains("--like");
+                let size = if windowed { "256x256" } else { "16x16" };
+                arguments.extend(["--size", size, "--passes", "1", "--photons", "1000"]);
                 arguments.extend(["--device", "cpu"].iter().filter(|_| !example.contains("--device")));
             }
             let output = caustica(&folder, &arguments);
@@ -242,12 +245,21 @@ fn examples_of_the_help_texts_run() {
             run += 1;
         }
     }
-    assert_eq!(run, 8, "two, three, one, one and one");
+    assert_eq!(run, 10, "two, five, one, one and one");
     let mut left: Vec<_> = fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name()).collect();
     left.sort();
     assert_eq!(
         left,
-        ["caustics.png", "cornell.exr", "cornell.png", "picture.exr", "picture.png", "vase.obj"]
+        [
+            "again.exr",
+            "caustics.png",
+            "cornell.exr",
+            "cornell.png",
+            "layers.exr",
+            "picture.exr",
+            "picture.png",
+            "vase.obj"
+        ]
     );
 }
 
