@@ -5,9 +5,10 @@
 
 use bytemuck::Zeroable;
 use caustica::kernels::gather::gather;
-use caustica::kernels::grid_build::{SortedRecords, grid_count, grid_scan, grid_scatter, grid_sort};
+use caustica::kernels::grid_build::build_grid;
 use caustica::kernels::records::{Dispatch, Gathered, PhotonRecord, VisiblePoint};
 use caustica::math::oct_encode;
+use caustica::tables::NONE;
 use divan::{Bencher, counter::ItemsCount};
 use glam::Vec3;
 
@@ -43,19 +44,13 @@ fn photons_in_a_disc(bencher: Bencher, photons: u32) {
     let records: Vec<_> = (0..RECORDS)
         .map(|key| PhotonRecord { position: on_the_wall(), key, flux: Vec3::ONE, direction: up })
         .collect();
-    let mut counts = vec![0; RECORDS as usize];
-    let mut starts = vec![0; RECORDS as usize + 1];
-    let mut order = vec![0; RECORDS as usize];
-    grid_count(&d, &records, &mut counts);
-    grid_scan(&counts, &mut starts);
-    grid_scatter(&d, &records, &starts, &mut counts, &mut order);
-    let mut sorted = SortedRecords::default();
-    grid_sort(&d, &records, &order, &mut sorted);
+    let (starts, sorted) = build_grid(&d, records);
     let points: Vec<_> = (0..POINTS)
         .map(|_| VisiblePoint {
             position: on_the_wall(),
             radius,
             weight: Vec3::ONE,
+            facet: NONE,
             normal: up,
             shading: up,
             ..VisiblePoint::zeroed()
@@ -65,7 +60,7 @@ fn photons_in_a_disc(bencher: Bencher, photons: u32) {
         let mut found = 0;
         for point in &points {
             let mut gathered = Gathered::zeroed();
-            gather(&d, point, 1.0, &starts, &sorted, &mut gathered);
+            gather(&[], &d, point, 1.0, &starts, &sorted, &mut gathered);
             found += gathered.count;
         }
         found

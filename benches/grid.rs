@@ -1,10 +1,13 @@
 //! The hash grid's construction on the CPU, step by step. `cargo bench --bench grid`.
 //!
 //! Sizes: 2^16 records fit the second-level cache of most processors with everything that goes with them, 2^19 the last level
-//! of some, and 2^22, as many as a batch may have, none. There are as many buckets as records, as in a plan.
+//! of some, and 2^22, as many as a batch may have, none. There are as many buckets as records, as in a plan, and
+//! lists as long as those of a task of photons.
 
 use bytemuck::Zeroable;
-use caustica::kernels::grid_build::{SortedRecords, grid_count, grid_scan, grid_scatter, grid_sort};
+use caustica::kernels::grid_build::{
+    RecordList, SortedRecords, grid_count, grid_scan, grid_scatter, grid_sort,
+};
 use caustica::kernels::records::{Dispatch, PhotonRecord};
 use divan::{Bencher, counter::ItemsCount};
 use glam::Vec3;
@@ -15,8 +18,11 @@ fn main() {
     divan::main();
 }
 
+/// Records of a list.
+const LIST: usize = 1 << 13;
+
 /// Records on the walls of a cube of such a size that a cell of the wall holds about four, as around visible points.
-fn records(count: u32) -> (Dispatch, Vec<PhotonRecord>) {
+fn lists(count: u32) -> (Dispatch, Vec<RecordList>) {
     let side = (count as f32 / 24.0).sqrt();
     let mut state = 1u32;
     let mut random = || {
@@ -28,52 +34,44 @@ fn records(count: u32) -> (Dispatch, Vec<PhotonRecord>) {
         position[key as usize % 3] = (key / 3 % 2) as f32;
         PhotonRecord { position: position * side, key, ..PhotonRecord::zeroed() }
     };
+    let records: Vec<_> = (0..count).map(record).collect();
+    let list = |records: &[PhotonRecord]| RecordList::new(records.to_vec());
     let d = Dispatch { capacity: count, mask: count - 1, inv_cell: 1.0, families: 1, ..Dispatch::zeroed() };
-    (d, (0..count).map(record).collect())
+    (d, records.chunks(LIST).map(list).collect())
 }
 
 #[divan::bench(args = RECORDS)]
 fn count(bencher: Bencher, n: u32) {
-    let (d, records) = records(n);
-    bencher
-        .counter(ItemsCount::new(n))
-        .with_inputs(|| vec![0; n as usize])
-        .bench_local_refs(|counts| grid_count(&d, &records, counts));
+    let (d, mut lists) = lists(n);
+    bencher.counter(ItemsCount::new(n)).bench_local(|| grid_count(&d, &mut lists));
 }
 
 #[divan::bench(args = RECORDS)]
 fn scan(bencher: Bencher, n: u32) {
-    let (d, records) = records(n);
-    let mut counts = vec![0; n as usize];
-    grid_count(&d, &records, &mut counts);
-    let mut starts = vec![0; n as usize + 1];
-    bencher.counter(ItemsCount::new(n)).bench_local(|| grid_scan(&counts, &mut starts));
+    let (d, mut lists) = lists(n);
+    grid_count(&d, &mut lists);
+    bencher.counter(ItemsCount::new(n)).bench_local(|| grid_scan(&lists));
 }
 
 #[divan::bench(args = RECORDS)]
 fn scatter(bencher: Bencher, n: u32) {
-    let (d, records) = records(n);
-    let mut counts = vec![0; n as usize];
-    grid_count(&d, &records, &mut counts);
-    let mut starts = vec![0; n as usize + 1];
-    grid_scan(&counts, &mut starts);
-    let mut order = vec![0; n as usize];
+    let (d, mut lists) = lists(n);
+    grid_count(&d, &mut lists);
     bencher
         .counter(ItemsCount::new(n))
-        .with_inputs(|| counts.clone())
-        .bench_local_refs(|counts| grid_scatter(&d, &records, &starts, counts, &mut order));
+        .with_inputs(|| lists.clone())
+        .bench_local_refs(|lists| grid_scatter(&d, lists));
 }
 
-/// Buckets are sorted by the scatter already: what is left is the copy.
 #[divan::bench(args = RECORDS)]
 fn sort(bencher: Bencher, n: u32) {
-    let (d, records) = records(n);
-    let mut counts = vec![0; n as usize];
-    grid_count(&d, &records, &mut counts);
+    let (d, mut lists) = lists(n);
+    grid_count(&d, &mut lists);
+    let part_starts = grid_scan(&lists);
+    grid_scatter(&d, &mut lists);
     let mut starts = vec![0; n as usize + 1];
-    grid_scan(&counts, &mut starts);
-    let mut order = vec![0; n as usize];
-    grid_scatter(&d, &records, &starts, &mut counts, &mut order);
     let mut sorted = SortedRecords::default();
-    bencher.counter(ItemsCount::new(n)).bench_local(|| grid_sort(&d, &records, &order, &mut sorted));
+    bencher
+        .counter(ItemsCount::new(n))
+        .bench_local(|| grid_sort(&d, &lists, &part_starts, &mut starts, &mut sorted));
 }

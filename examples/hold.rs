@@ -182,6 +182,7 @@ fn write_map(
         scene_text: String::new(),
         settings: settings.clone(),
         device: String::new(),
+        first_pass: 0,
         passes_done: settings.passes,
         ..Provenance::default()
     };

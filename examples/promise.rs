@@ -185,6 +185,7 @@ fn truth_half(wanted: &Wanted, scene: &Scene, name: &str, seed: u64) -> Result<P
         scene_text: String::new(),
         settings,
         device: opened.name,
+        first_pass: 0,
         passes_done: passes,
         ..Provenance::default()
     };

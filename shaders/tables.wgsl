@@ -81,9 +81,9 @@ struct Rectangle {
     v: vec3f,
     area: f32,
     dual_u: vec3f,
-    pad0: u32,
+    facet: u32,
     dual_v: vec3f,
-    pad1: u32,
+    pad: u32,
 }
 
 struct Disc {
@@ -93,8 +93,8 @@ struct Disc {
     material: u32,
     light: u32,
     uv: u32,
-    pad0: u32,
-    pad1: u32,
+    facet: u32,
+    pad: u32,
 }
 
 struct Cuboid {
@@ -103,9 +103,9 @@ struct Cuboid {
     upper: vec3f,
     light: u32,
     uv: u32,
+    facet: u32,
     pad0: u32,
     pad1: u32,
-    pad2: u32,
 }
 
 struct Plane {

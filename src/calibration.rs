@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use crate::engine::{Engine, EngineError, PassReport};
+use crate::engine::{Engine, EngineError, PassReport, State};
 use crate::film::exr_file::Channel;
 use crate::film::{ErrorMap, Picture, Rejections};
 use crate::quality::one_pass_error;
@@ -75,6 +75,14 @@ impl Engine for Calibrating<'_> {
 
     fn results(&mut self) -> Result<(Picture, Rejections), EngineError> {
         self.inner.results()
+    }
+
+    fn save(&mut self) -> Result<State, EngineError> {
+        self.inner.save()
+    }
+
+    fn restore(&mut self, state: &State) -> Result<(), EngineError> {
+        self.inner.restore(state)
     }
 }
 

@@ -7,6 +7,7 @@ use super::shapes::ray::Ray;
 use super::tables::Camera;
 
 /// A ray through pixel (x, y), row 0 on top: (u.x, u.y) is the place in the pixel, (u.z, u.w) that on the lens.
+#[inline(always)]
 pub fn camera_ray(camera: &Camera, x: u32, y: u32, u: Vec4) -> Ray {
     let px = 2.0 * (x as Real + u.x) / camera.width as Real - 1.0;
     let py = 1.0 - 2.0 * (y as Real + u.y) / camera.height as Real;

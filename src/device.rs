@@ -6,6 +6,7 @@ use crate::cpu::CpuEngine;
 use crate::double;
 use crate::engine::{Engine, EngineError};
 use crate::gpu::{self, AdapterChoice, AdapterKind, AdapterSummary, GpuEngine};
+use crate::identity::Identity;
 use crate::kernels::records::VisiblePoint;
 use crate::lights::guide::guides;
 use crate::pack::{Packed, pack};
@@ -69,6 +70,11 @@ impl DeviceKind {
             Self::CpuDouble => "cpu-f64",
         }
     }
+
+    /// Bits of the numbers that its kernels count in.
+    pub fn bits(self) -> u32 {
+        if self == Self::CpuDouble { 64 } else { 32 }
+    }
 }
 
 /// A device that can render.
@@ -90,12 +96,18 @@ pub struct Opened {
     pub engine: Box<dyn Engine>,
     /// Its device's name.
     pub name: String,
+    /// What that is made of.
+    pub kind: DeviceKind,
     /// Why this device.
     pub why: String,
     /// The settings in force: as asked for, with a radius in the place of "auto".
     pub settings: RenderSettings,
     /// Why that radius, where the settings left it open and it counts.
     pub radius: Option<Automatic>,
+    /// Which scene it is, as the f32 kernels read it.
+    pub identity: Identity,
+    /// Scene radiance times this is world radiance.
+    pub radiance_unit: f64,
 }
 
 /// No engine.
@@ -187,8 +199,7 @@ pub fn open(wanted: &Wanted, scene: &Scene, settings: &RenderSettings) -> Result
     };
     let (device, why) = pick(wanted, &devices)?;
     let why = if path { "auto: path tracing runs on the CPU".to_owned() } else { why };
-    let (engine, settings, automatic) = start(device, scene, settings)?;
-    Ok(Opened { engine, name: device.name.clone(), why, settings, radius: automatic })
+    Ok(start(device, why, scene, settings)?)
 }
 
 /// Fails where a picture has more visible points than can be numbered.
@@ -216,24 +227,38 @@ pub fn check_points(
     Ok(())
 }
 
-type Started = (Box<dyn Engine>, RenderSettings, Option<Automatic>);
-
-fn start(device: &DeviceInfo, scene: &Scene, settings: &RenderSettings) -> Result<Started, EngineError> {
+fn start(
+    device: &DeviceInfo,
+    why: String,
+    scene: &Scene,
+    settings: &RenderSettings,
+) -> Result<Opened, EngineError> {
     check_points(device, scene, settings)?;
     let film = &scene.film;
     let packed = pack(scene, film.width, film.height)?;
+    let identity = Identity::of(&packed);
+    let opened = |engine, settings, radius, radiance_unit| Opened {
+        engine,
+        name: device.name.clone(),
+        kind: device.kind,
+        why,
+        settings,
+        radius,
+        identity,
+        radiance_unit,
+    };
     if device.kind == DeviceKind::CpuDouble {
-        let (packed, plan) = in_double(scene, &packed, settings)?;
-        let (settings, automatic) = (plan.settings.clone(), plan.told_radius());
-        return Ok((Box::new(double::cpu::CpuEngine::new(packed, plan)), settings, automatic));
+        let (wide, plan) = in_double(scene, &packed, settings)?;
+        let (settings, automatic, unit) = (plan.settings.clone(), plan.told_radius(), plan.radiance_unit);
+        return Ok(opened(Box::new(double::cpu::CpuEngine::new(wide, plan)), settings, automatic, unit));
     }
     let plan = Plan::new(&packed, settings).on(film);
-    let (settings, automatic) = (plan.settings.clone(), plan.told_radius());
+    let (settings, automatic, unit) = (plan.settings.clone(), plan.told_radius(), plan.radiance_unit);
     let engine: Box<dyn Engine> = match device.kind {
         DeviceKind::Cpu => Box::new(CpuEngine::new(packed, plan)),
         _ => Box::new(GpuEngine::new(&AdapterChoice::Named(device.name.clone()), &packed, plan)?),
     };
-    Ok((engine, settings, automatic))
+    Ok(opened(engine, settings, automatic, unit))
 }
 
 /// What the engine in f64 takes; `single` is the scene flattened in f32.

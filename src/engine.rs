@@ -3,9 +3,10 @@
 use crate::clock::KernelSeconds;
 use crate::film::exr_file::Channel;
 use crate::film::{ErrorMap, Picture, Rejections};
+use serde::{Deserialize, Serialize};
 
 /// Photon paths by how they ended; together those that were emitted.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PhotonEnds {
     /// Met nothing any more.
     pub escaped: u64,
@@ -28,9 +29,9 @@ impl PhotonEnds {
 
     /// Adds those of another pass.
     pub fn add(&mut self, other: &Self) {
-        self.escaped += other.escaped;
-        self.absorbed += other.absorbed;
-        self.cut += other.cut;
+        self.escaped = self.escaped.saturating_add(other.escaped);
+        self.absorbed = self.absorbed.saturating_add(other.absorbed);
+        self.cut = self.cut.saturating_add(other.cut);
     }
 }
 
@@ -51,6 +52,29 @@ pub struct PassReport {
     pub ends: PhotonEnds,
     /// Gather radius of this pass in scene units: the mean over the visible points.
     pub radius: f64,
+}
+
+/// What an engine keeps from pass to pass; everything else is made again from the scene, the settings and the pass's number. The
+/// bytes are those of `kernels::bytes`, alike for all engines that count in numbers of so many bits.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct State {
+    /// Number of the first pass in it, from 0.
+    pub first_pass: u32,
+    /// Passes in it.
+    pub passes: u32,
+    /// Bits of its numbers, 32 or 64.
+    pub bits: u32,
+    /// The film; empty before the first pass.
+    pub film: Vec<u8>,
+    /// Local radius rule: statistics of the visible points; else empty.
+    pub statistics: Vec<u8>,
+}
+
+impl State {
+    /// Before any pass of a render that starts with pass number `first_pass`.
+    pub fn before(first_pass: u32) -> Self {
+        Self { first_pass, ..Self::default() }
+    }
 }
 
 /// Why an engine stopped.
@@ -103,6 +127,16 @@ pub trait Engine {
     /// Both.
     fn results(&mut self) -> Result<(Picture, Rejections), EngineError> {
         Ok((self.picture()?, self.rejections()?))
+    }
+    /// What the passes so far left behind.
+    fn save(&mut self) -> Result<State, EngineError> {
+        Err(EngineError::Unsupported(format!("{} cannot hand over what it holds", self.device())))
+    }
+    /// Goes on from there, with the same bits as the engine that saved it, if both have one scene and one set of settings. For an
+    /// engine that has made no pass.
+    fn restore(&mut self, state: &State) -> Result<(), EngineError> {
+        let _ = state;
+        Err(EngineError::Unsupported(format!("{} cannot take over what another one holds", self.device())))
     }
     /// What the film asks for beside radiance, in world units.
     fn layers(&mut self) -> Result<Vec<Channel>, EngineError> {

@@ -5,7 +5,7 @@ use crate::settings::{Direct, Method, RadiusRule, RenderSettings};
 use std::collections::BTreeSet;
 
 /// Names that fence optional code in shaders (`//#if name`).
-pub const ALL: [&str; 37] = [
+pub const ALL: [&str; 38] = [
     "triangle",
     "attributes",
     "sphere",
@@ -14,6 +14,7 @@ pub const ALL: [&str; 37] = [
     "cuboid",
     "plane",
     "revolution",
+    "facets",
     "unbounded",
     "kdtree",
     "textures",
@@ -66,6 +67,7 @@ impl Features {
         put("disc", !scene.discs.is_empty());
         put("cuboid", !scene.cuboids.is_empty());
         put("plane", !scene.planes.is_empty());
+        put("facets", !scene.facets.is_empty());
         put("revolution", !scene.revolutions.is_empty());
         put("unbounded", !scene.unbounded.is_empty());
         put("kdtree", !scene.nodes.is_empty());

@@ -19,8 +19,8 @@
 //! ```
 //!
 //! Modules depend on one another one way: [`real`] and [`math`], then [`tables`], [`shapes`], [`materials`], [`lights`],
-//! [`camera`] and [`grid`], then [`scene`], [`build`], [`limits`], [`pack`], then [`kernels`], [`radius`], [`probe`], [`plan`], then [`cpu`]
-//! and [`gpu`], then [`device`], [`quality`], [`calibration`], [`showing`] and [`render`], and last [`bench`](mod@bench), [`burden`], [`hold`], [`study`] and, where it is not left out, `preview`.
+//! [`camera`] and [`grid`], then [`scene`], [`build`], [`limits`], [`pack`], then [`kernels`], [`radius`], [`sobol`], [`probe`], [`readout`], [`plan`], then [`cpu`]
+//! and [`gpu`], then [`identity`], [`device`], [`quality`], [`calibration`], [`showing`], [`render`] and [`checkpoint`], and last [`bench`](mod@bench), [`burden`], [`hold`], [`study`] and, where it is not left out, `preview`.
 //! Those from [`real`] to [`cpu`] are compiled twice: [`double`] is the same in f64.
 
 pub mod bench;
@@ -28,6 +28,7 @@ pub mod build;
 pub mod burden;
 pub mod calibration;
 pub mod camera;
+pub mod checkpoint;
 pub mod clock;
 pub mod cpu;
 pub mod device;
@@ -39,6 +40,7 @@ pub mod film;
 pub mod gpu;
 pub mod grid;
 pub mod hold;
+pub mod identity;
 pub mod kernels;
 pub mod layers;
 pub mod lights;
@@ -52,11 +54,13 @@ pub mod preview;
 pub mod probe;
 pub mod quality;
 pub mod radius;
+pub mod readout;
 pub mod real;
 pub mod render;
 pub mod scene;
 pub mod settings;
 pub mod shapes;
 pub mod showing;
+pub mod sobol;
 pub mod study;
 pub mod tables;

@@ -6,13 +6,15 @@
 
 use super::features::Features;
 use super::kernels::aov_trace::AovPixel;
+use super::kernels::bytes::{FILM_BYTES, STATISTICS_BYTES};
 use super::kernels::records::*;
 use super::kernels::resolve_parts::PartsPixel;
 use super::pack::{Objects, Packed};
 use super::probe::{Probe, probe};
+use super::readout::Readout;
 use super::real::Real;
-use crate::film::estimate::{LEAST_PASSES, PixelError, early_passes, partition};
-use crate::film::{ErrorMap, Picture, Rejections, luminance_of};
+use crate::engine::{EngineError, State};
+use crate::film::{ErrorMap, Picture, Rejections};
 use crate::radius::Automatic;
 use crate::scene::{Aov, Aovs, Film};
 use crate::settings::{Method, Radius, RadiusRule, RenderSettings};
@@ -202,6 +204,10 @@ pub struct Plan {
     pub unit: f64,
     /// Scene radiance times this is world radiance.
     pub radiance_unit: f64,
+    /// Number of the render's first pass; all others count from there.
+    pub first_pass: u32,
+    /// Passes that the film held when the engine took over.
+    pub taken_over: u32,
 }
 
 impl Plan {
@@ -238,6 +244,8 @@ impl Plan {
             objects: packed.objects.clone(),
             unit: packed.unit,
             radiance_unit: packed.radiance_unit,
+            first_pass: 0,
+            taken_over: 0,
         }
     }
 
@@ -264,6 +272,33 @@ impl Plan {
         self.features.has("photons") && (self.aovs.has(Aov::Caustic) || self.aovs.has(Aov::Indirect))
     }
 
+    /// Plans to go on from `state`.
+    ///
+    /// # Errors
+    /// Where the plan has no use for it.
+    pub fn take_over(&mut self, state: &State) -> Result<(), EngineError> {
+        let local = self.features.has("local") && self.settings.method != Method::Path;
+        if local && state.first_pass > 0 {
+            let text =
+                "under the local rule a pass needs the photon counts of all before it: start with pass 0";
+            return Err(EngineError::Unsupported(text.into()));
+        }
+        let points = if local { self.pixels as usize * self.eye_samples as usize } else { 0 };
+        let wanted =
+            (8 * size_of::<Real>() as u32, self.pixels as usize * FILM_BYTES, points * STATISTICS_BYTES);
+        if state.passes > 0 && (state.bits, state.film.len(), state.statistics.len()) != wanted {
+            let text = "what is to be gone on from is of another picture size, radius rule or precision";
+            return Err(EngineError::Unsupported(text.into()));
+        }
+        (self.first_pass, self.taken_over) = (state.first_pass, state.passes);
+        Ok(())
+    }
+
+    /// What the film says.
+    pub fn readout(&self) -> Readout {
+        Readout { width: self.width, unit: self.radiance_unit }
+    }
+
     /// Why the radius is what it is, where the settings left it open and photons are gathered at all.
     pub fn told_radius(&self) -> Option<Automatic> {
         self.probe.automatic.filter(|_| self.features.has("photons"))
@@ -281,12 +316,12 @@ impl Plan {
         (first, (self.pixels * self.eye_samples - first).min(self.chunk_points))
     }
 
-    /// Squared radius in pass `pass` (from 0) over the squared start radius; the local rule's is the plan's guess,
+    /// Squared radius in pass `pass` of this render over the squared start radius; the local rule's is the plan's guess,
     /// which only sets the cell size.
     pub fn scale_sq(&self, pass: u32) -> f64 {
         match self.settings.radius_rule {
             RadiusRule::Fixed => 1.0,
-            _ => global_scale_sq(pass as u64 + 1, self.settings.alpha),
+            _ => global_scale_sq(self.first_pass as u64 + pass as u64 + 1, self.settings.alpha),
         }
     }
 
@@ -303,7 +338,7 @@ impl Plan {
         let wider = if split { self.settings.wider() } else { 1.0 };
         let cell = CELL_RADII * self.widening * self.probe.radius * scale_sq.sqrt();
         Dispatch {
-            pass_number: pass,
+            pass_number: self.first_pass + pass,
             seed: (self.settings.seed ^ (self.settings.seed >> 32)) as u32,
             key_bits: key_bits(self.settings.max_bounces),
             capacity: self.capacity,
@@ -324,11 +359,20 @@ impl Plan {
             inv_cell_indirect: (1.0 / (cell * wider)) as Real,
             window_first: self.window_first,
             window_width: self.width,
+            points: crate::sobol::points(self.first_pass + pass),
             ..Dispatch::zeroed()
         }
     }
 
-    /// Pass `pass` with `batch_photons` photons a batch (fewer than planned when a batch overflowed). Before its
+    /// The numbers of a pass for its eye paths: fixed visible points are those of pass 0, whoever makes the first pass.
+    fn eye_dispatch(&self, common: Dispatch) -> Dispatch {
+        if self.settings.method != Method::Ppm {
+            return common;
+        }
+        Dispatch { pass_number: 0, points: crate::sobol::points(0), ..common }
+    }
+
+    /// Pass `pass` of this render, from 0, with `batch_photons` photons a batch (fewer than planned when a batch overflowed). Before its
     /// first step an engine clears `gathered`, before each [`Kernel::PhotonTrace`] the record counter. The steps from the
     /// first [`Kernel::ResolveParts`] or [`Kernel::Resolve`] on add to what passes before have found.
     pub fn steps(&self, pass: u32, batch_photons: u32) -> Vec<Step> {
@@ -337,10 +381,11 @@ impl Plan {
         let mut step = |kernel, chunk, dispatch| steps.push(Step { kernel, chunk, dispatch });
         let over = |end| Dispatch { end, ..common };
         let ppm = self.settings.method == Method::Ppm;
-        if !ppm || pass == 0 {
+        let eye = self.eye_dispatch(common);
+        if !ppm || pass == self.taken_over {
             for c in 0..self.chunks() {
                 let (chunk_first, end) = self.chunk(c);
-                step(Kernel::EyeTrace, c, Dispatch { end, chunk_first, ..common });
+                step(Kernel::EyeTrace, c, Dispatch { end, chunk_first, ..eye });
             }
         }
         let mut batch_first = 0;
@@ -379,7 +424,7 @@ impl Plan {
         if !self.aovs.are_traced() || ppm && pass > 0 {
             return Vec::new();
         }
-        let common = self.dispatch(pass);
+        let common = self.eye_dispatch(self.dispatch(pass));
         let step = |c, sample| {
             let (chunk_first, points) = self.chunk(c);
             let end = points / self.eye_samples;
@@ -431,58 +476,18 @@ impl Plan {
 
     /// The picture that a film holds, in world units.
     pub fn picture(&self, film: &[FilmPixel]) -> Picture {
-        let unit = self.radiance_unit;
-        // numbers beyond f32 become its largest, and are counted as rejections
-        let held = |x: f64| (x * unit).clamp(f64::from(f32::MIN), f64::from(f32::MAX)) as f32;
-        let world = |p: &FilmPixel| mean(p).map(held);
-        Picture { width: self.width, height: self.pixels / self.width, rgb: film.iter().map(world).collect() }
+        self.readout().picture(film)
     }
 
     /// What a film after `passes` passes says of its error, in world units.
     pub fn errors(&self, film: &[FilmPixel], passes: u32) -> ErrorMap {
-        let unit = self.radiance_unit;
-        let pixels = film.iter().map(|p| {
-            let n = passes - p.rejected.iter().sum::<u32>();
-            if n < LEAST_PASSES {
-                return PixelError::UNKNOWN;
-            }
-            let luminance = unit * luminance_of(mean(p));
-            let [early, earlier] = [p.early, p.earlier].map(|x| unit * f64::from(x));
-            let part = early_passes(n);
-            let variance = unit * unit * f64::from(p.spread.max(0.0)) / f64::from(n - 1);
-            PixelError {
-                luminance,
-                variance,
-                deviations: [
-                    partition(luminance, early, part, n),
-                    partition(luminance, earlier, part / 2, n),
-                ],
-                halves: unit * f64::from(p.halves),
-                ring: unit * f64::from(p.ring),
-                ring_swing: unit * f64::from(p.ring_swing),
-            }
-        });
-        ErrorMap { width: self.width, pixels: pixels.collect() }
+        self.readout().errors(film, passes)
     }
 
     /// What was left out of the picture that a film holds.
     pub fn rejections(&self, film: &[FilmPixel]) -> Rejections {
-        let count = |cause: u32| film.iter().map(|p| u64::from(p.rejected[cause as usize])).sum();
-        let too_bright =
-            |p: &&FilmPixel| mean(p).iter().any(|x| x * self.radiance_unit > f64::from(f32::MAX));
-        Rejections {
-            eye_path: count(REJECTED_EYE),
-            direct_light: count(REJECTED_DIRECT),
-            photons: count(REJECTED_PHOTONS),
-            estimate: count(REJECTED_ESTIMATE),
-            too_bright: film.iter().filter(too_bright).count() as u64,
-        }
+        self.readout().rejections(film)
     }
-}
-
-/// A pixel's mean over the passes, scene units.
-fn mean(pixel: &FilmPixel) -> [f64; 3] {
-    [0, 1, 2].map(|c| pixel.mean[c] as f64 + pixel.carry[c] as f64)
 }
 
 /// Bits that hold a bounce number and a family.

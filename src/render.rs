@@ -36,13 +36,28 @@ pub struct Progress {
     pub ends: PhotonEnds,
     /// Gather radius of the last pass in scene units, mean over the visible points.
     pub radius: f64,
-    /// Since the first pass began.
+    /// Since the first pass began; of a render that was gone on from, that of all its parts together.
     pub elapsed: Duration,
     /// The newest estimate of the picture's error; none in the first passes.
     pub error: Option<RelativeError>,
 }
 
 impl Progress {
+    /// Before the first pass.
+    pub fn before(stop: Stop) -> Self {
+        Self {
+            stop,
+            passes: 0,
+            photons: 0,
+            eye_paths: 0,
+            rays: 0,
+            ends: PhotonEnds::default(),
+            radius: 0.0,
+            elapsed: Duration::ZERO,
+            error: None,
+        }
+    }
+
     /// Rays per second so far.
     pub fn rays_per_second(&self) -> f64 {
         self.rays as f64 / self.elapsed.as_secs_f64().max(1e-9)
@@ -70,9 +85,9 @@ impl Progress {
 
     fn add(&mut self, report: &PassReport, elapsed: Duration) {
         self.passes += 1;
-        self.photons += report.photons;
-        self.eye_paths += report.eye_paths;
-        self.rays += report.rays;
+        self.photons = self.photons.saturating_add(report.photons);
+        self.eye_paths = self.eye_paths.saturating_add(report.eye_paths);
+        self.rays = self.rays.saturating_add(report.rays);
         self.ends.add(&report.ends);
         self.radius = report.radius;
         self.elapsed = elapsed;
@@ -127,6 +142,14 @@ struct Keep {
 
 const KEEP: Keep = Keep { every: Duration::from_secs(10), times_cost: 20 };
 
+/// Where a render is kept, so that it can be gone on from.
+pub struct Saving<'a> {
+    /// Time between two calls.
+    pub every: Duration,
+    /// Keeps what [`Engine::save`] gives. Called between passes, and at the end unless the engine failed.
+    pub save: &'a mut dyn FnMut(&mut dyn Engine, &Progress) -> Result<(), EngineError>,
+}
+
 /// Makes passes until a stop condition holds or `interrupted` is set, which ends it after the pass in hand; calls
 /// `observer` after each. Fails only where there is no picture to give; an engine that fails later gives the picture
 /// of the passes before, or the last one kept of them.
@@ -136,32 +159,39 @@ pub fn render(
     interrupted: &AtomicBool,
     observer: &mut dyn FnMut(&Progress),
 ) -> Result<Outcome, EngineError> {
-    render_keeping(engine, stop, interrupted, observer, KEEP)
+    resume(engine, Progress::before(stop), interrupted, observer, None)
+}
+
+/// The same from where `progress` is, with an engine that holds its passes, saved now and then. Time counts on. With nothing left
+/// to do it makes no pass.
+pub fn resume(
+    engine: &mut dyn Engine,
+    progress: Progress,
+    interrupted: &AtomicBool,
+    observer: &mut dyn FnMut(&Progress),
+    saving: Option<Saving>,
+) -> Result<Outcome, EngineError> {
+    render_keeping(engine, progress, interrupted, observer, saving, KEEP)
 }
 
 fn render_keeping(
     engine: &mut dyn Engine,
-    stop: Stop,
+    mut progress: Progress,
     interrupted: &AtomicBool,
     observer: &mut dyn FnMut(&Progress),
+    mut saving: Option<Saving>,
     keep: Keep,
 ) -> Result<Outcome, EngineError> {
     let start = Instant::now();
-    let mut progress = Progress {
-        stop,
-        passes: 0,
-        photons: 0,
-        eye_paths: 0,
-        rays: 0,
-        ends: PhotonEnds::default(),
-        radius: 0.0,
-        elapsed: Duration::ZERO,
-        error: None,
-    };
+    let (stop, before) = (progress.stop, progress.elapsed);
+    let elapsed = || before + start.elapsed();
     let mut kept: Option<Kept> = None;
-    let mut next_keep = keep.every;
-    let mut estimates = Estimates::new();
-    progress.add(&engine.pass()?, start.elapsed());
+    let mut next_keep = before + keep.every;
+    let mut next_save = saving.as_ref().map(|saving| before.saturating_add(saving.every));
+    let mut estimates = Estimates::after(progress.passes);
+    if progress.passes == 0 {
+        progress.add(&engine.pass()?, elapsed());
+    }
     let ending = loop {
         if estimates.due(&progress) {
             let begun = Instant::now();
@@ -189,13 +219,27 @@ fn render_keeping(
                 Ok(taken) => kept = Some(taken),
                 Err(error) => break Ending::Failed(error),
             }
-            let cost = start.elapsed() - progress.elapsed;
-            next_keep = start.elapsed() + keep.every.max(keep.times_cost * cost);
+            let cost = elapsed() - progress.elapsed;
+            next_keep = elapsed() + keep.every.max(keep.times_cost * cost);
+        }
+        if let Some(saving) = &mut saving
+            && next_save.is_some_and(|next| progress.elapsed >= next)
+        {
+            if let Err(error) = (saving.save)(engine, &progress) {
+                break Ending::Failed(error);
+            }
+            next_save = Some(elapsed().saturating_add(saving.every));
         }
         match engine.pass() {
-            Ok(report) => progress.add(&report, start.elapsed()),
+            Ok(report) => progress.add(&report, elapsed()),
             Err(error) => break Ending::Failed(error),
         }
+    };
+    // what an engine holds that failed in the middle of a pass is no whole number of passes
+    let ending = match (ending, saving) {
+        (Ending::Failed(error), _) => Ending::Failed(error),
+        (ending, None) => ending,
+        (ending, Some(saving)) => (saving.save)(engine, &progress).map_or_else(Ending::Failed, |()| ending),
     };
     match (take(engine, progress), ending) {
         (Ok(taken), ending) => Ok(taken.outcome(ending)),
@@ -216,8 +260,11 @@ struct Estimates {
 const ESTIMATES_SHARE: u32 = 50;
 
 impl Estimates {
-    fn new() -> Self {
-        Self { next: LEAST_PASSES, spent: Duration::ZERO }
+    /// Those still to come after so many passes; also the one after the last of them, which may not have been made.
+    fn after(passes: u32) -> Self {
+        let places = std::iter::successors(Some(LEAST_PASSES), |place| Some(following(*place)));
+        let next = places.into_iter().find(|place| *place >= passes || *place == u32::MAX);
+        Self { next: next.unwrap_or(u32::MAX), spent: Duration::ZERO }
     }
 
     /// With a target the passes depend on their number alone, since the picture's bits may not depend on a clock.
@@ -227,9 +274,14 @@ impl Estimates {
     }
 
     fn made(&mut self, progress: &Progress, cost: Duration) {
-        self.next = progress.passes.saturating_add((progress.passes / 8).max(1));
+        self.next = following(progress.passes);
         self.spent += cost;
     }
+}
+
+/// Passes at the estimate after the one at `passes`.
+fn following(passes: u32) -> u32 {
+    passes.saturating_add((passes / 8).max(1))
 }
 
 /// A picture with what belongs to it.
@@ -328,7 +380,7 @@ mod tests {
     }
 
     fn run(engine: &mut Counter, stop: Stop, keep: Keep) -> Result<Outcome, EngineError> {
-        render_keeping(engine, stop, &AtomicBool::new(false), &mut |_| (), keep)
+        render_keeping(engine, Progress::before(stop), &AtomicBool::new(false), &mut |_| (), None, keep)
     }
 
     fn shown(outcome: &Outcome) -> f32 {
@@ -429,5 +481,70 @@ mod tests {
         let mut engine = counter(NEVER, true);
         run(&mut engine, passes(50), KEEP).unwrap();
         assert_eq!(engine.pictures_taken, 1);
+    }
+
+    /// With no time between them it is saved after each pass that another one follows, and at the end.
+    #[test]
+    fn saved_between_passes_and_at_the_end() {
+        let saved_at = |fails_in: u32, every: Duration, from: u32| {
+            let mut saved = Vec::new();
+            let mut save = |engine: &mut dyn Engine, progress: &Progress| {
+                saved.push(progress.passes);
+                // the engine holds what the progress says
+                assert_eq!(engine.picture().unwrap().rgb[0][0], progress.passes as f32);
+                Ok(())
+            };
+            let mut engine = Counter { passes: from, ..counter(fails_in, true) };
+            let progress = Progress { passes: from, ..Progress::before(passes(4)) };
+            let saving = Saving { every, save: &mut save };
+            let outcome =
+                resume(&mut engine, progress, &AtomicBool::new(false), &mut |_| (), Some(saving)).unwrap();
+            (saved, outcome.progress.passes, engine.passes)
+        };
+        assert_eq!(saved_at(NEVER, Duration::ZERO, 0), (vec![1, 2, 3, 4], 4, 4));
+        assert_eq!(saved_at(NEVER, Duration::MAX, 0), (vec![4], 4, 4));
+        assert_eq!(saved_at(3, Duration::ZERO, 0), (vec![1, 2], 2, 2), "nothing of a pass that failed");
+        assert_eq!(saved_at(NEVER, Duration::ZERO, 2), (vec![2, 3, 4], 4, 4));
+        assert_eq!(saved_at(NEVER, Duration::ZERO, 4), (vec![4], 4, 4), "no pass beyond");
+    }
+
+    #[test]
+    fn what_cannot_be_saved_for_want_of_the_engine_ends_it() {
+        let mut save = |_: &mut dyn Engine, _: &Progress| Err(EngineError::DeviceLost("saving".into()));
+        let saving = Saving { every: Duration::ZERO, save: &mut save };
+        let mut engine = counter(NEVER, true);
+        let progress = Progress::before(passes(4));
+        let outcome =
+            resume(&mut engine, progress, &AtomicBool::new(false), &mut |_| (), Some(saving)).unwrap();
+        assert!(matches!(outcome.ending, Ending::Failed(EngineError::DeviceLost(_))));
+        assert_eq!(outcome.progress.passes, 1);
+    }
+
+    /// Time and totals count on.
+    #[test]
+    fn a_resumed_render_counts_on() {
+        let hour = Duration::from_secs(3600);
+        let stop = Stop { passes: u32::MAX, time: Some(hour), target_error: None };
+        let begun = Progress { passes: 3, photons: 30, elapsed: hour, ..Progress::before(stop) };
+        let mut engine = Counter { passes: 3, ..counter(NEVER, true) };
+        let flag = AtomicBool::new(false);
+        let outcome = resume(&mut engine, begun, &flag, &mut |_| (), None).unwrap();
+        assert!(matches!(outcome.ending, Ending::Time) && outcome.progress.passes == 3);
+        let longer = Progress { stop: passes(5), ..begun };
+        let outcome = resume(&mut engine, longer, &flag, &mut |_| (), None).unwrap();
+        assert_eq!((outcome.progress.passes, outcome.progress.photons), (5, 50));
+        assert!(outcome.progress.elapsed >= hour);
+    }
+
+    /// Estimates come after the passes after which they would have come without a stop.
+    #[test]
+    fn estimates_keep_their_places() {
+        let places: Vec<u32> =
+            std::iter::successors(Some(LEAST_PASSES), |p| Some(following(*p))).take(60).collect();
+        for passes in 0..places[50] {
+            let next = places.iter().find(|place| **place >= passes);
+            assert_eq!(Some(&Estimates::after(passes).next), next, "{passes}");
+        }
+        assert_eq!(Estimates::after(u32::MAX).next, u32::MAX);
     }
 }

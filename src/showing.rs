@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use crate::engine::{Engine, EngineError, PassReport};
+use crate::engine::{Engine, EngineError, PassReport, State};
 use crate::film::exr_file::Channel;
 use crate::film::{ErrorMap, Picture, Rejections};
 
@@ -54,6 +54,14 @@ impl Engine for Showing<'_> {
 
     fn layers(&mut self) -> Result<Vec<Channel>, EngineError> {
         self.inner.layers()
+    }
+
+    fn save(&mut self) -> Result<State, EngineError> {
+        self.inner.save()
+    }
+
+    fn restore(&mut self, state: &State) -> Result<(), EngineError> {
+        self.inner.restore(state)
     }
 
     fn results(&mut self) -> Result<(Picture, Rejections), EngineError> {

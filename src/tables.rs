@@ -5,8 +5,10 @@
 //! layouts by name. The short tables travel in one storage buffer, `scene`; the long ones have their own.
 
 use super::real::{Bits, Plain, Real, Vec2, Vec3};
+use super::shapes::fours::{FourRectangles, FourSpheres};
 use bytemuck::Zeroable;
 
+pub use super::shapes::facet::Facet;
 pub use super::shapes::kdtree::Node;
 pub use super::shapes::revolution::{Patch, Revolution};
 pub use super::shapes::triangle::Triangle;
@@ -143,12 +145,12 @@ pub struct Rectangle {
     pub area: Real,
     /// In-plane vector with `dual_u . u = 1` and `dual_u . v = 0`.
     pub dual_u: Vec3,
-    /// Padding.
-    pub pad0: u32,
+    /// Its outline among the facets.
+    pub facet: u32,
     /// In-plane vector with `dual_v . v = 1` and `dual_v . u = 0`.
     pub dual_v: Vec3,
     /// Padding.
-    pub pad1: u32,
+    pub pad: u32,
 }
 
 /// A flat disc.
@@ -167,8 +169,10 @@ pub struct Disc {
     pub light: u32,
     /// [`UV_NATURAL`] or [`UV_PLANAR`].
     pub uv: u32,
+    /// Its outline among the facets.
+    pub facet: u32,
     /// Padding.
-    pub pad: [u32; 2],
+    pub pad: u32,
 }
 
 /// An axis-parallel box.
@@ -185,8 +189,10 @@ pub struct Cuboid {
     pub light: u32,
     /// [`UV_NATURAL`] (each face is the unit square) or [`UV_PLANAR`].
     pub uv: u32,
+    /// The outline of the faces across x among the facets; those across y and z follow.
+    pub facet: u32,
     /// Padding.
-    pub pad: [u32; 3],
+    pub pad: [u32; 2],
 }
 
 /// An infinite plane.
@@ -402,6 +408,12 @@ pub struct Scene {
     pub triangles: Vec<Triangle>,
     /// Corners of the triangles that have any.
     pub attributes: Vec<Attributes>,
+    /// Outlines of flat shapes.
+    pub facets: Vec<Facet>,
+    /// The rectangles, four at a time: for the CPU alone, as are the spheres. Where they are missing, one at a time is taken.
+    pub four_rectangles: Vec<FourRectangles>,
+    /// The spheres, four at a time.
+    pub four_spheres: Vec<FourSpheres>,
     /// Pictures; the first 256 words are the sRGB decoding table when any is stored so.
     pub texels: Vec<Bits>,
 }

@@ -10,7 +10,7 @@ use caustica::engine::Engine;
 use caustica::film::estimate::{LEAST_PASSES, PixelError, early_passes, partition};
 use caustica::hold::{BlockTruth, NoisyTruth, Promise};
 use caustica::kernels::gather::gather;
-use caustica::kernels::grid_build::{SortedRecords, grid_count, grid_scan, grid_scatter, grid_sort};
+use caustica::kernels::grid_build::build_grid;
 use caustica::kernels::records::{Dispatch, FilmPixel, Gathered, PhotonRecord, VisiblePoint};
 use caustica::kernels::resolve::{half_weight, resolve};
 use caustica::math::oct_encode;
@@ -19,6 +19,7 @@ use caustica::plan::Plan;
 use caustica::render::{Ending, Stop, render};
 use caustica::scene;
 use caustica::settings::{Direct, Radius, RenderSettings};
+use caustica::tables::NONE;
 use glam::Vec3;
 use std::f64::consts::PI;
 use std::path::Path;
@@ -145,17 +146,18 @@ fn ring(radius: f32, light: impl Fn(f64, f64) -> f64) -> f64 {
         }
     }
     let d = Dispatch { mask: 1023, inv_cell: 1.0 / (2.0 * radius), scale_sq: 1.0, ..Dispatch::zeroed() };
-    let (mut counts, mut starts) = (vec![0; 1024], vec![0; 1025]);
-    grid_count(&d, &records, &mut counts);
-    grid_scan(&counts, &mut starts);
-    let mut order = vec![0; records.len()];
-    grid_scatter(&d, &records, &starts, &mut counts, &mut order);
-    let mut sorted = SortedRecords::default();
-    grid_sort(&d, &records, &order, &mut sorted);
+    let (starts, sorted) = build_grid(&d, records);
     let up = oct_encode(Vec3::Y);
-    let point = VisiblePoint { radius, weight: Vec3::ONE, normal: up, shading: up, ..VisiblePoint::zeroed() };
+    let point = VisiblePoint {
+        radius,
+        facet: NONE,
+        weight: Vec3::ONE,
+        normal: up,
+        shading: up,
+        ..VisiblePoint::zeroed()
+    };
     let mut gathered = Gathered::zeroed();
-    gather(&d, &point, d.scale_sq, &starts, &sorted, &mut gathered);
+    gather(&[], &d, &point, d.scale_sq, &starts, &sorted, &mut gathered);
     assert!(gathered.count > 100_000);
     f64::from(gathered.ring) / (PI * f64::from(radius).powi(2))
 }

@@ -37,6 +37,7 @@ fn provenance() -> Provenance {
         scene_text: "version = 1 # é\n".into(),
         settings: RenderSettings { seed: u64::MAX, photons: 12_345, ..RenderSettings::default() },
         device: "a device".into(),
+        first_pass: 0,
         passes_done: 17,
         ..Provenance::default()
     }

@@ -56,9 +56,9 @@ fn hosts() -> Vec<Layout> {
             medium
         }),
         layout!(Sphere { anchor, curvature, normal, radius, material, light, uv }),
-        layout!(Rectangle { origin, material, normal, light, u, uv, v, area, dual_u, dual_v }),
-        layout!(Disc { center, radius, normal, material, light, uv }),
-        layout!(Cuboid { lower, material, upper, light, uv }),
+        layout!(Rectangle { origin, material, normal, light, u, uv, v, area, dual_u, facet, dual_v }),
+        layout!(Disc { center, radius, normal, material, light, uv, facet }),
+        layout!(Cuboid { lower, material, upper, light, uv, facet }),
         layout!(Plane { point, material, normal, uv, tangent, u0, bitangent, v0 }),
         layout!(Revolution {
             x_axis,
@@ -137,7 +137,8 @@ fn hosts() -> Vec<Layout> {
             indirect_radius,
             inv_cell_indirect,
             window_first,
-            window_width
+            window_width,
+            points
         }),
         layout!(VisiblePoint {
             position,
@@ -149,6 +150,7 @@ fn hosts() -> Vec<Layout> {
             reflectance,
             alpha,
             wo,
+            facet,
             state
         }),
         layout!(PhotonRecord { position, key, flux, direction }),
@@ -160,6 +162,11 @@ fn hosts() -> Vec<Layout> {
 
 fn everything() -> (Mixture, naga::Module) {
     everything_of(Kernel::EyeTrace)
+}
+
+/// What the gather reads beside it.
+fn hosts_of_gather() -> Vec<Layout> {
+    vec![layout!(Facet { origin, radius, u, error, v, dual_u, dual_v })]
 }
 
 fn everything_of(kernel: Kernel) -> (Mixture, naga::Module) {
@@ -203,7 +210,8 @@ fn differences(module: &naga::Module, hosts: &[Layout]) -> Vec<String> {
 #[test]
 fn structs_agree() {
     let (_, module) = everything();
-    let list = differences(&module, &hosts());
+    let mut list = differences(&module, &hosts());
+    list.extend(differences(&everything_of(Kernel::Gather).1, &hosts_of_gather()));
     assert!(list.is_empty(), "{}", list.join("\n"));
     // that of one kernel alone
     let (_, module) = everything_of(Kernel::AovTrace);
@@ -234,20 +242,21 @@ fn aov_pixel() -> Layout {
 /// Every struct that the scene or a buffer is made of has its host struct in the list.
 #[test]
 fn no_struct_is_forgotten() {
-    let (_, module) = everything();
-    let hosts = hosts();
-    for (_, variable) in module.global_variables.iter().filter(|(_, v)| v.binding.is_some()) {
-        let mut open = vec![variable.ty];
-        while let Some(ty) = open.pop() {
-            let name = module.types[ty].name.as_deref().unwrap_or_default();
-            match &module.types[ty].inner {
-                naga::TypeInner::Array { base, .. } => open.push(*base),
-                // `Counters` is read word by word
-                naga::TypeInner::Struct { members, .. } if name != "Counters" => {
-                    assert!(name == "Scene" || hosts.iter().any(|h| h.0 == name), "{name}");
-                    open.extend(members.iter().map(|m| m.ty));
+    let hosts = [hosts(), hosts_of_gather()].concat();
+    for (_, module) in [Kernel::EyeTrace, Kernel::Gather].map(everything_of) {
+        for (_, variable) in module.global_variables.iter().filter(|(_, v)| v.binding.is_some()) {
+            let mut open = vec![variable.ty];
+            while let Some(ty) = open.pop() {
+                let name = module.types[ty].name.as_deref().unwrap_or_default();
+                match &module.types[ty].inner {
+                    naga::TypeInner::Array { base, .. } => open.push(*base),
+                    // `Counters` is read word by word
+                    naga::TypeInner::Struct { members, .. } if name != "Counters" => {
+                        assert!(name == "Scene" || hosts.iter().any(|h| h.0 == name), "{name}");
+                        open.extend(members.iter().map(|m| m.ty));
+                    }
+                    _ => {}
                 }
-                _ => {}
             }
         }
     }

@@ -39,7 +39,7 @@ fn aov_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
         }
     }
     let k = dispatch.passes_done % dispatch.eye_samples;
-    var rng = rng_new(pixel * dispatch.eye_samples + k, dispatch.pass_number, STREAM_EYE, dispatch.seed);
+    var rng = rng_eye(pixel * dispatch.eye_samples + k, dispatch.pass_number, dispatch.seed);
     var ray = camera_ray(camera, x, y, stratified(rng_next(&rng), k, pixel));
     var throughput = vec3f(1.0);
     var medium = camera.medium;

@@ -11,7 +11,7 @@ fn eye_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
     let place = (dispatch.chunk_first + id) / dispatch.eye_samples;
     let k = dispatch.chunk_first + id - place * dispatch.eye_samples;
     let pixel = window_pixel(camera, place);
-    var rng = rng_new(pixel * dispatch.eye_samples + k, dispatch.pass_number, STREAM_EYE, dispatch.seed);
+    var rng = rng_eye(pixel * dispatch.eye_samples + k, dispatch.pass_number, dispatch.seed);
     let u = stratified(rng_next(&rng), k, pixel);
     var ray = camera_ray(camera, pixel % camera.width, pixel / camera.width, u);
     var throughput = vec3f(1.0);
@@ -49,6 +49,7 @@ fn eye_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
             let ng = toward(s.normal, wo);
             let n = shading_normal(s, wo);
             point.position = s.position;
+            point.facet = s.facet;
             point.radius = start_radius(camera.pixel * length);
             point.normal = oct_encode(ng);
             point.shading = oct_encode(n);
@@ -58,7 +59,7 @@ fn eye_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
                 point.weight = throughput;
                 point.reflectance = reflectance;
                 point.alpha = scene.materials[s.material].alpha;
-                point.wo = wo;
+                point.wo = oct_encode(wo);
             }
             //#end
             //#if sampled

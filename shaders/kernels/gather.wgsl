@@ -53,6 +53,16 @@ fn gather_family(point: VisiblePoint, family: u32, radius_sq: f32) -> Gathered {
     let ng = oct_decode(point.normal);
     let flat_normal = point.normal == point.shading;
     let n = oct_decode(point.shading);
+    //#if metal
+    let wo = oct_decode(point.wo);
+    //#end
+    //#if facets
+    let clip = clip_at(point.facet, point.position, ng, radius);
+    let depth = select(FLATNESS * radius, min(clip.depth, FLATNESS * radius), clip.crossed);
+    let inner = clip.whole - 2.0 * clip.inner;
+    //#else
+    let depth = FLATNESS * radius;
+    //#end
     let low = grid_cell(point.position - vec3f(radius), inv_cell);
     let high = grid_cell(point.position + vec3f(radius), inv_cell);
     var count = 0u;
@@ -71,13 +81,18 @@ fn gather_family(point: VisiblePoint, family: u32, radius_sq: f32) -> Gathered {
                         let record = sorted[i];
                         let d = record.position - point.position;
                         let distance_sq = dot(d, d);
-                        if record.key != code || distance_sq > radius_sq || abs(dot(d, ng)) > FLATNESS * radius {
+                        if record.key != code || distance_sq > radius_sq || abs(dot(d, ng)) > depth {
                             continue;
                         }
                         let toward_light = oct_vector(record.direction);
                         if dot(toward_light, ng) <= 0.0 {
                             continue;
                         }
+                        //#if facets
+                        if clip.crossed && !on_facet(facets[point.facet], record.position) {
+                            continue;
+                        }
+                        //#end
                         count += 1u;
                         var flux = record.flux;
                         if !flat_normal || point.alpha > 0.0 {
@@ -85,7 +100,7 @@ fn gather_family(point: VisiblePoint, family: u32, radius_sq: f32) -> Gathered {
                             let cos_g = max(dot(wi, ng), COS_MIN);
                             //#if metal
                             if point.alpha > 0.0 {
-                                let f = eval_rough(MATERIAL_METAL, point.alpha, point.reflectance, n, point.wo, wi);
+                                let f = eval_rough(MATERIAL_METAL, point.alpha, point.reflectance, n, wo, wi);
                                 flux = f * flux * (1.0 / cos_g);
                             } else {
                                 flux *= max(dot(wi, n), 0.0) / cos_g;
@@ -95,12 +110,19 @@ fn gather_family(point: VisiblePoint, family: u32, radius_sq: f32) -> Gathered {
                             //#end
                         }
                         block += flux;
+                        //#if facets
+                        ring += flux * select(inner, clip.whole, distance_sq > 0.5 * radius_sq);
+                        //#else
                         ring += flux * select(-1.0, 1.0, distance_sq > 0.5 * radius_sq);
+                        //#end
                     }
                     sum += block;
                 }
             }
         }
     }
+    //#if facets
+    sum *= clip.whole;
+    //#end
     return Gathered(sum, count, vec3f(0.0), dot(point.weight * LUMINANCE, ring));
 }

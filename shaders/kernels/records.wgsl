@@ -26,6 +26,10 @@ struct Dispatch {
     inv_cell_indirect: f32,
     window_first: u32,
     window_width: u32,
+    pad0: u32,
+    pad1: u32,
+    pad2: u32,
+    points: array<vec4u, 4>,
 }
 
 const STOPPED: u32 = 1u;
@@ -41,8 +45,10 @@ struct VisiblePoint {
     shading: u32,
     reflectance: vec3f,
     alpha: f32,
-    wo: vec3f,
+    wo: u32,
+    facet: u32,
     state: u32,
+    pad: u32,
 }
 
 struct PhotonRecord {

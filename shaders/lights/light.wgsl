@@ -9,15 +9,13 @@ struct LightSample {
 }
 
 fn find_interval(first: u32, count: u32, u: f32) -> u32 {
+    // without a branch on what is found, which no processor foresees
     var low = 0u;
-    var high = count - 1u;
-    while low < high {
-        let middle = (low + high) / 2u;
-        if scene.distributions[first + middle] > u {
-            high = middle;
-        } else {
-            low = middle + 1u;
-        }
+    var length = count;
+    while length > 1u {
+        let half = length / 2u;
+        low += select(half, 0u, scene.distributions[first + low + half - 1u] > u);
+        length -= half;
     }
     return low;
 }

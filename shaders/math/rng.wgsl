@@ -15,6 +15,11 @@ fn rng_new(index: u32, pass_number: u32, stream: u32, seed: u32) -> Rng {
     return Rng(index, pass_number, stream, seed);
 }
 
+// The pass's points come from `dispatch`.
+fn rng_eye(index: u32, pass_number: u32, seed: u32) -> Rng {
+    return Rng(index, pass_number, STREAM_EYE, seed);
+}
+
 // pcg4d (Jarzynski & Olano 2020).
 fn pcg4d(p: vec4u) -> vec4u {
     var v = p * 1664525u + 1013904223u;
@@ -30,29 +35,21 @@ fn pcg4d(p: vec4u) -> vec4u {
     return v;
 }
 
-fn rng_step(k: u32) -> vec4u {
-    switch k {
-        case 0u: {
-            return vec4u(0x6a09e667u, 0xbb67ae85u, 0x3c6ef372u, 0xa54ff53au);
-        }
-        case 1u: {
-            return vec4u(0x510e527fu, 0x9b05688cu, 0x1f83d9abu, 0x5be0cd19u);
-        }
-        case 2u: {
-            return vec4u(0xcbbb9d5du, 0x629a292au, 0x9159015au, 0x152fecd8u);
-        }
-        default: {
-            return vec4u(0x67332667u, 0x8eb44a87u, 0xdb0c2e0du, 0x47b5481du);
-        }
-    }
+fn scrambled(reversed: vec4u, seeds: vec4u) -> vec4u {
+    var x = reversed;
+    x ^= x * 0x3d20adeau;
+    x += seeds;
+    x *= (seeds >> vec4u(16u)) | vec4u(1u);
+    x ^= x * 0x05526c56u;
+    x ^= x * 0x53a22864u;
+    return reverseBits(x);
 }
 
 fn rng_next(rng: ptr<function, Rng>) -> vec4f {
     let k = (*rng).dimension - STREAM_EYE;
     var h: vec4u;
     if k < 4u {
-        h = pcg4d(vec4u((*rng).index, 0u, (*rng).dimension, (*rng).seed));
-        h += rng_step(k) * (*rng).pass_number;
+        h = scrambled(dispatch.points[k], pcg4d(vec4u((*rng).index, 0u, (*rng).dimension, (*rng).seed)));
     } else {
         h = pcg4d(vec4u((*rng).index, (*rng).pass_number, (*rng).dimension, (*rng).seed));
     }

@@ -38,6 +38,10 @@ fn intersect_cuboid(cuboid: Cuboid, reference: u32, ray: Ray, hit: ptr<function,
     }
 }
 
+fn cuboid_axis(face: f32) -> u32 {
+    return u32(face) % 3u;
+}
+
 fn cuboid_normal(face: f32) -> vec3f {
     let s = select(-1.0, 1.0, face >= 3.0);
     let axis = select(face, face - 3.0, face >= 3.0);

@@ -9,6 +9,7 @@ struct Surface {
     light: u32,
     uv: vec2f,
     v: f32,
+    facet: u32,
 }
 
 fn surface_at(ray: Ray, hit: Hit) -> Surface {
@@ -30,6 +31,7 @@ fn surface_at(ray: Ray, hit: Hit) -> Surface {
                 triangle.light,
                 vec2f(0.0),
                 0.0,
+                NONE,
             );
             //#if attributes
             if triangle.attributes != NONE {
@@ -55,9 +57,10 @@ fn surface_at(ray: Ray, hit: Hit) -> Surface {
             let sphere = scene.spheres[index];
             let q = sphere_project(sphere, p);
             let n = sphere_normal(sphere, q);
-            s = Surface(q, sphere_error(sphere, q), n, sphere.material, n, sphere.light, vec2f(0.0), 0.0);
+            s = Surface(q, sphere_error(sphere, q), n, sphere.material, n, sphere.light, vec2f(0.0), 0.0, NONE);
             planar = sphere.uv;
-            if planar == UV_NATURAL {
+            // two arctangents, which most spheres have no use for
+            if planar == UV_NATURAL && scene.materials[sphere.material].texture != NONE {
                 s.uv = sphere_uv(n);
             }
         }
@@ -74,6 +77,7 @@ fn surface_at(ray: Ray, hit: Hit) -> Surface {
                 rectangle.light,
                 vec2f(hit.u, hit.v),
                 0.0,
+                rectangle.facet,
             );
             planar = rectangle.uv;
         }
@@ -82,7 +86,17 @@ fn surface_at(ray: Ray, hit: Hit) -> Surface {
         case KIND_DISC: {
             let disc = scene.discs[index];
             let q = plane_project(p, disc.center, disc.normal);
-            s = Surface(q, disc_error(disc), disc.normal, disc.material, disc.normal, disc.light, disc_uv(disc, q), 0.0);
+            s = Surface(
+                q,
+                disc_error(disc),
+                disc.normal,
+                disc.material,
+                disc.normal,
+                disc.light,
+                disc_uv(disc, q),
+                0.0,
+                disc.facet,
+            );
             planar = disc.uv;
         }
         //#end
@@ -91,7 +105,17 @@ fn surface_at(ray: Ray, hit: Hit) -> Surface {
             let cuboid = scene.cuboids[index];
             let q = cuboid_project(cuboid, p, hit.u);
             let n = cuboid_normal(hit.u);
-            s = Surface(q, cuboid_error(cuboid), n, cuboid.material, n, cuboid.light, cuboid_uv(cuboid, q, hit.u), 0.0);
+            s = Surface(
+                q,
+                cuboid_error(cuboid),
+                n,
+                cuboid.material,
+                n,
+                cuboid.light,
+                cuboid_uv(cuboid, q, hit.u),
+                0.0,
+                cuboid.facet + cuboid_axis(hit.u),
+            );
             planar = cuboid.uv;
         }
         //#end
@@ -100,7 +124,17 @@ fn surface_at(ray: Ray, hit: Hit) -> Surface {
             let patch_data = scene.patches[index];
             let revolution = scene.revolutions[patch_data.revolution];
             let r = revolution_surface(revolution, patch_data, hit.u, hit.v);
-            s = Surface(r.position, r.error, r.normal, revolution.material, r.normal, revolution.light, r.uv, r.uv.y);
+            s = Surface(
+                r.position,
+                r.error,
+                r.normal,
+                revolution.material,
+                r.normal,
+                revolution.light,
+                r.uv,
+                r.uv.y,
+                NONE,
+            );
             planar = revolution.uv;
         }
         //#end
@@ -118,6 +152,7 @@ fn surface_at(ray: Ray, hit: Hit) -> Surface {
                 NONE,
                 vec2f(plane.u0 + dot(d, plane.tangent), plane.v0 + dot(d, plane.bitangent)),
                 0.0,
+                NONE,
             );
             planar = plane.uv;
         }

@@ -172,7 +172,7 @@ fn measure(
             "note: Mesa keeps compiled shaders; for cold compile times say MESA_SHADER_CACHE_DISABLE=true",
         );
     }
-    let wanted = arguments.overrides.passes;
+    let wanted = arguments.overrides.pass_count();
     let conduct = Conduct {
         warm_up: arguments.warm_up,
         passes: wanted.unwrap_or(if arguments.time.is_some() { u32::MAX } else { PASSES }),

@@ -2,6 +2,7 @@
 
 use std::process::ExitCode;
 
+use caustica::checkpoint::CheckpointError;
 use caustica::device::DeviceError;
 use caustica::engine::EngineError;
 use caustica::film::FileError;
@@ -60,6 +61,12 @@ impl From<FileError> for Failure {
             _ => Self::FAILED,
         };
         Self { code, report: error.into() }
+    }
+}
+
+impl From<CheckpointError> for Failure {
+    fn from(error: CheckpointError) -> Self {
+        Self::failed(error)
     }
 }
 

@@ -33,6 +33,11 @@ impl Like {
         PathBuf::from(&self.made.scene_file)
     }
 
+    /// Its first pass.
+    pub fn first_pass(&self) -> u32 {
+        self.made.first_pass
+    }
+
     /// The device that it was made on.
     pub fn device(&self) -> &str {
         &self.made.device
@@ -65,7 +70,7 @@ impl Like {
             scene.film = scene::Film { exposure, tonemap, ..film };
         }
         *settings = self.made.asked.clone().unwrap_or_else(|| self.made.settings.clone());
-        settings.passes = self.made.passes_done;
+        settings.passes = self.made.first_pass + self.made.passes_done;
         for warning in self.differences(scene) {
             message(format_args!("warning: {}: {warning}", self.file.display()));
         }

@@ -6,6 +6,7 @@ mod bench;
 mod bench_table;
 mod bounds;
 mod check;
+mod checkpoint;
 mod compare;
 mod devices;
 mod diff;
@@ -16,6 +17,7 @@ mod info;
 mod interrupt;
 mod like;
 mod measure;
+mod merge;
 mod output;
 mod overrides;
 #[cfg(feature = "preview")]
@@ -53,6 +55,7 @@ enum Command {
     Render(Box<render::Arguments>),
     #[cfg(feature = "preview")]
     Preview(Box<preview::Arguments>),
+    Merge(merge::Arguments),
     Compare(compare::Arguments),
     Diff(Box<diff::Arguments>),
     Study(Box<study::Arguments>),
@@ -82,6 +85,7 @@ pub fn run() -> ExitCode {
         Command::Render(arguments) => render::run(*arguments),
         #[cfg(feature = "preview")]
         Command::Preview(arguments) => preview::run(*arguments),
+        Command::Merge(arguments) => merge::run(arguments),
         Command::Compare(arguments) => compare::run(arguments),
         Command::Diff(arguments) => diff::run(*arguments),
         Command::Study(arguments) => study::run(*arguments),

@@ -21,9 +21,9 @@ pub struct Overrides {
     /// Light transport: stochastic progressive photon mapping, progressive photon mapping, or path tracing (CPU only)
     #[arg(long, value_name = "sppm|ppm|path", value_parser = word::<Method>)]
     method: Option<Method>,
-    /// Number of passes
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
-    pub passes: Option<u32>,
+    /// Number of passes; render alone also takes those numbered from A to before B, counted from 0, to be merged with others
+    #[arg(long, value_name = "N|A..B", value_parser = passes)]
+    passes: Option<Passes>,
     /// Photons emitted per pass
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub photons: Option<u32>,
@@ -56,8 +56,32 @@ pub struct Overrides {
     pub size: Option<(u32, u32)>,
 }
 
+/// Passes by number, from 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Passes {
+    /// The first one.
+    pub first: u32,
+    /// The one after the last, above `first`.
+    pub end: u32,
+}
+
 impl Overrides {
-    /// Puts the options in force.
+    /// The passes asked for, if any are.
+    pub fn passes(&self) -> Option<Passes> {
+        self.passes
+    }
+
+    /// Number of passes, for commands that begin with the first.
+    pub fn pass_count(&self) -> Option<u32> {
+        self.passes.map(|passes| passes.end)
+    }
+
+    /// Whether passes are asked for of which pass 0 is none.
+    pub fn begins_later(&self) -> bool {
+        self.passes.is_some_and(|passes| passes.first > 0)
+    }
+
+    /// Puts the options in force; the number of passes is that of all up to the last.
     pub fn apply(&self, scene: &mut Scene, settings: &mut RenderSettings) {
         fn set<T: Copy>(target: &mut T, value: Option<T>) {
             *target = value.unwrap_or(*target);
@@ -69,7 +93,7 @@ impl Overrides {
             quality.apply(u64::from(scene.film.width) * u64::from(scene.film.height), settings);
         }
         set(&mut settings.method, self.method);
-        set(&mut settings.passes, self.passes);
+        set(&mut settings.passes, self.pass_count());
         set(&mut settings.photons, self.photons);
         set(&mut settings.radius, self.radius);
         settings.indirect_radius = self.indirect_radius.or(settings.indirect_radius);
@@ -90,6 +114,19 @@ fn quality() -> impl TypedValueParser<Value = Quality> {
 /// One of a setting's words, as scene files spell them.
 pub fn word<T: DeserializeOwned>(text: &str) -> Result<T, String> {
     serde_json::from_value(text.into()).map_err(|error| error.to_string())
+}
+
+fn passes(text: &str) -> Result<Passes, String> {
+    let number = |text: &str| text.parse::<u32>().ok();
+    let (first, end) = match text.split_once("..") {
+        Some((first, end)) => (number(first), number(end)),
+        None => (Some(0), number(text)),
+    };
+    let passes = first.zip(end).map(|(first, end)| Passes { first, end });
+    passes.filter(|passes| passes.first < passes.end).ok_or(format!(
+        "expected a number from 1 to {}, or a range of them as in 0..500 or 500..1000",
+        u32::MAX
+    ))
 }
 
 fn positive(text: &str) -> Result<f64, String> {
@@ -173,6 +210,30 @@ mod tests {
         assert_eq!(radius("auto"), Ok(Radius::Auto));
         for bad in ["", "px", "0px", "-1", "nan", "inf", "2 cm", "1e-16", "1e16px"] {
             assert!(radius(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn passes_by_number_or_range() {
+        assert_eq!(passes("7"), Ok(Passes { first: 0, end: 7 }));
+        assert_eq!(passes("0..500"), Ok(Passes { first: 0, end: 500 }));
+        assert_eq!(passes("500..4294967295"), Ok(Passes { first: 500, end: u32::MAX }));
+        for bad in [
+            "",
+            "0",
+            "-1",
+            "1.5",
+            "..",
+            "5..",
+            "..5",
+            "5..5",
+            "6..5",
+            "0..4294967296",
+            "0...5",
+            "0..=5",
+            "0 .. 5",
+        ] {
+            assert!(passes(bad).is_err(), "{bad}");
         }
     }
 

@@ -6,14 +6,14 @@ use std::time::Duration;
 
 use caustica::calibration::{Calibrating, Calibration};
 use caustica::device::{self, Opened};
-use caustica::engine::{Engine, EngineError};
+use caustica::engine::{Engine, EngineError, State};
 use caustica::film::tev::ADDRESS;
 use caustica::film::{self, Development, ErrorMap, Picture, Provenance, Rejections, check_outputs};
 use caustica::limits;
 use caustica::quality::{Expected, Quality, expected};
-use caustica::render::{Ending, Outcome, Progress, Stop, render};
+use caustica::render::{Ending, Outcome, Progress, Saving, Stop, resume};
 use caustica::scene::{self, Aovs, Loaded, Scene};
-use caustica::settings::RenderSettings;
+use caustica::settings::{Method, RadiusRule, RenderSettings};
 use caustica::showing::Showing;
 use clap::builder::NonEmptyStringValueParser;
 use miette::{Report, miette};
@@ -22,10 +22,10 @@ use serde_json::json;
 use super::extent::Extent;
 use super::like::Like;
 use super::output::{message, result};
-use super::overrides::{Overrides, duration, target_error};
+use super::overrides::{Overrides, Passes, duration, target_error};
 use super::progress::{Reporter, count, event, percent, time};
 use super::tev::Viewer;
-use super::{Done, Failure, interrupt};
+use super::{Done, Failure, checkpoint, interrupt};
 
 /// Render a scene into pictures
 #[derive(clap::Args)]
@@ -54,6 +54,15 @@ pub struct Arguments {
     /// Stop once the stated relative error is no larger, as in 2% or 0.02; without --passes and --time, the only limit
     #[arg(long, value_name = "E", value_parser = target_error, allow_hyphen_values = true)]
     target_error: Option<f64>,
+    /// File to keep the render in, now and then and where it stops, so that --resume can go on from there
+    #[arg(long, value_name = "FILE")]
+    checkpoint: Option<PathBuf>,
+    /// Time between two of them, as in 30s or 5m
+    #[arg(long, value_name = "TIME", value_parser = duration, default_value = "30s", requires = "checkpoint")]
+    checkpoint_every: Duration,
+    /// Go on from this checkpoint, to the picture of a render that never stopped
+    #[arg(long, value_name = "FILE")]
+    resume: Option<PathBuf>,
     /// Fail, with the pictures written, if a sample had to be left out because it was not finite
     #[arg(long)]
     strict: bool,
@@ -70,6 +79,8 @@ Examples:
   caustica render scenes/caustics.toml
   caustica render scenes/cornell.toml -o cornell.exr -o cornell.png --time 30s --device cpu
   caustica render scenes/cornell.toml --target-error 2%
+  caustica render scenes/cornell.toml --checkpoint cornell.checkpoint
+  caustica render scenes/cornell.toml --resume cornell.checkpoint --checkpoint cornell.checkpoint
   caustica render scenes/cornell.toml -o layers.exr --aov albedo,normal,depth --crop 0,0,256,256
   caustica render --like layers.exr -o again.exr
 
@@ -77,7 +88,9 @@ Layers for --aov: albedo, normal (both behind mirrors and glass), depth, positio
 variance, and the parts that add up to the picture, emission, direct, caustic, indirect; docs/pictures.md tells more.
 
 The error is the root of relMSE, noise and bias: nine of ten pictures are no farther from the truth than stated.
-It is told from the fourth pass on; .exr files hold each pixel's variance and bias (docs/error-estimate.md).";
+It is told from the fourth pass on; .exr files hold each pixel's variance and bias (docs/error-estimate.md).
+A checkpoint is gone on from with the same scene and settings, on any device; more --passes may be asked for
+(docs/checkpoints.md).";
 
 /// How much is told, and in which form.
 #[derive(clap::Args)]
@@ -99,6 +112,7 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
         named => named.to_vec(),
     };
     check_outputs(&outputs)?;
+    let files = checkpoint::Files::new(arguments.checkpoint.as_deref(), arguments.resume.as_deref())?;
     let loaded = match &like {
         Some(like) => {
             let mut loaded = like.load(&file)?;
@@ -108,17 +122,29 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
         None => scene::load(&file)?,
     };
     let asked = loaded.scene.film.aovs;
-    let (mut scene, settings) = in_force(loaded, &arguments.overrides)?;
+    let (mut scene, settings) = put_in_force(loaded, &arguments.overrides);
     scene.film.aovs = asked;
     arguments.extent.apply(&mut scene.film, &outputs)?;
+    files.check_film(&scene.film)?;
+    let passes = arguments.overrides.passes();
+    let first_pass = passes.map_or(like.as_ref().map_or(0, Like::first_pass), |passes| passes.first);
+    check_range(first_pass, &settings)?;
     let device = arguments.device.as_deref().or(like.as_ref().map(Like::device)).unwrap_or("auto");
     let opened = device::open(&device::parse(device), &scene, &settings)?;
     let mut viewer = Viewer::connect(arguments.tev.as_deref(), &scene)?;
-    let reporter = begin(&arguments.voice, &scene, &opened)?;
+    let scene_text = std::fs::read_to_string(&file).unwrap_or_default();
+    let origin = checkpoint::origin(&opened, &scene, &scene_text);
     let Arguments { time, target_error, .. } = arguments;
-    let limited = time.is_none() && target_error.is_none() || arguments.overrides.passes.is_some();
-    let stop = Stop { passes: if limited { settings.passes } else { u32::MAX }, time, target_error };
+    let limited = time.is_none() && target_error.is_none() || passes.is_some();
+    let end = if limited { settings.passes } else { u32::MAX };
+    let stop = Stop { passes: end - first_pass, time, target_error };
+    files.check(&origin, opened.kind.bits(), Passes { first: first_pass, end })?;
+    let from = files.resumed();
+    let reporter = begin(&arguments.voice, &scene, &opened)?;
     let mut engine = opened.engine;
+    engine.restore(from.map_or(&State::before(first_pass), |from| &from.state))?;
+    let progress = from.map_or(Progress::before(stop), |from| from.progress(stop));
+    files.tell(arguments.voice.json, &reporter)?;
     let mut shown = |picture: &Picture| viewer.show(picture);
     let mut showing;
     let engine: &mut dyn Engine = if arguments.tev.is_some() {
@@ -129,14 +155,19 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     };
     let reporter = RefCell::new(reporter);
     let mut show = |progress: &Progress| reporter.borrow_mut().show(progress);
-    let outcome = match arguments.overrides.quality {
+    let mut keeper = checkpoint::Keeper::new(&files, origin, arguments.voice.json);
+    let mut save = |engine: &mut dyn Engine, progress: &Progress| keeper.save(engine, progress);
+    let every = arguments.checkpoint_every;
+    let saving = files.keeps().then_some(Saving { every, save: &mut save });
+    // of a render that goes on the first passes are not at hand
+    let outcome = match arguments.overrides.quality.filter(|_| from.is_none()) {
         Some(quality) => {
             let promise = Promise { quality, stop, settings: &opened.settings, json: arguments.voice.json };
             let mut tell = |calibration: &Calibration| promise.tell(calibration, &reporter.borrow());
             let mut watched = Calibrating::new(engine, &mut tell);
-            render(&mut watched, stop, interrupt::flag(), &mut show)
+            resume(&mut watched, progress, interrupt::flag(), &mut show, saving)
         }
-        None => render(engine, stop, interrupt::flag(), &mut show),
+        None => resume(engine, progress, interrupt::flag(), &mut show, saving),
     };
     let mut reporter = reporter.into_inner();
     reporter.finish();
@@ -146,13 +177,14 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     let provenance = Provenance {
         scene: scene.name.clone(),
         scene_file: file.display().to_string(),
-        scene_text: std::fs::read_to_string(&file).unwrap_or_default(),
+        scene_text,
         digest: Some(scene.digest()),
         film: Some(scene.film),
         materials: scene.materials.iter().map(|material| material.name.clone()).collect(),
         asked: Some(settings),
         settings: opened.settings,
         device: opened.name,
+        first_pass,
         passes_done: outcome.progress.passes,
     };
     let film = &scene.film;
@@ -160,6 +192,9 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
         Development { exposure: film.exposure, tonemap: film.tonemap, bits: arguments.extent.bits };
     write(&outputs, &outcome, &development, &provenance)?;
     tell(arguments.voice.json, &reporter, &outputs, &outcome)?;
+    if !matches!(outcome.ending, Ending::Failed(_)) {
+        keeper.end()?;
+    }
     if arguments.strict && !outcome.rejections.is_empty() {
         return Err(Failure::failed(miette!("--strict: {}", left_out(&outcome.rejections))));
     }
@@ -177,6 +212,20 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
             }
         }
     }
+}
+
+/// Fails where passes do not stand by themselves, but are to begin in the middle.
+fn check_range(first_pass: u32, settings: &RenderSettings) -> Result<(), Failure> {
+    if first_pass > 0 && settings.radius_rule == RadiusRule::Local && settings.method != Method::Path {
+        return Err(Failure::wrong_use(
+            &format!(
+                "passes from {first_pass} on cannot be rendered by themselves under the local rule, where each needs the photon \
+                      counts of all before it"
+            ),
+            "begin with pass 0 and go on by --resume, or take --radius-rule global",
+        ));
+    }
+    Ok(())
 }
 
 /// Says what is rendered where, before it is.
@@ -250,15 +299,26 @@ pub fn load(file: &Path, overrides: &Overrides) -> Result<(Scene, RenderSettings
     in_force(scene::load(file)?, overrides)
 }
 
-/// Puts the options in force and prints the warnings. What the film asks for beside radiance is left out.
-pub fn in_force(mut loaded: Loaded, overrides: &Overrides) -> Result<(Scene, RenderSettings), Failure> {
+/// Puts the options in force and prints the warnings, for commands that begin with the first pass. What the film asks for beside radiance is
+/// left out.
+pub fn in_force(loaded: Loaded, overrides: &Overrides) -> Result<(Scene, RenderSettings), Failure> {
+    if overrides.begins_later() {
+        return Err(Failure::wrong_use(
+            "this command begins with pass 0",
+            "give --passes a number; ranges are for render",
+        ));
+    }
+    Ok(put_in_force(loaded, overrides))
+}
+
+fn put_in_force(mut loaded: Loaded, overrides: &Overrides) -> (Scene, RenderSettings) {
     overrides.apply(&mut loaded.scene, &mut loaded.settings);
     loaded.scene.film.aovs = Aovs::default();
     let limits = limits::warnings(&loaded.scene, &loaded.settings, &loaded.places);
     for warning in loaded.warnings.into_iter().chain(limits) {
         message(format_args!("{:?}", Report::new(warning)));
     }
-    Ok((loaded.scene, loaded.settings))
+    (loaded.scene, loaded.settings)
 }
 
 /// The picture that is written where none is named.
@@ -284,7 +344,7 @@ fn write(
 }
 
 /// What was left out of the picture and why.
-fn left_out(rejections: &Rejections) -> String {
+pub fn left_out(rejections: &Rejections) -> String {
     let causes: Vec<_> =
         rejections.causes().iter().map(|(count, cause)| format!("{count} {cause}")).collect();
     format!("left out of the picture: {}", causes.join(", "))

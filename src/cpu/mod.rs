@@ -2,9 +2,10 @@
 
 use super::features::Features;
 use super::kernels::aov_trace::{AovPixel, aov_trace};
+use super::kernels::bytes::{film_bytes, film_of, statistics_bytes, statistics_of};
 use super::kernels::eye_trace::eye_trace;
 use super::kernels::gather::{gather, scale_sq};
-use super::kernels::grid_build::{SortedRecords, grid_count, grid_scan, grid_scatter, grid_sort};
+use super::kernels::grid_build::{RecordList, SortedRecords, grid_count, grid_scan, grid_scatter, grid_sort};
 use super::kernels::path_trace::path_trace;
 use super::kernels::photon_trace::photon_trace;
 use super::kernels::records::*;
@@ -14,21 +15,25 @@ use super::layers::Found as Layers;
 use super::math::is_finite;
 use super::pack::Packed;
 use super::plan::{Kernel, Plan};
-use super::real::ENGINE;
-use super::tables::Scene;
+use super::real::{ENGINE, Real};
+use super::tables::{Facet, Scene};
 use crate::clock::{Clock, KernelSeconds};
-use crate::engine::{Engine, EngineError, PassReport, PhotonEnds};
+use crate::engine::{Engine, EngineError, PassReport, PhotonEnds, State};
 use crate::film::exr_file::Channel;
 use crate::film::{ErrorMap, Picture, Rejections};
 use crate::settings::Method;
 use bytemuck::Zeroable;
 use rayon::prelude::*;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// Visible points that one task gathers for.
 const GATHER_TASK: usize = 1024;
-/// Photons that one task traces.
-const PHOTON_TASK: u32 = 1024;
+/// Visible points that one task finds.
+const EYE_TASK: usize = 512;
+/// Photons that one task traces, at the least and at the most, and tasks between.
+const PHOTON_TASK: (u32, u32) = (1024, 8192);
+const PHOTON_TASKS: u32 = 256;
 
 /// Passes over one scene on the processor's cores.
 pub struct CpuEngine {
@@ -41,11 +46,11 @@ pub struct CpuEngine {
     film: Vec<FilmPixel>,
     aovs: Vec<AovPixel>,
     parts: Vec<PartsPixel>,
-    records: Vec<PhotonRecord>,
-    sorted: SortedRecords,
-    counts: Vec<u32>,
+    records: Vec<RecordList>,
+    /// Records before each part of the buckets.
+    part_starts: Vec<u32>,
     starts: Vec<u32>,
-    order: Vec<u32>,
+    sorted: SortedRecords,
     device: String,
     clock: Clock,
     /// What vectors the processor has.
@@ -57,6 +62,7 @@ struct Overflow;
 
 /// Gathers of one task.
 struct Gathers<'a> {
+    facets: &'a [Facet],
     dispatch: &'a Dispatch,
     points: &'a [VisiblePoint],
     /// Under the local rule.
@@ -76,8 +82,62 @@ impl pulp::WithSimd for Gathers<'_> {
                 Some(statistics) => scale_sq(self.dispatch, true, &statistics[i]),
                 None => self.dispatch.scale_sq,
             };
-            gather(self.dispatch, point, scale, self.starts, self.sorted, gathered);
+            gather(self.facets, self.dispatch, point, scale, self.starts, self.sorted, gathered);
         }
+    }
+}
+
+/// Eye paths of one task.
+struct EyePaths<'a> {
+    scene: &'a Scene,
+    dispatch: &'a Dispatch,
+    sampled: bool,
+    first: u32,
+    points: &'a mut [VisiblePoint],
+}
+
+impl pulp::WithSimd for EyePaths<'_> {
+    /// Rays.
+    type Output = u64;
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) -> u64 {
+        let mut all = 0;
+        for (id, point) in (self.first..).zip(self.points) {
+            let (traced, rays) = eye_trace(self.scene, self.dispatch, self.sampled, id);
+            *point = traced;
+            all += rays as u64;
+        }
+        all
+    }
+}
+
+/// Photons of one task.
+struct Photons<'a> {
+    scene: &'a Scene,
+    dispatch: &'a Dispatch,
+    sampled: bool,
+    ids: Range<u32>,
+    list: &'a mut RecordList,
+}
+
+impl pulp::WithSimd for Photons<'_> {
+    /// Rays, and photons by how they ended.
+    type Output = (u64, [u64; 3]);
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) -> Self::Output {
+        let records = &mut self.list.records;
+        records.clear();
+        let mut rays = 0;
+        let mut ends = [0; 3];
+        for id in self.ids {
+            let path =
+                photon_trace(self.scene, self.dispatch, self.sampled, id, |record| records.push(record));
+            rays += path.rays as u64;
+            ends[path.end] += 1;
+        }
+        (rays, ends)
     }
 }
 
@@ -98,10 +158,9 @@ impl CpuEngine {
             aovs: vec![AovPixel::zeroed(); if plan.aovs.are_traced() { plan.pixels as usize } else { 0 }],
             parts: vec![PartsPixel::zeroed(); if plan.parts_photons() { plan.pixels as usize } else { 0 }],
             records: Vec::new(),
-            sorted: SortedRecords::default(),
-            counts: vec![0; buckets],
+            part_starts: Vec::new(),
             starts: vec![0; buckets + 1],
-            order: Vec::new(),
+            sorted: SortedRecords::default(),
             device: format!("{ENGINE}, {} threads", rayon::current_num_threads()),
             clock: Clock::default(),
             arch: pulp::Arch::new(),
@@ -136,35 +195,34 @@ impl CpuEngine {
                 Kernel::EyeTrace => {
                     report.eye_paths += d.end as u64;
                     report.rays += self.visible_points[chunk]
-                        .par_iter_mut()
+                        .par_chunks_mut(EYE_TASK)
                         .enumerate()
-                        .map(|(id, point)| {
-                            let (traced, rays) = eye_trace(scene, d, sampled, id as u32);
-                            *point = traced;
-                            rays as u64
+                        .map(|(task, points)| {
+                            let first = (task * EYE_TASK) as u32;
+                            self.arch.dispatch(EyePaths { scene, dispatch: d, sampled, first, points })
                         })
                         .sum::<u64>();
                     report.eye_rays = report.rays;
                 }
                 Kernel::PhotonTrace => {
-                    let (rays, ends) = trace_photons(scene, d, sampled, &mut self.records);
+                    let (rays, ends) = trace_photons(self.arch, scene, d, sampled, &mut self.records);
                     report.rays += rays;
                     report.ends.add(&PhotonEnds::of(ends));
-                    report.records += self.records.len() as u64;
-                    if self.records.len() > d.capacity as usize && d.end > 1 {
+                    let records = self.records.iter().map(|list| list.records.len() as u64).sum::<u64>();
+                    report.records += records;
+                    if records > d.capacity as u64 && d.end > 1 {
                         return Err(Overflow);
                     }
                 }
-                Kernel::GridCount => grid_count(d, &self.records, &mut self.counts),
+                Kernel::GridCount => grid_count(d, &mut self.records),
                 Kernel::GridScanReduce | Kernel::GridScanSums => {}
-                Kernel::GridScan => grid_scan(&self.counts, &mut self.starts),
-                Kernel::GridScatter => {
-                    self.order.resize(self.records.len(), 0);
-                    grid_scatter(d, &self.records, &self.starts, &mut self.counts, &mut self.order);
-                }
+                Kernel::GridScan => self.part_starts = grid_scan(&self.records),
+                Kernel::GridScatter => grid_scatter(d, &mut self.records),
                 Kernel::GridSortLong => {}
-                // the scatter above leaves each bucket sorted
-                Kernel::GridSort => grid_sort(d, &self.records, &self.order, &mut self.sorted),
+                Kernel::GridSort => {
+                    let (starts, sorted) = (&mut self.starts, &mut self.sorted);
+                    grid_sort(d, &self.records, &self.part_starts, starts, sorted);
+                }
                 Kernel::Gather => {
                     let points = self.visible_points[chunk.clone()].par_chunks(GATHER_TASK);
                     let gathered = self.gathered[chunk.clone()].par_chunks_mut(GATHER_TASK);
@@ -173,6 +231,7 @@ impl CpuEngine {
                     gathered.zip(points).zip(statistics).for_each(|((gathered, points), statistics)| {
                         let (starts, sorted) = (&self.starts, &self.sorted);
                         self.arch.dispatch(Gathers {
+                            facets: &scene.facets,
                             dispatch: d,
                             points,
                             statistics,
@@ -246,32 +305,30 @@ fn trace_aovs(scene: &Scene, d: &Dispatch, features: &Features, aovs: &mut [AovP
     pixels.enumerate().for_each(|(id, pixel)| aov_trace(scene, d, sampled, id as u32, pixel));
 }
 
-/// Photons of one batch; the records come in the order of their keys. The number of rays, and of photons by how they ended.
+/// Photons of one batch; the lists come in the order of their keys. The number of rays, and of photons by how they ended.
 fn trace_photons(
+    arch: pulp::Arch,
     scene: &Scene,
     d: &Dispatch,
     sampled: bool,
-    records: &mut Vec<PhotonRecord>,
+    records: &mut Vec<RecordList>,
 ) -> (u64, [u64; 3]) {
-    let tasks: Vec<(Vec<PhotonRecord>, u64, [u64; 3])> = (0..d.end.div_ceil(PHOTON_TASK))
-        .into_par_iter()
-        .map(|task| {
-            let mut found = Vec::new();
-            let mut rays = 0;
-            let mut ends = [0; 3];
-            for id in task * PHOTON_TASK..(task * PHOTON_TASK + PHOTON_TASK).min(d.end) {
-                let path = photon_trace(scene, d, sampled, id, |record| found.push(record));
-                rays += path.rays as u64;
-                ends[path.end] += 1;
-            }
-            (found, rays, ends)
+    let photons = d.end.div_ceil(PHOTON_TASKS).clamp(PHOTON_TASK.0, PHOTON_TASK.1);
+    records.resize_with(d.end.div_ceil(photons) as usize, RecordList::default);
+    let traced = records.par_iter_mut().enumerate().map(|(task, list)| {
+        let first = task as u32 * photons;
+        arch.dispatch(Photons {
+            scene,
+            dispatch: d,
+            sampled,
+            ids: first..first + photons.min(d.end - first),
+            list,
         })
-        .collect();
-    records.clear();
-    tasks.into_iter().fold((0, [0; 3]), |(sum, all), (found, rays, ends)| {
-        records.extend(found);
+    });
+    let sum = |(sum, all): (u64, [u64; 3]), (rays, ends): (u64, [u64; 3])| {
         (sum + rays, std::array::from_fn(|k| all[k] + ends[k]))
-    })
+    };
+    traced.reduce(|| (0, [0; 3]), sum)
 }
 
 impl Engine for CpuEngine {
@@ -309,6 +366,26 @@ impl Engine for CpuEngine {
 
     fn rejections(&mut self) -> Result<Rejections, EngineError> {
         Ok(self.plan.rejections(&self.film))
+    }
+
+    fn save(&mut self) -> Result<State, EngineError> {
+        Ok(State {
+            first_pass: self.plan.first_pass,
+            passes: self.passes_done,
+            bits: 8 * size_of::<Real>() as u32,
+            film: film_bytes(&self.film),
+            statistics: statistics_bytes(&self.statistics),
+        })
+    }
+
+    fn restore(&mut self, state: &State) -> Result<(), EngineError> {
+        self.plan.take_over(state)?;
+        if state.passes > 0 {
+            self.passes_done = state.passes;
+            self.film = film_of(&state.film);
+            self.statistics = statistics_of(&state.statistics);
+        }
+        Ok(())
     }
 
     fn layers(&mut self) -> Result<Vec<Channel>, EngineError> {

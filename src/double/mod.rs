@@ -61,6 +61,8 @@ pub mod pack;
 pub mod plan;
 #[path = "../probe.rs"]
 pub mod probe;
+#[path = "../readout.rs"]
+pub mod readout;
 #[path = "../shapes/mod.rs"]
 pub mod shapes;
 #[path = "../tables.rs"]

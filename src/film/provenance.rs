@@ -28,6 +28,8 @@ pub struct Provenance {
     pub settings: RenderSettings,
     /// The device's name.
     pub device: String,
+    /// Number of the picture's first pass; 0 but where a range of passes was asked for.
+    pub first_pass: u32,
     /// Passes in the picture; fewer than `settings.passes` when the render was stopped early.
     pub passes_done: u32,
 }
@@ -48,6 +50,9 @@ impl Provenance {
             ("caustica.passes_done".to_owned(), self.passes_done.to_string()),
             ("caustica.settings".to_owned(), settings.to_string()),
         ]);
+        if self.first_pass > 0 {
+            attributes.insert("caustica.first_pass".to_owned(), self.first_pass.to_string());
+        }
         for (key, value) in settings.as_object().into_iter().flatten() {
             let text = value.as_str().map_or_else(|| value.to_string(), str::to_owned);
             attributes.insert(format!("caustica.{key}"), text);
@@ -108,6 +113,7 @@ impl Provenance {
             None => None,
         };
         let aovs = get("aov").map_or(Ok(Aovs::default()), |text| Aovs::parse(text));
+        let first_pass = get("first_pass").map_or(Ok(0), |text| text.parse());
         let passes = need("passes_done")?.parse::<u32>().ok().filter(|passes| *passes > 0);
         Ok(Self {
             scene: need("scene")?.clone(),
@@ -126,6 +132,7 @@ impl Provenance {
             asked: settings("asked")?,
             settings: settings("settings")?.ok_or_else(|| wrong("settings", "it is missing"))?,
             device: need("device")?.clone(),
+            first_pass: first_pass.map_err(|_| wrong("first_pass", "no number of a pass"))?,
             passes_done: passes.ok_or_else(|| wrong("passes_done", "no number of passes"))?,
         })
     }

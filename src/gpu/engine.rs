@@ -7,9 +7,10 @@ use super::pace::Pace;
 use super::program::{Compiling, Program, make_programs, workgroup_items};
 use super::recorder::Recorder;
 use crate::clock::{Clock, KernelSeconds};
-use crate::engine::{Engine, EngineError, PassReport, PhotonEnds};
+use crate::engine::{Engine, EngineError, PassReport, PhotonEnds, State};
 use crate::film::exr_file::Channel;
 use crate::film::{ErrorMap, Picture, Rejections};
+use crate::kernels::bytes::{FILM_BYTES, STATISTICS_BYTES};
 use crate::kernels::records::{Dispatch, FilmPixel, Gathered};
 use crate::layers::Found;
 use crate::pack::Packed;
@@ -516,6 +517,29 @@ impl Engine for GpuEngine {
         Ok((self.plan.picture(&film), self.plan.rejections(&film)))
     }
 
+    fn save(&mut self) -> Result<State, EngineError> {
+        Ok(State {
+            first_pass: self.plan.first_pass,
+            passes: self.passes_done,
+            bits: 8 * size_of::<f32>() as u32,
+            film: self.read_chunks("film")?,
+            statistics: self.read_chunks("statistics")?,
+        })
+    }
+
+    fn restore(&mut self, state: &State) -> Result<(), EngineError> {
+        self.plan.take_over(state)?;
+        self.passes_done = state.passes;
+        for (name, bytes) in [("film", &state.film), ("statistics", &state.statistics)] {
+            for (number, chunk) in (0..).zip(&self.chunks) {
+                if let (Some(buffer), Some(part)) = (chunk.get(name), bytes.get(self.place(name, number))) {
+                    self.gpu.write(buffer, part);
+                }
+            }
+        }
+        self.gpu.check()
+    }
+
     fn layers(&mut self) -> Result<Vec<Channel>, EngineError> {
         if self.plan.aovs.is_empty() {
             return Ok(Vec::new());
@@ -554,5 +578,27 @@ impl GpuEngine {
             }
         }
         Ok(all)
+    }
+
+    /// All chunks' parts of a buffer, one after another; nothing where the plan has no such buffer.
+    fn read_chunks(&self, name: &str) -> Result<Vec<u8>, EngineError> {
+        let mut bytes = Vec::new();
+        for (number, chunk) in (0..).zip(&self.chunks) {
+            if let Some(buffer) = chunk.get(name) {
+                bytes.extend(self.gpu.read(buffer, self.place(name, number).len() as u64)?);
+            }
+        }
+        Ok(bytes)
+    }
+
+    /// Where a chunk's `film` or `statistics` stand among those of all.
+    fn place(&self, name: &str, chunk: u32) -> std::ops::Range<usize> {
+        let (first, points) = self.plan.chunk(chunk);
+        let samples = self.plan.eye_samples;
+        let (first, end, size) = match name {
+            "film" => (first / samples, (first + points) / samples, FILM_BYTES),
+            _ => (first, first + points, STATISTICS_BYTES),
+        };
+        first as usize * size..end as usize * size
     }
 }

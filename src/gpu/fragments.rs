@@ -28,10 +28,10 @@ macro_rules! fragments {
 
 /// All shader files, in the order in which they are put together.
 pub const FRAGMENTS: &[Fragment] = fragments![
-    "tables.wgsl" if "scene || gather && metal",
+    "tables.wgsl" if "scene || gather && metal || gather && facets",
     "math/vector.wgsl" if "scene || gather || resolve || resolve_parts",
     "math/octahedral.wgsl" if "scene || gather",
-    "math/trig.wgsl" if "scene || gather && metal",
+    "math/trig.wgsl" if "scene || gather && metal || gather && facets",
     "math/rng.wgsl" if "scene",
     "math/sampling.wgsl" if "scene",
     "shapes/ray.wgsl" if "scene",
@@ -39,6 +39,7 @@ pub const FRAGMENTS: &[Fragment] = fragments![
     "shapes/rectangle.wgsl" if "scene && rectangle",
     "shapes/disc.wgsl" if "scene && disc || scene && plane",
     "shapes/cuboid.wgsl" if "scene && cuboid",
+    "shapes/facet.wgsl" if "gather && facets",
     "shapes/triangle.wgsl" if "scene && triangle",
     "shapes/revolution_profile.wgsl" if "scene && revolution",
     "shapes/revolution_roots.wgsl" if "scene && revolution",

@@ -75,12 +75,13 @@ impl SceneTables {
 }
 
 /// The long tables, each in a buffer of its own: name, the feature that needs it, content.
-pub fn long_tables(scene: &tables::Scene) -> [(&'static str, &'static str, &[u8]); 5] {
+pub fn long_tables(scene: &tables::Scene) -> [(&'static str, &'static str, &[u8]); 6] {
     [
         ("nodes", "kdtree", cast_slice(&scene.nodes)),
         ("refs", "kdtree", cast_slice(&scene.refs)),
         ("triangles", "triangle", cast_slice(&scene.triangles)),
         ("attributes", "attributes", cast_slice(&scene.attributes)),
+        ("facets", "facets", cast_slice(&scene.facets)),
         ("texels", "texels", cast_slice(&scene.texels)),
     ]
 }
@@ -124,6 +125,9 @@ pub fn bindings(kernel: Kernel, features: &Features) -> Vec<Binding> {
                 read(name, wgsl_type);
             }
         }
+    }
+    if kernel == Kernel::Gather && features.has("facets") {
+        list.push(Binding { name: "facets", access: Access::Read, wgsl_type: "array<Facet>" });
     }
     for (name, writes) in kernel.buffers(features) {
         let access = if writes { Access::Write } else { Access::Read };

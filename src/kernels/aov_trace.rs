@@ -9,7 +9,7 @@ use super::lights::light::eval_environment;
 use super::materials::scatter::{
     RADIANCE, is_specular, reflectance_at, scatter_specular, shading_normal, toward,
 };
-use super::math::rng::{STREAM_EYE, rng_new, rng_next};
+use super::math::rng::{rng_eye, rng_next};
 use super::math::{FAR, is_finite, max_component, offset_origin};
 use super::real::{Plain, Real, Vec3, Vec4};
 use super::records::Dispatch;
@@ -69,7 +69,8 @@ pub fn aov_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, id: u32, aov
         }
     }
     let k = dispatch.passes_done % dispatch.eye_samples;
-    let mut rng = rng_new(pixel * dispatch.eye_samples + k, dispatch.pass_number, STREAM_EYE, dispatch.seed);
+    let mut rng =
+        rng_eye(pixel * dispatch.eye_samples + k, dispatch.pass_number, dispatch.seed, dispatch.points);
     let mut ray = camera_ray(camera, x, y, stratified(rng_next(&mut rng), k, pixel, dispatch));
     let mut throughput = Vec3::ONE;
     let mut medium = camera.medium;

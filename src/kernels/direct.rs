@@ -15,6 +15,7 @@ use super::shapes::surface::{Surface, surface_at};
 use super::tables::*;
 
 /// Beer-Lambert transmittance over `distance` in a medium.
+#[inline(always)]
 pub fn transmittance(scene: &Scene, medium: u32, distance: Real) -> Vec3 {
     if medium == NONE {
         return Vec3::ONE;
@@ -24,6 +25,7 @@ pub fn transmittance(scene: &Scene, medium: u32, distance: Real) -> Vec3 {
 }
 
 /// The medium that a ray with direction `-wo` crossed before it hit `s`: glass met from inside says so itself.
+#[inline(always)]
 pub fn medium_before(scene: &Scene, s: &Surface, wo: Vec3, medium: u32) -> u32 {
     let inside = scene.materials[s.material as usize].kind == MATERIAL_GLASS && wo.dot(s.normal) < 0.0;
     if inside { s.material } else { medium }
@@ -31,6 +33,7 @@ pub fn medium_before(scene: &Scene, s: &Surface, wo: Vec3, medium: u32) -> u32 {
 
 /// Radiance toward `wo` from one sampled light, and the number of shadow rays. `mis`: weighted against
 /// scattered rays that could meet the same light.
+#[inline(always)]
 pub fn next_event(
     scene: &Scene,
     s: &Surface,
@@ -69,6 +72,7 @@ pub fn next_event(
 }
 
 /// Radiance toward `wo` from the lights, and the number of rays spent.
+#[inline(always)]
 pub fn direct_light(
     scene: &Scene,
     s: &Surface,

@@ -9,7 +9,7 @@ use super::lights::light::eval_environment;
 use super::materials::scatter::{
     RADIANCE, is_specular, reflectance_at, scatter_specular, shading_normal, toward,
 };
-use super::math::rng::{STREAM_EYE, rng_new, rng_next};
+use super::math::rng::{rng_eye, rng_next};
 use super::math::{FAR, INV_PI, is_finite, max_component, oct_encode, offset_origin};
 use super::real::Vec3;
 use super::records::{BAD_DIRECT, BAD_EYE, Dispatch, VisiblePoint};
@@ -21,12 +21,14 @@ use bytemuck::Zeroable;
 
 /// Traces visible point `id` of the chunk; also returns the number of rays. `sampled`: direct light by shadow
 /// rays.
+#[inline(always)]
 pub fn eye_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, id: u32) -> (VisiblePoint, u32) {
     let camera = &scene.camera;
     let place = (dispatch.chunk_first + id) / dispatch.eye_samples;
     let k = dispatch.chunk_first + id - place * dispatch.eye_samples;
     let pixel = window_pixel(dispatch, camera, place);
-    let mut rng = rng_new(pixel * dispatch.eye_samples + k, dispatch.pass_number, STREAM_EYE, dispatch.seed);
+    let mut rng =
+        rng_eye(pixel * dispatch.eye_samples + k, dispatch.pass_number, dispatch.seed, dispatch.points);
     let u = stratified(rng_next(&mut rng), k, pixel, dispatch);
     let mut ray = camera_ray(camera, pixel % camera.width, pixel / camera.width, u);
     let mut throughput = Vec3::ONE;
@@ -60,6 +62,7 @@ pub fn eye_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, id: u32) -> 
             let ng = toward(s.normal, wo);
             let n = shading_normal(scene, &s, wo);
             point.position = s.position;
+            point.facet = s.facet;
             point.radius = start_radius(dispatch, camera.pixel * length);
             point.normal = oct_encode(ng);
             point.shading = oct_encode(n);
@@ -68,7 +71,7 @@ pub fn eye_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, id: u32) -> 
                 point.weight = throughput;
                 point.reflectance = reflectance;
                 point.alpha = scene.materials[s.material as usize].alpha;
-                point.wo = wo;
+                point.wo = oct_encode(wo);
             }
             if sampled {
                 let (radiance, spent) = direct_light(scene, &s, wo, n, ng, reflectance, medium, &mut rng);

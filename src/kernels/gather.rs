@@ -10,7 +10,8 @@ use super::materials::scatter::eval_rough;
 use super::math::{LUMINANCE, oct_decode, unit};
 use super::real::{Real, Vec3, Vec4};
 use super::records::{Dispatch, Gathered, Statistics, VisiblePoint};
-use super::tables::MATERIAL_METAL;
+use super::shapes::facet::{clip_at, on_facet};
+use super::tables::{Facet, MATERIAL_METAL};
 use bytemuck::Zeroable;
 use glam::IVec3;
 use std::ops::Range;
@@ -38,6 +39,7 @@ pub fn scale_sq(dispatch: &Dispatch, local: bool, statistics: &Statistics) -> Re
 /// widest vectors inside of [`pulp::Arch::dispatch`].
 #[inline(always)]
 pub fn gather(
+    facets: &[Facet],
     dispatch: &Dispatch,
     point: &VisiblePoint,
     scale_sq: Real,
@@ -49,11 +51,11 @@ pub fn gather(
         return;
     }
     let radius_sq = point.radius * point.radius * scale_sq;
-    let mut found = gather_family(dispatch, point, 0, radius_sq, starts, sorted);
+    let mut found = gather_family(facets, dispatch, point, 0, radius_sq, starts, sorted);
     if dispatch.families == 2 {
         gathered.caustic += point.weight * found.flux;
         let wider_sq = dispatch.indirect_radius * dispatch.indirect_radius;
-        let wide = gather_family(dispatch, point, 1, radius_sq * wider_sq, starts, sorted);
+        let wide = gather_family(facets, dispatch, point, 1, radius_sq * wider_sq, starts, sorted);
         found.flux += wide.flux * (1.0 / wider_sq);
         found.count += wide.count;
         found.ring += wide.ring * (1.0 / wider_sq);
@@ -66,6 +68,7 @@ pub fn gather(
 /// The photons of one family: their BRDF times flux, but for the point's weight, their number, and their ring.
 #[inline(always)]
 fn gather_family(
+    facets: &[Facet],
     dispatch: &Dispatch,
     point: &VisiblePoint,
     family: u32,
@@ -78,12 +81,16 @@ fn gather_family(
     let ng = oct_decode(point.normal);
     let flat = point.normal == point.shading;
     let n = oct_decode(point.shading);
+    let wo = oct_decode(point.wo);
+    let clip = clip_at(facets, point.facet, point.position, ng, radius);
+    let depth = if clip.crossed { clip.depth.min(FLATNESS * radius) } else { FLATNESS * radius };
+    let inner = clip.whole - 2.0 * clip.inner;
     let low = grid_cell(point.position - Vec3::splat(radius), inv_cell);
     let high = grid_cell(point.position + Vec3::splat(radius), inv_cell);
     let mut count = 0;
     let mut sum = Vec4::ZERO;
     let mut ring = Vec4::ZERO;
-    let mut sides = [0.0; LANES];
+    let mut outer = [false; LANES];
     for z in low.z..=high.z {
         for y in low.y..=high.y {
             for x in low.x..=high.x {
@@ -97,11 +104,18 @@ fn gather_family(
                     while first < last {
                         let lanes = first..last;
                         let mut near =
-                            near(sorted, lanes, code, point.position, ng, radius_sq, radius, &mut sides);
+                            near(sorted, lanes, code, point.position, ng, radius_sq, depth, &mut outer);
                         while near != 0 {
                             let k = near.trailing_zeros() as usize / 8;
                             let i = first + k;
                             near &= near - 1;
+                            if clip.crossed {
+                                let [xs, ys, zs] = &sorted.positions;
+                                let position = Vec3::new(xs[i], ys[i], zs[i]);
+                                if !on_facet(&facets[point.facet as usize], position) {
+                                    continue;
+                                }
+                            }
                             count += 1;
                             let mut flux = sorted.fluxes[i];
                             if !flat || point.alpha > 0.0 {
@@ -111,14 +125,14 @@ fn gather_family(
                                 let cos_g = wi.dot(ng).max(COS_MIN);
                                 if point.alpha > 0.0 {
                                     let (alpha, reflectance) = (point.alpha, point.reflectance);
-                                    let f = eval_rough(MATERIAL_METAL, alpha, reflectance, n, point.wo, wi);
+                                    let f = eval_rough(MATERIAL_METAL, alpha, reflectance, n, wo, wi);
                                     flux = f.extend(0.0) * flux * (1.0 / cos_g);
                                 } else {
                                     flux *= wi.dot(n).max(0.0) / cos_g;
                                 }
                             }
                             block += flux;
-                            ring += flux * sides[k];
+                            ring += flux * if outer[k] { clip.whole } else { inner };
                         }
                         first += LANES;
                     }
@@ -129,11 +143,11 @@ fn gather_family(
         }
     }
     let ring = (point.weight * LUMINANCE).dot(ring.truncate());
-    Gathered { flux: sum.truncate(), count, ring, ..Gathered::zeroed() }
+    Gathered { flux: sum.truncate() * clip.whole, count, ring, ..Gathered::zeroed() }
 }
 
-/// Which of the first [`LANES`] photons of `range` lie in the disc and in the cell and come from the side that is seen: a byte
-/// of one for each. `sides` becomes 1 in the outer half of the disc's area and -1 in the inner one.
+/// Which of the first [`LANES`] photons of `range` lie in the disc and in the cell, no farther than `depth` from its plane, and
+/// come from the side that is seen: a byte of one for each. `outer` tells those in the outer half of the disc's area.
 #[inline(always)]
 fn near(
     sorted: &SortedRecords,
@@ -142,8 +156,8 @@ fn near(
     position: Vec3,
     ng: Vec3,
     radius_sq: Real,
-    radius: Real,
-    sides: &mut [Real; LANES],
+    depth: Real,
+    outer: &mut [bool; LANES],
 ) -> u128 {
     // `SortedRecords` ends with entries of no cell, so that these lanes are there
     let lanes = first..first + LANES;
@@ -155,8 +169,8 @@ fn near(
         let d = Vec3::new(xs[k], ys[k], zs[k]) - position;
         let toward_light = Vec3::new(us[k], vs[k], ws[k]);
         let distance_sq = d.dot(d);
-        let inside = (distance_sq <= radius_sq) & (d.dot(ng).abs() <= FLATNESS * radius);
-        sides[k] = if distance_sq > 0.5 * radius_sq { 1.0 } else { -1.0 };
+        let inside = (distance_sq <= radius_sq) & (d.dot(ng).abs() <= depth);
+        outer[k] = distance_sq > 0.5 * radius_sq;
         near[k] = (inside & (codes[k] == code) & (toward_light.dot(ng) > 0.0)) as u8;
     }
     let beyond = 8 * (LANES - (last - first).min(LANES)) as u32;

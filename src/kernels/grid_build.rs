@@ -3,14 +3,39 @@
 //! `grid_sort_long.wgsl`.
 //!
 //! The result does not depend on the order in which threads arrive: within a bucket the records stand in the
-//! order of their keys.
+//! order of their keys. On the CPU each task that traced photons parts its records by the leading bits of their buckets;
+//! then each part of the buckets is sorted by itself, within the cache.
 
 use super::grid::{grid_bucket, grid_cell, grid_code};
 use super::math::oct_vector;
 use super::real::{Real, Vec4};
 use super::records::{Dispatch, PhotonRecord};
+use bytemuck::Zeroable;
 use glam::IVec3;
 use rayon::prelude::*;
+use std::mem::{swap, take};
+
+/// Parts of the buckets, at the most: so many streams a processor writes at once without losing its pages, and a part of
+/// four million records fits the second-level cache.
+const PARTS: u32 = 256;
+
+/// Records of one task of photons: in the order of their keys until [`grid_scatter`] parts them.
+#[derive(Clone, Debug, Default)]
+pub struct RecordList {
+    /// The records.
+    pub records: Vec<PhotonRecord>,
+    /// The bucket of each.
+    buckets: Vec<u32>,
+    /// Number of records in each part of the buckets; then where the part ends.
+    parts: Vec<u32>,
+}
+
+impl RecordList {
+    /// A list of records in the order of their keys.
+    pub fn new(records: Vec<PhotonRecord>) -> Self {
+        Self { records, ..Self::default() }
+    }
+}
 
 /// Records in the order of their buckets, each field by itself.
 #[derive(Clone, Debug, Default)]
@@ -25,8 +50,6 @@ pub struct SortedRecords {
     pub fluxes: Vec<Vec4>,
 }
 
-/// Records that one task copies, at the least.
-const SORT_TASK: usize = 4096;
 /// Entries after the last record, for those who read some at once.
 const TAIL: usize = 16;
 
@@ -51,56 +74,242 @@ pub fn record_code(dispatch: &Dispatch, record: &PhotonRecord) -> u32 {
     grid_code(record_cell(dispatch, record), record_family(dispatch, record))
 }
 
-/// Counts the records of each bucket.
-pub fn grid_count(dispatch: &Dispatch, records: &[PhotonRecord], counts: &mut [u32]) {
-    for record in records {
-        counts[record_bucket(dispatch, record) as usize] += 1;
-    }
+/// Bits by which a bucket's number exceeds that of its part.
+fn part_shift(dispatch: &Dispatch) -> u32 {
+    dispatch.mask.count_ones().saturating_sub(PARTS.ilog2())
 }
 
-/// `starts[b]` becomes the number of records in the buckets before `b`; one more entry holds their total.
-pub fn grid_scan(counts: &[u32], starts: &mut [u32]) {
+/// Counts the records of each part of the buckets.
+pub fn grid_count(dispatch: &Dispatch, lists: &mut [RecordList]) {
+    let shift = part_shift(dispatch);
+    lists.par_iter_mut().for_each(|RecordList { records, buckets, parts }| {
+        buckets.clear();
+        buckets.extend(records.iter().map(|record| record_bucket(dispatch, record)));
+        parts.clear();
+        parts.resize((dispatch.mask >> shift) as usize + 1, 0);
+        for bucket in buckets {
+            parts[(*bucket >> shift) as usize] += 1;
+        }
+    });
+}
+
+/// The number of records in all parts before each; one more entry holds their total.
+pub fn grid_scan(lists: &[RecordList]) -> Vec<u32> {
+    let parts = lists.iter().map(|list| list.parts.len()).max().unwrap_or(0);
+    let mut starts = vec![0; parts + 1];
+    for list in lists {
+        starts.iter_mut().skip(1).zip(&list.parts).for_each(|(sum, count)| *sum += count);
+    }
     let mut sum = 0;
-    for (start, count) in starts.iter_mut().zip(counts) {
+    for start in &mut starts {
+        sum += *start;
         *start = sum;
-        sum += count;
     }
-    starts[counts.len()] = sum;
+    starts
 }
 
-/// Puts the numbers of the records into bucket order, using up `counts`. Records come in the order of their
-/// keys here and are taken from the last to the first, so that each bucket ends up sorted; the GPU, where threads
-/// arrive in any order, sorts afterwards.
-pub fn grid_scatter(
+/// Puts the records of each list into the order of their parts, and within these of their keys.
+pub fn grid_scatter(dispatch: &Dispatch, lists: &mut [RecordList]) {
+    let shift = part_shift(dispatch);
+    lists.par_iter_mut().for_each_init(RecordList::default, |other, list| {
+        other.records.resize(list.records.len(), PhotonRecord::zeroed());
+        other.buckets.resize(list.records.len(), 0);
+        let mut end = 0;
+        let mut places = [0; PARTS as usize];
+        for (place, part) in places.iter_mut().zip(&mut list.parts) {
+            *place = end as usize;
+            end += *part;
+            *part = end;
+        }
+        for (record, bucket) in list.records.iter().zip(&list.buckets) {
+            let place = &mut places[(*bucket >> shift) as usize];
+            other.records[*place] = *record;
+            other.buckets[*place] = *bucket;
+            *place += 1;
+        }
+        swap(&mut list.records, &mut other.records);
+        swap(&mut list.buckets, &mut other.buckets);
+    });
+}
+
+/// Copies the records to `sorted` in the order of their buckets; `starts[b]` becomes the number of records in the buckets
+/// before `b`, and one more entry holds their total. `part_starts` is what [`grid_scan`] gave.
+pub fn grid_sort(
     dispatch: &Dispatch,
-    records: &[PhotonRecord],
-    starts: &[u32],
-    counts: &mut [u32],
-    order: &mut [u32],
+    lists: &[RecordList],
+    part_starts: &[u32],
+    starts: &mut [u32],
+    sorted: &mut SortedRecords,
 ) {
-    for (i, record) in records.iter().enumerate().rev() {
-        let bucket = record_bucket(dispatch, record) as usize;
-        counts[bucket] -= 1;
-        order[(starts[bucket] + counts[bucket]) as usize] = i as u32;
+    let shift = part_shift(dispatch);
+    let total = part_starts.last().map_or(0, |total| *total as usize);
+    sorted.resize(total);
+    let (starts, all) = starts.split_at_mut(dispatch.mask as usize + 1);
+    all[0] = total as u32;
+    let mut rest = sorted.places();
+    let parts: Vec<_> = starts
+        .chunks_mut(1 << shift)
+        .zip(part_starts.windows(2))
+        .map(|(starts, range)| (starts, range[0], rest.take((range[1] - range[0]) as usize)))
+        .collect();
+    parts.into_par_iter().enumerate().for_each(|(part, (starts, first, mut places))| {
+        let runs = || {
+            lists.iter().map(move |list| {
+                let begin = if part == 0 { 0 } else { list.parts[part - 1] };
+                let run = begin as usize..list.parts[part] as usize;
+                list.records[run.clone()].iter().zip(&list.buckets[run])
+            })
+        };
+        let within = (1 << shift) - 1;
+        starts.fill(0);
+        runs().flatten().for_each(|(_, bucket)| starts[(*bucket & within) as usize] += 1);
+        let mut end = first;
+        for start in &mut *starts {
+            end += *start;
+            *start = end;
+        }
+        // from the last to the first, so that starts begin as ends and end as starts
+        for (record, bucket) in runs().rev().flat_map(|run| run.rev()) {
+            let start = &mut starts[(*bucket & within) as usize];
+            *start -= 1;
+            places.put((*start - first) as usize, dispatch, record);
+        }
+    });
+}
+
+/// The whole construction from records in the order of their keys: `starts` and the sorted records.
+pub fn build_grid(dispatch: &Dispatch, records: Vec<PhotonRecord>) -> (Vec<u32>, SortedRecords) {
+    let mut lists = [RecordList::new(records)];
+    let mut starts = vec![0; dispatch.mask as usize + 2];
+    let mut sorted = SortedRecords::default();
+    grid_count(dispatch, &mut lists);
+    let part_starts = grid_scan(&lists);
+    grid_scatter(dispatch, &mut lists);
+    grid_sort(dispatch, &lists, &part_starts, &mut starts, &mut sorted);
+    (starts, sorted)
+}
+
+/// Places of [`SortedRecords`] that one task fills.
+struct Places<'a> {
+    positions: [&'a mut [Real]; 3],
+    directions: [&'a mut [Real]; 3],
+    codes: &'a mut [u32],
+    fluxes: &'a mut [Vec4],
+}
+
+impl SortedRecords {
+    /// Makes room for `records` and the entries after them, which lie in no cell.
+    fn resize(&mut self, records: usize) {
+        let length = records + TAIL;
+        self.positions.iter_mut().chain(&mut self.directions).for_each(|values| values.resize(length, 0.0));
+        self.codes.resize(length, u32::MAX);
+        self.codes[records..].fill(u32::MAX);
+        self.fluxes.resize(length, Vec4::ZERO);
+    }
+
+    fn places(&mut self) -> Places<'_> {
+        Places {
+            positions: self.positions.each_mut().map(|values| &mut values[..]),
+            directions: self.directions.each_mut().map(|values| &mut values[..]),
+            codes: &mut self.codes,
+            fluxes: &mut self.fluxes,
+        }
     }
 }
 
-/// Copies the records to `sorted` in the order of `order`, in which buckets are sorted by key already.
-pub fn grid_sort(dispatch: &Dispatch, records: &[PhotonRecord], order: &[u32], sorted: &mut SortedRecords) {
-    let length = order.len() + TAIL;
-    let SortedRecords { positions, directions, codes, fluxes } = sorted;
-    positions.iter_mut().chain(directions.iter_mut()).for_each(|values| values.resize(length, 0.0));
-    codes.resize(length, u32::MAX);
-    codes[order.len()..].fill(u32::MAX);
-    fluxes.resize(length, Vec4::ZERO);
-    let ([xs, ys, zs], [us, vs, ws]) = (positions, directions);
-    (order, xs, ys, zs, us, vs, ws, codes, fluxes).into_par_iter().with_min_len(SORT_TASK).for_each(
-        |(i, x, y, z, u, v, w, code, flux)| {
-            let record = &records[*i as usize];
-            [*x, *y, *z] = record.position.to_array();
-            [*u, *v, *w] = oct_vector(record.direction).to_array();
-            *code = record_code(dispatch, record);
-            *flux = record.flux.extend(0.0);
-        },
-    );
+impl Places<'_> {
+    /// The next `count` places, which are no longer among these.
+    fn take(&mut self, count: usize) -> Self {
+        Places {
+            positions: self.positions.each_mut().map(|values| cut(values, count)),
+            directions: self.directions.each_mut().map(|values| cut(values, count)),
+            codes: cut(&mut self.codes, count),
+            fluxes: cut(&mut self.fluxes, count),
+        }
+    }
+
+    #[inline]
+    fn put(&mut self, i: usize, dispatch: &Dispatch, record: &PhotonRecord) {
+        let (position, direction) = (record.position.to_array(), oct_vector(record.direction).to_array());
+        for axis in 0..3 {
+            self.positions[axis][i] = position[axis];
+            self.directions[axis][i] = direction[axis];
+        }
+        self.codes[i] = record_code(dispatch, record);
+        self.fluxes[i] = record.flux.extend(0.0);
+    }
+}
+
+/// The first `count` of `values`, which keep the rest.
+fn cut<'a, T>(values: &mut &'a mut [T], count: usize) -> &'a mut [T] {
+    let (first, rest) = take(values).split_at_mut(count);
+    *values = rest;
+    first
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::math::oct_encode;
+    use super::super::real::Vec3;
+    use super::*;
+
+    /// Records in a cube of `side` cells, some of them in one place.
+    fn random_records(count: u32, side: Real) -> Vec<PhotonRecord> {
+        let mut state = 1u32;
+        let mut random = || {
+            state = state.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
+            (state >> 8) as Real / 16_777_216.0
+        };
+        let record = |key| {
+            let at = Vec3::new(random(), random(), random()) * if key % 5 == 0 { 0.0 } else { side };
+            PhotonRecord { position: at, key, flux: at, direction: oct_encode(Vec3::new(0.6, 0.0, -0.8)) }
+        };
+        (0..count).map(record).collect()
+    }
+
+    /// Whether a grid is what the definition says: the records stably sorted by bucket, and the number of records in the
+    /// buckets before each.
+    fn is_grid(d: &Dispatch, mut records: Vec<PhotonRecord>, starts: &[u32], sorted: &SortedRecords) -> bool {
+        records.sort_by_key(|record| record_bucket(d, record));
+        let before = |b: u32| records.partition_point(|record| record_bucket(d, record) < b) as u32;
+        let same = |(i, record): (usize, &PhotonRecord)| {
+            let place = |values: &[Vec<Real>; 3]| values.each_ref().map(|v| v[i]);
+            place(&sorted.positions) == record.position.to_array()
+                && place(&sorted.directions) == oct_vector(record.direction).to_array()
+                && sorted.codes[i] == record_code(d, record)
+                && sorted.fluxes[i] == record.flux.extend(0.0)
+        };
+        starts.iter().zip(0..).all(|(start, b)| *start == before(b))
+            && records.iter().enumerate().all(same)
+            && sorted.codes[records.len()..] == [u32::MAX; TAIL]
+    }
+
+    // Theory: the grid is defined by its records alone, however they are cut into lists and the buckets into parts.
+    // What is left from a larger grid must not show.
+    #[test]
+    fn grid_is_its_definition() {
+        let mut sorted = SortedRecords::default();
+        for (count, buckets, list) in
+            [(70_000, 1 << 16, 1000), (5000, 1 << 12, 5000), (900, 64, 7), (3, 1, 1)]
+        {
+            let d = Dispatch { mask: buckets - 1, inv_cell: 1.0, families: 2, ..Dispatch::zeroed() };
+            let d = Dispatch { inv_cell_indirect: 0.3, ..d };
+            let records = random_records(count, (count as Real).sqrt());
+            let mut lists: Vec<_> = records.chunks(list).map(|r| RecordList::new(r.to_vec())).collect();
+            lists.push(RecordList::default());
+            let mut starts = vec![7; buckets as usize + 1];
+            grid_count(&d, &mut lists);
+            let part_starts = grid_scan(&lists);
+            grid_scatter(&d, &mut lists);
+            grid_sort(&d, &lists, &part_starts, &mut starts, &mut sorted);
+            assert!(is_grid(&d, records.clone(), &starts, &sorted), "{count} records, {buckets} buckets");
+            // the comparator notices two neighbours that changed places, and a bucket that begins late
+            let last = count as usize - 1;
+            let mut planted = sorted.clone();
+            planted.fluxes.swap(0, last);
+            assert!(!is_grid(&d, records.clone(), &starts, &planted));
+            starts[buckets as usize] += 1;
+            assert!(!is_grid(&d, records, &starts, &sorted));
+        }
+    }
 }

@@ -8,7 +8,7 @@ use super::lights::light::{eval_environment, pdf_environment, pdf_light};
 use super::materials::scatter::{
     RADIANCE, is_specular, pdf_rough, reflectance_at, scatter_rough, scatter_specular, shading_normal, toward,
 };
-use super::math::rng::{STREAM_EYE, rng_new, rng_next};
+use super::math::rng::{rng_eye, rng_next};
 use super::math::sampling::balance;
 use super::math::{FAR, max_component, offset_origin};
 use super::real::{Vec2, Vec3};
@@ -22,7 +22,7 @@ use super::tables::*;
 pub fn path_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, place: u32) -> (Vec3, u32) {
     let camera = &scene.camera;
     let pixel = window_pixel(dispatch, camera, place);
-    let mut rng = rng_new(pixel, dispatch.pass_number, STREAM_EYE, dispatch.seed);
+    let mut rng = rng_eye(pixel, dispatch.pass_number, dispatch.seed, dispatch.points);
     let mut ray = camera_ray(camera, pixel % camera.width, pixel / camera.width, rng_next(&mut rng));
     let mut radiance = Vec3::ZERO;
     let mut throughput = Vec3::ONE;

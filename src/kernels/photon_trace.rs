@@ -33,6 +33,7 @@ pub struct PhotonPath {
 
 /// Traces photon `id` of the batch and hands each record to `store`. `sampled`:
 /// photons straight from a light are not stored, since shadow rays bring that light.
+#[inline(always)]
 pub fn photon_trace(
     scene: &Scene,
     dispatch: &Dispatch,

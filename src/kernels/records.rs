@@ -1,6 +1,7 @@
 //! What kernels hand to one another. Twin: `shaders/kernels/records.wgsl`.
 
 use super::math::Direction;
+use super::math::rng::Points;
 use super::real::{Plain, Real, Vec3};
 use bytemuck::Zeroable;
 
@@ -59,6 +60,10 @@ pub struct Dispatch {
     pub window_first: u32,
     /// Pixels per row of the window.
     pub window_width: u32,
+    /// Padding.
+    pub pad: [u32; 3],
+    /// The pass's point for the first dimensions of eye paths.
+    pub points: Points,
 }
 
 /// The driver stopped the kernel's loops: the point is to be found again.
@@ -89,9 +94,13 @@ pub struct VisiblePoint {
     /// Metal: GGX width; 0 is diffuse.
     pub alpha: Real,
     /// Metal: direction to the viewer.
-    pub wo: Vec3,
+    pub wo: Direction,
+    /// The outline that it lies in, among the facets, or `NONE`.
+    pub facet: u32,
     /// Sum of [`STOPPED`], [`BAD_EYE`] and [`BAD_DIRECT`].
     pub state: u32,
+    /// Padding.
+    pub pad: u32,
 }
 
 /// A photon at a non-specular hit.

@@ -24,6 +24,7 @@ pub struct Emission {
 }
 
 /// The next photon.
+#[inline(always)]
 pub fn emit_photon(scene: &Scene, rng: &mut Rng) -> Emission {
     let u = rng_next(rng);
     let v = rng_next(rng);
@@ -36,6 +37,7 @@ pub fn emit_photon(scene: &Scene, rng: &mut Rng) -> Emission {
 }
 
 /// A photon of one light; `across` are the two numbers that matter most for where it goes.
+#[inline(always)]
 pub fn emit_from(scene: &Scene, light: &Light, u: Vec4, v: Vec4, across: Vec2) -> Emission {
     let mut ray = Ray { origin: light.position, t_min: 0.0, direction: Vec3::Z, t_max: FAR };
     if light.kind == LIGHT_AREA && light.reference >> REFERENCE_BITS == KIND_SPHERE {

@@ -32,6 +32,7 @@ const PASS: u32 = u32::MAX;
 const BOUNCES: u32 = 16;
 
 /// Numbers in place of `across`, by the map of `light` if it has one, and one over their density. `u` chooses the cell.
+#[inline(always)]
 pub fn guided(scene: &Scene, light: &Light, across: Vec2, u: Real) -> (Vec2, Real) {
     if light.guide == 0 {
         return (across, 1.0);

@@ -25,26 +25,27 @@ pub struct LightSample {
 }
 
 /// First index at `first..first + count` whose cumulative value exceeds `u`.
+#[inline(always)]
 pub fn find_interval(scene: &Scene, first: u32, count: u32, u: Real) -> u32 {
+    // without a branch on what is found, which no processor foresees
     let mut low = 0;
-    let mut high = count - 1;
-    while low < high {
-        let middle = (low + high) / 2;
-        if scene.distributions[(first + middle) as usize] > u {
-            high = middle;
-        } else {
-            low = middle + 1;
-        }
+    let mut length = count;
+    while length > 1 {
+        let half = length / 2;
+        low += if scene.distributions[(first + low + half - 1) as usize] > u { 0 } else { half };
+        length -= half;
     }
     low
 }
 
 /// A light by its share of the scene's power.
+#[inline(always)]
 pub fn choose_light(scene: &Scene, u: Real) -> u32 {
     find_interval(scene, 0, scene.world.light_count, u)
 }
 
 /// Light at `position` from the light that `u.x` chooses, sampled by the other three.
+#[inline(always)]
 pub fn sample_light(scene: &Scene, position: Vec3, u: Vec4) -> LightSample {
     let light = &scene.lights[choose_light(scene, u.x) as usize];
     let none =

@@ -31,6 +31,7 @@ pub struct Scatter {
 }
 
 /// Reflectance of a material at `uv`.
+#[inline(always)]
 pub fn reflectance_at(scene: &Scene, material: u32, uv: Vec2) -> Vec3 {
     let m = &scene.materials[material as usize];
     if m.texture != NONE {
@@ -40,17 +41,20 @@ pub fn reflectance_at(scene: &Scene, material: u32, uv: Vec2) -> Vec3 {
 }
 
 /// Whether a material scatters into single directions only.
+#[inline(always)]
 pub fn is_specular(kind: u32) -> bool {
     kind == MATERIAL_MIRROR || kind == MATERIAL_GLASS
 }
 
 /// `v` turned to the side of `w`.
+#[inline(always)]
 pub fn toward(v: Vec3, w: Vec3) -> Vec3 {
     if v.dot(w) >= 0.0 { v } else { -v }
 }
 
 /// The shading normal on the side of `wo`. Where `wo` lies behind it: the geometric one, except on diffuse
 /// surfaces, which look the same from everywhere.
+#[inline(always)]
 pub fn shading_normal(scene: &Scene, s: &Surface, wo: Vec3) -> Vec3 {
     let ng = toward(s.normal, wo);
     let ns = toward(s.shading, ng);
@@ -59,6 +63,7 @@ pub fn shading_normal(scene: &Scene, s: &Surface, wo: Vec3) -> Vec3 {
 }
 
 /// Mirror and glass. `u` decides between reflection and refraction.
+#[inline(always)]
 pub fn scatter_specular(scene: &Scene, s: &Surface, wo: Vec3, medium: u32, u: Real, mode: u32) -> Scatter {
     let m = &scene.materials[s.material as usize];
     let ng = toward(s.normal, wo);
@@ -125,6 +130,7 @@ fn medium_beyond(scene: &Scene, s: &Surface, wo: Vec3) -> u32 {
 }
 
 /// Diffuse and metal: a direction by the material's own density.
+#[inline(always)]
 pub fn scatter_rough(scene: &Scene, s: &Surface, wo: Vec3, medium: u32, u: Vec2, mode: u32) -> Scatter {
     let m = &scene.materials[s.material as usize];
     let ng = toward(s.normal, wo);
@@ -174,6 +180,7 @@ pub fn shading_correction(s: &Surface, n: Vec3, ng: Vec3, wo: Vec3, wi: Vec3) ->
 }
 
 /// BRDF of diffuse and metal times the cosine with the shading normal `n`, both directions on its side.
+#[inline(always)]
 pub fn eval_rough(kind: u32, alpha: Real, reflectance: Vec3, n: Vec3, wo: Vec3, wi: Vec3) -> Vec3 {
     let cos = wi.dot(n);
     if cos <= 0.0 {

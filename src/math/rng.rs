@@ -20,14 +20,25 @@ pub struct Rng {
     pub dimension: u32,
     /// Seed.
     pub seed: u32,
+    /// The pass's point for the first dimensions of eye paths (see [`crate::sobol`]).
+    pub points: Points,
 }
 
-/// The sequence of path `index` in a pass.
+/// Sixteen coordinates, their bits in reverse.
+pub type Points = [[u32; 4]; 4];
+
+/// The sequence of path `index` in a pass, by chance alone.
 pub fn rng_new(index: u32, pass_number: u32, stream: u32, seed: u32) -> Rng {
-    Rng { index, pass_number, dimension: stream, seed }
+    Rng { index, pass_number, dimension: stream, seed, points: [[0; 4]; 4] }
+}
+
+/// The sequence of eye path `index` in a pass.
+pub fn rng_eye(index: u32, pass_number: u32, seed: u32, points: Points) -> Rng {
+    Rng { index, pass_number, dimension: STREAM_EYE, seed, points }
 }
 
 /// pcg4d (Jarzynski & Olano 2020, "Hash Functions for GPU Rendering").
+#[inline(always)]
 pub fn pcg4d(mut v: [u32; 4]) -> [u32; 4] {
     for x in &mut v {
         *x = x.wrapping_mul(1664525).wrapping_add(1013904223);
@@ -46,29 +57,33 @@ pub fn pcg4d(mut v: [u32; 4]) -> [u32; 4] {
     v
 }
 
-/// How far the first dimensions of an eye path move from pass to pass: the fractional parts of the square roots of
-/// the first primes, in units of 2^-32 (Richtmyer 1951).
-const STEPS: [[u32; 4]; 4] = [
-    [0x6a09e667, 0xbb67ae85, 0x3c6ef372, 0xa54ff53a],
-    [0x510e527f, 0x9b05688c, 0x1f83d9ab, 0x5be0cd19],
-    [0xcbbb9d5d, 0x629a292a, 0x9159015a, 0x152fecd8],
-    [0x67332667, 0x8eb44a87, 0xdb0c2e0d, 0x47b5481d],
-];
+/// Owen's scrambling of a digital net: a hash that lets each bit depend on those above it alone. `reversed` holds a
+/// coordinate's bits in reverse (Laine & Karras 2011, "Stratified Sampling for Stochastic Transparency"; Burley 2020,
+/// "Practical Hash-based Owen Scrambling"; constants of Vegdahl 2021).
+#[inline(always)]
+fn scrambled(reversed: u32, seed: u32) -> u32 {
+    let mut x = reversed;
+    x ^= x.wrapping_mul(0x3d20adea);
+    x = x.wrapping_add(seed);
+    x = x.wrapping_mul((seed >> 16) | 1);
+    x ^= x.wrapping_mul(0x05526c56);
+    x ^= x.wrapping_mul(0x53a22864);
+    x.reverse_bits()
+}
 
-/// Four uniform numbers in [0, 1), multiples of 2^-24. The first sixteen of an eye path are a random point per
-/// visible point that walks a fixed step each pass: every pass is uniform by itself, and the passes together
-/// cover the pixel, the lens and the lights more evenly than chance.
+/// Four uniform numbers in [0, 1), multiples of 2^-24. The first sixteen of an eye path are the pass's Sobol point,
+/// scrambled for each visible point: every pass is uniform by itself, and the passes together cover the pixel, the lens,
+/// the ways through glass and the lights more evenly than chance.
+#[inline(always)]
 pub fn rng_next(rng: &mut Rng) -> Vec4 {
     let k = rng.dimension.wrapping_sub(STREAM_EYE);
-    let mut h;
-    if k < 4 {
-        h = pcg4d([rng.index, 0, rng.dimension, rng.seed]);
-        for (x, step) in h.iter_mut().zip(STEPS[k as usize]) {
-            *x = x.wrapping_add(step.wrapping_mul(rng.pass_number));
-        }
+    let h = if k < 4 {
+        let seeds = pcg4d([rng.index, 0, rng.dimension, rng.seed]);
+        let point = rng.points[k as usize];
+        std::array::from_fn(|i| scrambled(point[i], seeds[i]))
     } else {
-        h = pcg4d([rng.index, rng.pass_number, rng.dimension, rng.seed]);
-    }
+        pcg4d([rng.index, rng.pass_number, rng.dimension, rng.seed])
+    };
     rng.dimension += 1;
     Vec4::new((h[0] >> 8) as Real, (h[1] >> 8) as Real, (h[2] >> 8) as Real, (h[3] >> 8) as Real)
         * (1.0 / 16777216.0)

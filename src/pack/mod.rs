@@ -11,6 +11,7 @@ pub use crate::error::PackError;
 pub use objects::Objects;
 
 use super::real::{Real, ToReal, Vec2, Vec3};
+use super::shapes::fours::{FourRectangles, FourSpheres, LANES};
 use super::tables::*;
 use super::{build, lights, materials, math, real, shapes, tables};
 use crate::build::normalize::Normalization;
@@ -61,6 +62,8 @@ pub fn pack(scene: &scene::Scene, width: u32, height: u32) -> Result<Packed, Pac
         let places = order::triangles_as_met(&mut out, &mut emitters);
         objects.move_triangles(&places);
     }
+    out.four_rectangles = out.rectangles.chunks(LANES).map(FourRectangles::new).collect();
+    out.four_spheres = out.spheres.chunks(LANES).map(FourSpheres::new).collect();
     out.world.unit = n.unit as Real;
     out.world.planar_origin = Vec2::new(n.center.x as Real, n.center.z as Real);
     out.world.near_radius = n.near_radius as Real;
@@ -116,7 +119,10 @@ impl Scene {
             refs: Vec::new(),
             triangles: Vec::new(),
             attributes: Vec::new(),
+            facets: Vec::new(),
             texels: Vec::new(),
+            four_rectangles: Vec::new(),
+            four_spheres: Vec::new(),
         }
     }
 }

@@ -5,10 +5,14 @@ use super::build::revolution::{Attributes as RevolutionAttributes, Placement, Re
 use super::math::EPS;
 use super::real::{Real, ToDouble, ToReal, Vec3};
 use super::shapes::aabb::Aabb;
+use super::shapes::cuboid::cuboid_error;
+use super::shapes::disc::disc_error;
+use super::shapes::rectangle::rectangle_error;
 use super::tables::*;
 use super::{Objects, PackError};
 use crate::build::normalize::Normalization;
 use crate::scene::{self, Aov, Mesh, ShapeKind, Transform};
+use bytemuck::Zeroable;
 use glam::{DQuat, DVec2, DVec3};
 
 /// Spheres of a larger radius, in scene units, are tested outside of the kd-tree.
@@ -149,6 +153,7 @@ impl Pack<'_> {
         let area_sq = normal.length_squared();
         let id = reference(KIND_RECTANGLE, self.out.rectangles.len());
         let light = self.light(emission, id, area_sq.sqrt());
+        let facet = self.outline(o, u, v);
         self.out.rectangles.push(Rectangle {
             origin: o.to_real(),
             material,
@@ -159,11 +164,28 @@ impl Pack<'_> {
             v: v.to_real(),
             area: area_sq.sqrt() as Real,
             dual_u: (v.cross(normal) / area_sq).to_real(),
-            pad0: 0,
+            facet,
             dual_v: (normal.cross(u) / area_sq).to_real(),
-            pad1: 0,
+            pad: 0,
         });
+        let rectangle = &self.out.rectangles[self.out.rectangles.len() - 1];
+        self.out.facets[facet as usize].error = rectangle_error(rectangle);
         self.boxed(id, &[o.to_real(), (o + u).to_real(), (o + v).to_real(), (o + u + v).to_real()]);
+    }
+
+    /// A facet's number; its error is left open.
+    fn outline(&mut self, origin: DVec3, u: DVec3, v: DVec3) -> u32 {
+        let normal = u.cross(v);
+        let area_sq = normal.length_squared();
+        self.out.facets.push(Facet {
+            origin: origin.to_real(),
+            u: u.to_real(),
+            v: v.to_real(),
+            dual_u: (v.cross(normal) / area_sq).to_real(),
+            dual_v: (normal.cross(u) / area_sq).to_real(),
+            ..Facet::zeroed()
+        });
+        self.out.facets.len() as u32 - 1
     }
 
     fn disc(
@@ -187,8 +209,12 @@ impl Pack<'_> {
             material,
             light,
             uv,
-            pad: [0; 2],
+            facet: self.out.facets.len() as u32,
+            pad: 0,
         });
+        let disc = &self.out.discs[self.out.discs.len() - 1];
+        let facet = Facet { origin: disc.center, radius: disc.radius, ..Facet::zeroed() };
+        self.out.facets.push(Facet { error: disc_error(disc), ..facet });
         let half = (DVec3::ONE - n * n).max(DVec3::ZERO).map(f64::sqrt) * r;
         self.boxed(id, &[(c - half).to_real(), (c + half).to_real()]);
     }
@@ -218,8 +244,14 @@ impl Pack<'_> {
         let e = upper - lower;
         let id = reference(KIND_CUBOID, self.out.cuboids.len());
         let light = self.light(emission, id, 2.0 * (e.x * e.y + e.y * e.z + e.z * e.x));
+        let [x, y, z] = [DVec3::X * e, DVec3::Y * e, DVec3::Z * e];
+        let facet = self.outline(lower, y, z);
+        self.outline(lower, z, x);
+        self.outline(lower, x, y);
         let (lower, upper) = (lower.to_real(), upper.to_real());
-        self.out.cuboids.push(Cuboid { lower, material, upper, light, uv, pad: [0; 3] });
+        let cuboid = Cuboid { lower, material, upper, light, uv, facet, pad: [0; 2] };
+        self.out.cuboids.push(cuboid);
+        self.out.facets[facet as usize..].iter_mut().for_each(|f| f.error = cuboid_error(&cuboid));
         self.boxed(id, &[lower, upper]);
     }
 

@@ -331,6 +331,7 @@ impl Session {
             asked: Some(self.sent.settings.clone()),
             settings: frame.setup.settings.clone(),
             device: frame.setup.device.clone(),
+            first_pass: 0,
             passes_done: frame.passes,
         };
         let errors = frame.errors.as_deref().filter(|_| frame.estimated == frame.passes);

@@ -44,6 +44,11 @@ pub fn intersect_cuboid(cuboid: &Cuboid, reference: u32, ray: &Ray, hit: &mut Hi
     }
 }
 
+/// The axis that a face lies across.
+pub fn cuboid_axis(face: Real) -> u32 {
+    face as u32 % 3
+}
+
 /// Outward normal of a face.
 pub fn cuboid_normal(face: Real) -> Vec3 {
     let s = if face >= 3.0 { 1.0 } else { -1.0 };

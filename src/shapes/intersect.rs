@@ -3,7 +3,8 @@
 
 use super::cuboid::intersect_cuboid;
 use super::disc::{intersect_disc, intersect_plane};
-use super::kdtree::{Tree, traverse_any, traverse_closest};
+use super::fours::LANES;
+use super::kdtree::{Primitives, Tree, traverse_any, traverse_closest};
 use super::ray::{Hit, Ray};
 use super::rectangle::intersect_rectangle;
 use super::revolution::intersect_patch;
@@ -35,42 +36,99 @@ pub fn intersect_primitive(scene: &Scene, shear: &RayShear, reference: u32, ray:
     }
 }
 
-/// A ray against what the references of a leaf name, triangles first and several at a time; in search of any hit it
-/// may stop at one.
-#[inline]
-fn intersect_leaf(scene: &Scene, shear: &RayShear, references: &[u32], any: bool, ray: &Ray, hit: &mut Hit) {
-    let count = references.iter().take_while(|&r| r >> REFERENCE_BITS == KIND_TRIANGLE).count();
-    let (triangles, others) = references.split_at(count);
-    if !triangles.is_empty() {
-        intersect_triangles(&scene.triangles, triangles, shear, ray, hit);
-    }
-    for &reference in others {
-        if any && hit.reference != NONE {
-            return;
+/// The shapes of a scene before one ray.
+struct Shapes<'a> {
+    scene: &'a Scene,
+    shear: &'a RayShear,
+    /// In search of any hit it may stop at one.
+    any: bool,
+}
+
+impl Primitives for Shapes<'_> {
+    /// Triangles first, several at a time, then the others in the order of their kinds.
+    #[inline(always)]
+    fn intersect(&self, references: &[u32], ray: &Ray, hit: &mut Hit) {
+        let Shapes { scene, shear, any } = *self;
+        let count = references.iter().take_while(|&r| r >> REFERENCE_BITS == KIND_TRIANGLE).count();
+        let (triangles, others) = references.split_at(count);
+        if !triangles.is_empty() {
+            intersect_triangles(&scene.triangles, triangles, shear, ray, hit);
         }
-        intersect_primitive(scene, shear, reference, ray, hit);
+        let mut rest = others;
+        while let Some(&first) = rest.first() {
+            if any && hit.reference != NONE {
+                return;
+            }
+            rest = match first >> REFERENCE_BITS {
+                KIND_SPHERE | KIND_RECTANGLE => intersect_fours(scene, shear, rest, ray, hit),
+                _ => {
+                    intersect_primitive(scene, shear, first, ray, hit);
+                    &rest[1..]
+                }
+            };
+        }
     }
 }
 
+/// A ray against the first of some references, spheres or rectangles, with those that lie in the same four; returns the
+/// other references.
+#[inline(always)]
+fn intersect_fours<'a>(
+    scene: &Scene,
+    shear: &RayShear,
+    references: &'a [u32],
+    ray: &Ray,
+    hit: &mut Hit,
+) -> &'a [u32] {
+    let lane = LANES as u32 - 1;
+    let base = references[0] & !lane;
+    let four = (base & ((1 << REFERENCE_BITS) - 1)) as usize / LANES;
+    let mut mask = 0;
+    let mut count = 0;
+    while count < references.len() && references[count] & !lane == base {
+        mask |= 1 << (references[count] & lane);
+        count += 1;
+    }
+    let (these, others) = references.split_at(count);
+    if base >> REFERENCE_BITS == KIND_RECTANGLE
+        && let Some(rectangles) = scene.four_rectangles.get(four)
+    {
+        rectangles.intersect(base, mask, ray, hit);
+    } else if base >> REFERENCE_BITS == KIND_SPHERE
+        && let Some(spheres) = scene.four_spheres.get(four)
+    {
+        spheres.intersect(base, mask, ray, hit);
+    } else {
+        these.iter().for_each(|&reference| intersect_primitive(scene, shear, reference, ray, hit));
+    }
+    others
+}
+
+/// What triangles need to know of a ray; three divisions that a scene without them is spared.
+#[inline]
+fn shear_of(scene: &Scene, ray: &Ray) -> RayShear {
+    if scene.triangles.is_empty() { RayShear::NONE } else { RayShear::new(ray) }
+}
+
 /// The nearest hit of a ray, or a hit whose reference is [`NONE`].
+#[inline(always)]
 pub fn intersect_scene(scene: &Scene, ray: &Ray) -> Hit {
     let mut hit = Hit { t: ray.t_max, reference: NONE, u: 0.0, v: 0.0 };
-    let shear = RayShear::new(ray);
+    let shear = shear_of(scene, ray);
     for i in 0..scene.world.unbounded_count {
         intersect_primitive(scene, &shear, scene.unbounded[i as usize], ray, &mut hit);
     }
     if !scene.nodes.is_empty() {
-        traverse_closest(&tree(scene), ray, &mut hit, |leaf, ray, hit| {
-            intersect_leaf(scene, &shear, leaf, false, ray, hit)
-        });
+        traverse_closest(&tree(scene), ray, &mut hit, Shapes { scene, shear: &shear, any: false });
     }
     hit
 }
 
 /// Whether anything lies on the ray between `t_min` and `t_max`.
+#[inline(always)]
 pub fn occluded(scene: &Scene, ray: &Ray) -> bool {
     let mut hit = Hit { t: ray.t_max, reference: NONE, u: 0.0, v: 0.0 };
-    let shear = RayShear::new(ray);
+    let shear = shear_of(scene, ray);
     for i in 0..scene.world.unbounded_count {
         intersect_primitive(scene, &shear, scene.unbounded[i as usize], ray, &mut hit);
         if hit.reference != NONE {
@@ -78,11 +136,10 @@ pub fn occluded(scene: &Scene, ray: &Ray) -> bool {
         }
     }
     !scene.nodes.is_empty()
-        && traverse_any(&tree(scene), ray, &mut hit, |leaf, ray, hit| {
-            intersect_leaf(scene, &shear, leaf, true, ray, hit)
-        })
+        && traverse_any(&tree(scene), ray, &mut hit, Shapes { scene, shear: &shear, any: true })
 }
 
+#[inline(always)]
 fn tree(scene: &Scene) -> Tree<'_> {
     Tree {
         nodes: &scene.nodes,

@@ -117,27 +117,34 @@ struct Axis {
     backward: u32,
 }
 
-/// Lowers `hit` to the nearest hit with a primitive of the tree. `intersect(references, ray, hit)` tests the primitives of
-/// a leaf and replaces `hit` by anything nearer.
-#[inline]
-pub fn traverse_closest(tree: &Tree, ray: &Ray, hit: &mut Hit, intersect: impl Fn(&[u32], &Ray, &mut Hit)) {
-    traverse(tree, ray, false, hit, intersect);
+/// What the primitives of leaves are.
+pub trait Primitives {
+    /// Tests those that `references`, a leaf's, name and replaces `hit` by anything nearer.
+    fn intersect(&self, references: &[u32], ray: &Ray, hit: &mut Hit);
+}
+
+impl<F: Fn(&[u32], &Ray, &mut Hit)> Primitives for F {
+    #[inline(always)]
+    fn intersect(&self, references: &[u32], ray: &Ray, hit: &mut Hit) {
+        self(references, ray, hit);
+    }
+}
+
+/// Lowers `hit` to the nearest hit with a primitive of the tree.
+#[inline(always)]
+pub fn traverse_closest(tree: &Tree, ray: &Ray, hit: &mut Hit, primitives: impl Primitives) {
+    traverse(tree, ray, false, hit, primitives);
 }
 
 /// Whether `hit` is not [`NONE`] after testing the leaves of the tree until something is hit.
-#[inline]
-pub fn traverse_any(
-    tree: &Tree,
-    ray: &Ray,
-    hit: &mut Hit,
-    intersect: impl Fn(&[u32], &Ray, &mut Hit),
-) -> bool {
-    traverse(tree, ray, true, hit, intersect);
+#[inline(always)]
+pub fn traverse_any(tree: &Tree, ray: &Ray, hit: &mut Hit, primitives: impl Primitives) -> bool {
+    traverse(tree, ray, true, hit, primitives);
     hit.reference != NONE
 }
 
-#[inline]
-fn traverse(tree: &Tree, ray: &Ray, any: bool, hit: &mut Hit, intersect: impl Fn(&[u32], &Ray, &mut Hit)) {
+#[inline(always)]
+fn traverse(tree: &Tree, ray: &Ray, any: bool, hit: &mut Hit, primitives: impl Primitives) {
     let inverse =
         Vec3::new(reciprocal(ray.direction.x), reciprocal(ray.direction.y), reciprocal(ray.direction.z));
     let to_min = tree.bounds_min - ray.origin;
@@ -195,7 +202,7 @@ fn traverse(tree: &Tree, ray: &Ray, any: bool, hit: &mut Hit, intersect: impl Fn
 
         let references = &tree.refs[node.range()];
         if !references.is_empty() {
-            intersect(references, ray, hit);
+            primitives.intersect(references, ray, hit);
             if any && hit.reference != NONE {
                 return;
             }

@@ -5,6 +5,8 @@ use super::{math, real, tables};
 pub mod aabb;
 pub mod cuboid;
 pub mod disc;
+pub mod facet;
+pub mod fours;
 pub mod intersect;
 pub mod kdtree;
 pub mod ray;

@@ -7,7 +7,7 @@ use super::tables::Rectangle;
 
 /// How far beyond its edges, in edge lengths, a parallelogram still counts: neighbours that share an edge have
 /// no gap.
-const EDGE: Real = 8.0 * EPS;
+pub const EDGE: Real = 8.0 * EPS;
 
 /// The crossing in `(t_min, hit.t)`; `hit.u`, `hit.v` are s and t.
 pub fn intersect_rectangle(rectangle: &Rectangle, reference: u32, ray: &Ray, hit: &mut Hit) {

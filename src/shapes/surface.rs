@@ -1,6 +1,6 @@
 //! What a hit means: position, normals, texture coordinates, material. Twin: `shaders/shapes/surface.wgsl`.
 
-use super::cuboid::{cuboid_error, cuboid_normal, cuboid_project, cuboid_uv};
+use super::cuboid::{cuboid_axis, cuboid_error, cuboid_normal, cuboid_project, cuboid_uv};
 use super::disc::{disc_error, disc_uv, plane_error, plane_project};
 use super::math::unit;
 use super::ray::{Hit, Ray};
@@ -26,13 +26,16 @@ pub struct Surface {
     pub shading: Vec3,
     /// Light index or [`NONE`].
     pub light: u32,
-    /// Texture coordinates.
+    /// Texture coordinates; on spheres where the material has a texture.
     pub uv: Vec2,
     /// Second coordinate of the shape's own (u, v): on revolutions the profile parameter.
     pub v: Real,
+    /// The outline that it lies in, among the facets, or [`NONE`].
+    pub facet: u32,
 }
 
 /// The surface at `hit` of `ray`.
+#[inline(always)]
 pub fn surface_at(scene: &Scene, ray: &Ray, hit: &Hit) -> Surface {
     let index = (hit.reference & ((1 << REFERENCE_BITS) - 1)) as usize;
     let p = ray.origin + ray.direction * hit.t;
@@ -51,6 +54,7 @@ pub fn surface_at(scene: &Scene, ray: &Ray, hit: &Hit) -> Surface {
                 light: triangle.light,
                 uv: Vec2::ZERO,
                 v: 0.0,
+                facet: NONE,
             };
             if triangle.attributes != NONE {
                 let a = &scene.attributes[triangle.attributes as usize];
@@ -79,9 +83,11 @@ pub fn surface_at(scene: &Scene, ray: &Ray, hit: &Hit) -> Surface {
                 light: sphere.light,
                 uv: Vec2::ZERO,
                 v: 0.0,
+                facet: NONE,
             };
             planar = sphere.uv;
-            if planar == UV_NATURAL {
+            // two arctangents, which most spheres have no use for
+            if planar == UV_NATURAL && scene.materials[sphere.material as usize].texture != NONE {
                 s.uv = sphere_uv(n);
             }
         }
@@ -96,6 +102,7 @@ pub fn surface_at(scene: &Scene, ray: &Ray, hit: &Hit) -> Surface {
                 light: rectangle.light,
                 uv: Vec2::new(hit.u, hit.v),
                 v: 0.0,
+                facet: rectangle.facet,
             };
             planar = rectangle.uv;
         }
@@ -111,6 +118,7 @@ pub fn surface_at(scene: &Scene, ray: &Ray, hit: &Hit) -> Surface {
                 light: disc.light,
                 uv: disc_uv(disc, q),
                 v: 0.0,
+                facet: disc.facet,
             };
             planar = disc.uv;
         }
@@ -127,6 +135,7 @@ pub fn surface_at(scene: &Scene, ray: &Ray, hit: &Hit) -> Surface {
                 light: cuboid.light,
                 uv: cuboid_uv(cuboid, q, hit.u),
                 v: 0.0,
+                facet: cuboid.facet + cuboid_axis(hit.u),
             };
             planar = cuboid.uv;
         }
@@ -143,6 +152,7 @@ pub fn surface_at(scene: &Scene, ray: &Ray, hit: &Hit) -> Surface {
                 light: revolution.light,
                 uv: r.uv,
                 v: r.uv.y,
+                facet: NONE,
             };
             planar = revolution.uv;
         }
@@ -159,6 +169,7 @@ pub fn surface_at(scene: &Scene, ray: &Ray, hit: &Hit) -> Surface {
                 light: NONE,
                 uv: Vec2::new(plane.u0 + d.dot(plane.tangent), plane.v0 + d.dot(plane.bitangent)),
                 v: 0.0,
+                facet: NONE,
             };
             planar = plane.uv;
         }

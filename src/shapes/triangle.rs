@@ -39,6 +39,9 @@ pub struct RayShear {
 }
 
 impl RayShear {
+    /// For tests of other shapes.
+    pub const NONE: RayShear = RayShear { shear: Vec3::ZERO, axis: 0 };
+
     /// Once per ray.
     #[inline]
     pub fn new(ray: &Ray) -> RayShear {

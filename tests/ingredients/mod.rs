@@ -67,6 +67,7 @@ impl Mixture {
             "rectangle" => s.rectangles.push(Rectangle::zeroed()),
             "disc" => s.discs.push(Disc::zeroed()),
             "cuboid" => s.cuboids.push(Cuboid::zeroed()),
+            "facets" => s.facets.push(Facet::zeroed()),
             "plane" => s.planes.push(Plane::zeroed()),
             "revolution" => {
                 s.revolutions.push(Revolution::zeroed());

@@ -132,9 +132,14 @@ fn rates() {
         .filter(|ray| {
             let shear = RayShear::new(ray);
             let mut hit = Hit::none(ray);
-            caustica::shapes::kdtree::traverse_closest(&tree.view(), ray, &mut hit, |leaf, ray, hit| {
-                caustica::shapes::triangles::intersect_triangles(&triangles, leaf, &shear, ray, hit)
-            });
+            caustica::shapes::kdtree::traverse_closest(
+                &tree.view(),
+                ray,
+                &mut hit,
+                |leaf: &[u32], ray: &Ray, hit: &mut Hit| {
+                    caustica::shapes::triangles::intersect_triangles(&triangles, leaf, &shear, ray, hit)
+                },
+            );
             hit.reference != NONE
         })
         .count();

@@ -78,7 +78,7 @@ pub fn intersect(prims: &[Primitive], shear: &RayShear, reference: u32, ray: &Ra
 pub fn closest(prims: &[Primitive], tree: &Tree, ray: &Ray) -> Hit {
     let mut hit = Hit::none(ray);
     let shear = RayShear::new(ray);
-    traverse_closest(tree, ray, &mut hit, |leaf, ray, hit| {
+    traverse_closest(tree, ray, &mut hit, |leaf: &[u32], ray: &Ray, hit: &mut Hit| {
         leaf.iter().for_each(|&r| intersect(prims, &shear, r, ray, hit));
     });
     hit
@@ -87,7 +87,7 @@ pub fn closest(prims: &[Primitive], tree: &Tree, ray: &Ray) -> Hit {
 pub fn any(prims: &[Primitive], tree: &Tree, ray: &Ray) -> Hit {
     let mut hit = Hit::none(ray);
     let shear = RayShear::new(ray);
-    traverse_any(tree, ray, &mut hit, |leaf, ray, hit| {
+    traverse_any(tree, ray, &mut hit, |leaf: &[u32], ray: &Ray, hit: &mut Hit| {
         leaf.iter().for_each(|&r| intersect(prims, &shear, r, ray, hit));
     });
     hit

@@ -137,7 +137,7 @@ fn cost_is_what_random_lines_pay() {
         let d = (rng.direction() - n).normalize_or(-n);
         let ray = Ray { origin: n * 2.0, t_min: 0.0, direction: d, t_max: 1e30 };
         let tests = Cell::new(0usize);
-        traverse_closest(&tree.view(), &ray, &mut Hit::none(&ray), |leaf, _, _| {
+        traverse_closest(&tree.view(), &ray, &mut Hit::none(&ray), |leaf: &[u32], _: &Ray, _: &mut Hit| {
             tests.set(tests.get() + leaf.len());
         });
         if crosses(tree.bounds, &ray) {

@@ -35,7 +35,7 @@ fn scene(name: &str, material: &str, corners: &[DVec3; 4], ns: DVec3, sun: DVec3
     (camera, text)
 }
 
-fn check(name: &str, camera: &Camera, text: &str, irradiance: impl Fn(DVec3) -> f64) {
+fn check(name: &str, camera: &Camera, text: &str, irradiance: impl Fn(DVec3) -> f64 + Sync) {
     for direct in DIRECT {
         let settings = RenderSettings { direct, passes: 2, photons: 1 << 14, ..settings(0.04) };
         let truth = camera.floor_picture(0.04, |p| FLOOR / PI * irradiance(p));

@@ -198,31 +198,32 @@ fn ball_lens() {
 fn cylinder() {
     const HEIGHT: f64 = 0.8;
     const SUN: f64 = 3.0;
+    const STEPS: usize = 2000;
+    let mirrored = |phi: f64| {
+        let turned = -glam::DVec2::new((2.0 * phi).cos(), (2.0 * phi).sin());
+        (glam::DVec2::new(phi.cos(), phi.sin()), turned)
+    };
+    let at = |k: usize| (2.0 * (k as f64 + 0.37) / STEPS as f64 - 1.0) * 1.2;
+    let wall: Vec<_> = (0..STEPS).map(|k| mirrored(at(k))).collect();
     let irradiance = |p: DVec3| {
-        let off = |phi: f64| {
-            let (wall, turned) = (
-                glam::DVec2::new(phi.cos(), phi.sin()),
-                -glam::DVec2::new((2.0 * phi).cos(), (2.0 * phi).sin()),
-            );
+        let off = |(wall, turned): (glam::DVec2, glam::DVec2)| {
             let to = glam::DVec2::new(p.x, p.z) - wall;
             (to.perp_dot(turned), to.dot(turned))
         };
         // the way back to the opposite wall along -x
         let direct = p.x + (1.0 - p.z * p.z).sqrt() > HEIGHT;
         let mut widths = f64::from(direct);
-        const STEPS: usize = 2000;
-        let at = |k: usize| (2.0 * (k as f64 + 0.37) / STEPS as f64 - 1.0) * 1.2;
         for k in 0..STEPS - 1 {
             let (mut low, mut high) = (at(k), at(k + 1));
-            let side = off(low).0;
-            if side * off(high).0 > 0.0 {
+            let side = off(wall[k]).0;
+            if side * off(wall[k + 1]).0 > 0.0 {
                 continue;
             }
             for _ in 0..50 {
                 let middle = 0.5 * (low + high);
-                if off(middle).0 * side > 0.0 { low = middle } else { high = middle }
+                if off(mirrored(middle)).0 * side > 0.0 { low = middle } else { high = middle }
             }
-            let s = off(low).1;
+            let s = off(mirrored(low)).1;
             let over_the_rim = s + 2.0 * low.cos() > HEIGHT;
             if s > 0.0 && s < HEIGHT && over_the_rim {
                 widths += 1.0 / (1.0 - 2.0 * s / low.cos()).abs();

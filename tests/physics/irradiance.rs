@@ -32,7 +32,7 @@ material = "floor"
 "#;
 
 /// A floor of irradiance E has the radiance albedo E / pi, whichever way its light was found.
-fn check(name: &str, light: &str, irradiance: impl Fn(DVec3) -> f64) {
+fn check(name: &str, light: &str, irradiance: impl Fn(DVec3) -> f64 + Sync) {
     let text = camera().toml() + FLOOR + light;
     for direct in DIRECT {
         let sampled = direct == Direct::Sampled;

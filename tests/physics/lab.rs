@@ -15,6 +15,7 @@ use caustica::plan::Plan;
 use caustica::scene::{self, Scene};
 use caustica::settings::{Direct, Method, Radius, RadiusRule, RenderSettings};
 use glam::{DVec2, DVec3};
+use rayon::prelude::*;
 
 /// Independent runs of every comparison.
 pub const RUNS: u64 = 20;
@@ -61,20 +62,27 @@ impl Camera {
     }
 
     /// What the picture of a floor y = 0 with radiance `f` holds when photons are gathered from discs of radius `r`:
-    /// the mean over each pixel (2x2 Gauss points) and disc. For f = a quadratic the disc's mean is that over a ring of
-    /// radius r / sqrt 2.
-    pub fn floor_picture(&self, r: f64, f: impl Fn(DVec3) -> f64) -> Vec<f64> {
+    /// the mean over each pixel (2x2 Gauss points in each of its quarters) and over the disc (8 points on each of three rings
+    /// of equal area, turned against one another). Both are exact for quadratics; folds of caustics, where f is infinite, want
+    /// that many.
+    pub fn floor_picture(&self, r: f64, f: impl Fn(DVec3) -> f64 + Sync) -> Vec<f64> {
         let n = self.size;
-        let ring = r * 0.5f64.sqrt();
-        let offsets = [DVec3::X, DVec3::NEG_X, DVec3::Z, DVec3::NEG_Z].map(|d| d * ring);
-        let offsets = if r > 0.0 { &offsets[..] } else { &offsets[..1] };
-        let gauss = [0.5 - 0.5 / 3f64.sqrt(), 0.5 + 0.5 / 3f64.sqrt()];
+        let offset = |k: usize| {
+            let (ring, turn) = (k as f64 / 8.0, k as f64 + (k / 8) as f64 / 3.0);
+            let (sin, cos) = (turn * std::f64::consts::FRAC_PI_4).sin_cos();
+            DVec3::new(cos, 0.0, sin) * r * ((ring.floor() + 0.5) / 3.0).sqrt()
+        };
+        let offsets: Vec<DVec3> = if r > 0.0 { (0..24).map(offset).collect() } else { vec![DVec3::ZERO] };
+        let gauss = |k: usize| {
+            0.5 * (k / 2) as f64
+                + if k.is_multiple_of(2) { 0.25 - 0.25 / 3f64.sqrt() } else { 0.25 + 0.25 / 3f64.sqrt() }
+        };
         let point = |i: u32, k: usize| {
             let pixel = DVec2::new((i % n) as f64, (i / n) as f64);
-            self.on_floor((pixel + DVec2::new(gauss[k % 2], gauss[k / 2])) / n as f64)
+            self.on_floor((pixel + DVec2::new(gauss(k % 4), gauss(k / 4))) / n as f64)
         };
         let disc = |p: DVec3| offsets.iter().map(|o| f(p + *o)).sum::<f64>() / offsets.len() as f64;
-        (0..n * n).map(|i| (0..4).map(|k| disc(point(i, k))).sum::<f64>() / 4.0).collect()
+        (0..n * n).into_par_iter().map(|i| (0..16).map(|k| disc(point(i, k))).sum::<f64>() / 16.0).collect()
     }
 }
 

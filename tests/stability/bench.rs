@@ -17,9 +17,7 @@ use caustica::gpu::program::Program;
 use caustica::gpu::recorder::Recorder;
 use caustica::gpu::{AdapterChoice, Gpu, GpuEngine};
 use caustica::kernels::gather::gather;
-use caustica::kernels::grid_build::{
-    SortedRecords, grid_count, grid_scan, grid_scatter, grid_sort, record_code,
-};
+use caustica::kernels::grid_build::{SortedRecords, build_grid, record_bucket, record_code};
 use caustica::kernels::records::{Dispatch, FilmPixel, Gathered, PhotonRecord, Statistics, VisiblePoint};
 use caustica::kernels::resolve::resolve;
 use caustica::pack::{Packed, pack};
@@ -218,7 +216,7 @@ impl Bench {
             let (starts, coded, sorted) = binned(&d, records);
             if self.on == On::Cpu {
                 for (point, gathered) in points.iter().zip(&mut sum) {
-                    gather(&d, point, d.scale_sq, &starts, &sorted, gathered);
+                    gather(&[], &d, point, d.scale_sq, &starts, &sorted, gathered);
                 }
             } else if !gather_on_driver(self.driver(), &d, points, &starts, &coded, &mut sum) {
                 // the engine, too, takes smaller batches where the driver stops a loop
@@ -232,16 +230,11 @@ impl Bench {
 
 /// Where each bucket starts, and the records in order as the driver and as the CPU reads them.
 fn binned(d: &Dispatch, records: &[PhotonRecord]) -> (Vec<u32>, Vec<PhotonRecord>, SortedRecords) {
-    let mut counts = vec![0; d.mask as usize + 1];
-    let mut starts = vec![0; counts.len() + 1];
-    let mut order = vec![0; records.len()];
-    grid_count(d, records, &mut counts);
-    grid_scan(&counts, &mut starts);
-    grid_scatter(d, records, &starts, &mut counts, &mut order);
     let coded = |record: &PhotonRecord| PhotonRecord { key: record_code(d, record), ..*record };
-    let mut sorted = SortedRecords::default();
-    grid_sort(d, records, &order, &mut sorted);
-    (starts, order.iter().map(|&i| coded(&records[i as usize])).collect(), sorted)
+    let mut ordered = records.to_vec();
+    ordered.sort_by_key(|record| record_bucket(d, record));
+    let (starts, sorted) = build_grid(d, records.to_vec());
+    (starts, ordered.iter().map(coded).collect(), sorted)
 }
 
 /// False, and nothing added, where the driver stopped a loop.

@@ -5,6 +5,7 @@ use caustica::kernels::records::{Dispatch, FilmPixel, Gathered, PhotonRecord, St
 use caustica::math::oct_encode;
 use caustica::plan::global_scale_sq;
 use caustica::settings::{Direct, Radius, RadiusRule, RenderSettings};
+use caustica::tables::NONE;
 use glam::{DVec3, Vec3};
 
 use super::bench::Bench;
@@ -120,6 +121,7 @@ fn gathered_error(b: &Bench, radius: f64) -> f64 {
             position: c.as_vec3(),
             radius: radius as f32,
             weight: Vec3::ONE,
+            facet: NONE,
             normal: oct_encode(n),
             shading: oct_encode(n),
             ..VisiblePoint::zeroed()
@@ -258,6 +260,7 @@ fn many_equal(b: &Bench) -> Figure {
     let point = VisiblePoint {
         position,
         radius: 1.0,
+        facet: NONE,
         weight: Vec3::ONE,
         normal: up,
         shading: up,

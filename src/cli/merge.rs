@@ -1,0 +1,86 @@
+//! `caustica merge`: checkpoints of ranges of passes in, the picture or the checkpoint of all out.
+
+use std::path::{Path, PathBuf};
+
+use caustica::checkpoint::{self, Checkpoint, EXTENSION, merge};
+use caustica::film::estimate::LEAST_PASSES;
+use caustica::film::file::Format;
+use caustica::film::{self, FileError};
+
+use super::output::{message, result};
+use super::progress::{count, percent};
+use super::render::left_out;
+use super::{Done, Failure};
+
+/// Merge checkpoints of ranges of passes into the picture of all
+#[derive(clap::Args)]
+#[command(after_help = HELP)]
+pub struct Arguments {
+    /// Checkpoints of ranges of passes that follow one another, in any order; a single one gives its picture
+    #[arg(required = true, value_name = "CHECKPOINT")]
+    checkpoints: Vec<PathBuf>,
+    /// File to write, by its extension: .png (tone-mapped), .exr, .pfm, .hdr, or .checkpoint to merge further; may be given several
+    /// times
+    #[arg(short, long, required = true, value_name = "FILE")]
+    output: Vec<PathBuf>,
+}
+
+const HELP: &str = "\
+Examples:
+  caustica render scenes/cornell.toml --passes 0..32 --checkpoint a.checkpoint
+  caustica render scenes/cornell.toml --passes 32..64 --checkpoint b.checkpoint
+  caustica merge a.checkpoint b.checkpoint -o cornell.exr
+
+The picture is that of a render of all passes, but for rounding (docs/checkpoints.md).";
+
+/// Merges and writes.
+pub fn run(arguments: Arguments) -> Result<Done, Failure> {
+    let Arguments { checkpoints, output: outputs } = arguments;
+    let (merged, pictures): (Vec<PathBuf>, Vec<PathBuf>) =
+        outputs.iter().cloned().partition(|output| output.extension().is_some_and(|e| e == EXTENSION));
+    if let Some(file) = pictures.iter().find(|picture| Format::of(picture).is_none()) {
+        return Err(FileError::UnknownFormat {
+            file: file.clone(),
+            what: "its extension names neither a kind of picture nor a checkpoint".to_owned(),
+            known: ".png, .exr, .pfm, .hdr or .checkpoint",
+        }
+        .into());
+    }
+    film::check_outputs(&pictures)?;
+    for file in &merged {
+        checkpoint::check_place(file)?;
+    }
+    let read = |file: PathBuf| checkpoint::read(&file).map(|checkpoint| (file, checkpoint));
+    let all = merge(checkpoints.into_iter().map(read).collect::<Result<_, _>>()?)?;
+    for file in &merged {
+        checkpoint::write(file, &all)?;
+    }
+    write_pictures(&pictures, &all)?;
+    outputs.iter().try_for_each(|output| result(output.display()))?;
+    Ok(Done::Fully)
+}
+
+fn write_pictures(pictures: &[impl AsRef<Path>], all: &Checkpoint) -> Result<(), Failure> {
+    let (picture, errors, rejections) = all.develop();
+    if !rejections.is_empty() {
+        message(format_args!("warning: {}", left_out(&rejections)));
+    }
+    let errors = Some(errors).filter(|_| all.state.passes >= LEAST_PASSES);
+    let layers = errors.as_ref().map_or(Vec::new(), |errors| errors.layers());
+    for output in pictures {
+        film::write(output.as_ref(), &picture, &layers, &all.development(), &all.provenance())?;
+    }
+    let error = errors.map_or(String::new(), |errors| {
+        let error = errors.relative();
+        let [stated, noise, bias] = [error.stated, error.noise, error.bias].map(percent);
+        format!(", error {stated} (noise {noise}, bias {bias})")
+    });
+    let (passes, photons) = (all.state.passes, count(all.totals.photons as f64));
+    message(format_args!(
+        "{}: passes {}..{}, {passes} in all, {photons} photons{error}",
+        all.origin.scene,
+        all.state.first_pass,
+        all.end()
+    ));
+    Ok(())
+}

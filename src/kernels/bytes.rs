@@ -1,0 +1,144 @@
+//! Film and statistics as bytes: fields in the order of their structs, numbers with the least byte first. In f32 these are the
+//! bytes of the device's buffers.
+
+use super::real::{Real, Vec3};
+use super::records::{FilmPixel, Statistics};
+
+const REAL: usize = size_of::<Real>();
+/// Bytes of a pixel.
+pub const FILM_BYTES: usize = 12 * REAL + 4 * 4;
+/// Bytes of a visible point's statistics.
+pub const STATISTICS_BYTES: usize = 2 * REAL + 2 * 4;
+
+/// The bytes of a film.
+pub fn film_bytes(film: &[FilmPixel]) -> Vec<u8> {
+    let mut out = Writer(Vec::with_capacity(film.len() * FILM_BYTES));
+    for p in film {
+        out.vector(p.mean);
+        out.real(p.spread);
+        out.vector(p.carry);
+        out.real(p.early);
+        p.rejected.iter().for_each(|count| out.word(*count));
+        [p.ring, p.ring_swing, p.halves, p.earlier].into_iter().for_each(|x| out.real(x));
+    }
+    out.0
+}
+
+/// The film of these bytes.
+pub fn film_of(bytes: &[u8]) -> Vec<FilmPixel> {
+    let pixel = |bytes| {
+        let mut from = Reader(bytes);
+        FilmPixel {
+            mean: from.vector(),
+            spread: from.real(),
+            carry: from.vector(),
+            early: from.real(),
+            rejected: [from.word(), from.word(), from.word(), from.word()],
+            ring: from.real(),
+            ring_swing: from.real(),
+            halves: from.real(),
+            earlier: from.real(),
+        }
+    };
+    bytes.chunks_exact(FILM_BYTES).map(pixel).collect()
+}
+
+/// The bytes of visible points' statistics.
+pub fn statistics_bytes(statistics: &[Statistics]) -> Vec<u8> {
+    let mut out = Writer(Vec::with_capacity(statistics.len() * STATISTICS_BYTES));
+    for s in statistics {
+        out.real(s.scale_sq);
+        out.real(s.drop);
+        out.word(s.count_low);
+        out.word(s.count_high);
+    }
+    out.0
+}
+
+/// The statistics of these bytes.
+pub fn statistics_of(bytes: &[u8]) -> Vec<Statistics> {
+    let point = |bytes| {
+        let mut from = Reader(bytes);
+        Statistics {
+            scale_sq: from.real(),
+            drop: from.real(),
+            count_low: from.word(),
+            count_high: from.word(),
+        }
+    };
+    bytes.chunks_exact(STATISTICS_BYTES).map(point).collect()
+}
+
+struct Writer(Vec<u8>);
+
+impl Writer {
+    fn real(&mut self, x: Real) {
+        self.0.extend(x.to_le_bytes());
+    }
+
+    fn word(&mut self, x: u32) {
+        self.0.extend(x.to_le_bytes());
+    }
+
+    fn vector(&mut self, v: Vec3) {
+        v.to_array().into_iter().for_each(|x| self.real(x));
+    }
+}
+
+/// Reads from as many bytes as are asked for; beyond them it would read zeros.
+struct Reader<'a>(&'a [u8]);
+
+impl Reader<'_> {
+    fn take<const N: usize>(&mut self) -> [u8; N] {
+        let (first, rest) = self.0.split_first_chunk().unwrap_or((&[0; N], &[]));
+        self.0 = rest;
+        *first
+    }
+
+    fn real(&mut self) -> Real {
+        Real::from_le_bytes(self.take())
+    }
+
+    fn word(&mut self) -> u32 {
+        u32::from_le_bytes(self.take())
+    }
+
+    fn vector(&mut self) -> Vec3 {
+        Vec3::new(self.real(), self.real(), self.real())
+    }
+}
+
+/// Theory: what is written is read again bit by bit, in f32 it is what a device holds, and no field is left out or exchanged
+/// with another.
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bytes_are_the_fields_in_order() {
+        let x = |k: u8| Real::from(k) + 0.1;
+        let vector = |k: u8| Vec3::new(x(k), x(k + 1), x(k + 2));
+        let pixel = FilmPixel {
+            mean: vector(0),
+            spread: x(3),
+            carry: vector(4),
+            early: x(7),
+            rejected: [8, 9, 10, 0x0102_0304],
+            ring: x(12),
+            ring_swing: -x(13),
+            halves: Real::MIN_POSITIVE,
+            earlier: Real::NAN,
+        };
+        let bytes = film_bytes(&[pixel, FilmPixel { spread: x(20), ..pixel }]);
+        assert_eq!(bytes.len(), 2 * FILM_BYTES);
+        let back = film_of(&bytes);
+        assert_eq!(film_bytes(&back), bytes);
+        assert_eq!((back[0].mean, back[0].rejected, back[1].spread), (pixel.mean, pixel.rejected, x(20)));
+        assert_eq!(bytes[..REAL], x(0).to_le_bytes());
+        assert_eq!(bytes[8 * REAL + 12..8 * REAL + 16], [4, 3, 2, 1]);
+        let point = Statistics { scale_sq: x(1), drop: x(2), count_low: u32::MAX, count_high: 7 };
+        assert_eq!(statistics_bytes(&[point; 3]).len(), 3 * STATISTICS_BYTES);
+        assert_eq!(statistics_of(&statistics_bytes(&[point; 3])), [point; 3]);
+        assert_ne!(statistics_bytes(&[Statistics { count_high: 0, ..point }]), statistics_bytes(&[point]));
+    }
+}

@@ -1,0 +1,193 @@
+//! Files that are not what they should be.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use caustica::checkpoint::{Checkpoint, CheckpointError, decode, merge, read, write};
+use caustica::device::Wanted;
+use caustica::render::Stop;
+use xxhash_rust::xxh3::xxh3_128;
+
+use super::{checkpoint, folder, open};
+
+const SIZE: (u32, u32) = (4, 3);
+/// Bytes before the header, and of the checksum.
+const PREFIX: usize = 24;
+const SUM: usize = 16;
+const NO_STOP: Stop = Stop { passes: u32::MAX, time: None, target_error: None };
+
+fn made(name: &str) -> (PathBuf, Checkpoint) {
+    let mut opened = open(&Wanted::Cpu, SIZE, |s| s.photons = 50);
+    opened.engine.pass().unwrap();
+    let state = opened.engine.save().unwrap();
+    let checkpoint = checkpoint(&opened, SIZE, state);
+    let file = folder(name).join("a.checkpoint");
+    write(&file, &checkpoint).unwrap();
+    (file, checkpoint)
+}
+
+fn refusal(file: &Path, bytes: &[u8]) -> Option<CheckpointError> {
+    decode(file, bytes).err()
+}
+
+/// Theory: a checksum of 128 bits over everything before it, and a length, leave no prefix and no flipped bit unseen.
+#[test]
+fn every_cut_and_every_flipped_byte_is_seen() {
+    let (file, checkpoint) = made("damage");
+    let bytes = fs::read(&file).unwrap();
+    assert!(read(&file).unwrap() == checkpoint);
+    for length in 0..bytes.len() {
+        let error = refusal(&file, &bytes[..length]);
+        let known = match length {
+            0..PREFIX => matches!(error, Some(CheckpointError::NotOne { .. })),
+            _ => matches!(&error, Some(CheckpointError::Length { expected, found, .. })
+                if (*expected, *found) == (bytes.len() as u64, length as u64)),
+        };
+        assert!(known, "{length} bytes: {error:?}");
+    }
+    for at in 0..bytes.len() {
+        let mut other = bytes.clone();
+        other[at] ^= 1 << (at % 8);
+        let error = refusal(&file, &other);
+        let known = match at {
+            0..8 => matches!(error, Some(CheckpointError::NotOne { .. })),
+            8..12 => matches!(error, Some(CheckpointError::Format { expected: 1, .. })),
+            16..24 => matches!(error, Some(CheckpointError::Length { .. })),
+            _ => matches!(error, Some(CheckpointError::Damaged { .. })),
+        };
+        assert!(known, "byte {at}: {error:?}");
+    }
+    let longer = [&bytes[..], &[0]].concat();
+    assert!(matches!(refusal(&file, &longer), Some(CheckpointError::Length { .. })));
+    assert!(refusal(&file, &bytes).is_none(), "the bytes themselves are fine");
+}
+
+#[test]
+fn what_is_no_checkpoint_is_told() {
+    let folder = folder("others");
+    let picture = folder.join("a.png");
+    assert!(matches!(refusal(&picture, b"\x89PNG\r\n"), Some(CheckpointError::NotOne { .. })));
+    assert!(matches!(refusal(&picture, b""), Some(CheckpointError::NotOne { .. })));
+    for missing in [folder.join("none.checkpoint"), folder.clone(), "/dev/zero".into(), "/dev/null".into()] {
+        let error = read(&missing).err().unwrap();
+        assert!(matches!(error, CheckpointError::Io { verb: "read", .. }), "{error:?}");
+        assert!(error.to_string().contains(missing.to_str().unwrap()), "{error}");
+    }
+}
+
+/// A file that lies: its checksum is right, its header is not. Nothing that it claims may be believed.
+#[test]
+fn forged_headers_are_refused() {
+    let (file, _) = made("forged");
+    let bytes = fs::read(&file).unwrap();
+    let length = u32::from_le_bytes(bytes[12..16].try_into().unwrap()) as usize;
+    let header: serde_json::Value = serde_json::from_slice(&bytes[PREFIX..PREFIX + length]).unwrap();
+    let sections = &bytes[PREFIX + length..bytes.len() - SUM];
+    let forged = |header: &[u8], told: u32| {
+        let total = (PREFIX + header.len() + sections.len() + SUM) as u64;
+        let start = [&bytes[..12], &told.to_le_bytes(), &total.to_le_bytes()].concat();
+        let content = [&start[..], header, sections].concat();
+        let sum = xxh3_128(&content).to_le_bytes();
+        refusal(&file, &[&content[..], &sum].concat())
+    };
+    let told = |header: &serde_json::Value| {
+        let header = header.to_string();
+        forged(header.as_bytes(), header.len() as u32)
+    };
+    assert!(told(&header).is_none(), "the forger's hand is right");
+    let changes: [(&str, serde_json::Value); 14] = [
+        ("/film", u64::MAX.into()),
+        ("/film", 0.into()),
+        ("/statistics", u64::MAX.into()),
+        ("/statistics", 64.into()),
+        ("/parts", 1.into()),
+        ("/passes", 0.into()),
+        ("/passes", u32::MAX.into()),
+        ("/first_pass", u32::MAX.into()),
+        ("/bits", 16.into()),
+        ("/bits", 64.into()),
+        ("/origin/width", u32::MAX.into()),
+        ("/origin/height", 0.into()),
+        ("/origin/settings/photons", "many".into()),
+        ("/totals/elapsed/secs", u64::MAX.into()),
+    ];
+    for (place, value) in changes {
+        let mut lying = header.clone();
+        *lying.pointer_mut(place).unwrap() = value.clone();
+        // two together may be a sum that a number of passes does not pass over
+        if place == "/passes" && value == u32::MAX {
+            lying["first_pass"] = 1.into();
+        }
+        let error = told(&lying);
+        assert!(matches!(error, Some(CheckpointError::Damaged { .. })), "{place} {value}: {error:?}");
+    }
+    for lie in [0, 1, length as u32 - 1, length as u32 + 1, u32::MAX] {
+        let error = forged(header.to_string().as_bytes(), lie);
+        assert!(matches!(error, Some(CheckpointError::Damaged { .. })), "{lie}: {error:?}");
+    }
+    // deep nesting is refused by the parser, not by the stack
+    let deep = [vec![b'['; 100_000], vec![b']'; 100_000]].concat();
+    assert!(matches!(forged(&deep, deep.len() as u32), Some(CheckpointError::Damaged { .. })));
+}
+
+/// Any bytes at any places, with the right checksum: what is refused is refused with a reason, and what is taken for a checkpoint
+/// can be developed and merged, whatever comes of it. Nothing panics.
+#[test]
+fn forged_bytes_do_no_harm() {
+    let (file, _) = made("chance");
+    let bytes = fs::read(&file).unwrap();
+    let mut state = 3u64;
+    let mut below = |end: usize| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        ((state >> 33) as usize) % end
+    };
+    let digits = b"0123456789.-e,:{}[]\"tn";
+    let (mut taken, mut refused) = (0, 0);
+    for round in 0..20_000 {
+        let mut content = bytes[..bytes.len() - SUM].to_vec();
+        for _ in 0..1 + below(4) {
+            // half of them in the numbers at the header's end, where a digit for a digit is still a header
+            let header = PREFIX + u32::from_le_bytes(bytes[12..16].try_into().unwrap()) as usize;
+            let at = if round % 2 == 0 { header - 1 - below(420) } else { below(content.len()) };
+            let in_header = (PREFIX..header).contains(&at);
+            content[at] = if in_header { digits[below(digits.len())] } else { below(256) as u8 };
+        }
+        let sum = xxh3_128(&content).to_le_bytes();
+        match decode(&file, &[&content[..], &sum].concat()) {
+            Ok(checkpoint) => {
+                let (picture, errors, _) = checkpoint.develop();
+                assert_eq!((picture.rgb.len(), errors.pixels.len()), (12, 12));
+                let _ = (errors.relative(), errors.layers(), checkpoint.progress(NO_STOP).share());
+                let mut next = checkpoint.clone();
+                next.state.first_pass = checkpoint.end();
+                next.state.passes = 1;
+                let _ =
+                    merge(vec![(file.clone(), checkpoint), (file.clone(), next)]).map(|all| all.develop());
+                taken += 1;
+            }
+            Err(error) => {
+                assert!(!error.to_string().is_empty());
+                refused += 1;
+            }
+        }
+    }
+    assert!(taken > 1000 && refused > 1000, "{taken} {refused}");
+}
+
+/// Theory: what cannot be written leaves what was there.
+#[test]
+fn a_failed_write_keeps_the_one_before() {
+    let (file, checkpoint) = made("unwritable");
+    let blocked = file.with_file_name(".a.checkpoint.part");
+    fs::create_dir(&blocked).unwrap();
+    let mut other = checkpoint.clone();
+    other.state.passes = 2;
+    let error = write(&file, &other).unwrap_err();
+    assert!(matches!(error, CheckpointError::Io { verb: "written", .. }), "{error:?}");
+    assert!(read(&file).unwrap() == checkpoint);
+    fs::remove_dir(&blocked).unwrap();
+    // what a killed one left half-written is in nobody's way
+    fs::write(&blocked, b"half").unwrap();
+    write(&file, &other).unwrap();
+    assert!(read(&file).unwrap() == other && !blocked.exists());
+}

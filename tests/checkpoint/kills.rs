@@ -1,0 +1,138 @@
+//! Renders that are killed at random moments and gone on with.
+//!
+//! Theory: the file's name is given to a whole checkpoint or to none, so after any kill there is one that can be read, it never
+//! holds fewer passes than before, and the render that at last comes to its end has written the bytes of one that never
+//! stopped.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::Duration;
+
+use caustica::checkpoint::{read, write};
+use caustica::film::file::read_exr;
+
+use super::{command, folder, good};
+
+/// Numbers in [0, 1) by a linear congruence.
+struct Chance(u64);
+
+impl Chance {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 40) as f64 / (1u64 << 24) as f64
+    }
+}
+
+/// How lives ended.
+#[derive(Debug, Default)]
+struct Tally {
+    /// By signal 9.
+    killed: u32,
+    /// By signal 15, after the pass in hand.
+    terminated: u32,
+    /// With passes made but not all.
+    midway: u32,
+}
+
+/// Renders `line` to its end through as many lives as it takes, each on the next of `devices` and ended after a random time.
+fn through_kills(folder: &Path, line: &str, devices: &[&str], chance: &mut Chance, tally: &mut Tally) {
+    let file = folder.join("a.checkpoint");
+    let _ = fs::remove_file(&file);
+    let (mut passes, mut wait) = (0, 0.2);
+    for life in 0.. {
+        let resume = if file.exists() { "--resume a.checkpoint" } else { "" };
+        let device = devices[life % devices.len()];
+        let keep = "--checkpoint a.checkpoint --checkpoint-every 1ms --quiet";
+        let mut child = command(folder, &format!("{line} --device {device} {keep} {resume} -o a.exr"))
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        std::thread::sleep(Duration::from_secs_f64(wait * chance.next()));
+        let signal = if chance.next() < 0.7 { "-9" } else { "-15" };
+        let sent = Command::new("kill").args([signal, &child.id().to_string()]).status();
+        let code = child.wait().unwrap().code();
+        let before = passes;
+        if file.exists() {
+            let checkpoint = read(&file).unwrap_or_else(|error| panic!("{error}"));
+            passes = checkpoint.state.passes;
+            assert!(passes >= before, "{passes} {before}");
+        }
+        if code == Some(0) {
+            return;
+        }
+        assert!(sent.unwrap().success() && matches!(code, None | Some(130)), "{code:?}");
+        let count = if signal == "-9" { &mut tally.killed } else { &mut tally.terminated };
+        *count += 1;
+        tally.midway += u32::from(passes > before);
+        // on any machine most lives shall make some passes, and few of them many
+        wait *= if passes == before { 1.3 } else { 0.8 };
+    }
+}
+
+fn channels(folder: &Path, file: &str) -> std::collections::BTreeMap<String, Vec<f32>> {
+    read_exr(&folder.join(file)).unwrap().channels
+}
+
+#[test]
+fn ends_in_the_same_bytes() {
+    let folder = folder("kills");
+    let mut chance = Chance(1);
+    let mut tally = Tally::default();
+    let lines = ["--radius-rule local", "--method ppm", "--target-error 2.5%"];
+    for (number, options) in lines.iter().enumerate() {
+        let line = format!("render ball.toml {options}");
+        good(&folder, &format!("{line} --device cpu --quiet -o whole.exr"));
+        let want = 14 * (number as u32 + 1);
+        while tally.killed + tally.terminated < want {
+            through_kills(&folder, &line, &["cpu"], &mut chance, &mut tally);
+            assert!(
+                fs::read(folder.join("a.exr")).unwrap() == fs::read(folder.join("whole.exr")).unwrap(),
+                "{options}: {tally:?}"
+            );
+            assert!(channels(&folder, "a.exr").contains_key("Variance.Y"));
+        }
+    }
+    println!("{tally:?}");
+    assert!(tally.killed > 10 && tally.terminated > 3 && tally.midway > 10, "{tally:?}");
+    let mut left: Vec<_> = fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    left.sort();
+    // what a kill leaves half-written the next write replaces, and picture files are written beside their place as well
+    left.retain(|name| !name.to_str().unwrap().ends_with(".part"));
+    assert_eq!(left, ["a.checkpoint", "a.exr", "ball.toml", "wall.obj", "whole.exr"]);
+}
+
+/// Each life on another device: lavapipe goes on with what the CPU began, and the other way round.
+#[test]
+fn ends_in_the_same_bits_on_changing_devices() {
+    let folder = folder("kills on devices");
+    let line = "render ball.toml --radius-rule local --passes 40";
+    good(&folder, &format!("{line} --device software --quiet -o whole.exr"));
+    let mut chance = Chance(7);
+    for devices in [&["software"][..], &["cpu", "software"]] {
+        let mut tally = Tally::default();
+        while tally.midway < 3 {
+            through_kills(&folder, line, devices, &mut chance, &mut tally);
+            assert!(channels(&folder, "a.exr") == channels(&folder, "whole.exr"), "{devices:?}: {tally:?}");
+        }
+        println!("{devices:?}: {tally:?}");
+    }
+}
+
+/// The comparison sees a checkpoint that counts a pass which it does not hold.
+#[test]
+fn a_pass_left_out_is_seen() {
+    let folder = folder("a pass left out");
+    let file = folder.join("a.checkpoint");
+    let line = "render ball.toml --device cpu --quiet";
+    good(&folder, &format!("{line} -o whole.exr"));
+    good(&folder, &format!("{line} --passes 10 --checkpoint a.checkpoint -o early.exr"));
+    let mut checkpoint = read(&file).unwrap();
+    good(&folder, &format!("{line} --resume a.checkpoint -o a.exr"));
+    assert!(channels(&folder, "a.exr") == channels(&folder, "whole.exr"));
+    checkpoint.state.passes += 1;
+    write(&file, &checkpoint).unwrap();
+    good(&folder, &format!("{line} --resume a.checkpoint -o a.exr"));
+    assert!(channels(&folder, "a.exr") != channels(&folder, "whole.exr"));
+}
