@@ -23,6 +23,8 @@ pub struct Loaded {
     pub warnings: Vec<Finding>,
     /// Where the parts stand in the file.
     pub places: Places,
+    /// The files that were read beside the scene file.
+    pub files: Vec<PathBuf>,
 }
 
 /// Reads a scene file with all the files it names.
@@ -40,11 +42,11 @@ pub fn load(path: &Path) -> Result<Loaded, SceneErrors> {
 pub fn parse(path: &Path, bytes: &[u8]) -> Result<Loaded, SceneErrors> {
     let _stage = stage("parse");
     let schema = schema::of::<SceneFile>();
-    let ((scene, settings, places), warnings) = text::parse(path, bytes, |root, report| {
+    let ((scene, settings, places, files), warnings) = text::parse(path, bytes, |root, report| {
         let document = document(&schema, root, report);
         Loader::new(path, &document, report).load()
     })?;
-    Ok(Loaded { scene, settings, warnings, places })
+    Ok(Loaded { scene, settings, warnings, places, files })
 }
 
 /// What the parts of a scene share while they are read.
@@ -60,7 +62,7 @@ impl<'l, 'a> Loader<'l, 'a> {
         Self { document, report, images: ImageStore::default(), path }
     }
 
-    fn load(mut self) -> Option<(Scene, RenderSettings, Places)> {
+    fn load(mut self) -> Option<(Scene, RenderSettings, Places, Vec<PathBuf>)> {
         let document = self.document;
         if let Some(item) = document.item("version")
             && let Some(version) = item.read::<u32>(self.report)
@@ -109,6 +111,7 @@ impl<'l, 'a> Loader<'l, 'a> {
             let file = item.read::<EnvironmentFile>(self.report)?;
             view::environment(&mut self, item, &file)
         });
+        self.report.files.append(&mut self.images.files);
         let scene = Scene {
             name: self.path.file_stem().map_or(String::new(), |stem| stem.to_string_lossy().into_owned()),
             camera: camera?,
@@ -129,7 +132,7 @@ impl<'l, 'a> Loader<'l, 'a> {
                 self.report.warn(0..0, message, label);
             }
         }
-        Some((scene, settings?, places))
+        Some((scene, settings?, places, self.report.files.clone()))
     }
 
     /// Index of a named part; 0 for an unknown name, which [`Self::undefined`] has reported.

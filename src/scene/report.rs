@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 use std::fmt;
 use std::ops::Range;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode};
@@ -118,6 +118,8 @@ pub struct SceneErrors {
     pub errors: Vec<Finding>,
     /// What is odd but no error.
     pub warnings: Vec<Finding>,
+    /// The files that were asked for before, beside the scene file, whether they are there or not.
+    pub files: Vec<PathBuf>,
 }
 
 impl Diagnostic for SceneErrors {
@@ -146,11 +148,14 @@ pub(crate) struct Report {
     path: String,
     pub errors: Vec<Finding>,
     pub warnings: Vec<Finding>,
+    /// The files that the scene file names, and those that they name.
+    pub files: Vec<PathBuf>,
 }
 
 impl Report {
     pub fn new(path: &Path, source: SourceFile) -> Self {
-        Self { source, path: path.display().to_string(), errors: Vec::new(), warnings: Vec::new() }
+        let path = path.display().to_string();
+        Self { source, path, errors: Vec::new(), warnings: Vec::new(), files: Vec::new() }
     }
 
     /// An error in the scene file; `label` says what was expected, `help` how to mend it.

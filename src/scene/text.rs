@@ -68,7 +68,7 @@ pub(super) fn parse<T>(
 fn errors(path: &Path, mut report: Report) -> SceneErrors {
     report.errors.sort_by_key(|error| (error.file() != path.display().to_string(), error.line_column()));
     let (errors, warnings) = (once(report.errors), once(report.warnings));
-    SceneErrors { file: path.display().to_string(), errors, warnings }
+    SceneErrors { file: path.display().to_string(), errors, warnings, files: report.files }
 }
 
 /// The file in the same folder whose name is nearest.
