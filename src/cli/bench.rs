@@ -102,7 +102,8 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     for bounds in [&arguments.truth.max_rel_mse, &arguments.truth.truth_noise] {
         check_single(bounds)?;
     }
-    let (scene, settings) = in_force(load(arguments.scene.as_deref())?, &arguments.overrides)?;
+    let (scene, settings) =
+        in_force(load(arguments.scene.as_deref(), &arguments.overrides)?, &arguments.overrides)?;
     let truth = arguments.truth.truth.as_deref().map(read_truth).transpose()?;
     if let (Some(truth), Some(file)) = (&truth, &arguments.truth.truth) {
         check_truth(truth, file, &scene, &arguments.truth.region)?;
@@ -156,9 +157,9 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     Ok(if missed.is_empty() { Done::Fully } else { Done::OverThreshold })
 }
 
-fn load(file: Option<&Path>) -> Result<Loaded, Failure> {
+fn load(file: Option<&Path>, overrides: &Overrides) -> Result<Loaded, Failure> {
     match file {
-        Some(file) => Ok(scene::load(file)?),
+        Some(file) => overrides.allowed.load(file),
         None => Ok(scene::parse("cornell.toml".as_ref(), CORNELL)?),
     }
 }

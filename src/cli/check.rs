@@ -7,6 +7,7 @@ use caustica::{limits, scene};
 use miette::{Report, miette};
 use serde_json::{Value, json};
 
+use super::allowed::Allowed;
 use super::output::{message, result};
 use super::{Done, Failure};
 
@@ -17,6 +18,8 @@ pub struct Arguments {
     /// Scene files
     #[arg(required = true, value_name = "SCENE")]
     scenes: Vec<PathBuf>,
+    #[command(flatten)]
+    allowed: Allowed,
     /// Print a JSON object for each file, with its errors and warnings
     #[arg(long)]
     json: bool,
@@ -30,9 +33,10 @@ Example:
 
 /// Checks each file; fails at the end if one has errors.
 pub fn run(arguments: Arguments) -> Result<Done, Failure> {
+    let allowance = arguments.allowed.allowance()?;
     let mut bad = 0;
     for file in &arguments.scenes {
-        let (errors, warnings) = match scene::load(file) {
+        let (errors, warnings) = match scene::load_within(file, &allowance) {
             Ok(loaded) => {
                 let limits = limits::warnings(&loaded.scene, &loaded.settings, &loaded.places);
                 (None, loaded.warnings.into_iter().chain(limits).collect())
@@ -86,6 +90,7 @@ fn as_json(file: &Path, errors: Option<&SceneErrors>, warnings: &[Finding]) -> V
         "event": "checked",
         "scene": file,
         "good": errors.is_none(),
+        "more_errors": errors.map_or(0, |errors| errors.more),
         "errors": errors.map_or(&[][..], |errors| &errors.errors).iter().map(finding).collect::<Vec<_>>(),
         "warnings": warnings.iter().map(finding).collect::<Vec<_>>(),
     })

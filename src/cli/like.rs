@@ -7,6 +7,7 @@ use caustica::film::{FileError, Provenance, file};
 use caustica::scene::{self, Loaded, Scene};
 
 use super::Failure;
+use super::allowed::Allowed;
 use super::output::message;
 
 /// A picture that is to be made again.
@@ -50,16 +51,16 @@ impl Like {
     }
 
     /// The scene, from its file or, where that is gone, from the text in the picture.
-    pub fn load(&self, path: &Path) -> Result<Loaded, Failure> {
+    pub fn load(&self, path: &Path, allowed: &Allowed) -> Result<Loaded, Failure> {
         if path.exists() {
-            return Ok(scene::load(path)?);
+            return allowed.load(path);
         }
         message(format_args!(
             "{}: not there; the scene is read from the text in {}",
             path.display(),
             self.file.display()
         ));
-        Ok(scene::parse(path, self.made.scene_text.as_bytes())?)
+        Ok(scene::parse_within(path, self.made.scene_text.as_bytes(), &allowed.allowance()?)?)
     }
 
     /// Puts the picture's film and settings in force, and warns of what is not as it was.

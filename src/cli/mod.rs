@@ -2,6 +2,7 @@
 //!
 //! Standard output carries results, standard error everything else.
 
+mod allowed;
 mod bench;
 mod bench_table;
 mod bounds;

@@ -10,6 +10,8 @@ use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use serde::de::DeserializeOwned;
 
+use super::allowed::Allowed;
+
 /// Options of commands that render; each replaces the scene file's own value.
 #[derive(Args, Debug, Default)]
 #[command(next_help_heading = "Instead of the scene file's settings")]
@@ -54,6 +56,8 @@ pub struct Overrides {
     /// Size of the picture in pixels; the vertical field of view stays
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub size: Option<(u32, u32)>,
+    #[command(flatten)]
+    pub allowed: Allowed,
 }
 
 /// Passes by number, from 0.

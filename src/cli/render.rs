@@ -12,7 +12,7 @@ use caustica::film::{self, Development, ErrorMap, Picture, Provenance, Rejection
 use caustica::limits;
 use caustica::quality::{Expected, Quality, expected};
 use caustica::render::{Ending, Outcome, Progress, Saving, Stop, resume};
-use caustica::scene::{self, Aovs, Loaded, Scene};
+use caustica::scene::{Aovs, Loaded, Scene};
 use caustica::settings::{Method, RadiusRule, RenderSettings};
 use caustica::showing::Showing;
 use clap::builder::NonEmptyStringValueParser;
@@ -115,11 +115,11 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     let files = checkpoint::Files::new(arguments.checkpoint.as_deref(), arguments.resume.as_deref())?;
     let loaded = match &like {
         Some(like) => {
-            let mut loaded = like.load(&file)?;
+            let mut loaded = like.load(&file, &arguments.overrides.allowed)?;
             like.apply(&mut loaded);
             loaded
         }
-        None => scene::load(&file)?,
+        None => arguments.overrides.allowed.load(&file)?,
     };
     let asked = loaded.scene.film.aovs;
     let (mut scene, settings) = put_in_force(loaded, &arguments.overrides);
@@ -296,7 +296,7 @@ impl Promise<'_> {
 
 /// Reads the scene, puts the options in force, and prints the warnings.
 pub fn load(file: &Path, overrides: &Overrides) -> Result<(Scene, RenderSettings), Failure> {
-    in_force(scene::load(file)?, overrides)
+    in_force(overrides.allowed.load(file)?, overrides)
 }
 
 /// Puts the options in force and prints the warnings, for commands that begin with the first pass. What the film asks for beside radiance is

@@ -8,6 +8,7 @@ use caustica::film::file::{check_place, write_whole};
 use caustica::scene;
 use miette::{Report, miette};
 
+use super::allowed::Allowed;
 use super::output::{message, result};
 use super::{Done, Failure};
 
@@ -28,6 +29,8 @@ pub struct Arguments {
     /// [default: as fine as around the axis: 2e-4 with 96 sectors, a quarter of that with twice as many]
     #[arg(long, value_name = "F", value_parser = flatness, allow_negative_numbers = true)]
     flatness: Option<f64>,
+    #[command(flatten)]
+    allowed: Allowed,
 }
 
 const HELP: &str = "\
@@ -41,7 +44,7 @@ Example:
 pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     let output = arguments.output.unwrap_or_else(|| default_output(&arguments.profile));
     check_output(&output)?;
-    let loaded = scene::load_profile(&arguments.profile)?;
+    let loaded = scene::load_profile_within(&arguments.profile, &arguments.allowed.allowance()?)?;
     for warning in loaded.warnings {
         message(format_args!("{:?}", Report::new(warning)));
     }

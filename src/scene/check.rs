@@ -1,13 +1,14 @@
 //! Holds a parsed file against the schema and reports every difference: unknown and missing keys, wrong types, numbers
 //! out of range, words that are not listed.
 
+use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;
 
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value as Json};
 
 use super::numbers::{LARGEST, SMALLEST};
-use super::report::{Report, did_you_mean, list};
+use super::report::{Report, list};
 use super::schema::{alternatives, describe, has_type, in_range, listed_strings, tag};
 use super::tree::Node;
 
@@ -51,13 +52,20 @@ impl Item<'_> {
 /// The parts of a file, each checked.
 #[derive(Debug)]
 pub(crate) struct Document<'a> {
-    items: Vec<(&'a str, Item<'a>)>,
+    sections: BTreeMap<&'a str, Vec<Item<'a>>>,
+    /// Where in its section a named part is.
+    names: HashMap<(&'a str, &'a str), usize>,
 }
 
 impl<'a> Document<'a> {
     /// Parts under a top-level key: the elements of an array, the entries of a table of named things, or the one value.
     pub fn items(&self, section: &str) -> impl Iterator<Item = &Item<'a>> {
-        self.items.iter().filter(move |(key, _)| *key == section).map(|(_, item)| item)
+        self.sections.get(section).into_iter().flatten()
+    }
+
+    /// Where in its section a named part is.
+    pub fn index(&self, section: &str, name: &str) -> Option<usize> {
+        self.names.get(&(section, name)).copied()
     }
 
     /// The one value under a top-level key.
@@ -76,32 +84,35 @@ pub(crate) fn whole<'a>(root: &Json, file: Node<'a>, report: &mut Report) -> Ite
 pub(crate) fn document<'a>(root: &Json, file: Node<'a>, report: &mut Report) -> Document<'a> {
     let mut checker = Checker { root, report };
     checker.missing_keys(root, file, THE_FILE);
-    let mut items = Vec::new();
+    let mut sections = BTreeMap::<&str, Vec<Item>>::new();
+    let mut names = HashMap::new();
     for (key, key_span, node) in file.entries() {
         let Some(schema) = checker.property(root, key, key_span, THE_FILE) else {
             continue;
         };
         let resolved = alternatives(root, schema);
+        let items = sections.entry(key).or_default();
         let container = resolved.first().copied().unwrap_or(&Json::Null);
         let is_map = container["additionalProperties"].is_object();
         if is_map && node.table().is_some() {
             for (name, _, node) in node.entries() {
                 let path = format!("{key}.{name}");
                 let json = checker.value(&container["additionalProperties"], node, &path);
-                items.push((key, Item { path, name, node, json }));
+                names.insert((key, name), items.len());
+                items.push(Item { path, name, node, json });
             }
         } else if has_type(container, "array") && node.json_type() == "array" {
             for (index, node) in node.elements().enumerate() {
                 let path = format!("{key}[{index}]");
                 let json = checker.value(&container["items"], node, &path);
-                items.push((key, Item { path, name: "", node, json }));
+                items.push(Item { path, name: "", node, json });
             }
         } else {
             let json = checker.value(schema, node, key);
-            items.push((key, Item { path: key.into(), name: "", node, json }));
+            items.push(Item { path: key.into(), name: "", node, json });
         }
     }
-    Document { items }
+    Document { sections, names }
 }
 
 const THE_FILE: &str = "the file";
@@ -202,7 +213,7 @@ impl<'c> Checker<'c> {
             && !words.contains(&text)
         {
             let expected = format!("expected {}", describe(self.root, schema));
-            let label = did_you_mean(text, words, &expected);
+            let label = self.report.did_you_mean(text, words, &expected);
             let message = format!("`{path}` = \"{text}\" is not known");
             self.report.error(node.span(), message, label, Some(expected));
             return None;
@@ -279,7 +290,7 @@ impl<'c> Checker<'c> {
         };
         let found = fitting.iter().find(|one| tag(one) == Some(text)).copied();
         if found.is_none() {
-            let label = did_you_mean(text, tags, "not a known type");
+            let label = self.report.did_you_mean(text, tags, "not a known type");
             self.report.error(kind.span(), format!("unknown type \"{text}\" in {path}"), label, Some(kinds));
         }
         found
@@ -292,7 +303,7 @@ impl<'c> Checker<'c> {
         if found.is_none() {
             let known: Vec<_> =
                 properties.into_iter().flat_map(|all| all.keys().map(String::as_str)).collect();
-            let label = did_you_mean(key, known.iter().copied(), "not known here");
+            let label = self.report.did_you_mean(key, known.iter().copied(), "not known here");
             let help = format!("known keys: {}", list(known));
             self.report.error(span, format!("unknown key `{key}` in {place}"), label, Some(help));
         }

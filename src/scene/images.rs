@@ -1,11 +1,15 @@
 //! Image files: png and jpg (8 or 16 bits), hdr and exr.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::fs::File;
+use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
+use exr::meta::MetaData;
 use exr::prelude::{ReadChannels, ReadLayers};
-use image::{DynamicImage, ImageReader};
+use image::{DynamicImage, ImageDecoder, ImageReader, Limits};
 
+use super::allowance::{Allowance, Refusal, within};
 use super::appearance::{ImageData, Texels};
 use super::file::ColorSpace;
 
@@ -14,6 +18,9 @@ pub(crate) struct ImageFault {
     pub key: &'static str,
     pub message: String,
     pub expected: &'static str,
+    pub help: Option<String>,
+    /// Whether there is no such file.
+    pub missing: bool,
 }
 
 /// Images read so far, each (file, color space) once.
@@ -24,9 +31,16 @@ pub(crate) struct ImageStore {
     pub files: Vec<PathBuf>,
     known: BTreeMap<(PathBuf, Option<ColorSpace>), usize>,
     transparent: BTreeSet<usize>,
+    allowance: Allowance,
+    /// Bytes of texels of all images, those too that could not be used.
+    spent: u64,
 }
 
 impl ImageStore {
+    pub fn new(allowance: &Allowance) -> Self {
+        Self { allowance: allowance.clone(), ..Self::default() }
+    }
+
     /// Index of the image in a file, read when it is new.
     pub fn load(&mut self, path: &Path, space: Option<ColorSpace>) -> Result<usize, ImageFault> {
         let canonical = path.canonicalize().unwrap_or_else(|_| path.to_owned());
@@ -34,7 +48,7 @@ impl ImageStore {
             return Ok(index);
         }
         self.files.push(path.to_owned());
-        let (image, transparent) = read(path, space)?;
+        let (image, transparent) = self.read(path, space)?;
         let index = self.images.len();
         self.images.push(image);
         self.known.insert((canonical, space), index);
@@ -50,6 +64,9 @@ impl ImageStore {
     }
 }
 
+/// Bytes that a decoder may take beside the pixels.
+const DECODER_BYTES: u64 = 64 << 20;
+
 const EXPECTED: &str = "expected a png, jpg, hdr or exr file";
 
 fn fault(path: &Path, why: impl std::fmt::Display) -> ImageFault {
@@ -57,35 +74,143 @@ fn fault(path: &Path, why: impl std::fmt::Display) -> ImageFault {
         key: "file",
         message: format!("cannot read image {}: {why}", path.display()),
         expected: EXPECTED,
+        help: None,
+        missing: false,
     }
+}
+
+fn refused(path: &Path, refusal: Refusal) -> ImageFault {
+    ImageFault { help: refusal.help(), missing: refusal.is_missing(), ..fault(path, refusal) }
 }
 
 /// A texel of an EXR file; alpha is 1 in a file without.
 type Rgba = (f32, f32, f32, f32);
 
-/// An image, and whether it has alpha below 1.
-fn read(path: &Path, space: Option<ColorSpace>) -> Result<(ImageData, bool), ImageFault> {
-    let is_exr = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("exr"));
-    let (data, transparent) = if is_exr { read_exr(path)? } else { read_common(path, space)? };
-    if let Texels::Float(texels) = &data.texels {
-        if space == Some(ColorSpace::Srgb) && is_linear_file(path) {
-            return Err(ImageFault {
-                key: "color_space",
-                message: format!("{} holds linear numbers", path.display()),
-                expected: "expected \"linear\", or nothing",
-            });
+impl ImageStore {
+    /// An image, and whether it has alpha below 1.
+    fn read(&mut self, path: &Path, space: Option<ColorSpace>) -> Result<(ImageData, bool), ImageFault> {
+        let is_exr = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("exr"));
+        let (data, transparent) = if is_exr { self.read_exr(path)? } else { self.read_common(path, space)? };
+        if let Texels::Float(texels) = &data.texels {
+            if space == Some(ColorSpace::Srgb) && is_linear_file(path) {
+                return Err(ImageFault {
+                    key: "color_space",
+                    message: format!("{} holds linear numbers", path.display()),
+                    expected: "expected \"linear\", or nothing",
+                    help: None,
+                    missing: false,
+                });
+            }
+            let bad =
+                texels.iter().position(|texel| texel.iter().any(|&value| !value.is_finite() || value < 0.0));
+            if let Some(index) = bad {
+                let (x, y) = (index % data.width as usize, index / data.width as usize);
+                return Err(fault(
+                    path,
+                    format!("texel ({x}, {y}) is {:?}, negative or not finite", texels[index]),
+                ));
+            }
         }
-        let bad =
-            texels.iter().position(|texel| texel.iter().any(|&value| !value.is_finite() || value < 0.0));
-        if let Some(index) = bad {
-            let (x, y) = (index % data.width as usize, index / data.width as usize);
-            return Err(fault(
-                path,
-                format!("texel ({x}, {y}) is {:?}, negative or not finite", texels[index]),
-            ));
-        }
+        Ok((data, transparent))
     }
-    Ok((data, transparent))
+
+    fn open(&self, path: &Path) -> Result<BufReader<File>, ImageFault> {
+        let most = ("texture-bytes", self.allowance.texture_bytes);
+        let file = self.allowance.open(path, most).map_err(|refusal| refused(path, refusal))?;
+        Ok(BufReader::new(file))
+    }
+
+    /// Takes what an image needs from what is left, before its pixels are read.
+    fn spend(&mut self, path: &Path, pixels: u64, bytes_each: u64) -> Result<(), ImageFault> {
+        let Allowance { texture_pixels, texture_bytes, .. } = self.allowance;
+        let bytes = pixels.saturating_mul(bytes_each);
+        within("texture-pixels", "pixels", pixels, texture_pixels)
+            .and_then(|()| within("texture-bytes", "bytes of texels", bytes, texture_bytes - self.spent))
+            .map_err(|refusal| refused(path, refusal))?;
+        self.spent += bytes;
+        Ok(())
+    }
+
+    fn read_common(
+        &mut self,
+        path: &Path,
+        space: Option<ColorSpace>,
+    ) -> Result<(ImageData, bool), ImageFault> {
+        let mut reader =
+            ImageReader::new(self.open(path)?).with_guessed_format().map_err(|error| fault(path, error))?;
+        let mut limits = Limits::no_limits();
+        // For what decoders need beside the pixels, which are counted here.
+        limits.max_alloc = Some(self.allowance.texture_bytes.saturating_add(DECODER_BYTES));
+        reader.limits(limits);
+        let decoder = reader.into_decoder().map_err(|error| fault(path, error))?;
+        let (width, height) = decoder.dimensions();
+        if width == 0 || height == 0 {
+            return Err(fault(path, "it has no pixels"));
+        }
+        let wide = decoder.color_type().bytes_per_pixel() > decoder.color_type().channel_count();
+        self.spend(path, u64::from(width) * u64::from(height), if wide { 12 } else { 4 })?;
+        let image = DynamicImage::from_decoder(decoder).map_err(|error| fault(path, error))?;
+        let transparent = is_transparent(&image);
+        let srgb = space != Some(ColorSpace::Linear);
+        let texels = match image {
+            DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_) => {
+                Texels::Float(image.into_rgb32f().pixels().map(|pixel| pixel.0).collect())
+            }
+            DynamicImage::ImageLuma16(_)
+            | DynamicImage::ImageLumaA16(_)
+            | DynamicImage::ImageRgb16(_)
+            | DynamicImage::ImageRgba16(_) => {
+                let decode = |value: u16| {
+                    let share = f64::from(value) / 65535.0;
+                    (if srgb { linear_from_srgb(share) } else { share }) as f32
+                };
+                Texels::Float(image.into_rgb16().pixels().map(|pixel| pixel.0.map(decode)).collect())
+            }
+            _ => Texels::Rgba8 { srgb, data: image.into_rgba8().pixels().map(|pixel| pixel.0).collect() },
+        };
+        Ok((ImageData { path: path.display().to_string(), width, height, texels }, transparent))
+    }
+
+    fn read_exr(&mut self, path: &Path) -> Result<(ImageData, bool), ImageFault> {
+        let meta =
+            MetaData::read_from_buffered(self.open(path)?, false).map_err(|error| fault(path, error))?;
+        let pixels = meta.headers.iter().map(|header| header.layer_size.area() as u64);
+        self.spend(path, pixels.max().unwrap_or(0), 12)?;
+        let image = exr::prelude::read()
+            .no_deep_data()
+            .largest_resolution_level()
+            .rgba_channels(
+                |size, _| (size.width(), vec![[0.0f32; 3]; size.area()], false),
+                |(width, texels, transparent): &mut (usize, Vec<[f32; 3]>, bool), at, (r, g, b, a): Rgba| {
+                    texels[at.y() * *width + at.x()] = [r, g, b];
+                    *transparent |= a < 1.0;
+                },
+            )
+            .first_valid_layer()
+            .all_attributes()
+            .from_buffered(self.open(path)?)
+            .map_err(|error| fault(path, error))?;
+        let size = image.layer_data.size;
+        let (_, texels, transparent) = image.layer_data.channel_data.pixels;
+        let data = ImageData {
+            path: path.display().to_string(),
+            width: size.width() as u32,
+            height: size.height() as u32,
+            texels: Texels::Float(texels),
+        };
+        Ok((data, transparent))
+    }
+}
+
+fn is_transparent(image: &DynamicImage) -> bool {
+    match image {
+        DynamicImage::ImageRgba8(image) => image.pixels().any(|pixel| pixel.0[3] < u8::MAX),
+        DynamicImage::ImageLumaA8(image) => image.pixels().any(|pixel| pixel.0[1] < u8::MAX),
+        DynamicImage::ImageRgba16(image) => image.pixels().any(|pixel| pixel.0[3] < u16::MAX),
+        DynamicImage::ImageLumaA16(image) => image.pixels().any(|pixel| pixel.0[1] < u16::MAX),
+        DynamicImage::ImageRgba32F(image) => image.pixels().any(|pixel| pixel.0[3] < 1.0),
+        _ => false,
+    }
 }
 
 fn is_linear_file(path: &Path) -> bool {
@@ -93,62 +218,7 @@ fn is_linear_file(path: &Path) -> bool {
     extension.is_some_and(|extension| extension == "exr" || extension == "hdr")
 }
 
-fn read_common(path: &Path, space: Option<ColorSpace>) -> Result<(ImageData, bool), ImageFault> {
-    let reader = ImageReader::open(path).and_then(ImageReader::with_guessed_format);
-    let image = reader.map_err(|error| fault(path, error))?.decode().map_err(|error| fault(path, error))?;
-    let (width, height) = (image.width(), image.height());
-    if width == 0 || height == 0 {
-        return Err(fault(path, "it has no pixels"));
-    }
-    let transparent =
-        image.color().has_alpha() && image.to_rgba16().pixels().any(|pixel| pixel.0[3] < u16::MAX);
-    let srgb = space != Some(ColorSpace::Linear);
-    let texels = match image {
-        DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_) => {
-            Texels::Float(image.to_rgb32f().pixels().map(|pixel| pixel.0).collect())
-        }
-        DynamicImage::ImageLuma16(_)
-        | DynamicImage::ImageLumaA16(_)
-        | DynamicImage::ImageRgb16(_)
-        | DynamicImage::ImageRgba16(_) => {
-            let decode = |value: u16| {
-                let share = f64::from(value) / 65535.0;
-                (if srgb { linear_from_srgb(share) } else { share }) as f32
-            };
-            Texels::Float(image.to_rgb16().pixels().map(|pixel| pixel.0.map(decode)).collect())
-        }
-        _ => Texels::Rgba8 { srgb, data: image.to_rgba8().pixels().map(|pixel| pixel.0).collect() },
-    };
-    Ok((ImageData { path: path.display().to_string(), width, height, texels }, transparent))
-}
-
 /// IEC 61966-2-1.
 fn linear_from_srgb(value: f64) -> f64 {
     if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
-}
-
-fn read_exr(path: &Path) -> Result<(ImageData, bool), ImageFault> {
-    let image = exr::prelude::read()
-        .no_deep_data()
-        .largest_resolution_level()
-        .rgba_channels(
-            |size, _| (size.width(), vec![[0.0f32; 3]; size.area()], false),
-            |(width, texels, transparent): &mut (usize, Vec<[f32; 3]>, bool), at, (r, g, b, a): Rgba| {
-                texels[at.y() * *width + at.x()] = [r, g, b];
-                *transparent |= a < 1.0;
-            },
-        )
-        .first_valid_layer()
-        .all_attributes()
-        .from_file(path)
-        .map_err(|error| fault(path, error))?;
-    let size = image.layer_data.size;
-    let (_, texels, transparent) = image.layer_data.channel_data.pixels;
-    let data = ImageData {
-        path: path.display().to_string(),
-        width: size.width() as u32,
-        height: size.height() as u32,
-        texels: Texels::Float(texels),
-    };
-    Ok((data, transparent))
 }

@@ -1,14 +1,18 @@
 //! From a scene file to a [`Scene`]: parse, hold against the schema, resolve names, then check what the parts mean.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
 
+use serde_json::Value as Json;
+
+use super::allowance::{Allowance, within};
 use super::check::{Document, document};
 use super::file::{EnvironmentFile, LightFile, MaterialFile, SceneFile, ShapeFile, TextureFile};
 use super::images::ImageStore;
 use super::places::Places;
-use super::report::{Finding, Report, SceneErrors, did_you_mean, list};
-use super::{Scene, looks, schema, surfaces, text, view};
+use super::report::{Finding, Report, SceneErrors, list};
+use super::{Scene, looks, mesh, schema, surfaces, text, view};
 use crate::settings::RenderSettings;
 use crate::stage::stage;
 
@@ -27,12 +31,22 @@ pub struct Loaded {
     pub files: Vec<PathBuf>,
 }
 
+static SCHEMA: LazyLock<Json> = LazyLock::new(schema::of::<SceneFile>);
+
 /// Reads a scene file with all the files it names.
 ///
 /// # Errors
 /// Everything that is wrong with them, at once.
 pub fn load(path: &Path) -> Result<Loaded, SceneErrors> {
-    parse(path, &text::read(path)?)
+    load_within(path, &Allowance::default())
+}
+
+/// As [`load`], where not everything is allowed.
+///
+/// # Errors
+/// As [`load`], and where something is not allowed.
+pub fn load_within(path: &Path, allowance: &Allowance) -> Result<Loaded, SceneErrors> {
+    parse_within(path, &text::read(path, allowance)?, allowance)
 }
 
 /// Reads a scene from a file's bytes; `path` names it in messages, and the files it names are relative to it.
@@ -40,12 +54,25 @@ pub fn load(path: &Path) -> Result<Loaded, SceneErrors> {
 /// # Errors
 /// As [`load`].
 pub fn parse(path: &Path, bytes: &[u8]) -> Result<Loaded, SceneErrors> {
+    parse_within(path, bytes, &Allowance::default())
+}
+
+/// As [`parse`], where not everything is allowed. The bytes themselves may be as many as they are.
+///
+/// # Errors
+/// As [`load_within`].
+pub fn parse_within(path: &Path, bytes: &[u8], allowance: &Allowance) -> Result<Loaded, SceneErrors> {
     let _stage = stage("parse");
-    let schema = schema::of::<SceneFile>();
-    let ((scene, settings, places, files), warnings) = text::parse(path, bytes, |root, report| {
-        let document = document(&schema, root, report);
-        Loader::new(path, &document, report).load()
-    })?;
+    let ((scene, settings, places, files), warnings) =
+        text::parse(path, bytes, allowance, |root, report| {
+            let count = root.get("shapes").map_or(0, |shapes| shapes.elements().count() as u64);
+            if let Err(refusal) = within("shapes", "shapes", count, allowance.shapes) {
+                report.error(root.span_of("shapes"), format!("too much: {refusal}"), "here", refusal.help());
+                return None;
+            }
+            let document = document(&SCHEMA, root, report);
+            Loader::new(path, allowance, &document, report).load()
+        })?;
     Ok(Loaded { scene, settings, warnings, places, files })
 }
 
@@ -54,12 +81,24 @@ pub(crate) struct Loader<'l, 'a> {
     pub document: &'l Document<'a>,
     pub report: &'l mut Report,
     pub images: ImageStore,
+    pub allowance: &'l Allowance,
+    /// What meshes have used up of it.
+    pub spent: mesh::Spent,
+    /// Materials that meshes have brought along, by name.
+    pub own_materials: HashMap<String, usize>,
     path: &'l Path,
 }
 
 impl<'l, 'a> Loader<'l, 'a> {
-    fn new(path: &'l Path, document: &'l Document<'a>, report: &'l mut Report) -> Self {
-        Self { document, report, images: ImageStore::default(), path }
+    fn new(
+        path: &'l Path,
+        allowance: &'l Allowance,
+        document: &'l Document<'a>,
+        report: &'l mut Report,
+    ) -> Self {
+        let images = ImageStore::new(allowance);
+        let (spent, own_materials) = Default::default();
+        Self { document, report, images, allowance, spent, own_materials, path }
     }
 
     fn load(mut self) -> Option<(Scene, RenderSettings, Places, Vec<PathBuf>)> {
@@ -137,7 +176,7 @@ impl<'l, 'a> Loader<'l, 'a> {
 
     /// Index of a named part; 0 for an unknown name, which [`Self::undefined`] has reported.
     pub fn index(&self, section: &str, name: &str) -> usize {
-        self.document.items(section).position(|item| item.name == name).unwrap_or(0)
+        self.document.index(section, name).unwrap_or(0)
     }
 
     /// A path that the scene file names, relative to it.
@@ -150,10 +189,10 @@ impl<'l, 'a> Loader<'l, 'a> {
         let singular = section.trim_end_matches('s');
         let known: Vec<_> = self.document.items(section).map(|item| item.name).collect();
         for node in self.document.items(user).filter_map(|item| item.node.get(key)) {
-            let Some(name) = node.str().filter(|name| !known.contains(name)) else {
+            let Some(name) = node.str().filter(|name| self.document.index(section, name).is_none()) else {
                 continue;
             };
-            let label = did_you_mean(name, known.iter().copied(), &format!("no such {singular}"));
+            let label = self.report.did_you_mean(name, known.iter().copied(), &format!("no such {singular}"));
             let help = match known[..] {
                 [] => format!("define it: [{section}.{name}]"),
                 _ => format!("define [{section}.{name}], or use one of {}", list(known.iter().copied())),

@@ -55,9 +55,8 @@ impl Loader<'_, '_> {
                 Some(image)
             }
             Err(fault) => {
-                let help = nearest_file(&path)
-                    .filter(|_| !path.exists())
-                    .map(|near| format!("did you mean {near}?"));
+                let near = (fault.missing && !self.report.errors.is_full()).then(|| nearest_file(&path));
+                let help = fault.help.or_else(|| near.flatten().map(|near| format!("did you mean {near}?")));
                 self.report.error(item.node.span_of(fault.key), fault.message, fault.expected, help);
                 None
             }

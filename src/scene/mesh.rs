@@ -1,18 +1,19 @@
 //! Meshes from Wavefront OBJ files, read by tobj.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::io::Cursor;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use super::allowance::{Refusal, within};
 use super::appearance::{Material, Rgb, Texture};
 use super::check::Item;
 use super::encoding::{Foreign, unmarked};
 use super::geometry::{Mesh, Transform};
 use super::load::Loader;
-use super::report::{Fault, SourceFile, did_you_mean};
+use super::report::{SourceFile, did_you_mean};
 use super::text::nearest_file;
-use super::triangles::{Builder, Polygon, vertex_normals};
+use super::triangles::{Builder, Polygon, Steps, vertex_normals};
 use super::{mtl, obj};
 
 /// A mesh as the scene file asks for it.
@@ -21,6 +22,14 @@ pub(super) struct Request<'r> {
     pub smooth: bool,
     pub material: Option<usize>,
     pub transform: Transform,
+}
+
+/// What all meshes so far have used up of what is allowed.
+#[derive(Debug, Default)]
+pub(crate) struct Spent {
+    bytes: u64,
+    triangles: u64,
+    steps: Steps,
 }
 
 /// The triangles of one material.
@@ -46,17 +55,27 @@ pub(super) fn load(
     loader.report.files.push(path.clone());
     let source = read(loader, item, &path)?;
     let text = obj::join_lines(source.text());
-    let before = loader.report.errors.len();
+    let before = loader.report.errors.found();
     let mut scan = obj::scan(&text, request.material.is_none());
     let libraries = libraries(loader, &path, &mut scan, &named_at);
     if request.material.is_none() {
         own_materials(&mut scan, &libraries);
     }
     loader.report.asset_errors(named_at.clone(), &source, scan.faults);
-    if loader.report.errors.len() > before {
+    if loader.report.errors.found() > before {
         return None;
     }
-    for (keyword, count) in &scan.unread {
+    let Spent { triangles, .. } = loader.spent;
+    let (each, all) = (loader.allowance.mesh_triangles, loader.allowance.triangles - triangles);
+    let allowed = within("mesh-triangles", "triangles", scan.triangles, each)
+        .and_then(|()| within("triangles", "triangles", scan.triangles, all));
+    if let Err(refusal) = allowed {
+        let message = format!("too much in {}: {refusal}", request.file);
+        loader.report.error(named_at, message, "expected a mesh with fewer", refusal.help());
+        return None;
+    }
+    loader.spent.triangles += scan.triangles;
+    for (keyword, count) in scan.unread.iter().take(MOST_KEYWORDS) {
         let message = format!("{}: {count} `{keyword}` not used", request.file);
         loader.report.warn(named_at.clone(), message, "in this file");
     }
@@ -73,7 +92,13 @@ pub(super) fn load(
             return None;
         }
     };
-    let built = build(&models, request);
+    let built = build(&models, request, &mut loader.spent.steps);
+    if loader.spent.steps.are_used_up() {
+        let message = format!("the faces of {} are too intricate to cut into triangles", request.file);
+        let help = "triangulate the mesh where it comes from";
+        loader.report.error(named_at, message, "expected faces with fewer corners", Some(help.into()));
+        return None;
+    }
     report_counts(loader, request.file, &named_at, &built);
     let folder = path.parent().unwrap_or(Path::new(""));
     let mut parts = Vec::new();
@@ -82,7 +107,7 @@ pub(super) fn load(
             (Some(material), _) => Part { mesh, material, emission: [0.0; 3] },
             (None, Some(own)) => {
                 let name = format!("{}:{}", request.file, own.name);
-                let known = materials.iter().position(|material| material.name == name);
+                let known = loader.own_materials.get(&name).copied();
                 let material = known.unwrap_or_else(|| {
                     let (material, unused) =
                         mtl::material(name.clone(), own, folder, &mut loader.images, textures);
@@ -91,6 +116,7 @@ pub(super) fn load(
                         loader.report.warn(named_at.clone(), message, "in this file's MTL");
                     }
                     materials.push(material);
+                    loader.own_materials.insert(name, materials.len() - 1);
                     materials.len() - 1
                 });
                 Part { mesh, material, emission: own.emissive.unwrap_or([0.0; 3]) }
@@ -106,8 +132,11 @@ pub(super) fn load(
     Some(parts)
 }
 
+/// Most keywords that are warned of.
+const MOST_KEYWORDS: usize = 20;
+
 fn read(loader: &mut Loader, item: &Item, path: &Path) -> Option<SourceFile> {
-    match std::fs::read(path) {
+    match bytes(loader, path) {
         Ok(bytes) => match source(path, &bytes) {
             Ok(source) => Some(source),
             Err(foreign) => {
@@ -118,12 +147,22 @@ fn read(loader: &mut Loader, item: &Item, path: &Path) -> Option<SourceFile> {
             }
         },
         Err(error) => {
-            let help = nearest_file(path).map(|near| format!("did you mean {near}?"));
+            let advise = error.is_missing() && !loader.report.errors.is_full();
+            let near = || nearest_file(path).filter(|_| advise);
+            let help = error.help().or_else(|| near().map(|near| format!("did you mean {near}?")));
             let message = format!("cannot read mesh {}: {error}", path.display());
             loader.report.error(item.node.span_of("file"), message, "expected a Wavefront OBJ file", help);
             None
         }
     }
+}
+
+/// The bytes of an OBJ or MTL file.
+fn bytes(loader: &mut Loader, path: &Path) -> Result<Vec<u8>, Refusal> {
+    let left = loader.allowance.mesh_bytes - loader.spent.bytes;
+    let bytes = loader.allowance.read(path, ("mesh-bytes", left))?;
+    loader.spent.bytes += bytes.len() as u64;
+    Ok(bytes)
 }
 
 /// The text of a file; of names and comments in an encoding of one byte a character, what is not ASCII is lost.
@@ -136,14 +175,13 @@ fn libraries(loader: &mut Loader, path: &Path, scan: &mut obj::Scan, named_at: &
     for (name, span) in std::mem::take(&mut scan.libraries) {
         let library = path.parent().unwrap_or(Path::new("")).join(name);
         loader.report.files.push(library.clone());
-        let bytes = match std::fs::read(&library) {
+        let bytes = match bytes(loader, &library) {
             Ok(bytes) => bytes,
             Err(error) => {
                 let message = format!("cannot read {}: {error}", library.display());
-                let near = nearest_file(&library);
-                let expected =
-                    near.map_or("expected an MTL file".into(), |near| format!("did you mean {near}?"));
-                scan.faults.push(Fault { span, message, expected });
+                let near = || nearest_file(&library).filter(|_| error.is_missing() && !scan.faults.is_full());
+                let mend = error.help().or_else(|| near().map(|near| format!("did you mean {near}?")));
+                scan.faults.push(span, message, mend.unwrap_or_else(|| "expected an MTL file".to_owned()));
                 continue;
             }
         };
@@ -151,7 +189,7 @@ fn libraries(loader: &mut Loader, path: &Path, scan: &mut obj::Scan, named_at: &
             Ok(source) => source,
             Err(foreign) => {
                 let message = format!("{}: {foreign}", library.display());
-                scan.faults.push(Fault { span, message, expected: foreign.help() });
+                scan.faults.push(span, message, foreign.help());
                 continue;
             }
         };
@@ -161,7 +199,7 @@ fn libraries(loader: &mut Loader, path: &Path, scan: &mut obj::Scan, named_at: &
             Ok(materials) => materials,
             Err(error) => {
                 let message = format!("cannot read {}: {error}", library.display());
-                scan.faults.push(Fault { span, message, expected: "expected an MTL file".into() });
+                scan.faults.push(span, message, "expected an MTL file");
                 continue;
             }
         };
@@ -182,16 +220,19 @@ fn tobj_materials(found: &mtl::Scan) -> Result<Vec<tobj::Material>, tobj::LoadEr
 
 /// Holds the materials that faces call against those that the libraries define.
 fn own_materials(scan: &mut obj::Scan, libraries: &Libraries) {
-    let known: Vec<_> = libraries.values().flat_map(|(_, names)| names.keys().map(String::as_str)).collect();
+    let known: BTreeSet<_> =
+        libraries.values().flat_map(|(_, names)| names.keys().map(String::as_str)).collect();
     for (name, span) in scan.uses.iter().filter(|(name, _)| !name.is_empty() && !known.contains(name)) {
-        let expected = did_you_mean(name, known.iter().copied(), "expected a material of the file's MTL");
+        let other = "expected a material of the file's MTL";
+        let advise = !scan.faults.is_full();
+        let expected =
+            if advise { did_you_mean(name, known.iter().copied(), other) } else { other.to_owned() };
         let message = format!("material `{name}` is not defined");
-        scan.faults.push(Fault { span: span.clone(), message, expected });
+        scan.faults.push(span.clone(), message, expected);
     }
     if let Some(span) = scan.bare_face.take() {
-        let message = "a face without a material".into();
-        let expected = "expected `usemtl` above, or `material` in the scene file".into();
-        scan.faults.push(Fault { span, message, expected });
+        let expected = "expected `usemtl` above, or `material` in the scene file";
+        scan.faults.push(span, "a face without a material", expected);
     }
 }
 
@@ -202,18 +243,19 @@ struct Built {
 }
 
 /// Triangles in the world, grouped by the file's own materials unless the scene gives one.
-fn build(models: &[tobj::Model], request: &Request) -> Built {
+fn build(models: &[tobj::Model], request: &Request, steps: &mut Steps) -> Built {
     let corners: Vec<_> = models.iter().map(|model| Polygon::of(&model.mesh)).collect();
-    let shared = request.smooth.then(|| vertex_normals(corners.iter().flatten()));
+    let shared = request.smooth.then(|| vertex_normals(corners.iter().flatten(), steps));
     let mut builders: Vec<(Option<usize>, Builder)> = Vec::new();
+    let mut known = HashMap::new();
     for (model, polygons) in models.iter().zip(&corners) {
         let id = model.mesh.material_id.filter(|_| request.material.is_none());
-        let at = builders.iter().position(|(own, _)| *own == id).unwrap_or_else(|| {
+        let at = *known.entry(id).or_insert_with(|| {
             builders.push((id, Builder::new(request.transform)));
             builders.len() - 1
         });
         for polygon in polygons {
-            builders[at].1.add(polygon, shared.as_ref());
+            builders[at].1.add(polygon, shared.as_ref(), steps);
         }
     }
     let mut built = Built { parts: Vec::new(), degenerate: 0, unusable_normals: 0 };

@@ -5,12 +5,14 @@
 //!
 //! Conventions: right-handed, y up; linear Rec. 709 RGB; one scene unit is one metre; angles in degrees.
 
+mod allowance;
 mod aov;
 mod appearance;
 mod check;
 mod digest;
 mod encoding;
 pub mod file;
+mod findings;
 mod geometry;
 mod images;
 mod load;
@@ -34,14 +36,15 @@ use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+pub use allowance::Allowance;
 pub use aov::{Aov, Aovs};
 pub use appearance::{
     Filter, ImageData, Material, MaterialKind, Reflectance, Rgb, Texels, Texture, TextureKind, Wrap,
 };
 pub use geometry::{Mesh, Shape, ShapeKind, Transform, Triangle};
-pub use load::{Loaded, load, parse};
+pub use load::{Loaded, load, load_within, parse, parse_within};
 pub use places::Places;
-pub use profile_file::{LoadedProfile, ProfileFile, load_profile};
+pub use profile_file::{LoadedProfile, ProfileFile, load_profile, load_profile_within};
 pub use report::{Finding, SceneErrors};
 pub use schema::schema_json;
 

@@ -7,7 +7,7 @@ use super::appearance::{Filter, Material, MaterialKind, Reflectance, Texels, Tex
 use super::images::ImageStore;
 use super::numbers::{BRIGHTEST, LARGEST};
 use super::obj::{Word, argument, words};
-use super::report::Fault;
+use super::report::Faults;
 
 /// Index of refraction of a transparent MTL material that gives none.
 const DEFAULT_IOR: f64 = 1.5;
@@ -20,7 +20,7 @@ pub(super) struct Scan<'t> {
     /// Statements for tobj to read.
     pub cleaned: String,
     /// What tobj does not see, stops at without a line, or panics at.
-    pub faults: Vec<Fault>,
+    pub faults: Faults,
     /// Names of the materials.
     pub names: Vec<&'t str>,
 }
@@ -46,8 +46,7 @@ pub(super) fn scan<'t>(text: &'t str, folder: &Path, images: &mut ImageStore) ->
 
 impl<'t> Scan<'t> {
     fn fault(&mut self, span: &Range<usize>, message: impl Into<String>, expected: impl Into<String>) {
-        let (span, message, expected) = (span.clone(), message.into(), expected.into());
-        self.faults.push(Fault { span, message, expected });
+        self.faults.push(span.clone(), message, expected);
     }
 
     /// Checks the statements that consist of numbers.
@@ -95,7 +94,10 @@ impl<'t> Scan<'t> {
             self.fault(&name_at, "options of `map_Kd` are not supported", "expected a file name");
         } else if keyword == "map_Kd" {
             match images.load(&folder.join(name), None) {
-                Err(fault) => self.fault(&name_at, fault.message, fault.expected),
+                Err(fault) => {
+                    let expected = fault.help.unwrap_or_else(|| fault.expected.to_owned());
+                    self.fault(&name_at, fault.message, expected);
+                }
                 Ok(image) if exceeds_one(images, image) => {
                     self.fault(
                         &name_at,

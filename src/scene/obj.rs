@@ -1,11 +1,11 @@
 //! Looks through the text of a Wavefront OBJ file before tobj reads it: tobj names no lines in its errors, takes an
 //! index of 0 and numbers that are not finite, reads polylines as faces, and mixes up faces with and without normals.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 use std::ops::Range;
 
 use super::numbers::LARGEST;
-use super::report::Fault;
+use super::report::Faults;
 
 /// A word of a file with the bytes that hold it.
 pub(super) type Word<'t> = (&'t str, Range<usize>);
@@ -15,9 +15,12 @@ pub(super) type Word<'t> = (&'t str, Range<usize>);
 pub(super) struct Scan<'t> {
     /// Statements for tobj to read.
     pub cleaned: String,
-    pub faults: Vec<Fault>,
-    /// Names of the material files.
+    pub faults: Faults,
+    /// Triangles that the faces will be cut into.
+    pub triangles: u64,
+    /// Names of the material files, each once.
     pub libraries: Vec<Word<'t>>,
+    known_libraries: HashSet<&'t str>,
     /// Names of materials where they are called.
     pub uses: Vec<Word<'t>>,
     /// The first face before any `usemtl`.
@@ -26,7 +29,8 @@ pub(super) struct Scan<'t> {
     pub unread: BTreeMap<&'t str, usize>,
     counts: [i64; 3],
     group: Option<[bool; 2]>,
-    faces: Vec<(Range<usize>, usize, i64)>,
+    /// Largest index of each kind that was above what stood before it.
+    ahead: [i64; 3],
 }
 
 /// Joins lines that end in a backslash, keeping every byte in its place.
@@ -42,23 +46,41 @@ pub(super) fn scan(text: &str, own_materials: bool) -> Scan<'_> {
         scan.line(line, start, own_materials);
         start += line.len();
     }
-    for (span, kind, index) in std::mem::take(&mut scan.faces) {
-        let (name, count) = (["vertices", "texture coordinates", "normals"][kind], scan.counts[kind]);
-        if index > count {
-            let message = format!("index {index} is out of bounds: the file has {count} {name}");
-            scan.fault(
-                span,
-                message,
-                if count == 0 { "expected none".into() } else { format!("expected 1 to {count}") },
-            );
-        }
+    if (0..3).any(|kind| scan.ahead[kind] > scan.counts[kind]) {
+        scan.missing(text);
     }
     scan
 }
 
 impl<'t> Scan<'t> {
     fn fault(&mut self, span: Range<usize>, message: impl Into<String>, expected: impl Into<String>) {
-        self.faults.push(Fault { span, message: message.into(), expected: expected.into() });
+        self.faults.push(span, message, expected);
+    }
+
+    /// Finds the indices that point behind the end.
+    fn missing(&mut self, text: &str) {
+        let mut start = 0;
+        for line in text.split_inclusive('\n') {
+            let statement = line.split('#').next().unwrap_or("");
+            let mut words = words(statement, start);
+            start += line.len();
+            if words.next().is_none_or(|(keyword, _)| keyword != "f") {
+                continue;
+            }
+            for (corner, at) in words {
+                for (kind, part) in corner.split('/').enumerate().take(3) {
+                    let (name, count) =
+                        (["vertices", "texture coordinates", "normals"][kind], self.counts[kind]);
+                    let Some(index) = part.parse::<i64>().ok().filter(|&index| index > count) else {
+                        continue;
+                    };
+                    let message = format!("index {index} is out of bounds: the file has {count} {name}");
+                    let expected =
+                        if count == 0 { "expected none".into() } else { format!("expected 1 to {count}") };
+                    self.fault(at.clone(), message, expected);
+                }
+            }
+        }
     }
 
     fn line(&mut self, line: &'t str, start: usize, own_materials: bool) {
@@ -87,8 +109,11 @@ impl<'t> Scan<'t> {
                 true
             }
             "mtllib" if own_materials => {
-                self.libraries.push(argument);
-                true
+                let new = self.known_libraries.insert(argument.0);
+                if new {
+                    self.libraries.push(argument);
+                }
+                new
             }
             "usemtl" | "mtllib" | "s" => false,
             _ => {
@@ -152,6 +177,7 @@ impl<'t> Scan<'t> {
         if self.uses.is_empty() && self.bare_face.is_none() {
             self.bare_face = Some(span.clone());
         }
+        self.triangles += corners.len() as u64 - 2;
         for (corner, at) in corners {
             let parts: Vec<_> = corner.split('/').collect();
             let has = [1, 2].map(|kind| parts.get(kind).is_some_and(|part| !part.is_empty()));
@@ -194,8 +220,7 @@ impl<'t> Scan<'t> {
                 self.fault(at.clone(), message, expected);
             }
             // An index may point to what follows; whether it is there shows at the end.
-            Ok(index) if index > self.counts[kind] => self.faces.push((at.clone(), kind, index)),
-            Ok(_) => {}
+            Ok(index) => self.ahead[kind] = self.ahead[kind].max(index),
         }
     }
 }

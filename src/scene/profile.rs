@@ -41,12 +41,12 @@ pub(super) fn segments(
     };
     let mut curves: Vec<Vec<_>> =
         curves.into_iter().map(|curve| curve.into_iter().map(DVec2::from).collect()).collect();
-    let before = report.errors.len();
+    let before = report.errors.found();
     for (curve, node) in curves.iter().zip(&nodes) {
         check_curve(report, curve, *node);
     }
     join(report, &mut curves, &nodes);
-    (report.errors.len() == before).then_some(curves)
+    (report.errors.found() == before).then_some(curves)
 }
 
 fn check_curve(report: &mut Report, curve: &[DVec2], node: Node) {

@@ -1,11 +1,14 @@
 //! Profile files: the Bezier profile of one surface of revolution, on its own.
 
 use std::path::Path;
+use std::sync::LazyLock;
 
 use glam::DVec2;
 use schemars::JsonSchema;
 use serde::Deserialize;
+use serde_json::Value as Json;
 
+use super::allowance::Allowance;
 use super::check::whole;
 use super::file::{Segments, TransformFile};
 use super::geometry::Transform;
@@ -44,10 +47,18 @@ pub struct LoadedProfile {
 /// # Errors
 /// Everything that is wrong with it, at once.
 pub fn load_profile(path: &Path) -> Result<LoadedProfile, SceneErrors> {
-    let schema = schema::of::<ProfileFile>();
-    let bytes = text::read(path)?;
-    let ((segments, transform), warnings) = text::parse(path, &bytes, |root, report| {
-        let item = whole(&schema, root, report);
+    load_profile_within(path, &Allowance::default())
+}
+
+/// As [`load_profile`], where not everything is allowed.
+///
+/// # Errors
+/// As [`load_profile`], and where something is not allowed.
+pub fn load_profile_within(path: &Path, allowance: &Allowance) -> Result<LoadedProfile, SceneErrors> {
+    static SCHEMA: LazyLock<Json> = LazyLock::new(schema::of::<ProfileFile>);
+    let bytes = text::read(path, allowance)?;
+    let ((segments, transform), warnings) = text::parse(path, &bytes, allowance, |root, report| {
+        let item = whole(&SCHEMA, root, report);
         let file: ProfileFile = item.read(report)?;
         let segments = segments(report, &item, file.profile, file.segments);
         let transform = placed(report, &item, &file.transform);

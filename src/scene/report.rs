@@ -1,12 +1,16 @@
 //! Errors and warnings that point into the files they are about.
 
-use std::collections::HashSet;
 use std::fmt;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode};
+use miette::{
+    Diagnostic, LabeledSpan, MietteError, MietteSpanContents, NamedSource, SourceCode, SourceSpan,
+    SpanContents,
+};
+
+use super::findings::Findings;
 
 /// A text file that findings point into; cheap to clone.
 #[derive(Clone, Debug)]
@@ -19,6 +23,34 @@ impl SourceFile {
 
     pub fn text(&self) -> &str {
         self.0.inner()
+    }
+}
+
+/// Most bytes of a line that are shown around a place.
+const MOST_SHOWN: usize = 400;
+
+impl SourceCode for SourceFile {
+    /// The lines around a span, and of a very long line a part.
+    fn read_span<'a>(
+        &'a self,
+        span: &SourceSpan,
+        before: usize,
+        after: usize,
+    ) -> Result<Box<dyn SpanContents<'a> + 'a>, MietteError> {
+        let lines = self.0.read_span(span, before, after)?;
+        if lines.data().len() <= MOST_SHOWN {
+            return Ok(lines);
+        }
+        let (text, at) = (self.text(), span.offset());
+        let boundary = |at: usize| (at..).find(|&at| text.is_char_boundary(at)).unwrap_or(text.len());
+        let line_start = text[..at].rfind('\n').map_or(0, |newline| newline + 1);
+        let line_end = text[at..].find('\n').map_or(text.len(), |length| at + length);
+        let start = boundary(at.saturating_sub(MOST_SHOWN / 4).max(line_start));
+        let end = boundary((at + span.len().min(MOST_SHOWN / 2) + MOST_SHOWN / 4).min(line_end));
+        let line = text[..at].matches('\n').count();
+        let (cut, shown) = (SourceSpan::from(start..end), &text.as_bytes()[start..end]);
+        let name = self.0.name().to_owned();
+        Ok(Box::new(MietteSpanContents::new_named(name, shown, cut, line, start - line_start, 1)))
     }
 }
 
@@ -65,7 +97,7 @@ impl Finding {
 
     /// What it is about. Two errors in one value are about the same: they say it in other words, or the later follows from
     /// the earlier.
-    fn subject(&self) -> (String, Option<Range<usize>>, Option<String>) {
+    pub(super) fn subject(&self) -> (String, Option<Range<usize>>, Option<String>) {
         let span = self.place.as_ref().map(|place| place.span.clone());
         (self.file.clone(), span, (!self.about_value).then(|| self.message.clone()))
     }
@@ -98,7 +130,7 @@ impl Diagnostic for Finding {
     }
 
     fn source_code(&self) -> Option<&dyn SourceCode> {
-        self.place.as_ref().map(|place| &*place.source.0 as &dyn SourceCode)
+        self.place.as_ref().map(|place| &place.source as &dyn SourceCode)
     }
 
     fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
@@ -110,16 +142,28 @@ impl Diagnostic for Finding {
 
 /// Everything that is wrong with a scene file and the files it names.
 #[derive(Debug, thiserror::Error)]
-#[error("{file}: {} error{}", errors.len(), if errors.len() == 1 { "" } else { "s" })]
+#[error("{file}: {}", self.count())]
 pub struct SceneErrors {
     /// The scene file.
     pub file: String,
-    /// At least one, in the order of the file.
+    /// At least one, in the order of the file; the first that were found.
     pub errors: Vec<Finding>,
+    /// Number of the errors beyond these.
+    pub more: usize,
     /// What is odd but no error.
     pub warnings: Vec<Finding>,
     /// The files that were asked for before, beside the scene file, whether they are there or not.
     pub files: Vec<PathBuf>,
+}
+
+impl SceneErrors {
+    fn count(&self) -> String {
+        match (self.errors.len(), self.more) {
+            (1, 0) => "1 error".to_owned(),
+            (listed, 0) => format!("{listed} errors"),
+            (listed, more) => format!("{} errors, of which {listed} are listed", listed + more),
+        }
+    }
 }
 
 impl Diagnostic for SceneErrors {
@@ -128,13 +172,6 @@ impl Diagnostic for SceneErrors {
         let warnings = self.warnings.iter().map(|warning| warning as &dyn Diagnostic);
         Some(Box::new(errors.chain(warnings)))
     }
-}
-
-/// The first finding about each subject.
-pub(crate) fn once(mut findings: Vec<Finding>) -> Vec<Finding> {
-    let mut known = HashSet::new();
-    findings.retain(|finding| known.insert(finding.subject()));
-    findings
 }
 
 /// Most errors of one mesh or material file that are listed one by one.
@@ -146,16 +183,17 @@ pub(crate) struct Report {
     /// The scene file.
     pub source: SourceFile,
     path: String,
-    pub errors: Vec<Finding>,
-    pub warnings: Vec<Finding>,
+    pub errors: Findings,
+    pub warnings: Findings,
     /// The files that the scene file names, and those that they name.
     pub files: Vec<PathBuf>,
 }
 
 impl Report {
-    pub fn new(path: &Path, source: SourceFile) -> Self {
-        let path = path.display().to_string();
-        Self { source, path, errors: Vec::new(), warnings: Vec::new(), files: Vec::new() }
+    /// An empty one that lists so many errors, and as many warnings.
+    pub fn new(path: &Path, source: SourceFile, most: u64) -> Self {
+        let [errors, warnings] = [Findings::new(most), Findings::new(most)];
+        Self { source, path: path.display().to_string(), errors, warnings, files: Vec::new() }
     }
 
     /// An error in the scene file; `label` says what was expected, `help` how to mend it.
@@ -201,22 +239,48 @@ impl Report {
     }
 
     /// Errors in a file that the scene file names at `named_at`.
-    pub fn asset_errors(&mut self, named_at: Range<usize>, source: &SourceFile, faults: Vec<Fault>) {
-        let count = faults.len();
+    pub fn asset_errors(&mut self, named_at: Range<usize>, source: &SourceFile, faults: Faults) {
+        if faults.is_empty() {
+            return;
+        }
         let (line, _) = self.line_column(named_at);
         let file = source.0.name().to_owned();
-        for fault in faults.into_iter().take(MOST_PER_ASSET) {
+        let last = faults.listed.len() - 1;
+        for (index, fault) in faults.listed.into_iter().enumerate() {
+            let help = match faults.more {
+                more @ 1.. if index == last => format!("{more} more errors in {file} are not shown"),
+                _ => format!("{file} is named in {} at line {line}", self.path),
+            };
             self.errors.push(Finding {
                 message: fault.message,
-                help: Some(format!("{file} is named in {} at line {line}", self.path)),
+                help: Some(help),
                 severity: miette::Severity::Error,
                 file: file.clone(),
                 place: Some(Place { source: source.clone(), span: fault.span, label: fault.expected }),
                 about_value: false,
             });
         }
-        if let (Some(last), Some(more @ 1..)) = (self.errors.last_mut(), count.checked_sub(MOST_PER_ASSET)) {
-            last.help = Some(format!("{more} more errors in {file} are not shown"));
+    }
+
+    /// As the function of this name, while errors are listed.
+    pub fn did_you_mean<'a>(
+        &self,
+        name: &str,
+        known: impl IntoIterator<Item = &'a str>,
+        otherwise: &str,
+    ) -> String {
+        if self.errors.is_full() { otherwise.to_owned() } else { did_you_mean(name, known, otherwise) }
+    }
+
+    /// Says of those that are not listed how many they are.
+    pub(super) fn unlisted(count: usize) -> Finding {
+        Finding {
+            message: format!("{count} more warnings are not shown"),
+            help: None,
+            severity: miette::Severity::Warning,
+            file: String::new(),
+            place: None,
+            about_value: false,
         }
     }
 
@@ -256,18 +320,53 @@ impl Report {
 }
 
 /// Something wrong in a file that a scene names.
-#[derive(Clone, Debug)]
-pub(crate) struct Fault {
-    pub span: Range<usize>,
-    pub message: String,
-    pub expected: String,
+#[derive(Debug)]
+struct Fault {
+    span: Range<usize>,
+    message: String,
+    expected: String,
 }
+
+/// What is wrong in a file that a scene names: the first faults, and the number of those beyond.
+#[derive(Debug, Default)]
+pub(crate) struct Faults {
+    listed: Vec<Fault>,
+    more: usize,
+}
+
+impl Faults {
+    pub fn push(&mut self, span: Range<usize>, message: impl Into<String>, expected: impl Into<String>) {
+        if !self.is_full() {
+            self.listed.push(Fault { span, message: message.into(), expected: expected.into() });
+        } else {
+            self.more += 1;
+        }
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.listed.is_empty()
+    }
+
+    /// Whether no other will be listed.
+    pub fn is_full(&self) -> bool {
+        self.listed.len() == MOST_PER_ASSET
+    }
+}
+
+/// Longest name, in bytes, that is compared with known ones, and most of those: what it takes grows with their product.
+const LONGEST_COMPARED: usize = 80;
+const MOST_COMPARED: usize = 1000;
 
 /// The known name nearest to a misspelt one, if any is near.
 pub(crate) fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    if name.len() > LONGEST_COMPARED {
+        return None;
+    }
     let lower = name.to_lowercase();
     known
         .into_iter()
+        .filter(|candidate| candidate.len() <= LONGEST_COMPARED)
+        .take(MOST_COMPARED)
         .map(|candidate| (strsim::damerau_levenshtein(&lower, &candidate.to_lowercase()), candidate))
         .filter(|&(distance, candidate)| distance <= candidate.chars().count().div_ceil(3))
         .min_by_key(|&(distance, _)| distance)
@@ -284,8 +383,16 @@ pub(crate) fn did_you_mean<'a>(
         .map_or_else(|| otherwise.to_owned(), |candidate| format!("did you mean `{candidate}`?"))
 }
 
+/// Most names of a list.
+const MOST_LISTED: usize = 40;
+
 /// "`a`, `b`, `c`".
 pub(crate) fn list<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
-    let quoted: Vec<_> = names.into_iter().map(|name| format!("`{name}`")).collect();
+    let mut names = names.into_iter();
+    let mut quoted: Vec<_> = names.by_ref().take(MOST_LISTED).map(|name| format!("`{name}`")).collect();
+    match names.count() {
+        0 => {}
+        more => quoted.push(format!("{more} more")),
+    }
     quoted.join(", ")
 }

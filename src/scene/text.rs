@@ -6,18 +6,20 @@ use std::path::Path;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
+use super::allowance::Allowance;
 use super::encoding::unmarked;
-use super::report::{Finding, Report, SceneErrors, SourceFile, nearest, once};
+use super::report::{Finding, Report, SceneErrors, SourceFile, nearest};
 use super::tree::Node;
 
 /// The bytes of a file.
 ///
 /// # Errors
 /// When it cannot be read; names the nearest file then.
-pub(super) fn read(path: &Path) -> Result<Vec<u8>, SceneErrors> {
-    std::fs::read(path).map_err(|error| {
-        let mut report = Report::new(path, SourceFile::new(path, String::new()));
-        let help = nearest_file(path).map(|near| format!("did you mean {near}?"));
+pub(super) fn read(path: &Path, allowance: &Allowance) -> Result<Vec<u8>, SceneErrors> {
+    allowance.read_scene(path).map_err(|error| {
+        let mut report = Report::new(path, SourceFile::new(path, String::new()), allowance.errors);
+        let near = || nearest_file(path).filter(|_| error.is_missing());
+        let help = error.help().or_else(|| near().map(|near| format!("did you mean {near}?")));
         report.unreadable(format!("cannot read {}: {error}", path.display()), help);
         errors(path, report)
     })
@@ -30,19 +32,20 @@ pub(super) fn read(path: &Path) -> Result<Vec<u8>, SceneErrors> {
 pub(super) fn parse<T>(
     path: &Path,
     bytes: &[u8],
+    allowance: &Allowance,
     meaning: impl FnOnce(Node, &mut Report) -> Option<T>,
 ) -> Result<(T, Vec<Finding>), SceneErrors> {
     let bytes = match unmarked(bytes) {
         Ok(bytes) => bytes,
         Err(foreign) => {
-            let mut report = Report::new(path, SourceFile::new(path, String::new()));
+            let mut report = Report::new(path, SourceFile::new(path, String::new()), 1);
             report.unreadable(format!("{}: {foreign}", path.display()), Some(foreign.help()));
             return Err(errors(path, report));
         }
     };
     let text = String::from_utf8_lossy(bytes).into_owned();
     let source = SourceFile::new(path, text.clone());
-    let mut report = Report::new(path, source);
+    let mut report = Report::new(path, source, allowance.errors);
     if let Err(error) = std::str::from_utf8(bytes) {
         let at = error.valid_up_to();
         report.error(at..at + 1, "the file is not UTF-8", "expected UTF-8 text", None);
@@ -60,15 +63,16 @@ pub(super) fn parse<T>(
     let span = table.span().start..table.span().start;
     let root = Spanned::new(span, DeValue::Table(table.into_inner()));
     match meaning(Node::new(&root), &mut report) {
-        Some(made) if report.errors.is_empty() => Ok((made, once(report.warnings))),
+        Some(made) if report.errors.is_empty() => Ok((made, report.warnings.told())),
         _ => Err(errors(path, report)),
     }
 }
 
-fn errors(path: &Path, mut report: Report) -> SceneErrors {
-    report.errors.sort_by_key(|error| (error.file() != path.display().to_string(), error.line_column()));
-    let (errors, warnings) = (once(report.errors), once(report.warnings));
-    SceneErrors { file: path.display().to_string(), errors, warnings, files: report.files }
+fn errors(path: &Path, report: Report) -> SceneErrors {
+    let file = path.display().to_string();
+    let (more, mut errors) = (report.errors.more(), report.errors.listed());
+    errors.sort_by_cached_key(|error| (error.file() != file, error.line_column()));
+    SceneErrors { file, errors, more, warnings: report.warnings.told(), files: report.files }
 }
 
 /// The file in the same folder whose name is nearest.

@@ -17,6 +17,33 @@ pub(super) struct Corner {
     pub uv: Option<DVec2>,
 }
 
+/// Steps of ear clipping that are left. It takes a polygon of n corners n^2 of them as a rule and n^3 at worst, which
+/// would be no end with some thousand corners.
+#[derive(Debug)]
+pub(super) struct Steps(u64);
+
+impl Steps {
+    /// As many as take some ten seconds.
+    pub const MOST: u64 = 1_000_000_000;
+
+    /// Whether so many were left. None are from then on where not.
+    fn take(&mut self, count: usize) -> bool {
+        let left = self.0.checked_sub(count as u64);
+        self.0 = left.unwrap_or(0);
+        left.is_some()
+    }
+
+    pub fn are_used_up(&self) -> bool {
+        self.0 == 0
+    }
+}
+
+impl Default for Steps {
+    fn default() -> Self {
+        Self(Self::MOST)
+    }
+}
+
 /// A face of an OBJ file.
 #[derive(Clone, Debug)]
 pub(super) struct Polygon(pub Vec<Corner>);
@@ -54,12 +81,12 @@ impl Polygon {
 
     /// Corners of the triangles that tile it, by ear clipping in the plane of [`Self::area_vector`]. A polygon that cuts
     /// itself has no such tiling: what is left then becomes a fan.
-    fn triangulate(&self) -> Vec<[usize; 3]> {
+    fn triangulate(&self, steps: &mut Steps) -> Vec<[usize; 3]> {
         let axis = self.area_vector();
         let mut left: Vec<usize> = (0..self.0.len()).collect();
         let mut triangles = Vec::with_capacity(left.len().saturating_sub(2));
         while left.len() > 3 {
-            let ear = (0..left.len()).find(|&at| self.is_ear(&left, at, axis)).unwrap_or(1);
+            let ear = (0..left.len()).find(|&at| self.is_ear(&left, at, axis, steps)).unwrap_or(1);
             triangles.push(around(&left, ear));
             left.remove(ear);
         }
@@ -69,13 +96,17 @@ impl Polygon {
         triangles
     }
 
-    fn is_ear(&self, left: &[usize], at: usize, axis: DVec3) -> bool {
+    fn is_ear(&self, left: &[usize], at: usize, axis: DVec3, steps: &mut Steps) -> bool {
+        if !steps.take(1) {
+            return false;
+        }
         let corners = around(left, at);
         let [a, b, c] = corners.map(|corner| self.0[corner].position);
         let turn = |p: DVec3, q: DVec3, r: DVec3| (q - p).cross(r - p).dot(axis);
         if turn(a, b, c) <= 0.0 {
             return false;
         }
+        steps.take(left.len());
         let others = left.iter().filter(|corner| !corners.contains(corner));
         let mut others = others.map(|&corner| self.0[corner].position).filter(|p| ![a, b, c].contains(p));
         !others.any(|p| turn(a, b, p) >= 0.0 && turn(b, c, p) >= 0.0 && turn(c, a, p) >= 0.0)
@@ -95,10 +126,13 @@ fn key<const N: usize>(values: [f64; N]) -> Key<N> {
 }
 
 /// Sums of face normals at each position, weighted by the corner's angle (Thuermer & Wuethrich 1998): not unit.
-pub(super) fn vertex_normals<'p>(polygons: impl Iterator<Item = &'p Polygon>) -> HashMap<Key<3>, DVec3> {
+pub(super) fn vertex_normals<'p>(
+    polygons: impl Iterator<Item = &'p Polygon>,
+    steps: &mut Steps,
+) -> HashMap<Key<3>, DVec3> {
     let mut normals = HashMap::new();
     for polygon in polygons {
-        for triangle in polygon.triangulate() {
+        for triangle in polygon.triangulate(steps) {
             let p = triangle.map(|corner| polygon.0[corner].position);
             let Some(normal) = (p[1] - p[0]).cross(p[2] - p[0]).try_normalize() else {
                 continue;
@@ -141,8 +175,8 @@ impl Builder {
     }
 
     /// Adds a face. `smooth` holds normals for faces without their own; `None` makes all flat.
-    pub fn add(&mut self, polygon: &Polygon, smooth: Option<&HashMap<Key<3>, DVec3>>) {
-        for triangle in polygon.triangulate() {
+    pub fn add(&mut self, polygon: &Polygon, smooth: Option<&HashMap<Key<3>, DVec3>>, steps: &mut Steps) {
+        for triangle in polygon.triangulate(steps) {
             self.add_triangle(triangle.map(|corner| polygon.0[corner]), smooth);
         }
     }

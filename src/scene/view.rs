@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::allowance::within;
 use super::check::Item;
 use super::file::{CameraFile, EnvironmentFile, FilmFile, LightFile};
 use super::load::Loader;
@@ -46,6 +47,12 @@ pub(super) fn film(loader: &mut Loader) -> Option<Film> {
         Some(item) => item.read(loader.report)?,
         None => FilmFile::default(),
     };
+    let pixels = u64::from(file.width) * u64::from(file.height);
+    if let Err(refusal) = within("picture-pixels", "pixels", pixels, loader.allowance.picture_pixels) {
+        let span = loader.document.item("film").map_or(0..0, |item| item.node.span_of("width"));
+        let message = format!("the picture is too large: {refusal}");
+        loader.report.error(span, message, "expected fewer pixels", refusal.help());
+    }
     Some(Film {
         width: file.width,
         height: file.height,

@@ -1,0 +1,146 @@
+//! Files to begin with: the shipped scenes, small meshes and pictures, a checkpoint.
+
+use std::fs;
+use std::io::Cursor;
+use std::path::{Path, PathBuf};
+
+use caustica::checkpoint::{self, Checkpoint, Origin, Totals};
+use caustica::device::{self, Wanted};
+use caustica::scene;
+use image::{DynamicImage, ImageFormat};
+
+use crate::targets::Target;
+
+const OBJ: &str = "mtllib mesh.mtl\nusemtl a\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nvt 0 0\nvt 1 0\nvt 1 1\nvn 0 0 1\n\
+g one\nf 1/1/1 2/2/1 3/3/1 4/1/1\nusemtl b\ng two\nf 1 2 5\nf -1 -2 -3\nusemtl c\nf 4 3 2 1 5\n";
+const MTL: &str = "newmtl a\nKd 0.5 0.5 0.5\nmap_Kd t.png\nnewmtl b\nillum 5\nKs 0.9 0.9 0.9\nNs 10\nnewmtl c\nNi 1.5\nd 0.1\n\
+illum 7\nKe 1 1 1\n";
+/// A scene that reads what the other targets break.
+pub const READER: &str = "version = 1\n[camera]\nposition = [0, 1, 4]\ntarget = [0, 1, 0]\nfov = 39\n\
+[[lights]]\ntype = \"point\"\nposition = [0, 3, 0]\nintensity = 1.0\n";
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// A fresh folder with every file that seeds name.
+pub fn folder(name: &str) -> PathBuf {
+    let folder = std::env::temp_dir().join(format!("caustica-fuzz-{name}"));
+    fs::create_dir_all(&folder).expect("a folder for broken files");
+    let picture = picture(ImageFormat::Png);
+    let sky = picture_of(ImageFormat::Hdr, true);
+    let write = |name: &str, bytes: &[u8]| fs::write(folder.join(name), bytes).expect("a file");
+    for name in ["car.png", "porcelain.png", "planks.png", "grass.png", "stone.png", "grid.png", "t.png"] {
+        write(name, &picture);
+    }
+    for name in ["car.obj", "car-chrome.obj", "house.obj", "torus.obj", "mesh.obj"] {
+        write(name, OBJ.as_bytes());
+    }
+    write("mesh.mtl", MTL.as_bytes());
+    write("sky.hdr", &sky);
+    folder
+}
+
+/// What a target begins with.
+pub fn of(target: Target) -> Vec<Vec<u8>> {
+    match target {
+        Target::Scene | Target::Plan => scenes(),
+        Target::Obj => vec![OBJ.into(), read("tests/data/cube.obj"), read("tests/data/broken.obj"), read("tests/data/parts.obj")],
+        Target::Mtl => vec![MTL.into(), read("tests/data/broken.mtl"), read("tests/data/parts.mtl"), read("assets/house.mtl")],
+        Target::Texture => pictures(),
+        Target::Profile => vec![
+            read("scenes/profiles/vase.toml"),
+            b"profile = [[0.0, 0.0], [0.6, 0.0], [0.55, 0.6], [0.0, 1.05]]\ntransform = { translate = [0, 1, 0] }\n".to_vec(),
+            b"segments = [[[0, 0], [1, 0]], [[1, 0], [1, 1], [0, 1]]]\n".to_vec(),
+        ],
+        Target::Checkpoint => vec![checkpoint()],
+    }
+}
+
+fn read(file: &str) -> Vec<u8> {
+    fs::read(root().join(file)).expect("a file of this repository")
+}
+
+fn scenes() -> Vec<Vec<u8>> {
+    let mut scenes = Vec::new();
+    for folder in ["scenes", "scenes/studies", "tests/data/reference"] {
+        let entries = fs::read_dir(root().join(folder)).expect("a folder of this repository");
+        let mut files: Vec<_> = entries.flatten().map(|entry| entry.path()).collect();
+        files.sort();
+        for file in files.iter().filter(|file| file.extension().is_some_and(|extension| extension == "toml"))
+        {
+            let text = fs::read_to_string(file).expect("a scene");
+            scenes.push(text.replace("../assets/", "").into_bytes());
+        }
+    }
+    scenes
+}
+
+fn picture(format: ImageFormat) -> Vec<u8> {
+    picture_of(format, false)
+}
+
+fn picture_of(format: ImageFormat, float: bool) -> Vec<u8> {
+    let image = image::RgbImage::from_fn(6, 5, |x, y| image::Rgb([x as u8 * 40, y as u8 * 50, 7]));
+    let image = DynamicImage::from(image);
+    encode(&if float { image.to_rgb32f().into() } else { image }, format)
+}
+
+fn encode(image: &DynamicImage, format: ImageFormat) -> Vec<u8> {
+    let mut bytes = Cursor::new(Vec::new());
+    image.write_to(&mut bytes, format).expect("an encoded picture");
+    bytes.into_inner()
+}
+
+fn pictures() -> Vec<Vec<u8>> {
+    let image = image::RgbaImage::from_fn(6, 5, |x, y| image::Rgba([x as u8 * 40, y as u8 * 50, 7, 250]));
+    let image = DynamicImage::from(image);
+    let mut pictures = vec![
+        picture(ImageFormat::Png),
+        picture(ImageFormat::Jpeg),
+        picture_of(ImageFormat::Hdr, true),
+        encode(&image, ImageFormat::Png),
+        encode(&image.to_rgba16().into(), ImageFormat::Png),
+        encode(&image.to_luma_alpha8().into(), ImageFormat::Png),
+        encode(&image.to_luma16().into(), ImageFormat::Png),
+        encode(&image.to_luma8().into(), ImageFormat::Jpeg),
+    ];
+    let file = std::env::temp_dir().join(format!("caustica-fuzz-{}.exr", std::process::id()));
+    exr::prelude::write_rgb_file(&file, 6, 5, |x, y| (x as f32, y as f32, 0.5f32)).expect("an EXR file");
+    pictures.push(fs::read(&file).expect("an EXR file"));
+    let _ = fs::remove_file(file);
+    pictures
+}
+
+fn checkpoint() -> Vec<u8> {
+    let text = format!(
+        "{READER}[film]\nwidth = 3\nheight = 2\n[render]\nphotons = 10\n[materials.m]\ntype = \"diffuse\"\nreflectance = 0.5\n\
+         [[shapes]]\ntype = \"sphere\"\ncenter = [0, 1, 0]\nradius = 1\nmaterial = \"m\"\n"
+    );
+    let loaded = scene::parse("seed.toml".as_ref(), text.as_bytes()).expect("a scene");
+    let mut opened = device::open(&Wanted::Cpu, &loaded.scene, &loaded.settings).expect("the CPU engine");
+    opened.engine.pass().expect("a pass");
+    let checkpoint = Checkpoint {
+        origin: Origin {
+            version: "0".into(),
+            scene: "seed".into(),
+            scene_text: String::new(),
+            identity: opened.identity.clone(),
+            width: 3,
+            height: 2,
+            radiance_unit: opened.radiance_unit,
+            settings: opened.settings.clone(),
+            device: opened.name.clone(),
+            exposure: 0.0,
+            tonemap: scene::ToneMap::Agx,
+        },
+        totals: Totals::default(),
+        state: opened.engine.save().expect("what the engine holds"),
+        parts: Vec::new(),
+    };
+    let file = std::env::temp_dir().join(format!("caustica-fuzz-{}.checkpoint", std::process::id()));
+    checkpoint::write(&file, &checkpoint).expect("a checkpoint");
+    let bytes = fs::read(&file).expect("a checkpoint");
+    let _ = fs::remove_file(file);
+    bytes
+}

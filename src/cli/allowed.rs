@@ -1,0 +1,76 @@
+//! Options that say what a scene may read, and how much.
+
+use std::path::{Path, PathBuf};
+
+use caustica::scene::{self, Allowance, Loaded};
+use clap::Args;
+
+use super::Failure;
+
+/// Options of all commands that read scenes.
+#[derive(Args, Debug, Default)]
+#[command(next_help_heading = "For scenes of strangers")]
+pub struct Allowed {
+    /// Folder that holds every file that may be read, the scene's own among them, links resolved
+    #[arg(long, value_name = "DIR")]
+    root: Option<PathBuf>,
+    /// Another limit than the default: scene-bytes, shapes, mesh-bytes, mesh-triangles, triangles, texture-pixels,
+    /// texture-bytes, picture-pixels or errors, as in triangles=1e6; may be given several times
+    #[arg(long, value_name = "NAME=N", value_parser = limit)]
+    limit: Vec<(String, u64)>,
+}
+
+impl Allowed {
+    /// As the library takes it.
+    pub fn allowance(&self) -> Result<Allowance, Failure> {
+        if let Some(root) = self.root.as_ref().filter(|root| !root.is_dir()) {
+            let what = format!("--root {}: there is no such folder", root.display());
+            return Err(Failure::wrong_use(&what, "name the folder that holds the scene and its files"));
+        }
+        let mut allowance = Allowance { root: self.root.clone(), ..Allowance::default() };
+        for (name, value) in &self.limit {
+            if let Some(limit) = allowance.limit(name) {
+                *limit = *value;
+            }
+        }
+        Ok(allowance)
+    }
+
+    /// Reads a scene.
+    pub fn load(&self, file: &Path) -> Result<Loaded, Failure> {
+        Ok(scene::load_within(file, &self.allowance()?)?)
+    }
+}
+
+fn limit(text: &str) -> Result<(String, u64), String> {
+    let names = Allowance::LIMITS.join(", ");
+    let (name, value) = text.split_once('=').ok_or("expected NAME=N, as in triangles=1e6".to_owned())?;
+    if !Allowance::LIMITS.contains(&name) {
+        return Err(format!("no limit is called {name}; there are {names}"));
+    }
+    let exact = value.parse::<u64>().ok();
+    let rounded = || value.parse::<f64>().ok().filter(|n| (0.0..1e19).contains(n)).map(|n| n as u64);
+    let value = exact
+        .or_else(rounded)
+        .ok_or(format!("`{value}` is not a number above zero, as in 1000000 or 1e6"))?;
+    Ok((name.to_owned(), value))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn limits_are_names_and_numbers() {
+        assert_eq!(limit("triangles=1e6"), Ok(("triangles".to_owned(), 1_000_000)));
+        assert_eq!(limit("errors=18446744073709551615"), Ok(("errors".to_owned(), u64::MAX)));
+        for bad in
+            ["", "triangles", "triangles=", "triangle=1", "shapes=-1", "shapes=nan", "shapes=1e20", "=1"]
+        {
+            assert!(limit(bad).is_err(), "{bad}");
+        }
+        for name in Allowance::LIMITS {
+            assert!(Allowance::default().limit(name).is_some(), "{name}");
+        }
+    }
+}
