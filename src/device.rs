@@ -9,7 +9,7 @@ use crate::gpu::{self, AdapterChoice, AdapterKind, AdapterSummary, GpuEngine};
 use crate::identity::Identity;
 use crate::kernels::records::VisiblePoint;
 use crate::lights::guide::guides;
-use crate::pack::pack;
+use crate::pack::{Packed, pack};
 use crate::plan::Plan;
 use crate::radius::Automatic;
 use crate::scene::Scene;
@@ -252,14 +252,7 @@ fn start(
         radiance_unit,
     };
     if device.kind == DeviceKind::CpuDouble {
-        let mut wide = double::pack::pack(scene, film.width, film.height)?;
-        // maps and what is left open are those of the f32 engine, since both are to render the same
-        double::lights::guide::take_guides(&mut wide.scene, &guides(&packed.scene));
-        let settings = &match settings.radius {
-            Radius::Auto => Plan::new(&packed, settings).settings,
-            _ => settings.clone(),
-        };
-        let plan = double::plan::Plan::new(&wide, settings).on(film);
+        let (wide, plan) = in_double(scene, &packed, settings)?;
         let (settings, automatic, unit) = (plan.settings.clone(), plan.told_radius(), plan.radiance_unit);
         return Ok(opened(Box::new(double::cpu::CpuEngine::new(wide, plan)), settings, automatic, unit));
     }
@@ -270,6 +263,24 @@ fn start(
         _ => Box::new(GpuEngine::new(&AdapterChoice::Named(device.name.clone()), &packed, plan)?),
     };
     Ok(opened(engine, settings, automatic, unit))
+}
+
+/// What the engine in f64 takes; `single` is the scene flattened in f32.
+pub fn in_double(
+    scene: &Scene,
+    single: &Packed,
+    settings: &RenderSettings,
+) -> Result<(double::pack::Packed, double::plan::Plan), EngineError> {
+    let film = &scene.film;
+    let mut packed = double::pack::pack(scene, film.width, film.height)?;
+    // maps and what is left open are those of the f32 engine, since both are to render the same
+    double::lights::guide::take_guides(&mut packed.scene, &guides(&single.scene));
+    let settings = &match settings.radius {
+        Radius::Auto => Plan::new(single, settings).settings,
+        _ => settings.clone(),
+    };
+    let plan = double::plan::Plan::new(&packed, settings).on(film);
+    Ok((packed, plan))
 }
 
 /// Theory: the order of preference is hardware, then the CPU, whatever the order of the list.

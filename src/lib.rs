@@ -57,7 +57,7 @@
 //!
 //! Modules depend on one another one way: [`stage`], [`real`] and [`math`], then [`tables`], [`shapes`], [`materials`], [`lights`],
 //! [`camera`] and [`grid`], then [`scene`], [`build`], [`limits`], [`pack`], then [`kernels`], [`radius`], [`sobol`], [`probe`], [`readout`], [`plan`], then [`cpu`]
-//! and [`gpu`], then [`identity`], [`device`], [`quality`], [`calibration`], [`showing`], [`render`] and [`checkpoint`], and last [`bench`](mod@bench), [`burden`], [`hold`] and [`study`].
+//! and [`gpu`], then [`identity`], [`device`], [`quality`], [`calibration`], [`showing`], [`render`] and [`checkpoint`], and last [`bench`](mod@bench), [`burden`], [`hold`], [`study`] and, where it is not left out, `preview`.
 //! Those from [`real`] to [`cpu`] are compiled twice: [`double`] is the same in f64.
 
 pub mod bench;
@@ -86,6 +86,8 @@ pub mod materials;
 pub mod math;
 pub mod pack;
 pub mod plan;
+#[cfg(feature = "preview")]
+pub mod preview;
 pub mod probe;
 pub mod quality;
 pub mod radius;

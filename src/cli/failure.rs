@@ -35,6 +35,12 @@ impl Failure {
         Self { code: Self::FAILED, report: report.into() }
     }
 
+    /// There is no device for this.
+    #[cfg(feature = "preview")]
+    pub fn no_device(report: impl Into<Report>) -> Self {
+        Self { code: Self::NO_SUCH_DEVICE, report: report.into() }
+    }
+
     /// Prints the failure to standard error.
     pub fn tell(self) -> ExitCode {
         message(format_args!("{:?}", self.report));

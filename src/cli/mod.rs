@@ -25,6 +25,8 @@ mod measure;
 mod merge;
 mod output;
 mod overrides;
+#[cfg(feature = "preview")]
+mod preview;
 mod progress;
 mod render;
 mod study;
@@ -59,6 +61,8 @@ saved, 130 interrupted with the picture so far saved";
 #[derive(Subcommand)]
 enum Command {
     Render(Box<render::Arguments>),
+    #[cfg(feature = "preview")]
+    Preview(Box<preview::Arguments>),
     Merge(merge::Arguments),
     Compare(compare::Arguments),
     Diff(Box<diff::Arguments>),
@@ -97,6 +101,8 @@ pub fn run() -> ExitCode {
     log::begin(arguments.verbose);
     let done = match arguments.command {
         Command::Render(arguments) => render::run(*arguments),
+        #[cfg(feature = "preview")]
+        Command::Preview(arguments) => preview::run(*arguments),
         Command::Merge(arguments) => merge::run(arguments),
         Command::Compare(arguments) => compare::run(arguments),
         Command::Diff(arguments) => diff::run(*arguments),

@@ -321,7 +321,8 @@ fn put_in_force(mut loaded: Loaded, overrides: &Overrides) -> (Scene, RenderSett
     (loaded.scene, loaded.settings)
 }
 
-fn default_output(scene: &Path) -> PathBuf {
+/// The picture that is written where none is named.
+pub fn default_output(scene: &Path) -> PathBuf {
     Path::new(scene.file_stem().unwrap_or(scene.as_os_str())).with_extension("png")
 }
 

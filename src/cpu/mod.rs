@@ -25,6 +25,7 @@ use crate::settings::Method;
 use bytemuck::Zeroable;
 use rayon::prelude::*;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// Visible points that one task gathers for.
 const GATHER_TASK: usize = 1024;
@@ -36,7 +37,7 @@ const PHOTON_TASKS: u32 = 256;
 
 /// Passes over one scene on the processor's cores.
 pub struct CpuEngine {
-    packed: Packed,
+    packed: Arc<Packed>,
     plan: Plan,
     passes_done: u32,
     visible_points: Vec<VisiblePoint>,
@@ -142,7 +143,7 @@ impl pulp::WithSimd for Photons<'_> {
 
 impl CpuEngine {
     /// An engine for one scene and plan.
-    pub fn new(packed: Packed, plan: Plan) -> Self {
+    pub fn new(packed: impl Into<Arc<Packed>>, plan: Plan) -> Self {
         let points = (plan.pixels * plan.eye_samples) as usize;
         let photons = plan.features.has("photons");
         let buckets = if photons { plan.buckets as usize } else { 0 };
@@ -163,7 +164,7 @@ impl CpuEngine {
             device: format!("{ENGINE}, {} threads", rayon::current_num_threads()),
             clock: Clock::default(),
             arch: pulp::Arch::new(),
-            packed,
+            packed: packed.into(),
             plan,
         }
     }

@@ -104,7 +104,7 @@ fn draw_scale(canvas: &mut Canvas, top_row: usize, top: i32) {
 }
 
 /// Dark violet through red and yellow to white for `x` from 0 to 1, of rising luminance.
-fn heat(x: f64) -> [u8; 3] {
+pub fn heat(x: f64) -> [u8; 3] {
     const STOPS: [[u8; 3]; 6] =
         [[40, 11, 84], [101, 21, 110], [188, 55, 84], [237, 105, 37], [251, 180, 26], [252, 255, 214]];
     gradient(&STOPS, x)

@@ -1,7 +1,7 @@
 //! Carries out the steps of a plan, pass by pass.
 
 use super::context::{AdapterChoice, AdapterKind, AdapterSummary, Gpu};
-use super::layout::{SceneTables, long_tables};
+use super::layout::{Member, SceneTables, long_tables};
 use super::mend::{mend_aovs, mend_photons, mend_points};
 use super::pace::Pace;
 use super::program::{Compiling, Program, make_programs, workgroup_items};
@@ -43,6 +43,8 @@ pub struct GpuEngine {
     recorder: Recorder,
     pace: Pace,
     programs: BTreeMap<Kernel, Program>,
+    /// Of the struct that the programs know the scene's short tables by.
+    members: Vec<Member>,
     /// By kernel and chunk (0 where it has none).
     groups: BTreeMap<(Kernel, u32), wgpu::BindGroup>,
     shared: BTreeMap<&'static str, wgpu::Buffer>,
@@ -58,6 +60,13 @@ pub struct GpuEngine {
     clock: Clock,
     /// Whether these come from the device's own clock, not from waiting for each kernel.
     stamped: bool,
+}
+
+/// What an engine is made of that another may have had before.
+struct Kept {
+    gpu: Gpu,
+    pace: Pace,
+    programs: BTreeMap<Kernel, Program>,
 }
 
 /// What it took to make a kernel ready.
@@ -118,9 +127,28 @@ impl GpuEngine {
                 "path tracing runs on the CPU alone: take --device cpu".into(),
             ));
         }
-        let gpu = Gpu::open(choice)?;
+        let kept = Kept { gpu: Gpu::open(choice)?, pace: Pace::default(), programs: BTreeMap::new() };
+        Self::on(kept, packed, plan, compiling)
+    }
+
+    /// An engine for another scene, camera or plan on the device of this one, which keeps its programs where the new ones
+    /// would be the same.
+    pub fn renewed(self, packed: &Packed, plan: Plan) -> Result<Self, EngineError> {
+        let same =
+            self.plan.features == plan.features && self.members == SceneTables::new(&packed.scene).members;
+        Self::on(self.kept(same), packed, plan, Compiling::Together)
+    }
+
+    /// What another engine can have of this one, whose buffers are given back first.
+    fn kept(self, programs_too: bool) -> Kept {
+        let programs = if programs_too { self.programs } else { BTreeMap::new() };
+        Kept { gpu: self.gpu, pace: self.pace, programs }
+    }
+
+    fn on(kept: Kept, packed: &Packed, plan: Plan, compiling: Compiling) -> Result<Self, EngineError> {
+        let Kept { gpu, pace, programs } = kept;
         let scene = SceneTables::new(&packed.scene);
-        gpu.check_sizes(&sizes(&plan, packed, &scene), MEND)?;
+        gpu.check_sizes(&sizes(&plan, &packed.scene), MEND)?;
         let recorder = Recorder::new(&gpu)?;
         let mut shared = BTreeMap::from([("scene", gpu.upload("scene", &scene.bytes)?)]);
         for (name, _, content) in long_tables(&packed.scene) {
@@ -145,8 +173,9 @@ impl GpuEngine {
             gpu,
             passes_done: 0,
             recorder,
-            pace: Pace::default(),
+            pace,
             programs: BTreeMap::new(),
+            members: scene.members.clone(),
             groups: BTreeMap::new(),
             shared,
             chunks,
@@ -157,7 +186,7 @@ impl GpuEngine {
             clock: Clock::default(),
             stamped: false,
         };
-        engine.compile(&scene, compiling)?;
+        engine.compile(&scene, compiling, programs)?;
         Ok(engine)
     }
 
@@ -168,15 +197,21 @@ impl GpuEngine {
         buffer.map_or(Ok(Vec::new()), |buffer| self.gpu.read(buffer, buffer.size()))
     }
 
-    /// Makes the kernels of the plan ready. Each runs once over nothing, since some drivers compile at the first run, and do
-    /// so while the next kernels are checked.
-    fn compile(&mut self, scene: &SceneTables, compiling: Compiling) -> Result<(), EngineError> {
+    /// Makes the kernels of the plan ready, some of which are `kept`. Each other one runs once over nothing, since some drivers
+    /// compile at the first run, and do so while the next kernels are checked.
+    fn compile(
+        &mut self,
+        scene: &SceneTables,
+        compiling: Compiling,
+        kept: BTreeMap<Kernel, Program>,
+    ) -> Result<(), EngineError> {
         let _stage = stage("compile");
         let steps = self.plan.steps(0, self.plan.batch_photons);
-        let kernels: Vec<Kernel> =
-            Kernel::ALL.into_iter().filter(|k| steps.iter().any(|step| step.kernel == *k)).collect();
+        let needed = |kernel: &Kernel| steps.iter().any(|step| step.kernel == *kernel);
+        let missing: Vec<Kernel> =
+            Kernel::ALL.into_iter().filter(|k| needed(k) && !kept.contains_key(k)).collect();
         let Self { gpu, plan, recorder, programs, groups, shared, chunks, compile_seconds, .. } = self;
-        make_programs(gpu, &kernels, &plan.features, scene, compiling, |program, checking| {
+        let mut take = |program: Program, checking: Option<f64>| {
             let begun = Instant::now();
             for (number, own) in (0..).zip(chunks.iter()) {
                 let Some(step) = steps.iter().find(|s| (s.kernel, s.chunk) == (program.kernel, number))
@@ -185,21 +220,28 @@ impl GpuEngine {
                 };
                 let buffer = |name: &str| own.get(name).or_else(|| shared.get(name));
                 let group = program.bind(gpu, &recorder.dispatches, buffer)?;
-                if number == 0 {
+                if number == 0 && checking.is_some() {
                     let nothing = Dispatch { first: 0, end: 0, ..step.dispatch };
                     recorder.dispatch(gpu, &program, &group, &nothing);
                     recorder.submit(gpu);
                 }
                 groups.insert((program.kernel, number), group);
             }
-            if compiling == Compiling::OneByOne {
+            if let (Compiling::OneByOne, Some(checking)) = (compiling, checking) {
                 gpu.wait()?;
                 let driver = begun.elapsed().as_secs_f64();
                 compile_seconds.insert(program.kernel, CompileSeconds { checking, driver });
             }
-            log::debug!("{}: checked in {checking:.3} s", program.kernel.stem());
+            match checking {
+                Some(seconds) => log::debug!("{}: checked in {seconds:.3} s", program.kernel.stem()),
+                None => log::debug!("{}: kept", program.kernel.stem()),
+            }
             programs.insert(program.kernel, program);
             Ok(())
+        };
+        kept.into_values().filter(|program| needed(&program.kernel)).try_for_each(|kept| take(kept, None))?;
+        make_programs(gpu, &missing, &plan.features, scene, compiling, |program, checking| {
+            take(program, Some(checking))
         })?;
         self.gpu.wait()
     }
@@ -399,9 +441,9 @@ fn chunk_bytes(plan: &Plan, largest: u64, chunk: u32) -> u64 {
 }
 
 /// Name and bytes of everything that will be allocated.
-fn sizes(plan: &Plan, packed: &Packed, scene: &SceneTables) -> Vec<(&'static str, u64)> {
-    let mut list = vec![("scene", scene.bytes.len() as u64)];
-    list.extend(long_tables(&packed.scene).map(|(name, _, content)| (name, content.len() as u64)));
+pub fn sizes(plan: &Plan, scene: &Scene) -> Vec<(&'static str, u64)> {
+    let mut list = vec![("scene", SceneTables::new(scene).bytes.len() as u64)];
+    list.extend(long_tables(scene).map(|(name, _, content)| (name, content.len() as u64)));
     for (name, bytes) in plan.buffers() {
         if CHUNK_BUFFERS.contains(&name) {
             list.extend((0..plan.chunks()).map(|chunk| (name, chunk_bytes(plan, bytes, chunk))));

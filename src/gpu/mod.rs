@@ -13,4 +13,4 @@ pub mod recorder;
 mod stamps;
 
 pub use context::{AdapterChoice, AdapterKind, AdapterSummary, Gpu, list};
-pub use engine::{CompileSeconds, GpuEngine, Submissions};
+pub use engine::{CompileSeconds, GpuEngine, Submissions, sizes};

@@ -73,7 +73,7 @@ pub fn pack(scene: &scene::Scene, width: u32, height: u32) -> Result<Packed, Pac
     let radiance_unit = light::pack_lights(scene, &n, &emitters, &mut out);
     out.world.disc_levels = disc_levels(&out, &n);
     out.world.nested = medium::glass_meets_glass(scene) as u32;
-    out.camera.medium = medium::medium_at(&out, out.camera.position);
+    stand_camera(&mut out);
     for i in 0..out.lights.len() {
         out.lights[i].medium = match light::place(&out, &out.lights[i]) {
             Some(position) => medium::medium_at(&out, position),
@@ -82,6 +82,20 @@ pub fn pack(scene: &scene::Scene, width: u32, height: u32) -> Result<Packed, Pac
     }
     lights::guide::learn_guides(&mut out);
     Ok(Packed { scene: out, center: n.center, unit: n.unit, radiance_unit, tree: stats, objects })
+}
+
+impl Packed {
+    /// Takes the picture from where `scene`'s camera is now, everything else staying as it is. What `n` is not
+    /// [the normalisation of](Normalization::of) any more has other roundings than a scene flattened anew.
+    pub fn move_camera(&mut self, scene: &scene::Scene, n: &Normalization, width: u32, height: u32) {
+        self.scene.camera = camera(scene, n, width, height);
+        stand_camera(&mut self.scene);
+    }
+}
+
+/// Finds the glass that the camera stands in.
+fn stand_camera(out: &mut Scene) {
+    out.camera.medium = medium::medium_at(out, out.camera.position);
 }
 
 impl Scene {

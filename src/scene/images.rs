@@ -27,6 +27,8 @@ pub(crate) struct ImageFault {
 #[derive(Debug, Default)]
 pub(crate) struct ImageStore {
     pub images: Vec<ImageData>,
+    /// Every file asked for.
+    pub files: Vec<PathBuf>,
     known: BTreeMap<(PathBuf, Option<ColorSpace>), usize>,
     transparent: BTreeSet<usize>,
     allowance: Allowance,
@@ -45,6 +47,7 @@ impl ImageStore {
         if let Some(&index) = self.known.get(&(canonical.clone(), space)) {
             return Ok(index);
         }
+        self.files.push(path.to_owned());
         let (image, transparent) = self.read(path, space)?;
         let index = self.images.len();
         self.images.push(image);

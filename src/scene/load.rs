@@ -27,6 +27,8 @@ pub struct Loaded {
     pub warnings: Vec<Finding>,
     /// Where the parts stand in the file.
     pub places: Places,
+    /// The files that were read beside the scene file.
+    pub files: Vec<PathBuf>,
 }
 
 static SCHEMA: LazyLock<Json> = LazyLock::new(schema::of::<SceneFile>);
@@ -61,16 +63,17 @@ pub fn parse(path: &Path, bytes: &[u8]) -> Result<Loaded, SceneErrors> {
 /// As [`load_within`].
 pub fn parse_within(path: &Path, bytes: &[u8], allowance: &Allowance) -> Result<Loaded, SceneErrors> {
     let _stage = stage("parse");
-    let ((scene, settings, places), warnings) = text::parse(path, bytes, allowance, |root, report| {
-        let count = root.get("shapes").map_or(0, |shapes| shapes.elements().count() as u64);
-        if let Err(refusal) = within("shapes", "shapes", count, allowance.shapes) {
-            report.error(root.span_of("shapes"), format!("too much: {refusal}"), "here", refusal.help());
-            return None;
-        }
-        let document = document(&SCHEMA, root, report);
-        Loader::new(path, allowance, &document, report).load()
-    })?;
-    Ok(Loaded { scene, settings, warnings, places })
+    let ((scene, settings, places, files), warnings) =
+        text::parse(path, bytes, allowance, |root, report| {
+            let count = root.get("shapes").map_or(0, |shapes| shapes.elements().count() as u64);
+            if let Err(refusal) = within("shapes", "shapes", count, allowance.shapes) {
+                report.error(root.span_of("shapes"), format!("too much: {refusal}"), "here", refusal.help());
+                return None;
+            }
+            let document = document(&SCHEMA, root, report);
+            Loader::new(path, allowance, &document, report).load()
+        })?;
+    Ok(Loaded { scene, settings, warnings, places, files })
 }
 
 /// What the parts of a scene share while they are read.
@@ -98,7 +101,7 @@ impl<'l, 'a> Loader<'l, 'a> {
         Self { document, report, images, allowance, spent, own_materials, path }
     }
 
-    fn load(mut self) -> Option<(Scene, RenderSettings, Places)> {
+    fn load(mut self) -> Option<(Scene, RenderSettings, Places, Vec<PathBuf>)> {
         let document = self.document;
         if let Some(item) = document.item("version")
             && let Some(version) = item.read::<u32>(self.report)
@@ -147,6 +150,7 @@ impl<'l, 'a> Loader<'l, 'a> {
             let file = item.read::<EnvironmentFile>(self.report)?;
             view::environment(&mut self, item, &file)
         });
+        self.report.files.append(&mut self.images.files);
         let scene = Scene {
             name: self.path.file_stem().map_or(String::new(), |stem| stem.to_string_lossy().into_owned()),
             camera: camera?,
@@ -167,7 +171,7 @@ impl<'l, 'a> Loader<'l, 'a> {
                 self.report.warn(0..0, message, label);
             }
         }
-        Some((scene, settings?, places))
+        Some((scene, settings?, places, self.report.files.clone()))
     }
 
     /// Index of a named part; 0 for an unknown name, which [`Self::undefined`] has reported.

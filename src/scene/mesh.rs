@@ -52,6 +52,7 @@ pub(super) fn load(
 ) -> Option<Vec<Part>> {
     let path = loader.resolve(request.file);
     let named_at = item.node.span_of("file");
+    loader.report.files.push(path.clone());
     let source = read(loader, item, &path)?;
     let text = obj::join_lines(source.text());
     let before = loader.report.errors.found();
@@ -173,6 +174,7 @@ fn libraries(loader: &mut Loader, path: &Path, scan: &mut obj::Scan, named_at: &
     let mut libraries = Libraries::new();
     for (name, span) in std::mem::take(&mut scan.libraries) {
         let library = path.parent().unwrap_or(Path::new("")).join(name);
+        loader.report.files.push(library.clone());
         let bytes = match bytes(loader, &library) {
             Ok(bytes) => bytes,
             Err(error) => {

@@ -2,7 +2,7 @@
 
 use std::fmt;
 use std::ops::Range;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use miette::{
@@ -152,6 +152,8 @@ pub struct SceneErrors {
     pub more: usize,
     /// What is odd but no error.
     pub warnings: Vec<Finding>,
+    /// The files that were asked for before, beside the scene file, whether they are there or not.
+    pub files: Vec<PathBuf>,
 }
 
 impl SceneErrors {
@@ -183,13 +185,15 @@ pub(crate) struct Report {
     path: String,
     pub errors: Findings,
     pub warnings: Findings,
+    /// The files that the scene file names, and those that they name.
+    pub files: Vec<PathBuf>,
 }
 
 impl Report {
     /// An empty one that lists so many errors, and as many warnings.
     pub fn new(path: &Path, source: SourceFile, most: u64) -> Self {
         let [errors, warnings] = [Findings::new(most), Findings::new(most)];
-        Self { source, path: path.display().to_string(), errors, warnings }
+        Self { source, path: path.display().to_string(), errors, warnings, files: Vec::new() }
     }
 
     /// An error in the scene file; `label` says what was expected, `help` how to mend it.

@@ -72,7 +72,7 @@ fn errors(path: &Path, report: Report) -> SceneErrors {
     let file = path.display().to_string();
     let (more, mut errors) = (report.errors.more(), report.errors.listed());
     errors.sort_by_cached_key(|error| (error.file() != file, error.line_column()));
-    SceneErrors { file, errors, more, warnings: report.warnings.told() }
+    SceneErrors { file, errors, more, warnings: report.warnings.told(), files: report.files }
 }
 
 /// The file in the same folder whose name is nearest.

@@ -1,0 +1,99 @@
+//! How soon the preview shows something: from a scene and from a turned camera to the small picture and to the first pass of the
+//! whole one, on each device; medians of three. The whole one has a quarter of the scene's sides and a sixteenth of its photons, so
+//! that what it takes to begin is not lost in the pass. `cargo run --release --example preview [SCENE...]`
+
+use std::error::Error;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use caustica::device::Wanted;
+use caustica::gpu::{AdapterChoice, GpuEngine};
+use caustica::pack::pack;
+use caustica::plan::Plan;
+use caustica::preview::frame::Wish;
+use caustica::preview::orbit::orbit;
+use caustica::preview::worker::Worker;
+use caustica::scene;
+
+const ROUNDS: usize = 3;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let mut files: Vec<String> = std::env::args().skip(1).collect();
+    if files.is_empty() {
+        files = ["cornell", "caustics", "still-life"].map(|name| format!("scenes/{name}.toml")).to_vec();
+    }
+    println!(
+        "| scene | device | scene: small | scene: whole | camera: small | camera: whole |\n|---|---|---|---|---|---|"
+    );
+    for file in &files {
+        for device in [Wanted::Cpu, Wanted::Software] {
+            let mut times = [const { Vec::new() }; 4];
+            let begun = Instant::now();
+            let loaded = scene::load(file.as_ref())?;
+            let reading = begun.elapsed();
+            let mut wish = Wish {
+                camera: loaded.scene.camera,
+                film: loaded.scene.film,
+                settings: loaded.settings,
+                device: device.clone(),
+            };
+            wish.film.width /= 4;
+            wish.film.height /= 4;
+            wish.settings.photons /= 16;
+            let scene = Arc::new(loaded.scene);
+            let mut worker = Worker::start(|| ());
+            for _ in 0..ROUNDS {
+                let begun = Instant::now();
+                let number = worker.scene(scene.clone(), wish.clone());
+                times[0].push(reading + until(&worker, number, false, begun)?);
+                times[1].push(reading + until(&worker, number, true, begun)?);
+                wish.camera = orbit(&wish.camera, 0.02, 0.0);
+                let begun = Instant::now();
+                let number = worker.change(wish.clone());
+                times[2].push(until(&worker, number, false, begun)?);
+                times[3].push(until(&worker, number, true, begun)?);
+            }
+            let middle = times.map(|mut times| {
+                times.sort();
+                format!("{:.2} s", times[ROUNDS / 2].as_secs_f64())
+            });
+            println!("| {} | {device:?} | {} |", scene.name, middle.join(" | "));
+        }
+    }
+    println!("\n| scene | packing | GPU engine: new | with the programs of another |\n|---|---|---|---|");
+    for file in &files {
+        println!("| {file} | {} |", renewal(file)?);
+    }
+    Ok(())
+}
+
+/// What it takes to flatten a scene, to make an engine on the software driver, and to make it again.
+fn renewal(file: &str) -> Result<String, Box<dyn Error>> {
+    let loaded = scene::load(file.as_ref())?;
+    let film = loaded.scene.film;
+    let begun = Instant::now();
+    let packed = pack(&loaded.scene, film.width, film.height)?;
+    let mut times = vec![begun.elapsed()];
+    let plan = Plan::new(&packed, &loaded.settings).on(&film);
+    let begun = Instant::now();
+    let engine = GpuEngine::new(&AdapterChoice::Software, &packed, plan.clone())?;
+    times.push(begun.elapsed());
+    let begun = Instant::now();
+    engine.renewed(&packed, plan)?;
+    times.push(begun.elapsed());
+    let times = times.iter().map(|time| format!("{:.3} s", time.as_secs_f64()));
+    Ok(times.collect::<Vec<_>>().join(" | "))
+}
+
+/// Since `begun`, until a picture for wish `number` is there; the whole one's first pass, or any.
+fn until(worker: &Worker, number: u64, whole: bool, begun: Instant) -> Result<Duration, Box<dyn Error>> {
+    loop {
+        if worker.frame().is_some_and(|frame| frame.number == number && !(whole && frame.quick)) {
+            return Ok(begun.elapsed());
+        }
+        if let Some(failure) = worker.board().failure() {
+            return Err(failure.into());
+        }
+        std::thread::sleep(Duration::from_millis(1));
+    }
+}

@@ -1,0 +1,84 @@
+//! `caustica preview`: a window that shows the picture as it converges.
+
+use std::path::PathBuf;
+
+use caustica::device;
+use caustica::film::check_outputs;
+use caustica::preview::session::Start;
+use caustica::preview::window::{Against, WindowError, open};
+use clap::builder::NonEmptyStringValueParser;
+use miette::miette;
+
+use super::overrides::Overrides;
+use super::render::default_output;
+use super::{Done, Failure};
+
+/// Show a scene in a window while it converges, and change it
+#[derive(clap::Args)]
+#[command(after_help = HELP)]
+pub struct Arguments {
+    /// Scene file
+    scene: PathBuf,
+    /// Picture that the key S writes, by its extension: .png (tone-mapped), .exr, .pfm, .hdr; may be given several times
+    /// [default: the scene's name with .png, in the current folder]
+    #[arg(short, long, value_name = "FILE")]
+    output: Vec<PathBuf>,
+    /// Device to render on: auto, gpu, software, cpu, cpu-f64, or a part of a device's name
+    #[arg(long, value_name = "DEVICE", value_parser = NonEmptyStringValueParser::new(), default_value = "auto")]
+    device: String,
+    /// Hold the picture against this one: .exr, .pfm, .hdr, .png or .jpg
+    #[arg(long, value_name = "FILE", conflicts_with = "against_device")]
+    against: Option<PathBuf>,
+    /// Hold the picture against that of another device
+    #[arg(long, value_name = "DEVICE", value_parser = NonEmptyStringValueParser::new())]
+    against_device: Option<String>,
+    #[command(flatten)]
+    overrides: Overrides,
+}
+
+const HELP: &str = "\
+Examples:
+  caustica preview scenes/caustics.toml
+  caustica preview scenes/cornell.toml --device cpu --against-device software
+  caustica preview scenes/cornell.toml -o cornell.exr --against cornell-before.exr
+
+F1 in the window shows what keys and mouse do; docs/preview.md tells more.";
+
+/// Opens the window, and comes back when it is closed.
+pub fn run(arguments: Arguments) -> Result<Done, Failure> {
+    let Arguments { scene: file, output, device, against, against_device, overrides } = arguments;
+    let outputs = if output.is_empty() { vec![default_output(&file)] } else { output };
+    check_outputs(&outputs)?;
+    let mut loaded = caustica::scene::load(&file)?;
+    overrides.apply(&mut loaded.scene, &mut loaded.settings);
+    let device = device::parse(&device);
+    // a device that is not there is told here, before there is a window
+    let needs_list =
+        |wanted: &device::Wanted| !matches!(wanted, device::Wanted::Cpu | device::Wanted::CpuDouble);
+    let others = against_device.as_deref().map(device::parse);
+    for wanted in [Some(&device), others.as_ref()].into_iter().flatten().filter(|wanted| needs_list(wanted)) {
+        device::pick(wanted, &device::list())?;
+    }
+    let against = against.map(Against::File).or(against_device.map(Against::Device));
+    let adjust = Box::new(move |loaded: &mut caustica::scene::Loaded| {
+        overrides.apply(&mut loaded.scene, &mut loaded.settings);
+    });
+    open(Start { file, loaded, adjust, outputs, device }, against)?;
+    Ok(Done::Fully)
+}
+
+impl From<WindowError> for Failure {
+    fn from(error: WindowError) -> Self {
+        match error {
+            WindowError::File(error) => error.into(),
+            WindowError::NoDisplay(_) => Self::failed(miette!(
+                help = "a window needs a desktop, that is DISPLAY or WAYLAND_DISPLAY; without one, `caustica render` writes pictures",
+                "{error}"
+            )),
+            WindowError::NoDevice(_) => Self::no_device(miette!(
+                help = "a window needs a graphics driver, such as Mesa's (Debian: mesa-vulkan-drivers)",
+                "{error}"
+            )),
+        }
+    }
+}

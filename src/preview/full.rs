@@ -1,0 +1,174 @@
+//! The whole picture, by the device asked for, on a thread of its own: until it is done, or no longer wanted.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use std::thread::{self, JoinHandle};
+use std::time::Duration;
+
+use super::frame::{Board, Passes, Setup, Wish};
+use super::ground::Ground;
+use crate::cpu::CpuEngine;
+use crate::device::{self, DeviceError, DeviceKind, Wanted};
+use crate::double;
+use crate::engine::Engine;
+use crate::gpu::{AdapterChoice, GpuEngine};
+use crate::plan::Plan;
+use crate::settings::Method;
+use crate::tables::Scene;
+
+/// How long a thread that has nothing to do sleeps before it looks again.
+const NAP: Duration = Duration::from_millis(50);
+
+/// How the thread is told what to do.
+#[derive(Default)]
+struct Control {
+    ended: AtomicBool,
+    made: AtomicBool,
+    paused: AtomicBool,
+    passes: AtomicU32,
+}
+
+/// A render under way.
+pub struct Full {
+    control: Arc<Control>,
+    thread: JoinHandle<Option<Box<GpuEngine>>>,
+}
+
+impl Full {
+    /// Starts to render `wish` over a copy of `ground`; `spare` is a GPU engine that nobody needs any more.
+    pub fn start(
+        number: u64,
+        ground: Ground,
+        wish: Wish,
+        spare: Option<Box<GpuEngine>>,
+        board: Arc<Board>,
+    ) -> Self {
+        let control = Arc::new(Control::default());
+        control.passes.store(wish.settings.passes, Ordering::Relaxed);
+        let own = control.clone();
+        let thread = thread::spawn(move || match make(&ground, &wish, spare) {
+            Ok((engine, setup)) => {
+                drop(ground);
+                own.made.store(true, Ordering::Relaxed);
+                rendered(engine, Passes::new(number, false, setup), &own, number, &board)
+            }
+            Err(error) => {
+                board.fail(number, told(&error));
+                None
+            }
+        });
+        Self { control, thread }
+    }
+
+    /// Sets how many passes there are to be.
+    pub fn set_passes(&self, passes: u32) {
+        self.control.passes.store(passes, Ordering::Relaxed);
+        self.thread.thread().unpark();
+    }
+
+    /// Halts it after the pass in hand, or lets it go on.
+    pub fn pause(&self, paused: bool) {
+        self.control.paused.store(paused, Ordering::Relaxed);
+        self.thread.thread().unpark();
+    }
+
+    /// Ends it after the pass in hand.
+    pub fn end(&self) {
+        self.control.ended.store(true, Ordering::Relaxed);
+        self.thread.thread().unpark();
+    }
+
+    /// Whether its engine is ready, so that the cores are its own.
+    pub fn is_made(&self) -> bool {
+        self.control.made.load(Ordering::Relaxed)
+    }
+
+    /// Whether [`Self::join`] would not wait.
+    pub fn is_finished(&self) -> bool {
+        self.thread.is_finished()
+    }
+
+    /// Waits for its end; what a next one can use.
+    pub fn join(self) -> Option<Box<GpuEngine>> {
+        self.thread.join().unwrap_or_default()
+    }
+}
+
+enum Running {
+    Cpu(Box<CpuEngine>),
+    Double(Box<double::cpu::CpuEngine>),
+    Gpu(Box<GpuEngine>),
+}
+
+fn rendered(
+    mut running: Running,
+    mut passes: Passes,
+    control: &Control,
+    number: u64,
+    board: &Board,
+) -> Option<Box<GpuEngine>> {
+    let engine: &mut dyn Engine = match &mut running {
+        Running::Cpu(engine) => engine.as_mut(),
+        Running::Double(engine) => engine.as_mut(),
+        Running::Gpu(engine) => engine.as_mut(),
+    };
+    while !control.ended.load(Ordering::Relaxed) {
+        let last = control.passes.load(Ordering::Relaxed);
+        if passes.done >= last || control.paused.load(Ordering::Relaxed) {
+            thread::park_timeout(NAP);
+        } else if let Err(error) = passes.step(engine, last, board) {
+            // a lost device is not kept
+            board.fail(number, error.to_string());
+            return None;
+        }
+    }
+    match running {
+        Running::Gpu(engine) => Some(engine),
+        _ => None,
+    }
+}
+
+fn make(
+    ground: &Ground,
+    wish: &Wish,
+    spare: Option<Box<GpuEngine>>,
+) -> Result<(Running, Setup), DeviceError> {
+    let path = wish.settings.method == Method::Path && wish.device == Wanted::Auto;
+    let wanted = if path { &Wanted::Cpu } else { &wish.device };
+    let devices = device::list();
+    let (device, why) = device::pick(wanted, &devices)?;
+    let ground = ground.settled(&wish.camera, &wish.film)?;
+    device::check_points(device, ground.scene(), &wish.settings)?;
+    let packed = ground.packed();
+    let plan = Plan::new(packed, &wish.settings).on(&wish.film);
+    let setup = Setup {
+        device: device.name.clone(),
+        why,
+        settings: plan.settings.clone(),
+        bytes: bytes(&packed.scene, &plan),
+    };
+    let engine = match device.kind {
+        DeviceKind::Cpu => Running::Cpu(Box::new(CpuEngine::new(packed.clone(), plan))),
+        DeviceKind::CpuDouble => {
+            let (packed, plan) = device::in_double(ground.scene(), packed, &wish.settings)?;
+            Running::Double(Box::new(double::cpu::CpuEngine::new(packed, plan)))
+        }
+        _ => Running::Gpu(Box::new(match spare {
+            Some(spare) if spare.adapter().name == device.name => spare.renewed(packed, plan)?,
+            _ => GpuEngine::new(&AdapterChoice::Named(device.name.clone()), packed, plan)?,
+        })),
+    };
+    Ok((engine, setup))
+}
+
+/// Bytes of a scene's tables and of a plan's buffers.
+pub(super) fn bytes(scene: &Scene, plan: &Plan) -> u64 {
+    crate::gpu::sizes(plan, scene).iter().map(|(_, bytes)| bytes).sum()
+}
+
+fn told(error: &DeviceError) -> String {
+    match error {
+        DeviceError::NoSuchDevice { available, .. } => format!("{error}; there is: {}", available.join(", ")),
+        DeviceError::Engine(_) => error.to_string(),
+    }
+}

@@ -1,0 +1,100 @@
+//! A flattened scene, kept while the camera moves over it.
+
+use std::sync::Arc;
+
+use crate::build::normalize::Normalization;
+use crate::engine::EngineError;
+use crate::pack::{Packed, pack};
+use crate::scene::{Camera, Film, Scene};
+
+/// A scene and its tables. Maps of lights and the kd-tree do not hang on the camera, but the scene's centre and unit do: the
+/// camera is part of what they have to hold. They are kept while it moves, and looked at again when it is still.
+pub struct Ground {
+    scene: Arc<Scene>,
+    normalization: Normalization,
+    packed: Arc<Packed>,
+}
+
+impl Ground {
+    /// Flattens a scene.
+    pub fn new(scene: Arc<Scene>) -> Result<Self, EngineError> {
+        let packed = pack(&scene, scene.film.width, scene.film.height)?;
+        Ok(Self { normalization: Normalization::of(&scene), packed: Arc::new(packed), scene })
+    }
+
+    /// Puts camera and film in their place, and leaves everything else as it is.
+    pub fn stand(&mut self, camera: &Camera, film: &Film) {
+        let scene = Arc::make_mut(&mut self.scene);
+        (scene.camera, scene.film) = (*camera, *film);
+        let packed = Arc::make_mut(&mut self.packed);
+        packed.move_camera(scene, &self.normalization, film.width, film.height);
+    }
+
+    /// The same, to be changed by itself.
+    pub fn copy(&self) -> Self {
+        let Self { scene, normalization, packed } = self;
+        Self { scene: scene.clone(), normalization: *normalization, packed: packed.clone() }
+    }
+
+    /// The scene.
+    pub fn scene(&self) -> &Arc<Scene> {
+        &self.scene
+    }
+
+    /// Its tables.
+    pub fn packed(&self) -> &Arc<Packed> {
+        &self.packed
+    }
+
+    /// The tables that a scene read anew with this camera and film would have; with the same bits.
+    pub fn settled(&self, camera: &Camera, film: &Film) -> Result<Self, EngineError> {
+        let mut scene = self.scene.clone();
+        let own = Arc::make_mut(&mut scene);
+        (own.camera, own.film) = (*camera, *film);
+        if Normalization::of(&scene) != self.normalization {
+            return Self::new(scene);
+        }
+        let mut ground = Self { scene, ..self.copy() };
+        ground.stand(camera, film);
+        Ok(ground)
+    }
+}
+
+/// Theory: what flattens anew only where it must has the tables of one that always does; a camera within the scene leaves the
+/// normalisation as it is, and one far off does not.
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::layout::SceneTables;
+    use crate::scene;
+    use glam::DVec3;
+
+    fn tables(ground: &Ground) -> Vec<u8> {
+        let mut bytes = SceneTables::new(&ground.packed.scene).bytes;
+        bytes.extend_from_slice(bytemuck::cast_slice(&ground.packed.scene.nodes));
+        bytes
+    }
+
+    #[test]
+    fn settled_tables_are_those_of_a_fresh_scene() {
+        let scene = scene::load("scenes/cornell.toml".as_ref()).unwrap().scene;
+        let mut ground = Ground::new(Arc::new(scene.clone())).unwrap();
+        let small = Film { width: 32, height: 16, ..scene.film };
+        let here = scene.camera;
+        let toward = Camera { position: here.position.lerp(here.target, 0.1), ..here };
+        let off = Camera { position: here.position * 9.0 + DVec3::X, ..here };
+        let mut kept = Vec::new();
+        for camera in [here, toward, off] {
+            ground.stand(&camera, &small);
+            let settled = ground.settled(&camera, &scene.film).unwrap();
+            let mut anew = scene.clone();
+            anew.camera = camera;
+            let fresh = Ground::new(Arc::new(anew)).unwrap();
+            assert!(tables(&settled) == tables(&fresh));
+            kept.push(settled.normalization == ground.normalization);
+            let standing = ground.settled(&camera, &small).unwrap();
+            assert!(tables(&standing) != tables(&fresh), "a film of another size");
+        }
+        assert!(!kept[2], "a camera far off moves the scene's centre");
+    }
+}

@@ -1,0 +1,248 @@
+//! The camera in a person's hand: orbit, pan, dolly, focus and aperture, as functions from camera to camera.
+//!
+//! What comes out is [`tidy`]: its numbers have few digits, so that a scene file that holds them has the same camera.
+
+use glam::{DQuat, DVec3};
+
+use crate::math::FAR;
+use crate::pack::Packed;
+use crate::real::Vec4;
+use crate::scene::Camera;
+use crate::shapes::intersect::intersect_scene;
+use crate::tables::NONE;
+
+/// Least angle between the view direction and the up vector, radians.
+const LEAST_ANGLE: f64 = 0.01;
+/// Digits that numbers of a camera keep, counted from that of its distance.
+const DIGITS: i32 = 6;
+/// The first aperture beyond a pinhole's, over the distance of the focus.
+const FIRST_APERTURE: f64 = 0.002;
+
+/// Unit vectors to the right, to the top of the picture, and along the view.
+pub fn axes(camera: &Camera) -> [DVec3; 3] {
+    let forward = (camera.target - camera.position).normalize();
+    let right = forward.cross(camera.up).normalize();
+    [right, right.cross(forward), forward]
+}
+
+/// Distance from the lens to the target.
+pub fn distance(camera: &Camera) -> f64 {
+    camera.target.distance(camera.position)
+}
+
+/// Turns the camera about its target: `across` radians about the up vector, to the right where positive, and `over` radians
+/// toward it, short of the pole. Its distance and focus stay.
+pub fn orbit(camera: &Camera, across: f64, over: f64) -> Camera {
+    let pole = camera.up.normalize();
+    let offset = camera.position - camera.target;
+    let from_pole = offset.angle_between(pole);
+    let limits = LEAST_ANGLE..=std::f64::consts::PI - LEAST_ANGLE;
+    let wanted = (from_pole - over).clamp(*limits.start(), *limits.end());
+    let [right, ..] = axes(camera);
+    // about the axis to the right a positive angle leads down, away from the pole
+    let risen = DQuat::from_axis_angle(right, wanted - from_pole) * offset;
+    let turned = DQuat::from_axis_angle(pole, across) * risen;
+    tidy(&Camera { position: camera.target + turned, ..*camera })
+}
+
+/// Moves camera and target across the view, so that what is at the target's distance moves by `right` and `down`, in heights
+/// of the picture.
+pub fn pan(camera: &Camera, right: f64, down: f64) -> Camera {
+    let [x, y, _] = axes(camera);
+    let height = 2.0 * distance(camera) * (0.5 * camera.fov_degrees.to_radians()).tan();
+    let shift = (y * down - x * right) * height;
+    tidy(&Camera { position: camera.position + shift, target: camera.target + shift, ..*camera })
+}
+
+/// Moves the camera to `factor` times its distance from the target. The plane in focus stays where it is in the world, or just
+/// before the lens where that has passed it.
+pub fn dolly(camera: &Camera, factor: f64) -> Camera {
+    let before = distance(camera);
+    let position = camera.target + (camera.position - camera.target) * factor;
+    let focus = (camera.focus + before * (factor - 1.0)).max(0.01 * before * factor);
+    tidy(&Camera { position, focus, ..*camera })
+}
+
+/// Brings what is at `depth` along the view direction into focus.
+pub fn focus(camera: &Camera, depth: f64) -> Camera {
+    tidy(&Camera { focus: depth, ..*camera })
+}
+
+/// Opens (`factor` above 1) or closes the lens. From a pinhole it opens to a small one, and a smaller one closes to a pinhole.
+pub fn aperture(camera: &Camera, factor: f64) -> Camera {
+    let first = FIRST_APERTURE * camera.focus;
+    let wanted = camera.aperture * factor;
+    let aperture = match factor > 1.0 {
+        true => wanted.max(first),
+        false if wanted < first => 0.0,
+        false => wanted,
+    };
+    tidy(&Camera { aperture, ..*camera })
+}
+
+/// The same camera in numbers of six digits, counted from the first one of its distance; lens and focus have six of their own. The
+/// focus of a pinhole that is about at the target is just there, where scene files without a focus have it.
+pub fn tidy(camera: &Camera) -> Camera {
+    let places = DIGITS - 1 - distance(camera).log10().floor() as i32;
+    let point = |p: DVec3| DVec3::from(p.to_array().map(|x| rounded(x, places)));
+    let own = |x: f64| if x > 0.0 { rounded(x, DIGITS - 1 - x.log10().floor() as i32) } else { x };
+    let (position, target) = (point(camera.position), point(camera.target));
+    let distance = (target - position).length();
+    let at_target = camera.aperture == 0.0 && (camera.focus - distance).abs() < 1e-4 * distance;
+    let focus = if at_target { distance } else { own(camera.focus) };
+    Camera { position, target, aperture: own(camera.aperture), focus, ..*camera }
+}
+
+/// The number nearest to `x` that is written with so many places after the point, or with so many zeros before it.
+fn rounded(x: f64, places: i32) -> f64 {
+    let text = match usize::try_from(places) {
+        Ok(places) => format!("{x:.places$}"),
+        Err(_) => {
+            let step = 10f64.powi(-places);
+            return (x / step).round() * step;
+        }
+    };
+    // What was printed from a finite number reads back; -0 is no place on its own.
+    text.parse::<f64>().unwrap_or(x) + 0.0
+}
+
+/// Depth along the view direction, in the scene's units, of what is seen at a place in the picture (0, 0 at the top left and 1,
+/// 1 at the bottom right) through the middle of the lens; none where nothing is met.
+pub fn depth_at(packed: &Packed, x: f64, y: f64) -> Option<f64> {
+    let mut camera = packed.scene.camera;
+    camera.aperture = 0.0;
+    (camera.width, camera.height) = (1, 1);
+    let place = Vec4::new(x as f32, y as f32, 0.0, 0.0);
+    let ray = crate::camera::camera_ray(&camera, 0, 0, place);
+    let hit = intersect_scene(&packed.scene, &ray);
+    let depth = f64::from(hit.t * ray.direction.dot(camera.forward)) * packed.unit;
+    (hit.reference != NONE && hit.t < FAR && depth > 0.0).then_some(depth)
+}
+
+/// Theory: turning about a target keeps the distance; a full turn is none; what lies at the target's distance follows the hand
+/// when the camera is panned, by the pinhole's projection; the plane in focus stays in the world when the camera moves along
+/// its axis; a sphere's nearest point lies at the distance of its centre less its radius.
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pack::pack;
+    use crate::scene;
+    use std::f64::consts::{PI, TAU};
+
+    fn camera() -> Camera {
+        Camera {
+            position: DVec3::new(1.0, 2.0, 5.0),
+            target: DVec3::new(0.25, 0.5, -0.5),
+            up: DVec3::Y,
+            fov_degrees: 40.0,
+            aperture: 0.0,
+            focus: 4.0,
+        }
+    }
+
+    fn near(a: DVec3, b: DVec3) -> bool {
+        a.distance(b) < 1e-4
+    }
+
+    /// Where the picture has a world point, in heights of the picture from its middle, right and down.
+    fn projected(camera: &Camera, p: DVec3) -> [f64; 2] {
+        let [x, y, z] = axes(camera);
+        let d = p - camera.position;
+        let height = 2.0 * d.dot(z) * (0.5 * camera.fov_degrees.to_radians()).tan();
+        [d.dot(x) / height, -d.dot(y) / height]
+    }
+
+    #[test]
+    fn orbits_keep_the_distance() {
+        let at = camera();
+        for (across, over) in [(0.3, 0.0), (-2.0, 0.2), (0.0, -0.4), (1.0, 9.0), (1.0, -9.0)] {
+            let turned = orbit(&at, across, over);
+            assert!((distance(&turned) - distance(&at)).abs() < 1e-4);
+            assert_eq!((turned.target, turned.focus), (at.target, at.focus));
+        }
+        assert!(near(orbit(&at, TAU, 0.0).position, at.position), "a full turn");
+        assert!(near(orbit(&orbit(&at, 0.7, 0.2), -0.7, -0.2).position, at.position), "there and back");
+        assert!(!near(orbit(&at, PI, 0.0).position, at.position), "half a turn is another place");
+        assert!(orbit(&at, 0.0, 0.2).position.y > at.position.y, "over leads up");
+        // to the right of who looks from +z to -z is +x
+        assert!(orbit(&Camera { position: DVec3::Z, target: DVec3::ZERO, ..at }, 0.1, 0.0).position.x > 0.0);
+    }
+
+    #[test]
+    fn the_pole_is_not_reached() {
+        for over in [9.0, -9.0] {
+            let high = orbit(&camera(), 0.0, over);
+            let sine = axes(&high)[2].cross(DVec3::Y).length();
+            assert!((sine - LEAST_ANGLE.sin()).abs() < 1e-4, "{sine}");
+        }
+    }
+
+    #[test]
+    fn what_is_panned_follows_the_hand() {
+        let at = camera();
+        let panned = pan(&at, 0.1, -0.25);
+        let [x, y] = projected(&panned, at.target);
+        assert!((x - 0.1).abs() < 1e-4 && (y + 0.25).abs() < 1e-4, "{x} {y}");
+        let wrong = pan(&at, -0.1, -0.25);
+        assert!((projected(&wrong, at.target)[0] - 0.1).abs() > 0.1, "the other way does not");
+    }
+
+    #[test]
+    fn the_plane_in_focus_stays() {
+        let at = camera();
+        for factor in [0.8, 1.3] {
+            let moved = dolly(&at, factor);
+            let plane = |c: &Camera| (c.position + axes(c)[2] * c.focus).dot(axes(&at)[2]);
+            assert!((plane(&moved) - plane(&at)).abs() < 1e-4);
+            assert!((distance(&moved) - factor * distance(&at)).abs() < 1e-4);
+        }
+        assert!(dolly(&at, 0.01).focus > 0.0, "and never gets behind the lens");
+    }
+
+    #[test]
+    fn apertures_open_and_close() {
+        let open = aperture(&camera(), 1.25);
+        assert_eq!(open.aperture, 0.008);
+        assert!(aperture(&open, 1.25).aperture > open.aperture);
+        assert_eq!(aperture(&open, 0.8).aperture, 0.0);
+    }
+
+    #[test]
+    fn tidy_numbers_are_short_and_stay() {
+        let turned = orbit(&camera(), 0.123, 0.04);
+        for x in turned.position.to_array() {
+            assert!(x.to_string().len() <= 9, "{x}");
+        }
+        assert_eq!(tidy(&turned), turned);
+        let pinhole = Camera { focus: distance(&camera()), ..camera() };
+        let turned = orbit(&pinhole, 0.123, 0.04);
+        assert_eq!(turned.focus, distance(&turned), "as a file without a focus has it");
+        let lens = orbit(&Camera { aperture: 0.1, ..pinhole }, 0.123, 0.04);
+        assert!(lens.focus != turned.focus && lens.focus.to_string().len() <= 9);
+        let far = Camera { position: DVec3::new(1.234_567_89e9, 0.0, 0.0), ..camera() };
+        assert!((tidy(&far).position.x / far.position.x - 1.0).abs() < 1e-5);
+    }
+
+    #[test]
+    fn depth_of_a_sphere() {
+        let text = r#"
+            version = 1
+            camera = { position = [7.0, 1.0, 1000.0], target = [7.0, 1.0, 990.0], fov = 40.0 }
+            materials.white = { type = "diffuse", reflectance = 0.5 }
+            lights = [{ type = "point", position = [0.0, 9.0, 0.0], intensity = 1.0 }]
+            shapes = [{ type = "sphere", center = [7.0, 1.0, 995.0], radius = 2.0, material = "white" }]
+        "#;
+        let scene = scene::parse("ball.toml".as_ref(), text.as_bytes()).unwrap().scene;
+        let packed = pack(&scene, 64, 32).unwrap();
+        let depth = depth_at(&packed, 0.5, 0.5).unwrap();
+        assert!((depth - 3.0).abs() < 1e-5, "{depth}");
+        assert_eq!(depth_at(&packed, 0.01, 0.5), None, "beside it is nothing");
+        // off the axis the depth is that along the view direction, not along the ray: 20 degrees up meet the sphere at
+        // t = 5 cos a - sqrt(4 - 25 sin^2 a)
+        let up = (0.5f64 * (40f64).to_radians()).tan();
+        let angle = (0.5 * up).atan();
+        let t = 5.0 * angle.cos() - (4.0 - 25.0 * angle.sin().powi(2)).sqrt();
+        let depth = depth_at(&packed, 0.5, 0.25).unwrap();
+        assert!((depth - t * angle.cos()).abs() < 1e-5 && (depth - t).abs() > 0.01, "{depth}");
+    }
+}

@@ -1,0 +1,389 @@
+//! Everything that the window shows and changes, without a window.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use super::beside::Beside;
+use super::document::{Edits, edited, save};
+use super::frame::{Frame, Wish};
+use super::orbit;
+use super::reload::{Adjust, Reloaded, Reloader};
+use super::view::View;
+use super::worker::Worker;
+use crate::device::{self, Wanted};
+use crate::film::{self, Development, ErrorMap, Provenance};
+use crate::scene::{Aov, Film, Loaded, Scene, SceneErrors, ToneMap};
+use crate::settings::{Direct, Radius, RadiusRule};
+
+/// What a key or a hand asks for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Action {
+    /// Turns the camera about its target, radians.
+    Orbit(f64, f64),
+    /// Moves it across the view, heights of the picture.
+    Pan(f64, f64),
+    /// Moves it to so many times its distance.
+    Dolly(f64),
+    /// Focuses on what is seen at a place in the picture, from 0, 0 to 1, 1.
+    Focus(f64, f64),
+    /// Opens or closes the lens by a factor.
+    Aperture(f64),
+    /// The camera of the file.
+    Home,
+    /// Changes the exposure by so many stops.
+    Expose(f64),
+    /// The next tone map.
+    ToneMap,
+    /// Shows another view.
+    View(View),
+    /// Start radius times so much; from "auto", what was chosen.
+    Radius(f64),
+    /// The radius of "auto".
+    AutoRadius,
+    /// The next radius rule.
+    Rule,
+    /// Photons of a pass times so much.
+    Photons(f64),
+    /// The other way to find direct light.
+    Direct,
+    /// Halts, or goes on.
+    Pause,
+    /// Keeps the picture beside, or puts it away.
+    Keep,
+    /// Shows what is beside, or not.
+    Split,
+    /// Writes the picture.
+    SavePicture,
+    /// Writes the scene.
+    SaveScene,
+}
+
+/// What a session starts with.
+pub struct Start {
+    /// The scene file.
+    pub file: PathBuf,
+    /// What it holds, with the command line's options in force.
+    pub loaded: Loaded,
+    /// How to put them in force again.
+    pub adjust: Adjust,
+    /// Picture files to write.
+    pub outputs: Vec<PathBuf>,
+    /// The device.
+    pub device: Wanted,
+}
+
+/// A scene under the hand.
+pub struct Session {
+    file: PathBuf,
+    /// Where pictures go.
+    pub outputs: Vec<PathBuf>,
+    scene: Arc<Scene>,
+    /// As in the file.
+    saved: Edits,
+    /// As rendered.
+    pub now: Edits,
+    /// On which device.
+    pub device: Wanted,
+    /// What is shown.
+    pub view: View,
+    /// Whether the whole picture is halted.
+    pub paused: bool,
+    /// What the picture is held against.
+    pub beside: Option<Beside>,
+    /// Where the line between both is, from 0 to 1; none where only the picture is shown.
+    pub split: Option<f32>,
+    /// What was done last.
+    pub notice: String,
+    /// What is wrong with the scene file, while the picture shows the last scene without fault.
+    pub trouble: Option<String>,
+    worker: Worker,
+    sent: Wish,
+    number: u64,
+    reloader: Reloader,
+}
+
+impl Session {
+    /// Begins to render. `wake` is called on some thread when there is something new.
+    pub fn start(start: Start, wake: impl Fn() + Send + Sync + Clone + 'static) -> Self {
+        let Start { file, loaded, adjust, outputs, device } = start;
+        let reloader = Reloader::start(file.clone(), loaded.files.clone(), adjust, wake.clone());
+        let now = edits(&loaded);
+        let scene = Arc::new(loaded.scene);
+        let view = View::default();
+        let sent = wish(&now, view, &device);
+        let mut worker = Worker::start(wake);
+        let number = worker.scene(scene.clone(), sent.clone());
+        Self {
+            file,
+            outputs,
+            scene,
+            saved: now.clone(),
+            now,
+            device,
+            view,
+            paused: false,
+            beside: None,
+            split: None,
+            notice: String::new(),
+            trouble: None,
+            worker,
+            sent,
+            number,
+            reloader,
+        }
+    }
+
+    /// The scene's name.
+    pub fn name(&self) -> &str {
+        &self.scene.name
+    }
+
+    /// Whether the scene file has another camera, film or other settings.
+    pub fn is_edited(&self) -> bool {
+        self.now != self.saved
+    }
+
+    /// The newest picture.
+    pub fn frame(&self) -> Option<Arc<Frame>> {
+        self.worker.frame()
+    }
+
+    /// The whole picture of what is asked for now.
+    pub fn whole(&self) -> Option<Arc<Frame>> {
+        self.frame().filter(|frame| !frame.quick && frame.number == self.number)
+    }
+
+    /// Why there are no more pictures.
+    pub fn failure(&self) -> Option<String> {
+        let beside = self.beside.as_ref().and_then(Beside::failure);
+        self.worker.board().failure().or(beside)
+    }
+
+    /// How radiance becomes what is shown.
+    pub fn development(&self) -> Development {
+        let Film { exposure, tonemap, .. } = self.now.film;
+        Development { exposure, tonemap, ..Development::default() }
+    }
+
+    /// Holds the picture against the same scene on another device.
+    pub fn beside_device(&mut self, name: &str, wake: impl Fn() + Send + Sync + 'static) {
+        let mut worker = Worker::start(wake);
+        let wanted = device::parse(name);
+        worker.scene(self.scene.clone(), Wish { device: wanted.clone(), ..self.sent.clone() });
+        self.hold(Beside::device(name, worker, wanted));
+    }
+
+    /// Holds the picture against another.
+    pub fn hold(&mut self, beside: Beside) {
+        self.beside = Some(beside);
+        self.split = Some(0.5);
+    }
+
+    /// Does what is asked for.
+    pub fn act(&mut self, action: Action) {
+        let Edits { camera, film, settings } = &mut self.now;
+        match action {
+            Action::Orbit(across, over) => *camera = orbit::orbit(camera, across, over),
+            Action::Pan(right, down) => *camera = orbit::pan(camera, right, down),
+            Action::Dolly(factor) => *camera = orbit::dolly(camera, factor),
+            Action::Focus(x, y) => self.worker.look(x, y),
+            Action::Aperture(factor) => *camera = orbit::aperture(camera, factor),
+            Action::Home => *camera = self.saved.camera,
+            Action::Expose(stops) => film.exposure += stops,
+            Action::ToneMap => {
+                film.tonemap = match film.tonemap {
+                    ToneMap::Agx => ToneMap::Srgb,
+                    ToneMap::Srgb => ToneMap::Agx,
+                }
+            }
+            Action::View(view) => self.view = view,
+            Action::Radius(factor) => {
+                let chosen = self.whole().map(|frame| frame.setup.settings.radius);
+                let settings = &mut self.now.settings;
+                settings.radius = match (settings.radius, chosen) {
+                    (Radius::Auto, None | Some(Radius::Auto)) => Radius::Auto,
+                    (Radius::Auto, Some(chosen)) => times(chosen, factor),
+                    (radius, _) => times(radius, factor),
+                };
+            }
+            Action::AutoRadius => settings.radius = Radius::Auto,
+            Action::Rule => {
+                settings.radius_rule = match settings.radius_rule {
+                    RadiusRule::Global => RadiusRule::Local,
+                    RadiusRule::Local => RadiusRule::Fixed,
+                    RadiusRule::Fixed => RadiusRule::Global,
+                }
+            }
+            Action::Photons(factor) => {
+                settings.photons = (f64::from(settings.photons) * factor).clamp(1.0, 1e8) as u32;
+            }
+            Action::Direct => {
+                settings.direct = match settings.direct {
+                    Direct::Sampled => Direct::Photons,
+                    Direct::Photons => Direct::Sampled,
+                }
+            }
+            Action::Pause => {
+                self.paused = !self.paused;
+                self.worker.pause(self.paused);
+                if let Some((worker, _)) = self.beside.as_mut().and_then(Beside::worker) {
+                    worker.pause(self.paused);
+                }
+            }
+            Action::Keep => match (self.beside.take(), self.frame()) {
+                (None, Some(frame)) => self.hold(Beside::kept(frame)),
+                _ => self.split = None,
+            },
+            Action::Split => {
+                self.split = match self.split {
+                    None if self.beside.is_some() => Some(0.5),
+                    _ => None,
+                }
+            }
+            Action::SavePicture => self.notice = self.save_picture().unwrap_or_else(|why| why),
+            Action::SaveScene => self.notice = self.save_scene().unwrap_or_else(|why| why),
+        }
+    }
+
+    /// Takes what has come from other threads, and tells the render thread of what has changed.
+    pub fn tick(&mut self) {
+        if let Some(reloaded) = self.reloader.take() {
+            self.take(reloaded);
+        }
+        if let Some(depth) = self.worker.board().take_depth() {
+            self.now.camera = orbit::focus(&self.now.camera, depth);
+            self.notice = format!("focus at {:.4}", self.now.camera.focus);
+        }
+        let wish = self.wish();
+        if wish != self.sent {
+            self.number = self.worker.change(wish.clone());
+            self.sent = wish;
+            self.tell_beside(None);
+        }
+    }
+
+    /// What is to be rendered now. Where nothing else has changed, layers that were asked for before stay, so that to look at
+    /// them again begins nothing anew.
+    fn wish(&self) -> Wish {
+        let mut wish = wish(&self.now, self.view, &self.device);
+        let own = std::mem::replace(&mut wish.film.aovs, self.sent.film.aovs);
+        wish.film.aovs = if wish.same_passes(&self.sent) { own.union(self.sent.film.aovs) } else { own };
+        wish
+    }
+
+    fn tell_beside(&mut self, scene: Option<&Arc<Scene>>) {
+        if let Some((worker, device)) = self.beside.as_mut().and_then(Beside::worker) {
+            let wish = Wish { device: device.clone(), ..self.sent.clone() };
+            match scene {
+                Some(scene) => worker.scene(scene.clone(), wish),
+                None => worker.change(wish),
+            };
+        }
+    }
+
+    /// Takes a scene that was read anew. What the file has changed of camera, film and settings counts; the rest stays as it is
+    /// in the window. A fault leaves everything as it is.
+    fn take(&mut self, reloaded: Reloaded) {
+        let loaded = match reloaded {
+            Ok(loaded) => loaded,
+            Err(errors) => {
+                self.trouble = Some(told(&errors));
+                return;
+            }
+        };
+        self.trouble = None;
+        let read = edits(&loaded);
+        if read.camera != self.saved.camera {
+            self.now.camera = read.camera;
+        }
+        if read.film != self.saved.film {
+            self.now.film = read.film;
+        }
+        if read.settings != self.saved.settings {
+            self.now.settings = read.settings.clone();
+        }
+        self.saved = read;
+        let mut scene = loaded.scene;
+        (scene.camera, scene.film) = (self.scene.camera, self.scene.film);
+        if scene != *self.scene {
+            self.scene = Arc::new(scene);
+            self.sent = wish(&self.now, self.view, &self.device);
+            self.number = self.worker.scene(self.scene.clone(), self.sent.clone());
+            let scene = self.scene.clone();
+            self.tell_beside(Some(&scene));
+            self.notice = "the scene was read anew".to_owned();
+        }
+    }
+
+    fn save_picture(&mut self) -> Result<String, String> {
+        let frame = self.whole().ok_or("not saved: the whole picture is still to come")?;
+        film::check_outputs(&self.outputs).map_err(|error| error.to_string())?;
+        let scene = Arc::make_mut(&mut self.scene);
+        (scene.camera, scene.film) = (self.sent.camera, self.sent.film);
+        let text = std::fs::read_to_string(&self.file).unwrap_or_default();
+        let made = Provenance {
+            scene: scene.name.clone(),
+            scene_file: self.file.display().to_string(),
+            scene_text: edited(&text, &self.saved, &self.now).unwrap_or(text),
+            digest: Some(scene.digest()),
+            film: Some(self.sent.film),
+            materials: scene.materials.iter().map(|material| material.name.clone()).collect(),
+            asked: Some(self.sent.settings.clone()),
+            settings: frame.setup.settings.clone(),
+            device: frame.setup.device.clone(),
+            first_pass: 0,
+            passes_done: frame.passes,
+        };
+        let errors = frame.errors.as_deref().filter(|_| frame.estimated == frame.passes);
+        let mut layers = errors.map_or_else(Vec::new, ErrorMap::layers);
+        layers.extend_from_slice(&frame.layers);
+        let development = self.development();
+        for output in &self.outputs {
+            film::write(output, &frame.picture, &layers, &development, &made)
+                .map_err(|error| error.to_string())?;
+        }
+        let names: Vec<_> = self.outputs.iter().map(|output| output.display().to_string()).collect();
+        let camera =
+            if self.now.camera == self.saved.camera { "" } else { "; its camera is not in the scene file" };
+        Ok(format!("saved {} after {} passes{camera}", names.join(", "), frame.passes))
+    }
+
+    fn save_scene(&mut self) -> Result<String, String> {
+        save(&self.file, &self.saved, &self.now).map_err(|error| format!("not saved: {error}"))?;
+        self.saved = self.now.clone();
+        Ok(format!("saved {}", self.file.display()))
+    }
+}
+
+fn edits(loaded: &Loaded) -> Edits {
+    let film = Film { aovs: std::iter::empty::<Aov>().collect(), window: None, ..loaded.scene.film };
+    Edits { camera: loaded.scene.camera, film, settings: loaded.settings.clone() }
+}
+
+fn wish(now: &Edits, view: View, device: &Wanted) -> Wish {
+    // what a picture is developed with is not rendered
+    let film = Film { aovs: view.aovs(), exposure: 0.0, tonemap: ToneMap::default(), ..now.film };
+    Wish { camera: now.camera, film, settings: now.settings.clone(), device: device.clone() }
+}
+
+fn times(radius: Radius, factor: f64) -> Radius {
+    // three digits are enough, and what is doubled and halved is what it was
+    let short = |x: f64| format!("{:.2e}", x * factor).parse().unwrap_or(x);
+    match radius {
+        Radius::Auto => Radius::Auto,
+        Radius::Pixels(pixels) => Radius::Pixels(short(pixels)),
+        Radius::Units(units) => Radius::Units(short(units)),
+    }
+}
+
+/// What is wrong with a scene, an error a line.
+fn told(errors: &SceneErrors) -> String {
+    let line = |finding: &crate::scene::Finding| {
+        let place = finding.line_column().map_or(String::new(), |(line, column)| format!(":{line}:{column}"));
+        let hint = [Some(finding.label()), finding.help()];
+        let hint: Vec<_> = hint.into_iter().flatten().filter(|text| !text.is_empty()).collect();
+        let hint = if hint.is_empty() { String::new() } else { format!(" ({})", hint.join("; ")) };
+        format!("{}{place}: {}{hint}", finding.file(), finding.message())
+    };
+    errors.errors.iter().map(line).collect::<Vec<_>>().join("\n")
+}

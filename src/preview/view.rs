@@ -1,0 +1,210 @@
+//! What is shown of a picture: radiance developed for a display, one of its parts, or what a picture file holds beside it, in
+//! colors with a scale.
+
+use std::num::NonZero;
+use std::thread;
+
+use super::frame::Frame;
+use crate::film::exr_file::Channel;
+use crate::film::heat::heat;
+use crate::film::tonemap::srgb_from_linear;
+use crate::film::{Development, Picture};
+use crate::layers::NO_DEPTH;
+use crate::scene::{Aov, Aovs};
+
+/// A way to look at a picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum View {
+    /// All light.
+    #[default]
+    Picture,
+    /// Light straight from lamps, found by shadow rays.
+    Direct,
+    /// Light by photons that no diffuse surface has scattered.
+    Caustic,
+    /// Light by photons that diffuse surfaces have scattered.
+    Indirect,
+    /// Reflectance.
+    Albedo,
+    /// Shading normals, from -1 to 1 as from black to white.
+    Normal,
+    /// Distance along the view direction.
+    Depth,
+    /// Gather radius.
+    Radius,
+    /// Photons gathered in the last pass.
+    Photons,
+    /// Variance of the luminance.
+    Variance,
+}
+
+impl View {
+    /// All, in the order of their keys.
+    pub const ALL: [Self; 10] = [
+        Self::Picture,
+        Self::Direct,
+        Self::Caustic,
+        Self::Indirect,
+        Self::Albedo,
+        Self::Normal,
+        Self::Depth,
+        Self::Radius,
+        Self::Photons,
+        Self::Variance,
+    ];
+
+    /// Its name.
+    pub fn word(self) -> &'static str {
+        self.aov().map_or("picture", Aov::word)
+    }
+
+    /// What it takes beside radiance.
+    pub fn aov(self) -> Option<Aov> {
+        Some(match self {
+            Self::Picture => return None,
+            Self::Direct => Aov::Direct,
+            Self::Caustic => Aov::Caustic,
+            Self::Indirect => Aov::Indirect,
+            Self::Albedo => Aov::Albedo,
+            Self::Normal => Aov::Normal,
+            Self::Depth => Aov::Depth,
+            Self::Radius => Aov::Radius,
+            Self::Photons => Aov::Photons,
+            Self::Variance => Aov::Variance,
+        })
+    }
+
+    /// What a render has to be asked for; variance is there anyway.
+    pub fn aovs(self) -> Aovs {
+        self.aov().filter(|aov| *aov != Aov::Variance).into_iter().collect()
+    }
+}
+
+/// A picture for a display.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shown {
+    /// Pixels per row.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// sRGB values, row by row.
+    pub rgb: Vec<[u8; 3]>,
+    /// What the ends of the colors stand for, where there is a scale.
+    pub scale: Option<Scale>,
+}
+
+/// What colors stand for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scale {
+    /// The number at the dark end.
+    pub low: f64,
+    /// The number at the bright end.
+    pub high: f64,
+    /// Whether equal steps are equal ratios.
+    pub logarithmic: bool,
+    /// In what it is counted.
+    pub unit: &'static str,
+}
+
+impl Scale {
+    /// The color of a number.
+    pub fn color(&self, value: f64) -> [u8; 3] {
+        let Self { low, high, logarithmic, .. } = *self;
+        let at = |x: f64| if logarithmic { x.max(low).ln() } else { x };
+        heat(((at(value) - at(low)) / (at(high) - at(low)).max(1e-300)).clamp(0.0, 1.0))
+    }
+}
+
+/// Shows a frame, in the colors of `scale` where another has one; nothing where it does not have what the view needs, as before
+/// the fourth pass for the variance.
+pub fn show(frame: &Frame, view: View, development: &Development, scale: Option<Scale>) -> Option<Shown> {
+    let Picture { width, height, .. } = frame.picture;
+    let of = |rgb, scale| Some(Shown { width, height, rgb, scale });
+    let plane = |name: &str| {
+        let named = |channel: &&Channel| channel.name == name;
+        frame.layers.iter().find(named).map(|channel| channel.plane.values.as_slice())
+    };
+    let triple = |names: [&str; 3], color: &(dyn Fn([f64; 3]) -> [u8; 3] + Sync)| {
+        let [r, g, b] = names.map(plane);
+        let (r, g, b) = (r?, g?, b?);
+        Some(mapped(r.len(), |i| color([r[i], g[i], b[i]])))
+    };
+    let light = |rgb: [f64; 3]| development.bytes(rgb.map(|x| x as f32));
+    let byte = |x: f64| (255.0 * x.clamp(0.0, 1.0)).round() as u8;
+    match view {
+        View::Picture => of(developed(&frame.picture, development), None),
+        View::Direct => of(triple(["direct.R", "direct.G", "direct.B"], &light)?, None),
+        View::Caustic => of(triple(["caustic.R", "caustic.G", "caustic.B"], &light)?, None),
+        View::Indirect => of(triple(["indirect.R", "indirect.G", "indirect.B"], &light)?, None),
+        View::Albedo => {
+            let color = |rgb: [f64; 3]| rgb.map(|x| byte(srgb_from_linear(x.clamp(0.0, 1.0))));
+            of(triple(["albedo.R", "albedo.G", "albedo.B"], &color)?, None)
+        }
+        View::Normal => {
+            let color = |n: [f64; 3]| n.map(|x| byte(0.5 + 0.5 * x));
+            of(triple(["normal.X", "normal.Y", "normal.Z"], &color)?, None)
+        }
+        View::Depth => {
+            // what is met nowhere lies at the far end
+            let values = plane("depth.Z")?;
+            let far = values.iter().filter(|z| **z < NO_DEPTH).fold(0.0f64, |far, z| far.max(*z));
+            let near = values.iter().fold(far, |near, z| near.min(*z));
+            let own = Scale { low: near, high: far, logarithmic: true, unit: "units" };
+            let scale = scale.unwrap_or(own);
+            of(colors(values, &scale), Some(scale))
+        }
+        View::Radius | View::Photons => {
+            let (name, unit) =
+                if view == View::Radius { ("radius.Y", "units") } else { ("photons.Y", "photons") };
+            let values = plane(name)?;
+            let own = || Scale { low: 0.0, high: high(values), logarithmic: false, unit };
+            let scale = scale.unwrap_or_else(own);
+            of(colors(values, &scale), Some(scale))
+        }
+        View::Variance => {
+            let variance = frame.errors.as_ref()?.variance();
+            let high = high(&variance.values);
+            let own = Scale { low: 1e-6 * high, high, logarithmic: true, unit: "(W/sr/m²)²" };
+            let scale = scale.unwrap_or(own);
+            of(colors(&variance.values, &scale), Some(scale))
+        }
+    }
+}
+
+/// A picture's radiance as display values.
+pub fn developed(picture: &Picture, development: &Development) -> Vec<[u8; 3]> {
+    mapped(picture.rgb.len(), |i| development.bytes(picture.rgb[i]))
+}
+
+/// Colors by number, on threads of their own: those that render may be busy for as long as a pass takes, and a window must not
+/// wait for them.
+fn mapped(count: usize, color: impl Fn(usize) -> [u8; 3] + Sync) -> Vec<[u8; 3]> {
+    const LEAST: usize = 1 << 14;
+    let threads = thread::available_parallelism().map_or(1, NonZero::get);
+    let chunk = count.div_ceil(threads).max(LEAST);
+    let mut colors = vec![[0; 3]; count];
+    thread::scope(|scope| {
+        for (number, part) in colors.chunks_mut(chunk).enumerate() {
+            let color = &color;
+            scope.spawn(move || {
+                part.iter_mut().enumerate().for_each(|(i, rgb)| *rgb = color(number * chunk + i));
+            });
+        }
+    });
+    colors
+}
+
+fn colors(values: &[f64], scale: &Scale) -> Vec<[u8; 3]> {
+    mapped(values.len(), |i| scale.color(values[i]))
+}
+
+/// All but one in two hundred are below it; above zero.
+fn high(values: &[f64]) -> f64 {
+    let mut sorted: Vec<f64> = values.iter().copied().filter(|x| x.is_finite()).collect();
+    if sorted.is_empty() {
+        return 1.0;
+    }
+    let at = sorted.len() - 1 - sorted.len() / 200;
+    let (_, high, _) = sorted.select_nth_unstable_by(at, f64::total_cmp);
+    if *high > 0.0 { *high } else { sorted.iter().fold(0.0f64, |most, x| most.max(*x)).max(1e-30) }
+}

@@ -1,0 +1,289 @@
+//! The render thread: takes wishes, shows a small picture at once and the whole one when nothing has changed for a while.
+//!
+//! It makes the small picture itself, by the CPU engine, and leaves the whole one to [`Full`], so that no wish waits for a
+//! pass over all pixels, for a compiler, or for a kd-tree that is built anew.
+
+use std::sync::Arc;
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
+use std::thread::{self, JoinHandle};
+use std::time::{Duration, Instant};
+
+use super::frame::{Board, Frame, Wish};
+use super::full::Full;
+use super::ground::Ground;
+use super::orbit::depth_at;
+use super::quick::{Divisor, Quick};
+use crate::gpu::GpuEngine;
+use crate::scene::Scene;
+
+/// How long nothing must change before the whole picture is begun.
+const STILL: Duration = Duration::from_millis(250);
+/// How long to wait for a render that is to end before looking again.
+const SOON: Duration = Duration::from_millis(10);
+/// How long to wait where nothing is going on.
+const LONG: Duration = Duration::from_secs(3600);
+
+enum Command {
+    Scene(u64, Arc<Scene>, Wish),
+    Change(u64, Wish),
+    Passes(u32),
+    Pause(bool),
+    Look(f64, f64),
+}
+
+/// A render thread; ends with its handle.
+pub struct Worker {
+    commands: Option<Sender<Command>>,
+    board: Arc<Board>,
+    number: u64,
+    last: Option<Wish>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Worker {
+    /// Starts one; `wake` is called, on some thread, whenever there is something new to see.
+    pub fn start(wake: impl Fn() + Send + Sync + 'static) -> Self {
+        let (sender, receiver) = mpsc::channel();
+        let board = Arc::new(Board::new(wake));
+        let own = board.clone();
+        let thread = thread::spawn(move || {
+            // threads of its own, since the others may be busy with the whole picture for as long as a pass takes
+            let work = move || Hand::new(own).work(&receiver);
+            match rayon::ThreadPoolBuilder::new().build() {
+                Ok(pool) => pool.install(work),
+                Err(_) => work(),
+            }
+        });
+        Self { commands: Some(sender), board, number: 0, last: None, thread: Some(thread) }
+    }
+
+    /// Renders another scene; the wish's number.
+    pub fn scene(&mut self, scene: Arc<Scene>, wish: Wish) -> u64 {
+        self.number += 1;
+        self.board.begin(self.number);
+        self.last = Some(wish.clone());
+        self.send(Command::Scene(self.number, scene, wish));
+        self.number
+    }
+
+    /// Renders the scene in another way; the wish's number, which is that of the last one where only the number of passes
+    /// differs.
+    pub fn change(&mut self, wish: Wish) -> u64 {
+        let passes = wish.settings.passes;
+        let command = match self.last.replace(wish.clone()) {
+            Some(last) if last.same_passes(&wish) => Command::Passes(passes),
+            _ => {
+                self.number += 1;
+                self.board.begin(self.number);
+                Command::Change(self.number, wish)
+            }
+        };
+        self.send(command);
+        self.number
+    }
+
+    /// Halts the whole picture, or lets it go on. Small ones are made all the same.
+    pub fn pause(&self, paused: bool) {
+        self.send(Command::Pause(paused));
+    }
+
+    /// Looks how deep a place in the picture is, from 0, 0 at the top left to 1, 1; [`Board::take_depth`] tells.
+    pub fn look(&self, x: f64, y: f64) {
+        self.send(Command::Look(x, y));
+    }
+
+    /// What there is to see.
+    pub fn board(&self) -> &Board {
+        &self.board
+    }
+
+    /// The newest picture.
+    pub fn frame(&self) -> Option<Arc<Frame>> {
+        self.board.frame()
+    }
+
+    fn send(&self, command: Command) {
+        if let Some(commands) = &self.commands {
+            // The thread ends after its commands do, so there is someone to take it.
+            let _ = commands.send(command);
+        }
+    }
+}
+
+impl Drop for Worker {
+    fn drop(&mut self) {
+        self.commands = None;
+        // A thread that has panicked has said so.
+        let _ = self.thread.take().map(JoinHandle::join);
+    }
+}
+
+/// The thread's state.
+struct Hand {
+    board: Arc<Board>,
+    ground: Option<Ground>,
+    wish: Option<Wish>,
+    number: u64,
+    divisor: Divisor,
+    quick: Option<Quick>,
+    full: Option<Full>,
+    /// Renders that are to end.
+    ending: Option<Full>,
+    spare: Option<Box<GpuEngine>>,
+    /// When the whole picture is to be begun.
+    settle: Option<Instant>,
+    paused: bool,
+}
+
+impl Hand {
+    fn new(board: Arc<Board>) -> Self {
+        Self {
+            board,
+            ground: None,
+            wish: None,
+            number: 0,
+            divisor: Divisor::default(),
+            quick: None,
+            full: None,
+            ending: None,
+            spare: None,
+            settle: None,
+            paused: false,
+        }
+    }
+
+    fn work(mut self, commands: &Receiver<Command>) {
+        loop {
+            let mut command = match commands.recv_timeout(self.leisure()) {
+                Ok(command) => Some(command),
+                Err(RecvTimeoutError::Timeout) => None,
+                Err(RecvTimeoutError::Disconnected) => break,
+            };
+            // of changes that came meanwhile only the last counts
+            let mut change = None;
+            while let Some(taken) = command {
+                match taken {
+                    Command::Change(number, wish) => change = Some((number, wish)),
+                    Command::Scene(number, scene, wish) => {
+                        change = None;
+                        self.take_scene(number, scene, wish);
+                    }
+                    Command::Passes(passes) => match &mut change {
+                        Some((_, wish)) => wish.settings.passes = passes,
+                        None => self.set_passes(passes),
+                    },
+                    Command::Pause(paused) => self.pause(paused),
+                    Command::Look(x, y) => {
+                        let depth = self.ground.as_ref().and_then(|ground| depth_at(ground.packed(), x, y));
+                        depth.into_iter().for_each(|depth| self.board.tell_depth(depth));
+                    }
+                }
+                command = commands.try_recv().ok();
+            }
+            if let Some((number, wish)) = change {
+                self.take_change(number, wish);
+            }
+            self.go_on();
+        }
+        for full in [self.full.take(), self.ending.take()].into_iter().flatten() {
+            full.end();
+            full.join();
+        }
+    }
+
+    /// How long it can wait for the next command.
+    fn leisure(&self) -> Duration {
+        if self.quick.is_some() {
+            return Duration::ZERO;
+        }
+        match (self.ending.is_some(), self.settle.filter(|_| !self.paused)) {
+            (true, _) => SOON,
+            (false, Some(at)) => at.saturating_duration_since(Instant::now()),
+            (false, None) => LONG,
+        }
+    }
+
+    fn take_scene(&mut self, number: u64, scene: Arc<Scene>, wish: Wish) {
+        self.halt(number);
+        let mut scene = scene;
+        let own = Arc::make_mut(&mut scene);
+        (own.camera, own.film) = (wish.camera, wish.film);
+        match Ground::new(scene) {
+            Ok(ground) => {
+                self.ground = Some(ground);
+                self.begin(wish, Duration::ZERO);
+            }
+            Err(error) => {
+                self.ground = None;
+                self.board.fail(number, error.to_string());
+            }
+        }
+    }
+
+    fn take_change(&mut self, number: u64, wish: Wish) {
+        self.halt(number);
+        self.begin(wish, STILL);
+    }
+
+    fn set_passes(&mut self, passes: u32) {
+        self.wish.iter_mut().for_each(|wish| wish.settings.passes = passes);
+        self.full.iter().for_each(|full| full.set_passes(passes));
+    }
+
+    /// Ends what is rendered; what comes is for `number`.
+    fn halt(&mut self, number: u64) {
+        self.number = number;
+        self.quick = None;
+        self.settle = None;
+        if let Some(full) = self.full.take() {
+            full.end();
+            self.ending = Some(full);
+        }
+    }
+
+    fn begin(&mut self, wish: Wish, after: Duration) {
+        let Some(ground) = &mut self.ground else {
+            return;
+        };
+        match Quick::first(self.number, ground, &wish, &mut self.divisor, &self.board) {
+            Ok(quick) => {
+                self.quick = Some(quick);
+                self.settle = Some(Instant::now() + after);
+            }
+            Err(error) => {
+                self.board.fail(self.number, error.to_string());
+            }
+        }
+        self.wish = Some(wish);
+    }
+
+    fn pause(&mut self, paused: bool) {
+        self.paused = paused;
+        self.full.iter().for_each(|full| full.pause(paused));
+    }
+
+    /// Does what there is to do beside commands.
+    fn go_on(&mut self) {
+        if self.ending.as_ref().is_some_and(Full::is_finished) {
+            self.spare = self.ending.take().and_then(Full::join);
+        }
+        let due = self.settle.is_some_and(|at| at <= Instant::now());
+        if due && self.ending.is_none() && !self.paused {
+            self.settle = None;
+            if let (Some(ground), Some(wish)) = (&self.ground, &self.wish) {
+                let (ground, spare) = (ground.copy(), self.spare.take());
+                let board = self.board.clone();
+                self.full = Some(Full::start(self.number, ground, wish.clone(), spare, board));
+            }
+        }
+        let whole = self.full.as_ref().is_some_and(Full::is_made);
+        if let Some(quick) = &mut self.quick {
+            if whole || quick.is_done() {
+                self.quick = None;
+            } else if let Err(error) = quick.step(&self.board) {
+                self.quick = None;
+                self.board.fail(self.number, error.to_string());
+            }
+        }
+    }
+}

@@ -1,0 +1,226 @@
+//! The preview's window, for real: under Xvfb, drawn and rendered by the software Vulkan driver, with a hand made by xdotool.
+//!
+//! Theory: what a hand does to the window is in the files that it saves: the camera it turned, the setting it changed, and a
+//! picture that a plain render makes again bit for bit.
+#![cfg(all(feature = "preview", target_os = "linux"))]
+
+mod software;
+
+use std::fs;
+use std::io::{BufRead, BufReader};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use caustica::film::{file::read_exr, read};
+use caustica::scene;
+
+const SCENE: &str = r#"# A ball of glass.
+version = 1
+[camera]
+position = [0.0, 1.0, 5.0] # before it
+target = [0.0, 0.5, 0.0]
+fov = 40.0
+[film]
+width = 96
+height = 64
+[render]
+passes = 4
+photons = 2000 # few
+[materials.white]
+type = "diffuse"
+reflectance = 0.5
+[materials.glass]
+type = "glass"
+ior = 1.5
+[[shapes]]
+type = "sphere"
+center = [0.0, 0.7, 0.0]
+radius = 0.5
+material = "glass"
+[[shapes]]
+type = "plane"
+point = [0.0, 0.0, 0.0]
+normal = [0.0, 1.0, 0.0]
+material = "white"
+[[shapes]]
+type = "disc"
+center = [0.0, 3.0, 1.0]
+normal = [0.0, -1.0, 0.0]
+radius = 0.3
+material = "white"
+emission = [20.0, 20.0, 20.0]
+"#;
+
+const PATIENCE: Duration = Duration::from_secs(120);
+
+/// A process that ends with the test.
+struct Owned(Child);
+
+impl Drop for Owned {
+    fn drop(&mut self) {
+        // It may have ended by itself.
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("preview_window").join(name);
+    if folder.exists() {
+        fs::remove_dir_all(&folder).unwrap();
+    }
+    fs::create_dir_all(&folder).unwrap();
+    fs::write(folder.join("ball.toml"), SCENE).unwrap();
+    folder
+}
+
+fn preview(folder: &Path, arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_caustica"));
+    command.arg("preview").args(arguments).current_dir(folder);
+    for name in ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"] {
+        command.env_remove(name);
+    }
+    command.env("NODEVICE_SELECT", "1").env("NO_COLOR", "1");
+    command
+}
+
+/// An X server without a screen; its display.
+fn server() -> (Owned, String) {
+    let screen = ["-displayfd", "1", "-screen", "0", "1100x760x24", "-nolisten", "tcp"];
+    let started = Command::new("Xvfb").args(screen).stdout(Stdio::piped()).stderr(Stdio::null()).spawn();
+    let mut server = Owned(started.unwrap_or_else(|error| {
+        panic!("Xvfb does not start ({error}): install it (Debian and Ubuntu: apt install xvfb xdotool)")
+    }));
+    let mut line = String::new();
+    BufReader::new(server.0.stdout.take().unwrap()).read_line(&mut line).unwrap();
+    (server, format!(":{}", line.trim()))
+}
+
+/// What xdotool does with these words; what it prints.
+fn hand(display: &str, words: &[&str]) -> String {
+    let output = Command::new("xdotool").args(words).env("DISPLAY", display).output();
+    let output = output.unwrap_or_else(|error| {
+        panic!("xdotool does not start ({error}): install it (Debian and Ubuntu: apt install xvfb xdotool)")
+    });
+    assert!(output.status.success(), "{words:?}: {}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8_lossy(&output.stdout).into_owned()
+}
+
+/// Does something again and again until it has come about.
+fn until(what: &str, mut act: impl FnMut(), came: impl Fn() -> bool) {
+    let begun = Instant::now();
+    while !came() {
+        assert!(begun.elapsed() < PATIENCE, "{what} does not come about");
+        act();
+        sleep(Duration::from_millis(250));
+    }
+}
+
+fn photons(file: &Path) -> Option<String> {
+    read_exr(file).ok()?.attributes.get("caustica.photons").cloned()
+}
+
+#[test]
+fn a_hand_turns_changes_saves_and_closes() {
+    software::software();
+    let folder = folder("hand");
+    let (_server, display) = server();
+    let mut command = preview(&folder, &["ball.toml", "--device", "software", "-o", "picture.exr"]);
+    let mut window = Owned(command.env("DISPLAY", &display).stderr(Stdio::piped()).spawn().unwrap());
+    let key = |key: &str| {
+        hand(&display, &["key", key]);
+    };
+    let mut ids = String::new();
+    let begun = Instant::now();
+    while ids.is_empty() {
+        ids = found(&display);
+        assert!(window.0.try_wait().unwrap().is_none() && begun.elapsed() < PATIENCE, "there is no window");
+        sleep(Duration::from_millis(50));
+    }
+    hand(&display, &["windowfocus", "--sync", ids.trim()]);
+    let picture = folder.join("picture.exr");
+    until("the first picture", || key("s"), || picture.exists());
+    assert_eq!(photons(&picture).as_deref(), Some("2000"));
+
+    // a drag to the right and down from the middle of the picture
+    let steps = ["mousemove", "280", "280", "mousedown", "1", "sleep", "0.1", "mousemove", "310", "290"];
+    hand(
+        &display,
+        &[&steps[..], &["sleep", "0.1", "mousemove", "340", "300", "sleep", "0.1", "mouseup", "1"]].concat(),
+    );
+    key("comma");
+    key("ctrl+s");
+    let file = folder.join("ball.toml");
+    until("a saved scene", || (), || fs::read_to_string(&file).unwrap() != SCENE);
+    let text = fs::read_to_string(&file).unwrap();
+    let differ: Vec<_> = text.lines().zip(SCENE.lines()).filter(|(a, b)| a != b).collect();
+    assert_eq!(text.lines().count(), SCENE.lines().count());
+    assert!(
+        matches!(differ[..], [(position, _), (photons, _)]
+        if position.starts_with("position = [") && position.ends_with("] # before it") && photons == "photons = 1000 # few"),
+        "{differ:?}"
+    );
+    let camera = scene::load(&file).unwrap().scene.camera;
+    let turned = camera.position - camera.target;
+    assert!((turned.length() - 25.25f64.sqrt()).abs() < 1e-3, "an orbit keeps the distance");
+    // what is before the target follows the hand: the camera goes left and up
+    assert!(turned.x < -0.1 && turned.y > 0.6, "{turned}");
+
+    until("the picture turned", || key("s"), || photons(&picture).as_deref() == Some("1000"));
+    key("ctrl+q");
+    let ended = wait(&mut window.0);
+    assert!(ended.success(), "{ended}");
+
+    // a plain render of what was saved has the same bits
+    let mut again = Command::new(env!("CARGO_BIN_EXE_caustica"));
+    again.args(["render", "--quiet", "--like", "picture.exr", "-o", "again.exr"]).current_dir(&folder);
+    assert!(again.status().unwrap().success());
+    let bits = |name: &str| {
+        read(&folder.join(name)).unwrap().rgb.iter().map(|p| p.map(f32::to_bits)).collect::<Vec<_>>()
+    };
+    assert!(bits("again.exr") == bits("picture.exr"));
+}
+
+/// The window's number; empty where there is none yet, which xdotool calls a failure.
+fn found(display: &str) -> String {
+    let words = ["search", "--onlyvisible", "--name", "ball - caustica"];
+    let output = Command::new("xdotool").args(words).env("DISPLAY", display).output();
+    let output = output.unwrap_or_else(|error| {
+        panic!("xdotool does not start ({error}): install it (Debian and Ubuntu: apt install xvfb xdotool)")
+    });
+    String::from_utf8_lossy(&output.stdout).trim().to_owned()
+}
+
+fn wait(child: &mut Child) -> std::process::ExitStatus {
+    let begun = Instant::now();
+    loop {
+        if let Some(status) = child.try_wait().unwrap() {
+            return status;
+        }
+        assert!(begun.elapsed() < PATIENCE, "the window does not close");
+        sleep(Duration::from_millis(20));
+    }
+}
+
+#[test]
+fn without_a_desktop_the_reason_is_told() {
+    let folder = folder("nowhere");
+    for (display, arguments, code, words) in [
+        (None, &["ball.toml", "--device", "cpu"][..], 1, "DISPLAY"),
+        (Some(":4999"), &["ball.toml", "--device", "cpu"], 1, "no window can be opened"),
+        (None, &["ball.toml", "--device", "nonesuch"], 4, "no device `nonesuch`"),
+        (None, &["gone.toml"], 1, "gone.toml"),
+        (None, &["ball.toml", "-o", "picture.gif"], 2, ".exr"),
+    ] {
+        let mut command = preview(&folder, arguments);
+        display.into_iter().for_each(|display| {
+            command.env("DISPLAY", display);
+        });
+        let output = command.output().unwrap();
+        let error = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(code), "{arguments:?}: {error}");
+        assert!(error.contains(words), "{error}");
+    }
+}
