@@ -49,6 +49,10 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     let Arguments { scene: file, output, device, against, against_device, overrides } = arguments;
     let outputs = if output.is_empty() { vec![default_output(&file)] } else { output };
     check_outputs(&outputs)?;
+    if overrides.allowed.are_given() {
+        let help = "leave --root and --limit out, or use render";
+        return Err(Failure::wrong_use("a preview reads changed files again without them", help));
+    }
     let mut loaded = caustica::scene::load(&file)?;
     overrides.apply(&mut loaded.scene, &mut loaded.settings);
     let device = device::parse(&device);
