@@ -45,7 +45,7 @@ pub enum SaveError {
         /// The scene file.
         file: PathBuf,
         /// What is wrong.
-        errors: SceneErrors,
+        errors: Box<SceneErrors>,
     },
 }
 
@@ -58,7 +58,8 @@ pub fn save(file: &Path, before: &Edits, after: &Edits) -> Result<(), SaveError>
     })?;
     let edited =
         edited(&text, before, after).map_err(|what| SaveError::Toml { file: file.to_owned(), what })?;
-    parse(file, edited.as_bytes()).map_err(|errors| SaveError::Scene { file: file.to_owned(), errors })?;
+    parse(file, edited.as_bytes())
+        .map_err(|errors| SaveError::Scene { file: file.to_owned(), errors: Box::new(errors) })?;
     Ok(write_whole(file, edited.as_bytes())?)
 }
 
