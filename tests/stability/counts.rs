@@ -225,8 +225,8 @@ fn photon_counts(b: &Bench) -> Figure {
         [[shapes]]\ntype = \"disc\"\ncenter = [0, 0, 0]\nnormal = [0, 1, 0]\nradius = 1\nmaterial = \"m\"\n\
         [[lights]]\ntype = \"point\"\nposition = [0, 1, 0]\nintensity = 1.0\n";
     let p = 0.5 * (1.0 - 0.5f64.sqrt());
-    // rho / pi times the flux that arrives over the gather disc's area
-    let truth = 0.5 / std::f64::consts::PI * (4.0 * std::f64::consts::PI * p) / (std::f64::consts::PI * 4.0);
+    // rho / pi times the flux that arrives over the area of the shape, which clips the gather disc
+    let truth = 0.5 / std::f64::consts::PI * (4.0 * std::f64::consts::PI * p) / std::f64::consts::PI;
     let mut counts = vec![(1, b.samples(200, 4000)), (2, b.samples(100, 2000)), (255, 8), (65_537, 1)];
     if b.long {
         counts.push((16_700_000, 1));
