@@ -22,6 +22,9 @@ const BLOCK: usize = 16;
 /// Added to the squared luminance that an error is relative to, as in relMSE.
 const DARK: f64 = 0.01;
 
+/// Pixels without an event that a pixel with one stands for, at the most.
+const UNSEEN_MOST: f64 = 2.0;
+
 /// Standard deviation, in pixels, of the Gaussian that smooths the map of the bias.
 const SMOOTHING: f64 = 2.0;
 
@@ -203,11 +206,15 @@ impl Term {
 /// the squared relative error is `x^2 / ((b + x)^2 + DARK) <= x / (2 (b + sqrt(b^2 + DARK)))`, hence v over that. The number
 /// of events is told by the mean over its deviation, squared: n events of v each have the mean n v and the variance n v^2.
 /// What is always seen adds to the mean, so two events' worth still count half.
+///
+/// However bright, an event counts for [`UNSEEN_MOST`] pixels: those that have less than one chance in that many to meet
+/// theirs are what the largest 0.1 % are left out for.
 fn unseen(p: &PixelError) -> f64 {
     let single = 0.5 * (3.0 - p.luminance * p.luminance / p.variance);
     let event = p.variance.sqrt();
     let seen = (p.luminance - event).max(0.0);
-    if single > 0.0 { single.min(1.0) * event / (2.0 * (seen + seen.hypot(DARK.sqrt()))) } else { 0.0 }
+    let lacking = event / (2.0 * (seen + seen.hypot(DARK.sqrt())));
+    if single > 0.0 { single.min(1.0) * lacking.min(UNSEEN_MOST) } else { 0.0 }
 }
 
 /// All pixels but the 0.1 %, rounded up, of the largest variance; of a single pixel that one. The rank does not look at
