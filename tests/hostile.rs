@@ -4,6 +4,8 @@
 //! Theory: a path is inside if, with all links resolved, it begins with the root, links resolved. So each way out is
 //! paired here with one that looks alike and stays inside, which must be read: a check that refuses everything fails.
 
+mod support;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -15,8 +17,7 @@ const OBJ: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
 
 /// A folder `root` with a mesh, a picture and a profile, and beside it a folder `out` with the same.
 fn folders(name: &str) -> (PathBuf, PathBuf) {
-    let base = Path::new(env!("CARGO_TARGET_TMPDIR")).join("hostile").join(name);
-    let _ = fs::remove_dir_all(&base);
+    let base = support::folder(name);
     let (root, out) = (base.join("root"), base.join("out"));
     for folder in [&root, &out] {
         fs::create_dir_all(folder.join("sub")).unwrap();

@@ -6,11 +6,11 @@
 #![cfg(feature = "preview")]
 
 mod software;
+mod support;
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Command;
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 use std::time::{Duration, Instant};
 
 use caustica::device::{self, Wanted};
@@ -23,60 +23,26 @@ use caustica::preview::worker::Worker;
 use caustica::scene::{self, Aov, Loaded};
 use caustica::settings::{Direct, Method, Radius, RadiusRule};
 use glam::DVec3;
+use support::{FLOOR, LAMP, MESH, ball, caustica, error, folder_with};
 
-const SCENE: &str = r#"# A ball of glass.
-version = 1
-[camera]
-position = [0.0, 1.0, 5.0] # before it
-target = [0.0, 0.5, 0.0]
-fov = 40.0
-[film]
-width = 48
-height = 32
-[render]
-passes = 4
-photons = 2000
-[materials.white]
-type = "diffuse"
-reflectance = 0.5
-[materials.glass]
-type = "glass"
-ior = 1.5
-[[shapes]]
-type = "sphere"
-center = [0.0, 0.7, 0.0]
-radius = 0.5
-material = "glass"
+/// With comments, which no saving takes away.
+static SCENE: LazyLock<String> = LazyLock::new(|| {
+    let scene = ball((48, 32), "passes = 4\nphotons = 2000", &[BALL, MESH, LAMP]);
+    format!("# A ball of glass.\n{}", scene.replace("5.0]\ntarget", "5.0] # before it\ntarget"))
+});
+
+const BALL: &str = r#"
 [[shapes]]
 type = "sphere"
 center = [1.2, 0.5, -0.5]
 radius = 0.5
 material = "white"
-[[shapes]]
-type = "mesh"
-file = "floor.obj"
-material = "white"
-[[shapes]]
-type = "disc"
-center = [0.0, 3.0, 1.0]
-normal = [0.0, -1.0, 0.0]
-radius = 0.3
-material = "white"
-emission = [20.0, 20.0, 20.0]
 "#;
 
-const FLOOR: &str = "v -3 0 3\nv 3 0 3\nv 3 0 -3\nv -3 0 -3\nf 1 2 3 4\n";
 const PATIENCE: Duration = Duration::from_secs(120);
 
 fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("preview").join(name);
-    if folder.exists() {
-        fs::remove_dir_all(&folder).unwrap();
-    }
-    fs::create_dir_all(&folder).unwrap();
-    fs::write(folder.join("ball.toml"), SCENE).unwrap();
-    fs::write(folder.join("floor.obj"), FLOOR).unwrap();
-    folder
+    folder_with(name, &[("ball.toml", &SCENE), ("floor.obj", FLOOR)])
 }
 
 fn loaded(folder: &Path) -> Loaded {
@@ -334,12 +300,9 @@ fn pictures_and_scenes_are_saved() {
     assert_eq!(session.whole().map(|f| f.number), Some(frame.number));
 
     // and the file makes the same picture again
-    let mut again = Command::new(env!("CARGO_BIN_EXE_caustica"));
-    again
-        .args(["render", "--quiet", "--like", "picture.exr", "-o", "again.exr"])
-        .arg(folder.join("ball.toml"));
-    let output = again.current_dir(&folder).output().unwrap();
-    let error = String::from_utf8_lossy(&output.stderr);
+    let words = ["render", "ball.toml", "--quiet", "--like", "picture.exr", "-o", "again.exr"];
+    let output = caustica(&folder, &words);
+    let error = error(&output);
     assert!(output.status.success() && !error.contains("warning"), "{error}");
     assert!(bits(&read(&folder.join("again.exr")).unwrap()) == bits(&frame.picture));
 }

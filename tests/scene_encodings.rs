@@ -3,6 +3,8 @@
 //! Theory: neither line ends nor the mark are content. A scene packs to the same bits whichever way its files are written, and
 //! an error stands at the same line and column with the same words. Text in UTF-16 or UTF-32 is told as such, by file name.
 
+mod support;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -66,8 +68,8 @@ const FOREIGN: [(&str, Write); 3] = [
 
 /// A fresh folder with the files that scenes name, as UTF-8 of Unix.
 fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("scene_encodings").join(name);
-    fs::create_dir_all(folder.join("reference")).unwrap();
+    let folder = support::folder(name);
+    fs::create_dir(folder.join("reference")).unwrap();
     let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data");
     fs::copy(data.join("reference/grid.png"), folder.join("reference/grid.png")).unwrap();
     for name in ["parts.obj", "parts.mtl", "cube.obj", "broken.obj", "broken.mtl"] {

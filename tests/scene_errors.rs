@@ -1,8 +1,11 @@
 //! Scene files that are wrong: what is said, and where.
 
+mod support;
+
 use std::path::{Path, PathBuf};
 
 use caustica::scene::{Finding, SceneErrors, load, parse};
+use support::folder;
 
 fn data(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(name)
@@ -13,13 +16,6 @@ fn errors_of(text: &str) -> SceneErrors {
         Err(errors) => errors,
         Ok(_) => panic!("no error in\n{text}"),
     }
-}
-
-/// A fresh folder for a test's own files.
-fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("scene_errors").join(name);
-    std::fs::create_dir_all(&folder).unwrap();
-    folder
 }
 
 /// Line, column, and a part of the message with its caret's label and its help.
@@ -445,8 +441,8 @@ fn mutated_meshes() {
         state ^= state << 17;
         (state >> 16) as usize % below
     };
-    let folder = std::env::temp_dir().join(format!("caustica-mutated-{}", std::process::id()));
-    std::fs::create_dir_all(folder.join("reference")).unwrap();
+    let folder = folder("mutated");
+    std::fs::create_dir(folder.join("reference")).unwrap();
     std::fs::copy(data("reference/grid.png"), folder.join("reference/grid.png")).unwrap();
     let text = format!("{HEAD}[[shapes]]\ntype = \"mesh\"\nfile = \"parts.obj\"\n");
     let mut refused = 0;
@@ -465,6 +461,5 @@ fn mutated_meshes() {
         }
         refused += usize::from(parse(&folder.join("scene.toml"), text.as_bytes()).is_err());
     }
-    std::fs::remove_dir_all(&folder).unwrap();
     assert!((50..400).contains(&refused), "{refused}");
 }

@@ -1,5 +1,7 @@
 //! Scene files that are right: what they become.
 
+mod support;
+
 use std::path::Path;
 
 use caustica::scene::{
@@ -209,8 +211,7 @@ fn schema_is_current() {
 /// floats. The same file in the same color space is read once.
 #[test]
 fn image_formats() {
-    let folder = std::env::temp_dir().join(format!("caustica-images-{}", std::process::id()));
-    std::fs::create_dir_all(&folder).unwrap();
+    let folder = support::folder("images");
     let deep = image::ImageBuffer::from_pixel(2, 1, image::Rgb([32768u16, 0, 65535]));
     deep.save(folder.join("deep.png")).unwrap();
     let floats = image::ImageBuffer::from_fn(3, 2, |x, y| image::Rgb([x as f32, y as f32, 0.5]));
@@ -253,5 +254,4 @@ fn image_formats() {
     let bytes = std::fs::read(folder.join("sky.exr")).unwrap();
     std::fs::write(folder.join("cut.exr"), &bytes[..bytes.len() / 2]).unwrap();
     assert!(load("", "cut.exr").is_err());
-    std::fs::remove_dir_all(&folder).unwrap();
 }
