@@ -8,11 +8,12 @@ mod support;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Output;
 
 use caustica::film::{Coding, Picture, exr_file, pfm, read_any};
 use exr::prelude::{Image, SpecificChannels, WritableImage};
 use serde_json::Value;
-use support::{caustica, text};
+use support::text;
 
 /// 0.25, but 0.5 in the columns from `bright` on.
 fn picture(width: u32, bright: u32) -> Picture {
@@ -51,6 +52,10 @@ fn folder(name: &str) -> PathBuf {
     folder
 }
 
+fn caustica(folder: &Path, arguments: &[&str]) -> Output {
+    support::caustica(folder, &[&["diff"], arguments].concat())
+}
+
 #[track_caller]
 fn ends(folder: &Path, arguments: &[&str], code: i32, words: &[&str]) {
     let output = support::ends(folder, &[&["diff"], arguments].concat(), code, words);
@@ -61,7 +66,7 @@ fn ends(folder: &Path, arguments: &[&str], code: i32, words: &[&str]) {
 }
 
 fn json(folder: &Path, arguments: &[&str]) -> Value {
-    let shown = text(&caustica(folder, &[&["diff"], arguments, &["--json"]].concat()).stdout);
+    let shown = text(&caustica(folder, &[arguments, &["--json"]].concat()).stdout);
     serde_json::from_str(&shown).unwrap_or_else(|error| panic!("{error}: {shown}"))
 }
 

@@ -10,13 +10,12 @@ use std::fs;
 use std::io::Read;
 use std::net::TcpListener;
 use std::path::{Path, PathBuf};
-use std::process::Output;
 use std::sync::LazyLock;
 
 use caustica::film::exr_file::{self, ExrFile, Frame};
 use caustica::film::tev::Tev;
 use caustica::film::{Development, Picture, file, read};
-use support::{FLOOR, LAMP, MESH, ball, caustica, ends, error, folder_with};
+use support::{FLOOR, LAMP, MESH, ball, ends, error, folder_with};
 
 static SCENE: LazyLock<String> =
     LazyLock::new(|| ball((32, 24), "passes = 4\nphotons = 2000", &[MESH, LAMP]));

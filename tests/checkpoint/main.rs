@@ -9,6 +9,7 @@ mod support;
 
 mod engines;
 mod files;
+mod films;
 #[cfg(unix)]
 mod kills;
 mod merging;
@@ -21,7 +22,7 @@ use std::sync::LazyLock;
 use caustica::checkpoint::{Checkpoint, Origin, Totals};
 use caustica::device::{self, Opened, Wanted};
 use caustica::engine::State;
-use caustica::scene;
+use caustica::scene::{self, Film, ToneMap};
 use caustica::settings::RenderSettings;
 use support::{DISC, LAMP, Shape, ball, folder_with, words};
 
@@ -65,9 +66,13 @@ pub fn fails(folder: &Path, line: &str, code: i32, told: &[&str]) {
 
 /// An engine for the scene at `size`.
 pub fn open(wanted: &Wanted, size: (u32, u32), change: impl Fn(&mut RenderSettings)) -> Opened {
-    let file = folder_once().join("ball.toml");
-    let mut loaded = scene::load(&file).unwrap();
-    (loaded.scene.film.width, loaded.scene.film.height) = size;
+    open_on(wanted, |film| (film.width, film.height) = size, change)
+}
+
+/// An engine for the scene on a film that is changed so.
+pub fn open_on(wanted: &Wanted, film: impl Fn(&mut Film), change: impl Fn(&mut RenderSettings)) -> Opened {
+    let mut loaded = scene::load(&folder_once().join("ball.toml")).unwrap();
+    film(&mut loaded.scene.film);
     change(&mut loaded.settings);
     device::open(wanted, &loaded.scene, &loaded.settings).unwrap_or_else(|e| panic!("{wanted:?}: {e}"))
 }
@@ -77,24 +82,20 @@ fn folder_once() -> &'static Path {
     FOLDER.get_or_init(|| folder("library"))
 }
 
-/// A checkpoint of what an engine holds.
+/// A checkpoint of what an engine holds for a picture of this size.
 pub fn checkpoint(opened: &Opened, size: (u32, u32), state: State) -> Checkpoint {
+    checkpoint_on(opened, |film| (film.width, film.height) = size, state)
+}
+
+/// A checkpoint of what an engine holds for a film that is changed so.
+pub fn checkpoint_on(opened: &Opened, film: impl Fn(&mut Film), state: State) -> Checkpoint {
+    let mut scene = scene::load(&folder_once().join("ball.toml")).unwrap().scene;
+    (scene.film.exposure, scene.film.tonemap) = (0.5, ToneMap::Agx);
+    film(&mut scene.film);
     Checkpoint {
-        origin: Origin {
-            version: env!("CARGO_PKG_VERSION").into(),
-            scene: "ball".into(),
-            scene_text: SCENE.clone(),
-            identity: opened.identity.clone(),
-            width: size.0,
-            height: size.1,
-            radiance_unit: opened.radiance_unit,
-            settings: opened.settings.clone(),
-            device: opened.name.clone(),
-            exposure: 0.5,
-            tonemap: scene::ToneMap::Agx,
-        },
+        origin: Origin::of(opened, &scene, &SCENE),
         totals: Totals { photons: u64::MAX, radius: 0.1 + 0.2, ..Totals::default() },
         state,
-        parts: Vec::new(),
+        cuts: Vec::new(),
     }
 }

@@ -28,6 +28,8 @@ fn other_renders_are_refused_with_the_reason() {
         &["`radius`: expected {\"units\":0.25}, found {", "`alpha`: expected 0.5"],
     );
     refused("--size 20x16", &["size: expected 20 x 16, found 24 x 16"]);
+    refused("--crop 1,2,9,10", &["the crop: expected 1,2,9,10, found the whole picture"]);
+    refused("--aov depth", &["the layers: expected depth, found none"]);
     refused("--device cpu-f64", &["numbers: expected 64 bits, found 32"]);
     refused("--passes 2..9", &["the first pass: expected pass 2, found pass 0"]);
     // the scene: a shape, then a mesh and its file alone
