@@ -20,7 +20,7 @@ use caustica::preview::orbit;
 use caustica::preview::session::{Action, Session, Start};
 use caustica::preview::view::{Scale, View, show};
 use caustica::preview::worker::Worker;
-use caustica::scene::{self, Aov, Loaded};
+use caustica::scene::{self, Allowance, Aov, Loaded};
 use caustica::settings::{Direct, Method, Radius, RadiusRule};
 use glam::DVec3;
 use support::{FLOOR, LAMP, MESH, ball, caustica, error, folder_with};
@@ -212,9 +212,14 @@ fn every_view_shows_something() {
 }
 
 fn session(folder: &Path) -> Session {
+    session_within(folder, Allowance::default())
+}
+
+fn session_within(folder: &Path, allowance: Allowance) -> Session {
     let start = Start {
         file: folder.join("ball.toml"),
         loaded: loaded(folder),
+        allowance,
         adjust: Box::new(|_| ()),
         outputs: vec![folder.join("picture.exr")],
         device: Wanted::Cpu,
@@ -268,6 +273,56 @@ fn files_that_change_are_read_anew() {
     fs::write(&file, text.replace("[0.0, 1.0, 5.0]", "[0.0, 2.0, 5.0]")).unwrap();
     ticked(&mut session, "new settings", |s| (s.now.settings.photons == 500).then_some(()));
     assert_eq!(session.now.camera.position, DVec3::new(0.0, 2.0, 5.0));
+}
+
+/// Theory: what is read anew obeys what the first reading did. So does what is read to find out whether a file to be saved is a
+/// scene. With nothing confined the same files are read.
+#[test]
+fn files_that_change_keep_to_the_root_and_the_limits() {
+    let outer = folder("confined");
+    let root = outer.join("root");
+    fs::create_dir(&root).unwrap();
+    fs::write(root.join("floor.obj"), FLOOR).unwrap();
+    let file = root.join("ball.toml");
+    fs::write(&file, SCENE.as_str()).unwrap();
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/reference/grid.png");
+    let textured = |name: &str| {
+        let texture = format!("[textures.t]\ntype = \"image\"\nfile = {name:?}\n");
+        SCENE.replace("reflectance = 0.5", "reflectance = \"t\"") + &texture
+    };
+    for place in [&outer, &root] {
+        fs::copy(&data, place.join("grid.png")).unwrap();
+    }
+    let allowance = Allowance { root: Some(root.clone()), triangles: 2, ..Allowance::default() };
+    let mut session = session_within(&root, allowance);
+    let own = ticked(&mut session, "the picture", done);
+    // a texture outside: the error, at its place, and the picture that was there
+    fs::write(&file, textured("../grid.png")).unwrap();
+    let trouble = ticked(&mut session, "trouble", |s| s.trouble.clone());
+    assert!(trouble.contains("ball.toml:") && trouble.contains("lies outside of"), "{trouble}");
+    assert!(Arc::ptr_eq(&session.frame().unwrap(), &own));
+    session.act(Action::Photons(0.5));
+    session.act(Action::SaveScene);
+    assert!(session.notice.contains("lies outside of"), "{}", session.notice);
+    assert_eq!(fs::read_to_string(&file).unwrap(), textured("../grid.png"), "nothing is saved");
+    // more triangles than the limit
+    fs::write(&file, SCENE.as_str()).unwrap();
+    fs::write(root.join("floor.obj"), format!("{FLOOR}f 1 2 3\n")).unwrap();
+    let trouble = ticked(&mut session, "other trouble", |s| s.trouble.clone().filter(|t| *t != trouble));
+    assert!(trouble.contains("`triangles`"), "{trouble}");
+    // the same texture inside
+    fs::write(root.join("floor.obj"), FLOOR).unwrap();
+    fs::write(&file, textured("grid.png")).unwrap();
+    let inside = ticked(&mut session, "the textured picture", |s| {
+        done(s).filter(|f| s.trouble.is_none() && f.number != own.number)
+    });
+    assert!(bits(&inside.picture) != bits(&own.picture));
+    // where nothing is confined
+    let mut session = session_within(&root, Allowance::default());
+    ticked(&mut session, "the picture", done);
+    fs::write(&file, textured("../grid.png")).unwrap();
+    ticked(&mut session, "the scene", |s| (s.notice == "the scene was read anew").then_some(()));
+    assert_eq!(session.trouble, None);
 }
 
 #[test]

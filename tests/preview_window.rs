@@ -170,12 +170,17 @@ fn wait(child: &mut Child) -> std::process::ExitStatus {
 #[test]
 fn without_a_desktop_the_reason_is_told() {
     let folder = folder("nowhere");
+    fs::create_dir(folder.join("elsewhere")).unwrap();
     for (display, arguments, code, words) in [
         (None, &["ball.toml", "--device", "cpu"][..], 1, "DISPLAY"),
         (Some(":4999"), &["ball.toml", "--device", "cpu"], 1, "no window can be opened"),
         (None, &["ball.toml", "--device", "nonesuch"], 4, "no device `nonesuch`"),
         (None, &["gone.toml"], 1, "gone.toml"),
         (None, &["ball.toml", "-o", "picture.gif"], 2, ".exr"),
+        (None, &["ball.toml", "--device", "cpu", "--root", "."], 1, "DISPLAY"),
+        (None, &["ball.toml", "--root", "elsewhere"], 1, "lies outside of elsewhere"),
+        (None, &["ball.toml", "--root", "nowhere"], 2, "no such folder"),
+        (None, &["ball.toml", "--limit", "shapes=1"], 1, "`shapes`"),
     ] {
         let mut command = preview(&folder, arguments);
         display.into_iter().for_each(|display| {

@@ -110,7 +110,8 @@ impl Session {
     /// Begins to render. `wake` is called on some thread when there is something new.
     pub fn start(start: Start, wake: impl Fn() + Send + Sync + Clone + 'static) -> Self {
         let Start { file, loaded, allowance, adjust, outputs, device } = start;
-        let reloader = Reloader::start(file.clone(), loaded.files.clone(), allowance.clone(), adjust, wake.clone());
+        let reloader =
+            Reloader::start(file.clone(), loaded.files.clone(), allowance.clone(), adjust, wake.clone());
         let now = edits(&loaded);
         let scene = Arc::new(loaded.scene);
         let view = View::default();
@@ -354,7 +355,8 @@ impl Session {
     }
 
     fn save_scene(&mut self) -> Result<String, String> {
-        save(&self.file, &self.allowance, &self.saved, &self.now).map_err(|error| format!("not saved: {error}"))?;
+        save(&self.file, &self.allowance, &self.saved, &self.now)
+            .map_err(|error| format!("not saved: {error}"))?;
         self.saved = self.now.clone();
         Ok(format!("saved {}", self.file.display()))
     }

@@ -149,7 +149,7 @@ fn distance(a: &Checkpoint, b: &Checkpoint) -> (f64, &'static str) {
 }
 
 /// The roundings of a mean in f32 over some passes.
-const BOUND: f64 = 3e-6;
+const BOUND: f64 = 1e-6;
 
 #[test]
 fn ranges_give_the_layers_of_all() {
