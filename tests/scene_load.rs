@@ -9,6 +9,7 @@ use caustica::scene::{
     parse,
 };
 use glam::{DVec2, DVec3};
+use support::HEAD;
 
 fn reference(name: &str) -> Loaded {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/reference").join(name);
@@ -23,8 +24,6 @@ fn parse_text(text: &str) -> Result<Loaded, SceneErrors> {
 fn scene_of(text: &str) -> Scene {
     parse_text(text).unwrap_or_else(|errors| panic!("{:?}", miette::Report::new(errors))).scene
 }
-
-const HEAD: &str = "version = 1\n[camera]\nposition = [0, 1, 4]\ntarget = [0, 1, 0]\nfov = 39\n";
 
 /// Files as they stand in the reference folder load without a warning, with every name resolved.
 #[test]

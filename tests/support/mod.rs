@@ -4,7 +4,8 @@
 
 mod ball;
 mod folder;
+mod head;
 mod program;
 
 #[allow(unused_imports)] // each test file uses its part
-pub use {ball::*, folder::*, program::*};
+pub use {ball::*, folder::*, head::*, program::*};
