@@ -2,9 +2,10 @@
 
 use caustica::checkpoint::{read, write};
 use caustica::device::Wanted;
-use caustica::engine::{Engine, EngineError, State};
+use caustica::engine::{Engine, EngineError, LayerState, State};
+use caustica::kernels::bytes::{AOV_BYTES, PARTS_BYTES};
 use caustica::scene::{Aovs, Film};
-use caustica::settings::{Direct, Method, RadiusRule, RenderSettings};
+use caustica::settings::{Direct, Method, Radius, RadiusRule, RenderSettings};
 
 use super::{checkpoint, folder, open, open_on};
 
@@ -131,10 +132,16 @@ fn chunks_are_put_together() {
     };
     let change: Change = |s| {
         (s.method, s.radius_rule, s.photons) = (Method::Ppm, RadiusRule::Local, 3000);
+        (s.direct, s.radius) = (Direct::Photons, Radius::Units(0.2));
     };
     let mut cpu = open_on(&Wanted::Cpu, film, change);
     passes(cpu.engine.as_mut(), 1);
     let half_way = cpu.engine.save().unwrap();
+    // the last chunk, a row, is not like the beginning of the first one
+    let LayerState { aovs, parts, counts, .. } = &half_way.layers;
+    assert!(parts[..512 * PARTS_BYTES] != parts[parts.len() - 512 * PARTS_BYTES..]);
+    assert!(aovs[..512 * AOV_BYTES] != aovs[aovs.len() - 512 * AOV_BYTES..]);
+    assert!(counts[..2048] != counts[counts.len() - 2048..]);
     passes(cpu.engine.as_mut(), 1);
     let mut software = open_on(&Wanted::Software, film, change);
     software.engine.restore(&half_way).unwrap();
