@@ -7,10 +7,10 @@ use super::pace::Pace;
 use super::program::{Compiling, Program, make_programs, workgroup_items};
 use super::recorder::Recorder;
 use crate::clock::{Clock, KernelSeconds};
-use crate::engine::{Engine, EngineError, PassReport, PhotonEnds, State};
+use crate::engine::{Engine, EngineError, LayerState, PassReport, PhotonEnds, State};
 use crate::film::exr_file::Channel;
 use crate::film::{ErrorMap, Picture, Rejections};
-use crate::kernels::bytes::{FILM_BYTES, STATISTICS_BYTES};
+use crate::kernels::bytes::{AOV_BYTES, FILM_BYTES, PARTS_BYTES, STATISTICS_BYTES};
 use crate::kernels::records::{Dispatch, FilmPixel, Gathered};
 use crate::layers::Found;
 use crate::pack::Packed;
@@ -530,13 +530,24 @@ impl Engine for GpuEngine {
             bits: 8 * size_of::<f32>() as u32,
             film: self.read_chunks("film")?,
             statistics: self.read_chunks("statistics")?,
+            layers: self.with_found(|plan, found| plan.layer_state(found))?,
         })
     }
 
     fn restore(&mut self, state: &State) -> Result<(), EngineError> {
         self.plan.take_over(state)?;
         self.passes_done = state.passes;
-        for (name, bytes) in [("film", &state.film), ("statistics", &state.statistics)] {
+        let LayerState { aovs, parts, counts, .. } = &state.layers;
+        let gathered: Vec<_> =
+            counts.iter().map(|count| Gathered { count: *count, ..bytemuck::Zeroable::zeroed() }).collect();
+        let gathered = bytemuck::cast_slice(&gathered);
+        for (name, bytes) in [
+            ("film", &state.film[..]),
+            ("statistics", &state.statistics),
+            ("aovs", aovs),
+            ("parts", parts),
+            ("gathered", gathered),
+        ] {
             for (number, chunk) in (0..).zip(&self.chunks) {
                 if let (Some(buffer), Some(part)) = (chunk.get(name), bytes.get(self.place(name, number))) {
                     self.gpu.write(buffer, part);
@@ -547,17 +558,7 @@ impl Engine for GpuEngine {
     }
 
     fn layers(&mut self) -> Result<Vec<Channel>, EngineError> {
-        if self.plan.aovs.is_empty() {
-            return Ok(Vec::new());
-        }
-        let (samples, passes) = (self.plan.eye_samples, self.passes_done);
-        Ok(self.plan.layers(&Found {
-            aovs: &self.chunked("aovs", samples)?,
-            parts: &self.chunked("parts", samples)?,
-            gathered: &self.chunked("gathered", 1)?,
-            statistics: &self.chunked("statistics", 1)?,
-            passes,
-        }))
+        self.with_found(|plan, found| plan.layers(found))
     }
 
     fn gathered(&mut self) -> Result<u64, EngineError> {
@@ -570,6 +571,22 @@ impl GpuEngine {
     /// The film, read back.
     fn film(&self) -> Result<Vec<FilmPixel>, EngineError> {
         self.chunked("film", self.plan.eye_samples)
+    }
+
+    /// What `make` makes of what is found beside radiance, which is read back; its default where nothing is asked for.
+    fn with_found<T: Default>(&self, make: impl Fn(&Plan, &Found) -> T) -> Result<T, EngineError> {
+        if self.plan.aovs.is_empty() {
+            return Ok(T::default());
+        }
+        let samples = self.plan.eye_samples;
+        let found = Found {
+            aovs: &self.chunked("aovs", samples)?,
+            parts: &self.chunked("parts", samples)?,
+            gathered: &self.chunked("gathered", 1)?,
+            statistics: &self.chunked("statistics", 1)?,
+            passes: self.passes_done,
+        };
+        Ok(make(&self.plan, &found))
     }
 
     /// What all chunks hold in a buffer of theirs, an item for each `samples` visible points; nothing where there is no such
@@ -597,12 +614,15 @@ impl GpuEngine {
         Ok(bytes)
     }
 
-    /// Where a chunk's `film` or `statistics` stand among those of all.
+    /// Where a chunk's part of a buffer stands among those of all.
     fn place(&self, name: &str, chunk: u32) -> std::ops::Range<usize> {
         let (first, points) = self.plan.chunk(chunk);
         let samples = self.plan.eye_samples;
         let (first, end, size) = match name {
             "film" => (first / samples, (first + points) / samples, FILM_BYTES),
+            "aovs" => (first / samples, (first + points) / samples, AOV_BYTES),
+            "parts" => (first / samples, (first + points) / samples, PARTS_BYTES),
+            "gathered" => (first, first + points, size_of::<Gathered>()),
             _ => (first, first + points, STATISTICS_BYTES),
         };
         first as usize * size..end as usize * size

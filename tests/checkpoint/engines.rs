@@ -2,10 +2,12 @@
 
 use caustica::checkpoint::{read, write};
 use caustica::device::Wanted;
-use caustica::engine::{Engine, EngineError, State};
-use caustica::settings::{Direct, Method, RadiusRule, RenderSettings};
+use caustica::engine::{Engine, EngineError, LayerState, State};
+use caustica::kernels::bytes::{AOV_BYTES, PARTS_BYTES};
+use caustica::scene::{Aovs, Film};
+use caustica::settings::{Direct, Method, Radius, RadiusRule, RenderSettings};
 
-use super::{checkpoint, folder, open};
+use super::{checkpoint, folder, open, open_on};
 
 const SIZE: (u32, u32) = (24, 16);
 
@@ -122,18 +124,26 @@ fn nothing_may_be_left_behind() {
     assert!(same > 24 * 16 * 9 / 10, "all but what one photon lights: {same}");
 }
 
-/// More visible points than a chunk holds, so that buffers of more than one go into the file and out of it.
+/// More visible points than a chunk holds, so that buffers of more than one go into the file and out of it, those of layers too.
 #[test]
 fn chunks_are_put_together() {
-    let size = (513, 512);
+    let film = |film: &mut Film| {
+        (film.width, film.height, film.aovs) = (513, 512, Aovs::parse("all").unwrap());
+    };
     let change: Change = |s| {
         (s.method, s.radius_rule, s.photons) = (Method::Ppm, RadiusRule::Local, 3000);
+        (s.direct, s.radius) = (Direct::Photons, Radius::Units(0.2));
     };
-    let mut cpu = open(&Wanted::Cpu, size, change);
+    let mut cpu = open_on(&Wanted::Cpu, film, change);
     passes(cpu.engine.as_mut(), 1);
     let half_way = cpu.engine.save().unwrap();
+    // the last chunk, a row, is not like the beginning of the first one
+    let LayerState { aovs, parts, counts, .. } = &half_way.layers;
+    assert!(parts[..512 * PARTS_BYTES] != parts[parts.len() - 512 * PARTS_BYTES..]);
+    assert!(aovs[..512 * AOV_BYTES] != aovs[aovs.len() - 512 * AOV_BYTES..]);
+    assert!(counts[..2048] != counts[counts.len() - 2048..]);
     passes(cpu.engine.as_mut(), 1);
-    let mut software = open(&Wanted::Software, size, change);
+    let mut software = open_on(&Wanted::Software, film, change);
     software.engine.restore(&half_way).unwrap();
     assert!(software.engine.save().unwrap() == half_way, "in and out");
     passes(software.engine.as_mut(), 1);
