@@ -1,5 +1,7 @@
 //! Devices by name: which there are, which one a wish means, and an engine on it.
 
+mod candidates;
+
 use thiserror::Error;
 
 use crate::cpu::CpuEngine;
@@ -14,6 +16,8 @@ use crate::plan::Plan;
 use crate::radius::Automatic;
 use crate::scene::Scene;
 use crate::settings::{Method, Radius, RenderSettings};
+
+pub use candidates::{Candidate, Candidates};
 
 /// Most visible points of a picture: their numbers are 32 bits wide.
 const POINTS_MAX: u64 = 1 << 31;
@@ -187,23 +191,13 @@ pub fn pick<'a>(wanted: &Wanted, devices: &'a [DeviceInfo]) -> Result<(&'a Devic
     }
 }
 
-/// Makes an engine for a scene on the device that is wanted. Path tracing runs on the CPU alone, so `auto` takes it.
+/// Makes an engine for a scene on the device that is wanted; with `auto`, on the first that can. Path tracing runs on the CPU alone,
+/// so `auto` takes it.
 pub fn open(wanted: &Wanted, scene: &Scene, settings: &RenderSettings) -> Result<Opened, DeviceError> {
-    let path = settings.method == Method::Path && *wanted == Wanted::Auto;
-    let wanted = if path { &Wanted::Cpu } else { wanted };
-    // drivers take a while to answer and may write to standard error, so they are not asked for nothing
-    let devices = match wanted {
-        Wanted::Cpu => vec![cpu(DeviceKind::Cpu)],
-        Wanted::CpuDouble => vec![cpu(DeviceKind::CpuDouble)],
-        _ => list(),
-    };
-    let (device, why) = pick(wanted, &devices)?;
-    let why = if path { "auto: path tracing runs on the CPU".to_owned() } else { why };
-    for DeviceInfo { name, kind, driver, .. } in &devices {
-        log::debug!("there is {name} [{}] {driver}", kind.word());
-    }
-    log::info!("{} [{}] {} ({why})", device.name, device.kind.word(), device.driver);
-    Ok(start(device, why, scene, settings)?)
+    let mut candidates = Candidates::of(wanted, settings)?;
+    Ok(candidates.open(scene, settings, &mut |name, error| {
+        log::warn!("{name} cannot render this: {error}");
+    })?)
 }
 
 /// Fails where a picture has more visible points than can be numbered.

@@ -93,6 +93,7 @@ pub mod quality;
 pub mod radius;
 pub mod readout;
 pub mod real;
+pub mod relay;
 pub mod render;
 pub mod scene;
 pub mod settings;

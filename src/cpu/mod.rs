@@ -368,6 +368,10 @@ impl Engine for CpuEngine {
         Ok(self.plan.rejections(&self.film))
     }
 
+    fn can_be_lost(&self) -> bool {
+        false
+    }
+
     fn save(&mut self) -> Result<State, EngineError> {
         Ok(State {
             first_pass: self.plan.first_pass,

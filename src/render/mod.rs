@@ -1,19 +1,20 @@
-//! The loop over passes: stop conditions, progress, and what is saved when something ends it early.
+//! The loop over passes: stop conditions, progress, and what is kept of a render for the case that its device fails.
 
 mod estimates;
+mod keep;
 mod progress;
+mod run;
 #[cfg(test)]
 mod tests;
 
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, Instant};
+use std::sync::atomic::AtomicBool;
+use std::time::Duration;
 
-use crate::engine::{Engine, EngineError};
-use crate::film::estimate::LEAST_PASSES;
+use crate::engine::{Engine, EngineError, State};
 use crate::film::exr_file::Channel;
 use crate::film::{ErrorMap, Picture, Rejections};
-use crate::stage::stage;
-use estimates::Estimates;
+use keep::KEEP;
+use run::{Run, Watch};
 
 pub use progress::{Progress, Stop};
 
@@ -28,8 +29,6 @@ pub enum Ending {
     TargetError,
     /// The user asked for it.
     Interrupted,
-    /// The engine failed after at least one pass.
-    Failed(EngineError),
 }
 
 /// A picture, and how it came about.
@@ -49,148 +48,66 @@ pub struct Outcome {
     pub ending: Ending,
 }
 
-/// How often the picture is copied to the host, since a device that is lost takes its buffers along.
-#[derive(Clone, Copy)]
-struct Keep {
-    /// Time between copies.
-    every: Duration,
-    /// At least so many times the time that a copy takes.
-    times_cost: u32,
+/// What was done before a render's last device failed.
+#[derive(Debug)]
+pub struct Kept {
+    /// What the engine held.
+    pub state: State,
+    /// How far that is.
+    pub progress: Progress,
 }
 
-const KEEP: Keep = Keep { every: Duration::from_secs(10), times_cost: 20 };
+/// A render that no device goes on with.
+#[derive(Debug, thiserror::Error)]
+#[error("{error}")]
+pub struct Broken {
+    /// Why.
+    pub error: EngineError,
+    /// What can be gone on from; none where no pass is left of it.
+    pub kept: Option<Box<Kept>>,
+}
 
 /// Where a render is kept, so that it can be gone on from.
 pub struct Saving<'a> {
     /// Time between two calls.
     pub every: Duration,
-    /// Keeps what [`Engine::save`] gives. Called between passes, and at the end unless the engine failed.
-    pub save: &'a mut dyn FnMut(&mut dyn Engine, &Progress) -> Result<(), EngineError>,
+    /// Keeps what an engine held, and gives it back. Called between passes, at the end, and once more where the device fails, if
+    /// there is more by then.
+    pub save: &'a mut dyn FnMut(State, &Progress) -> State,
 }
 
 /// Makes passes until a stop condition holds or `interrupted` is set, which ends it after the pass in hand; calls
-/// `observer` after each. Fails only where there is no picture to give; an engine that fails later gives the picture
-/// of the passes before, or the last one kept of them.
+/// `observer` after each.
+///
+/// # Errors
+/// Where the engine fails and cannot [go on](Engine::go_on) elsewhere.
 pub fn render(
     engine: &mut dyn Engine,
     stop: Stop,
     interrupted: &AtomicBool,
     observer: &mut dyn FnMut(&Progress),
-) -> Result<Outcome, EngineError> {
-    resume(engine, Progress::before(stop), interrupted, observer, None)
+) -> Result<Outcome, Broken> {
+    let state = State::before(0);
+    Run::new(Progress::before(stop), &state, None, KEEP).carry_out(
+        engine,
+        Watch { interrupted, observer },
+        None,
+    )
 }
 
-/// The same from where `progress` is, with an engine that holds its passes, saved now and then. Time counts on. With nothing left
-/// to do it makes no pass.
-pub fn resume(
+/// The same from where `progress` is, with an engine that has made no pass and takes over `state`, saved now and then. Time counts
+/// on. With nothing left to do it makes no pass.
+///
+/// # Errors
+/// As above.
+pub fn resume<'a>(
     engine: &mut dyn Engine,
+    state: &'a State,
     progress: Progress,
     interrupted: &AtomicBool,
     observer: &mut dyn FnMut(&Progress),
-    saving: Option<Saving>,
-) -> Result<Outcome, EngineError> {
-    render_keeping(engine, progress, interrupted, observer, saving, KEEP)
-}
-
-fn render_keeping(
-    engine: &mut dyn Engine,
-    mut progress: Progress,
-    interrupted: &AtomicBool,
-    observer: &mut dyn FnMut(&Progress),
-    mut saving: Option<Saving>,
-    keep: Keep,
-) -> Result<Outcome, EngineError> {
-    let _stage = stage("passes");
-    let start = Instant::now();
-    let (stop, before) = (progress.stop, progress.elapsed);
-    let elapsed = || before + start.elapsed();
-    let mut kept: Option<Kept> = None;
-    let mut next_keep = before + keep.every;
-    let mut next_save = saving.as_ref().map(|saving| before.saturating_add(saving.every));
-    let mut estimates = Estimates::after(progress.passes);
-    if progress.passes == 0 {
-        progress.add(&engine.pass()?, elapsed());
-    }
-    let ending = loop {
-        if estimates.due(&progress) {
-            let begun = Instant::now();
-            match engine.errors() {
-                Ok(errors) => progress.error = Some(errors.relative()),
-                Err(error) => break Ending::Failed(error),
-            }
-            estimates.made(&progress, begun.elapsed());
-        }
-        observer(&progress);
-        if interrupted.load(Ordering::Relaxed) {
-            break Ending::Interrupted;
-        }
-        if progress.reached() {
-            break Ending::TargetError;
-        }
-        if progress.passes >= stop.passes {
-            break Ending::Passes;
-        }
-        if stop.time.is_some_and(|time| progress.elapsed >= time) {
-            break Ending::Time;
-        }
-        if progress.elapsed >= next_keep {
-            match take(engine, progress) {
-                Ok(taken) => kept = Some(taken),
-                Err(error) => break Ending::Failed(error),
-            }
-            let cost = elapsed() - progress.elapsed;
-            next_keep = elapsed() + keep.every.max(keep.times_cost * cost);
-        }
-        if let Some(saving) = &mut saving
-            && next_save.is_some_and(|next| progress.elapsed >= next)
-        {
-            if let Err(error) = (saving.save)(engine, &progress) {
-                break Ending::Failed(error);
-            }
-            next_save = Some(elapsed().saturating_add(saving.every));
-        }
-        match engine.pass() {
-            Ok(report) => progress.add(&report, elapsed()),
-            Err(error) => break Ending::Failed(error),
-        }
-    };
-    // what an engine holds that failed in the middle of a pass is no whole number of passes
-    let ending = match (ending, saving) {
-        (Ending::Failed(error), _) => Ending::Failed(error),
-        (ending, None) => ending,
-        (ending, Some(saving)) => (saving.save)(engine, &progress).map_or_else(Ending::Failed, |()| ending),
-    };
-    match (take(engine, progress), ending) {
-        (Ok(taken), ending) => Ok(taken.outcome(ending)),
-        (Err(_), Ending::Failed(error)) | (Err(error), _) => match kept {
-            Some(kept) => Ok(kept.outcome(Ending::Failed(error))),
-            None => Err(error),
-        },
-    }
-}
-
-/// A picture with what belongs to it.
-struct Kept {
-    picture: Picture,
-    errors: Option<ErrorMap>,
-    layers: Vec<Channel>,
-    rejections: Rejections,
-    progress: Progress,
-}
-
-impl Kept {
-    fn outcome(self, ending: Ending) -> Outcome {
-        let Self { picture, errors, layers, rejections, progress } = self;
-        Outcome { picture, errors, layers, rejections, progress, ending }
-    }
-}
-
-fn take(engine: &mut dyn Engine, mut progress: Progress) -> Result<Kept, EngineError> {
-    let (picture, rejections) = engine.results()?;
-    let errors = match progress.passes {
-        LEAST_PASSES.. => Some(engine.errors()?),
-        _ => None,
-    };
-    progress.error = errors.as_ref().map(ErrorMap::relative);
-    Ok(Kept { picture, errors, layers: engine.layers()?, rejections, progress })
+    saving: Option<Saving<'a>>,
+) -> Result<Outcome, Broken> {
+    let failed = engine.restore(state).err();
+    Run::new(progress, state, saving, KEEP).carry_out(engine, Watch { interrupted, observer }, failed)
 }

@@ -1,24 +1,37 @@
 //! Theory: an engine that counts its passes into the picture shows by the picture alone how many were made, and the
 //! totals are the sums over its reports.
 
-use super::*;
-use crate::engine::{PassReport, PhotonEnds};
-use crate::film::estimate::PixelError;
+use std::sync::atomic::Ordering;
 
-/// Each pixel of its picture is the number of passes made. It fails in pass `fails_in`, and after that gives its
-/// picture only if `survives`.
+use super::keep::Keep;
+use super::*;
+use crate::engine::{EngineError, PassReport, PhotonEnds};
+use crate::film::estimate::{LEAST_PASSES, PixelError};
+
+/// Each pixel of its picture is the number of passes made. It fails in pass `fails_in`, and after that gives what it
+/// holds only if `survives`.
 struct Counter {
     passes: u32,
     fails_in: u32,
     survives: bool,
+    lost: bool,
     pictures_taken: u32,
     errors_taken: u32,
+    states_taken: u32,
 }
 
 const NEVER: u32 = u32::MAX;
 
 fn counter(fails_in: u32, survives: bool) -> Counter {
-    Counter { passes: 0, fails_in, survives, pictures_taken: 0, errors_taken: 0 }
+    Counter {
+        passes: 0,
+        fails_in,
+        survives,
+        lost: false,
+        pictures_taken: 0,
+        errors_taken: 0,
+        states_taken: 0,
+    }
 }
 
 impl Engine for Counter {
@@ -28,6 +41,7 @@ impl Engine for Counter {
 
     fn pass(&mut self) -> Result<PassReport, EngineError> {
         if self.passes + 1 == self.fails_in {
+            self.lost = !self.survives;
             return Err(EngineError::DeviceLost(format!("in pass {}", self.fails_in)));
         }
         self.passes += 1;
@@ -56,10 +70,20 @@ impl Engine for Counter {
 
     fn picture(&mut self) -> Result<Picture, EngineError> {
         self.pictures_taken += 1;
-        if self.passes + 1 >= self.fails_in && !self.survives {
-            return Err(EngineError::DeviceLost("no picture".into()));
-        }
         Ok(Picture::from_fn(2, 1, |_, _| [self.passes as f32; 3]))
+    }
+
+    fn save(&mut self) -> Result<State, EngineError> {
+        self.states_taken += 1;
+        if self.lost {
+            return Err(EngineError::DeviceLost("nothing to save".into()));
+        }
+        Ok(State { passes: self.passes, ..State::default() })
+    }
+
+    fn restore(&mut self, state: &State) -> Result<(), EngineError> {
+        self.passes = state.passes;
+        Ok(())
     }
 }
 
@@ -67,8 +91,20 @@ fn passes(passes: u32) -> Stop {
     Stop { passes, time: None, target_error: None }
 }
 
-fn run(engine: &mut Counter, stop: Stop, keep: Keep) -> Result<Outcome, EngineError> {
-    render_keeping(engine, Progress::before(stop), &AtomicBool::new(false), &mut |_| (), None, keep)
+fn run(engine: &mut Counter, stop: Stop, keep: Keep) -> Result<Outcome, Broken> {
+    let (state, interrupted) = (State::default(), AtomicBool::new(false));
+    let watch = Watch { interrupted: &interrupted, observer: &mut |_| () };
+    Run::new(Progress::before(stop), &state, None, keep).carry_out(engine, watch, None)
+}
+
+/// Passes in what was kept of a render that broke.
+fn left(outcome: Result<Outcome, Broken>) -> (String, Option<u32>) {
+    let Broken { error, kept } = outcome.unwrap_err();
+    let passes = kept.map(|kept| {
+        assert_eq!(kept.progress.passes, kept.state.passes);
+        kept.progress.passes
+    });
+    (error.to_string(), passes)
 }
 
 fn shown(outcome: &Outcome) -> f32 {
@@ -138,32 +174,28 @@ fn an_error_ends_it() {
 }
 
 #[test]
-fn a_failure_saves_the_passes_before() {
+fn a_failure_leaves_the_passes_before() {
     for k in 2..6 {
-        let outcome = run(&mut counter(k, true), passes(8), KEEP).unwrap();
-        assert!(matches!(outcome.ending, Ending::Failed(EngineError::DeviceLost(_))));
-        assert_eq!((shown(&outcome), outcome.progress.passes), ((k - 1) as f32, k - 1));
+        let left = left(run(&mut counter(k, true), passes(8), KEEP));
+        assert_eq!(left, (format!("the device was lost: in pass {k}"), Some(k - 1)));
     }
 }
 
 #[test]
-fn a_lost_device_leaves_the_last_kept_picture() {
-    // Kept after passes 1 to 4; the fifth picture is refused since pass 6 is the one that fails.
+fn a_lost_device_leaves_what_was_kept() {
     let always = Keep { every: Duration::ZERO, times_cost: 0 };
-    let outcome = run(&mut counter(6, false), passes(8), always).unwrap();
-    assert!(matches!(&outcome.ending, Ending::Failed(EngineError::DeviceLost(_))), "{:?}", outcome.ending);
-    assert_eq!((shown(&outcome), outcome.progress.passes), (4.0, 4));
-    // With nothing kept there is nothing to give, and the first failure is the one told.
-    let error = run(&mut counter(6, false), passes(8), KEEP).unwrap_err();
-    assert_eq!(error.to_string(), "the device was lost: in pass 6");
-    assert!(run(&mut counter(1, true), passes(8), KEEP).is_err());
+    let lost = |keep| left(run(&mut counter(6, false), passes(8), keep));
+    assert_eq!(lost(always), ("the device was lost: in pass 6".to_owned(), Some(5)));
+    // with nothing kept there is nothing to give, and the first failure is the one told
+    assert_eq!(lost(KEEP), ("the device was lost: in pass 6".to_owned(), None));
+    assert_eq!(left(run(&mut counter(1, true), passes(8), KEEP)).1, None);
 }
 
 #[test]
 fn short_renders_read_the_picture_once() {
     let mut engine = counter(NEVER, true);
     run(&mut engine, passes(50), KEEP).unwrap();
-    assert_eq!(engine.pictures_taken, 1);
+    assert_eq!((engine.pictures_taken, engine.states_taken), (1, 0));
 }
 
 /// With no time between them it is saved after each pass that another one follows, and at the end.
@@ -171,18 +203,20 @@ fn short_renders_read_the_picture_once() {
 fn saved_between_passes_and_at_the_end() {
     let saved_at = |fails_in: u32, every: Duration, from: u32| {
         let mut saved = Vec::new();
-        let mut save = |engine: &mut dyn Engine, progress: &Progress| {
+        let mut save = |state: State, progress: &Progress| {
             saved.push(progress.passes);
-            // the engine holds what the progress says
-            assert_eq!(engine.picture().unwrap().rgb[0][0], progress.passes as f32);
-            Ok(())
+            // what is saved is what the progress says
+            assert_eq!(state.passes, progress.passes);
+            state
         };
-        let mut engine = Counter { passes: from, ..counter(fails_in, true) };
+        let mut engine = counter(fails_in, true);
         let progress = Progress { passes: from, ..Progress::before(passes(4)) };
+        let state = State { passes: from, ..State::default() };
         let saving = Saving { every, save: &mut save };
-        let outcome =
-            resume(&mut engine, progress, &AtomicBool::new(false), &mut |_| (), Some(saving)).unwrap();
-        (saved, outcome.progress.passes, engine.passes)
+        let flag = AtomicBool::new(false);
+        let outcome = resume(&mut engine, &state, progress, &flag, &mut |_| (), Some(saving));
+        let made = outcome.map_or_else(|broken| broken.kept.unwrap().progress.passes, |o| o.progress.passes);
+        (saved, made, engine.passes)
     };
     assert_eq!(saved_at(NEVER, Duration::ZERO, 0), (vec![1, 2, 3, 4], 4, 4));
     assert_eq!(saved_at(NEVER, Duration::MAX, 0), (vec![4], 4, 4));
@@ -191,15 +225,20 @@ fn saved_between_passes_and_at_the_end() {
     assert_eq!(saved_at(NEVER, Duration::ZERO, 4), (vec![4], 4, 4), "no pass beyond");
 }
 
+/// What was not saved on the way is, where the device fails.
 #[test]
-fn what_cannot_be_saved_for_want_of_the_engine_ends_it() {
-    let mut save = |_: &mut dyn Engine, _: &Progress| Err(EngineError::DeviceLost("saving".into()));
-    let saving = Saving { every: Duration::ZERO, save: &mut save };
-    let mut engine = counter(NEVER, true);
+fn a_failure_saves_what_is_kept() {
+    let mut saved = Vec::new();
+    let mut save = |state: State, _: &Progress| {
+        saved.push(state.passes);
+        state
+    };
+    let saving = Saving { every: Duration::MAX, save: &mut save };
+    let (state, flag) = (State::default(), AtomicBool::new(false));
     let progress = Progress::before(passes(4));
-    let outcome = resume(&mut engine, progress, &AtomicBool::new(false), &mut |_| (), Some(saving)).unwrap();
-    assert!(matches!(outcome.ending, Ending::Failed(EngineError::DeviceLost(_))));
-    assert_eq!(outcome.progress.passes, 1);
+    let outcome = resume(&mut counter(4, true), &state, progress, &flag, &mut |_| (), Some(saving));
+    assert_eq!(left(outcome).1, Some(3));
+    assert_eq!(saved, [3]);
 }
 
 /// Time and totals count on.
@@ -208,12 +247,13 @@ fn a_resumed_render_counts_on() {
     let hour = Duration::from_secs(3600);
     let stop = Stop { passes: u32::MAX, time: Some(hour), target_error: None };
     let begun = Progress { passes: 3, photons: 30, elapsed: hour, ..Progress::before(stop) };
-    let mut engine = Counter { passes: 3, ..counter(NEVER, true) };
+    let mut engine = counter(NEVER, true);
+    let state = State { passes: 3, ..State::default() };
     let flag = AtomicBool::new(false);
-    let outcome = resume(&mut engine, begun, &flag, &mut |_| (), None).unwrap();
+    let outcome = resume(&mut engine, &state, begun, &flag, &mut |_| (), None).unwrap();
     assert!(matches!(outcome.ending, Ending::Time) && outcome.progress.passes == 3);
     let longer = Progress { stop: passes(5), ..begun };
-    let outcome = resume(&mut engine, longer, &flag, &mut |_| (), None).unwrap();
+    let outcome = resume(&mut engine, &state, longer, &flag, &mut |_| (), None).unwrap();
     assert_eq!((outcome.progress.passes, outcome.progress.photons), (5, 50));
     assert!(outcome.progress.elapsed >= hour);
 }
