@@ -106,7 +106,7 @@ pub fn successor() -> Candidate {
     Candidate::new("cpu", sound)
 }
 
-fn sound(scene: &Scene, settings: &RenderSettings) -> Result<Opened, EngineError> {
+pub fn sound(scene: &Scene, settings: &RenderSettings) -> Result<Opened, EngineError> {
     device::open(&Wanted::Cpu, scene, settings).map_err(|error| match error {
         device::DeviceError::Engine(error) => error,
         other => panic!("{other}"),

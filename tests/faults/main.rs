@@ -4,7 +4,10 @@
 //! fails at and in whichever way, the next one ends in the bits of a render that never failed; and where there is no next one, what
 //! is left can be gone on from to the same bits.
 
+mod device;
 mod engine;
+#[path = "../software/mod.rs"]
+mod software;
 
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;

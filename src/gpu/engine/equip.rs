@@ -112,6 +112,7 @@ impl GpuEngine {
             device: gpu.summary.name.clone(),
             gpu,
             passes_done: 0,
+            torn: false,
             recorder,
             pace,
             programs: BTreeMap::new(),

@@ -34,6 +34,8 @@ pub struct GpuEngine {
     gpu: Gpu,
     plan: Plan,
     passes_done: u32,
+    /// Whether a pass ended while it was adding to the film.
+    torn: bool,
     recorder: Recorder,
     pace: Pace,
     programs: BTreeMap<Kernel, Program>,
@@ -71,6 +73,11 @@ impl GpuEngine {
     /// What each kernel took to be made ready, if this was [measured](Self::measured).
     pub fn compile_seconds(&self) -> &BTreeMap<Kernel, CompileSeconds> {
         &self.compile_seconds
+    }
+
+    /// Has the driver take the device away, as it does when it is reset: for tests.
+    pub fn lose(&self) {
+        self.gpu.lose();
     }
 
     /// What it runs on.
@@ -123,11 +130,13 @@ impl Engine for GpuEngine {
                 batch = (batch / 2).max(1);
                 continue;
             }
+            self.torn = true;
             for step in &resolve {
                 self.run(step)?;
                 self.mend_aovs(step)?;
             }
             self.flush()?;
+            self.torn = false;
             self.passes_done += 1;
             let eye_paths =
                 trace.iter().filter(|s| s.kernel == Kernel::EyeTrace).map(|s| s.dispatch.end as u64);

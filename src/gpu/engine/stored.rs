@@ -68,6 +68,7 @@ impl GpuEngine {
     /// What all chunks hold in a buffer of theirs, an item for each `samples` visible points; nothing where there is no such
     /// buffer.
     fn chunked<T: bytemuck::Pod>(&self, name: &str, samples: u32) -> Result<Vec<T>, EngineError> {
+        self.check_whole()?;
         let mut all = Vec::new();
         for (number, chunk) in (0..).zip(&self.chunks) {
             if let Some(buffer) = chunk.get(name) {
@@ -81,6 +82,7 @@ impl GpuEngine {
 
     /// All chunks' parts of a buffer, one after another; nothing where the plan has no such buffer.
     fn read_chunks(&self, name: &str) -> Result<Vec<u8>, EngineError> {
+        self.check_whole()?;
         let mut bytes = Vec::new();
         for (number, chunk) in (0..).zip(&self.chunks) {
             if let Some(buffer) = chunk.get(name) {
@@ -99,5 +101,14 @@ impl GpuEngine {
             _ => (first, first + points, STATISTICS_BYTES),
         };
         first as usize * size..end as usize * size
+    }
+
+    /// Fails where the buffers hold a part of a pass.
+    fn check_whole(&self) -> Result<(), EngineError> {
+        if self.torn {
+            let text = format!("{} failed in the middle of adding up a pass", self.device);
+            return Err(EngineError::DeviceLost(text));
+        }
+        Ok(())
     }
 }
