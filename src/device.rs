@@ -11,14 +11,17 @@ use crate::gpu::{self, AdapterChoice, AdapterKind, AdapterSummary, GpuEngine};
 use crate::identity::Identity;
 use crate::kernels::records::VisiblePoint;
 use crate::lights::guide::guides;
+use crate::memory::Memory;
 use crate::pack::{Packed, pack};
-use crate::plan::Plan;
+use crate::plan::{self, Place, Plan};
 use crate::radius::Automatic;
 use crate::scene::Scene;
 use crate::settings::{Method, Radius, RenderSettings};
 
 pub use candidates::{Candidate, Candidates};
 
+/// Visible points of a tile where a GPU has turned out to have less memory than was hoped for.
+const SMALL_TILE: u32 = 1 << 16;
 /// Most visible points of a picture: their numbers are 32 bits wide.
 const POINTS_MAX: u64 = 1 << 31;
 
@@ -195,7 +198,7 @@ pub fn pick<'a>(wanted: &Wanted, devices: &'a [DeviceInfo]) -> Result<(&'a Devic
 /// so `auto` takes it.
 pub fn open(wanted: &Wanted, scene: &Scene, settings: &RenderSettings) -> Result<Opened, DeviceError> {
     let mut candidates = Candidates::of(wanted, settings)?;
-    Ok(candidates.open(scene, settings, &mut |name, error| {
+    Ok(candidates.open(scene, settings, &Memory::default(), &mut |name, error| {
         log::warn!("{name} cannot render this: {error}");
     })?)
 }
@@ -230,6 +233,7 @@ fn start(
     why: String,
     scene: &Scene,
     settings: &RenderSettings,
+    memory: &Memory,
 ) -> Result<Opened, EngineError> {
     check_points(device, scene, settings)?;
     let film = &scene.film;
@@ -247,16 +251,51 @@ fn start(
     };
     if device.kind == DeviceKind::CpuDouble {
         let (wide, plan) = in_double(scene, &packed, settings)?;
+        let tables = plan::scene_bytes(&packed.scene) + double::plan::scene_bytes(&wide.scene);
+        let plan = plan.within(tables, double::plan::Place::Program, memory)?;
+        tell_cut(plan.tiled, plan.chunks(), plan.batches());
         let (settings, automatic, unit) = (plan.settings.clone(), plan.told_radius(), plan.radiance_unit);
         return Ok(opened(Box::new(double::cpu::CpuEngine::new(wide, plan)), settings, automatic, unit));
     }
-    let plan = Plan::new(&packed, settings).on(film);
+    let plan = Plan::new(&packed, settings).on(film).within(
+        plan::scene_bytes(&packed.scene),
+        place(device.kind),
+        memory,
+    )?;
+    tell_cut(plan.tiled, plan.chunks(), plan.batches());
     let (settings, automatic, unit) = (plan.settings.clone(), plan.told_radius(), plan.radiance_unit);
     let engine: Box<dyn Engine> = match device.kind {
         DeviceKind::Cpu => Box::new(CpuEngine::new(packed, plan)),
-        _ => Box::new(GpuEngine::new(&AdapterChoice::Named(device.name.clone()), &packed, plan)?),
+        _ => Box::new(on_gpu(&AdapterChoice::Named(device.name.clone()), &packed, plan)?),
     };
     Ok(opened(engine, settings, automatic, unit))
+}
+
+/// Where a device of this kind has its buffers.
+pub fn place(kind: DeviceKind) -> Place {
+    match kind {
+        DeviceKind::Cpu | DeviceKind::CpuDouble => Place::Program,
+        DeviceKind::Software => Place::Device { in_main_memory: true },
+        DeviceKind::Gpu => Place::Device { in_main_memory: false },
+    }
+}
+
+/// An engine on a GPU; in tiles, where its memory does not suffice otherwise.
+fn on_gpu(choice: &AdapterChoice, packed: &Packed, plan: Plan) -> Result<GpuEngine, EngineError> {
+    let tiled = (!plan.tiled).then(|| plan.clone().in_tiles(SMALL_TILE));
+    match (GpuEngine::new(choice, packed, plan), tiled) {
+        (Err(EngineError::OutOfMemory(text)), Some(tiled)) => {
+            log::warn!("out of memory: {text}; once more in {} tiles", tiled.chunks());
+            GpuEngine::new(choice, packed, tiled)
+        }
+        (made, _) => made,
+    }
+}
+
+fn tell_cut(tiled: bool, tiles: u32, batches: u32) {
+    if tiled {
+        log::info!("to save memory: in {tiles} tiles, photons in {batches} batches");
+    }
 }
 
 /// What the engine in f64 takes; `single` is the scene flattened in f32.

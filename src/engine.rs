@@ -3,6 +3,7 @@
 use crate::clock::KernelSeconds;
 use crate::film::exr_file::Channel;
 use crate::film::{ErrorMap, Picture, Rejections};
+use crate::memory::OverBudget;
 use serde::{Deserialize, Serialize};
 
 /// Photon paths by how they ended; together those that were emitted.
@@ -94,6 +95,9 @@ pub enum EngineError {
         /// The setting to change.
         mend: String,
     },
+    /// There may not be as much memory as the render takes.
+    #[error(transparent)]
+    OverBudget(Box<OverBudget>),
     /// The driver gave up; `0` says how.
     #[error("the device was lost: {0}")]
     DeviceLost(String),

@@ -84,6 +84,7 @@ pub mod lights;
 pub mod limits;
 pub mod materials;
 pub mod math;
+pub mod memory;
 pub mod pack;
 pub mod plan;
 #[cfg(feature = "preview")]

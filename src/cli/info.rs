@@ -6,9 +6,8 @@ use std::path::PathBuf;
 use caustica::engine::EngineError;
 use caustica::features;
 use caustica::pack::{Packed, pack};
-use caustica::plan::{Kernel, Plan};
+use caustica::plan::{Kernel, Plan, scene_tables};
 use caustica::settings::Method;
-use caustica::tables::Scene;
 use clap::builder::NonEmptyStringValueParser;
 use serde_json::{Value, json};
 
@@ -97,33 +96,6 @@ fn report(packed: &Packed, plan: &Plan) -> InfoReport {
     let own_buffers = plan.buffers().into_iter().filter(|(name, _)| !path || *name == "film");
     let buffers = tables.chain(own_buffers).map(|(name, bytes)| (name.to_owned(), bytes));
     InfoReport { features: features.collect(), kernels: kernels.collect(), buffers: buffers.collect() }
-}
-
-/// Name and bytes of every table of the flattened scene.
-fn scene_tables(scene: &Scene) -> Vec<(&'static str, u64)> {
-    fn bytes<T>(table: &[T]) -> u64 {
-        size_of_val(table) as u64
-    }
-    vec![
-        ("spheres", bytes(&scene.spheres)),
-        ("rectangles", bytes(&scene.rectangles)),
-        ("discs", bytes(&scene.discs)),
-        ("cuboids", bytes(&scene.cuboids)),
-        ("planes", bytes(&scene.planes)),
-        ("revolutions", bytes(&scene.revolutions)),
-        ("patches", bytes(&scene.patches)),
-        ("profile_points", bytes(&scene.profile_points)),
-        ("unbounded", bytes(&scene.unbounded)),
-        ("materials", bytes(&scene.materials)),
-        ("textures", bytes(&scene.textures)),
-        ("lights", bytes(&scene.lights)),
-        ("distributions", bytes(&scene.distributions)),
-        ("nodes", bytes(&scene.nodes)),
-        ("refs", bytes(&scene.refs)),
-        ("triangles", bytes(&scene.triangles)),
-        ("attributes", bytes(&scene.attributes)),
-        ("texels", bytes(&scene.texels)),
-    ]
 }
 
 impl InfoReport {

@@ -6,6 +6,7 @@ mod allowed;
 mod bench;
 mod bench_table;
 mod bounds;
+mod budget;
 mod check;
 mod checkpoint;
 mod colors;

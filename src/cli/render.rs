@@ -20,6 +20,7 @@ use clap::builder::NonEmptyStringValueParser;
 use miette::{Report, miette};
 use serde_json::json;
 
+use super::budget::Budget;
 use super::checkpoint::Keeper;
 use super::extent::Extent;
 use super::like::Like;
@@ -70,6 +71,8 @@ pub struct Arguments {
     /// Fail, with the pictures written, if a sample had to be left out because it was not finite
     #[arg(long)]
     strict: bool,
+    #[command(flatten)]
+    budget: Budget,
     #[command(flatten)]
     extent: Extent,
     #[command(flatten)]
@@ -144,7 +147,7 @@ fn run_on(arguments: Arguments, find: &Find) -> Result<Done, Failure> {
     let device = arguments.device.as_deref().or(like.as_ref().map(Like::device)).unwrap_or("auto");
     let json = arguments.voice.json;
     let candidates = find(&device::parse(device), &settings)?;
-    let mut succession = Succession::new(candidates, &scene, &settings, json);
+    let mut succession = Succession::new(candidates, &scene, &settings, arguments.budget.memory(), json);
     let opened = succession.first()?;
     let mut viewer = Viewer::connect(arguments.tev.as_deref(), &scene)?;
     let scene_text = std::fs::read_to_string(&file).unwrap_or_default();
@@ -206,7 +209,7 @@ fn run_on(arguments: Arguments, find: &Find) -> Result<Done, Failure> {
         digest: Some(scene.digest()),
         film: Some(scene.film),
         materials: scene.materials.iter().map(|material| material.name.clone()).collect(),
-        asked: Some(settings),
+        asked: Some(succession.asked().clone()),
         settings: opened.settings,
         device: succession.device(),
         first_pass,

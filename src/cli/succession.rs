@@ -2,6 +2,7 @@
 
 use caustica::device::{Candidates, Opened};
 use caustica::engine::{Engine, EngineError, State};
+use caustica::memory::Memory;
 use caustica::scene::Scene;
 use caustica::settings::RenderSettings;
 use serde_json::json;
@@ -13,6 +14,7 @@ pub struct Succession<'a> {
     candidates: Candidates,
     scene: &'a Scene,
     settings: RenderSettings,
+    memory: Memory,
     json: bool,
     /// The one that was tried last.
     last: String,
@@ -22,9 +24,15 @@ pub struct Succession<'a> {
 
 impl<'a> Succession<'a> {
     /// Those that may be tried.
-    pub fn new(candidates: Candidates, scene: &'a Scene, settings: &RenderSettings, json: bool) -> Self {
+    pub fn new(
+        candidates: Candidates,
+        scene: &'a Scene,
+        settings: &RenderSettings,
+        memory: Memory,
+        json: bool,
+    ) -> Self {
         let settings = settings.clone();
-        Self { candidates, scene, settings, json, last: String::new(), rendered: Vec::new() }
+        Self { candidates, scene, settings, memory, json, last: String::new(), rendered: Vec::new() }
     }
 
     /// An engine on the first device that can render this.
@@ -32,7 +40,10 @@ impl<'a> Succession<'a> {
         let mut refused = |name: &str, error: &EngineError| {
             message(format_args!("warning: {name} cannot render this: {error}"));
         };
-        let opened = self.candidates.open(self.scene, &self.settings, &mut refused)?;
+        let opened = self.candidates.open(self.scene, &self.settings, &self.memory, &mut refused)?;
+        // the devices after it are to round alike
+        self.settings.batch = opened.settings.batch;
+        self.memory.same_batches = true;
         self.take(opened.name.clone());
         Ok(opened)
     }
@@ -43,7 +54,7 @@ impl<'a> Succession<'a> {
         error: &EngineError,
         state: &State,
     ) -> Option<Result<Box<dyn Engine>, EngineError>> {
-        let (name, opened) = self.candidates.next(self.scene, &self.settings)?;
+        let (name, opened) = self.candidates.next(self.scene, &self.settings, &self.memory)?;
         message(format_args!("warning: {}: {error}", self.last));
         let failed = std::mem::replace(&mut self.last, name.clone());
         let opened = match opened {
@@ -69,6 +80,11 @@ impl<'a> Succession<'a> {
     fn take(&mut self, name: String) {
         self.last = name.clone();
         self.rendered.push(name);
+    }
+
+    /// The settings as asked for, with the batches of photons that memory allows.
+    pub fn asked(&self) -> &RenderSettings {
+        &self.settings
     }
 
     /// The devices that have rendered, in their order.

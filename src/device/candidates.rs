@@ -4,11 +4,12 @@ use std::collections::VecDeque;
 
 use super::{DeviceError, DeviceInfo, DeviceKind, Opened, Wanted, cpu, list, pick, start};
 use crate::engine::EngineError;
+use crate::memory::Memory;
 use crate::scene::Scene;
 use crate::settings::{Method, RenderSettings};
 
 /// Makes an engine for a scene.
-type Open = Box<dyn FnOnce(&Scene, &RenderSettings) -> Result<Opened, EngineError>>;
+type Open = Box<dyn FnOnce(&Scene, &RenderSettings, &Memory) -> Result<Opened, EngineError>>;
 
 /// A device that may be tried.
 pub struct Candidate {
@@ -20,7 +21,7 @@ impl Candidate {
     /// One of the caller's own, such as an engine that is made to fail.
     pub fn new(
         name: impl Into<String>,
-        open: impl FnOnce(&Scene, &RenderSettings) -> Result<Opened, EngineError> + 'static,
+        open: impl FnOnce(&Scene, &RenderSettings, &Memory) -> Result<Opened, EngineError> + 'static,
     ) -> Self {
         Self { name: name.into(), open: Box::new(open) }
     }
@@ -32,9 +33,9 @@ impl Candidate {
 
     fn of(device: &DeviceInfo, why: String) -> Self {
         let device = device.clone();
-        Self::new(device.name.clone(), move |scene, settings| {
+        Self::new(device.name.clone(), move |scene, settings, memory| {
             log::info!("{} [{}] {} ({why})", device.name, device.kind.word(), device.driver);
-            start(&device, why, scene, settings)
+            start(&device, why, scene, settings, memory)
         })
     }
 }
@@ -80,9 +81,10 @@ impl Candidates {
         &mut self,
         scene: &Scene,
         settings: &RenderSettings,
+        memory: &Memory,
     ) -> Option<(String, Result<Opened, EngineError>)> {
         let Candidate { name, open } = self.0.pop_front()?;
-        Some((name, open(scene, settings)))
+        Some((name, open(scene, settings, memory)))
     }
 
     /// An engine on the first one that can render this; `refused` is told of those before.
@@ -93,10 +95,11 @@ impl Candidates {
         &mut self,
         scene: &Scene,
         settings: &RenderSettings,
+        memory: &Memory,
         refused: &mut dyn FnMut(&str, &EngineError),
     ) -> Result<Opened, EngineError> {
         let mut last = EngineError::Unsupported("there is no device to try".to_owned());
-        while let Some((name, opened)) = self.next(scene, settings) {
+        while let Some((name, opened)) = self.next(scene, settings, memory) {
             match opened {
                 Ok(opened) => return Ok(opened),
                 Err(error) if error.is_of_scene() || self.0.is_empty() => return Err(error),

@@ -5,8 +5,18 @@ use super::super::kernels::records::{FilmPixel, Gathered, PhotonRecord, Statisti
 use super::super::kernels::resolve_parts::PartsPixel;
 use super::Plan;
 use super::kernel::SCAN_BLOCK;
+use crate::scene::Aov;
 
 impl Plan {
+    /// Buffers of visible points that chunks take turns with. The counts of `gathered` are kept where a layer shows them.
+    pub fn in_turn(&self) -> &'static [&'static str] {
+        match (self.tiled, self.aovs.has(Aov::Photons)) {
+            (false, _) => &[],
+            (true, true) => &["visible_points"],
+            (true, false) => &["visible_points", "gathered"],
+        }
+    }
+
     /// Name and bytes of every buffer beside the scene's; those of chunks for the largest chunk.
     pub fn buffers(&self) -> Vec<(&'static str, u64)> {
         let points = self.chunk(0).1 as u64;

@@ -2,10 +2,11 @@
 //!
 //! The picture is cut into chunks of visible points and the photons into batches, so that no buffer passes a
 //! device's binding limit. Neither changes a result but for the grouping of the photons' sum, and batches are the
-//! same for every engine.
+//! same for every engine. Where memory is scarce chunks become tiles, which take turns with one set of buffers.
 
 mod buffers;
 mod kernel;
+mod memory;
 mod scale;
 mod steps;
 
@@ -25,6 +26,7 @@ use crate::stage::stage;
 use glam::DVec3;
 
 pub use kernel::{Kernel, SCAN_BLOCK, SORT_BUCKETS, Step};
+pub use memory::{Place, scene_bytes, scene_tables};
 pub use scale::global_scale_sq;
 
 /// Bytes that one storage binding may have on every device (WebGPU's default limit).
@@ -53,6 +55,9 @@ pub struct Plan {
     pub eye_samples: u32,
     /// Visible points per chunk, a multiple of `eye_samples`.
     pub chunk_points: u32,
+    /// Whether chunks are tiles: one after another goes through all steps of a pass, with the buffers of the one before for what
+    /// lives no longer than that.
+    pub tiled: bool,
     /// Photons per batch.
     pub batch_photons: u32,
     /// Records that the buffers hold.
@@ -90,11 +95,7 @@ impl Plan {
         let widening = if features.has("first") { 1.0 } else { wider };
         let camera = &packed.scene.camera;
         let eye_samples = if settings.method == Method::Ppm { settings.eye_samples } else { 1 };
-        let wanted = (settings.photons as f64 * probe.records_per_photon * 1.25).max(1024.0);
-        let capacity = (wanted.min(CAPACITY_MAX as f64) as u32).next_power_of_two().max(SCAN_BLOCK);
-        let fit = (capacity as f64 * 0.8 / probe.records_per_photon.max(1e-3)) as u64;
-        // a key has 32 bits for (photon of the batch, bounce, family)
-        let key_room = 1u64 << (32 - key_bits(settings.max_bounces));
+        let (capacity, batch_photons) = batch(settings, &probe);
         Self {
             features,
             settings: settings.clone(),
@@ -104,7 +105,8 @@ impl Plan {
             aovs: Aovs::default(),
             eye_samples,
             chunk_points: CHUNK_POINTS / eye_samples * eye_samples,
-            batch_photons: fit.min(key_room).clamp(1, settings.photons as u64) as u32,
+            tiled: false,
+            batch_photons,
             capacity,
             buckets: capacity,
             probe,
@@ -116,6 +118,14 @@ impl Plan {
             first_pass: 0,
             taken_over: 0,
         }
+    }
+
+    /// The same with batches of at most so many photons.
+    pub fn with_batch(mut self, photons: u32) -> Self {
+        self.settings.batch = Some(photons);
+        (self.capacity, self.batch_photons) = batch(&self.settings, &self.probe);
+        self.buckets = self.capacity;
+        self
     }
 
     /// The same for a film: for its window alone, and with what it asks for beside radiance.
@@ -199,6 +209,17 @@ impl Plan {
     pub fn rejections(&self, film: &[FilmPixel]) -> Rejections {
         self.readout().rejections(film)
     }
+}
+
+/// Records that the buffers are to hold, and photons per batch.
+fn batch(settings: &RenderSettings, probe: &Probe) -> (u32, u32) {
+    let most = settings.batch.unwrap_or(u32::MAX).clamp(1, settings.photons.max(1));
+    let wanted = (most as f64 * probe.records_per_photon * 1.25).max(1024.0);
+    let capacity = (wanted.min(CAPACITY_MAX as f64) as u32).next_power_of_two().max(SCAN_BLOCK);
+    let fit = (capacity as f64 * 0.8 / probe.records_per_photon.max(1e-3)) as u64;
+    // a key has 32 bits for (photon of the batch, bounce, family)
+    let key_room = 1u64 << (32 - key_bits(settings.max_bounces));
+    (capacity, fit.min(key_room).clamp(1, most as u64) as u32)
 }
 
 /// Bits that hold a bounce number and a family.

@@ -6,6 +6,7 @@ use super::kernel::{Kernel, SCAN_BLOCK, Step};
 use super::{Plan, key_bits};
 use crate::settings::{Method, Radius};
 use bytemuck::Zeroable;
+use std::ops::Range;
 
 /// Grid cells are this many mean radii wide.
 const CELL_RADII: f64 = 2.0;
@@ -58,18 +59,41 @@ impl Plan {
         Dispatch { pass_number: 0, points: crate::sobol::points(0), ..common }
     }
 
-    /// Pass `pass` of this render, from 0, with `batch_photons` photons a batch (fewer than planned when a batch overflowed). Before its
-    /// first step an engine clears `gathered`, before each [`Kernel::PhotonTrace`] the record counter. The steps from the
-    /// first [`Kernel::ResolveParts`] or [`Kernel::Resolve`] on add to what passes before have found.
+    /// Pass `pass` of this render, from 0, with `batch_photons` photons a batch (fewer than planned when a batch overflowed): all of
+    /// [`Self::phases`].
     pub fn steps(&self, pass: u32, batch_photons: u32) -> Vec<Step> {
+        self.phases(pass, batch_photons).into_iter().flatten().collect()
+    }
+
+    /// The same in phases, one or a tile's each. Before the first step of one an engine clears the `gathered` of its chunks, before each
+    /// [`Kernel::PhotonTrace`] the record counter. Its steps from the first [`Kernel::ResolveParts`] or [`Kernel::Resolve`] on add to
+    /// what passes before have found. Where photons come in one batch tiles share its grid, else each tile has them traced anew.
+    pub fn phases(&self, pass: u32, batch_photons: u32) -> Vec<Vec<Step>> {
+        let all = 0..self.chunks();
+        let tiles = if self.tiled { all.map(|c| c..c + 1).collect() } else { vec![all] };
+        let batches = self.settings.photons.div_ceil(batch_photons.max(1));
+        let mut phases: Vec<_> = tiles
+            .into_iter()
+            .map(|chunks| {
+                let trace = chunks.start == 0 || batches > 1;
+                self.phase(pass, batch_photons, chunks, trace)
+            })
+            .collect();
+        if let Some(last) = phases.last_mut() {
+            last.extend(self.aov_steps(pass));
+        }
+        phases
+    }
+
+    fn phase(&self, pass: u32, batch_photons: u32, chunks: Range<u32>, trace: bool) -> Vec<Step> {
         let common = self.dispatch(pass);
         let mut steps = Vec::new();
         let mut step = |kernel, chunk, dispatch| steps.push(Step { kernel, chunk, dispatch });
         let over = |end| Dispatch { end, ..common };
         let ppm = self.settings.method == Method::Ppm;
         let eye = self.eye_dispatch(common);
-        if !ppm || pass == self.taken_over {
-            for c in 0..self.chunks() {
+        if !ppm || pass == self.taken_over || self.tiled {
+            for c in chunks.clone() {
                 let (chunk_first, end) = self.chunk(c);
                 step(Kernel::EyeTrace, c, Dispatch { end, chunk_first, ..eye });
             }
@@ -77,21 +101,23 @@ impl Plan {
         let mut batch_first = 0;
         while self.features.has("photons") && batch_first < self.settings.photons {
             let end = (self.settings.photons - batch_first).min(batch_photons);
-            step(Kernel::PhotonTrace, 0, Dispatch { end, batch_first, ..common });
-            step(Kernel::GridCount, 0, over(self.capacity));
-            step(Kernel::GridScanReduce, 0, over(self.buckets));
-            step(Kernel::GridScanSums, 0, over(self.buckets / SCAN_BLOCK));
-            step(Kernel::GridScan, 0, over(self.buckets));
-            step(Kernel::GridScatter, 0, over(self.capacity));
-            step(Kernel::GridSort, 0, over(self.buckets));
-            step(Kernel::GridSortLong, 0, over(self.buckets));
-            for c in 0..self.chunks() {
+            if trace {
+                step(Kernel::PhotonTrace, 0, Dispatch { end, batch_first, ..common });
+                step(Kernel::GridCount, 0, over(self.capacity));
+                step(Kernel::GridScanReduce, 0, over(self.buckets));
+                step(Kernel::GridScanSums, 0, over(self.buckets / SCAN_BLOCK));
+                step(Kernel::GridScan, 0, over(self.buckets));
+                step(Kernel::GridScatter, 0, over(self.capacity));
+                step(Kernel::GridSort, 0, over(self.buckets));
+                step(Kernel::GridSortLong, 0, over(self.buckets));
+            }
+            for c in chunks.clone() {
                 let (chunk_first, end) = self.chunk(c);
                 step(Kernel::Gather, c, Dispatch { end, chunk_first, ..common });
             }
             batch_first += end;
         }
-        for c in 0..self.chunks() {
+        for c in chunks {
             let (chunk_first, points) = self.chunk(c);
             let end = points / self.eye_samples;
             if self.parts_photons() {
@@ -99,7 +125,6 @@ impl Plan {
             }
             step(Kernel::Resolve, c, Dispatch { end, chunk_first, ..common });
         }
-        steps.extend(self.aov_steps(pass));
         steps
     }
 

@@ -4,6 +4,7 @@ use caustica::device::{Candidate, Candidates, Opened};
 use caustica::engine::{Engine, EngineError, PassReport, State};
 use caustica::film::{ErrorMap, Picture, Rejections};
 use caustica::gpu::GpuEngine;
+use caustica::memory::Memory;
 use caustica::pack::pack;
 use caustica::plan::Plan;
 use caustica::scene::{Loaded, Scene};
@@ -69,8 +70,8 @@ impl Engine for Losing {
 }
 
 fn losing(requests: u32) -> Candidate {
-    Candidate::new("lavapipe", move |scene: &Scene, settings: &RenderSettings| {
-        let opened = sound(scene, settings)?;
+    Candidate::new("lavapipe", move |scene: &Scene, settings: &RenderSettings, memory: &Memory| {
+        let opened = sound(scene, settings, memory)?;
         let inner = on_driver(scene, settings);
         Ok(Opened { engine: Box::new(Losing { inner, requests_left: requests }), ..opened })
     })

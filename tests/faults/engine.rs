@@ -7,6 +7,7 @@ use caustica::device::{self, Candidate, Opened, Wanted};
 use caustica::engine::{Engine, EngineError, PassReport, State};
 use caustica::film::exr_file::Channel;
 use caustica::film::{ErrorMap, Picture, Rejections};
+use caustica::memory::Memory;
 use caustica::scene::Scene;
 use caustica::settings::RenderSettings;
 
@@ -92,9 +93,9 @@ fn ask(script: &Shared, step: Step) -> Result<(), (EngineError, bool)> {
 /// The CPU engine, as a device that fails as its script says.
 pub fn candidate(script: &Shared) -> Candidate {
     let script = script.clone();
-    Candidate::new("a faulty device", move |scene: &Scene, settings: &RenderSettings| {
+    Candidate::new("a faulty device", move |scene: &Scene, settings: &RenderSettings, memory: &Memory| {
         ask(&script, Step::Open).map_err(|(error, _)| error)?;
-        let mut opened = sound(scene, settings)?;
+        let mut opened = sound(scene, settings, memory)?;
         opened.engine = Box::new(Faulty { inner: opened.engine, script });
         opened.name = "a faulty device".to_owned();
         Ok(opened)
@@ -106,7 +107,7 @@ pub fn successor() -> Candidate {
     Candidate::new("cpu", sound)
 }
 
-pub fn sound(scene: &Scene, settings: &RenderSettings) -> Result<Opened, EngineError> {
+pub fn sound(scene: &Scene, settings: &RenderSettings, _: &Memory) -> Result<Opened, EngineError> {
     device::open(&Wanted::Cpu, scene, settings).map_err(|error| match error {
         device::DeviceError::Engine(error) => error,
         other => panic!("{other}"),

@@ -16,6 +16,7 @@ use caustica::device::{Candidates, Wanted, open};
 use caustica::engine::{Engine, EngineError, State};
 use caustica::film::Picture;
 use caustica::kernels::bytes::FILM_BYTES;
+use caustica::memory::Memory;
 use caustica::relay::Relay;
 use caustica::render::{Broken, Kept, Outcome, Progress, Saving, Stop, resume};
 use caustica::scene::{self, Loaded};
@@ -57,13 +58,14 @@ fn render(
 ) -> (Result<Outcome, Broken>, Vec<State>) {
     let mut saved = Vec::new();
     let mut candidates = candidates;
+    let memory = Memory::default();
     let never = AtomicBool::new(false);
-    let opened = match candidates.open(&loaded.scene, &loaded.settings, &mut |_, _| ()) {
+    let opened = match candidates.open(&loaded.scene, &loaded.settings, &memory, &mut |_, _| ()) {
         Ok(opened) => opened,
         Err(error) => return (Err(Broken { error, kept: None }), saved),
     };
     let mut next = |_: &EngineError, _: &State| -> Option<Result<Box<dyn Engine>, EngineError>> {
-        let (_, opened) = candidates.next(&loaded.scene, &loaded.settings)?;
+        let (_, opened) = candidates.next(&loaded.scene, &loaded.settings, &memory)?;
         Some(opened.map(|opened| opened.engine))
     };
     let mut relay = Relay::new(opened.engine, &mut next);

@@ -3,22 +3,22 @@
 use super::super::mend::{mend_aovs, mend_photons, mend_points};
 use super::super::program::workgroup_items;
 use super::{COUNTERS_BYTES, ENDS, GpuEngine, READINGS_BYTES, STOPPED_COUNT};
-use crate::engine::{EngineError, PhotonEnds};
+use crate::engine::{EngineError, PassReport, PhotonEnds};
 use crate::kernels::records::Dispatch;
 use crate::plan::{Kernel, Step};
 
 /// Records of each batch, rays and photons' ends of a pass, and invocations that the driver stopped.
-pub(super) struct Counted {
-    pub records: Vec<u32>,
-    pub rays: u64,
-    pub eye_rays: u64,
-    pub ends: PhotonEnds,
-    pub stopped: u32,
+struct Counted {
+    records: Vec<u32>,
+    rays: u64,
+    eye_rays: u64,
+    ends: PhotonEnds,
+    stopped: u32,
 }
 
 impl GpuEngine {
     /// Submits what was recorded.
-    pub(super) fn flush(&mut self) -> Result<(), EngineError> {
+    fn flush(&mut self) -> Result<(), EngineError> {
         let seconds = self.recorder.finish(&self.gpu)?;
         if self.stamped {
             for (kernel, seconds) in self.recorder.stamped(&self.gpu)? {
@@ -37,7 +37,7 @@ impl GpuEngine {
     }
 
     /// Runs a step, by itself if its time is asked for and the device has no clock.
-    pub(super) fn run(&mut self, step: &Step) -> Result<(), EngineError> {
+    fn run(&mut self, step: &Step) -> Result<(), EngineError> {
         if self.stamped || !self.clock.is_wound() {
             return self.record(step);
         }
@@ -70,15 +70,59 @@ impl GpuEngine {
         Ok(())
     }
 
-    /// The steps of a pass up to `Resolve`, which do not touch what passes before have found.
-    pub(super) fn trace(&mut self, steps: &[Step]) -> Result<Counted, EngineError> {
+    /// A pass with so many photons a batch; nothing where that has to be thrown away, since records did not fit or the driver
+    /// stopped long loops.
+    pub(super) fn phases(&mut self, batch: u32) -> Result<Option<PassReport>, EngineError> {
+        let pass = self.passes_done;
+        let mut report = PassReport {
+            photons: self.plan.settings.photons as u64,
+            radius: self.plan.radius(pass),
+            ..PassReport::default()
+        };
+        for (number, steps) in self.plan.phases(pass, batch).into_iter().enumerate() {
+            let (resolve, trace): (Vec<_>, Vec<_>) = steps.into_iter().partition(|s| adds_up(s.kernel));
+            let counted = self.trace(&trace, number == 0)?;
+            let photons = trace.iter().filter(|s| s.kernel == Kernel::PhotonTrace).map(|s| s.dispatch.end);
+            let overflow = |(photons, records): (u32, &u32)| *records > self.plan.capacity && photons > 1;
+            let overflows = photons.zip(&counted.records).any(overflow);
+            // tiles before this one have been added to the film
+            if counted.stopped > 0 && (batch == 1 || self.scene.is_none() || self.torn) {
+                return Err(self.unfinished());
+            }
+            if overflows || counted.stopped > 0 {
+                return Ok(None);
+            }
+            self.torn = true;
+            for step in &resolve {
+                self.run(step)?;
+                self.mend_aovs(step)?;
+            }
+            self.flush()?;
+            let eyes = trace.iter().filter(|s| s.kernel == Kernel::EyeTrace).map(|s| s.dispatch.end as u64);
+            report.eye_paths += eyes.sum::<u64>();
+            report.rays += counted.rays;
+            report.eye_rays += counted.eye_rays;
+            // photons that are traced again for another tile are the same
+            if number == 0 {
+                report.records = counted.records.iter().map(|r| *r as u64).sum();
+                report.ends = counted.ends;
+            }
+        }
+        self.torn = false;
+        Ok(Some(report))
+    }
+
+    /// The steps of a phase up to `Resolve`, which do not touch what passes before have found.
+    fn trace(&mut self, steps: &[Step], first_phase: bool) -> Result<Counted, EngineError> {
         let batches = steps.iter().filter(|s| s.kernel == Kernel::PhotonTrace).count() as u64;
         let bytes = READINGS_BYTES + 4 * batches;
         if self.readings.size() < bytes {
             self.readings = self.gpu.storage("readings", bytes)?;
         }
-        for chunk in &self.chunks {
-            self.recorder.clear(&self.gpu, &chunk["gathered"], None);
+        let shared = self.shared.get("gathered");
+        let own = self.chunks.iter().filter_map(|chunk| chunk.get("gathered").filter(|_| first_phase));
+        for gathered in own.chain(shared) {
+            self.recorder.clear(&self.gpu, gathered, None);
         }
         self.recorder.clear(&self.gpu, &self.shared["counters"], None);
         let mut offset = READINGS_BYTES;
@@ -130,7 +174,8 @@ impl GpuEngine {
         };
         let sampled = self.plan.features.has("sampled");
         let (mended, rays) = if step.kernel == Kernel::EyeTrace {
-            let buffer = &self.chunks[step.chunk as usize]["visible_points"];
+            let own = self.chunks[step.chunk as usize].get("visible_points");
+            let buffer = own.unwrap_or_else(|| &self.shared["visible_points"]);
             mend_points(&self.gpu, scene, &step.dispatch, sampled, buffer)?
         } else {
             let mended =
@@ -148,7 +193,7 @@ impl GpuEngine {
     }
 
     /// Traces again, on the CPU, the samples of a step that a software driver stopped; fails where there is another driver.
-    pub(super) fn mend_aovs(&mut self, step: &Step) -> Result<(), EngineError> {
+    fn mend_aovs(&mut self, step: &Step) -> Result<(), EngineError> {
         if step.kernel != Kernel::AovTrace {
             return Ok(());
         }
@@ -168,7 +213,12 @@ impl GpuEngine {
         Ok(())
     }
 
-    pub(super) fn unfinished(&self) -> EngineError {
+    fn unfinished(&self) -> EngineError {
         EngineError::Unsupported(format!("{} leaves long loops unfinished; take --device cpu", self.device))
     }
+}
+
+/// Whether a kernel adds to what passes before have found, so that it must not run in a pass that is thrown away.
+fn adds_up(kernel: Kernel) -> bool {
+    matches!(kernel, Kernel::ResolveParts | Kernel::Resolve | Kernel::AovTrace)
 }

@@ -98,7 +98,7 @@ impl GpuEngine {
         }
         let mut chunks = vec![BTreeMap::new(); plan.chunks() as usize];
         for (name, bytes) in plan.buffers() {
-            if CHUNK_BUFFERS.contains(&name) {
+            if by_chunk(&plan, name) {
                 for (chunk, buffers) in (0..).zip(&mut chunks) {
                     buffers.insert(name, gpu.storage(name, chunk_bytes(&plan, bytes, chunk))?);
                 }
@@ -181,6 +181,11 @@ impl GpuEngine {
     }
 }
 
+/// Whether each chunk has a buffer of its own.
+fn by_chunk(plan: &Plan, name: &str) -> bool {
+    CHUNK_BUFFERS.contains(&name) && !plan.in_turn().contains(&name)
+}
+
 /// Bytes of a chunk's buffer, from those of the largest one.
 fn chunk_bytes(plan: &Plan, largest: u64, chunk: u32) -> u64 {
     largest * plan.chunk(chunk).1 as u64 / plan.chunk(0).1.max(1) as u64
@@ -191,7 +196,7 @@ pub fn sizes(plan: &Plan, scene: &Scene) -> Vec<(&'static str, u64)> {
     let mut list = vec![("scene", SceneTables::new(scene).bytes.len() as u64)];
     list.extend(long_tables(scene).map(|(name, _, content)| (name, content.len() as u64)));
     for (name, bytes) in plan.buffers() {
-        if CHUNK_BUFFERS.contains(&name) {
+        if by_chunk(plan, name) {
             list.extend((0..plan.chunks()).map(|chunk| (name, chunk_bytes(plan, bytes, chunk))));
         } else {
             list.push((name, bytes));

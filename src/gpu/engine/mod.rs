@@ -102,53 +102,22 @@ impl GpuEngine {
     }
 }
 
-/// Whether a kernel adds to what passes before have found, so that it must not run in a pass that is thrown away.
-fn adds_up(kernel: Kernel) -> bool {
-    matches!(kernel, Kernel::ResolveParts | Kernel::Resolve | Kernel::AovTrace)
-}
-
 impl Engine for GpuEngine {
     fn device(&self) -> &str {
         &self.device
     }
 
     fn pass(&mut self) -> Result<PassReport, EngineError> {
-        let pass = self.passes_done;
         let mut batch = self.plan.batch_photons;
         loop {
-            let steps = self.plan.steps(pass, batch);
-            let (resolve, trace): (Vec<_>, Vec<_>) = steps.into_iter().partition(|s| adds_up(s.kernel));
-            let counted = self.trace(&trace)?;
-            let photons = trace.iter().filter(|s| s.kernel == Kernel::PhotonTrace).map(|s| s.dispatch.end);
-            let overflow = |(photons, records): (u32, &u32)| *records > self.plan.capacity && photons > 1;
-            let overflows = photons.zip(&counted.records).any(overflow);
-            if counted.stopped > 0 && (batch == 1 || self.scene.is_none()) {
-                return Err(self.unfinished());
-            }
-            if overflows || counted.stopped > 0 {
+            match self.phases(batch)? {
+                Some(report) => {
+                    self.passes_done += 1;
+                    return Ok(report);
+                }
                 // thrown away and run again with batches half as large, which also shortens the loops over photons
-                batch = (batch / 2).max(1);
-                continue;
+                None => batch = (batch / 2).max(1),
             }
-            self.torn = true;
-            for step in &resolve {
-                self.run(step)?;
-                self.mend_aovs(step)?;
-            }
-            self.flush()?;
-            self.torn = false;
-            self.passes_done += 1;
-            let eye_paths =
-                trace.iter().filter(|s| s.kernel == Kernel::EyeTrace).map(|s| s.dispatch.end as u64);
-            return Ok(PassReport {
-                photons: self.plan.settings.photons as u64,
-                records: counted.records.iter().map(|r| *r as u64).sum(),
-                eye_paths: eye_paths.sum(),
-                rays: counted.rays,
-                eye_rays: counted.eye_rays,
-                ends: counted.ends,
-                radius: self.plan.radius(pass),
-            });
         }
     }
 
@@ -191,6 +160,9 @@ impl Engine for GpuEngine {
     }
 
     fn gathered(&mut self) -> Result<u64, EngineError> {
+        if self.plan.in_turn().contains(&"gathered") {
+            return Err(EngineError::Unsupported("what tiles have gathered is not kept".to_owned()));
+        }
         Ok(self.gathered_points()?.iter().map(|gathered| u64::from(gathered.count)).sum())
     }
 }
