@@ -43,6 +43,12 @@ impl Failure {
         Self { code: Self::NO_SUCH_DEVICE, report: report.into() }
     }
 
+    /// The exit code.
+    #[cfg(test)]
+    pub fn code(&self) -> u8 {
+        self.code
+    }
+
     /// Prints the failure to standard error.
     pub fn tell(self) -> ExitCode {
         message(format_args!("{:?}", self.report));

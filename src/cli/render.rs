@@ -355,3 +355,10 @@ fn put_in_force(mut loaded: Loaded, overrides: &Overrides) -> (Scene, RenderSett
 pub fn default_output(scene: &Path) -> PathBuf {
     Path::new(scene.file_stem().unwrap_or(scene.as_os_str())).with_extension("png")
 }
+
+#[cfg(test)]
+#[path = "../../tests/faults/engine.rs"]
+mod engine;
+#[cfg(test)]
+#[path = "render_faults.rs"]
+mod faults;
