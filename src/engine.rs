@@ -115,6 +115,12 @@ pub enum EngineError {
     Unsupported(String),
 }
 
+impl From<OverBudget> for EngineError {
+    fn from(over: OverBudget) -> Self {
+        Self::OverBudget(Box::new(over))
+    }
+}
+
 impl EngineError {
     /// Whether the device failed, so that the same render may go well on another one or another time.
     pub fn is_of_device(&self) -> bool {

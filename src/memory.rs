@@ -1,7 +1,5 @@
 //! Bytes that a render takes, counted before they are taken, and how many there may be.
 
-use crate::engine::EngineError;
-
 /// How much memory a render may take.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Memory {
@@ -68,12 +66,6 @@ impl OverBudget {
         let largest = parts.iter().max_by_key(|part| part.bytes);
         let largest = largest.copied().unwrap_or(Part { what: "nothing", bytes: 0, mend: "" });
         Self { needed: total(parts), of, limit, largest }
-    }
-}
-
-impl From<OverBudget> for EngineError {
-    fn from(over: OverBudget) -> Self {
-        Self::OverBudget(Box::new(over))
     }
 }
 

@@ -15,8 +15,8 @@ use crate::settings::Method;
 const LEAST_TILE: u32 = 1 << 14;
 /// Bytes of each pixel that a channel of a picture file takes.
 const CHANNEL_BYTES: u64 = 8;
-/// What the program and a device keep for reading back.
-const READING_BYTES: u64 = 32 << 20;
+/// Most that is read back from a device in one step.
+const READING_BYTES: u64 = 16 << 20;
 
 const SCENE: &str = "take coarser meshes or smaller textures";
 const PICTURE: &str = "make the picture smaller by --size, or render parts of it by --crop";
@@ -69,16 +69,16 @@ impl Plan {
         let on_its_way = if device { channels.max(FILM_BYTES as u64) } else { channels };
         let result = pixels * (12 + size_of::<PixelError>() as u64 + on_its_way);
         let part = |what, bytes, mend| Part { what, bytes, mend };
+        // what a render goes on from is kept twice
         let parts = [
             part("the scene", if device { 2 * scene } else { scene }, SCENE),
-            part("the film", film, PICTURE),
-            part("radii of visible points", statistics, SAMPLES),
-            part("layers", layers, LAYERS),
+            part("the film and a copy of it", 2 * film, PICTURE),
+            part("radii of visible points and a copy", 2 * statistics, SAMPLES),
+            part("layers and a copy", 2 * layers, LAYERS),
             part("visible points", visible, if self.eye_samples > 1 { SAMPLES } else { PICTURE }),
             part("photons", records, PHOTONS),
-            part("a copy of the film, to go on from", film + statistics + layers, PICTURE),
             part("the finished picture", result, PICTURE),
-            part("reading back", if device { READING_BYTES } else { 0 }, PICTURE),
+            part("reading back", if device { film.min(READING_BYTES) } else { 0 }, PICTURE),
         ];
         parts.into_iter().filter(|part| part.bytes > 0).collect()
     }
