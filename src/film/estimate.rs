@@ -134,8 +134,13 @@ impl ErrorMap {
         };
         let (noise, bias) = (sum(|t| t.noise) / count, sum(|t| t.bias) / count);
         let blocks = self.block_sums(&terms, &kept).iter().map(|sum| sum * sum).sum::<f64>();
-        let off = (blocks + sum(|t| t.alone_sq)).sqrt() / count;
-        let stated = ((noise + bias).max(0.0) + CONFIDENCE * off).sqrt();
+        let (mut unseen, mut unseen_sq) = (0.0, 0.0);
+        for (term, _) in terms.iter().zip(&kept).filter(|(_, kept)| !**kept) {
+            unseen += term.unseen;
+            unseen_sq += term.unseen * term.unseen;
+        }
+        let off = (blocks + sum(|t| t.alone_sq) + unseen_sq).sqrt() / count;
+        let stated = ((noise + bias).max(0.0) + unseen / count + CONFIDENCE * off).sqrt();
         // what overflows is no promise
         let stated = if stated.is_nan() { f64::INFINITY } else { stated };
         RelativeError { noise: noise.max(0.0).sqrt(), bias: bias.max(0.0).sqrt(), stated }
@@ -164,6 +169,8 @@ struct Term {
     off: f64,
     /// Variance of that which shares nothing with neighbours.
     alone_sq: f64,
+    /// What light that came here once may cost in pixels that it has not come to yet.
+    unseen: f64,
 }
 
 impl Term {
@@ -183,8 +190,24 @@ impl Term {
             off: (first - second + bias_off) * share,
             // of the estimate and of the true error, each of which has a square of this size
             alone_sq: 2.0 * halves * halves,
+            unseen: unseen(p),
         }
     }
+}
+
+/// Squared relative error that pixels without an event owe to those with one, where `p` had one.
+///
+/// A glint that one pass in hundreds sees is in the mean of some pixels and of others not; what it leaves the others short of
+/// is in no variance. The rates of events in all pixels without one sum up to the expected number of pixels with one (Good
+/// 1953), so the light v of a single event stands for as much light unseen. Of unseen light x beside b that is always seen
+/// the squared relative error is `x^2 / ((b + x)^2 + DARK) <= x / (2 (b + sqrt(b^2 + DARK)))`, hence v over that. The number
+/// of events is told by the mean over its deviation, squared: n events of v each have the mean n v and the variance n v^2.
+/// What is always seen adds to the mean, so two events' worth still count half.
+fn unseen(p: &PixelError) -> f64 {
+    let single = 0.5 * (3.0 - p.luminance * p.luminance / p.variance);
+    let event = p.variance.sqrt();
+    let seen = (p.luminance - event).max(0.0);
+    if single > 0.0 { single.min(1.0) * event / (2.0 * (seen + seen.hypot(DARK.sqrt()))) } else { 0.0 }
 }
 
 /// All pixels but the 0.1 %, rounded up, of the largest variance; of a single pixel that one. The rank does not look at
