@@ -6,9 +6,8 @@ use thiserror::Error;
 
 use crate::cpu::CpuEngine;
 use crate::double;
-use crate::engine::{Engine, EngineError};
+use crate::engine::{Engine, EngineError, Space};
 use crate::gpu::{self, AdapterChoice, AdapterKind, AdapterSummary, GpuEngine};
-use crate::identity::Identity;
 use crate::kernels::records::VisiblePoint;
 use crate::lights::guide::guides;
 use crate::memory::Memory;
@@ -111,10 +110,8 @@ pub struct Opened {
     pub settings: RenderSettings,
     /// Why that radius, where the settings left it open and it counts.
     pub radius: Option<Automatic>,
-    /// Which scene it is, as the f32 kernels read it.
-    pub identity: Identity,
-    /// Scene radiance times this is world radiance.
-    pub radiance_unit: f64,
+    /// What tells its numbers in those of the world.
+    pub space: Space,
 }
 
 /// No engine.
@@ -238,24 +235,22 @@ fn start(
     check_points(device, scene, settings)?;
     let film = &scene.film;
     let packed = pack(scene, film.width, film.height)?;
-    let identity = Identity::of(&packed);
-    let opened = |engine, settings, radius, radiance_unit| Opened {
+    let opened = |engine, settings, radius, space| Opened {
         engine,
         name: device.name.clone(),
         kind: device.kind,
         why,
         settings,
         radius,
-        identity,
-        radiance_unit,
+        space,
     };
     if device.kind == DeviceKind::CpuDouble {
         let (wide, plan) = in_double(scene, &packed, settings)?;
         let tables = plan::scene_bytes(&packed.scene) + double::plan::scene_bytes(&wide.scene);
         let plan = plan.within(tables, double::plan::Place::Program, memory)?;
         tell_cut(plan.tiled, plan.chunks(), plan.batches());
-        let (settings, automatic, unit) = (plan.settings.clone(), plan.told_radius(), plan.radiance_unit);
-        return Ok(opened(Box::new(double::cpu::CpuEngine::new(wide, plan)), settings, automatic, unit));
+        let (settings, automatic, space) = (plan.settings.clone(), plan.told_radius(), plan.space());
+        return Ok(opened(Box::new(double::cpu::CpuEngine::new(wide, plan)), settings, automatic, space));
     }
     let plan = Plan::new(&packed, settings).on(film).within(
         plan::scene_bytes(&packed.scene),
@@ -263,12 +258,12 @@ fn start(
         memory,
     )?;
     tell_cut(plan.tiled, plan.chunks(), plan.batches());
-    let (settings, automatic, unit) = (plan.settings.clone(), plan.told_radius(), plan.radiance_unit);
+    let (settings, automatic, space) = (plan.settings.clone(), plan.told_radius(), plan.space());
     let engine: Box<dyn Engine> = match device.kind {
         DeviceKind::Cpu => Box::new(CpuEngine::new(packed, plan)),
         _ => Box::new(on_gpu(&AdapterChoice::Named(device.name.clone()), &packed, plan)?),
     };
-    Ok(opened(engine, settings, automatic, unit))
+    Ok(opened(engine, settings, automatic, space))
 }
 
 /// Where a device of this kind has its buffers.

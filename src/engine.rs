@@ -69,6 +69,34 @@ pub struct State {
     pub film: Vec<u8>,
     /// Local radius rule: statistics of the visible points; else empty.
     pub statistics: Vec<u8>,
+    /// What the film asks for beside radiance.
+    pub layers: LayerState,
+}
+
+/// The part of a [`State`] that layers are made of; empty where none of them takes it.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct LayerState {
+    /// By pixel: `AovPixel`.
+    pub aovs: Vec<u8>,
+    /// By pixel: `PartsPixel`.
+    pub parts: Vec<u8>,
+    /// By visible point: photons gathered in the last pass.
+    pub counts: Vec<u32>,
+    /// By pixel: the number of the surface seen through its centre, from 1; 0 is nothing.
+    pub objects: Vec<u32>,
+}
+
+/// What tells an engine's numbers in those of the world.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Space {
+    /// The world point at the scene's origin.
+    pub center: [f64; 3],
+    /// World units in one scene unit.
+    pub unit: f64,
+    /// Scene radiance times this is world radiance.
+    pub radiance_unit: f64,
+    /// Whether photons are gathered.
+    pub photons: bool,
 }
 
 impl State {

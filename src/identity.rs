@@ -1,75 +1,76 @@
-//! Which scene a render is of, and which program makes it: digests of everything that kernels read, and of the kernels.
+//! Which scene a picture is of, and which program makes it: digests of all that a scene file says and names, and of the kernels.
 
-use bytemuck::{NoUninit, cast_slice};
+use std::fmt::{self, Write};
+
 use serde::{Deserialize, Serialize};
 use xxhash_rust::xxh3::Xxh3;
 
 use crate::film::provenance::VERSION;
 use crate::gpu::fragments::FRAGMENTS;
-use crate::pack::Packed;
+use crate::scene::{ImageData, Mesh, Scene, ShapeKind, Texels};
 
 /// This program: its version, and a digest of its kernels' text, since programs on the way from one version to the next may make
 /// other bits. The text is that of the shaders, which the Rust twins follow; line ends do not count.
 pub fn program() -> String {
-    let mut digest = Xxh3::new();
+    let mut digest = Digest::default();
     for line in FRAGMENTS.iter().flat_map(|fragment| fragment.text.lines()) {
-        digest.update(line.as_bytes());
-        digest.update(b"\n");
+        digest.bytes(line.as_bytes());
+        digest.bytes(b"\n");
     }
-    format!("{VERSION}, kernels {:016x}", digest.digest())
+    format!("{VERSION}, kernels {:016x}", digest.0.digest())
 }
 
-/// Digests of the parts of a flattened scene, 128 bits each. Pictures of scenes with equal ones are equal, if settings, device
-/// and program are. A part's numbers count from the scene's middle in the scene's unit, so a shape that moves may change them all.
+/// Digests of the parts of a scene, 128 bits each: of what its file says and of what that names, whatever names and order of
+/// keys it uses. Pictures of scenes with equal ones are equal, if size, settings, device and program are; the film is no part of it.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Identity {
-    /// Where the middle is, and how large the units are.
-    pub extent: String,
-    /// The camera, and the size of the picture.
+    /// The camera.
     pub camera: String,
-    /// Shapes and the kd-tree.
+    /// Shapes, with their materials' numbers and their emission.
     pub shapes: String,
     /// Materials.
     pub materials: String,
-    /// Textures and their pictures.
+    /// Textures and all pictures.
     pub textures: String,
-    /// Lights, the choice among them and their maps.
+    /// Lights and the environment.
     pub lights: String,
 }
 
 impl Identity {
     /// That of a scene.
-    pub fn of(packed: &Packed) -> Self {
-        let s = &packed.scene;
-        let units = [packed.unit, packed.radiance_unit];
-        Self {
-            extent: Digest::default().with(&[s.world]).with(&units).end(),
-            camera: Digest::default().with(&[s.camera]).end(),
-            shapes: Digest::default()
-                .with(&s.spheres)
-                .with(&s.rectangles)
-                .with(&s.discs)
-                .with(&s.cuboids)
-                .with(&s.planes)
-                .with(&s.revolutions)
-                .with(&s.patches)
-                .with(&s.profile_points)
-                .with(&s.unbounded)
-                .with(&s.nodes)
-                .with(&s.refs)
-                .with(&s.triangles)
-                .with(&s.attributes)
-                .end(),
-            materials: Digest::default().with(&s.materials).end(),
-            textures: Digest::default().with(&s.textures).with(&s.texels).end(),
-            lights: Digest::default().with(&s.lights).with(&s.distributions).end(),
+    pub fn of(scene: &Scene) -> Self {
+        let Scene { name: _, camera, film: _, images, textures, materials, shapes, lights, environment } =
+            scene;
+        let mut all_shapes = Digest::default();
+        for shape in shapes {
+            all_shapes.text(&(shape.material, shape.emission, shape.planar_uv));
+            match &shape.kind {
+                ShapeKind::Mesh(mesh) => all_shapes.mesh(mesh),
+                other => all_shapes.text(other),
+            }
         }
+        let mut all_textures = Digest::default();
+        textures.iter().for_each(|texture| all_textures.text(&texture.kind));
+        images.iter().for_each(|image| all_textures.image(image));
+        let mut all_materials = Digest::default();
+        materials.iter().for_each(|material| all_materials.text(&material.kind));
+        Self {
+            camera: Digest::of(camera).end(),
+            shapes: all_shapes.end(),
+            materials: all_materials.end(),
+            textures: all_textures.end(),
+            lights: Digest::of(&(lights, environment)).end(),
+        }
+    }
+
+    /// One digest of all parts, as files hold it.
+    pub fn digest(&self) -> String {
+        Digest::of(self).end()
     }
 
     /// The parts that are not those of another scene.
     pub fn differences(&self, other: &Self) -> Vec<&'static str> {
         let parts = [
-            ("extent", &self.extent, &other.extent),
             ("camera", &self.camera, &other.camera),
             ("shapes", &self.shapes, &other.shapes),
             ("materials", &self.materials, &other.materials),
@@ -80,15 +81,55 @@ impl Identity {
     }
 }
 
-/// Hashes tables one after another, each with its length.
+/// Hashes one thing after another.
 #[derive(Default)]
 struct Digest(Box<Xxh3>);
 
 impl Digest {
-    fn with<T: NoUninit>(mut self, table: &[T]) -> Self {
-        self.0.update(&(table.len() as u64).to_le_bytes());
-        self.0.update(cast_slice(table));
-        self
+    fn of(value: &impl fmt::Debug) -> Self {
+        let mut digest = Self::default();
+        digest.text(value);
+        digest
+    }
+
+    fn bytes(&mut self, bytes: &[u8]) {
+        self.0.update(bytes);
+    }
+
+    /// What a value prints as: floats in as many digits as tell them apart.
+    fn text(&mut self, value: &impl fmt::Debug) {
+        // Writing into a hash does not fail.
+        let _ = write!(self, "{value:?};");
+    }
+
+    /// Numbers of 64 bits, with how many there are.
+    fn numbers<const N: usize>(&mut self, all: impl ExactSizeIterator<Item = [f64; N]>) {
+        self.bytes(&(all.len() as u64).to_le_bytes());
+        all.for_each(|row| row.iter().for_each(|x| self.bytes(&x.to_le_bytes())));
+    }
+
+    fn mesh(&mut self, mesh: &Mesh) {
+        let Mesh { positions, normals, uvs, triangles } = mesh;
+        self.numbers(positions.iter().map(|v| v.to_array()));
+        self.numbers(normals.iter().map(|v| v.to_array()));
+        self.numbers(uvs.iter().map(|v| v.to_array()));
+        self.bytes(&(triangles.len() as u64).to_le_bytes());
+        for t in triangles {
+            let corners = [Some(t.position), t.normal, t.uv];
+            let all = corners.into_iter().flat_map(|c| c.unwrap_or([u32::MAX; 3]));
+            all.for_each(|i| self.bytes(&i.to_le_bytes()));
+        }
+    }
+
+    fn image(&mut self, image: &ImageData) {
+        self.text(&(image.width, image.height));
+        match &image.texels {
+            Texels::Rgba8 { srgb, data } => {
+                self.text(srgb);
+                self.bytes(data.as_flattened());
+            }
+            Texels::Float(data) => data.as_flattened().iter().for_each(|x| self.bytes(&x.to_le_bytes())),
+        }
     }
 
     fn end(self) -> String {
@@ -96,40 +137,67 @@ impl Digest {
     }
 }
 
-/// Theory: a scene has one identity, and each kind of change shows in the part that it belongs to.
+impl Write for Digest {
+    fn write_str(&mut self, text: &str) -> fmt::Result {
+        self.bytes(text.as_bytes());
+        Ok(())
+    }
+}
+
+/// Theory: a scene has one identity, and each kind of change shows in the part that it belongs to and in no other; names, the
+/// film and the place of a file are no change.
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pack::pack;
     use crate::scene::{self, MaterialKind, Reflectance, Scene};
+    use glam::DVec3;
 
     fn of(change: impl FnOnce(&mut Scene)) -> Identity {
-        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/cornell.toml");
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/reference/mesh.toml");
         let mut scene = scene::load(file.as_ref()).unwrap().scene;
-        (scene.film.width, scene.film.height) = (32, 32);
         change(&mut scene);
-        Identity::of(&pack(&scene, scene.film.width, scene.film.height).unwrap())
+        Identity::of(&scene)
+    }
+
+    fn mesh(scene: &mut Scene) -> &mut scene::Mesh {
+        let mesh = scene.shapes.iter_mut().find_map(|shape| match &mut shape.kind {
+            ShapeKind::Mesh(mesh) => Some(mesh),
+            _ => None,
+        });
+        mesh.unwrap()
     }
 
     #[test]
     fn each_change_shows_in_its_part() {
         let same = of(|_| ());
-        assert_eq!(same.differences(&of(|_| ())), Vec::<&str>::new());
-        assert_eq!(same.differences(&of(|s| s.film.width = 33)), ["camera"]);
-        assert_eq!(same.differences(&of(|s| s.camera.fov_degrees *= 1.0 + 1e-6)), ["camera"]);
-        let redder = of(|s| {
-            let first = s.materials.iter_mut().find_map(|material| match &mut material.kind {
-                MaterialKind::Diffuse { reflectance: Reflectance::Color(color) } if color[0] > 0.1 => {
-                    Some(color)
-                }
-                _ => None,
-            });
-            first.unwrap()[0] -= 1e-6;
-        });
-        assert_eq!(same.differences(&redder), ["materials"]);
-        let other = of(|s| {
-            s.shapes.pop();
-        });
-        assert!(same.differences(&other).contains(&"shapes"));
+        let shows = |change: fn(&mut Scene), parts: &[&str]| {
+            let changed = of(change);
+            assert_eq!(same.differences(&changed), parts);
+            assert_eq!(same.digest() == changed.digest(), parts.is_empty());
+        };
+        shows(|_| (), &[]);
+        shows(|s| (s.film.width, s.film.exposure, s.name) = (33, 1.0, "other".to_owned()), &[]);
+        shows(|s| s.images.iter_mut().for_each(|image| image.path = "elsewhere.png".to_owned()), &[]);
+        shows(|s| s.camera.fov_degrees *= 1.0 + 1e-15, &["camera"]);
+        shows(|s| s.materials.iter_mut().for_each(|m| m.name += "x"), &[]);
+        shows(
+            |s| {
+                let MaterialKind::Diffuse { reflectance } = &mut s.materials[0].kind else { panic!() };
+                *reflectance = Reflectance::Color([0.123, 0.0, 0.0]);
+            },
+            &["materials"],
+        );
+        shows(|s| s.shapes[0].emission = [1.0; 3], &["shapes"]);
+        shows(|s| drop(s.shapes.pop()), &["shapes"]);
+        shows(|s| mesh(s).positions[0] += DVec3::X * 1e-15, &["shapes"]);
+        shows(|s| mesh(s).triangles[0].position.swap(0, 1), &["shapes"]);
+        shows(
+            |s| match &mut s.images[0].texels {
+                Texels::Rgba8 { data, .. } => data[0][1] ^= 1,
+                Texels::Float(data) => data[0][1] += 1.0,
+            },
+            &["textures"],
+        );
+        shows(|s| s.environment = Some(scene::Environment::Constant { radiance: [0.5; 3] }), &["lights"]);
     }
 }

@@ -1,13 +1,15 @@
 //! What a plan's passes have found beside radiance, as channels of a picture file in world units.
 
 use super::kernels::aov_trace::AovPixel;
+use super::kernels::bytes::{AOV_BYTES, PARTS_BYTES, aov_bytes, parts_bytes};
 use super::kernels::records::{Gathered, Statistics};
 use super::kernels::resolve_parts::PartsPixel;
 use super::plan::Plan;
 use super::real::{Real, Vec3};
+use crate::engine::{LayerState, Space};
 use crate::film::Plane;
 use crate::film::exr_file::{Channel, Numbers};
-use crate::scene::Aov;
+use crate::scene::{Aov, Aovs};
 use crate::settings::{Method, RadiusRule};
 
 /// Depth where a pixel's samples hit nothing, as Blender writes it.
@@ -30,58 +32,147 @@ pub struct Found<'a> {
 impl Plan {
     /// The channels of the [`Aov`]s that are asked for.
     pub fn layers(&self, found: &Found) -> Vec<Channel> {
-        self.aovs.iter().flat_map(|aov| self.channels(aov, found)).collect()
+        let layering = Layering {
+            aovs: self.aovs,
+            width: self.width,
+            pixels: self.pixels,
+            eye_samples: self.eye_samples,
+            space: self.space(),
+            method: self.settings.method,
+            rule: self.settings.radius_rule,
+            scale_sq: self.scale_sq(found.passes.max(1) - 1),
+        };
+        let LayerState { counts, objects, .. } = &self.numbers(found);
+        let Found { aovs, parts, statistics, .. } = *found;
+        layering.channels(&Kept { aovs, parts, counts, objects, statistics })
     }
 
-    fn channels(&self, aov: Aov, found: &Found) -> Vec<Channel> {
+    /// What is kept for them between two passes.
+    pub fn layer_state(&self, found: &Found) -> LayerState {
+        LayerState { aovs: aov_bytes(found.aovs), parts: parts_bytes(found.parts), ..self.numbers(found) }
+    }
+
+    /// The part of it that is the same for all engines.
+    fn numbers(&self, found: &Found) -> LayerState {
+        let mut state = LayerState::default();
+        if self.aovs.has(Aov::Photons) {
+            state.counts = found.gathered.iter().map(|gathered| gathered.count).collect();
+        }
+        if self.aovs.has(Aov::Object) {
+            let number = |p: &AovPixel| self.objects.of(p.reference).map_or(0, |shape| shape + 1);
+            state.objects = found.aovs.iter().map(number).collect();
+        }
+        state
+    }
+
+    /// Whether `state` is not what goes on to the layers that are asked for.
+    pub fn lacks_layers(&self, state: &LayerState) -> bool {
+        let pixels = self.pixels as usize;
+        self.aovs.are_traced() && state.aovs.len() != pixels * AOV_BYTES
+            || self.parts_photons() && state.parts.len() != pixels * PARTS_BYTES
+            || self.aovs.has(Aov::Photons) && self.features.has("photons") && state.counts.is_empty()
+    }
+
+    /// What tells the render's numbers in those of the world.
+    pub fn space(&self) -> Space {
+        Space {
+            center: self.center.to_array(),
+            unit: self.unit,
+            radiance_unit: self.radiance_unit,
+            photons: self.features.has("photons"),
+        }
+    }
+}
+
+/// What is kept of a window's pixels and visible points, whoever keeps it.
+pub struct Kept<'a> {
+    /// By pixel; empty where no [`Aov`] takes it.
+    pub aovs: &'a [AovPixel],
+    /// By pixel; empty where photons are not parted.
+    pub parts: &'a [PartsPixel],
+    /// By visible point; empty where they are not asked for.
+    pub counts: &'a [u32],
+    /// By pixel; empty where they are not asked for.
+    pub objects: &'a [u32],
+    /// By visible point; empty but for the local rule.
+    pub statistics: &'a [Statistics],
+}
+
+/// Makes channels of it.
+#[derive(Clone, Copy, Debug)]
+pub struct Layering {
+    /// Those that are asked for.
+    pub aovs: Aovs,
+    /// Pixels per row of the window.
+    pub width: u32,
+    /// Pixels of the window.
+    pub pixels: u32,
+    /// Visible points per pixel.
+    pub eye_samples: u32,
+    /// What its numbers are in the world.
+    pub space: Space,
+    /// Who finds the light.
+    pub method: Method,
+    /// How radii change.
+    pub rule: RadiusRule,
+    /// Squared radius of the last pass over the squared start radius; of no use under the local rule.
+    pub scale_sq: f64,
+}
+
+impl Layering {
+    /// The channels of the [`Aov`]s that are asked for.
+    pub fn channels(&self, kept: &Kept) -> Vec<Channel> {
+        self.aovs.iter().flat_map(|aov| self.channels_of(aov, kept)).collect()
+    }
+
+    fn channels_of(&self, aov: Aov, kept: &Kept) -> Vec<Channel> {
         let vector = |names: [&'static str; 3], of: &dyn Fn(&AovPixel) -> [f64; 3]| {
-            let plane = |c: usize| self.plane(found.aovs.iter().map(|p| of(p)[c]));
+            let plane = |c: usize| self.plane(kept.aovs.iter().map(|p| of(p)[c]));
             (0..3).map(|c| Channel::float(names[c], plane(c))).collect()
         };
         let float = |name, values: Vec<f64>| vec![Channel::float(name, self.plane(values.into_iter()))];
-        let whole = |name, of: &dyn Fn(&AovPixel) -> u32| {
-            let values = found.aovs.iter().map(|p| f64::from(of(p)));
-            vec![Channel { name, plane: self.plane(values), numbers: Numbers::Whole }]
+        let whole = |name, values: &mut dyn Iterator<Item = u32>| {
+            vec![Channel { name, plane: self.plane(values.map(f64::from)), numbers: Numbers::Whole }]
         };
         let hit = |p: &AovPixel| p.hits > 0.0;
         match aov {
             Aov::Albedo => vector(["albedo.R", "albedo.G", "albedo.B"], &|p| wide(p.albedo)),
             Aov::Normal => vector(["normal.X", "normal.Y", "normal.Z"], &|p| wide(p.normal)),
             Aov::Position => vector(["position.X", "position.Y", "position.Z"], &|p| {
-                let center = self.center.to_array();
+                let Space { center, unit, .. } = self.space;
                 let position = wide(p.position);
-                [0, 1, 2].map(|c| if hit(p) { position[c] * self.unit + center[c] } else { 0.0 })
+                [0, 1, 2].map(|c| if hit(p) { position[c] * unit + center[c] } else { 0.0 })
             }),
             Aov::Emission => vector(["emission.R", "emission.G", "emission.B"], &|p| {
-                wide(p.emission).map(|x| x * self.radiance_unit)
+                wide(p.emission).map(|x| x * self.space.radiance_unit)
             }),
-            Aov::Direct if self.settings.method == Method::Path => Vec::new(),
+            Aov::Direct if self.method == Method::Path => Vec::new(),
             Aov::Direct => vector(["direct.R", "direct.G", "direct.B"], &|p| {
-                wide(p.direct).map(|x| x * self.radiance_unit)
+                wide(p.direct).map(|x| x * self.space.radiance_unit)
             }),
-            Aov::Caustic => self.part(["caustic.R", "caustic.G", "caustic.B"], found, |p| p.caustic),
-            Aov::Indirect => self.part(["indirect.R", "indirect.G", "indirect.B"], found, |p| p.indirect),
+            Aov::Caustic => self.part(["caustic.R", "caustic.G", "caustic.B"], kept, |p| p.caustic),
+            Aov::Indirect => self.part(["indirect.R", "indirect.G", "indirect.B"], kept, |p| p.indirect),
             Aov::Depth => {
-                let depth = |p: &AovPixel| if hit(p) { one(p.depth) * self.unit } else { NO_DEPTH };
-                float("depth.Z", found.aovs.iter().map(depth).collect())
+                let depth = |p: &AovPixel| if hit(p) { one(p.depth) * self.space.unit } else { NO_DEPTH };
+                float("depth.Z", kept.aovs.iter().map(depth).collect())
             }
-            Aov::Object => whole("object.ID", &|p| self.objects.of(p.reference).map_or(0, |shape| shape + 1)),
-            Aov::Material => whole("material.ID", &|p| p.material.wrapping_add(1)),
-            Aov::Radius => float("radius.Y", self.radii(found)),
-            Aov::Photons => float("photons.Y", self.photons(found)),
+            Aov::Object => whole("object.ID", &mut kept.objects.iter().copied()),
+            Aov::Material => whole("material.ID", &mut kept.aovs.iter().map(|p| p.material.wrapping_add(1))),
+            Aov::Radius => float("radius.Y", self.radii(kept)),
+            Aov::Photons => float("photons.Y", self.photons(kept)),
             // a part of what the picture says of its error, which files hold anyway
             Aov::Variance => Vec::new(),
         }
     }
 
     /// What photons bring in one way; nothing where path tracing brings it, 0 where there are no photons.
-    fn part(&self, names: [&'static str; 3], found: &Found, of: fn(&PartsPixel) -> Vec3) -> Vec<Channel> {
-        if self.settings.method == Method::Path {
+    fn part(&self, names: [&'static str; 3], kept: &Kept, of: fn(&PartsPixel) -> Vec3) -> Vec<Channel> {
+        if self.method == Method::Path {
             return Vec::new();
         }
         let plane = |c: usize| {
             let mut values: Vec<f64> =
-                found.parts.iter().map(|p| wide(of(p))[c] * self.radiance_unit).collect();
+                kept.parts.iter().map(|p| wide(of(p))[c] * self.space.radiance_unit).collect();
             values.resize(self.pixels as usize, 0.0);
             self.plane(values.into_iter())
         };
@@ -93,26 +184,25 @@ impl Plan {
     }
 
     /// Each pixel's gather radius in the last pass; under the local rule, where it is after that pass.
-    fn radii(&self, found: &Found) -> Vec<f64> {
-        let scale = self.scale_sq(found.passes.max(1) - 1).sqrt();
-        let gathers = self.features.has("photons");
-        let mut own = found.statistics.chunks(self.eye_samples as usize).map(|points| {
-            let scale_sq = |s: &Statistics| if s.scale_sq == 0.0 { 1.0 } else { one(s.scale_sq - s.drop) };
+    fn radii(&self, kept: &Kept) -> Vec<f64> {
+        let scale = self.scale_sq.sqrt();
+        let Space { unit, photons, .. } = self.space;
+        let mut own = kept.statistics.chunks(self.eye_samples.max(1) as usize).map(|points| {
+            let scale_sq =
+                |s: &Statistics| if s.scale_sq == 0.0 { 1.0 } else { one(s.scale_sq) - one(s.drop) };
             points.iter().map(|s| scale_sq(s).sqrt()).sum::<f64>() / points.len() as f64
         });
         let radius = |p: &AovPixel| {
-            let scale =
-                own.next().filter(|_| self.settings.radius_rule == RadiusRule::Local).unwrap_or(scale);
-            if gathers { one(p.radius) * self.unit * scale } else { 0.0 }
+            let scale = own.next().filter(|_| self.rule == RadiusRule::Local).unwrap_or(scale);
+            if photons { one(p.radius) * unit * scale } else { 0.0 }
         };
-        found.aovs.iter().map(radius).collect()
+        kept.aovs.iter().map(radius).collect()
     }
 
     /// How many photons each pixel's visible points found in the last pass.
-    fn photons(&self, found: &Found) -> Vec<f64> {
-        let points = found.gathered.chunks(self.eye_samples as usize);
-        let mut counts: Vec<f64> =
-            points.map(|points| points.iter().map(|g| f64::from(g.count)).sum()).collect();
+    fn photons(&self, kept: &Kept) -> Vec<f64> {
+        let points = kept.counts.chunks(self.eye_samples.max(1) as usize);
+        let mut counts: Vec<f64> = points.map(|counts| counts.iter().copied().map(f64::from).sum()).collect();
         counts.resize(self.pixels as usize, 0.0);
         counts
     }

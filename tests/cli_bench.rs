@@ -5,13 +5,15 @@
 //! software driver does the same work. Times themselves are not judged.
 
 mod software;
+mod support;
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::Output;
 
 use caustica::film::{Picture, pfm};
 use serde_json::Value;
+use support::{caustica, folder_with, good, json_lines, text};
 
 const SCENE: &str = r#"
 version = 1
@@ -51,31 +53,22 @@ intensity = [10.0, 10.0, 10.0]
 "#;
 
 fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("cli_bench").join(name);
-    fs::create_dir_all(&folder).unwrap();
-    fs::write(folder.join("ball.toml"), SCENE).unwrap();
+    let folder = folder_with(name, &[("ball.toml", SCENE)]);
     fs::write(folder.join("dark.pfm"), pfm::encode(&Picture::from_fn(24, 16, |_, _| [0.0; 3]))).unwrap();
     folder
 }
 
 fn bench(folder: &Path, arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_caustica"));
-    command.arg("bench").args(arguments).current_dir(folder).env("NO_COLOR", "1").output().unwrap()
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8(bytes.to_vec()).unwrap()
+    caustica(folder, &[&["bench"], arguments].concat())
 }
 
 fn json(folder: &Path, arguments: &[&str]) -> Value {
-    let output = bench(folder, arguments);
-    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
-    report(&output)
+    report(good(folder, &[&["bench"], arguments].concat()).as_bytes())
 }
 
 /// The last event.
-fn report(output: &Output) -> Value {
-    serde_json::from_str(text(&output.stdout).lines().last().unwrap()).unwrap()
+fn report(stdout: &[u8]) -> Value {
+    json_lines(stdout).pop().unwrap()
 }
 
 fn number(value: &Value) -> f64 {
@@ -228,7 +221,7 @@ fn time_to_error() {
     let output = bench(&folder, &[&common[..], &["--max-relMSE", "floor=1e-9", "--json"]].concat());
     assert_eq!(output.status.code(), Some(3), "{}", text(&output.stderr));
     assert!(text(&output.stderr).contains("not reached: relMSE of floor"), "{}", text(&output.stderr));
-    let missed: Value = report(&output);
+    let missed: Value = report(&output.stdout);
     let series = missed["devices"][0]["to_error"][1]["series"].as_array().unwrap();
     assert_eq!(series.iter().map(|p| number(&p["passes"])).collect::<Vec<_>>(), [1.0, 2.0, 3.0, 4.0]);
     let noise = json(&folder, &[&common[..], &["--truth-noise", "0.5", "--json"]].concat());

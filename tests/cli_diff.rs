@@ -3,14 +3,17 @@
 //! Theory: flat pictures of known values have figures known in closed form; a figure beyond its threshold is exit code
 //! 3, a picture that cannot be used 1, and arguments that cannot be meant 2, each with words that name it.
 
+mod support;
+
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::Output;
 
 use caustica::film::{Coding, Picture, exr_file, pfm, read_any};
 use exr::prelude::{Image, SpecificChannels, WritableImage};
 use serde_json::Value;
+use support::text;
 
 /// 0.25, but 0.5 in the columns from `bright` on.
 fn picture(width: u32, bright: u32) -> Picture {
@@ -27,11 +30,7 @@ fn write_exr(folder: &Path, name: &str, picture: &Picture) {
 
 /// A fresh folder with pictures to compare. `a.exr` and `b.exr` differ in the columns 32 to 39 of 40.
 fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("cli_diff").join(name);
-    if folder.exists() {
-        fs::remove_dir_all(&folder).unwrap();
-    }
-    fs::create_dir_all(&folder).unwrap();
+    let folder = support::folder(name);
     write_exr(&folder, "a.exr", &picture(40, 32));
     write_exr(&folder, "b.exr", &picture(40, 40));
     write_exr(&folder, "wide.exr", &picture(41, 41));
@@ -54,32 +53,20 @@ fn folder(name: &str) -> PathBuf {
 }
 
 fn caustica(folder: &Path, arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_caustica"));
-    command.arg("diff").args(arguments).current_dir(folder).env("NO_COLOR", "1").output().unwrap()
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8(bytes.to_vec()).unwrap()
+    support::caustica(folder, &[&["diff"], arguments].concat())
 }
 
 #[track_caller]
 fn ends(folder: &Path, arguments: &[&str], code: i32, words: &[&str]) {
-    let output = caustica(folder, arguments);
-    let error = text(&output.stderr);
-    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {error}");
-    let one_line = error.split_whitespace().collect::<Vec<_>>().join(" ").replace(" │ ", " ");
-    for word in words {
-        assert!(one_line.contains(word), "{arguments:?} should say `{word}`: {error}");
-    }
+    let output = support::ends(folder, &[&["diff"], arguments].concat(), code, words);
     if code != 3 {
         assert_eq!(output.stdout.is_empty(), code != 0, "{arguments:?}: {}", text(&output.stdout));
-        assert_eq!(error.is_empty(), code == 0, "{arguments:?}: {error}");
+        assert_eq!(output.stderr.is_empty(), code == 0, "{arguments:?}: {}", text(&output.stderr));
     }
 }
 
 fn json(folder: &Path, arguments: &[&str]) -> Value {
-    let output = caustica(folder, &[arguments, &["--json"]].concat());
-    let shown = text(&output.stdout);
+    let shown = text(&caustica(folder, &[arguments, &["--json"]].concat()).stdout);
     serde_json::from_str(&shown).unwrap_or_else(|error| panic!("{error}: {shown}"))
 }
 

@@ -1,13 +1,15 @@
 //! How the program fits in among others: completions, manual pages, colours, logs, events, and no folder of its own.
 
 mod software;
+mod support;
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Command, Output};
 
 use serde_json::Value;
 use software::software;
+use support::{folder, json_lines, text};
 
 const COMMANDS: [&str; 12] = [
     "render",
@@ -24,31 +26,17 @@ const COMMANDS: [&str; 12] = [
     "man",
 ];
 
-/// A fresh, empty folder.
-fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("cli_manners").join(name);
-    if folder.exists() {
-        fs::remove_dir_all(&folder).unwrap();
-    }
-    fs::create_dir_all(&folder).unwrap();
-    folder
-}
-
 fn scene(name: &str) -> String {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(name).display().to_string()
 }
 
 /// Runs in `folder` with these variables and none that speak of colours beside.
 fn with(folder: &Path, variables: &[(&str, &str)], arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_caustica"));
+    let mut command = support::command(folder, arguments);
     for name in ["NO_COLOR", "CLICOLOR", "CLICOLOR_FORCE", "FORCE_COLOR"] {
         command.env_remove(name);
     }
-    command.args(arguments).envs(variables.iter().copied()).current_dir(folder).output().unwrap()
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8(bytes.to_vec()).unwrap()
+    command.envs(variables.iter().copied()).output().unwrap()
 }
 
 /// Standard output of a run that ends as it should.
@@ -60,8 +48,7 @@ fn done(folder: &Path, arguments: &[&str]) -> String {
 
 /// Every line is a JSON object with the name of an event.
 fn events(stdout: &str) -> Vec<Value> {
-    let read = |line: &str| serde_json::from_str(line).unwrap_or_else(|error| panic!("{line}: {error}"));
-    let events: Vec<Value> = stdout.lines().map(read).collect();
+    let events = json_lines(stdout.as_bytes());
     assert!(events.iter().all(|event| event["event"].is_string()), "{stdout}");
     events
 }

@@ -4,89 +4,32 @@
 //! Theory: a window and a picture made again have the bits of the first one; what tev is sent, put together by its own
 //! protocol, is what the file holds.
 
+mod support;
+
 use std::fs;
 use std::io::Read;
 use std::net::TcpListener;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::sync::LazyLock;
 
 use caustica::film::exr_file::{self, ExrFile, Frame};
 use caustica::film::tev::Tev;
 use caustica::film::{Development, Picture, file, read};
+use support::{FLOOR, LAMP, MESH, ball, ends, error, folder_with};
 
-const SCENE: &str = r#"
-version = 1
-[camera]
-position = [0.0, 1.0, 5.0]
-target = [0.0, 0.5, 0.0]
-fov = 40.0
-[film]
-width = 32
-height = 24
-[render]
-passes = 4
-photons = 2000
-[materials.white]
-type = "diffuse"
-reflectance = 0.5
-[materials.glass]
-type = "glass"
-ior = 1.5
-[[shapes]]
-type = "sphere"
-center = [0.0, 0.7, 0.0]
-radius = 0.5
-material = "glass"
-[[shapes]]
-type = "mesh"
-file = "floor.obj"
-material = "white"
-[[shapes]]
-type = "disc"
-center = [0.0, 3.0, 1.0]
-normal = [0.0, -1.0, 0.0]
-radius = 0.3
-material = "white"
-emission = [20.0, 20.0, 20.0]
-"#;
-
-const FLOOR: &str = "v -3 0 3\nv 3 0 3\nv 3 0 -3\nv -3 0 -3\nf 1 2 3 4\n";
+static SCENE: LazyLock<String> =
+    LazyLock::new(|| ball((32, 24), "passes = 4\nphotons = 2000", &[MESH, LAMP]));
 
 fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("cli_pictures").join(name);
-    if folder.exists() {
-        fs::remove_dir_all(&folder).unwrap();
-    }
-    fs::create_dir_all(&folder).unwrap();
-    fs::write(folder.join("ball.toml"), SCENE).unwrap();
-    fs::write(folder.join("floor.obj"), FLOOR).unwrap();
-    folder
-}
-
-fn render(folder: &Path, arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_caustica"));
-    command.args([&["render"][..], arguments].concat()).current_dir(folder).env("NO_COLOR", "1");
-    command.output().unwrap()
-}
-
-fn error(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
+    folder_with(name, &[("ball.toml", &SCENE), ("floor.obj", FLOOR)])
 }
 
 fn rendered(folder: &Path, arguments: &[&str]) -> String {
-    let output = render(folder, arguments);
-    assert_eq!(output.status.code(), Some(0), "{}", error(&output));
-    error(&output)
+    error(&ends(folder, &[&["render"], arguments].concat(), 0, &[]))
 }
 
 fn refused(folder: &Path, arguments: &[&str], code: i32, words: &[&str]) {
-    let output = render(folder, arguments);
-    let error = error(&output);
-    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {error}");
-    for word in words {
-        let joined = error.replace('│', "").split_whitespace().collect::<Vec<_>>().join(" ");
-        assert!(joined.contains(word), "{word}: {error}");
-    }
+    ends(folder, &[&["render"], arguments].concat(), code, words);
 }
 
 fn exr(folder: &Path, name: &str) -> ExrFile {

@@ -3,77 +3,22 @@
 //! Theory: the files, the exit code and the JSON lines are what a script sees; the same command gives the same bytes, and
 //! an interrupted render leaves the picture of whole passes.
 
+mod support;
+
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::{Command, Output, Stdio};
+use std::sync::LazyLock;
 use std::time::Duration;
 
 use caustica::film::{file, read};
+use support::{DISC, LAMP, ball, caustica, command, folder_with, json_lines, text};
 
-const SCENE: &str = r#"
-version = 1
-[camera]
-position = [0.0, 1.0, 5.0]
-target = [0.0, 0.5, 0.0]
-fov = 40.0
-[film]
-width = 32
-height = 24
-[render]
-passes = 3
-photons = 2000
-[materials.white]
-type = "diffuse"
-reflectance = 0.5
-[materials.glass]
-type = "glass"
-ior = 1.5
-[[shapes]]
-type = "sphere"
-center = [0.0, 0.7, 0.0]
-radius = 0.5
-material = "glass"
-[[shapes]]
-type = "disc"
-center = [0.0, 0.0, 0.0]
-normal = [0.0, 1.0, 0.0]
-radius = 3.0
-material = "white"
-[[shapes]]
-type = "disc"
-center = [0.0, 3.0, 1.0]
-normal = [0.0, -1.0, 0.0]
-radius = 0.3
-material = "white"
-emission = [20.0, 20.0, 20.0]
-"#;
+static SCENE: LazyLock<String> =
+    LazyLock::new(|| ball((32, 24), "passes = 3\nphotons = 2000", &[DISC, LAMP]));
 
 fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("cli_render").join(name);
-    if folder.exists() {
-        fs::remove_dir_all(&folder).unwrap();
-    }
-    fs::create_dir_all(&folder).unwrap();
-    fs::write(folder.join("ball.toml"), SCENE).unwrap();
-    folder
-}
-
-fn command(folder: &Path, arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_caustica"));
-    command.args(arguments).current_dir(folder).env("NO_COLOR", "1");
-    command
-}
-
-fn caustica(folder: &Path, arguments: &[&str]) -> Output {
-    command(folder, arguments).output().unwrap()
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8(bytes.to_vec()).unwrap()
-}
-
-fn json_lines(bytes: &[u8]) -> Vec<serde_json::Value> {
-    text(bytes).lines().map(|line| serde_json::from_str(line).unwrap()).collect()
+    folder_with(name, &[("ball.toml", &SCENE)])
 }
 
 #[test]
@@ -90,7 +35,7 @@ fn writes_what_is_asked_for_and_says_where() {
     assert_eq!((exr.width, exr.height), (32, 24));
     assert_eq!(exr.attributes["caustica.passes_done"], "3");
     assert_eq!(exr.attributes["caustica.photons"], "2000");
-    assert_eq!(exr.attributes["caustica.scene_text"], SCENE);
+    assert_eq!(exr.attributes["caustica.scene_text"], *SCENE);
     let mean = exr.channels["G"].iter().sum::<f32>() / (32.0 * 24.0);
     assert!(mean > 1e-3, "the picture is not black: {mean}");
     // Without -o it is the scene's name, in the current folder; --quiet says nothing.

@@ -4,48 +4,18 @@
 //! same command ends with the same set; renders that were finished are kept, and equal seeds make equal pictures, so that
 //! their errors are equal to the last digit.
 
+mod support;
+
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Stdio};
+use std::sync::LazyLock;
 
 use serde_json::Value;
+use support::{DISC, GLOBE, ball, caustica, command, ends, error, folder_with, text};
 
-const SCENE: &str = r#"
-version = 1
-[camera]
-position = [0.0, 1.0, 5.0]
-target = [0.0, 0.5, 0.0]
-fov = 40.0
-[film]
-width = 32
-height = 24
-[render]
-photons = 2000
-[materials.white]
-type = "diffuse"
-reflectance = 0.5
-[materials.glass]
-type = "glass"
-ior = 1.5
-[[shapes]]
-type = "sphere"
-center = [0.0, 0.7, 0.0]
-radius = 0.5
-material = "glass"
-[[shapes]]
-type = "disc"
-center = [0.0, 0.0, 0.0]
-normal = [0.0, 1.0, 0.0]
-radius = 3.0
-material = "white"
-[[shapes]]
-type = "sphere"
-center = [0.0, 3.0, 1.0]
-radius = 0.3
-material = "white"
-emission = [20.0, 20.0, 20.0]
-"#;
+static SCENE: LazyLock<String> = LazyLock::new(|| ball((32, 24), "photons = 2000", &[DISC, GLOBE]));
 
 const SMALL: [&str; 12] = [
     "study",
@@ -63,27 +33,7 @@ const SMALL: [&str; 12] = [
 ];
 
 fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("cli_study").join(name);
-    if folder.exists() {
-        fs::remove_dir_all(&folder).unwrap();
-    }
-    fs::create_dir_all(&folder).unwrap();
-    fs::write(folder.join("ball.toml"), SCENE).unwrap();
-    folder
-}
-
-fn command(folder: &Path, arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_caustica"));
-    command.args(arguments).current_dir(folder).env("NO_COLOR", "1");
-    command
-}
-
-fn caustica(folder: &Path, arguments: &[&str]) -> Output {
-    command(folder, arguments).output().unwrap()
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8(bytes.to_vec()).unwrap()
+    folder_with(name, &[("ball.toml", &SCENE)])
 }
 
 fn json(file: &Path) -> Value {
@@ -191,12 +141,7 @@ fn an_interrupted_study_goes_on_to_the_same_end() {
 fn what_does_not_belong_is_refused() {
     let folder = folder("refused");
     let refused = |arguments: &[&str], code: i32, word: &str| {
-        let output = caustica(&folder, arguments);
-        let error = text(&output.stderr);
-        assert_eq!(output.status.code(), Some(code), "{arguments:?}: {error}");
-        // Messages are wrapped.
-        let flat = error.split_whitespace().filter(|w| *w != "│").collect::<Vec<_>>().join(" ");
-        assert!(flat.contains(word), "{arguments:?}: {word}: {flat}");
+        ends(&folder, arguments, code, &[word]);
     };
     let study = ["study", "ball.toml", "-o", "out", "--device", "cpu", "--budget", "2s", "--quiet"];
     let with = |more: &[&'static str]| [&study[..], more].concat();
@@ -281,9 +226,9 @@ fn revolutions_become_meshes() {
     let vary = ["--vary", "revolutions=exact,16", "--vary", "newton_tolerance=1e-2"];
     let output = caustica(&folder, &[&study[..], &vary].concat());
     assert_eq!(output.status.code(), Some(2));
-    let error = text(&output.stderr).split_whitespace().filter(|w| *w != "│").collect::<Vec<_>>().join(" ");
+    let error = error(&output);
     assert!(error.contains("there is no surface of revolution in this scene"), "{error}");
-    let with = SCENE.to_owned()
+    let with = SCENE.clone()
         + "[[shapes]]\ntype = \"revolution\"\nprofile = [[0.0, 0.0], [0.6, 0.3], [0.0, 1.0]]\nmaterial = \"white\"\n";
     fs::write(folder.join("ball.toml"), with).unwrap();
     let other: Vec<&str> = study.iter().map(|word| if *word == "out" { "with" } else { word }).collect();

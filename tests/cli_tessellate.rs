@@ -5,30 +5,19 @@
 //! sides of a pyramid of height h have the apothem sqrt(h^2 + r^2 cos^2(pi/N)). A curved profile's volume is that of the
 //! round body times the ratio of N-gon and circle, within the flatness asked for.
 
+mod support;
+
 use std::f64::consts::PI;
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::path::Path;
+use std::process::Output;
 
 use caustica::scene::{self, Mesh, ShapeKind};
 use glam::DVec3;
-
-fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("cli_tessellate").join(name);
-    if folder.exists() {
-        fs::remove_dir_all(&folder).unwrap();
-    }
-    fs::create_dir_all(&folder).unwrap();
-    folder
-}
+use support::{caustica, folder, text};
 
 fn tessellate(folder: &Path, arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_caustica"));
-    command.arg("tessellate").args(arguments).current_dir(folder).env("NO_COLOR", "1").output().unwrap()
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8(bytes.to_vec()).unwrap()
+    caustica(folder, &[&["tessellate"], arguments].concat())
 }
 
 /// The mesh that a scene makes of an OBJ file.

@@ -3,9 +3,13 @@
 //! Theory: a mistake ends with its own exit code and a message on standard error that names the mistake and the way out;
 //! standard output stays empty, and so does the folder.
 
+mod support;
+
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::path::PathBuf;
+use std::process::Output;
+
+use support::{caustica, folder_with, text};
 
 const SCENE: &str = r#"
 version = 1
@@ -32,35 +36,14 @@ intensity = [10.0, 10.0, 10.0]
 
 /// A fresh folder with a good scene, `ball.toml`, in it.
 fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("cli_use").join(name);
-    if folder.exists() {
-        fs::remove_dir_all(&folder).unwrap();
-    }
-    fs::create_dir_all(&folder).unwrap();
-    fs::write(folder.join("ball.toml"), SCENE).unwrap();
-    folder
-}
-
-fn caustica(folder: &Path, arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_caustica"));
-    command.args(arguments).current_dir(folder).env("NO_COLOR", "1").output().unwrap()
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8(bytes.to_vec()).unwrap()
+    folder_with(name, &[("ball.toml", SCENE)])
 }
 
 /// Runs in a fresh folder; the code must be as said, standard error must hold all the words, standard output nothing,
 /// and no file may be left.
 fn fails(name: &str, arguments: &[&str], code: i32, words: &[&str]) {
     let folder = folder(name);
-    let output = caustica(&folder, arguments);
-    let error = text(&output.stderr);
-    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {error}");
-    for word in words {
-        assert!(error.contains(word), "{arguments:?} should say `{word}`: {error}");
-    }
-    assert_eq!(text(&output.stdout), "", "{arguments:?}");
+    support::fails(&folder, arguments, code, words);
     let left: Vec<_> = fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name()).collect();
     assert_eq!(left, ["ball.toml"], "{arguments:?}");
 }

@@ -3,23 +3,16 @@
 //! Theory: EXR and PFM keep every bit of a finite f32; HDR keeps 8 bits of the largest channel, so a value is within
 //! 1/256 of the pixel's largest (Ward 1991); PNG keeps 8-bit display values. A file is there whole or not at all.
 
+mod support;
+
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use caustica::film::{
     Development, FileError, Picture, Provenance, check_outputs, exr_file, file, pfm, read, write,
 };
 use caustica::settings::RenderSettings;
-
-/// A fresh folder of this test's own.
-fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("film_files").join(name);
-    if folder.exists() {
-        fs::remove_dir_all(&folder).unwrap();
-    }
-    fs::create_dir_all(&folder).unwrap();
-    folder
-}
+use support::folder;
 
 /// Not square and unlike its mirror images, over many magnitudes; with denormal, negative zero and large values.
 fn sample() -> Picture {

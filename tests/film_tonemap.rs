@@ -6,8 +6,8 @@
 
 use caustica::film::Development;
 use caustica::film::tonemap::Bits;
-use caustica::film::tonemap::srgb_from_linear;
 use caustica::scene::ToneMap;
+use caustica::srgb::srgb_from_linear;
 
 const BOTH: [ToneMap; 2] = [ToneMap::Agx, ToneMap::Srgb];
 

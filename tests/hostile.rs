@@ -4,19 +4,25 @@
 //! Theory: a path is inside if, with all links resolved, it begins with the root, links resolved. So each way out is
 //! paired here with one that looks alike and stays inside, which must be read: a check that refuses everything fails.
 
+mod support;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use caustica::scene::{Allowance, SceneErrors, load_profile_within, load_within, parse_within};
+use support::HEAD;
 
-const HEAD: &str = "version = 1\n[camera]\nposition = [0, 1, 4]\ntarget = [0, 1, 0]\nfov = 39\n[[lights]]\ntype = \"point\"\n\
-position = [0, 3, 0]\nintensity = 1.0\n[materials.m]\ntype = \"diffuse\"\nreflectance = 0.5\n";
+/// A scene with a light, a material and the rest.
+fn lit(rest: &str) -> String {
+    let light = "[[lights]]\ntype = \"point\"\nposition = [0, 3, 0]\nintensity = 1.0\n";
+    format!("{HEAD}{light}[materials.m]\ntype = \"diffuse\"\nreflectance = 0.5\n{rest}")
+}
+
 const OBJ: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
 
 /// A folder `root` with a mesh, a picture and a profile, and beside it a folder `out` with the same.
 fn folders(name: &str) -> (PathBuf, PathBuf) {
-    let base = Path::new(env!("CARGO_TARGET_TMPDIR")).join("hostile").join(name);
-    let _ = fs::remove_dir_all(&base);
+    let base = support::folder(name);
     let (root, out) = (base.join("root"), base.join("out"));
     for folder in [&root, &out] {
         fs::create_dir_all(folder.join("sub")).unwrap();
@@ -28,12 +34,12 @@ fn folders(name: &str) -> (PathBuf, PathBuf) {
 }
 
 fn mesh(file: &str) -> String {
-    format!("{HEAD}[[shapes]]\ntype = \"mesh\"\nmaterial = \"m\"\nfile = {file:?}\n")
+    lit(&format!("[[shapes]]\ntype = \"mesh\"\nmaterial = \"m\"\nfile = {file:?}\n"))
 }
 
 fn picture(file: &str) -> String {
     let sphere = "[[shapes]]\ntype = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1\nmaterial = \"m\"\n";
-    format!("{HEAD}{sphere}[environment]\nfile = {file:?}\n")
+    lit(&format!("{sphere}[environment]\nfile = {file:?}\n"))
 }
 
 fn within(root: &Path) -> Allowance {
@@ -168,7 +174,7 @@ fn limits_are_told_by_name() {
     let size = image::image_dimensions(root.join("grid.png")).unwrap();
     let pixels = u64::from(size.0) * u64::from(size.1);
     let encoded = fs::metadata(root.join("grid.png")).unwrap().len();
-    let two = mesh("mesh.obj") + &mesh("mesh.obj")[HEAD.len()..];
+    let two = mesh("mesh.obj") + &mesh("mesh.obj")[lit("").len()..];
     let cases = [
         ("shapes", two.clone(), 2),
         ("mesh-bytes", two.clone(), 2 * OBJ.len() as u64),
@@ -223,7 +229,7 @@ fn errors_beyond_the_limit_are_counted() {
             format!("[[shapes]]\ntype = \"sphere\"\ncenter = [0, 0, {n}]\nradius = -1\nmaterial = \"m\"\n")
         })
         .collect();
-    let text = format!("{HEAD}{bad}");
+    let text = lit(&bad);
     for (most, listed) in [(7, 7), (0, 1), (10_000, 5000)] {
         let allowance = Allowance { errors: most, ..Allowance::default() };
         let errors = parse_within("scene.toml".as_ref(), text.as_bytes(), &allowance).unwrap_err();
@@ -237,9 +243,9 @@ fn errors_beyond_the_limit_are_counted() {
 #[test]
 fn long_lines_are_cut() {
     let numbers = "[0, 0], ".repeat(100_000);
-    let text = format!(
-        "{HEAD}[[shapes]]\ntype = \"revolution\"\nmaterial = \"m\"\nprofile = [{numbers}[0, 'here']]\n"
-    );
+    let text = lit(&format!(
+        "[[shapes]]\ntype = \"revolution\"\nmaterial = \"m\"\nprofile = [{numbers}[0, 'here']]\n"
+    ));
     let errors = parse_within("scene.toml".as_ref(), text.as_bytes(), &Allowance::default()).unwrap_err();
     let report = format!("{:?}", miette::Report::new(errors));
     assert!(report.len() < 20_000 && report.contains("here"), "{} bytes", report.len());

@@ -5,53 +5,25 @@
 #![cfg(all(feature = "preview", target_os = "linux"))]
 
 mod software;
+mod support;
 
 use std::fs;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
+use std::sync::LazyLock;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use caustica::film::{file::read_exr, read};
 use caustica::scene;
+use support::{LAMP, PLANE, ball, command, folder_with, good};
 
-const SCENE: &str = r#"# A ball of glass.
-version = 1
-[camera]
-position = [0.0, 1.0, 5.0] # before it
-target = [0.0, 0.5, 0.0]
-fov = 40.0
-[film]
-width = 96
-height = 64
-[render]
-passes = 4
-photons = 2000 # few
-[materials.white]
-type = "diffuse"
-reflectance = 0.5
-[materials.glass]
-type = "glass"
-ior = 1.5
-[[shapes]]
-type = "sphere"
-center = [0.0, 0.7, 0.0]
-radius = 0.5
-material = "glass"
-[[shapes]]
-type = "plane"
-point = [0.0, 0.0, 0.0]
-normal = [0.0, 1.0, 0.0]
-material = "white"
-[[shapes]]
-type = "disc"
-center = [0.0, 3.0, 1.0]
-normal = [0.0, -1.0, 0.0]
-radius = 0.3
-material = "white"
-emission = [20.0, 20.0, 20.0]
-"#;
+/// With comments, which no saving takes away.
+static SCENE: LazyLock<String> = LazyLock::new(|| {
+    let scene = ball((96, 64), "passes = 4\nphotons = 2000 # few", &[PLANE, LAMP]);
+    format!("# A ball of glass.\n{}", scene.replace("5.0]\ntarget", "5.0] # before it\ntarget"))
+});
 
 const PATIENCE: Duration = Duration::from_secs(120);
 
@@ -67,22 +39,15 @@ impl Drop for Owned {
 }
 
 fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("preview_window").join(name);
-    if folder.exists() {
-        fs::remove_dir_all(&folder).unwrap();
-    }
-    fs::create_dir_all(&folder).unwrap();
-    fs::write(folder.join("ball.toml"), SCENE).unwrap();
-    folder
+    folder_with(name, &[("ball.toml", &SCENE)])
 }
 
 fn preview(folder: &Path, arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_caustica"));
-    command.arg("preview").args(arguments).current_dir(folder);
+    let mut command = command(folder, &[&["preview"], arguments].concat());
     for name in ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"] {
         command.env_remove(name);
     }
-    command.env("NODEVICE_SELECT", "1").env("NO_COLOR", "1");
+    command.env("NODEVICE_SELECT", "1");
     command
 }
 
@@ -153,7 +118,7 @@ fn a_hand_turns_changes_saves_and_closes() {
     key("comma");
     key("ctrl+s");
     let file = folder.join("ball.toml");
-    until("a saved scene", || (), || fs::read_to_string(&file).unwrap() != SCENE);
+    until("a saved scene", || (), || fs::read_to_string(&file).unwrap() != *SCENE);
     let text = fs::read_to_string(&file).unwrap();
     let differ: Vec<_> = text.lines().zip(SCENE.lines()).filter(|(a, b)| a != b).collect();
     assert_eq!(text.lines().count(), SCENE.lines().count());
@@ -174,9 +139,7 @@ fn a_hand_turns_changes_saves_and_closes() {
     assert!(ended.success(), "{ended}");
 
     // a plain render of what was saved has the same bits
-    let mut again = Command::new(env!("CARGO_BIN_EXE_caustica"));
-    again.args(["render", "--quiet", "--like", "picture.exr", "-o", "again.exr"]).current_dir(&folder);
-    assert!(again.status().unwrap().success());
+    good(&folder, &["render", "--quiet", "--like", "picture.exr", "-o", "again.exr"]);
     let bits = |name: &str| {
         read(&folder.join(name)).unwrap().rgb.iter().map(|p| p.map(f32::to_bits)).collect::<Vec<_>>()
     };
@@ -207,12 +170,17 @@ fn wait(child: &mut Child) -> std::process::ExitStatus {
 #[test]
 fn without_a_desktop_the_reason_is_told() {
     let folder = folder("nowhere");
+    fs::create_dir(folder.join("elsewhere")).unwrap();
     for (display, arguments, code, words) in [
         (None, &["ball.toml", "--device", "cpu"][..], 1, "DISPLAY"),
         (Some(":4999"), &["ball.toml", "--device", "cpu"], 1, "no window can be opened"),
         (None, &["ball.toml", "--device", "nonesuch"], 4, "no device `nonesuch`"),
         (None, &["gone.toml"], 1, "gone.toml"),
         (None, &["ball.toml", "-o", "picture.gif"], 2, ".exr"),
+        (None, &["ball.toml", "--device", "cpu", "--root", "."], 1, "DISPLAY"),
+        (None, &["ball.toml", "--root", "elsewhere"], 1, "lies outside of elsewhere"),
+        (None, &["ball.toml", "--root", "nowhere"], 2, "no such folder"),
+        (None, &["ball.toml", "--limit", "shapes=1"], 1, "`shapes`"),
     ] {
         let mut command = preview(&folder, arguments);
         display.into_iter().for_each(|display| {

@@ -1,13 +1,14 @@
 //! Text files as other systems write them: line ends of Windows, the byte order mark of UTF-8, UTF-16.
 //!
-//! Theory: neither line ends nor the mark are content. A scene packs to the same bits whichever way its files are written, and
+//! Theory: neither line ends nor the mark are content. A scene has the same content whichever way its files are written, and
 //! an error stands at the same line and column with the same words. Text in UTF-16 or UTF-32 is told as such, by file name.
+
+mod support;
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use caustica::identity::Identity;
-use caustica::pack::pack;
 use caustica::scene::{Finding, load, load_profile};
 
 const SCENE: &str = r#"version = 1 # a drop on a mesh
@@ -66,8 +67,8 @@ const FOREIGN: [(&str, Write); 3] = [
 
 /// A fresh folder with the files that scenes name, as UTF-8 of Unix.
 fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("scene_encodings").join(name);
-    fs::create_dir_all(folder.join("reference")).unwrap();
+    let folder = support::folder(name);
+    fs::create_dir(folder.join("reference")).unwrap();
     let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data");
     fs::copy(data.join("reference/grid.png"), folder.join("reference/grid.png")).unwrap();
     for name in ["parts.obj", "parts.mtl", "cube.obj", "broken.obj", "broken.mtl"] {
@@ -86,7 +87,7 @@ fn rewrite(folder: &Path, names: &[&str], write: Write) {
 
 fn identity(file: &Path) -> Identity {
     let loaded = load(file).unwrap_or_else(|errors| panic!("{:?}", miette::Report::new(errors)));
-    Identity::of(&pack(&loaded.scene, 32, 16).unwrap())
+    Identity::of(&loaded.scene)
 }
 
 #[test]

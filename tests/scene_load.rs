@@ -1,5 +1,7 @@
 //! Scene files that are right: what they become.
 
+mod support;
+
 use std::path::Path;
 
 use caustica::scene::{
@@ -7,6 +9,7 @@ use caustica::scene::{
     parse,
 };
 use glam::{DVec2, DVec3};
+use support::HEAD;
 
 fn reference(name: &str) -> Loaded {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/reference").join(name);
@@ -21,8 +24,6 @@ fn parse_text(text: &str) -> Result<Loaded, SceneErrors> {
 fn scene_of(text: &str) -> Scene {
     parse_text(text).unwrap_or_else(|errors| panic!("{:?}", miette::Report::new(errors))).scene
 }
-
-const HEAD: &str = "version = 1\n[camera]\nposition = [0, 1, 4]\ntarget = [0, 1, 0]\nfov = 39\n";
 
 /// Files as they stand in the reference folder load without a warning, with every name resolved.
 #[test]
@@ -209,8 +210,7 @@ fn schema_is_current() {
 /// floats. The same file in the same color space is read once.
 #[test]
 fn image_formats() {
-    let folder = std::env::temp_dir().join(format!("caustica-images-{}", std::process::id()));
-    std::fs::create_dir_all(&folder).unwrap();
+    let folder = support::folder("images");
     let deep = image::ImageBuffer::from_pixel(2, 1, image::Rgb([32768u16, 0, 65535]));
     deep.save(folder.join("deep.png")).unwrap();
     let floats = image::ImageBuffer::from_fn(3, 2, |x, y| image::Rgb([x as f32, y as f32, 0.5]));
@@ -253,5 +253,4 @@ fn image_formats() {
     let bytes = std::fs::read(folder.join("sky.exr")).unwrap();
     std::fs::write(folder.join("cut.exr"), &bytes[..bytes.len() / 2]).unwrap();
     assert!(load("", "cut.exr").is_err());
-    std::fs::remove_dir_all(&folder).unwrap();
 }

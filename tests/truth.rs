@@ -6,6 +6,8 @@
 //! tracing is not. Films, seeds and passes are fixed: on one device these tests always say the same. What they can
 //! see is shown by planted errors.
 
+mod support;
+
 use std::path::Path;
 
 use caustica::device::Wanted;
@@ -199,7 +201,7 @@ fn blocks_of_a_picture() {
     let small = Picture::from_fn(4, 2, |x, _| [if x < 2 { 1.0 } else { 3.5 }; 3]);
     assert_eq!(Blocks::of(&small, 2, 1).unwrap(), truth.mean);
     assert_eq!(Blocks::of(&small, 3, 1), None);
-    let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join("truth.exr");
+    let file = support::folder("blocks").join("truth.exr");
     truth.write(&file).unwrap();
     let read = BlockTruth::read(&file).unwrap();
     assert_eq!(read.mean, truth.mean);

@@ -117,26 +117,16 @@ fn checkpoint() -> Vec<u8> {
         "{READER}[film]\nwidth = 3\nheight = 2\n[render]\nphotons = 10\n[materials.m]\ntype = \"diffuse\"\nreflectance = 0.5\n\
          [[shapes]]\ntype = \"sphere\"\ncenter = [0, 1, 0]\nradius = 1\nmaterial = \"m\"\n"
     );
-    let loaded = scene::parse("seed.toml".as_ref(), text.as_bytes()).expect("a scene");
+    let mut loaded = scene::parse("seed.toml".as_ref(), text.as_bytes()).expect("a scene");
+    loaded.scene.film.aovs = scene::Aovs::parse("all").expect("layers");
+    loaded.scene.film.window = Some([1, 0, 3, 2]);
     let mut opened = device::open(&Wanted::Cpu, &loaded.scene, &loaded.settings).expect("the CPU engine");
     opened.engine.pass().expect("a pass");
     let checkpoint = Checkpoint {
-        origin: Origin {
-            version: "0".into(),
-            scene: "seed".into(),
-            scene_text: String::new(),
-            identity: opened.identity.clone(),
-            width: 3,
-            height: 2,
-            radiance_unit: opened.radiance_unit,
-            settings: opened.settings.clone(),
-            device: opened.name.clone(),
-            exposure: 0.0,
-            tonemap: scene::ToneMap::Agx,
-        },
+        origin: Origin::of(&opened, &loaded.scene, ""),
         totals: Totals::default(),
         state: opened.engine.save().expect("what the engine holds"),
-        parts: Vec::new(),
+        cuts: Vec::new(),
     };
     let file = std::env::temp_dir().join(format!("caustica-fuzz-{}.checkpoint", std::process::id()));
     checkpoint::write(&file, &checkpoint).expect("a checkpoint");

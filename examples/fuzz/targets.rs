@@ -82,7 +82,7 @@ impl Target {
             }
             Self::Checkpoint => match checkpoint::decode("c.checkpoint".as_ref(), input) {
                 Ok(checkpoint) => {
-                    let _ = checkpoint.develop();
+                    let _ = (checkpoint.develop(), checkpoint.layers());
                     let _ = (checkpoint.end(), checkpoint.provenance(), checkpoint.development());
                     String::new()
                 }

@@ -6,6 +6,7 @@ use std::path::Path;
 use serde_json::Value;
 
 use super::{Checkpoint, CheckpointError, Origin};
+use crate::scene::Aovs;
 use crate::settings::RenderSettings;
 
 impl Checkpoint {
@@ -23,11 +24,15 @@ impl Checkpoint {
         end: u32,
     ) -> Result<(), CheckpointError> {
         let mut differences = expected.differences(&self.origin);
+        let [asked, known] = [expected.aovs, self.origin.aovs];
+        if asked.iter().any(|aov| !known.has(aov)) {
+            differences.push(format!("the layers: expected {}, found {}", told(asked), told(known)));
+        }
         if first_pass != self.state.first_pass {
             let found = self.state.first_pass;
             differences.push(format!("the first pass: expected pass {first_pass}, found pass {found}"));
         }
-        if bits != self.state.bits && self.parts.is_empty() {
+        if bits != self.state.bits && self.cuts.is_empty() {
             let found = self.state.bits;
             differences.push(format!("the device's numbers: expected {bits} bits, found {found}"));
         }
@@ -42,7 +47,7 @@ impl Checkpoint {
         }
         let unfit = |what: String, mend: String| CheckpointError::Unfit { file: file.to_owned(), what, mend };
         let (first, end_found) = (self.state.first_pass, self.end());
-        if !self.parts.is_empty() {
+        if !self.cuts.is_empty() {
             return Err(unfit(
                 "it is merged, and no render rounds its sums in the same order".to_owned(),
                 format!("render passes from {end_found} on by themselves, and merge both"),
@@ -68,20 +73,32 @@ impl Origin {
         let size = |origin: &Self| format!("{} x {}", origin.width, origin.height);
         if size(self) != size(found) {
             list.push(format!("the picture's size: expected {}, found {}", size(self), size(found)));
-        } else if self.identity != found.identity {
+        }
+        let window = |origin: &Self| match origin.window {
+            Some([x0, y0, x1, y1]) => format!("{x0},{y0},{x1},{y1}"),
+            None => "the whole picture".to_owned(),
+        };
+        if window(self) != window(found) {
+            list.push(format!("the crop: expected {}, found {}", window(self), window(found)));
+        }
+        if self.identity != found.identity {
             list.push(format!(
                 "the scene ({}): {}",
                 self.identity.differences(&found.identity).join(", "),
                 where_texts_differ(&self.scene_text, &found.scene_text)
             ));
         }
-        if self.radiance_unit != found.radiance_unit {
-            let [expected, found] = [self.radiance_unit, found.radiance_unit];
-            list.push(format!("the unit of radiance: expected {expected:e}, found {found:e}"));
+        if self.identity == found.identity && self.space != found.space {
+            list.push(format!("its unit and place: expected {:?}, found {:?}", self.space, found.space));
         }
         list.extend(setting_differences(&self.settings, &found.settings));
         list
     }
+}
+
+/// The names of layers.
+pub(super) fn told(aovs: Aovs) -> String {
+    if aovs.is_empty() { "none".to_owned() } else { aovs.to_string() }
 }
 
 /// The first line in which two scene files differ.

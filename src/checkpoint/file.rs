@@ -14,22 +14,23 @@ use xxhash_rust::xxh3::{Xxh3, xxh3_128};
 
 use super::{Checkpoint, CheckpointError, Origin, Totals};
 use crate::double;
-use crate::engine::State;
+use crate::engine::{LayerState, State};
 use crate::film::file::Format;
 use crate::kernels;
+use crate::scene::Aov;
 
 /// The extension of merged checkpoints; others may have any that is not a picture's.
 pub const EXTENSION: &str = "checkpoint";
 /// What a checkpoint begins with.
 const MAGIC: [u8; 8] = *b"caustica";
 /// The way in which this program writes.
-const FORMAT: u32 = 1;
+const FORMAT: u32 = 2;
 /// Bytes before the header.
 const PREFIX: usize = 24;
 /// Bytes after the sections.
 const SUM: usize = 16;
-/// Bytes of a pixel's `parts`.
-const PARTS_BYTES: usize = 8;
+/// Bytes of a pixel's `cuts`.
+const CUTS_BYTES: usize = 8;
 /// No render takes longer, in seconds: 35,000 years.
 const ELAPSED_MAX: u64 = 1 << 40;
 
@@ -44,7 +45,11 @@ struct Header {
     /// Bytes of each section, in order.
     film: u64,
     statistics: u64,
+    cuts: u64,
+    aovs: u64,
     parts: u64,
+    counts: u64,
+    objects: u64,
 }
 
 /// Writes a checkpoint, so that at any moment either the one before or this one is whole on the disk.
@@ -119,8 +124,9 @@ fn unfinished_name(file: &Path) -> PathBuf {
 fn write_to(file: &Path, checkpoint: &Checkpoint) -> io::Result<()> {
     let opened = File::create(file)?;
     let mut out = Summing { inner: BufWriter::new(&opened), sum: Box::default() };
-    let parts: Vec<u8> = checkpoint.parts.iter().flatten().flat_map(|n| n.to_le_bytes()).collect();
-    let State { first_pass, passes, bits, film, statistics } = &checkpoint.state;
+    let State { first_pass, passes, bits, film, statistics, layers } = &checkpoint.state;
+    let cuts = words(checkpoint.cuts.iter().flatten());
+    let (counts, objects) = (words(layers.counts.iter()), words(layers.objects.iter()));
     let header = Header {
         origin: checkpoint.origin.clone(),
         totals: checkpoint.totals,
@@ -129,16 +135,21 @@ fn write_to(file: &Path, checkpoint: &Checkpoint) -> io::Result<()> {
         bits: *bits,
         film: film.len() as u64,
         statistics: statistics.len() as u64,
-        parts: parts.len() as u64,
+        cuts: cuts.len() as u64,
+        aovs: layers.aovs.len() as u64,
+        parts: layers.parts.len() as u64,
+        counts: counts.len() as u64,
+        objects: objects.len() as u64,
     };
     let header = serde_json::to_vec(&header)?;
     let length = u32::try_from(header.len()).map_err(io::Error::other)?;
-    let total = PREFIX + header.len() + film.len() + statistics.len() + parts.len() + SUM;
+    let sections = [&header, film, statistics, &cuts, &layers.aovs, &layers.parts, &counts, &objects];
+    let total = PREFIX + sections.iter().map(|section| section.len()).sum::<usize>() + SUM;
     out.write_all(&MAGIC)?;
     out.write_all(&FORMAT.to_le_bytes())?;
     out.write_all(&length.to_le_bytes())?;
     out.write_all(&(total as u64).to_le_bytes())?;
-    for section in [&header, film, statistics, &parts] {
+    for section in sections {
         out.write_all(section)?;
     }
     let sum = out.sum.digest128();
@@ -146,6 +157,14 @@ fn write_to(file: &Path, checkpoint: &Checkpoint) -> io::Result<()> {
     out.flush()?;
     drop(out);
     opened.sync_all()
+}
+
+fn words<'a>(numbers: impl Iterator<Item = &'a u32>) -> Vec<u8> {
+    numbers.flat_map(|n| n.to_le_bytes()).collect()
+}
+
+fn words_of(bytes: &[u8]) -> Vec<u32> {
+    bytes.chunks_exact(4).map(|word| u32::from_le_bytes([0, 1, 2, 3].map(|k| word[k]))).collect()
 }
 
 /// Brings the new name to the disk, where folders can be opened.
@@ -211,14 +230,17 @@ pub fn decode(file: &Path, bytes: &[u8]) -> Result<Checkpoint, CheckpointError> 
         rest = others;
         Some(section)
     };
-    let film = section(header.film).ok_or_else(short)?;
-    let statistics = section(header.statistics).ok_or_else(short)?;
-    let parts = section(header.parts).ok_or_else(short)?;
+    let Header { film, statistics, cuts, aovs, parts, counts, objects, .. } = header;
+    let lengths = [film, statistics, cuts, aovs, parts, counts, objects];
+    let mut sections = [&[][..]; 7];
+    for (place, length) in sections.iter_mut().zip(lengths) {
+        *place = section(length).ok_or_else(short)?;
+    }
+    let [film, statistics, cuts, aovs, parts, counts, objects] = sections;
     if !rest.is_empty() {
         return Err(damaged("there is more in it than its header tells".to_owned()));
     }
     check_header(&header).map_err(damaged)?;
-    let pair = |bytes: &[u8]| [0, 4].map(|at| u32::from_le_bytes([0, 1, 2, 3].map(|k| bytes[at + k])));
     Ok(Checkpoint {
         origin: header.origin,
         totals: header.totals,
@@ -228,28 +250,60 @@ pub fn decode(file: &Path, bytes: &[u8]) -> Result<Checkpoint, CheckpointError> 
             bits: header.bits,
             film: film.to_vec(),
             statistics: statistics.to_vec(),
+            layers: LayerState {
+                aovs: aovs.to_vec(),
+                parts: parts.to_vec(),
+                counts: words_of(counts),
+                objects: words_of(objects),
+            },
         },
-        parts: parts.chunks_exact(PARTS_BYTES).map(pair).collect(),
+        cuts: words_of(cuts).chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect(),
     })
 }
 
 /// Whether the numbers fit one another.
 fn check_header(header: &Header) -> Result<(), String> {
-    let (film_bytes, statistics_bytes) = match header.bits {
-        32 => (kernels::bytes::FILM_BYTES, kernels::bytes::STATISTICS_BYTES),
-        64 => (double::kernels::bytes::FILM_BYTES, double::kernels::bytes::STATISTICS_BYTES),
+    let [film_bytes, statistics_bytes, aov_bytes, parts_bytes] = match header.bits {
+        32 => {
+            use kernels::bytes::*;
+            [FILM_BYTES, STATISTICS_BYTES, AOV_BYTES, PARTS_BYTES]
+        }
+        64 => {
+            use double::kernels::bytes::*;
+            [FILM_BYTES, STATISTICS_BYTES, AOV_BYTES, PARTS_BYTES]
+        }
         bits => return Err(format!("expected numbers of 32 or 64 bits, found {bits}")),
     };
-    let pixels = u64::from(header.origin.width) * u64::from(header.origin.height);
-    let film = pixels.checked_mul(film_bytes as u64);
-    if pixels == 0 || film != Some(header.film) {
-        return Err(format!("{} bytes of film for {pixels} pixels", header.film));
+    let Origin { width, height, window, aovs, .. } = &header.origin;
+    if let Some([x0, y0, x1, y1]) = window
+        && !(x0 < x1 && y0 < y1 && x1 <= width && y1 <= height)
+    {
+        return Err(format!("a crop {x0},{y0},{x1},{y1} of {width} x {height} pixels"));
+    }
+    let [columns, rows] = header.origin.window_size().map(u64::from);
+    let pixels = columns * rows;
+    if pixels == 0 {
+        return Err("no pixels".to_owned());
+    }
+    // what may be left out, and what each pixel takes
+    let by_pixel = [
+        ("film", header.film, true, film_bytes),
+        ("cuts", header.cuts, header.cuts > 0, CUTS_BYTES),
+        ("layers", header.aovs, aovs.are_traced(), aov_bytes),
+        ("parts", header.parts, header.parts > 0, parts_bytes),
+        ("surfaces", header.objects, aovs.has(Aov::Object), 4),
+    ];
+    for (name, found, wanted, each) in by_pixel {
+        let expected = if wanted { pixels.checked_mul(each as u64) } else { Some(0) };
+        if expected != Some(found) {
+            return Err(format!("{found} bytes of {name} for {pixels} pixels"));
+        }
     }
     if !header.statistics.is_multiple_of(statistics_bytes as u64) {
         return Err(format!("{} bytes of statistics", header.statistics));
     }
-    if header.parts != 0 && Some(header.parts) != pixels.checked_mul(PARTS_BYTES as u64) {
-        return Err(format!("{} bytes of parts for {pixels} pixels", header.parts));
+    if !header.counts.is_multiple_of(4) {
+        return Err(format!("{} bytes of counts", header.counts));
     }
     if header.totals.elapsed.as_secs() > ELAPSED_MAX {
         return Err(format!("{} s of rendering", header.totals.elapsed.as_secs()));

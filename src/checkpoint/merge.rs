@@ -12,7 +12,8 @@ use std::path::PathBuf;
 
 use rayon::prelude::*;
 
-use super::{Checkpoint, CheckpointError, Origin, Totals};
+use super::belongs::told;
+use super::{Checkpoint, CheckpointError, Origin, Totals, layers};
 use crate::double::kernels::records::FilmPixel;
 use crate::double::math::luminance;
 use crate::double::readout::{Readout, counted, early_parts};
@@ -49,7 +50,11 @@ fn check_follows(
     (first_file, first): (&PathBuf, &Checkpoint),
     (file, next): (&PathBuf, &Checkpoint),
 ) -> Result<(), CheckpointError> {
-    let differences = first.origin.differences(&next.origin);
+    let mut differences = first.origin.differences(&next.origin);
+    let [expected, found] = [first.origin.aovs, next.origin.aovs];
+    if expected != found {
+        differences.push(format!("the layers: expected {}, found {}", told(expected), told(found)));
+    }
     if !differences.is_empty() {
         let mend = format!("expected is what {} is of: render one of both anew", first_file.display());
         return Err(CheckpointError::Other { file: file.clone(), differences, mend });
@@ -91,9 +96,9 @@ fn join(first: &Checkpoint, next: &Checkpoint) -> Checkpoint {
     let halves = [first, next].map(|checkpoint| {
         let film = wide_film(&checkpoint.state);
         let passes = checkpoint.state.passes;
-        let parts = &checkpoint.parts;
+        let known = &checkpoint.cuts;
         let cuts = |i: usize, pixel: &FilmPixel| {
-            parts.get(i).copied().unwrap_or_else(|| early_parts(counted(pixel, passes)))
+            known.get(i).copied().unwrap_or_else(|| early_parts(counted(pixel, passes)))
         };
         let part = |(i, film): (usize, &FilmPixel)| Part { passes, cuts: cuts(i, film), film: *film };
         film.par_iter().enumerate().map(part).collect::<Vec<Part>>()
@@ -124,8 +129,9 @@ fn join(first: &Checkpoint, next: &Checkpoint) -> Checkpoint {
             bits: 64,
             film: double::kernels::bytes::film_bytes(&film),
             statistics: Vec::new(),
+            layers: layers::joined(&first.state, &next.state),
         },
-        parts: joined.iter().map(|part| part.cuts).collect(),
+        cuts: joined.iter().map(|part| part.cuts).collect(),
     }
 }
 
@@ -195,7 +201,7 @@ fn joined_cuts((a, na, mean_a): (&Part, u32, f64), (b, nb, mean_b): (&Part, u32,
 
 /// What reads the films of an origin.
 pub(super) fn readout(origin: &Origin) -> Readout {
-    Readout { width: origin.width, unit: origin.radiance_unit }
+    Readout { width: origin.window_size()[0], unit: origin.space.radiance_unit }
 }
 
 /// A film in f64, whichever it was saved in.

@@ -6,7 +6,9 @@
 mod belongs;
 mod error;
 mod file;
+mod layers;
 mod merge;
+mod origin;
 
 use std::time::Duration;
 
@@ -14,14 +16,12 @@ use serde::{Deserialize, Serialize};
 
 use crate::engine::{PhotonEnds, State};
 use crate::film::{Development, ErrorMap, Picture, Provenance, Rejections};
-use crate::identity::Identity;
 use crate::render::{Progress, Stop};
-use crate::scene::ToneMap;
-use crate::settings::RenderSettings;
 
 pub use error::CheckpointError;
 pub use file::{EXTENSION, check_place, decode, read, write};
 pub use merge::merge;
+pub use origin::Origin;
 
 /// A render between two passes.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,34 +33,7 @@ pub struct Checkpoint {
     /// What the engine held.
     pub state: State,
     /// Merged: of each pixel, how many passes the film's `early` and `earlier` are means of; else empty.
-    pub parts: Vec<[u32; 2]>,
-}
-
-/// Which render a checkpoint is of.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Origin {
-    /// The program; see [`crate::identity::program`].
-    pub version: String,
-    /// The scene's name.
-    pub scene: String,
-    /// The scene file's text.
-    pub scene_text: String,
-    /// Digests of the scene as the kernels read it.
-    pub identity: Identity,
-    /// Pixels per row.
-    pub width: u32,
-    /// Rows.
-    pub height: u32,
-    /// Scene radiance times this is world radiance.
-    pub radiance_unit: f64,
-    /// All settings, with a radius in the place of "auto". The number of passes is where the render was to end.
-    pub settings: RenderSettings,
-    /// The device's name; of merged ones the names of all.
-    pub device: String,
-    /// Exposure of tone-mapped pictures in stops.
-    pub exposure: f64,
-    /// Curve of tone-mapped pictures.
-    pub tonemap: ToneMap,
+    pub cuts: Vec<[u32; 2]>,
 }
 
 /// What the passes took.
@@ -106,16 +79,11 @@ impl Checkpoint {
         let film = merge::wide_film(&self.state);
         let readout = merge::readout(&self.origin);
         let passes = self.state.passes;
-        let errors = match self.parts.as_slice() {
+        let errors = match self.cuts.as_slice() {
             [] => readout.errors(&film, passes),
-            parts => readout.errors_by_parts(&film, passes, parts),
+            cuts => readout.errors_by_parts(&film, passes, cuts),
         };
         (readout.picture(&film), errors, readout.rejections(&film))
-    }
-
-    /// How its pictures are tone-mapped.
-    pub fn development(&self) -> Development {
-        Development { exposure: self.origin.exposure, tonemap: self.origin.tonemap, ..Development::default() }
     }
 
     /// How its pictures came about.
@@ -123,11 +91,18 @@ impl Checkpoint {
         Provenance {
             scene: self.origin.scene.clone(),
             scene_text: self.origin.scene_text.clone(),
+            film: Some(self.origin.film()),
+            materials: self.origin.materials.clone(),
             settings: self.origin.settings.clone(),
             device: self.origin.device.clone(),
             first_pass: self.state.first_pass,
             passes_done: self.state.passes,
             ..Provenance::default()
         }
+    }
+
+    /// How its pictures are tone-mapped.
+    pub fn development(&self) -> Development {
+        Development { exposure: self.origin.exposure, tonemap: self.origin.tonemap, ..Development::default() }
     }
 }

@@ -21,12 +21,6 @@ pub struct Allowed {
 }
 
 impl Allowed {
-    /// Whether any is asked for.
-    #[cfg_attr(not(feature = "preview"), allow(dead_code))]
-    pub fn are_given(&self) -> bool {
-        self.root.is_some() || !self.limit.is_empty()
-    }
-
     /// As the library takes it.
     pub fn allowance(&self) -> Result<Allowance, Failure> {
         if let Some(root) = self.root.as_ref().filter(|root| !root.is_dir()) {

@@ -5,11 +5,8 @@ use std::path::{Path, PathBuf};
 use caustica::checkpoint::{
     Checkpoint, CheckpointError, EXTENSION, Origin, Totals, check_place, read, write,
 };
-use caustica::device::Opened;
 use caustica::engine::State;
-use caustica::identity::program;
 use caustica::render::Progress;
-use caustica::scene::{Film, Scene};
 use serde_json::json;
 
 use super::Failure;
@@ -64,22 +61,6 @@ impl Files {
         Ok(())
     }
 
-    /// Fails where the film asks for what no checkpoint holds.
-    pub fn check_film(&self, film: &Film) -> Result<(), Failure> {
-        let what = match film {
-            Film { window: Some(_), .. } => "--crop",
-            film if !film.aovs.is_empty() => "--aov",
-            _ => return Ok(()),
-        };
-        if self.kept.is_none() && self.resumed.is_none() {
-            return Ok(());
-        }
-        Err(Failure::wrong_use(
-            &format!("{what}: checkpoints hold the whole picture's radiance alone"),
-            &format!("leave out {what} and film.{}, or --checkpoint and --resume", &what[2..]),
-        ))
-    }
-
     /// Tells what is gone on from, if anything is.
     pub fn tell(&self, json: bool, reporter: &Reporter) -> Result<(), Failure> {
         let Some((file, checkpoint)) = &self.resumed else {
@@ -91,24 +72,6 @@ impl Files {
         }
         reporter.note(&format!("{}: goes on after {passes} passes", file.display()));
         Ok(())
-    }
-}
-
-/// What tells whose a checkpoint is.
-pub fn origin(opened: &Opened, scene: &Scene, scene_text: &str) -> Origin {
-    let film = &scene.film;
-    Origin {
-        version: program(),
-        scene: scene.name.clone(),
-        scene_text: scene_text.to_owned(),
-        identity: opened.identity.clone(),
-        width: film.width,
-        height: film.height,
-        radiance_unit: opened.radiance_unit,
-        settings: opened.settings.clone(),
-        device: opened.name.clone(),
-        exposure: film.exposure,
-        tonemap: film.tonemap,
     }
 }
 
@@ -155,7 +118,7 @@ impl Keeper {
     }
 
     fn checkpoint(&self, state: State, progress: &Progress) -> Checkpoint {
-        Checkpoint { origin: self.origin.clone(), totals: Totals::of(progress), state, parts: Vec::new() }
+        Checkpoint { origin: self.origin.clone(), totals: Totals::of(progress), state, cuts: Vec::new() }
     }
 
     fn write(&mut self, file: &Path, checkpoint: &Checkpoint) {

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use caustica::film::provenance::VERSION;
 use caustica::film::{FileError, Provenance, file};
+use caustica::identity::Identity;
 use caustica::scene::{self, Loaded, Scene};
 
 use super::Failure;
@@ -84,7 +85,7 @@ impl Like {
                 self.version
             )
         });
-        let other = self.made.digest.is_some_and(|digest| digest != scene.digest());
+        let other = self.made.digest.as_ref().is_some_and(|digest| *digest != Identity::of(scene).digest());
         let scene = other.then(|| "the scene, or a file that it names, has changed since".to_owned());
         version.into_iter().chain(scene).collect()
     }

@@ -48,7 +48,7 @@ impl Made {
         let (picture, errors, rejections) = rest.develop();
         let errors = Some(errors).filter(|_| progress.passes >= LEAST_PASSES);
         let progress = Progress { error: errors.as_ref().map(ErrorMap::relative), ..progress };
-        Self { picture, errors, layers: Vec::new(), rejections, progress, ended: "failed" }
+        Self { picture, errors, layers: rest.layers(), rejections, progress, ended: "failed" }
     }
 
     /// Writes it into files.

@@ -75,7 +75,8 @@ fn write_pictures(pictures: &[impl AsRef<Path>], all: &Checkpoint) -> Result<Opt
         message(format_args!("warning: {}", left_out(&rejections)));
     }
     let errors = Some(errors).filter(|_| all.state.passes >= LEAST_PASSES);
-    let layers = errors.as_ref().map_or(Vec::new(), |errors| errors.layers());
+    let mut layers = errors.as_ref().map_or(Vec::new(), |errors| errors.layers());
+    layers.extend(all.layers());
     for output in pictures {
         film::write(output.as_ref(), &picture, &layers, &all.development(), &all.provenance())?;
     }

@@ -6,6 +6,7 @@ use caustica::device;
 use caustica::film::check_outputs;
 use caustica::preview::session::Start;
 use caustica::preview::window::{Against, WindowError, open};
+use caustica::scene::{self, Loaded};
 use clap::builder::NonEmptyStringValueParser;
 use miette::miette;
 
@@ -49,11 +50,8 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     let Arguments { scene: file, output, device, against, against_device, overrides } = arguments;
     let outputs = if output.is_empty() { vec![default_output(&file)] } else { output };
     check_outputs(&outputs)?;
-    if overrides.allowed.are_given() {
-        let help = "leave --root and --limit out, or use render";
-        return Err(Failure::wrong_use("a preview reads changed files again without them", help));
-    }
-    let mut loaded = caustica::scene::load(&file)?;
+    let allowance = overrides.allowed.allowance()?;
+    let mut loaded = scene::load_within(&file, &allowance)?;
     overrides.apply(&mut loaded.scene, &mut loaded.settings);
     let device = device::parse(&device);
     // a device that is not there is told here, before there is a window
@@ -64,10 +62,10 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
         device::pick(wanted, &device::list())?;
     }
     let against = against.map(Against::File).or(against_device.map(Against::Device));
-    let adjust = Box::new(move |loaded: &mut caustica::scene::Loaded| {
+    let adjust = Box::new(move |loaded: &mut Loaded| {
         overrides.apply(&mut loaded.scene, &mut loaded.settings);
     });
-    open(Start { file, loaded, adjust, outputs, device }, against)?;
+    open(Start { file, loaded, allowance, adjust, outputs, device }, against)?;
     Ok(Done::Fully)
 }
 

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use caustica::calibration::{Calibrating, Calibration};
+use caustica::checkpoint::Origin;
 use caustica::device::{self, Candidates, DeviceError, Opened, Wanted};
 use caustica::engine::{Engine, EngineError, State};
 use caustica::film::tev::ADDRESS;
@@ -140,7 +141,6 @@ fn run_on(arguments: Arguments, find: &Find) -> Result<Done, Failure> {
     let (mut scene, settings) = put_in_force(loaded, &arguments.overrides);
     scene.film.aovs = asked;
     arguments.extent.apply(&mut scene.film, &outputs)?;
-    files.check_film(&scene.film)?;
     let passes = arguments.overrides.passes();
     let first_pass = passes.map_or(like.as_ref().map_or(0, Like::first_pass), |passes| passes.first);
     check_range(first_pass, &settings)?;
@@ -151,7 +151,8 @@ fn run_on(arguments: Arguments, find: &Find) -> Result<Done, Failure> {
     let opened = succession.first()?;
     let mut viewer = Viewer::connect(arguments.tev.as_deref(), &scene)?;
     let scene_text = std::fs::read_to_string(&file).unwrap_or_default();
-    let origin = checkpoint::origin(&opened, &scene, &scene_text);
+    let origin = Origin::of(&opened, &scene, &scene_text);
+    let digest = origin.identity.digest();
     let Arguments { time, target_error, .. } = arguments;
     let limited = time.is_none() && target_error.is_none() || passes.is_some();
     let end = if limited { settings.passes } else { u32::MAX };
@@ -206,7 +207,7 @@ fn run_on(arguments: Arguments, find: &Find) -> Result<Done, Failure> {
         scene: scene.name.clone(),
         scene_file: file.display().to_string(),
         scene_text,
-        digest: Some(scene.digest()),
+        digest: Some(digest),
         film: Some(scene.film),
         materials: scene.materials.iter().map(|material| material.name.clone()).collect(),
         asked: Some(succession.asked().clone()),

@@ -2,7 +2,7 @@
 
 use super::features::Features;
 use super::kernels::aov_trace::{AovPixel, aov_trace};
-use super::kernels::bytes::{film_bytes, film_of, statistics_bytes, statistics_of};
+use super::kernels::bytes::{aovs_of, film_bytes, film_of, parts_of, statistics_bytes, statistics_of};
 use super::kernels::eye_trace::eye_trace;
 use super::kernels::gather::{gather, scale_sq};
 use super::kernels::grid_build::{RecordList, SortedRecords, grid_count, grid_scan, grid_scatter, grid_sort};
@@ -353,6 +353,14 @@ fn trace_photons(
     traced.reduce(|| (0, [0; 3]), sum)
 }
 
+impl CpuEngine {
+    /// What layers are made of.
+    fn found(&self) -> Layers<'_> {
+        let Self { aovs, parts, gathered, statistics, passes_done, .. } = self;
+        Layers { aovs, parts, gathered, statistics, passes: *passes_done }
+    }
+}
+
 impl Engine for CpuEngine {
     fn device(&self) -> &str {
         &self.device
@@ -401,6 +409,7 @@ impl Engine for CpuEngine {
             bits: 8 * size_of::<Real>() as u32,
             film: film_bytes(&self.film),
             statistics: statistics_bytes(&self.statistics),
+            layers: self.plan.layer_state(&self.found()),
         })
     }
 
@@ -410,13 +419,21 @@ impl Engine for CpuEngine {
             self.passes_done = state.passes;
             self.film = film_of(&state.film);
             self.statistics = statistics_of(&state.statistics);
+            if !self.aovs.is_empty() {
+                self.aovs = aovs_of(&state.layers.aovs);
+            }
+            if !self.parts.is_empty() {
+                self.parts = parts_of(&state.layers.parts);
+            }
+            for (gathered, count) in self.gathered.iter_mut().zip(&state.layers.counts) {
+                gathered.count = *count;
+            }
         }
         Ok(())
     }
 
     fn layers(&mut self) -> Result<Vec<Channel>, EngineError> {
-        let Self { aovs, parts, gathered, statistics, passes_done, .. } = self;
-        Ok(self.plan.layers(&Layers { aovs, parts, gathered, statistics, passes: *passes_done }))
+        Ok(self.plan.layers(&self.found()))
     }
 
     fn gathered(&mut self) -> Result<u64, EngineError> {

@@ -5,8 +5,8 @@ use std::path::Path;
 use image::{DynamicImage, ImageFormat};
 
 use super::file::{Format, read, read_bytes, read_exr};
-use super::tonemap::linear_from_srgb;
 use super::{FileError, Picture};
+use crate::srgb::linear_from_srgb;
 
 /// What the numbers of a file say.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -16,8 +16,8 @@ pub struct Provenance {
     pub scene_file: String,
     /// The scene file's text.
     pub scene_text: String,
-    /// [`crate::scene::Scene::digest`]; none where nobody is to make it again.
-    pub digest: Option<u64>,
+    /// [`crate::identity::Identity::digest`] of the scene; none where nobody is to make it again.
+    pub digest: Option<String>,
     /// What it was taken on; none for a whole picture with nothing but radiance.
     pub film: Option<Film>,
     /// The materials' names, in the order of their numbers.
@@ -58,9 +58,9 @@ impl Provenance {
             attributes.insert(format!("caustica.{key}"), text);
         }
         let mut put = |name: &str, value: String| attributes.insert(format!("caustica.{name}"), value);
-        if let Some(digest) = self.digest {
+        if let Some(digest) = &self.digest {
             put("scene_file", self.scene_file.clone());
-            put("scene_digest", format!("{digest:016x}"));
+            put("scene_digest", digest.clone());
         }
         if let Some(asked) = &self.asked {
             put("asked", serde_json::json!(asked).to_string());
@@ -99,7 +99,6 @@ impl Provenance {
             let all: Option<Vec<u32>> = text.split(between).map(|number| number.parse().ok()).collect();
             all.ok_or_else(|| wrong(name, "no whole numbers"))
         };
-        let digest = u64::from_str_radix(need("scene_digest")?, 16);
         let [width, height] = numbers("size", need("size")?, 'x')?[..] else {
             return Err(wrong("size", "not two numbers"));
         };
@@ -119,7 +118,7 @@ impl Provenance {
             scene: need("scene")?.clone(),
             scene_file: need("scene_file")?.clone(),
             scene_text: need("scene_text")?.clone(),
-            digest: Some(digest.map_err(|e| wrong("scene_digest", &e.to_string()))?),
+            digest: Some(need("scene_digest")?.clone()),
             film: Some(Film {
                 width,
                 height,

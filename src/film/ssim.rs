@@ -7,8 +7,8 @@
 
 use super::metrics::{MetricsError, check_comparable};
 use super::plane::{Plane, gaussian, normalized};
-use super::tonemap::srgb_from_linear;
 use super::{Picture, Region};
+use crate::srgb::srgb_from_linear;
 
 /// Pixels from a window's middle to its edge.
 pub const WINDOW_RADIUS: u32 = 5;

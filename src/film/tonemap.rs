@@ -5,6 +5,7 @@ use std::sync::LazyLock;
 use glam::{DMat3, DVec3};
 
 use crate::scene::ToneMap;
+use crate::srgb::srgb_from_linear;
 
 /// How radiance is developed into a picture for a display.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -47,16 +48,6 @@ impl Development {
     pub fn words(&self, radiance: [f32; 3]) -> [u16; 3] {
         self.display(radiance).map(|value| (65535.0 * value).round() as u16)
     }
-}
-
-/// The sRGB transfer curve (IEC 61966-2-1) for values in [0, 1].
-pub fn srgb_from_linear(linear: f64) -> f64 {
-    if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
-}
-
-/// The inverse of [`srgb_from_linear`], for values in [0, 1].
-pub fn linear_from_srgb(coded: f64) -> f64 {
-    if coded <= 0.040_45 { coded / 12.92 } else { ((coded + 0.055) / 1.055).powf(2.4) }
 }
 
 /// Exposures that AgX's curve spans, in stops about a radiance of one.

@@ -1,14 +1,20 @@
-//! Film and statistics as bytes: fields in the order of their structs, numbers with the least byte first. In f32 these are the
+//! What engines keep of pixels and visible points as bytes: fields in the order of their structs, numbers with the least byte first. In f32 these are the
 //! bytes of the device's buffers.
 
+use super::aov_trace::AovPixel;
 use super::real::{Real, Vec3};
 use super::records::{FilmPixel, Statistics};
+use super::resolve_parts::PartsPixel;
 
 const REAL: usize = size_of::<Real>();
 /// Bytes of a pixel.
 pub const FILM_BYTES: usize = 12 * REAL + 4 * 4;
 /// Bytes of a visible point's statistics.
 pub const STATISTICS_BYTES: usize = 2 * REAL + 2 * 4;
+/// Bytes of what a pixel shows beside radiance.
+pub const AOV_BYTES: usize = 19 * REAL + 5 * 4;
+/// Bytes of a pixel's photons by their way.
+pub const PARTS_BYTES: usize = 7 * REAL + 4;
 
 /// The bytes of a film.
 pub fn film_bytes(film: &[FilmPixel]) -> Vec<u8> {
@@ -67,6 +73,68 @@ pub fn statistics_of(bytes: &[u8]) -> Vec<Statistics> {
         }
     };
     bytes.chunks_exact(STATISTICS_BYTES).map(point).collect()
+}
+
+/// The bytes of what pixels show beside radiance.
+pub fn aov_bytes(aovs: &[AovPixel]) -> Vec<u8> {
+    let mut out = Writer(Vec::with_capacity(aovs.len() * AOV_BYTES));
+    for a in aovs {
+        out.vector(a.albedo);
+        out.real(a.depth);
+        out.vector(a.normal);
+        out.real(a.hits);
+        out.vector(a.position);
+        out.real(a.points);
+        out.vector(a.emission);
+        out.real(a.radius);
+        out.vector(a.direct);
+        [a.reference, a.material, a.state, 0, 0].into_iter().for_each(|x| out.word(x));
+    }
+    out.0
+}
+
+/// What pixels of these bytes show beside radiance.
+pub fn aovs_of(bytes: &[u8]) -> Vec<AovPixel> {
+    let pixel = |bytes| {
+        let mut from = Reader(bytes);
+        AovPixel {
+            albedo: from.vector(),
+            depth: from.real(),
+            normal: from.vector(),
+            hits: from.real(),
+            position: from.vector(),
+            points: from.real(),
+            emission: from.vector(),
+            radius: from.real(),
+            direct: from.vector(),
+            reference: from.word(),
+            material: from.word(),
+            state: from.word(),
+            pad: [0; 2],
+        }
+    };
+    bytes.chunks_exact(AOV_BYTES).map(pixel).collect()
+}
+
+/// The bytes of pixels' photons by their way.
+pub fn parts_bytes(parts: &[PartsPixel]) -> Vec<u8> {
+    let mut out = Writer(Vec::with_capacity(parts.len() * PARTS_BYTES));
+    for p in parts {
+        out.vector(p.caustic);
+        out.real(p.passes);
+        out.vector(p.indirect);
+        out.word(0);
+    }
+    out.0
+}
+
+/// Pixels' photons by their way, of these bytes.
+pub fn parts_of(bytes: &[u8]) -> Vec<PartsPixel> {
+    let pixel = |bytes| {
+        let mut from = Reader(bytes);
+        PartsPixel { caustic: from.vector(), passes: from.real(), indirect: from.vector(), pad: 0 }
+    };
+    bytes.chunks_exact(PARTS_BYTES).map(pixel).collect()
 }
 
 struct Writer(Vec<u8>);
@@ -140,5 +208,36 @@ mod tests {
         assert_eq!(statistics_bytes(&[point; 3]).len(), 3 * STATISTICS_BYTES);
         assert_eq!(statistics_of(&statistics_bytes(&[point; 3])), [point; 3]);
         assert_ne!(statistics_bytes(&[Statistics { count_high: 0, ..point }]), statistics_bytes(&[point]));
+    }
+
+    #[test]
+    fn layers_are_the_fields_in_order() {
+        let x = |k: u8| Real::from(k) + 0.1;
+        let vector = |k: u8| Vec3::new(x(k), x(k + 1), x(k + 2));
+        let aov = AovPixel {
+            albedo: vector(0),
+            depth: x(3),
+            normal: vector(4),
+            hits: x(7),
+            position: vector(8),
+            points: x(11),
+            emission: vector(12),
+            radius: x(15),
+            direct: vector(16),
+            reference: 20,
+            material: u32::MAX,
+            state: 22,
+            pad: [0; 2],
+        };
+        let parts = PartsPixel { caustic: vector(1), passes: x(4), indirect: vector(5), pad: 0 };
+        assert_eq!(aov_bytes(&[aov; 2]).len(), 2 * AOV_BYTES);
+        assert_eq!(aovs_of(&aov_bytes(&[aov; 2])), [aov; 2]);
+        assert_eq!(parts_bytes(&[parts; 2]).len(), 2 * PARTS_BYTES);
+        assert_eq!(parts_of(&parts_bytes(&[parts; 2])), [parts; 2]);
+        // in f32 the structs have no gaps, so that these are a device's bytes
+        if REAL == 4 {
+            assert_eq!((size_of::<AovPixel>(), size_of::<PartsPixel>()), (AOV_BYTES, PARTS_BYTES));
+            assert_eq!(aov_bytes(&[aov])[4 * 19..4 * 20], 20u32.to_le_bytes());
+        }
     }
 }

@@ -3,13 +3,14 @@
 use super::real::{Bits, Real, ToReal, Vec2};
 use super::tables::*;
 use crate::scene::{self, Filter, ImageData, Texels, TextureKind, Wrap};
+use crate::srgb::linear_from_srgb;
 use bytemuck::Zeroable;
 use glam::DVec3;
 
 /// Fills `textures` and `texels`; an environment's picture becomes one more texture behind the scene's own.
 pub fn pack_textures(scene: &scene::Scene, out: &mut Scene) {
     if scene.images.iter().any(|i| matches!(i.texels, Texels::Rgba8 { srgb: true, .. })) {
-        out.texels.extend((0..256).map(|i| srgb_to_linear(i as f64 / 255.0).to_bits()));
+        out.texels.extend((0..256).map(|i| (linear_from_srgb(i as f64 / 255.0) as Real).to_bits()));
     }
     let images: Vec<Texture> = scene.images.iter().map(|image| pack_image(image, &mut out.texels)).collect();
     for texture in &scene.textures {
@@ -66,9 +67,4 @@ fn pack_image(image: &ImageData, texels: &mut Vec<Bits>) -> Texture {
         }
     };
     Texture { first, width: image.width, height: image.height, format, ..Texture::zeroed() }
-}
-
-/// IEC 61966-2-1.
-fn srgb_to_linear(x: f64) -> Real {
-    (if x <= 0.04045 { x / 12.92 } else { ((x + 0.055) / 1.055).powf(2.4) }) as Real
 }

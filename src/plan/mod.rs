@@ -169,6 +169,10 @@ impl Plan {
             let text = "what is to be gone on from is of another picture size, radius rule or precision";
             return Err(EngineError::Unsupported(text.into()));
         }
+        if state.passes > 0 && self.lacks_layers(&state.layers) {
+            let text = "what is to be gone on from lacks the layers that are asked for";
+            return Err(EngineError::Unsupported(text.into()));
+        }
         (self.first_pass, self.taken_over) = (state.first_pass, state.passes);
         Ok(())
     }

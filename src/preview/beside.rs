@@ -7,8 +7,8 @@ use super::frame::Frame;
 use super::view::{Scale, Shown, View, developed, show};
 use super::worker::Worker;
 use crate::device::Wanted;
-use crate::film::tonemap::srgb_from_linear;
 use crate::film::{Coding, Development, FileError, Picture, read_any};
+use crate::srgb::srgb_from_linear;
 
 /// A picture to hold another against.
 pub struct Beside {

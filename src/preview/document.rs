@@ -11,7 +11,7 @@ use toml_edit::{Array, DocumentMut, InlineTable, Item, Table, TableLike, Value, 
 
 use crate::film::FileError;
 use crate::film::file::write_whole;
-use crate::scene::{Camera, Film, SceneErrors, parse};
+use crate::scene::{Allowance, Camera, Film, SceneErrors, parse_within};
 use crate::settings::RenderSettings;
 
 /// What a window can change of a scene.
@@ -50,7 +50,8 @@ pub enum SaveError {
 }
 
 /// Writes what differs between `before` and `after` into a scene file, as it lies on the disk now; nothing else in it changes.
-pub fn save(file: &Path, before: &Edits, after: &Edits) -> Result<(), SaveError> {
+/// That the result is a scene is found out with what may be read.
+pub fn save(file: &Path, allowance: &Allowance, before: &Edits, after: &Edits) -> Result<(), SaveError> {
     let text = std::fs::read_to_string(file).map_err(|source| FileError::Io {
         file: file.to_owned(),
         verb: "read",
@@ -58,7 +59,7 @@ pub fn save(file: &Path, before: &Edits, after: &Edits) -> Result<(), SaveError>
     })?;
     let edited =
         edited(&text, before, after).map_err(|what| SaveError::Toml { file: file.to_owned(), what })?;
-    parse(file, edited.as_bytes())
+    parse_within(file, edited.as_bytes(), allowance)
         .map_err(|errors| SaveError::Scene { file: file.to_owned(), errors: Box::new(errors) })?;
     Ok(write_whole(file, edited.as_bytes())?)
 }
@@ -223,7 +224,7 @@ photons = 1000 # few
 ";
 
     fn of(text: &str) -> Edits {
-        let loaded = parse("scene.toml".as_ref(), text.as_bytes()).unwrap();
+        let loaded = crate::scene::parse("scene.toml".as_ref(), text.as_bytes()).unwrap();
         Edits { camera: loaded.scene.camera, film: loaded.scene.film, settings: loaded.settings }
     }
 
@@ -303,14 +304,14 @@ photons = 1000 # few
             [("version = ", "not TOML"), (&TEXT.replace("0.5", "1.5"), "would not be a scene")]
         {
             std::fs::write(&file, text).unwrap();
-            let error = save(&file, &before, &after).unwrap_err().to_string();
+            let error = save(&file, &Allowance::default(), &before, &after).unwrap_err().to_string();
             assert!(error.contains(word), "{error}");
             assert_eq!(std::fs::read_to_string(&file).unwrap(), text);
         }
         std::fs::write(&file, TEXT).unwrap();
         let mut watch = Watch::new([file.clone(), folder.join("gone.obj")]);
         assert!(!watch.changed());
-        save(&file, &before, &after).unwrap();
+        save(&file, &Allowance::default(), &before, &after).unwrap();
         assert!(watch.changed() && !watch.changed(), "once");
         std::fs::write(folder.join("gone.obj"), "v 0 0 0").unwrap();
         assert!(watch.changed(), "a file that was not there");

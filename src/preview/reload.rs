@@ -6,7 +6,7 @@ use std::thread;
 use std::time::Duration;
 
 use super::document::Watch;
-use crate::scene::{self, Loaded, SceneErrors};
+use crate::scene::{Allowance, Loaded, SceneErrors, load_within};
 
 /// Time between looks.
 const EVERY: Duration = Duration::from_millis(250);
@@ -24,10 +24,11 @@ pub struct Reloader {
 }
 
 impl Reloader {
-    /// Looks at `file` and at the `files` that it names.
+    /// Looks at `file` and at the `files` that it names; reads no more than is allowed.
     pub fn start(
         file: PathBuf,
         files: Vec<PathBuf>,
+        allowance: Allowance,
         adjust: Adjust,
         wake: impl Fn() + Send + 'static,
     ) -> Self {
@@ -40,7 +41,7 @@ impl Reloader {
                 if !watch.changed() {
                     continue;
                 }
-                let loaded = scene::load(&file).map(|mut loaded| {
+                let loaded = load_within(&file, &allowance).map(|mut loaded| {
                     adjust(&mut loaded);
                     loaded
                 });

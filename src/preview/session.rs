@@ -12,7 +12,8 @@ use super::view::View;
 use super::worker::Worker;
 use crate::device::{self, Wanted};
 use crate::film::{self, Development, ErrorMap, Provenance};
-use crate::scene::{Aov, Film, Loaded, Scene, SceneErrors, ToneMap};
+use crate::identity::Identity;
+use crate::scene::{Allowance, Aov, Film, Loaded, Scene, SceneErrors, ToneMap};
 use crate::settings::{Direct, Radius, RadiusRule};
 
 /// What a key or a hand asks for.
@@ -64,7 +65,9 @@ pub struct Start {
     pub file: PathBuf,
     /// What it holds, with the command line's options in force.
     pub loaded: Loaded,
-    /// How to put them in force again.
+    /// What may be read when the scene is read anew.
+    pub allowance: Allowance,
+    /// How to put the options in force again.
     pub adjust: Adjust,
     /// Picture files to write.
     pub outputs: Vec<PathBuf>,
@@ -75,6 +78,7 @@ pub struct Start {
 /// A scene under the hand.
 pub struct Session {
     file: PathBuf,
+    allowance: Allowance,
     /// Where pictures go.
     pub outputs: Vec<PathBuf>,
     scene: Arc<Scene>,
@@ -105,8 +109,9 @@ pub struct Session {
 impl Session {
     /// Begins to render. `wake` is called on some thread when there is something new.
     pub fn start(start: Start, wake: impl Fn() + Send + Sync + Clone + 'static) -> Self {
-        let Start { file, loaded, adjust, outputs, device } = start;
-        let reloader = Reloader::start(file.clone(), loaded.files.clone(), adjust, wake.clone());
+        let Start { file, loaded, allowance, adjust, outputs, device } = start;
+        let reloader =
+            Reloader::start(file.clone(), loaded.files.clone(), allowance.clone(), adjust, wake.clone());
         let now = edits(&loaded);
         let scene = Arc::new(loaded.scene);
         let view = View::default();
@@ -115,6 +120,7 @@ impl Session {
         let number = worker.scene(scene.clone(), sent.clone());
         Self {
             file,
+            allowance,
             outputs,
             scene,
             saved: now.clone(),
@@ -325,7 +331,7 @@ impl Session {
             scene: scene.name.clone(),
             scene_file: self.file.display().to_string(),
             scene_text: edited(&text, &self.saved, &self.now).unwrap_or(text),
-            digest: Some(scene.digest()),
+            digest: Some(Identity::of(scene).digest()),
             film: Some(self.sent.film),
             materials: scene.materials.iter().map(|material| material.name.clone()).collect(),
             asked: Some(self.sent.settings.clone()),
@@ -349,7 +355,8 @@ impl Session {
     }
 
     fn save_scene(&mut self) -> Result<String, String> {
-        save(&self.file, &self.saved, &self.now).map_err(|error| format!("not saved: {error}"))?;
+        save(&self.file, &self.allowance, &self.saved, &self.now)
+            .map_err(|error| format!("not saved: {error}"))?;
         self.saved = self.now.clone();
         Ok(format!("saved {}", self.file.display()))
     }

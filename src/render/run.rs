@@ -115,6 +115,7 @@ impl<'a> Run<'a> {
         let begun = Instant::now();
         let mut state = engine.save()?;
         let cost = begun.elapsed();
+        log::debug!("a copy after pass {}: {:.3} s", self.progress.passes, cost.as_secs_f64());
         if save && let Some(saving) = &mut self.saving {
             state = (saving.save)(state, &self.progress);
             self.saved = Some(self.progress.passes);

@@ -80,7 +80,8 @@ impl Aov {
 }
 
 /// A set of [`Aov`]s.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(into = "String", try_from = "String")]
 pub struct Aovs(u32);
 
 impl Aovs {
@@ -141,6 +142,20 @@ impl std::fmt::Display for Aovs {
     }
 }
 
+impl From<Aovs> for String {
+    fn from(aovs: Aovs) -> Self {
+        aovs.to_string()
+    }
+}
+
+impl TryFrom<String> for Aovs {
+    type Error = String;
+
+    fn try_from(text: String) -> Result<Self, String> {
+        if text.is_empty() { Ok(Self::default()) } else { Self::parse(&text) }
+    }
+}
+
 fn words() -> [&'static str; 13] {
     Aov::ALL.map(Aov::word)
 }
@@ -165,6 +180,8 @@ mod tests {
         for bits in 1..1 << Aov::ALL.len() {
             assert_eq!(Aovs::parse(&Aovs(bits).to_string()), Ok(Aovs(bits)));
         }
+        let none = serde_json::json!(Aovs::default());
+        assert_eq!(serde_json::from_value::<Aovs>(none).unwrap(), Aovs::default());
         assert_eq!(Aovs::parse("all").unwrap().iter().count(), Aov::ALL.len());
         assert_eq!(Aovs::parse(" depth, albedo").unwrap().to_string(), "albedo,depth");
     }

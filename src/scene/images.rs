@@ -12,6 +12,7 @@ use image::{DynamicImage, ImageDecoder, ImageReader, Limits};
 use super::allowance::{Allowance, Refusal, within};
 use super::appearance::{ImageData, Texels};
 use super::file::ColorSpace;
+use crate::srgb::linear_from_srgb;
 
 /// Why an image cannot be used; `key` is the key in the scene file to blame.
 pub(crate) struct ImageFault {
@@ -216,9 +217,4 @@ fn is_transparent(image: &DynamicImage) -> bool {
 fn is_linear_file(path: &Path) -> bool {
     let extension = path.extension().map(|extension| extension.to_ascii_lowercase());
     extension.is_some_and(|extension| extension == "exr" || extension == "hdr")
-}
-
-/// IEC 61966-2-1.
-fn linear_from_srgb(value: f64) -> f64 {
-    if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
 }

@@ -9,7 +9,6 @@ mod allowance;
 mod aov;
 mod appearance;
 mod check;
-mod digest;
 mod encoding;
 pub mod file;
 mod findings;

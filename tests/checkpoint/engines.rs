@@ -3,9 +3,10 @@
 use caustica::checkpoint::{read, write};
 use caustica::device::Wanted;
 use caustica::engine::{Engine, EngineError, State};
+use caustica::scene::{Aovs, Film};
 use caustica::settings::{Direct, Method, RadiusRule, RenderSettings};
 
-use super::{checkpoint, folder, open};
+use super::{checkpoint, folder, open, open_on};
 
 const SIZE: (u32, u32) = (24, 16);
 
@@ -122,18 +123,20 @@ fn nothing_may_be_left_behind() {
     assert!(same > 24 * 16 * 9 / 10, "all but what one photon lights: {same}");
 }
 
-/// More visible points than a chunk holds, so that buffers of more than one go into the file and out of it.
+/// More visible points than a chunk holds, so that buffers of more than one go into the file and out of it, those of layers too.
 #[test]
 fn chunks_are_put_together() {
-    let size = (513, 512);
+    let film = |film: &mut Film| {
+        (film.width, film.height, film.aovs) = (513, 512, Aovs::parse("all").unwrap());
+    };
     let change: Change = |s| {
         (s.method, s.radius_rule, s.photons) = (Method::Ppm, RadiusRule::Local, 3000);
     };
-    let mut cpu = open(&Wanted::Cpu, size, change);
+    let mut cpu = open_on(&Wanted::Cpu, film, change);
     passes(cpu.engine.as_mut(), 1);
     let half_way = cpu.engine.save().unwrap();
     passes(cpu.engine.as_mut(), 1);
-    let mut software = open(&Wanted::Software, size, change);
+    let mut software = open_on(&Wanted::Software, film, change);
     software.engine.restore(&half_way).unwrap();
     assert!(software.engine.save().unwrap() == half_way, "in and out");
     passes(software.engine.as_mut(), 1);

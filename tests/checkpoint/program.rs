@@ -1,24 +1,11 @@
 //! Checkpoints through the program: what is refused and why, what is told, and merging.
 
 use std::fs;
-use std::path::Path;
 
 use caustica::checkpoint::{read, write};
 use caustica::film::file::read_exr;
 
-use super::{MESH, SCENE, caustica, folder, good, text};
-
-/// Runs a command that must fail with this code and these words.
-fn fails(folder: &Path, line: &str, code: i32, words: &[&str]) {
-    let output = caustica(folder, line);
-    // long lines are broken where they are printed
-    let error = text(&output.stderr).replace('│', " ").split_whitespace().collect::<Vec<_>>().join(" ");
-    assert_eq!(output.status.code(), Some(code), "{line}: {error}");
-    assert_eq!(text(&output.stdout), "", "{line}");
-    for word in words {
-        assert!(error.contains(word), "{line}: {word}: {error}");
-    }
-}
+use super::{MESH, SCENE, fails, folder, good};
 
 #[test]
 fn other_renders_are_refused_with_the_reason() {
@@ -41,6 +28,8 @@ fn other_renders_are_refused_with_the_reason() {
         &["`radius`: expected {\"units\":0.25}, found {", "`alpha`: expected 0.5"],
     );
     refused("--size 20x16", &["size: expected 20 x 16, found 24 x 16"]);
+    refused("--crop 1,2,9,10", &["the crop: expected 1,2,9,10, found the whole picture"]);
+    refused("--aov depth", &["the layers: expected depth, found none"]);
     refused("--device cpu-f64", &["numbers: expected 64 bits, found 32"]);
     refused("--passes 2..9", &["the first pass: expected pass 2, found pass 0"]);
     // the scene: a shape, then a mesh and its file alone
@@ -50,7 +39,7 @@ fn other_renders_are_refused_with_the_reason() {
         "",
         &["the scene (", "shapes", "expected `center = [0.0, 0.8, 0.0]`, found `center = [0.0, 0.7, 0.0]`"],
     );
-    fs::write(folder.join("ball.toml"), SCENE).unwrap();
+    fs::write(folder.join("ball.toml"), SCENE.as_str()).unwrap();
     fs::write(folder.join("wall.obj"), MESH.replace("0 2 -1.5", "0 1.9 -1.5")).unwrap();
     refused("", &["the scene (", "shapes", "not a mesh, picture or profile that it names"]);
     fs::write(folder.join("wall.obj"), MESH).unwrap();

@@ -19,7 +19,7 @@ use caustica::kernels::bytes::FILM_BYTES;
 use caustica::memory::Memory;
 use caustica::relay::Relay;
 use caustica::render::{Broken, Kept, Outcome, Progress, Saving, Stop, resume};
-use caustica::scene::{self, Loaded};
+use caustica::scene::{self, Aovs, Loaded};
 use caustica::settings::{Method, Radius, RadiusRule, RenderSettings};
 use engine::{FAULTS, Fault, Step, candidate, script, successor};
 
@@ -29,6 +29,7 @@ const PASSES: u32 = 5;
 fn loaded(change: fn(&mut RenderSettings)) -> Loaded {
     let mut loaded = scene::load("scenes/cornell.toml".as_ref()).unwrap();
     (loaded.scene.film.width, loaded.scene.film.height) = (12, 8);
+    loaded.scene.film.aovs = Aovs::parse("all").unwrap();
     loaded.settings.photons = 400;
     loaded.settings.radius = Radius::Pixels(2.0);
     change(&mut loaded.settings);
@@ -92,6 +93,9 @@ fn difference(a: &Outcome, b: &Outcome) -> Option<&'static str> {
     }
     if a.errors != b.errors {
         return Some("what it says of its error");
+    }
+    if a.layers != b.layers {
+        return Some("the layers");
     }
     if a.rejections != b.rejections {
         return Some("what was left out");

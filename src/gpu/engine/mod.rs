@@ -156,7 +156,7 @@ impl Engine for GpuEngine {
     }
 
     fn layers(&mut self) -> Result<Vec<Channel>, EngineError> {
-        self.found_layers()
+        self.with_found(|plan, found| plan.layers(found))
     }
 
     fn gathered(&mut self) -> Result<u64, EngineError> {

@@ -1,11 +1,11 @@
 //! What an engine holds, read back, handed over and taken over.
 
 use super::GpuEngine;
-use crate::engine::{EngineError, State};
-use crate::film::exr_file::Channel;
-use crate::kernels::bytes::{FILM_BYTES, STATISTICS_BYTES};
+use crate::engine::{EngineError, LayerState, State};
+use crate::kernels::bytes::{AOV_BYTES, FILM_BYTES, PARTS_BYTES, STATISTICS_BYTES};
 use crate::kernels::records::{FilmPixel, Gathered};
 use crate::layers::Found;
+use crate::plan::Plan;
 
 impl GpuEngine {
     /// The content of a buffer of the plan (a chunk's, if it is one of those), for tests.
@@ -23,6 +23,7 @@ impl GpuEngine {
             bits: 8 * size_of::<f32>() as u32,
             film: self.read_chunks("film")?,
             statistics: self.read_chunks("statistics")?,
+            layers: self.with_found(|plan, found| plan.layer_state(found))?,
         })
     }
 
@@ -30,7 +31,17 @@ impl GpuEngine {
     pub(super) fn take_over(&mut self, state: &State) -> Result<(), EngineError> {
         self.plan.take_over(state)?;
         self.passes_done = state.passes;
-        for (name, bytes) in [("film", &state.film), ("statistics", &state.statistics)] {
+        let LayerState { aovs, parts, counts, .. } = &state.layers;
+        let gathered: Vec<_> =
+            counts.iter().map(|count| Gathered { count: *count, ..bytemuck::Zeroable::zeroed() }).collect();
+        let gathered = bytemuck::cast_slice(&gathered);
+        for (name, bytes) in [
+            ("film", &state.film[..]),
+            ("statistics", &state.statistics),
+            ("aovs", aovs),
+            ("parts", parts),
+            ("gathered", gathered),
+        ] {
             for (number, chunk) in (0..).zip(&self.chunks) {
                 if let (Some(buffer), Some(part)) = (chunk.get(name), bytes.get(self.place(name, number))) {
                     self.gpu.write(buffer, part);
@@ -40,19 +51,20 @@ impl GpuEngine {
         self.gpu.check()
     }
 
-    /// Channels beside radiance.
-    pub(super) fn found_layers(&self) -> Result<Vec<Channel>, EngineError> {
+    /// What `make` makes of what is found beside radiance, which is read back; its default where nothing is asked for.
+    pub(super) fn with_found<T: Default>(&self, make: impl Fn(&Plan, &Found) -> T) -> Result<T, EngineError> {
         if self.plan.aovs.is_empty() {
-            return Ok(Vec::new());
+            return Ok(T::default());
         }
-        let (samples, passes) = (self.plan.eye_samples, self.passes_done);
-        Ok(self.plan.layers(&Found {
+        let samples = self.plan.eye_samples;
+        let found = Found {
             aovs: &self.chunked("aovs", samples)?,
             parts: &self.chunked("parts", samples)?,
             gathered: &self.gathered_points()?,
             statistics: &self.chunked("statistics", 1)?,
-            passes,
-        }))
+            passes: self.passes_done,
+        };
+        Ok(make(&self.plan, &found))
     }
 
     /// What the visible points gathered in the last pass.
@@ -92,12 +104,15 @@ impl GpuEngine {
         Ok(bytes)
     }
 
-    /// Where a chunk's `film` or `statistics` stand among those of all.
+    /// Where a chunk's part of a buffer stands among those of all.
     fn place(&self, name: &str, chunk: u32) -> std::ops::Range<usize> {
         let (first, points) = self.plan.chunk(chunk);
         let samples = self.plan.eye_samples;
         let (first, end, size) = match name {
             "film" => (first / samples, (first + points) / samples, FILM_BYTES),
+            "aovs" => (first / samples, (first + points) / samples, AOV_BYTES),
+            "parts" => (first / samples, (first + points) / samples, PARTS_BYTES),
+            "gathered" => (first, first + points, size_of::<Gathered>()),
             _ => (first, first + points, STATISTICS_BYTES),
         };
         first as usize * size..end as usize * size
