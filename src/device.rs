@@ -108,6 +108,8 @@ pub struct Opened {
     pub why: String,
     /// The settings in force: as asked for, with a radius in the place of "auto".
     pub settings: RenderSettings,
+    /// What was done so that it fits into memory, where anything was.
+    pub cut: Option<String>,
     /// Why that radius, where the settings left it open and it counts.
     pub radius: Option<Automatic>,
     /// What tells its numbers in those of the world.
@@ -235,41 +237,49 @@ fn start(
     check_points(device, scene, settings)?;
     let film = &scene.film;
     let packed = pack(scene, film.width, film.height)?;
-    let opened = |engine, settings, radius, space| Opened {
+    let opened = |engine, settings, radius, space, cut| Opened {
         engine,
         name: device.name.clone(),
         kind: device.kind,
         why,
         settings,
+        cut,
         radius,
         space,
     };
     if device.kind == DeviceKind::CpuDouble {
         let (wide, plan) = in_double(scene, &packed, settings)?;
         let tables = plan::scene_bytes(&packed.scene) + double::plan::scene_bytes(&wide.scene);
-        let plan = plan.within(tables, double::plan::Place::Program, memory)?;
-        tell_cut(plan.tiled, plan.chunks(), plan.batches());
+        let place = double::plan::Place::Program { saves: memory.saves };
+        let plan = plan.within(tables, place, memory)?;
+        let cut = cut(plan.tiled, plan.chunks(), plan.settings.batch, settings.batch);
         let (settings, automatic, space) = (plan.settings.clone(), plan.told_radius(), plan.space());
-        return Ok(opened(Box::new(double::cpu::CpuEngine::new(wide, plan)), settings, automatic, space));
+        return Ok(opened(
+            Box::new(double::cpu::CpuEngine::new(wide, plan)),
+            settings,
+            automatic,
+            space,
+            cut,
+        ));
     }
     let plan = Plan::new(&packed, settings).on(film).within(
         plan::scene_bytes(&packed.scene),
-        place(device.kind),
+        place(device.kind, memory),
         memory,
     )?;
-    tell_cut(plan.tiled, plan.chunks(), plan.batches());
+    let cut = cut(plan.tiled, plan.chunks(), plan.settings.batch, settings.batch);
     let (settings, automatic, space) = (plan.settings.clone(), plan.told_radius(), plan.space());
     let engine: Box<dyn Engine> = match device.kind {
         DeviceKind::Cpu => Box::new(CpuEngine::new(packed, plan)),
         _ => Box::new(on_gpu(&AdapterChoice::Named(device.name.clone()), &packed, plan)?),
     };
-    Ok(opened(engine, settings, automatic, space))
+    Ok(opened(engine, settings, automatic, space, cut))
 }
 
 /// Where a device of this kind has its buffers.
-pub fn place(kind: DeviceKind) -> Place {
+fn place(kind: DeviceKind, memory: &Memory) -> Place {
     match kind {
-        DeviceKind::Cpu | DeviceKind::CpuDouble => Place::Program,
+        DeviceKind::Cpu | DeviceKind::CpuDouble => Place::Program { saves: memory.saves },
         DeviceKind::Software => Place::Device { in_main_memory: true },
         DeviceKind::Gpu => Place::Device { in_main_memory: false },
     }
@@ -287,10 +297,17 @@ fn on_gpu(choice: &AdapterChoice, packed: &Packed, plan: Plan) -> Result<GpuEngi
     }
 }
 
-fn tell_cut(tiled: bool, tiles: u32, batches: u32) {
-    if tiled {
-        log::info!("to save memory: in {tiles} tiles, photons in {batches} batches");
+/// What was done so that a plan fits, where anything was.
+fn cut(tiled: bool, tiles: u32, batch: Option<u32>, asked: Option<u32>) -> Option<String> {
+    let smaller = batch.filter(|_| batch != asked);
+    let batches = smaller.map_or(String::new(), |photons| {
+        format!(", photons in batches of {photons}, which rounds their sums otherwise")
+    });
+    let cut = tiled.then(|| format!("rendered in {tiles} tiles to save memory{batches}"));
+    if let Some(cut) = &cut {
+        log::info!("{cut}");
     }
+    cut
 }
 
 /// What the engine in f64 takes; `single` is the scene flattened in f32.

@@ -6,6 +6,8 @@ pub struct Memory {
     /// At most so many bytes, on the device and beside it together. None: on the processor what the system has left, else what the
     /// device gives.
     pub budget: Option<u64>,
+    /// Whether the film is copied on the way, for checkpoints; that of a device that may be lost is anyway.
+    pub saves: bool,
     /// Photons are not traced in smaller batches than the settings say, since their sums would be rounded otherwise. Without a
     /// budget they never are.
     pub same_batches: bool,

@@ -157,10 +157,14 @@ fn budgets_are_kept() {
     let packed = pack(&loaded.scene, 256, 192).unwrap();
     let plan = Plan::new(&packed, &loaded.settings).on(&loaded.scene.film);
     let scene = scene_bytes(&packed.scene);
-    for place in [Place::Program, ON_DEVICE] {
+    for place in [Place::Program { saves: false }, Place::Program { saves: true }, ON_DEVICE] {
         let bytes = |plan: &Plan| total(&plan.memory(scene, place));
         let within = |budget, same_batches| {
-            plan.clone().within(scene, place, &Memory { budget: Some(budget), same_batches })
+            plan.clone().within(
+                scene,
+                place,
+                &Memory { budget: Some(budget), same_batches, ..Memory::default() },
+            )
         };
         let most = bytes(&plan);
         let whole = within(most, false).unwrap();
@@ -204,7 +208,7 @@ fn the_setting_to_change_is_named() {
         change(&mut loaded.settings);
         let packed = pack(&loaded.scene, width, height).unwrap();
         let plan = Plan::new(&packed, &loaded.settings).on(&loaded.scene.film);
-        let memory = Memory { budget: Some(1_000_000), same_batches: true };
+        let memory = Memory { budget: Some(1_000_000), same_batches: true, ..Memory::default() };
         plan.within(scene_bytes(&packed.scene), ON_DEVICE, &memory).unwrap_err().to_string()
     };
     assert!(refused(1920, 1080, "", |_| ()).contains("--crop"));

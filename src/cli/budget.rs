@@ -13,8 +13,8 @@ pub struct Budget {
 }
 
 impl Budget {
-    /// As the library takes it.
-    pub fn memory(&self) -> Memory {
-        Memory { budget: self.memory_budget, same_batches: false }
+    /// As the library takes it, for a render that is saved on the way or not.
+    pub fn memory(&self, saves: bool) -> Memory {
+        Memory { budget: self.memory_budget, saves, same_batches: false }
     }
 }

@@ -56,7 +56,7 @@ struct Need {
 impl Need {
     fn of(plan: &Plan, packed: &Packed, place: Place, budget: &Budget) -> Self {
         let scene = scene_bytes(&packed.scene);
-        let memory = budget.memory();
+        let memory = budget.memory(false);
         let given = Memory { budget: memory.budget.or(Some(u64::MAX)), ..memory };
         match plan.clone().within(scene, place, &given) {
             Ok(plan) => {
@@ -109,7 +109,7 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     let film = scene.film;
     let packed = pack(&scene, film.width, film.height).map_err(EngineError::from)?;
     let plan = Plan::new(&packed, &settings);
-    let memory = [("on a GPU", ON_GPU), ("on the CPU", Place::Program)]
+    let memory = [("on a GPU", ON_GPU), ("on the CPU", Place::Program { saves: false })]
         .map(|(name, place)| (name, Need::of(&plan, &packed, place, &arguments.budget)));
     if arguments.json {
         let mut figures = report(&packed, &plan).as_json();

@@ -147,7 +147,8 @@ fn run_on(arguments: Arguments, find: &Find) -> Result<Done, Failure> {
     let device = arguments.device.as_deref().or(like.as_ref().map(Like::device)).unwrap_or("auto");
     let json = arguments.voice.json;
     let candidates = find(&device::parse(device), &settings)?;
-    let mut succession = Succession::new(candidates, &scene, &settings, arguments.budget.memory(), json);
+    let mut succession =
+        Succession::new(candidates, &scene, &settings, arguments.budget.memory(files.keeps()), json);
     let opened = succession.first()?;
     let mut viewer = Viewer::connect(arguments.tev.as_deref(), &scene)?;
     let scene_text = std::fs::read_to_string(&file).unwrap_or_default();
@@ -266,6 +267,9 @@ pub fn begin(voice: &Voice, scene: &Scene, opened: &Opened) -> Result<Reporter, 
     if let Some(radius) = &opened.radius {
         reporter.note(&format!("start radius {radius}"));
     }
+    if let Some(cut) = &opened.cut {
+        reporter.note(cut);
+    }
     if voice.json {
         result(json!({
             "event": "start",
@@ -275,6 +279,7 @@ pub fn begin(voice: &Voice, scene: &Scene, opened: &Opened) -> Result<Reporter, 
             "width": scene.film.width,
             "height": scene.film.height,
             "settings": opened.settings,
+            "cut": opened.cut,
             "radius_why": opened.radius.map(|radius| radius.to_string()),
         }))?;
     }

@@ -13,6 +13,8 @@ use crate::settings::Method;
 
 /// Least visible points of a tile: with fewer a device has nothing to do between two steps.
 const LEAST_TILE: u32 = 1 << 14;
+/// Batches up to which smaller ones cost less than more tiles would.
+const MANY_BATCHES: u32 = 16;
 /// Bytes of each pixel that a channel of a picture file takes.
 const CHANNEL_BYTES: u64 = 8;
 /// Most that is read back from a device in one step.
@@ -28,7 +30,10 @@ const PHOTONS: &str = "lower --photons, or trace them in smaller batches by --ba
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
     /// In the program's own memory: the CPU engine.
-    Program,
+    Program {
+        /// Whether there is a copy of the film for checkpoints.
+        saves: bool,
+    },
     /// On a device with a driver, which keeps the scene and the film as well.
     Device {
         /// Whether that is main memory too.
@@ -54,7 +59,9 @@ impl Plan {
             if self.features.has("local") && !path { points * STATISTICS_BYTES as u64 } else { 0 };
         let film = pixels * FILM_BYTES as u64;
         let layers = whole("aovs") + whole("parts");
-        let device = place != Place::Program;
+        let device = matches!(place, Place::Device { .. });
+        // what a render goes on from is kept twice, unless it cannot be lost
+        let copies = if place == (Place::Program { saves: false }) { 1 } else { 2 };
         let records = if device {
             ["records", "sorted", "order", "counts", "starts", "block_sums"].map(bytes).iter().sum()
         } else if self.features.has("photons") && !path {
@@ -69,12 +76,11 @@ impl Plan {
         let on_its_way = if device { channels.max(FILM_BYTES as u64) } else { channels };
         let result = pixels * (12 + size_of::<PixelError>() as u64 + on_its_way);
         let part = |what, bytes, mend| Part { what, bytes, mend };
-        // what a render goes on from is kept twice
         let parts = [
             part("the scene", if device { 2 * scene } else { scene }, SCENE),
-            part("the film and a copy of it", 2 * film, PICTURE),
-            part("radii of visible points and a copy", 2 * statistics, SAMPLES),
-            part("layers and a copy", 2 * layers, LAYERS),
+            part("the film and a copy of it", copies * film, PICTURE),
+            part("radii of visible points and a copy", copies * statistics, SAMPLES),
+            part("layers and a copy", copies * layers, LAYERS),
             part("visible points", visible, if self.eye_samples > 1 { SAMPLES } else { PICTURE }),
             part("photons", records, PHOTONS),
             part("the finished picture", result, PICTURE),
@@ -96,22 +102,31 @@ impl Plan {
         if fits(&self) {
             return Ok(self);
         }
-        loop {
-            self = self.in_tiles(CHUNK_POINTS);
-            while !fits(&self) && self.chunk(0).1 > LEAST_TILE {
-                let half = self.chunk(0).1 / 2;
-                self = self.in_tiles(half);
+        let gathers = self.features.has("photons") && self.settings.method != Method::Path;
+        let (planned, whole) = (self.settings.batch, self.batch_photons);
+        // first no smaller batches at all, then some in large tiles, since each tile has the photons of smaller ones traced anew
+        let rounds: &[u32] =
+            if memory.cuts_batches() && gathers { &[1, MANY_BATCHES, u32::MAX] } else { &[1] };
+        for most in rounds {
+            let mut points = CHUNK_POINTS;
+            loop {
+                self.settings.batch = planned;
+                self = self.in_tiles(points).in_batches();
+                while !fits(&self) && self.capacity > SCAN_BLOCK && 2 * (whole / self.batch_photons) <= *most
+                {
+                    let half = (self.batch_photons / 2).max(1);
+                    self = self.with_batch(half);
+                }
+                if fits(&self) {
+                    return Ok(self);
+                }
+                points = self.chunk(0).1 / 2;
+                if points < LEAST_TILE / 2 {
+                    break;
+                }
             }
-            if fits(&self) {
-                return Ok(self);
-            }
-            let gathers = self.features.has("photons") && self.settings.method != Method::Path;
-            if !memory.cuts_batches() || !gathers || self.capacity <= SCAN_BLOCK || self.batch_photons < 2 {
-                return Err(OverBudget::new(&self.memory(scene, place), (limit, of)).into());
-            }
-            let half = self.batch_photons / 2;
-            self = self.with_batch(half);
         }
+        Err(OverBudget::new(&self.memory(scene, place), (limit, of)).into())
     }
 
     /// The same with the picture in tiles of about so many visible points, of which one at a time is on the device.

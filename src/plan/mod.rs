@@ -123,6 +123,11 @@ impl Plan {
     /// The same with batches of at most so many photons.
     pub fn with_batch(mut self, photons: u32) -> Self {
         self.settings.batch = Some(photons);
+        self.in_batches()
+    }
+
+    /// The same with the batches that its settings ask for.
+    fn in_batches(mut self) -> Self {
         (self.capacity, self.batch_photons) = batch(&self.settings, &self.probe);
         self.buckets = self.capacity;
         self
