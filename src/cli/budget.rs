@@ -3,6 +3,8 @@
 use caustica::memory::{self, Memory};
 use clap::Args;
 
+use super::checkpoint::Files;
+
 /// The option of commands that can do with less.
 #[derive(Args, Debug, Default)]
 pub struct Budget {
@@ -13,8 +15,14 @@ pub struct Budget {
 }
 
 impl Budget {
-    /// As the library takes it, for a render that is saved on the way or not.
-    pub fn memory(&self, saves: bool) -> Memory {
-        Memory { budget: self.memory_budget, saves, same_batches: false }
+    /// As the library takes it, for a render that is saved and gone on from or not. One that goes on has the batches that it was begun
+    /// with.
+    pub fn memory(&self, files: &Files) -> Memory {
+        Memory { budget: self.memory_budget, saves: files.keeps(), same_batches: files.resumed().is_some() }
+    }
+
+    /// The same for one that is neither.
+    pub fn alone(&self) -> Memory {
+        Memory { budget: self.memory_budget, ..Memory::default() }
     }
 }

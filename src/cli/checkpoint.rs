@@ -7,6 +7,7 @@ use caustica::checkpoint::{
 };
 use caustica::engine::State;
 use caustica::render::Progress;
+use caustica::settings::RenderSettings;
 use serde_json::json;
 
 use super::Failure;
@@ -59,6 +60,12 @@ impl Files {
             checkpoint.check_resumes(file, origin, bits, passes.first, passes.end)?;
         }
         Ok(())
+    }
+
+    /// The settings, with the batches of what is gone on from where none are asked for.
+    pub fn batched(&self, settings: RenderSettings) -> RenderSettings {
+        let batch = settings.batch.or(self.resumed().and_then(|from| from.origin.settings.batch));
+        RenderSettings { batch, ..settings }
     }
 
     /// Tells what is gone on from, if anything is.

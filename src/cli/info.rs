@@ -56,7 +56,7 @@ struct Need {
 impl Need {
     fn of(plan: &Plan, packed: &Packed, place: Place, budget: &Budget) -> Self {
         let scene = scene_bytes(&packed.scene);
-        let memory = budget.memory(false);
+        let memory = budget.alone();
         let given = Memory { budget: memory.budget.or(Some(u64::MAX)), ..memory };
         match plan.clone().within(scene, place, &given) {
             Ok(plan) => {

@@ -146,9 +146,10 @@ fn run_on(arguments: Arguments, find: &Find) -> Result<Done, Failure> {
     check_range(first_pass, &settings)?;
     let device = arguments.device.as_deref().or(like.as_ref().map(Like::device)).unwrap_or("auto");
     let json = arguments.voice.json;
+    let settings = files.batched(settings);
     let candidates = find(&device::parse(device), &settings)?;
-    let mut succession =
-        Succession::new(candidates, &scene, &settings, arguments.budget.memory(files.keeps()), json);
+    let memory = arguments.budget.memory(&files);
+    let mut succession = Succession::new(candidates, &scene, &settings, memory, json);
     let opened = succession.first()?;
     let mut viewer = Viewer::connect(arguments.tev.as_deref(), &scene)?;
     let scene_text = std::fs::read_to_string(&file).unwrap_or_default();

@@ -125,3 +125,21 @@ fn work_is_kept_unasked() {
     assert_ne!(kept, b"another's");
     fs::remove_dir_all(&folder).unwrap();
 }
+
+/// A render goes on with the batches that it was begun with.
+#[test]
+fn batches_stay() {
+    let folder = folder("batches");
+    let (batched, steps) = whole(&["--batch", "150"]);
+    assert!(batched != whole(&[]).0, "sums are rounded batch by batch");
+    let third = (0..steps.len()).filter(|i| steps[*i] == Step::Pass).nth(2).unwrap();
+    let faulty = script(Some((third, Fault::OutOfMemory)));
+    assert!(matches!(render(&folder, &["--batch", "150"], &[&faulty], false), Ok(Done::DeviceLost)));
+    let kept = folder.join("a.checkpoint");
+    let resumed = ["--resume", kept.to_str().unwrap(), "--memory-budget", "100MB"];
+    assert!(matches!(render(&folder, &resumed, &[], true), Ok(Done::Fully)));
+    assert!(pixels(&folder) == batched);
+    let other = [&resumed[..], &["--batch", "200"]].concat();
+    assert_eq!(render(&folder, &other, &[], true).unwrap_err().code(), 1);
+    fs::remove_dir_all(&folder).unwrap();
+}

@@ -71,7 +71,9 @@ impl Gpu {
 
     /// The first `bytes` bytes, whole words, of a buffer.
     pub fn read(&self, buffer: &wgpu::Buffer, bytes: u64) -> Result<Vec<u8>, EngineError> {
-        let mut out = Vec::with_capacity(bytes as usize);
+        let mut out = Vec::new();
+        out.try_reserve_exact(bytes as usize)
+            .map_err(|_| EngineError::OutOfMemory(format!("{bytes} bytes to read back into")))?;
         if bytes == 0 {
             return Ok(out);
         }

@@ -2,6 +2,7 @@
 
 use caustica::device::{Candidate, Candidates, Opened};
 use caustica::engine::{Engine, EngineError, PassReport, State};
+use caustica::film::exr_file::Channel;
 use caustica::film::{ErrorMap, Picture, Rejections};
 use caustica::gpu::GpuEngine;
 use caustica::memory::Memory;
@@ -58,6 +59,10 @@ impl Engine for Losing {
 
     fn results(&mut self) -> Result<(Picture, Rejections), EngineError> {
         self.ask().results()
+    }
+
+    fn layers(&mut self) -> Result<Vec<Channel>, EngineError> {
+        self.ask().layers()
     }
 
     fn save(&mut self) -> Result<State, EngineError> {
