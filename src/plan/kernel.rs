@@ -76,7 +76,7 @@ impl Kernel {
         }
     }
 
-    /// The buffers it binds beside the scene's (see [`Plan::buffers`]) and whether it writes them.
+    /// The buffers it binds beside the scene's (see [`Plan::buffers`](super::Plan::buffers)) and whether it writes them.
     pub fn buffers(self, features: &Features) -> Vec<(&'static str, bool)> {
         let mut list = match self {
             Self::EyeTrace => vec![("visible_points", true), ("counters", true)],
