@@ -7,15 +7,15 @@ fn grid_cell(position: vec3f, inv_cell: f32) -> vec3i {
 }
 
 fn grid_bucket(cell: vec3i, mask: u32) -> u32 {
-    var h = (u32(cell.x) * 73856093u) ^ (u32(cell.y) * 19349663u) ^ (u32(cell.z) * 83492791u);
+    var h = (u32(cell.y) * 19349663u) ^ (u32(cell.z) * 83492791u);
     h ^= h >> 16u;
     h *= 0x7feb352du;
     h ^= h >> 15u;
-    return h & mask;
+    return (h + u32(cell.x)) & mask;
 }
 
 fn grid_code(cell: vec3i, family: u32) -> u32 {
-    return (u32(cell.x) & 0x3ffu) | ((u32(cell.y) & 0x3ffu) << 10u) | ((u32(cell.z) & 0x3ffu) << 20u) | (family << 30u);
+    return (u32(cell.y) & 0x3ffu) | ((u32(cell.z) & 0x3ffu) << 10u) | (family << 20u);
 }
 
 //#if grid_count || grid_scatter || grid_sort || grid_sort_long

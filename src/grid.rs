@@ -1,5 +1,5 @@
-//! The hash grid over photon records: cubes of one side length, hashed into a table of buckets. Two cells may
-//! share a bucket, so a reader compares the cell's code. Twin: `shaders/grid.wgsl`.
+//! The hash grid over photon records: cubes of one side length, hashed into a table of buckets row by row.
+//! Two rows may share a bucket, so a reader compares the row's code. Twin: `shaders/grid.wgsl`.
 
 use super::real::{Real, Vec3};
 use glam::IVec3;
@@ -13,19 +13,18 @@ pub fn grid_cell(position: Vec3, inv_cell: Real) -> IVec3 {
     p.as_ivec3()
 }
 
-/// Bucket of a cell (Teschner et al. 2003, primes; then a finaliser so that near cells part).
+/// Bucket of a cell: rows along x are hashed (Teschner et al. 2003, primes; then a finaliser so that near rows part), and
+/// the cells of a row follow one another, so that a reader finds the photons of several cells side by side.
 pub fn grid_bucket(cell: IVec3, mask: u32) -> u32 {
-    let mut h = (cell.x as u32).wrapping_mul(73856093)
-        ^ (cell.y as u32).wrapping_mul(19349663)
-        ^ (cell.z as u32).wrapping_mul(83492791);
+    let mut h = (cell.y as u32).wrapping_mul(19349663) ^ (cell.z as u32).wrapping_mul(83492791);
     h ^= h >> 16;
     h = h.wrapping_mul(0x7feb352d);
     h ^= h >> 15;
-    h & mask
+    h.wrapping_add(cell.x as u32) & mask
 }
 
-/// A cell and a family in one word. Cells less than 1024 apart have different codes, so that two that share a bucket
-/// are told apart by whoever visits fewer in a row.
+/// A row along x and a family in one word. Rows less than 1024 apart have different codes, so that two that share a bucket
+/// are told apart by whoever visits fewer in a line.
 pub fn grid_code(cell: IVec3, family: u32) -> u32 {
-    (cell.x as u32 & 0x3ff) | (cell.y as u32 & 0x3ff) << 10 | (cell.z as u32 & 0x3ff) << 20 | family << 30
+    (cell.y as u32 & 0x3ff) | (cell.z as u32 & 0x3ff) << 10 | family << 20
 }

@@ -4,7 +4,29 @@
 
 const FLATNESS: f32 = 0.25;
 const COS_MIN: f32 = 1e-2;
+const BOX_SLACK: f32 = 1e-4;
 const BLOCK: u32 = 1024u;
+
+struct Frame {
+    ng: vec3f,
+    n: vec3f,
+    //#if metal
+    wo: vec3f,
+    //#end
+}
+
+fn frame_at(point: VisiblePoint) -> Frame {
+    var frame: Frame;
+    frame.ng = oct_decode(point.normal);
+    frame.n = frame.ng;
+    if point.normal != point.shading {
+        frame.n = oct_decode(point.shading);
+    }
+    //#if metal
+    frame.wo = oct_decode(point.wo);
+    //#end
+    return frame;
+}
 
 @compute @workgroup_size(64)
 fn gather(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups) groups: vec3u) {
@@ -21,12 +43,13 @@ fn gather(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups) gr
     //#else
     let radius_sq = point.radius * point.radius * dispatch.scale_sq;
     //#end
+    let frame = frame_at(point);
     //#if split
     var found = Gathered();
     let wider_sq = dispatch.indirect_radius * dispatch.indirect_radius;
     // a loop, so that the function is there once: software drivers write out every call
     for (var family = 0u; family < 2u; family++) {
-        let one = gather_family(point, family, select(radius_sq, radius_sq * wider_sq, family == 1u));
+        let one = gather_family(point, frame, family, select(radius_sq, radius_sq * wider_sq, family == 1u));
         if family == 0u {
             gathered[id].caustic += point.weight * one.flux;
         }
@@ -35,7 +58,7 @@ fn gather(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups) gr
         found.ring += select(one.ring, one.ring * (1.0 / wider_sq), family == 1u);
     }
     //#else
-    let found = gather_family(point, 0u, radius_sq);
+    let found = gather_family(point, frame, 0u, radius_sq);
     //#end
     gathered[id].flux += point.weight * found.flux;
     gathered[id].count += found.count;
@@ -43,19 +66,24 @@ fn gather(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups) gr
     loops_stopped();
 }
 
-fn gather_family(point: VisiblePoint, family: u32, radius_sq: f32) -> Gathered {
+fn disc_reach(normal: vec3f, radius: f32, depth: f32) -> vec3f {
+    let sine_sq = max(vec3f(1.0 + BOX_SLACK) - normal * normal, vec3f(0.0));
+    return sqrt(sine_sq) * radius + abs(normal) * depth;
+}
+
+fn gather_family(point: VisiblePoint, frame: Frame, family: u32, radius_sq: f32) -> Gathered {
     //#if split
     let inv_cell = select(dispatch.inv_cell, dispatch.inv_cell_indirect, family == 1u);
     //#else
     let inv_cell = dispatch.inv_cell;
     //#end
     let radius = sqrt(radius_sq);
-    let ng = oct_decode(point.normal);
-    let flat_normal = point.normal == point.shading;
-    let n = oct_decode(point.shading);
+    let ng = frame.ng;
+    let n = frame.n;
     //#if metal
-    let wo = oct_decode(point.wo);
+    let wo = frame.wo;
     //#end
+    let flat_normal = point.normal == point.shading;
     //#if facets
     let clip = clip_at(point.facet, point.position, ng, radius);
     let depth = select(FLATNESS * radius, min(clip.depth, FLATNESS * radius), clip.crossed);
@@ -63,19 +91,24 @@ fn gather_family(point: VisiblePoint, family: u32, radius_sq: f32) -> Gathered {
     //#else
     let depth = FLATNESS * radius;
     //#end
-    let low = grid_cell(point.position - vec3f(radius), inv_cell);
-    let high = grid_cell(point.position + vec3f(radius), inv_cell);
+    let reach = disc_reach(ng, radius, depth);
+    let low = grid_cell(point.position - reach, inv_cell);
+    let high = grid_cell(point.position + reach, inv_cell);
     var count = 0u;
     var sum = vec3f(0.0);
     var ring = vec3f(0.0);
     for (var z = low.z; z <= high.z; z++) {
         for (var y = low.y; y <= high.y; y++) {
-            for (var x = low.x; x <= high.x; x++) {
-                let cell = vec3i(x, y, z);
-                let code = grid_code(cell, family);
-                let bucket = grid_bucket(cell, dispatch.mask);
-                let end = starts[bucket + 1u];
-                for (var first = starts[bucket]; first < end; first += BLOCK) {
+            let cell = vec3i(low.x, y, z);
+            let code = grid_code(cell, family);
+            let bucket = grid_bucket(cell, dispatch.mask);
+            let last = bucket + min(u32(high.x - low.x), dispatch.mask);
+            // a row that passes the table's end goes on at its beginning
+            for (var part = 0u; part < select(1u, 2u, last > dispatch.mask); part++) {
+                let begin = select(0u, bucket, part == 0u);
+                let to = select(last - dispatch.mask - 1u, min(last, dispatch.mask), part == 0u);
+                let end = starts[to + 1u];
+                for (var first = starts[begin]; first < end; first += BLOCK) {
                     var block = vec3f(0.0);
                     for (var i = first; i < min(first + BLOCK, end); i++) {
                         let record = sorted[i];

@@ -1,9 +1,9 @@
 // Each long bucket into the order of its keys, by a whole workgroup (radix sort, four bits at a time): the rest of the twin
-// of `grid_sort` in src/kernels/grid_build.rs. Run by one workgroup per 1024 buckets, since most have no long one and
-// barriers are dear on a software driver; reads `records` and `starts`, sorts slices of `order`, writes `sorted`.
+// of `grid_sort` in src/kernels/grid_build.rs. Run by one workgroup per 256 buckets: most have no long one and barriers are
+// dear on a software driver, but that driver counts a loop's rounds over all buckets of a workgroup and ends it after 65535; reads `records` and `starts`, sorts slices of `order`, writes `sorted`.
 
 const RADIX: u32 = 16u;
-const SORT_BUCKETS: u32 = 1024u;
+const SORT_BUCKETS: u32 = 256u;
 
 var<workgroup> found: atomic<u32>;
 // in any order, which the result does not show
@@ -57,11 +57,13 @@ fn sort_long(begin: u32, end: u32, local: u32) {
         workgroupBarrier();
         if local < RADIX {
             var sum = 0u;
-            for (var i = 0u; i < 64u; i++) {
-                let at = local * 64u + i;
-                let tally = tallies[at];
+            for (var at = local * 64u; at < local * 64u + 64u; at += 4u) {
+                let next = vec4u(tallies[at], tallies[at + 1u], tallies[at + 2u], tallies[at + 3u]);
                 tallies[at] = sum;
-                sum += tally;
+                tallies[at + 1u] = sum + next.x;
+                tallies[at + 2u] = sum + next.x + next.y;
+                tallies[at + 3u] = sum + next.x + next.y + next.z;
+                sum += next.x + next.y + next.z + next.w;
             }
             totals[local] = sum;
         }

@@ -21,11 +21,34 @@ const FLATNESS: Real = 0.25;
 /// Least cosine with the geometric normal for which the shading normal's correction is formed.
 const COS_MIN: Real = 1e-2;
 
-/// Photons of a bucket that are summed up before they are added to the whole sum: so a million photons lose no more than
+/// Added to the squared sine between an axis and the normal, so that no rounding makes the box about a disc too small.
+const BOX_SLACK: Real = 1e-4;
+
+/// Photons in a row that are summed up before they are added to the whole sum: so a million photons lose no more than
 /// some thousand roundings.
 const BLOCK: usize = 1024;
 /// Photons that are tested at once.
 const LANES: usize = 16;
+
+/// Directions at a visible point.
+#[derive(Clone, Copy)]
+struct Frame {
+    /// Geometric normal.
+    ng: Vec3,
+    /// Shading normal.
+    n: Vec3,
+    /// To the eye, where the surface is rough metal.
+    wo: Vec3,
+}
+
+impl Frame {
+    #[inline(always)]
+    fn at(point: &VisiblePoint) -> Self {
+        let ng = oct_decode(point.normal);
+        let n = if point.normal == point.shading { ng } else { oct_decode(point.shading) };
+        Self { ng, n, wo: if point.alpha > 0.0 { oct_decode(point.wo) } else { Vec3::ZERO } }
+    }
+}
 
 /// Squared radius of this pass over the squared start radius.
 pub fn scale_sq(dispatch: &Dispatch, local: bool, statistics: &Statistics) -> Real {
@@ -51,11 +74,12 @@ pub fn gather(
         return;
     }
     let radius_sq = point.radius * point.radius * scale_sq;
-    let mut found = gather_family(facets, dispatch, point, 0, radius_sq, starts, sorted);
+    let frame = Frame::at(point);
+    let mut found = gather_family(facets, dispatch, point, &frame, 0, radius_sq, starts, sorted);
     if dispatch.families == 2 {
         gathered.caustic += point.weight * found.flux;
         let wider_sq = dispatch.indirect_radius * dispatch.indirect_radius;
-        let wide = gather_family(facets, dispatch, point, 1, radius_sq * wider_sq, starts, sorted);
+        let wide = gather_family(facets, dispatch, point, &frame, 1, radius_sq * wider_sq, starts, sorted);
         found.flux += wide.flux * (1.0 / wider_sq);
         found.count += wide.count;
         found.ring += wide.ring * (1.0 / wider_sq);
@@ -71,6 +95,7 @@ fn gather_family(
     facets: &[Facet],
     dispatch: &Dispatch,
     point: &VisiblePoint,
+    frame: &Frame,
     family: u32,
     radius_sq: Real,
     starts: &[u32],
@@ -78,26 +103,29 @@ fn gather_family(
 ) -> Gathered {
     let inv_cell = if family == 1 { dispatch.inv_cell_indirect } else { dispatch.inv_cell };
     let radius = radius_sq.sqrt();
-    let ng = oct_decode(point.normal);
+    let Frame { ng, n, wo } = *frame;
     let flat = point.normal == point.shading;
-    let n = oct_decode(point.shading);
-    let wo = oct_decode(point.wo);
     let clip = clip_at(facets, point.facet, point.position, ng, radius);
     let depth = if clip.crossed { clip.depth.min(FLATNESS * radius) } else { FLATNESS * radius };
     let inner = clip.whole - 2.0 * clip.inner;
-    let low = grid_cell(point.position - Vec3::splat(radius), inv_cell);
-    let high = grid_cell(point.position + Vec3::splat(radius), inv_cell);
+    let reach = disc_reach(ng, radius, depth);
+    let low = grid_cell(point.position - reach, inv_cell);
+    let high = grid_cell(point.position + reach, inv_cell);
     let mut count = 0;
     let mut sum = Vec4::ZERO;
     let mut ring = Vec4::ZERO;
     let mut outer = [false; LANES];
     for z in low.z..=high.z {
         for y in low.y..=high.y {
-            for x in low.x..=high.x {
-                let cell = IVec3::new(x, y, z);
-                let code = grid_code(cell, family);
-                let bucket = grid_bucket(cell, dispatch.mask) as usize;
-                let (mut first, end) = (starts[bucket] as usize, starts[bucket + 1] as usize);
+            let cell = IVec3::new(low.x, y, z);
+            let code = grid_code(cell, family);
+            let bucket = grid_bucket(cell, dispatch.mask);
+            let last = bucket + ((high.x - low.x) as u32).min(dispatch.mask);
+            // a row that passes the table's end goes on at its beginning
+            for part in 0..1 + (last > dispatch.mask) as u32 {
+                let begin = if part == 0 { bucket } else { 0 };
+                let to = if part == 0 { last.min(dispatch.mask) } else { last - dispatch.mask - 1 };
+                let (mut first, end) = (starts[begin as usize] as usize, starts[to as usize + 1] as usize);
                 while first < end {
                     let mut block = Vec4::ZERO;
                     let last = (first + BLOCK).min(end);
@@ -146,7 +174,13 @@ fn gather_family(
     Gathered { flux: sum.truncate() * clip.whole, count, ring, ..Gathered::zeroed() }
 }
 
-/// Which of the first [`LANES`] photons of `range` lie in the disc and in the cell, no farther than `depth` from its plane, and
+/// How far along each axis the points of a disc about the origin reach that are no farther than `depth` from its plane.
+fn disc_reach(normal: Vec3, radius: Real, depth: Real) -> Vec3 {
+    let sine_sq = (Vec3::splat(1.0 + BOX_SLACK) - normal * normal).max(Vec3::ZERO);
+    Vec3::new(sine_sq.x.sqrt(), sine_sq.y.sqrt(), sine_sq.z.sqrt()) * radius + normal.abs() * depth
+}
+
+/// Which of the first [`LANES`] photons of `range` lie in the disc and in the row, no farther than `depth` from its plane, and
 /// come from the side that is seen: a byte of one for each. `outer` tells those in the outer half of the disc's area.
 #[inline(always)]
 fn near(

@@ -44,7 +44,7 @@ pub struct SortedRecords {
     pub positions: [Vec<Real>; 3],
     /// Directions to where photons came from, at any length: x, y, z.
     pub directions: [Vec<Real>; 3],
-    /// Cells and families, as [`grid_code`] gives them.
+    /// Rows of cells and families, as [`grid_code`] gives them.
     pub codes: Vec<u32>,
     /// See [`PhotonRecord::flux`]; the fourth is 0.
     pub fluxes: Vec<Vec4>,
@@ -69,7 +69,7 @@ pub fn record_bucket(dispatch: &Dispatch, record: &PhotonRecord) -> u32 {
     grid_bucket(record_cell(dispatch, record), dispatch.mask)
 }
 
-/// Cell and family of a record in one word: what stands for its key once it is sorted.
+/// Row and family of a record in one word: what stands for its key once it is sorted.
 pub fn record_code(dispatch: &Dispatch, record: &PhotonRecord) -> u32 {
     grid_code(record_cell(dispatch, record), record_family(dispatch, record))
 }

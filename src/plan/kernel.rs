@@ -37,7 +37,7 @@ pub enum Kernel {
 /// Buckets that one workgroup of the scan kernels covers; the same number of blocks is the most there may be.
 pub const SCAN_BLOCK: u32 = 4096;
 /// Buckets that one workgroup of [`Kernel::GridSortLong`] looks through.
-pub const SORT_BUCKETS: u32 = 1024;
+pub const SORT_BUCKETS: u32 = 256;
 
 impl Kernel {
     /// All kernels, in the order of a pass.
