@@ -231,10 +231,15 @@ fn what_is_counted_is_what_is_made() {
             };
             let parts = plan.memory(0, ON_DEVICE);
             let counted = |what: &str| parts.iter().find(|p| p.what == what).map_or(0, |p: &Part| p.bytes);
-            assert_eq!(counted("the film and a copy of it"), 2 * of(&["film"]), "{}", case.1);
+            assert_eq!(counted("the film, and any copy of it"), 2 * of(&["film"]), "{}", case.1);
             assert_eq!(counted("visible points"), of(&["visible_points", "gathered"]), "{}", case.1);
-            assert_eq!(counted("layers and a copy"), 2 * of(&["aovs", "parts"]), "{}", case.1);
-            assert_eq!(counted("radii of visible points and a copy"), 2 * of(&["statistics"]), "{}", case.1);
+            assert_eq!(counted("layers, and any copy"), 2 * of(&["aovs", "parts"]), "{}", case.1);
+            assert_eq!(
+                counted("radii of visible points, and any copy"),
+                2 * of(&["statistics"]),
+                "{}",
+                case.1
+            );
             let grid = ["records", "sorted", "order", "counts", "starts", "block_sums"];
             assert_eq!(counted("photons"), of(&grid), "{}", case.1);
         }

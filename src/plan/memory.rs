@@ -78,9 +78,9 @@ impl Plan {
         let part = |what, bytes, mend| Part { what, bytes, mend };
         let parts = [
             part("the scene", if device { 2 * scene } else { scene }, SCENE),
-            part("the film and a copy of it", copies * film, PICTURE),
-            part("radii of visible points and a copy", copies * statistics, SAMPLES),
-            part("layers and a copy", copies * layers, LAYERS),
+            part("the film, and any copy of it", copies * film, PICTURE),
+            part("radii of visible points, and any copy", copies * statistics, SAMPLES),
+            part("layers, and any copy", copies * layers, LAYERS),
             part("visible points", visible, if self.eye_samples > 1 { SAMPLES } else { PICTURE }),
             part("photons", records, PHOTONS),
             part("the finished picture", result, PICTURE),
