@@ -1,5 +1,7 @@
 //! Devices by name: which there are, which one a wish means, and an engine on it.
 
+mod candidates;
+
 use thiserror::Error;
 
 use crate::cpu::CpuEngine;
@@ -8,12 +10,17 @@ use crate::engine::{Engine, EngineError, Space};
 use crate::gpu::{self, AdapterChoice, AdapterKind, AdapterSummary, GpuEngine};
 use crate::kernels::records::VisiblePoint;
 use crate::lights::guide::guides;
+use crate::memory::Memory;
 use crate::pack::{Packed, pack};
-use crate::plan::Plan;
+use crate::plan::{self, Place, Plan};
 use crate::radius::Automatic;
 use crate::scene::Scene;
 use crate::settings::{Method, Radius, RenderSettings};
 
+pub use candidates::{Candidate, Candidates};
+
+/// Visible points of a tile where a GPU has turned out to have less memory than was hoped for.
+const SMALL_TILE: u32 = 1 << 16;
 /// Most visible points of a picture: their numbers are 32 bits wide.
 const POINTS_MAX: u64 = 1 << 31;
 
@@ -101,6 +108,8 @@ pub struct Opened {
     pub why: String,
     /// The settings in force: as asked for, with a radius in the place of "auto".
     pub settings: RenderSettings,
+    /// What was done so that it fits into memory, where anything was.
+    pub cut: Option<String>,
     /// Why that radius, where the settings left it open and it counts.
     pub radius: Option<Automatic>,
     /// What tells its numbers in those of the world.
@@ -184,23 +193,13 @@ pub fn pick<'a>(wanted: &Wanted, devices: &'a [DeviceInfo]) -> Result<(&'a Devic
     }
 }
 
-/// Makes an engine for a scene on the device that is wanted. Path tracing runs on the CPU alone, so `auto` takes it.
+/// Makes an engine for a scene on the device that is wanted; with `auto`, on the first that can. Path tracing runs on the CPU alone,
+/// so `auto` takes it.
 pub fn open(wanted: &Wanted, scene: &Scene, settings: &RenderSettings) -> Result<Opened, DeviceError> {
-    let path = settings.method == Method::Path && *wanted == Wanted::Auto;
-    let wanted = if path { &Wanted::Cpu } else { wanted };
-    // drivers take a while to answer and may write to standard error, so they are not asked for nothing
-    let devices = match wanted {
-        Wanted::Cpu => vec![cpu(DeviceKind::Cpu)],
-        Wanted::CpuDouble => vec![cpu(DeviceKind::CpuDouble)],
-        _ => list(),
-    };
-    let (device, why) = pick(wanted, &devices)?;
-    let why = if path { "auto: path tracing runs on the CPU".to_owned() } else { why };
-    for DeviceInfo { name, kind, driver, .. } in &devices {
-        log::debug!("there is {name} [{}] {driver}", kind.word());
-    }
-    log::info!("{} [{}] {} ({why})", device.name, device.kind.word(), device.driver);
-    Ok(start(device, why, scene, settings)?)
+    let mut candidates = Candidates::of(wanted, settings)?;
+    Ok(candidates.open(scene, settings, &Memory::default(), &mut |name, error| {
+        log::warn!("{name} cannot render this: {error}");
+    })?)
 }
 
 /// Fails where a picture has more visible points than can be numbered.
@@ -233,31 +232,82 @@ fn start(
     why: String,
     scene: &Scene,
     settings: &RenderSettings,
+    memory: &Memory,
 ) -> Result<Opened, EngineError> {
     check_points(device, scene, settings)?;
     let film = &scene.film;
     let packed = pack(scene, film.width, film.height)?;
-    let opened = |engine, settings, radius, space| Opened {
+    let opened = |engine, settings, radius, space, cut| Opened {
         engine,
         name: device.name.clone(),
         kind: device.kind,
         why,
         settings,
+        cut,
         radius,
         space,
     };
     if device.kind == DeviceKind::CpuDouble {
         let (wide, plan) = in_double(scene, &packed, settings)?;
+        let tables = plan::scene_bytes(&packed.scene) + double::plan::scene_bytes(&wide.scene);
+        let place = double::plan::Place::Program { saves: memory.saves };
+        let plan = plan.within(tables, place, memory)?;
+        let cut = cut(plan.tiled, plan.chunks(), plan.settings.batch, settings.batch);
         let (settings, automatic, space) = (plan.settings.clone(), plan.told_radius(), plan.space());
-        return Ok(opened(Box::new(double::cpu::CpuEngine::new(wide, plan)), settings, automatic, space));
+        return Ok(opened(
+            Box::new(double::cpu::CpuEngine::new(wide, plan)),
+            settings,
+            automatic,
+            space,
+            cut,
+        ));
     }
-    let plan = Plan::new(&packed, settings).on(film);
+    let plan = Plan::new(&packed, settings).on(film).within(
+        plan::scene_bytes(&packed.scene),
+        place(device.kind, memory),
+        memory,
+    )?;
+    let cut = cut(plan.tiled, plan.chunks(), plan.settings.batch, settings.batch);
     let (settings, automatic, space) = (plan.settings.clone(), plan.told_radius(), plan.space());
     let engine: Box<dyn Engine> = match device.kind {
         DeviceKind::Cpu => Box::new(CpuEngine::new(packed, plan)),
-        _ => Box::new(GpuEngine::new(&AdapterChoice::Named(device.name.clone()), &packed, plan)?),
+        _ => Box::new(on_gpu(&AdapterChoice::Named(device.name.clone()), &packed, plan)?),
     };
-    Ok(opened(engine, settings, automatic, space))
+    Ok(opened(engine, settings, automatic, space, cut))
+}
+
+/// Where a device of this kind has its buffers.
+fn place(kind: DeviceKind, memory: &Memory) -> Place {
+    match kind {
+        DeviceKind::Cpu | DeviceKind::CpuDouble => Place::Program { saves: memory.saves },
+        DeviceKind::Software => Place::Device { in_main_memory: true },
+        DeviceKind::Gpu => Place::Device { in_main_memory: false },
+    }
+}
+
+/// An engine on a GPU; in tiles, where its memory does not suffice otherwise.
+fn on_gpu(choice: &AdapterChoice, packed: &Packed, plan: Plan) -> Result<GpuEngine, EngineError> {
+    let tiled = (!plan.tiled).then(|| plan.clone().in_tiles(SMALL_TILE));
+    match (GpuEngine::new(choice, packed, plan), tiled) {
+        (Err(EngineError::OutOfMemory(text)), Some(tiled)) => {
+            log::warn!("out of memory: {text}; once more in {} tiles", tiled.chunks());
+            GpuEngine::new(choice, packed, tiled)
+        }
+        (made, _) => made,
+    }
+}
+
+/// What was done so that a plan fits, where anything was.
+fn cut(tiled: bool, tiles: u32, batch: Option<u32>, asked: Option<u32>) -> Option<String> {
+    let smaller = batch.filter(|_| batch != asked);
+    let batches = smaller.map_or(String::new(), |photons| {
+        format!(", photons in batches of {photons}, which rounds their sums otherwise")
+    });
+    let cut = tiled.then(|| format!("rendered in {tiles} tiles to save memory{batches}"));
+    if let Some(cut) = &cut {
+        log::info!("{cut}");
+    }
+    cut
 }
 
 /// What the engine in f64 takes; `single` is the scene flattened in f32.

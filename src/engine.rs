@@ -3,6 +3,7 @@
 use crate::clock::KernelSeconds;
 use crate::film::exr_file::Channel;
 use crate::film::{ErrorMap, Picture, Rejections};
+use crate::memory::OverBudget;
 use serde::{Deserialize, Serialize};
 
 /// Photon paths by how they ended; together those that were emitted.
@@ -122,9 +123,15 @@ pub enum EngineError {
         /// The setting to change.
         mend: String,
     },
+    /// There may not be as much memory as the render takes.
+    #[error(transparent)]
+    OverBudget(Box<OverBudget>),
     /// The driver gave up; `0` says how.
     #[error("the device was lost: {0}")]
     DeviceLost(String),
+    /// The device had no memory left; `0` says for what.
+    #[error("the device is out of memory: {0}; make the picture smaller, or take less by --memory-budget")]
+    OutOfMemory(String),
     /// A kernel did not compile; a fault of this program.
     #[error("shader: {0}")]
     Shader(String),
@@ -134,6 +141,24 @@ pub enum EngineError {
     /// The engine cannot carry out this method.
     #[error("{0}")]
     Unsupported(String),
+}
+
+impl From<OverBudget> for EngineError {
+    fn from(over: OverBudget) -> Self {
+        Self::OverBudget(Box::new(over))
+    }
+}
+
+impl EngineError {
+    /// Whether the device failed, so that the same render may go well on another one or another time.
+    pub fn is_of_device(&self) -> bool {
+        matches!(self, Self::DeviceLost(_) | Self::OutOfMemory(_))
+    }
+
+    /// Whether the same would be said of any device.
+    pub fn is_of_scene(&self) -> bool {
+        matches!(self, Self::Pack(_))
+    }
 }
 
 /// Carries out passes over one scene with one set of settings.
@@ -156,7 +181,19 @@ pub trait Engine {
     fn results(&mut self) -> Result<(Picture, Rejections), EngineError> {
         Ok((self.picture()?, self.rejections()?))
     }
-    /// What the passes so far left behind.
+    /// Whether it can fail and take along what it holds. One that counts in the program's own memory does not.
+    fn can_be_lost(&self) -> bool {
+        true
+    }
+    /// After `error`: goes on from `state` on another device.
+    ///
+    /// # Errors
+    /// Where there is none that can: the last one's error.
+    fn go_on(&mut self, state: &State, error: EngineError) -> Result<(), EngineError> {
+        let _ = state;
+        Err(error)
+    }
+    /// What the passes so far left behind. After a pass that failed it is that of the passes before, or an error.
     fn save(&mut self) -> Result<State, EngineError> {
         Err(EngineError::Unsupported(format!("{} cannot hand over what it holds", self.device())))
     }

@@ -55,9 +55,9 @@
 //! # }
 //! ```
 //!
-//! Modules depend on one another one way: [`stage`], [`srgb`], [`real`] and [`math`], then [`tables`], [`shapes`], [`materials`], [`lights`],
+//! Modules depend on one another one way: [`stage`], [`srgb`], [`memory`], [`real`] and [`math`], then [`tables`], [`shapes`], [`materials`], [`lights`],
 //! [`camera`] and [`grid`], then [`scene`], [`build`], [`limits`], [`pack`], then [`kernels`], [`radius`], [`sobol`], [`probe`], [`readout`], [`plan`], then [`cpu`]
-//! and [`gpu`], then [`identity`], [`device`], [`quality`], [`calibration`], [`showing`], [`render`] and [`checkpoint`], and last [`bench`](mod@bench), [`burden`], [`hold`], [`study`] and, where it is not left out, `preview`.
+//! and [`gpu`], then [`identity`], [`device`], [`relay`], [`quality`], [`calibration`], [`showing`], [`render`] and [`checkpoint`], and last [`bench`](mod@bench), [`burden`], [`hold`], [`study`] and, where it is not left out, `preview`.
 //! Those from [`real`] to [`cpu`] are compiled twice: [`double`] is the same in f64.
 
 pub mod bench;
@@ -84,6 +84,7 @@ pub mod lights;
 pub mod limits;
 pub mod materials;
 pub mod math;
+pub mod memory;
 pub mod pack;
 pub mod plan;
 #[cfg(feature = "preview")]
@@ -93,6 +94,7 @@ pub mod quality;
 pub mod radius;
 pub mod readout;
 pub mod real;
+pub mod relay;
 pub mod render;
 pub mod scene;
 pub mod settings;

@@ -63,6 +63,11 @@ pub struct RenderSettings {
     pub passes: u32,
     /// Photons emitted per pass, `M`.
     pub photons: u32,
+    /// Photons of a pass that are traced and gathered at once, at the most; where it is not given, as many as four million records
+    /// hold. Sums are rounded batch by batch.
+    #[schemars(range(min = 1))]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub batch: Option<u32>,
     /// Start radius, `r_1`.
     pub radius: Radius,
     /// Start radius of photons that a diffuse surface has scattered before, over `radius`. Their light changes more slowly
@@ -94,6 +99,7 @@ impl Default for RenderSettings {
             method: Method::default(),
             passes: 64,
             photons: 262_144,
+            batch: None,
             radius: Radius::default(),
             indirect_radius: None,
             radius_rule: RadiusRule::default(),

@@ -56,6 +56,14 @@ impl Engine for Showing<'_> {
         self.inner.layers()
     }
 
+    fn can_be_lost(&self) -> bool {
+        self.inner.can_be_lost()
+    }
+
+    fn go_on(&mut self, state: &State, error: EngineError) -> Result<(), EngineError> {
+        self.inner.go_on(state, error)
+    }
+
     fn save(&mut self) -> Result<State, EngineError> {
         self.inner.save()
     }

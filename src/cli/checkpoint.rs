@@ -2,9 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use caustica::checkpoint::{Checkpoint, CheckpointError, Origin, Totals, check_place, read, write};
-use caustica::engine::{Engine, EngineError};
+use caustica::checkpoint::{
+    Checkpoint, CheckpointError, EXTENSION, Origin, Totals, check_place, read, write,
+};
+use caustica::engine::State;
 use caustica::render::Progress;
+use caustica::settings::RenderSettings;
 use serde_json::json;
 
 use super::Failure;
@@ -59,6 +62,12 @@ impl Files {
         Ok(())
     }
 
+    /// The settings, with the batches of what is gone on from where none are asked for.
+    pub fn batched(&self, settings: RenderSettings) -> RenderSettings {
+        let batch = settings.batch.or(self.resumed().and_then(|from| from.origin.settings.batch));
+        RenderSettings { batch, ..settings }
+    }
+
     /// Tells what is gone on from, if anything is.
     pub fn tell(&self, json: bool, reporter: &Reporter) -> Result<(), Failure> {
         let Some((file, checkpoint)) = &self.resumed else {
@@ -87,27 +96,49 @@ impl Keeper {
         Self { file: files.kept.clone(), origin, json, failed: None }
     }
 
-    /// Writes what the engine holds now.
-    pub fn save(&mut self, engine: &mut dyn Engine, progress: &Progress) -> Result<(), EngineError> {
-        let Some(file) = &self.file else {
-            return Ok(());
-        };
-        let checkpoint = Checkpoint {
-            origin: self.origin.clone(),
-            totals: Totals::of(progress),
-            state: engine.save()?,
-            cuts: Vec::new(),
-        };
-        self.failed = write(file, &checkpoint).err();
+    /// Writes what the engine held at `progress`, and gives it back.
+    pub fn save(&mut self, state: State, progress: &Progress) -> State {
+        let checkpoint = self.checkpoint(state, progress);
+        if let Some(file) = self.file.clone() {
+            self.write(&file, &checkpoint);
+        }
+        checkpoint.state
+    }
+
+    /// What is left of a render whose device failed. Where no checkpoint was asked for, it is written beside the first picture,
+    /// unless something is there.
+    pub fn rest(&mut self, state: State, progress: &Progress, pictures: &[PathBuf]) -> Checkpoint {
+        let rest = self.checkpoint(state, progress);
+        let beside = pictures.first().map(|picture| picture.with_extension(EXTENSION));
+        if self.file.is_none()
+            && let Some(file) = beside.filter(|file| !file.exists())
+        {
+            self.write(&file, &rest);
+            self.file = Some(file);
+        }
+        rest
+    }
+
+    /// Where the last one is, if it could be written.
+    pub fn place(&self) -> Option<&Path> {
+        self.file.as_deref().filter(|_| self.failed.is_none())
+    }
+
+    fn checkpoint(&self, state: State, progress: &Progress) -> Checkpoint {
+        Checkpoint { origin: self.origin.clone(), totals: Totals::of(progress), state, cuts: Vec::new() }
+    }
+
+    fn write(&mut self, file: &Path, checkpoint: &Checkpoint) {
+        self.failed = write(file, checkpoint).err();
         match &self.failed {
             Some(error) => message(format_args!("warning: {error}")),
             None if self.json => {
                 // Standard output that takes nothing fails the results at the end.
-                let _ = result(json!({ "event": "checkpoint", "file": file, "passes": progress.passes }));
+                let passes = checkpoint.state.passes;
+                let _ = result(json!({ "event": "checkpoint", "file": file, "passes": passes }));
             }
             None => (),
         }
-        Ok(())
     }
 
     /// Fails if the last one could not be written.

@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicBool;
 use caustica::device;
 use caustica::film::metrics::{Comparison, compare};
 use caustica::film::{Picture, blocks, file, heat};
-use caustica::render::{Ending, Stop, render};
+use caustica::render::{Stop, render};
 use caustica::scene::Scene;
 use caustica::settings::RenderSettings;
 use clap::builder::NonEmptyStringValueParser;
@@ -109,13 +109,7 @@ fn render_on(
     let never = AtomicBool::new(false);
     let outcome = render(engine.as_mut(), stop, &never, &mut |progress| reporter.show(progress));
     reporter.finish();
-    let outcome = outcome?;
-    match outcome.ending {
-        Ending::Failed(error) => Err(error.into()),
-        Ending::Passes | Ending::Time | Ending::TargetError | Ending::Interrupted => {
-            Ok(Rendered { device: opened.name, picture: outcome.picture })
-        }
-    }
+    Ok(Rendered { device: opened.name, picture: outcome?.picture })
 }
 
 fn passed_thresholds(arguments: &Arguments, comparison: &Comparison) -> Vec<String> {

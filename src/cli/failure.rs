@@ -7,6 +7,7 @@ use caustica::device::DeviceError;
 use caustica::engine::EngineError;
 use caustica::film::FileError;
 use caustica::film::metrics::MetricsError;
+use caustica::render::Broken;
 use caustica::scene::SceneErrors;
 use caustica::study::StudyError;
 use miette::{Report, miette};
@@ -24,6 +25,7 @@ impl Failure {
     const FAILED: u8 = 1;
     const WRONG_USE: u8 = 2;
     const NO_SUCH_DEVICE: u8 = 4;
+    const DEVICE_FAILED: u8 = super::Done::DeviceLost as u8;
 
     /// Arguments that cannot be meant, and what would do.
     pub fn wrong_use(what: &str, help: &str) -> Self {
@@ -39,6 +41,12 @@ impl Failure {
     #[cfg(feature = "preview")]
     pub fn no_device(report: impl Into<Report>) -> Self {
         Self { code: Self::NO_SUCH_DEVICE, report: report.into() }
+    }
+
+    /// The exit code.
+    #[cfg(test)]
+    pub fn code(&self) -> u8 {
+        self.code
     }
 
     /// Prints the failure to standard error.
@@ -72,7 +80,14 @@ impl From<CheckpointError> for Failure {
 
 impl From<EngineError> for Failure {
     fn from(error: EngineError) -> Self {
-        Self::failed(miette!("{error}"))
+        let code = if error.is_of_device() { Self::DEVICE_FAILED } else { Self::FAILED };
+        Self { code, report: miette!("{error}") }
+    }
+}
+
+impl From<Broken> for Failure {
+    fn from(broken: Broken) -> Self {
+        broken.error.into()
     }
 }
 
@@ -84,15 +99,15 @@ impl From<MetricsError> for Failure {
 
 impl From<DeviceError> for Failure {
     fn from(error: DeviceError) -> Self {
-        match &error {
-            DeviceError::NoSuchDevice { available, .. } => {
+        match error {
+            DeviceError::NoSuchDevice { ref available, .. } => {
                 let help = match available.as_slice() {
                     [] => "no device was found at all".to_owned(),
                     names => format!("there is: {}; `caustica devices` tells more", names.join(", ")),
                 };
                 Self { code: Self::NO_SUCH_DEVICE, report: miette!(help = help, "{error}") }
             }
-            DeviceError::Engine(_) => Self::failed(miette!("{error}")),
+            DeviceError::Engine(error) => error.into(),
         }
     }
 }
@@ -105,7 +120,8 @@ impl From<StudyError> for Failure {
             StudyError::Grid(_) | StudyError::Folder { .. } | StudyError::Variant { .. } => {
                 Self { code: Self::WRONG_USE, report: miette!("{error}") }
             }
-            StudyError::Engine(_) | StudyError::Metrics(_) => Self::failed(miette!("{error}")),
+            StudyError::Engine(error) => error.into(),
+            StudyError::Metrics(_) => Self::failed(miette!("{error}")),
         }
     }
 }

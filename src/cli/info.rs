@@ -5,13 +5,14 @@ use std::path::PathBuf;
 
 use caustica::engine::EngineError;
 use caustica::features;
+use caustica::memory::{Memory, Part, total};
 use caustica::pack::{Packed, pack};
-use caustica::plan::{Kernel, Plan};
+use caustica::plan::{Kernel, Place, Plan, scene_bytes, scene_tables};
 use caustica::settings::Method;
-use caustica::tables::Scene;
 use clap::builder::NonEmptyStringValueParser;
 use serde_json::{Value, json};
 
+use super::budget::Budget;
 use super::measure;
 use super::output::result;
 use super::overrides::Overrides;
@@ -34,6 +35,8 @@ pub struct Arguments {
     #[arg(long)]
     json: bool,
     #[command(flatten)]
+    budget: Budget,
+    #[command(flatten)]
     overrides: Overrides,
 }
 
@@ -41,6 +44,53 @@ const HELP: &str = "\
 Examples:
   caustica info scenes/caustics.toml --method ppm --size 1920x1080
   MESA_SHADER_CACHE_DISABLE=true caustica info scenes/cornell.toml --measure --device software --device cpu";
+
+const ON_GPU: Place = Place::Device { in_main_memory: false };
+
+/// What a render takes, cut as a budget has it.
+struct Need {
+    parts: Vec<Part>,
+    cut: String,
+}
+
+impl Need {
+    fn of(plan: &Plan, packed: &Packed, place: Place, budget: &Budget) -> Self {
+        let scene = scene_bytes(&packed.scene);
+        let memory = budget.alone();
+        let given = Memory { budget: memory.budget.or(Some(u64::MAX)), ..memory };
+        match plan.clone().within(scene, place, &given) {
+            Ok(plan) => {
+                let (tiles, batches) = (if plan.tiled { plan.chunks() } else { 0 }, plan.batches());
+                let tiles = if tiles > 0 { format!("{tiles} tiles") } else { "one piece".to_owned() };
+                Self {
+                    parts: plan.memory(scene, place),
+                    cut: format!("in {tiles}, photons in {batches} batches"),
+                }
+            }
+            Err(error) => Self { parts: Vec::new(), cut: error.to_string() },
+        }
+    }
+
+    fn as_json(&self) -> Value {
+        json!({
+            "parts": Value::from_iter(self.parts.iter().map(|part| (part.what, part.bytes))),
+            "bytes": total(&self.parts),
+            "cut": self.cut,
+        })
+    }
+}
+
+impl fmt::Display for Need {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for part in &self.parts {
+            writeln!(f, "{:<40} {:>16}", part.what, part.bytes)?;
+        }
+        if !self.parts.is_empty() {
+            writeln!(f, "{:<40} {:>16}", "total", total(&self.parts))?;
+        }
+        f.write_str(&self.cut)
+    }
+}
 
 /// What a render of a scene is made of.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -59,11 +109,14 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     let film = scene.film;
     let packed = pack(&scene, film.width, film.height).map_err(EngineError::from)?;
     let plan = Plan::new(&packed, &settings);
+    let memory = [("on a GPU", ON_GPU), ("on the CPU", Place::Program { saves: false })]
+        .map(|(name, place)| (name, Need::of(&plan, &packed, place, &arguments.budget)));
     if arguments.json {
         let mut figures = report(&packed, &plan).as_json();
         figures["scene"] = json!(scene.name);
         figures["width"] = json!(film.width);
         figures["height"] = json!(film.height);
+        figures["memory"] = Value::from_iter(memory.iter().map(|(name, need)| (*name, need.as_json())));
         figures["settings"] = json!(plan.settings);
         figures["radius_why"] = json!(plan.told_radius().map(|radius| radius.to_string()));
         result(figures)?;
@@ -76,6 +129,9 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
             result(format_args!("start radius: {radius}"))?;
         }
         result(report(&packed, &plan))?;
+        for (name, need) in &memory {
+            result(format_args!("{:<40} {:>16}\n{need}", format!("memory {name}, for"), "bytes"))?;
+        }
     }
     if arguments.measure {
         for device in &arguments.device {
@@ -97,33 +153,6 @@ fn report(packed: &Packed, plan: &Plan) -> InfoReport {
     let own_buffers = plan.buffers().into_iter().filter(|(name, _)| !path || *name == "film");
     let buffers = tables.chain(own_buffers).map(|(name, bytes)| (name.to_owned(), bytes));
     InfoReport { features: features.collect(), kernels: kernels.collect(), buffers: buffers.collect() }
-}
-
-/// Name and bytes of every table of the flattened scene.
-fn scene_tables(scene: &Scene) -> Vec<(&'static str, u64)> {
-    fn bytes<T>(table: &[T]) -> u64 {
-        size_of_val(table) as u64
-    }
-    vec![
-        ("spheres", bytes(&scene.spheres)),
-        ("rectangles", bytes(&scene.rectangles)),
-        ("discs", bytes(&scene.discs)),
-        ("cuboids", bytes(&scene.cuboids)),
-        ("planes", bytes(&scene.planes)),
-        ("revolutions", bytes(&scene.revolutions)),
-        ("patches", bytes(&scene.patches)),
-        ("profile_points", bytes(&scene.profile_points)),
-        ("unbounded", bytes(&scene.unbounded)),
-        ("materials", bytes(&scene.materials)),
-        ("textures", bytes(&scene.textures)),
-        ("lights", bytes(&scene.lights)),
-        ("distributions", bytes(&scene.distributions)),
-        ("nodes", bytes(&scene.nodes)),
-        ("refs", bytes(&scene.refs)),
-        ("triangles", bytes(&scene.triangles)),
-        ("attributes", bytes(&scene.attributes)),
-        ("texels", bytes(&scene.texels)),
-    ]
 }
 
 impl InfoReport {

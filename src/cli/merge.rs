@@ -8,9 +8,9 @@ use caustica::film::file::Format;
 use caustica::film::{self, FileError, RelativeError};
 use serde_json::{Value, json};
 
+use super::made::left_out;
 use super::output::{message, result};
 use super::progress::{count, percent};
-use super::render::left_out;
 use super::{Done, Failure};
 
 /// Merge checkpoints of ranges of passes into the picture of all

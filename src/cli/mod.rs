@@ -6,6 +6,7 @@ mod allowed;
 mod bench;
 mod bench_table;
 mod bounds;
+mod budget;
 mod check;
 mod checkpoint;
 mod colors;
@@ -20,6 +21,7 @@ mod info;
 mod interrupt;
 mod like;
 mod log;
+mod made;
 mod man;
 mod measure;
 mod merge;
@@ -30,6 +32,7 @@ mod preview;
 mod progress;
 mod render;
 mod study;
+mod succession;
 mod tessellate;
 mod tev;
 
@@ -55,8 +58,8 @@ Examples:
   caustica render scenes/caustics.toml -o picture.png -o picture.exr
   caustica check scenes/cornell.toml scenes/caustics.toml
 
-Exit codes: 0 done, 1 failed, 2 wrong use, 3 over a threshold, 4 no such device, 5 device lost with the picture so far \
-saved, 130 interrupted with the picture so far saved";
+Exit codes: 0 done, 1 failed, 2 wrong use, 3 over a threshold, 4 no such device, 5 the device failed, with the picture \
+so far saved, 130 interrupted with the picture so far saved";
 
 #[derive(Subcommand)]
 enum Command {
@@ -83,7 +86,7 @@ enum Done {
     Fully = 0,
     /// A figure is over its threshold.
     OverThreshold = 3,
-    /// The device was lost; the picture so far is saved.
+    /// The device failed; the picture so far is saved.
     DeviceLost = 5,
     /// By the user; the picture so far is saved.
     Interrupted = 130,

@@ -29,6 +29,9 @@ pub struct Overrides {
     /// Photons emitted per pass
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub photons: Option<u32>,
+    /// Photons that are traced and gathered at once, at the most [default: as many as four million records hold]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    batch: Option<u32>,
     /// Start radius: pixels at the visible point as 2px, scene units as 0.01, or auto
     #[arg(long, value_name = "R", value_parser = radius, allow_negative_numbers = true)]
     radius: Option<Radius>,
@@ -99,6 +102,7 @@ impl Overrides {
         set(&mut settings.method, self.method);
         set(&mut settings.passes, self.pass_count());
         set(&mut settings.photons, self.photons);
+        settings.batch = self.batch.or(settings.batch);
         set(&mut settings.radius, self.radius);
         settings.indirect_radius = self.indirect_radius.or(settings.indirect_radius);
         set(&mut settings.radius_rule, self.radius_rule);

@@ -6,13 +6,14 @@ use std::time::Duration;
 
 use caustica::calibration::{Calibrating, Calibration};
 use caustica::checkpoint::Origin;
-use caustica::device::{self, Opened};
+use caustica::device::{self, Candidates, DeviceError, Opened, Wanted};
 use caustica::engine::{Engine, EngineError, State};
 use caustica::film::tev::ADDRESS;
-use caustica::film::{self, Development, ErrorMap, Picture, Provenance, Rejections, check_outputs};
+use caustica::film::{Development, Picture, Provenance, check_outputs};
 use caustica::limits;
 use caustica::quality::{Expected, Quality, expected};
-use caustica::render::{Ending, Outcome, Progress, Saving, Stop, resume};
+use caustica::relay::Relay;
+use caustica::render::{Broken, Kept, Progress, Saving, Stop, resume};
 use caustica::scene::{Aovs, Loaded, Scene};
 use caustica::settings::{Method, RadiusRule, RenderSettings};
 use caustica::showing::Showing;
@@ -20,11 +21,15 @@ use clap::builder::NonEmptyStringValueParser;
 use miette::{Report, miette};
 use serde_json::json;
 
+use super::budget::Budget;
+use super::checkpoint::Keeper;
 use super::extent::Extent;
 use super::like::Like;
+use super::made::{Made, left_out};
 use super::output::{message, result};
 use super::overrides::{Overrides, Passes, duration, target_error};
-use super::progress::{Reporter, count, event, percent, time};
+use super::progress::{Reporter, count, time};
+use super::succession::Succession;
 use super::tev::Viewer;
 use super::{Done, Failure, checkpoint, interrupt};
 
@@ -68,6 +73,8 @@ pub struct Arguments {
     #[arg(long)]
     strict: bool,
     #[command(flatten)]
+    budget: Budget,
+    #[command(flatten)]
     extent: Extent,
     #[command(flatten)]
     voice: Voice,
@@ -104,8 +111,16 @@ pub struct Voice {
     pub json: bool,
 }
 
+/// Gives the devices that a wish means.
+type Find<'a> = dyn Fn(&Wanted, &RenderSettings) -> Result<Candidates, DeviceError> + 'a;
+
 /// Renders and writes.
 pub fn run(arguments: Arguments) -> Result<Done, Failure> {
+    run_on(arguments, &Candidates::of)
+}
+
+/// The same on devices that `find` gives.
+fn run_on(arguments: Arguments, find: &Find) -> Result<Done, Failure> {
     let like = arguments.like.as_deref().map(Like::read).transpose()?;
     let file = arguments.scene.clone().or(like.as_ref().map(Like::scene)).unwrap_or_default();
     let outputs = match arguments.output.as_slice() {
@@ -130,7 +145,12 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     let first_pass = passes.map_or(like.as_ref().map_or(0, Like::first_pass), |passes| passes.first);
     check_range(first_pass, &settings)?;
     let device = arguments.device.as_deref().or(like.as_ref().map(Like::device)).unwrap_or("auto");
-    let opened = device::open(&device::parse(device), &scene, &settings)?;
+    let json = arguments.voice.json;
+    let settings = files.batched(settings);
+    let candidates = find(&device::parse(device), &settings)?;
+    let memory = arguments.budget.memory(&files);
+    let mut succession = Succession::new(candidates, &scene, &settings, memory, json);
+    let opened = succession.first()?;
     let mut viewer = Viewer::connect(arguments.tev.as_deref(), &scene)?;
     let scene_text = std::fs::read_to_string(&file).unwrap_or_default();
     let origin = Origin::of(&opened, &scene, &scene_text);
@@ -142,38 +162,48 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     files.check(&origin, opened.kind.bits(), Passes { first: first_pass, end })?;
     let from = files.resumed();
     let reporter = begin(&arguments.voice, &scene, &opened)?;
-    let mut engine = opened.engine;
-    engine.restore(from.map_or(&State::before(first_pass), |from| &from.state))?;
+    let mut next = |error: &EngineError, state: &State| succession.next(error, state);
+    let mut engine = Relay::new(opened.engine, &mut next);
+    let nothing = State::before(first_pass);
+    let state = from.map_or(&nothing, |from| &from.state);
     let progress = from.map_or(Progress::before(stop), |from| from.progress(stop));
-    files.tell(arguments.voice.json, &reporter)?;
+    files.tell(json, &reporter)?;
     let mut shown = |picture: &Picture| viewer.show(picture);
     let mut showing;
     let engine: &mut dyn Engine = if arguments.tev.is_some() {
-        showing = Showing::new(engine.as_mut(), &mut shown);
+        showing = Showing::new(&mut engine, &mut shown);
         &mut showing
     } else {
-        engine.as_mut()
+        &mut engine
     };
     let reporter = RefCell::new(reporter);
     let mut show = |progress: &Progress| reporter.borrow_mut().show(progress);
-    let mut keeper = checkpoint::Keeper::new(&files, origin, arguments.voice.json);
-    let mut save = |engine: &mut dyn Engine, progress: &Progress| keeper.save(engine, progress);
+    let mut keeper = Keeper::new(&files, origin, json);
+    let mut save = |state: State, progress: &Progress| keeper.save(state, progress);
     let every = arguments.checkpoint_every;
     let saving = files.keeps().then_some(Saving { every, save: &mut save });
     // of a render that goes on the first passes are not at hand
     let outcome = match arguments.overrides.quality.filter(|_| from.is_none()) {
         Some(quality) => {
-            let promise = Promise { quality, stop, settings: &opened.settings, json: arguments.voice.json };
+            let promise = Promise { quality, stop, settings: &opened.settings, json };
             let mut tell = |calibration: &Calibration| promise.tell(calibration, &reporter.borrow());
             let mut watched = Calibrating::new(engine, &mut tell);
-            resume(&mut watched, progress, interrupt::flag(), &mut show, saving)
+            resume(&mut watched, state, progress, interrupt::flag(), &mut show, saving)
         }
-        None => resume(engine, progress, interrupt::flag(), &mut show, saving),
+        None => resume(engine, state, progress, interrupt::flag(), &mut show, saving),
     };
     let mut reporter = reporter.into_inner();
     reporter.finish();
-    let outcome = outcome?;
-    viewer.show(&outcome.picture);
+    let (made, error) = match outcome {
+        Ok(outcome) => (Made::from(outcome), None),
+        Err(Broken { error, kept: None }) => return Err(error.into()),
+        Err(Broken { error, kept: Some(kept) }) => {
+            let Kept { state, progress } = *kept;
+            let rest = keeper.rest(state, &progress, &outputs);
+            (Made::of_rest(&rest, progress), Some(error))
+        }
+    };
+    viewer.show(&made.picture);
 
     let provenance = Provenance {
         scene: scene.name.clone(),
@@ -182,37 +212,39 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
         digest: Some(digest),
         film: Some(scene.film),
         materials: scene.materials.iter().map(|material| material.name.clone()).collect(),
-        asked: Some(settings),
+        asked: Some(succession.asked().clone()),
         settings: opened.settings,
-        device: opened.name,
+        device: succession.device(),
         first_pass,
-        passes_done: outcome.progress.passes,
+        passes_done: made.progress.passes,
     };
     let film = &scene.film;
     let development =
         Development { exposure: film.exposure, tonemap: film.tonemap, bits: arguments.extent.bits };
-    write(&outputs, &outcome, &development, &provenance)?;
-    tell(arguments.voice.json, &reporter, &outputs, &outcome)?;
-    if !matches!(outcome.ending, Ending::Failed(_)) {
-        keeper.end()?;
+    made.write(&outputs, &development, &provenance)?;
+    made.tell(json, &reporter, &outputs)?;
+    if let Some(error) = error {
+        return broken_off(error, made.progress.passes, &keeper);
     }
-    if arguments.strict && !outcome.rejections.is_empty() {
-        return Err(Failure::failed(miette!("--strict: {}", left_out(&outcome.rejections))));
+    keeper.end()?;
+    if arguments.strict && !made.rejections.is_empty() {
+        return Err(Failure::failed(miette!("--strict: {}", left_out(&made.rejections))));
     }
-    match outcome.ending {
-        Ending::Passes | Ending::Time | Ending::TargetError => Ok(Done::Fully),
-        Ending::Interrupted => Ok(Done::Interrupted),
-        Ending::Failed(error) => {
-            message(format_args!(
-                "the picture holds the first {} passes only: {error}",
-                outcome.progress.passes
-            ));
-            match error {
-                EngineError::DeviceLost(_) => Ok(Done::DeviceLost),
-                _ => Err(error.into()),
-            }
-        }
+    Ok(if made.ended == "interrupted" { Done::Interrupted } else { Done::Fully })
+}
+
+/// Tells why a render has ended early, and how to go on.
+fn broken_off(error: EngineError, passes: u32, keeper: &Keeper) -> Result<Done, Failure> {
+    message(format_args!("the picture holds the first {passes} passes only: {error}"));
+    match keeper.place() {
+        Some(file) => message(format_args!(
+            "they are kept in {}: the same command with --resume {} goes on from there, on any --device",
+            file.display(),
+            file.display()
+        )),
+        None => message("they are in no checkpoint"),
     }
+    if error.is_of_device() { Ok(Done::DeviceLost) } else { Err(error.into()) }
 }
 
 /// Fails where passes do not stand by themselves, but are to begin in the middle.
@@ -236,6 +268,9 @@ pub fn begin(voice: &Voice, scene: &Scene, opened: &Opened) -> Result<Reporter, 
     if let Some(radius) = &opened.radius {
         reporter.note(&format!("start radius {radius}"));
     }
+    if let Some(cut) = &opened.cut {
+        reporter.note(cut);
+    }
     if voice.json {
         result(json!({
             "event": "start",
@@ -245,6 +280,7 @@ pub fn begin(voice: &Voice, scene: &Scene, opened: &Opened) -> Result<Reporter, 
             "width": scene.film.width,
             "height": scene.film.height,
             "settings": opened.settings,
+            "cut": opened.cut,
             "radius_why": opened.radius.map(|radius| radius.to_string()),
         }))?;
     }
@@ -327,56 +363,9 @@ pub fn default_output(scene: &Path) -> PathBuf {
     Path::new(scene.file_stem().unwrap_or(scene.as_os_str())).with_extension("png")
 }
 
-fn write(
-    outputs: &[PathBuf],
-    outcome: &Outcome,
-    development: &Development,
-    made: &Provenance,
-) -> Result<(), Failure> {
-    if !outcome.rejections.is_empty() {
-        message(format_args!("warning: {}", left_out(&outcome.rejections)));
-    }
-    let mut layers = outcome.errors.as_ref().map_or(Vec::new(), ErrorMap::layers);
-    layers.extend_from_slice(&outcome.layers);
-    for output in outputs {
-        film::write(output, &outcome.picture, &layers, development, made)?;
-    }
-    Ok(())
-}
-
-/// What was left out of the picture and why.
-pub fn left_out(rejections: &Rejections) -> String {
-    let causes: Vec<_> =
-        rejections.causes().iter().map(|(count, cause)| format!("{count} {cause}")).collect();
-    format!("left out of the picture: {}", causes.join(", "))
-}
-
-fn tell(json: bool, reporter: &Reporter, outputs: &[PathBuf], outcome: &Outcome) -> Result<(), Failure> {
-    let progress = &outcome.progress;
-    if json {
-        let mut done = event("done", progress);
-        done["ended"] = match &outcome.ending {
-            Ending::Passes => "passes",
-            Ending::Time => "time",
-            Ending::TargetError => "target_error",
-            Ending::Interrupted => "interrupted",
-            Ending::Failed(_) => "failed",
-        }
-        .into();
-        done["outputs"] = json!(outputs);
-        done["rejected"] = json!(outcome.rejections);
-        return result(done);
-    }
-    let error = progress.error.map_or(String::new(), |e| {
-        let [stated, noise, bias] = [e.stated, e.noise, e.bias].map(percent);
-        format!(", error {stated} (noise {noise}, bias {bias})")
-    });
-    reporter.note(&format!(
-        "{} passes, {} photons, {} rays in {}{error}",
-        progress.passes,
-        count(progress.photons as f64),
-        count(progress.rays as f64),
-        time(progress.elapsed)
-    ));
-    outputs.iter().try_for_each(|output| result(output.display()))
-}
+#[cfg(test)]
+#[path = "../../tests/faults/engine.rs"]
+mod engine;
+#[cfg(test)]
+#[path = "render_faults.rs"]
+mod faults;

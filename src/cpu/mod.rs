@@ -14,7 +14,7 @@ use super::kernels::resolve_parts::{PartsPixel, resolve_parts};
 use super::layers::Found as Layers;
 use super::math::is_finite;
 use super::pack::Packed;
-use super::plan::{Kernel, Plan};
+use super::plan::{Kernel, Plan, Step};
 use super::real::{ENGINE, Real};
 use super::tables::{Facet, Scene};
 use crate::clock::{Clock, KernelSeconds};
@@ -149,10 +149,13 @@ impl CpuEngine {
         let buckets = if photons { plan.buckets as usize } else { 0 };
         let path = plan.settings.method == Method::Path;
         let points_kept = if path { 0 } else { points };
+        let held =
+            |name: &str| if plan.in_turn().contains(&name) { plan.chunk(0).1 as usize } else { points };
+        let held = |name: &str| if path { 0 } else { held(name) };
         Self {
             passes_done: 0,
-            visible_points: vec![VisiblePoint::zeroed(); points_kept],
-            gathered: vec![Gathered::zeroed(); points_kept],
+            visible_points: vec![VisiblePoint::zeroed(); held("visible_points")],
+            gathered: vec![Gathered::zeroed(); held("gathered")],
             statistics: vec![Statistics::zeroed(); if plan.features.has("local") { points_kept } else { 0 }],
             film: vec![FilmPixel::zeroed(); plan.pixels as usize],
             aovs: vec![AovPixel::zeroed(); if plan.aovs.are_traced() { plan.pixels as usize } else { 0 }],
@@ -172,7 +175,6 @@ impl CpuEngine {
     fn photon_pass(&mut self, report: &mut PassReport) {
         let mut batch = self.plan.batch_photons;
         loop {
-            self.gathered.par_iter_mut().for_each(|g| *g = Gathered::zeroed());
             *report = PassReport { photons: self.plan.settings.photons as u64, ..PassReport::default() };
             match self.steps(batch, report) {
                 Ok(()) => return,
@@ -183,89 +185,109 @@ impl CpuEngine {
     }
 
     fn steps(&mut self, batch_photons: u32, report: &mut PassReport) -> Result<(), Overflow> {
+        let turn = self.plan.in_turn();
+        for (number, steps) in self.plan.phases(self.passes_done, batch_photons).into_iter().enumerate() {
+            if number == 0 || turn.contains(&"gathered") {
+                self.gathered.par_iter_mut().for_each(|g| *g = Gathered::zeroed());
+            }
+            for step in steps {
+                self.step(&step, number == 0, report)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// One step of the phase that is the first one of its pass or not.
+    fn step(&mut self, step: &Step, first_phase: bool, report: &mut PassReport) -> Result<(), Overflow> {
         let sampled = self.plan.features.has("sampled");
         let local = self.plan.features.has("local");
         let scene = &self.packed.scene;
-        for step in self.plan.steps(self.passes_done, batch_photons) {
-            self.clock.begin(step.kernel.stem());
-            let d = &step.dispatch;
-            let (first, points) = self.plan.chunk(step.chunk);
-            let chunk = first as usize..(first + points) as usize;
-            match step.kernel {
-                Kernel::EyeTrace => {
-                    report.eye_paths += d.end as u64;
-                    report.rays += self.visible_points[chunk]
-                        .par_chunks_mut(EYE_TASK)
-                        .enumerate()
-                        .map(|(task, points)| {
-                            let first = (task * EYE_TASK) as u32;
-                            self.arch.dispatch(EyePaths { scene, dispatch: d, sampled, first, points })
-                        })
-                        .sum::<u64>();
-                    report.eye_rays = report.rays;
-                }
-                Kernel::PhotonTrace => {
-                    let (rays, ends) = trace_photons(self.arch, scene, d, sampled, &mut self.records);
-                    report.rays += rays;
+        self.clock.begin(step.kernel.stem());
+        let d = &step.dispatch;
+        let (first, points) = self.plan.chunk(step.chunk);
+        let chunk = first as usize..(first + points) as usize;
+        let turn = self.plan.in_turn();
+        // where a chunk's part of a buffer is
+        let place = |name: &str| if turn.contains(&name) { 0..points as usize } else { chunk.clone() };
+        let (seen, found) = (place("visible_points"), place("gathered"));
+        match step.kernel {
+            Kernel::EyeTrace => {
+                report.eye_paths += d.end as u64;
+                let rays = self.visible_points[seen]
+                    .par_chunks_mut(EYE_TASK)
+                    .enumerate()
+                    .map(|(task, points)| {
+                        let first = (task * EYE_TASK) as u32;
+                        self.arch.dispatch(EyePaths { scene, dispatch: d, sampled, first, points })
+                    })
+                    .sum::<u64>();
+                report.rays += rays;
+                report.eye_rays += rays;
+            }
+            Kernel::PhotonTrace => {
+                let (rays, ends) = trace_photons(self.arch, scene, d, sampled, &mut self.records);
+                report.rays += rays;
+                let records = self.records.iter().map(|list| list.records.len() as u64).sum::<u64>();
+                // photons that are traced again for another tile are the same
+                if first_phase {
                     report.ends.add(&PhotonEnds::of(ends));
-                    let records = self.records.iter().map(|list| list.records.len() as u64).sum::<u64>();
                     report.records += records;
-                    if records > d.capacity as u64 && d.end > 1 {
-                        return Err(Overflow);
-                    }
                 }
-                Kernel::GridCount => grid_count(d, &mut self.records),
-                Kernel::GridScanReduce | Kernel::GridScanSums => {}
-                Kernel::GridScan => self.part_starts = grid_scan(&self.records),
-                Kernel::GridScatter => grid_scatter(d, &mut self.records),
-                Kernel::GridSortLong => {}
-                Kernel::GridSort => {
-                    let (starts, sorted) = (&mut self.starts, &mut self.sorted);
-                    grid_sort(d, &self.records, &self.part_starts, starts, sorted);
+                if records > d.capacity as u64 && d.end > 1 {
+                    return Err(Overflow);
                 }
-                Kernel::Gather => {
-                    let points = self.visible_points[chunk.clone()].par_chunks(GATHER_TASK);
-                    let gathered = self.gathered[chunk.clone()].par_chunks_mut(GATHER_TASK);
-                    let mut statistics = self.statistics.get(chunk).unwrap_or_default().chunks(GATHER_TASK);
-                    let statistics: Vec<_> = (0..points.len()).map(|_| statistics.next()).collect();
-                    gathered.zip(points).zip(statistics).for_each(|((gathered, points), statistics)| {
-                        let (starts, sorted) = (&self.starts, &self.sorted);
-                        self.arch.dispatch(Gathers {
-                            facets: &scene.facets,
-                            dispatch: d,
-                            points,
-                            statistics,
-                            starts,
-                            sorted,
-                            gathered,
-                        });
+            }
+            Kernel::GridCount => grid_count(d, &mut self.records),
+            Kernel::GridScanReduce | Kernel::GridScanSums => {}
+            Kernel::GridScan => self.part_starts = grid_scan(&self.records),
+            Kernel::GridScatter => grid_scatter(d, &mut self.records),
+            Kernel::GridSortLong => {}
+            Kernel::GridSort => {
+                let (starts, sorted) = (&mut self.starts, &mut self.sorted);
+                grid_sort(d, &self.records, &self.part_starts, starts, sorted);
+            }
+            Kernel::Gather => {
+                let points = self.visible_points[seen].par_chunks(GATHER_TASK);
+                let gathered = self.gathered[found].par_chunks_mut(GATHER_TASK);
+                let mut statistics = self.statistics.get(chunk).unwrap_or_default().chunks(GATHER_TASK);
+                let statistics: Vec<_> = (0..points.len()).map(|_| statistics.next()).collect();
+                gathered.zip(points).zip(statistics).for_each(|((gathered, points), statistics)| {
+                    let (starts, sorted) = (&self.starts, &self.sorted);
+                    self.arch.dispatch(Gathers {
+                        facets: &scene.facets,
+                        dispatch: d,
+                        points,
+                        statistics,
+                        starts,
+                        sorted,
+                        gathered,
                     });
-                }
-                Kernel::AovTrace => trace_aovs(scene, d, &self.plan.features, &mut self.aovs),
-                Kernel::ResolveParts => {
-                    let samples = d.eye_samples as usize;
-                    let pixels = d.chunk_first as usize / samples..chunk.end / samples;
-                    let parts = self.parts[pixels].par_iter_mut().enumerate();
-                    parts.for_each(|(i, parts)| {
-                        let at = chunk.start + i * samples..chunk.start + (i + 1) * samples;
-                        let statistics = self.statistics.get(at.clone()).filter(|_| local);
-                        let points = &self.visible_points[at.clone()];
-                        resolve_parts(d, points, &self.gathered[at], statistics, parts);
-                    });
-                }
-                Kernel::Resolve => {
-                    let samples = d.eye_samples as usize;
-                    let pixels = d.chunk_first as usize / samples..chunk.end / samples;
-                    let film = self.film[pixels].par_iter_mut();
-                    let points = self.visible_points[chunk.clone()].par_chunks(samples);
-                    let gathered = self.gathered[chunk.clone()].par_chunks(samples);
-                    let work = film.zip(points).zip(gathered);
-                    if local {
-                        let statistics = self.statistics[chunk].par_chunks_mut(samples);
-                        work.zip(statistics).for_each(|(((f, p), g), s)| resolve(d, p, g, Some(s), f));
-                    } else {
-                        work.for_each(|((f, p), g)| resolve(d, p, g, None, f));
-                    }
+                });
+            }
+            Kernel::AovTrace => trace_aovs(scene, d, &self.plan.features, &mut self.aovs),
+            Kernel::ResolveParts => {
+                let samples = d.eye_samples as usize;
+                let pixels = d.chunk_first as usize / samples..chunk.end / samples;
+                let parts = self.parts[pixels].par_iter_mut().enumerate();
+                parts.for_each(|(i, parts)| {
+                    let at = |start: usize| start + i * samples..start + (i + 1) * samples;
+                    let statistics = self.statistics.get(at(chunk.start)).filter(|_| local);
+                    let points = &self.visible_points[at(seen.start)];
+                    resolve_parts(d, points, &self.gathered[at(found.start)], statistics, parts);
+                });
+            }
+            Kernel::Resolve => {
+                let samples = d.eye_samples as usize;
+                let pixels = d.chunk_first as usize / samples..chunk.end / samples;
+                let film = self.film[pixels].par_iter_mut();
+                let points = self.visible_points[seen].par_chunks(samples);
+                let gathered = self.gathered[found].par_chunks(samples);
+                let work = film.zip(points).zip(gathered);
+                if local {
+                    let statistics = self.statistics[chunk].par_chunks_mut(samples);
+                    work.zip(statistics).for_each(|(((f, p), g), s)| resolve(d, p, g, Some(s), f));
+                } else {
+                    work.for_each(|((f, p), g)| resolve(d, p, g, None, f));
                 }
             }
         }
@@ -376,6 +398,10 @@ impl Engine for CpuEngine {
         Ok(self.plan.rejections(&self.film))
     }
 
+    fn can_be_lost(&self) -> bool {
+        false
+    }
+
     fn save(&mut self) -> Result<State, EngineError> {
         Ok(State {
             first_pass: self.plan.first_pass,
@@ -411,6 +437,9 @@ impl Engine for CpuEngine {
     }
 
     fn gathered(&mut self) -> Result<u64, EngineError> {
+        if self.plan.in_turn().contains(&"gathered") {
+            return Err(EngineError::Unsupported("what tiles have gathered is not kept".to_owned()));
+        }
         Ok(self.gathered.par_iter().map(|gathered| u64::from(gathered.count)).sum())
     }
 }

@@ -57,7 +57,7 @@ pub mod lights;
 pub mod materials;
 #[path = "../pack/mod.rs"]
 pub mod pack;
-#[path = "../plan.rs"]
+#[path = "../plan/mod.rs"]
 pub mod plan;
 #[path = "../probe.rs"]
 pub mod probe;

@@ -124,8 +124,14 @@ pub fn list() -> Vec<AdapterSummary> {
     adapters().iter().map(|(_, summary)| summary.clone()).collect()
 }
 
-/// What went wrong between two looks.
-type Failure = Arc<Mutex<Option<EngineError>>>;
+/// What went wrong between two looks, and whether the device is gone for good.
+#[derive(Debug, Default)]
+struct Failures {
+    first: Option<EngineError>,
+    lost: Option<String>,
+}
+
+type Failure = Arc<Mutex<Failures>>;
 
 /// An open device.
 pub struct Gpu {
@@ -157,11 +163,7 @@ impl Gpu {
         let uncaptured = failure.clone();
         device.on_uncaptured_error(Arc::new(move |error| record(&uncaptured, as_engine_error(&error))));
         let lost = failure.clone();
-        device.set_device_lost_callback(move |reason, message| {
-            if reason != wgpu::DeviceLostReason::Destroyed {
-                record(&lost, EngineError::DeviceLost(message));
-            }
-        });
+        device.set_device_lost_callback(move |_, message| record(&lost, EngineError::DeviceLost(message)));
         Ok(Self { device, queue, summary: summary.clone(), failure })
     }
 
@@ -170,12 +172,16 @@ impl Gpu {
         self.device.features().contains(wgpu::Features::TIMESTAMP_QUERY)
     }
 
-    /// The failure since the last look, if any.
+    /// The failure since the last look, if any. A device that is lost stays so.
     pub fn check(&self) -> Result<(), EngineError> {
-        match self.failure.lock().unwrap_or_else(PoisonError::into_inner).take() {
-            Some(error) => Err(error),
-            None => Ok(()),
-        }
+        let mut failures = self.failure.lock().unwrap_or_else(PoisonError::into_inner);
+        let lost = failures.lost.clone().map(EngineError::DeviceLost);
+        lost.or(failures.first.take()).map_or(Ok(()), Err)
+    }
+
+    /// Has the driver take the device away, as it does when it is reset: for tests.
+    pub fn lose(&self) {
+        self.device.destroy();
     }
 
     /// Waits until all submitted work is done.
@@ -188,12 +194,16 @@ impl Gpu {
 
 /// Keeps the first failure: what follows is its consequence.
 fn record(failure: &Failure, error: EngineError) {
-    failure.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
+    let mut failures = failure.lock().unwrap_or_else(PoisonError::into_inner);
+    if let EngineError::DeviceLost(text) = &error {
+        failures.lost.get_or_insert_with(|| text.clone());
+    }
+    failures.first.get_or_insert(error);
 }
 
 fn as_engine_error(error: &wgpu::Error) -> EngineError {
     match error {
-        wgpu::Error::OutOfMemory { .. } => EngineError::DeviceLost(format!("out of memory: {error}")),
+        wgpu::Error::OutOfMemory { .. } => EngineError::OutOfMemory(error.to_string()),
         wgpu::Error::Validation { description, .. } => EngineError::Shader(description.clone()),
         wgpu::Error::Internal { description, .. } => EngineError::DeviceLost(description.clone()),
     }

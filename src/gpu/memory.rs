@@ -2,6 +2,7 @@
 
 use super::context::{AdapterKind, Gpu};
 use crate::engine::EngineError;
+use crate::memory::available;
 use wgpu::BufferUsages;
 
 /// Bytes of one step of reading back.
@@ -29,7 +30,7 @@ impl Gpu {
             }
         }
         let total = sizes.iter().map(|(_, bytes)| bytes).sum();
-        match available_memory() {
+        match available() {
             Some(limit) if self.summary.kind == AdapterKind::Software && total > limit => {
                 Err(too_large("the render", total, limit))
             }
@@ -70,7 +71,9 @@ impl Gpu {
 
     /// The first `bytes` bytes, whole words, of a buffer.
     pub fn read(&self, buffer: &wgpu::Buffer, bytes: u64) -> Result<Vec<u8>, EngineError> {
-        let mut out = Vec::with_capacity(bytes as usize);
+        let mut out = Vec::new();
+        out.try_reserve_exact(bytes as usize)
+            .map_err(|_| EngineError::OutOfMemory(format!("{bytes} bytes to read back into")))?;
         if bytes == 0 {
             return Ok(out);
         }
@@ -92,11 +95,4 @@ impl Gpu {
         }
         Ok(out)
     }
-}
-
-/// Bytes of main memory that can still be had, where the system says so.
-fn available_memory() -> Option<u64> {
-    let text = std::fs::read_to_string("/proc/meminfo").ok()?;
-    let line = text.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
-    line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok().map(|kib| kib << 10)
 }

@@ -79,7 +79,7 @@ pub(super) fn settings(loader: &mut Loader) -> Option<RenderSettings> {
             }
         }
     };
-    for count in ["passes", "photons"] {
+    for count in ["passes", "photons", "batch"] {
         require(count, "at least 1", |count| count != 0.0);
     }
     require("radius", "a number from 1e-15 to 1e15", |radius| (SMALLEST..=LARGEST).contains(&radius));

@@ -1,0 +1,102 @@
+//! A rendered picture: written, and told about.
+
+use std::path::PathBuf;
+
+use caustica::checkpoint::Checkpoint;
+use caustica::film::estimate::LEAST_PASSES;
+use caustica::film::exr_file::Channel;
+use caustica::film::{self, Development, ErrorMap, Picture, Provenance, Rejections};
+use caustica::render::{Ending, Outcome, Progress};
+use serde_json::json;
+
+use super::Failure;
+use super::output::{message, result};
+use super::progress::{Reporter, count, event, percent, time};
+
+/// A picture with what belongs to it.
+pub struct Made {
+    /// The estimate.
+    pub picture: Picture,
+    /// What it says of its own error; none for fewer passes than an estimate needs.
+    pub errors: Option<ErrorMap>,
+    /// What the film asks for beside radiance.
+    pub layers: Vec<Channel>,
+    /// What was left out of it.
+    pub rejections: Rejections,
+    /// How far it is.
+    pub progress: Progress,
+    /// Why it is no further, in the word of the events.
+    pub ended: &'static str,
+}
+
+impl From<Outcome> for Made {
+    fn from(outcome: Outcome) -> Self {
+        let Outcome { picture, errors, layers, rejections, progress, ending } = outcome;
+        let ended = match ending {
+            Ending::Passes => "passes",
+            Ending::Time => "time",
+            Ending::TargetError => "target_error",
+            Ending::Interrupted => "interrupted",
+        };
+        Self { picture, errors, layers, rejections, progress, ended }
+    }
+}
+
+impl Made {
+    /// The picture of what is left of a render whose device failed.
+    pub fn of_rest(rest: &Checkpoint, progress: Progress) -> Self {
+        let (picture, errors, rejections) = rest.develop();
+        let errors = Some(errors).filter(|_| progress.passes >= LEAST_PASSES);
+        let progress = Progress { error: errors.as_ref().map(ErrorMap::relative), ..progress };
+        Self { picture, errors, layers: rest.layers(), rejections, progress, ended: "failed" }
+    }
+
+    /// Writes it into files.
+    pub fn write(
+        &self,
+        outputs: &[PathBuf],
+        development: &Development,
+        made: &Provenance,
+    ) -> Result<(), Failure> {
+        if !self.rejections.is_empty() {
+            message(format_args!("warning: {}", left_out(&self.rejections)));
+        }
+        let mut layers = self.errors.as_ref().map_or(Vec::new(), ErrorMap::layers);
+        layers.extend_from_slice(&self.layers);
+        for output in outputs {
+            film::write(output, &self.picture, &layers, development, made)?;
+        }
+        Ok(())
+    }
+
+    /// Tells how it came about, and the files.
+    pub fn tell(&self, json: bool, reporter: &Reporter, outputs: &[PathBuf]) -> Result<(), Failure> {
+        let progress = &self.progress;
+        if json {
+            let mut done = event("done", progress);
+            done["ended"] = self.ended.into();
+            done["outputs"] = json!(outputs);
+            done["rejected"] = json!(self.rejections);
+            return result(done);
+        }
+        let error = progress.error.map_or(String::new(), |e| {
+            let [stated, noise, bias] = [e.stated, e.noise, e.bias].map(percent);
+            format!(", error {stated} (noise {noise}, bias {bias})")
+        });
+        reporter.note(&format!(
+            "{} passes, {} photons, {} rays in {}{error}",
+            progress.passes,
+            count(progress.photons as f64),
+            count(progress.rays as f64),
+            time(progress.elapsed)
+        ));
+        outputs.iter().try_for_each(|output| result(output.display()))
+    }
+}
+
+/// What was left out of the picture and why.
+pub fn left_out(rejections: &Rejections) -> String {
+    let causes: Vec<_> =
+        rejections.causes().iter().map(|(count, cause)| format!("{count} {cause}")).collect();
+    format!("left out of the picture: {}", causes.join(", "))
+}

@@ -1,0 +1,206 @@
+//! An engine made ready: its buffers, and its kernels compiled.
+
+use super::super::context::{AdapterChoice, AdapterKind, Gpu};
+use super::super::layout::{SceneTables, long_tables};
+use super::super::pace::Pace;
+use super::super::program::{Compiling, Program, make_programs};
+use super::super::recorder::Recorder;
+use super::{GpuEngine, READINGS_BYTES, Submissions};
+use crate::clock::Clock;
+use crate::engine::EngineError;
+use crate::kernels::records::Dispatch;
+use crate::pack::Packed;
+use crate::plan::{Kernel, Plan};
+use crate::settings::Method;
+use crate::stage::stage;
+use crate::tables::Scene;
+use std::collections::BTreeMap;
+use std::time::Instant;
+
+/// Buffers of which each chunk of visible points has its own.
+const CHUNK_BUFFERS: [&str; 6] = ["visible_points", "gathered", "film", "statistics", "aovs", "parts"];
+/// What to change when the device is too small.
+const MEND: &str = "make the picture smaller, or take --device cpu";
+
+/// What an engine is made of that another may have had before.
+struct Kept {
+    gpu: Gpu,
+    pace: Pace,
+    programs: BTreeMap<Kernel, Program>,
+}
+
+/// What it took to make a kernel ready.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CompileSeconds {
+    /// To put its shader together, check it and hand it to the driver.
+    pub checking: f64,
+    /// Of the driver, until the kernel had run over nothing.
+    pub driver: f64,
+}
+
+impl CompileSeconds {
+    /// Both.
+    pub fn total(&self) -> f64 {
+        self.checking + self.driver
+    }
+}
+
+impl GpuEngine {
+    /// An engine for one scene and plan on the adapter of `choice`.
+    pub fn new(choice: &AdapterChoice, packed: &Packed, plan: Plan) -> Result<Self, EngineError> {
+        Self::with(choice, packed, plan, Compiling::Together)
+    }
+
+    /// The same, more slowly: the kernels are made ready one after another, so that [`Self::compile_seconds`] can tell.
+    pub fn measured(choice: &AdapterChoice, packed: &Packed, plan: Plan) -> Result<Self, EngineError> {
+        Self::with(choice, packed, plan, Compiling::OneByOne)
+    }
+
+    fn with(
+        choice: &AdapterChoice,
+        packed: &Packed,
+        plan: Plan,
+        compiling: Compiling,
+    ) -> Result<Self, EngineError> {
+        if plan.settings.method == Method::Path {
+            return Err(EngineError::Unsupported(
+                "path tracing runs on the CPU alone: take --device cpu".into(),
+            ));
+        }
+        let kept = Kept { gpu: Gpu::open(choice)?, pace: Pace::default(), programs: BTreeMap::new() };
+        Self::on(kept, packed, plan, compiling)
+    }
+
+    /// An engine for another scene, camera or plan on the device of this one, which keeps its programs where the new ones
+    /// would be the same.
+    pub fn renewed(self, packed: &Packed, plan: Plan) -> Result<Self, EngineError> {
+        let same =
+            self.plan.features == plan.features && self.members == SceneTables::new(&packed.scene).members;
+        Self::on(self.kept(same), packed, plan, Compiling::Together)
+    }
+
+    /// What another engine can have of this one, whose buffers are given back first.
+    fn kept(self, programs_too: bool) -> Kept {
+        let programs = if programs_too { self.programs } else { BTreeMap::new() };
+        Kept { gpu: self.gpu, pace: self.pace, programs }
+    }
+
+    fn on(kept: Kept, packed: &Packed, plan: Plan, compiling: Compiling) -> Result<Self, EngineError> {
+        let Kept { gpu, pace, programs } = kept;
+        let scene = SceneTables::new(&packed.scene);
+        gpu.check_sizes(&sizes(&plan, &packed.scene), MEND)?;
+        let recorder = Recorder::new(&gpu)?;
+        let mut shared = BTreeMap::from([("scene", gpu.upload("scene", &scene.bytes)?)]);
+        for (name, _, content) in long_tables(&packed.scene) {
+            if !content.is_empty() {
+                shared.insert(name, gpu.upload(name, content)?);
+            }
+        }
+        let mut chunks = vec![BTreeMap::new(); plan.chunks() as usize];
+        for (name, bytes) in plan.buffers() {
+            if by_chunk(&plan, name) {
+                for (chunk, buffers) in (0..).zip(&mut chunks) {
+                    buffers.insert(name, gpu.storage(name, chunk_bytes(&plan, bytes, chunk))?);
+                }
+            } else {
+                shared.insert(name, gpu.storage(name, bytes)?);
+            }
+        }
+        let readings = gpu.storage("readings", READINGS_BYTES)?;
+        let mut engine = Self {
+            scene: (gpu.summary.kind == AdapterKind::Software).then(|| packed.scene.clone()),
+            device: gpu.summary.name.clone(),
+            gpu,
+            passes_done: 0,
+            torn: false,
+            recorder,
+            pace,
+            programs: BTreeMap::new(),
+            members: scene.members.clone(),
+            groups: BTreeMap::new(),
+            shared,
+            chunks,
+            readings,
+            plan,
+            compile_seconds: BTreeMap::new(),
+            submissions: Submissions::default(),
+            clock: Clock::default(),
+            stamped: false,
+        };
+        engine.compile(&scene, compiling, programs)?;
+        Ok(engine)
+    }
+
+    /// Makes the kernels of the plan ready, some of which are `kept`. Each other one runs once over nothing, since some drivers
+    /// compile at the first run, and do so while the next kernels are checked.
+    fn compile(
+        &mut self,
+        scene: &SceneTables,
+        compiling: Compiling,
+        kept: BTreeMap<Kernel, Program>,
+    ) -> Result<(), EngineError> {
+        let _stage = stage("compile");
+        let steps = self.plan.steps(0, self.plan.batch_photons);
+        let needed = |kernel: &Kernel| steps.iter().any(|step| step.kernel == *kernel);
+        let missing: Vec<Kernel> =
+            Kernel::ALL.into_iter().filter(|k| needed(k) && !kept.contains_key(k)).collect();
+        let Self { gpu, plan, recorder, programs, groups, shared, chunks, compile_seconds, .. } = self;
+        let mut take = |program: Program, checking: Option<f64>| {
+            let begun = Instant::now();
+            for (number, own) in (0..).zip(chunks.iter()) {
+                let Some(step) = steps.iter().find(|s| (s.kernel, s.chunk) == (program.kernel, number))
+                else {
+                    continue;
+                };
+                let buffer = |name: &str| own.get(name).or_else(|| shared.get(name));
+                let group = program.bind(gpu, &recorder.dispatches, buffer)?;
+                if number == 0 && checking.is_some() {
+                    let nothing = Dispatch { first: 0, end: 0, ..step.dispatch };
+                    recorder.dispatch(gpu, &program, &group, &nothing);
+                    recorder.submit(gpu);
+                }
+                groups.insert((program.kernel, number), group);
+            }
+            if let (Compiling::OneByOne, Some(checking)) = (compiling, checking) {
+                gpu.wait()?;
+                let driver = begun.elapsed().as_secs_f64();
+                compile_seconds.insert(program.kernel, CompileSeconds { checking, driver });
+            }
+            match checking {
+                Some(seconds) => log::debug!("{}: checked in {seconds:.3} s", program.kernel.stem()),
+                None => log::debug!("{}: kept", program.kernel.stem()),
+            }
+            programs.insert(program.kernel, program);
+            Ok(())
+        };
+        kept.into_values().filter(|program| needed(&program.kernel)).try_for_each(|kept| take(kept, None))?;
+        make_programs(gpu, &missing, &plan.features, scene, compiling, |program, checking| {
+            take(program, Some(checking))
+        })?;
+        self.gpu.wait()
+    }
+}
+
+/// Whether each chunk has a buffer of its own.
+fn by_chunk(plan: &Plan, name: &str) -> bool {
+    CHUNK_BUFFERS.contains(&name) && !plan.in_turn().contains(&name)
+}
+
+/// Bytes of a chunk's buffer, from those of the largest one.
+fn chunk_bytes(plan: &Plan, largest: u64, chunk: u32) -> u64 {
+    largest * plan.chunk(chunk).1 as u64 / plan.chunk(0).1.max(1) as u64
+}
+
+/// Name and bytes of everything that will be allocated.
+pub fn sizes(plan: &Plan, scene: &Scene) -> Vec<(&'static str, u64)> {
+    let mut list = vec![("scene", SceneTables::new(scene).bytes.len() as u64)];
+    list.extend(long_tables(scene).map(|(name, _, content)| (name, content.len() as u64)));
+    for (name, bytes) in plan.buffers() {
+        if by_chunk(plan, name) {
+            list.extend((0..plan.chunks()).map(|chunk| (name, chunk_bytes(plan, bytes, chunk))));
+        } else {
+            list.push((name, bytes));
+        }
+    }
+    list
+}

@@ -1,0 +1,175 @@
+//! How much memory a plan takes, and the same plan cut so that it fits.
+
+use super::super::kernels::bytes::{FILM_BYTES, STATISTICS_BYTES};
+use super::super::kernels::records::PhotonRecord;
+use super::super::real::{Real, Vec4};
+use super::super::tables::Scene;
+use super::kernel::SCAN_BLOCK;
+use super::{CHUNK_POINTS, Plan};
+use crate::engine::EngineError;
+use crate::film::estimate::PixelError;
+use crate::memory::{Memory, OverBudget, Part, total};
+use crate::settings::Method;
+
+/// Least visible points of a tile: with fewer a device has nothing to do between two steps.
+const LEAST_TILE: u32 = 1 << 14;
+/// Batches up to which smaller ones cost less than more tiles would.
+const MANY_BATCHES: u32 = 16;
+/// Bytes of each pixel that a channel of a picture file takes.
+const CHANNEL_BYTES: u64 = 8;
+/// Most that is read back from a device in one step.
+const READING_BYTES: u64 = 16 << 20;
+
+const SCENE: &str = "take coarser meshes or smaller textures";
+const PICTURE: &str = "make the picture smaller by --size, or render parts of it by --crop";
+const SAMPLES: &str = "lower --eye-samples or --size, or take --radius-rule global";
+const LAYERS: &str = "ask for fewer layers by --aov, or make the picture smaller by --size";
+const PHOTONS: &str = "lower --photons, or trace them in smaller batches by --batch";
+
+/// Where a plan's buffers are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// In the program's own memory: the CPU engine.
+    Program {
+        /// Whether there is a copy of the film for checkpoints.
+        saves: bool,
+    },
+    /// On a device with a driver, which keeps the scene and the film as well.
+    Device {
+        /// Whether that is main memory too.
+        in_main_memory: bool,
+    },
+}
+
+impl Plan {
+    /// Bytes by purpose, on the device and beside it, for a scene whose tables take `scene` bytes.
+    pub fn memory(&self, scene: u64, place: Place) -> Vec<Part> {
+        let pixels = u64::from(self.pixels);
+        let buffers = self.buffers();
+        let bytes = |name: &str| buffers.iter().find(|(n, _)| *n == name).map_or(0, |(_, bytes)| *bytes);
+        let path = self.settings.method == Method::Path;
+        // buffers of chunks are told for the largest one
+        let points = pixels * u64::from(self.eye_samples);
+        let whole = |name: &str| match self.in_turn().contains(&name) {
+            true => bytes(name),
+            false => (bytes(name) as f64 * points as f64 / f64::from(self.chunk(0).1.max(1))).ceil() as u64,
+        };
+        let visible = if path { 0 } else { whole("visible_points") + whole("gathered") };
+        let statistics =
+            if self.features.has("local") && !path { points * STATISTICS_BYTES as u64 } else { 0 };
+        let film = pixels * FILM_BYTES as u64;
+        let layers = whole("aovs") + whole("parts");
+        let device = matches!(place, Place::Device { .. });
+        // what a render goes on from is kept twice, unless it cannot be lost
+        let copies = if place == (Place::Program { saves: false }) { 1 } else { 2 };
+        let records = if device {
+            ["records", "sorted", "order", "counts", "starts", "block_sums"].map(bytes).iter().sum()
+        } else if self.features.has("photons") && !path {
+            let sorted = 6 * size_of::<Real>() + 4 + size_of::<Vec4>();
+            let list = size_of::<PhotonRecord>() + 4;
+            u64::from(self.capacity) * (sorted + list) as u64 + u64::from(self.buckets) * 4
+        } else {
+            0
+        };
+        // the picture and what it says of its error, beside the film on its way from the device or channels on theirs to a file
+        let channels = (8 + 3 * self.aovs.iter().count() as u64) * CHANNEL_BYTES;
+        let on_its_way = if device { channels.max(FILM_BYTES as u64) } else { channels };
+        let result = pixels * (12 + size_of::<PixelError>() as u64 + on_its_way);
+        let part = |what, bytes, mend| Part { what, bytes, mend };
+        let parts = [
+            part("the scene", if device { 2 * scene } else { scene }, SCENE),
+            part("the film, and any copy of it", copies * film, PICTURE),
+            part("radii of visible points, and any copy", copies * statistics, SAMPLES),
+            part("layers, and any copy", copies * layers, LAYERS),
+            part("visible points", visible, if self.eye_samples > 1 { SAMPLES } else { PICTURE }),
+            part("photons", records, PHOTONS),
+            part("the finished picture", result, PICTURE),
+            part("reading back", if device { film.min(READING_BYTES) } else { 0 }, PICTURE),
+        ];
+        parts.into_iter().filter(|part| part.bytes > 0).collect()
+    }
+
+    /// The same plan, cut so that it fits: the picture in tiles, which changes no bit, and where that is not enough and `memory`
+    /// lets it, photons in smaller batches, whose sums are rounded otherwise. [`Self::settings`] then name the batch.
+    ///
+    /// # Errors
+    /// Where nothing of it fits.
+    pub fn within(mut self, scene: u64, place: Place, memory: &Memory) -> Result<Self, EngineError> {
+        let Some((limit, of)) = memory.limit(place != Place::Device { in_main_memory: false }) else {
+            return Ok(self);
+        };
+        let fits = |plan: &Self| total(&plan.memory(scene, place)) <= limit;
+        if fits(&self) {
+            return Ok(self);
+        }
+        let gathers = self.features.has("photons") && self.settings.method != Method::Path;
+        let (planned, whole) = (self.settings.batch, self.batch_photons);
+        // first no smaller batches at all, then some in large tiles, since each tile has the photons of smaller ones traced anew
+        let rounds: &[u32] =
+            if memory.cuts_batches() && gathers { &[1, MANY_BATCHES, u32::MAX] } else { &[1] };
+        for most in rounds {
+            let mut points = CHUNK_POINTS;
+            loop {
+                self.settings.batch = planned;
+                self = self.in_tiles(points).in_batches();
+                while !fits(&self) && self.capacity > SCAN_BLOCK && 2 * (whole / self.batch_photons) <= *most
+                {
+                    let half = (self.batch_photons / 2).max(1);
+                    self = self.with_batch(half);
+                }
+                if fits(&self) {
+                    return Ok(self);
+                }
+                points = self.chunk(0).1 / 2;
+                if points < LEAST_TILE / 2 {
+                    break;
+                }
+            }
+        }
+        Err(OverBudget::new(&self.memory(scene, place), (limit, of)).into())
+    }
+
+    /// The same with the picture in tiles of about so many visible points, of which one at a time is on the device.
+    pub fn in_tiles(self, points: u32) -> Self {
+        let chunk_points = (points / self.eye_samples).max(1) * self.eye_samples;
+        Self { tiled: true, chunk_points, ..self }
+    }
+
+    /// Number of batches that a pass's photons come in.
+    pub fn batches(&self) -> u32 {
+        if self.features.has("photons") { self.settings.photons.div_ceil(self.batch_photons) } else { 0 }
+    }
+}
+
+/// Name and bytes of every table of a flattened scene.
+pub fn scene_tables(scene: &Scene) -> Vec<(&'static str, u64)> {
+    fn bytes<T>(table: &[T]) -> u64 {
+        size_of_val(table) as u64
+    }
+    vec![
+        ("spheres", bytes(&scene.spheres)),
+        ("rectangles", bytes(&scene.rectangles)),
+        ("discs", bytes(&scene.discs)),
+        ("cuboids", bytes(&scene.cuboids)),
+        ("planes", bytes(&scene.planes)),
+        ("revolutions", bytes(&scene.revolutions)),
+        ("patches", bytes(&scene.patches)),
+        ("profile_points", bytes(&scene.profile_points)),
+        ("unbounded", bytes(&scene.unbounded)),
+        ("materials", bytes(&scene.materials)),
+        ("textures", bytes(&scene.textures)),
+        ("lights", bytes(&scene.lights)),
+        ("distributions", bytes(&scene.distributions)),
+        ("nodes", bytes(&scene.nodes)),
+        ("refs", bytes(&scene.refs)),
+        ("triangles", bytes(&scene.triangles)),
+        ("attributes", bytes(&scene.attributes)),
+        ("facets", bytes(&scene.facets)),
+        ("texels", bytes(&scene.texels)),
+    ]
+}
+
+/// The bytes of all tables.
+pub fn scene_bytes(scene: &Scene) -> u64 {
+    scene_tables(scene).iter().map(|(_, bytes)| bytes).sum()
+}

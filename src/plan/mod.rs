@@ -1,0 +1,237 @@
+//! A pass as data: which kernels run, over how many items, with which buffers and numbers. Engines carry it out.
+//!
+//! The picture is cut into chunks of visible points and the photons into batches, so that no buffer passes a
+//! device's binding limit. Neither changes a result but for the grouping of the photons' sum, and batches are the
+//! same for every engine. Where memory is scarce chunks become tiles, which take turns with one set of buffers.
+
+mod buffers;
+mod kernel;
+mod memory;
+mod scale;
+mod steps;
+
+use super::features::Features;
+use super::kernels::bytes::{FILM_BYTES, STATISTICS_BYTES};
+use super::kernels::records::FilmPixel;
+use super::pack::{Objects, Packed};
+use super::probe::{Probe, probe};
+use super::readout::Readout;
+use super::real::Real;
+use crate::engine::{EngineError, State};
+use crate::film::{ErrorMap, Picture, Rejections};
+use crate::radius::Automatic;
+use crate::scene::{Aov, Aovs, Film};
+use crate::settings::{Method, Radius, RenderSettings};
+use crate::stage::stage;
+use glam::DVec3;
+
+pub use kernel::{Kernel, SCAN_BLOCK, SORT_BUCKETS, Step};
+pub use memory::{Place, scene_bytes, scene_tables};
+pub use scale::global_scale_sq;
+
+/// Bytes that one storage binding may have on every device (WebGPU's default limit).
+pub const BINDING_LIMIT: u64 = 128 << 20;
+/// Most visible points in a chunk.
+const CHUNK_POINTS: u32 = 1 << 20;
+/// Most records that a batch may store.
+const CAPACITY_MAX: u32 = 1 << 22;
+
+/// What a render of one scene with one set of settings does.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// What the scene and the settings need.
+    pub features: Features,
+    /// The settings, with a radius in the place of "auto".
+    pub settings: RenderSettings,
+    /// Pixels per row of the window that is rendered.
+    pub width: u32,
+    /// Pixels of the window.
+    pub pixels: u32,
+    /// The window's first pixel, counted in the whole picture.
+    pub window_first: u32,
+    /// What is found beside radiance.
+    pub aovs: Aovs,
+    /// Visible points per pixel.
+    pub eye_samples: u32,
+    /// Visible points per chunk, a multiple of `eye_samples`.
+    pub chunk_points: u32,
+    /// Whether chunks are tiles: one after another goes through all steps of a pass, with the buffers of the one before for what
+    /// lives no longer than that.
+    pub tiled: bool,
+    /// Photons per batch.
+    pub batch_photons: u32,
+    /// Records that the buffers hold.
+    pub capacity: u32,
+    /// Buckets of the hash grid, a power of two.
+    pub buckets: u32,
+    /// What was found by looking at the scene before planning.
+    pub probe: Probe,
+    /// Radius of the first family of photons over [`RenderSettings::radius`]: one, or where diffuse surfaces have scattered
+    /// all that are stored [`RenderSettings::indirect_radius`].
+    pub widening: f64,
+    /// The world point at the scene's origin.
+    pub center: DVec3,
+    /// Which shape of the scene a reference belongs to, where that is asked for.
+    pub objects: Objects,
+    /// World units in one scene unit.
+    pub unit: f64,
+    /// Scene radiance times this is world radiance.
+    pub radiance_unit: f64,
+    /// Number of the render's first pass; all others count from there.
+    pub first_pass: u32,
+    /// Passes that the film held when the engine took over.
+    pub taken_over: u32,
+}
+
+impl Plan {
+    /// Plans a render.
+    pub fn new(packed: &Packed, settings: &RenderSettings) -> Self {
+        let _stage = stage("plan");
+        let features = Features::of(&packed.scene, settings);
+        let probe = probe(packed, settings);
+        let chosen = probe.automatic.map_or(settings.radius, |automatic| Radius::Pixels(automatic.pixels));
+        let wider = settings.indirect_radius.or(probe.automatic.map(|a| a.indirect)).unwrap_or(1.0);
+        let settings = &RenderSettings { radius: chosen, indirect_radius: Some(wider), ..settings.clone() };
+        let widening = if features.has("first") { 1.0 } else { wider };
+        let camera = &packed.scene.camera;
+        let eye_samples = if settings.method == Method::Ppm { settings.eye_samples } else { 1 };
+        let (capacity, batch_photons) = batch(settings, &probe);
+        Self {
+            features,
+            settings: settings.clone(),
+            width: camera.width,
+            pixels: camera.width * camera.height,
+            window_first: 0,
+            aovs: Aovs::default(),
+            eye_samples,
+            chunk_points: CHUNK_POINTS / eye_samples * eye_samples,
+            tiled: false,
+            batch_photons,
+            capacity,
+            buckets: capacity,
+            probe,
+            widening,
+            center: packed.center,
+            objects: packed.objects.clone(),
+            unit: packed.unit,
+            radiance_unit: packed.radiance_unit,
+            first_pass: 0,
+            taken_over: 0,
+        }
+    }
+
+    /// The same with batches of at most so many photons.
+    pub fn with_batch(mut self, photons: u32) -> Self {
+        self.settings.batch = Some(photons);
+        self.in_batches()
+    }
+
+    /// The same with the batches that its settings ask for.
+    fn in_batches(mut self) -> Self {
+        (self.capacity, self.batch_photons) = batch(&self.settings, &self.probe);
+        self.buckets = self.capacity;
+        self
+    }
+
+    /// The same for a film: for its window alone, and with what it asks for beside radiance.
+    pub fn on(mut self, film: &Film) -> Self {
+        if let Some([x0, y0, x1, y1]) = film.window {
+            self.window_first = y0 * film.width + x0;
+            self.width = x1 - x0;
+            self.pixels = (x1 - x0) * (y1 - y0);
+        }
+        self.aovs = film.aovs;
+        if self.aovs.has(Aov::Direct) && self.settings.method != Method::Path {
+            self.features = self.features.with("direct_layer");
+        }
+        // what tells caustics from the rest is their family
+        if self.parts_photons() && self.features.has("first") {
+            self.features = self.features.with("split");
+        }
+        self
+    }
+
+    /// Whether what photons bring is parted by the way they came.
+    pub fn parts_photons(&self) -> bool {
+        self.features.has("photons") && (self.aovs.has(Aov::Caustic) || self.aovs.has(Aov::Indirect))
+    }
+
+    /// Plans to go on from `state`.
+    ///
+    /// # Errors
+    /// Where the plan has no use for it.
+    pub fn take_over(&mut self, state: &State) -> Result<(), EngineError> {
+        let local = self.features.has("local") && self.settings.method != Method::Path;
+        if local && state.first_pass > 0 {
+            let text =
+                "under the local rule a pass needs the photon counts of all before it: start with pass 0";
+            return Err(EngineError::Unsupported(text.into()));
+        }
+        let points = if local { self.pixels as usize * self.eye_samples as usize } else { 0 };
+        let wanted =
+            (8 * size_of::<Real>() as u32, self.pixels as usize * FILM_BYTES, points * STATISTICS_BYTES);
+        if state.passes > 0 && (state.bits, state.film.len(), state.statistics.len()) != wanted {
+            let text = "what is to be gone on from is of another picture size, radius rule or precision";
+            return Err(EngineError::Unsupported(text.into()));
+        }
+        if state.passes > 0 && self.lacks_layers(&state.layers) {
+            let text = "what is to be gone on from lacks the layers that are asked for";
+            return Err(EngineError::Unsupported(text.into()));
+        }
+        (self.first_pass, self.taken_over) = (state.first_pass, state.passes);
+        Ok(())
+    }
+
+    /// What the film says.
+    pub fn readout(&self) -> Readout {
+        Readout { width: self.width, unit: self.radiance_unit }
+    }
+
+    /// Why the radius is what it is, where the settings left it open and photons are gathered at all.
+    pub fn told_radius(&self) -> Option<Automatic> {
+        self.probe.automatic.filter(|_| self.features.has("photons"))
+    }
+
+    /// Number of chunks.
+    pub fn chunks(&self) -> u32 {
+        let points = self.pixels as u64 * self.eye_samples as u64;
+        points.div_ceil(self.chunk_points as u64) as u32
+    }
+
+    /// First visible point of a chunk and their number.
+    pub fn chunk(&self, chunk: u32) -> (u32, u32) {
+        let first = chunk * self.chunk_points;
+        (first, (self.pixels * self.eye_samples - first).min(self.chunk_points))
+    }
+
+    /// The picture that a film holds, in world units.
+    pub fn picture(&self, film: &[FilmPixel]) -> Picture {
+        self.readout().picture(film)
+    }
+
+    /// What a film after `passes` passes says of its error, in world units.
+    pub fn errors(&self, film: &[FilmPixel], passes: u32) -> ErrorMap {
+        self.readout().errors(film, passes)
+    }
+
+    /// What was left out of the picture that a film holds.
+    pub fn rejections(&self, film: &[FilmPixel]) -> Rejections {
+        self.readout().rejections(film)
+    }
+}
+
+/// Records that the buffers are to hold, and photons per batch.
+fn batch(settings: &RenderSettings, probe: &Probe) -> (u32, u32) {
+    let most = settings.batch.unwrap_or(u32::MAX).clamp(1, settings.photons.max(1));
+    let wanted = (most as f64 * probe.records_per_photon * 1.25).max(1024.0);
+    let capacity = (wanted.min(CAPACITY_MAX as f64) as u32).next_power_of_two().max(SCAN_BLOCK);
+    let fit = (capacity as f64 * 0.8 / probe.records_per_photon.max(1e-3)) as u64;
+    // a key has 32 bits for (photon of the batch, bounce, family)
+    let key_room = 1u64 << (32 - key_bits(settings.max_bounces));
+    (capacity, fit.min(key_room).clamp(1, most as u64) as u32)
+}
+
+/// Bits that hold a bounce number and a family.
+fn key_bits(max_bounces: u32) -> u32 {
+    33 - max_bounces.leading_zeros()
+}

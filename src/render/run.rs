@@ -1,0 +1,170 @@
+//! One render from its first pass to its picture, on one device after another.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use super::estimates::Estimates;
+use super::keep::{Keep, Keeping};
+use super::progress::Progress;
+use super::{Broken, Ending, Outcome, Saving};
+use crate::engine::{Engine, EngineError, State};
+use crate::film::ErrorMap;
+use crate::film::estimate::LEAST_PASSES;
+use crate::stage::stage;
+
+/// Who is told of passes, and who ends them.
+pub struct Watch<'a> {
+    /// Set from outside to end the render after the pass in hand.
+    pub interrupted: &'a AtomicBool,
+    /// Called after each pass.
+    pub observer: &'a mut dyn FnMut(&Progress),
+}
+
+/// A render under way.
+pub struct Run<'a> {
+    progress: Progress,
+    kept: Keeping<'a>,
+    saving: Option<Saving<'a>>,
+    /// Passes in what was saved last.
+    saved: Option<u32>,
+    before: Duration,
+    start: Instant,
+}
+
+impl<'a> Run<'a> {
+    /// At `progress`, with an engine that holds `state`.
+    pub fn new(progress: Progress, state: &'a State, saving: Option<Saving<'a>>, keep: Keep) -> Self {
+        let kept = Keeping::new(state, progress, keep);
+        Self { progress, kept, saving, saved: None, before: progress.elapsed, start: Instant::now() }
+    }
+
+    /// To its picture, unless the engine has failed already. After a failure it goes on elsewhere from what is kept.
+    pub fn carry_out(
+        mut self,
+        engine: &mut dyn Engine,
+        mut watch: Watch,
+        mut failed: Option<EngineError>,
+    ) -> Result<Outcome, Broken> {
+        let _stage = stage("passes");
+        loop {
+            let error = match failed.take() {
+                Some(error) => error,
+                None => match self.passes(engine, &mut watch) {
+                    Ok(outcome) => return Ok(outcome),
+                    Err(error) => error,
+                },
+            };
+            self.rescue(engine);
+            match engine.go_on(&self.kept.state, error) {
+                Ok(()) => self.progress = self.kept.progress,
+                Err(error) => return Err(self.broken(error)),
+            }
+        }
+    }
+
+    fn passes(&mut self, engine: &mut dyn Engine, watch: &mut Watch) -> Result<Outcome, EngineError> {
+        let stop = self.progress.stop;
+        let mut estimates = Estimates::after(self.progress.passes);
+        let mut next_save = self.next_save(self.progress.elapsed);
+        if self.progress.passes == 0 {
+            self.pass(engine)?;
+        }
+        let ending = loop {
+            if estimates.due(&self.progress) {
+                let begun = Instant::now();
+                self.progress.error = Some(engine.errors()?.relative());
+                estimates.made(&self.progress, begun.elapsed());
+            }
+            (watch.observer)(&self.progress);
+            if watch.interrupted.load(Ordering::Relaxed) {
+                break Ending::Interrupted;
+            }
+            if self.progress.reached() {
+                break Ending::TargetError;
+            }
+            if self.progress.passes >= stop.passes {
+                break Ending::Passes;
+            }
+            if stop.time.is_some_and(|time| self.progress.elapsed >= time) {
+                break Ending::Time;
+            }
+            let save = next_save.is_some_and(|next| self.progress.elapsed >= next);
+            if save || engine.can_be_lost() && self.kept.due(&self.progress) {
+                self.keep(engine, save)?;
+            }
+            if save {
+                next_save = self.next_save(self.elapsed());
+            }
+            self.pass(engine)?;
+        };
+        if self.saving.is_some() {
+            self.keep(engine, true)?;
+        }
+        self.outcome(engine, ending)
+    }
+
+    fn pass(&mut self, engine: &mut dyn Engine) -> Result<(), EngineError> {
+        let report = engine.pass()?;
+        let elapsed = self.elapsed();
+        self.progress.add(&report, elapsed);
+        Ok(())
+    }
+
+    /// Copies what the engine holds, and saves it if that is asked for.
+    fn keep(&mut self, engine: &mut dyn Engine, save: bool) -> Result<(), EngineError> {
+        let begun = Instant::now();
+        let mut state = engine.save()?;
+        let cost = begun.elapsed();
+        log::debug!("a copy after pass {}: {:.3} s", self.progress.passes, cost.as_secs_f64());
+        if save && let Some(saving) = &mut self.saving {
+            state = (saving.save)(state, &self.progress);
+            self.saved = Some(self.progress.passes);
+        }
+        if engine.can_be_lost() {
+            let now = self.elapsed();
+            self.kept.take(state, self.progress, cost, now);
+        }
+        Ok(())
+    }
+
+    /// Keeps what an engine that has failed can still give, if it is more than what is kept and as many passes as were counted.
+    fn rescue(&mut self, engine: &mut dyn Engine) {
+        let passes = self.progress.passes;
+        if passes > self.kept.progress.passes
+            && let Ok(state) = engine.save()
+            && state.passes == passes
+        {
+            let now = self.elapsed();
+            self.kept.take(state, self.progress, Duration::ZERO, now);
+        }
+    }
+
+    fn outcome(&self, engine: &mut dyn Engine, ending: Ending) -> Result<Outcome, EngineError> {
+        let (picture, rejections) = engine.results()?;
+        let errors = match self.progress.passes {
+            LEAST_PASSES.. => Some(engine.errors()?),
+            _ => None,
+        };
+        let progress = Progress { error: errors.as_ref().map(ErrorMap::relative), ..self.progress };
+        Ok(Outcome { picture, errors, layers: engine.layers()?, rejections, progress, ending })
+    }
+
+    /// Ends it, with what is kept saved unless it is already.
+    fn broken(mut self, error: EngineError) -> Broken {
+        let mut kept = self.kept.end();
+        if let (Some(kept), Some(saving)) = (&mut kept, &mut self.saving)
+            && self.saved.is_none_or(|saved| saved < kept.progress.passes)
+        {
+            kept.state = (saving.save)(std::mem::take(&mut kept.state), &kept.progress);
+        }
+        Broken { error, kept }
+    }
+
+    fn elapsed(&self) -> Duration {
+        self.before + self.start.elapsed()
+    }
+
+    fn next_save(&self, now: Duration) -> Option<Duration> {
+        self.saving.as_ref().map(|saving| now.saturating_add(saving.every))
+    }
+}
