@@ -77,6 +77,10 @@ impl Engine for Calibrating<'_> {
         self.inner.results()
     }
 
+    fn gathered(&mut self) -> Result<u64, EngineError> {
+        self.inner.gathered()
+    }
+
     fn can_be_lost(&self) -> bool {
         self.inner.can_be_lost()
     }

@@ -299,3 +299,26 @@ fn what_is_left_out_is_told() {
     assert!(rejected(&strict)[4] > 0);
     assert_eq!(read(&folder.join("b.exr")).unwrap().not_finite(), 0);
 }
+
+/// An error that is not reached is told; where it may never be, a limit is asked for.
+#[test]
+fn a_target_out_of_reach() {
+    let folder = folder("target");
+    let render = |options: &[&str]| {
+        let output = caustica(&folder, &[&["render", "ball.toml", "--device", "cpu"][..], options].concat());
+        (output.status.code(), text(&output.stderr))
+    };
+    let (code, error) = render(&["--target-error", "0.1%", "--passes", "5"]);
+    assert!(code == Some(0) && error.contains("the error aimed at, 0.10 %, is not reached"), "{error}");
+    let (code, error) = render(&["--target-error", "500%", "--passes", "500"]);
+    assert!(code == Some(0) && !error.contains("is not reached"), "{error}");
+    for (option, value, instead) in
+        [("--radius-rule", "fixed", "--radius-rule global"), ("--method", "ppm", "--method sppm")]
+    {
+        let (code, error) = render(&["--target-error", "1%", option, value]);
+        assert!(code == Some(2) && error.contains("--passes or --time"), "{error}");
+        assert!(error.contains(instead), "{error}");
+        let (code, error) = render(&["--target-error", "1%", option, value, "--passes", "4"]);
+        assert!(code == Some(0), "{error}");
+    }
+}

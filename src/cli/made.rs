@@ -90,6 +90,9 @@ impl Made {
             count(progress.rays as f64),
             time(progress.elapsed)
         ));
+        if let (Some(target), "passes" | "time") = (progress.stop.target_error, self.ended) {
+            reporter.note(&format!("the error aimed at, {}, is not reached", percent(target)));
+        }
         outputs.iter().try_for_each(|output| result(output.display()))
     }
 }

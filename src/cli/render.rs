@@ -158,6 +158,9 @@ fn run_on(arguments: Arguments, find: &Find) -> Result<Done, Failure> {
     let Arguments { time, target_error, .. } = arguments;
     let limited = time.is_none() && target_error.is_none() || passes.is_some();
     let end = if limited { settings.passes } else { u32::MAX };
+    if target_error.is_some() && end == u32::MAX && time.is_none() {
+        check_target(&settings)?;
+    }
     let stop = Stop { passes: end - first_pass, time, target_error };
     files.check(&origin, opened.kind.bits(), Passes { first: first_pass, end })?;
     let from = files.resumed();
@@ -259,6 +262,21 @@ fn check_range(first_pass: u32, settings: &RenderSettings) -> Result<(), Failure
         ));
     }
     Ok(())
+}
+
+/// Fails where a part of the error stays however many passes there are, so that a render might never end.
+fn check_target(settings: &RenderSettings) -> Result<(), Failure> {
+    let (what, instead) = match settings {
+        RenderSettings { method: Method::Ppm, .. } => ("ppm keeps its eye paths", "--method sppm"),
+        RenderSettings { method: Method::Sppm, radius_rule: RadiusRule::Fixed, .. } => {
+            ("the fixed rule keeps its radius", "--radius-rule global")
+        }
+        _ => return Ok(()),
+    };
+    Err(Failure::wrong_use(
+        &format!("{what}, and what the picture is off by that stays: it may never state the error aimed at"),
+        &format!("give --passes or --time beside --target-error, or take {instead}"),
+    ))
 }
 
 /// Says what is rendered where, before it is.

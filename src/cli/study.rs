@@ -197,7 +197,10 @@ fn about(
     if arguments.device.len() > 1 {
         product.push(Axis { name: "device".to_owned(), values: arguments.device.clone() });
     }
-    let base = Config::new(settings, arguments.device.first().map_or("auto", String::as_str));
+    let mut base = Config::new(settings, arguments.device.first().map_or("auto", String::as_str));
+    if let Some(quality) = arguments.overrides.quality {
+        base.base = format!("preset {}", quality.word());
+    }
     let mut configs = configs(&base, &product, &varied).map_err(StudyError::from)?;
     // A device that is not there should not show after half of the time.
     let devices = device::list();

@@ -100,12 +100,20 @@ pub struct Config {
     pub device: String,
     /// How the scene differs from its file.
     pub variant: Variant,
+    /// Whose the settings are before the grid chooses.
+    #[serde(default = "scene_itself")]
+    pub base: String,
+}
+
+fn scene_itself() -> String {
+    "the scene's own".to_owned()
 }
 
 impl Config {
     /// The scene's own settings.
     pub fn new(settings: RenderSettings, device: &str) -> Self {
-        Self { choices: Vec::new(), settings, device: device.to_owned(), variant: Variant::default() }
+        let (device, base) = (device.to_owned(), scene_itself());
+        Self { choices: Vec::new(), settings, device, variant: Variant::default(), base }
     }
 
     /// The same with one more choice.
@@ -137,7 +145,7 @@ impl Config {
     /// A short name among others of the study.
     pub fn label(&self) -> String {
         match self.choices.as_slice() {
-            [] => "the scene's own".to_owned(),
+            [] => self.base.clone(),
             choices => choices.iter().map(|(name, value)| label(name, value)).collect::<Vec<_>>().join(", "),
         }
     }
