@@ -111,23 +111,24 @@ fn gather_family(point: VisiblePoint, frame: Frame, family: u32, radius_sq: f32)
                 for (var first = starts[begin]; first < end; first += BLOCK) {
                     var block = vec3f(0.0);
                     for (var i = first; i < min(first + BLOCK, end); i++) {
-                        let record = sorted[i];
-                        let d = record.position - point.position;
+                        // no more is read of a record than tells that it is not near
+                        let position = sorted[i].position;
+                        let d = position - point.position;
                         let distance_sq = dot(d, d);
-                        if record.key != code || distance_sq > radius_sq || abs(dot(d, ng)) > depth {
+                        if distance_sq > radius_sq || abs(dot(d, ng)) > depth || sorted[i].key != code {
                             continue;
                         }
-                        let toward_light = oct_vector(record.direction);
+                        let toward_light = oct_vector(sorted[i].direction);
                         if dot(toward_light, ng) <= 0.0 {
                             continue;
                         }
                         //#if facets
-                        if clip.crossed && !on_facet(facets[point.facet], record.position) {
+                        if clip.crossed && !on_facet(facets[point.facet], position) {
                             continue;
                         }
                         //#end
                         count += 1u;
-                        var flux = record.flux;
+                        var flux = sorted[i].flux;
                         if !flat_normal || point.alpha > 0.0 {
                             let wi = unit(toward_light);
                             let cos_g = max(dot(wi, ng), COS_MIN);
