@@ -194,7 +194,7 @@ fn page(studies: &[Studied]) -> String {
         );
         for sentence in study.star["recommendations"][0].as_array().into_iter().flatten() {
             let sentence = sentence.as_str().unwrap_or("");
-            let _ = writeln!(out, "- {}", sentence.replace("the scene's own", "the presets' settings"));
+            let _ = writeln!(out, "- {}", sentence.replace("preset final", "the presets' settings"));
         }
         let _ = write!(
             out,
@@ -216,7 +216,7 @@ How to read the charts: both axes are logarithmic, so that a power law is a stra
 slopes -1 (noise averaged away) and -2/3 (progressive photon mapping in theory). Lower is better, and the curve that is lowest
 at the time you have is the one to take; where two cross, the better one depends on that time. A curve that bends flat has
 reached its bias: more passes buy nothing, a smaller radius does. *relMSE* is a squared error over the squared brightness: its
-root is the error of a typical pixel, so 0.0025 is 5 %; four times less is half the error. *The scene's own* are the presets' settings:
+root is the error of a typical pixel, so 0.0025 is 5 %; four times less is half the error. *preset final* are the presets' settings:
 SPPM, one photon a pass for each pixel, automatic radius, global rule, alpha 2/3, sampled direct light.
 ";
 

@@ -310,7 +310,7 @@ fn a_target_out_of_reach() {
     };
     let (code, error) = render(&["--target-error", "0.1%", "--passes", "5"]);
     assert!(code == Some(0) && error.contains("the error aimed at, 0.10 %, is not reached"), "{error}");
-    let (code, error) = render(&["--target-error", "500%", "--passes", "500"]);
+    let (code, error) = render(&["--target-error", "100%", "--passes", "500"]);
     assert!(code == Some(0) && !error.contains("is not reached"), "{error}");
     for (option, value, instead) in
         [("--radius-rule", "fixed", "--radius-rule global"), ("--method", "ppm", "--method sppm")]

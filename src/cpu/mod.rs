@@ -1,13 +1,11 @@
 //! The CPU engine: carries out a plan on vectors, with rayon. Needs no adapter.
 
-use super::features::Features;
-use super::kernels::aov_trace::{AovPixel, aov_trace};
+mod tasks;
+
+use super::kernels::aov_trace::AovPixel;
 use super::kernels::bytes::{aovs_of, film_bytes, film_of, parts_of, statistics_bytes, statistics_of};
-use super::kernels::eye_trace::eye_trace;
-use super::kernels::gather::{gather, scale_sq};
 use super::kernels::grid_build::{RecordList, SortedRecords, grid_count, grid_scan, grid_scatter, grid_sort};
 use super::kernels::path_trace::path_trace;
-use super::kernels::photon_trace::photon_trace;
 use super::kernels::records::*;
 use super::kernels::resolve::{Found, fold, resolve};
 use super::kernels::resolve_parts::{PartsPixel, resolve_parts};
@@ -16,7 +14,6 @@ use super::math::is_finite;
 use super::pack::Packed;
 use super::plan::{Kernel, Plan, Step};
 use super::real::{ENGINE, Real};
-use super::tables::{Facet, Scene};
 use crate::clock::{Clock, KernelSeconds};
 use crate::engine::{Engine, EngineError, PassReport, PhotonEnds, State};
 use crate::film::exr_file::Channel;
@@ -24,16 +21,8 @@ use crate::film::{ErrorMap, Picture, Rejections};
 use crate::settings::Method;
 use bytemuck::Zeroable;
 use rayon::prelude::*;
-use std::ops::Range;
 use std::sync::Arc;
-
-/// Visible points that one task gathers for.
-const GATHER_TASK: usize = 1024;
-/// Visible points that one task finds.
-const EYE_TASK: usize = 512;
-/// Photons that one task traces, at the least and at the most, and tasks between.
-const PHOTON_TASK: (u32, u32) = (1024, 8192);
-const PHOTON_TASKS: u32 = 256;
+use tasks::{EYE_TASK, EyePaths, GATHER_TASK, Gathers, trace_aovs, trace_photons};
 
 /// Passes over one scene on the processor's cores.
 pub struct CpuEngine {
@@ -59,87 +48,6 @@ pub struct CpuEngine {
 
 /// A batch left more records than the buffers hold.
 struct Overflow;
-
-/// Gathers of one task.
-struct Gathers<'a> {
-    facets: &'a [Facet],
-    dispatch: &'a Dispatch,
-    points: &'a [VisiblePoint],
-    /// Under the local rule.
-    statistics: Option<&'a [Statistics]>,
-    starts: &'a [u32],
-    sorted: &'a SortedRecords,
-    gathered: &'a mut [Gathered],
-}
-
-impl pulp::WithSimd for Gathers<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _: S) {
-        for (i, (point, gathered)) in self.points.iter().zip(self.gathered).enumerate() {
-            let scale = match self.statistics {
-                Some(statistics) => scale_sq(self.dispatch, true, &statistics[i]),
-                None => self.dispatch.scale_sq,
-            };
-            gather(self.facets, self.dispatch, point, scale, self.starts, self.sorted, gathered);
-        }
-    }
-}
-
-/// Eye paths of one task.
-struct EyePaths<'a> {
-    scene: &'a Scene,
-    dispatch: &'a Dispatch,
-    sampled: bool,
-    first: u32,
-    points: &'a mut [VisiblePoint],
-}
-
-impl pulp::WithSimd for EyePaths<'_> {
-    /// Rays.
-    type Output = u64;
-
-    #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _: S) -> u64 {
-        let mut all = 0;
-        for (id, point) in (self.first..).zip(self.points) {
-            let (traced, rays) = eye_trace(self.scene, self.dispatch, self.sampled, id);
-            *point = traced;
-            all += rays as u64;
-        }
-        all
-    }
-}
-
-/// Photons of one task.
-struct Photons<'a> {
-    scene: &'a Scene,
-    dispatch: &'a Dispatch,
-    sampled: bool,
-    ids: Range<u32>,
-    list: &'a mut RecordList,
-}
-
-impl pulp::WithSimd for Photons<'_> {
-    /// Rays, and photons by how they ended.
-    type Output = (u64, [u64; 3]);
-
-    #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _: S) -> Self::Output {
-        let records = &mut self.list.records;
-        records.clear();
-        let mut rays = 0;
-        let mut ends = [0; 3];
-        for id in self.ids {
-            let path =
-                photon_trace(self.scene, self.dispatch, self.sampled, id, |record| records.push(record));
-            rays += path.rays as u64;
-            ends[path.end] += 1;
-        }
-        (rays, ends)
-    }
-}
 
 impl CpuEngine {
     /// An engine for one scene and plan.
@@ -317,40 +225,6 @@ impl CpuEngine {
             trace_aovs(scene, &step.dispatch, &self.plan.features, &mut self.aovs);
         }
     }
-}
-
-/// One sample of each pixel of a chunk.
-fn trace_aovs(scene: &Scene, d: &Dispatch, features: &Features, aovs: &mut [AovPixel]) {
-    let sampled = features.has("sampled") && features.has("direct_layer");
-    let first = (d.chunk_first / d.eye_samples) as usize;
-    let pixels = aovs[first..first + d.end as usize].par_iter_mut();
-    pixels.enumerate().for_each(|(id, pixel)| aov_trace(scene, d, sampled, id as u32, pixel));
-}
-
-/// Photons of one batch; the lists come in the order of their keys. The number of rays, and of photons by how they ended.
-fn trace_photons(
-    arch: pulp::Arch,
-    scene: &Scene,
-    d: &Dispatch,
-    sampled: bool,
-    records: &mut Vec<RecordList>,
-) -> (u64, [u64; 3]) {
-    let photons = d.end.div_ceil(PHOTON_TASKS).clamp(PHOTON_TASK.0, PHOTON_TASK.1);
-    records.resize_with(d.end.div_ceil(photons) as usize, RecordList::default);
-    let traced = records.par_iter_mut().enumerate().map(|(task, list)| {
-        let first = task as u32 * photons;
-        arch.dispatch(Photons {
-            scene,
-            dispatch: d,
-            sampled,
-            ids: first..first + photons.min(d.end - first),
-            list,
-        })
-    });
-    let sum = |(sum, all): (u64, [u64; 3]), (rays, ends): (u64, [u64; 3])| {
-        (sum + rays, std::array::from_fn(|k| all[k] + ends[k]))
-    };
-    traced.reduce(|| (0, [0; 3]), sum)
 }
 
 impl CpuEngine {
