@@ -1,9 +1,9 @@
 //! `render --denoise` with Open Image Denoise: `cargo test --release --features denoise --test denoise`.
 //!
 //! Theory: the mean square of independent noise falls where like pixels are averaged, and a path-traced picture is full of it, so that a
-//! denoised one is many times nearer to what photons make of the scene in a long render. Layers lead it only if they lie over the picture as they should. Radiance has
-//! no upper bound, so a picture in another unit is the same picture in that unit. Nothing else knows of it: all that is measured has
-//! the same bits.
+//! denoised one is many times nearer to what photons make of the scene in a long render. Layers lead it only if they lie over the
+//! picture as they should. Radiance has no upper bound, so a picture in another unit is the same picture in that unit. Nothing else
+//! knows of it: all that is measured has the same bits.
 
 #![cfg(feature = "denoise")]
 
