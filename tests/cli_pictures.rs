@@ -149,6 +149,16 @@ fn sixteen_bits_hold_what_eight_round() {
     refused(&folder, &["ball.toml", "--bits", "12"], 2, &["expected 8 or 16"]);
 }
 
+/// What it does where it is built in is in `tests/denoise.rs`.
+#[cfg(not(feature = "denoise"))]
+#[test]
+fn a_denoiser_that_is_not_built_in_is_told() {
+    let folder = folder("denoise");
+    let words = ["--denoise: this caustica is built without a denoiser", "OIDN_DIR", "--features denoise"];
+    refused(&folder, &["ball.toml", "--device", "cpu", "--denoise"], 2, &words);
+    assert!(!folder.join("ball.png").exists());
+}
+
 /// A picture without the attributes that differ between runs.
 fn bits(file: &ExrFile) -> Vec<(String, Vec<u32>)> {
     let bits = |values: &Vec<f32>| values.iter().map(|value| value.to_bits()).collect();

@@ -306,7 +306,7 @@ fn a_target_out_of_reach() {
     let folder = folder("target");
     let render = |options: &[&str]| {
         let output = caustica(&folder, &[&["render", "ball.toml", "--device", "cpu"][..], options].concat());
-        (output.status.code(), text(&output.stderr))
+        (output.status.code(), support::error(&output))
     };
     let (code, error) = render(&["--target-error", "0.1%", "--passes", "5"]);
     assert!(code == Some(0) && error.contains("the error aimed at, 0.10 %, is not reached"), "{error}");

@@ -6,6 +6,7 @@ use caustica::checkpoint::CheckpointError;
 use caustica::device::DeviceError;
 use caustica::engine::EngineError;
 use caustica::film::FileError;
+use caustica::film::denoise::DenoiseError;
 use caustica::film::metrics::MetricsError;
 use caustica::render::Broken;
 use caustica::scene::SceneErrors;
@@ -75,6 +76,19 @@ impl From<FileError> for Failure {
 impl From<CheckpointError> for Failure {
     fn from(error: CheckpointError) -> Self {
         Self::failed(error)
+    }
+}
+
+impl From<DenoiseError> for Failure {
+    fn from(error: DenoiseError) -> Self {
+        match error {
+            DenoiseError::NotBuilt => Self::wrong_use(
+                &format!("--denoise: {error}"),
+                "install Open Image Denoise 2 (https://www.openimagedenoise.org), name its folder in OIDN_DIR, and build with \
+                 `cargo build --release --features denoise`",
+            ),
+            _ => Self::failed(miette!("--denoise: {error}")),
+        }
     }
 }
 

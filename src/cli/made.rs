@@ -3,8 +3,10 @@
 use std::path::PathBuf;
 
 use caustica::checkpoint::Checkpoint;
+use caustica::film::denoise;
 use caustica::film::estimate::LEAST_PASSES;
 use caustica::film::exr_file::Channel;
+use caustica::film::file::Format;
 use caustica::film::{self, Development, ErrorMap, Picture, Provenance, Rejections};
 use caustica::render::{Ending, Outcome, Progress};
 use serde_json::json;
@@ -17,6 +19,8 @@ use super::progress::{Reporter, count, event, percent, time};
 pub struct Made {
     /// The estimate.
     pub picture: Picture,
+    /// The same to be looked at: what PNG files show, and a layer in EXR files.
+    pub denoised: Option<Picture>,
     /// What it says of its own error; none for fewer passes than an estimate needs.
     pub errors: Option<ErrorMap>,
     /// What the film asks for beside radiance.
@@ -38,7 +42,7 @@ impl From<Outcome> for Made {
             Ending::TargetError => "target_error",
             Ending::Interrupted => "interrupted",
         };
-        Self { picture, errors, layers, rejections, progress, ended }
+        Self { picture, denoised: None, errors, layers, rejections, progress, ended }
     }
 }
 
@@ -48,7 +52,8 @@ impl Made {
         let (picture, errors, rejections) = rest.develop();
         let errors = Some(errors).filter(|_| progress.passes >= LEAST_PASSES);
         let progress = Progress { error: errors.as_ref().map(ErrorMap::relative), ..progress };
-        Self { picture, errors, layers: rest.layers(), rejections, progress, ended: "failed" }
+        let layers = rest.layers();
+        Self { picture, denoised: None, errors, layers, rejections, progress, ended: "failed" }
     }
 
     /// Writes it into files.
@@ -63,8 +68,10 @@ impl Made {
         }
         let mut layers = self.errors.as_ref().map_or(Vec::new(), ErrorMap::layers);
         layers.extend_from_slice(&self.layers);
+        layers.extend(self.denoised.iter().flat_map(denoise::layer));
         for output in outputs {
-            film::write(output, &self.picture, &layers, development, made)?;
+            let denoised = self.denoised.as_ref().filter(|_| Format::of(output) == Some(Format::Png));
+            film::write(output, denoised.unwrap_or(&self.picture), &layers, development, made)?;
         }
         Ok(())
     }
@@ -92,6 +99,10 @@ impl Made {
         ));
         if let (Some(target), "passes" | "time") = (progress.stop.target_error, self.ended) {
             reporter.note(&format!("the error aimed at, {}, is not reached", percent(target)));
+        }
+        if self.denoised.is_some() {
+            reporter
+                .note(&format!("denoised by {}; the error is that of the render before it", denoise::NAME));
         }
         outputs.iter().try_for_each(|output| result(output.display()))
     }

@@ -12,6 +12,7 @@ mod checkpoint;
 mod colors;
 mod compare;
 mod completions;
+mod denoise;
 mod devices;
 mod diff;
 mod extent;

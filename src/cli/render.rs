@@ -8,13 +8,14 @@ use caustica::calibration::{Calibrating, Calibration};
 use caustica::checkpoint::Origin;
 use caustica::device::{self, Candidates, DeviceError, Opened, Wanted};
 use caustica::engine::{Engine, EngineError, State};
+use caustica::film::denoise::NAME;
 use caustica::film::tev::ADDRESS;
 use caustica::film::{Development, Picture, Provenance, check_outputs};
 use caustica::limits;
 use caustica::quality::{Expected, Quality, expected};
 use caustica::relay::Relay;
 use caustica::render::{Broken, Kept, Progress, Saving, Stop, resume};
-use caustica::scene::{Aovs, Loaded, Scene};
+use caustica::scene::{Aovs, Film, Loaded, Scene};
 use caustica::settings::{Method, RadiusRule, RenderSettings};
 use caustica::showing::Showing;
 use clap::builder::NonEmptyStringValueParser;
@@ -31,7 +32,7 @@ use super::overrides::{Overrides, Passes, duration, target_error};
 use super::progress::{Reporter, count, time};
 use super::succession::Succession;
 use super::tev::Viewer;
-use super::{Done, Failure, checkpoint, interrupt};
+use super::{Done, Failure, checkpoint, denoise, interrupt};
 
 /// Render a scene into pictures
 #[derive(clap::Args)]
@@ -69,6 +70,10 @@ pub struct Arguments {
     /// Go on from this checkpoint, to the picture of a render that never stopped
     #[arg(long, value_name = "FILE")]
     resume: Option<PathBuf>,
+    /// Show in .png files a denoised picture, which .exr files hold beside the render as the layer denoised; no measure sees it
+    /// (takes a build with the cargo feature denoise)
+    #[arg(long)]
+    denoise: bool,
     /// Fail, with the pictures written, if a sample had to be left out because it was not finite
     #[arg(long)]
     strict: bool,
@@ -141,6 +146,8 @@ fn run_on(arguments: Arguments, find: &Find) -> Result<Done, Failure> {
     let (mut scene, settings) = put_in_force(loaded, &arguments.overrides);
     scene.film.aovs = asked;
     arguments.extent.apply(&mut scene.film, &outputs)?;
+    let asked = scene.film.aovs;
+    let denoiser = arguments.denoise.then(|| denoise::begin(&mut scene.film, &outputs)).transpose()?;
     let passes = arguments.overrides.passes();
     let first_pass = passes.map_or(like.as_ref().map_or(0, Like::first_pass), |passes| passes.first);
     check_range(first_pass, &settings)?;
@@ -197,7 +204,7 @@ fn run_on(arguments: Arguments, find: &Find) -> Result<Done, Failure> {
     };
     let mut reporter = reporter.into_inner();
     reporter.finish();
-    let (made, error) = match outcome {
+    let (mut made, error) = match outcome {
         Ok(outcome) => (Made::from(outcome), None),
         Err(Broken { error, kept: None }) => return Err(error.into()),
         Err(Broken { error, kept: Some(kept) }) => {
@@ -207,19 +214,21 @@ fn run_on(arguments: Arguments, find: &Find) -> Result<Done, Failure> {
         }
     };
     viewer.show(&made.picture);
+    let denoised = denoiser.map_or(Ok(()), |denoiser| denoise::end(&denoiser, &mut made, asked));
 
     let provenance = Provenance {
         scene: scene.name.clone(),
         scene_file: file.display().to_string(),
         scene_text,
         digest: Some(digest),
-        film: Some(scene.film),
+        film: Some(Film { aovs: asked, ..scene.film }),
         materials: scene.materials.iter().map(|material| material.name.clone()).collect(),
         asked: Some(succession.asked().clone()),
         settings: opened.settings,
         device: succession.device(),
         first_pass,
         passes_done: made.progress.passes,
+        denoised: made.denoised.as_ref().map(|_| NAME.to_owned()),
     };
     let film = &scene.film;
     let development =
@@ -227,9 +236,13 @@ fn run_on(arguments: Arguments, find: &Find) -> Result<Done, Failure> {
     made.write(&outputs, &development, &provenance)?;
     made.tell(json, &reporter, &outputs)?;
     if let Some(error) = error {
+        if let Err(why) = denoised {
+            message(format_args!("warning: --denoise: {why}"));
+        }
         return broken_off(error, made.progress.passes, &keeper);
     }
     keeper.end()?;
+    denoised?;
     if arguments.strict && !made.rejections.is_empty() {
         return Err(Failure::failed(miette!("--strict: {}", left_out(&made.rejections))));
     }

@@ -3,6 +3,7 @@
 pub mod any_file;
 pub mod blocks;
 pub mod colors;
+pub mod denoise;
 pub mod difference;
 pub mod error;
 pub mod estimate;

@@ -32,6 +32,8 @@ pub struct Provenance {
     pub first_pass: u32,
     /// Passes in the picture; fewer than `settings.passes` when the render was stopped early.
     pub passes_done: u32,
+    /// What made the layer `denoised`; none where it is not there.
+    pub denoised: Option<String>,
 }
 
 /// This program's version, as written into files.
@@ -61,6 +63,9 @@ impl Provenance {
         if let Some(digest) = &self.digest {
             put("scene_file", self.scene_file.clone());
             put("scene_digest", digest.clone());
+        }
+        if let Some(denoised) = &self.denoised {
+            put("denoised", denoised.clone());
         }
         if let Some(asked) = &self.asked {
             put("asked", serde_json::json!(asked).to_string());
@@ -133,6 +138,7 @@ impl Provenance {
             device: need("device")?.clone(),
             first_pass: first_pass.map_err(|_| wrong("first_pass", "no number of a pass"))?,
             passes_done: passes.ok_or_else(|| wrong("passes_done", "no number of passes"))?,
+            denoised: get("denoised").cloned(),
         })
     }
 

@@ -339,6 +339,7 @@ impl Session {
             device: frame.setup.device.clone(),
             first_pass: 0,
             passes_done: frame.passes,
+            denoised: None,
         };
         let errors = frame.errors.as_deref().filter(|_| frame.estimated == frame.passes);
         let mut layers = errors.map_or_else(Vec::new, ErrorMap::layers);
