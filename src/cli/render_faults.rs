@@ -57,12 +57,13 @@ fn pixels(folder: &Path) -> Vec<u32> {
     read(&folder.join("a.exr")).unwrap().rgb.iter().flatten().map(|x| x.to_bits()).collect()
 }
 
-/// The picture without failures, and what the device is asked for on the way with these options.
-fn whole(more: &[&str]) -> (Vec<u32>, Vec<Step>) {
-    let (folder, script) = (folder("whole"), script(None));
+/// The picture without failures, for one test, and what the device is asked for on the way with these options.
+fn whole(test: &str, more: &[&str]) -> (Vec<u32>, Vec<Step>) {
+    let (folder, script) = (folder(&format!("{test}-whole")), script(None));
     assert!(matches!(render(&folder, more, &[&script], false), Ok(Done::Fully)));
-    let asked = script.borrow().asked.clone();
-    (pixels(&folder), asked)
+    let (picture, asked) = (pixels(&folder), script.borrow().asked.clone());
+    fs::remove_dir_all(&folder).unwrap();
+    (picture, asked)
 }
 
 const ALWAYS: [&str; 2] = ["--checkpoint-every", "0.001ms"];
@@ -74,7 +75,7 @@ fn the_program_ends_in_the_same_bits() {
     let file = folder.join("b.checkpoint");
     let file = file.to_str().unwrap();
     let kept = [&ALWAYS[..], &["--checkpoint", file]].concat();
-    let (picture, steps) = whole(&[]);
+    let (picture, steps) = whole("named", &[]);
     for number in 0..steps.len() {
         // a device that the user named
         let _ = fs::remove_file(file);
@@ -110,7 +111,7 @@ fn the_program_ends_in_the_same_bits() {
 #[test]
 fn work_is_kept_unasked() {
     let folder = folder("unasked");
-    let (picture, steps) = whole(&[]);
+    let (picture, steps) = whole("unasked", &[]);
     let fourth = (0..steps.len()).filter(|i| steps[*i] == Step::Pass).nth(3).unwrap();
     let fail = || render(&folder, &[], &[&script(Some((fourth, Fault::OutOfMemory)))], false);
     assert!(matches!(fail(), Ok(Done::DeviceLost)));
@@ -130,8 +131,8 @@ fn work_is_kept_unasked() {
 #[test]
 fn batches_stay() {
     let folder = folder("batches");
-    let (batched, steps) = whole(&["--batch", "150"]);
-    assert!(batched != whole(&[]).0, "sums are rounded batch by batch");
+    let (batched, steps) = whole("batches", &["--batch", "150"]);
+    assert!(batched != whole("batches", &[]).0, "sums are rounded batch by batch");
     let third = (0..steps.len()).filter(|i| steps[*i] == Step::Pass).nth(2).unwrap();
     let faulty = script(Some((third, Fault::OutOfMemory)));
     assert!(matches!(render(&folder, &["--batch", "150"], &[&faulty], false), Ok(Done::DeviceLost)));
