@@ -35,6 +35,8 @@ pub const BINDING_LIMIT: u64 = 128 << 20;
 const CHUNK_POINTS: u32 = 1 << 20;
 /// Most records that a batch may store.
 const CAPACITY_MAX: u32 = 1 << 22;
+/// Buckets of the grid for every record that there may be: fewer, and readers meet more photons of other rows.
+const BUCKETS: u32 = 2;
 
 /// What a render of one scene with one set of settings does.
 #[derive(Clone, Debug)]
@@ -108,7 +110,7 @@ impl Plan {
             tiled: false,
             batch_photons,
             capacity,
-            buckets: capacity,
+            buckets: BUCKETS * capacity,
             probe,
             widening,
             center: packed.center,
@@ -129,7 +131,7 @@ impl Plan {
     /// The same with the batches that its settings ask for.
     fn in_batches(mut self) -> Self {
         (self.capacity, self.batch_photons) = batch(&self.settings, &self.probe);
-        self.buckets = self.capacity;
+        self.buckets = BUCKETS * self.capacity;
         self
     }
 

@@ -8,8 +8,11 @@ use crate::settings::{Method, Radius};
 use bytemuck::Zeroable;
 use std::ops::Range;
 
-/// Grid cells are this many mean radii wide.
-const CELL_RADII: f64 = 2.0;
+/// Grid cells are this many mean radii wide: with smaller ones more rows are visited, with larger ones more photons in vain.
+const CELL_RADII: f64 = 1.2;
+/// The same for photons that no diffuse surface has scattered, where they are apart: there are few outside of caustics, so that
+/// the rows count.
+const SPARSE_RADII: f64 = 3.0;
 
 impl Plan {
     /// The numbers that all dispatches of pass `pass` share.
@@ -23,7 +26,9 @@ impl Plan {
         };
         let split = self.features.has("split");
         let wider = if split { self.settings.wider() } else { 1.0 };
-        let cell = CELL_RADII * self.widening * self.probe.radius * scale_sq.sqrt();
+        let radius = self.widening * self.probe.radius * scale_sq.sqrt();
+        let cell = if split { SPARSE_RADII } else { CELL_RADII } * radius;
+        let cell_indirect = CELL_RADII * radius * wider;
         Dispatch {
             pass_number: self.first_pass + pass,
             seed: (self.settings.seed ^ (self.settings.seed >> 32)) as u32,
@@ -43,7 +48,7 @@ impl Plan {
             passes_done: pass,
             families: 1 + split as u32,
             indirect_radius: wider as Real,
-            inv_cell_indirect: (1.0 / (cell * wider)) as Real,
+            inv_cell_indirect: (1.0 / cell_indirect) as Real,
             window_first: self.window_first,
             window_width: self.width,
             points: crate::sobol::points(self.first_pass + pass),
