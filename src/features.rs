@@ -5,7 +5,7 @@ use crate::settings::{Direct, Method, RadiusRule, RenderSettings};
 use std::collections::BTreeSet;
 
 /// Names that fence optional code in shaders (`//#if name`).
-pub const ALL: [&str; 38] = [
+pub const ALL: [&str; 39] = [
     "triangle",
     "attributes",
     "sphere",
@@ -17,6 +17,7 @@ pub const ALL: [&str; 38] = [
     "facets",
     "unbounded",
     "kdtree",
+    "few",
     "textures",
     "checker",
     "texels",
@@ -51,6 +52,21 @@ pub const ALL: [&str; 38] = [
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Features(BTreeSet<&'static str>);
 
+/// Most shapes that shaders test one after another, without a kd-tree.
+const FEW: usize = 16;
+
+/// The shapes of a kd-tree that is one leaf, where they are few and the code to test one is short: shaders name each of them.
+pub fn few(scene: &Scene) -> &[u32] {
+    match scene.nodes.first() {
+        Some(root) if root.is_leaf() => {
+            let refs = scene.refs.get(root.range()).unwrap_or_default();
+            let short = refs.iter().all(|reference| reference >> REFERENCE_BITS != KIND_REVOLUTION);
+            if short && refs.len() <= FEW { refs } else { &[] }
+        }
+        _ => &[],
+    }
+}
+
 impl Features {
     /// What `scene` rendered with `settings` requires.
     pub fn of(scene: &Scene, settings: &RenderSettings) -> Self {
@@ -70,7 +86,9 @@ impl Features {
         put("facets", !scene.facets.is_empty());
         put("revolution", !scene.revolutions.is_empty());
         put("unbounded", !scene.unbounded.is_empty());
-        put("kdtree", !scene.nodes.is_empty());
+        let few = !few(scene).is_empty();
+        put("kdtree", !scene.nodes.is_empty() && !few);
+        put("few", few);
         let material = |kind| scene.materials.iter().any(|m| m.kind == kind);
         put("mirror", material(MATERIAL_MIRROR));
         put("glass", material(MATERIAL_GLASS));

@@ -209,7 +209,7 @@ fn the_driver_gathers_the_same() {
         .collect();
     let gpu = Gpu::open(&software::software()).unwrap();
     let mut recorder = Recorder::new(&gpu).unwrap();
-    let features = Features::from(["photons", "facets"]);
+    let features = Features::from(["photons", "facets", "disc"]);
     let shader = compose(Kernel::Gather, &features, &SceneTables::default()).unwrap();
     let program = Program::of_shader(&gpu, Kernel::Gather, &features, shader).unwrap();
     let (starts, _) = build_grid(&room.dispatch(), room.records.clone());

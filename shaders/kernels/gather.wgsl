@@ -7,6 +7,10 @@ const COS_MIN: f32 = 1e-2;
 const BOX_SLACK: f32 = 1e-4;
 const BLOCK: u32 = 1024u;
 
+// A photon record as four words twice, since a driver reads four as quickly as one: position and key, flux and direction.
+const PLACE: u32 = 0u;
+const LIGHT: u32 = 1u;
+
 struct Frame {
     ng: vec3f,
     n: vec3f,
@@ -48,7 +52,8 @@ fn gather(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups) gr
     var found = Gathered();
     let wider_sq = dispatch.indirect_radius * dispatch.indirect_radius;
     // a loop, so that the function is there once: software drivers write out every call
-    for (var family = 0u; family < 2u; family++) {
+    var family = 0u;
+    loop {
         let one = gather_family(point, frame, family, select(radius_sq, radius_sq * wider_sq, family == 1u));
         if family == 0u {
             gathered[id].caustic += point.weight * one.flux;
@@ -56,6 +61,10 @@ fn gather(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups) gr
         found.flux += select(one.flux, one.flux * (1.0 / wider_sq), family == 1u);
         found.count += one.count;
         found.ring += select(one.ring, one.ring * (1.0 / wider_sq), family == 1u);
+        family += 1u;
+        continuing {
+            break if family == 2u;
+        }
     }
     //#else
     let found = gather_family(point, frame, 0u, radius_sq);
@@ -94,65 +103,88 @@ fn gather_family(point: VisiblePoint, frame: Frame, family: u32, radius_sq: f32)
     let reach = disc_reach(ng, radius, depth);
     let low = grid_cell(point.position - reach, inv_cell);
     let high = grid_cell(point.position + reach, inv_cell);
+    //#if facets
+    // once, since a driver would read it for every photon
+    let facet = facets[select(point.facet, 0u, point.facet == NONE)];
+    //#end
     var count = 0u;
     var sum = vec3f(0.0);
     var ring = vec3f(0.0);
-    for (var z = low.z; z <= high.z; z++) {
-        for (var y = low.y; y <= high.y; y++) {
-            let cell = vec3i(low.x, y, z);
-            let code = grid_code(cell, family);
-            let bucket = grid_bucket(cell, dispatch.mask);
-            let last = bucket + min(u32(high.x - low.x), dispatch.mask);
-            // a row that passes the table's end goes on at its beginning
-            for (var part = 0u; part < select(1u, 2u, last > dispatch.mask); part++) {
-                let begin = select(0u, bucket, part == 0u);
-                let to = select(last - dispatch.mask - 1u, min(last, dispatch.mask), part == 0u);
-                let end = starts[to + 1u];
-                for (var first = starts[begin]; first < end; first += BLOCK) {
-                    var block = vec3f(0.0);
-                    for (var i = first; i < min(first + BLOCK, end); i++) {
+    // no further cell of a row than the table has, each once
+    let wide = min(u32(high.x - low.x), dispatch.mask);
+    var row = low.yz;
+    var done = 0u;
+    // each loop asks at its end whether to go on: a software driver runs through a body once more where that is asked first
+    loop {
+        let cell = vec3i(low.x + i32(done), row);
+        let code = grid_code(cell, family);
+        let bucket = grid_bucket(cell, dispatch.mask);
+        // a row that passes the table's end goes on at its beginning
+        let cells = min(wide - done, dispatch.mask - bucket) + 1u;
+        let end = starts[bucket + cells];
+        var i = starts[bucket];
+        loop {
+            let stop = min(i + BLOCK, end);
+            var block = vec3f(0.0);
+            loop {
+                if i < stop {
+                    let place = sorted[i][PLACE];
+                    let position = bitcast<vec3f>(place.xyz);
+                    let d = position - point.position;
+                    let distance_sq = dot(d, d);
+                    if distance_sq <= radius_sq && abs(dot(d, ng)) <= depth && place.w == code {
                         // no more is read of a record than tells that it is not near
-                        let position = sorted[i].position;
-                        let d = position - point.position;
-                        let distance_sq = dot(d, d);
-                        if distance_sq > radius_sq || abs(dot(d, ng)) > depth || sorted[i].key != code {
-                            continue;
-                        }
-                        let toward_light = oct_vector(sorted[i].direction);
-                        if dot(toward_light, ng) <= 0.0 {
-                            continue;
-                        }
+                        let light = sorted[i][LIGHT];
+                        let toward_light = oct_vector(light.w);
+                        var counts = dot(toward_light, ng) > 0.0;
                         //#if facets
-                        if clip.crossed && !on_facet(facets[point.facet], position) {
-                            continue;
-                        }
+                        counts = counts && (!clip.crossed || on_facet(facet, position));
                         //#end
-                        count += 1u;
-                        var flux = sorted[i].flux;
-                        if !flat_normal || point.alpha > 0.0 {
-                            let wi = unit(toward_light);
-                            let cos_g = max(dot(wi, ng), COS_MIN);
-                            //#if metal
-                            if point.alpha > 0.0 {
-                                let f = eval_rough(MATERIAL_METAL, point.alpha, point.reflectance, n, wo, wi);
-                                flux = f * flux * (1.0 / cos_g);
-                            } else {
+                        if counts {
+                            count += 1u;
+                            var flux = bitcast<vec3f>(light.xyz);
+                            //#if attributes || metal
+                            if !flat_normal || point.alpha > 0.0 {
+                                let wi = unit(toward_light);
+                                let cos_g = max(dot(wi, ng), COS_MIN);
+                                //#if metal
+                                if point.alpha > 0.0 {
+                                    let f = eval_rough(MATERIAL_METAL, point.alpha, point.reflectance, n, wo, wi);
+                                    flux = f * flux * (1.0 / cos_g);
+                                } else {
+                                    flux *= max(dot(wi, n), 0.0) / cos_g;
+                                }
+                                //#else
                                 flux *= max(dot(wi, n), 0.0) / cos_g;
+                                //#end
                             }
+                            //#end
+                            block += flux;
+                            //#if facets
+                            ring += flux * select(inner, clip.whole, distance_sq > 0.5 * radius_sq);
                             //#else
-                            flux *= max(dot(wi, n), 0.0) / cos_g;
+                            ring += flux * select(-1.0, 1.0, distance_sq > 0.5 * radius_sq);
                             //#end
                         }
-                        block += flux;
-                        //#if facets
-                        ring += flux * select(inner, clip.whole, distance_sq > 0.5 * radius_sq);
-                        //#else
-                        ring += flux * select(-1.0, 1.0, distance_sq > 0.5 * radius_sq);
-                        //#end
                     }
-                    sum += block;
+                }
+                i += 1u;
+                continuing {
+                    break if i >= stop;
                 }
             }
+            sum += block;
+            continuing {
+                break if i >= end;
+            }
+        }
+        done += cells;
+        if done > wide {
+            row = select(vec2i(low.y, row.y + 1), vec2i(row.x + 1, row.y), row.x < high.y);
+            done = 0u;
+        }
+        continuing {
+            break if row.y > high.z;
         }
     }
     //#if facets

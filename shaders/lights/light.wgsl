@@ -21,7 +21,7 @@ fn find_interval(first: u32, count: u32, u: f32) -> u32 {
 }
 
 fn choose_light(u: f32) -> u32 {
-    return find_interval(0u, scene.world.light_count, u);
+    return find_interval(0u, LIGHT_COUNT, u);
 }
 
 fn sample_light(position: vec3f, u: vec4f) -> LightSample {

@@ -98,7 +98,12 @@ fn clip_at(number: u32, position: vec3f, normal: vec3f, radius: f32) -> Clip {
     }
     let facet = facets[number];
     let d = position - facet.origin;
-    if facet.radius > 0.0 {
+    //#if disc
+    let round = facet.radius > 0.0;
+    //#else
+    let round = false;
+    //#end
+    if round {
         let within = facet.radius - radius;
         clip.crossed = within <= 0.0 || dot(d, d) > within * within;
     } else {
@@ -124,9 +129,11 @@ fn clip_at(number: u32, position: vec3f, normal: vec3f, radius: f32) -> Clip {
 
 fn on_facet(facet: Facet, position: vec3f) -> bool {
     let d = position - facet.origin;
+    //#if disc
     if facet.radius > 0.0 {
         return dot(d, d) < facet.radius * facet.radius;
     }
+    //#end
     let s = dot(d, facet.dual_u);
     let t = dot(d, facet.dual_v);
     return s > 0.0 && s < 1.0 && t > 0.0 && t < 1.0;

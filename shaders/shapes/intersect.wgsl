@@ -57,6 +57,9 @@ fn intersect_scene(ray: Ray) -> Hit {
     //#if kdtree
     traverse_closest(ray, &hit);
     //#end
+    //#if few
+    intersect_few(ray, false, &hit);
+    //#end
     return hit;
 }
 
@@ -73,6 +76,9 @@ fn occluded(ray: Ray) -> bool {
     //#if kdtree
     return traverse_any(ray, &hit);
     //#else
-    return false;
+    //#if few
+    intersect_few(ray, true, &hit);
+    //#end
+    return hit.reference != NONE;
     //#end
 }

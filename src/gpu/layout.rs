@@ -1,7 +1,7 @@
 //! The flattened scene as a kernel sees it: the struct `Scene` of the short tables in one storage buffer, each table
 //! an array of fixed length at a multiple of 16 bytes, and the bindings of every kernel.
 
-use crate::features::Features;
+use crate::features::{Features, few};
 use crate::plan::Kernel;
 use crate::tables::{self, Material};
 use bytemuck::{Pod, Zeroable, bytes_of, cast_slice};
@@ -24,12 +24,16 @@ pub struct SceneTables {
     pub members: Vec<Member>,
     /// Content of the buffer.
     pub bytes: Vec<u8>,
+    /// The shapes that are tested one after another (see [`few`]).
+    pub few: Vec<u32>,
+    /// How many lights there are, so that a shader knows which it takes where there is one.
+    lights: usize,
 }
 
 impl SceneTables {
     /// Lays out `scene`. Empty tables are left out.
     pub fn new(scene: &tables::Scene) -> Self {
-        let mut out = Self::default();
+        let mut out = Self { few: few(scene).to_vec(), lights: scene.lights.len(), ..Self::default() };
         out.push("world", "World".into(), bytes_of(&scene.world));
         out.push("camera", "Camera".into(), bytes_of(&scene.camera));
         out.table("spheres", "Sphere", &scene.spheres);
@@ -66,11 +70,38 @@ impl SceneTables {
         self.bytes.resize(self.bytes.len().next_multiple_of(16), 0);
     }
 
-    /// The WGSL declaration of the struct.
+    /// The WGSL declarations of the struct, and of what else is particular to the scene.
     pub fn declaration(&self) -> String {
         let members: String =
             self.members.iter().map(|m| format!("    @align(16) {}: {},\n", m.name, m.wgsl_type)).collect();
-        format!("struct Scene {{\n{members}}}\n")
+        let lights = format!("const LIGHT_COUNT: u32 = {}u;\n", self.lights);
+        format!("struct Scene {{\n{members}}}\n{lights}{}", self.intersect_few())
+    }
+
+    /// The function that tests the few shapes, in the order in which the twin does. Since the compiler knows which they are, a software
+    /// driver reads one for all its lanes at once, where each would read for itself.
+    fn intersect_few(&self) -> String {
+        if self.few.is_empty() {
+            return String::new();
+        }
+        let test = |reference: &u32| {
+            let index = reference & ((1 << tables::REFERENCE_BITS) - 1);
+            let (function, shape) = match reference >> tables::REFERENCE_BITS {
+                tables::KIND_TRIANGLE => ("triangle", "triangles"),
+                tables::KIND_SPHERE => ("sphere", "scene.spheres"),
+                tables::KIND_RECTANGLE => ("rectangle", "scene.rectangles"),
+                tables::KIND_DISC => ("disc", "scene.discs"),
+                tables::KIND_CUBOID => ("cuboid", "scene.cuboids"),
+                _ => ("plane", "scene.planes"),
+            };
+            let stop = "if any_hit && (*hit).reference != NONE { return; }";
+            format!("    intersect_{function}({shape}[{index}], {reference}u, ray, hit);\n    {stop}\n")
+        };
+        let tests: String = self.few.iter().map(test).collect();
+        let triangles =
+            self.few.iter().any(|reference| reference >> tables::REFERENCE_BITS == tables::KIND_TRIANGLE);
+        let shear = if triangles { "    ray_shear = shear_of(ray);\n" } else { "" };
+        format!("fn intersect_few(ray: Ray, any_hit: bool, hit: ptr<function, Hit>) {{\n{shear}{tests}}}\n")
     }
 }
 
@@ -139,6 +170,7 @@ pub fn bindings(kernel: Kernel, features: &Features) -> Vec<Binding> {
 fn buffer_type(kernel: Kernel, name: &str) -> &'static str {
     match name {
         "visible_points" => "array<VisiblePoint>",
+        "sorted" if kernel == Kernel::Gather => "array<array<vec4u, 2>>",
         "records" | "sorted" => "array<PhotonRecord>",
         "gathered" => "array<Gathered>",
         "film" => "array<FilmPixel>",

@@ -79,6 +79,11 @@ impl Mixture {
                 s.nodes.push(Node::zeroed());
                 s.refs.push(0);
             }
+            "few" => {
+                s.spheres.push(Sphere::zeroed());
+                s.nodes.push(Node::leaf(0, 1));
+                s.refs.push(reference(KIND_SPHERE, 0));
+            }
             "textures" | "texels" => {
                 s.textures.push(Texture { kind: TEXTURE_IMAGE, ..Texture::zeroed() });
                 s.texels.push(0);

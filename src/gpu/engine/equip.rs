@@ -74,8 +74,9 @@ impl GpuEngine {
     /// An engine for another scene, camera or plan on the device of this one, which keeps its programs where the new ones
     /// would be the same.
     pub fn renewed(self, packed: &Packed, plan: Plan) -> Result<Self, EngineError> {
-        let same =
-            self.plan.features == plan.features && self.members == SceneTables::new(&packed.scene).members;
+        let tables = SceneTables::new(&packed.scene);
+        let same = self.plan.features == plan.features
+            && (&self.members, &self.few) == (&tables.members, &tables.few);
         Self::on(self.kept(same), packed, plan, Compiling::Together)
     }
 
@@ -117,6 +118,7 @@ impl GpuEngine {
             pace,
             programs: BTreeMap::new(),
             members: scene.members.clone(),
+            few: scene.few.clone(),
             groups: BTreeMap::new(),
             shared,
             chunks,

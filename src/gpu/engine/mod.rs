@@ -41,6 +41,8 @@ pub struct GpuEngine {
     programs: BTreeMap<Kernel, Program>,
     /// Of the struct that the programs know the scene's short tables by.
     members: Vec<Member>,
+    /// Those that the programs test one after another.
+    few: Vec<u32>,
     /// By kernel and chunk (0 where it has none).
     groups: BTreeMap<(Kernel, u32), wgpu::BindGroup>,
     shared: BTreeMap<&'static str, wgpu::Buffer>,
