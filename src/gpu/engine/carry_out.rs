@@ -64,7 +64,7 @@ impl GpuEngine {
             let dispatch = Dispatch { first, end: first + items, ..step.dispatch };
             let group = &self.groups[&(step.kernel, step.chunk)];
             self.recorder.dispatch(&self.gpu, &self.programs[&step.kernel], group, &dispatch);
-            self.pace.record(step.kernel, items);
+            self.pace.record(step.kernel, items, end - step.dispatch.first);
             first += items;
         }
         Ok(())
