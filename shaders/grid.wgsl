@@ -4,7 +4,8 @@ const CELL_MAX: f32 = 1e9;
 const ALONG: f32 = 4.0;
 
 fn grid_cell(position: vec3f, inv_cell: f32) -> vec3i {
-    return vec3i(clamp(floor(position * inv_cell * vec3f(ALONG, 1.0, 1.0)), vec3f(-CELL_MAX), vec3f(CELL_MAX)));
+    let sides = vec3f(ALONG, 1.0, 1.0) * inv_cell;
+    return vec3i(clamp(floor(position * sides), vec3f(-CELL_MAX), vec3f(CELL_MAX)));
 }
 
 fn grid_bucket(cell: vec3i, mask: u32) -> u32 {

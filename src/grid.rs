@@ -1,4 +1,4 @@
-//! The hash grid over photon records: cubes of one side length, hashed into a table of buckets row by row.
+//! The hash grid over photon records: cells in rows along x, hashed into a table of buckets row by row.
 //! Two rows may share a bucket, so a reader compares the row's code. Twin: `shaders/grid.wgsl`.
 
 use super::real::{Real, Vec3};
@@ -6,14 +6,13 @@ use glam::IVec3;
 
 /// Farthest cell from the origin; beyond it cells are merged, which costs time and nothing else.
 const CELL_MAX: Real = 1e9;
-/// Cells along x in the length of one along y or z: shorter ones cost a reader nothing, since it reads rows, and spare it photons.
+/// Cells along x in the length of one along y or z. A reader reads rows, so that short ones cost it nothing and spare it photons.
 const ALONG: Real = 4.0;
 
-/// Cell of a point; `inv_cell` is one over the side length. Monotone in each coordinate.
+/// Cell of a point; `inv_cell` is one over the side length along y and z. Monotone in each coordinate.
 pub fn grid_cell(position: Vec3, inv_cell: Real) -> IVec3 {
-    let p = (position * inv_cell * Vec3::new(ALONG, 1.0, 1.0))
-        .floor()
-        .clamp(Vec3::splat(-CELL_MAX), Vec3::splat(CELL_MAX));
+    let sides = Vec3::new(ALONG, 1.0, 1.0) * inv_cell;
+    let p = (position * sides).floor().clamp(Vec3::splat(-CELL_MAX), Vec3::splat(CELL_MAX));
     p.as_ivec3()
 }
 

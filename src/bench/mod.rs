@@ -171,7 +171,7 @@ pub fn device_report(
         rates: pass_rates(&work, pass.median),
         timed_pass: Spread::of(&run.timed),
         rest: Spread::of(&run.rest),
-        kernels: kernel_reports(&run.kernels, &work, &ready.plan),
+        kernels: kernel_reports(&run.kernels, &work, &ready.plan, ready.runner.gpu().is_some()),
         work,
         slices: if ready.runner.gpu().is_some() { run.slices } else { Vec::new() },
         memory: Memory { peak_resident, ..memory(&ready) },
@@ -285,12 +285,13 @@ fn kernel_reports(
     kernels: &BTreeMap<&'static str, Vec<f64>>,
     work: &Work,
     plan: &Plan,
+    gpu: bool,
 ) -> BTreeMap<&'static str, KernelReport> {
     let spreads: BTreeMap<_, _> =
         kernels.iter().map(|(name, seconds)| (*name, Spread::of(seconds))).collect();
     let all: f64 = spreads.values().map(|spread| spread.median).sum();
     let report = |(name, seconds): (&&'static str, &Spread)| {
-        let counts = work.counts(plan, name).into_iter();
+        let counts = work.counts(plan, name, gpu).into_iter();
         let rates = counts.map(|(rate, count)| (rate, count / seconds.median.max(1e-9))).collect();
         let share = seconds.median / all.max(1e-12);
         (*name, KernelReport { seconds: *seconds, share, rates })

@@ -43,8 +43,9 @@ impl Work {
         }
     }
 
-    /// What is counted of a kernel: the name of the rate, and how much.
-    pub fn counts(&self, plan: &Plan, kernel: &str) -> Vec<(&'static str, f64)> {
+    /// What is counted of a kernel: the name of the rate, and how much. The CPU engine builds its grid in other steps than a GPU, whose
+    /// bytes are not counted.
+    pub fn counts(&self, plan: &Plan, kernel: &str, gpu: bool) -> Vec<(&'static str, f64)> {
         let counts = match kernel {
             "eye_trace" | "path_trace" => {
                 vec![("paths_per_second", self.eye_paths), ("rays_per_second", self.eye_rays)]
@@ -53,6 +54,7 @@ impl Work {
                 vec![("photons_per_second", self.photons), ("rays_per_second", self.photon_rays)]
             }
             "gather" => vec![("gathers_per_second", self.gathers), ("photons_per_second", self.gathered)],
+            _ if !gpu && kernel.starts_with("grid_") => vec![],
             _ => {
                 return self.least_bytes(plan, kernel).map(|b| ("bytes_per_second", b)).into_iter().collect();
             }
@@ -60,7 +62,7 @@ impl Work {
         counts.into_iter().map(|(name, count)| (name, count as f64)).collect()
     }
 
-    /// Bytes that a kernel of the grid or `resolve` has to move in a pass, if every datum travels once each way.
+    /// Bytes that a GPU's kernel of the grid, or `resolve`, has to move in a pass, if every datum travels once each way.
     fn least_bytes(&self, plan: &Plan, kernel: &str) -> Option<f64> {
         let record = size_of::<PhotonRecord>() as f64;
         let records = self.records as f64;
