@@ -28,16 +28,6 @@ fn intersect_primitive(reference: u32, ray: Ray, hit: ptr<function, Hit>) {
             intersect_cuboid(scene.cuboids[index], reference, ray, hit);
         }
         //#end
-        //#if revolution
-        case KIND_REVOLUTION: {
-            let patch_data = scene.patches[index];
-            let revolution = scene.revolutions[patch_data.revolution];
-            let at = intersect_patch(revolution, patch_data, ray.origin, ray.direction, ray.t_min, (*hit).t);
-            if at.t < (*hit).t {
-                *hit = Hit(at.t, reference, at.theta, at.tau);
-            }
-        }
-        //#end
         //#if plane
         case KIND_PLANE: {
             intersect_plane(scene.planes[index], reference, ray, hit);
@@ -46,6 +36,49 @@ fn intersect_primitive(reference: u32, ray: Ray, hit: ptr<function, Hit>) {
         default: {}
     }
 }
+
+//#if revolution
+fn intersect_revolution(reference: u32, ray: Ray, hit: ptr<function, Hit>) {
+    let patch_data = scene.patches[reference & ((1u << REFERENCE_BITS) - 1u)];
+    let revolution = scene.revolutions[patch_data.revolution];
+    let at = intersect_patch(revolution, patch_data, ray.origin, ray.direction, ray.t_min, (*hit).t);
+    if at.t < (*hit).t {
+        *hit = Hit(at.t, reference, at.theta, at.tau);
+    }
+}
+//#end
+
+//#if kdtree
+fn intersect_leaf(first: u32, last: u32, ray: Ray, any_hit: bool, hit: ptr<function, Hit>) {
+    //#if revolution
+    var patches = last;
+    //#end
+    for (var i = first; i < last; i++) {
+        let reference = refs[i];
+        //#if revolution
+        if reference >> REFERENCE_BITS == KIND_REVOLUTION {
+            patches = min(patches, i);
+            continue;
+        }
+        //#end
+        intersect_primitive(reference, ray, hit);
+        if any_hit && (*hit).reference != NONE {
+            return;
+        }
+    }
+    //#if revolution
+    // in a loop of their own, since a software driver runs through what it tests for every shape
+    for (var i = patches; i < last; i++) {
+        if refs[i] >> REFERENCE_BITS == KIND_REVOLUTION {
+            intersect_revolution(refs[i], ray, hit);
+            if any_hit && (*hit).reference != NONE {
+                return;
+            }
+        }
+    }
+    //#end
+}
+//#end
 
 fn intersect_scene(ray: Ray) -> Hit {
     var hit = Hit(ray.t_max, NONE, 0.0, 0.0);

@@ -1,6 +1,6 @@
 // Rays through the kd-tree: twin of src/shapes/kdtree.rs, which explains the method.
-// Reads `nodes: array<vec2u>`, `refs: array<u32>` and `scene.world.bounds_min`, `bounds_max`; calls
-// `intersect_primitive(reference, ray, hit)`.
+// Reads `nodes: array<vec2u>` and `scene.world.bounds_min`, `bounds_max`; calls `intersect_leaf(first, last, ray, any_hit, hit)`
+// for the references of a leaf.
 
 const MAX_DEPTH: u32 = 32u;
 const SLACK: f32 = 3.8146973e-6;
@@ -81,11 +81,9 @@ fn traverse(ray: Ray, any_hit: bool, hit: ptr<function, Hit>) {
         }
 
         let last = node.x + (node.y >> 2u);
-        for (var i = node.x; i < last; i++) {
-            intersect_primitive(refs[i], ray, hit);
-            if any_hit && (*hit).reference != NONE {
-                return;
-            }
+        intersect_leaf(node.x, last, ray, any_hit, hit);
+        if any_hit && (*hit).reference != NONE {
+            return;
         }
 
         loop {

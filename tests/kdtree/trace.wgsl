@@ -21,8 +21,13 @@ struct Scene {
 @group(0) @binding(5) var<storage, read_write> hits: array<Hit>;
 @group(0) @binding(6) var<storage, read_write> shadows: array<u32>;
 
-fn intersect_primitive(reference: u32, ray: Ray, hit: ptr<function, Hit>) {
-    intersect_triangle(triangles[reference], reference, ray, hit);
+fn intersect_leaf(first: u32, last: u32, ray: Ray, any_hit: bool, hit: ptr<function, Hit>) {
+    for (var i = first; i < last; i++) {
+        intersect_triangle(triangles[refs[i]], refs[i], ray, hit);
+        if any_hit && (*hit).reference != NONE {
+            return;
+        }
+    }
 }
 
 @compute @workgroup_size(64)
