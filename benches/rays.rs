@@ -5,7 +5,7 @@ mod workload;
 
 use caustica::build::kdtree::{self, Primitive};
 use caustica::real::Real;
-use caustica::shapes::intersect::{intersect_primitive, intersect_scene, occluded};
+use caustica::shapes::intersect::{intersect_primitive, intersect_scene, intersect_scene_many, occluded};
 use caustica::shapes::ray::{Hit, Ray};
 use caustica::shapes::triangle::RayShear;
 use caustica::tables::*;
@@ -69,6 +69,22 @@ fn trace(bencher: Bencher, (nu, nv): (u32, u32), hit: impl Fn(&Scene, &Ray) -> b
 #[divan::bench(args = MESHES)]
 fn closest_hit(bencher: Bencher, size: (u32, u32)) {
     trace(bencher, size, |scene, ray| intersect_scene(scene, ray).reference != NONE);
+}
+
+/// As the CPU engine traces photons in large scenes.
+#[divan::bench(args = MESHES)]
+fn closest_hit_side_by_side(bencher: Bencher, (nu, nv): (u32, u32)) {
+    let packed = workload::displaced_sphere(nu, nv);
+    let rays = workload::incoherent_rays(&packed, RAYS);
+    bencher.counter(ItemsCount::new(RAYS)).bench_local(|| {
+        let mut waiting = black_box(&rays).iter();
+        let mut hits = 0;
+        intersect_scene_many(&packed.scene, |_, last| {
+            hits += usize::from(last.is_some_and(|hit| hit.reference != NONE));
+            waiting.next().copied()
+        });
+        hits
+    });
 }
 
 #[divan::bench(args = MESHES)]

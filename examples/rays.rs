@@ -1,10 +1,12 @@
 //! Our side of the comparison with Embree (`benches/embree.py`): writes the mesh and the rays as raw f32 to a folder, then
-//! traces all rays on one thread for every line that it reads and prints the seconds; at the end it writes the distances.
+//! traces all rays on one thread for every line that it reads, one by one and side by side, and prints the seconds of both;
+//! at the end it writes the distances, which are the same to the bit, or it fails.
 
 #[path = "../benches/workload/mod.rs"]
 mod workload;
 
-use caustica::shapes::intersect::intersect_scene;
+use caustica::shapes::intersect::{intersect_scene, intersect_scene_many};
+use caustica::shapes::kdtree_many::FLIGHT;
 use std::io::{self, BufRead, Write};
 use std::path::Path;
 use std::time::Instant;
@@ -22,15 +24,30 @@ fn main() -> io::Result<()> {
     std::fs::write(folder.join("triangles.f32"), bytemuck::cast_slice(&corners))?;
     std::fs::write(folder.join("rays.f32"), bytemuck::cast_slice(&rays))?;
     println!("{} triangles, {:?}", packed.scene.triangles.len(), packed.tree);
-    let mut distances = vec![0f32; rays.len()];
+    let mut one_by_one = vec![0f32; rays.len()];
+    let mut side_by_side = one_by_one.clone();
     for line in io::stdin().lock().lines() {
         line?;
         let start = Instant::now();
-        for (distance, ray) in distances.iter_mut().zip(&rays) {
+        for (distance, ray) in one_by_one.iter_mut().zip(&rays) {
             *distance = intersect_scene(&packed.scene, ray).t;
         }
-        println!("{}", start.elapsed().as_secs_f64());
+        let middle = Instant::now();
+        let mut places = [0; FLIGHT];
+        let mut waiting = rays.iter().enumerate();
+        intersect_scene_many(&packed.scene, |lane, last| {
+            if let Some(hit) = last {
+                side_by_side[places[lane]] = hit.t;
+            }
+            let (place, ray) = waiting.next()?;
+            places[lane] = place;
+            Some(*ray)
+        });
+        println!("{} {}", (middle - start).as_secs_f64(), middle.elapsed().as_secs_f64());
         io::stdout().flush()?;
     }
-    std::fs::write(folder.join("distances.f32"), bytemuck::cast_slice(&distances))
+    if one_by_one != side_by_side {
+        return Err(io::Error::other("rays side by side have other hits than one by one"));
+    }
+    std::fs::write(folder.join("distances.f32"), bytemuck::cast_slice(&one_by_one))
 }

@@ -8,6 +8,7 @@ use glam::{DVec2, DVec3};
 pub use bytemuck::Pod as Plain;
 pub use glam::{Vec2, Vec3, Vec4};
 pub use std::f32::consts;
+pub use wide::{f32x4 as Reals, u32x4 as Words};
 
 /// A number of the kernels.
 pub type Real = f32;

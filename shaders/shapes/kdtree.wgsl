@@ -5,13 +5,20 @@
 const MAX_DEPTH: u32 = 32u;
 const SLACK: f32 = 3.8146973e-6;
 const LEVEL: f32 = 1e-20;
-const EMPTY: u32 = 3u;
 const NOTHING: u32 = 1u;
 
 struct Waiting {
     node: u32,
     begin: f32,
     end: f32,
+}
+
+fn children(word1: u32) -> u32 {
+    return (word1 >> 3u) & ~1u;
+}
+
+fn is_empty(word1: u32, child: u32) -> bool {
+    return ((word1 >> (2u + child)) & 1u) != 0u;
 }
 
 fn reciprocal(d: f32) -> f32 {
@@ -57,13 +64,13 @@ fn traverse(ray: Ray, any_hit: bool, hit: ptr<function, Hit>) {
         var node = nodes[index];
         while (node.y & 3u) != 3u {
             let axis = node.y & 3u;
-            let near = node.y >> 2u | backward[axis];
+            let near = children(node.y) | backward[axis];
             let far = near ^ 1u;
             let t = (bitcast<f32>(node.x) - ray.origin[axis]) * inverse[axis];
             let t_first = t - slack[axis];
             let t_last = t + slack[axis];
-            let enter_near = (t_last >= begin) & (nodes[near].y != EMPTY);
-            let enter_far = (t_first <= end) & (nodes[far].y != EMPTY);
+            let enter_near = (t_last >= begin) & !is_empty(node.y, backward[axis]);
+            let enter_far = (t_first <= end) & !is_empty(node.y, backward[axis] ^ 1u);
             if enter_near {
                 if enter_far {
                     stack[waiting] = Waiting(far, max(begin, t_first), end);

@@ -10,7 +10,7 @@ use super::kdtree_bins::{best_plane, partition};
 use super::kdtree_clip::whole;
 use super::kdtree_layout::laid_out;
 use super::kdtree_sweep::Sweep;
-use super::real::{Bits, Real, ToDouble, Vec3};
+use super::real::{Real, ToDouble, Vec3};
 use super::shapes::aabb::Aabb;
 use super::shapes::kdtree::{MAX_DEPTH, Node, Tree};
 use crate::stage::stage;
@@ -80,11 +80,25 @@ pub(super) struct Item {
     pub bounds: Aabb,
 }
 
-/// A subtree on its own, depth first: a lower child follows its parent, whose `Node` names the upper one. Upper children and
-/// first references count from its own start.
+/// A node before it has its place.
+#[derive(Clone, Copy)]
+pub(super) enum Part {
+    /// The lower child follows; the upper one is named.
+    Split {
+        axis: u8,
+        position: Real,
+        upper: u32,
+    },
+    Leaf {
+        first: u32,
+        count: u32,
+    },
+}
+
+/// A subtree on its own, depth first. Upper children and first references count from its own start.
 #[derive(Default)]
 pub(super) struct Subtree {
-    pub nodes: Vec<Node>,
+    pub nodes: Vec<Part>,
     pub refs: Vec<u32>,
 }
 
@@ -153,16 +167,15 @@ fn subtree(prims: &[Primitive], items: Vec<Item>, cell: Aabb, levels: u32) -> Su
 
 fn joined(axis: usize, position: Real, left: Subtree, right: Subtree) -> Subtree {
     let mut nodes = Vec::with_capacity(1 + left.nodes.len() + right.nodes.len());
-    nodes.push(Node::interior(axis, position, 1 + left.nodes.len() as u32));
+    nodes.push(Part::Split { axis: axis as u8, position, upper: 1 + left.nodes.len() as u32 });
     for (part, first_node, first_ref) in
         [(&left, 1, 0), (&right, 1 + left.nodes.len() as u32, left.refs.len() as u32)]
     {
-        nodes.extend(part.nodes.iter().map(|n| {
-            if n.is_leaf() {
-                Node { word0: n.word0 + first_ref as Bits, word1: n.word1 }
-            } else {
-                Node { word0: n.word0, word1: n.word1 + (first_node << 2) }
+        nodes.extend(part.nodes.iter().map(|n| match *n {
+            Part::Split { axis, position, upper } => {
+                Part::Split { axis, position, upper: upper + first_node }
             }
+            Part::Leaf { first, count } => Part::Leaf { first: first + first_ref, count },
         }));
     }
     let mut refs = left.refs;

@@ -1,5 +1,6 @@
 //! The order of the nodes in memory: a walk down the tree should touch few cache lines.
 
+use super::kdtree::Part;
 use super::shapes::aabb::Aabb;
 use super::shapes::kdtree::Node;
 
@@ -15,17 +16,17 @@ struct Open {
     cell: Aabb,
 }
 
-/// Puts the nodes of a tree, in which a lower child follows its parent and the parent names the upper one, in the order
-/// that rays walk them in: siblings side by side, and with them in the cache line, one after the other, those children of the nodes in it
-/// that most rays visit, by the area of their cells.
-pub(super) fn laid_out(nodes: &[Node], bounds: Aabb) -> Vec<Node> {
+/// Puts the nodes of a tree in the order that rays walk them in: siblings side by side, and with them in the cache line,
+/// one after the other, those children of the nodes in it that most rays visit, by the area of their cells.
+pub(super) fn laid_out(nodes: &[Part], bounds: Aabb) -> Vec<Node> {
     // Beside the root lies an empty leaf, so that pairs begin at even indices.
-    let mut out = Vec::with_capacity(nodes.len() + 1);
-    out.extend([nodes[0], Node::leaf(0, 0)]);
+    let mut out = vec![Node::leaf(0, 0); 2];
     let mut heads = Vec::new();
-    if !nodes[0].is_leaf() {
-        heads.push(Open { place: 0, old: 0, cell: bounds });
-    }
+    let put = |out: &mut Vec<Node>, open: &mut Vec<Open>, place: usize, old: usize, cell| match nodes[old] {
+        Part::Leaf { first, count } => out[place] = Node::leaf(first, count),
+        Part::Split { .. } => open.push(Open { place, old, cell }),
+    };
+    put(&mut out, &mut heads, 0, 0, bounds);
     let mut line = Vec::new();
     while let Some(head) = heads.pop() {
         line.push(head);
@@ -36,14 +37,15 @@ pub(super) fn laid_out(nodes: &[Node], bounds: Aabb) -> Vec<Node> {
                 break;
             };
             let Open { place, old, cell } = line.swap_remove(widest);
-            let (axis, position, upper) = nodes[old].plane();
-            let (low, high) = cell.split(axis, position);
-            out[place] = Node::interior(axis, position, out.len() as u32);
-            for (old, cell) in [(old + 1, low), (upper as usize, high)] {
-                if !nodes[old].is_leaf() {
-                    line.push(Open { place: out.len(), old, cell });
-                }
-                out.push(nodes[old]);
+            if let Part::Split { axis, position, upper } = nodes[old] {
+                let (lower, upper, axis) = (old + 1, upper as usize, axis as usize);
+                let (low, high) = cell.split(axis, position);
+                let children = out.len();
+                let empty = [lower, upper].map(|old| matches!(nodes[old], Part::Leaf { count: 0, .. }));
+                out[place] = Node::interior(axis, position, children as u32, empty);
+                out.extend([Node::leaf(0, 0); 2]);
+                put(&mut out, &mut line, children, lower, low);
+                put(&mut out, &mut line, children + 1, upper, high);
             }
         }
         heads.append(&mut line);

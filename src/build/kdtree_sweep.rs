@@ -3,11 +3,10 @@
 //! Per axis a sorted list of events says where primitives end, lie flat or start. A split filters the lists, which
 //! keeps them sorted, and merges in the events of the primitives that straddle the plane.
 
-use super::kdtree::{Heuristic, INTERSECTION_COST, Item, Primitive, Subtree};
+use super::kdtree::{Heuristic, INTERSECTION_COST, Item, Part, Primitive, Subtree};
 use super::kdtree_bins::parts;
 use super::real::{Bits, Real, WideBits};
 use super::shapes::aabb::Aabb;
-use super::shapes::kdtree::Node;
 
 /// Order at equal positions: as the sweep meets them.
 const END: Event = 0;
@@ -112,9 +111,10 @@ impl<'a> Sweep<'a> {
         let (low, high) = cell.split(split.axis, split.position);
         let ([left, right], [left_count, right_count]) = self.divide(events, split, low, high);
         let index = self.tree.nodes.len();
-        self.tree.nodes.push(Node::leaf(0, 0));
+        self.tree.nodes.push(Part::Leaf { first: 0, count: 0 });
         self.node(left, left_count, low, level + 1);
-        self.tree.nodes[index] = Node::interior(split.axis, split.position, self.tree.nodes.len() as u32);
+        let upper = self.tree.nodes.len() as u32;
+        self.tree.nodes[index] = Part::Split { axis: split.axis as u8, position: split.position, upper };
         self.node(right, right_count, high, level + 1);
     }
 
@@ -122,7 +122,8 @@ impl<'a> Sweep<'a> {
         let first = self.tree.refs.len();
         self.tree.refs.extend(events.iter().filter(|&&e| kind(e) != END).map(|&e| self.ids[item(e)]));
         self.tree.refs[first..].sort_unstable();
-        self.tree.nodes.push(Node::leaf(first as u32, (self.tree.refs.len() - first) as u32));
+        let count = (self.tree.refs.len() - first) as u32;
+        self.tree.nodes.push(Part::Leaf { first: first as u32, count });
     }
 
     /// The events and numbers of items in the two cells beside the plane.

@@ -1,5 +1,6 @@
 //! The CPU engine: carries out a plan on vectors, with rayon. Needs no adapter.
 
+mod photons;
 mod tasks;
 
 use super::kernels::aov_trace::AovPixel;
@@ -20,9 +21,10 @@ use crate::film::exr_file::Channel;
 use crate::film::{ErrorMap, Picture, Rejections};
 use crate::settings::Method;
 use bytemuck::Zeroable;
+use photons::trace_photons;
 use rayon::prelude::*;
 use std::sync::Arc;
-use tasks::{EYE_TASK, EyePaths, GATHER_TASK, Gathers, trace_aovs, trace_photons};
+use tasks::{EYE_TASK, EyePaths, GATHER_TASK, Gathers, trace_aovs};
 
 /// Passes over one scene on the processor's cores.
 pub struct CpuEngine {

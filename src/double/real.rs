@@ -4,6 +4,7 @@
 pub use glam::{DVec2 as Vec2, DVec3 as Vec3, DVec4 as Vec4};
 pub use std::default::Default as Plain;
 pub use std::f64::consts;
+pub use wide::{f64x4 as Reals, u64x4 as Words};
 
 /// A number of the kernels.
 pub type Real = f64;

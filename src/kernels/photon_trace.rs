@@ -6,12 +6,12 @@ use super::direct::{medium_before, transmittance};
 use super::lights::aim::aimed_scatter;
 use super::lights::emission::emit_photon;
 use super::materials::scatter::{IMPORTANCE, is_specular, reflectance_at, scatter_rough, scatter_specular};
-use super::math::rng::{STREAM_PHOTON, rng_new, rng_next};
+use super::math::rng::{Rng, STREAM_PHOTON, rng_new, rng_next};
 use super::math::{FAR, max_component, oct_encode, offset_origin};
-use super::real::Vec2;
+use super::real::{Real, Vec2, Vec3};
 use super::records::{Dispatch, PhotonRecord};
 use super::shapes::intersect::intersect_scene;
-use super::shapes::ray::Ray;
+use super::shapes::ray::{Hit, Ray};
 use super::shapes::surface::surface_at;
 use super::tables::*;
 
@@ -22,17 +22,121 @@ pub const ABSORBED: usize = 1;
 /// It had been scattered as often as allowed.
 pub const CUT: usize = 2;
 
-/// What became of one photon.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// One photon on its way.
+#[derive(Clone, Copy, Debug)]
 pub struct PhotonPath {
+    /// What it meets next.
+    pub ray: Ray,
     /// Rays traced.
     pub rays: u32,
-    /// [`ESCAPED`], [`ABSORBED`] or [`CUT`].
+    /// [`ESCAPED`], [`ABSORBED`] or [`CUT`], once it has ended.
     pub end: usize,
+    id: u32,
+    rng: Rng,
+    flux: Vec3,
+    excess: Real,
+    medium: u32,
+    family: u32,
+    bounce: u32,
 }
 
-/// Traces photon `id` of the batch and hands each record to `store`. `sampled`:
-/// photons straight from a light are not stored, since shadow rays bring that light.
+impl PhotonPath {
+    /// Emits photon `id` of the batch.
+    #[inline(always)]
+    pub fn new(scene: &Scene, dispatch: &Dispatch, id: u32) -> PhotonPath {
+        let mut rng = rng_new(dispatch.batch_first + id, dispatch.pass_number, STREAM_PHOTON, dispatch.seed);
+        let emission = emit_photon(scene, &mut rng);
+        PhotonPath {
+            ray: emission.ray,
+            rays: 0,
+            end: CUT,
+            id,
+            rng,
+            flux: emission.flux,
+            excess: emission.excess,
+            medium: emission.medium,
+            family: 0,
+            bounce: 0,
+        }
+    }
+
+    /// Whether it goes on, with its `ray`.
+    #[inline(always)]
+    pub fn goes_on(&mut self, dispatch: &Dispatch) -> bool {
+        if self.bounce > dispatch.max_bounces {
+            return false;
+        }
+        if max_component(self.flux) <= 0.0 {
+            self.end = ABSORBED;
+            return false;
+        }
+        self.rays += 1;
+        true
+    }
+
+    /// From what its ray hit to the next ray, or to its end. Hands a record to `store`, if it leaves one. `sampled`: photons straight
+    /// from a light are not stored, since shadow rays bring that light.
+    #[inline(always)]
+    pub fn meet(
+        &mut self,
+        scene: &Scene,
+        dispatch: &Dispatch,
+        sampled: bool,
+        hit: &Hit,
+        store: &mut impl FnMut(PhotonRecord),
+    ) -> bool {
+        if hit.reference == NONE {
+            self.end = ESCAPED;
+            return false;
+        }
+        let far = scene.world.disc_levels > 1;
+        let tracked = far || scene.world.guided != 0;
+        let s = surface_at(scene, &self.ray, hit);
+        let wo = -self.ray.direction;
+        // the first ray of light from infinity starts behind its origin, outside of every medium
+        self.flux *= transmittance(scene, medium_before(scene, &s, wo, self.medium), hit.t.max(0.0));
+        let kind = scene.materials[s.material as usize].kind;
+        let u = rng_next(&mut self.rng);
+        let mut scattered;
+        if is_specular(kind) {
+            scattered = scatter_specular(scene, &s, wo, self.medium, u.x, IMPORTANCE);
+        } else {
+            let stored = self.bounce > 0 || !sampled;
+            if stored && max_component(reflectance_at(scene, s.material, s.uv)) > 0.0 {
+                let key = self.id << dispatch.key_bits | self.bounce << 1 | self.family;
+                store(PhotonRecord { position: s.position, key, flux: self.flux, direction: oct_encode(wo) });
+            }
+            scattered = scatter_rough(scene, &s, wo, self.medium, Vec2::new(u.x, u.y), IMPORTANCE);
+            if far {
+                scattered = aimed_scatter(scene, &s, wo, u, scattered);
+            }
+            if dispatch.families == 2 && kind == MATERIAL_DIFFUSE {
+                self.family = 1;
+            }
+        }
+        let weight = max_component(scattered.weight);
+        // a faint photon, one of many that a map sends at glass and mirrors, is to get through them
+        let mut survival = weight.min(1.0);
+        if tracked {
+            let kept = if is_specular(kind) { self.excess.max(1.0) } else { self.excess };
+            survival = (weight * kept).min(1.0);
+            self.excess *= weight / survival;
+        }
+        if u.w >= survival {
+            self.end = ABSORBED;
+            return false;
+        }
+        scattered.weight *= 1.0 / survival;
+        self.flux *= scattered.weight;
+        self.medium = scattered.medium;
+        let origin = offset_origin(s.position, s.error, s.normal, scattered.direction);
+        self.ray = Ray { origin, t_min: 0.0, direction: scattered.direction, t_max: FAR };
+        self.bounce += 1;
+        true
+    }
+}
+
+/// Traces photon `id` of the batch and hands each record to `store`.
 #[inline(always)]
 pub fn photon_trace(
     scene: &Scene,
@@ -41,68 +145,12 @@ pub fn photon_trace(
     id: u32,
     mut store: impl FnMut(PhotonRecord),
 ) -> PhotonPath {
-    let mut rng = rng_new(dispatch.batch_first + id, dispatch.pass_number, STREAM_PHOTON, dispatch.seed);
-    let emission = emit_photon(scene, &mut rng);
-    let mut ray = emission.ray;
-    let mut flux = emission.flux;
-    let mut excess = emission.excess;
-    let mut medium = emission.medium;
-    let far = scene.world.disc_levels > 1;
-    let tracked = far || scene.world.guided != 0;
-    let mut family = 0;
-    let mut rays = 0;
-    let mut end = CUT;
-    for bounce in 0..dispatch.max_bounces + 1 {
-        if max_component(flux) <= 0.0 {
-            end = ABSORBED;
+    let mut path = PhotonPath::new(scene, dispatch, id);
+    while path.goes_on(dispatch) {
+        let hit = intersect_scene(scene, &path.ray);
+        if !path.meet(scene, dispatch, sampled, &hit, &mut store) {
             break;
         }
-        rays += 1;
-        let hit = intersect_scene(scene, &ray);
-        if hit.reference == NONE {
-            end = ESCAPED;
-            break;
-        }
-        let s = surface_at(scene, &ray, &hit);
-        let wo = -ray.direction;
-        // the first ray of light from infinity starts behind its origin, outside of every medium
-        flux *= transmittance(scene, medium_before(scene, &s, wo, medium), hit.t.max(0.0));
-        let kind = scene.materials[s.material as usize].kind;
-        let u = rng_next(&mut rng);
-        let mut scattered;
-        if is_specular(kind) {
-            scattered = scatter_specular(scene, &s, wo, medium, u.x, IMPORTANCE);
-        } else {
-            let stored = bounce > 0 || !sampled;
-            if stored && max_component(reflectance_at(scene, s.material, s.uv)) > 0.0 {
-                let key = id << dispatch.key_bits | bounce << 1 | family;
-                store(PhotonRecord { position: s.position, key, flux, direction: oct_encode(wo) });
-            }
-            scattered = scatter_rough(scene, &s, wo, medium, Vec2::new(u.x, u.y), IMPORTANCE);
-            if far {
-                scattered = aimed_scatter(scene, &s, wo, u, scattered);
-            }
-            if dispatch.families == 2 && kind == MATERIAL_DIFFUSE {
-                family = 1;
-            }
-        }
-        let weight = max_component(scattered.weight);
-        // a faint photon, one of many that a map sends at glass and mirrors, is to get through them
-        let mut survival = weight.min(1.0);
-        if tracked {
-            let kept = if is_specular(kind) { excess.max(1.0) } else { excess };
-            survival = (weight * kept).min(1.0);
-            excess *= weight / survival;
-        }
-        if u.w >= survival {
-            end = ABSORBED;
-            break;
-        }
-        scattered.weight *= 1.0 / survival;
-        flux *= scattered.weight;
-        medium = scattered.medium;
-        let origin = offset_origin(s.position, s.error, s.normal, scattered.direction);
-        ray = Ray { origin, t_min: 0.0, direction: scattered.direction, t_max: FAR };
     }
-    PhotonPath { rays, end }
+    path
 }

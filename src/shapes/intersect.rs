@@ -5,6 +5,7 @@ use super::cuboid::intersect_cuboid;
 use super::disc::{intersect_disc, intersect_plane};
 use super::fours::LANES;
 use super::kdtree::{Primitives, Tree, traverse_any, traverse_closest};
+use super::kdtree_many::{Rays, fetch, traverse_closest_many};
 use super::ray::{Hit, Ray};
 use super::rectangle::intersect_rectangle;
 use super::revolution::intersect_patch;
@@ -39,16 +40,26 @@ pub fn intersect_primitive(scene: &Scene, shear: &RayShear, reference: u32, ray:
 /// The shapes of a scene before one ray.
 struct Shapes<'a> {
     scene: &'a Scene,
-    shear: &'a RayShear,
+    shear: RayShear,
     /// In search of any hit it may stop at one.
     any: bool,
 }
 
 impl Primitives for Shapes<'_> {
+    /// Of the triangles both ends: some lie in two cache lines.
+    #[inline(always)]
+    fn expect(&self, references: &[u32]) {
+        for reference in references.iter().take_while(|&r| r >> REFERENCE_BITS == KIND_TRIANGLE) {
+            let triangle = self.scene.triangles.get((reference & ((1 << REFERENCE_BITS) - 1)) as usize);
+            fetch(triangle);
+            fetch(triangle.map(|triangle| &triangle.attributes));
+        }
+    }
+
     /// Triangles first, several at a time, then the others in the order of their kinds.
     #[inline(always)]
     fn intersect(&self, references: &[u32], ray: &Ray, hit: &mut Hit) {
-        let Shapes { scene, shear, any } = *self;
+        let Shapes { scene, ref shear, any } = *self;
         let count = references.iter().take_while(|&r| r >> REFERENCE_BITS == KIND_TRIANGLE).count();
         let (triangles, others) = references.split_at(count);
         if !triangles.is_empty() {
@@ -113,13 +124,49 @@ fn shear_of(scene: &Scene, ray: &Ray) -> RayShear {
 /// The nearest hit of a ray, or a hit whose reference is [`NONE`].
 #[inline(always)]
 pub fn intersect_scene(scene: &Scene, ray: &Ray) -> Hit {
-    let mut hit = Hit { t: ray.t_max, reference: NONE, u: 0.0, v: 0.0 };
-    let shear = shear_of(scene, ray);
-    for i in 0..scene.world.unbounded_count {
-        intersect_primitive(scene, &shear, scene.unbounded[i as usize], ray, &mut hit);
-    }
+    let mut hit = intersect_unbounded(scene, ray);
     if !scene.nodes.is_empty() {
-        traverse_closest(&tree(scene), ray, &mut hit, Shapes { scene, shear: &shear, any: false });
+        let shear = shear_of(scene, ray);
+        traverse_closest(&tree(scene), ray, &mut hit, Shapes { scene, shear, any: false });
+    }
+    hit
+}
+
+/// [`intersect_scene`] for many rays: asks `next` for a ray in one of [`FLIGHT`](super::kdtree_many::FLIGHT) lanes and tells
+/// it what the ray before has hit in this lane, until no lane gets one. Which lane is asked when is not said.
+#[inline(always)]
+pub fn intersect_scene_many(scene: &Scene, mut next: impl FnMut(usize, Option<&Hit>) -> Option<Ray>) {
+    if scene.nodes.is_empty() {
+        let mut last = None;
+        while let Some(ray) = next(0, last.as_ref()) {
+            last = Some(intersect_scene(scene, &ray));
+        }
+        return;
+    }
+    let shapes = |ray: &Ray| Shapes { scene, shear: shear_of(scene, ray), any: false };
+    traverse_closest_many(&tree(scene), &mut Source { scene, next }, shapes);
+}
+
+/// Rays, tested with what lies outside the tree.
+struct Source<'a, N> {
+    scene: &'a Scene,
+    next: N,
+}
+
+impl<N: FnMut(usize, Option<&Hit>) -> Option<Ray>> Rays for Source<'_, N> {
+    #[inline(always)]
+    fn next(&mut self, lane: usize, last: Option<&Hit>) -> Option<(Ray, Hit)> {
+        let ray = (self.next)(lane, last)?;
+        Some((ray, intersect_unbounded(self.scene, &ray)))
+    }
+}
+
+/// The nearest hit with a shape outside the tree.
+#[inline(always)]
+fn intersect_unbounded(scene: &Scene, ray: &Ray) -> Hit {
+    let mut hit = Hit::none(ray);
+    for i in 0..scene.world.unbounded_count {
+        intersect_primitive(scene, &RayShear::NONE, scene.unbounded[i as usize], ray, &mut hit);
     }
     hit
 }
@@ -135,8 +182,7 @@ pub fn occluded(scene: &Scene, ray: &Ray) -> bool {
             return true;
         }
     }
-    !scene.nodes.is_empty()
-        && traverse_any(&tree(scene), ray, &mut hit, Shapes { scene, shear: &shear, any: true })
+    !scene.nodes.is_empty() && traverse_any(&tree(scene), ray, &mut hit, Shapes { scene, shear, any: true })
 }
 
 #[inline(always)]

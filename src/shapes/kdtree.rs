@@ -1,8 +1,8 @@
 //! Rays through the kd-tree. Twin: `shaders/shapes/kdtree.wgsl`.
 //!
-//! The far children that wait lie on a stack as deep as the tree. Siblings lie side by side, so that a glance at them
-//! costs nothing: empty leaves, which are more than half of all, are neither entered nor put on the stack. Both twins test
-//! the same leaves in the same order, so that ties in the distance end alike.
+//! The far children that wait lie on a stack as deep as the tree. A node says which of its children are empty: these
+//! leaves, which are more than half of all, are neither read nor put on the stack. Both twins test the same leaves in the
+//! same order, so that ties in the distance end alike.
 //!
 //! A computed hit may lie off its primitive by a few roundings of the largest coordinate relative to the ray's
 //! origin. So every plane is taken as a slab of half-width `SLACK` times that length: a ray that is in the slab
@@ -29,19 +29,20 @@ const LEVEL: Real = 1e-20;
 pub struct Node {
     /// Interior: bits of the splitting plane's position. Leaf: index of its first reference.
     pub word0: Bits,
-    /// Interior: index of the lower child << 2 | axis. Leaf: number of references << 2 | 3.
+    /// Interior: half the index of the lower child << 4, | 8 or | 4 where the upper or lower child is empty, | axis.
+    /// Leaf: number of references << 2 | 3.
     pub word1: u32,
 }
 
-/// `word1` of a leaf without references.
-const EMPTY: u32 = 3;
 /// Index of an empty leaf: the place beside the root.
-const NOTHING: u32 = 1;
+pub(super) const NOTHING: u32 = 1;
 
 impl Node {
-    /// A node with two children, at `children` and after it, split at `axis = position`.
-    pub fn interior(axis: usize, position: Real, children: u32) -> Node {
-        Node { word0: position.to_bits(), word1: children << 2 | axis as u32 }
+    /// A node with two children, at `children`, which is even, and after it, split at `axis = position`; `empty`: which
+    /// of them are leaves without references.
+    pub fn interior(axis: usize, position: Real, children: u32, empty: [bool; 2]) -> Node {
+        let empty = u32::from(empty[1]) << 3 | u32::from(empty[0]) << 2;
+        Node { word0: position.to_bits(), word1: children << 3 | empty | axis as u32 }
     }
 
     /// A leaf with `count` references from `first` on.
@@ -58,7 +59,19 @@ impl Node {
     /// Interior: axis and position of the plane, and index of the lower child.
     #[inline]
     pub fn plane(self) -> (usize, Real, u32) {
-        ((self.word1 & 3) as usize, Real::from_bits(self.word0), self.word1 >> 2)
+        ((self.word1 & 3) as usize, Real::from_bits(self.word0), self.children())
+    }
+
+    /// Interior: index of the lower child.
+    #[inline(always)]
+    fn children(self) -> u32 {
+        self.word1 >> 3 & !1
+    }
+
+    /// Interior: whether the lower (0) or upper (1) child is an empty leaf.
+    #[inline(always)]
+    pub fn is_empty(self, child: u32) -> bool {
+        self.word1 >> (2 + child) & 1 != 0
     }
 
     /// Leaf: the range of its references.
@@ -84,21 +97,21 @@ pub struct Tree<'a> {
 
 /// A child that waits: its index and the ray's interval in it.
 #[derive(Clone, Copy, Default)]
-struct Waiting {
-    node: u32,
-    begin: Real,
-    end: Real,
+pub(super) struct Waiting {
+    pub node: u32,
+    pub begin: Real,
+    pub end: Real,
 }
 
 /// The larger of two numbers in one instruction; `Real::max` takes four, in case one is none.
 #[inline]
-fn larger(a: Real, b: Real) -> Real {
+pub(super) fn larger(a: Real, b: Real) -> Real {
     if a > b { a } else { b }
 }
 
 /// The smaller of two numbers.
 #[inline]
-fn smaller(a: Real, b: Real) -> Real {
+pub(super) fn smaller(a: Real, b: Real) -> Real {
     if a < b { a } else { b }
 }
 
@@ -109,18 +122,20 @@ fn reciprocal(d: Real) -> Real {
 
 /// What the walk needs to know of a ray along one axis.
 #[derive(Clone, Copy)]
-struct Axis {
-    origin: Real,
-    inverse: Real,
-    slack: Real,
+pub(super) struct Axis {
+    pub origin: Real,
+    pub inverse: Real,
+    pub slack: Real,
     /// 1 where the ray meets the upper child first.
-    backward: u32,
+    pub backward: u32,
 }
 
 /// What the primitives of leaves are.
 pub trait Primitives {
     /// Tests those that `references`, a leaf's, name and replaces `hit` by anything nearer.
     fn intersect(&self, references: &[u32], ray: &Ray, hit: &mut Hit);
+    /// Asks for what [`Primitives::intersect`] will read.
+    fn expect(&self, _references: &[u32]) {}
 }
 
 impl<F: Fn(&[u32], &Ray, &mut Hit)> Primitives for F {
@@ -143,8 +158,9 @@ pub fn traverse_any(tree: &Tree, ray: &Ray, hit: &mut Hit, primitives: impl Prim
     hit.reference != NONE
 }
 
+/// What the walk needs to know of a ray, and the part of it up to `t_max` that lies in the tree's box, if any.
 #[inline(always)]
-fn traverse(tree: &Tree, ray: &Ray, any: bool, hit: &mut Hit, primitives: impl Primitives) {
+pub(super) fn start(tree: &Tree, ray: &Ray, t_max: Real) -> Option<([Axis; 4], Real, Real)> {
     let inverse =
         Vec3::new(reciprocal(ray.direction.x), reciprocal(ray.direction.y), reciprocal(ray.direction.z));
     let to_min = tree.bounds_min - ray.origin;
@@ -156,9 +172,9 @@ fn traverse(tree: &Tree, ray: &Ray, any: bool, hit: &mut Hit, primitives: impl P
     let enter = t0.min(t1) - slack;
     let leave = t0.max(t1) + slack;
     let root_begin = larger(larger(larger(ray.t_min, enter.x), enter.y), enter.z);
-    let root_end = smaller(smaller(smaller(hit.t, leave.x), leave.y), leave.z);
+    let root_end = smaller(smaller(smaller(t_max, leave.x), leave.y), leave.z);
     if root_begin > root_end {
-        return;
+        return None;
     }
     let axis = |i: usize| Axis {
         origin: ray.origin[i],
@@ -166,8 +182,14 @@ fn traverse(tree: &Tree, ray: &Ray, any: bool, hit: &mut Hit, primitives: impl P
         slack: slack[i],
         backward: u32::from(inverse[i] < 0.0),
     };
-    let axes = [axis(0), axis(1), axis(2), axis(2)];
+    Some(([axis(0), axis(1), axis(2), axis(2)], root_begin, root_end))
+}
 
+#[inline(always)]
+fn traverse(tree: &Tree, ray: &Ray, any: bool, hit: &mut Hit, primitives: impl Primitives) {
+    let Some((axes, root_begin, root_end)) = start(tree, ray, hit.t) else {
+        return;
+    };
     let mut stack = [Waiting::default(); MAX_DEPTH as usize];
     let mut waiting = 0;
     let mut index = 0u32;
@@ -177,13 +199,13 @@ fn traverse(tree: &Tree, ray: &Ray, any: bool, hit: &mut Hit, primitives: impl P
         let mut node = tree.nodes[index as usize];
         while !node.is_leaf() {
             let Axis { origin, inverse, slack, backward } = axes[(node.word1 & 3) as usize];
-            let near = node.word1 >> 2 | backward;
+            let near = node.children() | backward;
             let far = near ^ 1;
             let t = (Real::from_bits(node.word0) - origin) * inverse;
             let t_first = t - slack;
             let t_last = t + slack;
-            let enter_near = (t_last >= begin) & (tree.nodes[near as usize].word1 != EMPTY);
-            let enter_far = (t_first <= end) & (tree.nodes[far as usize].word1 != EMPTY);
+            let enter_near = (t_last >= begin) & !node.is_empty(backward);
+            let enter_far = (t_first <= end) & !node.is_empty(backward ^ 1);
             if enter_near {
                 if enter_far {
                     stack[waiting] = Waiting { node: far, begin: larger(begin, t_first), end };

@@ -9,6 +9,7 @@ pub mod facet;
 pub mod fours;
 pub mod intersect;
 pub mod kdtree;
+pub mod kdtree_many;
 pub mod ray;
 pub mod rectangle;
 pub mod revolution;

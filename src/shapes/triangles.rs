@@ -1,4 +1,4 @@
-//! Four triangles at a time: lane b.y lane the operations of `triangle.rs`, and so the same bits. Only the CPU engine has this;
+//! Four triangles at a time: lane by lane the operations of `triangle.rs`, and so the same bits. Only the CPU engine has this;
 //! on a GPU the lanes are rays.
 
 use super::ray::{Hit, Ray};
@@ -7,7 +7,7 @@ use super::triangle::{RayShear, Triangle, intersect_triangle, permuted};
 
 const LANES: usize = 4;
 
-/// Replaces `hit` b.y the nearest hit with the triangles that `references` are the indices of, as if b.y
+/// Replaces `hit` by the nearest hit with the triangles that `references` are the indices of, as if by
 /// [`intersect_triangle`] with each in turn.
 #[inline]
 pub fn intersect_triangles(

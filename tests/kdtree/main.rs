@@ -30,6 +30,36 @@ fn mismatches(prims: &[Primitive], tree: &KdTree, rays: &[Ray], truth: &[Hit]) -
     rays.iter().zip(truth).filter(|(r, t)| wrong(r, t)).count()
 }
 
+/// Rays whose hit differs in any bit when they are traced side by side.
+fn differ(prims: &[Primitive], tree: &KdTree, rays: &[Ray], one_by_one: &[Hit]) -> usize {
+    let many = closest_many(prims, &tree.view(), rays);
+    let bits = |h: &Hit| (h.t.to_bits(), h.reference, h.u.to_bits(), h.v.to_bits());
+    many.iter().zip(one_by_one).filter(|(a, b)| bits(a) != bits(b)).count()
+}
+
+/// Theory: side by side each ray tests the leaves that it tests alone, in the same order. So every bit of its hit is the
+/// same, whatever flies beside it: no ray, fewer than there are lanes, or many.
+#[test]
+fn side_by_side_as_one_by_one() {
+    let mut rng = Rng(17);
+    for (name, prims) in scenes().into_iter().filter(|(_, prims)| !prims.is_empty()) {
+        let tree = build(&prims);
+        let all = rays(&prims, &tree.view(), 4000, &mut rng);
+        for rays in [&all[..], &all[..5], &all[..64], &all[..0]] {
+            let truth: Vec<Hit> = rays.iter().map(|ray| closest(&prims, &tree.view(), ray)).collect();
+            assert_eq!(differ(&prims, &tree, rays, &truth), 0, "{name}");
+        }
+    }
+    // planted: a tree that has lost a leaf
+    let prims = prims(&displaced_torus(60, 30));
+    let mut tree = build(&prims);
+    let rays = rays(&prims, &tree.view(), 20_000, &mut rng);
+    let truth: Vec<Hit> = rays.iter().map(|ray| closest(&prims, &tree.view(), ray)).collect();
+    let full = (0..tree.nodes.len()).find(|&i| tree.nodes[i].is_leaf() && !tree.nodes[i].range().is_empty());
+    tree.nodes[full.expect("a torus fills leaves")].word1 = 3;
+    assert!(differ(&prims, &tree, &rays, &truth) > 0);
+}
+
 /// Theory: a tree only leaves out what a ray cannot hit. So for every ray the nearest t is that of exhaustive
 /// search bit for bit.
 #[test]

@@ -3,6 +3,7 @@
 use caustica::build::kdtree::Primitive;
 use caustica::shapes::aabb::Aabb;
 use caustica::shapes::kdtree::{Tree, traverse_any, traverse_closest};
+use caustica::shapes::kdtree_many::{FLIGHT, Rays, traverse_closest_many};
 use caustica::shapes::ray::{Hit, Ray};
 use caustica::shapes::triangle::{RayShear, Triangle, intersect_triangle};
 use glam::Vec3;
@@ -82,6 +83,37 @@ pub fn closest(prims: &[Primitive], tree: &Tree, ray: &Ray) -> Hit {
         leaf.iter().for_each(|&r| intersect(prims, &shear, r, ray, hit));
     });
     hit
+}
+
+/// [`closest`] for many rays side by side.
+pub fn closest_many(prims: &[Primitive], tree: &Tree, rays: &[Ray]) -> Vec<Hit> {
+    struct Source<'a> {
+        rays: &'a [Ray],
+        hits: Vec<Hit>,
+        /// The ray in each lane.
+        places: [usize; FLIGHT],
+        taken: usize,
+    }
+    impl Rays for Source<'_> {
+        fn next(&mut self, lane: usize, last: Option<&Hit>) -> Option<(Ray, Hit)> {
+            if let Some(hit) = last {
+                self.hits[self.places[lane]] = *hit;
+            }
+            let ray = self.rays.get(self.taken)?;
+            self.places[lane] = self.taken;
+            self.taken += 1;
+            Some((*ray, Hit::none(ray)))
+        }
+    }
+    let hits = vec![Hit { t: -1.0, reference: 0, u: 0.0, v: 0.0 }; rays.len()];
+    let mut source = Source { rays, hits, places: [0; FLIGHT], taken: 0 };
+    traverse_closest_many(tree, &mut source, |ray: &Ray| {
+        let shear = RayShear::new(ray);
+        move |leaf: &[u32], ray: &Ray, hit: &mut Hit| {
+            leaf.iter().for_each(|&r| intersect(prims, &shear, r, ray, hit));
+        }
+    });
+    source.hits
 }
 
 pub fn any(prims: &[Primitive], tree: &Tree, ray: &Ray) -> Hit {

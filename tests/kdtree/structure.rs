@@ -75,6 +75,39 @@ fn no_point_of_a_triangle_is_lost() {
     }
 }
 
+/// Children that their parent says are empty and that are not, or the other way round.
+fn misnamed(tree: &KdTree) -> usize {
+    let nodes = tree.nodes.iter().filter(|node| !node.is_leaf());
+    nodes
+        .map(|node| {
+            let (_, _, lower) = node.plane();
+            let wrong = |child: u32| {
+                let it = tree.nodes[(lower + child) as usize];
+                node.is_empty(child) != (it.is_leaf() && it.range().is_empty())
+            };
+            usize::from(wrong(0)) + usize::from(wrong(1))
+        })
+        .sum()
+}
+
+/// Theory: a node says of each child whether it is an empty leaf, and at least one is not.
+#[test]
+fn nodes_know_empty_children() {
+    for (name, prims) in scenes() {
+        let mut tree = build(&prims);
+        assert_eq!(misnamed(&tree), 0, "{name}");
+        let inner = tree.nodes.iter().filter(|node| !node.is_leaf());
+        assert!(inner.clone().all(|node| !(node.is_empty(0) && node.is_empty(1))), "{name}");
+        let full = (0..tree.nodes.len())
+            .skip(2)
+            .find(|&i| tree.nodes[i].is_leaf() && !tree.nodes[i].range().is_empty());
+        if let Some(full) = full {
+            tree.nodes[full].word1 = 3;
+            assert_eq!(misnamed(&tree), 1, "{name}: planted");
+        }
+    }
+}
+
 /// Whether a plane separates triangle and box by more than `gap` (the 13 axes of Akenine-Moeller 2001).
 fn separated(t: &[Vec3; 3], cell: Aabb, gap: f64) -> bool {
     let c = (cell.min.as_dvec3() + cell.max.as_dvec3()) * 0.5;
