@@ -1,45 +1,30 @@
 // A ray against the whole scene: twin of src/shapes/intersect.rs.
 
-fn intersect_primitive(reference: u32, ray: Ray, hit: ptr<function, Hit>) {
-    let index = reference & ((1u << REFERENCE_BITS) - 1u);
+fn index_of(reference: u32) -> u32 {
+    return reference & ((1u << REFERENCE_BITS) - 1u);
+}
+
+//#if unbounded
+fn intersect_unbounded(reference: u32, ray: Ray, hit: ptr<function, Hit>) {
     switch reference >> REFERENCE_BITS {
-        //#if triangle
-        case KIND_TRIANGLE: {
-            intersect_triangle(triangles[index], reference, ray, hit);
-        }
-        //#end
         //#if sphere
         case KIND_SPHERE: {
-            intersect_sphere(scene.spheres[index], reference, ray, hit);
-        }
-        //#end
-        //#if rectangle
-        case KIND_RECTANGLE: {
-            intersect_rectangle(scene.rectangles[index], reference, ray, hit);
-        }
-        //#end
-        //#if disc
-        case KIND_DISC: {
-            intersect_disc(scene.discs[index], reference, ray, hit);
-        }
-        //#end
-        //#if cuboid
-        case KIND_CUBOID: {
-            intersect_cuboid(scene.cuboids[index], reference, ray, hit);
+            intersect_sphere(scene.spheres[index_of(reference)], reference, ray, hit);
         }
         //#end
         //#if plane
         case KIND_PLANE: {
-            intersect_plane(scene.planes[index], reference, ray, hit);
+            intersect_plane(scene.planes[index_of(reference)], reference, ray, hit);
         }
         //#end
         default: {}
     }
 }
+//#end
 
 //#if revolution
 fn intersect_revolution(reference: u32, ray: Ray, hit: ptr<function, Hit>) {
-    let patch_data = scene.patches[reference & ((1u << REFERENCE_BITS) - 1u)];
+    let patch_data = scene.patches[index_of(reference)];
     let revolution = scene.revolutions[patch_data.revolution];
     let at = intersect_patch(revolution, patch_data, ray.origin, ray.direction, ray.t_min, (*hit).t);
     if at.t < (*hit).t {
@@ -49,30 +34,95 @@ fn intersect_revolution(reference: u32, ray: Ray, hit: ptr<function, Hit>) {
 //#end
 
 //#if kdtree
+// Whether a leaf's references, up to `last`, go on with a shape of this kind.
+fn names(kind: u32, i: u32, last: u32) -> bool {
+    return i < last && refs[i] >> REFERENCE_BITS == kind;
+}
+
+// The references stand in the order of their kinds. Each kind has a loop of its own, since a software driver runs through
+// whatever a loop may test.
 fn intersect_leaf(first: u32, last: u32, ray: Ray, any_hit: bool, hit: ptr<function, Hit>) {
-    //#if revolution
-    var patches = last;
-    //#end
-    for (var i = first; i < last; i++) {
-        let reference = refs[i];
-        //#if revolution
-        if reference >> REFERENCE_BITS == KIND_REVOLUTION {
-            patches = min(patches, i);
-            continue;
-        }
-        //#end
-        intersect_primitive(reference, ray, hit);
-        if any_hit && (*hit).reference != NONE {
-            return;
+    var i = first;
+    //#if triangle
+    if names(KIND_TRIANGLE, i, last) {
+        loop {
+            intersect_triangle(triangles[index_of(refs[i])], refs[i], ray, hit);
+            if any_hit && (*hit).reference != NONE {
+                return;
+            }
+            i++;
+            if !names(KIND_TRIANGLE, i, last) {
+                break;
+            }
         }
     }
+    //#end
+    //#if sphere
+    if names(KIND_SPHERE, i, last) {
+        loop {
+            intersect_sphere(scene.spheres[index_of(refs[i])], refs[i], ray, hit);
+            if any_hit && (*hit).reference != NONE {
+                return;
+            }
+            i++;
+            if !names(KIND_SPHERE, i, last) {
+                break;
+            }
+        }
+    }
+    //#end
+    //#if rectangle
+    if names(KIND_RECTANGLE, i, last) {
+        loop {
+            intersect_rectangle(scene.rectangles[index_of(refs[i])], refs[i], ray, hit);
+            if any_hit && (*hit).reference != NONE {
+                return;
+            }
+            i++;
+            if !names(KIND_RECTANGLE, i, last) {
+                break;
+            }
+        }
+    }
+    //#end
+    //#if disc
+    if names(KIND_DISC, i, last) {
+        loop {
+            intersect_disc(scene.discs[index_of(refs[i])], refs[i], ray, hit);
+            if any_hit && (*hit).reference != NONE {
+                return;
+            }
+            i++;
+            if !names(KIND_DISC, i, last) {
+                break;
+            }
+        }
+    }
+    //#end
+    //#if cuboid
+    if names(KIND_CUBOID, i, last) {
+        loop {
+            intersect_cuboid(scene.cuboids[index_of(refs[i])], refs[i], ray, hit);
+            if any_hit && (*hit).reference != NONE {
+                return;
+            }
+            i++;
+            if !names(KIND_CUBOID, i, last) {
+                break;
+            }
+        }
+    }
+    //#end
     //#if revolution
-    // in a loop of their own, since a software driver runs through what it tests for every shape
-    for (var i = patches; i < last; i++) {
-        if refs[i] >> REFERENCE_BITS == KIND_REVOLUTION {
+    if names(KIND_REVOLUTION, i, last) {
+        loop {
             intersect_revolution(refs[i], ray, hit);
             if any_hit && (*hit).reference != NONE {
                 return;
+            }
+            i++;
+            if !names(KIND_REVOLUTION, i, last) {
+                break;
             }
         }
     }
@@ -84,7 +134,7 @@ fn intersect_scene(ray: Ray) -> Hit {
     var hit = Hit(ray.t_max, NONE, 0.0, 0.0);
     //#if unbounded
     for (var i = 0u; i < scene.world.unbounded_count; i++) {
-        intersect_primitive(scene.unbounded[i], ray, &hit);
+        intersect_unbounded(scene.unbounded[i], ray, &hit);
     }
     //#end
     //#if kdtree
@@ -100,7 +150,7 @@ fn occluded(ray: Ray) -> bool {
     var hit = Hit(ray.t_max, NONE, 0.0, 0.0);
     //#if unbounded
     for (var i = 0u; i < scene.world.unbounded_count; i++) {
-        intersect_primitive(scene.unbounded[i], ray, &hit);
+        intersect_unbounded(scene.unbounded[i], ray, &hit);
         if hit.reference != NONE {
             return true;
         }
