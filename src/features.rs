@@ -1,11 +1,12 @@
 //! What a scene and its settings require; whatever is not named here is neither compiled nor allocated.
 
+use super::shapes::intersect::has_patch_set;
 use super::tables::*;
 use crate::settings::{Direct, Method, RadiusRule, RenderSettings};
 use std::collections::BTreeSet;
 
 /// Names that fence optional code in shaders (`//#if name`).
-pub const ALL: [&str; 39] = [
+pub const ALL: [&str; 40] = [
     "triangle",
     "attributes",
     "sphere",
@@ -14,6 +15,7 @@ pub const ALL: [&str; 39] = [
     "cuboid",
     "plane",
     "revolution",
+    "patch_set",
     "facets",
     "unbounded",
     "kdtree",
@@ -85,6 +87,7 @@ impl Features {
         put("plane", !scene.planes.is_empty());
         put("facets", !scene.facets.is_empty());
         put("revolution", !scene.revolutions.is_empty());
+        put("patch_set", has_patch_set(scene));
         put("unbounded", !scene.unbounded.is_empty());
         let few = !few(scene).is_empty();
         put("kdtree", !scene.nodes.is_empty() && !few);

@@ -113,6 +113,12 @@ fn intersect_leaf(first: u32, last: u32, ray: Ray, any_hit: bool, hit: ptr<funct
         }
     }
     //#end
+    //#if patch_set
+    while names(KIND_REVOLUTION, i, last) {
+        put_off |= bit_of(index_of(refs[i]));
+        i++;
+    }
+    //#else
     //#if revolution
     if names(KIND_REVOLUTION, i, last) {
         loop {
@@ -127,6 +133,32 @@ fn intersect_leaf(first: u32, last: u32, ray: Ray, any_hit: bool, hit: ptr<funct
         }
     }
     //#end
+    //#end
+}
+//#end
+
+//#if patch_set
+// The patches of the leaves that the ray has met, by index: a bit each.
+var<private> put_off: vec4u;
+
+fn bit_of(index: u32) -> vec4u {
+    return select(vec4u(0u), vec4u(1u << (index & 31u)), vec4u(index >> 5u) == vec4u(0u, 1u, 2u, 3u));
+}
+
+fn search_put_off(ray: Ray, any_hit: bool, hit: ptr<function, Hit>) {
+    if any(put_off != vec4u(0u)) {
+        loop {
+            let some = put_off != vec4u(0u);
+            let word = select(select(select(3u, 2u, some.z), 1u, some.y), 0u, some.x);
+            let bits = select(select(select(put_off.w, put_off.z, some.z), put_off.y, some.y), put_off.x, some.x);
+            let index = 32u * word + firstTrailingBit(bits);
+            put_off &= ~bit_of(index);
+            intersect_revolution((KIND_REVOLUTION << REFERENCE_BITS) | index, ray, hit);
+            if all(put_off == vec4u(0u)) || (any_hit && (*hit).reference != NONE) {
+                break;
+            }
+        }
+    }
 }
 //#end
 
@@ -137,8 +169,14 @@ fn intersect_scene(ray: Ray) -> Hit {
         intersect_unbounded(scene.unbounded[i], ray, &hit);
     }
     //#end
+    //#if patch_set
+    put_off = vec4u(0u);
+    //#end
     //#if kdtree
     traverse_closest(ray, &hit);
+    //#end
+    //#if patch_set
+    search_put_off(ray, false, &hit);
     //#end
     //#if few
     intersect_few(ray, false, &hit);
@@ -156,6 +194,13 @@ fn occluded(ray: Ray) -> bool {
         }
     }
     //#end
+    //#if patch_set
+    put_off = vec4u(0u);
+    if !traverse_any(ray, &hit) {
+        search_put_off(ray, true, &hit);
+    }
+    return hit.reference != NONE;
+    //#else
     //#if kdtree
     return traverse_any(ray, &hit);
     //#else
@@ -163,5 +208,6 @@ fn occluded(ray: Ray) -> bool {
     intersect_few(ray, true, &hit);
     //#end
     return hit.reference != NONE;
+    //#end
     //#end
 }

@@ -37,12 +37,31 @@ pub fn intersect_primitive(scene: &Scene, shear: &RayShear, reference: u32, ray:
     }
 }
 
+/// Bits of a set of patches.
+const PATCH_SET: usize = 128;
+
+/// Whether patches are put off until the walk through the tree is over. A ring lies in many leaves, and a search for a root
+/// costs more than all else; so each patch is searched once, and only up to what the ray hits besides. Where there are more
+/// patches than bits, they are searched in each leaf.
+pub fn has_patch_set(scene: &Scene) -> bool {
+    !scene.patches.is_empty() && scene.patches.len() <= PATCH_SET
+}
+
 /// The shapes of a scene before one ray.
 struct Shapes<'a> {
     scene: &'a Scene,
     shear: RayShear,
     /// In search of any hit it may stop at one.
     any: bool,
+    /// The patches of the leaves that the ray has met, by index.
+    put_off: u128,
+}
+
+impl<'a> Shapes<'a> {
+    #[inline(always)]
+    fn new(scene: &'a Scene, ray: &Ray, any: bool) -> Self {
+        Shapes { scene, shear: shear_of(scene, ray), any, put_off: 0 }
+    }
 }
 
 impl Primitives for Shapes<'_> {
@@ -58,8 +77,9 @@ impl Primitives for Shapes<'_> {
 
     /// Triangles first, several at a time, then the others in the order of their kinds.
     #[inline(always)]
-    fn intersect(&self, references: &[u32], ray: &Ray, hit: &mut Hit) {
-        let Shapes { scene, ref shear, any } = *self;
+    fn intersect(&mut self, references: &[u32], ray: &Ray, hit: &mut Hit) {
+        let Shapes { scene, shear, any, .. } = *self;
+        let shear = &shear;
         let count = references.iter().take_while(|&r| r >> REFERENCE_BITS == KIND_TRIANGLE).count();
         let (triangles, others) = references.split_at(count);
         if !triangles.is_empty() {
@@ -72,11 +92,28 @@ impl Primitives for Shapes<'_> {
             }
             rest = match first >> REFERENCE_BITS {
                 KIND_SPHERE | KIND_RECTANGLE => intersect_fours(scene, shear, rest, ray, hit),
+                KIND_REVOLUTION if has_patch_set(scene) => {
+                    self.put_off |= 1 << (first & (PATCH_SET as u32 - 1));
+                    &rest[1..]
+                }
                 _ => {
                     intersect_primitive(scene, shear, first, ray, hit);
                     &rest[1..]
                 }
             };
+        }
+    }
+
+    /// Searches the patches that were put off, in the order of their indices.
+    #[inline(always)]
+    fn finish(&mut self, ray: &Ray, hit: &mut Hit) {
+        while self.put_off != 0 {
+            let reference = reference(KIND_REVOLUTION, self.put_off.trailing_zeros() as usize);
+            self.put_off &= self.put_off - 1;
+            intersect_primitive(self.scene, &self.shear, reference, ray, hit);
+            if self.any && hit.reference != NONE {
+                return;
+            }
         }
     }
 }
@@ -126,8 +163,7 @@ fn shear_of(scene: &Scene, ray: &Ray) -> RayShear {
 pub fn intersect_scene(scene: &Scene, ray: &Ray) -> Hit {
     let mut hit = intersect_unbounded(scene, ray);
     if !scene.nodes.is_empty() {
-        let shear = shear_of(scene, ray);
-        traverse_closest(&tree(scene), ray, &mut hit, Shapes { scene, shear, any: false });
+        traverse_closest(&tree(scene), ray, &mut hit, Shapes::new(scene, ray, false));
     }
     hit
 }
@@ -143,7 +179,7 @@ pub fn intersect_scene_many(scene: &Scene, mut next: impl FnMut(usize, Option<&H
         }
         return;
     }
-    let shapes = |ray: &Ray| Shapes { scene, shear: shear_of(scene, ray), any: false };
+    let shapes = |ray: &Ray| Shapes::new(scene, ray, false);
     traverse_closest_many(&tree(scene), &mut Source { scene, next }, shapes);
 }
 
@@ -175,14 +211,13 @@ fn intersect_unbounded(scene: &Scene, ray: &Ray) -> Hit {
 #[inline(always)]
 pub fn occluded(scene: &Scene, ray: &Ray) -> bool {
     let mut hit = Hit { t: ray.t_max, reference: NONE, u: 0.0, v: 0.0 };
-    let shear = shear_of(scene, ray);
     for i in 0..scene.world.unbounded_count {
-        intersect_primitive(scene, &shear, scene.unbounded[i as usize], ray, &mut hit);
+        intersect_primitive(scene, &RayShear::NONE, scene.unbounded[i as usize], ray, &mut hit);
         if hit.reference != NONE {
             return true;
         }
     }
-    !scene.nodes.is_empty() && traverse_any(&tree(scene), ray, &mut hit, Shapes { scene, shear, any: true })
+    !scene.nodes.is_empty() && traverse_any(&tree(scene), ray, &mut hit, Shapes::new(scene, ray, true))
 }
 
 #[inline(always)]

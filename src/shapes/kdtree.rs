@@ -133,28 +133,35 @@ pub(super) struct Axis {
 /// What the primitives of leaves are.
 pub trait Primitives {
     /// Tests those that `references`, a leaf's, name and replaces `hit` by anything nearer.
-    fn intersect(&self, references: &[u32], ray: &Ray, hit: &mut Hit);
+    fn intersect(&mut self, references: &[u32], ray: &Ray, hit: &mut Hit);
+    /// Tests what was put off until the walk was over.
+    #[inline(always)]
+    fn finish(&mut self, _ray: &Ray, _hit: &mut Hit) {}
     /// Asks for what [`Primitives::intersect`] will read.
     fn expect(&self, _references: &[u32]) {}
 }
 
 impl<F: Fn(&[u32], &Ray, &mut Hit)> Primitives for F {
     #[inline(always)]
-    fn intersect(&self, references: &[u32], ray: &Ray, hit: &mut Hit) {
+    fn intersect(&mut self, references: &[u32], ray: &Ray, hit: &mut Hit) {
         self(references, ray, hit);
     }
 }
 
 /// Lowers `hit` to the nearest hit with a primitive of the tree.
 #[inline(always)]
-pub fn traverse_closest(tree: &Tree, ray: &Ray, hit: &mut Hit, primitives: impl Primitives) {
-    traverse(tree, ray, false, hit, primitives);
+pub fn traverse_closest(tree: &Tree, ray: &Ray, hit: &mut Hit, mut primitives: impl Primitives) {
+    traverse(tree, ray, false, hit, &mut primitives);
+    primitives.finish(ray, hit);
 }
 
 /// Whether `hit` is not [`NONE`] after testing the leaves of the tree until something is hit.
 #[inline(always)]
-pub fn traverse_any(tree: &Tree, ray: &Ray, hit: &mut Hit, primitives: impl Primitives) -> bool {
-    traverse(tree, ray, true, hit, primitives);
+pub fn traverse_any(tree: &Tree, ray: &Ray, hit: &mut Hit, mut primitives: impl Primitives) -> bool {
+    traverse(tree, ray, true, hit, &mut primitives);
+    if hit.reference == NONE {
+        primitives.finish(ray, hit);
+    }
     hit.reference != NONE
 }
 
@@ -186,7 +193,7 @@ pub(super) fn start(tree: &Tree, ray: &Ray, t_max: Real) -> Option<([Axis; 4], R
 }
 
 #[inline(always)]
-fn traverse(tree: &Tree, ray: &Ray, any: bool, hit: &mut Hit, primitives: impl Primitives) {
+fn traverse(tree: &Tree, ray: &Ray, any: bool, hit: &mut Hit, primitives: &mut impl Primitives) {
     let Some((axes, root_begin, root_end)) = start(tree, ray, hit.t) else {
         return;
     };

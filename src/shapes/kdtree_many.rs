@@ -271,7 +271,7 @@ impl<R: Rays, P: Primitives, F: Fn(&Ray) -> P> Flight<'_, R, P, F> {
     /// Goes on with a child that waits; when there is none, with another ray.
     #[inline(always)]
     fn next(&mut self, lane: usize) {
-        let Some(walk) = &self.walks[lane] else {
+        let Some(walk) = &mut self.walks[lane] else {
             return;
         };
         let stack = &mut self.stacks[lane];
@@ -285,6 +285,7 @@ impl<R: Rays, P: Primitives, F: Fn(&Ray) -> P> Flight<'_, R, P, F> {
                 return;
             }
         }
+        walk.primitives.finish(&walk.ray, &mut walk.hit);
         let hit = walk.hit;
         self.take(lane, Some(hit));
     }

@@ -135,6 +135,34 @@ fn engines_agree_to_the_bit() {
     assert!(unused.is_empty(), "no scene uses {unused:?}");
 }
 
+/// Theory: patches are put off where a set has a bit for each, and else searched leaf by leaf; either way the engines do the
+/// same.
+#[test]
+fn engines_agree_on_many_patches() {
+    let beads = |count: u32| {
+        let bead = |i: u32| {
+            let (x, y, z) = (i % 5, i / 25, i / 5 % 5);
+            format!(
+                "[[shapes]]\ntype = \"revolution\"\nmaterial = \"white\"\n\
+                 profile = [[0.0, 0.0], [0.2, 0.0], [0.1, 0.3], [0.0, 0.3]]\n\
+                 transform = {{ translate = [{}, {}, {}] }}\n",
+                0.4 * f64::from(x) - 0.8,
+                0.4 * f64::from(y),
+                0.5 * f64::from(z) - 1.0
+            )
+        };
+        let lamp = "[[lights]]\ntype = \"point\"\nposition = [0.3, 2.5, 1.0]\nintensity = 3.0\n";
+        (0..count).map(bead).collect::<String>() + lamp
+    };
+    for (count, set) in [(4, true), (9, true), (12, false)] {
+        let (packed, plan) = planned_at((24, 16), "", &beads(count));
+        let patches = packed.scene.patches.len();
+        assert_eq!(plan.features.has("patch_set"), set, "{patches} patches");
+        let ours = on_cpu(&packed, &plan);
+        assert_eq!(difference(&ours, &on_driver(&packed, &plan)), None, "{patches} patches");
+    }
+}
+
 /// Chunks of visible points, a batch that overflows the records' buffers, and many batches change nothing between
 /// engines; chunks change nothing at all.
 #[test]
