@@ -87,10 +87,11 @@ impl Features {
         put("plane", !scene.planes.is_empty());
         put("facets", !scene.facets.is_empty());
         put("revolution", !scene.revolutions.is_empty());
-        put("patch_set", has_patch_set(scene));
         put("unbounded", !scene.unbounded.is_empty());
         let few = !few(scene).is_empty();
-        put("kdtree", !scene.nodes.is_empty() && !few);
+        let kdtree = !scene.nodes.is_empty() && !few;
+        put("kdtree", kdtree);
+        put("patch_set", kdtree && has_patch_set(scene));
         put("few", few);
         let material = |kind| scene.materials.iter().any(|m| m.kind == kind);
         put("mirror", material(MATERIAL_MIRROR));

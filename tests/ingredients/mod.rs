@@ -74,6 +74,10 @@ impl Mixture {
                 s.patches.push(Patch::zeroed());
                 s.profile_points.extend([Vec2::ZERO; 3]);
             }
+            "patch_set" => {
+                self.add("revolution");
+                self.add("kdtree");
+            }
             "unbounded" => s.unbounded.push(0),
             "kdtree" => {
                 s.nodes.push(Node::zeroed());
