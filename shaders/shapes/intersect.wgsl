@@ -44,73 +44,48 @@ fn names(kind: u32, i: u32, last: u32) -> bool {
 fn intersect_leaf(first: u32, last: u32, ray: Ray, any_hit: bool, hit: ptr<function, Hit>) {
     var i = first;
     //#if triangle
-    if names(KIND_TRIANGLE, i, last) {
-        loop {
-            intersect_triangle(triangles[index_of(refs[i])], refs[i], ray, hit);
-            if any_hit && (*hit).reference != NONE {
-                return;
-            }
-            i++;
-            if !names(KIND_TRIANGLE, i, last) {
-                break;
-            }
+    while names(KIND_TRIANGLE, i, last) {
+        intersect_triangle(triangles[index_of(refs[i])], refs[i], ray, hit);
+        if any_hit && (*hit).reference != NONE {
+            return;
         }
+        i++;
     }
     //#end
     //#if sphere
-    if names(KIND_SPHERE, i, last) {
-        loop {
-            intersect_sphere(scene.spheres[index_of(refs[i])], refs[i], ray, hit);
-            if any_hit && (*hit).reference != NONE {
-                return;
-            }
-            i++;
-            if !names(KIND_SPHERE, i, last) {
-                break;
-            }
+    while names(KIND_SPHERE, i, last) {
+        intersect_sphere(scene.spheres[index_of(refs[i])], refs[i], ray, hit);
+        if any_hit && (*hit).reference != NONE {
+            return;
         }
+        i++;
     }
     //#end
     //#if rectangle
-    if names(KIND_RECTANGLE, i, last) {
-        loop {
-            intersect_rectangle(scene.rectangles[index_of(refs[i])], refs[i], ray, hit);
-            if any_hit && (*hit).reference != NONE {
-                return;
-            }
-            i++;
-            if !names(KIND_RECTANGLE, i, last) {
-                break;
-            }
+    while names(KIND_RECTANGLE, i, last) {
+        intersect_rectangle(scene.rectangles[index_of(refs[i])], refs[i], ray, hit);
+        if any_hit && (*hit).reference != NONE {
+            return;
         }
+        i++;
     }
     //#end
     //#if disc
-    if names(KIND_DISC, i, last) {
-        loop {
-            intersect_disc(scene.discs[index_of(refs[i])], refs[i], ray, hit);
-            if any_hit && (*hit).reference != NONE {
-                return;
-            }
-            i++;
-            if !names(KIND_DISC, i, last) {
-                break;
-            }
+    while names(KIND_DISC, i, last) {
+        intersect_disc(scene.discs[index_of(refs[i])], refs[i], ray, hit);
+        if any_hit && (*hit).reference != NONE {
+            return;
         }
+        i++;
     }
     //#end
     //#if cuboid
-    if names(KIND_CUBOID, i, last) {
-        loop {
-            intersect_cuboid(scene.cuboids[index_of(refs[i])], refs[i], ray, hit);
-            if any_hit && (*hit).reference != NONE {
-                return;
-            }
-            i++;
-            if !names(KIND_CUBOID, i, last) {
-                break;
-            }
+    while names(KIND_CUBOID, i, last) {
+        intersect_cuboid(scene.cuboids[index_of(refs[i])], refs[i], ray, hit);
+        if any_hit && (*hit).reference != NONE {
+            return;
         }
+        i++;
     }
     //#end
     //#if patch_set
@@ -120,17 +95,12 @@ fn intersect_leaf(first: u32, last: u32, ray: Ray, any_hit: bool, hit: ptr<funct
     }
     //#else
     //#if revolution
-    if names(KIND_REVOLUTION, i, last) {
-        loop {
-            intersect_revolution(refs[i], ray, hit);
-            if any_hit && (*hit).reference != NONE {
-                return;
-            }
-            i++;
-            if !names(KIND_REVOLUTION, i, last) {
-                break;
-            }
+    while names(KIND_REVOLUTION, i, last) {
+        intersect_revolution(refs[i], ray, hit);
+        if any_hit && (*hit).reference != NONE {
+            return;
         }
+        i++;
     }
     //#end
     //#end
