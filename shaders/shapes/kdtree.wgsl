@@ -102,6 +102,7 @@ fn traverse(ray: Ray, any_hit: bool, hit: ptr<function, Hit>) {
             begin = stack[waiting].begin;
             end = stack[waiting].end;
             if begin <= (*hit).t {
+                end = min(end, (*hit).t);
                 break;
             }
         }

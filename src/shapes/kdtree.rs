@@ -244,6 +244,7 @@ fn traverse(tree: &Tree, ray: &Ray, any: bool, hit: &mut Hit, primitives: &mut i
             waiting -= 1;
             Waiting { node: index, begin, end } = stack[waiting];
             if begin <= hit.t {
+                end = smaller(end, hit.t);
                 break;
             }
         }

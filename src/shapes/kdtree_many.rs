@@ -5,7 +5,7 @@
 //! A flight goes round by round. In each, rays at interior nodes take one step down, by the operations of `kdtree.rs`.
 //! Rays that come to a leaf wait there for two rounds: one for the leaf's references, one for what these name.
 
-use super::kdtree::{Axis, MAX_DEPTH, Primitives, Tree, Waiting, smaller, start};
+use super::kdtree::{Axis, MAX_DEPTH, NOTHING, Primitives, Tree, Waiting, smaller, start};
 use super::ray::{Hit, Ray};
 use super::real::{Bits, Real, Reals, Words};
 use wide::{CmpGe, CmpLe, CmpLt};
@@ -15,9 +15,6 @@ pub const FLIGHT: usize = 64;
 /// Numbers that one instruction takes.
 const LANES: usize = 4;
 const GROUPS: usize = FLIGHT / LANES;
-/// Index of an empty leaf: the place beside the root.
-const NOTHING: Bits = 1;
-
 /// A number of each ray.
 #[derive(Clone, Copy)]
 struct Each([Reals; GROUPS]);
@@ -137,9 +134,8 @@ impl Steps {
             let (begin, end) = (self.begin.0[i], self.end.0[i]);
             let (lower_empty, upper_empty) = (has(word1, 2), has(word1, 3));
             let leaf = low & high;
-            let out = leaf | !begin.cmp_le(end);
-            let enter_near = t_last.cmp_ge(begin) & !(backward.blend(upper_empty, lower_empty) | out);
-            let enter_far = t_first.cmp_le(end) & !(backward.blend(lower_empty, upper_empty) | out);
+            let enter_near = t_last.cmp_ge(begin) & !(backward.blend(upper_empty, lower_empty) | leaf);
+            let enter_far = t_first.cmp_le(end) & !(backward.blend(lower_empty, upper_empty) | leaf);
             let only_far = enter_far & !enter_near;
             let far_begin = begin.fast_max(t_first);
             self.far.0[i] = far;
@@ -197,7 +193,7 @@ pub fn traverse_closest_many<P: Primitives>(
     rays: &mut impl Rays,
     primitives: impl Fn(&Ray) -> P,
 ) {
-    let nowhere = EachIndex([Words::splat(NOTHING); GROUPS]);
+    let nowhere = EachIndex([Words::splat(Bits::from(NOTHING)); GROUPS]);
     let axes = || Axes { origin: Each::ZERO, inverse: Each::ZERO, slack: Each::ZERO };
     let steps = Steps {
         axes: [axes(), axes(), axes()],
@@ -310,7 +306,7 @@ impl<R: Rays, P: Primitives, F: Fn(&Ray) -> P> Flight<'_, R, P, F> {
             }
             last = Some(hit);
         }
-        *self.steps.node.of(lane) = NOTHING;
+        *self.steps.node.of(lane) = Bits::from(NOTHING);
         self.idle |= 1 << lane;
     }
 
