@@ -36,11 +36,15 @@ struct World {
     unit: f32,
     bounds_max: vec3f,
     near_radius: f32,
+    near_center: vec3f,
+    disc_radius: f32,
     planar_origin: vec2f,
     light_count: u32,
     environment: u32,
     unbounded_count: u32,
     disc_levels: u32,
+    disc_first: u32,
+    far: u32,
     nested: u32,
     guided: u32,
 }
@@ -172,4 +176,11 @@ struct Light {
     patch_count: u32,
     medium: u32,
     guide: u32,
+}
+
+struct Cell {
+    split: f32,
+    axis: u32,
+    first: u32,
+    pad: u32,
 }

@@ -9,7 +9,6 @@ use crate::double;
 use crate::engine::{Engine, EngineError, Space};
 use crate::gpu::{self, AdapterChoice, AdapterKind, AdapterSummary, GpuEngine};
 use crate::kernels::records::VisiblePoint;
-use crate::lights::guide::guides;
 use crate::memory::Memory;
 use crate::pack::{Packed, pack};
 use crate::plan::{self, Place, Plan};
@@ -317,9 +316,8 @@ pub fn in_double(
     settings: &RenderSettings,
 ) -> Result<(double::pack::Packed, double::plan::Plan), EngineError> {
     let film = &scene.film;
-    let mut packed = double::pack::pack(scene, film.width, film.height)?;
-    // maps and what is left open are those of the f32 engine, since both are to render the same
-    double::lights::guide::take_guides(&mut packed.scene, &guides(&single.scene));
+    // what is learned or left open follows the f32 engine, since both are to render the same
+    let packed = double::pack::pack_like(scene, film.width, film.height, &single.learned())?;
     let settings = &match settings.radius {
         Radius::Auto => Plan::new(single, settings).settings,
         _ => settings.clone(),

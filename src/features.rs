@@ -6,7 +6,7 @@ use crate::settings::{Direct, Method, RadiusRule, RenderSettings};
 use std::collections::BTreeSet;
 
 /// Names that fence optional code in shaders (`//#if name`).
-pub const ALL: [&str; 40] = [
+pub const ALL: [&str; 41] = [
     "triangle",
     "attributes",
     "sphere",
@@ -30,6 +30,7 @@ pub const ALL: [&str; 40] = [
     "specular",
     "absorption",
     "lights",
+    "cells",
     "guided",
     "area_triangle",
     "area_sphere",
@@ -107,6 +108,7 @@ impl Features {
         let area =
             |kind| scene.lights.iter().any(|l| l.kind == LIGHT_AREA && l.reference >> REFERENCE_BITS == kind);
         put("lights", !scene.lights.is_empty());
+        put("cells", !scene.cells.is_empty());
         put("area_triangle", area(KIND_TRIANGLE));
         put("area_sphere", area(KIND_SPHERE));
         put("area_rectangle", area(KIND_RECTANGLE));
@@ -117,7 +119,7 @@ impl Features {
         put("point", light(LIGHT_POINT));
         put("spot", light(LIGHT_SPOT));
         put("infinite", light(LIGHT_SUN) || light(LIGHT_CONSTANT) || light(LIGHT_IMAGE));
-        put("far", scene.world.disc_levels > 1);
+        put("far", scene.world.far != 0);
         put("environment", light(LIGHT_CONSTANT) || light(LIGHT_IMAGE));
         put("environment_image", light(LIGHT_IMAGE));
         put("lens", scene.camera.aperture > 0.0);

@@ -53,8 +53,12 @@ pub struct World {
     pub unit: Real,
     /// Greatest corner of the kd-tree's box.
     pub bounds_max: Vec3,
-    /// Radius, about the origin, of the sphere that the finite scene and the camera lie in.
+    /// Radius of the sphere about `near_center` that holds most of what the camera sees.
     pub near_radius: Real,
+    /// Center of what the camera sees, and of the emission discs.
+    pub near_center: Vec3,
+    /// Radius of the narrowest emission disc.
+    pub disc_radius: Real,
     /// World (x, z) of the origin: where planar uv starts.
     pub planar_origin: Vec2,
     /// Number of lights.
@@ -63,12 +67,19 @@ pub struct World {
     pub environment: u32,
     /// Shapes tested against every ray (planes and huge spheres).
     pub unbounded_count: u32,
-    /// Emission discs for light from infinity: radius `near_radius * 2^k`, k below this; 1 without such light.
+    /// Emission discs for light from infinity: radius `disc_radius * 2^k`, k below this; 0 without
+    /// such light.
     pub disc_levels: u32,
+    /// First entry in `distributions` of the cumulative probabilities of the emission discs.
+    pub disc_first: u32,
+    /// 1 where light from infinity meets surfaces beyond twice `near_radius`, else 0.
+    pub far: u32,
     /// 1 where bodies of glass may touch or hold one another, else 0.
     pub nested: u32,
     /// 1 where some light has a map of where its photons meet glass and mirrors, else 0.
     pub guided: u32,
+    /// Padding.
+    pub pad: [u32; 2],
 }
 
 /// Pinhole or thin-lens camera.
@@ -341,7 +352,7 @@ pub struct Light {
     pub kind: u32,
     /// Point and spot.
     pub position: Vec3,
-    /// Probability of being chosen.
+    /// Probability that a photon starts here.
     pub selection: Real,
     /// Spot and sun: unit direction in which light travels.
     pub direction: Vec3,
@@ -365,6 +376,22 @@ pub struct Light {
     /// First entry in `distributions` of the map of where its photons meet glass and mirrors (see
     /// `lights::guide`), or 0.
     pub guide: u32,
+}
+
+/// A node of the tree over space in which each leaf has its own probabilities of the lights for
+/// shadow rays.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Plain, Zeroable)]
+pub struct Cell {
+    /// Coordinate of the splitting plane; 0 in a leaf.
+    pub split: Real,
+    /// Axis of the splitting plane, 0 to 2; 3 marks a leaf.
+    pub axis: u32,
+    /// The child below the plane, the one above follows; in a leaf the first entry in `distributions`
+    /// of the cumulative probabilities of the lights.
+    pub first: u32,
+    /// Padding.
+    pub pad: u32,
 }
 
 /// The flattened scene.
@@ -398,8 +425,11 @@ pub struct Scene {
     pub textures: Vec<Texture>,
     /// Lights.
     pub lights: Vec<Light>,
-    /// Cumulative distributions: first the choice of a light, then what `Light::first` points at.
+    /// Cumulative distributions: first the light of a photon, then what `Light::first` points at, then
+    /// what was learned from pilots.
     pub distributions: Vec<Real>,
+    /// Where which light is chosen for shadow rays; empty where there is one light at most.
+    pub cells: Vec<Cell>,
     /// kd-tree.
     pub nodes: Vec<Node>,
     /// References in the order of the kd-tree's leaves.

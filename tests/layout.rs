@@ -33,11 +33,15 @@ fn hosts() -> Vec<Layout> {
             unit,
             bounds_max,
             near_radius,
+            near_center,
+            disc_radius,
             planar_origin,
             light_count,
             environment,
             unbounded_count,
             disc_levels,
+            disc_first,
+            far,
             nested,
             guided
         }),
@@ -96,6 +100,7 @@ fn hosts() -> Vec<Layout> {
         layout!(Attributes { n0, u0, n1, v0, n2, u1, v1, u2, v2, smooth_normals }),
         layout!(Material { reflectance, kind, absorption, ior, texture, alpha }),
         layout!(Texture { scale, kind, flags, first, width, height, format, color0, color1 }),
+        layout!(Cell { split, axis, first }),
         layout!(Light {
             color,
             kind,

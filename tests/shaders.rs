@@ -133,7 +133,11 @@ fn a_planted_error_is_found() {
         ("shapes/sphere.wgsl", "let root = sqrt(discriminant);", "let root = sqrtt(discriminant);"),
         ("kernels/gather.wgsl", "count += 1u;", "count += 1.0;"),
         ("kernels/grid_sort.wgsl", "let key = records[item].key;", "let key = records[item].kez;"),
-        ("lights/light.wgsl", "fn choose_light(u: f32)", "fn choose_light(u: f33)"),
+        (
+            "lights/select.wgsl",
+            "fn choose_light(shares: u32, u: f32)",
+            "fn choose_light(shares: u32, u: f33)",
+        ),
         ("kernels/resolve.wgsl", "var state = 0u;", "var state = 0u"),
         ("materials/scatter.wgsl", "//#if glass", "//#if glas"),
     ] {

@@ -44,7 +44,7 @@ fn next_event(
     let kind = scene.materials[s.material].kind;
     let alpha = scene.materials[s.material].alpha;
     let origin = s.position + ng * s.error;
-    let light = sample_light(origin, u);
+    let light = sample_light(shares_at(s.position), origin, u);
     if dot(light.direction, ng) <= 0.0 || max_component(light.radiance) <= 0.0 {
         return DirectLight(vec3f(0.0), 0u);
     }
@@ -92,12 +92,15 @@ fn direct_light(
             let start = offset_origin(s.position, s.error, ng, scattered.direction);
             let ray = Ray(start, 0.0, scattered.direction, FAR);
             let hit = intersect_scene(ray);
+            let shares = shares_at(s.position);
             if hit.reference == NONE {
                 //#if environment
                 if scene.world.environment != NONE {
-                    let sky = scene.lights[scene.world.environment];
-                    let other = pdf_environment(sky, ray.direction) * sky.selection;
-                    let seen = eval_environment(sky, ray.direction);
+                    let sky = scene.world.environment;
+                    let light = scene.lights[sky];
+                    let share = share_of(shares, sky);
+                    let other = pdf_environment(light, ray.direction) * share;
+                    let seen = eval_environment(light, ray.direction);
                     direct.radiance += scattered.weight * seen * balance(pdf, other);
                 }
                 //#end
@@ -105,9 +108,9 @@ fn direct_light(
                 //#if area
                 let at = surface_at(ray, hit);
                 if at.light != NONE && dot(ray.direction, at.normal) < 0.0 {
-                    let lamp = scene.lights[at.light];
-                    let other = pdf_light(at.light, start, ray.direction, hit.t, at.normal, at.v);
-                    let seen = lamp.color * transmittance(medium, hit.t);
+                    let light = scene.lights[at.light];
+                    let other = pdf_light(shares, at.light, start, ray.direction, hit.t, at.normal, at.v);
+                    let seen = light.color * transmittance(medium, hit.t);
                     direct.radiance += scattered.weight * seen * balance(pdf, other);
                 }
                 //#end

@@ -3,7 +3,7 @@
 const FAR_OUTSIDE_SQ: f32 = 4.0;
 
 fn aimed_scatter(s: Surface, wo: vec3f, u: vec4f, scattered: Scatter) -> Scatter {
-    let p = s.position;
+    let p = s.position - scene.world.near_center;
     let distance_sq = dot(p, p);
     let radius_sq = scene.world.near_radius * scene.world.near_radius;
     let diffuse = scene.materials[s.material].kind == MATERIAL_DIFFUSE;

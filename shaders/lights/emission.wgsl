@@ -10,19 +10,32 @@ struct Emission {
 fn emit_photon(rng: ptr<function, Rng>) -> Emission {
     let u = rng_next(rng);
     let v = rng_next(rng);
-    let light = scene.lights[choose_light(u.x)];
+    return emit_from(scene.lights[choose_light(0u, u.x)], u, v);
+}
+
+fn emit_from(light: Light, u: vec4f, v: vec4f) -> Emission {
+    //#if infinite
+    if light.kind >= LIGHT_SUN {
+        return emit_from_infinity(light, u, v);
+    }
+    //#end
+    //#if area || point || spot
     //#if guided
     let sent = guided(light, vec2f(v.x, v.y), v.w);
-    var emission = emit_from(light, u, v, sent.across);
+    var emission = emit_nearby(light, u, sent.across);
     emission.flux *= sent.scale;
     emission.excess *= sent.scale;
     return emission;
     //#else
-    return emit_from(light, u, v, vec2f(v.x, v.y));
+    return emit_nearby(light, u, vec2f(v.x, v.y));
+    //#end
+    //#else
+    return Emission(Ray(light.position, 0.0, vec3f(0.0, 0.0, 1.0), FAR), vec3f(0.0), 1.0, NONE);
     //#end
 }
 
-fn emit_from(light: Light, u: vec4f, v: vec4f, across: vec2f) -> Emission {
+//#if area || point || spot
+fn emit_nearby(light: Light, u: vec4f, across: vec2f) -> Emission {
     var ray = Ray(light.position, 0.0, vec3f(0.0, 0.0, 1.0), FAR);
     //#if area_sphere
     if light.kind == LIGHT_AREA && light.reference >> REFERENCE_BITS == KIND_SPHERE {
@@ -42,13 +55,6 @@ fn emit_from(light: Light, u: vec4f, v: vec4f, across: vec2f) -> Emission {
         return Emission(ray, flux, 1.0, light.medium);
     }
     //#end
-    //#if point
-    if light.kind == LIGHT_POINT {
-        ray.direction = unit(sample_sphere(across));
-        let flux = light.color * (2.0 * TAU / light.selection);
-        return Emission(ray, flux, 1.0, light.medium);
-    }
-    //#end
     //#if spot
     if light.kind == LIGHT_SPOT {
         let local = sample_cone(across, 1.0 - light.cos_outer);
@@ -58,8 +64,16 @@ fn emit_from(light: Light, u: vec4f, v: vec4f, across: vec2f) -> Emission {
         return Emission(ray, flux, 1.0, light.medium);
     }
     //#end
-    //#if infinite
-    ray.direction = light.direction;
+    ray.direction = unit(sample_sphere(across));
+    let flux = light.color * (2.0 * TAU / light.selection);
+    return Emission(ray, flux, 1.0, light.medium);
+}
+//#end
+
+//#if infinite
+fn emit_from_infinity(light: Light, u: vec4f, v: vec4f) -> Emission {
+    let near = scene.world.near_radius;
+    var ray = Ray(vec3f(0.0), 0.0, light.direction, FAR);
     var radiance = light.color;
     //#if environment
     if light.kind != LIGHT_SUN {
@@ -68,47 +82,40 @@ fn emit_from(light: Light, u: vec4f, v: vec4f, across: vec2f) -> Emission {
         radiance = eval_environment(light, w) * (1.0 / pdf_environment(light, w));
     }
     //#end
-    var radius = scene.world.near_radius;
-    var x = v.z;
-    for (var i = 1u; i < scene.world.disc_levels; i++) {
-        if x >= 0.5 {
-            break;
-        }
-        x *= 2.0;
-        radius *= 2.0;
+    let across = vec2f(v.x, v.y);
+    let level = find_interval(scene.world.disc_first, scene.world.disc_levels, v.z);
+    var d = sample_disc(across) * disc_radius(level);
+    //#if guided
+    if light.guide != 0u && v.w < GUIDED {
+        d = guided(light, across, v.w * (1.0 / GUIDED)).across;
+        d = (d * 2.0 - vec2f(1.0)) * near;
     }
-    let d = sample_disc(across) * radius;
-    ray.origin = from_frame(ray.direction, vec3f(d.x, d.y, 0.0));
-    ray.t_min = -4.0 * disc_radius_max();
-    let pdf = pdf_discs(dot(d, d));
-    let flux = radiance * (1.0 / (pdf * light.selection));
-    return Emission(ray, flux, pdf_discs(0.0) / pdf, light.medium);
-    //#else
-    return Emission(ray, vec3f(0.0), 1.0, NONE);
     //#end
+    var pdf = pdf_discs(dot(d, d));
+    //#if guided
+    if light.guide != 0u {
+        let by_map = pdf_guide(light, (d * (1.0 / near) + vec2f(1.0)) * 0.5) / (4.0 * near * near);
+        pdf = GUIDED * by_map + (1.0 - GUIDED) * pdf;
+    }
+    //#end
+    ray.origin = scene.world.near_center + from_frame(ray.direction, vec3f(d.x, d.y, 0.0));
+    ray.t_min = -4.0 * disc_radius(scene.world.disc_levels - 1u);
+    let flux = radiance * (1.0 / (pdf * light.selection));
+    let usual = pdf_discs(0.25 * near * near);
+    return Emission(ray, flux, usual / pdf, light.medium);
 }
 
-//#if infinite
-fn disc_radius_max() -> f32 {
-    var radius = scene.world.near_radius;
-    for (var i = 1u; i < scene.world.disc_levels; i++) {
-        radius *= 2.0;
-    }
-    return radius;
+fn disc_radius(level: u32) -> f32 {
+    return scene.world.disc_radius * f32(1u << level);
 }
 
 fn pdf_discs(r_sq: f32) -> f32 {
-    var radius = scene.world.near_radius;
-    var probability = 0.5;
+    var radius = scene.world.disc_radius;
     var sum = 0.0;
-    for (var level = 1u; level < scene.world.disc_levels + 1u; level++) {
-        if level == scene.world.disc_levels {
-            probability *= 2.0;
-        }
+    for (var level = 0u; level < scene.world.disc_levels; level++) {
         if r_sq <= radius * (radius * (1.0 + 16.0 * EPS)) {
-            sum += probability / (PI * radius * radius);
+            sum += share_of(scene.world.disc_first, level) / (PI * radius * radius);
         }
-        probability *= 0.5;
         radius *= 2.0;
     }
     return sum;

@@ -20,19 +20,19 @@ fn find_interval(first: u32, count: u32, u: f32) -> u32 {
     return low;
 }
 
-fn choose_light(u: f32) -> u32 {
-    return find_interval(0u, LIGHT_COUNT, u);
+fn sample_light(shares: u32, position: vec3f, u: vec4f) -> LightSample {
+    let index = choose_light(shares, u.x);
+    let share = share_of(shares, index);
+    return sample_one_light(scene.lights[index], share, position, u);
 }
 
-fn sample_light(position: vec3f, u: vec4f) -> LightSample {
-    let light = scene.lights[choose_light(u.x)];
+fn sample_one_light(light: Light, share: f32, position: vec3f, u: vec4f) -> LightSample {
     let none = LightSample(vec3f(0.0, 0.0, 1.0), 0.0, vec3f(0.0), 1.0, true);
     //#if area
     if light.kind == LIGHT_AREA {
         //#if area_sphere
-        let index = light.reference & ((1u << REFERENCE_BITS) - 1u);
         if light.reference >> REFERENCE_BITS == KIND_SPHERE {
-            let sphere = scene.spheres[index];
+            let sphere = scene.spheres[light.reference & ((1u << REFERENCE_BITS) - 1u)];
             if pdf_sphere_cone(sphere, position) > 0.0 {
                 let p = sample_sphere_cone(sphere, position, vec2f(u.y, u.z));
                 let to = p.position + p.normal * p.error - position;
@@ -42,7 +42,7 @@ fn sample_light(position: vec3f, u: vec4f) -> LightSample {
                     to * (1.0 / distance),
                     distance * (1.0 - 16.0 * EPS),
                     light.color,
-                    p.pdf * light.selection,
+                    p.pdf * share,
                     true,
                 );
             }
@@ -64,7 +64,7 @@ fn sample_light(position: vec3f, u: vec4f) -> LightSample {
             direction,
             distance * (1.0 - 16.0 * EPS),
             light.color,
-            p.pdf * dist_sq / cos * light.selection,
+            p.pdf * dist_sq / cos * share,
             true,
         );
     }
@@ -84,12 +84,12 @@ fn sample_light(position: vec3f, u: vec4f) -> LightSample {
             radiance *= spot_falloff(light, -dot(direction, light.direction));
         }
         //#end
-        return LightSample(direction, distance * (1.0 - 16.0 * EPS), radiance, light.selection, false);
+        return LightSample(direction, distance * (1.0 - 16.0 * EPS), radiance, share, false);
     }
     //#end
     //#if infinite
     if light.kind == LIGHT_SUN {
-        return LightSample(-light.direction, FAR, light.color, light.selection, false);
+        return LightSample(-light.direction, FAR, light.color, share, false);
     }
     //#end
     //#if environment
@@ -98,7 +98,7 @@ fn sample_light(position: vec3f, u: vec4f) -> LightSample {
         direction,
         FAR,
         eval_environment(light, direction),
-        pdf_environment(light, direction) * light.selection,
+        pdf_environment(light, direction) * share,
         true,
     );
     //#else
@@ -120,19 +120,20 @@ fn spot_falloff(light: Light, cos: f32) -> f32 {
 //#end
 
 //#if area
-fn pdf_light(index: u32, origin: vec3f, direction: vec3f, t: f32, normal: vec3f, v: f32) -> f32 {
+fn pdf_light(shares: u32, index: u32, origin: vec3f, direction: vec3f, t: f32, normal: vec3f, v: f32) -> f32 {
     let light = scene.lights[index];
+    let share = share_of(shares, index);
     //#if area_sphere
     if light.reference >> REFERENCE_BITS == KIND_SPHERE {
         let sphere = scene.spheres[light.reference & ((1u << REFERENCE_BITS) - 1u)];
         let pdf = pdf_sphere_cone(sphere, origin);
         if pdf > 0.0 {
-            return pdf * light.selection;
+            return pdf * share;
         }
     }
     //#end
     let cos = abs(dot(direction, normal));
-    return pdf_shape(light, v) * t * t / max(cos, 1e-12) * light.selection;
+    return pdf_shape(light, v) * t * t / max(cos, 1e-12) * share;
 }
 //#end
 

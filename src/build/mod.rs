@@ -8,6 +8,7 @@ mod kdtree_bins;
 mod kdtree_clip;
 mod kdtree_layout;
 mod kdtree_sweep;
+pub mod learned;
 pub mod normalize;
 pub mod profile;
 pub mod revolution;

@@ -1,13 +1,12 @@
-//! Where the scene lies and how large it is: the move to its own centre and the scale near one that come before
-//! anything turns into f32, undone on the way out.
+//! The move of a scene to its own center and to a scale near one before anything is rounded to f32,
+//! undone on output.
 
 use crate::scene::{Scene, ShapeKind};
 use glam::DVec3;
 
-/// Shapes more than this many times wider than what is smaller than they and the camera's surroundings do not
-/// decide the scene's size.
+/// Shapes more than this many times wider than all smaller ones together do not decide the scene's size.
 const GIANT: f64 = 64.0;
-/// What counts as far where a plane is infinite, over the scene's size.
+/// Distance that counts as far where a plane is infinite, over the radius of what the camera sees.
 const HORIZON: f64 = 1e4;
 
 /// World point p lies at `(p - center) / unit` in scene space.
@@ -17,41 +16,60 @@ pub struct Normalization {
     pub center: DVec3,
     /// World units in one scene unit, a power of two: scaling a scene by two changes no bit.
     pub unit: f64,
-    /// Radius, in scene units, of the sphere about the origin that holds all but giant shapes; at most one.
-    pub near_radius: f64,
-    /// Radius, in scene units, of the sphere that holds everything.
-    pub far_radius: f64,
+    /// Radius, in world units, of the sphere about `center` that the numbers above are made for.
+    pub radius: f64,
 }
 
 impl Normalization {
-    /// Of a whole scene.
+    /// Of the shapes alone, except giant ones. A scene may hold objects far from what its camera sees:
+    /// [`Self::suits`] tells whether the numbers fit that.
     pub fn of(scene: &Scene) -> Self {
         let mut boxes: Vec<(DVec3, DVec3)> = scene.shapes.iter().filter_map(|s| extent(&s.kind)).collect();
         boxes.sort_by(|a, b| a.1.distance_squared(a.0).total_cmp(&b.1.distance_squared(b.0)));
-        let camera = &scene.camera;
-        let aim = camera.position + (camera.target - camera.position).normalize() * camera.focus;
-        let mut low = camera.position.min(camera.target).min(aim);
-        let mut high = camera.position.max(camera.target).max(aim);
+        let Some(&(mut low, mut high)) = boxes.first() else {
+            // planes alone, or nothing: the camera's place is the only one that there is
+            let camera = &scene.camera;
+            return Self::about(camera.target, camera.position.distance(camera.target));
+        };
         for (a, b) in &boxes {
             if a.distance(*b) <= GIANT * low.distance(high) {
                 low = low.min(*a);
                 high = high.max(*b);
             }
         }
-        let center = 0.5 * (low + high);
-        let radius = 0.5 * low.distance(high);
-        let unit = radius.log2().ceil().exp2();
-        let planes = scene.shapes.iter().any(|s| matches!(s.kind, ShapeKind::Plane { .. }));
-        let reach = |(a, b): &(DVec3, DVec3)| (*a - center).abs().max((*b - center).abs()).length();
-        let far = boxes.iter().map(reach).fold(radius, f64::max);
-        let far = if planes { far.max(HORIZON * radius) } else { far };
-        Self { center, unit, near_radius: radius / unit, far_radius: far / unit }
+        Self::about(0.5 * (low + high), 0.5 * low.distance(high))
+    }
+
+    /// Of a sphere.
+    pub fn about(center: DVec3, radius: f64) -> Self {
+        Self { center, unit: radius.log2().ceil().exp2(), radius }
+    }
+
+    /// Whether f32 has enough digits left, in scene space, for a sphere of the given world center and
+    /// radius.
+    pub fn suits(&self, center: DVec3, radius: f64) -> bool {
+        const SLACK: f64 = 16.0;
+        let off = center.distance(self.center);
+        off <= SLACK * radius && radius >= self.unit / (2.0 * SLACK) && radius <= self.unit * SLACK
     }
 
     /// A world point in scene space.
     pub fn point(&self, p: DVec3) -> DVec3 {
         (p - self.center) / self.unit
     }
+
+    /// The world point of a point in scene space.
+    pub fn world(&self, p: DVec3) -> DVec3 {
+        p * self.unit + self.center
+    }
+}
+
+/// Distance from `center` to the farthest point of any shape; planes end at [`HORIZON`] times `radius`.
+pub fn reach(scene: &Scene, center: DVec3, radius: f64) -> f64 {
+    let planes = scene.shapes.iter().any(|s| matches!(s.kind, ShapeKind::Plane { .. }));
+    let boxes = scene.shapes.iter().filter_map(|s| extent(&s.kind));
+    let corner = |(a, b): (DVec3, DVec3)| (a - center).abs().max((b - center).abs()).length();
+    boxes.map(corner).fold(if planes { HORIZON * radius } else { 0.0 }, f64::max)
 }
 
 /// Bounding box of a finite shape, world space.

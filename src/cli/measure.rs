@@ -42,7 +42,11 @@ pub fn on_device(
         message("warning: Mesa keeps compiled shaders; for true times say MESA_SHADER_CACHE_DISABLE=true");
     }
     let features = Features::of(&packed.scene, settings);
-    let with = |scene| Packed { scene, ..packed.clone() };
+    let with = |scene| {
+        let mut other = packed.clone();
+        other.scene = scene;
+        other
+    };
     let tell = |added: &str, costs: &Costs, plain: &Costs| match json {
         true => result(as_json(&device.name, added, costs, plain)),
         false => result(line(added, costs, plain)),

@@ -53,6 +53,7 @@ pub const FRAGMENTS: &[Fragment] = fragments![
     "materials/scatter.wgsl" if "scene || gather && metal",
     "lights/shape.wgsl" if "scene && lights",
     "lights/light.wgsl" if "scene && lights",
+    "lights/select.wgsl" if "scene && lights",
     "lights/guide.wgsl" if "photon_trace && guided",
     "lights/emission.wgsl" if "photon_trace",
     "lights/aim.wgsl" if "photon_trace && far",

@@ -55,6 +55,7 @@ impl SceneTables {
         out.table("textures", "Texture", &scene.textures);
         out.table("lights", "Light", &scene.lights);
         out.table("distributions", "f32", &scene.distributions);
+        out.table("cells", "Cell", &scene.cells);
         out
     }
 

@@ -3,6 +3,7 @@
 //! `shaders/kernels/direct.wgsl`.
 
 use super::lights::light::{eval_environment, pdf_environment, pdf_light, sample_light};
+use super::lights::select::{share_of, shares_at};
 use super::materials::scatter::{RADIANCE, eval_rough, pdf_rough, scatter_rough};
 use super::math::rng::{Rng, rng_next};
 use super::math::sampling::balance;
@@ -48,7 +49,7 @@ pub fn next_event(
     let kind = scene.materials[s.material as usize].kind;
     let alpha = scene.materials[s.material as usize].alpha;
     let origin = s.position + ng * s.error;
-    let light = sample_light(scene, origin, u);
+    let light = sample_light(scene, shares_at(scene, s.position), origin, u);
     if light.direction.dot(ng) <= 0.0 || max_component(light.radiance) <= 0.0 {
         return (Vec3::ZERO, 0);
     }
@@ -96,10 +97,13 @@ pub fn direct_light(
             let origin = offset_origin(s.position, s.error, ng, scattered.direction);
             let ray = Ray { origin, t_min: 0.0, direction: scattered.direction, t_max: FAR };
             let hit = intersect_scene(scene, &ray);
+            let shares = shares_at(scene, s.position);
             if hit.reference == NONE {
                 if scene.world.environment != NONE {
-                    let light = &scene.lights[scene.world.environment as usize];
-                    let other = pdf_environment(scene, light, ray.direction) * light.selection;
+                    let sky = scene.world.environment;
+                    let light = &scene.lights[sky as usize];
+                    let share = share_of(scene, shares, sky);
+                    let other = pdf_environment(scene, light, ray.direction) * share;
                     let seen = eval_environment(scene, light, ray.direction);
                     radiance += scattered.weight * seen * balance(pdf, other);
                 }
@@ -107,7 +111,8 @@ pub fn direct_light(
                 let at = surface_at(scene, &ray, &hit);
                 if at.light != NONE && ray.direction.dot(at.normal) < 0.0 {
                     let light = &scene.lights[at.light as usize];
-                    let other = pdf_light(scene, at.light, origin, ray.direction, hit.t, at.normal, at.v);
+                    let other =
+                        pdf_light(scene, shares, at.light, origin, ray.direction, hit.t, at.normal, at.v);
                     let seen = light.color * transmittance(scene, medium, hit.t);
                     radiance += scattered.weight * seen * balance(pdf, other);
                 }

@@ -5,6 +5,7 @@ use super::camera::camera_ray;
 use super::direct::{medium_before, next_event, transmittance};
 use super::eye_sample::window_pixel;
 use super::lights::light::{eval_environment, pdf_environment, pdf_light};
+use super::lights::select::{share_of, shares_at};
 use super::materials::scatter::{
     RADIANCE, is_specular, pdf_rough, reflectance_at, scatter_rough, scatter_specular, shading_normal, toward,
 };
@@ -30,13 +31,16 @@ pub fn path_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, place: u32)
     let mut rays = 0;
     // density of the last scattering; 0 where next-event estimation could not have found what is met now
     let mut pdf = 0.0;
+    // where the probabilities of the lights at that place begin
+    let mut shares = 0;
     for bounce in 0..dispatch.max_bounces + 1 {
         rays += 1;
         let hit = intersect_scene(scene, &ray);
         if hit.reference == NONE {
             if scene.world.environment != NONE {
-                let light = &scene.lights[scene.world.environment as usize];
-                let other = pdf_environment(scene, light, ray.direction) * light.selection;
+                let sky = scene.world.environment;
+                let light = &scene.lights[sky as usize];
+                let other = pdf_environment(scene, light, ray.direction) * share_of(scene, shares, sky);
                 let weight = if pdf > 0.0 { balance(pdf, other) } else { 1.0 };
                 radiance += throughput * eval_environment(scene, light, ray.direction) * weight;
             }
@@ -46,7 +50,8 @@ pub fn path_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, place: u32)
         let wo = -ray.direction;
         throughput *= transmittance(scene, medium_before(scene, &s, wo, medium), hit.t);
         if s.light != NONE && wo.dot(s.normal) > 0.0 {
-            let other = pdf_light(scene, s.light, ray.origin, ray.direction, hit.t, s.normal, s.v);
+            let from = ray.origin;
+            let other = pdf_light(scene, shares, s.light, from, ray.direction, hit.t, s.normal, s.v);
             let weight = if pdf > 0.0 { balance(pdf, other) } else { 1.0 };
             radiance += throughput * scene.lights[s.light as usize].color * weight;
         }
@@ -64,6 +69,7 @@ pub fn path_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, place: u32)
             let ng = toward(s.normal, wo);
             let n = shading_normal(scene, &s, wo);
             if sampled {
+                shares = shares_at(scene, s.position);
                 let u = rng_next(&mut rng);
                 let (direct, spent) = next_event(scene, &s, wo, n, ng, reflectance, medium, true, u);
                 radiance += throughput * direct;

@@ -4,7 +4,7 @@
 
 use super::direct::{medium_before, transmittance};
 use super::lights::aim::aimed_scatter;
-use super::lights::emission::emit_photon;
+use super::lights::emission::{Emission, emit_photon};
 use super::materials::scatter::{IMPORTANCE, is_specular, reflectance_at, scatter_rough, scatter_specular};
 use super::math::rng::{Rng, STREAM_PHOTON, rng_new, rng_next};
 use super::math::{FAR, max_component, oct_encode, offset_origin};
@@ -46,6 +46,12 @@ impl PhotonPath {
     pub fn new(scene: &Scene, dispatch: &Dispatch, id: u32) -> PhotonPath {
         let mut rng = rng_new(dispatch.batch_first + id, dispatch.pass_number, STREAM_PHOTON, dispatch.seed);
         let emission = emit_photon(scene, &mut rng);
+        Self::emitted(emission, rng, id)
+    }
+
+    /// A photon `id` of the batch that has just left its light.
+    #[inline(always)]
+    pub fn emitted(emission: Emission, rng: Rng, id: u32) -> PhotonPath {
         PhotonPath {
             ray: emission.ray,
             rays: 0,
@@ -89,7 +95,7 @@ impl PhotonPath {
             self.end = ESCAPED;
             return false;
         }
-        let far = scene.world.disc_levels > 1;
+        let far = scene.world.far != 0;
         let tracked = far || scene.world.guided != 0;
         let s = surface_at(scene, &self.ray, hit);
         let wo = -self.ray.direction;

@@ -19,7 +19,7 @@ const FAR_OUTSIDE_SQ: Real = 4.0;
 /// `scattered`, which a diffuse surface drew by its cosine from `u.xy`, or a direction into the cone about the
 /// scene in its place, `u.z` deciding, with the weight of the mixture of both.
 pub fn aimed_scatter(scene: &Scene, s: &Surface, wo: Vec3, u: Vec4, scattered: Scatter) -> Scatter {
-    let p = s.position;
+    let p = s.position - scene.world.near_center;
     let distance_sq = p.dot(p);
     let radius_sq = scene.world.near_radius * scene.world.near_radius;
     let diffuse = scene.materials[s.material as usize].kind == MATERIAL_DIFFUSE;

@@ -6,6 +6,7 @@ use super::math::sampling::{PDF_SPHERE, sample_sphere};
 use super::math::trig::{arctan2, sin_cos};
 use super::math::{EPS, FAR, PI, TAU};
 use super::real::{Real, Vec2, Vec3, Vec4};
+use super::select::{choose_light, share_of};
 use super::shape::{pdf_bin, pdf_shape, pdf_sphere_cone, sample_shape, sample_sphere_cone};
 use super::tables::*;
 
@@ -38,22 +39,23 @@ pub fn find_interval(scene: &Scene, first: u32, count: u32, u: Real) -> u32 {
     low
 }
 
-/// A light by its share of the scene's power.
+/// Light at `position` from the light that `u.x` chooses by the probabilities at `shares`, sampled by
+/// the other three numbers.
 #[inline(always)]
-pub fn choose_light(scene: &Scene, u: Real) -> u32 {
-    find_interval(scene, 0, scene.world.light_count, u)
+pub fn sample_light(scene: &Scene, shares: u32, position: Vec3, u: Vec4) -> LightSample {
+    let index = choose_light(scene, shares, u.x);
+    let share = share_of(scene, shares, index);
+    sample_one_light(scene, &scene.lights[index as usize], share, position, u)
 }
 
-/// Light at `position` from the light that `u.x` chooses, sampled by the other three.
+/// Light at `position` from `light`, which is chosen with probability `share`.
 #[inline(always)]
-pub fn sample_light(scene: &Scene, position: Vec3, u: Vec4) -> LightSample {
-    let light = &scene.lights[choose_light(scene, u.x) as usize];
+pub fn sample_one_light(scene: &Scene, light: &Light, share: Real, position: Vec3, u: Vec4) -> LightSample {
     let none =
         LightSample { direction: Vec3::Z, distance: 0.0, radiance: Vec3::ZERO, pdf: 1.0, extended: true };
     if light.kind == LIGHT_AREA {
-        let index = (light.reference & ((1 << REFERENCE_BITS) - 1)) as usize;
         if light.reference >> REFERENCE_BITS == KIND_SPHERE {
-            let sphere = &scene.spheres[index];
+            let sphere = &scene.spheres[(light.reference & ((1 << REFERENCE_BITS) - 1)) as usize];
             if pdf_sphere_cone(sphere, position) > 0.0 {
                 let p = sample_sphere_cone(sphere, position, Vec2::new(u.y, u.z));
                 let to = p.position + p.normal * p.error - position;
@@ -63,7 +65,7 @@ pub fn sample_light(scene: &Scene, position: Vec3, u: Vec4) -> LightSample {
                     direction: to * (1.0 / distance),
                     distance: distance * (1.0 - 16.0 * EPS),
                     radiance: light.color,
-                    pdf: p.pdf * light.selection,
+                    pdf: p.pdf * share,
                     extended: true,
                 };
             }
@@ -84,7 +86,7 @@ pub fn sample_light(scene: &Scene, position: Vec3, u: Vec4) -> LightSample {
             direction,
             distance: distance * (1.0 - 16.0 * EPS),
             radiance: light.color,
-            pdf: p.pdf * dist_sq / cos * light.selection,
+            pdf: p.pdf * dist_sq / cos * share,
             extended: true,
         };
     }
@@ -104,7 +106,7 @@ pub fn sample_light(scene: &Scene, position: Vec3, u: Vec4) -> LightSample {
             direction,
             distance: distance * (1.0 - 16.0 * EPS),
             radiance,
-            pdf: light.selection,
+            pdf: share,
             extended: false,
         };
     }
@@ -113,7 +115,7 @@ pub fn sample_light(scene: &Scene, position: Vec3, u: Vec4) -> LightSample {
             direction: -light.direction,
             distance: FAR,
             radiance: light.color,
-            pdf: light.selection,
+            pdf: share,
             extended: false,
         };
     }
@@ -122,7 +124,7 @@ pub fn sample_light(scene: &Scene, position: Vec3, u: Vec4) -> LightSample {
         direction,
         distance: FAR,
         radiance: eval_environment(scene, light, direction),
-        pdf: pdf_environment(scene, light, direction) * light.selection,
+        pdf: pdf_environment(scene, light, direction) * share,
         extended: true,
     }
 }
@@ -143,6 +145,7 @@ pub fn spot_falloff(light: &Light, cos: Real) -> Real {
 /// `index` at distance `t`, where the surface has unit normal `normal` and profile parameter `v`.
 pub fn pdf_light(
     scene: &Scene,
+    shares: u32,
     index: u32,
     from: Vec3,
     direction: Vec3,
@@ -151,15 +154,16 @@ pub fn pdf_light(
     v: Real,
 ) -> Real {
     let light = &scene.lights[index as usize];
+    let share = share_of(scene, shares, index);
     if light.reference >> REFERENCE_BITS == KIND_SPHERE {
         let sphere = &scene.spheres[(light.reference & ((1 << REFERENCE_BITS) - 1)) as usize];
         let pdf = pdf_sphere_cone(sphere, from);
         if pdf > 0.0 {
-            return pdf * light.selection;
+            return pdf * share;
         }
     }
     let cos = direction.dot(normal).abs();
-    pdf_shape(scene, light, v) * t * t / cos.max(1e-12) * light.selection
+    pdf_shape(scene, light, v) * t * t / cos.max(1e-12) * share
 }
 
 /// Zenith-down texture coordinates of a direction seen in an equirectangular picture turned about y.

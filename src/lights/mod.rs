@@ -6,4 +6,5 @@ pub mod aim;
 pub mod emission;
 pub mod guide;
 pub mod light;
+pub mod select;
 pub mod shape;

@@ -14,11 +14,16 @@ use std::f64::consts::PI;
 /// Steps of the midpoint rule that measures a patch's area.
 const AREA_STEPS: u32 = 32;
 
-/// Fills `lights` and `distributions`; returns the world radiance of one unit of scene radiance.
-pub fn pack_lights(scene: &scene::Scene, n: &Normalization, emitters: &[Emitter], out: &mut Scene) -> f64 {
+/// Fills `lights` and `distributions`; returns the world radiance of one unit of scene radiance, and the
+/// power of each light, of light from infinity per area that faces it.
+pub fn pack_lights(
+    scene: &scene::Scene,
+    n: &Normalization,
+    emitters: &[Emitter],
+    out: &mut Scene,
+) -> (f64, Vec<f64>) {
     // strengths in world radiance first: areas and distances are in scene units already, so that irradiance
     // is radiance times steradian in either
-    let near = PI * n.near_radius * n.near_radius;
     let mut lights: Vec<(Light, DVec3, f64)> = Vec::new();
     let mut distributions = Vec::new();
     for e in emitters {
@@ -54,7 +59,7 @@ pub fn pack_lights(scene: &scene::Scene, n: &Normalization, emitters: &[Emitter]
             scene::Light::Sun { direction, irradiance } => {
                 let light =
                     Light { kind: LIGHT_SUN, direction: direction.normalize().to_real(), ..Light::zeroed() };
-                (light, DVec3::from(*irradiance), near)
+                (light, DVec3::from(*irradiance), 1.0)
             }
         });
     }
@@ -64,7 +69,7 @@ pub fn pack_lights(scene: &scene::Scene, n: &Normalization, emitters: &[Emitter]
             lights.push((
                 Light { kind: LIGHT_CONSTANT, ..Light::zeroed() },
                 DVec3::from(*radiance),
-                4.0 * PI * near,
+                4.0 * PI,
             ));
         }
         Some(Environment::Image { rotate_degrees, scale, .. }) => {
@@ -78,7 +83,7 @@ pub fn pack_lights(scene: &scene::Scene, n: &Normalization, emitters: &[Emitter]
             };
             if let Some(mean) = image_distribution(out, &mut light, &mut distributions) {
                 out.world.environment = lights.len() as u32;
-                lights.push((light, DVec3::from(*scale), 4.0 * PI * near * mean));
+                lights.push((light, DVec3::from(*scale), 4.0 * PI * mean));
             }
         }
         _ => {}
@@ -99,7 +104,7 @@ pub fn pack_lights(scene: &scene::Scene, n: &Normalization, emitters: &[Emitter]
     }
     out.distributions.extend(distributions);
     out.world.light_count = count as u32;
-    radiance_unit
+    (radiance_unit, power)
 }
 
 /// A point from which a light shines; nothing for light from infinity.

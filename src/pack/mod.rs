@@ -1,24 +1,34 @@
 //! A validated scene flattened into the tables that the kernels read.
 
+mod cells;
+mod discs;
 mod image;
 mod light;
+mod look;
 mod medium;
 mod objects;
 mod order;
+mod pilots;
 mod shape;
+mod visibility;
 
 pub use crate::error::PackError;
 pub use objects::Objects;
 
-use super::real::{Real, ToReal, Vec2, Vec3};
+use super::lights::select::CELL_LEAF;
+use super::real::{Real, ToDouble, ToReal, Vec2, Vec3};
 use super::shapes::fours::{FourRectangles, FourSpheres, LANES};
 use super::tables::*;
-use super::{build, lights, materials, math, real, shapes, tables};
-use crate::build::normalize::Normalization;
+use super::{build, kernels, lights, materials, math, real, shapes, tables};
+use crate::build::learned::Learned;
+use crate::build::normalize::{Normalization, reach};
 use crate::scene::{self, MaterialKind, Reflectance};
 use crate::stage::stage;
 use bytemuck::Zeroable;
 use glam::DVec3;
+use look::{Look, Region, look};
+use std::f64::consts::PI;
+use visibility::Visibility;
 
 /// A flattened scene and what undoes its normalisation.
 #[derive(Clone, Debug)]
@@ -35,12 +45,40 @@ pub struct Packed {
     pub tree: build::kdtree::Stats,
     /// Which shape each reference belongs to; empty unless the film asks for it.
     pub objects: Objects,
+    normalization: Normalization,
+    /// Power of each light; of light from infinity per area.
+    power: Vec<f64>,
+    /// Entries of the distributions before those that were learned.
+    flattened: usize,
 }
 
-/// Flattens `scene` for a picture of `width` by `height` pixels.
+/// Flattens `scene` for a picture of `width` by `height` pixels, and learns from pilots how to light it.
 pub fn pack(scene: &scene::Scene, width: u32, height: u32) -> Result<Packed, PackError> {
+    let mut packed = flatten(scene, Normalization::of(scene), width, height)?;
+    let mut look = look(&packed.scene);
+    if let Some(other) = packed.better_place(&look) {
+        packed = flatten(scene, other, width, height)?;
+        look = self::look(&packed.scene);
+    }
+    packed.learn(scene, &look);
+    Ok(packed)
+}
+
+/// The same, with what another precision has learned.
+pub fn pack_like(
+    scene: &scene::Scene,
+    width: u32,
+    height: u32,
+    learned: &Learned,
+) -> Result<Packed, PackError> {
+    let mut packed = flatten(scene, learned.normalization, width, height)?;
+    packed.take(learned);
+    Ok(packed)
+}
+
+/// Flattens `scene`; nothing is learned.
+fn flatten(scene: &scene::Scene, n: Normalization, width: u32, height: u32) -> Result<Packed, PackError> {
     let _stage = stage("pack");
-    let n = Normalization::of(scene);
     let mut out = Scene::empty();
     out.camera = camera(scene, &n, width, height);
     image::pack_textures(scene, &mut out);
@@ -68,10 +106,8 @@ pub fn pack(scene: &scene::Scene, width: u32, height: u32) -> Result<Packed, Pac
     out.four_spheres = out.spheres.chunks(LANES).map(FourSpheres::new).collect();
     out.world.unit = n.unit as Real;
     out.world.planar_origin = Vec2::new(n.center.x as Real, n.center.z as Real);
-    out.world.near_radius = n.near_radius as Real;
     out.world.unbounded_count = out.unbounded.len() as u32;
-    let radiance_unit = light::pack_lights(scene, &n, &emitters, &mut out);
-    out.world.disc_levels = disc_levels(&out, &n);
+    let (radiance_unit, power) = light::pack_lights(scene, &n, &emitters, &mut out);
     out.world.nested = medium::glass_meets_glass(scene) as u32;
     stand_camera(&mut out);
     for i in 0..out.lights.len() {
@@ -80,16 +116,121 @@ pub fn pack(scene: &scene::Scene, width: u32, height: u32) -> Result<Packed, Pac
             None => NONE,
         };
     }
-    lights::guide::learn_guides(&mut out);
-    Ok(Packed { scene: out, center: n.center, unit: n.unit, radiance_unit, tree: stats, objects })
+    let flattened = out.distributions.len();
+    Ok(Packed {
+        scene: out,
+        center: n.center,
+        unit: n.unit,
+        radiance_unit,
+        tree: stats,
+        objects,
+        normalization: n,
+        power,
+        flattened,
+    })
 }
 
 impl Packed {
-    /// Takes the picture from where `scene`'s camera is now, everything else staying as it is. What `n` is not
-    /// [the normalisation of](Normalization::of) any more has other roundings than a scene flattened anew.
-    pub fn move_camera(&mut self, scene: &scene::Scene, n: &Normalization, width: u32, height: u32) {
-        self.scene.camera = camera(scene, n, width, height);
+    /// Takes the picture from where `scene`'s camera is now, everything else staying as it is, what was
+    /// learned for the camera before included.
+    pub fn move_camera(&mut self, scene: &scene::Scene, width: u32, height: u32) {
+        self.scene.camera = camera(scene, &self.normalization, width, height);
         stand_camera(&mut self.scene);
+    }
+
+    /// Learns anew for the camera as it is now; then the tables are those of [`pack`]. False, and nothing
+    /// learned, where `pack` may choose another place for scene space.
+    pub fn learn_again(&mut self, scene: &scene::Scene) -> bool {
+        if self.normalization != Normalization::of(scene) {
+            return false;
+        }
+        let look = look(&self.scene);
+        if self.better_place(&look).is_some() {
+            return false;
+        }
+        self.learn(scene, &look);
+        true
+    }
+
+    /// The place of scene space that what the camera sees asks for, if this one does not do.
+    fn better_place(&self, look: &Look) -> Option<Normalization> {
+        let region = look.region()?;
+        let center = self.normalization.world(region.center.to_double());
+        let radius = f64::from(region.radius) * self.unit;
+        (!self.normalization.suits(center, radius)).then(|| Normalization::about(center, radius))
+    }
+
+    /// Learns emission discs, probabilities of lights, and maps.
+    fn learn(&mut self, scene: &scene::Scene, look: &Look) {
+        let _stage = stage("pilots");
+        let n = &self.normalization;
+        let out = &mut self.scene;
+        out.distributions.truncate(self.flattened);
+        // where nothing is seen, everything counts alike
+        let all = Region { center: Vec3::ZERO, radius: (n.radius / n.unit) as Real };
+        let region = look.region().unwrap_or(all);
+        let (center, radius) = (n.world(region.center.to_double()), f64::from(region.radius) * n.unit);
+        discs::learn_discs(out, look, region, reach(scene, center, radius) / n.unit);
+        let area = PI * f64::from(region.radius) * f64::from(region.radius);
+        let lights = out.lights.iter().zip(&self.power);
+        let power: Vec<f64> = lights
+            .map(|(light, power)| if light.kind >= LIGHT_SUN { area * power } else { *power })
+            .collect();
+        pilots::learn_emission(out, &Visibility::new(look, region), &power);
+        cells::learn_cells(out, look, &power);
+    }
+
+    /// What was learned.
+    pub fn learned(&self) -> Learned {
+        let (world, distributions) = (&self.scene.world, &self.scene.distributions);
+        let base = self.flattened as u32;
+        let double = |x: &Real| f64::from(*x);
+        let guide = |light: &Light| (light.guide != 0).then(|| light.guide - base);
+        let cell = |c: &Cell| {
+            (f64::from(c.split), c.axis, if c.axis == CELL_LEAF { c.first - base } else { c.first })
+        };
+        Learned {
+            normalization: self.normalization,
+            near_center: world.near_center.to_double().to_array(),
+            near_radius: f64::from(world.near_radius),
+            disc_radius: f64::from(world.disc_radius),
+            disc_levels: world.disc_levels,
+            far: world.far,
+            guided: world.guided,
+            lights: distributions[..self.scene.lights.len()].iter().map(double).collect(),
+            distributions: distributions[self.flattened..].iter().map(double).collect(),
+            disc_first: world.disc_first.saturating_sub(base),
+            guides: self.scene.lights.iter().map(guide).collect(),
+            cells: self.scene.cells.iter().map(cell).collect(),
+        }
+    }
+
+    /// Takes what was learned in another precision.
+    fn take(&mut self, learned: &Learned) {
+        let base = self.flattened as u32;
+        let out = &mut self.scene;
+        out.world.near_center = DVec3::from(learned.near_center).to_real();
+        out.world.near_radius = learned.near_radius as Real;
+        out.world.disc_radius = learned.disc_radius as Real;
+        out.world.disc_levels = learned.disc_levels;
+        out.world.disc_first = base + learned.disc_first;
+        out.world.far = learned.far;
+        out.world.guided = learned.guided;
+        let mut before = 0.0;
+        for (i, end) in learned.lights.iter().enumerate() {
+            out.distributions[i] = *end as Real;
+            out.lights[i].selection = (end - before) as Real;
+            out.lights[i].guide = learned.guides[i].map_or(0, |first| base + first);
+            before = *end;
+        }
+        out.distributions.extend(learned.distributions.iter().map(|x| *x as Real));
+        let cell = |&(split, axis, first): &(f64, u32, u32)| Cell {
+            split: split as Real,
+            axis,
+            first: if axis == CELL_LEAF { base + first } else { first },
+            pad: 0,
+        };
+        out.cells = learned.cells.iter().map(cell).collect();
     }
 }
 
@@ -117,6 +258,7 @@ impl Scene {
             textures: Vec::new(),
             lights: Vec::new(),
             distributions: Vec::new(),
+            cells: Vec::new(),
             nodes: Vec::new(),
             refs: Vec::new(),
             triangles: Vec::new(),
@@ -127,17 +269,6 @@ impl Scene {
             four_spheres: Vec::new(),
         }
     }
-}
-
-/// Emission discs that reach everything, if any light comes from infinity.
-fn disc_levels(out: &Scene, n: &Normalization) -> u32 {
-    let infinite = |l: &Light| matches!(l.kind, LIGHT_SUN | LIGHT_CONSTANT | LIGHT_IMAGE);
-    if !out.lights.iter().any(infinite) {
-        return 1;
-    }
-    // rounding alone must not add a disc twice as wide
-    let doublings = (n.far_radius / n.near_radius).log2() - 1e-9;
-    doublings.ceil().max(0.0) as u32 + 1
 }
 
 fn camera(scene: &scene::Scene, n: &Normalization, width: u32, height: u32) -> Camera {

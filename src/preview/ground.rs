@@ -2,16 +2,14 @@
 
 use std::sync::Arc;
 
-use crate::build::normalize::Normalization;
 use crate::engine::EngineError;
 use crate::pack::{Packed, pack};
 use crate::scene::{Camera, Film, Scene};
 
-/// A scene and its tables. Maps of lights and the kd-tree do not hang on the camera, but the scene's centre and unit do: the
-/// camera is part of what they have to hold. They are kept while it moves, and looked at again when it is still.
+/// A scene and its tables. The kd-tree does not depend on the camera, but what pilots learn does. It is
+/// kept while the camera moves, and learned again when it is still.
 pub struct Ground {
     scene: Arc<Scene>,
-    normalization: Normalization,
     packed: Arc<Packed>,
 }
 
@@ -19,7 +17,7 @@ impl Ground {
     /// Flattens a scene.
     pub fn new(scene: Arc<Scene>) -> Result<Self, EngineError> {
         let packed = pack(&scene, scene.film.width, scene.film.height)?;
-        Ok(Self { normalization: Normalization::of(&scene), packed: Arc::new(packed), scene })
+        Ok(Self { packed: Arc::new(packed), scene })
     }
 
     /// Puts camera and film in their place, and leaves everything else as it is.
@@ -27,13 +25,13 @@ impl Ground {
         let scene = Arc::make_mut(&mut self.scene);
         (scene.camera, scene.film) = (*camera, *film);
         let packed = Arc::make_mut(&mut self.packed);
-        packed.move_camera(scene, &self.normalization, film.width, film.height);
+        packed.move_camera(scene, film.width, film.height);
     }
 
     /// The same, to be changed by itself.
     pub fn copy(&self) -> Self {
-        let Self { scene, normalization, packed } = self;
-        Self { scene: scene.clone(), normalization: *normalization, packed: packed.clone() }
+        let Self { scene, packed } = self;
+        Self { scene: scene.clone(), packed: packed.clone() }
     }
 
     /// The scene.
@@ -51,17 +49,17 @@ impl Ground {
         let mut scene = self.scene.clone();
         let own = Arc::make_mut(&mut scene);
         (own.camera, own.film) = (*camera, *film);
-        if Normalization::of(&scene) != self.normalization {
-            return Self::new(scene);
-        }
         let mut ground = Self { scene, ..self.copy() };
         ground.stand(camera, film);
-        Ok(ground)
+        if Arc::make_mut(&mut ground.packed).learn_again(&ground.scene) {
+            return Ok(ground);
+        }
+        Self::new(ground.scene)
     }
 }
 
-/// Theory: what flattens anew only where it must has the tables of one that always does; a camera within the scene leaves the
-/// normalisation as it is, and one far off does not.
+/// Theory: what flattens anew only where it must has the tables of one that always does, wherever the
+/// camera stands.
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -83,7 +81,6 @@ mod tests {
         let here = scene.camera;
         let toward = Camera { position: here.position.lerp(here.target, 0.1), ..here };
         let off = Camera { position: here.position * 9.0 + DVec3::X, ..here };
-        let mut kept = Vec::new();
         for camera in [here, toward, off] {
             ground.stand(&camera, &small);
             let settled = ground.settled(&camera, &scene.film).unwrap();
@@ -91,10 +88,8 @@ mod tests {
             anew.camera = camera;
             let fresh = Ground::new(Arc::new(anew)).unwrap();
             assert!(tables(&settled) == tables(&fresh));
-            kept.push(settled.normalization == ground.normalization);
             let standing = ground.settled(&camera, &small).unwrap();
             assert!(tables(&standing) != tables(&fresh), "a film of another size");
         }
-        assert!(!kept[2], "a camera far off moves the scene's centre");
     }
 }

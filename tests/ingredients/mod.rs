@@ -112,7 +112,7 @@ impl Mixture {
             "infinite" => self.light(LIGHT_SUN, 0),
             "far" => {
                 self.add("infinite");
-                self.scene.world.disc_levels = 2;
+                self.scene.world.far = 1;
             }
             "environment" => self.light(LIGHT_CONSTANT, 0),
             "environment_image" => {
@@ -128,6 +128,10 @@ impl Mixture {
             "split" => {
                 self.settings.indirect_radius = Some(2.0);
                 self.light(LIGHT_POINT, 0);
+            }
+            "cells" => {
+                self.light(LIGHT_POINT, 0);
+                self.scene.cells.push(Cell::zeroed());
             }
             "guided" => {
                 self.light(LIGHT_POINT, 0);

@@ -9,6 +9,7 @@ use std::f64::consts::PI;
 use caustica::lights::light::{
     eval_environment, pdf_environment, pdf_light, sample_environment, sample_light,
 };
+use caustica::lights::select::shares_at;
 use caustica::lights::shape::sample_shape;
 use caustica::materials::metal::{eval_metal, pdf_metal, sample_metal, weight_metal};
 use caustica::math::mirrored;
@@ -201,10 +202,10 @@ fn lights() {
             if s.normal.dot(ray.direction) > -0.1 {
                 return 0.0;
             }
-            pdf_light(&scene, s.light, from, ray.direction, hit.t, s.normal, s.v)
+            pdf_light(&scene, shares_at(&scene, from), s.light, from, ray.direction, hit.t, s.normal, s.v)
         };
         let draw = |r: &mut Rng| {
-            let s = sample_light(&scene, from, rng_next(r));
+            let s = sample_light(&scene, shares_at(&scene, from), from, rng_next(r));
             // a point on the far side is no direction to the light
             let ray = Ray { origin: from, t_min: 0.0, direction: s.direction, t_max: s.distance };
             let free = s.radiance.x > 0.0 && intersect_scene(&scene, &ray).reference == NONE;

@@ -1,0 +1,153 @@
+//! Emission discs: through which distances from what the camera sees light from infinity enters.
+
+use super::look::{Look, Region, Seen};
+use super::real::Real;
+use super::tables::*;
+
+/// Most discs: radii are multiplied by a power of two that a word holds.
+const LEVELS: u32 = 32;
+/// The narrowest disc has the near radius over this.
+const NARROWEST: f64 = 8.0;
+/// Probability kept for discs by their width alone, so that nothing is left out.
+const KEPT: f64 = 0.1;
+/// A pixel's gather disc is at most this many times as wide as the median one.
+const FOOTPRINTS: f64 = 4.0;
+/// Rounds of the search.
+const ROUNDS: u32 = 40;
+
+/// Sets the near sphere, and the discs and their probabilities if light comes from infinity. `far`: how
+/// far surfaces lie from the center of `region`, scene units.
+pub fn learn_discs(out: &mut Scene, look: &Look, region: Region, far: f64) {
+    let near = f64::from(region.radius);
+    out.world.near_center = region.center;
+    out.world.near_radius = region.radius;
+    out.world.far = 0;
+    out.world.disc_levels = 0;
+    if !out.lights.iter().any(|light| light.kind >= LIGHT_SUN) {
+        return;
+    }
+    out.world.far = (far > 2.0 * near) as u32;
+    let widest = far.max(near);
+    let narrowest = (near / NARROWEST).max(widest / f64::from(1u32 << (LEVELS - 2)));
+    // rounding alone must not add a disc twice as wide
+    let levels = ((widest / narrowest).log2() - 1e-9).ceil().max(0.0) as usize + 1;
+    out.world.disc_radius = narrowest as Real;
+    out.world.disc_levels = levels as u32;
+    out.world.disc_first = out.distributions.len() as u32;
+    let radii: Vec<f64> = (0..levels).map(|k| narrowest * (k as f64).exp2()).collect();
+    let learned = probabilities(&points(look, region), &radii);
+    let kept = by_width(&radii, near);
+    let mixed = learned.iter().zip(&kept).map(|(a, b)| (1.0 - KEPT) * a + KEPT * b);
+    out.distributions.extend(cumulative(&mixed.collect::<Vec<_>>()).map(|x| x as Real));
+}
+
+/// Squared distance from the center and weight, one over the area that gathers there, of each point.
+fn points(look: &Look, region: Region) -> Vec<[f64; 2]> {
+    let median = f64::from(look.footprint());
+    let at = |point: &Seen| {
+        let d = point.position - region.center;
+        let width = f64::from(point.footprint).min(FOOTPRINTS * median);
+        [f64::from(d.dot(d)), 1.0 / (width * width)]
+    };
+    look.points().map(at).filter(|point| point[1].is_finite()).collect()
+}
+
+/// Density per area at squared distance `r_sq`.
+fn density(radii: &[f64], p: &[f64], r_sq: f64) -> f64 {
+    let inside = radii.iter().zip(p).filter(|(radius, _)| r_sq <= *radius * *radius);
+    inside.map(|(radius, p)| p / (radius * radius)).sum()
+}
+
+/// Probabilities with the least sum of `weight / density`, the variance of the photons gathered: a convex
+/// problem, at whose solution the derivatives by all used probabilities are equal.
+fn probabilities(points: &[[f64; 2]], radii: &[f64]) -> Vec<f64> {
+    let mut p = vec![1.0 / radii.len() as f64; radii.len()];
+    for _ in 0..ROUNDS {
+        let mut slope = vec![0.0; radii.len()];
+        for [r_sq, weight] in points {
+            let density = density(radii, &p, *r_sq);
+            if density > 0.0 {
+                let by = weight / (density * density);
+                for (slope, radius) in slope.iter_mut().zip(radii) {
+                    *slope += if *r_sq <= radius * radius { by / (radius * radius) } else { 0.0 };
+                }
+            }
+        }
+        for (p, slope) in p.iter_mut().zip(&slope) {
+            *p *= slope.sqrt();
+        }
+        let total: f64 = p.iter().sum();
+        if !(total > 0.0 && total.is_finite()) {
+            return by_width(radii, 0.0);
+        }
+        p.iter_mut().for_each(|p| *p /= total);
+    }
+    p
+}
+
+/// Half of the photons through the narrowest disc that holds the near sphere, half of the others through
+/// the next one, and so on.
+fn by_width(radii: &[f64], near: f64) -> Vec<f64> {
+    let first = radii.iter().position(|radius| *radius >= near).unwrap_or(radii.len() - 1);
+    let last = radii.len() - 1;
+    let share = |k: usize| match k {
+        k if k < first => 0.0,
+        k if k == last => (-((k - first) as f64)).exp2(),
+        k => (-((k - first + 1) as f64)).exp2(),
+    };
+    (0..radii.len()).map(share).collect()
+}
+
+/// Cumulative shares of `weights` in steps of the random numbers', 2^-24, so that a probability is
+/// exactly the difference of two of them; each weight above zero has one step at least.
+pub fn cumulative(weights: &[f64]) -> impl Iterator<Item = f64> {
+    const STEPS: f64 = 16777216.0;
+    let total: f64 = weights.iter().sum();
+    let used = weights.iter().filter(|w| **w > 0.0).count() as f64;
+    // one step is set aside for each
+    let free = (STEPS - used).max(0.0);
+    let mut ends: Vec<f64> = Vec::with_capacity(weights.len());
+    let (mut sum, mut count) = (0.0, 0.0);
+    for weight in weights {
+        sum += weight;
+        count += if *weight > 0.0 { 1.0 } else { 0.0 };
+        ends.push((count + (sum / total * free).floor()).min(STEPS) / STEPS);
+    }
+    if let Some(last) = ends.last_mut() {
+        *last = 1.0;
+    }
+    ends.into_iter()
+}
+
+/// Theory: the discs' probabilities are those of least variance. Points on one circle need the narrowest
+/// disc that holds it and no other; points spread evenly over a disc want photons spread evenly.
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn least_variance() {
+        let radii = [1.0, 2.0, 4.0, 8.0];
+        let circle = probabilities(&[[2.25, 1.0]], &radii);
+        assert!(circle[1] > 0.99, "{circle:?}");
+        let even: Vec<[f64; 2]> = (0..1000).map(|i| [16.0 * (f64::from(i) + 0.5) / 1000.0, 1.0]).collect();
+        let even = probabilities(&even, &radii);
+        assert!(even[2] > 0.98, "{even:?}");
+        // no other choice is better
+        let points: Vec<[f64; 2]> = (0..500).map(|i| [f64::from(i * i) / 4000.0, 1.0]).collect();
+        let best = probabilities(&points, &radii);
+        let cost = |p: &[f64]| points.iter().map(|[r, w]| w / density(&radii, p, *r)).sum::<f64>();
+        for k in 0..4 {
+            let other: Vec<f64> = (0..4).map(|j| 0.95 * best[j] + if j == k { 0.05 } else { 0.0 }).collect();
+            assert!(cost(&best) < 1.001 * cost(&other), "{k}: {} and {}", cost(&best), cost(&other));
+        }
+    }
+
+    #[test]
+    fn every_weight_has_a_step() {
+        let ends: Vec<f64> = cumulative(&[1.0, 0.0, 1e-30, 5.0, 0.0]).collect();
+        let steps: Vec<f64> = (0..5).map(|i| ends[i] - if i > 0 { ends[i - 1] } else { 0.0 }).collect();
+        assert!(steps[0] > 0.16 && steps[1] == 0.0 && steps[2] > 0.0 && steps[3] > 0.83, "{steps:?}");
+        assert!(ends.iter().all(|x| (x * 16777216.0).fract() == 0.0) && ends[4] == 1.0);
+    }
+}
