@@ -4,6 +4,7 @@ mod candidates;
 
 use thiserror::Error;
 
+use crate::build::learned::Starved;
 use crate::cpu::CpuEngine;
 use crate::double;
 use crate::engine::{Engine, EngineError, Space};
@@ -113,6 +114,8 @@ pub struct Opened {
     pub radius: Option<Automatic>,
     /// What tells its numbers in those of the world.
     pub space: Space,
+    /// Lights of which a pass has few photons, though they count for the picture.
+    pub starved: Vec<Starved>,
 }
 
 /// No engine.
@@ -236,7 +239,10 @@ fn start(
     check_points(device, scene, settings)?;
     let film = &scene.film;
     let packed = pack(scene, film.width, film.height)?;
+    let photons = if settings.method == Method::Path { u32::MAX } else { settings.photons };
+    let starved = packed.starved(scene, photons);
     let opened = |engine, settings, radius, space, cut| Opened {
+        starved: starved.clone(),
         engine,
         name: device.name.clone(),
         kind: device.kind,

@@ -1,7 +1,77 @@
 //! What was learned from pilots before a render, in f64: for an engine of another precision that is to
 //! render the same.
 
-use super::normalize::Normalization;
+use super::normalize::{Normalization, extent};
+use crate::scene::{Light, Scene, ShapeKind};
+use std::fmt;
+
+/// Where a light comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LightSource {
+    /// The scene's shape of this index emits.
+    Shape(usize),
+    /// The scene's light of this index.
+    Light(usize),
+    /// The scene's environment.
+    Environment,
+}
+
+/// A light of which a pass has few photons, though it counts for the picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Starved {
+    /// What it is and where.
+    pub light: String,
+    /// Photons of a pass.
+    pub photons: f64,
+    /// Its share of the light that the camera sees.
+    pub share: f64,
+}
+
+impl LightSource {
+    /// What a reader of the scene file calls it.
+    pub fn describe(self, scene: &Scene) -> String {
+        match self {
+            Self::Environment => "the environment".to_owned(),
+            Self::Light(index) => {
+                let kind = match scene.lights.get(index) {
+                    Some(Light::Point { .. }) => "point light",
+                    Some(Light::Spot { .. }) => "spot light",
+                    Some(Light::Sun { .. }) => "sun",
+                    None => "light",
+                };
+                format!("the {kind} lights[{index}]")
+            }
+            Self::Shape(index) => {
+                let Some(shape) = scene.shapes.get(index) else { return format!("shapes[{index}]") };
+                let kind = match &shape.kind {
+                    ShapeKind::Sphere { .. } => "sphere",
+                    ShapeKind::Rectangle { .. } => "rectangle",
+                    ShapeKind::Disc { .. } => "disc",
+                    ShapeKind::Plane { .. } => "plane",
+                    ShapeKind::Cuboid { .. } => "box",
+                    ShapeKind::Mesh(_) => "mesh",
+                    ShapeKind::Revolution { .. } => "revolution",
+                };
+                let middle = extent(&shape.kind).map(|(low, high)| (0.5 * (low + high)).to_array());
+                let place = middle.map_or(String::new(), |p| format!(" about {p:.3?}"));
+                format!("the emitting {kind}{place}")
+            }
+        }
+    }
+}
+
+impl fmt::Display for Starved {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let Self { light, photons, share } = self;
+        write!(
+            f,
+            "{light} sends only {photons:.0} photons a pass but brings {:.1} % of the light: what it casts \
+             through glass or by mirrors may be missing from the picture and from its stated error; \
+             raise --photons",
+            100.0 * share
+        )
+    }
+}
 
 /// Everything that pilots decide.
 #[derive(Clone, Debug, PartialEq)]

@@ -302,6 +302,9 @@ pub fn begin(voice: &Voice, scene: &Scene, opened: &Opened) -> Result<Reporter, 
     if let Some(cut) = &opened.cut {
         reporter.note(cut);
     }
+    for starved in &opened.starved {
+        message(&format!("warning: {starved}"));
+    }
     if voice.json {
         result(json!({
             "event": "start",

@@ -5,6 +5,7 @@ use super::real::{Real, ToReal, Vec2, Vec3};
 use super::shape::Emitter;
 use super::shapes::revolution::ring_point;
 use super::tables::*;
+use crate::build::learned::LightSource;
 use crate::build::normalize::Normalization;
 use crate::scene::{self, Environment};
 use bytemuck::Zeroable;
@@ -15,16 +16,18 @@ use std::f64::consts::PI;
 const AREA_STEPS: u32 = 32;
 
 /// Fills `lights` and `distributions`; returns the world radiance of one unit of scene radiance, and the
-/// power of each light, of light from infinity per area that faces it.
+/// power and origin of each light; the power of light from infinity is per area that faces it.
 pub fn pack_lights(
     scene: &scene::Scene,
     n: &Normalization,
     emitters: &[Emitter],
     out: &mut Scene,
-) -> (f64, Vec<f64>) {
+) -> (f64, Vec<f64>, Vec<LightSource>) {
     // strengths in world radiance first: areas and distances are in scene units already, so that irradiance
     // is radiance times steradian in either
     let mut lights: Vec<(Light, DVec3, f64)> = Vec::new();
+    let mut sources: Vec<LightSource> = emitters.iter().map(|e| LightSource::Shape(e.shape)).collect();
+    sources.extend((0..scene.lights.len()).map(LightSource::Light));
     let mut distributions = Vec::new();
     for e in emitters {
         let mut light = Light { kind: LIGHT_AREA, reference: e.reference, ..Light::zeroed() };
@@ -88,6 +91,9 @@ pub fn pack_lights(
         }
         _ => {}
     }
+    if lights.len() > sources.len() {
+        sources.push(LightSource::Environment);
+    }
     let power: Vec<f64> = lights.iter().map(|(_, c, factor)| (c.x + c.y + c.z) / 3.0 * factor).collect();
     let total: f64 = power.iter().sum();
     let brightest = lights.iter().map(|(_, c, _)| c.max_element()).fold(0.0, f64::max);
@@ -104,7 +110,7 @@ pub fn pack_lights(
     }
     out.distributions.extend(distributions);
     out.world.light_count = count as u32;
-    (radiance_unit, power)
+    (radiance_unit, power, sources)
 }
 
 /// A point from which a light shines; nothing for light from infinity.

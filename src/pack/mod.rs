@@ -20,7 +20,7 @@ use super::real::{Real, ToDouble, ToReal, Vec2, Vec3};
 use super::shapes::fours::{FourRectangles, FourSpheres, LANES};
 use super::tables::*;
 use super::{build, kernels, lights, materials, math, real, shapes, tables};
-use crate::build::learned::Learned;
+use crate::build::learned::{Learned, LightSource, Starved};
 use crate::build::normalize::{Normalization, reach};
 use crate::scene::{self, MaterialKind, Reflectance};
 use crate::stage::stage;
@@ -29,6 +29,11 @@ use glam::DVec3;
 use look::{Look, Region, look};
 use std::f64::consts::PI;
 use visibility::Visibility;
+
+/// Photons of a light in a pass below which its caustics may be missed.
+const FEW_PHOTONS: f64 = 64.0;
+/// Least share of the light that the camera sees of a light that counts.
+const LEAST_SHARE: f64 = 0.002;
 
 /// A flattened scene and what undoes its normalisation.
 #[derive(Clone, Debug)]
@@ -48,6 +53,11 @@ pub struct Packed {
     normalization: Normalization,
     /// Power of each light; of light from infinity per area.
     power: Vec<f64>,
+    /// Where each light comes from.
+    sources: Vec<LightSource>,
+    /// Each light's share of the light that the camera sees, as far as pilots found; empty where they did
+    /// not look.
+    brought: Vec<f64>,
     /// Entries of the distributions before those that were learned.
     flattened: usize,
 }
@@ -107,7 +117,7 @@ fn flatten(scene: &scene::Scene, n: Normalization, width: u32, height: u32) -> R
     out.world.unit = n.unit as Real;
     out.world.planar_origin = Vec2::new(n.center.x as Real, n.center.z as Real);
     out.world.unbounded_count = out.unbounded.len() as u32;
-    let (radiance_unit, power) = light::pack_lights(scene, &n, &emitters, &mut out);
+    let (radiance_unit, power, sources) = light::pack_lights(scene, &n, &emitters, &mut out);
     out.world.nested = medium::glass_meets_glass(scene) as u32;
     stand_camera(&mut out);
     for i in 0..out.lights.len() {
@@ -126,6 +136,8 @@ fn flatten(scene: &scene::Scene, n: Normalization, width: u32, height: u32) -> R
         objects,
         normalization: n,
         power,
+        sources,
+        brought: Vec::new(),
         flattened,
     })
 }
@@ -176,8 +188,21 @@ impl Packed {
         let power: Vec<f64> = lights
             .map(|(light, power)| if light.kind >= LIGHT_SUN { area * power } else { *power })
             .collect();
-        pilots::learn_emission(out, &Visibility::new(look, region), &power);
+        self.brought = pilots::learn_emission(out, &Visibility::new(look, region), &power);
         cells::learn_cells(out, look, &power);
+    }
+
+    /// The lights of which `photons` emitted in a pass are few, though the camera sees their light and there
+    /// is glass, or a mirror or metal, to focus it.
+    pub fn starved(&self, scene: &scene::Scene, photons: u32) -> Vec<Starved> {
+        let focusing = self.scene.materials.iter().any(|m| m.kind != MATERIAL_DIFFUSE);
+        let lights = self.sources.iter().zip(&self.scene.lights).zip(&self.brought);
+        let of = |((origin, light), share): ((&LightSource, &Light), &f64)| {
+            let photons = f64::from(photons) * f64::from(light.selection);
+            let few = focusing && photons < FEW_PHOTONS && *share > LEAST_SHARE;
+            few.then(|| Starved { light: origin.describe(scene), photons, share: *share })
+        };
+        lights.filter_map(of).collect()
     }
 
     /// What was learned.

@@ -48,6 +48,8 @@ const BOUNCES: u32 = 32;
 #[derive(Clone, Debug, Default)]
 struct Tally {
     count: f64,
+    /// Sum of contributions to what the camera sees.
+    sum: f64,
     /// Sum of squared contributions to what the camera sees.
     sum_sq: f64,
     /// Pilots, and sum of squared shares of flux that passed mirrors or glass, by cell of the map.
@@ -55,8 +57,9 @@ struct Tally {
 }
 
 /// Sets the probabilities of the lights of photons and gives lights their maps. `power` is that of each
-/// light.
-pub fn learn_emission(out: &mut Scene, visibility: &Visibility, power: &[f64]) {
+/// light. Returns each light's share of the light that the camera sees, or nothing where one light
+/// brings all.
+pub fn learn_emission(out: &mut Scene, visibility: &Visibility, power: &[f64]) -> Vec<f64> {
     let specular = out.materials.iter().any(|m| is_specular(m.kind));
     for light in &mut out.lights {
         light.guide = 0;
@@ -64,7 +67,7 @@ pub fn learn_emission(out: &mut Scene, visibility: &Visibility, power: &[f64]) {
     out.world.guided = 0;
     choose_by(out, power);
     if out.lights.is_empty() || (out.lights.len() == 1 && !specular) {
-        return;
+        return Vec::new();
     }
     let _stage = stage("pilots");
     let count = (PILOTS / out.lights.len()).clamp(LEAST, MOST);
@@ -79,7 +82,7 @@ pub fn learn_emission(out: &mut Scene, visibility: &Visibility, power: &[f64]) {
         for (index, tally) in tallies.iter_mut().enumerate() {
             let mut found = explore(out, visibility, index, round, count);
             // what the second round's map has found says more of the passes to come
-            (tally.count, tally.sum_sq) = (found.count, found.sum_sq);
+            (tally.count, tally.sum, tally.sum_sq) = (found.count, found.sum, found.sum_sq);
             if !mapped.contains(&index) {
                 continue;
             }
@@ -97,6 +100,8 @@ pub fn learn_emission(out: &mut Scene, visibility: &Visibility, power: &[f64]) {
     }
     out.world.guided = out.lights.iter().any(|light| light.guide != 0) as u32;
     choose_by(out, &shares(&tallies, power));
+    let all: f64 = tallies.iter().map(|tally| tally.sum / tally.count).sum();
+    tallies.iter().map(|tally| if all > 0.0 { tally.sum / tally.count / all } else { 0.0 }).collect()
 }
 
 /// Chooses the lights of photons in proportion to `shares`.
@@ -165,6 +170,7 @@ fn explore(scene: &Scene, visibility: &Visibility, index: usize, round: usize, c
     let mut tally = Tally { cells: vec![[0.0; 2]; GUIDE_CELLS as usize], ..Tally::default() };
     for pilot in pilots {
         tally.count += 1.0;
+        tally.sum += pilot.contribution;
         tally.sum_sq += pilot.contribution * pilot.contribution;
         let (x, y) = (pilot.across.x * GUIDE_SIDE as Real, pilot.across.y * GUIDE_SIDE as Real);
         let side = GUIDE_SIDE as Real;

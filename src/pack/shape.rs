@@ -26,6 +26,8 @@ pub struct Emitter {
     pub radiance: DVec3,
     /// Area, scene units.
     pub area: f64,
+    /// Index of the scene's shape.
+    pub shape: usize,
 }
 
 type Flattened = (Vec<Primitive>, Vec<u32>, Vec<Emitter>);
@@ -38,9 +40,11 @@ pub fn pack_shapes(
     out: &mut Scene,
     objects: &mut Objects,
 ) -> Result<Flattened, PackError> {
-    let mut pack = Pack { n, out, primitives: Vec::new(), references: Vec::new(), emitters: Vec::new() };
+    let mut pack =
+        Pack { n, out, primitives: Vec::new(), references: Vec::new(), emitters: Vec::new(), shape: 0 };
     let mut revolutions = RevolutionTables::default();
     for (i, shape) in scene.shapes.iter().enumerate() {
+        pack.shape = i;
         let material = shape.material as u32;
         let uv = if shape.planar_uv { UV_PLANAR } else { UV_NATURAL };
         let emission = shape.is_emitter().then(|| DVec3::from(shape.emission));
@@ -97,12 +101,14 @@ struct Pack<'a> {
     primitives: Vec<Primitive>,
     references: Vec<u32>,
     emitters: Vec<Emitter>,
+    /// Index of the shape that is packed.
+    shape: usize,
 }
 
 impl Pack<'_> {
     fn light(&mut self, emission: Option<DVec3>, reference: u32, area: f64) -> u32 {
         let Some(radiance) = emission else { return NONE };
-        self.emitters.push(Emitter { reference, radiance, area });
+        self.emitters.push(Emitter { reference, radiance, area, shape: self.shape });
         self.emitters.len() as u32 - 1
     }
 
