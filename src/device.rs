@@ -4,7 +4,6 @@ mod candidates;
 
 use thiserror::Error;
 
-use crate::build::learned::Starved;
 use crate::cpu::CpuEngine;
 use crate::double;
 use crate::engine::{Engine, EngineError, Space};
@@ -114,8 +113,8 @@ pub struct Opened {
     pub radius: Option<Automatic>,
     /// What tells its numbers in those of the world.
     pub space: Space,
-    /// Lights of which a pass has few photons, though they count for the picture.
-    pub starved: Vec<Starved>,
+    /// Light that the picture and its stated error may lack, if any.
+    pub warnings: Vec<String>,
 }
 
 /// No engine.
@@ -239,10 +238,9 @@ fn start(
     check_points(device, scene, settings)?;
     let film = &scene.film;
     let packed = pack(scene, film.width, film.height)?;
-    let photons = if settings.method == Method::Path { u32::MAX } else { settings.photons };
-    let starved = packed.starved(scene, photons);
+    let warnings = packed.warnings(scene, settings);
     let opened = |engine, settings, radius, space, cut| Opened {
-        starved: starved.clone(),
+        warnings: warnings.clone(),
         engine,
         name: device.name.clone(),
         kind: device.kind,

@@ -97,6 +97,10 @@ pub struct Space {
     pub radiance_unit: f64,
     /// Whether photons are gathered.
     pub photons: bool,
+    /// Luminance of the brightest thing that eye paths may meet by mirrors or through glass, world units;
+    /// 0 where there is nothing of the kind.
+    #[serde(default)]
+    pub glint: f64,
 }
 
 impl State {

@@ -79,6 +79,7 @@ impl Plan {
             center: self.center.to_array(),
             unit: self.unit,
             radiance_unit: self.radiance_unit,
+            glint: self.glint,
             photons: self.features.has("photons"),
         }
     }

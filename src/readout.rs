@@ -11,6 +11,8 @@ pub struct Readout {
     pub width: u32,
     /// Scene radiance times this is world radiance.
     pub unit: f64,
+    /// Luminance of the brightest thing that eye paths may meet by mirrors or through glass, world units.
+    pub glint: f64,
 }
 
 impl Readout {
@@ -28,13 +30,15 @@ impl Readout {
             let n = counted(p, passes);
             self.error(p, n, early_parts(n))
         });
-        ErrorMap { width: self.width, pixels: pixels.collect() }
+        let glint = self.glint / f64::from(passes.max(1));
+        ErrorMap { width: self.width, pixels: pixels.collect(), glint }
     }
 
     /// The same where `early` and `earlier` are the means over the first `parts` passes.
     pub fn errors_by_parts(&self, film: &[FilmPixel], passes: u32, parts: &[[u32; 2]]) -> ErrorMap {
         let pixels = film.iter().zip(parts).map(|(p, parts)| self.error(p, counted(p, passes), *parts));
-        ErrorMap { width: self.width, pixels: pixels.collect() }
+        let glint = self.glint / f64::from(passes.max(1));
+        ErrorMap { width: self.width, pixels: pixels.collect(), glint }
     }
 
     fn error(&self, p: &FilmPixel, n: u32, parts: [u32; 2]) -> PixelError {

@@ -7,6 +7,7 @@
 use bytemuck::Zeroable;
 use caustica::cpu::CpuEngine;
 use caustica::engine::Engine;
+use caustica::film::ErrorMap;
 use caustica::film::estimate::{LEAST_PASSES, PixelError, early_passes, partition};
 use caustica::hold::{BlockTruth, NoisyTruth, Promise};
 use caustica::kernels::gather::gather;
@@ -233,9 +234,22 @@ fn promises_are_kept() {
         let [right, wrong] = promised(name, settings, spoil);
         let ratio = right.iter().map(|p| p.said.stated / p.truth).sum::<f64>() / 20.0;
         println!("{name}: {} of 20 kept, stated over true {ratio:.2}, {} spoilt", kept(&right), kept(&wrong));
-        assert!(kept(&right) >= 18 && ratio < 1.6, "{name}: {ratio} {right:?}");
+        assert!(kept(&right) >= 18 && ratio < 1.8, "{name}: {ratio} {right:?}");
         assert!(kept(&wrong) < 10, "{name}: {} kept with a planted error", kept(&wrong));
     }
+}
+
+/// Theory: of `drop` at 40 x 30 pixels a few glint at the lamp in one of hundreds of passes. In one render
+/// of five none has done so after 64 passes, and no statistics of the picture speaks for what it lacks:
+/// that a lamp is seen through glass does. Nine of ten promises are kept. Without the lamp's glint they
+/// are not, and neither are they all by stating far too much.
+#[test]
+fn glints_that_nobody_has_seen() {
+    let settings = RenderSettings { passes: 64, photons: 8192, ..RenderSettings::default() };
+    let [right, _] = promised("drop", &settings, |_| ());
+    let ratio = right.iter().map(|p| p.said.stated / p.truth).sum::<f64>() / 20.0;
+    println!("{} of 20 kept, stated over true {ratio:.2}", kept(&right));
+    assert!(kept(&right) >= 18 && ratio < 2.5, "{ratio} {right:?}");
 }
 
 /// Theory: thirty of 4000 pixels have a glint in one of 160 passes, of mean 0.1 beside 0.1 that is always there. After 16
@@ -260,7 +274,8 @@ fn glints_seen_once_speak_for_those_unseen() {
                 }))
             })
             .collect();
-        let mut errors = plan.errors(&films, PASSES);
+        // the film's statistics alone
+        let mut errors = ErrorMap { glint: 0.0, ..plan.errors(&films, PASSES) };
         let mut off: Vec<f64> = (errors.pixels.iter().zip(&truth))
             .map(|(p, truth)| (p.luminance - truth).powi(2) / (truth * truth + 0.01))
             .collect();

@@ -3,7 +3,6 @@
 
 use super::normalize::{Normalization, extent};
 use crate::scene::{Light, Scene, ShapeKind};
-use std::fmt;
 
 /// Where a light comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -14,17 +13,6 @@ pub enum LightSource {
     Light(usize),
     /// The scene's environment.
     Environment,
-}
-
-/// A light of which a pass has few photons, though it counts for the picture.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Starved {
-    /// What it is and where.
-    pub light: String,
-    /// Photons of a pass.
-    pub photons: f64,
-    /// Its share of the light that the camera sees.
-    pub share: f64,
 }
 
 impl LightSource {
@@ -57,19 +45,6 @@ impl LightSource {
                 format!("the emitting {kind}{place}")
             }
         }
-    }
-}
-
-impl fmt::Display for Starved {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let Self { light, photons, share } = self;
-        write!(
-            f,
-            "{light} sends only {photons:.0} photons a pass but brings {:.1} % of the light: what it casts \
-             through glass or by mirrors may be missing from the picture and from its stated error; \
-             raise --photons",
-            100.0 * share
-        )
     }
 }
 

@@ -18,7 +18,7 @@ use crate::double::kernels::records::FilmPixel;
 use crate::double::math::luminance;
 use crate::double::readout::{Readout, counted, early_parts};
 use crate::double::{self, real::Vec3};
-use crate::engine::State;
+use crate::engine::{Space, State};
 use crate::kernels;
 use crate::settings::{Method, RadiusRule};
 
@@ -201,7 +201,8 @@ fn joined_cuts((a, na, mean_a): (&Part, u32, f64), (b, nb, mean_b): (&Part, u32,
 
 /// What reads the films of an origin.
 pub(super) fn readout(origin: &Origin) -> Readout {
-    Readout { width: origin.window_size()[0], unit: origin.space.radiance_unit }
+    let Space { radiance_unit, glint, .. } = origin.space;
+    Readout { width: origin.window_size()[0], unit: radiance_unit, glint }
 }
 
 /// A film in f64, whichever it was saved in.

@@ -302,8 +302,8 @@ pub fn begin(voice: &Voice, scene: &Scene, opened: &Opened) -> Result<Reporter, 
     if let Some(cut) = &opened.cut {
         reporter.note(cut);
     }
-    for starved in &opened.starved {
-        message(&format!("warning: {starved}"));
+    for warning in &opened.warnings {
+        message(format_args!("warning: {warning}"));
     }
     if voice.json {
         result(json!({

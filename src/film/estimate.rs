@@ -88,6 +88,8 @@ pub struct ErrorMap {
     pub width: u32,
     /// Row by row, row 0 on top.
     pub pixels: Vec<PixelError>,
+    /// What one glint, met by one eye path of one pass, adds to a pixel's luminance; 0 where none can be.
+    pub glint: f64,
 }
 
 /// Relative error of a whole picture: root of the relMSE of docs/measures.md.
@@ -137,7 +139,11 @@ impl ErrorMap {
         };
         let (noise, bias) = (sum(|t| t.noise) / count, sum(|t| t.bias) / count);
         let blocks = self.block_sums(&terms, &kept).iter().map(|sum| sum * sum).sum::<f64>();
-        let (mut unseen, mut unseen_sq) = (0.0, 0.0);
+        // one glint more than were seen (the rule of succession): where no pixel has met one yet, nothing
+        // else speaks for those that some pixel lacks
+        let mean = self.pixels.iter().map(|p| p.luminance).sum::<f64>() / self.pixels.len().max(1) as f64;
+        let mut unseen = lacking(self.glint, mean);
+        let mut unseen_sq = unseen * unseen;
         for (term, _) in terms.iter().zip(&kept).filter(|(_, kept)| !**kept) {
             unseen += term.unseen;
             unseen_sq += term.unseen * term.unseen;
@@ -213,8 +219,12 @@ fn unseen(p: &PixelError) -> f64 {
     let single = 0.5 * (3.0 - p.luminance * p.luminance / p.variance);
     let event = p.variance.sqrt();
     let seen = (p.luminance - event).max(0.0);
-    let lacking = event / (2.0 * (seen + seen.hypot(DARK.sqrt())));
-    if single > 0.0 { single.min(1.0) * lacking.min(UNSEEN_MOST) } else { 0.0 }
+    if single > 0.0 { single.min(1.0) * lacking(event, seen) } else { 0.0 }
+}
+
+/// Squared relative error of the pixels that lack an event beside light `seen`.
+fn lacking(event: f64, seen: f64) -> f64 {
+    (event / (2.0 * (seen + seen.hypot(DARK.sqrt())))).min(UNSEEN_MOST)
 }
 
 /// All pixels but the 0.1 %, rounded up, of the largest variance; of a single pixel that one. The rank does not look at

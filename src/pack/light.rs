@@ -15,20 +15,33 @@ use std::f64::consts::PI;
 /// Steps of the midpoint rule that measures a patch's area.
 const AREA_STEPS: u32 = 32;
 
-/// Fills `lights` and `distributions`; returns the world radiance of one unit of scene radiance, and the
-/// power and origin of each light; the power of light from infinity is per area that faces it.
+/// What is known of the lights beside their tables.
+pub struct PackedLights {
+    /// World radiance of one unit of scene radiance.
+    pub radiance_unit: f64,
+    /// Luminance of the brightest extended light, world units.
+    pub brightest: f64,
+    /// Power of each light; of light from infinity per area that faces it.
+    pub power: Vec<f64>,
+    /// Where each light comes from.
+    pub sources: Vec<LightSource>,
+}
+
+/// Fills `lights` and `distributions`.
 pub fn pack_lights(
     scene: &scene::Scene,
     n: &Normalization,
     emitters: &[Emitter],
     out: &mut Scene,
-) -> (f64, Vec<f64>, Vec<LightSource>) {
+) -> PackedLights {
     // strengths in world radiance first: areas and distances are in scene units already, so that irradiance
     // is radiance times steradian in either
     let mut lights: Vec<(Light, DVec3, f64)> = Vec::new();
     let mut sources: Vec<LightSource> = emitters.iter().map(|e| LightSource::Shape(e.shape)).collect();
     sources.extend((0..scene.lights.len()).map(LightSource::Light));
     let mut distributions = Vec::new();
+    let luminance = |color: DVec3| color.dot(DVec3::new(0.2126, 0.7152, 0.0722));
+    let mut luminance_max = emitters.iter().map(|e| luminance(e.radiance)).fold(0.0, f64::max);
     for e in emitters {
         let mut light = Light { kind: LIGHT_AREA, reference: e.reference, ..Light::zeroed() };
         let mut area = e.area;
@@ -84,7 +97,8 @@ pub fn pack_lights(
                 cos_inner: sin as Real,
                 ..Light::zeroed()
             };
-            if let Some(mean) = image_distribution(out, &mut light, &mut distributions) {
+            if let Some([mean, most]) = image_distribution(out, &mut light, &mut distributions) {
+                luminance_max = luminance_max.max(luminance(DVec3::from(*scale)) * most);
                 out.world.environment = lights.len() as u32;
                 lights.push((light, DVec3::from(*scale), 4.0 * PI * mean));
             }
@@ -110,7 +124,7 @@ pub fn pack_lights(
     }
     out.distributions.extend(distributions);
     out.world.light_count = count as u32;
-    (radiance_unit, power, sources)
+    PackedLights { radiance_unit, brightest: luminance_max, power, sources }
 }
 
 /// A point from which a light shines; nothing for light from infinity.
@@ -156,10 +170,10 @@ fn revolution_distribution(out: &Scene, light: &mut Light, distributions: &mut V
 }
 
 /// The cumulative shares of rows and of columns within each row, by luminance times solid angle; returns the
-/// mean luminance, or nothing for a black picture. A texel counts with the root mean square of the filtered picture
+/// mean and the greatest luminance, or nothing for a black picture. A texel counts with the root mean square of the filtered picture
 /// inside it, the share with the least variance; its neighbours shine into it, so that it is dark only where they
 /// are, too.
-fn image_distribution(out: &Scene, light: &mut Light, distributions: &mut Vec<Real>) -> Option<f64> {
+fn image_distribution(out: &Scene, light: &mut Light, distributions: &mut Vec<Real>) -> Option<[f64; 2]> {
     let texture = &out.textures[light.reference as usize];
     let (w, h) = (texture.width, texture.height);
     light.first = distributions.len() as u32;
@@ -177,11 +191,12 @@ fn image_distribution(out: &Scene, light: &mut Light, distributions: &mut Vec<Re
     };
     let mut rows = Vec::new();
     let mut columns = Vec::new();
-    let mut mean = 0.0;
+    let (mut mean, mut most) = (0.0, 0.0);
     for j in 0..h {
         let theta = |j: u32| PI * j as f64 / h as f64;
         let solid = theta(j).cos() - theta(j + 1).cos();
         let (means, row): (Vec<f64>, Vec<f64>) = (0..w).map(|i| texel(i, j)).unzip();
+        most = row.iter().copied().fold(most, f64::max);
         rows.push(row.iter().sum::<f64>() * solid);
         mean += means.iter().sum::<f64>() * solid / (2.0 * w as f64);
         push_cumulative(&row, &mut columns);
@@ -191,7 +206,7 @@ fn image_distribution(out: &Scene, light: &mut Light, distributions: &mut Vec<Re
     }
     push_cumulative(&rows, distributions);
     distributions.extend(columns);
-    Some(mean)
+    Some([mean, most])
 }
 
 fn push_cumulative(values: &[f64], target: &mut Vec<Real>) {

@@ -20,9 +20,10 @@ use super::real::{Real, ToDouble, ToReal, Vec2, Vec3};
 use super::shapes::fours::{FourRectangles, FourSpheres, LANES};
 use super::tables::*;
 use super::{build, kernels, lights, materials, math, real, shapes, tables};
-use crate::build::learned::{Learned, LightSource, Starved};
+use crate::build::learned::{Learned, LightSource};
 use crate::build::normalize::{Normalization, reach};
 use crate::scene::{self, MaterialKind, Reflectance};
+use crate::settings::{Method, RenderSettings};
 use crate::stage::stage;
 use bytemuck::Zeroable;
 use glam::DVec3;
@@ -46,6 +47,8 @@ pub struct Packed {
     pub unit: f64,
     /// Scene radiance times this is world radiance: brings the brightest light near one.
     pub radiance_unit: f64,
+    /// Luminance of the brightest extended light, world units.
+    pub brightest: f64,
     /// Facts about the kd-tree.
     pub tree: build::kdtree::Stats,
     /// Which shape each reference belongs to; empty unless the film asks for it.
@@ -117,7 +120,8 @@ fn flatten(scene: &scene::Scene, n: Normalization, width: u32, height: u32) -> R
     out.world.unit = n.unit as Real;
     out.world.planar_origin = Vec2::new(n.center.x as Real, n.center.z as Real);
     out.world.unbounded_count = out.unbounded.len() as u32;
-    let (radiance_unit, power, sources) = light::pack_lights(scene, &n, &emitters, &mut out);
+    let light::PackedLights { radiance_unit, brightest, power, sources } =
+        light::pack_lights(scene, &n, &emitters, &mut out);
     out.world.nested = medium::glass_meets_glass(scene) as u32;
     stand_camera(&mut out);
     for i in 0..out.lights.len() {
@@ -132,6 +136,7 @@ fn flatten(scene: &scene::Scene, n: Normalization, width: u32, height: u32) -> R
         center: n.center,
         unit: n.unit,
         radiance_unit,
+        brightest,
         tree: stats,
         objects,
         normalization: n,
@@ -192,17 +197,34 @@ impl Packed {
         cells::learn_cells(out, look, &power);
     }
 
-    /// The lights of which `photons` emitted in a pass are few, though the camera sees their light and there
-    /// is glass, or a mirror or metal, to focus it.
-    pub fn starved(&self, scene: &scene::Scene, photons: u32) -> Vec<Starved> {
-        let focusing = self.scene.materials.iter().any(|m| m.kind != MATERIAL_DIFFUSE);
-        let lights = self.sources.iter().zip(&self.scene.lights).zip(&self.brought);
-        let of = |((origin, light), share): ((&LightSource, &Light), &f64)| {
-            let photons = f64::from(photons) * f64::from(light.selection);
-            let few = focusing && photons < FEW_PHOTONS && *share > LEAST_SHARE;
-            few.then(|| Starved { light: origin.describe(scene), photons, share: *share })
+    /// Light that a picture with these settings may lack, and its stated error with it: of each such light
+    /// what a reader of the scene file calls it, and what to do.
+    pub fn warnings(&self, scene: &scene::Scene, settings: &RenderSettings) -> Vec<String> {
+        let has = |kinds: &[u32]| self.scene.materials.iter().any(|m| kinds.contains(&m.kind));
+        let path = settings.method == Method::Path;
+        let specular = [MATERIAL_MIRROR, MATERIAL_GLASS];
+        let focusing = has(&specular) || (!path && has(&[MATERIAL_METAL]));
+        let warning = |i: usize| {
+            let (light, name) = (&self.scene.lights[i], self.sources[i].describe(scene));
+            let photons = f64::from(settings.photons) * f64::from(light.selection);
+            let brought = self.brought.get(i).copied().unwrap_or(0.0);
+            if path && matches!(light.kind, LIGHT_POINT | LIGHT_SPOT | LIGHT_SUN) {
+                return Some(format!(
+                    "path tracing cannot meet {name}, which has no size: the light that it casts by \
+                     mirrors or through glass is missing from the picture and from its stated error; \
+                     use --method sppm"
+                ));
+            }
+            (!path && photons < FEW_PHOTONS && brought > LEAST_SHARE).then(|| {
+                format!(
+                    "{name} sends {photons:.0} photons a pass but brings {:.1} % of the light: what it \
+                     casts by mirrors or through glass may be missing from the picture and from its \
+                     stated error; raise --photons",
+                    100.0 * brought
+                )
+            })
         };
-        lights.filter_map(of).collect()
+        if focusing { (0..self.sources.len()).filter_map(warning).collect() } else { Vec::new() }
     }
 
     /// What was learned.

@@ -79,6 +79,8 @@ pub struct Plan {
     pub unit: f64,
     /// Scene radiance times this is world radiance.
     pub radiance_unit: f64,
+    /// Luminance of the brightest thing that eye paths may meet by mirrors or through glass, world units.
+    pub glint: f64,
     /// Number of the render's first pass; all others count from there.
     pub first_pass: u32,
     /// Passes that the film held when the engine took over.
@@ -94,6 +96,7 @@ impl Plan {
         let chosen = probe.automatic.map_or(settings.radius, |automatic| Radius::Pixels(automatic.pixels));
         let wider = settings.indirect_radius.or(probe.automatic.map(|a| a.indirect)).unwrap_or(1.0);
         let settings = &RenderSettings { radius: chosen, indirect_radius: Some(wider), ..settings.clone() };
+        let specular = features.has("specular");
         let widening = if features.has("first") { 1.0 } else { wider };
         let camera = &packed.scene.camera;
         let eye_samples = if settings.method == Method::Ppm { settings.eye_samples } else { 1 };
@@ -117,6 +120,7 @@ impl Plan {
             objects: packed.objects.clone(),
             unit: packed.unit,
             radiance_unit: packed.radiance_unit,
+            glint: if specular { packed.brightest } else { 0.0 },
             first_pass: 0,
             taken_over: 0,
         }
@@ -186,7 +190,7 @@ impl Plan {
 
     /// What the film says.
     pub fn readout(&self) -> Readout {
-        Readout { width: self.width, unit: self.radiance_unit }
+        Readout { width: self.width, unit: self.radiance_unit, glint: self.glint }
     }
 
     /// Why the radius is what it is, where the settings left it open and photons are gathered at all.

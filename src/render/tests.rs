@@ -61,7 +61,7 @@ impl Engine for Counter {
         let deviations = [1.0 / f64::from(self.passes); 2];
         let pixel = PixelError { luminance: 0.99_f64.sqrt(), deviations, ..PixelError::default() };
         self.errors_taken += 1;
-        Ok(ErrorMap { width: 2, pixels: vec![pixel; 2] })
+        Ok(ErrorMap { width: 2, pixels: vec![pixel; 2], glint: 0.0 })
     }
 
     fn rejections(&mut self) -> Result<Rejections, EngineError> {

@@ -87,7 +87,7 @@ mod tests {
         }
 
         fn errors(&mut self) -> Result<ErrorMap, EngineError> {
-            Ok(ErrorMap { width: 1, pixels: Vec::new() })
+            Ok(ErrorMap { width: 1, ..ErrorMap::default() })
         }
 
         fn rejections(&mut self) -> Result<Rejections, EngineError> {

@@ -9,13 +9,13 @@ use std::f64::consts::PI;
 use caustica::lights::light::{
     eval_environment, pdf_environment, pdf_light, sample_environment, sample_light,
 };
-use caustica::lights::select::shares_at;
+use caustica::lights::select::{choose_light, share_of, shares_at};
 use caustica::lights::shape::sample_shape;
 use caustica::materials::metal::{eval_metal, pdf_metal, sample_metal, weight_metal};
 use caustica::math::mirrored;
 use caustica::math::rng::{Rng, rng_new, rng_next};
 use caustica::math::sampling::*;
-use caustica::pack::pack;
+use caustica::pack::{Packed, pack};
 use caustica::shapes::intersect::intersect_scene;
 use caustica::shapes::ray::{NONE, Ray};
 use caustica::shapes::surface::surface_at;
@@ -164,10 +164,15 @@ fn metal() {
     }
 }
 
-fn packed(light: &str) -> caustica::tables::Scene {
+fn packed(light: &str) -> Packed {
     let head = "version = 1\n[camera]\nposition = [0, -2, 0]\ntarget = [0, 0, 0]\nup = [1, 0, 0]\nfov = 40.0\n\
                 [materials.m]\ntype = \"diffuse\"\nreflectance = 0.0\n";
-    pack(&parse(&format!("{head}{light}")), 8, 8).unwrap().scene
+    pack(&parse(&format!("{head}{light}")), 8, 8).unwrap()
+}
+
+/// The scene-space point of a world point.
+fn placed(packed: &Packed, world: DVec3) -> Vec3 {
+    ((world - packed.center) / packed.unit).as_vec3()
 }
 
 /// Theory: directions to a light follow `pdf_light` over the sphere of directions: what a ray in direction w meets tells
@@ -185,8 +190,9 @@ fn lights() {
         "type = \"revolution\"\nsegments = [[[0, 0], [0.9, 0], [0.9, 0.5]], [[0.9, 0.5], [0.9, 1.2], [0, 1.2]]]\ntransform = { translate = [0, 0.5, 0], rotate = { axis = [1, 0, 1], degrees = 40 } }".into(),
     ];
     for shape in shapes {
-        let scene = packed(&format!("[[shapes]]\n{shape}\nmaterial = \"m\"\nemission = 1.0\n"));
-        let from = Vec3::new(0.03, -0.1, 0.04);
+        let packed = packed(&format!("[[shapes]]\n{shape}\nmaterial = \"m\"\nemission = 1.0\n"));
+        let from = placed(&packed, DVec3::new(0.06, -0.3, 0.08));
+        let scene = packed.scene;
         // z is bin()'s axis: put the upward axis there
         let turn = |w: Vec3| Vec3::new(w.z, w.x, w.y);
         let back = |w: Vec3| Vec3::new(w.y, w.z, w.x);
@@ -234,7 +240,7 @@ fn environment() {
     let at = |x: usize, y: usize| (texels[y * 32 + x], texels[y * 32 + x], texels[y * 32 + x]);
     exr::prelude::write_rgb_file(folder().join("physics-density.exr"), 32, 16, at).unwrap();
     for light in ["radiance = 1.0", "file = \"physics-density.exr\"\nrotate = 50.0"] {
-        let scene = packed(&format!("[environment]\n{light}\n"));
+        let scene = packed(&format!("[environment]\n{light}\n")).scene;
         let light = &scene.lights[0];
         // the picture's rows are bin()'s rings when y is its axis
         let turn = |w: Vec3| Vec3::new(w.z, w.x, w.y);
@@ -245,5 +251,44 @@ fn environment() {
             Some(turn(w))
         };
         check("environment", draw, |w| pdf_environment(&scene, light, back(w)));
+    }
+}
+
+/// Theory: a light is drawn with the probability that is stated for it, wherever the point lies; all
+/// probabilities are above zero and sum to one. Ten lamps of equal power in a row over a floor: below a
+/// lamp it, or it and the neighbour in the same cell, bring more light than all others together.
+#[test]
+fn choice_of_lights() {
+    let lamp = |i: i32| {
+        format!(
+            "[[shapes]]\ntype = \"sphere\"\ncenter = [{}, 0.5, 0]\nradius = 0.05\nmaterial = \"m\"\n\
+             emission = 10.0\n",
+            4 * i - 18
+        )
+    };
+    let text = "version = 1\n[camera]\nposition = [0, 30, 30]\ntarget = [0, 0, 0]\nfov = 60.0\n\
+                [materials.m]\ntype = \"diffuse\"\nreflectance = 0.5\n\
+                [[shapes]]\ntype = \"rectangle\"\norigin = [-20, 0, 3]\nu = [40, 0, 0]\nv = [0, 0, -6]\n\
+                material = \"m\"\n";
+    let text = format!("{text}{}", (0..10).map(lamp).collect::<String>());
+    let packed = pack(&parse(&text), 64, 64).unwrap();
+    let scene = &packed.scene;
+    assert!(scene.cells.len() > 1);
+    for index in 0..10u32 {
+        let below = DVec3::new(f64::from(4 * index as i32 - 18), 0.0, 0.1);
+        let shares = shares_at(scene, placed(&packed, below));
+        let stated: Vec<f64> = (0..10).map(|i| f64::from(share_of(scene, shares, i))).collect();
+        assert!((stated.iter().sum::<f64>() - 1.0).abs() < 1e-6 && stated.iter().all(|p| *p > 0.0));
+        assert!(stated[index as usize] > 0.3, "lamp {index}: {stated:?}");
+        let mut counts = [0u32; 10];
+        let mut r = rng();
+        for _ in 0..DRAWS {
+            counts[choose_light(scene, shares, rng_next(&mut r).x) as usize] += 1;
+        }
+        let sigma = excess(&counts, &stated, 0.0);
+        assert!(sigma < 5.0, "{sigma}: {counts:?} {stated:?}");
+        let mut planted = stated.clone();
+        planted.swap(index as usize, (index as usize + 1) % 10);
+        assert!(excess(&counts, &planted, 0.0) > 100.0);
     }
 }
