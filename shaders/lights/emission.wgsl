@@ -98,7 +98,8 @@ fn emit_from_infinity(light: Light, u: vec4f, v: vec4f) -> Emission {
         pdf = GUIDED * by_map + (1.0 - GUIDED) * pdf;
     }
     //#end
-    ray.origin = scene.world.near_center + from_frame(ray.direction, vec3f(d.x, d.y, 0.0));
+    let f = basis(ray.direction);
+    ray.origin = scene.world.near_center + f.t * d.x + f.b * d.y;
     ray.t_min = -4.0 * disc_radius(scene.world.disc_levels - 1u);
     let flux = radiance * (1.0 / (pdf * light.selection));
     let usual = pdf_discs(0.25 * near * near);

@@ -4,7 +4,7 @@ use super::guide::{GUIDED, guided, pdf_guide};
 use super::light::{eval_environment, find_interval, pdf_environment, sample_environment, spot_falloff};
 use super::math::rng::{Rng, rng_next};
 use super::math::sampling::{sample_cone, sample_cosine, sample_disc, sample_sphere};
-use super::math::{EPS, FAR, PI, TAU, from_frame, unit};
+use super::math::{EPS, FAR, PI, TAU, basis, from_frame, unit};
 use super::real::{Real, Vec2, Vec3, Vec4};
 use super::select::{choose_light, share_of};
 use super::shape::{sample_shape, sample_sphere_facing};
@@ -104,7 +104,8 @@ fn emit_from_infinity(scene: &Scene, light: &Light, u: Vec4, v: Vec4) -> Emissio
         let by_map = pdf_guide(scene, light, (d * (1.0 / near) + Vec2::ONE) * 0.5) / (4.0 * near * near);
         pdf = GUIDED * by_map + (1.0 - GUIDED) * pdf;
     }
-    ray.origin = scene.world.near_center + from_frame(ray.direction, Vec3::new(d.x, d.y, 0.0));
+    let (tangent, bitangent) = basis(ray.direction);
+    ray.origin = scene.world.near_center + tangent * d.x + bitangent * d.y;
     ray.t_min = -4.0 * disc_radius(scene, scene.world.disc_levels - 1);
     let flux = radiance * (1.0 / (pdf * light.selection));
     let usual = pdf_discs(scene, 0.25 * near * near);
