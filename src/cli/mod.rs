@@ -36,6 +36,7 @@ mod study;
 mod succession;
 mod tessellate;
 mod tev;
+mod threads;
 
 use std::process::ExitCode;
 
@@ -103,6 +104,9 @@ pub fn run() -> ExitCode {
     colors::begin();
     let arguments = Arguments::parse();
     log::begin(arguments.verbose);
+    if let Err(failure) = threads::begin() {
+        return failure.tell();
+    }
     let done = match arguments.command {
         Command::Render(arguments) => render::run(*arguments),
         #[cfg(feature = "preview")]

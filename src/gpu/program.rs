@@ -140,17 +140,23 @@ pub fn make_programs(
     let threads = std::thread::available_parallelism().map_or(1, |n| n.get()).min(kernels.len());
     let next = AtomicUsize::new(0);
     let (sender, receiver) = mpsc::channel();
+    let compile = |sender: mpsc::Sender<_>| {
+        while let Some(kernel) = kernels.get(next.fetch_add(1, Ordering::Relaxed)) {
+            // nobody listens any more after a failure
+            if sender.send(make(kernel)).is_err() {
+                break;
+            }
+        }
+    };
+    let compile = &compile;
     std::thread::scope(|scope| {
-        for _ in 0..threads {
-            let (sender, next, make) = (sender.clone(), &next, &make);
-            scope.spawn(move || {
-                while let Some(kernel) = kernels.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    // nobody listens any more after a failure
-                    if sender.send(make(kernel)).is_err() {
-                        break;
-                    }
-                }
-            });
+        let started = (0..threads).filter(|_| {
+            let sender = sender.clone();
+            std::thread::Builder::new().spawn_scoped(scope, move || compile(sender)).is_ok()
+        });
+        // a system that gives no thread leaves this one
+        if started.count() == 0 {
+            compile(sender.clone());
         }
         drop(sender);
         receiver.into_iter().try_for_each(|made| made.and_then(|(made, time)| take(made, time)))

@@ -1,0 +1,75 @@
+//! The thread pool, built before anything needs it.
+//!
+//! A system may refuse threads (`ulimit -u`, a container's `pids.max`). Then there are fewer, and where
+//! it gives none, all work is done on the main thread.
+
+use std::num::NonZero;
+use std::sync::{Arc, Mutex, mpsc};
+use std::thread;
+
+use miette::miette;
+
+use super::Failure;
+use super::output::message;
+
+/// Most threads for each core that the process may use.
+const MOST_PER_CORE: usize = 4;
+/// Threads that the program needs beside the pool: signals, and those of a driver.
+const OTHERS: usize = 2;
+
+/// Builds the pool: as many threads as the process may use cores, which on Linux follows the affinity and
+/// the cgroup's CPU quota, or as `RAYON_NUM_THREADS` says.
+///
+/// # Errors
+/// Where the system allows no pool at all.
+pub fn begin() -> Result<(), Failure> {
+    let cores = thread::available_parallelism().map_or(1, NonZero::get);
+    let wanted = match std::env::var("RAYON_NUM_THREADS").ok().and_then(|text| text.parse().ok()) {
+        None | Some(0) => cores,
+        Some(asked) if asked > MOST_PER_CORE * cores => {
+            let most = MOST_PER_CORE * cores;
+            message(format_args!(
+                "warning: RAYON_NUM_THREADS={asked} is more than {MOST_PER_CORE} threads for each of the {cores} \
+                 cores that this process may use; {most} are started"
+            ));
+            most
+        }
+        Some(asked) => asked,
+    };
+    let given = available(wanted + OTHERS).saturating_sub(OTHERS).max(1);
+    if given < wanted {
+        message(format_args!(
+            "warning: the system gives this process {given} of {wanted} threads (see ulimit -u, or the \
+             container's limit of processes)"
+        ));
+    }
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(given);
+    // one thread is the one that there is
+    let pool = if given == 1 { pool.use_current_thread() } else { pool };
+    pool.build_global().map_err(|error| {
+        Failure::failed(miette!(
+            help = "raise the limit of processes (ulimit -u), or set RAYON_NUM_THREADS=1",
+            "the system gives this process no threads: {error}"
+        ))
+    })
+}
+
+/// How many of `wanted` threads the system gives at a time.
+fn available(wanted: usize) -> usize {
+    let (release, held) = mpsc::channel::<()>();
+    let held = Arc::new(Mutex::new(held));
+    let waiting: Vec<_> = (0..wanted)
+        .map_while(|_| {
+            let held = held.clone();
+            // returns when the sender is gone
+            thread::Builder::new().spawn(move || drop(held.lock().map(|held| held.recv()))).ok()
+        })
+        .collect();
+    let given = waiting.len();
+    drop(release);
+    for thread in waiting {
+        // such a thread cannot panic
+        let _ = thread.join();
+    }
+    given
+}
