@@ -9,7 +9,7 @@ use crate::double;
 use crate::engine::{Engine, EngineError, Space};
 use crate::gpu::{self, AdapterChoice, AdapterKind, AdapterSummary, GpuEngine};
 use crate::kernels::records::VisiblePoint;
-use crate::memory::Memory;
+use crate::memory::{self, Memory, can_be_had, total};
 use crate::pack::{Packed, pack};
 use crate::plan::{self, Place, Plan};
 use crate::radius::Automatic;
@@ -272,11 +272,25 @@ fn start(
     )?;
     let cut = cut(plan.tiled, plan.chunks(), plan.settings.batch, settings.batch);
     let (settings, automatic, space) = (plan.settings.clone(), plan.told_radius(), plan.space());
+    hold(&plan, &packed.scene, place(device.kind, memory))?;
     let engine: Box<dyn Engine> = match device.kind {
         DeviceKind::Cpu => Box::new(CpuEngine::new(packed, plan)),
         _ => Box::new(on_gpu(&AdapterChoice::Named(device.name.clone()), &packed, plan)?),
     };
     Ok(opened(engine, settings, automatic, space, cut))
+}
+
+/// Fails where the processor's engine would find no memory for its buffers in the middle of a render.
+fn hold(plan: &Plan, scene: &crate::tables::Scene, place: Place) -> Result<(), EngineError> {
+    let parts = plan.memory(plan::scene_bytes(scene), place);
+    match place {
+        Place::Program { .. } if !can_be_had(total(&parts)) => {
+            let largest = parts.iter().max_by_key(|part| part.bytes).map_or("nothing", |part| part.what);
+            let needed = memory::words(total(&parts));
+            Err(EngineError::OutOfMemory(format!("{needed} for the render, most of it for {largest}")))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Where a device of this kind has its buffers.

@@ -7,6 +7,7 @@ use std::num::NonZero;
 use std::sync::{Arc, Mutex, mpsc};
 use std::thread;
 
+use caustica::memory::address_space;
 use miette::miette;
 
 use super::Failure;
@@ -14,6 +15,8 @@ use super::output::message;
 
 /// Most threads for each core that the process may use.
 const MOST_PER_CORE: usize = 4;
+/// Address space for each thread: its stack, and what the allocator reserves for it.
+const SPACE: u64 = 160 << 20;
 /// Threads that the program needs beside the pool: signals, and those of a driver.
 const OTHERS: usize = 2;
 
@@ -36,7 +39,9 @@ pub fn begin() -> Result<(), Failure> {
         }
         Some(asked) => asked,
     };
-    let given = available(wanted + OTHERS).saturating_sub(OTHERS).max(1);
+    let roomy = address_space().map_or(wanted, |bytes| (bytes / SPACE) as usize);
+    let wanted = wanted.min(roomy).max(1);
+    let given = if wanted > 1 { available(wanted + OTHERS).saturating_sub(OTHERS).max(1) } else { 1 };
     if given < wanted {
         message(format_args!(
             "warning: the system gives this process {given} of {wanted} threads (see ulimit -u, or the \

@@ -31,7 +31,7 @@ impl Gpu {
         }
         let total = sizes.iter().map(|(_, bytes)| bytes).sum();
         match available() {
-            Some(limit) if self.summary.kind == AdapterKind::Software && total > limit => {
+            Some((limit, _)) if self.summary.kind == AdapterKind::Software && total > limit => {
                 Err(too_large("the render", total, limit))
             }
             _ => Ok(()),

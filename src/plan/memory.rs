@@ -160,6 +160,7 @@ pub fn scene_tables(scene: &Scene) -> Vec<(&'static str, u64)> {
         ("textures", bytes(&scene.textures)),
         ("lights", bytes(&scene.lights)),
         ("distributions", bytes(&scene.distributions)),
+        ("cells", bytes(&scene.cells)),
         ("nodes", bytes(&scene.nodes)),
         ("refs", bytes(&scene.refs)),
         ("triangles", bytes(&scene.triangles)),

@@ -1,15 +1,19 @@
 //! Bytes that a render takes, counted before they are taken, and how many there may be.
 
+mod system;
+
+pub use system::address_space;
+
 /// How much memory a render may take.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Memory {
-    /// At most so many bytes, on the device and beside it together. None: on the processor what the system has left, else what the
-    /// device gives.
+    /// At most so many bytes, on the device and beside it together. None: on the processor what the system and the limits of
+    /// the process leave, else what the device gives.
     pub budget: Option<u64>,
     /// Whether the film is copied on the way, for checkpoints; that of a device that may be lost is anyway.
     pub saves: bool,
-    /// Photons are not traced in smaller batches than the settings say, since their sums would be rounded otherwise. Without a
-    /// budget they never are.
+    /// Photons are not traced in smaller batches than the settings say, since their sums would be rounded
+    /// otherwise. Without a budget or a limit of the process they never are.
     pub same_batches: bool,
 }
 
@@ -18,14 +22,15 @@ impl Memory {
     pub fn limit(&self, in_main_memory: bool) -> Option<(u64, &'static str)> {
         match self.budget {
             Some(budget) => Some((budget, "the memory budget")),
-            None if in_main_memory => available().map(|bytes| (bytes, "what the system has left")),
+            None if in_main_memory => available(),
             None => None,
         }
     }
 
-    /// Whether photons may be traced in smaller batches.
+    /// Whether photons may be traced in smaller batches: where a budget is given, or the process has a
+    /// limit.
     pub fn cuts_batches(&self) -> bool {
-        self.budget.is_some() && !self.same_batches
+        !self.same_batches && (self.budget.is_some() || system::limited().is_some())
     }
 }
 
@@ -113,14 +118,15 @@ pub fn parse(text: &str) -> Result<u64, String> {
         .ok_or("expected a number of bytes with its unit, as in 512MB, 1.5GB or 2GiB".to_owned())
 }
 
-/// Bytes of main memory that can still be had, on the disk too where the system swaps; where the system says so.
-pub fn available() -> Option<u64> {
-    let text = std::fs::read_to_string("/proc/meminfo").ok()?;
-    let bytes = |name: &str| {
-        let line = text.lines().find_map(|line| line.strip_prefix(name))?;
-        line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok().map(|kib| kib << 10)
-    };
-    Some(bytes("MemAvailable:")? + bytes("SwapFree:").unwrap_or(0))
+/// Whether so many bytes can be had at once; they are given back.
+pub fn can_be_had(bytes: u64) -> bool {
+    usize::try_from(bytes).is_ok_and(|bytes| Vec::<u8>::new().try_reserve_exact(bytes).is_ok())
+}
+
+/// Bytes of main memory that can still be had, by what is free and by the limits of the process and of its
+/// control group; and in whose words.
+pub fn available() -> Option<(u64, &'static str)> {
+    system::free().into_iter().chain(system::limited()).min_by_key(|limit| limit.0)
 }
 
 #[cfg(test)]
