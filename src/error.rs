@@ -16,11 +16,11 @@ pub enum PackError {
         limit: usize,
     },
     /// A profile that is no surface.
-    #[error("shape {shape}: {source}")]
+    #[error("shape {shape}: {cause}")]
     Profile {
         /// Index of the shape.
         shape: usize,
         /// What is wrong.
-        source: ProfileError,
+        cause: ProfileError,
     },
 }

@@ -55,7 +55,7 @@
 //! # }
 //! ```
 //!
-//! Modules depend on one another one way: [`stage`], [`srgb`], [`memory`], [`real`] and [`math`], then [`tables`], [`shapes`], [`materials`], [`lights`],
+//! Modules depend on one another one way: [`stage`], [`storage`], [`srgb`], [`memory`], [`real`] and [`math`], then [`tables`], [`shapes`], [`materials`], [`lights`],
 //! [`camera`] and [`grid`], then [`scene`], [`build`], [`limits`], [`pack`], then [`kernels`], [`radius`], [`sobol`], [`probe`], [`readout`], [`plan`], then [`cpu`]
 //! and [`gpu`], then [`identity`], [`device`], [`relay`], [`quality`], [`calibration`], [`showing`], [`render`] and [`checkpoint`], and last [`bench`](mod@bench), [`burden`], [`hold`], [`study`] and, where it is not left out, `preview`.
 //! Those from [`real`] to [`cpu`] are compiled twice: [`double`] is the same in f64.
@@ -103,5 +103,6 @@ pub mod showing;
 pub mod sobol;
 pub mod srgb;
 pub mod stage;
+pub mod storage;
 pub mod study;
 pub mod tables;

@@ -10,7 +10,7 @@ use thiserror::Error;
 #[derive(Debug, Error, Diagnostic)]
 pub enum CheckpointError {
     /// The operating system refused.
-    #[error("{}: cannot be {verb}: {source}", file.display())]
+    #[error("{}: cannot be {verb}: {cause}", file.display())]
     #[diagnostic(help("check the name, the permissions and the free space"))]
     Io {
         /// The file.
@@ -18,7 +18,7 @@ pub enum CheckpointError {
         /// "written" or "read".
         verb: &'static str,
         /// What the system says.
-        source: io::Error,
+        cause: io::Error,
     },
     /// It is something else.
     #[error("{}: this is no checkpoint: {what}", file.display())]

@@ -1,23 +1,22 @@
 //! Checkpoints as files.
 //!
 //! In this order, numbers with the least byte first: 8 bytes [`MAGIC`]; the format, 4 bytes; the header's length, 4; the whole
-//! file's, 8; the header, JSON; the sections that it lists; XXH3 of all before, 16 bytes. A file is complete or absent: it is
-//! written beside its place, brought to the disk, then renamed.
+//! file's, 8; the header, JSON; the sections that it lists; XXH3 of all before, 16 bytes. A file is complete or absent
+//! (`storage`).
 
-use std::ffi::OsString;
-use std::fs::{self, File};
-use std::io::{self, BufWriter, Read, Write};
-use std::path::{Path, PathBuf};
+use std::io::{self, BufWriter, Write};
+use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 use xxhash_rust::xxh3::{Xxh3, xxh3_128};
 
-use super::{Checkpoint, CheckpointError, Origin, Totals};
+use super::{Checkpoint, CheckpointError, Origin, Totals, values};
 use crate::double;
 use crate::engine::{LayerState, State};
 use crate::film::file::Format;
 use crate::kernels;
 use crate::scene::Aov;
+use crate::storage::{self, Lock, LockError, Purpose};
 
 /// The extension of merged checkpoints; others may have any that is not a picture's.
 pub const EXTENSION: &str = "checkpoint";
@@ -57,15 +56,8 @@ struct Header {
 /// # Errors
 /// Where the system refuses; the one before stays.
 pub fn write(file: &Path, checkpoint: &Checkpoint) -> Result<(), CheckpointError> {
-    let unfinished = unfinished_name(file);
-    let written = write_to(&unfinished, checkpoint)
-        .and_then(|()| fs::rename(&unfinished, file))
-        .and_then(|()| sync_folder(file));
-    written.map_err(|source| {
-        // It may not be there; the error to report is the first one.
-        let _ = fs::remove_file(&unfinished);
-        CheckpointError::Io { file: file.to_owned(), verb: "written", source }
-    })
+    let written = storage::write(file, Purpose::Keepsake, |out| write_to(out, checkpoint));
+    written.map_err(|cause| CheckpointError::Io { file: file.to_owned(), verb: "written", cause })
 }
 
 /// Finds out before the work whether a checkpoint can be written to this place.
@@ -80,12 +72,29 @@ pub fn check_place(file: &Path) -> Result<(), CheckpointError> {
             mend: format!("end it in .{EXTENSION}; pictures are named by -o"),
         });
     }
-    let unfinished = unfinished_name(file);
-    let made = match fs::metadata(file) {
-        Ok(found) if found.is_dir() => Err(io::Error::other("this is a folder")),
-        _ => fs::write(&unfinished, []).and_then(|()| fs::remove_file(&unfinished)),
-    };
-    made.map_err(|source| CheckpointError::Io { file: file.to_owned(), verb: "written", source })
+    storage::check(file, Purpose::Keepsake).map_err(|cause| CheckpointError::Io {
+        file: file.to_owned(),
+        verb: "written",
+        cause,
+    })
+}
+
+/// Holds the place of a checkpoint, for as long as a render may write to it.
+///
+/// # Errors
+/// Where another process holds it, or the system refuses.
+pub fn lock(file: &Path) -> Result<Option<Lock>, CheckpointError> {
+    Lock::of(file).map_err(|error| match error {
+        LockError::Held(holder) => CheckpointError::Unfit {
+            file: file.to_owned(),
+            what: match holder {
+                Some(id) => format!("another caustica (process {id}) writes to this checkpoint"),
+                None => "another caustica writes to this checkpoint".to_owned(),
+            },
+            mend: "wait for it to end, or name another file".to_owned(),
+        },
+        LockError::Io(cause) => CheckpointError::Io { file: file.to_owned(), verb: "locked", cause },
+    })
 }
 
 /// Reads a checkpoint. Takes no more memory than some times the file's length.
@@ -93,37 +102,16 @@ pub fn check_place(file: &Path) -> Result<(), CheckpointError> {
 /// # Errors
 /// Where there is none, or one that is damaged or of another format.
 pub fn read(file: &Path) -> Result<Checkpoint, CheckpointError> {
-    let bytes = read_bytes(file).map_err(|source| CheckpointError::Io {
+    let bytes = storage::read(file, u64::MAX).map_err(|cause| CheckpointError::Io {
         file: file.to_owned(),
         verb: "read",
-        source,
+        cause,
     })?;
     decode(file, &bytes)
 }
 
-fn read_bytes(file: &Path) -> io::Result<Vec<u8>> {
-    let opened = File::open(file)?;
-    let found = opened.metadata()?;
-    if !found.is_file() {
-        return Err(io::Error::other("this is no file"));
-    }
-    // a device or pipe would never end
-    let mut bytes = Vec::new();
-    opened.take(found.len()).read_to_end(&mut bytes)?;
-    Ok(bytes)
-}
-
-/// A hidden name beside `file`, always the same, so that what a killed render leaves there is written over by the next.
-fn unfinished_name(file: &Path) -> PathBuf {
-    let mut name = OsString::from(".");
-    name.push(file.file_name().unwrap_or_default());
-    name.push(".part");
-    file.with_file_name(name)
-}
-
-fn write_to(file: &Path, checkpoint: &Checkpoint) -> io::Result<()> {
-    let opened = File::create(file)?;
-    let mut out = Summing { inner: BufWriter::new(&opened), sum: Box::default() };
+fn write_to(out: &mut dyn Write, checkpoint: &Checkpoint) -> io::Result<()> {
+    let mut out = Summing { inner: BufWriter::new(out), sum: Box::default() };
     let State { first_pass, passes, bits, film, statistics, layers } = &checkpoint.state;
     let cuts = words(checkpoint.cuts.iter().flatten());
     let (counts, objects) = (words(layers.counts.iter()), words(layers.objects.iter()));
@@ -154,9 +142,7 @@ fn write_to(file: &Path, checkpoint: &Checkpoint) -> io::Result<()> {
     }
     let sum = out.sum.digest128();
     out.write_all(&sum.to_le_bytes())?;
-    out.flush()?;
-    drop(out);
-    opened.sync_all()
+    out.flush()
 }
 
 fn words<'a>(numbers: impl Iterator<Item = &'a u32>) -> Vec<u8> {
@@ -165,12 +151,6 @@ fn words<'a>(numbers: impl Iterator<Item = &'a u32>) -> Vec<u8> {
 
 fn words_of(bytes: &[u8]) -> Vec<u32> {
     bytes.chunks_exact(4).map(|word| u32::from_le_bytes([0, 1, 2, 3].map(|k| word[k]))).collect()
-}
-
-/// Brings the new name to the disk, where folders can be opened.
-fn sync_folder(file: &Path) -> io::Result<()> {
-    let folder = file.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
-    if cfg!(unix) { File::open(folder)?.sync_all() } else { Ok(()) }
 }
 
 /// Hashes what it hands on.
@@ -241,24 +221,23 @@ pub fn decode(file: &Path, bytes: &[u8]) -> Result<Checkpoint, CheckpointError> 
         return Err(damaged("there is more in it than its header tells".to_owned()));
     }
     check_header(&header).map_err(damaged)?;
-    Ok(Checkpoint {
-        origin: header.origin,
-        totals: header.totals,
-        state: State {
-            first_pass: header.first_pass,
-            passes: header.passes,
-            bits: header.bits,
-            film: film.to_vec(),
-            statistics: statistics.to_vec(),
-            layers: LayerState {
-                aovs: aovs.to_vec(),
-                parts: parts.to_vec(),
-                counts: words_of(counts),
-                objects: words_of(objects),
-            },
+    values::check_space(&header.origin.space).map_err(damaged)?;
+    let state = State {
+        first_pass: header.first_pass,
+        passes: header.passes,
+        bits: header.bits,
+        film: film.to_vec(),
+        statistics: statistics.to_vec(),
+        layers: LayerState {
+            aovs: aovs.to_vec(),
+            parts: parts.to_vec(),
+            counts: words_of(counts),
+            objects: words_of(objects),
         },
-        cuts: words_of(cuts).chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect(),
-    })
+    };
+    let cuts: Vec<[u32; 2]> = words_of(cuts).chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect();
+    values::check(&state, &cuts).map_err(damaged)?;
+    Ok(Checkpoint { origin: header.origin, totals: header.totals, state, cuts })
 }
 
 /// Whether the numbers fit one another.

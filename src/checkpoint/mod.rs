@@ -9,6 +9,7 @@ mod file;
 mod layers;
 mod merge;
 mod origin;
+mod values;
 
 use std::time::Duration;
 
@@ -19,7 +20,7 @@ use crate::film::{Development, ErrorMap, Picture, Provenance, Rejections};
 use crate::render::{Progress, Stop};
 
 pub use error::CheckpointError;
-pub use file::{EXTENSION, check_place, decode, read, write};
+pub use file::{EXTENSION, check_place, decode, lock, read, write};
 pub use merge::merge;
 pub use origin::Origin;
 

@@ -3,11 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use caustica::checkpoint::{
-    Checkpoint, CheckpointError, EXTENSION, Origin, Totals, check_place, read, write,
+    self, Checkpoint, CheckpointError, EXTENSION, Origin, Totals, check_place, read, write,
 };
 use caustica::engine::State;
 use caustica::render::Progress;
 use caustica::settings::RenderSettings;
+use caustica::storage::Lock;
 use serde_json::json;
 
 use super::Failure;
@@ -18,6 +19,8 @@ use super::progress::Reporter;
 /// What is gone on from, and what is written.
 pub struct Files {
     kept: Option<PathBuf>,
+    /// Held as long as the render may write to `kept`.
+    _lock: Option<Lock>,
     resumed: Option<(PathBuf, Checkpoint)>,
 }
 
@@ -27,6 +30,7 @@ impl Files {
     /// # Errors
     /// Where that is no whole checkpoint, none can be written to the place of the other, or another render's would be lost there.
     pub fn new(kept: Option<&Path>, resumed: Option<&Path>) -> Result<Self, Failure> {
+        let mut lock = None;
         if let Some(file) = kept {
             let same = |other: &Path| file.canonicalize().ok() == other.canonicalize().ok();
             if file.is_file() && !resumed.is_some_and(same) {
@@ -36,12 +40,13 @@ impl Files {
                 ));
             }
             check_place(file)?;
+            lock = checkpoint::lock(file)?;
         }
         let resumed = match resumed {
             Some(file) => Some((file.to_owned(), read(file)?)),
             None => None,
         };
-        Ok(Self { kept: kept.map(Path::to_owned), resumed })
+        Ok(Self { kept: kept.map(Path::to_owned), _lock: lock, resumed })
     }
 
     /// Whether any is to be written.

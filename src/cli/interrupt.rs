@@ -1,20 +1,37 @@
-//! Ctrl-C: the first asks for an end, the second ends at once.
+//! Ctrl-C and termination signals. While something is prepared, one ends the program at once; while a
+//! render has passes to keep, the first asks for an end and the second ends at once.
 
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::output::message;
 
+static RENDERING: AtomicBool = AtomicBool::new(false);
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
+static FAILED: OnceLock<String> = OnceLock::new();
 
-/// The flag that the first Ctrl-C (or termination signal) from now on sets.
-pub fn flag() -> &'static AtomicBool {
+/// Handles signals from now on.
+pub fn begin() {
     let handler = || {
+        let end = || std::process::exit(super::Done::Interrupted as i32);
+        if !RENDERING.load(Ordering::Relaxed) {
+            message("\ninterrupted before the first pass: nothing is saved");
+            end();
+        }
         if INTERRUPTED.swap(true, Ordering::Relaxed) {
-            std::process::exit(super::Done::Interrupted as i32);
+            end();
         }
         message("\ninterrupted: finishing the pass; once more to end at once");
     };
     if let Err(error) = ctrlc::set_handler(handler) {
+        let _ = FAILED.set(error.to_string());
+    }
+}
+
+/// The flag that the first signal from now on sets.
+pub fn flag() -> &'static AtomicBool {
+    RENDERING.store(true, Ordering::Relaxed);
+    if let Some(error) = FAILED.get() {
         message(format_args!("warning: Ctrl-C will end the program without saving the picture: {error}"));
     }
     &INTERRUPTED

@@ -1,13 +1,14 @@
 //! A rendered picture: written, and told about.
 
-use std::path::PathBuf;
+use std::cell::Cell;
+use std::path::{Path, PathBuf};
 
 use caustica::checkpoint::Checkpoint;
 use caustica::film::denoise;
 use caustica::film::estimate::LEAST_PASSES;
 use caustica::film::exr_file::Channel;
 use caustica::film::file::Format;
-use caustica::film::{self, Development, ErrorMap, Picture, Provenance, Rejections};
+use caustica::film::{self, Development, ErrorMap, FileError, Picture, Provenance, Rejections};
 use caustica::render::{Ending, Outcome, Progress};
 use serde_json::json;
 
@@ -69,11 +70,20 @@ impl Made {
         let mut layers = self.errors.as_ref().map_or(Vec::new(), ErrorMap::layers);
         layers.extend_from_slice(&self.layers);
         layers.extend(self.denoised.iter().flat_map(denoise::layer));
-        for output in outputs {
+        let write = |output: &Path| {
             let denoised = self.denoised.as_ref().filter(|_| Format::of(output) == Some(Format::Png));
-            film::write(output, denoised.unwrap_or(&self.picture), &layers, development, made)?;
+            film::write(output, denoised.unwrap_or(&self.picture), &layers, development, made)
+        };
+        let saved = Cell::new(false);
+        let written = write_all(outputs, |output| {
+            write(output)?;
+            saved.set(saved.get() || Format::of(output) != Some(Format::Png));
+            Ok(())
+        });
+        if written.is_err() && !saved.get() {
+            save_elsewhere(outputs, write);
         }
-        Ok(())
+        written
     }
 
     /// Tells how it came about, and the files.
@@ -106,6 +116,40 @@ impl Made {
         }
         outputs.iter().try_for_each(|output| result(output.display()))
     }
+}
+
+/// Saves a picture that could not be written where it should go, with its radiance, in the first of these
+/// places that takes it: the folder of another output, the current one, that of temporary files.
+fn save_elsewhere(outputs: &[PathBuf], write: impl Fn(&Path) -> Result<(), FileError>) {
+    let folders = outputs.iter().filter_map(|output| Some(output.parent()?.to_owned()));
+    let folders = folders.chain([PathBuf::from("."), std::env::temp_dir()]);
+    let stem = outputs.first().and_then(|output| output.file_stem()).unwrap_or_default();
+    for folder in folders {
+        let name = format!("{}-saved-{}.exr", stem.to_string_lossy(), std::process::id());
+        let file = folder.join(name);
+        if !file.exists() && write(&file).is_ok() {
+            message(format_args!("the picture is saved in {}", file.display()));
+            return;
+        }
+    }
+    message("the picture could not be saved anywhere else");
+}
+
+/// Writes each output; one that fails keeps no other from being written. All failures but the last are
+/// printed, and that one is returned.
+pub fn write_all(
+    outputs: &[impl AsRef<Path>],
+    write: impl Fn(&Path) -> Result<(), FileError>,
+) -> Result<(), Failure> {
+    let mut failed: Option<Failure> = None;
+    for output in outputs {
+        if let Err(error) = write(output.as_ref())
+            && let Some(before) = failed.replace(error.into())
+        {
+            before.tell();
+        }
+    }
+    failed.map_or(Ok(()), Err)
 }
 
 /// What was left out of the picture and why.

@@ -48,6 +48,6 @@ fn text(page: &Man, file: &Path) -> Result<Vec<u8>, FileError> {
     let mut text = Vec::new();
     match page.render(&mut text) {
         Ok(()) => Ok(text),
-        Err(source) => Err(FileError::Io { file: file.to_owned(), verb: "write", source }),
+        Err(cause) => Err(FileError::Io { file: file.to_owned(), verb: "written", cause }),
     }
 }

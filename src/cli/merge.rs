@@ -6,9 +6,10 @@ use caustica::checkpoint::{self, Checkpoint, EXTENSION, merge};
 use caustica::film::estimate::LEAST_PASSES;
 use caustica::film::file::Format;
 use caustica::film::{self, FileError, RelativeError};
+use caustica::storage;
 use serde_json::{Value, json};
 
-use super::made::left_out;
+use super::made::{left_out, write_all};
 use super::output::{message, result};
 use super::progress::{count, percent};
 use super::{Done, Failure};
@@ -51,15 +52,24 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
         .into());
     }
     film::check_outputs(&pictures)?;
+    let mut locks = Vec::new();
     for file in &merged {
+        if checkpoints.iter().any(|read| storage::same(read, file)) {
+            return Err(Failure::wrong_use(
+                &format!("{}: this checkpoint is one of those that are merged", file.display()),
+                "name another file: a merge that fails must not cost what it is made of",
+            ));
+        }
         checkpoint::check_place(file)?;
+        locks.extend(checkpoint::lock(file)?);
     }
     let read = |file: PathBuf| checkpoint::read(&file).map(|checkpoint| (file, checkpoint));
     let all = merge(checkpoints.into_iter().map(read).collect::<Result<_, _>>()?)?;
-    for file in &merged {
-        checkpoint::write(file, &all)?;
-    }
+    // each that can be written is, whatever becomes of the others
+    let written: Vec<Result<(), Failure>> =
+        merged.iter().map(|file| checkpoint::write(file, &all).map_err(Failure::from)).collect();
     let error = write_pictures(&pictures, &all)?;
+    written.into_iter().collect::<Result<(), Failure>>()?;
     if json {
         result(as_json(&all, error, &outputs))?;
         return Ok(Done::Fully);
@@ -77,9 +87,8 @@ fn write_pictures(pictures: &[impl AsRef<Path>], all: &Checkpoint) -> Result<Opt
     let errors = Some(errors).filter(|_| all.state.passes >= LEAST_PASSES);
     let mut layers = errors.as_ref().map_or(Vec::new(), |errors| errors.layers());
     layers.extend(all.layers());
-    for output in pictures {
-        film::write(output.as_ref(), &picture, &layers, &all.development(), &all.provenance())?;
-    }
+    let (development, made) = (all.development(), all.provenance());
+    write_all(pictures, |output| film::write(output, &picture, &layers, &development, &made))?;
     Ok(errors.map(|errors| errors.relative()))
 }
 

@@ -43,6 +43,7 @@ use std::process::ExitCode;
 use clap::{ArgAction, CommandFactory, Parser, Subcommand};
 
 use failure::Failure;
+use output::message;
 
 /// Renders scenes by photon mapping: caustics, soft shadows, depth of field.
 #[derive(Parser)]
@@ -99,11 +100,27 @@ fn command() -> clap::Command {
     Arguments::command()
 }
 
+/// Prints what is wrong with the command line, or the help that it asks for.
+fn parsed_otherwise(error: &clap::Error) -> ExitCode {
+    if error.use_stderr() {
+        // what is quoted may be the name of a file
+        message(error.render().to_string().trim_end());
+    } else {
+        // as clap prints it, in colours where these are wanted
+        let _ = error.print();
+    }
+    ExitCode::from(error.exit_code() as u8)
+}
+
 /// Carries out the command line.
 pub fn run() -> ExitCode {
     colors::begin();
-    let arguments = Arguments::parse();
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => return parsed_otherwise(&error),
+    };
     log::begin(arguments.verbose);
+    interrupt::begin();
     if let Err(failure) = threads::begin() {
         return failure.tell();
     }

@@ -1,14 +1,22 @@
 //! Lines on standard output and standard error. A reader that went away, as in `caustica info scene.toml | head`, is no
 //! failure; results that cannot be written for another reason are.
+//!
+//! Names and texts come from files that may be anybody's: control characters in them never reach a
+//! terminal.
 
+use std::borrow::Cow;
 use std::fmt::Display;
-use std::io::{self, ErrorKind, Write};
+use std::io::{self, ErrorKind, IsTerminal, Write};
 
 use super::Failure;
 
 /// Prints a line of results to standard output.
 pub fn result(line: impl Display) -> Result<(), Failure> {
-    written(writeln!(io::stdout(), "{line}"))
+    let line = line.to_string();
+    let out = io::stdout();
+    // what reads a pipe wants names as they are
+    let shown = if out.is_terminal() { printable(&line) } else { Cow::Borrowed(line.as_str()) };
+    written(writeln!(&out, "{shown}"))
 }
 
 /// Prints a whole text to standard output.
@@ -29,5 +37,62 @@ fn written(outcome: io::Result<()>) -> Result<(), Failure> {
 /// Prints a line of anything else to standard error.
 pub fn message(line: impl Display) {
     // There is nowhere to tell that standard error is gone.
-    let _ = writeln!(io::stderr(), "{line}");
+    let _ = writeln!(io::stderr(), "{}", printable(&line.to_string()));
+}
+
+/// `text` with control characters as escapes, as in `\\x1b`: all but line feeds, tabs and the colours of
+/// reports, which do no more than colour. Characters that turn the direction of writing count as well.
+pub fn printable(text: &str) -> Cow<'_, str> {
+    let turns = |c| matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    let plain = |c: char| (!c.is_control() && !turns(c)) || matches!(c, '\n' | '\t');
+    if text.chars().all(plain) {
+        return Cow::Borrowed(text);
+    }
+    let mut out = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some(c) = rest.chars().next() {
+        let color = color_length(rest);
+        if color > 0 {
+            out.push_str(&rest[..color]);
+            rest = &rest[color..];
+            continue;
+        }
+        match c {
+            c if plain(c) => out.push(c),
+            c if (c as u32) < 256 => out.push_str(&format!("\\x{:02x}", c as u32)),
+            c => out.push_str(&format!("\\u{{{:x}}}", c as u32)),
+        }
+        rest = &rest[c.len_utf8()..];
+    }
+    Cow::Owned(out)
+}
+
+/// Length of the sequence that sets a colour at the start of `text`: `ESC [`, digits and semicolons, `m`.
+fn color_length(text: &str) -> usize {
+    let Some(rest) = text.strip_prefix("\x1b[") else { return 0 };
+    let end = rest.find(|c: char| !c.is_ascii_digit() && c != ';').unwrap_or(rest.len());
+    if rest[end..].starts_with('m') { 2 + end + 1 } else { 0 }
+}
+
+/// Theory: a terminal acts on C0 and C1 control characters, and on sequences that begin with one; of
+/// these, colours alone are harmless.
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn control_characters_become_text() {
+        let cases = [
+            ("plain, \ttabs\nand Zahlen für π", "plain, \ttabs\nand Zahlen für π"),
+            ("\x1b]0;title\x07", "\\x1b]0;title\\x07"),
+            ("\x1b[2J\x1b[31mred\x1b[0m", "\\x1b[2J\x1b[31mred\x1b[0m"),
+            ("\x1b[1;38;5;9m", "\x1b[1;38;5;9m"),
+            ("\x1b[", "\\x1b["),
+            ("over\rwritten\x08\x7f", "over\\x0dwritten\\x08\\x7f"),
+            ("\u{9b}2J \u{202e}gpj", "\\x9b2J \\u{202e}gpj"),
+        ];
+        for (text, shown) in cases {
+            assert_eq!(printable(text), shown);
+        }
+    }
 }

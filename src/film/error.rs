@@ -44,7 +44,7 @@ pub enum FileError {
         file: PathBuf,
     },
     /// The operating system refused.
-    #[error("{}: cannot be {verb}: {source}", file.display())]
+    #[error("{}: cannot be {verb}: {cause}", file.display())]
     #[diagnostic(help("check the name, the permissions and the free space"))]
     Io {
         /// The file.
@@ -52,7 +52,7 @@ pub enum FileError {
         /// "written" or "read".
         verb: &'static str,
         /// What the system says.
-        source: io::Error,
+        cause: io::Error,
     },
     /// The file's content is not a picture of its format.
     #[error("{}: not a usable picture: {what}", file.display())]

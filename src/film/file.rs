@@ -1,8 +1,5 @@
-//! Picture files by extension. A file is complete or absent: it is written beside its place, then renamed.
+//! Picture files by extension, written whole or not at all (`storage`).
 
-use std::collections::HashSet;
-use std::ffi::OsString;
-use std::fs;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
@@ -12,6 +9,7 @@ use rayon::prelude::*;
 use super::exr_file::{self, Channel};
 use super::tonemap::Bits;
 use super::{Development, FileError, Picture, Provenance, pfm};
+use crate::storage::{self, Purpose, READ_MAX};
 
 /// A kind of picture file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,13 +49,14 @@ impl Format {
 /// Finds out before the work whether the pictures can be written after it: known extensions, existing folders, no
 /// name twice, and folders that take new files.
 pub fn check_outputs(files: &[PathBuf]) -> Result<(), FileError> {
-    let mut seen = HashSet::new();
+    let mut seen: Vec<&PathBuf> = Vec::new();
     for file in files {
         Format::of_output(file)?;
         check_place(file)?;
-        if !seen.insert(file) {
+        if seen.iter().any(|other| storage::same(other, file)) {
             return Err(FileError::Repeated { file: file.clone() });
         }
+        seen.push(file);
     }
     Ok(())
 }
@@ -93,8 +92,7 @@ pub fn check_place(file: &Path) -> Result<(), FileError> {
     if file.is_dir() {
         return Err(FileError::IsFolder { file: file.to_owned() });
     }
-    let unfinished = unfinished_name(file);
-    fs::write(&unfinished, []).and_then(|()| fs::remove_file(&unfinished)).map_err(|e| not_written(file, e))
+    storage::check(file, Purpose::Result).map_err(|e| not_written(file, e))
 }
 
 /// Writes a picture in the format that the extension names. `development` counts for PNG, `layers` and `provenance` for
@@ -116,15 +114,10 @@ pub fn write(
     write_whole(file, &bytes)
 }
 
-/// Writes the bytes to a name beside `file` and moves them into place, so that nothing half-written is seen.
+/// Writes the bytes so that nothing half-written is seen.
 pub fn write_whole(file: &Path, bytes: &[u8]) -> Result<(), FileError> {
-    let unfinished = unfinished_name(file);
-    let written = fs::write(&unfinished, bytes).and_then(|()| fs::rename(&unfinished, file));
-    written.map_err(|source| {
-        // It may not be there; the error to report is the first one.
-        let _ = fs::remove_file(&unfinished);
-        not_written(file, source)
-    })
+    let written = storage::write(file, Purpose::Result, |out| out.write_all(bytes));
+    written.map_err(|cause| not_written(file, cause))
 }
 
 /// Reads radiance from an EXR (R, G, B of the first layer), PFM or HDR file.
@@ -151,19 +144,15 @@ pub fn read_exr(file: &Path) -> Result<exr_file::ExrFile, FileError> {
 }
 
 pub(super) fn read_bytes(file: &Path) -> Result<Vec<u8>, FileError> {
-    fs::read(file).map_err(|source| FileError::Io { file: file.to_owned(), verb: "read", source })
+    storage::read(file, READ_MAX).map_err(|cause| FileError::Io {
+        file: file.to_owned(),
+        verb: "read",
+        cause,
+    })
 }
 
-fn not_written(file: &Path, source: std::io::Error) -> FileError {
-    FileError::Io { file: file.to_owned(), verb: "written", source }
-}
-
-/// A hidden name beside `file`, of this process alone.
-fn unfinished_name(file: &Path) -> PathBuf {
-    let mut name = OsString::from(".");
-    name.push(file.file_name().unwrap_or_default());
-    name.push(format!(".{}.part", std::process::id()));
-    file.with_file_name(name)
+fn not_written(file: &Path, cause: std::io::Error) -> FileError {
+    FileError::Io { file: file.to_owned(), verb: "written", cause }
 }
 
 fn encode_png(picture: &Picture, development: &Development) -> Result<Vec<u8>, String> {

@@ -65,7 +65,7 @@ pub fn pack_shapes(
                 let placement = placement(transform, n);
                 let boxes = revolutions
                     .push(segments, &placement, attributes)
-                    .map_err(|source| PackError::Profile { shape: i, source })?;
+                    .map_err(|cause| PackError::Profile { shape: i, cause })?;
                 for b in boxes {
                     pack.primitives.push(Primitive::Box(Aabb { min: b.min, max: b.max }));
                     pack.references.push(reference(KIND_REVOLUTION, b.patch as usize));

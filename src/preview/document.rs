@@ -52,10 +52,10 @@ pub enum SaveError {
 /// Writes what differs between `before` and `after` into a scene file, as it lies on the disk now; nothing else in it changes.
 /// That the result is a scene is found out with what may be read.
 pub fn save(file: &Path, allowance: &Allowance, before: &Edits, after: &Edits) -> Result<(), SaveError> {
-    let text = std::fs::read_to_string(file).map_err(|source| FileError::Io {
+    let text = std::fs::read_to_string(file).map_err(|cause| FileError::Io {
         file: file.to_owned(),
         verb: "read",
-        source,
+        cause,
     })?;
     let edited =
         edited(&text, before, after).map_err(|what| SaveError::Toml { file: file.to_owned(), what })?;

@@ -136,7 +136,7 @@ impl Folder {
         let other = |what: String| StudyError::Folder { folder: path.to_owned(), what };
         let file = path.join(ABOUT);
         if file.exists() {
-            let text = fs::read_to_string(&file).map_err(|source| io(&file, "read", source))?;
+            let text = fs::read_to_string(&file).map_err(|cause| io(&file, "read", cause))?;
             let found: About = serde_json::from_str(&text)
                 .map_err(|error| other(format!("its {ABOUT} is not one of this version's: {error}")))?;
             return match difference(&found, about) {
@@ -152,7 +152,7 @@ impl Folder {
         }
         for sub in ["truth", "unfinished", "crops", "charts"] {
             let sub = path.join(sub);
-            fs::create_dir_all(&sub).map_err(|source| io(&sub, "written", source))?;
+            fs::create_dir_all(&sub).map_err(|cause| io(&sub, "written", cause))?;
         }
         let text = serde_json::to_string_pretty(about).map_err(|error| other(error.to_string()))?;
         write_whole(&file, text.as_bytes())?;
@@ -215,8 +215,8 @@ impl Folder {
     }
 }
 
-fn io(file: &Path, verb: &'static str, source: std::io::Error) -> FileError {
-    FileError::Io { file: file.to_owned(), verb, source }
+fn io(file: &Path, verb: &'static str, cause: std::io::Error) -> FileError {
+    FileError::Io { file: file.to_owned(), verb, cause }
 }
 
 /// In which way a study is another one.

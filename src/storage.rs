@@ -1,0 +1,282 @@
+//! Files as the program writes and reads them.
+//!
+//! A regular file is complete or as it was: it is written under a name of this writer alone in the same
+//! folder, then renamed. Links are followed, mode and owner stay, and a file without write permission is
+//! refused, even for root. What is no regular file (a pipe, a device) is written to, never replaced.
+
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, Read, Write};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use xxhash_rust::xxh3::xxh3_64;
+
+/// Links that are followed at most.
+const LINKS: u32 = 40;
+/// What unfinished files and locks begin with; the rest is short, whatever the name of the file.
+const PREFIX: &str = ".caustica-";
+/// Most bytes of a file that is read as a whole, as for the pictures of a scene.
+pub const READ_MAX: u64 = 4 << 30;
+
+/// What stands, or may stand, at the place of an output.
+enum Place {
+    /// Nothing yet.
+    Free(PathBuf),
+    /// A regular file.
+    Taken(PathBuf, fs::Metadata),
+    /// A pipe or a device.
+    Special(PathBuf),
+}
+
+/// What a file is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Purpose {
+    /// A result: it may go to a pipe or a device, too.
+    Result,
+    /// Something to be read again: it is brought to the disk, and is a regular file.
+    Keepsake,
+}
+
+/// Finds out before the work whether `file` can be written after it, and leaves nothing there.
+///
+/// # Errors
+/// Why it cannot.
+pub fn check(file: &Path, purpose: Purpose) -> io::Result<()> {
+    match place(file)? {
+        Place::Special(_) if purpose == Purpose::Keepsake => Err(not_regular()),
+        Place::Special(_) => Ok(()),
+        Place::Free(target) | Place::Taken(target, _) => {
+            let unfinished = unfinished(&target);
+            File::create_new(&unfinished)?;
+            fs::remove_file(&unfinished)
+        }
+    }
+}
+
+/// Writes what `fill` gives to `file`.
+///
+/// # Errors
+/// Where the system refuses; what was there stays.
+pub fn write(
+    file: &Path,
+    purpose: Purpose,
+    fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> io::Result<()> {
+    let (target, before) = match place(file)? {
+        Place::Special(_) if purpose == Purpose::Keepsake => return Err(not_regular()),
+        Place::Special(target) => return fill(&mut OpenOptions::new().write(true).open(target)?),
+        Place::Free(target) => (target, None),
+        Place::Taken(target, found) => (target, Some(found)),
+    };
+    let unfinished = unfinished(&target);
+    let mut out = File::create_new(&unfinished)?;
+    let written = fill(&mut out)
+        .and_then(|()| before.map_or(Ok(()), |before| take_over(&out, &before)))
+        .and_then(|()| if purpose == Purpose::Keepsake { out.sync_all() } else { Ok(()) })
+        .and_then(|()| fs::rename(&unfinished, &target))
+        .and_then(|()| if purpose == Purpose::Keepsake { sync_folder(&target) } else { Ok(()) });
+    written.inspect_err(|_| {
+        // It may not be there; the error to report is the first one.
+        let _ = fs::remove_file(&unfinished);
+    })
+}
+
+/// Reads a regular file of at most `most` bytes. Others may never end.
+///
+/// # Errors
+/// Where it is none, is larger, or the system refuses.
+pub fn read(file: &Path, most: u64) -> io::Result<Vec<u8>> {
+    // opening a pipe would wait for its writer
+    let found = fs::metadata(file)?;
+    if !found.is_file() {
+        return Err(not_regular());
+    }
+    let opened = File::open(file)?;
+    let found = opened.metadata()?;
+    if !found.is_file() {
+        return Err(not_regular());
+    }
+    if found.len() > most {
+        let text = format!("it has {} bytes, and at most {most} are read", found.len());
+        return Err(io::Error::new(io::ErrorKind::FileTooLarge, text));
+    }
+    let mut bytes = Vec::new();
+    opened.take(found.len()).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+/// Whether two names are of one file, links followed.
+pub fn same(a: &Path, b: &Path) -> bool {
+    match (target(a), target(b)) {
+        (Ok(a), Ok(b)) => {
+            let real = |path: &Path| path.canonicalize().or_else(|_| std::path::absolute(path)).ok();
+            real(&a) == real(&b)
+        }
+        _ => false,
+    }
+}
+
+/// Held while a render writes to a file: no other one that asks can hold it. It ends with the process.
+#[derive(Debug)]
+pub struct Lock {
+    path: PathBuf,
+    // the lock is that of the open file
+    _file: File,
+}
+
+/// Why a lock is not to be had.
+#[derive(Debug)]
+pub enum LockError {
+    /// Another process holds it, with this id if it is known.
+    Held(Option<u32>),
+    /// The system refuses.
+    Io(io::Error),
+}
+
+impl Lock {
+    /// Locks `file`, which need not exist, and removes what a killed writer left of it. Where the file system
+    /// knows no locks there is none to hold.
+    ///
+    /// # Errors
+    /// Where another process holds the lock, or the system refuses.
+    pub fn of(file: &Path) -> Result<Option<Self>, LockError> {
+        let target = target(file).map_err(LockError::Io)?;
+        let path = target.with_file_name(format!("{PREFIX}{}.lock", hash(&target)));
+        loop {
+            let mut options = OpenOptions::new();
+            let opened = options.read(true).write(true).create(true).truncate(false).open(&path);
+            let mut opened = opened.map_err(LockError::Io)?;
+            match opened.try_lock() {
+                Ok(()) => {}
+                Err(fs::TryLockError::WouldBlock) => {
+                    let mut text = String::new();
+                    let _ = opened.take(20).read_to_string(&mut text);
+                    return Err(LockError::Held(text.trim().parse().ok()));
+                }
+                Err(fs::TryLockError::Error(error)) if error.kind() == io::ErrorKind::Unsupported => {
+                    let _ = fs::remove_file(&path);
+                    return Ok(None);
+                }
+                Err(fs::TryLockError::Error(error)) => return Err(LockError::Io(error)),
+            }
+            // the holder before may have removed the name between opening and locking
+            if !is_at(&opened, &path) {
+                continue;
+            }
+            // who holds it is for people; the lock does not depend on it
+            let _ = opened.set_len(0).and_then(|()| write!(opened, "{}", std::process::id()));
+            remove_leftovers(&target);
+            return Ok(Some(Self { path, _file: opened }));
+        }
+    }
+}
+
+impl Drop for Lock {
+    fn drop(&mut self) {
+        // while it is still locked, so that nobody else's is removed
+        let _ = fs::remove_file(&self.path);
+    }
+}
+
+#[cfg(unix)]
+fn is_at(file: &File, path: &Path) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    match (file.metadata(), fs::metadata(path)) {
+        (Ok(a), Ok(b)) => (a.dev(), a.ino()) == (b.dev(), b.ino()),
+        _ => false,
+    }
+}
+
+#[cfg(not(unix))]
+fn is_at(_: &File, path: &Path) -> bool {
+    path.exists()
+}
+
+/// Removes unfinished files of `target`, whose lock is held.
+fn remove_leftovers(target: &Path) {
+    let start = format!("{PREFIX}{}-", hash(target));
+    let folder = folder(target);
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        if entry.file_name().to_str().is_some_and(|name| name.starts_with(&start)) {
+            let _ = fs::remove_file(entry.path());
+        }
+    }
+}
+
+fn place(file: &Path) -> io::Result<Place> {
+    let target = target(file)?;
+    let found = match fs::metadata(&target) {
+        Ok(found) => found,
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Place::Free(target)),
+        Err(error) => return Err(error),
+    };
+    if found.is_dir() {
+        return Err(io::Error::new(io::ErrorKind::IsADirectory, "this is a folder"));
+    }
+    if found.permissions().readonly() {
+        return Err(io::Error::new(io::ErrorKind::PermissionDenied, "the file is read-only"));
+    }
+    if !found.is_file() {
+        return Ok(Place::Special(target));
+    }
+    // whether this user may, the system knows best
+    OpenOptions::new().write(true).open(&target)?;
+    Ok(Place::Taken(target, found))
+}
+
+/// The file that a name stands for, links followed as far as there are any.
+fn target(file: &Path) -> io::Result<PathBuf> {
+    let mut target = file.to_owned();
+    for _ in 0..LINKS {
+        match fs::read_link(&target) {
+            Ok(link) => target = folder(&target).join(link),
+            // no link, or nothing there
+            Err(_) => return Ok(target),
+        }
+    }
+    Err(io::Error::other("too many links"))
+}
+
+fn folder(file: &Path) -> PathBuf {
+    match file.parent() {
+        Some(folder) if folder != Path::new("") => folder.to_owned(),
+        _ => PathBuf::from("."),
+    }
+}
+
+/// A name beside `target` that no other writer has.
+fn unfinished(target: &Path) -> PathBuf {
+    static COUNT: AtomicU64 = AtomicU64::new(0);
+    let count = COUNT.fetch_add(1, Ordering::Relaxed);
+    target.with_file_name(format!("{PREFIX}{}-{:x}-{count:x}", hash(target), std::process::id()))
+}
+
+/// Tells names in one folder apart.
+fn hash(target: &Path) -> String {
+    let name = target.file_name().unwrap_or_default();
+    format!("{:08x}", xxh3_64(name.as_encoded_bytes()) as u32)
+}
+
+/// Gives `file` the mode of what it replaces, and its owner as far as this user may.
+fn take_over(file: &File, before: &fs::Metadata) -> io::Result<()> {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::{MetadataExt, fchown};
+        let new = file.metadata()?;
+        if (new.uid(), new.gid()) != (before.uid(), before.gid()) {
+            // only root may give files away; the group alone often may be given
+            let _ = fchown(file, Some(before.uid()), Some(before.gid()))
+                .or_else(|_| fchown(file, None, Some(before.gid())));
+        }
+    }
+    file.set_permissions(before.permissions())
+}
+
+/// Brings a new name to the disk, where folders can be opened.
+fn sync_folder(file: &Path) -> io::Result<()> {
+    if cfg!(unix) { File::open(folder(file))?.sync_all() } else { Ok(()) }
+}
+
+fn not_regular() -> io::Error {
+    io::Error::other("this is no regular file but a pipe or a device")
+}
