@@ -26,6 +26,12 @@ pub(crate) struct ImageFault {
     pub missing: bool,
 }
 
+/// A warning about an image, and what it becomes.
+pub(crate) type Note = (String, &'static str);
+
+/// Texels, whether alpha is below 1 somewhere, and the names of channels that are not read.
+type Loaded = (ImageData, bool, Vec<String>);
+
 /// Images read so far, each (file, color space) once.
 #[derive(Debug, Default)]
 pub(crate) struct ImageStore {
@@ -34,8 +40,10 @@ pub(crate) struct ImageStore {
     pub files: Vec<PathBuf>,
     known: BTreeMap<(PathBuf, Option<ColorSpace>), usize>,
     transparent: BTreeSet<usize>,
-    /// Of images with texels that were moved into their range: what to say of them.
-    rounded: BTreeMap<usize, String>,
+    /// Texels that were moved into their range, by image.
+    moved: BTreeMap<usize, Moved>,
+    /// What to say of channels that are not read.
+    unread: BTreeMap<usize, String>,
     stand_ins: BTreeMap<PathBuf, usize>,
     allowance: Allowance,
     /// Bytes of texels of all images, those too that could not be used.
@@ -54,10 +62,14 @@ impl ImageStore {
             return Ok(index);
         }
         self.files.push(path.to_owned());
-        let (mut image, transparent) = self.read(path, space)?;
+        let (mut image, transparent, unread) = self.read(path, space)?;
         let index = self.images.len();
-        if let Some(message) = bound(&mut image, f32::MAX).map_err(|bad| fault(path, bad))? {
-            self.rounded.insert(index, format!("{}: {message}", path.display()));
+        let mut moved = Moved::default();
+        bound(&mut image, f32::MAX, &mut moved).map_err(|bad| fault(path, bad))?;
+        self.moved.insert(index, moved);
+        if !unread.is_empty() {
+            let message = format!("the channels {} are not used", unread.join(", "));
+            self.unread.insert(index, message);
         }
         self.images.push(image);
         self.known.insert((canonical, space), index);
@@ -67,20 +79,22 @@ impl ImageStore {
         Ok(index)
     }
 
-    /// Moves texels that rounding has carried above 1 to 1; `name` is what messages call the file.
+    /// Moves texels that rounding has carried above 1 to 1.
     ///
     /// # Errors
     /// A texel that is larger.
     pub fn bound_by_one(&mut self, path: &Path, index: usize) -> Result<(), ImageFault> {
-        if let Some(message) = bound(&mut self.images[index], 1.0).map_err(|bad| fault(path, bad))? {
-            self.rounded.insert(index, format!("{}: {message}", path.display()));
-        }
-        Ok(())
+        let moved = self.moved.entry(index).or_default();
+        bound(&mut self.images[index], 1.0, moved).map_err(|bad| fault(path, bad))
     }
 
-    /// What to say of texels that were moved into their range; once.
-    pub fn take_rounded(&mut self, index: usize) -> Option<String> {
-        self.rounded.remove(&index)
+    /// What to say of an image that is not used as it is; once.
+    pub fn take_notes(&mut self, index: usize) -> Vec<Note> {
+        let moved = self.moved.remove(&index).and_then(|moved| moved.said());
+        let moved = moved.map(|message| (message, "read as the limit"));
+        let unread = self.unread.remove(&index).map(|message| (message, "read in gray"));
+        let notes = moved.into_iter().chain(unread);
+        notes.map(|(message, label)| (format!("{}: {message}", self.images[index].path), label)).collect()
     }
 
     /// An image of one gray texel in place of a file that does not exist.
@@ -121,13 +135,29 @@ fn refused(path: &Path, refusal: Refusal) -> ImageFault {
 /// How far rounding may carry a texel beyond its range: one step of 16-bit floats above 1.
 const ROUNDING: f32 = 1.0 / 1024.0;
 
-/// Moves texels that rounding has carried below 0 or above `most` into that range; tells of them.
+/// Texels of an image that were moved into their range.
+#[derive(Clone, Debug, Default)]
+struct Moved {
+    count: usize,
+    worst: f32,
+    /// The value that was worst, and its place.
+    what: String,
+}
+
+impl Moved {
+    fn said(&self) -> Option<String> {
+        let Self { count, what, .. } = self;
+        let noun = if *count == 1 { "value" } else { "values" };
+        (*count > 0).then(|| format!("{count} {noun} out of range by rounding, the worst is {what}"))
+    }
+}
+
+/// Moves texels that rounding has carried below 0 or above `most` into that range.
 ///
 /// # Errors
 /// A texel that is further out, or not finite.
-fn bound(image: &mut ImageData, most: f32) -> Result<Option<String>, String> {
-    let Texels::Float(texels) = &mut image.texels else { return Ok(None) };
-    let (mut count, mut worst, mut said) = (0, 0.0, String::new());
+fn bound(image: &mut ImageData, most: f32, moved: &mut Moved) -> Result<(), String> {
+    let Texels::Float(texels) = &mut image.texels else { return Ok(()) };
     for (index, texel) in texels.iter_mut().enumerate() {
         if texel.iter().all(|value| (0.0..=most).contains(value)) {
             continue;
@@ -146,21 +176,19 @@ fn bound(image: &mut ImageData, most: f32) -> Result<Option<String>, String> {
                 };
                 return Err(format!("texel ({x}, {y}) is {value}, {why}"));
             } else if excess > 0.0 {
-                count += 1;
-                if excess > worst {
-                    (worst, said) = (excess, format!("{value:e} at texel ({x}, {y})"));
+                moved.count += 1;
+                if excess > moved.worst {
+                    (moved.worst, moved.what) = (excess, format!("{value:?} at texel ({x}, {y})"));
                 }
                 *value = inside;
             }
         }
     }
-    let noun = if count == 1 { "value" } else { "values" };
-    Ok((count > 0).then(|| format!("{count} {noun} out of range by rounding, the worst is {said}")))
+    Ok(())
 }
 
 impl ImageStore {
-    /// An image, and whether it has alpha below 1.
-    fn read(&mut self, path: &Path, space: Option<ColorSpace>) -> Result<(ImageData, bool), ImageFault> {
+    fn read(&mut self, path: &Path, space: Option<ColorSpace>) -> Result<Loaded, ImageFault> {
         let mut file = self.open(path)?;
         let mut head = Vec::new();
         file.by_ref().take(HEAD as u64).read_to_end(&mut head).map_err(|error| fault(path, error))?;
@@ -217,7 +245,7 @@ impl ImageStore {
         file: BufReader<File>,
         format: ImageFormat,
         space: Option<ColorSpace>,
-    ) -> Result<(ImageData, bool), ImageFault> {
+    ) -> Result<Loaded, ImageFault> {
         let mut reader = ImageReader::with_format(file, format);
         let mut limits = Limits::no_limits();
         // For what decoders need beside the pixels, which are counted here.
@@ -232,7 +260,7 @@ impl ImageStore {
         path: &Path,
         decoder: impl ImageDecoder,
         space: Option<ColorSpace>,
-    ) -> Result<(ImageData, bool), ImageFault> {
+    ) -> Result<Loaded, ImageFault> {
         let (width, height) = decoder.dimensions();
         if width == 0 || height == 0 {
             return Err(fault(path, "it has no pixels"));
@@ -258,23 +286,23 @@ impl ImageStore {
             }
             _ => Texels::Rgba8 { srgb, data: image.into_rgba8().pixels().map(|pixel| pixel.0).collect() },
         };
-        Ok((ImageData { path: path.display().to_string(), width, height, texels }, transparent))
+        Ok((ImageData { path: path.display().to_string(), width, height, texels }, transparent, Vec::new()))
     }
 
-    fn read_exr(&mut self, path: &Path, mut file: BufReader<File>) -> Result<(ImageData, bool), ImageFault> {
+    fn read_exr(&mut self, path: &Path, mut file: BufReader<File>) -> Result<Loaded, ImageFault> {
         let meta = MetaData::read_from_buffered(&mut file, false).map_err(|error| fault(path, error))?;
         let pixels = meta.headers.iter().map(|header| header.layer_size.area() as u64);
         self.spend(path, pixels.max().unwrap_or(0), 12)?;
         let chosen = exr_image::choose(&meta).map_err(|why| fault(path, why))?;
-        file.rewind().map_err(|error| fault(path, error))?;
-        let picture = exr_image::read(file, chosen).map_err(|error| fault(path, error))?;
+        let unread = chosen.unread.clone();
+        let picture = exr_image::read(file, &meta, chosen).map_err(|error| fault(path, error))?;
         let data = ImageData {
             path: path.display().to_string(),
             width: picture.width as u32,
             height: picture.height as u32,
             texels: Texels::Float(picture.texels),
         };
-        Ok((data, picture.transparent))
+        Ok((data, picture.transparent, unread))
     }
 }
 

@@ -98,8 +98,8 @@ impl Loader<'_, '_> {
             let message = format!("the alpha channel of {file} is not used");
             self.report.warn(at.clone(), message, "every texel counts as opaque");
         }
-        if let Some(message) = self.images.take_rounded(image) {
-            self.report.warn(at, message, "read as the limit");
+        for (message, label) in self.images.take_notes(image) {
+            self.report.warn(at.clone(), message, label);
         }
     }
 

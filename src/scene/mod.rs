@@ -11,6 +11,7 @@ mod appearance;
 mod check;
 mod encoding;
 mod exr_image;
+mod exr_subsampled;
 pub mod file;
 mod findings;
 mod geometry;

@@ -295,8 +295,8 @@ impl<'t> Reader<'_, 't> {
                         format!("the alpha channel of map_Kd of material {} is not used", self.name);
                     self.warnings.push(at.clone(), message, "every texel counts as opaque");
                 }
-                if let Some(message) = target.images.take_rounded(image) {
-                    self.warnings.push(at, message, "read as the limit");
+                for (message, label) in target.images.take_notes(image) {
+                    self.warnings.push(at.clone(), message, label);
                 }
                 let (filter, wrap) = Default::default();
                 let kind = TextureKind::Image { image, filter, wrap, scale: [1.0; 2] };
