@@ -115,8 +115,14 @@ fn decompress(header: &Header, compressed: Vec<u8>, section: IntegerBounds) -> R
         {
             (IntegerBounds::new(Vec2(0, 0), Vec2(1, 1)), size)
         }
-        _ if even && size.is_multiple_of(width * lines) => (section, size / (width * lines)),
-        _ => return Err(Error::NotSupported("channels of several resolutions at this size".into())),
+        // The crate's B44 takes channels for equally large, and panics.
+        Compression::PIZ | Compression::PXR24 if even && size.is_multiple_of(width * lines) => {
+            (section, size / (width * lines))
+        }
+        other => {
+            let what = format!("channels of several resolutions with {other}");
+            return Err(Error::NotSupported(what.into()));
+        }
     };
     header.channels.bytes_per_pixel = bytes_per_pixel;
     let bytes = header.compression.decompress_image_section_from_le(&header, compressed, section, false)?;
