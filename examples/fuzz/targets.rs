@@ -63,7 +63,7 @@ impl Target {
                 told(scene(reader("mesh.obj", "").as_bytes()).map(warnings))
             }
             Self::Texture => {
-                // EXR files are told by their names, the others by their first bytes.
+                // The content decides the format.
                 let name = if input.starts_with(&[0x76, 0x2f, 0x31, 0x01]) { "sky.exr" } else { "sky.png" };
                 write(folder, name, input);
                 let text = format!(

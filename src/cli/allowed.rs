@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use caustica::scene::{self, Allowance, Loaded};
-use clap::Args;
+use caustica::scene::{self, Allowance, Loaded, Missing};
+use clap::{Args, ValueEnum};
 
 use super::Failure;
 
@@ -18,6 +18,26 @@ pub struct Allowed {
     /// texture-bytes, picture-pixels or errors, as in triangles=1e6; may be given several times
     #[arg(long, value_name = "NAME=N", value_parser = limit)]
     limit: Vec<(String, u64)>,
+    /// What an MTL or texture file that does not exist is: an error, or a warning and mid-gray in its place
+    #[arg(long, value_name = "WHAT", value_enum, default_value_t)]
+    missing: OnMissing,
+}
+
+/// What becomes of a scene with missing files.
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+enum OnMissing {
+    #[default]
+    Error,
+    Warn,
+}
+
+impl From<OnMissing> for Missing {
+    fn from(missing: OnMissing) -> Self {
+        match missing {
+            OnMissing::Error => Self::Error,
+            OnMissing::Warn => Self::Warn,
+        }
+    }
 }
 
 impl Allowed {
@@ -27,7 +47,8 @@ impl Allowed {
             let what = format!("--root {}: there is no such folder", root.display());
             return Err(Failure::wrong_use(&what, "name the folder that holds the scene and its files"));
         }
-        let mut allowance = Allowance { root: self.root.clone(), ..Allowance::default() };
+        let (root, missing) = (self.root.clone(), self.missing.into());
+        let mut allowance = Allowance { root, missing, ..Allowance::default() };
         for (name, value) in &self.limit {
             if let Some(limit) = allowance.limit(name) {
                 *limit = *value;

@@ -5,12 +5,32 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
+/// What becomes of a scene that names an MTL or texture file that does not exist.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Missing {
+    /// Refuse the scene.
+    #[default]
+    Error,
+    /// Warn, and render what the file would have colored in mid-gray ([`Missing::STAND_IN`]).
+    Warn,
+}
+
+impl Missing {
+    /// Reflectance of surfaces whose material or texture is missing.
+    pub const STAND_IN: f64 = 0.5;
+
+    /// How to go on without a file, for errors about it.
+    pub(super) const ADVICE: &str = "or render it in gray: --missing warn";
+}
+
 /// Where the files of a scene may lie, and limits that are checked before memory is taken. docs/hostile-input.md tells
 /// what they promise.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Allowance {
     /// The folder that holds every file that may be read, the scene's own among them, links resolved; `None` is everywhere.
     pub root: Option<PathBuf>,
+    /// What becomes of MTL and texture files that do not exist.
+    pub missing: Missing,
     /// Bytes of a scene or profile file.
     pub scene_bytes: u64,
     /// `[[shapes]]` of a scene.
@@ -35,6 +55,7 @@ impl Default for Allowance {
     fn default() -> Self {
         Self {
             root: None,
+            missing: Missing::default(),
             scene_bytes: 64 << 20,
             shapes: 1_000_000,
             mesh_bytes: 2 << 30,
@@ -93,6 +114,21 @@ impl Allowance {
     /// As [`Self::open`], and its bytes.
     pub(super) fn read(&self, path: &Path, most: (&'static str, u64)) -> Result<Vec<u8>, Refusal> {
         bytes(self.open(path, most)?, most)
+    }
+
+    /// Whether a path leads to a file that may be read.
+    pub(super) fn has(&self, path: &Path) -> bool {
+        self.place(path).is_ok_and(|place| place.is_file())
+    }
+
+    /// The file of a name in a folder. Names written on Windows separate folders by backslashes.
+    pub(super) fn find(&self, folder: &Path, name: &str) -> PathBuf {
+        let path = folder.join(name);
+        if !name.contains('\\') || self.has(&path) {
+            return path;
+        }
+        let slashed = folder.join(name.replace('\\', "/"));
+        if self.has(&slashed) { slashed } else { path }
     }
 
     /// The bytes of a scene or profile file. Where nothing is confined it may be a pipe.

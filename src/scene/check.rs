@@ -7,7 +7,7 @@ use std::ops::Range;
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value as Json};
 
-use super::numbers::{LARGEST, SMALLEST};
+use super::numbers::{LARGEST, SMALLEST, rounded_into};
 use super::report::{Report, list};
 use super::schema::{alternatives, describe, has_type, in_range, listed_strings, tag};
 use super::tree::Node;
@@ -182,6 +182,11 @@ impl<'c> Checker<'c> {
             );
             return Some(Json::from(1.0));
         }
+        if let Some(inside) = rounded(schema, number) {
+            let message = format!("`{path}` = {number} is out of range by rounding");
+            self.report.warn(node.span(), message, format!("read as {inside}"));
+            return Some(Json::from(inside));
+        }
         let fits = in_range(schema, number) && integer_fits(schema, number);
         if !fits {
             let message = format!("`{path}` = {number} is out of range");
@@ -327,6 +332,16 @@ impl<'c> Checker<'c> {
 
 fn description(schema: &Json) -> Option<String> {
     schema["description"].as_str().map(|text| text.replace('\n', " "))
+}
+
+/// The nearest number of a range that one lies beyond by a rounding error.
+fn rounded(schema: &Json, number: f64) -> Option<f64> {
+    if in_range(schema, number) || has_type(schema, "integer") {
+        return None;
+    }
+    let least = schema["minimum"].as_f64().unwrap_or(f64::NEG_INFINITY);
+    let most = schema["maximum"].as_f64().unwrap_or(f64::INFINITY);
+    rounded_into(number, least, most).filter(|&inside| in_range(schema, inside))
 }
 
 fn integer_fits(schema: &Json, number: f64) -> bool {

@@ -1,17 +1,19 @@
-//! Image files: png and jpg (8 or 16 bits), hdr and exr.
+//! Image files: png and jpg (8 or 16 bits), hdr and exr, told by their content.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
-use std::io::BufReader;
+use std::io::{BufReader, Read, Seek};
 use std::path::{Path, PathBuf};
 
 use exr::meta::MetaData;
-use exr::prelude::{ReadChannels, ReadLayers};
-use image::{DynamicImage, ImageDecoder, ImageReader, Limits};
+use image::codecs::hdr::HdrDecoder;
+use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
 
-use super::allowance::{Allowance, Refusal, within};
+use super::allowance::{Allowance, Missing, Refusal, within};
 use super::appearance::{ImageData, Texels};
+use super::exr_image;
 use super::file::ColorSpace;
+use super::image_bytes::{Format, HEAD, jpeg_fault, with_radiance_line};
 use crate::srgb::linear_from_srgb;
 
 /// Why an image cannot be used; `key` is the key in the scene file to blame.
@@ -24,6 +26,12 @@ pub(crate) struct ImageFault {
     pub missing: bool,
 }
 
+/// A warning about an image, and what it becomes.
+pub(crate) type Note = (String, &'static str);
+
+/// Texels, whether alpha is below 1 somewhere, and the names of channels that are not read.
+type Loaded = (ImageData, bool, Vec<String>);
+
 /// Images read so far, each (file, color space) once.
 #[derive(Debug, Default)]
 pub(crate) struct ImageStore {
@@ -32,6 +40,11 @@ pub(crate) struct ImageStore {
     pub files: Vec<PathBuf>,
     known: BTreeMap<(PathBuf, Option<ColorSpace>), usize>,
     transparent: BTreeSet<usize>,
+    /// Texels that were moved into their range, by image.
+    moved: BTreeMap<usize, Moved>,
+    /// What to say of channels that are not read.
+    unread: BTreeMap<usize, String>,
+    stand_ins: BTreeMap<PathBuf, usize>,
     allowance: Allowance,
     /// Bytes of texels of all images, those too that could not be used.
     spent: u64,
@@ -49,14 +62,49 @@ impl ImageStore {
             return Ok(index);
         }
         self.files.push(path.to_owned());
-        let (image, transparent) = self.read(path, space)?;
+        let (mut image, transparent, unread) = self.read(path, space)?;
         let index = self.images.len();
+        let mut moved = Moved::default();
+        bound(&mut image, f32::MAX, &mut moved).map_err(|bad| fault(path, bad))?;
+        self.moved.insert(index, moved);
+        if !unread.is_empty() {
+            let message = format!("the channels {} are not used", unread.join(", "));
+            self.unread.insert(index, message);
+        }
         self.images.push(image);
         self.known.insert((canonical, space), index);
         if transparent {
             self.transparent.insert(index);
         }
         Ok(index)
+    }
+
+    /// Moves texels that rounding has carried above 1 to 1.
+    ///
+    /// # Errors
+    /// A texel that is larger.
+    pub fn bound_by_one(&mut self, path: &Path, index: usize) -> Result<(), ImageFault> {
+        let moved = self.moved.entry(index).or_default();
+        bound(&mut self.images[index], 1.0, moved).map_err(|bad| fault(path, bad))
+    }
+
+    /// What to say of an image that is not used as it is; once.
+    pub fn take_notes(&mut self, index: usize) -> Vec<Note> {
+        let moved = self.moved.remove(&index).and_then(|moved| moved.said());
+        let moved = moved.map(|message| (message, "read as the limit"));
+        let unread = self.unread.remove(&index).map(|message| (message, "read in gray"));
+        let notes = moved.into_iter().chain(unread);
+        notes.map(|(message, label)| (format!("{}: {message}", self.images[index].path), label)).collect()
+    }
+
+    /// An image of one gray texel in place of a file that does not exist.
+    pub fn stand_in(&mut self, path: &Path) -> usize {
+        let images = &mut self.images;
+        *self.stand_ins.entry(path.to_owned()).or_insert_with(|| {
+            let texels = Texels::Float(vec![[Missing::STAND_IN as f32; 3]]);
+            images.push(ImageData { path: path.display().to_string(), width: 1, height: 1, texels });
+            images.len() - 1
+        })
     }
 
     /// Whether an image has an alpha channel that is not 1 everywhere.
@@ -84,35 +132,94 @@ fn refused(path: &Path, refusal: Refusal) -> ImageFault {
     ImageFault { help: refusal.help(), missing: refusal.is_missing(), ..fault(path, refusal) }
 }
 
-/// A texel of an EXR file; alpha is 1 in a file without.
-type Rgba = (f32, f32, f32, f32);
+/// How far rounding may carry a texel beyond its range: one step of 16-bit floats above 1.
+const ROUNDING: f32 = 1.0 / 1024.0;
 
-impl ImageStore {
-    /// An image, and whether it has alpha below 1.
-    fn read(&mut self, path: &Path, space: Option<ColorSpace>) -> Result<(ImageData, bool), ImageFault> {
-        let is_exr = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("exr"));
-        let (data, transparent) = if is_exr { self.read_exr(path)? } else { self.read_common(path, space)? };
-        if let Texels::Float(texels) = &data.texels {
-            if space == Some(ColorSpace::Srgb) && is_linear_file(path) {
-                return Err(ImageFault {
-                    key: "color_space",
-                    message: format!("{} holds linear numbers", path.display()),
-                    expected: "expected \"linear\", or nothing",
-                    help: None,
-                    missing: false,
-                });
-            }
-            let bad =
-                texels.iter().position(|texel| texel.iter().any(|&value| !value.is_finite() || value < 0.0));
-            if let Some(index) = bad {
-                let (x, y) = (index % data.width as usize, index / data.width as usize);
-                return Err(fault(
-                    path,
-                    format!("texel ({x}, {y}) is {:?}, negative or not finite", texels[index]),
-                ));
+/// Texels of an image that were moved into their range.
+#[derive(Clone, Debug, Default)]
+struct Moved {
+    count: usize,
+    worst: f32,
+    /// The value that was worst, and its place.
+    what: String,
+}
+
+impl Moved {
+    fn said(&self) -> Option<String> {
+        let Self { count, what, .. } = self;
+        let noun = if *count == 1 { "value" } else { "values" };
+        (*count > 0).then(|| format!("{count} {noun} out of range by rounding, the worst is {what}"))
+    }
+}
+
+/// Moves texels that rounding has carried below 0 or above `most` into that range.
+///
+/// # Errors
+/// A texel that is further out, or not finite.
+fn bound(image: &mut ImageData, most: f32, moved: &mut Moved) -> Result<(), String> {
+    let Texels::Float(texels) = &mut image.texels else { return Ok(()) };
+    for (index, texel) in texels.iter_mut().enumerate() {
+        if texel.iter().all(|value| (0.0..=most).contains(value)) {
+            continue;
+        }
+        let (x, y) = (index % image.width as usize, index / image.width as usize);
+        for value in texel {
+            let inside = value.clamp(0.0, most);
+            let excess = (*value - inside).abs();
+            if !value.is_finite() {
+                return Err(format!("texel ({x}, {y}) is {value}, not finite"));
+            } else if excess > ROUNDING {
+                let why = if *value < 0.0 {
+                    "negative"
+                } else {
+                    "above 1; a surface cannot reflect more than it receives"
+                };
+                return Err(format!("texel ({x}, {y}) is {value}, {why}"));
+            } else if excess > 0.0 {
+                moved.count += 1;
+                if excess > moved.worst {
+                    (moved.worst, moved.what) = (excess, format!("{value:?} at texel ({x}, {y})"));
+                }
+                *value = inside;
             }
         }
-        Ok((data, transparent))
+    }
+    Ok(())
+}
+
+impl ImageStore {
+    fn read(&mut self, path: &Path, space: Option<ColorSpace>) -> Result<Loaded, ImageFault> {
+        let mut file = self.open(path)?;
+        let mut head = Vec::new();
+        file.by_ref().take(HEAD as u64).read_to_end(&mut head).map_err(|error| fault(path, error))?;
+        file.rewind().map_err(|error| fault(path, error))?;
+        let format = Format::of(&head).map_err(|other| fault(path, other))?;
+        if space == Some(ColorSpace::Srgb) && format.is_linear() {
+            return Err(ImageFault {
+                key: "color_space",
+                message: format!("{} holds linear numbers", path.display()),
+                expected: "expected \"linear\", or nothing",
+                help: None,
+                missing: false,
+            });
+        }
+        match format {
+            Format::Exr => self.read_exr(path, file),
+            Format::Hdr => {
+                let file = with_radiance_line(file).map_err(|error| fault(path, error))?;
+                let decoder = HdrDecoder::new(file).map_err(|error| fault(path, error))?;
+                self.decode(path, decoder, space)
+            }
+            Format::Jpeg => {
+                if let Some(why) = jpeg_fault(&mut file) {
+                    let help = "save it again with one scan, or as PNG".to_owned();
+                    return Err(ImageFault { help: Some(help), ..fault(path, why) });
+                }
+                file.rewind().map_err(|error| fault(path, error))?;
+                self.read_common(path, file, ImageFormat::Jpeg, space)
+            }
+            Format::Png => self.read_common(path, file, ImageFormat::Png, space),
+        }
     }
 
     fn open(&self, path: &Path) -> Result<BufReader<File>, ImageFault> {
@@ -135,15 +242,25 @@ impl ImageStore {
     fn read_common(
         &mut self,
         path: &Path,
+        file: BufReader<File>,
+        format: ImageFormat,
         space: Option<ColorSpace>,
-    ) -> Result<(ImageData, bool), ImageFault> {
-        let mut reader =
-            ImageReader::new(self.open(path)?).with_guessed_format().map_err(|error| fault(path, error))?;
+    ) -> Result<Loaded, ImageFault> {
+        let mut reader = ImageReader::with_format(file, format);
         let mut limits = Limits::no_limits();
         // For what decoders need beside the pixels, which are counted here.
         limits.max_alloc = Some(self.allowance.texture_bytes.saturating_add(DECODER_BYTES));
         reader.limits(limits);
         let decoder = reader.into_decoder().map_err(|error| fault(path, error))?;
+        self.decode(path, decoder, space)
+    }
+
+    fn decode(
+        &mut self,
+        path: &Path,
+        decoder: impl ImageDecoder,
+        space: Option<ColorSpace>,
+    ) -> Result<Loaded, ImageFault> {
         let (width, height) = decoder.dimensions();
         if width == 0 || height == 0 {
             return Err(fault(path, "it has no pixels"));
@@ -169,37 +286,23 @@ impl ImageStore {
             }
             _ => Texels::Rgba8 { srgb, data: image.into_rgba8().pixels().map(|pixel| pixel.0).collect() },
         };
-        Ok((ImageData { path: path.display().to_string(), width, height, texels }, transparent))
+        Ok((ImageData { path: path.display().to_string(), width, height, texels }, transparent, Vec::new()))
     }
 
-    fn read_exr(&mut self, path: &Path) -> Result<(ImageData, bool), ImageFault> {
-        let meta =
-            MetaData::read_from_buffered(self.open(path)?, false).map_err(|error| fault(path, error))?;
+    fn read_exr(&mut self, path: &Path, mut file: BufReader<File>) -> Result<Loaded, ImageFault> {
+        let meta = MetaData::read_from_buffered(&mut file, false).map_err(|error| fault(path, error))?;
         let pixels = meta.headers.iter().map(|header| header.layer_size.area() as u64);
         self.spend(path, pixels.max().unwrap_or(0), 12)?;
-        let image = exr::prelude::read()
-            .no_deep_data()
-            .largest_resolution_level()
-            .rgba_channels(
-                |size, _| (size.width(), vec![[0.0f32; 3]; size.area()], false),
-                |(width, texels, transparent): &mut (usize, Vec<[f32; 3]>, bool), at, (r, g, b, a): Rgba| {
-                    texels[at.y() * *width + at.x()] = [r, g, b];
-                    *transparent |= a < 1.0;
-                },
-            )
-            .first_valid_layer()
-            .all_attributes()
-            .from_buffered(self.open(path)?)
-            .map_err(|error| fault(path, error))?;
-        let size = image.layer_data.size;
-        let (_, texels, transparent) = image.layer_data.channel_data.pixels;
+        let chosen = exr_image::choose(&meta).map_err(|why| fault(path, why))?;
+        let unread = chosen.unread.clone();
+        let picture = exr_image::read(file, &meta, chosen).map_err(|error| fault(path, error))?;
         let data = ImageData {
             path: path.display().to_string(),
-            width: size.width() as u32,
-            height: size.height() as u32,
-            texels: Texels::Float(texels),
+            width: picture.width as u32,
+            height: picture.height as u32,
+            texels: Texels::Float(picture.texels),
         };
-        Ok((data, transparent))
+        Ok((data, picture.transparent, unread))
     }
 }
 
@@ -212,9 +315,4 @@ fn is_transparent(image: &DynamicImage) -> bool {
         DynamicImage::ImageRgba32F(image) => image.pixels().any(|pixel| pixel.0[3] < 1.0),
         _ => false,
     }
-}
-
-fn is_linear_file(path: &Path) -> bool {
-    let extension = path.extension().map(|extension| extension.to_ascii_lowercase());
-    extension.is_some_and(|extension| extension == "exr" || extension == "hdr")
 }

@@ -10,6 +10,7 @@ use super::allowance::{Allowance, within};
 use super::check::{Document, document};
 use super::file::{EnvironmentFile, LightFile, MaterialFile, SceneFile, ShapeFile, TextureFile};
 use super::images::ImageStore;
+use super::libraries::{Own, OwnKey};
 use super::places::Places;
 use super::report::{Finding, Report, SceneErrors, list};
 use super::{Scene, looks, mesh, schema, surfaces, text, view};
@@ -84,8 +85,8 @@ pub(crate) struct Loader<'l, 'a> {
     pub allowance: &'l Allowance,
     /// What meshes have used up of it.
     pub spent: mesh::Spent,
-    /// Materials that meshes have brought along, by name.
-    pub own_materials: HashMap<String, usize>,
+    /// Materials that meshes have brought along.
+    pub own_materials: HashMap<OwnKey, Own>,
     path: &'l Path,
 }
 
@@ -181,7 +182,7 @@ impl<'l, 'a> Loader<'l, 'a> {
 
     /// A path that the scene file names, relative to it.
     pub fn resolve(&self, file: &str) -> PathBuf {
-        self.path.parent().unwrap_or(Path::new("")).join(file)
+        self.allowance.find(self.path.parent().unwrap_or(Path::new("")), file)
     }
 
     /// Reports names of a section that another section calls under `key` and that are not defined.

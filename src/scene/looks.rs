@@ -1,8 +1,12 @@
 //! Meaning of textures and materials.
 
-use super::appearance::{Material, MaterialKind, Reflectance, Texels, Texture, TextureKind};
+use std::path::Path;
+
+use super::allowance::Missing;
+use super::appearance::{Material, MaterialKind, Reflectance, Texture, TextureKind};
 use super::check::Item;
 use super::file::{ColorSpace, MaterialFile, TextureFile};
+use super::images::ImageFault;
 use super::load::Loader;
 use super::numbers::Paint;
 use super::text::nearest_file;
@@ -48,37 +52,65 @@ impl Loader<'_, '_> {
         let path = self.resolve(file);
         match self.images.load(&path, color_space) {
             Ok(image) => {
-                if self.images.is_transparent(image) {
-                    let message = format!("the alpha channel of {file} is not used");
-                    self.report.warn(item.node.span_of("file"), message, "every texel counts as opaque");
-                }
+                self.odd(item, file, image);
                 Some(image)
             }
             Err(fault) => {
-                let near = (fault.missing && !self.report.errors.is_full()).then(|| nearest_file(&path));
-                let help = fault.help.or_else(|| near.flatten().map(|near| format!("did you mean {near}?")));
-                self.report.error(item.node.span_of(fault.key), fault.message, fault.expected, help);
+                self.image_error(item, &path, fault, "");
                 None
             }
         }
     }
 
-    /// As [`Self::image`], for shares of light: no texel above 1.
+    /// As [`Self::image`], for shares of light: no texel above 1. A file that does not exist may be gray.
     fn reflectance_image(
         &mut self,
         item: &Item,
         file: &str,
         color_space: Option<ColorSpace>,
     ) -> Option<usize> {
-        let image = self.image(item, file, color_space)?;
-        if let Texels::Float(texels) = &self.images.images[image].texels {
-            let most = texels.iter().flatten().fold(0.0f32, |most, &value| most.max(value));
-            if most > 1.0 {
-                let message =
-                    format!("{file} has a texel of {most}; a surface cannot reflect more than it receives");
-                self.report.error(item.node.span_of("file"), message, "expected values from 0 to 1", None);
+        let path = self.resolve(file);
+        let loaded = self.images.load(&path, color_space).and_then(|image| {
+            self.images.bound_by_one(&path, image)?;
+            Ok(image)
+        });
+        match loaded {
+            Ok(image) => {
+                self.odd(item, file, image);
+                Some(image)
+            }
+            Err(fault) if fault.missing && self.allowance.missing == Missing::Warn => {
+                self.report.warn(item.node.span_of(fault.key), fault.message, "rendered in gray");
+                Some(self.images.stand_in(&path))
+            }
+            Err(fault) => {
+                let advice = if fault.missing { Missing::ADVICE } else { "" };
+                self.image_error(item, &path, fault, advice);
+                None
             }
         }
-        Some(image)
+    }
+
+    /// Warns of an image that is not used as it is.
+    fn odd(&mut self, item: &Item, file: &str, image: usize) {
+        let at = item.node.span_of("file");
+        if self.images.is_transparent(image) {
+            let message = format!("the alpha channel of {file} is not used");
+            self.report.warn(at.clone(), message, "every texel counts as opaque");
+        }
+        for (message, label) in self.images.take_notes(image) {
+            self.report.warn(at.clone(), message, label);
+        }
+    }
+
+    fn image_error(&mut self, item: &Item, path: &Path, fault: ImageFault, advice: &str) {
+        let near = (fault.missing && !self.report.errors.is_full()).then(|| nearest_file(path));
+        let help = fault.help.or_else(|| near.flatten().map(|near| format!("did you mean {near}?")));
+        let help = match (help, advice) {
+            (help, "") => help,
+            (Some(help), advice) => Some(format!("{help} {advice}")),
+            (None, advice) => Some(format!("name a file that exists, {advice}")),
+        };
+        self.report.error(item.node.span_of(fault.key), fault.message, fault.expected, help);
     }
 }

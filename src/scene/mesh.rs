@@ -1,20 +1,20 @@
 //! Meshes from Wavefront OBJ files, read by tobj.
 
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::HashMap;
 use std::io::Cursor;
 use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::allowance::{Refusal, within};
 use super::appearance::{Material, Rgb, Texture};
 use super::check::Item;
-use super::encoding::{Foreign, unmarked};
 use super::geometry::{Mesh, Transform};
+use super::libraries::{Libraries, Own};
+use super::lines::Text;
 use super::load::Loader;
-use super::report::{SourceFile, did_you_mean};
+use super::obj;
 use super::text::nearest_file;
 use super::triangles::{Builder, Polygon, Steps, vertex_normals};
-use super::{mtl, obj};
 
 /// A mesh as the scene file asks for it.
 pub(super) struct Request<'r> {
@@ -22,6 +22,8 @@ pub(super) struct Request<'r> {
     pub smooth: bool,
     pub material: Option<usize>,
     pub transform: Transform,
+    /// Whether the materials' own emission counts.
+    pub emits: bool,
 }
 
 /// What all meshes so far have used up of what is allowed.
@@ -39,9 +41,6 @@ pub(super) struct Part {
     pub emission: Rgb,
 }
 
-/// Material libraries of an OBJ file by the name it calls them: materials, and the index of each name.
-type Libraries = BTreeMap<PathBuf, (Vec<tobj::Material>, BTreeMap<String, usize>)>;
-
 /// Reads a mesh; one part for each material.
 pub(super) fn load(
     loader: &mut Loader,
@@ -53,15 +52,22 @@ pub(super) fn load(
     let path = loader.resolve(request.file);
     let named_at = item.node.span_of("file");
     loader.report.files.push(path.clone());
-    let source = read(loader, item, &path)?;
-    let text = obj::join_lines(source.text());
+    let text = read(loader, item, &path)?;
     let before = loader.report.errors.found();
-    let mut scan = obj::scan(&text, request.material.is_none());
-    let libraries = libraries(loader, &path, &mut scan, &named_at);
+    let mut scan = obj::scan(text.lines(), request.material.is_none());
+    let mut own = Vec::new();
     if request.material.is_none() {
-        own_materials(&mut scan, &libraries);
+        let mut libraries = Libraries::read(loader, &path, &text, &mut scan);
+        let made = (&mut *textures, &mut *materials);
+        own = libraries.materials(loader, (request.file, &text), &mut scan, request.emits, made);
+        libraries.report(loader, &named_at);
+        if let Some(span) = scan.bare_face.take() {
+            let expected = "expected `usemtl` above, or `material` in the scene file";
+            scan.faults.push(span, "a face without a material", expected);
+        }
     }
-    loader.report.asset_errors(named_at.clone(), &source, scan.faults);
+    loader.report.asset_errors(named_at.clone(), &text.source, scan.faults);
+    loader.report.asset_warnings(named_at.clone(), &text.source, scan.warnings);
     if loader.report.errors.found() > before {
         return None;
     }
@@ -80,65 +86,45 @@ pub(super) fn load(
         loader.report.warn(named_at.clone(), message, "in this file");
     }
     let options = tobj::LoadOptions { single_index: true, ..Default::default() };
-    let loaded = tobj::load_obj_buf(&mut Cursor::new(&scan.cleaned), &options, |library| {
-        let (materials, names) = libraries.get(library).cloned().unwrap_or_default();
-        Ok((materials, names.into_iter().collect()))
+    let loaded = tobj::load_obj_buf(&mut Cursor::new(&scan.cleaned), &options, |_| {
+        let names = (0..own.len()).map(|index| (index.to_string(), index)).collect();
+        Ok((vec![tobj::Material::default(); own.len()], names))
     });
-    let (models, own) = match loaded {
-        Ok((models, own)) => (models, own.unwrap_or_default()),
+    let models = match loaded {
+        Ok((models, _)) => models,
         Err(error) => {
             let message = format!("cannot read mesh {}: {error}", request.file);
             loader.report.error(named_at, message, "expected a Wavefront OBJ file", None);
             return None;
         }
     };
-    let built = build(&models, request, &mut loader.spent.steps);
+    let built = build(&models, request, &own, &mut loader.spent.steps);
     if loader.spent.steps.are_used_up() {
         let message = format!("the faces of {} are too intricate to cut into triangles", request.file);
         let help = "triangulate the mesh where it comes from";
         loader.report.error(named_at, message, "expected faces with fewer corners", Some(help.into()));
         return None;
     }
-    report_counts(loader, request.file, &named_at, &built);
-    let folder = path.parent().unwrap_or(Path::new(""));
-    let mut parts = Vec::new();
-    for (own_id, mesh) in built.parts {
-        let part = match (request.material, own_id.and_then(|id| own.get(id))) {
-            (Some(material), _) => Part { mesh, material, emission: [0.0; 3] },
-            (None, Some(own)) => {
-                let name = format!("{}:{}", request.file, own.name);
-                let known = loader.own_materials.get(&name).copied();
-                let material = known.unwrap_or_else(|| {
-                    let (material, unused) =
-                        mtl::material(name.clone(), own, folder, &mut loader.images, textures);
-                    for key in unused {
-                        let message = format!("{key} of material {name} is not used");
-                        loader.report.warn(named_at.clone(), message, "in this file's MTL");
-                    }
-                    materials.push(material);
-                    loader.own_materials.insert(name, materials.len() - 1);
-                    materials.len() - 1
-                });
-                Part { mesh, material, emission: own.emissive.unwrap_or([0.0; 3]) }
-            }
-            (None, None) => continue,
-        };
-        parts.push(part);
+    if built.faces != scan.faces {
+        let message = format!("{} of {} faces of {} were read", built.faces, scan.faces, request.file);
+        loader.report.error(named_at, message, "expected all", None);
+        return None;
     }
-    if parts.is_empty() {
+    report_counts(loader, request.file, &named_at, &built);
+    if built.parts.is_empty() {
         let message = format!("{} has no triangles", request.file);
         loader.report.error(named_at, message, "expected a mesh with faces", None);
     }
-    Some(parts)
+    Some(built.parts)
 }
 
 /// Most keywords that are warned of.
 const MOST_KEYWORDS: usize = 20;
 
-fn read(loader: &mut Loader, item: &Item, path: &Path) -> Option<SourceFile> {
-    match bytes(loader, path) {
-        Ok(bytes) => match source(path, &bytes) {
-            Ok(source) => Some(source),
+fn read(loader: &mut Loader, item: &Item, path: &Path) -> Option<Text> {
+    match loader.mesh_bytes(path) {
+        Ok(bytes) => match Text::decode(path, &bytes) {
+            Ok(text) => Some(text),
             Err(foreign) => {
                 let message = format!("{}: {foreign}", path.display());
                 let label = "expected a Wavefront OBJ file";
@@ -157,113 +143,49 @@ fn read(loader: &mut Loader, item: &Item, path: &Path) -> Option<SourceFile> {
     }
 }
 
-/// The bytes of an OBJ or MTL file.
-fn bytes(loader: &mut Loader, path: &Path) -> Result<Vec<u8>, Refusal> {
-    let left = loader.allowance.mesh_bytes - loader.spent.bytes;
-    let bytes = loader.allowance.read(path, ("mesh-bytes", left))?;
-    loader.spent.bytes += bytes.len() as u64;
-    Ok(bytes)
-}
-
-/// The text of a file; of names and comments in an encoding of one byte a character, what is not ASCII is lost.
-fn source(path: &Path, bytes: &[u8]) -> Result<SourceFile, Foreign> {
-    Ok(SourceFile::new(path, String::from_utf8_lossy(unmarked(bytes)?).into_owned()))
-}
-
-fn libraries(loader: &mut Loader, path: &Path, scan: &mut obj::Scan, named_at: &Range<usize>) -> Libraries {
-    let mut libraries = Libraries::new();
-    for (name, span) in std::mem::take(&mut scan.libraries) {
-        let library = path.parent().unwrap_or(Path::new("")).join(name);
-        loader.report.files.push(library.clone());
-        let bytes = match bytes(loader, &library) {
-            Ok(bytes) => bytes,
-            Err(error) => {
-                let message = format!("cannot read {}: {error}", library.display());
-                let near = || nearest_file(&library).filter(|_| error.is_missing() && !scan.faults.is_full());
-                let mend = error.help().or_else(|| near().map(|near| format!("did you mean {near}?")));
-                scan.faults.push(span, message, mend.unwrap_or_else(|| "expected an MTL file".to_owned()));
-                continue;
-            }
-        };
-        let source = match source(&library, &bytes) {
-            Ok(source) => source,
-            Err(foreign) => {
-                let message = format!("{}: {foreign}", library.display());
-                scan.faults.push(span, message, foreign.help());
-                continue;
-            }
-        };
-        let folder = library.parent().unwrap_or(Path::new(""));
-        let found = mtl::scan(source.text(), folder, &mut loader.images);
-        let materials = match tobj_materials(&found) {
-            Ok(materials) => materials,
-            Err(error) => {
-                let message = format!("cannot read {}: {error}", library.display());
-                scan.faults.push(span, message, "expected an MTL file");
-                continue;
-            }
-        };
-        let names = found.names.iter().enumerate().map(|(index, &name)| (name.to_owned(), index));
-        libraries.insert(name.into(), (materials, names.collect()));
-        loader.report.asset_errors(named_at.clone(), &source, found.faults);
-    }
-    libraries
-}
-
-/// The materials of a library, in its order; none when it has faults, which tobj may not survive.
-fn tobj_materials(found: &mtl::Scan) -> Result<Vec<tobj::Material>, tobj::LoadError> {
-    if !found.faults.is_empty() {
-        return Ok(Vec::new());
-    }
-    tobj::load_mtl_buf(&mut Cursor::new(&found.cleaned)).map(|(materials, _)| materials)
-}
-
-/// Holds the materials that faces call against those that the libraries define.
-fn own_materials(scan: &mut obj::Scan, libraries: &Libraries) {
-    let known: BTreeSet<_> =
-        libraries.values().flat_map(|(_, names)| names.keys().map(String::as_str)).collect();
-    for (name, span) in scan.uses.iter().filter(|(name, _)| !name.is_empty() && !known.contains(name)) {
-        let other = "expected a material of the file's MTL";
-        let advise = !scan.faults.is_full();
-        let expected =
-            if advise { did_you_mean(name, known.iter().copied(), other) } else { other.to_owned() };
-        let message = format!("material `{name}` is not defined");
-        scan.faults.push(span.clone(), message, expected);
-    }
-    if let Some(span) = scan.bare_face.take() {
-        let expected = "expected `usemtl` above, or `material` in the scene file";
-        scan.faults.push(span, "a face without a material", expected);
+impl Loader<'_, '_> {
+    /// The bytes of an OBJ or MTL file.
+    pub fn mesh_bytes(&mut self, path: &Path) -> Result<Vec<u8>, Refusal> {
+        let left = self.allowance.mesh_bytes - self.spent.bytes;
+        let bytes = self.allowance.read(path, ("mesh-bytes", left))?;
+        self.spent.bytes += bytes.len() as u64;
+        Ok(bytes)
     }
 }
 
 struct Built {
-    parts: Vec<(Option<usize>, Mesh)>,
+    parts: Vec<Part>,
     degenerate: usize,
     unusable_normals: usize,
+    /// Faces that have become part of a mesh: all, or something is wrong here.
+    faces: u64,
 }
 
-/// Triangles in the world, grouped by the file's own materials unless the scene gives one.
-fn build(models: &[tobj::Model], request: &Request, steps: &mut Steps) -> Built {
+/// Triangles in the world, grouped by material.
+fn build(models: &[tobj::Model], request: &Request, own: &[Option<Own>], steps: &mut Steps) -> Built {
     let corners: Vec<_> = models.iter().map(|model| Polygon::of(&model.mesh)).collect();
     let shared = request.smooth.then(|| vertex_normals(corners.iter().flatten(), steps));
-    let mut builders: Vec<(Option<usize>, Builder)> = Vec::new();
-    let mut known = HashMap::new();
+    let mut builders: Vec<(Own, Builder)> = Vec::new();
+    let (mut known, mut faces) = (HashMap::new(), 0);
     for (model, polygons) in models.iter().zip(&corners) {
-        let id = model.mesh.material_id.filter(|_| request.material.is_none());
-        let at = *known.entry(id).or_insert_with(|| {
-            builders.push((id, Builder::new(request.transform)));
+        let given = request.material.map(|material| Own { material, emission: [0.0; 3] });
+        let called = || own.get(model.mesh.material_id?)?.clone();
+        let Some(material) = given.or_else(called) else { continue };
+        let at = *known.entry(material.material).or_insert_with(|| {
+            builders.push((material, Builder::new(request.transform)));
             builders.len() - 1
         });
+        faces += polygons.len() as u64;
         for polygon in polygons {
             builders[at].1.add(polygon, shared.as_ref(), steps);
         }
     }
-    let mut built = Built { parts: Vec::new(), degenerate: 0, unusable_normals: 0 };
-    for (id, builder) in builders {
+    let mut built = Built { parts: Vec::new(), degenerate: 0, unusable_normals: 0, faces };
+    for (Own { material, emission }, builder) in builders {
         built.degenerate += builder.degenerate;
         built.unusable_normals += builder.unusable_normals;
         if !builder.mesh.triangles.is_empty() {
-            built.parts.push((id, builder.mesh));
+            built.parts.push(Part { mesh: builder.mesh, material, emission });
         }
     }
     built

@@ -10,10 +10,15 @@ mod aov;
 mod appearance;
 mod check;
 mod encoding;
+mod exr_image;
+mod exr_subsampled;
 pub mod file;
 mod findings;
 mod geometry;
+mod image_bytes;
 mod images;
+mod libraries;
+mod lines;
 mod load;
 mod looks;
 mod mesh;
@@ -35,7 +40,7 @@ use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-pub use allowance::Allowance;
+pub use allowance::{Allowance, Missing};
 pub use aov::{Aov, Aovs};
 pub use appearance::{
     Filter, ImageData, Material, MaterialKind, Reflectance, Rgb, Texels, Texture, TextureKind, Wrap,

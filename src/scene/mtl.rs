@@ -1,176 +1,402 @@
-//! Materials that an OBJ file brings along in its MTL file.
+//! Materials that an OBJ file brings along in its MTL file. Only those that faces use are read, and of them only what
+//! their kind uses; the rest gives warnings at most.
 
 use std::ops::Range;
-use std::path::Path;
+use std::path::PathBuf;
 
-use super::appearance::{Filter, Material, MaterialKind, Reflectance, Texels, Texture, TextureKind, Wrap};
-use super::images::ImageStore;
-use super::numbers::{BRIGHTEST, LARGEST};
-use super::obj::{Word, argument, words};
-use super::report::Faults;
+use super::allowance::{Allowance, Missing};
+use super::appearance::{Material, MaterialKind, Reflectance, Rgb, Texture, TextureKind};
+use super::images::{ImageFault, ImageStore};
+use super::lines::{Statement, Text, Word, finite, readings, statements};
+use super::numbers::{BRIGHTEST, LARGEST, Rounded, rounded_into};
+use super::report::{Faults, nearest};
 
 /// Index of refraction of a transparent MTL material that gives none.
 const DEFAULT_IOR: f64 = 1.5;
 /// Diffuse reflectance of an MTL material that gives none.
 const DEFAULT_DIFFUSE: [f64; 3] = [0.8; 3];
 
-/// What a first look at an MTL file finds.
-#[derive(Debug, Default)]
-pub(super) struct Scan<'t> {
-    /// Statements for tobj to read.
-    pub cleaned: String,
-    /// What tobj does not see, stops at without a line, or panics at.
+/// Keys that are read.
+const READ: [&str; 7] = ["Kd", "Ks", "Ke", "Ni", "d", "illum", "map_Kd"];
+/// Keys of what has no counterpart in a renderer that follows light: ambient and highlights.
+const IDLE: [&str; 4] = ["Ka", "map_Ka", "Ns", "map_aat"];
+/// Keys that other programs read and that change how a surface looks.
+const UNREAD: [&str; 28] = [
+    "Tr",
+    "Tf",
+    "Pr",
+    "Pm",
+    "Ps",
+    "Pc",
+    "Pcr",
+    "aniso",
+    "anisor",
+    "map_Ks",
+    "map_Ns",
+    "map_d",
+    "map_Tr",
+    "map_Ke",
+    "map_Bump",
+    "map_bump",
+    "bump",
+    "norm",
+    "map_Pr",
+    "map_Pm",
+    "map_Ps",
+    "map_Pc",
+    "map_norm",
+    "refl",
+    "map_refl",
+    "disp",
+    "decal",
+    "sharpness",
+];
+
+/// A material file.
+#[derive(Debug)]
+pub(super) struct Library {
+    pub path: PathBuf,
+    pub text: Text,
+    pub entries: Vec<Entry>,
     pub faults: Faults,
-    /// Names of the materials.
-    pub names: Vec<&'t str>,
+    pub warnings: Faults,
+    rounded: Rounded,
 }
 
-/// Looks through an MTL file, and reads the images that it names relative to `folder`.
-pub(super) fn scan<'t>(text: &'t str, folder: &Path, images: &mut ImageStore) -> Scan<'t> {
-    let mut scan = Scan::default();
-    let mut start = 0;
-    for line in text.split_inclusive('\n') {
-        let statement = line.split('#').next().unwrap_or("");
-        let mut words = words(statement, start);
-        if let Some((keyword, at)) = words.next() {
-            scan.numbers(keyword, &at, &words.collect::<Vec<_>>());
-            let argument = argument(statement, start, keyword, &at);
-            scan.name(keyword, &at, argument, folder, images);
-            scan.cleaned.push_str(statement.trim());
-            scan.cleaned.push('\n');
-        }
-        start += line.len();
-    }
-    scan
+/// A material as bytes of its file.
+#[derive(Clone, Debug)]
+pub(super) struct Entry {
+    pub name: Range<usize>,
+    body: Range<usize>,
 }
 
-impl<'t> Scan<'t> {
-    fn fault(&mut self, span: &Range<usize>, message: impl Into<String>, expected: impl Into<String>) {
-        self.faults.push(span.clone(), message, expected);
-    }
-
-    /// Checks the statements that consist of numbers.
-    fn numbers(&mut self, keyword: &str, at: &Range<usize>, rest: &[Word]) {
-        let (count, most) = match keyword {
-            "Kd" | "Ks" => (3, 1.0),
-            "Ka" | "Ke" => (3, BRIGHTEST),
-            "Ni" | "Ns" => (1, LARGEST),
-            "d" => (1, 1.0),
-            "illum" => (1, 255.0),
-            _ => return,
-        };
-        if rest.len() != count {
-            let plural = if count == 1 { "" } else { "s" };
-            let message = format!("`{keyword}` has {} values", rest.len());
-            self.fault(at, message, format!("expected {count} number{plural}"));
-        }
-        for (word, at) in rest.iter().take(count) {
-            let number = word.parse().ok().filter(|number| (0.0..=most).contains(number));
-            if number.is_none_or(|number| keyword == "illum" && number.fract() != 0.0) {
-                let expected = match keyword {
-                    "illum" => "expected a whole number".to_owned(),
-                    _ => format!("expected a number from 0 to {most:e}"),
-                };
-                self.fault(at, format!("`{word}` is out of range or no number"), expected);
-            }
-        }
-    }
-
-    /// Checks the statements that hold a name.
-    fn name(
-        &mut self,
-        keyword: &str,
-        at: &Range<usize>,
-        (name, name_at): Word<'t>,
-        folder: &Path,
-        images: &mut ImageStore,
-    ) {
-        let is_name = keyword == "newmtl" || keyword.starts_with("map_") || keyword == "bump";
-        if is_name && name.is_empty() {
-            self.fault(at, format!("`{keyword}` names nothing"), "expected a name");
-        } else if keyword == "newmtl" {
-            self.names.push(name);
-        } else if keyword == "map_Kd" && name.starts_with('-') {
-            self.fault(&name_at, "options of `map_Kd` are not supported", "expected a file name");
-        } else if keyword == "map_Kd" {
-            match images.load(&folder.join(name), None) {
-                Err(fault) => {
-                    let expected = fault.help.unwrap_or_else(|| fault.expected.to_owned());
-                    self.fault(&name_at, fault.message, expected);
+impl Library {
+    /// Finds the materials of a file.
+    pub fn new(path: PathBuf, text: Text) -> Self {
+        let (mut entries, mut warnings) = (Vec::<Entry>::new(), Faults::warnings());
+        let lines = text.lines();
+        let mut stray = None;
+        for statement in statements(lines, 0..lines.len()) {
+            let (name, span) = statement.name();
+            let begin = statement.at.start;
+            if statement.keyword != "newmtl" {
+                if entries.is_empty() {
+                    stray = stray.or(Some(statement.at));
                 }
-                Ok(image) if exceeds_one(images, image) => {
-                    self.fault(
-                        &name_at,
-                        format!("{name} has a texel above 1"),
-                        "expected values from 0 to 1",
-                    );
-                }
-                Ok(_) => {}
+                continue;
             }
+            if let Some(last) = entries.last_mut() {
+                last.body.end = lines[..begin].rfind('\n').map_or(0, |end| end + 1);
+            }
+            if name.is_empty() {
+                warnings.push(statement.at, "`newmtl` names nothing", "expected a name");
+            }
+            entries.push(Entry { name: span, body: line_end(lines, begin)..lines.len() });
         }
+        if let Some(at) = stray {
+            warnings.push(at, "a statement before any `newmtl` is not used", "expected `newmtl` above");
+        }
+        Self { path, text, entries, faults: Faults::default(), warnings, rounded: Rounded::default() }
+    }
+
+    /// The name of a material.
+    pub fn name(&self, entry: usize) -> &str {
+        &self.text.lines()[self.entries[entry].name.clone()]
+    }
+
+    /// Errors and warnings, each once.
+    pub fn take_findings(&mut self) -> (Faults, Faults) {
+        if let Some((at, message)) = std::mem::take(&mut self.rounded).take() {
+            self.warnings.push(at, message, "read as the limit");
+        }
+        (std::mem::take(&mut self.faults), std::mem::replace(&mut self.warnings, Faults::warnings()))
     }
 }
 
-fn exceeds_one(images: &ImageStore, image: usize) -> bool {
-    match &images.images[image].texels {
-        Texels::Float(texels) => texels.iter().flatten().any(|&value| value > 1.0),
-        Texels::Rgba8 { .. } => false,
-    }
+fn line_end(text: &str, at: usize) -> usize {
+    text[at..].find('\n').map_or(text.len(), |length| at + length + 1)
 }
 
-/// An MTL material as a scene's: glass when `illum` is 4, 6, 7 or 9, or `d` is below 1 with an `Ni` other than 1; a
-/// mirror of `Ks` when `illum` is 3 or 5; else diffuse of `map_Kd`, which replaces `Kd`. Returns what is not used.
+/// What materials of MTL files become parts of.
+pub(super) struct Target<'r> {
+    pub allowance: &'r Allowance,
+    pub images: &'r mut ImageStore,
+    pub textures: &'r mut Vec<Texture>,
+    /// Whether the materials' `Ke` counts.
+    pub emits: bool,
+}
+
+/// An MTL material as a scene's, called `name` there, and its emission: glass when `illum` is 4, 6, 7 or 9, or `d` is
+/// below 1 with an `Ni` other than 1; a mirror of `Ks` when `illum` is 3 or 5; else diffuse of `map_Kd`, which replaces
+/// `Kd`.
 pub(super) fn material(
+    library: &mut Library,
+    entry: usize,
     name: String,
-    mtl: &tobj::Material,
-    folder: &Path,
-    images: &mut ImageStore,
-    textures: &mut Vec<Texture>,
-) -> (Material, Vec<&'static str>) {
-    let mut unused = Vec::new();
-    let ior = mtl.optical_density.filter(|&ior| ior > 0.0);
-    let refracts = mtl.dissolve.is_some_and(|d| d < 1.0) && ior.is_some_and(|ior| ior != 1.0);
-    let kind = match mtl.illumination_model {
-        Some(4 | 6 | 7 | 9) => glass(ior),
-        _ if refracts => glass(ior),
-        Some(3 | 5) => MaterialKind::Mirror {
-            reflectance: Reflectance::Color(mtl.specular.or(mtl.diffuse).unwrap_or([1.0; 3])),
-        },
-        _ => {
-            if mtl.dissolve.is_some_and(|d| d < 1.0) {
-                unused.push("`d`");
-            }
-            let image =
-                mtl.diffuse_texture.as_ref().and_then(|file| images.load(&folder.join(file), None).ok());
-            let reflectance = match image {
-                Some(image) => {
-                    if images.is_transparent(image) {
-                        unused.push("the alpha channel of map_Kd");
-                    }
-                    Reflectance::Texture(texture(&name, image, textures))
-                }
-                None => Reflectance::Color(mtl.diffuse.unwrap_or(DEFAULT_DIFFUSE)),
-            };
-            MaterialKind::Diffuse { reflectance }
+    target: &mut Target,
+) -> (Material, Rgb) {
+    let Library { path, text, entries, faults, warnings, rounded } = library;
+    let lines = text.lines();
+    let mut given: Vec<Statement> = Vec::new();
+    for statement in statements(lines, entries[entry].body.clone()) {
+        // The last of several counts. Only known keys are compared, so that their number bounds the work.
+        let known = READ.contains(&statement.keyword) || IDLE.contains(&statement.keyword);
+        if known && let Some(last) = given.iter_mut().find(|last| last.keyword == statement.keyword) {
+            *last = statement;
+        } else if given.len() < MOST_KEYS {
+            given.push(statement);
         }
+    }
+    let mut reader = Reader { name: &name, given: &given, used: Vec::new(), faults, warnings, rounded };
+    let (kind, emission) = reader.kind(path, text, target);
+    reader.unused(matches!(kind, MaterialKind::Glass { .. }));
+    (Material { name, kind }, emission)
+}
+
+/// Most statements of a material that are looked at.
+const MOST_KEYS: usize = 1000;
+
+struct Reader<'l, 't> {
+    name: &'l str,
+    given: &'l [Statement<'t>],
+    /// Keys whose values counted.
+    used: Vec<&'static str>,
+    faults: &'l mut Faults,
+    warnings: &'l mut Faults,
+    rounded: &'l mut Rounded,
+}
+
+impl<'t> Reader<'_, 't> {
+    fn kind(&mut self, path: &PathBuf, text: &Text, target: &mut Target) -> (MaterialKind, Rgb) {
+        let emission = if target.emits { self.color("Ke", BRIGHTEST) } else { None };
+        let illum = self.illum();
+        let is_glass = matches!(illum, Some(4 | 6 | 7 | 9));
+        let is_clear = !is_glass && self.number("d", 1.0).is_some_and(|d| d < 1.0);
+        let ior = (is_glass || is_clear).then(|| self.number("Ni", LARGEST)).flatten();
+        let ior = ior.filter(|&ior| ior > 0.0);
+        let kind = if is_glass || (is_clear && ior.is_some_and(|ior| ior != 1.0)) {
+            MaterialKind::Glass { ior: ior.unwrap_or(DEFAULT_IOR), absorption: [0.0; 3] }
+        } else {
+            if is_clear {
+                self.warn_unused("d");
+            }
+            if matches!(illum, Some(3 | 5)) {
+                let color = self.color("Ks", 1.0).or_else(|| self.color("Kd", 1.0));
+                MaterialKind::Mirror { reflectance: Reflectance::Color(color.unwrap_or([1.0; 3])) }
+            } else {
+                let reflectance = match self.find("map_Kd") {
+                    Some(map) => self.map(&map, path, text, target),
+                    None => Reflectance::Color(self.color("Kd", 1.0).unwrap_or(DEFAULT_DIFFUSE)),
+                };
+                MaterialKind::Diffuse { reflectance }
+            }
+        };
+        (kind, emission.unwrap_or([0.0; 3]))
+    }
+
+    fn find(&self, key: &str) -> Option<Statement<'t>> {
+        self.given.iter().find(|statement| statement.keyword == key).cloned()
+    }
+
+    fn color(&mut self, key: &'static str, most: f64) -> Option<Rgb> {
+        let numbers = self.numbers(key, 3, most)?;
+        Some([numbers[0], numbers[1], numbers[2]])
+    }
+
+    fn number(&mut self, key: &'static str, most: f64) -> Option<f64> {
+        self.numbers(key, 1, most)?.first().copied()
+    }
+
+    /// The values of a key that counts, from 0 to `most`; reports those that are wrong.
+    fn numbers(&mut self, key: &'static str, count: usize, most: f64) -> Option<Vec<f64>> {
+        let statement = self.find(key)?;
+        self.used.push(key);
+        let words = values(&statement);
+        if words.len() < count {
+            let message = format!("`{key}` has {} values", words.len());
+            self.faults.push(statement.at, message, expected(count));
+            return None;
+        }
+        if let Some((_, at)) = words.get(count) {
+            let message = format!("`{key}` has {} values, of which the first {count} count", words.len());
+            self.warnings.push(at.clone(), message, expected(count));
+        }
+        let mut numbers = Vec::new();
+        for (word, at) in &words[..count] {
+            match in_range(word, most) {
+                Ok(number) => {
+                    if finite(word) != Ok(number) {
+                        self.rounded.add(at.clone(), word, number);
+                    }
+                    numbers.push(number);
+                }
+                Err(message) => {
+                    let expected = format!("expected a number from 0 to {most:e}");
+                    self.faults.push(at.clone(), message, expected);
+                }
+            }
+        }
+        (numbers.len() == count).then_some(numbers)
+    }
+
+    /// The illumination model: a whole number, however it is written.
+    fn illum(&mut self) -> Option<i64> {
+        let statement = self.find("illum")?;
+        self.used.push("illum");
+        let Some((word, at)) = statement.words().next() else {
+            self.faults.push(statement.at, "`illum` has no value", "expected a whole number");
+            return None;
+        };
+        match finite(word) {
+            Ok(number) if number.fract() == 0.0 && number.abs() < 1e9 => {
+                if !(0.0..=10.0).contains(&number) {
+                    let message = format!("`illum` {word} of material {} is not known", self.name);
+                    self.warnings.push(at, message, "expected 0 to 10; read as diffuse");
+                }
+                Some(number as i64)
+            }
+            Ok(_) => {
+                self.faults.push(at, format!("`{word}` is not a whole number"), "expected a whole number");
+                None
+            }
+            Err(message) => {
+                self.faults.push(at, message, "expected a whole number");
+                None
+            }
+        }
+    }
+
+    /// The picture of `map_Kd`.
+    fn map(&mut self, map: &Statement, path: &PathBuf, text: &Text, target: &mut Target) -> Reflectance {
+        let grey = Reflectance::Color([Missing::STAND_IN; 3]);
+        self.used.push("map_Kd");
+        let (name, at) = map.name();
+        if name.is_empty() {
+            self.faults.push(map.at.clone(), "`map_Kd` names nothing", "expected a name");
+            return grey;
+        }
+        if name.starts_with('-') {
+            self.faults.push(at, "options of `map_Kd` are not supported", "expected a file name");
+            return grey;
+        }
+        let folder = path.parent().unwrap_or("".as_ref());
+        let mut files = readings(name).map(|name| text.find(target.allowance, folder, name));
+        let first = files.next().unwrap_or_default();
+        let all = || std::iter::once(first.clone()).chain(files);
+        let file = all().find(|file| target.allowance.has(file)).unwrap_or(first.clone());
+        let image = target.images.load(&file, None).and_then(|image| {
+            target.images.bound_by_one(&file, image)?;
+            Ok(image)
+        });
+        match image {
+            Ok(image) => {
+                if target.images.is_transparent(image) {
+                    let message =
+                        format!("the alpha channel of map_Kd of material {} is not used", self.name);
+                    self.warnings.push(at.clone(), message, "every texel counts as opaque");
+                }
+                for (message, label) in target.images.take_notes(image) {
+                    self.warnings.push(at.clone(), message, label);
+                }
+                let (filter, wrap) = Default::default();
+                let kind = TextureKind::Image { image, filter, wrap, scale: [1.0; 2] };
+                target.textures.push(Texture { name: self.name.to_owned(), kind });
+                Reflectance::Texture(target.textures.len() - 1)
+            }
+            Err(ImageFault { missing: true, message, .. }) if target.allowance.missing == Missing::Warn => {
+                self.warnings.push(at, message, "rendered in gray");
+                grey
+            }
+            Err(fault) => {
+                let expected = fault.help.unwrap_or_else(|| fault.expected.to_owned());
+                let advice =
+                    if fault.missing { format!("{expected}, {}", Missing::ADVICE) } else { expected };
+                self.faults.push(at, fault.message, advice);
+                grey
+            }
+        }
+    }
+
+    fn warn_unused(&mut self, key: &str) {
+        if let Some(statement) = self.find(key) {
+            let message = format!("`{key}` of material {} is not used", self.name);
+            self.warnings.push(statement.at, message, "has no effect");
+        }
+    }
+
+    /// Warns of what is given and not used: of what other programs show, and of wrong values.
+    fn unused(&mut self, is_glass: bool) {
+        for statement in self.given {
+            let (key, at) = (statement.keyword, statement.at.clone());
+            if self.used.iter().any(|&used| used == key) {
+                continue;
+            }
+            if READ.contains(&key) || IDLE.contains(&key) {
+                if key == "map_Kd" {
+                    let message = format!("`{key}` of material {} is not used", self.name);
+                    self.warnings.push(at, message, "mirrors and glass have no texture");
+                } else if let Some((at, message)) = wrong(statement) {
+                    self.warnings.push(at, message + ", and is not used", "has no effect");
+                }
+            } else if UNREAD.contains(&key) {
+                let is_glass_already = is_glass && matches!(key, "Tr" | "map_d" | "map_Tr");
+                if !is_neutral(statement) && !is_glass_already {
+                    let message = format!("`{key}` of material {} is not used", self.name);
+                    self.warnings.push(at, message, "has no effect");
+                }
+            } else {
+                let message = format!("`{key}` of material {} is not known", self.name);
+                let near = READ.iter().find(|known| known.eq_ignore_ascii_case(key)).copied();
+                let near = near.or_else(|| nearest(key, READ));
+                let label = near.map_or("not used".to_owned(), |near| format!("did you mean `{near}`?"));
+                self.warnings.push(at, message, label);
+            }
+        }
+    }
+}
+
+/// The words that should be numbers.
+fn values<'t>(statement: &Statement<'t>) -> Vec<Word<'t>> {
+    let is_option = |word: &str| statement.keyword == "d" && word == "-halo";
+    statement.words().filter(|(word, _)| !is_option(word)).collect()
+}
+
+fn expected(count: usize) -> String {
+    format!("expected {count} number{}", if count == 1 { "" } else { "s" })
+}
+
+/// A number from 0 to `most`, which it may exceed by rounding.
+fn in_range(word: &str, most: f64) -> Result<f64, String> {
+    let number = finite(word)?;
+    rounded_into(number, 0.0, most).ok_or_else(|| format!("`{word}` is out of range"))
+}
+
+/// What is wrong with the values of a known key.
+fn wrong(statement: &Statement) -> Option<(Range<usize>, String)> {
+    let (count, most) = match statement.keyword {
+        "Kd" | "Ks" => (3, 1.0),
+        "Ka" | "Ke" => (3, BRIGHTEST),
+        "Ni" | "Ns" => (1, LARGEST),
+        "d" => (1, 1.0),
+        _ => return None,
     };
-    let maps = [
-        ("`map_Ks`", &mtl.specular_texture),
-        ("`map_Bump`", &mtl.normal_texture),
-        ("`map_Ns`", &mtl.shininess_texture),
-        ("`map_d`", &mtl.dissolve_texture),
-    ];
-    unused.extend(maps.into_iter().filter(|(_, map)| map.is_some()).map(|(key, _)| key));
-    (Material { name, kind }, unused)
+    let words = values(statement);
+    if words.len() < count {
+        let plural = if words.len() == 1 { "" } else { "s" };
+        return Some((
+            statement.at.clone(),
+            format!("`{}` has {} value{plural}", statement.keyword, words.len()),
+        ));
+    }
+    words.into_iter().take(count).find_map(|(word, at)| Some((at, in_range(word, most).err()?)))
 }
 
-fn glass(ior: Option<f64>) -> MaterialKind {
-    MaterialKind::Glass { ior: ior.unwrap_or(DEFAULT_IOR), absorption: [0.0; 3] }
-}
-
-fn texture(name: &str, image: usize, textures: &mut Vec<Texture>) -> usize {
-    let kind =
-        TextureKind::Image { image, filter: Filter::default(), wrap: Wrap::default(), scale: [1.0; 2] };
-    textures.push(Texture { name: name.to_owned(), kind });
-    textures.len() - 1
+/// Whether a key that is not read has the value that changes nothing.
+fn is_neutral(statement: &Statement) -> bool {
+    let neutral = match statement.keyword {
+        "Tr" | "Pm" | "Ps" | "Pc" | "Pcr" | "aniso" | "anisor" => 0.0,
+        "Tf" => 1.0,
+        _ => return false,
+    };
+    statement.words().all(|(word, _)| finite(word) == Ok(neutral))
 }

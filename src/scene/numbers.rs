@@ -1,5 +1,7 @@
 //! Numbers with a range, and colors made of them. Ranges stand in the JSON Schema, and are checked from there.
 
+use std::ops::Range;
+
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -13,6 +15,46 @@ pub const LARGEST: f64 = 1e15;
 pub const SMALLEST: f64 = 1e-15;
 /// Greatest strength of a light. Pictures hold radiance in f32, up to 3e38, and light adds up.
 pub const BRIGHTEST: f64 = 1e30;
+
+/// How far rounding may carry a number in a text beyond the range that it has to lie in: programs write four digits and
+/// more.
+const ROUNDING: f64 = 1e-4;
+
+/// A number that lies in a range, or would without a rounding error: then the nearest in the range.
+pub(super) fn rounded_into(number: f64, least: f64, most: f64) -> Option<f64> {
+    let inside = number.clamp(least, most);
+    ((number - inside).abs() <= ROUNDING).then_some(inside)
+}
+
+/// Numbers of a file that were moved into their range.
+#[derive(Debug, Default)]
+pub(super) struct Rounded {
+    count: usize,
+    worst: f64,
+    at: Range<usize>,
+    word: String,
+}
+
+impl Rounded {
+    /// Notes a word that was read as `number`.
+    pub fn add(&mut self, at: Range<usize>, word: &str, number: f64) {
+        self.count += 1;
+        let excess = word.parse().map_or(0.0, |written: f64| (written - number).abs());
+        if excess > self.worst {
+            (self.worst, self.at, self.word) = (excess, at, word.to_owned());
+        }
+    }
+
+    /// The place of the worst, and a message about all.
+    pub fn take(self) -> Option<(Range<usize>, String)> {
+        let message = match self.count {
+            0 => return None,
+            1 => format!("`{}` is out of range by rounding", self.word),
+            count => format!("{count} numbers are out of range by rounding, the worst is `{}`", self.word),
+        };
+        Some((self.at, message))
+    }
+}
 
 /// A number greater than 0.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]

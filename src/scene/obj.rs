@@ -1,28 +1,32 @@
 //! Looks through the text of a Wavefront OBJ file before tobj reads it: tobj names no lines in its errors, takes an
 //! index of 0 and numbers that are not finite, reads polylines as faces, and mixes up faces with and without normals.
 
-use std::collections::{BTreeMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::ops::Range;
 
+use super::lines::{Statement, Word, finite, statements};
 use super::numbers::LARGEST;
 use super::report::Faults;
 
-/// A word of a file with the bytes that hold it.
-pub(super) type Word<'t> = (&'t str, Range<usize>);
-
 /// What a first look at an OBJ file finds.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Scan<'t> {
-    /// Statements for tobj to read.
+    /// Statements for tobj to read. Its materials are called by their index in `uses`.
     pub cleaned: String,
     pub faults: Faults,
+    pub warnings: Faults,
     /// Triangles that the faces will be cut into.
     pub triangles: u64,
-    /// Names of the material files, each once.
+    pub faces: u64,
+    /// What stands behind each `mtllib`, once.
     pub libraries: Vec<Word<'t>>,
     known_libraries: HashSet<&'t str>,
-    /// Names of materials where they are called.
-    pub uses: Vec<Word<'t>>,
+    /// Names of materials, each where it is first called, and whether a face has it.
+    pub uses: Vec<(&'t str, Range<usize>, bool)>,
+    known_uses: HashMap<&'t str, usize>,
+    /// The material of the next face, and the one that tobj was last told of.
+    current: Option<usize>,
+    written: Option<usize>,
     /// The first face before any `usemtl`.
     pub bare_face: Option<Range<usize>>,
     /// Keywords of statements that are not used, with their number.
@@ -31,154 +35,185 @@ pub(super) struct Scan<'t> {
     group: Option<[bool; 2]>,
     /// Largest index of each kind that was above what stood before it.
     ahead: [i64; 3],
+    /// Vertices, texture coordinates and normals that cannot be used: the place of a number in each.
+    bad: [HashMap<i64, Range<usize>>; 3],
 }
 
-/// Joins lines that end in a backslash, keeping every byte in its place.
-pub(super) fn join_lines(text: &str) -> String {
-    text.replace("\\\r\n", "   ").replace("\\\n", "  ")
-}
+/// What indices count.
+const KINDS: [&str; 3] = ["vertices", "texture coordinates", "normals"];
 
 /// Looks through an OBJ file; `own_materials` keeps its `usemtl` and `mtllib`.
 pub(super) fn scan(text: &str, own_materials: bool) -> Scan<'_> {
-    let mut scan = Scan::default();
-    let mut start = 0;
-    for line in text.split_inclusive('\n') {
-        scan.line(line, start, own_materials);
-        start += line.len();
+    let mut scan = Scan {
+        cleaned: if own_materials { format!("mtllib {LIBRARY}\n") } else { String::new() },
+        faults: Faults::default(),
+        warnings: Faults::warnings(),
+        triangles: 0,
+        faces: 0,
+        libraries: Vec::new(),
+        known_libraries: HashSet::new(),
+        uses: Vec::new(),
+        known_uses: HashMap::new(),
+        current: None,
+        written: None,
+        bare_face: None,
+        unread: BTreeMap::new(),
+        counts: [0; 3],
+        group: None,
+        ahead: [0; 3],
+        bad: Default::default(),
+    };
+    for statement in statements(text, 0..text.len()) {
+        scan.statement(&statement, own_materials);
     }
-    if (0..3).any(|kind| scan.ahead[kind] > scan.counts[kind]) {
-        scan.missing(text);
+    let is_bad = scan.bad.iter().any(|bad| !bad.is_empty());
+    if is_bad || (0..3).any(|kind| scan.ahead[kind] > scan.counts[kind]) {
+        scan.indices(text);
     }
     scan
 }
+
+/// The one material file that tobj reads.
+const LIBRARY: &str = "own";
 
 impl<'t> Scan<'t> {
     fn fault(&mut self, span: Range<usize>, message: impl Into<String>, expected: impl Into<String>) {
         self.faults.push(span, message, expected);
     }
 
-    /// Finds the indices that point behind the end.
-    fn missing(&mut self, text: &str) {
-        let mut start = 0;
-        for line in text.split_inclusive('\n') {
-            let statement = line.split('#').next().unwrap_or("");
-            let mut words = words(statement, start);
-            start += line.len();
-            if words.next().is_none_or(|(keyword, _)| keyword != "f") {
-                continue;
-            }
-            for (corner, at) in words {
-                for (kind, part) in corner.split('/').enumerate().take(3) {
-                    let (name, count) =
-                        (["vertices", "texture coordinates", "normals"][kind], self.counts[kind]);
-                    let Some(index) = part.parse::<i64>().ok().filter(|&index| index > count) else {
-                        continue;
-                    };
-                    let message = format!("index {index} is out of bounds: the file has {count} {name}");
-                    let expected =
-                        if count == 0 { "expected none".into() } else { format!("expected 1 to {count}") };
-                    self.fault(at.clone(), message, expected);
+    /// Finds the indices that point behind the end, and those to what cannot be used. What cannot be used and no face
+    /// uses gives a warning.
+    fn indices(&mut self, text: &str) {
+        let mut counts = [0; 3];
+        for statement in statements(text, 0..text.len()) {
+            match statement.keyword {
+                "v" => counts[0] += 1,
+                "vt" => counts[1] += 1,
+                "vn" => counts[2] += 1,
+                "f" => {
+                    for (corner, at) in statement.words() {
+                        self.corner(corner, &at, &counts, text);
+                    }
                 }
+                _ => {}
+            }
+        }
+        for (kind, name) in KINDS.into_iter().enumerate() {
+            let bad = std::mem::take(&mut self.bad[kind]);
+            if let Some(first) = bad.values().min_by_key(|at| at.start) {
+                let message = format!("{} {name} have a number that cannot be used", bad.len());
+                self.warnings.push(first.clone(), message, "no face uses them");
             }
         }
     }
 
-    fn line(&mut self, line: &'t str, start: usize, own_materials: bool) {
-        let statement = line.split('#').next().unwrap_or("");
-        let mut words = words(statement, start);
-        let Some((keyword, span)) = words.next() else { return };
-        let rest: Vec<_> = words.collect();
-        let argument = argument(statement, start, keyword, &span);
-        let keep = match keyword {
-            "v" => self.vertex(0, 3, &[3, 4, 6], &rest, &span),
-            "vt" => self.vertex(1, 2, &[1, 2, 3], &rest, &span),
-            "vn" => self.vertex(2, 3, &[3], &rest, &span),
-            "f" => self.face(&rest, &span),
+    fn corner(&mut self, corner: &str, at: &Range<usize>, counts: &[i64; 3], text: &str) {
+        for (kind, part) in corner.split('/').enumerate().take(3) {
+            let Ok(index) = part.parse::<i64>() else { continue };
+            let count = self.counts[kind];
+            if index > count {
+                let name = KINDS[kind];
+                let message = format!("index {index} is out of bounds: the file has {count} {name}");
+                let expected =
+                    if count == 0 { "expected none".into() } else { format!("expected 1 to {count}") };
+                self.fault(at.clone(), message, expected);
+            }
+            let index = if index < 0 { index.saturating_add(counts[kind] + 1) } else { index };
+            if let Some(place) = self.bad[kind].remove(&index) {
+                let (message, expected) = unusable(&text[place.clone()]);
+                self.fault(place, message, expected);
+            }
+        }
+    }
+
+    fn statement(&mut self, statement: &Statement<'t>, own_materials: bool) {
+        match statement.keyword {
+            "v" => self.vertex(0, 3, statement),
+            "vt" => self.vertex(1, 1, statement),
+            "vn" => self.vertex(2, 3, statement),
+            "f" => self.face(statement, own_materials),
             "o" | "g" => {
                 self.group = None;
-                true
+                self.cleaned.push_str("g\n");
             }
             "usemtl" if own_materials => {
-                if self.uses.last().is_none_or(|last| last.0 != argument.0) {
+                let (name, at) = statement.name();
+                if name.is_empty() {
+                    self.fault(statement.at.clone(), "`usemtl` names no material", "expected a name");
+                }
+                let count = self.uses.len();
+                let index = *self.known_uses.entry(name).or_insert(count);
+                if index == count {
+                    self.uses.push((name, at, false));
+                }
+                if self.current != Some(index) {
                     self.group = None;
                 }
-                if argument.0.is_empty() {
-                    self.fault(span, "`usemtl` names no material", "expected a name");
-                }
-                self.uses.push(argument);
-                true
+                self.current = Some(index);
             }
             "mtllib" if own_materials => {
-                let new = self.known_libraries.insert(argument.0);
-                if new {
+                let argument = statement.name();
+                if self.known_libraries.insert(argument.0) {
                     self.libraries.push(argument);
                 }
-                new
             }
-            "usemtl" | "mtllib" | "s" => false,
-            _ => {
-                *self.unread.entry(keyword).or_default() += 1;
-                false
-            }
-        };
-        if keep {
-            self.cleaned.push_str(statement.trim());
-            self.cleaned.push('\n');
+            "usemtl" | "mtllib" | "s" => {}
+            keyword => *self.unread.entry(keyword).or_default() += 1,
         }
     }
 
-    fn vertex(
-        &mut self,
-        kind: usize,
-        kept: usize,
-        lengths: &[usize],
-        rest: &[Word],
-        span: &Range<usize>,
-    ) -> bool {
+    /// Reads the numbers of a `v`, `vt` or `vn`, of which so many are needed.
+    fn vertex(&mut self, kind: usize, least: usize, statement: &Statement<'t>) {
         self.counts[kind] += 1;
-        if !lengths.contains(&rest.len()) {
-            let expected = format!("expected {kept} numbers");
-            self.fault(span.clone(), format!("{} numbers", rest.len()), expected);
-            return false;
+        let words: Vec<_> = statement.words().collect();
+        if words.len() < least {
+            let message = format!("{} number{}", words.len(), if words.len() == 1 { "" } else { "s" });
+            let expected = format!("expected {}", if kind == 1 { "2 numbers" } else { "3 numbers" });
+            return self.fault(statement.at.clone(), message, expected);
         }
-        for (word, at) in rest {
-            let number = word.parse().unwrap_or(f64::NAN);
-            if !number.is_finite() {
-                self.fault(at.clone(), format!("`{word}` is not a finite number"), "expected a number");
-            } else if number.abs() > LARGEST {
-                let expected = format!("expected at most {LARGEST:e} in magnitude");
-                self.fault(at.clone(), format!("`{word}` is too large for single precision"), expected);
-            }
+        // The fourth number of a vertex divides the others, unless they are colors.
+        let used = if kind == 1 {
+            2
+        } else if kind == 0 && words.len() == 4 {
+            4
+        } else {
+            3
+        };
+        match (kind, words.len()) {
+            (0, 6 | 7) => *self.unread.entry("vertex color").or_default() += 1,
+            (0, 5..) | (1 | 2, 4..) => *self.unread.entry("further number").or_default() += 1,
+            _ => {}
         }
-        if kind == 0 && rest.len() == 4 && rest[3].0.parse() == Ok(0.0) {
-            self.fault(rest[3].1.clone(), "a vertex with w = 0 is infinitely far", "expected another number");
-        }
-        if kind == 0 && rest.len() == 6 {
-            *self.unread.entry("vertex color").or_default() += 1;
-        }
-        // tobj wants two numbers in a `vt`, and takes no colors without a full set of them.
-        let kept = if kind == 0 && rest.len() == 4 { 4 } else { kept };
-        let padded = rest.iter().map(|word| word.0).chain(["0"]).take(kept);
+        let is_bad = |(at, (word, _)): &(usize, &Word)| {
+            let number = finite(word).ok().filter(|number| number.abs() <= LARGEST);
+            number.is_none() || (*at == 3 && number == Some(0.0))
+        };
+        let bad = words.iter().take(used).enumerate().find(is_bad).map(|(_, (_, at))| at.clone());
         self.cleaned.push_str(["v", "vt", "vn"][kind]);
-        for word in padded {
+        // tobj wants two numbers in a `vt`.
+        for (word, _) in words.iter().map(|(word, at)| (*word, at)).chain([("0", &(0..0))]).take(used) {
             self.cleaned.push(' ');
-            self.cleaned.push_str(word);
+            self.cleaned.push_str(if bad.is_some() { "1" } else { word });
         }
         self.cleaned.push('\n');
-        false
+        if let Some(at) = bad {
+            self.bad[kind].insert(self.counts[kind], at);
+        }
     }
 
-    fn face(&mut self, corners: &[Word], span: &Range<usize>) -> bool {
+    fn face(&mut self, statement: &Statement<'t>, own_materials: bool) {
+        let corners: Vec<_> = statement.words().collect();
         if corners.len() < 3 {
             let message = format!("a face of {} corners", corners.len());
-            self.fault(span.clone(), message, "expected at least 3 corners");
-            return false;
+            return self.fault(statement.at.clone(), message, "expected at least 3 corners");
         }
-        if self.uses.is_empty() && self.bare_face.is_none() {
-            self.bare_face = Some(span.clone());
+        match self.current {
+            Some(index) => self.uses[index].2 = true,
+            None if own_materials => self.bare_face = self.bare_face.take().or(Some(statement.at.clone())),
+            None => {}
         }
         self.triangles += corners.len() as u64 - 2;
-        for (corner, at) in corners {
+        for (corner, at) in &corners {
             let parts: Vec<_> = corner.split('/').collect();
             let has = [1, 2].map(|kind| parts.get(kind).is_some_and(|part| !part.is_empty()));
             if parts.len() > 3 || parts[0].is_empty() {
@@ -187,7 +222,7 @@ impl<'t> Scan<'t> {
                     format!("`{corner}` is no corner"),
                     "expected v, v/vt, v//vn or v/vt/vn",
                 );
-                return false;
+                return;
             }
             match self.group {
                 Some(group) if group != has => {
@@ -195,7 +230,7 @@ impl<'t> Scan<'t> {
                     let expected =
                         ["v", "v//vn", "v/vt", "v/vt/vn"][usize::from(group[0]) * 2 + usize::from(group[1])];
                     self.fault(at.clone(), message, format!("expected {expected}, as before in this group"));
-                    return false;
+                    return;
                 }
                 _ => self.group = Some(has),
             }
@@ -203,7 +238,17 @@ impl<'t> Scan<'t> {
                 self.index(kind, part, at);
             }
         }
-        true
+        if let Some(index) = self.current.filter(|_| self.current != self.written) {
+            self.cleaned.push_str(&format!("usemtl {index}\n"));
+            self.written = self.current;
+        }
+        self.faces += 1;
+        self.cleaned.push('f');
+        for (corner, _) in corners {
+            self.cleaned.push(' ');
+            self.cleaned.push_str(corner);
+        }
+        self.cleaned.push('\n');
     }
 
     fn index(&mut self, kind: usize, part: &str, at: &Range<usize>) {
@@ -225,18 +270,14 @@ impl<'t> Scan<'t> {
     }
 }
 
-/// The words of a line that starts at byte `start` of its file.
-pub(super) fn words(line: &str, start: usize) -> impl Iterator<Item = Word<'_>> {
-    line.split_whitespace().map(move |word| {
-        let at = start + (word.as_ptr() as usize - line.as_ptr() as usize);
-        (word, at..at + word.len())
-    })
-}
-
-/// Everything behind a keyword, trimmed: names may hold spaces.
-pub(super) fn argument<'t>(line: &'t str, start: usize, keyword: &str, at: &Range<usize>) -> Word<'t> {
-    let behind = at.start - start + keyword.len();
-    let text = line[behind..].trim();
-    let begin = start + (text.as_ptr() as usize - line.as_ptr() as usize);
-    (text, begin..begin + text.len())
+/// What is wrong with a number of a vertex that a face uses.
+fn unusable(word: &str) -> (String, String) {
+    match finite(word) {
+        Err(message) => (message, "expected a number".to_owned()),
+        Ok(0.0) => ("a vertex with w = 0 is infinitely far".to_owned(), "expected another number".to_owned()),
+        Ok(_) => {
+            let expected = format!("expected at most {LARGEST:e} in magnitude");
+            (format!("`{word}` is too large for single precision"), expected)
+        }
+    }
 }

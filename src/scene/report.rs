@@ -176,6 +176,8 @@ impl Diagnostic for SceneErrors {
 
 /// Most errors of one mesh or material file that are listed one by one.
 const MOST_PER_ASSET: usize = 10;
+/// As many warnings.
+const MOST_WARNINGS_PER_ASSET: usize = 100;
 
 /// Collects the findings of one load.
 #[derive(Debug)]
@@ -240,26 +242,44 @@ impl Report {
 
     /// Errors in a file that the scene file names at `named_at`.
     pub fn asset_errors(&mut self, named_at: Range<usize>, source: &SourceFile, faults: Faults) {
-        if faults.is_empty() {
-            return;
+        for error in self.asset_findings(miette::Severity::Error, named_at, source, faults) {
+            self.errors.push(error);
         }
+    }
+
+    /// Warnings about a file that the scene file names at `named_at`.
+    pub fn asset_warnings(&mut self, named_at: Range<usize>, source: &SourceFile, faults: Faults) {
+        for warning in self.asset_findings(miette::Severity::Warning, named_at, source, faults) {
+            self.warnings.push(warning);
+        }
+    }
+
+    fn asset_findings(
+        &self,
+        severity: miette::Severity,
+        named_at: Range<usize>,
+        source: &SourceFile,
+        faults: Faults,
+    ) -> Vec<Finding> {
+        let what = if severity == miette::Severity::Error { "errors" } else { "warnings" };
         let (line, _) = self.line_column(named_at);
         let file = source.0.name().to_owned();
-        let last = faults.listed.len() - 1;
-        for (index, fault) in faults.listed.into_iter().enumerate() {
+        let last = faults.listed.len().saturating_sub(1);
+        let findings = faults.listed.into_iter().enumerate().map(|(index, fault)| {
             let help = match faults.more {
-                more @ 1.. if index == last => format!("{more} more errors in {file} are not shown"),
+                more @ 1.. if index == last => format!("{more} more {what} in {file} are not shown"),
                 _ => format!("{file} is named in {} at line {line}", self.path),
             };
-            self.errors.push(Finding {
+            Finding {
                 message: fault.message,
                 help: Some(help),
-                severity: miette::Severity::Error,
+                severity,
                 file: file.clone(),
                 place: Some(Place { source: source.clone(), span: fault.span, label: fault.expected }),
                 about_value: false,
-            });
-        }
+            }
+        });
+        findings.collect()
     }
 
     /// As the function of this name, while errors are listed.
@@ -328,13 +348,25 @@ struct Fault {
 }
 
 /// What is wrong in a file that a scene names: the first faults, and the number of those beyond.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(crate) struct Faults {
     listed: Vec<Fault>,
+    most: usize,
     more: usize,
 }
 
+impl Default for Faults {
+    fn default() -> Self {
+        Self { listed: Vec::new(), most: MOST_PER_ASSET, more: 0 }
+    }
+}
+
 impl Faults {
+    /// For warnings: of those one may be about each key of a material.
+    pub fn warnings() -> Self {
+        Self { most: MOST_WARNINGS_PER_ASSET, ..Self::default() }
+    }
+
     pub fn push(&mut self, span: Range<usize>, message: impl Into<String>, expected: impl Into<String>) {
         if !self.is_full() {
             self.listed.push(Fault { span, message: message.into(), expected: expected.into() });
@@ -343,13 +375,9 @@ impl Faults {
         }
     }
 
-    pub fn is_empty(&self) -> bool {
-        self.listed.is_empty()
-    }
-
     /// Whether no other will be listed.
     pub fn is_full(&self) -> bool {
-        self.listed.len() == MOST_PER_ASSET
+        self.listed.len() == self.most
     }
 }
 

@@ -75,7 +75,8 @@ pub(super) fn shapes(
         ShapeFile::Mesh { file, smooth, material, transform, surface } => {
             let transform = placed(loader.report, item, &transform)?;
             let material = material.map(|name| loader.index("materials", &name));
-            let request = mesh::Request { file: &file, smooth, material, transform };
+            let emits = surface.emission.rgb() == [0.0; 3];
+            let request = mesh::Request { file: &file, smooth, material, transform, emits };
             let parts = mesh::load(loader, item, &request, textures, materials)?;
             let positions = parts.iter().flat_map(|part| &part.mesh.positions);
             let reach = positions.map(|position| position.abs().max_element()).fold(0.0, f64::max);

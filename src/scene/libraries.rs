@@ -1,0 +1,250 @@
+//! The MTL files of an OBJ file, and the materials that its names stand for.
+
+use std::collections::{HashMap, HashSet};
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use super::allowance::{Missing, Refusal};
+use super::appearance::{Material, MaterialKind, Reflectance, Rgb, Texture};
+use super::lines::{Text, Word, before_comment, parts, readings};
+use super::load::Loader;
+use super::mtl::{self, Library, Target};
+use super::obj::Scan;
+use super::report::did_you_mean;
+use super::text::nearest_file;
+
+/// A material of a file: the file's index, and the material's in it.
+type Id = (usize, usize);
+
+/// What makes a material of a mesh one of its own: the mesh's file as the scene names it, the material's file and its
+/// index in it, and whether it emits.
+pub(crate) type OwnKey = (String, PathBuf, usize, bool);
+
+/// The material files of an OBJ file, in their order.
+#[derive(Debug, Default)]
+pub(super) struct Libraries {
+    files: Vec<Library>,
+    /// Materials by the bytes of their names; the first of a name counts.
+    by_bytes: HashMap<Vec<u8>, Id>,
+    /// The same by characters, where the files differ in encoding.
+    by_text: HashMap<String, Id>,
+    /// The same without a comment behind the name; none where that leaves several.
+    before_comment: HashMap<Vec<u8>, Option<Id>>,
+    /// Whether a file could not be read, so that a name may be in it.
+    incomplete: bool,
+}
+
+/// A material as an OBJ file calls it.
+#[derive(Clone, Debug)]
+pub(crate) struct Own {
+    /// Index into the scene's materials.
+    pub material: usize,
+    pub emission: Rgb,
+}
+
+/// Most files.
+const MOST_FILES: usize = 1000;
+/// Most words that are tried as one file name with blanks.
+const LONGEST_NAME: usize = 16;
+
+impl Libraries {
+    /// Reads the files that an OBJ file at `path` names.
+    pub fn read(loader: &mut Loader, path: &Path, text: &Text, scan: &mut Scan) -> Self {
+        let mut libraries = Self::default();
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let mut known = HashSet::new();
+        for (name, at) in std::mem::take(&mut scan.libraries) {
+            if name.is_empty() {
+                scan.faults.push(at, "`mtllib` names no file", "expected an MTL file");
+                continue;
+            }
+            for (at, file) in files_of((name, at), text, loader, folder) {
+                if known.len() == MOST_FILES {
+                    let message = format!("more than {MOST_FILES} material files");
+                    scan.faults.push(at, message, "expected fewer");
+                    return libraries;
+                }
+                if known.insert(file.clone()) {
+                    libraries.add(loader, scan, at, file);
+                }
+            }
+        }
+        libraries
+    }
+
+    fn add(&mut self, loader: &mut Loader, scan: &mut Scan, at: Range<usize>, file: PathBuf) {
+        loader.report.files.push(file.clone());
+        let bytes = match loader.mesh_bytes(&file) {
+            Ok(bytes) => bytes,
+            Err(error) => {
+                self.incomplete = true;
+                return unread(loader, scan, &file, at, &error);
+            }
+        };
+        let text = match Text::decode(&file, &bytes) {
+            Ok(text) => text,
+            Err(foreign) => {
+                self.incomplete = true;
+                let message = format!("{}: {foreign}", file.display());
+                return scan.faults.push(at, message, foreign.help());
+            }
+        };
+        let mut library = Library::new(file, text);
+        let mut own = HashSet::new();
+        for index in 0..library.entries.len() {
+            let name = library.name(index);
+            if name.is_empty() {
+                continue;
+            }
+            let (id, bytes, shown) = ((self.files.len(), index), library.text.bytes(name), name.to_owned());
+            let shorter = before_comment(name).map(|name| library.text.bytes(name));
+            if !own.insert(bytes.clone()) {
+                let message = format!("material `{}` is defined again", library.text.shown(name));
+                let at = library.entries[index].name.clone();
+                library.warnings.push(at, message, "the first definition counts");
+                continue;
+            }
+            self.by_bytes.entry(bytes).or_insert(id);
+            self.by_text.entry(shown).or_insert(id);
+            if let Some(shorter) = shorter {
+                self.before_comment.entry(shorter).and_modify(|known| *known = None).or_insert(Some(id));
+            }
+        }
+        self.files.push(library);
+    }
+
+    /// The material of a name in an OBJ file, and what of the name it is called by.
+    fn find<'n>(&self, text: &Text, name: &'n str) -> Option<(Id, &'n str)> {
+        let in_bytes = |name: &'n str| self.by_bytes.get(&text.bytes(name)).map(|&id| (id, name));
+        let in_text = |name: &'n str| self.by_text.get(name).map(|&id| (id, name));
+        let commented =
+            |name: &'n str| self.before_comment.get(&text.bytes(name)).and_then(|id| Some(((*id)?, name)));
+        readings(name)
+            .find_map(in_bytes)
+            .or_else(|| readings(name).find_map(in_text))
+            .or_else(|| readings(name).find_map(commented))
+    }
+
+    /// The materials that faces of an OBJ file use, in the order of [`Scan::uses`]. Reports those that no file defines.
+    pub fn materials(
+        &mut self,
+        loader: &mut Loader,
+        (file, text): (&str, &Text),
+        scan: &mut Scan,
+        emits: bool,
+        (textures, materials): (&mut Vec<Texture>, &mut Vec<Material>),
+    ) -> Vec<Option<Own>> {
+        let mut made = Vec::new();
+        let uses = std::mem::take(&mut scan.uses);
+        let mut known = HashMap::<Id, Own>::new();
+        for (name, at, used) in uses {
+            if !used || name.is_empty() {
+                made.push(None);
+                continue;
+            }
+            let Some((id, called)) = self.find(text, name) else {
+                made.push(self.undefined(loader, (file, text), scan, (name, at), materials));
+                continue;
+            };
+            if called != name && before_comment(name).is_none() {
+                let message = format!("material `{}` is not defined", text.shown(name));
+                let label = format!("read as `{}` with a comment", text.shown(called));
+                scan.warnings.push(at, message, label);
+            }
+            if !known.contains_key(&id) {
+                let library = &mut self.files[id.0];
+                let key = (file.to_owned(), library.path.clone(), id.1, emits);
+                let own = loader.own_materials.get(&key).cloned().unwrap_or_else(|| {
+                    let name = format!("{file}:{}", library.text.shown(library.name(id.1)));
+                    let (allowance, images) = (loader.allowance, &mut loader.images);
+                    let mut target = Target { allowance, images, textures, emits };
+                    let (material, emission) = mtl::material(library, id.1, name, &mut target);
+                    materials.push(material);
+                    let own = Own { material: materials.len() - 1, emission };
+                    loader.own_materials.insert(key, own.clone());
+                    own
+                });
+                known.insert(id, own);
+            }
+            made.push(known.get(&id).cloned());
+        }
+        made
+    }
+
+    /// Reports what was found in the files.
+    pub fn report(&mut self, loader: &mut Loader, named_at: &Range<usize>) {
+        for library in &mut self.files {
+            let (faults, warnings) = library.take_findings();
+            loader.report.asset_errors(named_at.clone(), &library.text.source, faults);
+            loader.report.asset_warnings(named_at.clone(), &library.text.source, warnings);
+        }
+    }
+
+    fn undefined(
+        &self,
+        loader: &Loader,
+        (file, text): (&str, &Text),
+        scan: &mut Scan,
+        (name, at): Word,
+        materials: &mut Vec<Material>,
+    ) -> Option<Own> {
+        let shown = text.shown(name);
+        let message = format!("material `{shown}` is not defined");
+        if loader.allowance.missing == Missing::Warn {
+            scan.warnings.push(at, message, "rendered in gray");
+            let reflectance = Reflectance::Color([Missing::STAND_IN; 3]);
+            let kind = MaterialKind::Diffuse { reflectance };
+            materials.push(Material { name: format!("{file}:{shown}"), kind });
+            return Some(Own { material: materials.len() - 1, emission: [0.0; 3] });
+        }
+        // A file that could not be read has been reported, and may define it.
+        if !self.incomplete {
+            let other = format!("expected a material of the file's MTL, {}", Missing::ADVICE);
+            let all = self.files.iter().flat_map(|file| (0..file.entries.len()).map(|at| file.name(at)));
+            let expected = if scan.faults.is_full() { other } else { did_you_mean(&shown, all, &other) };
+            scan.faults.push(at, message, expected);
+        }
+        None
+    }
+}
+
+/// Reports a file that cannot be read.
+fn unread(loader: &Loader, scan: &mut Scan, file: &Path, at: Range<usize>, error: &Refusal) {
+    let message = format!("cannot read {}: {error}", file.display());
+    if !error.is_missing() {
+        let mend = error.help().unwrap_or_else(|| "expected an MTL file".to_owned());
+        return scan.faults.push(at, message, mend);
+    }
+    if loader.allowance.missing == Missing::Warn {
+        return scan.warnings.push(at, message, "its materials are rendered in gray");
+    }
+    let near = nearest_file(file).filter(|_| !scan.faults.is_full());
+    let mend = near.map_or("expected an MTL file".to_owned(), |near| format!("did you mean {near}?"));
+    scan.faults.push(at, message, format!("{mend}, {}", Missing::ADVICE));
+}
+
+/// The files that the names behind one `mtllib` stand for. A name may hold blanks, several names are separated by
+/// blanks, and a comment may follow: what is there decides.
+fn files_of((name, at): Word, text: &Text, loader: &Loader, folder: &Path) -> Vec<(Range<usize>, PathBuf)> {
+    let span = |part: &str| {
+        let start = at.start + (part.as_ptr() as usize - name.as_ptr() as usize);
+        start..start + part.len()
+    };
+    let find = |part: &str| text.find(loader.allowance, folder, part);
+    let mut found = Vec::new();
+    let mut rest = name;
+    while !rest.is_empty() && (found.is_empty() || !rest.starts_with('#')) {
+        let ends = parts(rest).map(|word| word.as_ptr() as usize - rest.as_ptr() as usize + word.len());
+        let ends: Vec<_> = ends.take(LONGEST_NAME).chain([rest.len()]).collect();
+        let is_there = |&&end: &&usize| loader.allowance.has(&find(&rest[..end]));
+        let is_named = |&&end: &&usize| rest[..end].to_ascii_lowercase().ends_with(".mtl");
+        let there = ends.iter().rev().find(is_there);
+        let end = there.or_else(|| ends.iter().find(is_named)).copied().unwrap_or(rest.len());
+        found.push((span(&rest[..end]), find(&rest[..end])));
+        rest = rest[end..].trim_start_matches([' ', '\t', '\r', '\x0b', '\x0c']);
+        if found.len() > MOST_FILES {
+            break;
+        }
+    }
+    found
+}
