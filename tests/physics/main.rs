@@ -19,3 +19,4 @@ mod invariance;
 mod irradiance;
 mod lab;
 mod meshes;
+mod walls;
