@@ -194,16 +194,16 @@ fn find_cuts(facet: Facet, position: vec3f, normal: vec3f, clip: ptr<function, C
 
 fn before_walls(clip: ptr<function, Clip>, center: vec3f, position: vec3f) -> bool {
     let d = position - center;
-    var before = true;
-    for (var k = 0u; k < (*clip).count; k++) {
-        let cut = (*clip).cuts[k];
-        before = before && dot(d, cut.xyz) < cut.w;
-    }
-    return before;
+    let a = (*clip).cuts[0];
+    let b = (*clip).cuts[1];
+    let c = (*clip).cuts[2];
+    let e = (*clip).cuts[3];
+    return dot(d, a.xyz) < a.w && dot(d, b.xyz) < b.w && dot(d, c.xyz) < c.w && dot(d, e.xyz) < e.w;
 }
 
 fn clip_at(number: u32, position: vec3f, normal: vec3f, radius: f32) -> Clip {
-    var clip = Clip(false, 1.0, 1.0, radius, array<vec4f, CUTS>(), 0u);
+    let open = vec4f(0.0, 0.0, 0.0, 1.0);
+    var clip = Clip(false, 1.0, 1.0, radius, array<vec4f, CUTS>(open, open, open, open), 0u);
     if number == NONE {
         return clip;
     }
