@@ -47,6 +47,10 @@ struct World {
     far: u32,
     nested: u32,
     guided: u32,
+    primitive_size: f32,
+    pad0: u32,
+    pad1: u32,
+    pad2: u32,
 }
 
 struct Camera {
@@ -121,6 +125,10 @@ struct Plane {
     u0: f32,
     bitangent: vec3f,
     v0: f32,
+    facet: u32,
+    pad0: u32,
+    pad1: u32,
+    pad2: u32,
 }
 
 struct Attributes {

@@ -78,8 +78,10 @@ pub struct World {
     pub nested: u32,
     /// 1 where some light has a map of where its photons meet glass and mirrors, else 0.
     pub guided: u32,
+    /// See [`Tree::primitive_size`](super::shapes::kdtree::Tree::primitive_size).
+    pub primitive_size: Real,
     /// Padding.
-    pub pad: [u32; 2],
+    pub pad: u32,
 }
 
 /// Pinhole or thin-lens camera.
@@ -226,6 +228,10 @@ pub struct Plane {
     pub bitangent: Vec3,
     /// v at `point`.
     pub v0: Real,
+    /// Its outline among the facets where walls stand on it, or [`NONE`].
+    pub facet: u32,
+    /// Padding.
+    pub pad: [u32; 3],
 }
 
 /// Smooth normals and texture coordinates of a triangle's corners.

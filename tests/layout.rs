@@ -43,7 +43,8 @@ fn hosts() -> Vec<Layout> {
             disc_first,
             far,
             nested,
-            guided
+            guided,
+            primitive_size
         }),
         layout!(Camera {
             position,
@@ -63,7 +64,7 @@ fn hosts() -> Vec<Layout> {
         layout!(Rectangle { origin, material, normal, light, u, uv, v, area, dual_u, facet, dual_v }),
         layout!(Disc { center, radius, normal, material, light, uv, facet }),
         layout!(Cuboid { lower, material, upper, light, uv, facet }),
-        layout!(Plane { point, material, normal, uv, tangent, u0, bitangent, v0 }),
+        layout!(Plane { point, material, normal, uv, tangent, u0, bitangent, v0, facet }),
         layout!(Revolution {
             x_axis,
             scale,
@@ -171,7 +172,7 @@ fn everything() -> (Mixture, naga::Module) {
 
 /// What the gather reads beside it.
 fn hosts_of_gather() -> Vec<Layout> {
-    vec![layout!(Facet { origin, radius, u, error, v, dual_u, dual_v })]
+    vec![layout!(Facet { origin, radius, u, error, v, walls, dual_u, margin_s, dual_v, margin_t })]
 }
 
 fn everything_of(kernel: Kernel) -> (Mixture, naga::Module) {

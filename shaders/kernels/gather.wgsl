@@ -94,8 +94,8 @@ fn gather_family(point: VisiblePoint, frame: Frame, family: u32, radius_sq: f32)
     //#end
     let flat_normal = point.normal == point.shading;
     //#if facets
-    let clip = clip_at(point.facet, point.position, ng, radius);
-    let depth = select(FLATNESS * radius, min(clip.depth, FLATNESS * radius), clip.crossed);
+    var clip = clip_at(point.facet, point.position, ng, radius);
+    let depth = min(clip.depth, FLATNESS * radius);
     let inner = clip.whole - 2.0 * clip.inner;
     //#else
     let depth = FLATNESS * radius;
@@ -138,7 +138,9 @@ fn gather_family(point: VisiblePoint, frame: Frame, family: u32, radius_sq: f32)
                         let toward_light = oct_vector(light.w);
                         var counts = dot(toward_light, ng) > 0.0;
                         //#if facets
-                        counts = counts && (!clip.crossed || on_facet(facet, position));
+                        if counts && clip.crossed {
+                            counts = on_facet(facet, position) && before_walls(&clip, point.position, position);
+                        }
                         //#end
                         if counts {
                             count += 1u;

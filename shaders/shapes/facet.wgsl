@@ -3,6 +3,12 @@
 const SHARE_MIN: f32 = 1e-6;
 const DEPTH: f32 = 0.02;
 const SLIM: f32 = 30.0;
+const MARGIN: f32 = 0.25;
+const PLANE_ERROR: f32 = 16.0 * EPS;
+const RIM: f32 = 1e-5;
+const CUTS: u32 = 4u;
+const WALL_BITS: u32 = 6u;
+const CORNERS: u32 = 12u;
 
 struct Facet {
     origin: vec3f,
@@ -10,11 +16,11 @@ struct Facet {
     u: vec3f,
     error: f32,
     v: vec3f,
-    pad0: u32,
+    walls: u32,
     dual_u: vec3f,
-    pad1: u32,
+    margin_s: f32,
     dual_v: vec3f,
-    pad2: u32,
+    margin_t: f32,
 }
 
 struct Clip {
@@ -22,6 +28,8 @@ struct Clip {
     whole: f32,
     inner: f32,
     depth: f32,
+    cuts: array<vec4f, CUTS>,
+    count: u32,
 }
 
 fn turn(distance: f32, start: f32, end: f32) -> f32 {
@@ -91,8 +99,111 @@ fn facet_share(facet: Facet, position: vec3f, normal: vec3f, radius: f32) -> f32
     return clamp(area / PI, SHARE_MIN, 1.0);
 }
 
+fn cut_polygon(polygon: ptr<function, array<vec2f, CORNERS>>, count: u32, normal: vec2f, distance: f32) -> u32 {
+    let old = *polygon;
+    var kept = 0u;
+    var a = old[max(count, 1u) - 1u];
+    var da = dot(a, normal) - distance;
+    for (var i = 0u; i < count; i++) {
+        let b = old[i];
+        let db = dot(b, normal) - distance;
+        if (da < 0.0) != (db < 0.0) && kept < CORNERS {
+            (*polygon)[kept] = a + (b - a) * (da / (da - db));
+            kept += 1u;
+        }
+        if db < 0.0 && kept < CORNERS {
+            (*polygon)[kept] = b;
+            kept += 1u;
+        }
+        a = b;
+        da = db;
+    }
+    return kept;
+}
+
+fn cut_share(facet: Facet, clip: Clip, position: vec3f, normal: vec3f, radius: f32) -> f32 {
+    let first = unit(facet.u);
+    let second = cross(normal, first);
+    let d = position - facet.origin;
+    let scale = 1.0 / radius;
+    var cuts = clip.cuts;
+    var polygon: array<vec2f, CORNERS>;
+    polygon[0] = vec2f(-2.0, -2.0);
+    polygon[1] = vec2f(2.0, -2.0);
+    polygon[2] = vec2f(2.0, 2.0);
+    polygon[3] = vec2f(-2.0, 2.0);
+    var count = 4u;
+    for (var k = 0u; k < 4u + clip.count; k++) {
+        var toward = facet.dual_u;
+        var distance = 0.0;
+        if k >= 4u {
+            let cut = cuts[k - 4u];
+            toward = cut.xyz;
+            distance = cut.w;
+        } else {
+            if k >= 2u {
+                toward = facet.dual_v;
+            }
+            let place = dot(d, toward);
+            let inverse = 1.0 / sqrt(dot(toward, toward));
+            distance = select(1.0 - place, place, k % 2u == 0u) * inverse;
+            toward = toward * select(inverse, -inverse, k % 2u == 0u);
+        }
+        distance *= scale;
+        if distance < 1.0 {
+            let across = vec2f(dot(toward, first), dot(toward, second));
+            count = cut_polygon(&polygon, count, across, distance);
+        }
+    }
+    var area = 0.0;
+    var a = polygon[max(count, 1u) - 1u];
+    for (var i = 0u; i < count; i++) {
+        let b = polygon[i];
+        let edge = b - a;
+        let length = sqrt(dot(edge, edge));
+        if length > 0.0 {
+            let along = edge * (1.0 / length);
+            let start = dot(a, along);
+            area += wedge(cross_2d(a, along), start, start + length);
+        }
+        a = b;
+    }
+    return clamp(abs(area) / PI, SHARE_MIN, 1.0);
+}
+
+fn find_cuts(facet: Facet, position: vec3f, normal: vec3f, clip: ptr<function, Clip>, radius: f32) {
+    let first = facet.walls >> WALL_BITS;
+    let last = first + (facet.walls & ((1u << WALL_BITS) - 1u));
+    for (var i = first; i < last; i++) {
+        let wall = facets[i];
+        let d = wall.origin - position;
+        let rise = dot(d, wall.v);
+        if dot(wall.v, normal) > 0.5 && abs(rise) <= (*clip).depth {
+            let place = clamp(-dot(d, wall.u) / dot(wall.u, wall.u), 0.0, 1.0);
+            let nearest = d + wall.u * place;
+            if dot(nearest, nearest) < radius * radius && (*clip).count < CUTS {
+                let across = unit(cross(wall.v, wall.u));
+                let distance = dot(d, across);
+                let toward = across * select(1.0, -1.0, distance < 0.0);
+                (*clip).cuts[(*clip).count] = vec4f(toward, abs(distance) - MARGIN * facet.error);
+                (*clip).count += 1u;
+            }
+        }
+    }
+}
+
+fn before_walls(clip: ptr<function, Clip>, center: vec3f, position: vec3f) -> bool {
+    let d = position - center;
+    let a = (*clip).cuts[0];
+    let b = (*clip).cuts[1];
+    let c = (*clip).cuts[2];
+    let e = (*clip).cuts[3];
+    return dot(d, a.xyz) < a.w && dot(d, b.xyz) < b.w && dot(d, c.xyz) < c.w && dot(d, e.xyz) < e.w;
+}
+
 fn clip_at(number: u32, position: vec3f, normal: vec3f, radius: f32) -> Clip {
-    var clip = Clip(false, 1.0, 1.0, 0.0);
+    let open = vec4f(0.0, 0.0, 0.0, 1.0);
+    var clip = Clip(false, 1.0, 1.0, radius, array<vec4f, CUTS>(open, open, open, open), 0u);
     if number == NONE {
         return clip;
     }
@@ -115,6 +226,17 @@ fn clip_at(number: u32, position: vec3f, normal: vec3f, radius: f32) -> Clip {
         clip.crossed = margin_s * margin_s < radius_sq * dot(facet.dual_u, facet.dual_u)
             || margin_t * margin_t < radius_sq * dot(facet.dual_v, facet.dual_v);
     }
+    clip.depth = DEPTH * radius + 2.0 * (facet.error + PLANE_ERROR * max_abs(position));
+    find_cuts(facet, position, normal, &clip, radius);
+    if clip.count > 0u {
+        clip.crossed = true;
+        for (var k = 0u; k < 2u; k++) {
+            let share = cut_share(facet, clip, position, normal, select(radius, 0.70710677 * radius, k == 1u));
+            clip.whole = select(clip.whole, 1.0 / share, k == 0u);
+            clip.inner = select(clip.inner, 1.0 / share, k == 1u);
+        }
+        return clip;
+    }
     if clip.crossed {
         // a loop, so that the function is there once
         for (var k = 0u; k < 2u; k++) {
@@ -122,7 +244,6 @@ fn clip_at(number: u32, position: vec3f, normal: vec3f, radius: f32) -> Clip {
             clip.whole = select(clip.whole, 1.0 / share, k == 0u);
             clip.inner = select(clip.inner, 1.0 / share, k == 1u);
         }
-        clip.depth = DEPTH * radius + 2.0 * facet.error;
     }
     return clip;
 }
@@ -131,10 +252,12 @@ fn on_facet(facet: Facet, position: vec3f) -> bool {
     let d = position - facet.origin;
     //#if disc
     if facet.radius > 0.0 {
-        return dot(d, d) < facet.radius * facet.radius;
+        return dot(d, d) < facet.radius * facet.radius * (1.0 - RIM);
     }
     //#end
     let s = dot(d, facet.dual_u);
     let t = dot(d, facet.dual_v);
-    return s > 0.0 && s < 1.0 && t > 0.0 && t < 1.0;
+    let low_s = facet.margin_s;
+    let low_t = facet.margin_t;
+    return s > low_s && s < 1.0 - low_s && t > low_t && t < 1.0 - low_t;
 }

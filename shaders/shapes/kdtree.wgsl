@@ -1,5 +1,5 @@
 // Rays through the kd-tree: twin of src/shapes/kdtree.rs, which explains the method.
-// Reads `nodes: array<vec2u>` and `scene.world.bounds_min`, `bounds_max`; calls `intersect_leaf(first, last, ray, any_hit, hit)`
+// Reads `nodes: array<vec2u>` and `scene.world.bounds_min`, `bounds_max`, `primitive_size`; calls `intersect_leaf(first, last, ray, any_hit, hit)`
 // for the references of a leaf.
 
 const MAX_DEPTH: u32 = 32u;
@@ -42,11 +42,12 @@ fn traverse(ray: Ray, any_hit: bool, hit: ptr<function, Hit>) {
     let to_min = scene.world.bounds_min - ray.origin;
     let to_max = scene.world.bounds_max - ray.origin;
     let reach = max(abs(to_min), abs(to_max));
-    let slack = (SLACK * max(max(reach.x, reach.y), reach.z)) * abs(inverse);
+    let slack = SLACK * abs(inverse);
+    let margin = slack * max(max(reach.x, reach.y), reach.z);
     let t0 = to_min * inverse;
     let t1 = to_max * inverse;
-    let enter = min(t0, t1) - slack;
-    let leave = max(t0, t1) + slack;
+    let enter = min(t0, t1) - margin;
+    let leave = max(t0, t1) + margin;
     let root_begin = max(max(max(ray.t_min, enter.x), enter.y), enter.z);
     let root_end = min(min(min((*hit).t, leave.x), leave.y), leave.z);
     if root_begin > root_end {
@@ -67,8 +68,9 @@ fn traverse(ray: Ray, any_hit: bool, hit: ptr<function, Hit>) {
             let near = children(node.y) | backward[axis];
             let far = near ^ 1u;
             let t = (bitcast<f32>(node.x) - ray.origin[axis]) * inverse[axis];
-            let t_first = t - slack[axis];
-            let t_last = t + slack[axis];
+            let margin = slack[axis] * (max(end, -begin) + scene.world.primitive_size);
+            let t_first = t - margin;
+            let t_last = t + margin;
             let enter_near = (t_last >= begin) & !is_empty(node.y, backward[axis]);
             let enter_far = (t_first <= end) & !is_empty(node.y, backward[axis] ^ 1u);
             if enter_near {

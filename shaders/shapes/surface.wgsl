@@ -152,7 +152,7 @@ fn surface_at(ray: Ray, hit: Hit) -> Surface {
                 NONE,
                 vec2f(plane.u0 + dot(d, plane.tangent), plane.v0 + dot(d, plane.bitangent)),
                 0.0,
-                NONE,
+                plane.facet,
             );
             planar = plane.uv;
         }

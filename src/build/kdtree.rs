@@ -7,7 +7,7 @@
 //! order that rays like (`kdtree_layout`).
 
 use super::kdtree_bins::{best_plane, partition};
-use super::kdtree_clip::whole;
+use super::kdtree_clip::Geometry;
 use super::kdtree_layout::laid_out;
 use super::kdtree_sweep::Sweep;
 use super::real::{Real, ToDouble, Vec3};
@@ -50,6 +50,8 @@ pub struct KdTree {
     pub refs: Vec<u32>,
     /// The box about all primitives; zero when there are none.
     pub bounds: Aabb,
+    /// See [`Tree::primitive_size`].
+    pub primitive_size: Real,
     /// Facts about the tree.
     pub stats: Stats,
 }
@@ -62,6 +64,7 @@ impl KdTree {
             refs: &self.refs,
             bounds_min: self.bounds.min,
             bounds_max: self.bounds.max,
+            primitive_size: self.primitive_size,
         }
     }
 }
@@ -139,29 +142,37 @@ impl Heuristic {
 /// Builds the tree. The same input gives the same tree, whatever the number of threads.
 pub fn build(prims: &[Primitive]) -> KdTree {
     let _stage = stage("kd-tree");
-    let items: Vec<Item> =
-        prims.par_iter().enumerate().map(|(i, p)| Item { prim: i as u32, bounds: whole(p) }).collect();
+    let geometry = Geometry::new(prims);
+    let mut items: Vec<Item> =
+        prims.par_iter().enumerate().map(|(i, p)| Item { prim: i as u32, bounds: p.bounds() }).collect();
     let bounds = match items.iter().map(|i| i.bounds).reduce(Aabb::union) {
         Some(b) => b,
         None => Aabb { min: Vec3::ZERO, max: Vec3::ZERO },
     };
+    items.par_iter_mut().for_each(|item| {
+        if geometry.is_padded(item.prim) {
+            item.bounds = geometry.clipped(item.prim, bounds).unwrap_or(bounds);
+        }
+    });
     let levels = 8.0 + 1.3 * (prims.len().max(1) as f64).log2();
-    let Subtree { nodes, refs } = subtree(prims, items, bounds, MAX_DEPTH.min(levels.round() as u32));
+    let Subtree { nodes, refs } = subtree(&geometry, items, bounds, MAX_DEPTH.min(levels.round() as u32));
     let nodes = laid_out(&nodes, bounds);
     let stats = stats(&nodes, bounds);
-    KdTree { nodes, refs, bounds, stats }
+    KdTree { nodes, refs, bounds, primitive_size: geometry.size, stats }
 }
 
-fn subtree(prims: &[Primitive], items: Vec<Item>, cell: Aabb, levels: u32) -> Subtree {
+fn subtree(geometry: &Geometry, items: Vec<Item>, cell: Aabb, levels: u32) -> Subtree {
     let plane = if items.len() > SWEEP_LIMIT && levels > 0 { best_plane(&items, cell) } else { None };
     let Some(plane) = plane else {
-        return Sweep::new(prims, &items, levels).build(&items, cell);
+        return Sweep::new(geometry, &items, levels).build(&items, cell);
     };
     let (low, high) = cell.split(plane.axis, plane.position);
-    let (left, right) = partition(prims, &items, plane, low, high);
+    let (left, right) = partition(geometry, &items, plane, low, high);
     drop(items);
-    let (left, right) =
-        rayon::join(|| subtree(prims, left, low, levels - 1), || subtree(prims, right, high, levels - 1));
+    let (left, right) = rayon::join(
+        || subtree(geometry, left, low, levels - 1),
+        || subtree(geometry, right, high, levels - 1),
+    );
     joined(plane.axis, plane.position, left, right)
 }
 

@@ -1,7 +1,7 @@
 //! Splits of large nodes: the surface area heuristic at evenly spaced planes.
 
-use super::kdtree::{Heuristic, INTERSECTION_COST, Item, Primitive};
-use super::kdtree_clip::clipped;
+use super::kdtree::{Heuristic, INTERSECTION_COST, Item};
+use super::kdtree_clip::Geometry;
 use super::real::Real;
 use super::shapes::aabb::Aabb;
 
@@ -15,15 +15,46 @@ pub(super) struct Plane {
     pub position: Real,
 }
 
+/// Items that are looked at to find where most of them lie.
+const SAMPLE: usize = 1024;
+/// Planes are spaced over the middle of the items where it is narrower than the cell by this
+/// factor.
+const NARROW: Real = 1.0 / 16.0;
+
+/// What the planes are spaced over: along each axis the cell, or, where few items far away make the
+/// cell much wider than the rest of them need, the middle 98 % of the items and a margin as wide.
+fn bin_range(items: &[Item], cell: Aabb) -> Aabb {
+    let mut range = cell;
+    let sample = || items.iter().step_by(items.len() / SAMPLE + 1);
+    for axis in 0..3 {
+        let mut lows: Vec<Real> = sample().map(|i| i.bounds.min[axis]).collect();
+        let mut highs: Vec<Real> = sample().map(|i| i.bounds.max[axis]).collect();
+        if lows.is_empty() {
+            return cell;
+        }
+        let outside = lows.len() / 100;
+        let last = highs.len() - 1 - outside;
+        let low = *lows.select_nth_unstable_by(outside, Real::total_cmp).1;
+        let high = *highs.select_nth_unstable_by(last, Real::total_cmp).1;
+        let width = high - low;
+        if width > 0.0 && width < NARROW * (cell.max[axis] - cell.min[axis]) {
+            range.min[axis] = (low - width).max(cell.min[axis]);
+            range.max[axis] = (high + width).min(cell.max[axis]);
+        }
+    }
+    range
+}
+
 /// The best of the evenly spaced planes, or none if no split is expected to pay.
 pub(super) fn best_plane(items: &[Item], cell: Aabb) -> Option<Plane> {
-    let size = cell.max - cell.min;
+    let range = bin_range(items, cell);
+    let size = range.max - range.min;
     let scale = size.map(|s| if s > 0.0 { BINS as Real / s } else { 0.0 });
     let mut starts = [[0usize; BINS]; 3];
     let mut ends = [[0usize; BINS]; 3];
     for item in items {
-        let first = (item.bounds.min - cell.min) * scale;
-        let last = (item.bounds.max - cell.min) * scale;
+        let first = (item.bounds.min - range.min) * scale;
+        let last = (item.bounds.max - range.min) * scale;
         for axis in 0..3 {
             starts[axis][(first[axis] as usize).min(BINS - 1)] += 1;
             ends[axis][(last[axis] as usize).min(BINS - 1)] += 1;
@@ -38,7 +69,7 @@ pub(super) fn best_plane(items: &[Item], cell: Aabb) -> Option<Plane> {
         for bin in 1..BINS {
             left += starts[axis][bin - 1];
             right -= ends[axis][bin - 1];
-            let position = cell.min[axis] + size[axis] * (bin as Real / BINS as Real);
+            let position = range.min[axis] + size[axis] * (bin as Real / BINS as Real);
             let cost = heuristic.cost(position, left, right);
             if cost < best_cost && position > cell.min[axis] && position < cell.max[axis] {
                 best_cost = cost;
@@ -51,7 +82,7 @@ pub(super) fn best_plane(items: &[Item], cell: Aabb) -> Option<Plane> {
 
 /// The items of the two cells `low` and `high` beside `plane`; what lies in the plane goes to the first.
 pub(super) fn partition(
-    prims: &[Primitive],
+    geometry: &Geometry,
     items: &[Item],
     plane: Plane,
     low: Aabb,
@@ -65,7 +96,7 @@ pub(super) fn partition(
         } else if item.bounds.min[plane.axis] >= plane.position {
             right.push(*item);
         } else {
-            let (a, b) = parts(prims, item.prim, low, high);
+            let (a, b) = parts(geometry, item.prim, low, high);
             left.extend(a.map(|bounds| Item { prim: item.prim, bounds }));
             right.extend(b.map(|bounds| Item { prim: item.prim, bounds }));
         }
@@ -74,9 +105,8 @@ pub(super) fn partition(
 }
 
 /// The boxes of a primitive in two cells. Should rounding take it from both, it stays in both.
-pub(super) fn parts(prims: &[Primitive], prim: u32, low: Aabb, high: Aabb) -> (Option<Aabb>, Option<Aabb>) {
-    let prim = &prims[prim as usize];
-    match (clipped(prim, low), clipped(prim, high)) {
+pub(super) fn parts(geometry: &Geometry, prim: u32, low: Aabb, high: Aabb) -> (Option<Aabb>, Option<Aabb>) {
+    match (geometry.clipped(prim, low), geometry.clipped(prim, high)) {
         (None, None) => (Some(low), Some(high)),
         parts => parts,
     }

@@ -1,52 +1,173 @@
 //! The box about the part of a primitive that lies in a cell (perfect splits).
 
 use super::kdtree::Primitive;
+use super::math::EPS;
 use super::real::{Real, ToDouble, Vec3};
 use super::shapes::aabb::Aabb;
+use super::shapes::kdtree::SLACK;
 use glam::DVec3;
+use rayon::prelude::*;
 
-/// The box about a whole primitive.
-pub(super) fn whole(prim: &Primitive) -> Aabb {
-    match prim {
-        Primitive::Triangle(points) => Aabb::of_points(points),
-        Primitive::Box(bounds) => *bounds,
+/// Triangles this many times wider than the lower quartile are padded; for all others the
+/// traversal's slabs are wide enough, and still thin against most triangles.
+const OUTLIER: Real = 64.0;
+
+/// The primitives of a tree, and which of them need padding.
+pub(super) struct Geometry<'a> {
+    prims: &'a [Primitive],
+    /// Largest extent of a triangle that needs no padding.
+    pub size: Real,
+}
+
+impl<'a> Geometry<'a> {
+    pub fn new(prims: &'a [Primitive]) -> Geometry<'a> {
+        let mut sizes: Vec<Real> = prims.par_iter().filter_map(Primitive::size).collect();
+        let largest = sizes.par_iter().copied().reduce(|| 0.0, Real::max);
+        let quartile = sizes.len() / 4;
+        let typical = match sizes.is_empty() {
+            true => 0.0,
+            false => *sizes.select_nth_unstable_by(quartile, Real::total_cmp).1,
+        };
+        Geometry { prims, size: largest.min(OUTLIER * typical) }
+    }
+
+    /// Whether a primitive is so large that its hits may lie farther off it than the slabs about
+    /// planes allow for.
+    pub fn is_padded(&self, prim: u32) -> bool {
+        self.prims[prim as usize].size().is_some_and(|size| size > self.size)
+    }
+
+    /// The box about what `cell` holds of a primitive, rounded outward but not out of the cell, or
+    /// none.
+    pub fn clipped(&self, prim: u32, cell: Aabb) -> Option<Aabb> {
+        match &self.prims[prim as usize] {
+            Primitive::Triangle(points) if self.is_padded(prim) => clipped_large(points, cell),
+            Primitive::Triangle(points) => clipped_triangle(points, cell),
+            Primitive::Box(bounds) => Some(bounds.intersection(cell)).filter(|b| !b.is_empty()),
+        }
     }
 }
 
-/// The box about what `cell` holds of `prim`, rounded outward but not out of the cell, or none.
-pub(super) fn clipped(prim: &Primitive, cell: Aabb) -> Option<Aabb> {
-    match prim {
-        Primitive::Triangle(points) => clipped_triangle(points, cell),
-        Primitive::Box(bounds) => Some(bounds.intersection(cell)).filter(|b| !b.is_empty()),
+impl Primitive {
+    /// The box about the whole.
+    pub(super) fn bounds(&self) -> Aabb {
+        match self {
+            Primitive::Triangle(points) => Aabb::of_points(points),
+            Primitive::Box(bounds) => *bounds,
+        }
+    }
+
+    /// Largest extent of a triangle along an axis. Boxes hold all of their hits already.
+    fn size(&self) -> Option<Real> {
+        match self {
+            Primitive::Triangle(points) => {
+                let bounds = Aabb::of_points(points);
+                Some((bounds.max - bounds.min).max_element())
+            }
+            Primitive::Box(_) => None,
+        }
     }
 }
 
 /// A triangle cut by the six planes of a cell has at most nine corners.
 const CORNERS: usize = 9;
 
-/// Cuts the polygon by each plane of the cell in turn (Sutherland & Hodgman 1974), in f64. Where that is no more than the
-/// kernels have, the corners are off by some roundings, for which the slab about each plane has room
-/// (`shapes/kdtree.rs`).
+/// A triangle's part in a cell: a convex polygon.
+struct Polygon {
+    corners: [DVec3; CORNERS],
+    count: usize,
+}
+
+/// The box about what `cell` holds of a triangle.
 fn clipped_triangle(points: &[Vec3; 3], cell: Aabb) -> Option<Aabb> {
-    let mut polygon = [DVec3::ZERO; CORNERS];
-    for (corner, point) in polygon.iter_mut().zip(points) {
+    let part = polygon(points, cell).bounds(0.0)?;
+    // In f64 the corners are rounded like the kernels' numbers, but never beyond the triangle.
+    let slop = if f64::from(EPS) < f64::EPSILON { Real::EPSILON * magnitude(points) } else { 0.0 };
+    let whole = Aabb::of_points(points);
+    let (min, max) = ((part.min - slop).max(whole.min), (part.max + slop).min(whole.max));
+    Some(Aabb { min: min.clamp(cell.min, cell.max), max: max.clamp(cell.min, cell.max) })
+}
+
+/// The box about the computed hits in `cell` of a triangle that is larger than the slabs about
+/// planes allow for.
+///
+/// A hit near a point q with weights w lies off the triangle by at most `SLACK sum w_i |p_i - q|`,
+/// and what goes with its distance from the ray's origin. Where one vertex is far, that is little
+/// near the other two; so the padding is found for the part in the cell, which the padding before
+/// has grown.
+fn clipped_large(points: &[Vec3; 3], cell: Aabb) -> Option<Aabb> {
+    let whole = Aabb::of_points(points);
+    let slop = f64::EPSILON * f64::from(4.0 * magnitude(points));
+    let mut pad = f64::from(SLACK * (whole.max - whole.min).max_element());
+    loop {
+        let grown = |b: Aabb| {
+            let min = (b.min.to_double() - pad).to_array().map(rounded_down);
+            Aabb { min: min.into(), max: (b.max.to_double() + pad).to_array().map(rounded_up).into() }
+        };
+        let part = polygon(points, grown(cell));
+        let bounds = part.bounds(pad)?;
+        let local = f64::from(SLACK) * part.reach(points) + slop;
+        if local > 0.5 * pad {
+            return Some(bounds.intersection(cell)).filter(|b| !b.is_empty());
+        }
+        pad = local;
+    }
+}
+
+/// Greatest absolute coordinate.
+fn magnitude(points: &[Vec3; 3]) -> Real {
+    points.iter().map(|p| p.abs().max_element()).fold(0.0, Real::max)
+}
+
+/// Cuts the triangle by each plane of the cell in turn (Sutherland & Hodgman 1974), in f64.
+fn polygon(points: &[Vec3; 3], cell: Aabb) -> Polygon {
+    let mut corners = [DVec3::ZERO; CORNERS];
+    for (corner, point) in corners.iter_mut().zip(points) {
         *corner = point.to_double();
     }
     let mut count = 3;
     let bounds = Aabb::of_points(points);
     for axis in 0..3 {
         if bounds.min[axis] < cell.min[axis] {
-            count = cut(&mut polygon, count, axis, f64::from(cell.min[axis]), 1.0);
+            count = cut(&mut corners, count, axis, f64::from(cell.min[axis]), 1.0);
         }
         if bounds.max[axis] > cell.max[axis] {
-            count = cut(&mut polygon, count, axis, f64::from(cell.max[axis]), -1.0);
+            count = cut(&mut corners, count, axis, f64::from(cell.max[axis]), -1.0);
         }
     }
-    let corners = &polygon[..count];
-    let low = corners.iter().copied().reduce(DVec3::min)?;
-    let high = corners.iter().copied().reduce(DVec3::max)?;
-    Some(Aabb { min: low.to_array().map(rounded_down).into(), max: high.to_array().map(rounded_up).into() })
-        .map(|b: Aabb| Aabb { min: b.min.clamp(cell.min, cell.max), max: b.max.clamp(cell.min, cell.max) })
+    Polygon { corners, count }
+}
+
+impl Polygon {
+    /// The box about it, widened by `pad` and rounded outward, or none.
+    fn bounds(&self, pad: f64) -> Option<Aabb> {
+        let corners = &self.corners[..self.count];
+        let low = corners.iter().copied().reduce(DVec3::min)? - pad;
+        let high = corners.iter().copied().reduce(DVec3::max)? + pad;
+        Some(Aabb {
+            min: low.to_array().map(rounded_down).into(),
+            max: high.to_array().map(rounded_up).into(),
+        })
+    }
+
+    /// Bound of `sum w_i |p_i - q|` over its points q with weights w in the triangle `points`:
+    /// linear in q but for the distances, which grow by no more than its extent.
+    fn reach(&self, points: &[Vec3; 3]) -> f64 {
+        let [a, b, c] = points.map(Vec3::to_double);
+        let normal = (b - a).cross(c - a);
+        let area_sq = normal.length_squared();
+        let corners = &self.corners[..self.count];
+        let distances = |q: DVec3| [a, b, c].map(|p| (p - q).abs().max_element());
+        let bound = |q: &DVec3| {
+            let weight = |from: DVec3, to: DVec3| (to - from).cross(*q - from).dot(normal) / area_sq;
+            let weights = [weight(b, c), weight(c, a), weight(a, b)];
+            let sum = distances(*q).iter().zip(weights).map(|(d, w)| d * w.clamp(0.0, 1.0)).sum::<f64>();
+            let extent = corners.iter().map(|other| (*other - *q).abs().max_element()).fold(0.0, f64::max);
+            // without area no weight is known
+            if area_sq > 0.0 { sum + extent } else { f64::MAX }
+        };
+        corners.iter().map(bound).fold(0.0, f64::max)
+    }
 }
 
 /// Keeps the corners with `side * (x - plane) >= 0` and adds those where an edge crosses.

@@ -3,8 +3,9 @@
 //! Per axis a sorted list of events says where primitives end, lie flat or start. A split filters the lists, which
 //! keeps them sorted, and merges in the events of the primitives that straddle the plane.
 
-use super::kdtree::{Heuristic, INTERSECTION_COST, Item, Part, Primitive, Subtree};
+use super::kdtree::{Heuristic, INTERSECTION_COST, Item, Part, Subtree};
 use super::kdtree_bins::parts;
+use super::kdtree_clip::Geometry;
 use super::real::{Bits, Real, WideBits};
 use super::shapes::aabb::Aabb;
 
@@ -70,7 +71,7 @@ struct Split {
 
 /// Builds one subtree.
 pub(super) struct Sweep<'a> {
-    prims: &'a [Primitive],
+    geometry: &'a Geometry<'a>,
     /// Item -> primitive.
     ids: Vec<u32>,
     /// Item -> where it goes in the split under way.
@@ -81,9 +82,9 @@ pub(super) struct Sweep<'a> {
 
 impl<'a> Sweep<'a> {
     /// For a subtree over `items`, at most `levels` deep.
-    pub fn new(prims: &'a [Primitive], items: &[Item], levels: u32) -> Sweep<'a> {
+    pub fn new(geometry: &'a Geometry<'a>, items: &[Item], levels: u32) -> Sweep<'a> {
         Sweep {
-            prims,
+            geometry,
             ids: items.iter().map(|i| i.prim).collect(),
             sides: vec![Side::Both; items.len()],
             levels,
@@ -147,7 +148,7 @@ impl<'a> Sweep<'a> {
                 Side::Left => counts[0] += 1,
                 Side::Right => counts[1] += 1,
                 Side::Both => {
-                    let (a, b) = parts(self.prims, self.ids[item(e)], low, high);
+                    let (a, b) = parts(self.geometry, self.ids[item(e)], low, high);
                     for (side, part) in [a, b].into_iter().enumerate() {
                         if let Some(bounds) = part {
                             push_events(&mut new[side], bounds, item(e));

@@ -1,6 +1,6 @@
 //! Host-only construction of what the kernels read, in f64.
 
-use super::{real, shapes};
+use super::{math, real, shapes};
 
 pub mod bezier;
 pub mod kdtree;

@@ -29,7 +29,7 @@ pub mod math {
 pub mod build {
     //! The twin of [`crate::build`] in f64: what depends on the kernels' numbers.
 
-    use super::{real, shapes};
+    use super::{math, real, shapes};
 
     pub mod kdtree;
     mod kdtree_bins;

@@ -10,7 +10,7 @@ use super::materials::scatter::eval_rough;
 use super::math::{LUMINANCE, oct_decode, unit};
 use super::real::{Real, Vec3, Vec4};
 use super::records::{Dispatch, Gathered, Statistics, VisiblePoint};
-use super::shapes::facet::{clip_at, on_facet};
+use super::shapes::facet::{before_walls, clip_at, on_facet};
 use super::tables::{Facet, MATERIAL_METAL};
 use bytemuck::Zeroable;
 use glam::IVec3;
@@ -106,7 +106,7 @@ fn gather_family(
     let Frame { ng, n, wo } = *frame;
     let flat = point.normal == point.shading;
     let clip = clip_at(facets, point.facet, point.position, ng, radius);
-    let depth = if clip.crossed { clip.depth.min(FLATNESS * radius) } else { FLATNESS * radius };
+    let depth = clip.depth.min(FLATNESS * radius);
     let inner = clip.whole - 2.0 * clip.inner;
     let reach = disc_reach(ng, radius, depth);
     let low = grid_cell(point.position - reach, inv_cell);
@@ -140,7 +140,8 @@ fn gather_family(
                             if clip.crossed {
                                 let [xs, ys, zs] = &sorted.positions;
                                 let position = Vec3::new(xs[i], ys[i], zs[i]);
-                                if !on_facet(&facets[point.facet as usize], position) {
+                                let here = before_walls(&clip, point.position, position);
+                                if !here || !on_facet(&facets[point.facet as usize], position) {
                                     continue;
                                 }
                             }

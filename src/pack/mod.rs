@@ -11,6 +11,7 @@ mod order;
 mod pilots;
 mod shape;
 mod visibility;
+mod walls;
 
 pub use crate::error::PackError;
 pub use objects::Objects;
@@ -100,6 +101,7 @@ fn flatten(scene: &scene::Scene, n: Normalization, width: u32, height: u32) -> R
     }
     let mut objects = Objects::default();
     let (primitives, references, mut emitters) = shape::pack_shapes(scene, &n, &mut out, &mut objects)?;
+    walls::find_walls(&mut out);
     let limit = 1 << REFERENCE_BITS;
     if references.len() >= limit {
         return Err(PackError::TooMany { what: "primitives", count: references.len(), limit });
@@ -110,6 +112,7 @@ fn flatten(scene: &scene::Scene, n: Normalization, width: u32, height: u32) -> R
         stats = tree.stats;
         out.world.bounds_min = tree.bounds.min;
         out.world.bounds_max = tree.bounds.max;
+        out.world.primitive_size = tree.primitive_size;
         out.nodes = tree.nodes;
         out.refs = tree.refs.iter().map(|&i| references[i as usize]).collect();
         let places = order::triangles_as_met(&mut out, &mut emitters);

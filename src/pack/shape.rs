@@ -7,6 +7,7 @@ use super::real::{Real, ToDouble, ToReal, Vec3};
 use super::shapes::aabb::Aabb;
 use super::shapes::cuboid::cuboid_error;
 use super::shapes::disc::disc_error;
+use super::shapes::facet::with_margins;
 use super::shapes::rectangle::rectangle_error;
 use super::tables::*;
 use super::{Objects, PackError};
@@ -28,6 +29,17 @@ pub struct Emitter {
     pub area: f64,
     /// Index of the scene's shape.
     pub shape: usize,
+}
+
+/// Largest absolute coordinate of some points along each axis.
+fn largest(points: &[Vec3]) -> Vec3 {
+    points.iter().fold(Vec3::ZERO, |a, p| a.max(p.abs()))
+}
+
+/// What one rounding moves the hits with a flat shape of this `extent` off its plane, along each axis: nothing along
+/// the others where the plane stands square to one.
+fn off_plane(normal: DVec3, extent: DVec3) -> DVec3 {
+    normal.abs() * normal.abs().dot(extent)
 }
 
 type Flattened = (Vec<Primitive>, Vec<u32>, Vec<Emitter>);
@@ -113,10 +125,10 @@ impl Pack<'_> {
     }
 
     /// A primitive whose computed hits lie in the box of `points`, grown by the rounding of those hits.
-    fn boxed(&mut self, reference: u32, points: &[Vec3]) {
+    /// `grow` is in roundings of a length.
+    fn boxed(&mut self, reference: u32, points: &[Vec3], grow: Vec3) {
         let b = Aabb::of_points(points);
-        let grow = b.min.abs().max(b.max.abs()).max_element() * (64.0 * EPS);
-        let grow = Vec3::splat(grow.max(Real::MIN_POSITIVE));
+        let grow = (grow * (64.0 * EPS)).max(Vec3::splat(Real::MIN_POSITIVE));
         self.primitives.push(Primitive::Box(Aabb { min: b.min - grow, max: b.max + grow }));
         self.references.push(reference);
     }
@@ -141,7 +153,8 @@ impl Pack<'_> {
         if r > UNBOUNDED_RADIUS {
             self.out.unbounded.push(id);
         } else {
-            self.boxed(id, &[(c - DVec3::splat(r)).to_real(), (c + DVec3::splat(r)).to_real()]);
+            let corners = [(c - DVec3::splat(r)).to_real(), (c + DVec3::splat(r)).to_real()];
+            self.boxed(id, &corners, Vec3::splat(largest(&corners).max_element()));
         }
     }
 
@@ -175,8 +188,14 @@ impl Pack<'_> {
             pad: 0,
         });
         let rectangle = &self.out.rectangles[self.out.rectangles.len() - 1];
-        self.out.facets[facet as usize].error = rectangle_error(rectangle);
-        self.boxed(id, &[o.to_real(), (o + u).to_real(), (o + v).to_real(), (o + u + v).to_real()]);
+        let error = rectangle_error(rectangle);
+        let outline = &mut self.out.facets[facet as usize];
+        *outline = with_margins(Facet { error, ..*outline });
+        let corners = [o, o + u, o + v, o + u + v].map(DVec3::to_real);
+        let length = |edge: DVec3, dual: Vec3| edge.abs() * dual.to_double().abs().dot(u.abs() + v.abs());
+        let edges = length(u, rectangle.dual_u) + length(v, rectangle.dual_v);
+        let grow = off_plane(normal.normalize(), u.abs() + v.abs()) + edges;
+        self.boxed(id, &corners, grow.to_real() + largest(&corners));
     }
 
     /// A facet's number; its error is left open.
@@ -222,7 +241,8 @@ impl Pack<'_> {
         let facet = Facet { origin: disc.center, radius: disc.radius, ..Facet::zeroed() };
         self.out.facets.push(Facet { error: disc_error(disc), ..facet });
         let half = (DVec3::ONE - n * n).max(DVec3::ZERO).map(f64::sqrt) * r;
-        self.boxed(id, &[(c - half).to_real(), (c + half).to_real()]);
+        let corners = [(c - half).to_real(), (c + half).to_real()];
+        self.boxed(id, &corners, (off_plane(n, half) + half).to_real() + largest(&corners));
     }
 
     fn plane(&mut self, point: DVec3, normal: DVec3, material: u32, uv: u32) {
@@ -242,6 +262,8 @@ impl Pack<'_> {
             u0: d.dot(t) as Real,
             bitangent: (b * self.n.unit).to_real(),
             v0: d.dot(b) as Real,
+            facet: NONE,
+            pad: [0; 3],
         });
     }
 
@@ -257,8 +279,9 @@ impl Pack<'_> {
         let (lower, upper) = (lower.to_real(), upper.to_real());
         let cuboid = Cuboid { lower, material, upper, light, uv, facet, pad: [0; 2] };
         self.out.cuboids.push(cuboid);
-        self.out.facets[facet as usize..].iter_mut().for_each(|f| f.error = cuboid_error(&cuboid));
-        self.boxed(id, &[lower, upper]);
+        let error = cuboid_error(&cuboid);
+        self.out.facets[facet as usize..].iter_mut().for_each(|f| *f = with_margins(Facet { error, ..*f }));
+        self.boxed(id, &[lower, upper], largest(&[lower, upper]));
     }
 
     fn mesh(&mut self, mesh: &Mesh, material: u32, uv: u32, emission: Option<DVec3>) {

@@ -1,9 +1,10 @@
 //! Facets: flat outlines. A disc about a point near the outline reaches beyond it, where no photon can lie; what is
-//! found in it belongs to the part that the facet covers. Twin: `shaders/shapes/facet.wgsl`.
+//! found in it belongs to the part that the facet covers. Where a wall stands on the facet, it
+//! belongs to the part on this side of the wall. Twin: `shaders/shapes/facet.wgsl`.
 
 use super::math::trig::{arctan2, kept};
-use super::math::{PI, unit};
-use super::real::{Plain, Real, Vec2, Vec3};
+use super::math::{EPS, PI, max_abs, unit};
+use super::real::{Plain, Real, Vec2, Vec3, Vec4};
 use super::tables::NONE;
 use bytemuck::Zeroable;
 
@@ -13,8 +14,24 @@ const SHARE_MIN: Real = 1e-6;
 const DEPTH: Real = 0.02;
 /// Beyond this ratio of radii a circle's segment within the smaller circle counts as a parabola's.
 const SLIM: Real = 30.0;
+/// Photons this close to the outline or a wall, in errors of computed points, may lie on the
+/// adjacent face.
+const MARGIN: Real = 0.25;
+/// Error of a computed point on an infinite plane, over its largest coordinate.
+const PLANE_ERROR: Real = 16.0 * EPS;
+/// Relative width of the rim of a circle where photons may lie on what it closes.
+const RIM: Real = 1e-5;
+/// Walls that cut a disc at the most; it is left to others.
+pub const CUTS: usize = 4;
+/// Low bits of [`Facet::walls`] that hold the number of walls.
+pub const WALL_BITS: u32 = 6;
+/// Corners of a square cut by the four edges of an outline and by walls, at the most.
+const CORNERS: usize = 8 + CUTS;
 
 /// The outline of a flat shape: a parallelogram `origin + s u + t v`, s and t in [0, 1], or a circle.
+///
+/// A wall on a facet is one too: it stands on the segment `origin + s u`, on the side that `v`, a
+/// unit vector, points to.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Plain, Zeroable)]
 pub struct Facet {
@@ -28,16 +45,16 @@ pub struct Facet {
     pub error: Real,
     /// Second edge.
     pub v: Vec3,
-    /// Padding.
-    pub pad0: u32,
+    /// Index of its first wall among the facets << [`WALL_BITS`], | their number.
+    pub walls: u32,
     /// In-plane vector with `dual_u . u = 1` and `dual_u . v = 0`.
     pub dual_u: Vec3,
-    /// Padding.
-    pub pad1: u32,
+    /// Photons with s this close to 0 or 1 may lie on the adjacent face.
+    pub margin_s: Real,
     /// In-plane vector with `dual_v . v = 1` and `dual_v . u = 0`.
     pub dual_v: Vec3,
-    /// Padding.
-    pub pad2: u32,
+    /// The same for t.
+    pub margin_t: Real,
 }
 
 /// What a facet is to a disc about one of its points.
@@ -49,8 +66,14 @@ pub struct Clip {
     pub whole: Real,
     /// The same of the disc of half the area about the same point.
     pub inner: Real,
-    /// Farthest that photons of the facet may lie from its plane; 0 where it is not crossed.
+    /// Farthest that photons of the facet may lie from its plane; the disc's radius where there is
+    /// no facet.
     pub depth: Real,
+    /// In-plane unit vectors toward walls within the disc, and the distance of their lines from its
+    /// centre; (0, 0, 0, 1), which cuts nothing, beyond `count`.
+    pub cuts: [Vec4; CUTS],
+    /// Number of cuts.
+    pub count: u32,
 }
 
 /// Angle, seen from the origin, from place `start` to place `end` on a line that passes it at `distance`.
@@ -126,9 +149,120 @@ pub fn facet_share(facet: &Facet, position: Vec3, normal: Vec3, radius: Real) ->
     (area / PI).clamp(SHARE_MIN, 1.0)
 }
 
+/// Cuts a convex polygon by the line at `distance` from the origin along the unit vector `normal`;
+/// keeps the side of smaller distances. Returns the number of corners.
+fn cut_polygon(polygon: &mut [Vec2; CORNERS], count: u32, normal: Vec2, distance: Real) -> u32 {
+    let old = *polygon;
+    let mut kept = 0;
+    let mut a = old[(count.max(1) - 1) as usize];
+    let mut da = a.dot(normal) - distance;
+    for i in 0..count {
+        let b = old[i as usize];
+        let db = b.dot(normal) - distance;
+        if (da < 0.0) != (db < 0.0) && kept < CORNERS as u32 {
+            polygon[kept as usize] = a + (b - a) * (da / (da - db));
+            kept += 1;
+        }
+        if db < 0.0 && kept < CORNERS as u32 {
+            polygon[kept as usize] = b;
+            kept += 1;
+        }
+        a = b;
+        da = db;
+    }
+    kept
+}
+
+/// Share of the disc of `radius` about `position`, a point of a parallelogram, that it covers on
+/// this side of the cuts.
+fn cut_share(facet: &Facet, clip: &Clip, position: Vec3, normal: Vec3, radius: Real) -> Real {
+    let first = unit(facet.u);
+    let second = normal.cross(first);
+    let d = position - facet.origin;
+    let scale = 1.0 / radius;
+    // a square about the unit disc, so that all corners are of its size
+    let mut polygon = [Vec2::ZERO; CORNERS];
+    polygon[0] = Vec2::new(-2.0, -2.0);
+    polygon[1] = Vec2::new(2.0, -2.0);
+    polygon[2] = Vec2::new(2.0, 2.0);
+    polygon[3] = Vec2::new(-2.0, 2.0);
+    let mut count = 4;
+    for k in 0..4 + clip.count {
+        let mut toward = facet.dual_u;
+        let mut distance;
+        if k >= 4 {
+            let cut = clip.cuts[(k - 4) as usize];
+            toward = cut.truncate();
+            distance = cut.w;
+        } else {
+            if k >= 2 {
+                toward = facet.dual_v;
+            }
+            let place = d.dot(toward);
+            let inverse = 1.0 / toward.dot(toward).sqrt();
+            distance = if k % 2 == 0 { place } else { 1.0 - place } * inverse;
+            toward *= if k % 2 == 0 { -inverse } else { inverse };
+        }
+        distance *= scale;
+        if distance < 1.0 {
+            let across = Vec2::new(toward.dot(first), toward.dot(second));
+            count = cut_polygon(&mut polygon, count, across, distance);
+        }
+    }
+    let mut area = 0.0;
+    let mut a = polygon[(count.max(1) - 1) as usize];
+    for i in 0..count {
+        let b = polygon[i as usize];
+        let edge = b - a;
+        let length = edge.dot(edge).sqrt();
+        if length > 0.0 {
+            let along = edge * (1.0 / length);
+            let start = a.dot(along);
+            area += wedge(cross_2d(a, along), start, start + length);
+        }
+        a = b;
+    }
+    (area.abs() / PI).clamp(SHARE_MIN, 1.0)
+}
+
+/// Finds the walls on `facet` that stand in the disc.
+fn find_cuts(facets: &[Facet], facet: &Facet, position: Vec3, normal: Vec3, clip: &mut Clip, radius: Real) {
+    let first = facet.walls >> WALL_BITS;
+    let last = first + (facet.walls & ((1 << WALL_BITS) - 1));
+    for i in first..last {
+        let wall = &facets[i as usize];
+        let d = wall.origin - position;
+        let rise = d.dot(wall.v);
+        // what stands on the other side or on the opposite face of a box is no wall here
+        if wall.v.dot(normal) > 0.5 && rise.abs() <= clip.depth {
+            let place = (-d.dot(wall.u) / wall.u.dot(wall.u)).clamp(0.0, 1.0);
+            let nearest = d + wall.u * place;
+            if nearest.dot(nearest) < radius * radius && clip.count < CUTS as u32 {
+                let across = unit(wall.v.cross(wall.u));
+                let distance = d.dot(across);
+                let toward = across * if distance < 0.0 { -1.0 } else { 1.0 };
+                clip.cuts[clip.count as usize] = toward.extend(distance.abs() - MARGIN * facet.error);
+                clip.count += 1;
+            }
+        }
+    }
+}
+
+/// Whether a point of the facet's plane lies on this side of all cuts of a disc about `center`.
+pub fn before_walls(clip: &Clip, center: Vec3, position: Vec3) -> bool {
+    let d = position - center;
+    // without a loop, of which Mesa's software driver makes no more than 65535 rounds
+    let [a, b, c, e] = clip.cuts;
+    d.dot(a.truncate()) < a.w
+        && d.dot(b.truncate()) < b.w
+        && d.dot(c.truncate()) < c.w
+        && d.dot(e.truncate()) < e.w
+}
+
 /// How facet `number`, if there is one, clips the disc of `radius` about its point `position`.
 pub fn clip_at(facets: &[Facet], number: u32, position: Vec3, normal: Vec3, radius: Real) -> Clip {
-    let mut clip = Clip { crossed: false, whole: 1.0, inner: 1.0, depth: 0.0 };
+    let cuts = [Vec4::W; CUTS];
+    let mut clip = Clip { crossed: false, whole: 1.0, inner: 1.0, depth: radius, cuts, count: 0 };
     if number == NONE {
         return clip;
     }
@@ -146,21 +280,36 @@ pub fn clip_at(facets: &[Facet], number: u32, position: Vec3, normal: Vec3, radi
         clip.crossed = margin_s * margin_s < radius_sq * facet.dual_u.dot(facet.dual_u)
             || margin_t * margin_t < radius_sq * facet.dual_v.dot(facet.dual_v);
     }
+    clip.depth = DEPTH * radius + 2.0 * (facet.error + PLANE_ERROR * max_abs(position));
+    find_cuts(facets, facet, position, normal, &mut clip, radius);
+    if clip.count > 0 {
+        clip.crossed = true;
+        clip.whole = 1.0 / cut_share(facet, &clip, position, normal, radius);
+        clip.inner = 1.0 / cut_share(facet, &clip, position, normal, 0.707_106_77 * radius);
+        return clip;
+    }
     if clip.crossed {
         clip.whole = 1.0 / facet_share(facet, position, normal, radius);
         clip.inner = 1.0 / facet_share(facet, position, normal, 0.707_106_77 * radius);
-        clip.depth = DEPTH * radius + 2.0 * facet.error;
     }
     clip
 }
 
-/// Whether a point of the facet's plane lies within its outline.
+/// Whether a point of the facet's plane lies within its outline, and not on the edge that it has in
+/// common with an adjacent face.
 pub fn on_facet(facet: &Facet, position: Vec3) -> bool {
     let d = position - facet.origin;
     if facet.radius > 0.0 {
-        return d.dot(d) < facet.radius * facet.radius;
+        return d.dot(d) < facet.radius * facet.radius * (1.0 - RIM);
     }
     let s = d.dot(facet.dual_u);
     let t = d.dot(facet.dual_v);
-    s > 0.0 && s < 1.0 && t > 0.0 && t < 1.0
+    let (low_s, low_t) = (facet.margin_s, facet.margin_t);
+    s > low_s && s < 1.0 - low_s && t > low_t && t < 1.0 - low_t
+}
+
+/// The margins of an outline whose error is known.
+pub fn with_margins(facet: Facet) -> Facet {
+    let margin = |dual: Vec3| (MARGIN * facet.error * dual.dot(dual).sqrt()).min(0.25);
+    Facet { margin_s: margin(facet.dual_u), margin_t: margin(facet.dual_v), ..facet }
 }

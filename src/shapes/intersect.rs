@@ -227,5 +227,6 @@ fn tree(scene: &Scene) -> Tree<'_> {
         refs: &scene.refs,
         bounds_min: scene.world.bounds_min,
         bounds_max: scene.world.bounds_max,
+        primitive_size: scene.world.primitive_size,
     }
 }

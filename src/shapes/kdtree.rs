@@ -4,9 +4,14 @@
 //! leaves, which are more than half of all, are neither read nor put on the stack. Both twins test the same leaves in the
 //! same order, so that ties in the distance end alike.
 //!
-//! A computed hit may lie off its primitive by a few roundings of the largest coordinate relative to the ray's
-//! origin. So every plane is taken as a slab of half-width `SLACK` times that length: a ray that is in the slab
-//! visits both sides, and the nearest computed hit is found exactly as by trying all primitives.
+//! A computed hit lies off its primitive by at most some 30 roundings of the largest coordinate of
+//! the primitive as seen from the ray's origin. That is no more than the distance of the hit plus
+//! the primitive's extent. So every plane is taken as a slab of half-width `SLACK (|t| +
+//! primitive_size)`, with the greatest `|t|` in the ray's interval in the node (compare the
+//! interval padding of Ize 2013, "Robust BVH Ray Traversal"): a ray that is in the slab visits both
+//! sides, and the nearest computed hit is found exactly as by trying all primitives. The slab
+//! shrinks with the interval, so geometry far away does not widen it. The builder pads the few
+//! primitives that are larger than `primitive_size`.
 
 use super::math::EPS;
 use super::ray::{Hit, NONE, Ray};
@@ -15,10 +20,10 @@ use bytemuck::Zeroable;
 
 /// Greatest number of interior nodes above a leaf, and so of children that wait.
 pub const MAX_DEPTH: u32 = 32;
-/// Half-width of the slab about a plane, relative to the largest coordinate of the tree's box as seen from the ray's
-/// origin: 64 roundings. The watertight triangle test is bounded by about 30 (7 is the most seen), the plane's
+/// Half-width of the slab about a plane, over the hit's distance plus the primitive's size: 64
+/// roundings. The watertight triangle test is bounded by about 30 (7 is the most seen), the plane's
 /// distance by 3.
-const SLACK: Real = 64.0 * EPS;
+pub const SLACK: Real = 64.0 * EPS;
 /// Stands for a direction component that is (nearly) zero: so small that a slab which the ray runs beside is never
 /// reached within the tree, and one which the ray runs in is never left.
 const LEVEL: Real = 1e-20;
@@ -93,6 +98,9 @@ pub struct Tree<'a> {
     pub bounds_min: Vec3,
     /// Greatest corner.
     pub bounds_max: Vec3,
+    /// Extent up to which the slab about a plane covers the rounding of triangles; larger ones are
+    /// padded.
+    pub primitive_size: Real,
 }
 
 /// A child that waits: its index and the ray's interval in it.
@@ -125,6 +133,7 @@ fn reciprocal(d: Real) -> Real {
 pub(super) struct Axis {
     pub origin: Real,
     pub inverse: Real,
+    /// `SLACK` over the direction's component: half-width of a slab in t, per unit of distance.
     pub slack: Real,
     /// 1 where the ray meets the upper child first.
     pub backward: u32,
@@ -173,11 +182,12 @@ pub(super) fn start(tree: &Tree, ray: &Ray, t_max: Real) -> Option<([Axis; 4], R
     let to_min = tree.bounds_min - ray.origin;
     let to_max = tree.bounds_max - ray.origin;
     let reach = to_min.abs().max(to_max.abs());
-    let slack = (SLACK * larger(larger(reach.x, reach.y), reach.z)) * inverse.abs();
+    let slack = SLACK * inverse.abs();
+    let margin = slack * larger(larger(reach.x, reach.y), reach.z);
     let t0 = to_min * inverse;
     let t1 = to_max * inverse;
-    let enter = t0.min(t1) - slack;
-    let leave = t0.max(t1) + slack;
+    let enter = t0.min(t1) - margin;
+    let leave = t0.max(t1) + margin;
     let root_begin = larger(larger(larger(ray.t_min, enter.x), enter.y), enter.z);
     let root_end = smaller(smaller(smaller(t_max, leave.x), leave.y), leave.z);
     if root_begin > root_end {
@@ -209,8 +219,9 @@ fn traverse(tree: &Tree, ray: &Ray, any: bool, hit: &mut Hit, primitives: &mut i
             let near = node.children() | backward;
             let far = near ^ 1;
             let t = (Real::from_bits(node.word0) - origin) * inverse;
-            let t_first = t - slack;
-            let t_last = t + slack;
+            let margin = slack * (larger(end, -begin) + tree.primitive_size);
+            let t_first = t - margin;
+            let t_last = t + margin;
             let enter_near = (t_last >= begin) & !node.is_empty(backward);
             let enter_far = (t_first <= end) & !node.is_empty(backward ^ 1);
             if enter_near {

@@ -96,6 +96,8 @@ struct Steps {
     /// The ray's interval in it.
     begin: Each,
     end: Each,
+    /// See [`Tree::primitive_size`].
+    size: Real,
     /// What may have to go on the stack.
     far: EachIndex,
     far_begin: Each,
@@ -118,6 +120,7 @@ impl Steps {
     fn step(&mut self) -> Moves {
         let [x, y, z] = &self.axes;
         let one = Words::splat(1);
+        let size = Reals::splat(self.size);
         let mut moves = Moves { push: 0, pop: 0, leaf: 0 };
         for i in 0..GROUPS {
             let word1 = self.word1.0[i];
@@ -130,8 +133,9 @@ impl Steps {
             let near = ((word1 >> 3) & !one) | (words(backward) & one);
             let far = near ^ one;
             let t = (self.word0.0[i] - origin) * inverse;
-            let (t_first, t_last) = (t - slack, t + slack);
             let (begin, end) = (self.begin.0[i], self.end.0[i]);
+            let margin = slack * (end.fast_max(-begin) + size);
+            let (t_first, t_last) = (t - margin, t + margin);
             let (lower_empty, upper_empty) = (has(word1, 2), has(word1, 3));
             let leaf = low & high;
             let enter_near = t_last.cmp_ge(begin) & !(backward.blend(upper_empty, lower_empty) | leaf);
@@ -202,6 +206,7 @@ pub fn traverse_closest_many<P: Primitives>(
         word1: nowhere,
         begin: Each::ZERO,
         end: Each::ZERO,
+        size: tree.primitive_size,
         far: nowhere,
         far_begin: Each::ZERO,
         far_end: Each::ZERO,

@@ -169,7 +169,7 @@ pub fn surface_at(scene: &Scene, ray: &Ray, hit: &Hit) -> Surface {
                 light: NONE,
                 uv: Vec2::new(plane.u0 + d.dot(plane.tangent), plane.v0 + d.dot(plane.bitangent)),
                 v: 0.0,
-                facet: NONE,
+                facet: plane.facet,
             };
             planar = plane.uv;
         }

@@ -46,7 +46,7 @@ struct World {
     bounds_min: Vec3,
     ray_count: u32,
     bounds_max: Vec3,
-    pad: u32,
+    primitive_size: f32,
 }
 
 struct Gpu {
@@ -159,7 +159,7 @@ fn device_gives_the_same_bits() {
         bounds_min: view.bounds_min,
         ray_count: rays.len() as u32,
         bounds_max: view.bounds_max,
-        pad: 0,
+        primitive_size: view.primitive_size,
     };
     let triangles: Vec<Triangle> = mesh.iter().map(|t| triangle(*t)).collect();
     let inputs = [

@@ -1,6 +1,7 @@
 //! The kd-tree against exhaustive search and theory.
 
 mod device;
+mod far;
 mod scenes;
 mod structure;
 mod triangles;

@@ -245,16 +245,52 @@ pub fn scenes() -> Vec<(&'static str, Vec<Primitive>)> {
     out
 }
 
+/// Meshes of size one with something far away, by name.
+pub fn far_scenes() -> Vec<(&'static str, Vec<[Vec3; 3]>)> {
+    let mesh = displaced_torus(60, 30);
+    let with_vertex = |far: Vec3| {
+        let moved = mesh[700][1];
+        mesh.iter().map(|t| t.map(|p| if p == moved { far } else { p })).collect::<Vec<_>>()
+    };
+    let with_ground = |half: f32, slope: f32| {
+        let at = |x: f32, z: f32| Vec3::new(x * half, -0.45 + slope * x * half, z * half);
+        let (a, b, c, d) = (at(-1.0, -1.0), at(-1.0, 1.0), at(1.0, 1.0), at(1.0, -1.0));
+        [mesh.clone(), vec![[a, b, c], [a, c, d]]].concat()
+    };
+    let mut rng = Rng(8);
+    let sizes = (0..600).map(|_| {
+        let size = 10f32.powf(4.5 * rng.signed() + 1.5);
+        let p = rng.point() * 10f32.powf(3.0 * rng.signed() + 3.0);
+        [p, p + rng.point() * size, p + rng.point() * size]
+    });
+    let small = mesh.iter().map(|t| t.map(|p| p * 0.2 + Vec3::new(0.0, 0.0, -2000.0)));
+    vec![
+        ("a vertex at 4e9", with_vertex(Vec3::new(4e9, 3e9, -2e9))),
+        ("a vertex at 1e5 along x", with_vertex(Vec3::new(1e5, 0.0, 0.0))),
+        ("a ground of 1e4", with_ground(1e4, 0.0)),
+        ("a ground of 1e6", with_ground(1e6, 0.0)),
+        ("a tilted ground of 1e5", with_ground(1e5, 0.3)),
+        ("a mesh at a distance of 2000", mesh.iter().copied().chain(small).collect()),
+        ("sizes of 1e-3 to 1e6", mesh.iter().copied().chain(sizes).collect()),
+    ]
+}
+
 /// Rays of every kind that meets rounding: random, axis-parallel, within splitting planes and through corners, from
 /// far away, with tiny direction components and with either zero.
 pub fn rays(prims: &[Primitive], tree: &Tree, count: usize, rng: &mut Rng) -> Vec<Ray> {
+    let bounds = Aabb { min: tree.bounds_min, max: tree.bounds_max };
+    rays_about(bounds, prims, tree, count, rng)
+}
+
+/// [`rays`] that start and aim in `bounds`.
+pub fn rays_about(bounds: Aabb, prims: &[Primitive], tree: &Tree, count: usize, rng: &mut Rng) -> Vec<Ray> {
     let corner = |rng: &mut Rng| match prims.get(rng.below(prims.len().max(1))) {
         Some(Primitive::Triangle(p)) => p[rng.below(3)],
         Some(Primitive::Box(b)) => b.min,
         None => Vec3::ZERO,
     };
-    let size = (tree.bounds_max - tree.bounds_min).max_element().max(1.0);
-    let middle = (tree.bounds_max + tree.bounds_min) * 0.5;
+    let size = (bounds.max - bounds.min).max_element().max(1.0);
+    let middle = (bounds.max + bounds.min) * 0.5;
     (0..count)
         .map(|i| {
             let mut origin = middle + rng.point() * size;

@@ -6,7 +6,7 @@ struct World {
     bounds_min: vec3f,
     ray_count: u32,
     bounds_max: vec3f,
-    pad: u32,
+    primitive_size: f32,
 }
 
 struct Scene {

@@ -20,3 +20,4 @@ mod invariance;
 mod irradiance;
 mod lab;
 mod meshes;
+mod walls;

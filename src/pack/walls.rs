@@ -1,0 +1,230 @@
+//! Walls: flat shapes that stand on facets and planes, where they part what lies on one side from
+//! the other.
+
+use super::real::{ToDouble, ToReal, Vec3};
+use super::shapes::facet::WALL_BITS;
+use super::shapes::rectangle::rectangle_error;
+use super::tables::*;
+use bytemuck::Zeroable;
+use glam::DVec3;
+use rayon::prelude::*;
+
+/// Least sine of the angle between a wall and what it stands on, as the greatest cosine of their
+/// normals.
+const STEEP: f64 = 0.5;
+/// A wall stands on what is nearer to its foot than this share of its height.
+const GAP: f64 = 1e-3;
+/// Feet this close to an edge, in edge lengths, are the outline's business.
+const EDGE: f64 = 1e-4;
+/// Walls of one facet, the longest ones.
+const WALLS: usize = 32;
+/// Pairs of facet and polygon that are looked at; where there are more, triangles are no walls, or
+/// nothing is.
+const PAIRS: usize = 1 << 26;
+/// Edge of the outline of an infinite plane, in scene units.
+const ENDLESS: f64 = (1u64 << 30) as f64;
+
+/// A side of a flat shape on which something may stand.
+struct Floor {
+    point: DVec3,
+    normal: DVec3,
+    facet: Facet,
+    /// Place of the facet, or the plane's.
+    place: Place,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Place {
+    Facet(u32),
+    Plane(usize),
+}
+
+/// A rectangle or triangle that may be a wall.
+#[derive(Clone, Copy)]
+struct Polygon {
+    corners: [DVec3; 4],
+    count: usize,
+    low: DVec3,
+    high: DVec3,
+}
+
+impl Polygon {
+    fn new(points: &[Vec3]) -> Polygon {
+        let mut corners = [DVec3::ZERO; 4];
+        let count = points.len().min(corners.len());
+        corners.iter_mut().zip(points).for_each(|(corner, p)| *corner = p.to_double());
+        let (low, high) = (corners[..count].iter().copied(), corners[..count].iter().copied());
+        Polygon {
+            corners,
+            count,
+            low: low.reduce(DVec3::min).unwrap_or_default(),
+            high: high.reduce(DVec3::max).unwrap_or_default(),
+        }
+    }
+
+    fn corners(&self) -> &[DVec3] {
+        &self.corners[..self.count]
+    }
+}
+
+/// A foot of a wall.
+#[derive(Clone, Copy)]
+struct Foot {
+    from: DVec3,
+    to: DVec3,
+    up: DVec3,
+}
+
+/// Adds to the facets the walls that stand on them, and facets for the planes that have any.
+pub fn find_walls(out: &mut Scene) {
+    let floors = floors(out);
+    let mut polygons = polygons(out);
+    if floors.len() * (polygons.len() + out.triangles.len()) <= PAIRS {
+        polygons.extend(out.triangles.iter().map(|t| Polygon::new(&[t.p0, t.p1, t.p2])));
+    }
+    if floors.len() * polygons.len() > PAIRS {
+        return;
+    }
+    let mut found: Vec<(Place, Facet, Vec<Foot>)> = floors
+        .par_iter()
+        .map(|f| (f.place, f.facet, polygons.iter().flat_map(|p| feet_of(f, p)).collect::<Vec<_>>()))
+        .filter(|(_, _, feet)| !feet.is_empty())
+        .collect();
+    // opposite faces of a cuboid have one outline
+    found.sort_by_key(|(place, ..)| *place);
+    for same in found.chunk_by(|a, b| a.0 == b.0) {
+        let mut feet: Vec<Foot> = same.iter().flat_map(|(_, _, feet)| feet).copied().collect();
+        let length = |f: &Foot| f.from.distance_squared(f.to);
+        feet.sort_by(|a, b| length(b).total_cmp(&length(a)));
+        feet.truncate(WALLS);
+        let index = match same[0].0 {
+            Place::Facet(index) => index as usize,
+            Place::Plane(plane) => {
+                out.planes[plane].facet = out.facets.len() as u32;
+                out.facets.push(same[0].1);
+                out.facets.len() - 1
+            }
+        };
+        out.facets[index].walls = (out.facets.len() as u32) << WALL_BITS | feet.len() as u32;
+        out.facets.extend(feet.iter().map(|f| Facet {
+            origin: f.from.to_real(),
+            u: (f.to - f.from).to_real(),
+            v: f.up.to_real(),
+            ..Facet::zeroed()
+        }));
+    }
+}
+
+fn floors(out: &Scene) -> Vec<Floor> {
+    let mut floors = Vec::new();
+    for r in &out.rectangles {
+        let facet = out.facets[r.facet as usize];
+        let (point, normal) = (r.origin.to_double(), r.normal.to_double());
+        floors.push(Floor { point, normal, facet, place: Place::Facet(r.facet) });
+    }
+    for c in &out.cuboids {
+        for face in 0..6 {
+            let axis = face % 3;
+            let (corner, sign) = if face < 3 { (c.lower, -1.0) } else { (c.upper, 1.0) };
+            let index = c.facet + axis as u32;
+            let facet = out.facets[index as usize];
+            let normal = DVec3::from_array(std::array::from_fn(|i| if i == axis { sign } else { 0.0 }));
+            floors.push(Floor { point: corner.to_double(), normal, facet, place: Place::Facet(index) });
+        }
+    }
+    for (i, plane) in out.planes.iter().enumerate() {
+        let (point, normal) = (plane.point.to_double(), plane.normal.to_double());
+        let u = plane.tangent.to_double().normalize();
+        let v = normal.cross(u);
+        let facet = Facet {
+            origin: (point - (u + v) * (0.5 * ENDLESS)).to_real(),
+            u: (u * ENDLESS).to_real(),
+            v: (v * ENDLESS).to_real(),
+            dual_u: (u / ENDLESS).to_real(),
+            dual_v: (v / ENDLESS).to_real(),
+            error: rectangle_error(&Rectangle {
+                origin: plane.point,
+                u: Vec3::X,
+                v: Vec3::Y,
+                ..Rectangle::zeroed()
+            }),
+            ..Facet::zeroed()
+        };
+        floors.push(Floor { point, normal, facet, place: Place::Plane(i) });
+    }
+    floors
+}
+
+/// The flat shapes that may be walls.
+fn polygons(out: &Scene) -> Vec<Polygon> {
+    let mut polygons = Vec::new();
+    for r in &out.rectangles {
+        let (o, u, v) = (r.origin, r.u, r.v);
+        polygons.push(Polygon::new(&[o, o + u, o + u + v, o + v]));
+    }
+    for c in &out.cuboids {
+        for face in 0..6 {
+            let axis = face % 3;
+            let (b, d) = ((axis + 1) % 3, (axis + 2) % 3);
+            let corners = [(false, false), (true, false), (true, true), (false, true)].map(|(on_b, on_d)| {
+                let mut p = if face < 3 { c.lower } else { c.upper };
+                p[b] = if on_b { c.upper[b] } else { c.lower[b] };
+                p[d] = if on_d { c.upper[d] } else { c.lower[d] };
+                p
+            });
+            polygons.push(Polygon::new(&corners));
+        }
+    }
+    polygons
+}
+
+/// The feet of a polygon on the two sides of a floor.
+fn feet_of(floor: &Floor, polygon: &Polygon) -> impl Iterator<Item = Foot> {
+    let error = 8.0 * f64::from(floor.facet.error);
+    // the plane misses most boxes
+    let (center, half) = (0.5 * (polygon.low + polygon.high), 0.5 * (polygon.high - polygon.low));
+    let reach = (1.0 + 2.0 * GAP) * half.dot(floor.normal.abs()) + error;
+    let near = (center - floor.point).dot(floor.normal).abs() <= reach;
+    let sides = near.then(|| [foot(floor, floor.normal, polygon), foot(floor, -floor.normal, polygon)]);
+    sides.into_iter().flatten().flatten()
+}
+
+/// The foot of a polygon that stands on the side of a floor that `up` points to.
+fn foot(floor: &Floor, up: DVec3, polygon: &Polygon) -> Option<Foot> {
+    let polygon = polygon.corners();
+    let heights = || polygon.iter().map(|p| (*p - floor.point).dot(up));
+    let top = heights().fold(f64::NEG_INFINITY, f64::max);
+    let bottom = heights().fold(f64::INFINITY, f64::min);
+    let error = 4.0 * f64::from(floor.facet.error);
+    let level = GAP * (top - bottom) + error;
+    if bottom > level || top < 4.0 * level {
+        return None;
+    }
+    let across = (polygon[1] - polygon[0]).cross(polygon[2] - polygon[0]);
+    if across.dot(floor.normal).abs() > STEEP * across.length() {
+        return None;
+    }
+    // where its edges pass a level just above the floor
+    let mut ends = Vec::new();
+    for (i, a) in polygon.iter().enumerate() {
+        let b = polygon[(i + 1) % polygon.len()];
+        let (ha, hb) = ((*a - floor.point).dot(up) - level, (b - floor.point).dot(up) - level);
+        if (ha < 0.0) != (hb < 0.0) {
+            let p = *a + (b - *a) * (ha / (ha - hb));
+            ends.push(p - up * (p - floor.point).dot(up));
+        }
+    }
+    let (from, to) = (*ends.first()?, *ends.get(1)?);
+    if from.distance(to) <= error || !within(&floor.facet, from, to) {
+        return None;
+    }
+    Some(Foot { from, to, up })
+}
+
+/// Whether a foot passes the inside of an outline.
+fn within(facet: &Facet, from: DVec3, to: DVec3) -> bool {
+    [facet.dual_u, facet.dual_v].iter().all(|dual| {
+        let place = |p: DVec3| (p - facet.origin.to_double()).dot(dual.to_double());
+        place(from).max(place(to)) > EDGE && place(from).min(place(to)) < 1.0 - EDGE
+    })
+}

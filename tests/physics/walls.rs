@@ -1,0 +1,134 @@
+//! Thin bodies, and walls that part a lit room from a dark one: what a disc of photons must not
+//! count.
+
+use std::f64::consts::PI;
+use std::fmt::Write;
+
+use caustica::settings::{Direct, Method, RenderSettings};
+use glam::DVec3;
+
+use super::lab::*;
+
+/// Theory: a convex body of reflectance 0.8 under a sky of radiance one sees the whole half-space
+/// from each of its faces, so every face has the radiance 0.8, however slim it is against the disc.
+/// Photons of the adjacent faces are as many as those of the face itself where the disc is wide.
+#[test]
+fn slim_boxes_under_an_even_sky() {
+    for (width, depth, radius) in [(0.012, 0.012, 0.05), (0.004, 0.1, 0.02), (0.05, 0.002, 0.015)] {
+        let camera = Camera {
+            position: DVec3::new(0.137, 0.211, -0.153),
+            target: DVec3::new(0.137, 0.211, -0.353),
+            fov: (0.4 * width / 0.2f64).to_degrees(),
+            size: 4,
+        };
+        let (low, high) = (camera.target.x - 0.5 * width, camera.target.x + 0.5 * width);
+        let text = format!(
+            "{}[materials.m]\ntype = \"diffuse\"\nreflectance = 0.8\n[[shapes]]\ntype = \"box\"\nmaterial = \"m\"\n\
+             min = [{low:?}, 0.111, {:?}]\nmax = [{high:?}, 0.311, -0.353]\n[environment]\nradiance = 1.0\n",
+            camera.toml(),
+            -0.353 - depth
+        );
+        let settings = RenderSettings { direct: Direct::Photons, ..settings(radius) };
+        let found = runs_to(0.03, &text, &settings).region(|_, _| true);
+        assert_agrees(&format!("box {width} x {depth}, radius {radius}"), found, 0.8, 0.03);
+    }
+}
+
+const HEAD: &str = r#"
+[materials.white]
+type = "diffuse"
+reflectance = 0.7
+[materials.black]
+type = "diffuse"
+reflectance = 0.0
+"#;
+
+/// A wall's foot in the plane x = 0 on a floor.
+const WALLS: [(&str, &str); 4] = [
+    ("rectangle", "type = \"rectangle\"\norigin = [0, 0, -1]\nu = [0, 0, 2]\nv = [0, 1, 0]"),
+    ("thin box", "type = \"box\"\nmin = [-0.002, 0, -1]\nmax = [0.002, 1, 1]"),
+    ("box through the floor", "type = \"box\"\nmin = [-0.002, -0.3, -1]\nmax = [0.002, 1, 1]"),
+    ("mesh", "type = \"mesh\"\nfile = \"thin-wall.obj\""),
+];
+
+const FLOORS: [(&str, &str); 3] = [
+    ("rectangle", "type = \"rectangle\"\norigin = [-1, 0, 1]\nu = [2, 0, 0]\nv = [0, 0, -2]"),
+    ("box", "type = \"box\"\nmin = [-1, -0.2, -1]\nmax = [1, 0, 1]"),
+    ("plane", "type = \"plane\"\npoint = [0.3, 0, 0]\nnormal = [0, 1, 0]"),
+];
+
+/// Two rooms, a lamp in the right one; the camera looks down at the floor on either side of the
+/// wall.
+fn rooms(wall: &str, floor: &str, camera: Camera, material: &str) -> String {
+    let mesh = "v 0 0 -1\nv 0 0 1\nv 0 1 1\nv 0 1 -1\nf 1 2 3\nf 1 3 4\n";
+    std::fs::write(folder().join("thin-wall.obj"), mesh).expect("written");
+    let mut text = camera.toml() + HEAD;
+    for (shape, material) in [(floor, "white"), (wall, material)] {
+        let _ = write!(text, "[[shapes]]\n{shape}\nmaterial = \"{material}\"\n");
+    }
+    for (origin, u, v) in [
+        ([-1, 1, -1], [2, 0, 0], [0, 0, 2]),
+        ([-1, 0, -1], [0, 1, 0], [0, 0, 2]),
+        ([1, 0, -1], [0, 0, 2], [0, 1, 0]),
+        ([-1, 0, -1], [2, 0, 0], [0, 1, 0]),
+        ([-1, 0, 1], [0, 1, 0], [2, 0, 0]),
+    ] {
+        let _ = write!(
+            text,
+            "[[shapes]]\ntype = \"rectangle\"\norigin = {origin:?}\nu = {u:?}\nv = {v:?}\nmaterial = \"{material}\"\n"
+        );
+    }
+    text + "[[lights]]\ntype = \"point\"\nposition = [0.4, 0.8, 0.0]\nintensity = 1.0\n"
+}
+
+/// Looks at the floor of the room with x of that sign, within 0.05 of the wall.
+fn camera(side: f64) -> Camera {
+    let x = side * 0.0275;
+    Camera { position: DVec3::new(x, 0.9, 0.02), target: DVec3::new(x, 0.0, 0.0), fov: 3.1, size: 8 }
+}
+
+/// Theory: no light comes into the closed dark room, so every value there is exactly 0, with
+/// photons as with a path tracer, though the disc reaches from the dark side of the wall far into
+/// the lit room.
+#[test]
+fn nothing_passes_under_a_wall() {
+    for (floor_name, floor) in FLOORS {
+        for (wall_name, wall) in WALLS {
+            let text = rooms(wall, floor, camera(-1.0), "white");
+            let scene = parse(&text);
+            for (method, direct) in [
+                (Method::Sppm, Direct::Photons),
+                (Method::Ppm, Direct::Sampled),
+                (Method::Path, Direct::Sampled),
+            ] {
+                let settings = RenderSettings { method, direct, photons: 1 << 14, ..settings(0.1) };
+                let picture = render(&scene, &settings);
+                let brightest = picture.rgb.iter().flatten().copied().fold(0.0, f32::max);
+                assert_eq!(brightest, 0.0, "{wall_name} on {floor_name}, {method:?} {direct:?}");
+            }
+        }
+    }
+}
+
+/// Theory: with black walls the lit floor has the irradiance of the lamp alone, cos / d^2, up to
+/// the foot of the wall: neither what the disc covers beyond the wall nor photons on the wall may
+/// count. The disc of 0.03 is cut to no less than a half, whose centre lies 0.42 radii from its
+/// own; the irradiance changes by less than 2 % over that.
+#[test]
+fn the_lit_side_is_even_up_to_the_wall() {
+    for (floor_name, floor) in FLOORS {
+        for (wall_name, wall) in WALLS {
+            let camera = camera(1.0);
+            let text = rooms(wall, floor, camera, "black");
+            let settings = RenderSettings { direct: Direct::Photons, ..settings(0.03) };
+            let at = DVec3::new(0.4, 0.8, 0.0);
+            let truth = camera.floor_picture(0.0, |p| 0.7 / PI * at.y / (at - p).length().powi(3));
+            let mean = truth.iter().sum::<f64>() / truth.len() as f64;
+            let found = runs_to(0.04, &text, &settings).region(|_, _| true);
+            let off = found.mean / mean - 1.0;
+            println!("{wall_name} on {floor_name}: {off:+.4} +- {:.4}", found.error / mean);
+            assert!(found.admits(mean, 0.02), "{wall_name} on {floor_name}: {off:+.4}");
+            assert!(!found.admits(mean * 1.1, 0.02) && !found.admits(mean * 0.9, 0.02), "too noisy");
+        }
+    }
+}
