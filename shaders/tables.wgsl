@@ -20,7 +20,8 @@ const TEXTURE_CHECKER: u32 = 0u;
 const TEXTURE_IMAGE: u32 = 1u;
 const TEXTURE_PLANKS: u32 = 2u;
 const TEXTURE_NEAREST: u32 = 1u;
-const TEXTURE_CLAMP: u32 = 2u;
+const TEXTURE_CLAMP_U: u32 = 2u;
+const TEXTURE_CLAMP_V: u32 = 4u;
 const TEXELS_SRGB8: u32 = 0u;
 const TEXELS_LINEAR8: u32 = 1u;
 const TEXELS_FLOAT: u32 = 2u;
@@ -38,7 +39,6 @@ struct World {
     near_radius: f32,
     near_center: vec3f,
     disc_radius: f32,
-    planar_origin: vec2f,
     light_count: u32,
     environment: u32,
     unbounded_count: u32,
@@ -151,8 +151,7 @@ struct Material {
     ior: f32,
     texture: u32,
     alpha: f32,
-    pad0: u32,
-    pad1: u32,
+    planar_origin: vec2f,
 }
 
 struct Texture {
@@ -178,8 +177,8 @@ struct Light {
     area: f32,
     reference: u32,
     first: u32,
-    cos_outer: f32,
-    cos_inner: f32,
+    outer: f32,
+    inner: f32,
     patch_first: u32,
     patch_count: u32,
     medium: u32,

@@ -4,6 +4,7 @@
 //! of that. The thresholds are those up to which the rows of docs/stability.md hold.
 
 use crate::build::normalize::{Normalization, extent};
+use crate::build::orientation::faces_inward;
 use crate::scene::{Finding, Light, MaterialKind, Places, Scene, ShapeKind};
 use crate::settings::{Radius, RenderSettings};
 use glam::DVec3;
@@ -37,6 +38,7 @@ pub fn warnings(scene: &Scene, settings: &RenderSettings, places: &Places) -> Ve
     found.extend(limits.content());
     found.extend(limits.radius(settings));
     found.extend((0..scene.shapes.len()).filter_map(|index| limits.shape(index)));
+    found.extend((0..scene.shapes.len()).filter_map(|index| limits.orientation(index)));
     found.extend(limits.lamps());
     found.extend(limits.dim_lights());
     found.extend(limits.smooth_metal());
@@ -107,6 +109,26 @@ impl Limits<'_> {
                 &["render.radius", "camera.fov"],
                 format!("{from} is {share:.1e} of the scene's radius"),
                 format!("expected at least {LEAST_RADIUS:e}: photons' positions are rounded by 6e-8"),
+            )
+        })
+    }
+
+    /// A closed body of glass, or one that emits, faces inward.
+    fn orientation(&self, index: usize) -> Option<Finding> {
+        let shape = &self.scene.shapes[index];
+        let glass = matches!(self.scene.materials[shape.material].kind, MaterialKind::Glass { .. });
+        let does = match (glass, shape.is_emitter()) {
+            (true, _) => "its glass is outside of it",
+            (_, true) => "it shines inward",
+            _ => return None,
+        };
+        let path = self.shape_path(index);
+        faces_inward(&shape.kind).then(|| {
+            self.places.warning(
+                &[&format!("{path}.profile"), &format!("{path}.segments"), &format!("{path}.file"), path],
+                format!("{path} is a closed body that faces inward: {does}"),
+                "expected outward: reverse the order of each face's corners, or of the profile's points"
+                    .to_owned(),
             )
         })
     }

@@ -42,6 +42,8 @@ pub fn reference(kind: u32, index: usize) -> u32 {
 pub const UV_NATURAL: u32 = 0;
 /// `(u, v)` is world (x, z).
 pub const UV_PLANAR: u32 = 1;
+/// The same as [`UV_NATURAL`], of a profile that ends where it begins: v goes on there.
+pub const UV_LOOP: u32 = 2;
 
 /// Facts about the scene as a whole.
 #[repr(C)]
@@ -59,8 +61,6 @@ pub struct World {
     pub near_center: Vec3,
     /// Radius of the narrowest emission disc.
     pub disc_radius: Real,
-    /// World (x, z) of the origin: where planar uv starts.
-    pub planar_origin: Vec2,
     /// Number of lights.
     pub light_count: u32,
     /// The light that rays which leave the scene meet, or [`NONE`].
@@ -81,7 +81,7 @@ pub struct World {
     /// See [`Tree::primitive_size`](super::shapes::kdtree::Tree::primitive_size).
     pub primitive_size: Real,
     /// Padding.
-    pub pad: u32,
+    pub pad: [u32; 3],
 }
 
 /// Pinhole or thin-lens camera.
@@ -285,8 +285,8 @@ pub struct Material {
     pub texture: u32,
     /// Metal: GGX width, `roughness^2`.
     pub alpha: Real,
-    /// Padding.
-    pub pad: [u32; 2],
+    /// World (x, z) of the origin, where planar uv starts, reduced by the texture's period.
+    pub planar_origin: Vec2,
 }
 
 /// Two colours in unit cells.
@@ -298,7 +298,9 @@ pub const TEXTURE_PLANKS: u32 = 2;
 /// Nearest texel instead of bilinear.
 pub const TEXTURE_NEAREST: u32 = 1;
 /// Clamp to the edge instead of repeat.
-pub const TEXTURE_CLAMP: u32 = 2;
+pub const TEXTURE_CLAMP_U: u32 = 2;
+/// The same of v: rows of the picture.
+pub const TEXTURE_CLAMP_V: u32 = 4;
 /// Texels are one word, RGBA8 coded through the sRGB table at the head of `texels`.
 pub const TEXELS_SRGB8: u32 = 0;
 /// Texels are one word, RGBA8 linear.
@@ -314,7 +316,7 @@ pub struct Texture {
     pub scale: Vec2,
     /// One of `TEXTURE_CHECKER`, `TEXTURE_IMAGE`, `TEXTURE_PLANKS`.
     pub kind: u32,
-    /// Sum of `TEXTURE_NEAREST` and `TEXTURE_CLAMP`.
+    /// Sum of `TEXTURE_NEAREST`, `TEXTURE_CLAMP_U` and `TEXTURE_CLAMP_V`.
     pub flags: u32,
     /// First word of the picture in `texels`.
     pub first: u32,
@@ -369,10 +371,11 @@ pub struct Light {
     /// First entry in `distributions`: revolution: where each patch's part of v starts, then the cumulative share
     /// of the area by patch; image: cumulative rows, then each row's cumulative columns.
     pub first: u32,
-    /// Spot: cosine of the angle where it is dark; image: cosine of the rotation about y.
-    pub cos_outer: Real,
-    /// Spot: cosine of the angle up to which it is full; image: sine of the rotation.
-    pub cos_inner: Real,
+    /// Spot: 1 - cos of the angle where it is dark, which f32 holds for narrow ones, too; image: cosine of
+    /// the rotation about y.
+    pub outer: Real,
+    /// Spot: 1 - cos of the angle up to which it is full; image: sine of the rotation.
+    pub inner: Real,
     /// Revolution: its first patch.
     pub patch_first: u32,
     /// Revolution: number of its patches.

@@ -186,3 +186,65 @@ fn smooth_metal() {
         &["materials.grey", "0.031", "0.0316"],
     );
 }
+
+/// Theory: the signed volume of a closed body is above zero where its surface faces outward. A tetrahedron
+/// wound inward, a drop drawn from the top down and a ring drawn the wrong way round have their glass outside; the same
+/// bodies the right way round, open ones, the inner wall of a hollow body, and bodies on which it does not matter are fine.
+#[test]
+fn closed_bodies_that_face_inward() {
+    let folder = std::env::temp_dir().join(format!("caustica-inward-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let corners = |scale: f64| format!("v 0 0 0\nv {scale} 0 0\nv 0 {scale} 0\nv 0 0 {scale}\n");
+    let outward = |first: i32| {
+        let [a, b, c, d] = [first, first + 1, first + 2, first + 3];
+        format!("f {a} {c} {b}\nf {a} {b} {d}\nf {a} {d} {c}\nf {b} {c} {d}\n")
+    };
+    let inward = |first: i32| {
+        let [a, b, c, d] = [first, first + 1, first + 2, first + 3];
+        format!("f {a} {b} {c}\nf {a} {d} {b}\nf {a} {c} {d}\nf {b} {d} {c}\n")
+    };
+    // the inner tetrahedron, a fifth as large, lies within the outer one
+    let inner = "v 0.1 0.1 0.1\nv 0.3 0.1 0.1\nv 0.1 0.3 0.1\nv 0.1 0.1 0.3\n";
+    let meshes = [
+        ("outward", corners(1.0) + &outward(1), false),
+        ("inward", corners(1.0) + &inward(1), true),
+        ("hollow", corners(1.0) + inner + &outward(1) + &inward(5), false),
+        ("open", corners(1.0) + "f 1 2 3\nf 1 4 2\nf 1 3 4\n", false),
+    ];
+    let drop = "[[0, 0], [0.6, 0], [0.5, 0.6], [0, 1]]";
+    let turned = "[[0, 1], [0.5, 0.6], [0.6, 0], [0, 0]]";
+    let ring = "segments = [[[1, 0], [2, 0], [2, 1]], [[2, 1], [1, 1], [1, 0]]]";
+    let wrong_ring = "segments = [[[1, 0], [1, 1], [2, 1]], [[2, 1], [2, 0], [1, 0]]]";
+    let mut shapes: Vec<(String, bool)> = vec![
+        (format!("type = \"revolution\"\nprofile = {drop}"), false),
+        (format!("type = \"revolution\"\nprofile = {turned}"), true),
+        (format!("type = \"revolution\"\n{ring}"), false),
+        (format!("type = \"revolution\"\n{wrong_ring}"), true),
+        ("type = \"revolution\"\nprofile = [[0.5, 1], [0.5, 0]]".to_owned(), false),
+    ];
+    for (name, text, warns) in meshes {
+        let file = folder.join(format!("{name}.obj"));
+        std::fs::write(&file, text).unwrap();
+        shapes.push((
+            format!("type = \"mesh\"\nfile = {:?}\nsmooth = false", file.display().to_string()),
+            warns,
+        ));
+    }
+    let glass = "type = \"glass\"\nior = 1.5";
+    let grey = "type = \"diffuse\"\nreflectance = 0.5";
+    for (shape, warns) in shapes {
+        for (material, matters) in [(glass, true), (grey, false)] {
+            let text = SOUND.replace(
+                "[[lights]]\ntype = \"point\"\nposition = [0.0",
+                &format!(
+                    "[materials.body]\n{material}\n[[shapes]]\n{shape}\nmaterial = \"body\"\n\
+                 [[lights]]\ntype = \"point\"\nposition = [0.0"
+                ),
+            );
+            let found: Vec<_> =
+                told(&text).into_iter().filter(|finding| finding.to_string().contains("inward")).collect();
+            assert_eq!(found.len(), usize::from(warns && matters), "{shape} {material}: {found:?}");
+        }
+    }
+    std::fs::remove_dir_all(&folder).unwrap();
+}

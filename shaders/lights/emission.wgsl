@@ -57,10 +57,10 @@ fn emit_nearby(light: Light, u: vec4f, across: vec2f) -> Emission {
     //#end
     //#if spot
     if light.kind == LIGHT_SPOT {
-        let local = sample_cone(across, 1.0 - light.cos_outer);
+        let local = sample_cone(across, light.outer);
         ray.direction = unit(from_frame(light.direction, local));
-        let solid_angle = TAU * (1.0 - light.cos_outer);
-        let flux = light.color * (spot_falloff(light, local.z) * solid_angle / light.selection);
+        let solid_angle = TAU * light.outer;
+        let flux = light.color * (spot_falloff(light, across.x * light.outer) * solid_angle / light.selection);
         return Emission(ray, flux, 1.0, light.medium);
     }
     //#end

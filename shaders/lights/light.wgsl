@@ -81,7 +81,8 @@ fn sample_one_light(light: Light, share: f32, position: vec3f, u: vec4f) -> Ligh
         var radiance = light.color * (1.0 / dist_sq);
         //#if spot
         if light.kind == LIGHT_SPOT {
-            radiance *= spot_falloff(light, -dot(direction, light.direction));
+            let chord = direction + light.direction;
+            radiance *= spot_falloff(light, 0.5 * dot(chord, chord));
         }
         //#end
         return LightSample(direction, distance * (1.0 - 16.0 * EPS), radiance, share, false);
@@ -107,14 +108,14 @@ fn sample_one_light(light: Light, share: f32, position: vec3f, u: vec4f) -> Ligh
 }
 
 //#if spot
-fn spot_falloff(light: Light, cos: f32) -> f32 {
-    if cos >= light.cos_inner {
+fn spot_falloff(light: Light, versine: f32) -> f32 {
+    if versine <= light.inner {
         return 1.0;
     }
-    if cos <= light.cos_outer {
+    if versine >= light.outer {
         return 0.0;
     }
-    let x = (cos - light.cos_outer) / (light.cos_inner - light.cos_outer);
+    let x = (light.outer - versine) / (light.outer - light.inner);
     return x * x * (3.0 - 2.0 * x);
 }
 //#end
@@ -140,8 +141,8 @@ fn pdf_light(shares: u32, index: u32, origin: vec3f, direction: vec3f, t: f32, n
 //#if environment
 //#if environment_image
 fn environment_uv(light: Light, direction: vec3f) -> vec2f {
-    let x = light.cos_outer * direction.x - light.cos_inner * direction.z;
-    let z = light.cos_inner * direction.x + light.cos_outer * direction.z;
+    let x = light.outer * direction.x - light.inner * direction.z;
+    let z = light.inner * direction.x + light.outer * direction.z;
     let r = sqrt(x * x + z * z);
     return vec2f(0.5 - arctan2(z, x) * (1.0 / TAU), 1.0 - arctan2(r, direction.y) * (1.0 / PI));
 }
@@ -178,9 +179,9 @@ fn sample_environment(light: Light, u: vec4f) -> vec3f {
     let x = theta.x * phi.y;
     let z = theta.x * phi.x;
     return vec3f(
-        light.cos_outer * x + light.cos_inner * z,
+        light.outer * x + light.inner * z,
         theta.y,
-        light.cos_outer * z - light.cos_inner * x,
+        light.outer * z - light.inner * x,
     );
     //#else
     return sample_sphere(vec2f(u.y, u.z));
@@ -198,7 +199,7 @@ fn pdf_environment(light: Light, direction: vec3f) -> f32 {
     let column = min(u32(floor(uv.x * f32(texture.width))), texture.width - 1u);
     let p = pdf_bin(light.first, row, texture.height)
         * pdf_bin(light.first + texture.height + row * texture.width, column, texture.width);
-    let sin = sqrt(max(1.0 - direction.y * direction.y, 1e-12));
+    let sin = sqrt(max(direction.x * direction.x + direction.z * direction.z, 1e-12));
     return p / (2.0 * PI * PI * sin);
     //#else
     return PDF_SPHERE;

@@ -16,9 +16,10 @@ fn eval_texture(index: u32, uv: vec2f) -> vec3f {
         let odd = row - 2.0 * floor(row * 0.5);
         st.y += 0.5 * odd;
     }
-    let clamped = (texture.flags & TEXTURE_CLAMP) != 0u;
-    let x = select(st.x - floor(st.x), clamp(st.x, 0.0, 1.0), clamped) * f32(texture.width);
-    let y = (1.0 - select(st.y - floor(st.y), clamp(st.y, 0.0, 1.0), clamped)) * f32(texture.height);
+    let clamp_u = (texture.flags & TEXTURE_CLAMP_U) != 0u;
+    let clamp_v = (texture.flags & TEXTURE_CLAMP_V) != 0u;
+    let x = select(st.x - floor(st.x), clamp(st.x, 0.0, 1.0), clamp_u) * f32(texture.width);
+    let y = (1.0 - select(st.y - floor(st.y), clamp(st.y, 0.0, 1.0), clamp_v)) * f32(texture.height);
     if (texture.flags & TEXTURE_NEAREST) != 0u {
         return eval_texel(texture, i32(floor(x)), i32(floor(y)));
     }
@@ -42,8 +43,10 @@ fn eval_texel(texture: Texture, i: i32, j: i32) -> vec3f {
     let h = i32(texture.height);
     var x = i;
     var y = j;
-    if (texture.flags & TEXTURE_CLAMP) == 0u {
+    if (texture.flags & TEXTURE_CLAMP_U) == 0u {
         x = select(select(x, x - w, x >= w), x + w, x < 0);
+    }
+    if (texture.flags & TEXTURE_CLAMP_V) == 0u {
         y = select(select(y, y - h, y >= h), y + h, y < 0);
     }
     x = clamp(x, 0, w - 1);

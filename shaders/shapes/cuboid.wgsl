@@ -64,12 +64,12 @@ fn cuboid_error(cuboid: Cuboid) -> f32 {
 
 fn cuboid_uv(cuboid: Cuboid, position: vec3f, face: f32) -> vec2f {
     let q = (position - cuboid.lower) / (cuboid.upper - cuboid.lower);
-    let n = abs(cuboid_normal(face));
-    if n.x > 0.0 {
-        return vec2f(q.z, q.y);
+    let n = cuboid_normal(face);
+    if n.x != 0.0 {
+        return vec2f(select(q.z, 1.0 - q.z, n.x > 0.0), q.y);
     }
-    if n.y > 0.0 {
-        return vec2f(q.x, q.z);
+    if n.y != 0.0 {
+        return vec2f(q.x, select(q.z, 1.0 - q.z, n.y > 0.0));
     }
-    return vec2f(q.x, q.y);
+    return vec2f(select(1.0 - q.x, q.x, n.z > 0.0), q.y);
 }

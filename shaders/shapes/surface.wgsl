@@ -61,7 +61,11 @@ fn surface_at(ray: Ray, hit: Hit) -> Surface {
             planar = sphere.uv;
             // two arctangents, which most spheres have no use for
             if planar == UV_NATURAL && scene.materials[sphere.material].texture != NONE {
-                s.uv = sphere_uv(n);
+                let uv = sphere_uv(n);
+                s.uv = uv;
+                //#if texels
+                s.uv.y = within_ends(s.material, uv.y);
+                //#end
             }
         }
         //#end
@@ -136,6 +140,11 @@ fn surface_at(ray: Ray, hit: Hit) -> Surface {
                 NONE,
             );
             planar = revolution.uv;
+            //#if texels
+            if planar == UV_NATURAL {
+                s.uv.y = within_ends(s.material, r.uv.y);
+            }
+            //#end
         }
         //#end
         //#if plane
@@ -160,7 +169,19 @@ fn surface_at(ray: Ray, hit: Hit) -> Surface {
         default: {}
     }
     if planar == UV_PLANAR {
-        s.uv = s.position.xz * scene.world.unit + scene.world.planar_origin;
+        s.uv = s.position.xz * scene.world.unit + scene.materials[s.material].planar_origin;
     }
     return s;
 }
+
+//#if texels
+fn within_ends(material: u32, v: f32) -> f32 {
+    let index = scene.materials[material].texture;
+    if index == NONE || scene.textures[index].kind != TEXTURE_IMAGE {
+        return v;
+    }
+    let texture = scene.textures[index];
+    let half = min(0.5 / (f32(texture.height) * abs(texture.scale.y)), 0.5);
+    return min(max(v, half), 1.0 - half);
+}
+//#end

@@ -10,6 +10,7 @@ mod kdtree_layout;
 mod kdtree_sweep;
 pub mod learned;
 pub mod normalize;
+pub mod orientation;
 pub mod profile;
 pub mod revolution;
 pub mod tessellate;

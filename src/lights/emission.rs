@@ -67,10 +67,11 @@ fn emit_nearby(scene: &Scene, light: &Light, u: Vec4, across: Vec2) -> Emission 
         return Emission { ray, flux, excess: 1.0, medium: light.medium };
     }
     if light.kind == LIGHT_SPOT {
-        let local = sample_cone(across, 1.0 - light.cos_outer);
+        let local = sample_cone(across, light.outer);
         ray.direction = unit(from_frame(light.direction, local));
-        let solid_angle = TAU * (1.0 - light.cos_outer);
-        let flux = light.color * (spot_falloff(light, local.z) * solid_angle / light.selection);
+        let solid_angle = TAU * light.outer;
+        let flux =
+            light.color * (spot_falloff(light, across.x * light.outer) * solid_angle / light.selection);
         return Emission { ray, flux, excess: 1.0, medium: light.medium };
     }
     ray.direction = unit(sample_sphere(across));

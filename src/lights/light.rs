@@ -100,7 +100,9 @@ pub fn sample_one_light(scene: &Scene, light: &Light, share: Real, position: Vec
         let direction = to * (1.0 / distance);
         let mut radiance = light.color * (1.0 / dist_sq);
         if light.kind == LIGHT_SPOT {
-            radiance *= spot_falloff(light, -direction.dot(light.direction));
+            // half the squared chord: near the axis 1 - cos has no digits left
+            let chord = direction + light.direction;
+            radiance *= spot_falloff(light, 0.5 * chord.dot(chord));
         }
         return LightSample {
             direction,
@@ -129,15 +131,16 @@ pub fn sample_one_light(scene: &Scene, light: &Light, share: Real, position: Vec
     }
 }
 
-/// 1 inside the full cone of a spot, 0 outside the dark one, a smoothstep of the cosine between.
-pub fn spot_falloff(light: &Light, cos: Real) -> Real {
-    if cos >= light.cos_inner {
+/// 1 inside the full cone of a spot, 0 outside the dark one, a smoothstep of the cosine between, at
+/// `versine = 1 - cos` of the angle with its axis.
+pub fn spot_falloff(light: &Light, versine: Real) -> Real {
+    if versine <= light.inner {
         return 1.0;
     }
-    if cos <= light.cos_outer {
+    if versine >= light.outer {
         return 0.0;
     }
-    let x = (cos - light.cos_outer) / (light.cos_inner - light.cos_outer);
+    let x = (light.outer - versine) / (light.outer - light.inner);
     x * x * (3.0 - 2.0 * x)
 }
 
@@ -168,8 +171,8 @@ pub fn pdf_light(
 
 /// Zenith-down texture coordinates of a direction seen in an equirectangular picture turned about y.
 pub fn environment_uv(light: &Light, direction: Vec3) -> Vec2 {
-    let x = light.cos_outer * direction.x - light.cos_inner * direction.z;
-    let z = light.cos_inner * direction.x + light.cos_outer * direction.z;
+    let x = light.outer * direction.x - light.inner * direction.z;
+    let z = light.inner * direction.x + light.outer * direction.z;
     let r = (x * x + z * z).sqrt();
     Vec2::new(0.5 - arctan2(z, x) * (1.0 / TAU), 1.0 - arctan2(r, direction.y) * (1.0 / PI))
 }
@@ -198,7 +201,7 @@ pub fn sample_environment(scene: &Scene, light: &Light, u: Vec4) -> Vec3 {
     let (sin, cos) = sin_cos(down * PI);
     let x = sin * cos_phi;
     let z = sin * sin_phi;
-    Vec3::new(light.cos_outer * x + light.cos_inner * z, cos, light.cos_outer * z - light.cos_inner * x)
+    Vec3::new(light.outer * x + light.inner * z, cos, light.outer * z - light.inner * x)
 }
 
 /// Density per solid angle of [`sample_environment`].
@@ -212,6 +215,7 @@ pub fn pdf_environment(scene: &Scene, light: &Light, direction: Vec3) -> Real {
     let column = ((uv.x * texture.width as Real).floor() as u32).min(texture.width - 1);
     let p = pdf_bin(scene, light.first, row, texture.height)
         * pdf_bin(scene, light.first + texture.height + row * texture.width, column, texture.width);
-    let sin = (1.0 - direction.y * direction.y).max(1e-12).sqrt();
+    // from x and z: near a pole 1 - y^2 has no digits left
+    let sin = (direction.x * direction.x + direction.z * direction.z).max(1e-12).sqrt();
     p / (2.0 * PI * PI * sin)
 }

@@ -18,9 +18,10 @@ pub fn eval_texture(scene: &Scene, index: u32, uv: Vec2) -> Vec3 {
         let odd = row - 2.0 * (row * 0.5).floor();
         st.y += 0.5 * odd;
     }
-    let clamped = texture.flags & TEXTURE_CLAMP != 0;
-    let x = if clamped { st.x.clamp(0.0, 1.0) } else { st.x - st.x.floor() } * texture.width as Real;
-    let y = (1.0 - if clamped { st.y.clamp(0.0, 1.0) } else { st.y - st.y.floor() }) * texture.height as Real;
+    let clamp_u = texture.flags & TEXTURE_CLAMP_U != 0;
+    let clamp_v = texture.flags & TEXTURE_CLAMP_V != 0;
+    let x = if clamp_u { st.x.clamp(0.0, 1.0) } else { st.x - st.x.floor() } * texture.width as Real;
+    let y = (1.0 - if clamp_v { st.y.clamp(0.0, 1.0) } else { st.y - st.y.floor() }) * texture.height as Real;
     if texture.flags & TEXTURE_NEAREST != 0 {
         return eval_texel(scene, texture, x.floor() as i32, y.floor() as i32);
     }
@@ -42,7 +43,7 @@ pub fn eval_texel(scene: &Scene, texture: &Texture, i: i32, j: i32) -> Vec3 {
     let h = texture.height as i32;
     let mut x = i;
     let mut y = j;
-    if texture.flags & TEXTURE_CLAMP == 0 {
+    if texture.flags & TEXTURE_CLAMP_U == 0 {
         x = if x < 0 {
             x + w
         } else if x >= w {
@@ -50,6 +51,8 @@ pub fn eval_texel(scene: &Scene, texture: &Texture, i: i32, j: i32) -> Vec3 {
         } else {
             x
         };
+    }
+    if texture.flags & TEXTURE_CLAMP_V == 0 {
         y = if y < 0 {
             y + h
         } else if y >= h {

@@ -2,10 +2,10 @@
 
 use super::real::{Bits, Real, ToReal, Vec2};
 use super::tables::*;
-use crate::scene::{self, Filter, ImageData, Texels, TextureKind, Wrap};
+use crate::scene::{self, Filter, ImageData, MaterialKind, Reflectance, Texels, TextureKind, Wrap};
 use crate::srgb::linear_from_srgb;
 use bytemuck::Zeroable;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 /// Fills `textures` and `texels`; an environment's picture becomes one more texture behind the scene's own.
 pub fn pack_textures(scene: &scene::Scene, out: &mut Scene) {
@@ -25,7 +25,8 @@ pub fn pack_textures(scene: &scene::Scene, out: &mut Scene) {
             TextureKind::Image { image, filter, wrap, scale } => Texture {
                 kind: TEXTURE_IMAGE,
                 scale: vec2(*scale),
-                flags: filter_flag(*filter) | if *wrap == Wrap::Clamp { TEXTURE_CLAMP } else { 0 },
+                flags: filter_flag(*filter)
+                    | if *wrap == Wrap::Clamp { TEXTURE_CLAMP_U | TEXTURE_CLAMP_V } else { 0 },
                 ..images[*image]
             },
             TextureKind::Planks { image, size, filter } => Texture {
@@ -40,10 +41,45 @@ pub fn pack_textures(scene: &scene::Scene, out: &mut Scene) {
         out.textures.push(Texture {
             kind: TEXTURE_IMAGE,
             scale: Vec2::ONE,
-            flags: TEXTURE_CLAMP,
+            // a sky goes on around, and ends at its poles
+            flags: TEXTURE_CLAMP_V,
             ..images[*image]
         });
     }
+}
+
+/// After which differences of u and of v a material looks the same; infinite where it never does.
+pub fn period(scene: &scene::Scene, material: &scene::Material) -> DVec2 {
+    let texture = match &material.kind {
+        MaterialKind::Diffuse { reflectance: Reflectance::Texture(texture) }
+        | MaterialKind::Mirror { reflectance: Reflectance::Texture(texture) }
+        | MaterialKind::Metal { reflectance: Reflectance::Texture(texture), .. } => {
+            scene.textures.get(*texture)
+        }
+        _ => None,
+    };
+    let of = |scale: [f64; 2], cells: [f64; 2]| {
+        let period = DVec2::from(cells) / DVec2::from(scale).abs();
+        DVec2::select(period.cmpgt(DVec2::ZERO), period, DVec2::INFINITY)
+    };
+    match texture.map(|texture| &texture.kind) {
+        // two cells; a colour depends on the sum of both
+        Some(TextureKind::Checker { scale, .. }) => of(*scale, [2.0, 2.0]),
+        Some(TextureKind::Image { scale, wrap: Wrap::Repeat, .. }) => of(*scale, [1.0, 1.0]),
+        Some(TextureKind::Image { wrap: Wrap::Clamp, .. }) | None => DVec2::INFINITY,
+        // every second row is shifted
+        Some(TextureKind::Planks { size, .. }) => DVec2::from(*size) * DVec2::new(2.0, 1.0),
+    }
+}
+
+/// `uv` less whole periods where it lies many of them from 0, so that it keeps its digits in f32.
+pub fn reduced(uv: DVec2, period: DVec2) -> DVec2 {
+    const MANY: f64 = 64.0;
+    let one = |x: f64, period: f64| {
+        let periods = (x / period).floor();
+        if period.is_finite() && periods.abs() >= MANY { x - periods * period } else { x }
+    };
+    DVec2::new(one(uv.x, period.x), one(uv.y, period.y))
 }
 
 fn vec2(v: [f64; 2]) -> Vec2 {

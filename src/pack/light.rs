@@ -60,17 +60,19 @@ pub fn pack_lights(
                 (light, DVec3::from(*intensity) / unit_sq, 4.0 * PI)
             }
             scene::Light::Spot { position, target, intensity, angle_degrees, blend } => {
-                let outer = angle_degrees.to_radians().cos();
-                let inner = (angle_degrees * (1.0 - blend)).to_radians().cos();
+                // 1 - cos
+                let versine = |degrees: f64| 2.0 * (0.5 * degrees).to_radians().sin().powi(2);
+                let outer = versine(*angle_degrees);
+                let inner = versine(angle_degrees * (1.0 - blend)).min(outer);
                 let light = Light {
                     kind: LIGHT_SPOT,
                     position: n.point(*position).to_real(),
                     direction: (*target - *position).normalize().to_real(),
-                    cos_outer: outer as Real,
-                    cos_inner: inner.max(outer) as Real,
+                    outer: outer as Real,
+                    inner: inner as Real,
                     ..Light::zeroed()
                 };
-                (light, DVec3::from(*intensity) / unit_sq, PI * (2.0 - inner - outer))
+                (light, DVec3::from(*intensity) / unit_sq, PI * (inner + outer))
             }
             scene::Light::Sun { direction, irradiance } => {
                 let light =
@@ -93,8 +95,8 @@ pub fn pack_lights(
             let mut light = Light {
                 kind: LIGHT_IMAGE,
                 reference: out.textures.len() as u32 - 1,
-                cos_outer: cos as Real,
-                cos_inner: sin as Real,
+                outer: cos as Real,
+                inner: sin as Real,
                 ..Light::zeroed()
             };
             if let Some([mean, most]) = image_distribution(out, &mut light, &mut distributions) {

@@ -17,7 +17,7 @@ pub use crate::error::PackError;
 pub use objects::Objects;
 
 use super::lights::select::CELL_LEAF;
-use super::real::{Real, ToDouble, ToReal, Vec2, Vec3};
+use super::real::{Real, ToDouble, ToReal, Vec3};
 use super::shapes::fours::{FourRectangles, FourSpheres, LANES};
 use super::tables::*;
 use super::{build, kernels, lights, materials, math, real, shapes, tables};
@@ -27,7 +27,7 @@ use crate::scene::{self, MaterialKind, Reflectance};
 use crate::settings::{Method, RenderSettings};
 use crate::stage::stage;
 use bytemuck::Zeroable;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use look::{Look, Region, look};
 use std::f64::consts::PI;
 use visibility::Visibility;
@@ -98,6 +98,10 @@ fn flatten(scene: &scene::Scene, n: Normalization, width: u32, height: u32) -> R
     image::pack_textures(scene, &mut out);
     for m in &scene.materials {
         out.materials.push(material(m, n.unit));
+        let origin = image::reduced(DVec2::new(n.center.x, n.center.z), image::period(scene, m));
+        if let Some(last) = out.materials.last_mut() {
+            last.planar_origin = origin.to_real();
+        }
     }
     let mut objects = Objects::default();
     let (primitives, references, mut emitters) = shape::pack_shapes(scene, &n, &mut out, &mut objects)?;
@@ -121,7 +125,6 @@ fn flatten(scene: &scene::Scene, n: Normalization, width: u32, height: u32) -> R
     out.four_rectangles = out.rectangles.chunks(LANES).map(FourRectangles::new).collect();
     out.four_spheres = out.spheres.chunks(LANES).map(FourSpheres::new).collect();
     out.world.unit = n.unit as Real;
-    out.world.planar_origin = Vec2::new(n.center.x as Real, n.center.z as Real);
     out.world.unbounded_count = out.unbounded.len() as u32;
     let light::PackedLights { radiance_unit, brightest, power, sources } =
         light::pack_lights(scene, &n, &emitters, &mut out);

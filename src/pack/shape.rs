@@ -10,7 +10,7 @@ use super::shapes::disc::disc_error;
 use super::shapes::facet::with_margins;
 use super::shapes::rectangle::rectangle_error;
 use super::tables::*;
-use super::{Objects, PackError};
+use super::{Objects, PackError, image};
 use crate::build::normalize::Normalization;
 use crate::scene::{self, Aov, Mesh, ShapeKind, Transform};
 use bytemuck::Zeroable;
@@ -52,13 +52,22 @@ pub fn pack_shapes(
     out: &mut Scene,
     objects: &mut Objects,
 ) -> Result<Flattened, PackError> {
-    let mut pack =
-        Pack { n, out, primitives: Vec::new(), references: Vec::new(), emitters: Vec::new(), shape: 0 };
+    let mut pack = Pack {
+        n,
+        out,
+        primitives: Vec::new(),
+        references: Vec::new(),
+        emitters: Vec::new(),
+        shape: 0,
+        period: DVec2::INFINITY,
+    };
     let mut revolutions = RevolutionTables::default();
     for (i, shape) in scene.shapes.iter().enumerate() {
         pack.shape = i;
         let material = shape.material as u32;
         let uv = if shape.planar_uv { UV_PLANAR } else { UV_NATURAL };
+        pack.period =
+            scene.materials.get(shape.material).map_or(DVec2::INFINITY, |m| image::period(scene, m));
         let emission = shape.is_emitter().then(|| DVec3::from(shape.emission));
         match &shape.kind {
             ShapeKind::Sphere { center, radius } => pack.sphere(*center, *radius, material, uv, emission),
@@ -72,6 +81,7 @@ pub fn pack_shapes(
             ShapeKind::Revolution { segments, transform, newton_tolerance } => {
                 let light =
                     pack.light(emission, reference(KIND_REVOLUTION, revolutions.revolutions.len()), 0.0);
+                let uv = if uv == UV_NATURAL && is_loop(segments) { UV_LOOP } else { uv };
                 let attributes =
                     RevolutionAttributes { material, light, uv, step_tolerance: *newton_tolerance };
                 let placement = placement(transform, n);
@@ -99,6 +109,12 @@ pub fn pack_shapes(
     Ok((primitives, references, emitters))
 }
 
+/// Whether a profile ends where it begins, away from the axis.
+fn is_loop(segments: &[Vec<DVec2>]) -> bool {
+    let ends = segments.first().and_then(|s| s.first()).zip(segments.last().and_then(|s| s.last()));
+    ends.is_some_and(|(first, last)| first == last && first.x != 0.0)
+}
+
 fn placement(transform: &Transform, n: &Normalization) -> Placement {
     Placement {
         rotation: DQuat::from_mat3(&transform.rotation),
@@ -115,6 +131,8 @@ struct Pack<'a> {
     emitters: Vec<Emitter>,
     /// Index of the shape that is packed.
     shape: usize,
+    /// The period of its material's texture in (u, v).
+    period: DVec2,
 }
 
 impl Pack<'_> {
@@ -252,6 +270,7 @@ impl Pack<'_> {
         let (t, b) = super::math::basis(n.to_real());
         let (t, b) = (t.to_double(), b.to_double());
         let d = (nearest - p) * self.n.unit;
+        let start = image::reduced(DVec2::new(d.dot(t), d.dot(b)), self.period);
         self.out.unbounded.push(reference(KIND_PLANE, self.out.planes.len()));
         self.out.planes.push(Plane {
             point: nearest.to_real(),
@@ -259,9 +278,9 @@ impl Pack<'_> {
             normal: n.to_real(),
             uv,
             tangent: (t * self.n.unit).to_real(),
-            u0: d.dot(t) as Real,
+            u0: start.x as Real,
             bitangent: (b * self.n.unit).to_real(),
-            v0: d.dot(b) as Real,
+            v0: start.y as Real,
             facet: NONE,
             pad: [0; 3],
         });
@@ -294,6 +313,11 @@ impl Pack<'_> {
             let planar = corners.map(|c| DVec2::new(c.x, c.z));
             let uvs = triangle.uv.map(|t| t.map(|i| mesh.uvs[i as usize]));
             let uvs = if uv == UV_PLANAR { Some(planar) } else { uvs };
+            // all corners by the same periods
+            let uvs = uvs.map(|uvs| {
+                let shift = image::reduced(uvs[0], self.period) - uvs[0];
+                uvs.map(|uv| uv + shift)
+            });
             let normals = triangle.normal.map(|t| t.map(|i| mesh.normals[i as usize]));
             let attributes = self.attributes(uvs, normals);
             let p = p.map(|q| q.to_real());

@@ -242,7 +242,8 @@ pub enum ShapeFile {
         #[serde(flatten)]
         surface: SurfaceFile,
     },
-    /// An axis-aligned box.
+    /// An axis-aligned box; each face is the unit square in uv, upright and unmirrored from outside (on top
+    /// v increases along -z, below along z).
     Box {
         /// Least corner.
         min: Vec3,
@@ -258,7 +259,8 @@ pub enum ShapeFile {
     Mesh {
         /// A Wavefront OBJ file.
         file: String,
-        /// Use the file's normals, or make them where it has none; false: flat.
+        /// Use the file's normals, or make them where it has none; false: flat. The order of a face's corners
+        /// (counterclockwise from outside) says which side is outside, whatever the normals are.
         #[serde(default = "yes")]
         smooth: bool,
         /// Name of a material; without it, the OBJ's own MTL is used.
@@ -270,7 +272,8 @@ pub enum ShapeFile {
         #[serde(flatten)]
         surface: SurfaceFile,
     },
-    /// A Bezier profile turned about the local y axis.
+    /// A Bezier profile turned about the local y axis. Outside is where the profile, drawn upward, has its
+    /// greater radii; a closed body that faces inward is warned of.
     Revolution {
         /// Control points (radius, height) of one Bezier curve.
         #[schemars(length(min = 2, max = 16))]

@@ -72,15 +72,16 @@ pub fn cuboid_error(cuboid: &Cuboid) -> Real {
     16.0 * EPS * max_abs(cuboid.lower).max(max_abs(cuboid.upper))
 }
 
-/// Each face is the unit square: (z, y), (x, z) and (x, y) for the faces across x, y and z.
+/// Each face is the unit square, upright and unmirrored to someone outside: v goes up along y; on top, v
+/// goes away along -z, and on the bottom along z.
 pub fn cuboid_uv(cuboid: &Cuboid, position: Vec3, face: Real) -> Vec2 {
     let q = (position - cuboid.lower) / (cuboid.upper - cuboid.lower);
-    let n = cuboid_normal(face).abs();
-    if n.x > 0.0 {
-        return Vec2::new(q.z, q.y);
+    let n = cuboid_normal(face);
+    if n.x != 0.0 {
+        return Vec2::new(if n.x > 0.0 { 1.0 - q.z } else { q.z }, q.y);
     }
-    if n.y > 0.0 {
-        return Vec2::new(q.x, q.z);
+    if n.y != 0.0 {
+        return Vec2::new(q.x, if n.y > 0.0 { 1.0 - q.z } else { q.z });
     }
-    Vec2::new(q.x, q.y)
+    Vec2::new(if n.z > 0.0 { q.x } else { 1.0 - q.x }, q.y)
 }

@@ -88,7 +88,8 @@ pub fn surface_at(scene: &Scene, ray: &Ray, hit: &Hit) -> Surface {
             planar = sphere.uv;
             // two arctangents, which most spheres have no use for
             if planar == UV_NATURAL && scene.materials[sphere.material as usize].texture != NONE {
-                s.uv = sphere_uv(n);
+                let uv = sphere_uv(n);
+                s.uv = Vec2::new(uv.x, within_ends(scene, s.material, uv.y));
             }
         }
         KIND_RECTANGLE => {
@@ -155,6 +156,9 @@ pub fn surface_at(scene: &Scene, ray: &Ray, hit: &Hit) -> Surface {
                 facet: NONE,
             };
             planar = revolution.uv;
+            if planar == UV_NATURAL {
+                s.uv.y = within_ends(scene, s.material, r.uv.y);
+            }
         }
         _ => {
             let plane = &scene.planes[index];
@@ -175,7 +179,20 @@ pub fn surface_at(scene: &Scene, ray: &Ray, hit: &Hit) -> Surface {
         }
     }
     if planar == UV_PLANAR {
-        s.uv = Vec2::new(s.position.x, s.position.z) * scene.world.unit + scene.world.planar_origin;
+        let origin = scene.materials[s.material as usize].planar_origin;
+        s.uv = Vec2::new(s.position.x, s.position.z) * scene.world.unit + origin;
     }
     s
+}
+
+/// `v` of a shape whose v ends at poles or rims, drawn in by half a row of its picture, so that no filter
+/// mixes in the other end.
+fn within_ends(scene: &Scene, material: u32, v: Real) -> Real {
+    let index = scene.materials[material as usize].texture;
+    if index == NONE || scene.textures[index as usize].kind != TEXTURE_IMAGE {
+        return v;
+    }
+    let texture = &scene.textures[index as usize];
+    let half = (0.5 / (texture.height as Real * texture.scale.y.abs())).min(0.5);
+    v.max(half).min(1.0 - half)
 }

@@ -10,6 +10,7 @@ mod closed_forms;
 mod convergence;
 mod densities;
 mod dielectrics;
+mod directions;
 mod distant;
 mod energy;
 mod everything;
