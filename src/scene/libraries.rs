@@ -151,10 +151,10 @@ impl Libraries {
                 let label = format!("read as `{}` with a comment", text.shown(called));
                 scan.warnings.push(at, message, label);
             }
-            if !known.contains_key(&id) {
+            let own = known.get(&id).cloned().unwrap_or_else(|| {
                 let library = &mut self.files[id.0];
                 let key = (file.to_owned(), library.path.clone(), id.1, emits);
-                let own = loader.own_materials.get(&key).cloned().unwrap_or_else(|| {
+                loader.own_materials.get(&key).cloned().unwrap_or_else(|| {
                     let name = format!("{file}:{}", library.text.shown(library.name(id.1)));
                     let (allowance, images) = (loader.allowance, &mut loader.images);
                     let mut target = Target { allowance, images, textures, emits };
@@ -163,10 +163,10 @@ impl Libraries {
                     let own = Own { material: materials.len() - 1, emission };
                     loader.own_materials.insert(key, own.clone());
                     own
-                });
-                known.insert(id, own);
-            }
-            made.push(known.get(&id).cloned());
+                })
+            });
+            known.insert(id, own.clone());
+            made.push(Some(own));
         }
         made
     }

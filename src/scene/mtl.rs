@@ -2,7 +2,7 @@
 //! their kind uses; the rest gives warnings at most.
 
 use std::ops::Range;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::allowance::{Allowance, Missing};
 use super::appearance::{Material, MaterialKind, Reflectance, Rgb, Texture, TextureKind};
@@ -167,7 +167,7 @@ struct Reader<'l, 't> {
 }
 
 impl<'t> Reader<'_, 't> {
-    fn kind(&mut self, path: &PathBuf, text: &Text, target: &mut Target) -> (MaterialKind, Rgb) {
+    fn kind(&mut self, path: &Path, text: &Text, target: &mut Target) -> (MaterialKind, Rgb) {
         let emission = if target.emits { self.color("Ke", BRIGHTEST) } else { None };
         let illum = self.illum();
         let is_glass = matches!(illum, Some(4 | 6 | 7 | 9));
@@ -267,7 +267,7 @@ impl<'t> Reader<'_, 't> {
     }
 
     /// The picture of `map_Kd`.
-    fn map(&mut self, map: &Statement, path: &PathBuf, text: &Text, target: &mut Target) -> Reflectance {
+    fn map(&mut self, map: &Statement, path: &Path, text: &Text, target: &mut Target) -> Reflectance {
         let grey = Reflectance::Color([Missing::STAND_IN; 3]);
         self.used.push("map_Kd");
         let (name, at) = map.name();
@@ -328,7 +328,7 @@ impl<'t> Reader<'_, 't> {
     fn unused(&mut self, is_glass: bool) {
         for statement in self.given {
             let (key, at) = (statement.keyword, statement.at.clone());
-            if self.used.iter().any(|&used| used == key) {
+            if self.used.contains(&key) {
                 continue;
             }
             if READ.contains(&key) || IDLE.contains(&key) {

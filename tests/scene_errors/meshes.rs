@@ -9,7 +9,7 @@ use caustica::scene::{
     Allowance, Loaded, MaterialKind, Missing, Reflectance, Rgb, SceneErrors, ShapeKind, parse_within,
 };
 
-use super::support::folder;
+use super::support::{ends, folder};
 use super::{HEAD, differs, told};
 
 const SQUARES: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\n";
@@ -303,4 +303,33 @@ fn pictures_of_materials() {
         let loaded = read(&folder, Missing::Error).unwrap_or_else(|e| panic!("{e:?}"));
         assert_eq!((loaded.scene.images.len(), loaded.warnings.len()), (1, 0), "{name}");
     }
+}
+
+/// Every command that reads a scene takes the option, and the error names it.
+#[test]
+fn missing_files_of_commands() {
+    let obj = format!("mtllib gone.mtl\n{SQUARES}usemtl a\nf 1 2 3 4\n");
+    let scene = format!(
+        "{HEAD}[film]\nwidth = 8\nheight = 6\n[environment]\nradiance = 1\n[[shapes]]\ntype = \"mesh\"\n\
+         file = \"m.obj\"\n"
+    );
+    let folder = written("commands", &[("m.obj", obj.as_bytes()), ("s.toml", scene.as_bytes())]);
+    let commands: [&[&str]; 3] =
+        [&["check"], &["info"], &["render", "--device", "cpu", "--passes", "1", "-o", "out.pfm"]];
+    for command in commands {
+        let with = |more: &[&'static str]| [command, &["s.toml"], more].concat();
+        ends(&folder, &with(&[]), 1, &["gone.mtl", "m.obj:1:8", "--missing warn"]);
+        ends(&folder, &with(&["--missing", "error"]), 1, &["gone.mtl"]);
+        let words = ["gone.mtl", "m.obj:1:8", "`a` is not defined", "rendered in gray"];
+        ends(&folder, &with(&["--missing", "warn"]), 0, &words);
+    }
+    ends(&folder, &["check", "s.toml", "--missing", "ignore"], 2, &["error, warn"]);
+}
+
+/// Lines of a scene file that end in carriage returns alone are none in TOML: one error says so.
+#[test]
+fn carriage_returns_of_a_scene() {
+    let text = HEAD.replace('\n', "\r");
+    let errors = caustica::scene::parse("scene.toml".as_ref(), text.as_bytes()).unwrap_err().errors;
+    assert_eq!(differs(&errors, &[(1, 12, "carriage returns alone")]), None);
 }
