@@ -1,5 +1,5 @@
-//! Materials that an OBJ file brings along in its MTL file. Only those that faces use are read, and of them only what
-//! their kind uses; the rest gives warnings at most.
+//! Materials that an OBJ file brings along in its MTL file. Only those that faces use are read, and
+//! of them only what their kind uses; the rest gives warnings at most.
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -126,9 +126,9 @@ pub(super) struct Target<'r> {
     pub emits: bool,
 }
 
-/// An MTL material as a scene's, called `name` there, and its emission: glass when `illum` is 4, 6, 7 or 9, or `d` is
-/// below 1 with an `Ni` other than 1; a mirror of `Ks` when `illum` is 3 or 5; else diffuse of `map_Kd`, which replaces
-/// `Kd`.
+/// An MTL material as a scene's, called `name` there, and its emission: glass when `illum` is 4, 6,
+/// 7 or 9, or `d` is below 1 with an `Ni` other than 1; a mirror of `Ks` when `illum` is 3 or 5;
+/// else diffuse of `map_Kd`, which replaces `Kd`.
 pub(super) fn material(
     library: &mut Library,
     entry: usize,
@@ -139,7 +139,8 @@ pub(super) fn material(
     let lines = text.lines();
     let mut given: Vec<Statement> = Vec::new();
     for statement in statements(lines, entries[entry].body.clone()) {
-        // The last of several counts. Only known keys are compared, so that their number bounds the work.
+        // The last of several counts. Only known keys are compared, so that their number bounds the
+        // work.
         let known = READ.contains(&statement.keyword) || IDLE.contains(&statement.keyword);
         if known && let Some(last) = given.iter_mut().find(|last| last.keyword == statement.keyword) {
             *last = statement;
