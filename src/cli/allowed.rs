@@ -18,7 +18,8 @@ pub struct Allowed {
     /// texture-bytes, picture-pixels or errors, as in triangles=1e6; may be given several times
     #[arg(long, value_name = "NAME=N", value_parser = limit)]
     limit: Vec<(String, u64)>,
-    /// What an MTL or texture file that does not exist is: an error, or a warning and mid-gray in its place
+    /// What an MTL or texture file that does not exist is: an error, or a warning and mid-gray in
+    /// its place
     #[arg(long, value_name = "WHAT", value_enum, default_value_t)]
     missing: OnMissing,
 }

@@ -1,4 +1,5 @@
-//! The channels of an EXR file that are read as a picture: R, G, B; or Y, in gray; or the one layer that has either.
+//! The channels of an EXR file that are read as a picture: R, G, B; or Y, in gray; or the one layer
+//! that has either.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::{BufRead, Seek};
@@ -49,7 +50,8 @@ pub(super) fn choose(meta: &MetaData) -> Result<Chosen, String> {
         let layers: BTreeSet<_> = channels.keys().map(|name| layer_of(name)).collect();
         for layer in layers {
             let Some(chosen) = chosen(&channels, layer) else { continue };
-            // The first part of a file that has a layer is the one that is read; colors come before gray.
+            // The first part of a file that has a layer is the one that is read; colors come before
+            // gray.
             let is_gray = |known: &(Chosen, usize)| matches!(known.0.colors, Colors::Gray(_));
             let has_colors = matches!(chosen.colors, Colors::Rgb(_));
             if found.get(layer).is_none_or(|known| has_colors && is_gray(known)) {
@@ -107,7 +109,8 @@ fn chosen(channels: &BTreeMap<String, &Text>, layer: &str) -> Option<Chosen> {
     let is_gray = matches!(colors, Colors::Gray(_));
     let chroma = ["BY", "RY"].into_iter().filter(|_| is_gray).filter_map(find);
     let unread = chroma.map(|name| name.to_string()).collect();
-    // A channel that is not there is 1 everywhere; this one has a name that no channel of the layer has.
+    // A channel that is not there is 1 everywhere; this one has a name that no channel of the layer
+    // has.
     let alpha = find("A").or_else(|| Text::new_or_none("no alpha"))?;
     Some(Chosen { colors, alpha, subsampled: None, unread })
 }

@@ -1,5 +1,6 @@
-//! Luminance of EXR files whose chroma has a lower resolution. The exr crate reads the headers and blocks of such files, but
-//! takes all channels for equally large; here each block gets its true size, and is taken apart.
+//! Luminance of EXR files whose chroma has a lower resolution. The exr crate reads the headers and
+//! blocks of such files, but takes all channels for equally large; here each block gets its true
+//! size, and is taken apart.
 
 use std::io::{BufRead, Seek};
 
@@ -17,8 +18,8 @@ use super::exr_image::Picture;
 /// Largest coordinate that is taken for one.
 const FARTHEST: i32 = 1 << 30;
 
-/// Reads a channel of full resolution as gray. The file has been read up to the end of its headers, `meta`; `part` is the
-/// one of them that has the channel.
+/// Reads a channel of full resolution as gray. The file has been read up to the end of its headers,
+/// `meta`; `part` is the one of them that has the channel.
 ///
 /// # Errors
 /// When the file is damaged, or compressed by a method that does not work at this size.
@@ -97,7 +98,8 @@ fn values(kind: SampleType, bytes: &[u8]) -> impl Iterator<Item = f32> {
     })
 }
 
-/// The bytes of a block. The crate computes their number from the size of a pixel, so this gives it one that fits.
+/// The bytes of a block. The crate computes their number from the size of a pixel, so this gives it
+/// one that fits.
 fn decompress(header: &Header, compressed: Vec<u8>, section: IntegerBounds) -> Result<Vec<u8>> {
     let Vec2(width, lines) = section.size;
     let of_channel = |channel: &ChannelDescription| {

@@ -42,16 +42,17 @@ impl Format {
     }
 }
 
-/// A Radiance file with the first line that the decoder knows; programs other than Radiance write their own.
+/// A Radiance file with the first line that the decoder knows; programs other than Radiance write
+/// their own.
 pub(super) fn with_radiance_line(mut file: impl BufRead) -> io::Result<impl Read> {
     let mut line = Vec::new();
     file.by_ref().take(1024).read_until(b'\n', &mut line)?;
     Ok(io::Cursor::new(b"#?RADIANCE\n").chain(file))
 }
 
-/// Why a JPEG file would not be decoded as it is meant, if so. Where a sequential file divides its components into several
-/// scans, zune-jpeg 0.5 loses the blocks at the end of a scan, and misplaces those of components of a higher resolution. A
-/// broken file is left to the decoder.
+/// Why a JPEG file would not be decoded as it is meant, if so. Where a sequential file divides its
+/// components into several scans, zune-jpeg 0.5 loses the blocks at the end of a scan, and
+/// misplaces those of components of a higher resolution. A broken file is left to the decoder.
 pub(super) fn jpeg_fault(mut file: impl Read) -> Option<&'static str> {
     let mut components = 0;
     let mut marker = [0; 2];

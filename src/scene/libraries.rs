@@ -16,8 +16,8 @@ use super::text::nearest_file;
 /// A material of a file: the file's index, and the material's in it.
 type Id = (usize, usize);
 
-/// What makes a material of a mesh one of its own: the mesh's file as the scene names it, the material's file and its
-/// index in it, and whether it emits.
+/// What makes a material of a mesh one of its own: the mesh's file as the scene names it, the
+/// material's file and its index in it, and whether it emits.
 pub(crate) type OwnKey = (String, PathBuf, usize, bool);
 
 /// The material files of an OBJ file, in their order.
@@ -125,7 +125,8 @@ impl Libraries {
             .or_else(|| readings(name).find_map(commented))
     }
 
-    /// The materials that faces of an OBJ file use, in the order of [`Scan::uses`]. Reports those that no file defines.
+    /// The materials that faces of an OBJ file use, in the order of [`Scan::uses`]. Reports those
+    /// that no file defines.
     pub fn materials(
         &mut self,
         loader: &mut Loader,
@@ -151,10 +152,10 @@ impl Libraries {
                 let label = format!("read as `{}` with a comment", text.shown(called));
                 scan.warnings.push(at, message, label);
             }
-            if !known.contains_key(&id) {
+            let own = known.get(&id).cloned().unwrap_or_else(|| {
                 let library = &mut self.files[id.0];
                 let key = (file.to_owned(), library.path.clone(), id.1, emits);
-                let own = loader.own_materials.get(&key).cloned().unwrap_or_else(|| {
+                loader.own_materials.get(&key).cloned().unwrap_or_else(|| {
                     let name = format!("{file}:{}", library.text.shown(library.name(id.1)));
                     let (allowance, images) = (loader.allowance, &mut loader.images);
                     let mut target = Target { allowance, images, textures, emits };
@@ -163,10 +164,10 @@ impl Libraries {
                     let own = Own { material: materials.len() - 1, emission };
                     loader.own_materials.insert(key, own.clone());
                     own
-                });
-                known.insert(id, own);
-            }
-            made.push(known.get(&id).cloned());
+                })
+            });
+            known.insert(id, own.clone());
+            made.push(Some(own));
         }
         made
     }
@@ -223,8 +224,8 @@ fn unread(loader: &Loader, scan: &mut Scan, file: &Path, at: Range<usize>, error
     scan.faults.push(at, message, format!("{mend}, {}", Missing::ADVICE));
 }
 
-/// The files that the names behind one `mtllib` stand for. A name may hold blanks, several names are separated by
-/// blanks, and a comment may follow: what is there decides.
+/// The files that the names behind one `mtllib` stand for. A name may hold blanks, several names
+/// are separated by blanks, and a comment may follow: what is there decides.
 fn files_of((name, at): Word, text: &Text, loader: &Loader, folder: &Path) -> Vec<(Range<usize>, PathBuf)> {
     let span = |part: &str| {
         let start = at.start + (part.as_ptr() as usize - name.as_ptr() as usize);

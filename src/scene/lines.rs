@@ -1,4 +1,5 @@
-//! Statements of OBJ and MTL files: encoding, line ends, lines that go on, comments, words and names.
+//! Statements of OBJ and MTL files: encoding, line ends, lines that go on, comments, words and
+//! names.
 
 use std::borrow::Cow;
 use std::ops::Range;
@@ -22,7 +23,8 @@ pub(super) struct Text {
 }
 
 impl Text {
-    /// Decodes a file: UTF-8, or else one character for each byte (Latin-1), which keeps different names different.
+    /// Decodes a file: UTF-8, or else one character for each byte (Latin-1), which keeps different
+    /// names different.
     ///
     /// # Errors
     /// UTF-16 and UTF-32.
@@ -55,7 +57,8 @@ impl Text {
         String::from_utf8(self.bytes(name)).unwrap_or_else(|_| name.to_owned())
     }
 
-    /// The file of a name in a folder: as its bytes say, as its characters say, and with slashes for backslashes.
+    /// The file of a name in a folder: as its bytes say, as its characters say, and with slashes
+    /// for backslashes.
     pub fn find(&self, allowance: &Allowance, folder: &Path, name: &str) -> PathBuf {
         let as_bytes = self.single_byte.then(|| path_of(self.bytes(name))).flatten();
         let as_bytes = as_bytes.map(|name| folder.join(name)).filter(|path| allowance.has(path));
@@ -101,8 +104,8 @@ const NUMERIC: [&str; 30] = [
     "bmat", "deg", "step", "con", "s", "Ka", "Kd", "Ks", "Ke", "Ni", "Ns", "d", "Tr", "Tf", "illum",
 ];
 
-/// Joins lines that end in a backslash, by blanks in the place of it and of the line's end. Comments do not go on, and a
-/// backslash at the end of a name belongs to the name.
+/// Joins lines that end in a backslash, by blanks in the place of it and of the line's end.
+/// Comments do not go on, and a backslash at the end of a name belongs to the name.
 fn joined(text: &str) -> Cow<'_, str> {
     if !text.contains("\\\n") && !text.contains("\\\r") {
         return Cow::Borrowed(text);
@@ -135,7 +138,8 @@ fn goes_on(before: &str, numbers: bool) -> bool {
     (numbers || before.is_empty() || before.ends_with(blank)) && !before.match_indices('#').any(comment)
 }
 
-/// What separates words. Not all that Unicode holds blank: its characters may be parts of names that are not UTF-8.
+/// What separates words. Not all that Unicode holds blank: its characters may be parts of names
+/// that are not UTF-8.
 fn blank(c: char) -> bool {
     matches!(c, ' ' | '\t' | '\r' | '\x0b' | '\x0c')
 }
@@ -260,8 +264,8 @@ mod tests {
         statements.iter().map(|(keyword, rest)| ((*keyword).to_owned(), owned(rest))).collect()
     }
 
-    /// Theory: a backslash at the end of a line continues statements, not comments and not names. Whatever the line ends,
-    /// blanks and comments, the statements are the same.
+    /// Theory: a backslash at the end of a line continues statements, not comments and not names.
+    /// Whatever the line ends, blanks and comments, the statements are the same.
     #[test]
     fn lines_go_on() {
         let plain = list(&[("v", &["0", "1", "2"]), ("f", &["1", "2", "3"])]);
@@ -283,7 +287,8 @@ mod tests {
         assert_eq!(words("v -1.#IND 1.#QNAN 1.#x"), list(&[("v", &["-1.#IND", "1.#QNAN", "1."])]));
     }
 
-    /// Theory: different bytes are different names, whatever they mean. 0x85 and 0xA0 are blanks in Unicode.
+    /// Theory: different bytes are different names, whatever they mean. 0x85 and 0xA0 are blanks in
+    /// Unicode.
     #[test]
     fn bytes_are_kept() {
         let names: [&[u8]; 6] = [b"\xe9", b"\xe8", b"\xc3\xa9", b"a\x85", b"a\xa0", b"a"];

@@ -62,7 +62,8 @@ impl Loader<'_, '_> {
         }
     }
 
-    /// As [`Self::image`], for shares of light: no texel above 1. A file that does not exist may be gray.
+    /// As [`Self::image`], for shares of light: no texel above 1. A file that does not exist may be
+    /// gray.
     fn reflectance_image(
         &mut self,
         item: &Item,

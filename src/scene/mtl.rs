@@ -1,8 +1,8 @@
-//! Materials that an OBJ file brings along in its MTL file. Only those that faces use are read, and of them only what
-//! their kind uses; the rest gives warnings at most.
+//! Materials that an OBJ file brings along in its MTL file. Only those that faces use are read, and
+//! of them only what their kind uses; the rest gives warnings at most.
 
 use std::ops::Range;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::allowance::{Allowance, Missing};
 use super::appearance::{Material, MaterialKind, Reflectance, Rgb, Texture, TextureKind};
@@ -126,9 +126,9 @@ pub(super) struct Target<'r> {
     pub emits: bool,
 }
 
-/// An MTL material as a scene's, called `name` there, and its emission: glass when `illum` is 4, 6, 7 or 9, or `d` is
-/// below 1 with an `Ni` other than 1; a mirror of `Ks` when `illum` is 3 or 5; else diffuse of `map_Kd`, which replaces
-/// `Kd`.
+/// An MTL material as a scene's, called `name` there, and its emission: glass when `illum` is 4, 6,
+/// 7 or 9, or `d` is below 1 with an `Ni` other than 1; a mirror of `Ks` when `illum` is 3 or 5;
+/// else diffuse of `map_Kd`, which replaces `Kd`.
 pub(super) fn material(
     library: &mut Library,
     entry: usize,
@@ -139,7 +139,8 @@ pub(super) fn material(
     let lines = text.lines();
     let mut given: Vec<Statement> = Vec::new();
     for statement in statements(lines, entries[entry].body.clone()) {
-        // The last of several counts. Only known keys are compared, so that their number bounds the work.
+        // The last of several counts. Only known keys are compared, so that their number bounds the
+        // work.
         let known = READ.contains(&statement.keyword) || IDLE.contains(&statement.keyword);
         if known && let Some(last) = given.iter_mut().find(|last| last.keyword == statement.keyword) {
             *last = statement;
@@ -167,7 +168,7 @@ struct Reader<'l, 't> {
 }
 
 impl<'t> Reader<'_, 't> {
-    fn kind(&mut self, path: &PathBuf, text: &Text, target: &mut Target) -> (MaterialKind, Rgb) {
+    fn kind(&mut self, path: &Path, text: &Text, target: &mut Target) -> (MaterialKind, Rgb) {
         let emission = if target.emits { self.color("Ke", BRIGHTEST) } else { None };
         let illum = self.illum();
         let is_glass = matches!(illum, Some(4 | 6 | 7 | 9));
@@ -267,7 +268,7 @@ impl<'t> Reader<'_, 't> {
     }
 
     /// The picture of `map_Kd`.
-    fn map(&mut self, map: &Statement, path: &PathBuf, text: &Text, target: &mut Target) -> Reflectance {
+    fn map(&mut self, map: &Statement, path: &Path, text: &Text, target: &mut Target) -> Reflectance {
         let grey = Reflectance::Color([Missing::STAND_IN; 3]);
         self.used.push("map_Kd");
         let (name, at) = map.name();
@@ -328,7 +329,7 @@ impl<'t> Reader<'_, 't> {
     fn unused(&mut self, is_glass: bool) {
         for statement in self.given {
             let (key, at) = (statement.keyword, statement.at.clone());
-            if self.used.iter().any(|&used| used == key) {
+            if self.used.contains(&key) {
                 continue;
             }
             if READ.contains(&key) || IDLE.contains(&key) {

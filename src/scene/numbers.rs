@@ -16,8 +16,8 @@ pub const SMALLEST: f64 = 1e-15;
 /// Greatest strength of a light. Pictures hold radiance in f32, up to 3e38, and light adds up.
 pub const BRIGHTEST: f64 = 1e30;
 
-/// How far rounding may carry a number in a text beyond the range that it has to lie in: programs write four digits and
-/// more.
+/// How far rounding may carry a number in a text beyond the range that it has to lie in: programs
+/// write four digits and more.
 const ROUNDING: f64 = 1e-4;
 
 /// A number that lies in a range, or would without a rounding error: then the nearest in the range.

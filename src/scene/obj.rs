@@ -35,7 +35,8 @@ pub(super) struct Scan<'t> {
     group: Option<[bool; 2]>,
     /// Largest index of each kind that was above what stood before it.
     ahead: [i64; 3],
-    /// Vertices, texture coordinates and normals that cannot be used: the place of a number in each.
+    /// Vertices, texture coordinates and normals that cannot be used: the place of a number in
+    /// each.
     bad: [HashMap<i64, Range<usize>>; 3],
 }
 
@@ -81,8 +82,8 @@ impl<'t> Scan<'t> {
         self.faults.push(span, message, expected);
     }
 
-    /// Finds the indices that point behind the end, and those to what cannot be used. What cannot be used and no face
-    /// uses gives a warning.
+    /// Finds the indices that point behind the end, and those to what cannot be used. What cannot
+    /// be used and no face uses gives a warning.
     fn indices(&mut self, text: &str) {
         let mut counts = [0; 3];
         for statement in statements(text, 0..text.len()) {

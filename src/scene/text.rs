@@ -51,6 +51,12 @@ pub(super) fn parse<T>(
         report.error(at..at + 1, "the file is not UTF-8", "expected UTF-8 text", None);
         return Err(errors(path, report));
     }
+    if text.contains('\r') && !text.contains('\n') {
+        let end = text.find('\r').unwrap_or(0);
+        let help = Some("save it with line ends of Unix or Windows".to_owned());
+        report.error(end..end, "the lines end in carriage returns alone", "expected a line feed", help);
+        return Err(errors(path, report));
+    }
     let (table, faults) = DeTable::parse_recoverable(&text);
     for fault in &faults {
         let span = fault.span().unwrap_or(0..0);

@@ -41,7 +41,8 @@ impl Bits {
         }
     }
 
-    /// A block of one value: its difference to the last, and, where all coefficients follow, their end.
+    /// A block of one value: its difference to the last, and, where all coefficients follow, their
+    /// end.
     fn block(&mut self, difference: i32, is_progressive: bool) {
         let category = u32::BITS - difference.unsigned_abs().leading_zeros();
         self.put(category, 4);

@@ -1,7 +1,9 @@
-//! OBJ and MTL files as programs in the field write them: names, comments, line ends, missing files, values out of range.
+//! OBJ and MTL files as programs in the field write them: names, comments, line ends, missing
+//! files, values out of range.
 //!
-//! Theory: what a file says does not depend on its layout. A name is the bytes that stand behind its keyword, and the first
-//! material of a name in the order of the libraries is the one that is meant. What no picture depends on refuses nothing.
+//! Theory: what a file says does not depend on its layout. A name is the bytes that stand behind
+//! its keyword, and the first material of a name in the order of the libraries is the one that is
+//! meant. What no picture depends on refuses nothing.
 
 use std::path::Path;
 
@@ -9,7 +11,7 @@ use caustica::scene::{
     Allowance, Loaded, MaterialKind, Missing, Reflectance, Rgb, SceneErrors, ShapeKind, parse_within,
 };
 
-use super::support::folder;
+use super::support::{ends, folder};
 use super::{HEAD, differs, told};
 
 const SQUARES: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\n";
@@ -111,7 +113,8 @@ fn layout_is_no_content() {
     assert_eq!(parts_of("mtl", lines.as_bytes(), &mtl), (vec![(RED, 2), (GREEN, 2)], vec![]));
 }
 
-/// Several libraries, and names of files: with blanks, `#` and backslashes, in the encoding of the system or not.
+/// Several libraries, and names of files: with blanks, `#` and backslashes, in the encoding of the
+/// system or not.
 #[test]
 fn libraries_are_found() {
     let (a, b) = (b"newmtl a\nKd 1 0 0\n" as &[u8], b"newmtl a\nKd 0 0 1\nnewmtl b\nKd 0 1 0\n" as &[u8]);
@@ -144,7 +147,8 @@ fn libraries_are_found() {
     assert!(warnings.len() == 1 && warnings[0].contains("`a` is defined again"), "{warnings:?}");
 }
 
-/// A face's material that no library defines is an error, wherever its statement stands: no face vanishes.
+/// A face's material that no library defines is an error, wherever its statement stands: no face
+/// vanishes.
 #[test]
 fn undefined_materials() {
     let obj = format!("mtllib m.mtl\n{SQUARES}usemtl Grey #1\nf 1 2 3\nusemtl Grey #3\nf 1 2 3\n");
@@ -157,8 +161,8 @@ fn undefined_materials() {
     assert!(warnings.len() == 1 && warnings[0].contains("rendered in gray"), "{warnings:?}");
 }
 
-/// `--missing warn`: gray in place of a library or a picture that does not exist; a warning names file and place. A file
-/// that is there and broken stays an error.
+/// `--missing warn`: gray in place of a library or a picture that does not exist; a warning names
+/// file and place. A file that is there and broken stays an error.
 #[test]
 fn missing_files() {
     let obj = format!("mtllib gone.mtl m.mtl\n{SQUARES}usemtl a\nf 1 2 3 4\nusemtl b\nf 2 5 6 3\n");
@@ -176,8 +180,8 @@ fn missing_files() {
     assert_eq!(differs(&errors, &[(3, 8, "cannot read image")]), None);
 }
 
-/// Keys that change how a surface looks elsewhere and are not read: each gives a warning at its line, and those whose value
-/// changes nothing give none.
+/// Keys that change how a surface looks elsewhere and are not read: each gives a warning at its
+/// line, and those whose value changes nothing give none.
 #[test]
 fn unread_keys() {
     let obj = format!("mtllib m.mtl\n{SQUARES}usemtl a\nf 1 2 3 4\n");
@@ -214,7 +218,8 @@ fn unread_keys() {
     assert_eq!(parts_of("idle", obj.as_bytes(), idle), (vec![(RED, 2)], vec![]));
 }
 
-/// Values that are not used, and those that rounding has carried out of range, refuse nothing; others do.
+/// Values that are not used, and those that rounding has carried out of range, refuse nothing;
+/// others do.
 #[test]
 fn values_out_of_range() {
     let obj = format!("mtllib m.mtl\n{SQUARES}usemtl a\nf 1 2 3 4\n");
@@ -303,4 +308,33 @@ fn pictures_of_materials() {
         let loaded = read(&folder, Missing::Error).unwrap_or_else(|e| panic!("{e:?}"));
         assert_eq!((loaded.scene.images.len(), loaded.warnings.len()), (1, 0), "{name}");
     }
+}
+
+/// Every command that reads a scene takes the option, and the error names it.
+#[test]
+fn missing_files_of_commands() {
+    let obj = format!("mtllib gone.mtl\n{SQUARES}usemtl a\nf 1 2 3 4\n");
+    let scene = format!(
+        "{HEAD}[film]\nwidth = 8\nheight = 6\n[environment]\nradiance = 1\n[[shapes]]\ntype = \"mesh\"\n\
+         file = \"m.obj\"\n"
+    );
+    let folder = written("commands", &[("m.obj", obj.as_bytes()), ("s.toml", scene.as_bytes())]);
+    let commands: [&[&str]; 3] =
+        [&["check"], &["info"], &["render", "--device", "cpu", "--passes", "1", "-o", "out.pfm"]];
+    for command in commands {
+        let with = |more: &[&'static str]| [command, &["s.toml"], more].concat();
+        ends(&folder, &with(&[]), 1, &["gone.mtl", "m.obj:1:8", "--missing warn"]);
+        ends(&folder, &with(&["--missing", "error"]), 1, &["gone.mtl"]);
+        let words = ["gone.mtl", "m.obj:1:8", "`a` is not defined", "rendered in gray"];
+        ends(&folder, &with(&["--missing", "warn"]), 0, &words);
+    }
+    ends(&folder, &["check", "s.toml", "--missing", "ignore"], 2, &["error, warn"]);
+}
+
+/// Lines of a scene file that end in carriage returns alone are none in TOML: one error says so.
+#[test]
+fn carriage_returns_of_a_scene() {
+    let text = HEAD.replace('\n', "\r");
+    let errors = caustica::scene::parse("scene.toml".as_ref(), text.as_bytes()).unwrap_err().errors;
+    assert_eq!(differs(&errors, &[(1, 12, "carriage returns alone")]), None);
 }

@@ -1,4 +1,5 @@
-//! Pictures of textures: formats by content, channels of EXR files, JPEG files of several scans, texels near the limits.
+//! Pictures of textures: formats by content, channels of EXR files, JPEG files of several scans,
+//! texels near the limits.
 
 use std::path::Path;
 
@@ -39,22 +40,28 @@ fn refused(folder: &Path, file: &str) -> String {
     told(&errors[0])
 }
 
+/// A channel's name and its values in two texels.
+type Channel = (&'static str, [f32; 2]);
+
+/// A file's name, its channels, and its texels in linear numbers.
+type Case<'c> = (&'c str, &'c [Channel], &'c [[f32; 3]]);
+
 /// An EXR file of 2 x 1 texels: each channel's values.
-fn exr(path: &Path, channels: &[(&str, [f32; 2])]) {
+fn exr(path: &Path, channels: &[Channel]) {
     let list =
         channels.iter().map(|(name, values)| AnyChannel::new(*name, FlatSamples::F32(values.to_vec())));
     Image::from_channels((2, 1), AnyChannels::sort(list.collect())).write().to_file(path).unwrap();
 }
 
-/// Theory: the plain R, G, B of a file are its picture; without them Y is, in gray; without both, the one layer that has
-/// either. Nothing else says which of several is meant.
+/// Theory: the plain R, G, B of a file are its picture; without them Y is, in gray; without both,
+/// the one layer that has either. Nothing else says which of several is meant.
 #[test]
 fn channels_of_exr_files() {
     let folder = folder("channels");
     let (r, g, b, y, z) = ([0.25, 1.0], [0.5, 0.0], [0.75, 0.125], [0.375, 0.625], [3.0, 3.0]);
     let color = vec![[0.25, 0.5, 0.75], [1.0, 0.0, 0.125]];
     let gray = vec![[0.375; 3], [0.625; 3]];
-    let cases: [(&str, &[(&str, [f32; 2])], &Vec<[f32; 3]>); 7] = [
+    let cases: [Case; 7] = [
         ("rgb", &[("R", r), ("G", g), ("B", b), ("Z", z)], &color),
         ("y", &[("Y", y)], &gray),
         ("yz", &[("Y", y), ("Z", z), ("A", [1.0, 1.0])], &gray),
@@ -66,7 +73,7 @@ fn channels_of_exr_files() {
     for (name, channels, expected) in cases {
         let file = format!("{name}.exr");
         exr(&folder.join(&file), channels);
-        assert_eq!(texels(&folder, &file), (expected.clone(), vec![]), "{name}");
+        assert_eq!(texels(&folder, &file), (expected.to_vec(), vec![]), "{name}");
     }
     exr(&folder.join("z.exr"), &[("Z", z), ("N.X", r)]);
     let text = refused(&folder, "z.exr");
@@ -77,7 +84,8 @@ fn channels_of_exr_files() {
     assert!(text.contains("several layers") && text.contains("`a.B`, `a.G`, `a.R`, `b.Y`"), "{text}");
 }
 
-/// An uncompressed EXR file of luminance and chroma, the latter for every second pixel and line (OpenEXR file layout).
+/// An uncompressed EXR file of luminance and chroma, the latter for every second pixel and line
+/// (OpenEXR file layout).
 fn luminance_chroma(width: i32, height: i32, origin: i32, luminance: impl Fn(i32, i32) -> f32) -> Vec<u8> {
     let attribute = |name: &str, kind: &str, value: &[u8]| {
         let length = (value.len() as u32).to_le_bytes();
@@ -120,8 +128,9 @@ fn luminance_chroma(width: i32, height: i32, origin: i32, luminance: impl Fn(i32
     file
 }
 
-/// Luminance with chroma at a lower resolution is luminance, in gray, with a warning. Other channels of a lower resolution
-/// are refused by the header, before pixels are read that do not fit.
+/// Luminance with chroma at a lower resolution is luminance, in gray, with a warning. Other
+/// channels of a lower resolution are refused by the header, before pixels are read that do not
+/// fit.
 #[test]
 fn subsampled_exr() {
     let folder = folder("subsampled");
@@ -145,7 +154,8 @@ fn subsampled_exr() {
     assert!(text.contains("`B` has one value for 2 x 1 pixels") && text.contains("`G`"), "{text}");
 }
 
-/// Theory: a format is what a file holds. Each format under the name of another is the same picture.
+/// Theory: a format is what a file holds. Each format under the name of another is the same
+/// picture.
 #[test]
 fn formats_by_content() {
     let folder = folder("content");
@@ -177,8 +187,9 @@ fn formats_by_content() {
     }
 }
 
-/// Theory: reflectance lies in [0, 1], and a file of floats may miss it by rounding. Such texels are the limit, which one
-/// warning for the file says with their number and the worst; what is further out is no rounding, and an error with its place.
+/// Theory: reflectance lies in [0, 1], and a file of floats may miss it by rounding. Such texels
+/// are the limit, which one warning for the file says with their number and the worst; what is
+/// further out is no rounding, and an error with its place.
 #[test]
 fn texels_near_the_limits() {
     let folder = folder("limits");
@@ -256,8 +267,9 @@ fn missing_textures() {
     assert!(read(&folder, "tex\\\\t.png", Missing::Error).is_ok());
 }
 
-/// Theory: the colors of a JPEG file do not depend on how its scans divide the components, nor, away from edges, on the
-/// resolution of its chroma. A file is decoded so, or refused; none is garbled.
+/// Theory: the colors of a JPEG file do not depend on how its scans divide the components, nor,
+/// away from edges, on the resolution of its chroma. A file is decoded so, or refused; none is
+/// garbled.
 #[test]
 fn scans_of_jpeg_files() {
     let folder = folder("scans");
