@@ -1,5 +1,8 @@
 //! What every engine (GPU or CPU) does for the render loop.
 
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use crate::clock::KernelSeconds;
 use crate::film::exr_file::Channel;
 use crate::film::{ErrorMap, Picture, Rejections};
@@ -145,6 +148,28 @@ pub enum EngineError {
     /// The engine cannot carry out this method.
     #[error("{0}")]
     Unsupported(String),
+    /// The pass was given up on request; the film holds the passes before it.
+    #[error("the pass was given up")]
+    Cancelled,
+}
+
+/// Asks an engine to give up the pass that it is at. Clones are one.
+#[derive(Clone, Debug, Default)]
+pub struct Cancel(Arc<AtomicBool>);
+
+impl Cancel {
+    /// Asks for it, once and for all.
+    pub fn ask(&self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+
+    /// Fails once it was asked for.
+    ///
+    /// # Errors
+    /// [`EngineError::Cancelled`].
+    pub fn check(&self) -> Result<(), EngineError> {
+        if self.0.load(Ordering::Relaxed) { Err(EngineError::Cancelled) } else { Ok(()) }
+    }
 }
 
 impl From<OverBudget> for EngineError {

@@ -27,12 +27,7 @@ const LEAST_SHARE: f64 = 6e-8;
 /// Everything of a scene and its settings that is out of range.
 pub fn warnings(scene: &Scene, settings: &RenderSettings, places: &Places) -> Vec<Finding> {
     let n = Normalization::of(scene);
-    let limits = Limits {
-        scene,
-        places,
-        size: n.radius.max(scene.camera.position.distance(n.center)),
-        center: n.center,
-    };
+    let limits = Limits { scene, places, size: n.radius, center: n.center };
     let mut found = Vec::new();
     found.extend(limits.shift());
     found.extend(limits.content());

@@ -4,7 +4,8 @@
 use crate::scene::{Scene, ShapeKind};
 use glam::DVec3;
 
-/// Shapes more than this many times wider than all smaller ones together do not decide the scene's size.
+/// Shapes more than this many times wider than what is smaller than they and the camera's surroundings do
+/// not decide the scene's size.
 const GIANT: f64 = 64.0;
 /// Distance that counts as far where a plane is infinite, over the radius of what the camera sees.
 const HORIZON: f64 = 1e4;
@@ -21,16 +22,16 @@ pub struct Normalization {
 }
 
 impl Normalization {
-    /// Of the shapes alone, except giant ones. A scene may hold objects far from what its camera sees:
-    /// [`Self::suits`] tells whether the numbers fit that.
+    /// Of the camera's surroundings and all shapes but giant ones: a first guess that decides no more than
+    /// how numbers are rounded. A scene may hold objects far from what its camera sees; [`Self::suits`]
+    /// tells whether the guess does.
     pub fn of(scene: &Scene) -> Self {
         let mut boxes: Vec<(DVec3, DVec3)> = scene.shapes.iter().filter_map(|s| extent(&s.kind)).collect();
         boxes.sort_by(|a, b| a.1.distance_squared(a.0).total_cmp(&b.1.distance_squared(b.0)));
-        let Some(&(mut low, mut high)) = boxes.first() else {
-            // planes alone, or nothing: the camera's place is the only one that there is
-            let camera = &scene.camera;
-            return Self::about(camera.target, camera.position.distance(camera.target));
-        };
+        let camera = &scene.camera;
+        let aim = camera.position + (camera.target - camera.position).normalize() * camera.focus;
+        let mut low = camera.position.min(camera.target).min(aim);
+        let mut high = camera.position.max(camera.target).max(aim);
         for (a, b) in &boxes {
             if a.distance(*b) <= GIANT * low.distance(high) {
                 low = low.min(*a);

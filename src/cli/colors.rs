@@ -7,12 +7,17 @@ use miette::MietteHandlerOpts;
 
 /// Sets it for all reports of errors and warnings.
 pub fn begin() {
-    let colored = colored(|name| std::env::var_os(name), std::io::stderr().is_terminal());
+    let colored = on_errors();
     let handler = move |_: &_| -> Box<dyn miette::ReportHandler> {
         Box::new(MietteHandlerOpts::new().color(colored).terminal_links(false).build())
     };
     // Fails where a handler is set already, which then stays.
     let _ = miette::set_hook(Box::new(handler));
+}
+
+/// Whether standard error has colours.
+pub fn on_errors() -> bool {
+    colored(|name| std::env::var_os(name), std::io::stderr().is_terminal())
 }
 
 /// `NO_COLOR`, set to anything but nothing, says no (<https://no-color.org>); `CLICOLOR_FORCE` says yes, even where there is no

@@ -104,7 +104,9 @@ fn command() -> clap::Command {
 fn parsed_otherwise(error: &clap::Error) -> ExitCode {
     if error.use_stderr() {
         // what is quoted may be the name of a file
-        message(error.render().to_string().trim_end());
+        let text = error.render();
+        let text = if colors::on_errors() { text.ansi().to_string() } else { text.to_string() };
+        message(text.trim_end());
     } else {
         // as clap prints it, in colours where these are wanted
         let _ = error.print();

@@ -48,8 +48,13 @@ pub struct CpuEngine {
     arch: pulp::Arch,
 }
 
-/// A batch left more records than the buffers hold.
-struct Overflow;
+/// Why a pass is not in the film.
+enum Unfinished {
+    /// A batch left more records than the buffers hold.
+    Overflow,
+    /// It was given up on request.
+    Cancelled,
+}
 
 impl CpuEngine {
     /// An engine for one scene and plan.
@@ -82,25 +87,32 @@ impl CpuEngine {
         }
     }
 
-    fn photon_pass(&mut self, report: &mut PassReport) {
+    fn photon_pass(&mut self, report: &mut PassReport) -> Result<(), EngineError> {
         let mut batch = self.plan.batch_photons;
         loop {
             *report = PassReport { photons: self.plan.settings.photons as u64, ..PassReport::default() };
             match self.steps(batch, report) {
-                Ok(()) => return,
+                Ok(()) => return Ok(()),
                 // a pass that overflowed is thrown away and run again with batches half as large
-                Err(Overflow) => batch = (batch / 2).max(1),
+                Err(Unfinished::Overflow) => batch = (batch / 2).max(1),
+                Err(Unfinished::Cancelled) => return Err(EngineError::Cancelled),
             }
         }
     }
 
-    fn steps(&mut self, batch_photons: u32, report: &mut PassReport) -> Result<(), Overflow> {
+    fn steps(&mut self, batch_photons: u32, report: &mut PassReport) -> Result<(), Unfinished> {
         let turn = self.plan.in_turn();
+        let mut resolved = false;
         for (number, steps) in self.plan.phases(self.passes_done, batch_photons).into_iter().enumerate() {
             if number == 0 || turn.contains(&"gathered") {
                 self.gathered.par_iter_mut().for_each(|g| *g = Gathered::zeroed());
             }
             for step in steps {
+                // once a part is resolved, the whole pass is to be in the film
+                resolved |= step.kernel == Kernel::Resolve;
+                if !resolved {
+                    self.plan.cancel.check().map_err(|_| Unfinished::Cancelled)?;
+                }
                 self.step(&step, number == 0, report)?;
             }
         }
@@ -108,7 +120,7 @@ impl CpuEngine {
     }
 
     /// One step of the phase that is the first one of its pass or not.
-    fn step(&mut self, step: &Step, first_phase: bool, report: &mut PassReport) -> Result<(), Overflow> {
+    fn step(&mut self, step: &Step, first_phase: bool, report: &mut PassReport) -> Result<(), Unfinished> {
         let sampled = self.plan.features.has("sampled");
         let local = self.plan.features.has("local");
         let scene = &self.packed.scene;
@@ -144,7 +156,7 @@ impl CpuEngine {
                     report.records += records;
                 }
                 if records > d.capacity as u64 && d.end > 1 {
-                    return Err(Overflow);
+                    return Err(Unfinished::Overflow);
                 }
             }
             Kernel::GridCount => grid_count(d, &mut self.records),
@@ -245,9 +257,10 @@ impl Engine for CpuEngine {
     fn pass(&mut self) -> Result<PassReport, EngineError> {
         let mut report = PassReport::default();
         if self.plan.settings.method == Method::Path {
+            self.plan.cancel.check()?;
             self.path_pass(&mut report);
         } else {
-            self.photon_pass(&mut report);
+            self.photon_pass(&mut report)?;
             report.radius = self.plan.radius(self.passes_done);
         }
         self.clock.end();

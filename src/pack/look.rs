@@ -105,7 +105,7 @@ fn faced(scene: &Scene, seen: &Seen, id: u32) -> Option<Seen> {
 }
 
 impl Look {
-    /// The sphere about the median of the visible points that holds nine of ten of all points; nothing
+    /// The sphere about the median of the visible points that holds nine of ten of them; nothing
     /// where the camera sees no surface.
     pub fn region(&self) -> Option<Region> {
         let median = |axis: usize| {
@@ -113,7 +113,7 @@ impl Look {
             quantile(values, 0.5)
         };
         let center = Vec3::new(median(0)?, median(1)?, median(2)?);
-        let distances = self.points().map(|seen| (seen.position - center).length());
+        let distances = self.seen.iter().map(|seen| (seen.position - center).length());
         let radius = quantile(distances.collect(), NEAR)?;
         (radius > 0.0).then_some(Region { center, radius })
     }

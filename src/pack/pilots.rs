@@ -69,7 +69,7 @@ pub fn learn_emission(out: &mut Scene, visibility: &Visibility, power: &[f64]) -
     if out.lights.is_empty() || (out.lights.len() == 1 && !specular) {
         return Vec::new();
     }
-    let _stage = stage("pilots");
+    let _stage = stage("maps");
     let count = (PILOTS / out.lights.len()).clamp(LEAST, MOST);
     let mut tallies: Vec<Tally> = vec![Tally::default(); out.lights.len()];
     let mapped = if specular { candidates(out, visibility, count) } else { Vec::new() };

@@ -17,7 +17,7 @@ use super::pack::{Objects, Packed};
 use super::probe::{Probe, probe};
 use super::readout::Readout;
 use super::real::Real;
-use crate::engine::{EngineError, State};
+use crate::engine::{Cancel, EngineError, State};
 use crate::film::{ErrorMap, Picture, Rejections};
 use crate::radius::Automatic;
 use crate::scene::{Aov, Aovs, Film};
@@ -85,6 +85,8 @@ pub struct Plan {
     pub first_pass: u32,
     /// Passes that the film held when the engine took over.
     pub taken_over: u32,
+    /// Looked at between the steps of a pass, and on GPUs between submissions.
+    pub cancel: Cancel,
 }
 
 impl Plan {
@@ -123,6 +125,7 @@ impl Plan {
             glint: if specular { packed.brightest } else { 0.0 },
             first_pass: 0,
             taken_over: 0,
+            cancel: Cancel::default(),
         }
     }
 

@@ -131,9 +131,17 @@ impl Board {
         state.failure = None;
     }
 
-    /// Shows a picture, unless it comes too late; whether it did.
+    /// Shows a picture, unless a newer one is shown already: while wishes come faster than pictures, as in a drag, the
+    /// last one that there is. Whether it is of the newest wish.
     pub fn show(&self, frame: Frame) -> bool {
-        self.change(frame.number, |state| state.frame = Some(Arc::new(frame)))
+        let mut state = self.state();
+        let current = state.number == frame.number;
+        if state.frame.as_ref().is_none_or(|shown| shown.number <= frame.number) {
+            state.frame = Some(Arc::new(frame));
+        }
+        drop(state);
+        (self.wake)();
+        current
     }
 
     /// Tells why there are no more pictures.

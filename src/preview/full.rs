@@ -10,7 +10,7 @@ use super::ground::Ground;
 use crate::cpu::CpuEngine;
 use crate::device::{self, DeviceError, DeviceKind, Wanted};
 use crate::double;
-use crate::engine::Engine;
+use crate::engine::{Cancel, Engine, EngineError};
 use crate::gpu::{AdapterChoice, GpuEngine};
 use crate::plan::Plan;
 use crate::settings::Method;
@@ -25,6 +25,7 @@ struct Control {
     ended: AtomicBool,
     made: AtomicBool,
     paused: AtomicBool,
+    cancel: Cancel,
     passes: AtomicU32,
 }
 
@@ -46,7 +47,7 @@ impl Full {
         let control = Arc::new(Control::default());
         control.passes.store(wish.settings.passes, Ordering::Relaxed);
         let own = control.clone();
-        let thread = thread::spawn(move || match make(&ground, &wish, spare) {
+        let thread = thread::spawn(move || match make(&ground, &wish, &own.cancel, spare) {
             Ok((engine, setup)) => {
                 drop(ground);
                 own.made.store(true, Ordering::Relaxed);
@@ -72,9 +73,10 @@ impl Full {
         self.thread.thread().unpark();
     }
 
-    /// Ends it after the pass in hand.
+    /// Ends it; the pass in hand is given up.
     pub fn end(&self) {
         self.control.ended.store(true, Ordering::Relaxed);
+        self.control.cancel.ask();
         self.thread.thread().unpark();
     }
 
@@ -116,10 +118,15 @@ fn rendered(
         let last = control.passes.load(Ordering::Relaxed);
         if passes.done >= last || control.paused.load(Ordering::Relaxed) {
             thread::park_timeout(NAP);
-        } else if let Err(error) = passes.step(engine, last, board) {
-            // a lost device is not kept
-            board.fail(number, error.to_string());
-            return None;
+        } else {
+            match passes.step(engine, last, board) {
+                Ok(()) | Err(EngineError::Cancelled) => {}
+                Err(error) => {
+                    // a lost device is not kept
+                    board.fail(number, error.to_string());
+                    return None;
+                }
+            }
         }
     }
     match running {
@@ -131,6 +138,7 @@ fn rendered(
 fn make(
     ground: &Ground,
     wish: &Wish,
+    cancel: &Cancel,
     spare: Option<Box<GpuEngine>>,
 ) -> Result<(Running, Setup), DeviceError> {
     let path = wish.settings.method == Method::Path && wish.device == Wanted::Auto;
@@ -140,7 +148,7 @@ fn make(
     let ground = ground.settled(&wish.camera, &wish.film)?;
     device::check_points(device, ground.scene(), &wish.settings)?;
     let packed = ground.packed();
-    let plan = Plan::new(packed, &wish.settings).on(&wish.film);
+    let plan = Plan { cancel: cancel.clone(), ..Plan::new(packed, &wish.settings).on(&wish.film) };
     let setup = Setup {
         device: device.name.clone(),
         why,
@@ -151,6 +159,7 @@ fn make(
         DeviceKind::Cpu => Running::Cpu(Box::new(CpuEngine::new(packed.clone(), plan))),
         DeviceKind::CpuDouble => {
             let (packed, plan) = device::in_double(ground.scene(), packed, &wish.settings)?;
+            let plan = double::plan::Plan { cancel: cancel.clone(), ..plan };
             Running::Double(Box::new(double::cpu::CpuEngine::new(packed, plan)))
         }
         _ => Running::Gpu(Box::new(match spare {

@@ -188,6 +188,9 @@ pub fn surface_at(scene: &Scene, ray: &Ray, hit: &Hit) -> Surface {
 /// `v` of a shape whose v ends at poles or rims, drawn in by half a row of its picture, so that no filter
 /// mixes in the other end.
 fn within_ends(scene: &Scene, material: u32, v: Real) -> Real {
+    if scene.textures.is_empty() {
+        return v;
+    }
     let index = scene.materials[material as usize].texture;
     if index == NONE || scene.textures[index as usize].kind != TEXTURE_IMAGE {
         return v;

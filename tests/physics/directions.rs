@@ -171,7 +171,7 @@ fn textures_far_from_the_origin() {
                 "type = \"rectangle\"\norigin = [{corner:?}, 0, {:?}]\nu = [4, 0, 0]\nv = [0, 0, -4]\nuv = \"planar\"",
                 x + 2.0
             ),
-            format!("type = \"plane\"\npoint = [0, 0, 0]\nnormal = [0, 1, 0]\nuv = \"planar\""),
+            "type = \"plane\"\npoint = [0, 0, 0]\nnormal = [0, 1, 0]\nuv = \"planar\"".to_owned(),
             format!(
                 "type = \"mesh\"\nfile = \"{mesh}\"\nuv = \"planar\"\ntransform = {{ translate = [{x:?}, 0, {x:?}] }}"
             ),

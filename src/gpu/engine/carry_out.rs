@@ -58,6 +58,10 @@ impl GpuEngine {
             let fit = self.pace.fit(step.kernel, end - first);
             if fit == 0 || self.recorder.is_full() {
                 self.flush()?;
+                // once a part is resolved, the whole pass is to be in the film
+                if !self.torn {
+                    self.plan.cancel.check()?;
+                }
                 continue;
             }
             let items = if whole { end } else { fit.next_multiple_of(granule).min(end - first) };
