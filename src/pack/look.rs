@@ -22,6 +22,8 @@ const EYE_PATHS: u64 = 8192;
 const BOUNCES: u32 = 32;
 /// Share of the points that the near sphere holds.
 const NEAR: f64 = 0.9;
+/// The near sphere is this many times as wide as that: discs gather beyond what is seen.
+const MARGIN: Real = 2.0;
 /// A stream of random numbers that no kernel has.
 const STREAM: u32 = 0x2000_0000;
 
@@ -105,8 +107,8 @@ fn faced(scene: &Scene, seen: &Seen, id: u32) -> Option<Seen> {
 }
 
 impl Look {
-    /// The sphere about the median of the visible points that holds nine of ten of them; nothing
-    /// where the camera sees no surface.
+    /// A sphere about the median of the visible points, twice as wide as holds nine of ten of them;
+    /// nothing where the camera sees no surface.
     pub fn region(&self) -> Option<Region> {
         let median = |axis: usize| {
             let values: Vec<Real> = self.seen.iter().map(|seen| seen.position[axis]).collect();
@@ -114,7 +116,7 @@ impl Look {
         };
         let center = Vec3::new(median(0)?, median(1)?, median(2)?);
         let distances = self.seen.iter().map(|seen| (seen.position - center).length());
-        let radius = quantile(distances.collect(), NEAR)?;
+        let radius = MARGIN * quantile(distances.collect(), NEAR)?;
         (radius > 0.0).then_some(Region { center, radius })
     }
 
