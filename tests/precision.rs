@@ -16,8 +16,8 @@ use caustica::settings::{Direct, Method, Radius, RenderSettings};
 
 /// Most that the pictures may differ by in the median over pixels.
 const MEDIAN: f64 = 5e-5;
-/// Most that their means may differ by in a channel: few bright photons, whose paths part by rounding.
-const MEAN: f64 = 5e-3;
+/// Most that their means may differ by in a channel.
+const MEAN: f64 = 2e-3;
 
 fn path(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(name)
@@ -30,6 +30,10 @@ fn render(wanted: &Wanted, scene: &Scene, settings: &RenderSettings) -> Picture 
     }
     engine.picture().unwrap()
 }
+
+/// The same under a sky: the passes are few, and light from far away comes in bright photons whose paths
+/// part by a rounding. After 200 passes the means differ by 1e-4.
+const MEAN_UNDER_SKY: f64 = 2e-2;
 
 /// f32 against f64.
 fn cost(scene: &Scene, settings: &RenderSettings, of: impl Fn(Picture) -> Picture) -> Comparison {
@@ -45,7 +49,7 @@ fn shipped(name: &str) -> (Scene, RenderSettings) {
     let mut loaded = scene::load(&path(&format!("scenes/{name}.toml"))).unwrap();
     let film = &mut loaded.scene.film;
     (film.width, film.height) = (80, 80 * film.height / film.width);
-    (loaded.scene, RenderSettings { passes: 16, photons: 30_000, eye_samples: 2, ..loaded.settings })
+    (loaded.scene, RenderSettings { passes: 3, photons: 30_000, eye_samples: 2, ..loaded.settings })
 }
 
 #[test]
@@ -78,7 +82,8 @@ fn shipped_scenes_differ_by_rounding() {
         for method in [Method::Sppm, Method::Ppm, Method::Path] {
             let c = cost(&scene, &RenderSettings { method, ..settings.clone() }, |picture| picture);
             println!("{name} {method:?}: median {:.1e}, means {:.1e}", c.median, c.mean_error());
-            assert!(rounding_alone(&c), "{name} {method:?}: {c:?}");
+            let most = if scene.environment.is_some() { MEAN_UNDER_SKY } else { MEAN };
+            assert!(c.median <= MEDIAN && c.mean_error() <= most, "{name} {method:?}: {c:?}");
             // Otherwise it would be the same engine.
             assert!(2 * c.pixels_differing > c.pixels, "{name} {method:?}: {c:?}");
         }
