@@ -15,8 +15,6 @@ use xxhash_rust::xxh3::xxh3_64;
 const LINKS: u32 = 40;
 /// What unfinished files and locks begin with; the rest is short, whatever the name of the file.
 const PREFIX: &str = ".caustica-";
-/// Most bytes of a file that is read as a whole, as for the pictures of a scene.
-pub const READ_MAX: u64 = 4 << 30;
 
 /// What stands, or may stand, at the place of an output.
 enum Place {
@@ -46,8 +44,7 @@ pub fn check(file: &Path, purpose: Purpose) -> io::Result<()> {
         Place::Special(_) if purpose == Purpose::Keepsake => Err(not_regular()),
         Place::Special(_) => Ok(()),
         Place::Free(target) | Place::Taken(target, _) => {
-            let unfinished = unfinished(&target);
-            File::create_new(&unfinished)?;
+            let (unfinished, _) = unfinished(&target)?;
             fs::remove_file(&unfinished)
         }
     }
@@ -68,17 +65,36 @@ pub fn write(
         Place::Free(target) => (target, None),
         Place::Taken(target, found) => (target, Some(found)),
     };
-    let unfinished = unfinished(&target);
-    let mut out = File::create_new(&unfinished)?;
-    let written = fill(&mut out)
-        .and_then(|()| before.map_or(Ok(()), |before| take_over(&out, &before)))
+    let (unfinished, mut out) = unfinished(&target)?;
+    // first the mode: what is private must not be readable by others while it is written
+    let written = before
+        .map_or(Ok(()), |before| take_over(&out, &before))
+        .and_then(|()| fill(&mut out))
         .and_then(|()| if purpose == Purpose::Keepsake { out.sync_all() } else { Ok(()) })
-        .and_then(|()| fs::rename(&unfinished, &target))
+        .and_then(|()| put_in_place(&unfinished, &target))
         .and_then(|()| if purpose == Purpose::Keepsake { sync_folder(&target) } else { Ok(()) });
     written.inspect_err(|_| {
         // It may not be there; the error to report is the first one.
         let _ = fs::remove_file(&unfinished);
     })
+}
+
+/// Moves `unfinished` to the place of `target`. What is mounted there by itself, as a container's volume
+/// of one file, cannot be replaced, and is written over.
+fn put_in_place(unfinished: &Path, target: &Path) -> io::Result<()> {
+    match fs::rename(unfinished, target) {
+        Err(error) if is_mount(&error) => {
+            let mut out = OpenOptions::new().write(true).truncate(true).open(target)?;
+            io::copy(&mut File::open(unfinished)?, &mut out)?;
+            out.sync_all()?;
+            fs::remove_file(unfinished)
+        }
+        renamed => renamed,
+    }
+}
+
+fn is_mount(error: &io::Error) -> bool {
+    matches!(error.kind(), io::ErrorKind::ResourceBusy | io::ErrorKind::CrossesDevices)
 }
 
 /// Reads a regular file of at most `most` bytes. Others may never end.
@@ -103,6 +119,14 @@ pub fn read(file: &Path, most: u64) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     opened.take(found.len()).read_to_end(&mut bytes)?;
     Ok(bytes)
+}
+
+/// Reads a regular file as text.
+///
+/// # Errors
+/// As [`read`], and where it is not UTF-8.
+pub fn read_text(file: &Path, most: u64) -> io::Result<String> {
+    String::from_utf8(read(file, most)?).map_err(|error| io::Error::new(io::ErrorKind::InvalidData, error))
 }
 
 /// Whether two names are of one file, links followed.
@@ -153,7 +177,7 @@ impl Lock {
                     let _ = opened.take(20).read_to_string(&mut text);
                     return Err(LockError::Held(text.trim().parse().ok()));
                 }
-                Err(fs::TryLockError::Error(error)) if error.kind() == io::ErrorKind::Unsupported => {
+                Err(fs::TryLockError::Error(error)) if knows_no_locks(&error) => {
                     let _ = fs::remove_file(&path);
                     return Ok(None);
                 }
@@ -178,18 +202,27 @@ impl Drop for Lock {
     }
 }
 
-#[cfg(unix)]
+/// Whether the file system has no locks at all, or none left (`ENOLCK`, as NFS without its lock service).
+fn knows_no_locks(error: &io::Error) -> bool {
+    const NO_LOCKS: i32 = 37;
+    error.kind() == io::ErrorKind::Unsupported
+        || cfg!(target_os = "linux") && error.raw_os_error() == Some(NO_LOCKS)
+}
+
 fn is_at(file: &File, path: &Path) -> bool {
+    file.metadata().is_ok_and(|found| is_same(&found, &fs::metadata(path).ok()))
+}
+
+/// Whether both are of one file.
+#[cfg(unix)]
+fn is_same(a: &fs::Metadata, b: &Option<fs::Metadata>) -> bool {
     use std::os::unix::fs::MetadataExt;
-    match (file.metadata(), fs::metadata(path)) {
-        (Ok(a), Ok(b)) => (a.dev(), a.ino()) == (b.dev(), b.ino()),
-        _ => false,
-    }
+    b.as_ref().is_some_and(|b| (a.dev(), a.ino()) == (b.dev(), b.ino()))
 }
 
 #[cfg(not(unix))]
-fn is_at(_: &File, path: &Path) -> bool {
-    path.exists()
+fn is_same(_: &fs::Metadata, b: &Option<fs::Metadata>) -> bool {
+    b.is_some()
 }
 
 /// Removes unfinished files of `target`, whose lock is held.
@@ -204,10 +237,9 @@ fn remove_leftovers(target: &Path) {
 }
 
 fn place(file: &Path) -> io::Result<Place> {
-    let target = target(file)?;
-    let found = match fs::metadata(&target) {
+    let found = match fs::metadata(file) {
         Ok(found) => found,
-        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Place::Free(target)),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Place::Free(target(file)?)),
         Err(error) => return Err(error),
     };
     if found.is_dir() {
@@ -217,11 +249,17 @@ fn place(file: &Path) -> io::Result<Place> {
         return Err(io::Error::new(io::ErrorKind::PermissionDenied, "the file is read-only"));
     }
     if !found.is_file() {
-        return Ok(Place::Special(target));
+        return Ok(Place::Special(file.to_owned()));
     }
     // whether this user may, the system knows best
-    OpenOptions::new().write(true).open(&target)?;
-    Ok(Place::Taken(target, found))
+    OpenOptions::new().write(true).open(file)?;
+    let target = target(file)?;
+    // the links of /proc/self/fd also lead to pipes and to files that have no name any more
+    if is_same(&found, &fs::metadata(&target).ok()) {
+        Ok(Place::Taken(target, found))
+    } else {
+        Ok(Place::Special(file.to_owned()))
+    }
 }
 
 /// The file that a name stands for, links followed as far as there are any.
@@ -244,11 +282,20 @@ fn folder(file: &Path) -> PathBuf {
     }
 }
 
-/// A name beside `target` that no other writer has.
-fn unfinished(target: &Path) -> PathBuf {
+/// A new file beside `target`, of this writer alone. Another process may have the same number (in another
+/// container, on another machine), and one that was killed may have left its file: such names are passed over.
+fn unfinished(target: &Path) -> io::Result<(PathBuf, File)> {
     static COUNT: AtomicU64 = AtomicU64::new(0);
-    let count = COUNT.fetch_add(1, Ordering::Relaxed);
-    target.with_file_name(format!("{PREFIX}{}-{:x}-{count:x}", hash(target), std::process::id()))
+    loop {
+        let count = COUNT.fetch_add(1, Ordering::Relaxed);
+        let name = format!("{PREFIX}{}-{:x}-{count:x}", hash(target), std::process::id());
+        let path = target.with_file_name(name);
+        match File::create_new(&path) {
+            Ok(file) => return Ok((path, file)),
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
+            Err(error) => return Err(error),
+        }
+    }
 }
 
 /// Tells names in one folder apart.

@@ -5,8 +5,9 @@ use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
 use caustica::checkpoint::{self, Checkpoint, Origin, Totals};
-use caustica::device::{self, Wanted};
-use caustica::scene;
+use caustica::device::{self, Opened, Wanted};
+use caustica::scene::{self, Loaded};
+use caustica::settings::RadiusRule;
 use image::{DynamicImage, ImageFormat};
 
 use crate::targets::Target;
@@ -53,7 +54,7 @@ pub fn of(target: Target) -> Vec<Vec<u8>> {
             b"profile = [[0.0, 0.0], [0.6, 0.0], [0.55, 0.6], [0.0, 1.05]]\ntransform = { translate = [0, 1, 0] }\n".to_vec(),
             b"segments = [[[0, 0], [1, 0]], [[1, 0], [1, 1], [0, 1]]]\n".to_vec(),
         ],
-        Target::Checkpoint => vec![checkpoint()],
+        Target::Checkpoint => [RadiusRule::Global, RadiusRule::Local].map(checkpoint).into(),
     }
 }
 
@@ -112,7 +113,8 @@ fn pictures() -> Vec<Vec<u8>> {
     pictures
 }
 
-fn checkpoint() -> Vec<u8> {
+/// What the checkpoints are of.
+pub fn opened(rule: RadiusRule) -> (Loaded, Opened) {
     let text = format!(
         "{READER}[film]\nwidth = 3\nheight = 2\n[render]\nphotons = 10\n[materials.m]\ntype = \"diffuse\"\nreflectance = 0.5\n\
          [[shapes]]\ntype = \"sphere\"\ncenter = [0, 1, 0]\nradius = 1\nmaterial = \"m\"\n"
@@ -120,7 +122,13 @@ fn checkpoint() -> Vec<u8> {
     let mut loaded = scene::parse("seed.toml".as_ref(), text.as_bytes()).expect("a scene");
     loaded.scene.film.aovs = scene::Aovs::parse("all").expect("layers");
     loaded.scene.film.window = Some([1, 0, 3, 2]);
-    let mut opened = device::open(&Wanted::Cpu, &loaded.scene, &loaded.settings).expect("the CPU engine");
+    loaded.settings.radius_rule = rule;
+    let opened = device::open(&Wanted::Cpu, &loaded.scene, &loaded.settings).expect("the CPU engine");
+    (loaded, opened)
+}
+
+fn checkpoint(rule: RadiusRule) -> Vec<u8> {
+    let (loaded, mut opened) = opened(rule);
     opened.engine.pass().expect("a pass");
     let checkpoint = Checkpoint {
         origin: Origin::of(&opened, &loaded.scene, ""),

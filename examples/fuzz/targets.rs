@@ -4,12 +4,13 @@ use std::fs;
 use std::path::Path;
 
 use caustica::build::tessellate::{Fineness, tessellate};
+use caustica::checkpoint::Checkpoint;
 use caustica::scene::{self, Allowance, Loaded, SceneErrors};
 use caustica::{checkpoint, limits, pack, plan};
 use xxhash_rust::xxh3::xxh3_128;
 
 use crate::mutate::Mutator;
-use crate::seeds::READER;
+use crate::seeds::{self, READER};
 
 /// Readers of files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -26,7 +27,7 @@ pub enum Target {
     Texture,
     /// Profile files, and their meshes.
     Profile,
-    /// Checkpoints, and their pictures.
+    /// Checkpoints, their pictures, and a pass more of each.
     Checkpoint,
 }
 
@@ -84,7 +85,7 @@ impl Target {
                 Ok(checkpoint) => {
                     let _ = (checkpoint.develop(), checkpoint.layers());
                     let _ = (checkpoint.end(), checkpoint.provenance(), checkpoint.development());
-                    String::new()
+                    resume(&checkpoint)
                 }
                 Err(error) => general(&error.to_string()),
             },
@@ -109,6 +110,16 @@ impl Target {
             _ => {}
         }
         input
+    }
+}
+
+/// Renders a pass more, where the engine takes the checkpoint over.
+fn resume(checkpoint: &Checkpoint) -> String {
+    let (_, mut opened) = seeds::opened(checkpoint.origin.settings.radius_rule);
+    let engine = &mut opened.engine;
+    match engine.restore(&checkpoint.state).and_then(|()| engine.pass()).and_then(|_| engine.results()) {
+        Ok(_) => String::new(),
+        Err(error) => general(&error.to_string()),
     }
 }
 

@@ -15,6 +15,7 @@ use crate::double;
 use crate::engine::{LayerState, State};
 use crate::film::file::Format;
 use crate::kernels;
+use crate::memory;
 use crate::scene::Aov;
 use crate::storage::{self, Lock, LockError, Purpose};
 
@@ -102,7 +103,7 @@ pub fn lock(file: &Path) -> Result<Option<Lock>, CheckpointError> {
 /// # Errors
 /// Where there is none, or one that is damaged or of another format.
 pub fn read(file: &Path) -> Result<Checkpoint, CheckpointError> {
-    let bytes = storage::read(file, u64::MAX).map_err(|cause| CheckpointError::Io {
+    let bytes = storage::read(file, memory::readable()).map_err(|cause| CheckpointError::Io {
         file: file.to_owned(),
         verb: "read",
         cause,

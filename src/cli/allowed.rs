@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use caustica::memory;
 use caustica::scene::{self, Allowance, Loaded, Missing};
 use clap::{Args, ValueEnum};
 
@@ -49,7 +50,12 @@ impl Allowed {
             return Err(Failure::wrong_use(&what, "name the folder that holds the scene and its files"));
         }
         let (root, missing) = (self.root.clone(), self.missing.into());
-        let mut allowance = Allowance { root, missing, ..Allowance::default() };
+        let allowance = Allowance { root, missing, ..Allowance::default() };
+        // what is named is meant, whatever there is
+        let mut allowance = match memory::limited() {
+            Some((left, _)) => allowance.within_memory(left),
+            None => allowance,
+        };
         for (name, value) in &self.limit {
             if let Some(limit) = allowance.limit(name) {
                 *limit = *value;

@@ -4,11 +4,11 @@ use std::path::{Path, PathBuf};
 
 use caustica::scene::{Finding, SceneErrors};
 use caustica::{limits, scene};
-use miette::{Report, miette};
+use miette::miette;
 use serde_json::{Value, json};
 
 use super::allowed::Allowed;
-use super::output::{message, result};
+use super::output::{report, result};
 use super::{Done, Failure};
 
 /// Report all errors and warnings of scene files
@@ -58,7 +58,7 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
 fn tell(file: &Path, errors: Option<SceneErrors>, warnings: Vec<Finding>) -> Result<(), Failure> {
     if let Some(errors) = errors {
         result(format_args!("{}: bad", file.display()))?;
-        message(format_args!("{:?}", Report::new(errors)));
+        report(&errors);
         return Ok(());
     }
     let count = match warnings.len() {
@@ -67,7 +67,7 @@ fn tell(file: &Path, errors: Option<SceneErrors>, warnings: Vec<Finding>) -> Res
         many => format!(", {many} warnings"),
     };
     for warning in warnings {
-        message(format_args!("{:?}", Report::new(warning)));
+        report(&warning);
     }
     result(format_args!("{}: good{count}", file.display()))
 }

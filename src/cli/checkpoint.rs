@@ -8,7 +8,7 @@ use caustica::checkpoint::{
 use caustica::engine::State;
 use caustica::render::Progress;
 use caustica::settings::RenderSettings;
-use caustica::storage::Lock;
+use caustica::storage::{self, Lock};
 use serde_json::json;
 
 use super::Failure;
@@ -32,15 +32,15 @@ impl Files {
     pub fn new(kept: Option<&Path>, resumed: Option<&Path>) -> Result<Self, Failure> {
         let mut lock = None;
         if let Some(file) = kept {
-            let same = |other: &Path| file.canonicalize().ok() == other.canonicalize().ok();
-            if file.is_file() && !resumed.is_some_and(same) {
+            check_place(file)?;
+            // before anything is said of the file: it may be that of a render under way
+            lock = checkpoint::lock(file)?;
+            if file.is_file() && !resumed.is_some_and(|other| storage::same(other, file)) {
                 return Err(Failure::wrong_use(
                     &format!("{}: this file is there already", file.display()),
                     "go on from it with --resume, or move it away",
                 ));
             }
-            check_place(file)?;
-            lock = checkpoint::lock(file)?;
         }
         let resumed = match resumed {
             Some(file) => Some((file.to_owned(), read(file)?)),
@@ -93,12 +93,14 @@ pub struct Keeper {
     origin: Origin,
     json: bool,
     failed: Option<CheckpointError>,
+    /// Where it is written for as long as it cannot be written to `file`.
+    elsewhere: Option<PathBuf>,
 }
 
 impl Keeper {
     /// Writes to the file of `files`.
     pub fn new(files: &Files, origin: Origin, json: bool) -> Self {
-        Self { file: files.kept.clone(), origin, json, failed: None }
+        Self { file: files.kept.clone(), origin, json, failed: None, elsewhere: None }
     }
 
     /// Writes what the engine held at `progress`, and gives it back.
@@ -136,13 +138,32 @@ impl Keeper {
     fn write(&mut self, file: &Path, checkpoint: &Checkpoint) {
         self.failed = write(file, checkpoint).err();
         match &self.failed {
-            Some(error) => message(format_args!("warning: {error}")),
+            Some(error) => {
+                message(format_args!("warning: {error}"));
+                self.write_elsewhere(file, checkpoint);
+            }
             None if self.json => {
                 // Standard output that takes nothing fails the results at the end.
                 let passes = checkpoint.state.passes;
                 let _ = result(json!({ "event": "checkpoint", "file": file, "passes": passes }));
             }
             None => (),
+        }
+    }
+
+    /// Writes what did not go to `file` into the current folder or that of temporary files, and says where.
+    fn write_elsewhere(&mut self, file: &Path, checkpoint: &Checkpoint) {
+        let stem = file.file_stem().unwrap_or_default().to_string_lossy();
+        // what the system takes as a name has at most 255 bytes
+        let stem: String = stem.chars().take(50).collect();
+        let name = format!("{stem}-saved-{}.{EXTENSION}", std::process::id());
+        let folders = [PathBuf::from("."), std::env::temp_dir()];
+        let new = folders.iter().map(|folder| folder.join(&name)).filter(|place| !place.exists());
+        let places: Vec<PathBuf> = self.elsewhere.take().into_iter().chain(new).collect();
+        self.elsewhere = places.into_iter().find(|place| write(place, checkpoint).is_ok());
+        match &self.elsewhere {
+            Some(place) => message(format_args!("the checkpoint is saved in {}", place.display())),
+            None => message("the checkpoint could not be saved anywhere else"),
         }
     }
 

@@ -3,16 +3,12 @@
 use std::ffi::OsString;
 use std::io::IsTerminal;
 
-use miette::MietteHandlerOpts;
+use miette::{MietteHandlerOpts, ReportHandler};
 
-/// Sets it for all reports of errors and warnings.
-pub fn begin() {
+/// What lays out reports of errors and warnings.
+pub fn handler() -> impl ReportHandler {
     let colored = on_errors();
-    let handler = move |_: &_| -> Box<dyn miette::ReportHandler> {
-        Box::new(MietteHandlerOpts::new().color(colored).terminal_links(false).build())
-    };
-    // Fails where a handler is set already, which then stays.
-    let _ = miette::set_hook(Box::new(handler));
+    MietteHandlerOpts::new().color(colored).terminal_links(false).build()
 }
 
 /// Whether standard error has colours.

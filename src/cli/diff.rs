@@ -1,12 +1,13 @@
 //! `caustica diff`: how far a picture is from the truth.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use caustica::film::difference::flip_colors;
 use caustica::film::flip::Exposures;
 use caustica::film::metrics::MetricsError;
 use caustica::film::plane::Plane;
 use caustica::film::{Coding, Difference, FileError, Picture, Region, file, read_any};
+use caustica::storage;
 use miette::miette;
 use serde_json::{Value, json};
 
@@ -102,9 +103,7 @@ fn check(arguments: &Arguments) -> Result<(), Failure> {
     let outputs: Vec<&PathBuf> = [&arguments.output, &arguments.hdr_map].into_iter().flatten().collect();
     for output in &outputs {
         file::check_png(output)?;
-        let same =
-            |input: &Path| input.canonicalize().is_ok_and(|it| output.canonicalize().is_ok_and(|o| o == it));
-        if same(&arguments.a) || same(&arguments.b) {
+        if storage::same(&arguments.a, output) || storage::same(&arguments.b, output) {
             return Err(Failure::wrong_use(
                 &format!(
                     "{}: the picture of the difference would replace a picture to compare",
@@ -115,7 +114,9 @@ fn check(arguments: &Arguments) -> Result<(), Failure> {
         }
     }
     match outputs[..] {
-        [first, second] if first == second => Err(FileError::Repeated { file: first.clone() }.into()),
+        [first, second] if storage::same(first, second) => {
+            Err(FileError::Repeated { file: first.clone() }.into())
+        }
         _ => Ok(()),
     }
 }

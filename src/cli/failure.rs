@@ -13,7 +13,7 @@ use caustica::scene::SceneErrors;
 use caustica::study::StudyError;
 use miette::{Report, miette};
 
-use super::output::message;
+use super::output::report;
 
 /// Why a command failed.
 #[derive(Debug)]
@@ -52,7 +52,7 @@ impl Failure {
 
     /// Prints the failure to standard error.
     pub fn tell(self) -> ExitCode {
-        message(format_args!("{:?}", self.report));
+        report(self.report.as_ref());
         ExitCode::from(self.code)
     }
 }

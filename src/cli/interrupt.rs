@@ -3,6 +3,7 @@
 
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::{self, JoinHandle};
 
 use super::output::message;
 
@@ -10,12 +11,15 @@ static RENDERING: AtomicBool = AtomicBool::new(false);
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 static FAILED: OnceLock<String> = OnceLock::new();
 
-/// Handles signals from now on.
-pub fn begin() {
-    let handler = || {
+/// Handles signals from now on; `renders` says whether the command has passes to come.
+pub fn begin(renders: bool) {
+    let handler = move || {
         let end = || std::process::exit(super::Done::Interrupted as i32);
         if !RENDERING.load(Ordering::Relaxed) {
-            message("\ninterrupted before the first pass: nothing is saved");
+            message(match renders {
+                true => "\ninterrupted before the first pass: nothing is saved",
+                false => "\ninterrupted",
+            });
             end();
         }
         if INTERRUPTED.swap(true, Ordering::Relaxed) {
@@ -23,7 +27,10 @@ pub fn begin() {
         }
         message("\ninterrupted: finishing the pass; once more to end at once");
     };
-    if let Err(error) = ctrlc::set_handler(handler) {
+    // Handlers that nobody waits for would swallow signals: none are set where there is no thread to wait.
+    let thread = thread::Builder::new().spawn(|| ()).map(JoinHandle::join);
+    let set = thread.map_err(ctrlc::Error::System).and_then(|_| ctrlc::set_handler(handler));
+    if let Err(error) = set {
         let _ = FAILED.set(error.to_string());
     }
 }

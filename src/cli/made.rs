@@ -124,8 +124,10 @@ fn save_elsewhere(outputs: &[PathBuf], write: impl Fn(&Path) -> Result<(), FileE
     let folders = outputs.iter().filter_map(|output| Some(output.parent()?.to_owned()));
     let folders = folders.chain([PathBuf::from("."), std::env::temp_dir()]);
     let stem = outputs.first().and_then(|output| output.file_stem()).unwrap_or_default();
+    // what the system takes as a name has at most 255 bytes
+    let stem: String = stem.to_string_lossy().chars().take(50).collect();
     for folder in folders {
-        let name = format!("{}-saved-{}.exr", stem.to_string_lossy(), std::process::id());
+        let name = format!("{stem}-saved-{}.exr", std::process::id());
         let file = folder.join(name);
         if !file.exists() && write(&file).is_ok() {
             message(format_args!("the picture is saved in {}", file.display()));

@@ -66,10 +66,18 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     let read = |file: PathBuf| checkpoint::read(&file).map(|checkpoint| (file, checkpoint));
     let all = merge(checkpoints.into_iter().map(read).collect::<Result<_, _>>()?)?;
     // each that can be written is, whatever becomes of the others
-    let written: Vec<Result<(), Failure>> =
-        merged.iter().map(|file| checkpoint::write(file, &all).map_err(Failure::from)).collect();
-    let error = write_pictures(&pictures, &all)?;
-    written.into_iter().collect::<Result<(), Failure>>()?;
+    let written = merged.iter().map(|file| checkpoint::write(file, &all));
+    let mut failures: Vec<Failure> = written.filter_map(Result::err).map(Failure::from).collect();
+    let error = write_pictures(&pictures, &all).unwrap_or_else(|failure| {
+        failures.push(failure);
+        None
+    });
+    if let Some(last) = failures.pop() {
+        for failure in failures {
+            failure.tell();
+        }
+        return Err(last);
+    }
     if json {
         result(as_json(&all, error, &outputs))?;
         return Ok(Done::Fully);

@@ -32,6 +32,7 @@ mod overrides;
 mod preview;
 mod progress;
 mod render;
+mod shown;
 mod study;
 mod succession;
 mod tessellate;
@@ -43,7 +44,7 @@ use std::process::ExitCode;
 use clap::{ArgAction, CommandFactory, Parser, Subcommand};
 
 use failure::Failure;
-use output::message;
+use output::{message, printable};
 
 /// Renders scenes by photon mapping: caustics, soft shadows, depth of field.
 #[derive(Parser)]
@@ -102,11 +103,10 @@ fn command() -> clap::Command {
 
 /// Prints what is wrong with the command line, or the help that it asks for.
 fn parsed_otherwise(error: &clap::Error) -> ExitCode {
-    if error.use_stderr() {
-        // what is quoted may be the name of a file
-        let text = error.render();
-        let text = if colors::on_errors() { text.ansi().to_string() } else { text.to_string() };
-        message(text.trim_end());
+    // what is quoted may be the name of a file
+    let quoted = error.render().to_string();
+    if error.use_stderr() && quoted != printable(&quoted) {
+        message(quoted.trim_end());
     } else {
         // as clap prints it, in colours where these are wanted
         let _ = error.print();
@@ -116,13 +116,12 @@ fn parsed_otherwise(error: &clap::Error) -> ExitCode {
 
 /// Carries out the command line.
 pub fn run() -> ExitCode {
-    colors::begin();
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(error) => return parsed_otherwise(&error),
     };
     log::begin(arguments.verbose);
-    interrupt::begin();
+    interrupt::begin(matches!(arguments.command, Command::Render(_) | Command::Study(_)));
     if let Err(failure) = threads::begin() {
         return failure.tell();
     }

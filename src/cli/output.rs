@@ -8,7 +8,10 @@ use std::borrow::Cow;
 use std::fmt::Display;
 use std::io::{self, ErrorKind, IsTerminal, Write};
 
+use miette::Diagnostic;
+
 use super::Failure;
+use super::shown::Shown;
 
 /// Prints a line of results to standard output.
 pub fn result(line: impl Display) -> Result<(), Failure> {
@@ -36,46 +39,43 @@ fn written(outcome: io::Result<()>) -> Result<(), Failure> {
 
 /// Prints a line of anything else to standard error.
 pub fn message(line: impl Display) {
-    // There is nowhere to tell that standard error is gone.
-    let _ = writeln!(io::stderr(), "{}", printable(&line.to_string()));
+    to_stderr(&printable(&line.to_string()));
 }
 
-/// `text` with control characters as escapes, as in `\\x1b`: all but line feeds, tabs and the colours of
-/// reports, which do no more than colour. Characters that turn the direction of writing count as well.
+/// Prints a report to standard error, in colours where these are wanted.
+pub fn report(found: &dyn Diagnostic) {
+    to_stderr(&Shown::of(found).report());
+}
+
+fn to_stderr(line: &str) {
+    // There is nowhere to tell that standard error is gone.
+    let _ = writeln!(io::stderr(), "{line}");
+}
+
+/// Whether a terminal shows `c` and does nothing else. Characters that turn the direction of writing do.
+fn is_plain(c: char) -> bool {
+    let turns = matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    (!c.is_control() && !turns) || matches!(c, '\n' | '\t')
+}
+
+/// `text` with control characters as escapes, as in `\\x1b`: all but line feeds and tabs.
 pub fn printable(text: &str) -> Cow<'_, str> {
-    let turns = |c| matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
-    let plain = |c: char| (!c.is_control() && !turns(c)) || matches!(c, '\n' | '\t');
-    if text.chars().all(plain) {
+    if text.chars().all(is_plain) {
         return Cow::Borrowed(text);
     }
     let mut out = String::with_capacity(text.len());
-    let mut rest = text;
-    while let Some(c) = rest.chars().next() {
-        let color = color_length(rest);
-        if color > 0 {
-            out.push_str(&rest[..color]);
-            rest = &rest[color..];
-            continue;
-        }
+    for c in text.chars() {
         match c {
-            c if plain(c) => out.push(c),
+            c if is_plain(c) => out.push(c),
             c if (c as u32) < 256 => out.push_str(&format!("\\x{:02x}", c as u32)),
             c => out.push_str(&format!("\\u{{{:x}}}", c as u32)),
         }
-        rest = &rest[c.len_utf8()..];
     }
     Cow::Owned(out)
 }
 
-/// Length of the sequence that sets a colour at the start of `text`: `ESC [`, digits and semicolons, `m`.
-fn color_length(text: &str) -> usize {
-    let Some(rest) = text.strip_prefix("\x1b[") else { return 0 };
-    let end = rest.find(|c: char| !c.is_ascii_digit() && c != ';').unwrap_or(rest.len());
-    if rest[end..].starts_with('m') { 2 + end + 1 } else { 0 }
-}
-
-/// Theory: a terminal acts on C0 and C1 control characters, and on sequences that begin with one; of
-/// these, colours alone are harmless.
+/// Theory: a terminal acts on C0 and C1 control characters, and on sequences that begin with one; even
+/// colours can hide what follows.
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -85,8 +85,7 @@ mod tests {
         let cases = [
             ("plain, \ttabs\nand Zahlen für π", "plain, \ttabs\nand Zahlen für π"),
             ("\x1b]0;title\x07", "\\x1b]0;title\\x07"),
-            ("\x1b[2J\x1b[31mred\x1b[0m", "\\x1b[2J\x1b[31mred\x1b[0m"),
-            ("\x1b[1;38;5;9m", "\x1b[1;38;5;9m"),
+            ("\x1b[2J\x1b[8mhidden", "\\x1b[2J\\x1b[8mhidden"),
             ("\x1b[", "\\x1b["),
             ("over\rwritten\x08\x7f", "over\\x0dwritten\\x08\\x7f"),
             ("\u{9b}2J \u{202e}gpj", "\\x9b2J \\u{202e}gpj"),

@@ -12,7 +12,7 @@ use miette::miette;
 
 use super::overrides::Overrides;
 use super::render::default_output;
-use super::{Done, Failure};
+use super::{Done, Failure, threads};
 
 /// Show a scene in a window while it converges, and change it
 #[derive(clap::Args)]
@@ -50,6 +50,12 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     let Arguments { scene: file, output, device, against, against_device, overrides } = arguments;
     let outputs = if output.is_empty() { vec![default_output(&file)] } else { output };
     check_outputs(&outputs)?;
+    if !threads::are_spare() {
+        return Err(Failure::failed(miette!(
+            help = "raise the limit of processes (ulimit -u)",
+            "the system gives this process no threads, and a window needs some"
+        )));
+    }
     let allowance = overrides.allowed.allowance()?;
     let mut loaded = scene::load_within(&file, &allowance)?;
     overrides.apply(&mut loaded.scene, &mut loaded.settings);

@@ -12,14 +12,16 @@ use caustica::film::denoise::NAME;
 use caustica::film::tev::ADDRESS;
 use caustica::film::{Development, Picture, Provenance, check_outputs};
 use caustica::limits;
+use caustica::memory;
 use caustica::quality::{Expected, Quality, expected};
 use caustica::relay::Relay;
 use caustica::render::{Broken, Kept, Progress, Saving, Stop, resume};
 use caustica::scene::{Aovs, Film, Loaded, Scene};
 use caustica::settings::{Method, RadiusRule, RenderSettings};
 use caustica::showing::Showing;
+use caustica::storage;
 use clap::builder::NonEmptyStringValueParser;
-use miette::{Report, miette};
+use miette::miette;
 use serde_json::json;
 
 use super::budget::Budget;
@@ -27,7 +29,7 @@ use super::checkpoint::Keeper;
 use super::extent::Extent;
 use super::like::Like;
 use super::made::{Made, left_out};
-use super::output::{message, result};
+use super::output::{message, report, result};
 use super::overrides::{Overrides, Passes, duration, target_error};
 use super::progress::{Reporter, count, time};
 use super::succession::Succession;
@@ -159,7 +161,7 @@ fn run_on(arguments: Arguments, find: &Find) -> Result<Done, Failure> {
     let mut succession = Succession::new(candidates, &scene, &settings, memory, json);
     let opened = succession.first()?;
     let mut viewer = Viewer::connect(arguments.tev.as_deref(), &scene)?;
-    let scene_text = std::fs::read_to_string(&file).unwrap_or_default();
+    let scene_text = storage::read_text(&file, memory::readable()).unwrap_or_default();
     let origin = Origin::of(&opened, &scene, &scene_text);
     let digest = origin.identity.digest();
     let Arguments { time, target_error, .. } = arguments;
@@ -233,14 +235,20 @@ fn run_on(arguments: Arguments, find: &Find) -> Result<Done, Failure> {
     let film = &scene.film;
     let development =
         Development { exposure: film.exposure, tonemap: film.tonemap, bits: arguments.extent.bits };
-    made.write(&outputs, &development, &provenance)?;
-    made.tell(json, &reporter, &outputs)?;
+    let written = made.write(&outputs, &development, &provenance);
+    if written.is_ok() {
+        made.tell(json, &reporter, &outputs)?;
+    }
     if let Some(error) = error {
+        if let Err(failure) = written {
+            failure.tell();
+        }
         if let Err(why) = denoised {
             message(format_args!("warning: --denoise: {why}"));
         }
         return broken_off(error, made.progress.passes, &keeper);
     }
+    written?;
     keeper.end()?;
     denoised?;
     if arguments.strict && !made.rejections.is_empty() {
@@ -387,7 +395,7 @@ fn put_in_force(mut loaded: Loaded, overrides: &Overrides) -> (Scene, RenderSett
     loaded.scene.film.aovs = Aovs::default();
     let limits = limits::warnings(&loaded.scene, &loaded.settings, &loaded.places);
     for warning in loaded.warnings.into_iter().chain(limits) {
-        message(format_args!("{:?}", Report::new(warning)));
+        report(&warning);
     }
     (loaded.scene, loaded.settings)
 }

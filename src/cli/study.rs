@@ -6,8 +6,10 @@ use std::time::Duration;
 use caustica::device::{self, DeviceKind};
 use caustica::film::provenance::VERSION;
 use caustica::film::{Region, read};
+use caustica::memory;
 use caustica::scene::Scene;
 use caustica::settings::{Method, RenderSettings};
+use caustica::storage;
 use caustica::study::StudyError;
 use caustica::study::conduct::{Event, Study};
 use caustica::study::folder::{About, Folder};
@@ -238,7 +240,7 @@ fn about(
     Ok(About {
         version: VERSION.to_owned(),
         scene: scene.name.clone(),
-        scene_text: std::fs::read_to_string(&arguments.scene).unwrap_or_default(),
+        scene_text: storage::read_text(&arguments.scene, memory::readable()).unwrap_or_default(),
         size: (scene.film.width, scene.film.height),
         own_size,
         configs,

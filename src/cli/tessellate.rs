@@ -6,10 +6,10 @@ use caustica::build::tessellate::{Fineness, tessellate};
 use caustica::film::FileError;
 use caustica::film::file::{check_place, write_whole};
 use caustica::scene;
-use miette::{Report, miette};
+use miette::miette;
 
 use super::allowed::Allowed;
-use super::output::{message, result};
+use super::output::{message, report, result};
 use super::{Done, Failure};
 
 /// Turn a Bezier profile into a mesh of revolution
@@ -46,7 +46,7 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     check_output(&output)?;
     let loaded = scene::load_profile_within(&arguments.profile, &arguments.allowed.allowance()?)?;
     for warning in loaded.warnings {
-        message(format_args!("{:?}", Report::new(warning)));
+        report(&warning);
     }
     let own = Fineness::of_sectors(arguments.sectors);
     let fineness = Fineness { flatness: arguments.flatness.unwrap_or(own.flatness), ..own };

@@ -41,7 +41,8 @@ pub fn begin() -> Result<(), Failure> {
     };
     let roomy = address_space().map_or(wanted, |bytes| (bytes / SPACE) as usize);
     let wanted = wanted.min(roomy).max(1);
-    let given = if wanted > 1 { available(wanted + OTHERS).saturating_sub(OTHERS).max(1) } else { 1 };
+    let spare = available(wanted + OTHERS).saturating_sub(OTHERS);
+    let given = spare.max(1);
     if given < wanted {
         message(format_args!(
             "warning: the system gives this process {given} of {wanted} threads (see ulimit -u, or the \
@@ -49,14 +50,21 @@ pub fn begin() -> Result<(), Failure> {
         ));
     }
     let pool = rayon::ThreadPoolBuilder::new().num_threads(given);
-    // one thread is the one that there is
-    let pool = if given == 1 { pool.use_current_thread() } else { pool };
+    // Only where there is no other: work that another thread gives to the pool waits for this one then.
+    let pool = if spare == 0 { pool.use_current_thread() } else { pool };
     pool.build_global().map_err(|error| {
         Failure::failed(miette!(
             help = "raise the limit of processes (ulimit -u), or set RAYON_NUM_THREADS=1",
             "the system gives this process no threads: {error}"
         ))
     })
+}
+
+/// Whether the pool has threads of its own, so that other threads can give work to it at any time.
+#[cfg(feature = "preview")]
+pub fn are_spare() -> bool {
+    // the main thread, which asks, is in the pool only where there is no other
+    rayon::current_thread_index().is_none()
 }
 
 /// How many of `wanted` threads the system gives at a time.

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use image::{DynamicImage, ImageFormat};
 
-use super::file::{Format, read, read_bytes, read_exr};
+use super::file::{Format, decode_common, read, read_bytes, read_exr};
 use super::{FileError, Picture};
 use crate::srgb::linear_from_srgb;
 
@@ -51,8 +51,8 @@ fn read_opaque_exr(file: &Path) -> Result<Picture, FileError> {
 }
 
 fn read_display(file: &Path, format: ImageFormat) -> Result<Picture, FileError> {
-    let image = image::load_from_memory_with_format(&read_bytes(file)?, format)
-        .map_err(|error| FileError::Malformed { file: file.to_owned(), what: error.to_string() })?;
+    let image = decode_common(&read_bytes(file)?, format)
+        .map_err(|what| FileError::Malformed { file: file.to_owned(), what })?;
     // Eight bits widen to sixteen without a loss: 65535 = 255 * 257.
     let opaque = match image.color().has_alpha() {
         true => Some(image.to_rgba16().pixels().map(|pixel| pixel.0[3] == u16::MAX).collect::<Vec<_>>()),

@@ -6,6 +6,7 @@ use std::io::Cursor;
 use exr::prelude::*;
 
 use super::{Picture, Plane};
+use crate::memory;
 
 /// What an EXR file's first layer holds.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -126,6 +127,7 @@ pub fn encode(
 
 /// Reads all channels and text attributes of the first layer.
 pub fn decode(bytes: &[u8]) -> std::result::Result<ExrFile, String> {
+    check_size(bytes)?;
     let image = read()
         .no_deep_data()
         .largest_resolution_level()
@@ -157,6 +159,18 @@ pub fn decode(bytes: &[u8]) -> std::result::Result<ExrFile, String> {
         frame,
         channels: channels.collect(),
         attributes: attributes.collect(),
+    })
+}
+
+/// Fails where the pixels take more memory than there is: a short file may claim any number of them.
+fn check_size(bytes: &[u8]) -> std::result::Result<(), String> {
+    /// As the file's samples and as floats.
+    const BYTES_OF_SAMPLE: u64 = 8;
+    let meta = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(|error| error.to_string())?;
+    meta.headers.iter().try_for_each(|header| {
+        let [width, height] = [header.layer_size.width(), header.layer_size.height()].map(|n| n as u64);
+        let each = BYTES_OF_SAMPLE * header.channels.list.len() as u64;
+        memory::check_pixels(width, height, each)
     })
 }
 

@@ -3,13 +3,14 @@
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
-use image::{DynamicImage, ExtendedColorType, ImageEncoder, ImageFormat, codecs};
+use image::{DynamicImage, ExtendedColorType, ImageDecoder, ImageEncoder, ImageFormat, codecs};
 use rayon::prelude::*;
 
 use super::exr_file::{self, Channel};
 use super::tonemap::Bits;
 use super::{Development, FileError, Picture, Provenance, pfm};
-use crate::storage::{self, Purpose, READ_MAX};
+use crate::memory;
+use crate::storage::{self, Purpose};
 
 /// A kind of picture file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -144,7 +145,7 @@ pub fn read_exr(file: &Path) -> Result<exr_file::ExrFile, FileError> {
 }
 
 pub(super) fn read_bytes(file: &Path) -> Result<Vec<u8>, FileError> {
-    storage::read(file, READ_MAX).map_err(|cause| FileError::Io {
+    storage::read(file, memory::readable()).map_err(|cause| FileError::Io {
         file: file.to_owned(),
         verb: "read",
         cause,
@@ -193,10 +194,25 @@ fn encode_hdr(picture: &Picture) -> Result<Vec<u8>, String> {
     Ok(bytes)
 }
 
+/// Decodes a file that is no EXR or PFM file; its size is known before memory is taken for its pixels.
+pub(super) fn decode_common(bytes: &[u8], format: ImageFormat) -> Result<DynamicImage, String> {
+    /// What a decoder may take beside the pixels, and the picture made of them.
+    const DECODER_BYTES: u64 = 64 << 20;
+    const PICTURE_BYTES: u64 = 12;
+    let mut reader = image::ImageReader::with_format(Cursor::new(bytes), format);
+    let most = memory::readable().saturating_add(DECODER_BYTES);
+    let mut limits = image::Limits::no_limits();
+    limits.max_alloc = Some(most);
+    reader.limits(limits);
+    let decoder = reader.into_decoder().map_err(|error| error.to_string())?;
+    let (width, height) = decoder.dimensions();
+    let each = u64::from(decoder.color_type().bytes_per_pixel()) + PICTURE_BYTES;
+    memory::check_pixels(width.into(), height.into(), each)?;
+    DynamicImage::from_decoder(decoder).map_err(|error| error.to_string())
+}
+
 fn decode_hdr(bytes: &[u8]) -> Result<Picture, String> {
-    let mut reader = image::ImageReader::with_format(Cursor::new(bytes), ImageFormat::Hdr);
-    reader.no_limits();
-    match reader.decode().map_err(|error| error.to_string())? {
+    match decode_common(bytes, ImageFormat::Hdr)? {
         DynamicImage::ImageRgb32F(pixels) => {
             Ok(Picture::from_fn(pixels.width(), pixels.height(), |x, y| pixels.get_pixel(x, y).0))
         }

@@ -2,7 +2,7 @@
 
 mod system;
 
-pub use system::address_space;
+pub use system::{address_space, limited};
 
 /// How much memory a render may take.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -30,7 +30,7 @@ impl Memory {
     /// Whether photons may be traced in smaller batches: where a budget is given, or the process has a
     /// limit.
     pub fn cuts_batches(&self) -> bool {
-        !self.same_batches && (self.budget.is_some() || system::limited().is_some())
+        !self.same_batches && (self.budget.is_some() || limited().is_some())
     }
 }
 
@@ -123,10 +123,33 @@ pub fn can_be_had(bytes: u64) -> bool {
     usize::try_from(bytes).is_ok_and(|bytes| Vec::<u8>::new().try_reserve_exact(bytes).is_ok())
 }
 
+/// Most bytes of a file that is read as a whole, where the system does not say what it has left.
+const READ_MAX: u64 = 4 << 30;
+
+/// Most bytes of a file that is read as a whole.
+pub fn readable() -> u64 {
+    available().map_or(READ_MAX, |limit| limit.0)
+}
+
+/// Checks that a picture of so many pixels, which take so many bytes each while it is read, can be held.
+///
+/// # Errors
+/// What it takes, and what there is.
+pub fn check_pixels(width: u64, height: u64, bytes_each: u64) -> Result<(), String> {
+    let needed = width.saturating_mul(height).saturating_mul(bytes_each);
+    match available() {
+        Some((limit, of)) if needed > limit => {
+            let (needed, limit) = (words(needed), words(limit));
+            Err(format!("{width} x {height} pixels take {needed} to read, and {of} is {limit}"))
+        }
+        _ => Ok(()),
+    }
+}
+
 /// Bytes of main memory that can still be had, by what is free and by the limits of the process and of its
 /// control group; and in whose words.
 pub fn available() -> Option<(u64, &'static str)> {
-    system::free().into_iter().chain(system::limited()).min_by_key(|limit| limit.0)
+    system::free().into_iter().chain(limited()).min_by_key(|limit| limit.0)
 }
 
 #[cfg(test)]

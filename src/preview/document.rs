@@ -11,8 +11,10 @@ use toml_edit::{Array, DocumentMut, InlineTable, Item, Table, TableLike, Value, 
 
 use crate::film::FileError;
 use crate::film::file::write_whole;
+use crate::memory;
 use crate::scene::{Allowance, Camera, Film, SceneErrors, parse_within};
 use crate::settings::RenderSettings;
+use crate::storage;
 
 /// What a window can change of a scene.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,7 +54,7 @@ pub enum SaveError {
 /// Writes what differs between `before` and `after` into a scene file, as it lies on the disk now; nothing else in it changes.
 /// That the result is a scene is found out with what may be read.
 pub fn save(file: &Path, allowance: &Allowance, before: &Edits, after: &Edits) -> Result<(), SaveError> {
-    let text = std::fs::read_to_string(file).map_err(|cause| FileError::Io {
+    let text = storage::read_text(file, memory::readable()).map_err(|cause| FileError::Io {
         file: file.to_owned(),
         verb: "read",
         cause,

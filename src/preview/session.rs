@@ -13,8 +13,10 @@ use super::worker::Worker;
 use crate::device::{self, Wanted};
 use crate::film::{self, Development, ErrorMap, Provenance};
 use crate::identity::Identity;
+use crate::memory;
 use crate::scene::{Allowance, Aov, Film, Loaded, Scene, SceneErrors, ToneMap};
 use crate::settings::{Direct, Radius, RadiusRule};
+use crate::storage;
 
 /// What a key or a hand asks for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -326,7 +328,7 @@ impl Session {
         film::check_outputs(&self.outputs).map_err(|error| error.to_string())?;
         let scene = Arc::make_mut(&mut self.scene);
         (scene.camera, scene.film) = (self.sent.camera, self.sent.film);
-        let text = std::fs::read_to_string(&self.file).unwrap_or_default();
+        let text = storage::read_text(&self.file, memory::readable()).unwrap_or_default();
         let made = Provenance {
             scene: scene.name.clone(),
             scene_file: self.file.display().to_string(),

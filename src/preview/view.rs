@@ -2,6 +2,7 @@
 //! colors with a scale.
 
 use std::num::NonZero;
+use std::sync::{Mutex, PoisonError};
 use std::thread;
 
 use super::frame::Frame;
@@ -183,13 +184,18 @@ fn mapped(count: usize, color: impl Fn(usize) -> [u8; 3] + Sync) -> Vec<[u8; 3]>
     let threads = thread::available_parallelism().map_or(1, NonZero::get);
     let chunk = count.div_ceil(threads).max(LEAST);
     let mut colors = vec![[0; 3]; count];
-    thread::scope(|scope| {
-        for (number, part) in colors.chunks_mut(chunk).enumerate() {
-            let color = &color;
-            scope.spawn(move || {
-                part.iter_mut().enumerate().for_each(|(i, rgb)| *rgb = color(number * chunk + i));
-            });
+    let parts = Mutex::new(colors.chunks_mut(chunk).enumerate());
+    let next = || parts.lock().unwrap_or_else(PoisonError::into_inner).next();
+    let work = || {
+        while let Some((number, part)) = next() {
+            part.iter_mut().enumerate().for_each(|(i, rgb)| *rgb = color(number * chunk + i));
         }
+    };
+    thread::scope(|scope| {
+        // a thread that the system refuses leaves its part to the others, this one among them
+        let started = (1..count.div_ceil(chunk)).map(|_| thread::Builder::new().spawn_scoped(scope, work));
+        let _started: Vec<_> = started.flatten().collect();
+        work();
     });
     colors
 }

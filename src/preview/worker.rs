@@ -49,7 +49,8 @@ impl Worker {
         let thread = thread::spawn(move || {
             // threads of its own, since the others may be busy with the whole picture for as long as a pass takes
             let work = move || Hand::new(own).work(&receiver);
-            match rayon::ThreadPoolBuilder::new().build() {
+            let threads = rayon::current_num_threads();
+            match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
                 Ok(pool) => pool.install(work),
                 Err(_) => work(),
             }

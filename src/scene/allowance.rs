@@ -51,6 +51,17 @@ pub struct Allowance {
     pub errors: u64,
 }
 
+/// Bytes that every process has for small scenes.
+const LEAST: u64 = 16 << 20;
+/// Bytes of memory for a byte of a scene file, at most (docs/hostile-input.md).
+const SCENE_BYTE: u64 = 140;
+/// The same for a triangle of a mesh, with its kd-tree.
+const TRIANGLE: u64 = 600;
+/// For a texel of 8 bits a channel while it is decoded.
+const TEXEL: u64 = 8;
+/// For a byte of texels.
+const TEXEL_BYTE: u64 = 3;
+
 impl Default for Allowance {
     fn default() -> Self {
         Self {
@@ -82,6 +93,21 @@ impl Allowance {
         "picture-pixels",
         "errors",
     ];
+
+    /// The same for a process that has `left` bytes of memory: no more of anything than that holds. Of other
+    /// scenes a process without limits is not kept either; one with limits is ended by them without a word.
+    pub fn within_memory(self, left: u64) -> Self {
+        let left = left.max(LEAST);
+        Self {
+            scene_bytes: self.scene_bytes.min(left / SCENE_BYTE),
+            mesh_bytes: self.mesh_bytes.min(left),
+            mesh_triangles: self.mesh_triangles.min(left / TRIANGLE),
+            triangles: self.triangles.min(left / TRIANGLE),
+            texture_pixels: self.texture_pixels.min(left / TEXEL),
+            texture_bytes: self.texture_bytes.min(left / TEXEL_BYTE),
+            ..self
+        }
+    }
 
     /// The limit of a name; `None` where it is none of [`Self::LIMITS`].
     pub fn limit(&mut self, name: &str) -> Option<&mut u64> {

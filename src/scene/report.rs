@@ -14,16 +14,52 @@ use super::findings::Findings;
 
 /// A text file that findings point into; cheap to clone.
 #[derive(Clone, Debug)]
-pub(crate) struct SourceFile(Arc<NamedSource<String>>);
+pub(crate) struct SourceFile {
+    file: Arc<NamedSource<String>>,
+    /// The same as reports show it, where it has control characters.
+    shown: Option<Arc<NamedSource<String>>>,
+}
 
 impl SourceFile {
     pub fn new(path: &Path, text: String) -> Self {
-        Self(Arc::new(NamedSource::new(path.display().to_string(), text)))
+        let name = path.display().to_string();
+        let dirty = [&name, &text].iter().any(|text| followed(text).any(is_control));
+        let shown = dirty.then(|| Arc::new(NamedSource::new(without_control(&name), without_control(&text))));
+        Self { file: Arc::new(NamedSource::new(name, text)), shown }
+    }
+
+    fn name(&self) -> &str {
+        self.file.name()
     }
 
     pub fn text(&self) -> &str {
-        self.0.inner()
+        self.file.inner()
     }
+}
+
+/// Each character with the one after it.
+fn followed(text: &str) -> impl Iterator<Item = (char, Option<char>)> {
+    text.chars().zip(text.chars().skip(1).map(Some).chain([None]))
+}
+
+/// Whether a terminal would act on a character: all control characters but those between words and lines,
+/// and those that turn the direction of writing.
+fn is_control((c, next): (char, Option<char>)) -> bool {
+    let turns = matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    let ends_line = c == '\r' && next == Some('\n');
+    turns || c.is_control() && !matches!(c, '\n' | '\t') && !ends_line
+}
+
+/// `text` with other characters for control characters, each as long as the one it stands for, since spans
+/// count bytes.
+fn without_control(text: &str) -> String {
+    let shown = |followed: (char, Option<char>)| match followed.0.len_utf8() {
+        _ if !is_control(followed) => followed.0,
+        1 => '?',
+        2 => '\u{bf}',
+        _ => char::REPLACEMENT_CHARACTER,
+    };
+    followed(text).map(shown).collect()
 }
 
 /// Most bytes of a line that are shown around a place.
@@ -37,11 +73,12 @@ impl SourceCode for SourceFile {
         before: usize,
         after: usize,
     ) -> Result<Box<dyn SpanContents<'a> + 'a>, MietteError> {
-        let lines = self.0.read_span(span, before, after)?;
+        let source = self.shown.as_ref().unwrap_or(&self.file);
+        let lines = source.read_span(span, before, after)?;
         if lines.data().len() <= MOST_SHOWN {
             return Ok(lines);
         }
-        let (text, at) = (self.text(), span.offset());
+        let (text, at) = (source.inner(), span.offset());
         let boundary = |at: usize| (at..).find(|&at| text.is_char_boundary(at)).unwrap_or(text.len());
         let line_start = text[..at].rfind('\n').map_or(0, |newline| newline + 1);
         let line_end = text[at..].find('\n').map_or(text.len(), |length| at + length);
@@ -49,7 +86,7 @@ impl SourceCode for SourceFile {
         let end = boundary((at + span.len().min(MOST_SHOWN / 2) + MOST_SHOWN / 4).min(line_end));
         let line = text[..at].matches('\n').count();
         let (cut, shown) = (SourceSpan::from(start..end), &text.as_bytes()[start..end]);
-        let name = self.0.name().to_owned();
+        let name = source.name().to_owned();
         Ok(Box::new(MietteSpanContents::new_named(name, shown, cut, line, start - line_start, 1)))
     }
 }
@@ -263,7 +300,7 @@ impl Report {
     ) -> Vec<Finding> {
         let what = if severity == miette::Severity::Error { "errors" } else { "warnings" };
         let (line, _) = self.line_column(named_at);
-        let file = source.0.name().to_owned();
+        let file = source.name().to_owned();
         let last = faults.listed.len().saturating_sub(1);
         let findings = faults.listed.into_iter().enumerate().map(|(index, fault)| {
             let help = match faults.more {

@@ -4,9 +4,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use caustica::checkpoint::{Checkpoint, CheckpointError, decode, merge, read, write};
-use caustica::device::Wanted;
+use caustica::device::{Opened, Wanted};
 use caustica::render::Stop;
 use caustica::scene::{Aovs, Film};
+use caustica::settings::{RadiusRule, RenderSettings};
 use xxhash_rust::xxh3::xxh3_128;
 
 use super::{checkpoint_on, folder, open_on};
@@ -17,15 +18,20 @@ const SUM: usize = 16;
 const NO_STOP: Stop = Stop { passes: u32::MAX, time: None, target_error: None };
 
 /// A window of 4 x 3 pixels with all layers.
+fn window(film: &mut Film) {
+    (film.width, film.height, film.window) = (6, 5, Some([1, 2, 5, 5]));
+    film.aovs = Aovs::parse("all").unwrap();
+}
+
+fn opened() -> Opened {
+    open_on(&Wanted::Cpu, window, |s| s.photons = 50)
+}
+
 fn made(name: &str) -> (PathBuf, Checkpoint) {
-    let film = |film: &mut Film| {
-        (film.width, film.height, film.window) = (6, 5, Some([1, 2, 5, 5]));
-        film.aovs = Aovs::parse("all").unwrap();
-    };
-    let mut opened = open_on(&Wanted::Cpu, film, |s| s.photons = 50);
+    let mut opened = opened();
     opened.engine.pass().unwrap();
     let state = opened.engine.save().unwrap();
-    let checkpoint = checkpoint_on(&opened, film, state);
+    let checkpoint = checkpoint_on(&opened, window, state);
     let file = folder(name).join("a.checkpoint");
     write(&file, &checkpoint).unwrap();
     (file, checkpoint)
@@ -146,7 +152,7 @@ fn forged_headers_are_refused() {
 }
 
 /// Any bytes at any places, with the right checksum: what is refused is refused with a reason, and what is taken for a checkpoint
-/// can be developed and merged, whatever comes of it. Nothing panics.
+/// can be developed and merged, whatever comes of it, and gone on from. Nothing panics.
 #[test]
 fn forged_bytes_do_no_harm() {
     let (file, _) = made("chance");
@@ -157,7 +163,8 @@ fn forged_bytes_do_no_harm() {
         ((state >> 33) as usize) % end
     };
     let digits = b"0123456789.-e,:{}[]\"tn";
-    let (mut taken, mut refused) = (0, 0);
+    let (mut taken, mut refused, mut gone_on) = (0, 0, 0);
+    let engine = &mut opened().engine;
     for round in 0..20_000 {
         let mut content = bytes[..bytes.len() - SUM].to_vec();
         for _ in 0..1 + below(4) {
@@ -174,6 +181,10 @@ fn forged_bytes_do_no_harm() {
                 assert_eq!((picture.rgb.len(), errors.pixels.len()), (12, 12));
                 let _ = (errors.relative(), errors.layers(), checkpoint.progress(NO_STOP).share());
                 assert!(checkpoint.layers().iter().all(|layer| layer.plane.values.len() == 12));
+                if engine.restore(&checkpoint.state).is_ok() && round % 4 == 0 {
+                    engine.pass().unwrap();
+                    gone_on += 1;
+                }
                 let mut next = checkpoint.clone();
                 next.state.first_pass = checkpoint.end();
                 next.state.passes = 1;
@@ -187,7 +198,7 @@ fn forged_bytes_do_no_harm() {
             }
         }
     }
-    assert!(taken > 1000 && refused > 1000, "{taken} {refused}");
+    assert!(taken > 1000 && refused > 1000 && gone_on > 100, "{taken} {refused} {gone_on}");
 }
 
 /// Theory: what cannot be written leaves what was there.
@@ -196,16 +207,74 @@ fn a_failed_write_keeps_the_one_before() {
     let (file, checkpoint) = made("unwritable");
     let mut other = checkpoint.clone();
     other.state.passes = 2;
-    let mode = |readonly| {
-        let mut permissions = fs::metadata(&file).unwrap().permissions();
-        permissions.set_readonly(readonly);
-        fs::set_permissions(&file, permissions).unwrap();
-    };
-    mode(true);
+    let writable = fs::metadata(&file).unwrap().permissions();
+    let mut read_only = writable.clone();
+    read_only.set_readonly(true);
+    fs::set_permissions(&file, read_only).unwrap();
     let error = write(&file, &other).unwrap_err();
     assert!(matches!(error, CheckpointError::Io { verb: "written", .. }), "{error:?}");
+    assert!(error.to_string().contains("read-only"), "{error}");
     assert!(read(&file).unwrap() == checkpoint);
-    mode(false);
+    fs::set_permissions(&file, writable).unwrap();
     write(&file, &other).unwrap();
     assert!(read(&file).unwrap() == other);
+    assert_eq!(fs::read_dir(file.parent().unwrap()).unwrap().count(), 3, "nothing is left beside it");
+}
+
+/// Theory: radii under the local rule shrink from 1, means of finite light are finite, no more passes are
+/// left out than there were. A file that says otherwise is no render's, whatever its checksum; one that
+/// says so is gone on from without an end that is not its own.
+#[test]
+fn forged_numbers_are_refused() {
+    let local = |s: &mut RenderSettings| (s.photons, s.radius_rule) = (50, RadiusRule::Local);
+    let film = |film: &mut Film| (film.width, film.height) = (4, 3);
+    let mut opened = open_on(&Wanted::Cpu, film, local);
+    opened.engine.pass().unwrap();
+    let state = opened.engine.save().unwrap();
+    let sound = checkpoint_on(&opened, film, state);
+    let file = folder("numbers").join("a.checkpoint");
+    let mut refused = |change: &dyn Fn(&mut Checkpoint)| {
+        let mut forged = sound.clone();
+        change(&mut forged);
+        write(&file, &forged).unwrap();
+        match read(&file) {
+            Ok(taken) => {
+                opened.engine.restore(&taken.state).unwrap();
+                opened.engine.pass().unwrap();
+                false
+            }
+            Err(error) => {
+                assert!(matches!(error, CheckpointError::Damaged { .. }), "{error:?}");
+                true
+            }
+        }
+    };
+    let put = |bytes: &mut [u8], number: f32| bytes[..4].copy_from_slice(&number.to_le_bytes());
+    let [scale, drop] = [0, 4].map(|at| {
+        move |number: f32| move |c: &mut Checkpoint| put(&mut c.state.statistics[16 + at..], number)
+    });
+    for number in [0.0, 1e-30, 0.5, 1.0] {
+        assert!(!refused(&|c| (scale(number)(c), drop(0.0)(c)).0), "a squared radius of {number}");
+    }
+    for number in [f32::INFINITY, f32::NAN, -1e-3, -f32::INFINITY, 1.0001, 4.0, 1e30] {
+        assert!(refused(&scale(number)), "a squared radius of {number}");
+    }
+    for number in [f32::INFINITY, f32::NAN, -1e-3, 1.5] {
+        assert!(refused(&drop(number)), "a decrease of {number}");
+    }
+    // the film's mean and spread are its first four numbers
+    for number in [f32::INFINITY, -f32::INFINITY, f32::NAN] {
+        for at in [0, 4, 8] {
+            assert!(refused(&|c| put(&mut c.state.film[at..], number)), "radiance of {number}");
+        }
+    }
+    for number in [f32::NAN, -1.0] {
+        assert!(refused(&|c| put(&mut c.state.film[12..], number)), "a spread of {number}");
+    }
+    for unit in [0.0, -1.0] {
+        assert!(refused(&|c| c.origin.space.unit = unit), "a unit of {unit}");
+        assert!(refused(&|c| c.origin.space.radiance_unit = unit), "a radiance unit of {unit}");
+    }
+    assert!(refused(&|c| c.cuts = vec![[2, 0]; 12]), "a mean over two passes of one");
+    assert!(!refused(&|_| ()), "the forger's hand is right");
 }
