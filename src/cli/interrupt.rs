@@ -11,10 +11,32 @@ static RENDERING: AtomicBool = AtomicBool::new(false);
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 static FAILED: OnceLock<String> = OnceLock::new();
 
+/// The argument that stands for nothing but this exit code.
+const END: &str = "--interrupted";
+
+/// Whether this process is one that only ends, see [`end`].
+pub fn is_end() -> bool {
+    let mut arguments = std::env::args_os().skip(1);
+    arguments.next().is_some_and(|argument| argument == END) && arguments.next().is_none()
+}
+
+/// Ends the process at once, with the code of an interrupt, whatever its other threads are at. What C
+/// libraries do at a regular exit takes a driver's compiler apart while it compiles, which ends in a crash;
+/// so the program gives its place to a new one, of a single thread, that exits.
+fn end() -> ! {
+    #[cfg(unix)]
+    {
+        use std::os::unix::process::CommandExt;
+        let program = std::env::current_exe();
+        // returns only if it fails
+        let _ = program.map(|program| std::process::Command::new(program).arg(END).exec());
+    }
+    std::process::exit(super::Done::Interrupted as i32)
+}
+
 /// Handles signals from now on; `renders` says whether the command has passes to come.
 pub fn begin(renders: bool) {
     let handler = move || {
-        let end = || std::process::exit(super::Done::Interrupted as i32);
         if !RENDERING.load(Ordering::Relaxed) {
             message(match renders {
                 true => "\ninterrupted before the first pass: nothing is saved",

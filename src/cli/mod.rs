@@ -103,10 +103,13 @@ fn command() -> clap::Command {
 
 /// Prints what is wrong with the command line, or the help that it asks for.
 fn parsed_otherwise(error: &clap::Error) -> ExitCode {
-    // what is quoted may be the name of a file
-    let quoted = error.render().to_string();
-    if error.use_stderr() && quoted != printable(&quoted) {
-        message(quoted.trim_end());
+    // arguments are quoted as they are
+    let plain = |argument: std::ffi::OsString| {
+        let text = argument.to_string_lossy();
+        printable(&text) == text
+    };
+    if error.use_stderr() && !std::env::args_os().all(plain) {
+        message(error.render().to_string().trim_end());
     } else {
         // as clap prints it, in colours where these are wanted
         let _ = error.print();
@@ -116,6 +119,9 @@ fn parsed_otherwise(error: &clap::Error) -> ExitCode {
 
 /// Carries out the command line.
 pub fn run() -> ExitCode {
+    if interrupt::is_end() {
+        return ExitCode::from(Done::Interrupted as u8);
+    }
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(error) => return parsed_otherwise(&error),

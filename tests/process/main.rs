@@ -8,6 +8,10 @@
 #[path = "../support/mod.rs"]
 mod support;
 
+#[path = "../software/mod.rs"]
+mod software;
+
+mod limits;
 mod outputs;
 mod readers;
 mod sharing;

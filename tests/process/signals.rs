@@ -5,6 +5,7 @@ use std::path::Path;
 use std::process::Child;
 use std::time::Duration;
 
+use super::software::software;
 use super::support::error;
 use super::{ended, folder, render, signal, spawn, until};
 
@@ -45,6 +46,29 @@ fn a_signal_at_any_moment() {
         after += u32::from(saved);
     }
     assert!(before > 0 && after > 0, "{before} {after}");
+}
+
+/// Theory: a driver's compiler at work is no reason for another code. Lavapipe without its cache compiles for
+/// some seconds, on threads of its own.
+#[test]
+fn a_signal_while_a_driver_compiles() {
+    software();
+    let folder = folder("compiling");
+    let mut before = 0;
+    for wait in (0..24).map(|n| 60 * n) {
+        let line = "render ball.toml --device software --quiet --passes 100000 -o a.png";
+        let mut command = super::support::command(&folder, &super::support::words(line));
+        command.env("MESA_SHADER_CACHE_DISABLE", "true");
+        let child = spawn(command);
+        until("ready", || catches(&child));
+        std::thread::sleep(Duration::from_millis(wait));
+        signal(&child, "INT");
+        let output = ended(child);
+        let error = error(&output);
+        assert_eq!(output.status.code(), Some(130), "after {wait} ms: {:?} {error}", output.status);
+        before += u32::from(error.contains("nothing is saved"));
+    }
+    assert!(before > 0);
 }
 
 /// A command without passes ends the same way, and does not speak of passes.
