@@ -223,6 +223,20 @@ fn closed_bodies_that_face_inward() {
         ("type = \"revolution\"\nprofile = [[0.5, 1], [0.5, 0]]".to_owned(), false),
     ];
     for (name, text, warns) in meshes {
+        // far from the origin as well
+        let far = text.lines().map(|line| match line.strip_prefix("v ") {
+            None => format!("{line}\n"),
+            Some(place) => {
+                let place: Vec<f64> = place.split(' ').map(|x| x.parse().unwrap()).collect();
+                format!("v {:?} {:?} {:?}\n", place[0] + 5e5, place[1] + 2e5, place[2] + 3e5)
+            }
+        });
+        let file = folder.join(format!("{name}-far.obj"));
+        std::fs::write(&file, far.collect::<String>()).unwrap();
+        shapes.push((
+            format!("type = \"mesh\"\nfile = {:?}\nsmooth = false", file.display().to_string()),
+            warns,
+        ));
         let file = folder.join(format!("{name}.obj"));
         std::fs::write(&file, text).unwrap();
         shapes.push((

@@ -167,13 +167,9 @@ fn sample_environment(light: Light, u: vec4f) -> vec3f {
     let texture = scene.textures[light.reference];
     let row = find_interval(light.first, texture.height, u.y);
     let column = find_interval(light.first + texture.height + row * texture.width, texture.width, u.z);
-    let high = scene.distributions[light.first + row];
-    var low = 0.0;
-    if row > 0u {
-        low = scene.distributions[light.first + row - 1u];
-    }
+    let fine = u.w * 4096.0;
     let across = (f32(column) + u.w) / f32(texture.width);
-    let down = (f32(row) + clamp((u.y - low) / (high - low), 0.0, 1.0)) / f32(texture.height);
+    let down = (f32(row) + (fine - floor(fine))) / f32(texture.height);
     let phi = sin_cos((0.5 - across) * TAU);
     let theta = sin_cos(down * PI);
     let x = theta.x * phi.y;

@@ -65,7 +65,7 @@ impl Normalization {
     }
 }
 
-/// Distance from `center` to the farthest point of any shape; planes end at [`HORIZON`] times `radius`.
+/// Distance from `center` to the farthest point of any shape; planes end at 10^4 times `radius`.
 pub fn reach(scene: &Scene, center: DVec3, radius: f64) -> f64 {
     let planes = scene.shapes.iter().any(|s| matches!(s.kind, ShapeKind::Plane { .. }));
     let boxes = scene.shapes.iter().filter_map(|s| extent(&s.kind));

@@ -104,11 +104,14 @@ fn parts(mesh: &Mesh) -> Vec<Part> {
         }
     }
     let empty = Part { volume: 0.0, low: DVec3::INFINITY, high: DVec3::NEG_INFINITY, closed: true };
+    let origin = mesh.positions.first().copied().unwrap_or_default();
     let mut parts: HashMap<usize, Part> = HashMap::new();
     for (numbers, triangle) in triangles.iter().zip(&mesh.triangles) {
         let [a, b, c] = triangle.position.map(|i| mesh.positions[i as usize]);
+        // about a corner of the mesh: far from the origin products of coordinates have no digits left
+        let [p, q, r] = [a, b, c].map(|corner| corner - origin);
         let part = parts.entry(find(&mut root, numbers[0])).or_insert_with(|| empty.clone());
-        part.volume += a.dot(b.cross(c));
+        part.volume += p.dot(q.cross(r));
         for p in [a, b, c] {
             (part.low, part.high) = (part.low.min(p), part.high.max(p));
         }

@@ -193,10 +193,10 @@ pub fn sample_environment(scene: &Scene, light: &Light, u: Vec4) -> Vec3 {
     let texture = &scene.textures[light.reference as usize];
     let row = find_interval(scene, light.first, texture.height, u.y);
     let column = find_interval(scene, light.first + texture.height + row * texture.width, texture.width, u.z);
-    let high = scene.distributions[(light.first + row) as usize];
-    let low = if row > 0 { scene.distributions[(light.first + row - 1) as usize] } else { 0.0 };
+    // of the number's lower bits: a row that few numbers choose is not looked at along its edge alone
+    let fine = u.w * 4096.0;
     let across = (column as Real + u.w) / texture.width as Real;
-    let down = (row as Real + ((u.y - low) / (high - low)).clamp(0.0, 1.0)) / texture.height as Real;
+    let down = (row as Real + (fine - fine.floor())) / texture.height as Real;
     let (sin_phi, cos_phi) = sin_cos((0.5 - across) * TAU);
     let (sin, cos) = sin_cos(down * PI);
     let x = sin * cos_phi;

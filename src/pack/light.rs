@@ -1,5 +1,6 @@
 //! Lights: strengths in scene units and the distributions that they are sampled by.
 
+use super::discs::cumulative;
 use super::lights::shape::sample_shape;
 use super::real::{Real, ToReal, Vec2, Vec3};
 use super::shape::Emitter;
@@ -211,13 +212,10 @@ fn image_distribution(out: &Scene, light: &mut Light, distributions: &mut Vec<Re
     Some([mean, most])
 }
 
+/// Appends cumulative shares in the steps of random numbers; no value above zero is without a step, however
+/// bright the others are.
 fn push_cumulative(values: &[f64], target: &mut Vec<Real>) {
-    let total: f64 = values.iter().sum();
-    let mut sum = 0.0;
-    let count = values.len();
-    for (k, v) in values.iter().enumerate() {
-        sum += v;
-        let share = if total > 0.0 { sum / total } else { (k + 1) as f64 / count as f64 };
-        target.push(if k + 1 == count { 1.0 } else { share as Real });
-    }
+    let even = vec![1.0; values.len()];
+    let dark = values.iter().sum::<f64>() <= 0.0;
+    target.extend(cumulative(if dark { &even } else { values }).map(|share| share as Real));
 }

@@ -259,8 +259,8 @@ pub enum ShapeFile {
     Mesh {
         /// A Wavefront OBJ file.
         file: String,
-        /// Use the file's normals, or make them where it has none; false: flat. The order of a face's corners
-        /// (counterclockwise from outside) says which side is outside, whatever the normals are.
+        /// Use the file's normals, or make them where it has none, and turn faces to the side that they point to;
+        /// false: flat, and the order of a face's corners (counterclockwise from outside) says which side is outside.
         #[serde(default = "yes")]
         smooth: bool,
         /// Name of a material; without it, the OBJ's own MTL is used.

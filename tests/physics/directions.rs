@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 
 use caustica::lights::light::eval_environment;
 use caustica::materials::scatter::reflectance_at;
-use caustica::pack::pack;
+use caustica::pack::{Packed, pack};
 use caustica::settings::{Direct, Method, Radius, RenderSettings};
 use caustica::shapes::intersect::intersect_scene;
 use caustica::shapes::ray::Ray;
@@ -68,17 +68,17 @@ fn light_at_the_pole() {
     let angle = PI / 4096.0;
     let truth = 0.5 / PI * 2.0 * PI * angle * angle * 1e6 * (0.125 + 5.0 / 12.0);
     for direct in DIRECT {
-        let settings = RenderSettings { direct, photons: 1 << 14, ..settings(0.2) };
+        let settings = RenderSettings { direct, photons: 1 << 14, passes: 16, ..settings(0.2) };
         let found = runs(&text, &settings).region(|_, _| true);
         assert_agrees(&format!("{direct:?}"), found, truth, 0.03);
     }
-    let path = RenderSettings { method: Method::Path, passes: 16, ..settings(1.0) };
+    let path = RenderSettings { method: Method::Path, passes: 64, ..settings(1.0) };
     assert_agrees("path", runs(&text, &path).region(|_, _| true), truth, 0.03);
 }
 
-fn packed(text: &str) -> Scene {
+fn packed(text: &str) -> Packed {
     let head = "version = 1\n[camera]\nposition = [0, 0, 9]\ntarget = [0, 0, 0]\nfov = 40.0\n";
-    pack(&parse(&format!("{head}{text}")), 8, 8).unwrap().scene
+    pack(&parse(&format!("{head}{text}")), 8, 8).unwrap()
 }
 
 /// Theory: a sky goes on around: at the picture's left and right edge it is the mean of the columns on
@@ -86,7 +86,7 @@ fn packed(text: &str) -> Scene {
 #[test]
 fn a_sky_has_no_seam() {
     let sky = grey_file("physics-seam.exr", 8, 4, |x, _| if x == 0 { 3.0 } else { x as f32 });
-    let scene = packed(&format!("[environment]\nfile = \"{sky}\"\n"));
+    let scene = packed(&format!("[environment]\nfile = \"{sky}\"\n")).scene;
     let at = |u: f64| {
         let (sin, cos) = ((0.5 - u) * 2.0 * PI).sin_cos();
         eval_environment(&scene, &scene.lights[0], Vec3::new(cos as f32, 0.0, sin as f32)).x
@@ -105,18 +105,17 @@ fn hit(scene: &Scene, from: DVec3, direction: DVec3) -> Surface {
 /// right: u increases that way and v upward, on all six faces. On top up is -z, on the bottom z.
 #[test]
 fn pictures_on_boxes_are_not_mirrored() {
-    let scene = packed(
+    let packed = packed(
         "[materials.m]\ntype = \"diffuse\"\nreflectance = 0.5\n\
          [[shapes]]\ntype = \"box\"\nmin = [-1, -1, -1]\nmax = [1, 1, 1]\nmaterial = \"m\"\n",
     );
-    let unit = 1.0 / f64::from(scene.world.unit);
     for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
         for normal in [axis, -axis] {
             let up = if axis == DVec3::Y { -normal.y * DVec3::Z } else { DVec3::Y };
             let right = up.cross(normal);
             for (a, b) in [(0.3, 0.2), (-0.6, 0.7), (0.1, -0.9)] {
-                let from = (normal * 3.0 + right * a + up * b) * unit;
-                let s = hit(&scene, from, -normal);
+                let from = (normal * 3.0 + right * a + up * b - packed.center) / packed.unit;
+                let s = hit(&packed.scene, from, -normal);
                 let expected = [0.5 + 0.5 * a, 0.5 + 0.5 * b];
                 let off = (f64::from(s.uv.x) - expected[0]).abs() + (f64::from(s.uv.y) - expected[1]).abs();
                 assert!(off < 1e-5, "{normal}: {:?} and {expected:?}", s.uv);
@@ -217,4 +216,36 @@ fn a_lamp_across_the_seam() {
     let path = runs(&text, &path).region(|_, _| true);
     assert_same("shadow rays and photons", by(Direct::Sampled), by(Direct::Photons), 0.08);
     assert_same("shadow rays and paths", by(Direct::Sampled), path, 0.08);
+}
+
+/// Theory: a sky of radiance 1 over half of the directions lights a floor that faces that half with
+/// `rho pi / pi`, a sun beside it in the other half, 10^4 times as strong, not at all. Rows and texels of the
+/// dim half are drawn seldom, but drawn.
+#[test]
+fn a_dim_sky_beside_a_bright_sun() {
+    let (width, height) = (64, 1024);
+    let sun = 4e9;
+    let sky = grey_file("physics-dim.exr", width, height, |x, y| match y {
+        1000 if x == 5 => sun,
+        y if y < 512 => 1.0,
+        _ => 0.0,
+    });
+    let text = format!(
+        "version = 1\n[camera]\nposition = [0, 5, 0.01]\ntarget = [0, 0, 0]\nfov = 20.0\n\
+         [film]\nwidth = 8\nheight = 8\n[materials.d]\ntype = \"diffuse\"\nreflectance = 0.5\n\
+         [[shapes]]\ntype = \"rectangle\"\norigin = [-5, 0, 5]\nu = [10, 0, 0]\nv = [0, 0, -10]\n\
+         material = \"d\"\n[environment]\nfile = \"{sky}\"\n"
+    );
+    let path = RenderSettings { method: Method::Path, passes: 64, ..settings(1.0) };
+    assert_agrees("path", runs(&text, &path).region(|_, _| true), 0.5, 0.05);
+    let scene = pack(&parse(&text), 8, 8).unwrap().scene;
+    let light = &scene.lights[0];
+    let bins = |first: u32, count: u32| {
+        let at = |i: u32| f64::from(scene.distributions[(light.first + first + i) as usize]);
+        (0..count).map(move |i| at(i) - if i > 0 { at(i - 1) } else { 0.0 }).collect::<Vec<_>>()
+    };
+    let rows = bins(0, height as u32);
+    assert!(rows[..512].iter().all(|share| *share >= 2f64.powi(-24)), "a dim row is never drawn");
+    // the filter spreads it over its neighbours
+    assert!(rows[999..1002].iter().sum::<f64>() > 0.9, "the sun is not the strongest");
 }
