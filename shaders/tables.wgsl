@@ -2,6 +2,7 @@
 // The storage struct `Scene` itself is composed per scene, since the length of its arrays is part of its type.
 
 const NONE: u32 = 0xffffffffu;
+const ASTRIDE: u32 = 0xfffffffeu;
 const REFERENCE_BITS: u32 = 28u;
 const KIND_TRIANGLE: u32 = 0u;
 const KIND_SPHERE: u32 = 1u;
@@ -48,9 +49,9 @@ struct World {
     nested: u32,
     guided: u32,
     primitive_size: f32,
-    pad0: u32,
-    pad1: u32,
-    pad2: u32,
+    body_first: u32,
+    body_count: u32,
+    pad: u32,
 }
 
 struct Camera {

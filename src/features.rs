@@ -6,7 +6,7 @@ use crate::settings::{Direct, Method, RadiusRule, RenderSettings};
 use std::collections::BTreeSet;
 
 /// Names that fence optional code in shaders (`//#if name`).
-pub const ALL: [&str; 41] = [
+pub const ALL: [&str; 42] = [
     "triangle",
     "attributes",
     "sphere",
@@ -26,6 +26,7 @@ pub const ALL: [&str; 41] = [
     "mirror",
     "glass",
     "nested",
+    "astride",
     "metal",
     "specular",
     "absorption",
@@ -98,6 +99,8 @@ impl Features {
         put("mirror", material(MATERIAL_MIRROR));
         put("glass", material(MATERIAL_GLASS));
         put("nested", scene.world.nested != 0);
+        let astride = scene.lights.iter().any(|l| l.medium == ASTRIDE);
+        put("astride", astride || scene.camera.medium == ASTRIDE);
         put("metal", material(MATERIAL_METAL));
         put("specular", material(MATERIAL_MIRROR) || material(MATERIAL_GLASS));
         put("absorption", scene.materials.iter().any(|m| m.absorption.max_element() > 0.0));

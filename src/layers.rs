@@ -43,13 +43,24 @@ impl Plan {
             scale_sq: self.scale_sq(found.passes.max(1) - 1),
         };
         let LayerState { counts, objects, .. } = &self.numbers(found);
-        let Found { aovs, parts, statistics, .. } = *found;
+        let Found { parts, statistics, .. } = *found;
+        let aovs = &self.named(found.aovs);
         layering.channels(&Kept { aovs, parts, counts, objects, statistics })
     }
 
     /// What is kept for them between two passes.
     pub fn layer_state(&self, found: &Found) -> LayerState {
-        LayerState { aovs: aov_bytes(found.aovs), parts: parts_bytes(found.parts), ..self.numbers(found) }
+        LayerState {
+            aovs: aov_bytes(&self.named(found.aovs)),
+            parts: parts_bytes(found.parts),
+            ..self.numbers(found)
+        }
+    }
+
+    /// With the scene's numbers of materials in the place of the tables'.
+    fn named(&self, aovs: &[AovPixel]) -> Vec<AovPixel> {
+        let named = |p: &AovPixel| AovPixel { material: self.objects.material(p.material), ..*p };
+        aovs.iter().map(named).collect()
     }
 
     /// The part of it that is the same for all engines.

@@ -43,7 +43,9 @@ fn hosts() -> Vec<Layout> {
             far,
             nested,
             guided,
-            primitive_size
+            primitive_size,
+            body_first,
+            body_count
         }),
         layout!(Camera {
             position,

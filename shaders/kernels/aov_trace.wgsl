@@ -42,13 +42,15 @@ fn aov_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
     var rng = rng_eye(pixel * dispatch.eye_samples + k, dispatch.pass_number, dispatch.seed);
     var ray = camera_ray(camera, x, y, stratified(rng_next(&rng), k, pixel));
     var throughput = vec3f(1.0);
-    var medium = camera.medium;
+    var interior = interior_at(camera.medium, ray.origin);
+    var hidden = 0u;
+    var bounce = 0u;
     var length = 0.0;
     var albedo = vec3f(0.0);
     var normal = vec3f(0.0);
     var emission = vec3f(0.0);
     var direct = vec3f(0.0);
-    for (var bounce = 0u; bounce < dispatch.max_bounces + 1u; bounce++) {
+    while bounce <= dispatch.max_bounces && hidden <= HIDDEN_FACES {
         let hit = intersect_scene(ray);
         if hit.reference == NONE {
             //#if environment
@@ -62,16 +64,26 @@ fn aov_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
         let s = surface_at(ray, hit);
         let wo = -ray.direction;
         length += hit.t;
-        if bounce == 0u {
+        if bounce == 0u && hidden == 0u {
             next.hits += 1.0;
             let share = 1.0 / next.hits;
             next.depth += (dot(s.position - camera.position, camera.forward) - next.depth) * share;
             next.position += (s.position - next.position) * share;
         }
-        throughput *= transmittance(medium_before(s, wo, medium), hit.t);
+        interior = interior_before(s, wo, interior);
+        throughput *= transmittance(medium_of(interior), hit.t);
         //#if area
         if s.light != NONE && dot(wo, s.normal) > 0.0 {
             emission += throughput * scene.lights[s.light].color;
+        }
+        //#end
+        //#if nested
+        let beyond = interior_beyond(s, wo, interior);
+        if is_hidden(s, interior, beyond) {
+            hidden += 1u;
+            interior = beyond;
+            ray = Ray(offset_origin(s.position, s.error, s.normal, ray.direction), 0.0, ray.direction, FAR);
+            continue;
         }
         //#end
         if !is_specular(scene.materials[s.material].kind) {
@@ -83,7 +95,7 @@ fn aov_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
                 next.radius += (start_radius(camera.pixel * length) - next.radius) * (1.0 / next.points);
                 //#if sampled && direct_layer
                 let ng = toward(s.normal, wo);
-                direct = throughput * direct_light(s, wo, normal, ng, reflectance, medium, &rng).radiance;
+                direct = throughput * direct_light(s, wo, normal, ng, reflectance, interior, &rng).radiance;
                 //#end
             }
             break;
@@ -93,9 +105,9 @@ fn aov_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
             break;
         }
         let v = rng_next(&rng);
-        let scattered = scatter_specular(s, wo, medium, v.x, RADIANCE);
+        let scattered = scatter_specular(s, wo, interior, v.x, RADIANCE);
         throughput *= scattered.weight;
-        medium = scattered.medium;
+        interior = scattered.interior;
         let survival = min(4.0 * max_component(throughput), 1.0);
         if v.y >= survival {
             break;
@@ -103,6 +115,7 @@ fn aov_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
         throughput *= 1.0 / survival;
         let origin = offset_origin(s.position, s.error, s.normal, scattered.direction);
         ray = Ray(origin, 0.0, scattered.direction, FAR);
+        bounce += 1u;
         //#end
     }
     if !is_finite(emission) {

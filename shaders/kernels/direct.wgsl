@@ -12,11 +12,6 @@ fn transmittance(medium: u32, distance: f32) -> vec3f {
     //#end
 }
 
-fn medium_before(s: Surface, wo: vec3f, medium: u32) -> u32 {
-    let inside = scene.materials[s.material].kind == MATERIAL_GLASS && dot(wo, s.normal) < 0.0;
-    return select(medium, s.material, inside);
-}
-
 // Adds to the pass's rays; the low word may wrap.
 fn count_rays(rays: u32) {
     let low = atomicAdd(&counters.rays_low, rays);
@@ -37,7 +32,7 @@ fn next_event(
     n: vec3f,
     ng: vec3f,
     reflectance: vec3f,
-    medium: u32,
+    interior: Interior,
     mis: bool,
     u: vec4f,
 ) -> DirectLight {
@@ -64,7 +59,7 @@ fn next_event(
     //#end
     var radiance = f * light.radiance * weight;
     if light.distance < FAR {
-        radiance *= transmittance(medium, light.distance);
+        radiance *= transmittance(medium_of(interior), light.distance);
     }
     return DirectLight(radiance, 1u);
 }
@@ -75,17 +70,17 @@ fn direct_light(
     n: vec3f,
     ng: vec3f,
     reflectance: vec3f,
-    medium: u32,
+    interior: Interior,
     rng: ptr<function, Rng>,
 ) -> DirectLight {
     let kind = scene.materials[s.material].kind;
     let metal = kind == MATERIAL_METAL;
-    var direct = next_event(s, wo, n, ng, reflectance, medium, metal, rng_next(rng));
+    var direct = next_event(s, wo, n, ng, reflectance, interior, metal, rng_next(rng));
     //#if metal
     if metal {
         let alpha = scene.materials[s.material].alpha;
         let u = rng_next(rng);
-        let scattered = scatter_rough(s, wo, medium, vec2f(u.x, u.y), RADIANCE);
+        let scattered = scatter_rough(s, wo, interior, vec2f(u.x, u.y), RADIANCE);
         if max_component(scattered.weight) > 0.0 {
             direct.rays += 1u;
             let pdf = pdf_rough(kind, alpha, n, wo, scattered.direction);
@@ -110,7 +105,7 @@ fn direct_light(
                 if at.light != NONE && dot(ray.direction, at.normal) < 0.0 {
                     let light = scene.lights[at.light];
                     let other = pdf_light(shares, at.light, start, ray.direction, hit.t, at.normal, at.v);
-                    let seen = light.color * transmittance(medium, hit.t);
+                    let seen = light.color * transmittance(medium_of(interior), hit.t);
                     direct.radiance += scattered.weight * seen * balance(pdf, other);
                 }
                 //#end

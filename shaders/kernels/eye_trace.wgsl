@@ -15,11 +15,13 @@ fn eye_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
     let u = stratified(rng_next(&rng), k, pixel);
     var ray = camera_ray(camera, pixel % camera.width, pixel / camera.width, u);
     var throughput = vec3f(1.0);
-    var medium = camera.medium;
+    var interior = interior_at(camera.medium, ray.origin);
+    var hidden = 0u;
+    var bounce = 0u;
     var length = 0.0;
     var rays = 0u;
     var point = VisiblePoint();
-    for (var bounce = 0u; bounce < dispatch.max_bounces + 1u; bounce++) {
+    while bounce <= dispatch.max_bounces && hidden <= HIDDEN_FACES {
         rays += 1u;
         let hit = intersect_scene(ray);
         if hit.reference == NONE {
@@ -34,10 +36,20 @@ fn eye_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
         let s = surface_at(ray, hit);
         let wo = -ray.direction;
         length += hit.t;
-        throughput *= transmittance(medium_before(s, wo, medium), hit.t);
+        interior = interior_before(s, wo, interior);
+        throughput *= transmittance(medium_of(interior), hit.t);
         //#if area
         if s.light != NONE && dot(wo, s.normal) > 0.0 {
             point.radiance += throughput * scene.lights[s.light].color;
+        }
+        //#end
+        //#if nested
+        let beyond = interior_beyond(s, wo, interior);
+        if is_hidden(s, interior, beyond) {
+            hidden += 1u;
+            interior = beyond;
+            ray = Ray(offset_origin(s.position, s.error, s.normal, ray.direction), 0.0, ray.direction, FAR);
+            continue;
         }
         //#end
         let kind = scene.materials[s.material].kind;
@@ -63,7 +75,7 @@ fn eye_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
             }
             //#end
             //#if sampled
-            let found = direct_light(s, wo, n, ng, reflectance, medium, &rng);
+            let found = direct_light(s, wo, n, ng, reflectance, interior, &rng);
             let direct = throughput * found.radiance;
             rays += found.rays;
             if is_finite(direct) {
@@ -79,9 +91,9 @@ fn eye_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
             break;
         }
         let v = rng_next(&rng);
-        let scattered = scatter_specular(s, wo, medium, v.x, RADIANCE);
+        let scattered = scatter_specular(s, wo, interior, v.x, RADIANCE);
         throughput *= scattered.weight;
-        medium = scattered.medium;
+        interior = scattered.interior;
         let survival = min(4.0 * max_component(throughput), 1.0);
         if v.y >= survival {
             break;
@@ -89,6 +101,7 @@ fn eye_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
         throughput *= 1.0 / survival;
         let origin = offset_origin(s.position, s.error, s.normal, scattered.direction);
         ray = Ray(origin, 0.0, scattered.direction, FAR);
+        bounce += 1u;
         //#end
     }
     if !is_finite(point.radiance) {

@@ -20,11 +20,13 @@ fn photon_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgrou
     //#if far || guided
     var excess = emission.excess;
     //#end
-    var medium = emission.medium;
+    var interior = emission.interior;
+    var hidden = 0u;
+    var bounce = 0u;
     var family = 0u;
     var rays = 0u;
     var end = CUT;
-    for (var bounce = 0u; bounce < dispatch.max_bounces + 1u; bounce++) {
+    while bounce <= dispatch.max_bounces && hidden <= HIDDEN_FACES {
         if max_component(flux) <= 0.0 {
             end = ABSORBED;
             break;
@@ -37,18 +39,28 @@ fn photon_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgrou
         }
         let s = surface_at(ray, hit);
         let wo = -ray.direction;
-        flux *= transmittance(medium_before(s, wo, medium), max(hit.t, 0.0));
+        interior = interior_before(s, wo, interior);
+        flux *= transmittance(medium_of(interior), max(hit.t, 0.0));
+        //#if nested
+        let beyond = interior_beyond(s, wo, interior);
+        if is_hidden(s, interior, beyond) {
+            hidden += 1u;
+            interior = beyond;
+            ray = Ray(offset_origin(s.position, s.error, s.normal, ray.direction), 0.0, ray.direction, FAR);
+            continue;
+        }
+        //#end
         let kind = scene.materials[s.material].kind;
         let u = rng_next(&rng);
         var scattered: Scatter;
         //#if specular
         if is_specular(kind) {
-            scattered = scatter_specular(s, wo, medium, u.x, IMPORTANCE);
+            scattered = scatter_specular(s, wo, interior, u.x, IMPORTANCE);
         } else {
-            scattered = stored_and_scattered(id, bounce, &family, s, wo, medium, flux, u);
+            scattered = stored_and_scattered(id, bounce, bounce + hidden > 0u, &family, s, wo, interior, flux, u);
         }
         //#else
-        scattered = stored_and_scattered(id, bounce, &family, s, wo, medium, flux, u);
+        scattered = stored_and_scattered(id, bounce, bounce + hidden > 0u, &family, s, wo, interior, flux, u);
         //#end
         let weight = max_component(scattered.weight);
         //#if far || guided
@@ -64,9 +76,10 @@ fn photon_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgrou
         }
         scattered.weight *= 1.0 / survival;
         flux *= scattered.weight;
-        medium = scattered.medium;
+        interior = scattered.interior;
         let origin = offset_origin(s.position, s.error, s.normal, scattered.direction);
         ray = Ray(origin, 0.0, scattered.direction, FAR);
+        bounce += 1u;
     }
     if loops_stopped() {
         append(PhotonRecord(vec3f(0.0), id, vec3f(0.0), 0u));
@@ -79,15 +92,16 @@ fn photon_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgrou
 fn stored_and_scattered(
     id: u32,
     bounce: u32,
+    indirect: bool,
     family: ptr<function, u32>,
     s: Surface,
     wo: vec3f,
-    medium: u32,
+    interior: Interior,
     flux: vec3f,
     u: vec4f,
 ) -> Scatter {
-    store_record(id, bounce, *family, s, wo, flux);
-    let scattered = scatter_rough(s, wo, medium, vec2f(u.x, u.y), IMPORTANCE);
+    store_record(id, bounce, indirect, *family, s, wo, flux);
+    let scattered = scatter_rough(s, wo, interior, vec2f(u.x, u.y), IMPORTANCE);
     //#if split
     if scene.materials[s.material].kind == MATERIAL_DIFFUSE {
         *family = 1u;
@@ -100,9 +114,9 @@ fn stored_and_scattered(
     //#end
 }
 
-fn store_record(id: u32, bounce: u32, family: u32, s: Surface, wo: vec3f, flux: vec3f) {
+fn store_record(id: u32, bounce: u32, indirect: bool, family: u32, s: Surface, wo: vec3f, flux: vec3f) {
     //#if sampled
-    let stored = bounce > 0u;
+    let stored = indirect;
     //#else
     let stored = true;
     //#end

@@ -32,6 +32,7 @@ struct Dispatch {
     points: array<vec4u, 4>,
 }
 
+const HIDDEN_FACES: u32 = 256u;
 const STOPPED: u32 = 1u;
 const BAD_EYE: u32 = 2u;
 const BAD_DIRECT: u32 = 4u;

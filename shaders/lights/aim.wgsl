@@ -23,10 +23,10 @@ fn aimed_scatter(s: Surface, wo: vec3f, u: vec4f, scattered: Scatter) -> Scatter
     }
     let cos = dot(wi, toward(s.normal, wo));
     if cos <= 0.0 {
-        return Scatter(wi, scattered.medium, vec3f(0.0));
+        return Scatter(wi, scattered.interior, vec3f(0.0));
     }
     let by_cosine = INV_PI * cos;
     let by_cone = select(0.0, 1.0 / (TAU * one_minus_cos), in_cone);
     let weight = scattered.weight * (by_cosine / (0.5 * by_cosine + 0.5 * by_cone));
-    return Scatter(wi, scattered.medium, weight);
+    return Scatter(wi, scattered.interior, weight);
 }

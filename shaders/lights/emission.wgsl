@@ -4,7 +4,7 @@ struct Emission {
     ray: Ray,
     flux: vec3f,
     excess: f32,
-    medium: u32,
+    interior: Interior,
 }
 
 fn emit_photon(rng: ptr<function, Rng>) -> Emission {
@@ -25,12 +25,13 @@ fn emit_from(light: Light, u: vec4f, v: vec4f) -> Emission {
     var emission = emit_nearby(light, u, sent.across);
     emission.flux *= sent.scale;
     emission.excess *= sent.scale;
+    //#else
+    var emission = emit_nearby(light, u, vec2f(v.x, v.y));
+    //#end
+    emission.interior = interior_at(light.medium, emission.ray.origin);
     return emission;
     //#else
-    return emit_nearby(light, u, vec2f(v.x, v.y));
-    //#end
-    //#else
-    return Emission(Ray(light.position, 0.0, vec3f(0.0, 0.0, 1.0), FAR), vec3f(0.0), 1.0, NONE);
+    return Emission(Ray(light.position, 0.0, vec3f(0.0, 0.0, 1.0), FAR), vec3f(0.0), 1.0, interior_of(NONE));
     //#end
 }
 
@@ -43,7 +44,7 @@ fn emit_nearby(light: Light, u: vec4f, across: vec2f) -> Emission {
         let p = sample_sphere_facing(light, vec2f(u.y, u.z), ray.direction);
         ray.origin = p.position + p.normal * p.error;
         let flux = light.color * (PI / (p.pdf * light.selection));
-        return Emission(ray, flux, 1.0, light.medium);
+        return Emission(ray, flux, 1.0, interior_of(NONE));
     }
     //#end
     //#if area
@@ -52,7 +53,7 @@ fn emit_nearby(light: Light, u: vec4f, across: vec2f) -> Emission {
         ray.direction = unit(from_frame(p.normal, sample_cosine(across)));
         ray.origin = p.position + p.normal * p.error;
         let flux = light.color * (PI / (p.pdf * light.selection));
-        return Emission(ray, flux, 1.0, light.medium);
+        return Emission(ray, flux, 1.0, interior_of(NONE));
     }
     //#end
     //#if spot
@@ -61,12 +62,12 @@ fn emit_nearby(light: Light, u: vec4f, across: vec2f) -> Emission {
         ray.direction = unit(from_frame(light.direction, local));
         let solid_angle = TAU * light.outer;
         let flux = light.color * (spot_falloff(light, across.x * light.outer) * solid_angle / light.selection);
-        return Emission(ray, flux, 1.0, light.medium);
+        return Emission(ray, flux, 1.0, interior_of(NONE));
     }
     //#end
     ray.direction = unit(sample_sphere(across));
     let flux = light.color * (2.0 * TAU / light.selection);
-    return Emission(ray, flux, 1.0, light.medium);
+    return Emission(ray, flux, 1.0, interior_of(NONE));
 }
 //#end
 
@@ -103,7 +104,7 @@ fn emit_from_infinity(light: Light, u: vec4f, v: vec4f) -> Emission {
     ray.t_min = -4.0 * disc_radius(scene.world.disc_levels - 1u);
     let flux = radiance * (1.0 / (pdf * light.selection));
     let usual = pdf_discs(0.25 * near * near);
-    return Emission(ray, flux, usual / pdf, light.medium);
+    return Emission(ray, flux, usual / pdf, interior_from(ray.direction));
 }
 
 fn disc_radius(level: u32) -> f32 {

@@ -4,13 +4,13 @@ const RADIANCE: u32 = 0u;
 const IMPORTANCE: u32 = 1u;
 const ADJOINT_COS_MIN: f32 = 1e-2;
 
+//#if scene
 struct Scatter {
     direction: vec3f,
-    medium: u32,
+    interior: Interior,
     weight: vec3f,
 }
 
-//#if scene
 fn reflectance_at(material: u32, uv: vec2f) -> vec3f {
     let m = scene.materials[material];
     //#if textures
@@ -37,31 +37,14 @@ fn shading_normal(s: Surface, wo: vec3f) -> vec3f {
 }
 
 //#if specular
-fn scatter_specular(s: Surface, wo: vec3f, medium: u32, u: f32, mode: u32) -> Scatter {
+fn scatter_specular(s: Surface, wo: vec3f, interior: Interior, u: f32, mode: u32) -> Scatter {
     let m = scene.materials[s.material];
     let ng = toward(s.normal, wo);
     var n = shading_normal(s, wo);
     //#if glass
     if m.kind == MATERIAL_GLASS {
-        let outside = dot(wo, s.normal) >= 0.0;
-        var eta = m.ior;
-        if outside {
-            eta = 1.0 / m.ior;
-        }
-        var beyond = select(NONE, s.material, outside);
-        //#if nested
-        var other = medium;
-        if !outside {
-            other = medium_beyond(s, wo);
-        }
-        if other != NONE {
-            let ior = scene.materials[other].ior;
-            eta *= select(1.0 / ior, ior, outside);
-        }
-        if !outside {
-            beyond = other;
-        }
-        //#end
+        let beyond = interior_beyond(s, wo, interior);
+        let eta = relative_ior(s, wo, interior, beyond);
         let cos_i = dot(wo, n);
         let interface_n = fresnel(cos_i, eta);
         if u >= interface_n.reflectance {
@@ -88,31 +71,14 @@ fn scatter_specular(s: Surface, wo: vec3f, medium: u32, u: f32, mode: u32) -> Sc
     if mode == IMPORTANCE {
         weight *= shading_correction(s, n, ng, wo, wi);
     }
-    //#if glass
-    if m.kind == MATERIAL_GLASS {
-        let here = select(s.material, medium, dot(wo, s.normal) >= 0.0);
-        return Scatter(wi, here, weight);
+    if m.kind != MATERIAL_GLASS {
+        weight *= reflectance_at(s.material, s.uv);
     }
-    //#end
-    return Scatter(wi, medium, weight * reflectance_at(s.material, s.uv));
+    return Scatter(wi, interior, weight);
 }
 //#end
 
-//#if nested
-fn medium_beyond(s: Surface, wo: vec3f) -> u32 {
-    let origin = offset_origin(s.position, s.error, s.normal, -wo);
-    let ray = Ray(origin, 0.0, -wo, FAR);
-    let hit = intersect_scene(ray);
-    if hit.reference == NONE {
-        return NONE;
-    }
-    let next = surface_at(ray, hit);
-    let leaves = dot(wo, next.normal) < 0.0 && scene.materials[next.material].kind == MATERIAL_GLASS;
-    return select(NONE, next.material, leaves);
-}
-//#end
-
-fn scatter_rough(s: Surface, wo: vec3f, medium: u32, u: vec2f, mode: u32) -> Scatter {
+fn scatter_rough(s: Surface, wo: vec3f, interior: Interior, u: vec2f, mode: u32) -> Scatter {
     let m = scene.materials[s.material];
     let ng = toward(s.normal, wo);
     let n = shading_normal(s, wo);
@@ -147,7 +113,7 @@ fn scatter_rough(s: Surface, wo: vec3f, medium: u32, u: vec2f, mode: u32) -> Sca
         let seen = dot(wo, toward(s.shading, ng)) > 0.0;
         weight *= select(0.0, shading_correction(s, n, ng, wo, wi), seen);
     }
-    return Scatter(wi, medium, weight);
+    return Scatter(wi, interior, weight);
 }
 
 fn shading_correction(s: Surface, n: vec3f, ng: vec3f, wo: vec3f, wi: vec3f) -> f32 {

@@ -3,6 +3,7 @@
 use super::{math, real, shapes};
 
 pub mod bezier;
+pub mod contact;
 pub mod kdtree;
 mod kdtree_bins;
 mod kdtree_clip;
@@ -11,6 +12,7 @@ mod kdtree_sweep;
 pub mod learned;
 pub mod normalize;
 pub mod orientation;
+pub mod parts;
 pub mod profile;
 pub mod revolution;
 pub mod tessellate;

@@ -50,6 +50,8 @@ pub const FRAGMENTS: &[Fragment] = fragments![
     "materials/texture.wgsl" if "scene && textures",
     "materials/glass.wgsl" if "scene && glass",
     "materials/metal.wgsl" if "scene && metal || gather && metal",
+    "materials/interior.wgsl" if "scene",
+    "materials/enclosing.wgsl" if "scene",
     "materials/scatter.wgsl" if "scene || gather && metal",
     "lights/shape.wgsl" if "scene && lights",
     "lights/light.wgsl" if "scene && lights",

@@ -3,16 +3,18 @@
 //! updates `aovs`. Twin: `shaders/kernels/aov_trace.wgsl`.
 
 use super::camera::camera_ray;
-use super::direct::{direct_light, medium_before, transmittance};
+use super::direct::{direct_light, transmittance};
 use super::eye_sample::{start_radius, stratified, window_pixel};
 use super::lights::light::eval_environment;
+use super::materials::enclosing::interior_at;
+use super::materials::interior::{interior_before, interior_beyond, is_hidden, medium_of};
 use super::materials::scatter::{
     RADIANCE, is_specular, reflectance_at, scatter_specular, shading_normal, toward,
 };
 use super::math::rng::{rng_eye, rng_next};
 use super::math::{FAR, is_finite, max_component, offset_origin};
 use super::real::{Plain, Real, Vec3, Vec4};
-use super::records::Dispatch;
+use super::records::{Dispatch, HIDDEN_FACES};
 use super::shapes::intersect::intersect_scene;
 use super::shapes::ray::Ray;
 use super::shapes::surface::surface_at;
@@ -73,13 +75,15 @@ pub fn aov_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, id: u32, aov
         rng_eye(pixel * dispatch.eye_samples + k, dispatch.pass_number, dispatch.seed, dispatch.points);
     let mut ray = camera_ray(camera, x, y, stratified(rng_next(&mut rng), k, pixel, dispatch));
     let mut throughput = Vec3::ONE;
-    let mut medium = camera.medium;
+    let mut interior = interior_at(scene, camera.medium, ray.origin);
+    let mut hidden = 0;
+    let mut bounce = 0;
     let mut length = 0.0;
     let mut albedo = Vec3::ZERO;
     let mut normal = Vec3::ZERO;
     let mut emission = Vec3::ZERO;
     let mut direct = Vec3::ZERO;
-    for bounce in 0..dispatch.max_bounces + 1 {
+    while bounce <= dispatch.max_bounces && hidden <= HIDDEN_FACES {
         let hit = intersect_scene(scene, &ray);
         if hit.reference == NONE {
             if scene.world.environment != NONE {
@@ -91,15 +95,26 @@ pub fn aov_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, id: u32, aov
         let s = surface_at(scene, &ray, &hit);
         let wo = -ray.direction;
         length += hit.t;
-        if bounce == 0 {
+        if bounce == 0 && hidden == 0 {
             next.hits += 1.0;
             let share = 1.0 / next.hits;
             next.depth += ((s.position - camera.position).dot(camera.forward) - next.depth) * share;
             next.position += (s.position - next.position) * share;
         }
-        throughput *= transmittance(scene, medium_before(scene, &s, wo, medium), hit.t);
+        interior = interior_before(scene, &s, wo, &interior);
+        throughput *= transmittance(scene, medium_of(&interior), hit.t);
         if s.light != NONE && wo.dot(s.normal) > 0.0 {
             emission += throughput * scene.lights[s.light as usize].color;
+        }
+        if scene.world.nested != 0 {
+            let beyond = interior_beyond(scene, &s, wo, &interior);
+            if is_hidden(scene, &s, &interior, &beyond) {
+                hidden += 1;
+                interior = beyond;
+                let origin = offset_origin(s.position, s.error, s.normal, ray.direction);
+                ray = Ray { origin, t_min: 0.0, direction: ray.direction, t_max: FAR };
+                continue;
+            }
         }
         if !is_specular(scene.materials[s.material as usize].kind) {
             let reflectance = reflectance_at(scene, s.material, s.uv);
@@ -112,7 +127,7 @@ pub fn aov_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, id: u32, aov
                 if sampled {
                     let ng = toward(s.normal, wo);
                     let (radiance, _) =
-                        direct_light(scene, &s, wo, normal, ng, reflectance, medium, &mut rng);
+                        direct_light(scene, &s, wo, normal, ng, reflectance, &interior, &mut rng);
                     direct = throughput * radiance;
                 }
             }
@@ -123,9 +138,9 @@ pub fn aov_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, id: u32, aov
         }
         // as in `eye_trace`, with the same numbers
         let v = rng_next(&mut rng);
-        let scattered = scatter_specular(scene, &s, wo, medium, v.x, RADIANCE);
+        let scattered = scatter_specular(scene, &s, wo, &interior, v.x, RADIANCE);
         throughput *= scattered.weight;
-        medium = scattered.medium;
+        interior = scattered.interior;
         let survival = (4.0 * max_component(throughput)).min(1.0);
         if v.y >= survival {
             break;
@@ -133,6 +148,7 @@ pub fn aov_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, id: u32, aov
         throughput *= 1.0 / survival;
         let origin = offset_origin(s.position, s.error, s.normal, scattered.direction);
         ray = Ray { origin, t_min: 0.0, direction: scattered.direction, t_max: FAR };
+        bounce += 1;
     }
     if !is_finite(emission) {
         emission = Vec3::ZERO;

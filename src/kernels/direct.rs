@@ -4,6 +4,7 @@
 
 use super::lights::light::{eval_environment, pdf_environment, pdf_light, sample_light};
 use super::lights::select::{share_of, shares_at};
+use super::materials::interior::{Interior, medium_of};
 use super::materials::scatter::{RADIANCE, eval_rough, pdf_rough, scatter_rough};
 use super::math::rng::{Rng, rng_next};
 use super::math::sampling::balance;
@@ -25,13 +26,6 @@ pub fn transmittance(scene: &Scene, medium: u32, distance: Real) -> Vec3 {
     Vec3::new(exponential(depth.x), exponential(depth.y), exponential(depth.z))
 }
 
-/// The medium that a ray with direction `-wo` crossed before it hit `s`: glass met from inside says so itself.
-#[inline(always)]
-pub fn medium_before(scene: &Scene, s: &Surface, wo: Vec3, medium: u32) -> u32 {
-    let inside = scene.materials[s.material as usize].kind == MATERIAL_GLASS && wo.dot(s.normal) < 0.0;
-    if inside { s.material } else { medium }
-}
-
 /// Radiance toward `wo` from one sampled light, and the number of shadow rays. `mis`: weighted against
 /// scattered rays that could meet the same light.
 #[inline(always)]
@@ -42,7 +36,7 @@ pub fn next_event(
     n: Vec3,
     ng: Vec3,
     reflectance: Vec3,
-    medium: u32,
+    interior: &Interior,
     mis: bool,
     u: Vec4,
 ) -> (Vec3, u32) {
@@ -67,7 +61,7 @@ pub fn next_event(
     }
     let mut radiance = f * light.radiance * weight;
     if light.distance < FAR {
-        radiance *= transmittance(scene, medium, light.distance);
+        radiance *= transmittance(scene, medium_of(interior), light.distance);
     }
     (radiance, 1)
 }
@@ -81,16 +75,17 @@ pub fn direct_light(
     n: Vec3,
     ng: Vec3,
     reflectance: Vec3,
-    medium: u32,
+    interior: &Interior,
     rng: &mut Rng,
 ) -> (Vec3, u32) {
     let kind = scene.materials[s.material as usize].kind;
     let alpha = scene.materials[s.material as usize].alpha;
     let metal = kind == MATERIAL_METAL;
-    let (mut radiance, mut rays) = next_event(scene, s, wo, n, ng, reflectance, medium, metal, rng_next(rng));
+    let (mut radiance, mut rays) =
+        next_event(scene, s, wo, n, ng, reflectance, interior, metal, rng_next(rng));
     if metal {
         let u = rng_next(rng);
-        let scattered = scatter_rough(scene, s, wo, medium, Vec2::new(u.x, u.y), RADIANCE);
+        let scattered = scatter_rough(scene, s, wo, interior, Vec2::new(u.x, u.y), RADIANCE);
         if max_component(scattered.weight) > 0.0 {
             rays += 1;
             let pdf = pdf_rough(kind, alpha, n, wo, scattered.direction);
@@ -113,7 +108,7 @@ pub fn direct_light(
                     let light = &scene.lights[at.light as usize];
                     let other =
                         pdf_light(scene, shares, at.light, origin, ray.direction, hit.t, at.normal, at.v);
-                    let seen = light.color * transmittance(scene, medium, hit.t);
+                    let seen = light.color * transmittance(scene, medium_of(interior), hit.t);
                     radiance += scattered.weight * seen * balance(pdf, other);
                 }
             }

@@ -3,16 +3,18 @@
 //! `shaders/kernels/eye_trace.wgsl`.
 
 use super::camera::camera_ray;
-use super::direct::{direct_light, medium_before, transmittance};
+use super::direct::{direct_light, transmittance};
 use super::eye_sample::{start_radius, stratified, window_pixel};
 use super::lights::light::eval_environment;
+use super::materials::enclosing::interior_at;
+use super::materials::interior::{interior_before, interior_beyond, is_hidden, medium_of};
 use super::materials::scatter::{
     RADIANCE, is_specular, reflectance_at, scatter_specular, shading_normal, toward,
 };
 use super::math::rng::{rng_eye, rng_next};
 use super::math::{FAR, INV_PI, is_finite, max_component, oct_encode, offset_origin};
 use super::real::Vec3;
-use super::records::{BAD_DIRECT, BAD_EYE, Dispatch, VisiblePoint};
+use super::records::{BAD_DIRECT, BAD_EYE, Dispatch, HIDDEN_FACES, VisiblePoint};
 use super::shapes::intersect::intersect_scene;
 use super::shapes::ray::Ray;
 use super::shapes::surface::surface_at;
@@ -32,11 +34,13 @@ pub fn eye_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, id: u32) -> 
     let u = stratified(rng_next(&mut rng), k, pixel, dispatch);
     let mut ray = camera_ray(camera, pixel % camera.width, pixel / camera.width, u);
     let mut throughput = Vec3::ONE;
-    let mut medium = camera.medium;
+    let mut interior = interior_at(scene, camera.medium, ray.origin);
+    let mut hidden = 0;
+    let mut bounce = 0;
     let mut length = 0.0;
     let mut rays = 0;
     let mut point = VisiblePoint::zeroed();
-    for bounce in 0..dispatch.max_bounces + 1 {
+    while bounce <= dispatch.max_bounces && hidden <= HIDDEN_FACES {
         rays += 1;
         let hit = intersect_scene(scene, &ray);
         if hit.reference == NONE {
@@ -49,9 +53,20 @@ pub fn eye_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, id: u32) -> 
         let s = surface_at(scene, &ray, &hit);
         let wo = -ray.direction;
         length += hit.t;
-        throughput *= transmittance(scene, medium_before(scene, &s, wo, medium), hit.t);
+        interior = interior_before(scene, &s, wo, &interior);
+        throughput *= transmittance(scene, medium_of(&interior), hit.t);
         if s.light != NONE && wo.dot(s.normal) > 0.0 {
             point.radiance += throughput * scene.lights[s.light as usize].color;
+        }
+        if scene.world.nested != 0 {
+            let beyond = interior_beyond(scene, &s, wo, &interior);
+            if is_hidden(scene, &s, &interior, &beyond) {
+                hidden += 1;
+                interior = beyond;
+                let origin = offset_origin(s.position, s.error, s.normal, ray.direction);
+                ray = Ray { origin, t_min: 0.0, direction: ray.direction, t_max: FAR };
+                continue;
+            }
         }
         let kind = scene.materials[s.material as usize].kind;
         if !is_specular(kind) {
@@ -74,7 +89,7 @@ pub fn eye_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, id: u32) -> 
                 point.wo = oct_encode(wo);
             }
             if sampled {
-                let (radiance, spent) = direct_light(scene, &s, wo, n, ng, reflectance, medium, &mut rng);
+                let (radiance, spent) = direct_light(scene, &s, wo, n, ng, reflectance, &interior, &mut rng);
                 let direct = throughput * radiance;
                 rays += spent;
                 if is_finite(direct) {
@@ -89,9 +104,9 @@ pub fn eye_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, id: u32) -> 
             break;
         }
         let v = rng_next(&mut rng);
-        let scattered = scatter_specular(scene, &s, wo, medium, v.x, RADIANCE);
+        let scattered = scatter_specular(scene, &s, wo, &interior, v.x, RADIANCE);
         throughput *= scattered.weight;
-        medium = scattered.medium;
+        interior = scattered.interior;
         // roulette only where little is left to lose
         let survival = (4.0 * max_component(throughput)).min(1.0);
         if v.y >= survival {
@@ -100,6 +115,7 @@ pub fn eye_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, id: u32) -> 
         throughput *= 1.0 / survival;
         let origin = offset_origin(s.position, s.error, s.normal, scattered.direction);
         ray = Ray { origin, t_min: 0.0, direction: scattered.direction, t_max: FAR };
+        bounce += 1;
     }
     if !is_finite(point.radiance) {
         point.radiance = Vec3::ZERO;

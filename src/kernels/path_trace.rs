@@ -2,10 +2,12 @@
 //! mapping converges to the right picture wherever path tracing gets there. CPU engine only.
 
 use super::camera::camera_ray;
-use super::direct::{medium_before, next_event, transmittance};
+use super::direct::{next_event, transmittance};
 use super::eye_sample::window_pixel;
 use super::lights::light::{eval_environment, pdf_environment, pdf_light};
 use super::lights::select::{share_of, shares_at};
+use super::materials::enclosing::interior_at;
+use super::materials::interior::{interior_before, interior_beyond, is_hidden, medium_of};
 use super::materials::scatter::{
     RADIANCE, is_specular, pdf_rough, reflectance_at, scatter_rough, scatter_specular, shading_normal, toward,
 };
@@ -13,7 +15,7 @@ use super::math::rng::{rng_eye, rng_next};
 use super::math::sampling::balance;
 use super::math::{FAR, max_component, offset_origin};
 use super::real::{Vec2, Vec3};
-use super::records::Dispatch;
+use super::records::{Dispatch, HIDDEN_FACES};
 use super::shapes::intersect::intersect_scene;
 use super::shapes::ray::Ray;
 use super::shapes::surface::surface_at;
@@ -27,13 +29,15 @@ pub fn path_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, place: u32)
     let mut ray = camera_ray(camera, pixel % camera.width, pixel / camera.width, rng_next(&mut rng));
     let mut radiance = Vec3::ZERO;
     let mut throughput = Vec3::ONE;
-    let mut medium = camera.medium;
+    let mut interior = interior_at(scene, camera.medium, ray.origin);
+    let mut hidden = 0;
+    let mut bounce = 0;
     let mut rays = 0;
     // density of the last scattering; 0 where next-event estimation could not have found what is met now
     let mut pdf = 0.0;
     // where the probabilities of the lights at that place begin
     let mut shares = 0;
-    for bounce in 0..dispatch.max_bounces + 1 {
+    while bounce <= dispatch.max_bounces && hidden <= HIDDEN_FACES {
         rays += 1;
         let hit = intersect_scene(scene, &ray);
         if hit.reference == NONE {
@@ -48,12 +52,24 @@ pub fn path_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, place: u32)
         }
         let s = surface_at(scene, &ray, &hit);
         let wo = -ray.direction;
-        throughput *= transmittance(scene, medium_before(scene, &s, wo, medium), hit.t);
+        interior = interior_before(scene, &s, wo, &interior);
+        throughput *= transmittance(scene, medium_of(&interior), hit.t);
         if s.light != NONE && wo.dot(s.normal) > 0.0 {
             let from = ray.origin;
             let other = pdf_light(scene, shares, s.light, from, ray.direction, hit.t, s.normal, s.v);
             let weight = if pdf > 0.0 { balance(pdf, other) } else { 1.0 };
             radiance += throughput * scene.lights[s.light as usize].color * weight;
+        }
+        if scene.world.nested != 0 {
+            let beyond = interior_beyond(scene, &s, wo, &interior);
+            if is_hidden(scene, &s, &interior, &beyond) {
+                hidden += 1;
+                interior = beyond;
+                pdf = 0.0;
+                let origin = offset_origin(s.position, s.error, s.normal, ray.direction);
+                ray = Ray { origin, t_min: 0.0, direction: ray.direction, t_max: FAR };
+                continue;
+            }
         }
         if bounce == dispatch.max_bounces {
             break;
@@ -62,7 +78,7 @@ pub fn path_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, place: u32)
         let scattered = if is_specular(kind) {
             pdf = 0.0;
             let u = rng_next(&mut rng);
-            scatter_specular(scene, &s, wo, medium, u.x, RADIANCE)
+            scatter_specular(scene, &s, wo, &interior, u.x, RADIANCE)
         } else {
             let alpha = scene.materials[s.material as usize].alpha;
             let reflectance = reflectance_at(scene, s.material, s.uv);
@@ -71,17 +87,17 @@ pub fn path_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, place: u32)
             if sampled {
                 shares = shares_at(scene, s.position);
                 let u = rng_next(&mut rng);
-                let (direct, spent) = next_event(scene, &s, wo, n, ng, reflectance, medium, true, u);
+                let (direct, spent) = next_event(scene, &s, wo, n, ng, reflectance, &interior, true, u);
                 radiance += throughput * direct;
                 rays += spent;
             }
             let u = rng_next(&mut rng);
-            let scattered = scatter_rough(scene, &s, wo, medium, Vec2::new(u.x, u.y), RADIANCE);
+            let scattered = scatter_rough(scene, &s, wo, &interior, Vec2::new(u.x, u.y), RADIANCE);
             pdf = if sampled { pdf_rough(kind, alpha, n, wo, scattered.direction) } else { 0.0 };
             scattered
         };
         throughput *= scattered.weight;
-        medium = scattered.medium;
+        interior = scattered.interior;
         // as on eye paths: glass dims the throughput on the way in and undoes it on the way out
         let survival = (4.0 * max_component(throughput)).min(1.0);
         if rng_next(&mut rng).x >= survival {
@@ -90,6 +106,7 @@ pub fn path_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, place: u32)
         throughput *= 1.0 / survival;
         let origin = offset_origin(s.position, s.error, s.normal, scattered.direction);
         ray = Ray { origin, t_min: 0.0, direction: scattered.direction, t_max: FAR };
+        bounce += 1;
     }
     (radiance, rays)
 }

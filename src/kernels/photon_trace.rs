@@ -2,14 +2,15 @@
 //! ends it. Run by one invocation per photon; reads the scene, appends to `records`. Twin:
 //! `shaders/kernels/photon_trace.wgsl`.
 
-use super::direct::{medium_before, transmittance};
+use super::direct::transmittance;
 use super::lights::aim::aimed_scatter;
 use super::lights::emission::{Emission, emit_photon};
+use super::materials::interior::{Interior, interior_before, interior_beyond, is_hidden, medium_of};
 use super::materials::scatter::{IMPORTANCE, is_specular, reflectance_at, scatter_rough, scatter_specular};
 use super::math::rng::{Rng, STREAM_PHOTON, rng_new, rng_next};
 use super::math::{FAR, max_component, oct_encode, offset_origin};
 use super::real::{Real, Vec2, Vec3};
-use super::records::{Dispatch, PhotonRecord};
+use super::records::{Dispatch, HIDDEN_FACES, PhotonRecord};
 use super::shapes::intersect::intersect_scene;
 use super::shapes::ray::{Hit, Ray};
 use super::shapes::surface::surface_at;
@@ -35,9 +36,10 @@ pub struct PhotonPath {
     rng: Rng,
     flux: Vec3,
     excess: Real,
-    medium: u32,
+    interior: Interior,
     family: u32,
     bounce: u32,
+    hidden: u32,
 }
 
 impl PhotonPath {
@@ -60,16 +62,17 @@ impl PhotonPath {
             rng,
             flux: emission.flux,
             excess: emission.excess,
-            medium: emission.medium,
+            interior: emission.interior,
             family: 0,
             bounce: 0,
+            hidden: 0,
         }
     }
 
     /// Whether it goes on, with its `ray`.
     #[inline(always)]
     pub fn goes_on(&mut self, dispatch: &Dispatch) -> bool {
-        if self.bounce > dispatch.max_bounces {
+        if self.bounce > dispatch.max_bounces || self.hidden > HIDDEN_FACES {
             return false;
         }
         if max_component(self.flux) <= 0.0 {
@@ -100,19 +103,31 @@ impl PhotonPath {
         let s = surface_at(scene, &self.ray, hit);
         let wo = -self.ray.direction;
         // the first ray of light from infinity starts behind its origin, outside of every medium
-        self.flux *= transmittance(scene, medium_before(scene, &s, wo, self.medium), hit.t.max(0.0));
+        let interior = interior_before(scene, &s, wo, &self.interior);
+        self.flux *= transmittance(scene, medium_of(&interior), hit.t.max(0.0));
+        if scene.world.nested != 0 {
+            let beyond = interior_beyond(scene, &s, wo, &interior);
+            if is_hidden(scene, &s, &interior, &beyond) {
+                self.hidden += 1;
+                self.interior = beyond;
+                let origin = offset_origin(s.position, s.error, s.normal, self.ray.direction);
+                self.ray = Ray { origin, t_min: 0.0, direction: self.ray.direction, t_max: FAR };
+                return true;
+            }
+        }
         let kind = scene.materials[s.material as usize].kind;
         let u = rng_next(&mut self.rng);
         let mut scattered;
         if is_specular(kind) {
-            scattered = scatter_specular(scene, &s, wo, self.medium, u.x, IMPORTANCE);
+            scattered = scatter_specular(scene, &s, wo, &interior, u.x, IMPORTANCE);
         } else {
-            let stored = self.bounce > 0 || !sampled;
+            // shadow rays end at faces, hidden ones too
+            let stored = self.bounce > 0 || self.hidden > 0 || !sampled;
             if stored && max_component(reflectance_at(scene, s.material, s.uv)) > 0.0 {
                 let key = self.id << dispatch.key_bits | self.bounce << 1 | self.family;
                 store(PhotonRecord { position: s.position, key, flux: self.flux, direction: oct_encode(wo) });
             }
-            scattered = scatter_rough(scene, &s, wo, self.medium, Vec2::new(u.x, u.y), IMPORTANCE);
+            scattered = scatter_rough(scene, &s, wo, &interior, Vec2::new(u.x, u.y), IMPORTANCE);
             if far {
                 scattered = aimed_scatter(scene, &s, wo, u, scattered);
             }
@@ -134,7 +149,7 @@ impl PhotonPath {
         }
         scattered.weight *= 1.0 / survival;
         self.flux *= scattered.weight;
-        self.medium = scattered.medium;
+        self.interior = scattered.interior;
         let origin = offset_origin(s.position, s.error, s.normal, scattered.direction);
         self.ray = Ray { origin, t_min: 0.0, direction: scattered.direction, t_max: FAR };
         self.bounce += 1;

@@ -66,6 +66,10 @@ pub struct Dispatch {
     pub points: Points,
 }
 
+/// Faces of glass that bend and reflect nothing, between which a path goes on as if they were not there: of more
+/// the rest of the path is left out.
+pub const HIDDEN_FACES: u32 = 256;
+
 /// The driver stopped the kernel's loops: the point is to be found again.
 pub const STOPPED: u32 = 1;
 /// What the eye path met on its way was not finite; it is left out of the radiance.

@@ -40,10 +40,10 @@ pub fn aimed_scatter(scene: &Scene, s: &Surface, wo: Vec3, u: Vec4, scattered: S
     }
     let cos = wi.dot(toward(s.normal, wo));
     if cos <= 0.0 {
-        return Scatter { direction: wi, medium: scattered.medium, weight: Vec3::ZERO };
+        return Scatter { direction: wi, interior: scattered.interior, weight: Vec3::ZERO };
     }
     let by_cosine = INV_PI * cos;
     let by_cone = if in_cone { 1.0 / (TAU * one_minus_cos) } else { 0.0 };
     let weight = scattered.weight * (by_cosine / (0.5 * by_cosine + 0.5 * by_cone));
-    Scatter { direction: wi, medium: scattered.medium, weight }
+    Scatter { direction: wi, interior: scattered.interior, weight }
 }

@@ -2,6 +2,8 @@
 
 use super::guide::{GUIDED, guided, pdf_guide};
 use super::light::{eval_environment, find_interval, pdf_environment, sample_environment, spot_falloff};
+use super::materials::enclosing::interior_at;
+use super::materials::interior::{Interior, interior_from, interior_of};
 use super::math::rng::{Rng, rng_next};
 use super::math::sampling::{sample_cone, sample_cosine, sample_disc, sample_sphere};
 use super::math::{EPS, FAR, PI, TAU, basis, from_frame, unit};
@@ -21,8 +23,8 @@ pub struct Emission {
     /// Flux over that of the same photon if no map had sent it and it passed the center of what the
     /// camera sees at half the near radius.
     pub excess: Real,
-    /// The glass material that it starts in, or [`NONE`].
-    pub medium: u32,
+    /// The glass that it starts in.
+    pub interior: Interior,
 }
 
 /// The next photon.
@@ -43,6 +45,7 @@ pub fn emit_from(scene: &Scene, light: &Light, u: Vec4, v: Vec4) -> Emission {
     let mut emission = emit_nearby(scene, light, u, across);
     emission.flux *= scale;
     emission.excess *= scale;
+    emission.interior = interior_at(scene, light.medium, emission.ray.origin);
     emission
 }
 
@@ -57,14 +60,14 @@ fn emit_nearby(scene: &Scene, light: &Light, u: Vec4, across: Vec2) -> Emission 
         let p = sample_sphere_facing(scene, light, Vec2::new(u.y, u.z), ray.direction);
         ray.origin = p.position + p.normal * p.error;
         let flux = light.color * (PI / (p.pdf * light.selection));
-        return Emission { ray, flux, excess: 1.0, medium: light.medium };
+        return Emission { ray, flux, excess: 1.0, interior: interior_of(NONE) };
     }
     if light.kind == LIGHT_AREA {
         let p = sample_shape(scene, light, Vec2::new(u.y, u.z), u.w);
         ray.direction = unit(from_frame(p.normal, sample_cosine(across)));
         ray.origin = p.position + p.normal * p.error;
         let flux = light.color * (PI / (p.pdf * light.selection));
-        return Emission { ray, flux, excess: 1.0, medium: light.medium };
+        return Emission { ray, flux, excess: 1.0, interior: interior_of(NONE) };
     }
     if light.kind == LIGHT_SPOT {
         let local = sample_cone(across, light.outer);
@@ -72,11 +75,11 @@ fn emit_nearby(scene: &Scene, light: &Light, u: Vec4, across: Vec2) -> Emission 
         let solid_angle = TAU * light.outer;
         let flux =
             light.color * (spot_falloff(light, across.x * light.outer) * solid_angle / light.selection);
-        return Emission { ray, flux, excess: 1.0, medium: light.medium };
+        return Emission { ray, flux, excess: 1.0, interior: interior_of(NONE) };
     }
     ray.direction = unit(sample_sphere(across));
     let flux = light.color * (2.0 * TAU / light.selection);
-    Emission { ray, flux, excess: 1.0, medium: light.medium }
+    Emission { ray, flux, excess: 1.0, interior: interior_of(NONE) }
 }
 
 /// A photon of light from infinity. It enters through one of the emission discs about what the camera
@@ -110,7 +113,7 @@ fn emit_from_infinity(scene: &Scene, light: &Light, u: Vec4, v: Vec4) -> Emissio
     ray.t_min = -4.0 * disc_radius(scene, scene.world.disc_levels - 1);
     let flux = radiance * (1.0 / (pdf * light.selection));
     let usual = pdf_discs(scene, 0.25 * near * near);
-    Emission { ray, flux, excess: usual / pdf, medium: light.medium }
+    Emission { ray, flux, excess: usual / pdf, interior: interior_from(scene, ray.direction) }
 }
 
 /// Radius of emission disc `level`, at most 31.

@@ -1,13 +1,12 @@
 //! Scattering at a surface: the dispatch over materials. Twin: `shaders/materials/scatter.wgsl`.
 
 use super::glass::{fresnel, refracted};
+use super::interior::{Interior, interior_beyond, relative_ior};
 use super::math::sampling::sample_cosine;
-use super::math::{FAR, INV_PI, basis, from_frame, mirrored, offset_origin};
+use super::math::{INV_PI, basis, from_frame, mirrored};
 use super::metal::{eval_metal, pdf_metal, sample_metal, weight_metal};
 use super::real::{Real, Vec2, Vec3};
-use super::shapes::intersect::intersect_scene;
-use super::shapes::ray::Ray;
-use super::shapes::surface::{Surface, surface_at};
+use super::shapes::surface::Surface;
 use super::tables::*;
 use super::texture::eval_texture;
 
@@ -24,8 +23,8 @@ const ADJOINT_COS_MIN: Real = 1e-2;
 pub struct Scatter {
     /// Unit direction.
     pub direction: Vec3,
-    /// The medium ahead: a glass material's index or [`NONE`].
-    pub medium: u32,
+    /// The glass ahead.
+    pub interior: Interior,
     /// BSDF times cosine over density; zero where the path ends.
     pub weight: Vec3,
 }
@@ -62,26 +61,22 @@ pub fn shading_normal(scene: &Scene, s: &Surface, wo: Vec3) -> Vec3 {
     if diffuse || wo.dot(ns) > 0.0 { ns } else { ng }
 }
 
-/// Mirror and glass. `u` decides between reflection and refraction.
+/// Mirror and glass. `interior` is that before the surface; `u` decides between reflection and refraction.
 #[inline(always)]
-pub fn scatter_specular(scene: &Scene, s: &Surface, wo: Vec3, medium: u32, u: Real, mode: u32) -> Scatter {
+pub fn scatter_specular(
+    scene: &Scene,
+    s: &Surface,
+    wo: Vec3,
+    interior: &Interior,
+    u: Real,
+    mode: u32,
+) -> Scatter {
     let m = &scene.materials[s.material as usize];
     let ng = toward(s.normal, wo);
     let mut n = shading_normal(scene, s, wo);
     if m.kind == MATERIAL_GLASS {
-        let outside = wo.dot(s.normal) >= 0.0;
-        let mut eta = if outside { 1.0 / m.ior } else { m.ior };
-        let mut beyond = if outside { s.material } else { NONE };
-        if scene.world.nested != 0 {
-            let other = if outside { medium } else { medium_beyond(scene, s, wo) };
-            if other != NONE {
-                let ior = scene.materials[other as usize].ior;
-                eta *= if outside { ior } else { 1.0 / ior };
-            }
-            if !outside {
-                beyond = other;
-            }
-        }
+        let beyond = interior_beyond(scene, s, wo, interior);
+        let eta = relative_ior(scene, s, wo, interior, &beyond);
         let cos_i = wo.dot(n);
         let interface = fresnel(cos_i, eta);
         if u >= interface.reflectance {
@@ -97,7 +92,7 @@ pub fn scatter_specular(scene: &Scene, s: &Surface, wo: Vec3, medium: u32, u: Re
             if mode == IMPORTANCE {
                 weight = shading_correction(s, n, ng, wo, wi);
             }
-            return Scatter { direction: wi, medium: beyond, weight: Vec3::splat(weight) };
+            return Scatter { direction: wi, interior: beyond, weight: Vec3::splat(weight) };
         }
     }
     if mirrored(wo, n).dot(ng) <= 0.0 {
@@ -108,30 +103,22 @@ pub fn scatter_specular(scene: &Scene, s: &Surface, wo: Vec3, medium: u32, u: Re
     if mode == IMPORTANCE {
         weight *= shading_correction(s, n, ng, wo, wi);
     }
-    if m.kind == MATERIAL_GLASS {
-        let here = if wo.dot(s.normal) >= 0.0 { medium } else { s.material };
-        return Scatter { direction: wi, medium: here, weight };
+    if m.kind != MATERIAL_GLASS {
+        weight *= reflectance_at(scene, s.material, s.uv);
     }
-    Scatter { direction: wi, medium, weight: weight * reflectance_at(scene, s.material, s.uv) }
-}
-
-/// The glass behind a face of glass that a ray leaves, where bodies of glass touch or hold one another: the one that a ray
-/// straight on leaves next without having entered it.
-fn medium_beyond(scene: &Scene, s: &Surface, wo: Vec3) -> u32 {
-    let origin = offset_origin(s.position, s.error, s.normal, -wo);
-    let ray = Ray { origin, t_min: 0.0, direction: -wo, t_max: FAR };
-    let hit = intersect_scene(scene, &ray);
-    if hit.reference == NONE {
-        return NONE;
-    }
-    let next = surface_at(scene, &ray, &hit);
-    let leaves = wo.dot(next.normal) < 0.0 && scene.materials[next.material as usize].kind == MATERIAL_GLASS;
-    if leaves { next.material } else { NONE }
+    Scatter { direction: wi, interior: *interior, weight }
 }
 
 /// Diffuse and metal: a direction by the material's own density.
 #[inline(always)]
-pub fn scatter_rough(scene: &Scene, s: &Surface, wo: Vec3, medium: u32, u: Vec2, mode: u32) -> Scatter {
+pub fn scatter_rough(
+    scene: &Scene,
+    s: &Surface,
+    wo: Vec3,
+    interior: &Interior,
+    u: Vec2,
+    mode: u32,
+) -> Scatter {
     let m = &scene.materials[s.material as usize];
     let ng = toward(s.normal, wo);
     let n = shading_normal(scene, s, wo);
@@ -164,7 +151,7 @@ pub fn scatter_rough(scene: &Scene, s: &Surface, wo: Vec3, medium: u32, u: Vec2,
         let seen = wo.dot(toward(s.shading, ng)) > 0.0;
         weight *= if seen { shading_correction(s, n, ng, wo, wi) } else { 0.0 };
     }
-    Scatter { direction: wi, medium, weight }
+    Scatter { direction: wi, interior: *interior, weight }
 }
 
 /// Adjoint correction of shading normals for particles (Veach 1997, eq. 5.19); 1 where both normals agree.

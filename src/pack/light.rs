@@ -1,7 +1,6 @@
 //! Lights: strengths in scene units and the distributions that they are sampled by.
 
 use super::discs::cumulative;
-use super::lights::shape::sample_shape;
 use super::real::{Real, ToReal, Vec2, Vec3};
 use super::shape::Emitter;
 use super::shapes::revolution::ring_point;
@@ -128,18 +127,6 @@ pub fn pack_lights(
     out.distributions.extend(distributions);
     out.world.light_count = count as u32;
     PackedLights { radiance_unit, brightest: luminance_max, power, sources }
-}
-
-/// A point from which a light shines; nothing for light from infinity.
-pub fn place(out: &Scene, light: &Light) -> Option<Vec3> {
-    match light.kind {
-        LIGHT_AREA => {
-            let p = sample_shape(out, light, Vec2::splat(0.5), 0.5);
-            Some(p.position + p.normal * p.error)
-        }
-        LIGHT_POINT | LIGHT_SPOT => Some(light.position),
-        _ => None,
-    }
 }
 
 /// The parts of v by patch and the cumulative shares of area; returns the area. A patch overlaps its neighbour,

@@ -1,11 +1,11 @@
 //! A validated scene flattened into the tables that the kernels read.
 
+mod bodies;
 mod cells;
 mod discs;
 mod image;
 mod light;
 mod look;
-mod medium;
 mod objects;
 mod order;
 mod pilots;
@@ -17,6 +17,7 @@ pub use crate::error::PackError;
 pub use objects::Objects;
 
 use super::lights::select::CELL_LEAF;
+use super::math::EPS;
 use super::real::{Real, ToDouble, ToReal, Vec3};
 use super::shapes::fours::{FourRectangles, FourSpheres, LANES};
 use super::tables::*;
@@ -26,6 +27,7 @@ use crate::build::normalize::{Normalization, reach};
 use crate::scene::{self, MaterialKind, Reflectance};
 use crate::settings::{Method, RenderSettings};
 use crate::stage::stage;
+use bodies::Bodies;
 use bytemuck::Zeroable;
 use glam::{DVec2, DVec3};
 use look::{Look, Region, look};
@@ -103,8 +105,13 @@ fn flatten(scene: &scene::Scene, n: Normalization, width: u32, height: u32) -> R
             last.planar_origin = origin.to_real();
         }
     }
+    let kinds = crate::build::contact::grown(scene, &n, f64::from(EPS));
+    let bodies = Bodies::of(scene, &kinds);
+    out.world.nested = bodies.nested as u32;
     let mut objects = Objects::default();
-    let (primitives, references, mut emitters) = shape::pack_shapes(scene, &n, &mut out, &mut objects)?;
+    let materials = bodies.pack(scene, &mut out, &mut objects.materials);
+    let (primitives, references, mut emitters) =
+        shape::pack_shapes(scene, &kinds, &materials, &n, &mut out, &mut objects)?;
     walls::find_walls(&mut out);
     let limit = 1 << REFERENCE_BITS;
     if references.len() >= limit {
@@ -128,14 +135,8 @@ fn flatten(scene: &scene::Scene, n: Normalization, width: u32, height: u32) -> R
     out.world.unbounded_count = out.unbounded.len() as u32;
     let light::PackedLights { radiance_unit, brightest, power, sources } =
         light::pack_lights(scene, &n, &emitters, &mut out);
-    out.world.nested = medium::glass_meets_glass(scene) as u32;
-    stand_camera(&mut out);
-    for i in 0..out.lights.len() {
-        out.lights[i].medium = match light::place(&out, &out.lights[i]) {
-            Some(position) => medium::medium_at(&out, position),
-            None => NONE,
-        };
-    }
+    bodies::stand_camera(&mut out);
+    bodies::stand_lights(&mut out);
     let flattened = out.distributions.len();
     Ok(Packed {
         scene: out,
@@ -158,7 +159,7 @@ impl Packed {
     /// learned for the camera before included.
     pub fn move_camera(&mut self, scene: &scene::Scene, width: u32, height: u32) {
         self.scene.camera = camera(scene, &self.normalization, width, height);
-        stand_camera(&mut self.scene);
+        bodies::stand_camera(&mut self.scene);
     }
 
     /// Learns anew for the camera as it is now; then the tables are those of [`pack`]. False, and nothing
@@ -287,11 +288,6 @@ impl Packed {
     }
 }
 
-/// Finds the glass that the camera stands in.
-fn stand_camera(out: &mut Scene) {
-    out.camera.medium = medium::medium_at(out, out.camera.position);
-}
-
 impl Scene {
     /// A scene with nothing in it.
     pub fn empty() -> Self {
@@ -361,7 +357,7 @@ fn material(m: &scene::Material, unit: f64) -> Material {
             out.kind = MATERIAL_MIRROR;
             reflect(&mut out, reflectance);
         }
-        MaterialKind::Glass { ior, absorption } => {
+        MaterialKind::Glass { ior, absorption, .. } => {
             out.kind = MATERIAL_GLASS;
             out.ior = *ior as Real;
             out.absorption = rgb(absorption.map(|a| a * unit));

@@ -1,13 +1,18 @@
-//! Which shape of the scene each entry of the tables comes from.
+//! Which shape of the scene each entry of the tables comes from, and which material.
 
 use super::tables::*;
 
 /// Number of reference kinds.
 const KINDS: usize = KIND_PLANE as usize + 1;
 
-/// For each kind of reference, the shape's number in the scene by the reference's index.
+/// What the tables' numbers are in the scene.
 #[derive(Clone, Debug, Default)]
-pub struct Objects([Vec<u32>; KINDS]);
+pub struct Objects {
+    /// For each kind of reference, the shape's number by the reference's index.
+    shapes: [Vec<u32>; KINDS],
+    /// The material's number by that of the table's; empty where they are the same.
+    pub materials: Vec<u32>,
+}
 
 impl Objects {
     /// Tells that what was put into the tables since the last call, and the first `patches` patches, is of shape `shape`.
@@ -22,14 +27,14 @@ impl Objects {
             (KIND_PLANE, scene.planes.len()),
         ];
         for (kind, length) in lengths {
-            self.0[kind as usize].resize(length, shape);
+            self.shapes[kind as usize].resize(length, shape);
         }
     }
 
     /// Follows triangles to their new places.
     pub fn move_triangles(&mut self, places: &[u32]) {
-        let old = std::mem::take(&mut self.0[KIND_TRIANGLE as usize]);
-        let new = &mut self.0[KIND_TRIANGLE as usize];
+        let old = std::mem::take(&mut self.shapes[KIND_TRIANGLE as usize]);
+        let new = &mut self.shapes[KIND_TRIANGLE as usize];
         new.resize(old.len(), NONE);
         for (shape, place) in old.into_iter().zip(places) {
             new[*place as usize] = shape;
@@ -39,6 +44,11 @@ impl Objects {
     /// The shape that a hit's reference belongs to; none for [`NONE`].
     pub fn of(&self, reference: u32) -> Option<u32> {
         let index = (reference & ((1 << REFERENCE_BITS) - 1)) as usize;
-        self.0.get((reference >> REFERENCE_BITS) as usize)?.get(index).copied()
+        self.shapes.get((reference >> REFERENCE_BITS) as usize)?.get(index).copied()
+    }
+
+    /// The scene's material of a material of the tables; [`NONE`] for [`NONE`].
+    pub fn material(&self, index: u32) -> u32 {
+        self.materials.get(index as usize).copied().unwrap_or(index)
     }
 }

@@ -15,6 +15,7 @@ use crate::build::normalize::Normalization;
 use crate::scene::{self, Aov, Mesh, ShapeKind, Transform};
 use bytemuck::Zeroable;
 use glam::{DQuat, DVec2, DVec3};
+use std::borrow::Cow;
 
 /// Spheres of a larger radius, in scene units, are tested outside of the kd-tree.
 const UNBOUNDED_RADIUS: f64 = 64.0;
@@ -45,9 +46,12 @@ fn off_plane(normal: DVec3, extent: DVec3) -> DVec3 {
 type Flattened = (Vec<Primitive>, Vec<u32>, Vec<Emitter>);
 
 /// Fills the shape tables; returns the kd-tree's primitives, the reference of each, and the emitters. An
-/// emitter's number is its light's. Where the film asks for shapes' numbers, `objects` tells them.
+/// emitter's number is its light's. `kinds` are the shapes to pack, `materials` of each the material or
+/// those of its triangles. Where the film asks for shapes' numbers, `objects` tells them.
 pub fn pack_shapes(
     scene: &scene::Scene,
+    kinds: &[Cow<ShapeKind>],
+    materials: &[Vec<u32>],
     n: &Normalization,
     out: &mut Scene,
     objects: &mut Objects,
@@ -64,12 +68,12 @@ pub fn pack_shapes(
     let mut revolutions = RevolutionTables::default();
     for (i, shape) in scene.shapes.iter().enumerate() {
         pack.shape = i;
-        let material = shape.material as u32;
+        let material = materials[i].first().copied().unwrap_or_default();
         let uv = if shape.planar_uv { UV_PLANAR } else { UV_NATURAL };
         pack.period =
             scene.materials.get(shape.material).map_or(DVec2::INFINITY, |m| image::period(scene, m));
         let emission = shape.is_emitter().then(|| DVec3::from(shape.emission));
-        match &shape.kind {
+        match &*kinds[i] {
             ShapeKind::Sphere { center, radius } => pack.sphere(*center, *radius, material, uv, emission),
             ShapeKind::Rectangle { origin, u, v } => pack.rectangle(*origin, *u, *v, material, uv, emission),
             ShapeKind::Disc { center, normal, radius } => {
@@ -77,7 +81,7 @@ pub fn pack_shapes(
             }
             ShapeKind::Plane { point, normal } => pack.plane(*point, *normal, material, uv),
             ShapeKind::Cuboid { min, max } => pack.cuboid(*min, *max, material, uv, emission),
-            ShapeKind::Mesh(mesh) => pack.mesh(mesh, material, uv, emission),
+            ShapeKind::Mesh(mesh) => pack.mesh(mesh, &materials[i], uv, emission),
             ShapeKind::Revolution { segments, transform, newton_tolerance } => {
                 let light =
                     pack.light(emission, reference(KIND_REVOLUTION, revolutions.revolutions.len()), 0.0);
@@ -303,8 +307,9 @@ impl Pack<'_> {
         self.boxed(id, &[lower, upper], largest(&[lower, upper]));
     }
 
-    fn mesh(&mut self, mesh: &Mesh, material: u32, uv: u32, emission: Option<DVec3>) {
-        for triangle in &mesh.triangles {
+    fn mesh(&mut self, mesh: &Mesh, materials: &[u32], uv: u32, emission: Option<DVec3>) {
+        for (k, triangle) in mesh.triangles.iter().enumerate() {
+            let material = materials.get(k).or(materials.first()).copied().unwrap_or_default();
             let corners = triangle.position.map(|i| mesh.positions[i as usize]);
             let p = corners.map(|c| self.n.point(c));
             let index = self.out.triangles.len();

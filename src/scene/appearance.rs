@@ -124,6 +124,9 @@ pub enum MaterialKind {
         ior: f64,
         /// Absorption coefficient inside, per scene unit (Beer-Lambert), >= 0.
         absorption: Rgb,
+        /// Where bodies of glass overlap, the one of the highest priority is there; of equal ones the
+        /// smaller body.
+        priority: i32,
     },
     /// GGX microfacet conductor with Schlick's Fresnel term, two-sided.
     Metal {

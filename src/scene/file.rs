@@ -160,13 +160,17 @@ pub enum MaterialFile {
         /// Share of light reflected.
         reflectance: Paint,
     },
-    /// A smooth dielectric with air outside.
+    /// A smooth dielectric with air outside, or other glass where bodies overlap.
     Glass {
         /// Index of refraction.
         ior: Positive,
         /// Absorption per scene unit inside (Beer-Lambert).
         #[serde(default)]
         absorption: Spectrum<NonNegative>,
+        /// Where bodies of glass overlap, the one of the highest priority is there; of equal ones the
+        /// smaller body.
+        #[serde(default)]
+        priority: i32,
     },
     /// A GGX microfacet conductor, two-sided.
     Metal {

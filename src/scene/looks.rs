@@ -36,8 +36,8 @@ pub(super) fn material(loader: &Loader, item: &Item, file: MaterialFile) -> Mate
     let kind = match file {
         MaterialFile::Diffuse { reflectance } => MaterialKind::Diffuse { reflectance: paint(&reflectance) },
         MaterialFile::Mirror { reflectance } => MaterialKind::Mirror { reflectance: paint(&reflectance) },
-        MaterialFile::Glass { ior, absorption } => {
-            MaterialKind::Glass { ior: ior.0, absorption: absorption.rgb() }
+        MaterialFile::Glass { ior, absorption, priority } => {
+            MaterialKind::Glass { ior: ior.0, absorption: absorption.rgb(), priority }
         }
         MaterialFile::Metal { reflectance, roughness } => {
             MaterialKind::Metal { reflectance: paint(&reflectance), roughness: roughness.0 }

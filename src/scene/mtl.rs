@@ -176,7 +176,7 @@ impl<'t> Reader<'_, 't> {
         let ior = (is_glass || is_clear).then(|| self.number("Ni", LARGEST)).flatten();
         let ior = ior.filter(|&ior| ior > 0.0);
         let kind = if is_glass || (is_clear && ior.is_some_and(|ior| ior != 1.0)) {
-            MaterialKind::Glass { ior: ior.unwrap_or(DEFAULT_IOR), absorption: [0.0; 3] }
+            MaterialKind::Glass { ior: ior.unwrap_or(DEFAULT_IOR), absorption: [0.0; 3], priority: 0 }
         } else {
             if is_clear {
                 self.warn_unused("d");

@@ -99,6 +99,10 @@ impl Mixture {
                 self.add("glass");
                 self.scene.world.nested = 1;
             }
+            "astride" => {
+                self.add("glass");
+                self.scene.camera.medium = ASTRIDE;
+            }
             "absorption" => self.material(MATERIAL_GLASS, 1.0),
             "metal" => self.material(MATERIAL_METAL, 0.0),
             "area_triangle" => self.area("triangle", KIND_TRIANGLE),

@@ -20,5 +20,6 @@ mod integrating_sphere;
 mod invariance;
 mod irradiance;
 mod lab;
+mod media;
 mod meshes;
 mod walls;

@@ -1,0 +1,136 @@
+// The bodies of glass that a place lies in: twin of src/materials/interior.rs.
+
+//#if nested
+const BODIES: u32 = 8u;
+//#else
+const BODIES: u32 = 1u;
+//#end
+
+struct Interior {
+    bodies: array<u32, BODIES>,
+}
+
+fn interior_of(body: u32) -> Interior {
+    var interior: Interior;
+    for (var k = 0u; k < BODIES; k++) {
+        interior.bodies[k] = NONE;
+    }
+    interior.bodies[0] = body;
+    return interior;
+}
+
+fn medium_of(interior: Interior) -> u32 {
+    return interior.bodies[0];
+}
+
+//#if glass
+//#if astride
+fn holds(interior: Interior, body: u32) -> bool {
+    var list = interior;
+    var found = false;
+    for (var k = 0u; k < BODIES; k++) {
+        found = found || list.bodies[k] == body;
+    }
+    return found;
+}
+//#end
+
+fn entered(interior: Interior, body: u32) -> Interior {
+    //#if nested
+    var next = interior;
+    var carry = body;
+    for (var k = 0u; k < BODIES; k++) {
+        let here = next.bodies[k];
+        next.bodies[k] = min(here, carry);
+        carry = select(max(here, carry), NONE, here == carry);
+    }
+    return next;
+    //#else
+    return interior_of(body);
+    //#end
+}
+
+fn left(interior: Interior, body: u32) -> Interior {
+    //#if nested
+    var next = interior;
+    var gap = false;
+    for (var k = 0u; k < BODIES; k++) {
+        gap = gap || next.bodies[k] == body;
+        if gap {
+            var after = NONE;
+            if k + 1u < BODIES {
+                after = next.bodies[k + 1u];
+            }
+            next.bodies[k] = after;
+        }
+    }
+    return next;
+    //#else
+    return interior_of(NONE);
+    //#end
+}
+
+fn ior_of(medium: u32) -> f32 {
+    if medium == NONE {
+        return 1.0;
+    }
+    return scene.materials[medium].ior;
+}
+//#end
+
+fn interior_before(s: Surface, wo: vec3f, interior: Interior) -> Interior {
+    //#if glass
+    let inside = scene.materials[s.material].kind == MATERIAL_GLASS && dot(wo, s.normal) < 0.0;
+    if inside {
+        return entered(interior, s.material);
+    }
+    //#end
+    return interior;
+}
+
+//#if glass
+fn interior_beyond(s: Surface, wo: vec3f, before: Interior) -> Interior {
+    if dot(wo, s.normal) >= 0.0 {
+        return entered(before, s.material);
+    }
+    return left(before, s.material);
+}
+
+fn relative_ior(s: Surface, wo: vec3f, before: Interior, beyond: Interior) -> f32 {
+    var here = medium_of(before);
+    //#if nested
+    //#else
+    if dot(wo, s.normal) >= 0.0 {
+        here = NONE;
+    }
+    //#end
+    return ior_of(here) / ior_of(medium_of(beyond));
+}
+//#end
+
+//#if nested
+fn is_hidden(s: Surface, before: Interior, beyond: Interior) -> bool {
+    let glass = scene.materials[s.material].kind == MATERIAL_GLASS;
+    return glass && ior_of(medium_of(before)) == ior_of(medium_of(beyond));
+}
+//#end
+
+//#if photon_trace && infinite
+fn interior_from(direction: vec3f) -> Interior {
+    var interior = interior_of(NONE);
+    //#if glass && plane && unbounded
+    for (var i = 0u; i < scene.world.unbounded_count; i++) {
+        let reference = scene.unbounded[i];
+        if reference >> REFERENCE_BITS == KIND_PLANE {
+            let index = reference & ((1u << REFERENCE_BITS) - 1u);
+            let material = scene.planes[index].material;
+            let glass = scene.materials[material].kind == MATERIAL_GLASS;
+            if glass && dot(direction, scene.planes[index].normal) > 0.0 {
+                interior = entered(interior, material);
+            }
+        }
+    }
+    //#end
+    return interior;
+}
+//#end

@@ -1,0 +1,106 @@
+//! The connected parts of a mesh.
+
+use crate::scene::Mesh;
+use glam::DVec3;
+use std::collections::HashMap;
+
+/// Triangles of a mesh whose parts are looked for, at most.
+pub const TRIANGLES: usize = 1 << 18;
+
+/// A connected part of a mesh, in the mesh's coordinates.
+#[derive(Clone, Debug)]
+pub struct Part {
+    /// Six times its signed volume; above zero where it faces outward. Of a closed part.
+    pub volume: f64,
+    /// Twice the sum of its faces' area vectors; zero for a closed part.
+    pub facing: DVec3,
+    /// Twice its area.
+    pub area: f64,
+    /// Least corner of its box.
+    pub low: DVec3,
+    /// Greatest corner of its box.
+    pub high: DVec3,
+    /// Whether every edge is met once in each direction.
+    pub closed: bool,
+}
+
+impl Part {
+    /// Whether its box holds that of another part and is not the same.
+    pub fn holds(&self, other: &Part) -> bool {
+        self.low.cmple(other.low).all()
+            && self.high.cmpge(other.high).all()
+            && (self.low != other.low || self.high != other.high)
+    }
+}
+
+/// The parts of a mesh, and the part of each triangle; corners at the same place are one.
+pub fn parts(mesh: &Mesh) -> (Vec<Part>, Vec<u32>) {
+    let corners = places(mesh);
+    let triangles: Vec<[usize; 3]> =
+        mesh.triangles.iter().map(|t| t.position.map(|i| corners[i as usize])).collect();
+    let mut root: Vec<usize> = (0..mesh.positions.len()).collect();
+    fn find(root: &mut [usize], mut i: usize) -> usize {
+        while root[i] != i {
+            root[i] = root[root[i]];
+            i = root[i];
+        }
+        i
+    }
+    let mut edges: HashMap<[usize; 2], i32> = HashMap::new();
+    for [a, b, c] in &triangles {
+        for [from, to] in [[*a, *b], [*b, *c], [*c, *a]] {
+            *edges.entry([from.min(to), from.max(to)]).or_default() += if from < to { 1 } else { -1 };
+            let (x, y) = (find(&mut root, from), find(&mut root, to));
+            root[x] = y;
+        }
+    }
+    let empty = Part {
+        volume: 0.0,
+        facing: DVec3::ZERO,
+        area: 0.0,
+        low: DVec3::INFINITY,
+        high: DVec3::NEG_INFINITY,
+        closed: true,
+    };
+    let origin = mesh.positions.first().copied().unwrap_or_default();
+    let mut numbers: HashMap<usize, u32> = HashMap::new();
+    let mut parts: Vec<Part> = Vec::new();
+    let mut of = Vec::with_capacity(triangles.len());
+    for (places, triangle) in triangles.iter().zip(&mesh.triangles) {
+        let number = *numbers.entry(find(&mut root, places[0])).or_insert_with(|| {
+            parts.push(empty.clone());
+            parts.len() as u32 - 1
+        });
+        of.push(number);
+        let [a, b, c] = triangle.position.map(|i| mesh.positions[i as usize]);
+        // about a corner of the mesh: far from the origin products of coordinates have no digits left
+        let [p, q, r] = [a, b, c].map(|corner| corner - origin);
+        let across = (b - a).cross(c - a);
+        let part = &mut parts[number as usize];
+        part.volume += p.dot(q.cross(r));
+        part.facing += across;
+        part.area += across.length();
+        for p in [a, b, c] {
+            (part.low, part.high) = (part.low.min(p), part.high.max(p));
+        }
+    }
+    for ([a, _], count) in edges {
+        if count != 0
+            && let Some(number) = numbers.get(&find(&mut root, a))
+        {
+            parts[*number as usize].closed = false;
+        }
+    }
+    (parts, of)
+}
+
+/// For each position of a mesh the first position at the same place.
+pub fn places(mesh: &Mesh) -> Vec<usize> {
+    let mut first: HashMap<[u64; 3], usize> = HashMap::new();
+    let place = |(i, position): (usize, &DVec3)| {
+        // -0 and 0 are one place
+        let key = (*position + DVec3::ZERO).to_array().map(f64::to_bits);
+        *first.entry(key).or_insert(i)
+    };
+    mesh.positions.iter().enumerate().map(place).collect()
+}

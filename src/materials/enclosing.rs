@@ -1,0 +1,69 @@
+//! Which bodies of glass a place lies in, found by looking. Twin: `shaders/materials/enclosing.wgsl`.
+//!
+//! A look out of a closed body leaves it, whatever its direction. An open sheet, such as the surface of a
+//! lake, has below it what a look along its mean normal leaves through it.
+
+use super::interior::{Interior, entered, holds, interior_of, left};
+use super::math::{FAR, offset_origin};
+use super::real::Vec3;
+use super::shapes::intersect::intersect_scene;
+use super::shapes::ray::Ray;
+use super::shapes::surface::surface_at;
+use super::tables::*;
+
+/// Surfaces that one look passes at most.
+const FACES: u32 = 256;
+/// Direction of the look for closed bodies, unit: askew, so that it seldom meets edges of what people build.
+const LOOK: Vec3 = Vec3::new(0.3104505, 0.8912933, 0.3304795);
+
+/// The bodies around `position`, of which `known` is what the host could tell of a whole lamp or lens: one
+/// body, [`NONE`], or [`ASTRIDE`].
+#[inline(always)]
+pub fn interior_at(scene: &Scene, known: u32, position: Vec3) -> Interior {
+    if known == ASTRIDE { enclosing(scene, position) } else { interior_of(known) }
+}
+
+/// The bodies around `position`.
+pub fn enclosing(scene: &Scene, position: Vec3) -> Interior {
+    let mut interior = looked(scene, position, LOOK, NONE, &interior_of(NONE));
+    for k in 0..scene.world.body_count {
+        let body = scene.world.body_first + k;
+        let direction = scene.materials[body as usize].reflectance;
+        if direction.dot(direction) > 0.0 {
+            interior = looked(scene, position, direction, body, &interior);
+        }
+    }
+    interior
+}
+
+/// `known` and what a look along `direction` leaves without having entered it: `body`, which is open, or with
+/// [`NONE`] all that are closed.
+fn looked(scene: &Scene, position: Vec3, direction: Vec3, body: u32, known: &Interior) -> Interior {
+    let mut found = *known;
+    let mut ahead = interior_of(NONE);
+    let mut origin = position;
+    for _ in 0..FACES {
+        let ray = Ray { origin, t_min: 0.0, direction, t_max: FAR };
+        let hit = intersect_scene(scene, &ray);
+        if hit.reference == NONE {
+            break;
+        }
+        let s = surface_at(scene, &ray, &hit);
+        let m = &scene.materials[s.material as usize];
+        let closed = m.kind == MATERIAL_GLASS && m.reflectance.dot(m.reflectance) == 0.0;
+        if s.material == body || (body == NONE && closed) {
+            if direction.dot(s.normal) < 0.0 {
+                ahead = entered(scene, &ahead, s.material);
+            } else if holds(&ahead, s.material) {
+                ahead = left(scene, &ahead, s.material);
+            } else {
+                found = entered(scene, &found, s.material);
+            }
+            if body != NONE {
+                break;
+            }
+        }
+        origin = offset_origin(s.position, s.error, s.normal, direction);
+    }
+    found
+}
