@@ -2,19 +2,21 @@
 //!
 //! Which of two coincident surfaces a ray meets first would depend on rounding. So what users mean is made
 //! true before anything is rounded: bodies of glass that touch something grow by a few error bounds of a
-//! hit, and lamps by twice that. Then glass reaches into the floor that it stands on and into the glass
+//! hit, and lamps a little more. Then glass reaches into the floor that it stands on and into the glass
 //! beside it, where the order of bodies decides, and a lamp is in front of the ceiling.
 
+use super::bodies::Bodies;
 use super::normalize::{Normalization, extent};
-use super::parts::{TRIANGLES, parts, places};
-use crate::scene::{Material, MaterialKind, Mesh, Scene, Shape, ShapeKind, Transform};
+use super::parts::places;
+use crate::scene::{Mesh, Scene, ShapeKind, Transform};
 use glam::{DVec2, DVec3};
 use std::borrow::Cow;
 
-/// Growth of glass over the sum of the error bounds of two surfaces that touch.
-const GLASS: f64 = 4.0;
-/// The same of lamps.
-const LAMP: f64 = 8.0;
+/// Growth over the sum of the error bounds of two surfaces that touch.
+const GROWTH: f64 = 4.0;
+/// Of bodies that touch, each grows more than those which are not the medium where it is, up to so many
+/// times as much: flush faces are met in that order.
+const MOST_TIMES: u32 = 16;
 /// Error bound of a hit over a rounding of the largest coordinate: that of the shapes' own bounds.
 const ROUNDINGS: f64 = 16.0;
 /// Most growth over a body's size.
@@ -22,101 +24,141 @@ const MOST: f64 = 1e-3;
 /// Least cosine between a corner's mean normal and the normals of its faces that growth reckons with.
 const LEAST_COS: f64 = 0.25;
 
-/// The scene's shapes, those grown that touch others. `eps` is one rounding of 1.
-pub fn grown<'a>(scene: &'a Scene, n: &Normalization, eps: f64) -> Vec<Cow<'a, ShapeKind>> {
-    let mut errors = vec![0.0f64; scene.shapes.len()];
-    let near = |shape: &Shape| {
-        extent(&shape.kind).map(|(a, b)| {
-            let (a, b) = (n.point(a), n.point(b));
-            (a, b, a.abs().max(b.abs()).max_element())
-        })
+/// What touches as one.
+struct Item {
+    shape: usize,
+    /// Its box in scene space and the greatest coordinate there; nothing for a plane.
+    bounds: Option<(DVec3, DVec3, f64)>,
+    /// Place in the order of growth, the lamps' first; nothing for what does not grow.
+    rank: Option<usize>,
+    /// Greatest error bound of it and something that it touches, scene units; 0 where it touches nothing.
+    error: f64,
+    /// Items that grow and touch it.
+    touching: Vec<usize>,
+    times: u32,
+}
+
+/// The shapes, those of them grown that touch others. `eps` is one rounding of 1.
+pub fn grown<'a>(
+    scene: &Scene,
+    kinds: Vec<Cow<'a, ShapeKind>>,
+    bodies: &Bodies,
+    n: &Normalization,
+    eps: f64,
+) -> Vec<Cow<'a, ShapeKind>> {
+    let mut items = items(scene, &kinds, bodies, n);
+    find_contacts(&mut items, &kinds, n, eps);
+    let mut order: Vec<usize> = (0..items.len()).filter(|i| items[*i].rank.is_some()).collect();
+    order.sort_by_key(|i| std::cmp::Reverse(items[*i].rank));
+    for i in order {
+        let behind = |j: &usize| items[*j].rank > items[i].rank;
+        let most = items[i].touching.iter().filter(|j| behind(j)).map(|j| items[*j].times).max();
+        items[i].times = (most.unwrap_or(0) + 1).min(MOST_TIMES);
+    }
+    let by = |item: &Item| {
+        if item.rank.is_none() {
+            return 0.0;
+        }
+        let size = item.bounds.map_or(f64::INFINITY, |(low, high, _)| low.distance(high));
+        (GROWTH * f64::from(item.times) * item.error).min(MOST * size) * n.unit
     };
-    let boxes: Vec<Option<(DVec3, DVec3, f64)>> = scene.shapes.iter().map(near).collect();
-    let grows = |i: usize| factor(&scene.shapes[i], &scene.materials) > 0.0;
-    let mut touch = |i: usize, j: usize, error: f64| {
-        for k in [i, j] {
-            errors[k] = errors[k].max(error);
+    let mut growth = vec![Vec::new(); kinds.len()];
+    items.iter().for_each(|item| growth[item.shape].push(by(item)));
+    let mut first = 0;
+    let larger = |(shape, kind): (usize, Cow<'a, ShapeKind>)| {
+        let growth = &growth[shape];
+        let numbers = bodies.of.get(shape).map_or(&[][..], Vec::as_slice);
+        let base = first;
+        first += if numbers.is_empty() { 0 } else { growth.len() as u32 };
+        if growth.iter().all(|by| *by == 0.0) {
+            return kind;
+        }
+        let of = |k: usize| numbers.get(k).map_or(growth[0], |body| growth[(body - base) as usize]);
+        Cow::Owned(larger(&kind, &of))
+    };
+    kinds.into_iter().enumerate().map(larger).collect()
+}
+
+fn items(scene: &Scene, kinds: &[Cow<ShapeKind>], bodies: &Bodies, n: &Normalization) -> Vec<Item> {
+    let mut rank = vec![0; bodies.all.len()];
+    for (place, body) in bodies.ranking().into_iter().enumerate() {
+        rank[body] = place + 1;
+    }
+    let item = |shape: usize, bounds: Option<(DVec3, DVec3)>, rank| {
+        let bounds = bounds.map(|(low, high)| (n.point(low), n.point(high)));
+        let bounds = bounds.map(|(low, high)| (low, high, low.abs().max(high.abs()).max_element()));
+        Item { shape, bounds, rank, error: 0.0, touching: Vec::new(), times: 1 }
+    };
+    let mut items = Vec::new();
+    let mut rest = bodies.all.iter().zip(rank).peekable();
+    for (index, (shape, kind)) in scene.shapes.iter().zip(kinds).enumerate() {
+        let before = items.len();
+        while let Some((body, rank)) = rest.next_if(|(body, _)| body.shape == index) {
+            items.push(item(index, body.bounds, Some(if shape.is_emitter() { 0 } else { rank })));
+        }
+        if items.len() == before {
+            items.push(item(index, extent(kind), shape.is_emitter().then_some(0)));
+        }
+    }
+    items
+}
+
+/// Finds what touches: boxes that meet within the error bounds of hits.
+fn find_contacts(items: &mut [Item], kinds: &[Cow<ShapeKind>], n: &Normalization, eps: f64) {
+    let touch = |items: &mut [Item], i: usize, j: usize, error: f64| {
+        for (a, b) in [(i, j), (j, i)] {
+            items[a].error = items[a].error.max(error);
+            if items[a].rank.is_some() && items[b].rank.is_some() {
+                items[a].touching.push(b);
+            }
         }
     };
-    let mut order: Vec<usize> = (0..boxes.len()).filter(|i| boxes[*i].is_some()).collect();
-    let low = |i: usize| boxes[i].map_or(0.0, |b| b.0.x);
-    order.sort_by(|a, b| low(*a).total_cmp(&low(*b)));
-    let widest = ROUNDINGS * eps * GLASS * 4.0;
+    let low = |item: &Item| item.bounds.map_or(0.0, |b| b.0.x);
+    let mut order: Vec<usize> = (0..items.len()).filter(|i| items[*i].bounds.is_some()).collect();
+    order.sort_by(|a, b| low(&items[*a]).total_cmp(&low(&items[*b])));
+    let widest = ROUNDINGS * eps * GROWTH * 8.0;
     for (at, &i) in order.iter().enumerate() {
-        let Some((low_i, high_i, reach_i)) = boxes[i] else { continue };
+        let Some((low_i, high_i, reach_i)) = items[i].bounds else { continue };
         for &j in &order[at + 1..] {
-            let Some((low_j, high_j, reach_j)) = boxes[j] else { continue };
-            if low_j.x > high_i.x + widest * reach_i.max(low_j.x.abs()) {
+            let Some((low_j, high_j, reach_j)) = items[j].bounds else { continue };
+            if low_j.x > high_i.x + widest * reach_i.max(reach_j) {
                 break;
             }
-            if !grows(i) && !grows(j) {
+            if items[i].rank.is_none() && items[j].rank.is_none() {
                 continue;
             }
             // of a large sphere what is near the other shape counts
-            let own = |k: usize, reach: f64, other: f64| match scene.shapes[k].kind {
+            let own = |k: usize, reach: f64, size: DVec3, other: f64| match *kinds[items[k].shape] {
                 ShapeKind::Sphere { .. } => reach.min(4.0 * other),
-                _ => reach + (high_of(boxes[k]) - low_of(boxes[k])).max_element(),
+                _ => reach + size.max_element(),
             };
-            let reach = own(i, reach_i, reach_j) + own(j, reach_j, reach_i);
+            let reach = own(i, reach_i, high_i - low_i, reach_j) + own(j, reach_j, high_j - low_j, reach_i);
             let error = ROUNDINGS * eps * reach;
-            let slack = DVec3::splat(GLASS * error);
+            let slack = DVec3::splat(GROWTH * error);
             if low_j.cmple(high_i + slack).all() && high_j.cmpge(low_i - slack).all() {
-                touch(i, j, error);
+                touch(items, i, j, error);
             }
         }
     }
-    for (i, shape) in scene.shapes.iter().enumerate() {
-        let ShapeKind::Plane { point, normal } = shape.kind else { continue };
+    for i in 0..items.len() {
+        let ShapeKind::Plane { point, normal } = *kinds[items[i].shape] else { continue };
         let point = n.point(point);
-        for (j, of) in boxes.iter().enumerate() {
-            let Some((low, high, reach)) = of.filter(|_| grows(i) || grows(j)) else { continue };
+        for j in 0..items.len() {
+            let grows = items[i].rank.or(items[j].rank).is_some();
+            let Some((low, high, reach)) = items[j].bounds.filter(|_| grows) else { continue };
             let error = ROUNDINGS * eps * 4.0 * (reach + point.dot(normal).abs());
             let middle = normal.dot(0.5 * (low + high) - point);
             let half = normal.abs().dot(0.5 * (high - low));
-            if middle.abs() <= half + GLASS * error {
-                touch(i, j, error);
+            if middle.abs() <= half + GROWTH * error {
+                touch(items, i, j, error);
             }
         }
     }
-    let mut kinds = Vec::with_capacity(errors.len());
-    for ((shape, error), of) in scene.shapes.iter().zip(&mut errors).zip(&boxes) {
-        let factor = factor(shape, &scene.materials);
-        if let (Some((low, high, reach)), ShapeKind::Mesh(mesh)) = (of, &shape.kind)
-            && factor > 0.0
-            && mesh.triangles.len() <= TRIANGLES
-            && parts(mesh).0.len() > 1
-        {
-            // parts of one mesh may touch one another
-            *error = error.max(ROUNDINGS * eps * (reach + (*high - *low).max_element()));
-        }
-        let size = of.map_or(f64::INFINITY, |(low, high, _)| low.distance(high));
-        let by = (factor * *error).min(MOST * size) * n.unit;
-        let kind = if by > 0.0 { Cow::Owned(larger(&shape.kind, by)) } else { Cow::Borrowed(&shape.kind) };
-        kinds.push(kind);
-    }
-    kinds
 }
 
-fn low_of(of: Option<(DVec3, DVec3, f64)>) -> DVec3 {
-    of.map_or(DVec3::ZERO, |of| of.0)
-}
-
-fn high_of(of: Option<(DVec3, DVec3, f64)>) -> DVec3 {
-    of.map_or(DVec3::ZERO, |of| of.1)
-}
-
-/// Error bounds that a shape grows by; 0 for what is neither glass nor a lamp.
-fn factor(shape: &Shape, materials: &[Material]) -> f64 {
-    let glass = materials.get(shape.material).is_some_and(|m| matches!(m.kind, MaterialKind::Glass { .. }));
-    match (shape.is_emitter(), glass) {
-        (true, _) => LAMP,
-        (false, true) => GLASS,
-        (false, false) => 0.0,
-    }
-}
-
-/// A shape whose surface lies `by` world units further out along its normals.
-fn larger(kind: &ShapeKind, by: f64) -> ShapeKind {
+/// A shape whose surface lies `of` world units further out along its normals; of a mesh by triangle.
+fn larger(kind: &ShapeKind, of: &dyn Fn(usize) -> f64) -> ShapeKind {
+    let by = of(0);
     match kind {
         ShapeKind::Sphere { center, radius } => ShapeKind::Sphere { center: *center, radius: radius + by },
         ShapeKind::Cuboid { min, max } => {
@@ -131,7 +173,7 @@ fn larger(kind: &ShapeKind, by: f64) -> ShapeKind {
         ShapeKind::Plane { point, normal } => {
             ShapeKind::Plane { point: *point + *normal * by, normal: *normal }
         }
-        ShapeKind::Mesh(mesh) => ShapeKind::Mesh(larger_mesh(mesh, by)),
+        ShapeKind::Mesh(mesh) => ShapeKind::Mesh(larger_mesh(mesh, of)),
         ShapeKind::Revolution { segments, transform, newton_tolerance } => ShapeKind::Revolution {
             segments: larger_profile(segments, by / transform.scale),
             transform: Transform { ..*transform },
@@ -140,7 +182,7 @@ fn larger(kind: &ShapeKind, by: f64) -> ShapeKind {
     }
 }
 
-fn larger_mesh(mesh: &Mesh, by: f64) -> Mesh {
+fn larger_mesh(mesh: &Mesh, of: &dyn Fn(usize) -> f64) -> Mesh {
     let places = places(mesh);
     let normal = |t: &crate::scene::Triangle| {
         let [a, b, c] = t.position.map(|i| mesh.positions[i as usize]);
@@ -160,8 +202,13 @@ fn larger_mesh(mesh: &Mesh, by: f64) -> Mesh {
             cos[place] = cos[place].min(normal(triangle).dot(mean[place]));
         }
     }
-    let moved =
-        |(position, place): (&DVec3, &usize)| *position + mean[*place] * (by / cos[*place].max(LEAST_COS));
+    let mut by = vec![0.0f64; places.len()];
+    for (k, triangle) in mesh.triangles.iter().enumerate() {
+        triangle.position.iter().for_each(|i| by[places[*i as usize]] = of(k));
+    }
+    let moved = |(position, place): (&DVec3, &usize)| {
+        *position + mean[*place] * (by[*place] / cos[*place].max(LEAST_COS))
+    };
     Mesh { positions: mesh.positions.iter().zip(&places).map(moved).collect(), ..mesh.clone() }
 }
 
@@ -232,7 +279,7 @@ mod tests {
             uvs: Vec::new(),
             triangles: triangles.collect(),
         };
-        for (k, position) in (0..8).zip(&larger_mesh(&mesh, 0.01).positions) {
+        for (k, position) in (0..8).zip(&larger_mesh(&mesh, &|_| 0.01).positions) {
             let out = (*position - corner(k)) * (corner(k) * 2.0 - DVec3::ONE);
             assert!(out.min_element() >= 0.01 - 1e-12 && out.max_element() < 0.04, "{k}: {out}");
         }

@@ -3,6 +3,7 @@
 use super::{math, real, shapes};
 
 pub mod bezier;
+pub mod bodies;
 pub mod contact;
 pub mod kdtree;
 mod kdtree_bins;

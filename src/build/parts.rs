@@ -1,6 +1,6 @@
 //! The connected parts of a mesh.
 
-use crate::scene::Mesh;
+use crate::scene::{Mesh, Triangle};
 use glam::DVec3;
 use std::collections::HashMap;
 
@@ -103,4 +103,35 @@ pub fn places(mesh: &Mesh) -> Vec<usize> {
         *first.entry(key).or_insert(i)
     };
     mesh.positions.iter().enumerate().map(place).collect()
+}
+
+/// The mesh without walls that two of its parts share exactly, once on either side: glass goes on there.
+/// Nothing where there are none.
+pub fn without_shared_walls(mesh: &Mesh) -> Option<Mesh> {
+    if mesh.triangles.len() > TRIANGLES {
+        return None;
+    }
+    let places = places(mesh);
+    // the least corner first, so that turning a triangle changes nothing
+    let key = |t: &Triangle| {
+        let [a, b, c] = t.position.map(|i| places[i as usize]);
+        if a < b && a < c {
+            [a, b, c]
+        } else if b < c {
+            [b, c, a]
+        } else {
+            [c, a, b]
+        }
+    };
+    let mut count: HashMap<[usize; 3], i32> = HashMap::new();
+    mesh.triangles.iter().for_each(|t| *count.entry(key(t)).or_default() += 1);
+    let shared = |t: &Triangle| {
+        let [a, b, c] = key(t);
+        count.get(&[a, c, b]).is_some_and(|other| count.get(&[a, b, c]) == Some(other))
+    };
+    if !mesh.triangles.iter().any(shared) {
+        return None;
+    }
+    let triangles: Vec<Triangle> = mesh.triangles.iter().filter(|t| !shared(t)).copied().collect();
+    (!triangles.is_empty()).then(|| Mesh { triangles, ..mesh.clone() })
 }

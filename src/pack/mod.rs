@@ -22,12 +22,13 @@ use super::real::{Real, ToDouble, ToReal, Vec3};
 use super::shapes::fours::{FourRectangles, FourSpheres, LANES};
 use super::tables::*;
 use super::{build, kernels, lights, materials, math, real, shapes, tables};
+use crate::build::bodies::{Bodies, joined};
+use crate::build::contact::grown;
 use crate::build::learned::{Learned, LightSource};
 use crate::build::normalize::{Normalization, reach};
 use crate::scene::{self, MaterialKind, Reflectance};
 use crate::settings::{Method, RenderSettings};
 use crate::stage::stage;
-use bodies::Bodies;
 use bytemuck::Zeroable;
 use glam::{DVec2, DVec3};
 use look::{Look, Region, look};
@@ -105,11 +106,11 @@ fn flatten(scene: &scene::Scene, n: Normalization, width: u32, height: u32) -> R
             last.planar_origin = origin.to_real();
         }
     }
-    let kinds = crate::build::contact::grown(scene, &n, f64::from(EPS));
+    let kinds = joined(scene);
     let bodies = Bodies::of(scene, &kinds);
-    out.world.nested = bodies.nested as u32;
+    let kinds = grown(scene, kinds, &bodies, &n, f64::from(EPS));
     let mut objects = Objects::default();
-    let materials = bodies.pack(scene, &mut out, &mut objects.materials);
+    let materials = bodies::pack_bodies(scene, &bodies, &mut out, &mut objects.materials);
     let (primitives, references, mut emitters) =
         shape::pack_shapes(scene, &kinds, &materials, &n, &mut out, &mut objects)?;
     walls::find_walls(&mut out);

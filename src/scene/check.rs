@@ -207,8 +207,8 @@ impl<'c> Checker<'c> {
             return Some(Json::from(number.clamp(-largest, largest)));
         }
         let clamped = node.integer()?.clamp(0, i128::from(u32::MAX));
-        let exact = node.integer().and_then(|integer| u64::try_from(integer).ok());
-        Some(Json::from(if fits { exact? } else { u64::try_from(clamped).ok()? }))
+        let integer = if fits { node.integer()? } else { clamped };
+        u64::try_from(integer).map(Json::from).or(i64::try_from(integer).map(Json::from)).ok()
     }
 
     fn string(&mut self, schema: &Json, fitting: &[&Json], node: Node, path: &str) -> Option<Json> {
@@ -346,6 +346,7 @@ fn rounded(schema: &Json, number: f64) -> Option<f64> {
 
 fn integer_fits(schema: &Json, number: f64) -> bool {
     match schema["format"].as_str() {
+        Some("int32") => number >= f64::from(i32::MIN) && number <= f64::from(i32::MAX),
         Some("uint32") => number <= f64::from(u32::MAX),
         Some("uint64") => number <= i64::MAX as f64,
         _ => true,

@@ -1,0 +1,172 @@
+//! Bodies of glass: which there are, and which of them is the medium where they overlap.
+
+use super::normalize::extent;
+use super::parts::{Part, TRIANGLES, parts, without_shared_walls};
+use crate::scene::{MaterialKind, Mesh, Scene, Shape, ShapeKind};
+use glam::{DVec2, DVec3};
+use std::borrow::Cow;
+use std::cmp::{Ordering, Reverse};
+
+/// Parts of a mesh that are bodies of their own, at most.
+const PARTS: usize = 256;
+/// Length of a sheet's mean normal, over 1 for a flat one, below which it counts as closed.
+const LEAST_FACING: f64 = 0.05;
+
+/// Least and greatest corner.
+pub type Bounds = (DVec3, DVec3);
+
+/// A body of glass, in the world.
+#[derive(Clone, Debug)]
+pub struct Body {
+    /// Index of the scene's shape.
+    pub shape: usize,
+    /// Index of the scene's material.
+    pub material: usize,
+    /// See [`MaterialKind::Glass`].
+    priority: i32,
+    /// Its box; nothing for a plane.
+    pub bounds: Option<Bounds>,
+    /// Unit mean normal of an open one: its inside is where a look along it leaves through it.
+    pub facing: Option<DVec3>,
+}
+
+impl Body {
+    fn volume(&self) -> f64 {
+        match (self.facing, self.bounds) {
+            (None, Some((low, high))) => (high - low).element_product(),
+            _ => f64::INFINITY,
+        }
+    }
+
+    /// Less than another one where it is the medium of what both hold.
+    pub fn order(&self, other: &Self) -> Ordering {
+        let priority = |body: &Self| Reverse(body.priority);
+        priority(self).cmp(&priority(other)).then(self.volume().total_cmp(&other.volume()))
+    }
+}
+
+/// The bodies of a scene, in the order of its shapes.
+#[derive(Clone, Debug, Default)]
+pub struct Bodies {
+    /// The bodies.
+    pub all: Vec<Body>,
+    /// For each shape its bodies' numbers: none, one, or one for each triangle.
+    pub of: Vec<Vec<u32>>,
+    /// Whether bodies may touch or hold one another.
+    pub nested: bool,
+}
+
+impl Bodies {
+    /// The bodies of `scene`, whose shapes are `kinds`.
+    pub fn of(scene: &Scene, kinds: &[Cow<ShapeKind>]) -> Self {
+        let mut bodies = Self::default();
+        for (index, (shape, kind)) in scene.shapes.iter().zip(kinds).enumerate() {
+            let first = bodies.all.len() as u32;
+            let MaterialKind::Glass { priority, .. } = scene.materials[shape.material].kind else {
+                bodies.of.push(Vec::new());
+                continue;
+            };
+            let body =
+                |facing, bounds| Body { shape: index, material: shape.material, priority, bounds, facing };
+            if let ShapeKind::Mesh(mesh) = &**kind {
+                let (found, numbers) = bodies_of_mesh(mesh);
+                bodies.all.extend(found.into_iter().map(|(facing, bounds)| body(facing, Some(bounds))));
+                bodies.of.push(numbers.into_iter().map(|number| first + number).collect());
+            } else {
+                bodies.all.push(body(facing(kind), extent(kind)));
+                bodies.of.push(vec![first]);
+            }
+        }
+        // below an open sheet anything may lie
+        let open = bodies.all.iter().any(|body| body.facing.is_some()) && bodies.all.len() > 1;
+        bodies.nested = open || any_meet(bodies.all.iter().filter_map(|body| body.bounds).collect());
+        bodies
+    }
+
+    /// The bodies' numbers, that of the body which is the medium wherever it is first.
+    pub fn ranking(&self) -> Vec<usize> {
+        let mut order: Vec<usize> = (0..self.all.len()).collect();
+        order.sort_by(|a, b| self.all[*a].order(&self.all[*b]).then(a.cmp(b)));
+        order
+    }
+}
+
+/// The shapes of a scene, those of glass without walls that their parts share.
+pub fn joined(scene: &Scene) -> Vec<Cow<'_, ShapeKind>> {
+    let joined = |shape: &Shape| match (&shape.kind, &scene.materials[shape.material].kind) {
+        (ShapeKind::Mesh(mesh), MaterialKind::Glass { .. }) => without_shared_walls(mesh),
+        _ => None,
+    };
+    let kind =
+        |shape| joined(shape).map_or(Cow::Borrowed(&shape.kind), |mesh| Cow::Owned(ShapeKind::Mesh(mesh)));
+    scene.shapes.iter().map(kind).collect()
+}
+
+/// The unit mean normal of a shape that is open; of others nothing.
+fn facing(kind: &ShapeKind) -> Option<DVec3> {
+    match kind {
+        ShapeKind::Rectangle { u, v, .. } => Some(u.cross(*v).normalize_or_zero()),
+        ShapeKind::Disc { normal, .. } | ShapeKind::Plane { normal, .. } => Some(*normal),
+        ShapeKind::Revolution { segments, transform, .. } => {
+            let ends = segments.first().and_then(|s| s.first()).zip(segments.last().and_then(|s| s.last()));
+            let closed = |(a, b): &(&DVec2, &DVec2)| a == b || (a.x == 0.0 && b.x == 0.0);
+            // the area vector from radius a to b is pi (a^2 - b^2) along y
+            let open = ends.filter(|ends| !closed(ends)).filter(|(a, b)| a.x != b.x);
+            open.map(|(a, b)| transform.direction(DVec3::Y) * (a.x - b.x).signum())
+        }
+        ShapeKind::Sphere { .. } | ShapeKind::Cuboid { .. } | ShapeKind::Mesh(_) => None,
+    }
+}
+
+/// The bodies of a mesh, each with its mean normal, if it is open, and its box; and the body of each
+/// triangle, or one for all. Parts are bodies of their own where their boxes meet; the inner wall of a
+/// hollow body belongs to the body.
+fn bodies_of_mesh(mesh: &Mesh) -> (Vec<(Option<DVec3>, Bounds)>, Vec<u32>) {
+    let hull = || {
+        mesh.positions
+            .iter()
+            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(*p), high.max(*p)))
+    };
+    if mesh.triangles.len() > TRIANGLES {
+        return (vec![(None, hull())], vec![0]);
+    }
+    let (parts, of) = parts(mesh);
+    let whole = || (vec![(facing_of(&parts), hull())], vec![0]);
+    if parts.len() <= 1 || parts.len() > PARTS || !any_meet(parts.iter().map(|p| (p.low, p.high)).collect()) {
+        return whole();
+    }
+    let size = |other: &usize| (parts[*other].high - parts[*other].low).element_product();
+    let body_of = |k: usize| {
+        let part = &parts[k];
+        if !part.closed || part.volume >= 0.0 {
+            return k;
+        }
+        let around = |other: &usize| parts[*other].volume > 0.0 && parts[*other].holds(part);
+        let outer = (0..parts.len()).filter(around).min_by(|a, b| size(a).total_cmp(&size(b)));
+        outer.unwrap_or(k)
+    };
+    let bodies: Vec<u32> = (0..parts.len()).map(|k| body_of(k) as u32).collect();
+    if bodies.iter().all(|body| *body == bodies[0]) {
+        return whole();
+    }
+    let found = parts.iter().map(|part| (facing_of(std::slice::from_ref(part)), (part.low, part.high)));
+    (found.collect(), of.iter().map(|part| bodies[*part as usize]).collect())
+}
+
+fn facing_of(parts: &[Part]) -> Option<DVec3> {
+    let facing: DVec3 = parts.iter().map(|part| part.facing).sum();
+    let area: f64 = parts.iter().map(|part| part.area).sum();
+    let closed = parts.iter().all(|part| part.closed) || facing.length() <= LEAST_FACING * area;
+    (!closed).then(|| facing.normalize_or_zero())
+}
+
+/// Whether two of some boxes meet, within a rounding.
+fn any_meet(mut boxes: Vec<Bounds>) -> bool {
+    boxes.sort_by(|a, b| a.0.x.total_cmp(&b.0.x));
+    boxes.iter().enumerate().any(|(i, (low, high))| {
+        let slack = DVec3::splat(1e-6 * low.abs().max(high.abs()).max_element());
+        let (low, high) = (*low - slack, *high + slack);
+        let mut near = boxes[i + 1..].iter().take_while(|b| b.0.x <= high.x);
+        near.any(|b| b.0.cmple(high).all() && b.1.cmpge(low).all())
+    })
+}
