@@ -29,7 +29,7 @@ material = "white"
 "#;
 
 /// Name, render settings, and the rest of the scene.
-pub const SCENES: [(&str, &str, &str); 9] = [
+pub const SCENES: [(&str, &str, &str); 10] = [
     (
         "glass and mirror under a rectangle",
         "",
@@ -322,6 +322,60 @@ pub const SCENES: [(&str, &str, &str); 9] = [
         emission = [8.0, 7.0, 6.0]
         "#,
     ),
+    (
+        "bodies in a lake, with lamp and lens astride",
+        "max_bounces = 12",
+        r#"
+        [materials.lake]
+        type = "glass"
+        ior = 1.33
+        absorption = [0.3, 0.1, 0.05]
+        [materials.same]
+        type = "glass"
+        ior = 1.33
+        [materials.crown]
+        type = "glass"
+        ior = 1.52
+        priority = 2
+        [materials.air]
+        type = "glass"
+        ior = 1.0
+        [[shapes]]
+        type = "plane"
+        point = [0.0, 1.3, 0.0]
+        normal = [0.1, 1.0, 0.0]
+        material = "lake"
+        [[shapes]]
+        type = "sphere"
+        center = [-0.6, 0.5, 0.0]
+        radius = 0.5
+        material = "crown"
+        [[shapes]]
+        type = "sphere"
+        center = [-0.5, 0.5, 0.1]
+        radius = 0.3
+        material = "air"
+        [[shapes]]
+        type = "box"
+        min = [0.2, 0.0, -0.3]
+        max = [1.0, 0.9, 0.4]
+        material = "same"
+        [[shapes]]
+        type = "box"
+        min = [0.6, 0.0, -0.3]
+        max = [1.3, 0.9, 0.4]
+        material = "crown"
+        [[shapes]]
+        type = "rectangle"
+        origin = [-0.4, 0.9, -1.0]
+        u = [0.8, 0.0, 0.0]
+        v = [0.0, 0.8, 0.3]
+        material = "white"
+        emission = [20.0, 18.0, 15.0]
+        [environment]
+        radiance = 0.3
+        "#,
+    ),
 ];
 
 /// The folder with the files that scenes name.
@@ -375,7 +429,8 @@ pub fn planned(settings: &str, rest: &str) -> (Packed, Plan) {
 /// The same with a picture of another size.
 pub fn planned_at((width, height): (u32, u32), settings: &str, rest: &str) -> (Packed, Plan) {
     let film = format!("[film]\nwidth = {width}\nheight = {height}");
-    let lens = if settings.contains("ppm") { "aperture = 0.1\nfocus = 4.3\n" } else { "" };
+    let lens =
+        if settings.contains("ppm") || rest.contains("lake") { "aperture = 0.1\nfocus = 4.3\n" } else { "" };
     let text = format!("{HEAD}{lens}{film}\n[render]\nphotons = 6000\npasses = 3\n{settings}\n{FLOOR}{rest}");
     let path = assets().join("scene.toml");
     let mut loaded =
