@@ -85,7 +85,13 @@ fn every_rule_agrees_in_both_direct_modes() {
         ("cornell", RadiusRule::Fixed, Direct::Photons),
     ] {
         let small = Radius::Pixels(if radius_rule == RadiusRule::Fixed { 0.25 } else { 0.5 });
-        assert_agrees(name, &RenderSettings { radius_rule, direct, radius: small, ..settings() }, BIAS);
+        // on wide ground few photons reach so small a disc, and few of a kind tell no standard error
+        let photons = if name == "mesh" { 1 << 16 } else { settings().photons };
+        assert_agrees(
+            name,
+            &RenderSettings { radius_rule, direct, radius: small, photons, ..settings() },
+            BIAS,
+        );
     }
 }
 
