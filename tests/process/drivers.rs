@@ -47,7 +47,7 @@ fn drivers_are_quiet_without_a_desktop() {
 fn the_process_stays_what_it_was() {
     software();
     let folder = folder("again");
-    let line = "render ball.toml --device software --quiet --passes 1000000 -o a.png";
+    let line = "render ball.toml --device software --quiet --passes 1000000 --time 60s -o a.png";
     let mut command = bare(&folder, line);
     command.arg0("./my-caustica");
     let mut child = spawn(command);

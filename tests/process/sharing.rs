@@ -68,7 +68,7 @@ fn the_lock_of_another_user_counts() {
     let program = folder.join("caustica");
     fs::copy(env!("CARGO_BIN_EXE_caustica"), &program).unwrap();
     fs::write(folder.join("ball.toml"), super::SCENE.as_str()).unwrap();
-    let line = "--quiet --passes 1000000 --checkpoint a.checkpoint -o a.exr";
+    let line = "--quiet --passes 1000000 --time 60s --checkpoint a.checkpoint -o a.exr";
     let holder = spawn(render(&folder, line));
     let lock = || {
         let names = fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().path());

@@ -84,7 +84,7 @@ fn ignoring(folder: &Path, names: &str, line: &str) -> Child {
 #[test]
 fn ignored_signals_stay_ignored() {
     let folder = folder("ignored");
-    let line = "render ball.toml --device cpu --quiet --passes 1000000 -o a.png";
+    let line = "render ball.toml --device cpu --quiet --passes 1000000 --time 60s -o a.png";
     let mask = |child: &Child, name: &str| {
         let status = fs::read_to_string(format!("/proc/{}/status", child.id())).unwrap_or_default();
         let line = status.lines().find_map(|line| line.strip_prefix(name)).unwrap_or("0").trim().to_owned();
