@@ -26,7 +26,7 @@ const POINTS_MAX: u64 = 1 << 31;
 /// What a user asks for.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Wanted {
-    /// A hardware GPU, else the CPU: a software driver would give the same bits, several times slower.
+    /// A hardware GPU, else the CPU, which is several times faster than a software driver.
     Auto,
     /// The first hardware GPU.
     Gpu,
@@ -174,7 +174,7 @@ pub fn pick<'a>(wanted: &Wanted, devices: &'a [DeviceInfo]) -> Result<(&'a Devic
             Some(device) => (Some(device), "auto: a hardware GPU"),
             None => (
                 of_kind(DeviceKind::Cpu),
-                "auto: no hardware GPU; a software driver gives the same bits slower",
+                "auto: no hardware GPU; software drivers are slower than the CPU engine",
             ),
         },
     };

@@ -163,12 +163,17 @@ impl Cancel {
         self.0.store(true, Ordering::Relaxed);
     }
 
+    /// Whether it was asked for.
+    pub fn is_asked(&self) -> bool {
+        self.0.load(Ordering::Relaxed)
+    }
+
     /// Fails once it was asked for.
     ///
     /// # Errors
     /// [`EngineError::Cancelled`].
     pub fn check(&self) -> Result<(), EngineError> {
-        if self.0.load(Ordering::Relaxed) { Err(EngineError::Cancelled) } else { Ok(()) }
+        if self.is_asked() { Err(EngineError::Cancelled) } else { Ok(()) }
     }
 }
 

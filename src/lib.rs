@@ -55,7 +55,7 @@
 //! # }
 //! ```
 //!
-//! Modules depend on one another one way: [`stage`], [`storage`], [`srgb`], [`memory`], [`real`] and [`math`], then [`tables`], [`shapes`], [`materials`], [`lights`],
+//! Modules depend on one another one way: [`stage`], [`compilation`], [`storage`], [`srgb`], [`memory`], [`real`] and [`math`], then [`tables`], [`shapes`], [`materials`], [`lights`],
 //! [`camera`] and [`grid`], then [`scene`], [`build`], [`limits`], [`pack`], then [`kernels`], [`radius`], [`sobol`], [`probe`], [`readout`], [`plan`], then [`cpu`]
 //! and [`gpu`], then [`identity`], [`device`], [`relay`], [`quality`], [`calibration`], [`showing`], [`render`] and [`checkpoint`], and last [`bench`](mod@bench), [`burden`], [`hold`], [`study`] and, where it is not left out, `preview`.
 //! Those from [`real`] to [`cpu`] are compiled twice: [`double`] is the same in f64.
@@ -67,6 +67,7 @@ pub mod calibration;
 pub mod camera;
 pub mod checkpoint;
 pub mod clock;
+pub mod compilation;
 pub mod cpu;
 pub mod device;
 pub mod double;

@@ -13,6 +13,8 @@ use xxhash_rust::xxh3::xxh3_64;
 
 /// Links that are followed at most.
 const LINKS: u32 = 40;
+/// Names of standard output.
+const OUTPUT: [&str; 3] = ["/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"];
 /// What unfinished files and locks begin with; the rest is short, whatever the name of the file.
 const PREFIX: &str = ".caustica-";
 
@@ -24,6 +26,8 @@ enum Place {
     Taken(PathBuf, fs::Metadata),
     /// A pipe or a device.
     Special(PathBuf),
+    /// This program's standard output, whatever it is.
+    Output,
 }
 
 /// What a file is for.
@@ -41,8 +45,8 @@ pub enum Purpose {
 /// Why it cannot.
 pub fn check(file: &Path, purpose: Purpose) -> io::Result<()> {
     match place(file)? {
-        Place::Special(_) if purpose == Purpose::Keepsake => Err(not_regular()),
-        Place::Special(_) => Ok(()),
+        Place::Special(_) | Place::Output if purpose == Purpose::Keepsake => Err(not_regular()),
+        Place::Special(_) | Place::Output => Ok(()),
         Place::Free(target) | Place::Taken(target, _) => {
             let (unfinished, _) = unfinished(&target)?;
             fs::remove_file(&unfinished)
@@ -60,7 +64,11 @@ pub fn write(
     fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> io::Result<()> {
     let (target, before) = match place(file)? {
-        Place::Special(_) if purpose == Purpose::Keepsake => return Err(not_regular()),
+        Place::Special(_) | Place::Output if purpose == Purpose::Keepsake => return Err(not_regular()),
+        Place::Output => {
+            let mut out = io::stdout().lock();
+            return fill(&mut out).and_then(|()| out.flush());
+        }
         Place::Special(target) => return fill(&mut OpenOptions::new().write(true).open(target)?),
         Place::Free(target) => (target, None),
         Place::Taken(target, found) => (target, Some(found)),
@@ -140,6 +148,13 @@ pub fn same(a: &Path, b: &Path) -> bool {
     }
 }
 
+/// Whether a name is one of an open file: `-`, standard output or error, or a number of the process's own.
+pub fn is_stream(file: &Path) -> bool {
+    let folders = ["/dev/fd", "/proc/self/fd"];
+    let names = ["-", "/dev/stdout", "/dev/stderr"];
+    names.iter().any(|name| file == Path::new(name)) || folders.iter().any(|folder| file.starts_with(folder))
+}
+
 /// Held while a render writes to a file: no other one that asks can hold it. It ends with the process.
 #[derive(Debug)]
 pub struct Lock {
@@ -167,9 +182,7 @@ impl Lock {
         let target = target(file).map_err(LockError::Io)?;
         let path = target.with_file_name(format!("{PREFIX}{}.lock", hash(&target)));
         loop {
-            let mut options = OpenOptions::new();
-            let opened = options.read(true).write(true).create(true).truncate(false).open(&path);
-            let mut opened = opened.map_err(LockError::Io)?;
+            let mut opened = open_lock(&path).map_err(LockError::Io)?;
             match opened.try_lock() {
                 Ok(()) => {}
                 Err(fs::TryLockError::WouldBlock) => {
@@ -192,6 +205,15 @@ impl Lock {
             remove_leftovers(&target);
             return Ok(Some(Self { path, _file: opened }));
         }
+    }
+}
+
+/// Opens a lock's file, or makes it. Another user's may be read-only here: the lock is the same, and only the
+/// holder's number cannot be put in.
+fn open_lock(path: &Path) -> io::Result<File> {
+    match OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path) {
+        Err(error) if error.kind() == io::ErrorKind::PermissionDenied => File::open(path).map_err(|_| error),
+        opened => opened,
     }
 }
 
@@ -237,6 +259,9 @@ fn remove_leftovers(target: &Path) {
 }
 
 fn place(file: &Path) -> io::Result<Place> {
+    if is_output(file) {
+        return Ok(Place::Output);
+    }
     let found = match fs::metadata(file) {
         Ok(found) => found,
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Place::Free(target(file)?)),
@@ -260,6 +285,14 @@ fn place(file: &Path) -> io::Result<Place> {
     } else {
         Ok(Place::Special(file.to_owned()))
     }
+}
+
+/// Whether a name leads by links to standard output. That may be a file which a shell has opened for several
+/// programs: only by the open file itself does each write after the one before.
+fn is_output(file: &Path) -> bool {
+    let is = |path: &Path| cfg!(unix) && OUTPUT.iter().any(|name| path == Path::new(name));
+    let link = |path: &PathBuf| Some(folder(path).join(fs::read_link(path).ok()?));
+    std::iter::successors(Some(file.to_owned()), link).take(LINKS as usize).any(|path| is(&path))
 }
 
 /// The file that a name stands for, links followed as far as there are any.

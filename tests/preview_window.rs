@@ -8,7 +8,7 @@ mod software;
 mod support;
 
 use std::fs;
-use std::io::{BufRead, BufReader};
+use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::sync::LazyLock;
@@ -51,10 +51,19 @@ fn preview(folder: &Path, arguments: &[&str]) -> Command {
     command
 }
 
-/// An X server without a screen; its display.
-fn server() -> (Owned, String) {
-    let screen = ["-displayfd", "1", "-screen", "0", "1100x760x24", "-nolisten", "tcp"];
-    let started = Command::new("Xvfb").args(screen).stdout(Stdio::piped()).stderr(Stdio::null()).spawn();
+/// Columns of the screen.
+const COLUMNS: usize = 1100;
+
+/// An X server without a screen; its display. What it shows is in the file `Xvfb_screen0` of `folder`.
+fn server(folder: &Path) -> (Owned, String) {
+    let screen = ["-displayfd", "1", "-screen", "0", &format!("{COLUMNS}x760x24"), "-nolisten", "tcp"];
+    let started = Command::new("Xvfb")
+        .args(screen)
+        .arg("-fbdir")
+        .arg(folder)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn();
     let mut server = Owned(started.unwrap_or_else(|error| {
         panic!("Xvfb does not start ({error}): install it (Debian and Ubuntu: apt install xvfb xdotool)")
     }));
@@ -91,20 +100,12 @@ fn photons(file: &Path) -> Option<String> {
 fn a_hand_turns_changes_saves_and_closes() {
     software::software();
     let folder = folder("hand");
-    let (_server, display) = server();
-    let mut command = preview(&folder, &["ball.toml", "--device", "software", "-o", "picture.exr"]);
-    let mut window = Owned(command.env("DISPLAY", &display).stderr(Stdio::piped()).spawn().unwrap());
+    let (_server, display) = server(&folder);
+    let mut window =
+        opened(&folder, &display, "ball", &["ball.toml", "--device", "software", "-o", "picture.exr"]);
     let key = |key: &str| {
         hand(&display, &["key", key]);
     };
-    let mut ids = String::new();
-    let begun = Instant::now();
-    while ids.is_empty() {
-        ids = found(&display);
-        assert!(window.0.try_wait().unwrap().is_none() && begun.elapsed() < PATIENCE, "there is no window");
-        sleep(Duration::from_millis(50));
-    }
-    hand(&display, &["windowfocus", "--sync", ids.trim()]);
     let picture = folder.join("picture.exr");
     until("the first picture", || key("s"), || picture.exists());
     assert_eq!(photons(&picture).as_deref(), Some("2000"));
@@ -146,9 +147,113 @@ fn a_hand_turns_changes_saves_and_closes() {
     assert!(bits("again.exr") == bits("picture.exr"));
 }
 
+/// A preview whose window is there and has the keyboard.
+fn opened(folder: &Path, display: &str, scene: &str, arguments: &[&str]) -> Owned {
+    let mut command = preview(folder, arguments);
+    let mut window = Owned(command.env("DISPLAY", display).stderr(Stdio::piped()).spawn().unwrap());
+    let mut ids = String::new();
+    let begun = Instant::now();
+    while ids.is_empty() {
+        ids = found(display, scene);
+        if let Some(status) = window.0.try_wait().unwrap() {
+            let mut error = String::new();
+            window.0.stderr.take().unwrap().read_to_string(&mut error).unwrap();
+            panic!("there is no window: {status} {error}");
+        }
+        assert!(begun.elapsed() < PATIENCE, "there is no window");
+        sleep(Duration::from_millis(50));
+    }
+    hand(display, &["windowfocus", "--sync", ids.trim()]);
+    window
+}
+
+/// A scene that comes with the program.
+fn shipped(name: &str) -> String {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(name).display().to_string()
+}
+
+/// What the screen shows of the upper part of the picture: rows 150 to 250 of columns 150 to 450.
+fn seen(folder: &Path) -> Vec<u8> {
+    use std::os::unix::fs::FileExt;
+    // after a header whose length is its first word, least byte last, and a color map: rows of 4 bytes a pixel
+    let file = fs::File::open(folder.join("Xvfb_screen0")).unwrap();
+    let length = file.metadata().unwrap().len();
+    let row = 4 * COLUMNS as u64;
+    let first = length - 760 * row;
+    let mut rows = vec![0; 100 * row as usize];
+    file.read_exact_at(&mut rows, first + 150 * row).unwrap();
+    rows.chunks(row as usize).flat_map(|row| row[4 * 150..4 * 450].to_vec()).collect()
+}
+
+/// Pictures that the screen shows one after another while the mouse drags for 3 s at 60 Hz.
+fn pictures_of_a_drag(folder: &Path, display: &str) -> u32 {
+    let mut words: Vec<String> = ["mousemove", "150", "450", "mousedown", "1"].map(str::to_owned).to_vec();
+    for step in 0..180 {
+        let place = [150 + step, 450 + step / 9].map(|at| at.to_string());
+        words.extend(
+            [["mousemove".to_owned()].as_slice(), &place, &["sleep".to_owned(), "0.016".to_owned()]].concat(),
+        );
+    }
+    words.extend(["mouseup".to_owned(), "1".to_owned()]);
+    let begun = Instant::now();
+    let mut mouse = Owned(Command::new("xdotool").args(&words).env("DISPLAY", display).spawn().unwrap());
+    let (mut pictures, mut last) = (0, seen(folder));
+    while mouse.0.try_wait().unwrap().is_none() {
+        let now = seen(folder);
+        pictures += u32::from(now != last);
+        last = now;
+        sleep(Duration::from_millis(5));
+    }
+    println!("{pictures} pictures in {:.2} s", begun.elapsed().as_secs_f64());
+    assert!(begun.elapsed() > Duration::from_millis(2500));
+    pictures
+}
+
+/// Theory: a hand that turns the camera sees it turn. While the mouse moves at 60 Hz, with no rest in which a
+/// whole picture could be made, small pictures follow one another. Two idle cores, which also draw the
+/// window, show more than 20; if only pictures of the last place of the mouse counted there would be one or
+/// two. Other programs on these cores slow a drag down, so the best of three counts.
+#[test]
+fn a_drag_shows_many_pictures() {
+    software::software();
+    let folder = folder("drag");
+    let (_server, display) = server(&folder);
+    let _window = opened(&folder, &display, "cornell", &[&shipped("cornell.toml"), "--device", "cpu"]);
+    // the scene is there, and its first picture
+    let blank = seen(&folder);
+    until("a picture", || (), || seen(&folder) != blank);
+    let mut drags = (0..3).map(|_| {
+        sleep(Duration::from_millis(500));
+        pictures_of_a_drag(&folder, &display)
+    });
+    assert!(drags.any(|pictures| pictures >= 6), "a drag shows too few pictures");
+}
+
+/// Theory: a window closes when it is asked to, whatever is rendered: passes of a hundred million photons,
+/// which take a minute or more, are given up.
+#[test]
+fn a_window_closes_while_a_long_pass_runs() {
+    software::software();
+    let folder = folder("close");
+    // the whole picture begins a quarter of a second after the small one, and compiles first
+    for (device, wait_ms) in [("cpu", 500), ("cpu", 8000), ("software", 8000)] {
+        let (_server, display) = server(&folder);
+        let scene = shipped("cornell.toml");
+        let line = [&scene, "--device", device, "--photons", "100000000", "--passes", "100"];
+        let mut window = opened(&folder, &display, "cornell", &line);
+        sleep(Duration::from_millis(wait_ms));
+        let begun = Instant::now();
+        hand(&display, &["key", "ctrl+q"]);
+        let ended = wait(&mut window.0);
+        println!("{device} after {wait_ms} ms: {:?}", begun.elapsed());
+        assert!(ended.success(), "{device}: {ended}");
+        assert!(begun.elapsed() < Duration::from_secs(3), "{device}: {:?}", begun.elapsed());
+    }
+}
+
 /// The window's number; empty where there is none yet, which xdotool calls a failure.
-fn found(display: &str) -> String {
-    let words = ["search", "--onlyvisible", "--name", "ball - caustica"];
+fn found(display: &str, scene: &str) -> String {
+    let words = ["search", "--onlyvisible", "--name", &format!("{scene} - caustica")];
     let output = Command::new("xdotool").args(words).env("DISPLAY", display).output();
     let output = output.unwrap_or_else(|error| {
         panic!("xdotool does not start ({error}): install it (Debian and Ubuntu: apt install xvfb xdotool)")

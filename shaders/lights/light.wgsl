@@ -37,6 +37,9 @@ fn sample_one_light(light: Light, share: f32, position: vec3f, u: vec4f) -> Ligh
                 let p = sample_sphere_cone(sphere, position, vec2f(u.y, u.z));
                 let to = p.position + p.normal * p.error - position;
                 let dist_sq = dot(to, to);
+                if dist_sq == 0.0 {
+                    return none;
+                }
                 let distance = sqrt(dist_sq);
                 return LightSample(
                     to * (1.0 / distance),

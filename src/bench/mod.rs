@@ -133,16 +133,18 @@ pub struct Memory {
     pub peak_resident: Option<u64>,
 }
 
-/// Runs passes and counts. With a truth, see [`to_error::approach`].
+/// Runs passes and counts. With a truth, see [`to_error::approach`]. `stop` is asked after each round; once it
+/// says so the report is of the rounds so far.
 pub fn device_report(
     device: &DeviceInfo,
     scene: &Scene,
     settings: &RenderSettings,
     conduct: &Conduct,
+    stop: &dyn Fn() -> bool,
 ) -> Result<DeviceReport, DeviceError> {
     machine::forget_peak();
     let mut ready = setup::ready(device, scene, settings, Compiling::OneByOne)?;
-    let run = run(&mut ready, conduct)?;
+    let run = run(&mut ready, conduct, stop)?;
     let peak_resident = machine::peak_resident_bytes();
     let work = Work::of(&ready.plan, &run.report, run.gathered);
     let pass = run.slices.first().map(|slice| slice.pass).unwrap_or_default();
@@ -192,7 +194,7 @@ struct Run {
     gathered: u64,
 }
 
-fn run(ready: &mut Ready, conduct: &Conduct) -> Result<Run, EngineError> {
+fn run(ready: &mut Ready, conduct: &Conduct, stop: &dyn Fn() -> bool) -> Result<Run, EngineError> {
     let runner = &mut ready.runner;
     let slices = match conduct.slices.as_slice() {
         [] => &[crate::gpu::pace::SLICE],
@@ -214,7 +216,7 @@ fn run(ready: &mut Ready, conduct: &Conduct) -> Result<Run, EngineError> {
     let mut plain: Vec<(Vec<f64>, u64, crate::gpu::Submissions)> = vec![Default::default(); slices.len()];
     let mut last = PassReport::default();
     for round in 0..conduct.passes.max(1) {
-        if round > 0 && conduct.time.is_some_and(|time| begun.elapsed() >= time) {
+        if round > 0 && (stop() || conduct.time.is_some_and(|time| begun.elapsed() >= time)) {
             break;
         }
         set_slice(runner, slices[0]);

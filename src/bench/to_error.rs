@@ -79,12 +79,14 @@ pub fn reached(series: &[Point], goal: f64) -> Option<f64> {
 }
 
 /// Makes passes with an engine that has made none until all goals are reached or the limit is, and measures after each of
-/// the first sixteen, then whenever there are an eighth more.
+/// the first sixteen, then whenever there are an eighth more. `stop` is asked after each pass; once it says so
+/// that pass is the last.
 pub fn approach(
     engine: &mut dyn Engine,
     truth: &Picture,
     goals: &[Goal],
     limit: Limit,
+    stop: &dyn Fn() -> bool,
 ) -> Result<Vec<Approach>, ToErrorError> {
     let mut approaches: Vec<Approach> = goals
         .iter()
@@ -101,7 +103,7 @@ pub fn approach(
         let begun = Instant::now();
         engine.pass()?;
         time += begun.elapsed();
-        let last = passes >= limit.passes || time >= limit.time;
+        let last = passes >= limit.passes || time >= limit.time || stop();
         if passes < next && !last {
             continue;
         }
@@ -193,7 +195,7 @@ mod tests {
             goal(None, None, 0.0),
         ];
         let endless = Limit { time: Duration::from_secs(1000), passes: 1000 };
-        let found = approach(&mut Halver(1.0), &truth, &goals, endless).unwrap();
+        let found = approach(&mut Halver(1.0), &truth, &goals, endless, &|| false).unwrap();
         let passes = |a: &Approach| a.series.last().unwrap().passes;
         // the mean of both halves, less the largest pixel, 36 / 15 4^-p / 1.01, is below 0.001 from the sixth pass on
         assert_eq!(found.iter().map(passes).collect::<Vec<_>>(), [6, 6, 6]);
@@ -203,9 +205,12 @@ mod tests {
         assert_eq!((found[2].goal, found[2].reached_seconds), (None, None));
         // the limit, and noise that is taken off
         let short = Limit { passes: 3, ..endless };
-        let found = approach(&mut Halver(1.0), &truth, &[goal(None, Some(1e-3), 0.01)], short).unwrap();
+        let found =
+            approach(&mut Halver(1.0), &truth, &[goal(None, Some(1e-3), 0.01)], short, &|| false).unwrap();
         assert_eq!((passes(&found[0]), found[0].reached_seconds), (3, None));
         let error = found[0].series[2].rel_mse;
+        let stopped = approach(&mut Halver(1.0), &truth, &goals, endless, &|| true).unwrap();
+        assert_eq!(passes(&stopped[0]), 1, "a stop leaves the passes before it");
         assert!((error - (36.0 / 15.0 / 64.0 / 1.01 - 0.01)).abs() < 1e-6, "{error}");
     }
 }

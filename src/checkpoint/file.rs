@@ -285,6 +285,8 @@ fn check_header(header: &Header) -> Result<(), String> {
     if !header.counts.is_multiple_of(4) {
         return Err(format!("{} bytes of counts", header.counts));
     }
+    let each = |bytes: u64, size: usize| bytes / size as u64;
+    values::check_points(&header.origin, each(header.statistics, statistics_bytes), each(header.counts, 4))?;
     if header.totals.elapsed.as_secs() > ELAPSED_MAX {
         return Err(format!("{} s of rendering", header.totals.elapsed.as_secs()));
     }

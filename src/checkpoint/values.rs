@@ -1,7 +1,9 @@
 //! Whether the numbers of a checkpoint can be those of a render: a forged file must neither hang a render
-//! nor fill it with nonsense. Lengths are checked before (`file`).
+//! nor fill it with nonsense. Lengths of what is kept by pixel are checked before (`file`).
 
+use super::Origin;
 use crate::engine::{Space, State};
+use crate::settings::{Method, RadiusRule};
 
 /// Items that are looked at together, so that a large film is not copied as a whole.
 const TOGETHER: usize = 4096;
@@ -21,6 +23,26 @@ pub(super) fn check(state: &State, cuts: &[[u32; 2]]) -> Result<(), String> {
     }
 }
 
+/// Checks how many visible points there are numbers of; a film without layers and rules that need them has none.
+///
+/// # Errors
+/// Numbers of more or of fewer points than the picture has.
+pub(super) fn check_points(origin: &Origin, statistics: u64, counts: u64) -> Result<(), String> {
+    let settings = &origin.settings;
+    let [columns, rows] = origin.window_size().map(u64::from);
+    let samples = if settings.method == Method::Ppm { u64::from(settings.eye_samples) } else { 1 };
+    let points = (columns * rows).saturating_mul(samples);
+    let gathers = settings.method != Method::Path;
+    let local = gathers && settings.radius_rule == RadiusRule::Local;
+    for (name, found, kept) in [("statistics", statistics, local), ("photon counts", counts, gathers)] {
+        if found != 0 && (found != points || !kept) {
+            let points = if kept { points } else { 0 };
+            return Err(format!("{name} of {found} visible points, and the picture has {points} with them"));
+        }
+    }
+    Ok(())
+}
+
 /// Checks what tells scene units.
 ///
 /// # Errors
@@ -38,11 +60,41 @@ pub(super) fn check_space(space: &Space) -> Result<(), String> {
 }
 
 macro_rules! precision {
-    ($name:ident, $kernels:path) => {
+    ($name:ident, $kernels:path, $real:path) => {
         mod $name {
             use super::*;
-            use kernels::bytes::{FILM_BYTES, STATISTICS_BYTES, film_of, statistics_of};
+            use kernels::bytes::*;
             use $kernels as kernels;
+            use $real as real;
+
+            /// Checks layers of pixels: means of finite numbers over no more passes or samples than there are.
+            fn check_layers(state: &State) -> Result<(), String> {
+                let all_finite = |v: &real::Vec3| v.is_finite();
+                for (number, bytes) in state.layers.aovs.chunks(AOV_BYTES * TOGETHER).enumerate() {
+                    let sound = |a: &kernels::aov_trace::AovPixel| {
+                        let counts = [a.hits, a.points].iter().all(|x| *x >= 0.0 && x.is_finite());
+                        let vectors = [&a.albedo, &a.normal, &a.position, &a.emission, &a.direct];
+                        counts
+                            && a.depth.is_finite()
+                            && a.radius.is_finite()
+                            && vectors.into_iter().all(all_finite)
+                    };
+                    if let Some(i) = aovs_of(bytes).iter().position(|a| !sound(a)) {
+                        return Err(format!("pixel {} holds no layers", number * TOGETHER + i));
+                    }
+                }
+                #[allow(clippy::unnecessary_cast)] // no cast where a real number is an f64
+                let most = f64::from(state.passes) as real::Real;
+                for (number, bytes) in state.layers.parts.chunks(PARTS_BYTES * TOGETHER).enumerate() {
+                    let sound = |p: &kernels::resolve_parts::PartsPixel| {
+                        (0.0..=most).contains(&p.passes) && all_finite(&p.caustic) && all_finite(&p.indirect)
+                    };
+                    if let Some(i) = parts_of(bytes).iter().position(|p| !sound(p)) {
+                        return Err(format!("pixel {} holds no parts of its light", number * TOGETHER + i));
+                    }
+                }
+                Ok(())
+            }
 
             pub fn check(state: &State) -> Result<(), String> {
                 for (number, bytes) in state.film.chunks(FILM_BYTES * TOGETHER).enumerate() {
@@ -74,11 +126,11 @@ macro_rules! precision {
                         }
                     }
                 }
-                Ok(())
+                check_layers(state)
             }
         }
     };
 }
 
-precision!(single, crate::kernels);
-precision!(wide, crate::double::kernels);
+precision!(single, crate::kernels, crate::real);
+precision!(wide, crate::double::kernels, crate::double::real);

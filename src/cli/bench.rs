@@ -1,6 +1,7 @@
 //! `caustica bench`: times and rates of devices, kernel by kernel, and time to error.
 
 use std::path::{Path, PathBuf};
+use std::sync::atomic::Ordering;
 use std::time::Duration;
 
 use caustica::bench::to_error::{Approach, Goal, Limit, ToErrorError, approach};
@@ -21,7 +22,7 @@ use super::diff::{region, region_names};
 use super::output::{message, result};
 use super::overrides::{Overrides, duration};
 use super::render::in_force;
-use super::{Done, Failure};
+use super::{Done, Failure, compiling, hidden, interrupt};
 
 /// The scene where none is given.
 const CORNELL: &[u8] = include_bytes!("../../scenes/cornell.toml");
@@ -111,7 +112,9 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     let devices = device::list();
     let mut chosen = Vec::new();
     for wanted in &arguments.device {
-        let (device, _) = device::pick(&device::parse(wanted), &devices)?;
+        let wanted = device::parse(wanted);
+        let (device, _) = device::pick(&wanted, &devices)?;
+        hidden::warn(&wanted);
         if !can_run(device, &settings) {
             return Err(Failure::wrong_use(
                 &format!("path tracing does not run on {}", device.name),
@@ -120,24 +123,13 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
         }
         chosen.push(device);
     }
+    compiling::begin(false, arguments.json);
     let machine = Machine::this();
     if !arguments.json {
         result(heading(&scene, &settings, &machine))?;
     }
-    let mut reports = Vec::new();
-    let of = chosen.len();
-    for (done, device) in chosen.into_iter().enumerate() {
-        if arguments.json {
-            result(json!({ "event": "measuring", "device": device.name, "done": done, "of": of }))?;
-        }
-        let report = measure(device, &scene, &settings, truth.as_ref(), &arguments)?;
-        if !arguments.json {
-            result(device_text(&report))?;
-        }
-        reports.push(report);
-    }
-    if arguments.json {
-        result(json!({
+    let as_json = |reports: &[DeviceReport], complete: bool| {
+        json!({
             "event": "bench",
             "version": env!("CARGO_PKG_VERSION"),
             "scene": scene.name,
@@ -146,7 +138,39 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
             "settings": settings,
             "machine": machine,
             "devices": reports,
-        }))?;
+            "complete": complete,
+        })
+    };
+    let stop = || interrupt::flag().load(Ordering::Relaxed);
+    let mut complete = true;
+    let mut reports = Vec::new();
+    let of = chosen.len();
+    for (done, device) in chosen.into_iter().enumerate() {
+        if arguments.json {
+            result(json!({ "event": "measuring", "device": device.name, "done": done, "of": of }))?;
+        }
+        let report = measure(device, &scene, &settings, truth.as_ref(), &arguments, &stop)?;
+        if !arguments.json {
+            result(device_text(&report))?;
+        }
+        reports.push(report);
+        if stop() {
+            complete = false;
+            break;
+        }
+        // the next device compiles first, which a signal need not wait for
+        let figures = arguments.json.then(|| as_json(&reports, false));
+        interrupt::last_words(move || {
+            // Standard output that takes nothing leaves nothing to do.
+            let _ = figures.map(result);
+        });
+    }
+    if arguments.json {
+        result(as_json(&reports, complete))?;
+    }
+    if !complete {
+        message("the figures are of the passes before the interrupt");
+        return Ok(Done::Interrupted);
     }
     let missed = |a: &Approach| a.goal.is_some() && a.reached_seconds.is_none();
     let missed: Vec<&Approach> = reports.iter().flat_map(|r| &r.to_error).filter(|a| missed(a)).collect();
@@ -170,6 +194,7 @@ fn measure(
     settings: &RenderSettings,
     truth: Option<&Picture>,
     arguments: &Arguments,
+    stop: &dyn Fn() -> bool,
 ) -> Result<DeviceReport, Failure> {
     let cached = std::env::var_os("MESA_SHADER_CACHE_DISABLE").is_none();
     if device.kind == DeviceKind::Software && cached {
@@ -184,8 +209,8 @@ fn measure(
         time: arguments.time,
         slices: arguments.slice.clone(),
     };
-    let mut report = device_report(device, scene, settings, &conduct)?;
-    if let Some(truth) = truth {
+    let mut report = device_report(device, scene, settings, &conduct, stop)?;
+    if let Some(truth) = truth.filter(|_| !stop()) {
         let mut ready = setup::ready(device, scene, settings, Compiling::Together)?;
         if let (Some(gpu), Some(slice)) = (ready.runner.gpu(), arguments.slice.first()) {
             gpu.set_slice(*slice);
@@ -195,12 +220,10 @@ fn measure(
             (None, Some(passes)) => Limit { time: Duration::MAX, passes },
             (None, None) => Limit { time: TO_ERROR, passes: u32::MAX },
         };
-        report.to_error =
-            approach(ready.runner.engine(), truth, &goals(&arguments.truth), limit).map_err(|error| {
-                match error {
-                    ToErrorError::Engine(error) => Failure::from(error),
-                    ToErrorError::Metrics(error) => Failure::from(error),
-                }
+        report.to_error = approach(ready.runner.engine(), truth, &goals(&arguments.truth), limit, stop)
+            .map_err(|error| match error {
+                ToErrorError::Engine(error) => Failure::from(error),
+                ToErrorError::Metrics(error) => Failure::from(error),
             })?;
     }
     Ok(report)

@@ -16,7 +16,7 @@ use super::figures::comparison_json;
 use super::output::{message, result};
 use super::overrides::Overrides;
 use super::render::{Voice, begin, load};
-use super::{Done, Failure};
+use super::{Done, Failure, compiling, hidden};
 
 /// Render a scene on two devices and compare the pictures
 #[derive(clap::Args)]
@@ -51,6 +51,13 @@ fn share(text: &str) -> Result<f64, String> {
     }
 }
 
+impl Arguments {
+    /// The devices that are asked for.
+    pub fn devices(&self) -> &[String] {
+        &self.device
+    }
+}
+
 /// A picture and the device that made it.
 struct Rendered {
     device: String,
@@ -72,8 +79,11 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     // A device that is not there should not show after the first render.
     let devices = device::list();
     for wanted in [first, second] {
-        device::pick(&device::parse(wanted), &devices)?;
+        let wanted = device::parse(wanted);
+        device::pick(&wanted, &devices)?;
+        hidden::warn(&wanted);
     }
+    compiling::begin(arguments.voice.quiet, arguments.voice.json);
     let a = render_on(first, &scene, &settings, &arguments.voice)?;
     let b = render_on(second, &scene, &settings, &arguments.voice)?;
     let comparison = compare(&a.picture, &b.picture)?;

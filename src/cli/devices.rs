@@ -1,10 +1,11 @@
 //! `caustica devices`: what there is to render on.
 
 use caustica::device::{self, DeviceInfo};
+use caustica::gpu::{self, Hidden};
 use serde_json::{Value, json};
 
 use super::output::result;
-use super::{Done, Failure};
+use super::{Done, Failure, hidden};
 
 /// List the devices, their drivers and limits, and what --device auto takes
 #[derive(clap::Args)]
@@ -17,6 +18,8 @@ pub struct Arguments {
 /// Prints the list.
 pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     let devices = device::list();
+    let hidden = gpu::hidden();
+    hidden.iter().for_each(hidden::tell);
     let (auto, why) = device::pick(&device::Wanted::Auto, &devices)?;
     if arguments.json {
         let each = devices.iter().map(|DeviceInfo { name, kind, driver, limits }| {
@@ -24,7 +27,17 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
             json!({ "name": name, "kind": kind.word(), "driver": driver, "limits": limits })
         });
         let each: Vec<_> = each.collect();
-        result(json!({ "event": "devices", "devices": each, "auto": auto.name, "why": why }))?;
+        let hidden = hidden.iter().map(|Hidden { variable, value, adapters, unknown: _ }| {
+            let names: Vec<_> = adapters.iter().map(|adapter| adapter.name.as_str()).collect();
+            json!({ "variable": variable, "value": value, "devices": names })
+        });
+        result(json!({
+            "event": "devices",
+            "devices": each,
+            "auto": auto.name,
+            "why": why,
+            "hidden": hidden.collect::<Vec<_>>(),
+        }))?;
         return Ok(Done::Fully);
     }
     for device in &devices {

@@ -8,18 +8,21 @@ use caustica::engine::EngineError;
 use caustica::film::FileError;
 use caustica::film::denoise::DenoiseError;
 use caustica::film::metrics::MetricsError;
+use caustica::gpu;
 use caustica::render::Broken;
 use caustica::scene::SceneErrors;
 use caustica::study::StudyError;
 use miette::{Report, miette};
 
-use super::output::report;
+use super::output::{paragraph, report};
 
 /// Why a command failed.
 #[derive(Debug)]
 pub struct Failure {
     code: u8,
     report: Report,
+    /// Lines that follow: a driver's or a compiler's own, which no names of files are in.
+    details: String,
 }
 
 impl Failure {
@@ -30,18 +33,22 @@ impl Failure {
 
     /// Arguments that cannot be meant, and what would do.
     pub fn wrong_use(what: &str, help: &str) -> Self {
-        Self { code: Self::WRONG_USE, report: miette!(help = help.to_owned(), "{what}") }
+        Self {
+            code: Self::WRONG_USE,
+            report: miette!(help = help.to_owned(), "{what}"),
+            details: String::new(),
+        }
     }
 
     /// Anything else.
     pub fn failed(report: impl Into<Report>) -> Self {
-        Self { code: Self::FAILED, report: report.into() }
+        Self { code: Self::FAILED, report: report.into(), details: String::new() }
     }
 
     /// There is no device for this.
     #[cfg(feature = "preview")]
     pub fn no_device(report: impl Into<Report>) -> Self {
-        Self { code: Self::NO_SUCH_DEVICE, report: report.into() }
+        Self { code: Self::NO_SUCH_DEVICE, report: report.into(), details: String::new() }
     }
 
     /// The exit code.
@@ -53,6 +60,9 @@ impl Failure {
     /// Prints the failure to standard error.
     pub fn tell(self) -> ExitCode {
         report(self.report.as_ref());
+        if !self.details.is_empty() {
+            paragraph(&self.details);
+        }
         ExitCode::from(self.code)
     }
 }
@@ -66,10 +76,12 @@ impl From<SceneErrors> for Failure {
 impl From<FileError> for Failure {
     fn from(error: FileError) -> Self {
         let code = match error {
-            FileError::UnknownFormat { .. } | FileError::Repeated { .. } => Self::WRONG_USE,
+            FileError::UnknownFormat { .. } | FileError::StreamName { .. } | FileError::Repeated { .. } => {
+                Self::WRONG_USE
+            }
             _ => Self::FAILED,
         };
-        Self { code, report: error.into() }
+        Self { code, report: error.into(), details: String::new() }
     }
 }
 
@@ -95,7 +107,9 @@ impl From<DenoiseError> for Failure {
 impl From<EngineError> for Failure {
     fn from(error: EngineError) -> Self {
         let code = if error.is_of_device() { Self::DEVICE_FAILED } else { Self::FAILED };
-        Self { code, report: miette!("{error}") }
+        let text = error.to_string();
+        let (first, rest) = text.split_once('\n').unwrap_or((&text, ""));
+        Self { code, report: miette!("{first}"), details: rest.trim_end().to_owned() }
     }
 }
 
@@ -119,7 +133,9 @@ impl From<DeviceError> for Failure {
                     [] => "no device was found at all".to_owned(),
                     names => format!("there is: {}; `caustica devices` tells more", names.join(", ")),
                 };
-                Self { code: Self::NO_SUCH_DEVICE, report: miette!(help = help, "{error}") }
+                let hidden = gpu::hidden().iter().map(|hidden| format!("note: {hidden}"));
+                let details = hidden.collect::<Vec<_>>().join("\n");
+                Self { code: Self::NO_SUCH_DEVICE, report: miette!(help = help, "{error}"), details }
             }
             DeviceError::Engine(error) => error.into(),
         }
@@ -132,7 +148,7 @@ impl From<StudyError> for Failure {
             StudyError::Device(error) => error.into(),
             StudyError::File(error) => error.into(),
             StudyError::Grid(_) | StudyError::Folder { .. } | StudyError::Variant { .. } => {
-                Self { code: Self::WRONG_USE, report: miette!("{error}") }
+                Self { code: Self::WRONG_USE, report: miette!("{error}"), details: String::new() }
             }
             StudyError::Engine(error) => error.into(),
             StudyError::Metrics(_) => Self::failed(miette!("{error}")),

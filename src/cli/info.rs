@@ -17,7 +17,7 @@ use super::measure;
 use super::output::result;
 use super::overrides::Overrides;
 use super::render::load;
-use super::{Done, Failure};
+use super::{Done, Failure, compiling};
 
 /// Show what a scene needs and what is left out: features, kernels, bytes of every buffer
 #[derive(clap::Args)]
@@ -38,6 +38,13 @@ pub struct Arguments {
     budget: Budget,
     #[command(flatten)]
     overrides: Overrides,
+}
+
+impl Arguments {
+    /// The devices to measure on, if any.
+    pub fn measured(&self) -> Option<&[String]> {
+        self.measure.then_some(&self.device)
+    }
 }
 
 const HELP: &str = "\
@@ -134,6 +141,7 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
         }
     }
     if arguments.measure {
+        compiling::begin(false, arguments.json);
         for device in &arguments.device {
             measure::on_device(device, &packed, &settings, arguments.json)?;
         }

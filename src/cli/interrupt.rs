@@ -1,15 +1,17 @@
 //! Ctrl-C and termination signals. While something is prepared, one ends the program at once; while a
 //! render has passes to keep, the first asks for an end and the second ends at once.
 
-use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::thread::{self, JoinHandle};
+use std::sync::{Mutex, OnceLock, PoisonError};
 
-use super::output::message;
+use super::output::{message, paragraph};
+use super::signals;
 
 static RENDERING: AtomicBool = AtomicBool::new(false);
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
+static ENDING: AtomicBool = AtomicBool::new(false);
 static FAILED: OnceLock<String> = OnceLock::new();
+static LAST_WORDS: Mutex<Option<Box<dyn FnOnce() + Send>>> = Mutex::new(None);
 
 /// The argument that stands for nothing but this exit code.
 const END: &str = "--interrupted";
@@ -24,6 +26,7 @@ pub fn is_end() -> bool {
 /// libraries do at a regular exit takes a driver's compiler apart while it compiles, which ends in a crash;
 /// so the program gives its place to a new one, of a single thread, that exits.
 fn end() -> ! {
+    ENDING.store(true, Ordering::SeqCst);
     #[cfg(unix)]
     {
         use std::os::unix::process::CommandExt;
@@ -34,11 +37,22 @@ fn end() -> ! {
     std::process::exit(super::Done::Interrupted as i32)
 }
 
+/// Waits for the end if a signal is ending the program. Meanwhile other threads may fail, since the system gives
+/// none to a process that is about to be replaced; such a failure must not be reported.
+pub fn wait_if_ending() {
+    while ENDING.load(Ordering::SeqCst) {
+        std::thread::park();
+    }
+}
+
 /// Handles signals from now on; `renders` says whether the command has passes to come.
 pub fn begin(renders: bool) {
     let handler = move || {
         if !RENDERING.load(Ordering::Relaxed) {
-            message(match renders {
+            if let Some(last_words) = LAST_WORDS.lock().unwrap_or_else(PoisonError::into_inner).take() {
+                last_words();
+            }
+            paragraph(match renders {
                 true => "\ninterrupted before the first pass: nothing is saved",
                 false => "\ninterrupted",
             });
@@ -47,14 +61,18 @@ pub fn begin(renders: bool) {
         if INTERRUPTED.swap(true, Ordering::Relaxed) {
             end();
         }
-        message("\ninterrupted: finishing the pass; once more to end at once");
+        paragraph("\ninterrupted: finishing the pass; once more to end at once");
     };
-    // Handlers that nobody waits for would swallow signals: none are set where there is no thread to wait.
-    let thread = thread::Builder::new().spawn(|| ()).map(JoinHandle::join);
-    let set = thread.map_err(ctrlc::Error::System).and_then(|_| ctrlc::set_handler(handler));
-    if let Err(error) = set {
+    if let Err(error) = signals::listen(handler) {
         let _ = FAILED.set(error.to_string());
     }
+}
+
+/// From now on until [`flag`] is asked for, a signal ends the program at once, after `last_words`, which print
+/// the results so far.
+pub fn last_words(last_words: impl FnOnce() + Send + 'static) {
+    *LAST_WORDS.lock().unwrap_or_else(PoisonError::into_inner) = Some(Box::new(last_words));
+    RENDERING.store(false, Ordering::Relaxed);
 }
 
 /// The flag that the first signal from now on sets.

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use log::{Level, LevelFilter, Log, Metadata, Record};
 
-use super::output::message;
+use super::output::paragraph;
 
 /// The program's own name, with which the targets of its records begin.
 const OWN: &str = "caustica";
@@ -53,7 +53,7 @@ impl Log for Writer {
         if self.enabled(record.metadata()) {
             let seconds = self.begun.get().map_or(0.0, |begun| begun.elapsed().as_secs_f64());
             let level = record.level().as_str().to_ascii_lowercase();
-            message(format_args!("{seconds:9.3} s {level:<5} {}: {}", record.target(), record.args()));
+            paragraph(format_args!("{seconds:9.3} s {level:<5} {}: {}", record.target(), record.args()));
         }
     }
 

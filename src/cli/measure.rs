@@ -10,7 +10,7 @@ use caustica::settings::{Method, RenderSettings};
 use serde_json::{Map, Value, json};
 
 use super::output::{message, result};
-use super::{Done, Failure};
+use super::{Done, Failure, hidden};
 
 /// Passes of which the fastest counts.
 const PASSES: u32 = 5;
@@ -25,7 +25,9 @@ pub fn on_device(
     json: bool,
 ) -> Result<Done, Failure> {
     let devices = device::list();
-    let (device, _) = device::pick(&device::parse(wanted), &devices)?;
+    let wanted = device::parse(wanted);
+    let (device, _) = device::pick(&wanted, &devices)?;
+    hidden::warn(&wanted);
     if settings.method == Method::Path || device.kind == DeviceKind::CpuDouble {
         return Err(Failure::wrong_use(
             "there is nothing to measure: path tracing and the f64 engine are compiled once for all scenes",

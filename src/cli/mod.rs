@@ -11,16 +11,20 @@ mod check;
 mod checkpoint;
 mod colors;
 mod compare;
+mod compiling;
 mod completions;
 mod denoise;
 mod devices;
 mod diff;
 mod extent;
 mod failure;
+mod faults;
 mod figures;
+mod hidden;
 mod info;
 mod interrupt;
 mod like;
+mod loader;
 mod log;
 mod made;
 mod man;
@@ -33,6 +37,7 @@ mod preview;
 mod progress;
 mod render;
 mod shown;
+mod signals;
 mod study;
 mod succession;
 mod tessellate;
@@ -44,7 +49,7 @@ use std::process::ExitCode;
 use clap::{ArgAction, CommandFactory, Parser, Subcommand};
 
 use failure::Failure;
-use output::{message, printable};
+use output::{paragraph, printable};
 
 /// Renders scenes by photon mapping: caustics, soft shadows, depth of field.
 #[derive(Parser)]
@@ -83,6 +88,23 @@ enum Command {
     Man(man::Arguments),
 }
 
+impl Command {
+    /// Whether it may open a device that has a driver, or looks for one.
+    fn needs_driver(&self) -> bool {
+        let any = |devices: &[String]| devices.iter().any(|device| loader::is_driver(device));
+        match self {
+            Self::Render(arguments) => arguments.device().is_none_or(loader::is_driver),
+            #[cfg(feature = "preview")]
+            Self::Preview(_) => true,
+            Self::Compare(arguments) => any(arguments.devices()),
+            Self::Info(arguments) => arguments.measured().is_some_and(any),
+            Self::Bench(_) | Self::Devices(_) | Self::Study(_) => true,
+            Self::Merge(_) | Self::Diff(_) | Self::Check(_) | Self::Tessellate(_) => false,
+            Self::Completions(_) | Self::Man(_) => false,
+        }
+    }
+}
+
 /// How a command that did not fail ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Done {
@@ -109,7 +131,7 @@ fn parsed_otherwise(error: &clap::Error) -> ExitCode {
         printable(&text) == text
     };
     if error.use_stderr() && !std::env::args_os().all(plain) {
-        message(error.render().to_string().trim_end());
+        paragraph(error.render().to_string().trim_end());
     } else {
         // as clap prints it, in colours where these are wanted
         let _ = error.print();
@@ -122,16 +144,26 @@ pub fn run() -> ExitCode {
     if interrupt::is_end() {
         return ExitCode::from(Done::Interrupted as u8);
     }
+    faults::begin();
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(error) => return parsed_otherwise(&error),
     };
     log::begin(arguments.verbose);
-    interrupt::begin(matches!(arguments.command, Command::Render(_) | Command::Study(_)));
-    if let Err(failure) = threads::begin() {
-        return failure.tell();
+    if arguments.command.needs_driver() {
+        loader::quiet();
     }
-    let done = match arguments.command {
+    interrupt::begin(matches!(arguments.command, Command::Render(_) | Command::Study(_)));
+    let done = threads::begin().and_then(|()| carry_out(arguments.command));
+    interrupt::wait_if_ending();
+    match done {
+        Ok(done) => ExitCode::from(done as u8),
+        Err(failure) => failure.tell(),
+    }
+}
+
+fn carry_out(command: Command) -> Result<Done, Failure> {
+    match command {
         Command::Render(arguments) => render::run(*arguments),
         #[cfg(feature = "preview")]
         Command::Preview(arguments) => preview::run(*arguments),
@@ -146,9 +178,5 @@ pub fn run() -> ExitCode {
         Command::Tessellate(arguments) => tessellate::run(arguments),
         Command::Completions(arguments) => completions::run(arguments),
         Command::Man(arguments) => man::run(arguments),
-    };
-    match done {
-        Ok(done) => ExitCode::from(done as u8),
-        Err(failure) => failure.tell(),
     }
 }

@@ -37,9 +37,15 @@ fn written(outcome: io::Result<()>) -> Result<(), Failure> {
     }
 }
 
-/// Prints a line of anything else to standard error.
+/// Prints a line of anything else to standard error. A line feed in it comes from a name, and is shown as an
+/// escape.
 pub fn message(line: impl Display) {
-    to_stderr(&printable(&line.to_string()));
+    to_stderr(&one_line(&line.to_string()));
+}
+
+/// Prints lines of anything else to standard error.
+pub fn paragraph(lines: impl Display) {
+    to_stderr(&printable(&lines.to_string()));
 }
 
 /// Prints a report to standard error, in colours where these are wanted.
@@ -74,6 +80,11 @@ pub fn printable(text: &str) -> Cow<'_, str> {
     Cow::Owned(out)
 }
 
+/// As [`printable`], with line feeds as `\\n`.
+pub fn one_line(text: &str) -> String {
+    printable(text).replace('\n', "\\n")
+}
+
 /// Theory: a terminal acts on C0 and C1 control characters, and on sequences that begin with one; even
 /// colours can hide what follows.
 #[cfg(test)]
@@ -93,5 +104,6 @@ mod tests {
         for (text, shown) in cases {
             assert_eq!(printable(text), shown);
         }
+        assert_eq!(one_line("a\nerror: b\t\x07"), "a\\nerror: b\t\\x07");
     }
 }

@@ -12,7 +12,7 @@ use miette::miette;
 
 use super::overrides::Overrides;
 use super::render::default_output;
-use super::{Done, Failure, threads};
+use super::{Done, Failure, hidden, threads};
 
 /// Show a scene in a window while it converges, and change it
 #[derive(clap::Args)]
@@ -66,6 +66,7 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     let others = against_device.as_deref().map(device::parse);
     for wanted in [Some(&device), others.as_ref()].into_iter().flatten().filter(|wanted| needs_list(wanted)) {
         device::pick(wanted, &device::list())?;
+        hidden::warn(wanted);
     }
     let against = against.map(Against::File).or(against_device.map(Against::Device));
     let adjust = Box::new(move |loaded: &mut Loaded| {

@@ -29,12 +29,12 @@ use super::checkpoint::Keeper;
 use super::extent::Extent;
 use super::like::Like;
 use super::made::{Made, left_out};
-use super::output::{message, report, result};
+use super::output::{message, paragraph, report, result};
 use super::overrides::{Overrides, Passes, duration, target_error};
 use super::progress::{Reporter, count, time};
 use super::succession::Succession;
 use super::tev::Viewer;
-use super::{Done, Failure, checkpoint, denoise, interrupt};
+use super::{Done, Failure, checkpoint, compiling, denoise, hidden, interrupt};
 
 /// Render a scene into pictures
 #[derive(clap::Args)]
@@ -89,6 +89,13 @@ pub struct Arguments {
     overrides: Overrides,
 }
 
+impl Arguments {
+    /// The device that is asked for, if it is known before any file is read.
+    pub fn device(&self) -> Option<&str> {
+        self.device.as_deref()
+    }
+}
+
 const HELP: &str = "\
 Examples:
   caustica render scenes/caustics.toml
@@ -123,11 +130,18 @@ type Find<'a> = dyn Fn(&Wanted, &RenderSettings) -> Result<Candidates, DeviceErr
 
 /// Renders and writes.
 pub fn run(arguments: Arguments) -> Result<Done, Failure> {
-    run_on(arguments, &Candidates::of)
+    run_on(arguments, &|wanted, settings| {
+        let candidates = Candidates::of(wanted, settings)?;
+        if !Candidates::is_path_on_cpu(wanted, settings) {
+            hidden::warn(wanted);
+        }
+        Ok(candidates)
+    })
 }
 
 /// The same on devices that `find` gives.
 fn run_on(arguments: Arguments, find: &Find) -> Result<Done, Failure> {
+    compiling::begin(arguments.voice.quiet, arguments.voice.json);
     let like = arguments.like.as_deref().map(Like::read).transpose()?;
     let file = arguments.scene.clone().or(like.as_ref().map(Like::scene)).unwrap_or_default();
     let outputs = match arguments.output.as_slice() {
@@ -259,7 +273,7 @@ fn run_on(arguments: Arguments, find: &Find) -> Result<Done, Failure> {
 
 /// Tells why a render has ended early, and how to go on.
 fn broken_off(error: EngineError, passes: u32, keeper: &Keeper) -> Result<Done, Failure> {
-    message(format_args!("the picture holds the first {passes} passes only: {error}"));
+    paragraph(format_args!("the picture holds the first {passes} passes only: {error}"));
     match keeper.place() {
         Some(file) => message(format_args!(
             "they are kept in {}: the same command with --resume {} goes on from there, on any --device",

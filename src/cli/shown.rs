@@ -1,5 +1,5 @@
 //! Reports as a terminal may show them: without the control characters of what they quote. Lines of files
-//! come without them already (`scene::report`).
+//! come without them already (`scene::report`). Line feeds come from names too, and are escaped.
 
 use std::error::Error;
 use std::fmt;
@@ -7,7 +7,7 @@ use std::fmt;
 use miette::{Diagnostic, LabeledSpan, ReportHandler, Severity, SourceCode};
 
 use super::colors;
-use super::output::printable;
+use super::output::one_line;
 
 /// A diagnostic whose words have escapes in the place of control characters.
 pub struct Shown<'a> {
@@ -26,7 +26,7 @@ struct Words {
 impl Words {
     fn of(error: &dyn Error) -> Self {
         let cause = error.source().map(|cause| Box::new(Self::of(cause)));
-        Self { text: clean(&error.to_string()), cause }
+        Self { text: one_line(&error.to_string()), cause }
     }
 }
 
@@ -42,15 +42,11 @@ impl Error for Words {
     }
 }
 
-fn clean(text: &str) -> String {
-    printable(text).into_owned()
-}
-
 impl<'a> Shown<'a> {
     /// That of `found`.
     pub fn of(found: &'a dyn Diagnostic) -> Self {
         let cause = found.source().map(|cause| Box::new(Words::of(cause)));
-        let words = Words { text: clean(&found.to_string()), cause };
+        let words = Words { text: one_line(&found.to_string()), cause };
         Self { found, words, related: found.related().into_iter().flatten().map(Self::of).collect() }
     }
 
@@ -90,7 +86,7 @@ impl Diagnostic for Shown<'_> {
     }
 
     fn help<'b>(&'b self) -> Option<Box<dyn fmt::Display + 'b>> {
-        self.found.help().map(|help| Box::new(clean(&help.to_string())) as Box<dyn fmt::Display>)
+        self.found.help().map(|help| Box::new(one_line(&help.to_string())) as Box<dyn fmt::Display>)
     }
 
     fn source_code(&self) -> Option<&dyn SourceCode> {
@@ -99,7 +95,7 @@ impl Diagnostic for Shown<'_> {
 
     fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
         let labels = self.found.labels()?.map(|label| {
-            let words = label.label().map(clean);
+            let words = label.label().map(one_line);
             match label.primary() {
                 true => LabeledSpan::new_primary_with_span(words, *label.inner()),
                 false => LabeledSpan::new_with_span(words, *label.inner()),

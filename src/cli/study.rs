@@ -24,7 +24,7 @@ use super::output::{message, result};
 use super::overrides::{Overrides, duration, word};
 use super::progress::time;
 use super::render::{Voice, load};
-use super::{Done, Failure, interrupt};
+use super::{Done, Failure, compiling, hidden, interrupt};
 
 /// Measure speed against accuracy over a grid of settings, and write curves and a report
 #[derive(clap::Args)]
@@ -120,6 +120,7 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     let mut teller = Teller { quiet: arguments.voice.quiet, json: arguments.voice.json };
     teller.begin(&about, &path)?;
     let study = Study { scene: &scene, about, folder, crop: arguments.crop, interrupted: interrupt::flag() };
+    compiling::begin(arguments.voice.quiet, arguments.voice.json);
     let conducted = study.conduct(&mut |event| teller.tell(event))?;
     if conducted.results.runs.is_empty() {
         message("interrupted before the first render was done; the same command goes on");
@@ -206,6 +207,7 @@ fn about(
     let mut configs = configs(&base, &product, &varied).map_err(StudyError::from)?;
     // A device that is not there should not show after half of the time.
     let devices = device::list();
+    arguments.device.iter().for_each(|wanted| hidden::warn(&device::parse(wanted)));
     for config in &mut configs {
         let (picked, _) = device::pick(&device::parse(&config.device), &devices)?;
         if picked.kind == DeviceKind::Cpu {

@@ -7,7 +7,7 @@ use caustica::scene::Scene;
 use caustica::settings::RenderSettings;
 use serde_json::json;
 
-use super::output::{message, result};
+use super::output::{message, paragraph, result};
 
 /// The devices of one render.
 pub struct Succession<'a> {
@@ -38,7 +38,7 @@ impl<'a> Succession<'a> {
     /// An engine on the first device that can render this.
     pub fn first(&mut self) -> Result<Opened, EngineError> {
         let mut refused = |name: &str, error: &EngineError| {
-            message(format_args!("warning: {name} cannot render this: {error}"));
+            paragraph(format_args!("warning: {name} cannot render this: {error}"));
         };
         let opened = self.candidates.open(self.scene, &self.settings, &self.memory, &mut refused)?;
         // the devices after it are to round alike
@@ -55,7 +55,7 @@ impl<'a> Succession<'a> {
         state: &State,
     ) -> Option<Result<Box<dyn Engine>, EngineError>> {
         let (name, opened) = self.candidates.next(self.scene, &self.settings, &self.memory)?;
-        message(format_args!("warning: {}: {error}", self.last));
+        paragraph(format_args!("warning: {}: {error}", self.last));
         let failed = std::mem::replace(&mut self.last, name.clone());
         let opened = match opened {
             Ok(opened) => opened,

@@ -16,7 +16,7 @@ use super::pack::Packed;
 use super::plan::{Kernel, Plan, Step};
 use super::real::{ENGINE, Real};
 use crate::clock::{Clock, KernelSeconds};
-use crate::engine::{Engine, EngineError, PassReport, PhotonEnds, State};
+use crate::engine::{Cancel, Engine, EngineError, PassReport, PhotonEnds, State};
 use crate::film::exr_file::Channel;
 use crate::film::{ErrorMap, Picture, Rejections};
 use crate::settings::Method;
@@ -110,17 +110,26 @@ impl CpuEngine {
             for step in steps {
                 // once a part is resolved, the whole pass is to be in the film
                 resolved |= step.kernel == Kernel::Resolve;
-                if !resolved {
-                    self.plan.cancel.check().map_err(|_| Unfinished::Cancelled)?;
-                }
-                self.step(&step, number == 0, report)?;
+                let cancel = if resolved { Cancel::default() } else { self.plan.cancel.clone() };
+                let check = || cancel.check().map_err(|_| Unfinished::Cancelled);
+                check()?;
+                self.step(&step, number == 0, &cancel, report)?;
+                // the step may have left out its last tasks
+                check()?;
             }
         }
         Ok(())
     }
 
-    /// One step of the phase that is the first one of its pass or not.
-    fn step(&mut self, step: &Step, first_phase: bool, report: &mut PassReport) -> Result<(), Unfinished> {
+    /// One step of the phase that is the first one of its pass or not. Long ones leave out what they have not
+    /// begun once `cancel` is asked for.
+    fn step(
+        &mut self,
+        step: &Step,
+        first_phase: bool,
+        cancel: &Cancel,
+        report: &mut PassReport,
+    ) -> Result<(), Unfinished> {
         let sampled = self.plan.features.has("sampled");
         let local = self.plan.features.has("local");
         let scene = &self.packed.scene;
@@ -147,7 +156,7 @@ impl CpuEngine {
                 report.eye_rays += rays;
             }
             Kernel::PhotonTrace => {
-                let (rays, ends) = trace_photons(self.arch, scene, d, sampled, &mut self.records);
+                let (rays, ends) = trace_photons(self.arch, scene, d, sampled, cancel, &mut self.records);
                 report.rays += rays;
                 let records = self.records.iter().map(|list| list.records.len() as u64).sum::<u64>();
                 // photons that are traced again for another tile are the same
@@ -175,6 +184,9 @@ impl CpuEngine {
                 let statistics: Vec<_> = (0..points.len()).map(|_| statistics.next()).collect();
                 gathered.zip(points).zip(statistics).for_each(|((gathered, points), statistics)| {
                     let (starts, sorted) = (&self.starts, &self.sorted);
+                    if cancel.is_asked() {
+                        return;
+                    }
                     self.arch.dispatch(Gathers {
                         facets: &scene.facets,
                         dispatch: d,

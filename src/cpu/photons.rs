@@ -6,6 +6,7 @@ use super::super::kernels::records::*;
 use super::super::shapes::intersect::intersect_scene_many;
 use super::super::shapes::kdtree_many::FLIGHT;
 use super::super::tables::Scene;
+use crate::engine::Cancel;
 use bytemuck::Zeroable;
 use rayon::prelude::*;
 use std::mem::size_of_val;
@@ -113,17 +114,23 @@ fn add_path((rays, ends): &mut Ends, path: &PhotonPath) {
 }
 
 /// Photons of one batch; the lists come in the order of their keys. The number of rays, and of photons by how they ended.
+/// Tasks that begin after `cancel` was asked are empty.
 pub fn trace_photons(
     arch: pulp::Arch,
     scene: &Scene,
     d: &Dispatch,
     sampled: bool,
+    cancel: &Cancel,
     records: &mut Vec<RecordList>,
 ) -> Ends {
     let photons = d.end.div_ceil(PHOTON_TASKS).clamp(PHOTON_TASK.0, PHOTON_TASK.1);
     records.resize_with(d.end.div_ceil(photons) as usize, RecordList::default);
     let traced = records.par_iter_mut().enumerate().map(|(task, list)| {
         let first = task as u32 * photons;
+        if cancel.is_asked() {
+            list.records.clear();
+            return (0, [0; 3]);
+        }
         arch.dispatch(Photons {
             scene,
             dispatch: d,

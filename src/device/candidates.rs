@@ -44,10 +44,10 @@ impl Candidate {
 pub struct Candidates(VecDeque<Candidate>);
 
 impl Candidates {
-    /// Those that a wish means: one, or with `auto` all hardware GPUs and then the CPU, in f32. A software driver would give the same
-    /// bits as that, slower.
+    /// The devices that a wish means: one, or with `auto` all hardware GPUs and then the CPU, in f32, which
+    /// is faster than a software driver.
     pub fn of(wanted: &Wanted, settings: &RenderSettings) -> Result<Self, DeviceError> {
-        let path = settings.method == Method::Path && *wanted == Wanted::Auto;
+        let path = Self::is_path_on_cpu(wanted, settings);
         let wanted = if path { &Wanted::Cpu } else { wanted };
         // drivers take a while to answer and may write to standard error, so they are not asked for nothing
         let devices = match wanted {
@@ -69,6 +69,11 @@ impl Candidates {
             );
         }
         Ok(Self(candidates.into()))
+    }
+
+    /// Whether `auto` takes the CPU whatever else there is, since path tracing runs there alone.
+    pub fn is_path_on_cpu(wanted: &Wanted, settings: &RenderSettings) -> bool {
+        settings.method == Method::Path && *wanted == Wanted::Auto
     }
 
     /// These, in their order.

@@ -20,6 +20,18 @@ pub enum FileError {
         /// The extensions that would do.
         known: &'static str,
     },
+    /// A name of an open file, such as standard output, which does not say which kind of picture to write.
+    #[error("{}: the name of a stream does not say which kind of picture to write", file.display())]
+    #[diagnostic(help(
+        "name a link that ends in {known}: ln -s /dev/stdout picture.png, then -o picture.png; results are \
+         printed after the picture"
+    ))]
+    StreamName {
+        /// The name.
+        file: PathBuf,
+        /// The extensions that would do.
+        known: &'static str,
+    },
     /// The folder that the file should go to does not exist.
     #[error("{}: there is no folder `{}`", file.display(), folder.display())]
     #[diagnostic(help("create the folder first, or choose another one"))]

@@ -39,10 +39,14 @@ impl Format {
 
     /// The format of an output file, or an error that names the known ones.
     fn of_output(file: &Path) -> Result<Self, FileError> {
-        Self::of(file).ok_or_else(|| FileError::UnknownFormat {
-            file: file.to_owned(),
-            what: "its extension names no known kind of picture".to_owned(),
-            known: ".png, .exr, .pfm or .hdr",
+        let known = ".png, .exr, .pfm or .hdr";
+        Self::of(file).ok_or_else(|| match storage::is_stream(file) {
+            true => FileError::StreamName { file: file.to_owned(), known },
+            false => FileError::UnknownFormat {
+                file: file.to_owned(),
+                what: "its extension names no known kind of picture".to_owned(),
+                known,
+            },
         })
     }
 }

@@ -1,7 +1,8 @@
 //! Adapters, the choice among them, and an open device that reports failures as errors instead of panicking.
 
+use super::visible::adapters;
 use crate::engine::EngineError;
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// What an adapter is made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -67,11 +68,11 @@ impl AdapterChoice {
     }
 }
 
-fn holds(text: &str, part: &str) -> bool {
+pub(super) fn holds(text: &str, part: &str) -> bool {
     text.to_lowercase().contains(&part.to_lowercase())
 }
 
-fn summarize(adapter: &wgpu::Adapter) -> AdapterSummary {
+pub(super) fn summarize(adapter: &wgpu::Adapter) -> AdapterSummary {
     let info = adapter.get_info();
     let limits = adapter.limits();
     let kind = match info.device_type {
@@ -91,32 +92,6 @@ fn summarize(adapter: &wgpu::Adapter) -> AdapterSummary {
         storage_buffers: limits.max_storage_buffers_per_shader_stage,
         workgroup_invocations: limits.max_compute_invocations_per_workgroup,
     }
-}
-
-/// Adapters that the kernels can run on, hardware first; those that `WGPU_BACKEND` and `WGPU_ADAPTER_NAME` allow.
-/// They are looked for once, since drivers take a while to answer.
-fn adapters() -> &'static [(wgpu::Adapter, AdapterSummary)] {
-    static ADAPTERS: OnceLock<Vec<(wgpu::Adapter, AdapterSummary)>> = OnceLock::new();
-    ADAPTERS.get_or_init(find_adapters)
-}
-
-fn find_adapters() -> Vec<(wgpu::Adapter, AdapterSummary)> {
-    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
-    // no dispatch here takes its size from a buffer, so no kernel is needed that checks such sizes
-    descriptor.flags.remove(wgpu::InstanceFlags::VALIDATION_INDIRECT_CALL);
-    let instance = wgpu::Instance::new(descriptor);
-    let backends = wgpu::Backends::from_env().unwrap_or(wgpu::Backends::all());
-    let name = std::env::var("WGPU_ADAPTER_NAME").unwrap_or_default();
-    let mut list: Vec<_> = pollster::block_on(instance.enumerate_adapters(backends))
-        .into_iter()
-        .map(|adapter| {
-            let summary = summarize(&adapter);
-            (adapter, summary)
-        })
-        .filter(|(_, summary)| summary.fits() && holds(&summary.name, &name))
-        .collect();
-    list.sort_by_key(|(_, summary)| summary.kind);
-    list
 }
 
 /// Adapters that the kernels can run on, hardware first; those that `WGPU_BACKEND` and `WGPU_ADAPTER_NAME` allow.

@@ -11,6 +11,8 @@ pub mod pace;
 pub mod program;
 pub mod recorder;
 mod stamps;
+mod visible;
 
 pub use context::{AdapterChoice, AdapterKind, AdapterSummary, Gpu, list};
 pub use engine::{CompileSeconds, GpuEngine, Submissions, sizes};
+pub use visible::{Hidden, hidden};

@@ -60,6 +60,10 @@ pub fn sample_one_light(scene: &Scene, light: &Light, share: Real, position: Vec
                 let p = sample_sphere_cone(sphere, position, Vec2::new(u.y, u.z));
                 let to = p.position + p.normal * p.error - position;
                 let dist_sq = to.dot(to);
+                // on the lamp itself
+                if dist_sq == 0.0 {
+                    return none;
+                }
                 let distance = dist_sq.sqrt();
                 return LightSample {
                     direction: to * (1.0 / distance),

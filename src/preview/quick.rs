@@ -7,7 +7,7 @@ use super::frame::{Board, Passes, Setup, Wish};
 use super::full::bytes;
 use super::ground::Ground;
 use crate::cpu::CpuEngine;
-use crate::engine::EngineError;
+use crate::engine::{Cancel, EngineError};
 use crate::plan::Plan;
 use crate::scene::Film;
 use crate::settings::RenderSettings;
@@ -62,12 +62,14 @@ pub(super) struct Quick {
 }
 
 impl Quick {
-    /// Makes the first pass of a small picture and shows it; learns from the time that it took.
+    /// Makes the first pass of a small picture and shows it; learns from the time that it took. `cancel` ends this
+    /// pass and later ones.
     pub fn first(
         number: u64,
         ground: &mut Ground,
         wish: &Wish,
         divisor: &mut Divisor,
+        cancel: &Cancel,
         board: &Board,
     ) -> Result<Self, EngineError> {
         let begun = Instant::now();
@@ -75,6 +77,7 @@ impl Quick {
         ground.stand(&wish.camera, &film);
         let packed = ground.packed();
         let plan = Plan::new(packed, &divisor.settings(&wish.settings)).on(&film);
+        let plan = Plan { cancel: cancel.clone(), ..plan };
         let setup = Setup {
             device: "cpu".to_owned(),
             why: "a small picture".to_owned(),

@@ -13,6 +13,7 @@ use super::full::Full;
 use super::ground::Ground;
 use super::orbit::depth_at;
 use super::quick::{Divisor, Quick};
+use crate::engine::Cancel;
 use crate::gpu::GpuEngine;
 use crate::scene::Scene;
 
@@ -37,6 +38,8 @@ pub struct Worker {
     board: Arc<Board>,
     number: u64,
     last: Option<Wish>,
+    /// Ends the small picture that is under way.
+    closing: Cancel,
     thread: Option<JoinHandle<()>>,
 }
 
@@ -46,16 +49,18 @@ impl Worker {
         let (sender, receiver) = mpsc::channel();
         let board = Arc::new(Board::new(wake));
         let own = board.clone();
+        let closing = Cancel::default();
+        let closes = closing.clone();
         let thread = thread::spawn(move || {
             // threads of its own, since the others may be busy with the whole picture for as long as a pass takes
-            let work = move || Hand::new(own).work(&receiver);
+            let work = move || Hand::new(own, closes).work(&receiver);
             let threads = rayon::current_num_threads();
             match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
                 Ok(pool) => pool.install(work),
                 Err(_) => work(),
             }
         });
-        Self { commands: Some(sender), board, number: 0, last: None, thread: Some(thread) }
+        Self { commands: Some(sender), board, number: 0, last: None, closing, thread: Some(thread) }
     }
 
     /// Renders another scene; the wish's number.
@@ -114,6 +119,7 @@ impl Worker {
 impl Drop for Worker {
     fn drop(&mut self) {
         self.commands = None;
+        self.closing.ask();
         // A thread that has panicked has said so.
         let _ = self.thread.take().map(JoinHandle::join);
     }
@@ -134,10 +140,11 @@ struct Hand {
     /// When the whole picture is to be begun.
     settle: Option<Instant>,
     paused: bool,
+    closing: Cancel,
 }
 
 impl Hand {
-    fn new(board: Arc<Board>) -> Self {
+    fn new(board: Arc<Board>, closing: Cancel) -> Self {
         Self {
             board,
             ground: None,
@@ -150,6 +157,7 @@ impl Hand {
             spare: None,
             settle: None,
             paused: false,
+            closing,
         }
     }
 
@@ -246,7 +254,7 @@ impl Hand {
         let Some(ground) = &mut self.ground else {
             return;
         };
-        match Quick::first(self.number, ground, &wish, &mut self.divisor, &self.board) {
+        match Quick::first(self.number, ground, &wish, &mut self.divisor, &self.closing, &self.board) {
             Ok(quick) => {
                 self.quick = Some(quick);
                 self.settle = Some(Instant::now() + after);

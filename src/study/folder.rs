@@ -13,6 +13,8 @@ use super::statistics::Products;
 use super::truth::TruthSpec;
 use crate::film::file::{read, write_whole};
 use crate::film::{FileError, Picture, pfm};
+use crate::memory;
+use crate::storage::{self, Purpose};
 
 /// What a study is about; a folder holds one.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -136,7 +138,12 @@ impl Folder {
         let other = |what: String| StudyError::Folder { folder: path.to_owned(), what };
         let file = path.join(ABOUT);
         if file.exists() {
-            let text = fs::read_to_string(&file).map_err(|cause| io(&file, "read", cause))?;
+            // what is added to later: a pipe would wait for a reader
+            for file in [RUNS, PRODUCTS].map(|name| path.join(name)) {
+                storage::check(&file, Purpose::Keepsake).map_err(|cause| io(&file, "written", cause))?;
+            }
+            let text = storage::read_text(&file, memory::readable());
+            let text = text.map_err(|cause| io(&file, "read", cause))?;
             let found: About = serde_json::from_str(&text)
                 .map_err(|error| other(format!("its {ABOUT} is not one of this version's: {error}")))?;
             return match difference(&found, about) {
@@ -202,7 +209,7 @@ impl Folder {
 
     /// The lines of a file that can be read; what was not finished is made again.
     fn lines<T: DeserializeOwned>(&self, name: &str) -> Vec<T> {
-        let text = fs::read_to_string(self.file(name)).unwrap_or_default();
+        let text = storage::read_text(&self.file(name), memory::readable()).unwrap_or_default();
         text.lines().filter_map(|line| serde_json::from_str(line).ok()).collect()
     }
 

@@ -1,7 +1,6 @@
 //! The files that a study ends in: a page of its own, tables, and charts as files.
 
 use std::fmt::Write;
-use std::fs;
 
 use super::StudyError;
 use super::analysis::{Part, analyse};
@@ -14,6 +13,8 @@ use super::panels::{lamp_chart, overview, panels};
 use super::tables::{csv, json, markdown, rows, slope_rows};
 use super::words::{configured, crossings, recommendations, short};
 use crate::film::file::write_whole;
+use crate::memory;
+use crate::storage;
 
 /// Writes `report.html`, `study.csv`, `study.json`, `study.md` and `charts/*.svg`; gives the figures.
 pub fn write(conducted: &Conducted, folder: &Folder) -> Result<Vec<Part>, StudyError> {
@@ -266,7 +267,7 @@ fn out_of(part: &Part) -> String {
 
 /// A picture of the folder as part of the page; nothing where it is missing.
 fn picture(folder: &Folder, file: &str, name: &str, figures: &str, title: String) -> String {
-    let Ok(bytes) = fs::read(folder.file(file)) else { return String::new() };
+    let Ok(bytes) = storage::read(&folder.file(file), memory::readable()) else { return String::new() };
     format!(
         "<figure title=\"{}\"><img alt=\"{}\" src=\"data:image/png;base64,{}\"><figcaption><strong>{}</strong> {}\
          </figcaption></figure>",

@@ -276,5 +276,54 @@ fn forged_numbers_are_refused() {
         assert!(refused(&|c| c.origin.space.radiance_unit = unit), "a radiance unit of {unit}");
     }
     assert!(refused(&|c| c.cuts = vec![[2, 0]; 12]), "a mean over two passes of one");
+    for points in [1, 11, 13] {
+        assert!(refused(&|c| c.state.statistics.resize(16 * points, 0)), "statistics of {points} points");
+    }
     assert!(!refused(&|_| ()), "the forger's hand is right");
+}
+
+/// Theory: the same of layers. Counts are of all visible points or of none, and statistics come with the
+/// local rule alone.
+#[test]
+fn forged_layers_are_refused() {
+    let (_, sound) = made("layers");
+    let file = folder("forged layers").join("a.checkpoint");
+    let refused = |change: &dyn Fn(&mut Checkpoint)| {
+        let mut forged = sound.clone();
+        change(&mut forged);
+        write(&file, &forged).unwrap();
+        match read(&file) {
+            Ok(taken) => {
+                assert!(taken.layers().iter().all(|layer| layer.plane.values.len() == 12));
+                false
+            }
+            Err(error) => {
+                assert!(matches!(error, CheckpointError::Damaged { .. }), "{error:?}");
+                true
+            }
+        }
+    };
+    assert_eq!((sound.state.layers.aovs.len(), sound.state.layers.parts.len()), (12 * 96, 12 * 32));
+    assert_eq!((sound.state.layers.counts.len(), sound.state.statistics.len()), (12, 0));
+    let put =
+        |bytes: &mut [u8], at: usize, number: f32| bytes[at..at + 4].copy_from_slice(&number.to_le_bytes());
+    for number in [f32::NAN, f32::INFINITY, -f32::INFINITY] {
+        for at in (0..19).map(|k| 4 * k) {
+            assert!(refused(&|c| put(&mut c.state.layers.aovs, 96 + at, number)), "{number} at {at}");
+        }
+        for at in (0..7).map(|k| 4 * k) {
+            assert!(refused(&|c| put(&mut c.state.layers.parts, 32 + at, number)), "parts: {number} at {at}");
+        }
+    }
+    // samples that hit, samples that end at a visible point, passes
+    assert!(refused(&|c| put(&mut c.state.layers.aovs, 28, -1.0)));
+    assert!(refused(&|c| put(&mut c.state.layers.aovs, 44, -1.0)));
+    assert!(refused(&|c| put(&mut c.state.layers.parts, 12, -1.0)));
+    assert!(refused(&|c| put(&mut c.state.layers.parts, 12, 2.0)), "two passes of one");
+    for points in [1, 11, 13, 24] {
+        assert!(refused(&|c| c.state.layers.counts.resize(points, 0)), "counts of {points} points");
+        assert!(refused(&|c| c.state.statistics.resize(16 * points, 0)), "statistics of {points} points");
+    }
+    assert!(refused(&|c| c.state.statistics.resize(16 * 12, 0)), "statistics without the local rule");
+    assert!(!refused(&|c| c.state.layers.counts.clear()) && !refused(&|_| ()));
 }

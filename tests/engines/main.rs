@@ -8,6 +8,7 @@ mod software;
 #[path = "../support/mod.rs"]
 mod support;
 
+mod cancel;
 mod scenes;
 
 use bytemuck::{bytes_of, pod_collect_to_vec};

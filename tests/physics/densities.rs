@@ -293,3 +293,26 @@ fn choice_of_lights() {
         assert!(excess(&counts, &planted, 0.0) > 100.0);
     }
 }
+
+/// Theory: a lamp is sampled from its own surface, too, where a path has hit it; the sampled point may be the
+/// same. What comes back is finite, and nothing where there is no direction.
+#[test]
+fn a_lamp_from_its_own_surface() {
+    let text = "[[shapes]]\ntype = \"sphere\"\ncenter = [0.5, 3.0, 0.5]\nradius = 0.5\n\
+                material = \"m\"\nemission = 1.0\n";
+    let packed = packed(text);
+    let scene = &packed.scene;
+    let mut rng = rng();
+    let mut same = 0;
+    for _ in 0..4000 {
+        let place = rng_next(&mut rng);
+        let p = sample_shape(scene, &scene.lights[0], Vec2::new(place.x, place.y), 0.5);
+        let from = p.position + p.normal * p.error;
+        for _ in 0..1000 {
+            let light = sample_light(scene, shares_at(scene, from), from, rng_next(&mut rng));
+            same += (light.distance == 0.0) as u32;
+            assert!(light.direction.is_finite() && light.pdf >= 0.0, "{light:?} from {from}");
+        }
+    }
+    assert!(same > 0, "no point was its own: the test sees nothing");
+}

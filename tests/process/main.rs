@@ -11,6 +11,8 @@ mod support;
 #[path = "../software/mod.rs"]
 mod software;
 
+mod compiling;
+mod drivers;
 mod limits;
 mod outputs;
 mod readers;

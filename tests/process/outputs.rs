@@ -159,6 +159,20 @@ fn pipes_get_pictures() {
     symlink("/dev/stdout", folder.join("out.png")).unwrap();
     let output = run(&folder, "-o out.png", 0, &[]);
     assert!(output.stdout.starts_with(PNG) && output.stdout.ends_with(b"out.png\n"));
+    // a file that a shell has opened for several programs keeps what they wrote before and write after
+    let line =
+        "{ echo before; \"$0\" render ball.toml --device cpu --quiet -o out.png; echo after; } >all.bin";
+    let mut shell = std::process::Command::new("sh");
+    shell.args(["-c", line, env!("CARGO_BIN_EXE_caustica")]).current_dir(&folder);
+    assert_eq!(super::ended(super::spawn(shell)).status.code(), Some(0));
+    let all = fs::read(folder.join("all.bin")).unwrap();
+    let inner = all.strip_prefix(b"before\n").and_then(|rest| rest.strip_suffix(b"out.png\nafter\n"));
+    assert!(inner == output.stdout.strip_suffix(b"out.png\n"), "{} bytes", all.len());
+    // a name of standard output does not say which picture; the message says how one does
+    for name in ["/dev/stdout", "-", "/dev/fd/1", "/proc/self/fd/1", "/dev/stderr"] {
+        let output = run(&folder, &format!("--output={name}"), 2, &[name, "which kind of picture", "ln -s"]);
+        assert!(output.stdout.is_empty());
+    }
     run(&folder, "--checkpoint end -o never.png", 1, &["end", "no regular file"]);
     assert!(fs::metadata(folder.join("end")).unwrap().file_type().is_fifo());
     assert!(!folder.join("never.png").exists());

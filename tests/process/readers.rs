@@ -51,6 +51,36 @@ fn pipes_and_devices_are_refused() {
     assert!(!folder.join("out.exr").exists());
 }
 
+/// Theory: a study's folder may be anybody's, too. None of the files that a study goes on from is waited for.
+#[test]
+fn a_study_does_not_wait_for_its_files() {
+    let folder = folder("study");
+    let line = "study ball.toml --device cpu --vary alpha=0.5,0.7 --seeds 2 --budget 2s --quiet -o studied";
+    let output = ended(spawn(command(&folder, &words(line))));
+    assert_eq!(output.status.code(), Some(0), "{}", error(&output));
+    for name in ["about.json", "runs.jsonl", "products.jsonl"] {
+        let file = folder.join("studied").join(name);
+        let content = fs::read(&file).unwrap();
+        for device in [None, Some("/dev/zero")] {
+            fs::remove_file(&file).unwrap();
+            match device {
+                None => fifo(&file),
+                Some(device) => symlink(device, &file).unwrap(),
+            }
+            refused(&folder, line, &[name, "no regular file"]);
+        }
+        fs::remove_file(&file).unwrap();
+        fs::write(&file, content).unwrap();
+    }
+    // a picture of the report that is none is left out
+    let crops = fs::read_dir(folder.join("studied/crops")).unwrap();
+    let crop = crops.map(|entry| entry.unwrap().path()).find(|path| path.extension().is_some()).unwrap();
+    fs::remove_file(&crop).unwrap();
+    symlink("/dev/zero", &crop).unwrap();
+    let output = ended(spawn(command(&folder, &words(line))));
+    assert_eq!(output.status.code(), Some(0), "{}", error(&output));
+}
+
 /// Theory: a file of some hundred bytes may claim any number of pixels; none of them are made before it is
 /// known that there is memory for all. An allocation that fails would end the program by signal 6.
 #[test]

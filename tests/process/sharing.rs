@@ -58,6 +58,48 @@ fn a_checkpoint_has_one_writer() {
     assert_eq!(left, ["a.checkpoint", "a.exr", "ball.toml", "c.exr", "link.checkpoint"]);
 }
 
+/// Theory: a lock is the same for a user who may only read its file: who holds it is said.
+#[test]
+fn the_lock_of_another_user_counts() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = std::env::temp_dir().join(format!("caustica-lock-{}", std::process::id()));
+    fs::create_dir_all(&folder).unwrap();
+    fs::set_permissions(&folder, fs::Permissions::from_mode(0o777)).unwrap();
+    let program = folder.join("caustica");
+    fs::copy(env!("CARGO_BIN_EXE_caustica"), &program).unwrap();
+    fs::write(folder.join("ball.toml"), super::SCENE.as_str()).unwrap();
+    let line = "--quiet --passes 1000000 --time 60s --checkpoint a.checkpoint -o a.exr";
+    let holder = spawn(render(&folder, line));
+    let lock = || {
+        let names = fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().path());
+        let own = |path: &std::path::PathBuf| {
+            fs::read_to_string(path).is_ok_and(|text| text == holder.id().to_string())
+        };
+        names.into_iter().find(|path| path.extension().is_some_and(|e| e == "lock") && own(path))
+    };
+    until("locked", || lock().is_some());
+    fs::set_permissions(lock().unwrap(), fs::Permissions::from_mode(0o444)).unwrap();
+    // root may write to any file, so that the second render is another user's then
+    let id = std::process::Command::new("id").arg("-u").output().unwrap();
+    let mut second = std::process::Command::new("setpriv");
+    if super::support::text(&id.stdout).trim() == "0" {
+        second.args(["--reuid=65534", "--clear-groups"]).arg(&program);
+    } else {
+        second = std::process::Command::new(&program);
+    }
+    second.args(words("render ball.toml --device cpu")).args(words(&line.replace("a.exr", "b.exr")));
+    let output = ended(spawn({
+        second.current_dir(&folder);
+        second
+    }));
+    let error = error(&output);
+    assert_eq!(output.status.code(), Some(1), "{error}");
+    assert!(error.contains(&format!("process {}", holder.id())), "{error}");
+    signal(&holder, "TERM");
+    ended(holder);
+    fs::remove_dir_all(&folder).unwrap();
+}
+
 /// Theory: what a command reads it does not write over, whatever the names.
 #[test]
 fn what_is_merged_is_not_written_over() {

@@ -79,6 +79,37 @@ fn control_characters_are_shown() {
     }
 }
 
+/// Theory: a line of a message is a line of the program. A line feed in a name is shown as an escape, so that
+/// no name can pretend to be a message of its own.
+#[test]
+fn line_feeds_in_names_are_shown() {
+    let folder = folder("feeds");
+    let harm = "a\nwarning: b";
+    let shown = "a\\nwarning: b";
+    let says = |arguments: &[&str]| {
+        let output = command(&folder, arguments).output().unwrap();
+        let error = text(&output.stderr);
+        let lines = error.lines().map(|line| line.trim_start_matches([' ', '│', '×', '⚠', '╭', '─', '[']));
+        let forged: Vec<_> = lines.filter(|line| line.starts_with("warning: b")).collect();
+        assert!(forged.is_empty(), "{arguments:?}: {error}");
+        error.split_whitespace().collect::<Vec<_>>().join(" ")
+    };
+    let unknown = SCENE.replace("material = \"white\"", "material = \"a\\nwarning: b\"");
+    assert_ne!(unknown, *SCENE);
+    fs::write(folder.join("unknown.toml"), unknown).unwrap();
+    assert!(says(&["check", "unknown.toml"]).contains(shown));
+    let named = format!("{harm}.toml");
+    assert!(says(&["check", &named]).contains(shown));
+    fs::write(folder.join(&named), SCENE.as_str()).unwrap();
+    let line = ["render", &named, "--device", "cpu", "-o", "a.png"];
+    assert!(says(&line).contains(shown));
+    let picture = format!("{harm}.png");
+    assert!(
+        says(&["render", "ball.toml", "--device", "cpu", "-o", &format!("no/{picture}")]).contains(shown)
+    );
+    assert!(says(&["diff", &format!("{harm}.exr"), "b.exr"]).contains(shown));
+}
+
 /// Theory: the caret stands under what it means, also after a character that is replaced, which is as long.
 #[test]
 fn carets_stand_where_they_did() {

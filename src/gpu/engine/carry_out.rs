@@ -77,6 +77,7 @@ impl GpuEngine {
     /// A pass with so many photons a batch; nothing where that has to be thrown away, since records did not fit or the driver
     /// stopped long loops.
     pub(super) fn phases(&mut self, batch: u32) -> Result<Option<PassReport>, EngineError> {
+        self.plan.cancel.check()?;
         let pass = self.passes_done;
         let mut report = PassReport {
             photons: self.plan.settings.photons as u64,

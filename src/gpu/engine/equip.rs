@@ -7,6 +7,7 @@ use super::super::program::{Compiling, Program, make_programs};
 use super::super::recorder::Recorder;
 use super::{GpuEngine, READINGS_BYTES, Submissions};
 use crate::clock::Clock;
+use crate::compilation::Running;
 use crate::engine::EngineError;
 use crate::kernels::records::Dispatch;
 use crate::pack::Packed;
@@ -147,6 +148,9 @@ impl GpuEngine {
         let missing: Vec<Kernel> =
             Kernel::ALL.into_iter().filter(|k| needed(k) && !kept.contains_key(k)).collect();
         let Self { gpu, plan, recorder, programs, groups, shared, chunks, compile_seconds, .. } = self;
+        let device = gpu.summary.name.clone();
+        let first = missing.first().map(|kernel| kernel.stem());
+        let mut running = Running::new(&device, first, missing.len());
         let mut take = |program: Program, checking: Option<f64>| {
             let begun = Instant::now();
             for (number, own) in (0..).zip(chunks.iter()) {
@@ -162,6 +166,10 @@ impl GpuEngine {
                     recorder.submit(gpu);
                 }
                 groups.insert((program.kernel, number), group);
+            }
+            // a software driver takes the next submission once it has compiled the one before
+            if checking.is_some() {
+                running.begin(program.kernel.stem());
             }
             if let (Compiling::OneByOne, Some(checking)) = (compiling, checking) {
                 gpu.wait()?;

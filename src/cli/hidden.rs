@@ -1,0 +1,21 @@
+//! Warnings about environment variables that hide devices.
+
+use caustica::device::{self, DeviceKind, Wanted};
+use caustica::gpu::{self, Hidden};
+
+use super::output::message;
+
+/// Warns about variables on which the choice of a device depends, after it was made: `auto` found no hardware
+/// GPU, or a value has words that mean nothing. If no device fits, the failure says what is hidden.
+pub fn warn(wanted: &Wanted) {
+    if matches!(wanted, Wanted::Cpu | Wanted::CpuDouble) {
+        return;
+    }
+    let auto = *wanted == Wanted::Auto && device::list().iter().all(|device| device.kind != DeviceKind::Gpu);
+    gpu::hidden().iter().filter(|hidden| auto || !hidden.unknown.is_empty()).for_each(tell);
+}
+
+/// Prints the warning.
+pub fn tell(hidden: &Hidden) {
+    message(format_args!("warning: {hidden}"));
+}
