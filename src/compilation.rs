@@ -1,5 +1,5 @@
-//! Progress of the compilation of kernels, for a program that shows it. A software driver takes up to a
-//! minute for large scenes.
+//! Progress of the compilation of kernels, for a program that shows it. A software driver takes up
+//! to a minute for large scenes.
 
 use std::sync::OnceLock;
 
@@ -20,8 +20,9 @@ type Observer = Box<dyn Fn(Option<&Compilation>) + Send + Sync>;
 
 static OBSERVER: OnceLock<Observer> = OnceLock::new();
 
-/// Calls `observer` from now on, for each kernel that is begun and with `None` when an engine's kernels are
-/// ready or have failed. The first observer of a process stays; returns whether this is it.
+/// Calls `observer` from now on, for each kernel that is begun and with `None` when an engine's
+/// kernels are ready or have failed. The first observer of a process stays; returns whether this is
+/// it.
 pub fn observe(observer: impl Fn(Option<&Compilation>) + Send + Sync + 'static) -> bool {
     OBSERVER.set(Box::new(observer)).is_ok()
 }
@@ -64,8 +65,8 @@ impl Drop for Running<'_> {
     }
 }
 
-/// Theory: an observer hears of each kernel once it is begun, with those before it done, and of the end. An
-/// engine whose kernels are all kept says nothing.
+/// Theory: an observer hears of each kernel once it is begun, with those before it done, and of the
+/// end. An engine whose kernels are all kept says nothing.
 #[cfg(test)]
 mod tests {
     use std::sync::Mutex;

@@ -148,7 +148,8 @@ pub fn same(a: &Path, b: &Path) -> bool {
     }
 }
 
-/// Whether a name is one of an open file: `-`, standard output or error, or a number of the process's own.
+/// Whether a name is one of an open file: `-`, standard output or error, or a number of the
+/// process's own.
 pub fn is_stream(file: &Path) -> bool {
     let folders = ["/dev/fd", "/proc/self/fd"];
     let names = ["-", "/dev/stdout", "/dev/stderr"];
@@ -208,8 +209,8 @@ impl Lock {
     }
 }
 
-/// Opens a lock's file, or makes it. Another user's may be read-only here: the lock is the same, and only the
-/// holder's number cannot be put in.
+/// Opens a lock's file, or makes it. Another user's may be read-only here: the lock is the same,
+/// and only the holder's number cannot be put in.
 fn open_lock(path: &Path) -> io::Result<File> {
     match OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path) {
         Err(error) if error.kind() == io::ErrorKind::PermissionDenied => File::open(path).map_err(|_| error),
@@ -287,8 +288,8 @@ fn place(file: &Path) -> io::Result<Place> {
     }
 }
 
-/// Whether a name leads by links to standard output. That may be a file which a shell has opened for several
-/// programs: only by the open file itself does each write after the one before.
+/// Whether a name leads by links to standard output. That may be a file which a shell has opened
+/// for several programs: only by the open file itself does each write after the one before.
 fn is_output(file: &Path) -> bool {
     let is = |path: &Path| cfg!(unix) && OUTPUT.iter().any(|name| path == Path::new(name));
     let link = |path: &PathBuf| Some(folder(path).join(fs::read_link(path).ok()?));

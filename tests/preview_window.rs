@@ -54,7 +54,8 @@ fn preview(folder: &Path, arguments: &[&str]) -> Command {
 /// Columns of the screen.
 const COLUMNS: usize = 1100;
 
-/// An X server without a screen; its display. What it shows is in the file `Xvfb_screen0` of `folder`.
+/// An X server without a screen; its display. What it shows is in the file `Xvfb_screen0` of
+/// `folder`.
 fn server(folder: &Path) -> (Owned, String) {
     let screen = ["-displayfd", "1", "-screen", "0", &format!("{COLUMNS}x760x24"), "-nolisten", "tcp"];
     let started = Command::new("Xvfb")
@@ -175,7 +176,8 @@ fn shipped(name: &str) -> String {
 /// What the screen shows of the upper part of the picture: rows 150 to 250 of columns 150 to 450.
 fn seen(folder: &Path) -> Vec<u8> {
     use std::os::unix::fs::FileExt;
-    // after a header whose length is its first word, least byte last, and a color map: rows of 4 bytes a pixel
+    // after a header whose length is its first word, least byte last, and a color map: rows of 4
+    // bytes a pixel
     let file = fs::File::open(folder.join("Xvfb_screen0")).unwrap();
     let length = file.metadata().unwrap().len();
     let row = 4 * COLUMNS as u64;
@@ -209,10 +211,11 @@ fn pictures_of_a_drag(folder: &Path, display: &str) -> u32 {
     pictures
 }
 
-/// Theory: a hand that turns the camera sees it turn. While the mouse moves at 60 Hz, with no rest in which a
-/// whole picture could be made, small pictures follow one another. Two idle cores, which also draw the
-/// window, show more than 20; if only pictures of the last place of the mouse counted there would be one or
-/// two. Other programs on these cores slow a drag down, so the best of three counts.
+/// Theory: a hand that turns the camera sees it turn. While the mouse moves at 60 Hz, with no rest
+/// in which a whole picture could be made, small pictures follow one another. Two idle cores, which
+/// also draw the window, show more than 20; if only pictures of the last place of the mouse counted
+/// there would be one or two. Other programs on these cores slow a drag down, so the best of three
+/// counts.
 #[test]
 fn a_drag_shows_many_pictures() {
     software::software();
@@ -229,8 +232,8 @@ fn a_drag_shows_many_pictures() {
     assert!(drags.any(|pictures| pictures >= 6), "a drag shows too few pictures");
 }
 
-/// Theory: a window closes when it is asked to, whatever is rendered: passes of a hundred million photons,
-/// which take a minute or more, are given up.
+/// Theory: a window closes when it is asked to, whatever is rendered: passes of a hundred million
+/// photons, which take a minute or more, are given up.
 #[test]
 fn a_window_closes_while_a_long_pass_runs() {
     software::software();

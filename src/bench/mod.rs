@@ -133,8 +133,8 @@ pub struct Memory {
     pub peak_resident: Option<u64>,
 }
 
-/// Runs passes and counts. With a truth, see [`to_error::approach`]. `stop` is asked after each round; once it
-/// says so the report is of the rounds so far.
+/// Runs passes and counts. With a truth, see [`to_error::approach`]. `stop` is asked after each
+/// round; once it says so the report is of the rounds so far.
 pub fn device_report(
     device: &DeviceInfo,
     scene: &Scene,

@@ -78,9 +78,9 @@ pub fn reached(series: &[Point], goal: f64) -> Option<f64> {
     Some(before.seconds * (after.seconds / before.seconds).powf(share))
 }
 
-/// Makes passes with an engine that has made none until all goals are reached or the limit is, and measures after each of
-/// the first sixteen, then whenever there are an eighth more. `stop` is asked after each pass; once it says so
-/// that pass is the last.
+/// Makes passes with an engine that has made none until all goals are reached or the limit is, and
+/// measures after each of the first sixteen, then whenever there are an eighth more. `stop` is
+/// asked after each pass; once it says so that pass is the last.
 pub fn approach(
     engine: &mut dyn Engine,
     truth: &Picture,

@@ -23,7 +23,8 @@ pub(super) fn check(state: &State, cuts: &[[u32; 2]]) -> Result<(), String> {
     }
 }
 
-/// Checks how many visible points there are numbers of; a film without layers and rules that need them has none.
+/// Checks how many visible points there are numbers of; a film without layers and rules that need
+/// them has none.
 ///
 /// # Errors
 /// Numbers of more or of fewer points than the picture has.
@@ -67,7 +68,8 @@ macro_rules! precision {
             use $kernels as kernels;
             use $real as real;
 
-            /// Checks layers of pixels: means of finite numbers over no more passes or samples than there are.
+            /// Checks layers of pixels: means of finite numbers over no more passes or samples than
+            /// there are.
             fn check_layers(state: &State) -> Result<(), String> {
                 let all_finite = |v: &real::Vec3| v.is_finite();
                 for (number, bytes) in state.layers.aovs.chunks(AOV_BYTES * TOGETHER).enumerate() {

@@ -1,5 +1,5 @@
-//! Progress while a driver compiles kernels, which may take a minute: on a terminal a live line, else a line
-//! now and then, with `--json` events.
+//! Progress while a driver compiles kernels, which may take a minute: on a terminal a live line,
+//! else a line now and then, with `--json` events.
 
 use std::io::IsTerminal;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
@@ -13,7 +13,8 @@ use serde_json::{Value, json};
 use super::log;
 use super::output::{message, result};
 
-/// How long it takes until there is something to see; most kernels come from a driver's cache sooner.
+/// How long it takes until there is something to see; most kernels come from a driver's cache
+/// sooner.
 const FIRST: Duration = Duration::from_millis(600);
 /// Time between two looks of a live line.
 const TICK: Duration = Duration::from_millis(100);

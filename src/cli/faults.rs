@@ -5,8 +5,8 @@ use std::panic::{self, PanicHookInfo};
 
 use super::output::{message, paragraph};
 
-/// Prints panics as faults of this program, with the place in its sources or in those of a library. The
-/// standard library's own message would name folders of the machine that built the program.
+/// Prints panics as faults of this program, with the place in its sources or in those of a library.
+/// The standard library's own message would name folders of the machine that built the program.
 pub fn begin() {
     panic::set_hook(Box::new(|info| {
         message(format_args!("caustica has a fault and stops here: {}", text(info)));

@@ -5,8 +5,9 @@ use caustica::gpu::{self, Hidden};
 
 use super::output::message;
 
-/// Warns about variables on which the choice of a device depends, after it was made: `auto` found no hardware
-/// GPU, or a value has words that mean nothing. If no device fits, the failure says what is hidden.
+/// Warns about variables on which the choice of a device depends, after it was made: `auto` found
+/// no hardware GPU, or a value has words that mean nothing. If no device fits, the failure says
+/// what is hidden.
 pub fn warn(wanted: &Wanted) {
     if matches!(wanted, Wanted::Cpu | Wanted::CpuDouble) {
         return;

@@ -37,8 +37,9 @@ fn end() -> ! {
     std::process::exit(super::Done::Interrupted as i32)
 }
 
-/// Waits for the end if a signal is ending the program. Meanwhile other threads may fail, since the system gives
-/// none to a process that is about to be replaced; such a failure must not be reported.
+/// Waits for the end if a signal is ending the program. Meanwhile other threads may fail, since the
+/// system gives none to a process that is about to be replaced; such a failure must not be
+/// reported.
 pub fn wait_if_ending() {
     while ENDING.load(Ordering::SeqCst) {
         std::thread::park();
@@ -68,8 +69,8 @@ pub fn begin(renders: bool) {
     }
 }
 
-/// From now on until [`flag`] is asked for, a signal ends the program at once, after `last_words`, which print
-/// the results so far.
+/// From now on until [`flag`] is asked for, a signal ends the program at once, after `last_words`,
+/// which print the results so far.
 pub fn last_words(last_words: impl FnOnce() + Send + 'static) {
     *LAST_WORDS.lock().unwrap_or_else(PoisonError::into_inner) = Some(Box::new(last_words));
     RENDERING.store(false, Ordering::Relaxed);

@@ -1,9 +1,9 @@
 //! Keeps Mesa's device-select layer quiet.
 //!
-//! The Vulkan loader runs the layer in each program that looks for devices. It asks Wayland for a display,
-//! and libwayland complains about `XDG_RUNTIME_DIR` on standard error where there is no desktop. The layer
-//! stays away if `NODEVICE_SELECT` is set when the loader starts. A program cannot safely change its own
-//! environment, so it starts itself once more with the variable.
+//! The Vulkan loader runs the layer in each program that looks for devices. It asks Wayland for a
+//! display, and libwayland complains about `XDG_RUNTIME_DIR` on standard error where there is no
+//! desktop. The layer stays away if `NODEVICE_SELECT` is set when the loader starts. A program
+//! cannot safely change its own environment, so it starts itself once more with the variable.
 
 use caustica::device::{self, Wanted};
 
@@ -16,9 +16,9 @@ pub fn is_driver(device: &str) -> bool {
     !matches!(device::parse(device), Wanted::Cpu | Wanted::CpuDouble)
 }
 
-/// Starts the program again, in the same process and with the same arguments, if the layer would complain.
-/// On a desktop, and where the user chooses a device by the layer's own variables, it stays as it is. Does
-/// nothing if the system refuses.
+/// Starts the program again, in the same process and with the same arguments, if the layer would
+/// complain. On a desktop, and where the user chooses a device by the layer's own variables, it
+/// stays as it is. Does nothing if the system refuses.
 #[cfg(target_os = "linux")]
 pub fn quiet() {
     use std::env;

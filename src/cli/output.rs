@@ -37,8 +37,8 @@ fn written(outcome: io::Result<()>) -> Result<(), Failure> {
     }
 }
 
-/// Prints a line of anything else to standard error. A line feed in it comes from a name, and is shown as an
-/// escape.
+/// Prints a line of anything else to standard error. A line feed in it comes from a name, and is
+/// shown as an escape.
 pub fn message(line: impl Display) {
     to_stderr(&one_line(&line.to_string()));
 }

@@ -2,14 +2,15 @@
 
 use std::io;
 
-/// Calls `handler` for each signal from now on. A signal that the program was started to ignore stays
-/// ignored (Linux): SIGHUP under `nohup`, SIGINT for a background job of a shell without job control.
+/// Calls `handler` for each signal from now on. A signal that the program was started to ignore
+/// stays ignored (Linux): SIGHUP under `nohup`, SIGINT for a background job of a shell without job
+/// control.
 ///
 /// # Errors
 /// The system gives no thread or no handler; then no signal is caught.
 #[cfg(unix)]
 pub fn listen(handler: impl Fn() + Send + 'static) -> io::Result<()> {
-    use std::sync::mpsc;
+    use std::sync::{Arc, Mutex, PoisonError};
     use std::thread;
 
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
@@ -17,18 +18,23 @@ pub fn listen(handler: impl Fn() + Send + 'static) -> io::Result<()> {
 
     let ignored = ignored();
     let caught = [SIGINT, SIGTERM, SIGHUP].map(|signal| (ignored >> (signal - 1) & 1 == 0).then_some(signal));
-    // Handlers that nobody waits for would swallow signals: the thread that waits sets them.
-    let (sender, receiver) = mpsc::channel();
-    thread::Builder::new().name("signals".to_owned()).spawn(move || {
-        let (mut signals, set) = match Signals::new(caught.into_iter().flatten()) {
-            Ok(signals) => (Some(signals), Ok(())),
-            Err(error) => (None, Err(error)),
-        };
-        // the other end waits for this
-        let _ = sender.send(set);
-        signals.iter_mut().flat_map(|signals| signals.forever()).for_each(|_| handler());
+    // Handlers that nobody waits for would swallow signals, so that the thread comes first. It
+    // allocates nothing before a signal comes: glibc would reserve 64 MiB of address space for it.
+    let signals = Arc::new(Mutex::new(None::<Signals>));
+    let theirs = signals.clone();
+    let thread = thread::Builder::new().name("signals".to_owned()).spawn(move || {
+        let take = || theirs.lock().unwrap_or_else(PoisonError::into_inner).take();
+        loop {
+            match take() {
+                Some(mut signals) => signals.forever().for_each(|_| handler()),
+                None => thread::park(),
+            }
+        }
     })?;
-    receiver.recv().unwrap_or_else(|error| Err(io::Error::other(error)))
+    let set = Signals::new(caught.into_iter().flatten())?;
+    *signals.lock().unwrap_or_else(PoisonError::into_inner) = Some(set);
+    thread.thread().unpark();
+    Ok(())
 }
 
 /// The signals that this process ignores, one bit each, from 1. Asked before any handler is set.

@@ -121,8 +121,8 @@ impl CpuEngine {
         Ok(())
     }
 
-    /// One step of the phase that is the first one of its pass or not. Long ones leave out what they have not
-    /// begun once `cancel` is asked for.
+    /// One step of the phase that is the first one of its pass or not. Long ones leave out what
+    /// they have not begun once `cancel` is asked for.
     fn step(
         &mut self,
         step: &Step,

@@ -44,8 +44,8 @@ impl Candidate {
 pub struct Candidates(VecDeque<Candidate>);
 
 impl Candidates {
-    /// The devices that a wish means: one, or with `auto` all hardware GPUs and then the CPU, in f32, which
-    /// is faster than a software driver.
+    /// The devices that a wish means: one, or with `auto` all hardware GPUs and then the CPU, in
+    /// f32, which is faster than a software driver.
     pub fn of(wanted: &Wanted, settings: &RenderSettings) -> Result<Self, DeviceError> {
         let path = Self::is_path_on_cpu(wanted, settings);
         let wanted = if path { &Wanted::Cpu } else { wanted };

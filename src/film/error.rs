@@ -20,7 +20,8 @@ pub enum FileError {
         /// The extensions that would do.
         known: &'static str,
     },
-    /// A name of an open file, such as standard output, which does not say which kind of picture to write.
+    /// A name of an open file, such as standard output, which does not say which kind of picture to
+    /// write.
     #[error("{}: the name of a stream does not say which kind of picture to write", file.display())]
     #[diagnostic(help(
         "name a link that ends in {known}: ln -s /dev/stdout picture.png, then -o picture.png; results are \

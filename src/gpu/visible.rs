@@ -1,5 +1,5 @@
-//! Adapters that the environment variables `WGPU_BACKEND` and `WGPU_ADAPTER_NAME` let through, and those
-//! that they hide.
+//! Adapters that the environment variables `WGPU_BACKEND` and `WGPU_ADAPTER_NAME` let through, and
+//! those that they hide.
 
 use std::fmt;
 use std::sync::OnceLock;
@@ -128,13 +128,15 @@ fn of_backends(backends: wgpu::Backends) -> Vec<(wgpu::Adapter, AdapterSummary)>
     list
 }
 
-/// Adapters that the kernels can run on, hardware first; those that `WGPU_BACKEND` and `WGPU_ADAPTER_NAME` allow.
+/// Adapters that the kernels can run on, hardware first; those that `WGPU_BACKEND` and
+/// `WGPU_ADAPTER_NAME` allow.
 pub(super) fn adapters() -> &'static [(wgpu::Adapter, AdapterSummary)] {
     &found().visible
 }
 
-/// The variables that hide adapters or have words that mean nothing. Interfaces that `WGPU_BACKEND` excludes
-/// are looked at only where no hardware is left without them, since their drivers may be what it excludes.
+/// The variables that hide adapters or have words that mean nothing. Interfaces that `WGPU_BACKEND`
+/// excludes are looked at only where no hardware is left without them, since their drivers may be
+/// what it excludes.
 pub fn hidden() -> &'static [Hidden] {
     static HIDDEN: OnceLock<Vec<Hidden>> = OnceLock::new();
     HIDDEN.get_or_init(|| {
@@ -163,8 +165,9 @@ fn told(filter: &Filter, excluded: Vec<AdapterSummary>, misnamed: Vec<AdapterSum
     backend.into_iter().chain(name).filter(matters).collect()
 }
 
-/// Theory: a variable that is empty or not set hides nothing; a word that names no interface, or an adapter
-/// that is excluded, gives one line that names variable, value, what is hidden and the remedy.
+/// Theory: a variable that is empty or not set hides nothing; a word that names no interface, or an
+/// adapter that is excluded, gives one line that names variable, value, what is hidden and the
+/// remedy.
 #[cfg(test)]
 mod tests {
     use super::*;

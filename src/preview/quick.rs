@@ -62,8 +62,8 @@ pub(super) struct Quick {
 }
 
 impl Quick {
-    /// Makes the first pass of a small picture and shows it; learns from the time that it took. `cancel` ends this
-    /// pass and later ones.
+    /// Makes the first pass of a small picture and shows it; learns from the time that it took.
+    /// `cancel` ends this pass and later ones.
     pub fn first(
         number: u64,
         ground: &mut Ground,

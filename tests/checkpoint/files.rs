@@ -282,8 +282,8 @@ fn forged_numbers_are_refused() {
     assert!(!refused(&|_| ()), "the forger's hand is right");
 }
 
-/// Theory: the same of layers. Counts are of all visible points or of none, and statistics come with the
-/// local rule alone.
+/// Theory: the same of layers. Counts are of all visible points or of none, and statistics come
+/// with the local rule alone.
 #[test]
 fn forged_layers_are_refused() {
     let (_, sound) = made("layers");

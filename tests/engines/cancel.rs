@@ -32,8 +32,9 @@ fn cancelled(name: &str, engine: &mut dyn Engine) {
     }
 }
 
-/// Theory: a pass that is given up leaves the film, the errors and the state of the passes before it, and
-/// another engine that goes on from there ends in the bits of a render that was never interrupted.
+/// Theory: a pass that is given up leaves the film, the errors and the state of the passes before
+/// it, and another engine that goes on from there ends in the bits of a render that was never
+/// interrupted.
 #[test]
 fn what_was_done_before_stays() {
     let (_, settings, rest) = SCENES[0];
@@ -60,8 +61,9 @@ fn what_was_done_before_stays() {
     }
 }
 
-/// Theory: steps of the CPU engine and submissions to a GPU take a fraction of a second, so that a pass of a
-/// hundred million photons, which takes a minute, ends soon after another thread asks for it.
+/// Theory: steps of the CPU engine and submissions to a GPU take a fraction of a second, so that a
+/// pass of a hundred million photons, which takes a minute, ends soon after another thread asks for
+/// it.
 #[test]
 fn a_long_pass_ends_soon() {
     let (_, settings, rest) = SCENES[0];

@@ -23,8 +23,9 @@ const RENDER: &str = concat!(
     "/scenes/caustics.toml --size 16x16 --photons 1000 --device software --passes 1 -o a.png"
 );
 
-/// Theory: a user who waits longer than a second learns why. A log has lines that say which kernel is
-/// compiled and how many are done; --quiet has nothing; --json has events, and nothing on standard error.
+/// Theory: a user who waits longer than a second learns why. A log has lines that say which kernel
+/// is compiled and how many are done; --quiet has nothing; --json has events, and nothing on
+/// standard error.
 #[test]
 fn a_compilation_is_shown() {
     software();

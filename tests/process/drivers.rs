@@ -18,8 +18,8 @@ fn bare(folder: &Path, line: &str) -> Command {
     command
 }
 
-/// Theory: standard error belongs to the program. Drivers and their layers find no fault with a machine
-/// that has no desktop.
+/// Theory: standard error belongs to the program. Drivers and their layers find no fault with a
+/// machine that has no desktop.
 #[test]
 fn drivers_are_quiet_without_a_desktop() {
     software();
@@ -41,8 +41,8 @@ fn drivers_are_quiet_without_a_desktop() {
     }
 }
 
-/// Theory: the program starts again only to keep the layer away; all that others see of a process stays:
-/// its number, name, arguments, folder and the signals that it was started to ignore.
+/// Theory: the program starts again only to keep the layer away; all that others see of a process
+/// stays: its number, name, arguments, folder and the signals that it was started to ignore.
 #[test]
 fn the_process_stays_what_it_was() {
     software();
@@ -89,8 +89,9 @@ fn told(folder: &Path, line: &str, (variable, value): (&str, &str), code: i32) -
     (text(&output.stdout), error(&output))
 }
 
-/// Theory: a variable that hides an adapter, or has a word that means nothing, is named with its value, what
-/// it hides and the remedy, wherever a device is chosen. One that hides nothing is not mentioned.
+/// Theory: a variable that hides an adapter, or has a word that means nothing, is named with its
+/// value, what it hides and the remedy, wherever a device is chosen. One that hides nothing is not
+/// mentioned.
 #[test]
 fn variables_that_hide_devices_are_named() {
     software();

@@ -7,18 +7,18 @@ use std::process::Command;
 use super::support::{error, words};
 use super::{SCENE, ended, folder, spawn};
 
-/// Whether `error` refuses a scene for want of memory and helps: the limit of the scene that is exceeded
-/// and its option, or the limit of the process and what to make smaller. Which of the two comes first
-/// depends on what the allocator has reserved of the address space by then.
+/// Whether `error` refuses a scene for want of memory and helps: the limit of the scene that is
+/// exceeded and its option, or the limit of the process and what to make smaller. Which of the two
+/// comes first depends on what the allocator has reserved of the address space by then.
 fn helps(error: &str, option: &str) -> bool {
     let scene = error.contains(option);
     let process = error.contains("(ulimit -v)");
     scene || process && ["take coarser meshes", "--size", "--limit"].iter().any(|help| error.contains(help))
 }
 
-/// Theory: the reader knows how much memory there is before it reads a mesh or a picture, so that under any
-/// limit there is a picture or a message, exit code 0 or 1; a failed allocation would end the program by
-/// signal 6. A limit that is named counts whatever there is.
+/// Theory: the reader knows how much memory there is before it reads a mesh or a picture, so that
+/// under any limit there is a picture or a message, exit code 0 or 1; a failed allocation would end
+/// the program by signal 6. A limit that is named counts whatever there is.
 #[test]
 fn large_scenes_in_little_memory() {
     let folder = folder("large");

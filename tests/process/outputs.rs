@@ -159,7 +159,8 @@ fn pipes_get_pictures() {
     symlink("/dev/stdout", folder.join("out.png")).unwrap();
     let output = run(&folder, "-o out.png", 0, &[]);
     assert!(output.stdout.starts_with(PNG) && output.stdout.ends_with(b"out.png\n"));
-    // a file that a shell has opened for several programs keeps what they wrote before and write after
+    // a file that a shell has opened for several programs keeps what they wrote before and write
+    // after
     let line =
         "{ echo before; \"$0\" render ball.toml --device cpu --quiet -o out.png; echo after; } >all.bin";
     let mut shell = std::process::Command::new("sh");

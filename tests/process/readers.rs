@@ -51,7 +51,8 @@ fn pipes_and_devices_are_refused() {
     assert!(!folder.join("out.exr").exists());
 }
 
-/// Theory: a study's folder may be anybody's, too. None of the files that a study goes on from is waited for.
+/// Theory: a study's folder may be anybody's, too. None of the files that a study goes on from is
+/// waited for.
 #[test]
 fn a_study_does_not_wait_for_its_files() {
     let folder = folder("study");

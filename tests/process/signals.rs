@@ -80,7 +80,8 @@ fn ignoring(folder: &Path, names: &str, line: &str) -> Child {
     spawn(command)
 }
 
-/// Theory: a signal that the program was started to ignore means nothing to it. The others still end it.
+/// Theory: a signal that the program was started to ignore means nothing to it. The others still
+/// end it.
 #[test]
 fn ignored_signals_stay_ignored() {
     let folder = folder("ignored");
@@ -111,8 +112,8 @@ fn ignored_signals_stay_ignored() {
     }
 }
 
-/// Theory: a bench that is interrupted has measured something, and that is what it reports: rounds of the
-/// first device, or all of it while the next device compiles.
+/// Theory: a bench that is interrupted has measured something, and that is what it reports: rounds
+/// of the first device, or all of it while the next device compiles.
 #[test]
 fn an_interrupted_bench_keeps_its_figures() {
     use std::io::{BufRead, BufReader, Read};

@@ -79,8 +79,8 @@ fn control_characters_are_shown() {
     }
 }
 
-/// Theory: a line of a message is a line of the program. A line feed in a name is shown as an escape, so that
-/// no name can pretend to be a message of its own.
+/// Theory: a line of a message is a line of the program. A line feed in a name is shown as an
+/// escape, so that no name can pretend to be a message of its own.
 #[test]
 fn line_feeds_in_names_are_shown() {
     let folder = folder("feeds");
