@@ -6,6 +6,7 @@
 //! beside it, where the order of bodies decides, and a lamp is in front of the ceiling.
 
 use super::bodies::Bodies;
+use super::math::EPS;
 use super::normalize::{Normalization, extent};
 use super::parts::places;
 use crate::scene::{Mesh, Scene, ShapeKind, Transform};
@@ -19,7 +20,7 @@ const GROWTH: f64 = 4.0;
 const MOST_TIMES: u32 = 16;
 /// Error bound of a hit over a rounding of the largest coordinate: that of the shapes' own bounds.
 const ROUNDINGS: f64 = 16.0;
-/// Most growth over a body's size.
+/// Most growth over a body's size, and in scene units.
 const MOST: f64 = 1e-3;
 /// Least cosine between a corner's mean normal and the normals of its faces that growth reckons with.
 const LEAST_COS: f64 = 0.25;
@@ -38,16 +39,16 @@ struct Item {
     times: u32,
 }
 
-/// The shapes, those of them grown that touch others. `eps` is one rounding of 1.
+/// The shapes, those of them grown that touch others; by roundings of f32 for both precisions, which so have
+/// the same scene.
 pub fn grown<'a>(
     scene: &Scene,
     kinds: Vec<Cow<'a, ShapeKind>>,
     bodies: &Bodies,
     n: &Normalization,
-    eps: f64,
 ) -> Vec<Cow<'a, ShapeKind>> {
     let mut items = items(scene, &kinds, bodies, n);
-    find_contacts(&mut items, &kinds, n, eps);
+    find_contacts(&mut items, &kinds, n);
     let mut order: Vec<usize> = (0..items.len()).filter(|i| items[*i].rank.is_some()).collect();
     order.sort_by_key(|i| std::cmp::Reverse(items[*i].rank));
     for i in order {
@@ -60,7 +61,7 @@ pub fn grown<'a>(
             return 0.0;
         }
         let size = item.bounds.map_or(f64::INFINITY, |(low, high, _)| low.distance(high));
-        (GROWTH * f64::from(item.times) * item.error).min(MOST * size) * n.unit
+        (GROWTH * f64::from(item.times) * item.error).min(MOST * size.min(1.0)) * n.unit
     };
     let mut growth = vec![Vec::new(); kinds.len()];
     items.iter().for_each(|item| growth[item.shape].push(by(item)));
@@ -104,7 +105,8 @@ fn items(scene: &Scene, kinds: &[Cow<ShapeKind>], bodies: &Bodies, n: &Normaliza
 }
 
 /// Finds what touches: boxes that meet within the error bounds of hits.
-fn find_contacts(items: &mut [Item], kinds: &[Cow<ShapeKind>], n: &Normalization, eps: f64) {
+fn find_contacts(items: &mut [Item], kinds: &[Cow<ShapeKind>], n: &Normalization) {
+    let eps = f64::from(EPS);
     let touch = |items: &mut [Item], i: usize, j: usize, error: f64| {
         for (a, b) in [(i, j), (j, i)] {
             items[a].error = items[a].error.max(error);
@@ -146,6 +148,15 @@ fn find_contacts(items: &mut [Item], kinds: &[Cow<ShapeKind>], n: &Normalization
         for j in 0..items.len() {
             let grows = items[i].rank.or(items[j].rank).is_some();
             let Some((low, high, reach)) = items[j].bounds.filter(|_| grows) else { continue };
+            // of a large sphere what is next to the plane counts
+            let reach = match *kinds[items[j].shape] {
+                ShapeKind::Sphere { .. } => {
+                    let (center, radius) = (0.5 * (low + high), 0.5 * (high.y - low.y));
+                    let off = normal.dot(center - point);
+                    (center - normal * off.signum() * radius).abs().max_element()
+                }
+                _ => reach,
+            };
             let error = ROUNDINGS * eps * 4.0 * (reach + point.dot(normal).abs());
             let middle = normal.dot(0.5 * (low + high) - point);
             let half = normal.abs().dot(0.5 * (high - low));

@@ -17,7 +17,6 @@ pub use crate::error::PackError;
 pub use objects::Objects;
 
 use super::lights::select::CELL_LEAF;
-use super::math::EPS;
 use super::real::{Real, ToDouble, ToReal, Vec3};
 use super::shapes::fours::{FourRectangles, FourSpheres, LANES};
 use super::tables::*;
@@ -108,7 +107,7 @@ fn flatten(scene: &scene::Scene, n: Normalization, width: u32, height: u32) -> R
     }
     let kinds = joined(scene);
     let bodies = Bodies::of(scene, &kinds);
-    let kinds = grown(scene, kinds, &bodies, &n, f64::from(EPS));
+    let kinds = grown(scene, kinds, &bodies, &n);
     let mut objects = Objects::default();
     let materials = bodies::pack_bodies(scene, &bodies, &mut out, &mut objects.materials);
     let (primitives, references, mut emitters) =
