@@ -107,3 +107,7 @@ pub mod stage;
 pub mod storage;
 pub mod study;
 pub mod tables;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -15,7 +15,7 @@ pub use super::shapes::triangle::Triangle;
 
 /// "No such index".
 pub const NONE: u32 = 0xffff_ffff;
-/// In the place of a medium: in which bodies of glass a point lies is found point by point.
+/// Medium that the kernels determine for each point.
 pub const ASTRIDE: u32 = 0xffff_fffe;
 
 /// Number of low bits of a reference that hold the index; the bits above hold the kind.
@@ -82,9 +82,9 @@ pub struct World {
     pub guided: u32,
     /// See [`Tree::primitive_size`](super::shapes::kdtree::Tree::primitive_size).
     pub primitive_size: Real,
-    /// The first material of a body of glass in the order of `materials::interior`.
+    /// Index of the first material that belongs to a glass body.
     pub body_first: u32,
-    /// Number of bodies that have a material of their own.
+    /// Number of such materials.
     pub body_count: u32,
     /// Padding.
     pub pad: u32,
@@ -116,7 +116,7 @@ pub struct Camera {
     pub height: u32,
     /// Unit vector upward.
     pub lens_up: Vec3,
-    /// The glass material that the whole lens lies in, [`NONE`] or [`ASTRIDE`].
+    /// Medium of the lens: a glass material index, [`NONE`] or [`ASTRIDE`].
     pub medium: u32,
 }
 
@@ -279,8 +279,8 @@ pub const MATERIAL_METAL: u32 = 3;
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Plain, Zeroable)]
 pub struct Material {
-    /// Reflectance, in [0, 1]; at normal incidence for metal. Of open bodies of glass: unit mean normal,
-    /// along which their inside is looked for.
+    /// Reflectance, in [0, 1]; at normal incidence for metal. For an open glass sheet: its unit mean normal; zero
+    /// for closed glass.
     pub reflectance: Vec3,
     /// One of `MATERIAL_*`.
     pub kind: u32,
@@ -387,7 +387,7 @@ pub struct Light {
     pub patch_first: u32,
     /// Revolution: number of its patches.
     pub patch_count: u32,
-    /// Lamps: the glass material that all of it lies in, [`NONE`] or [`ASTRIDE`].
+    /// Medium of a lamp: a glass material index, [`NONE`] or [`ASTRIDE`].
     pub medium: u32,
     /// First entry in `distributions` of the map of where its photons meet glass and mirrors (see
     /// `lights::guide`), or 0.

@@ -1,4 +1,4 @@
-// Which bodies of glass a place lies in, found by looking: twin of src/materials/enclosing.rs.
+// Point-in-body test by ray casting: twin of src/materials/enclosing.rs.
 
 const FACES: u32 = 256u;
 const LOOK: vec3f = vec3f(0.3104505, 0.8912933, 0.3304795);

@@ -1,4 +1,4 @@
-// The bodies of glass that a place lies in: twin of src/materials/interior.rs.
+// Interior list, the glass bodies that contain a point: twin of src/materials/interior.rs.
 
 //#if nested
 const BODIES: u32 = 8u;

@@ -1,4 +1,4 @@
-//! Bodies of glass: which there are, and which of them is the medium where they overlap.
+//! Glass bodies and their ranks where they overlap.
 
 use super::normalize::extent;
 use super::parts::{Part, TRIANGLES, parts, without_shared_walls};
@@ -7,15 +7,15 @@ use glam::{DVec2, DVec3};
 use std::borrow::Cow;
 use std::cmp::{Ordering, Reverse};
 
-/// Parts of a mesh that are bodies of their own, at most.
+/// Maximum number of parts of a mesh that become separate bodies.
 const PARTS: usize = 256;
-/// Length of a sheet's mean normal, over 1 for a flat one, below which it counts as closed.
+/// A mesh whose summed area vector is shorter than this share of its area counts as closed.
 const LEAST_FACING: f64 = 0.05;
 
-/// Least and greatest corner.
+/// Minimum and maximum corner.
 pub type Bounds = (DVec3, DVec3);
 
-/// A body of glass, in the world.
+/// A glass body in world space.
 #[derive(Clone, Debug)]
 pub struct Body {
     /// Index of the scene's shape.
@@ -24,9 +24,9 @@ pub struct Body {
     pub material: usize,
     /// See [`MaterialKind::Glass`].
     priority: i32,
-    /// Its box; nothing for a plane.
+    /// Bounding box; `None` for a plane.
     pub bounds: Option<Bounds>,
-    /// Unit mean normal of an open one: its inside is where a look along it leaves through it.
+    /// Unit mean normal of an open sheet; `None` for a closed body.
     pub facing: Option<DVec3>,
 }
 
@@ -38,7 +38,7 @@ impl Body {
         }
     }
 
-    /// Less than another one where it is the medium of what both hold.
+    /// Compares ranks: the lesser body is the medium where both overlap.
     pub fn order(&self, other: &Self) -> Ordering {
         let priority = |body: &Self| Reverse(body.priority);
         priority(self).cmp(&priority(other)).then(self.volume().total_cmp(&other.volume()))
@@ -52,7 +52,7 @@ pub struct Bodies {
     pub all: Vec<Body>,
     /// For each shape its bodies' numbers: none, one, or one for each triangle.
     pub of: Vec<Vec<u32>>,
-    /// Whether bodies may touch or hold one another.
+    /// Whether bodies may overlap.
     pub nested: bool,
 }
 
@@ -77,13 +77,13 @@ impl Bodies {
                 bodies.of.push(vec![first]);
             }
         }
-        // below an open sheet anything may lie
+        // any body may lie below an open sheet
         let open = bodies.all.iter().any(|body| body.facing.is_some()) && bodies.all.len() > 1;
         bodies.nested = open || any_meet(bodies.all.iter().filter_map(|body| body.bounds).collect());
         bodies
     }
 
-    /// The bodies' numbers, that of the body which is the medium wherever it is first.
+    /// Indices of the bodies in the order of rank, the highest rank first.
     pub fn ranking(&self) -> Vec<usize> {
         let mut order: Vec<usize> = (0..self.all.len()).collect();
         order.sort_by(|a, b| self.all[*a].order(&self.all[*b]).then(a.cmp(b)));
@@ -91,7 +91,7 @@ impl Bodies {
     }
 }
 
-/// The shapes of a scene, those of glass without walls that their parts share.
+/// Returns the shapes, with shared walls removed from glass meshes.
 pub fn joined(scene: &Scene) -> Vec<Cow<'_, ShapeKind>> {
     let joined = |shape: &Shape| match (&shape.kind, &scene.materials[shape.material].kind) {
         (ShapeKind::Mesh(mesh), MaterialKind::Glass { .. }) => without_shared_walls(mesh),
@@ -102,7 +102,7 @@ pub fn joined(scene: &Scene) -> Vec<Cow<'_, ShapeKind>> {
     scene.shapes.iter().map(kind).collect()
 }
 
-/// The unit mean normal of a shape that is open; of others nothing.
+/// Unit mean normal of an open shape.
 fn facing(kind: &ShapeKind) -> Option<DVec3> {
     match kind {
         ShapeKind::Rectangle { u, v, .. } => Some(u.cross(*v).normalize_or_zero()),
@@ -118,9 +118,9 @@ fn facing(kind: &ShapeKind) -> Option<DVec3> {
     }
 }
 
-/// The bodies of a mesh, each with its mean normal, if it is open, and its box; and the body of each
-/// triangle, or one for all. Parts are bodies of their own where their boxes meet; the inner wall of a
-/// hollow body belongs to the body.
+/// Splits a mesh into bodies. Returns the mean normal (if open) and bounding box of each body, and the body
+/// index of each triangle, or a single index for all of them. Parts become separate bodies if their bounding
+/// boxes meet. The inner wall of a hollow body belongs to that body.
 fn bodies_of_mesh(mesh: &Mesh) -> (Vec<(Option<DVec3>, Bounds)>, Vec<u32>) {
     let hull = || {
         mesh.positions
@@ -160,7 +160,7 @@ fn facing_of(parts: &[Part]) -> Option<DVec3> {
     (!closed).then(|| facing.normalize_or_zero())
 }
 
-/// Whether two of some boxes meet, within a rounding.
+/// Returns whether any two boxes meet within rounding.
 fn any_meet(mut boxes: Vec<Bounds>) -> bool {
     boxes.sort_by(|a, b| a.0.x.total_cmp(&b.0.x));
     boxes.iter().enumerate().any(|(i, (low, high))| {

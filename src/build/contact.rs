@@ -1,9 +1,9 @@
-//! Surfaces that lie on one another: glass on a floor, water in a glass, a lamp in a ceiling.
+//! Coincident surfaces: glass on a floor, water in a glass, a light in the plane of a ceiling.
 //!
-//! Which of two coincident surfaces a ray meets first would depend on rounding. So what users mean is made
-//! true before anything is rounded: bodies of glass that touch something grow by a few error bounds of a
-//! hit, and lamps a little more. Then glass reaches into the floor that it stands on and into the glass
-//! beside it, where the order of bodies decides, and a lamp is in front of the ceiling.
+//! Rounding would decide which of two coincident surfaces a ray hits first. Glass bodies that touch another
+//! shape are therefore grown by a few hit error bounds before anything is rounded, and area lights by more.
+//! Glass then reaches into the floor below it and into adjacent glass, where the ranks decide, and a light
+//! lies in front of the ceiling.
 
 use super::bodies::Bodies;
 use super::math::EPS;
@@ -13,34 +13,33 @@ use crate::scene::{Mesh, Scene, ShapeKind, Transform};
 use glam::{DVec2, DVec3};
 use std::borrow::Cow;
 
-/// Growth over the sum of the error bounds of two surfaces that touch.
+/// Growth in units of the summed error bounds of two touching surfaces.
 const GROWTH: f64 = 4.0;
-/// Of bodies that touch, each grows more than those which are not the medium where it is, up to so many
-/// times as much: flush faces are met in that order.
+/// A body grows by one more multiple than the lower-ranked bodies that it touches, up to this many, so that
+/// flush faces are hit in the order of rank.
 const MOST_TIMES: u32 = 16;
-/// Error bound of a hit over a rounding of the largest coordinate: that of the shapes' own bounds.
+/// Hit error bound in units of the rounding error of the largest coordinate, as in the shapes' own bounds.
 const ROUNDINGS: f64 = 16.0;
-/// Most growth over a body's size, and in scene units.
+/// Maximum growth relative to the body's size, and in scene units.
 const MOST: f64 = 1e-3;
-/// Least cosine between a corner's mean normal and the normals of its faces that growth reckons with.
+/// Lower limit of the cosine between a vertex's mean normal and its faces' normals.
 const LEAST_COS: f64 = 0.25;
 
-/// What touches as one.
+/// A shape or body that may touch others.
 struct Item {
     shape: usize,
-    /// Its box in scene space and the greatest coordinate there; nothing for a plane.
+    /// Bounding box in scene space and its largest absolute coordinate; `None` for a plane.
     bounds: Option<(DVec3, DVec3, f64)>,
-    /// Place in the order of growth, the lamps' first; nothing for what does not grow.
+    /// Rank, 0 for lights; `None` if it does not grow.
     rank: Option<usize>,
-    /// Greatest error bound of it and something that it touches, scene units; 0 where it touches nothing.
+    /// Largest summed error bound with a shape that it touches, scene units; 0 if it touches none.
     error: f64,
-    /// Items that grow and touch it.
+    /// Touching items that grow.
     touching: Vec<usize>,
     times: u32,
 }
 
-/// The shapes, those of them grown that touch others; by roundings of f32 for both precisions, which so have
-/// the same scene.
+/// Grows the shapes that touch others. Both precisions use the rounding error of f32 and hence the same scene.
 pub fn grown<'a>(
     scene: &Scene,
     kinds: Vec<Cow<'a, ShapeKind>>,
@@ -104,7 +103,7 @@ fn items(scene: &Scene, kinds: &[Cow<ShapeKind>], bodies: &Bodies, n: &Normaliza
     items
 }
 
-/// Finds what touches: boxes that meet within the error bounds of hits.
+/// Finds the items whose bounding boxes meet within the hit error bounds.
 fn find_contacts(items: &mut [Item], kinds: &[Cow<ShapeKind>], n: &Normalization) {
     let eps = f64::from(EPS);
     let touch = |items: &mut [Item], i: usize, j: usize, error: f64| {
@@ -129,7 +128,7 @@ fn find_contacts(items: &mut [Item], kinds: &[Cow<ShapeKind>], n: &Normalization
             if items[i].rank.is_none() && items[j].rank.is_none() {
                 continue;
             }
-            // of a large sphere what is near the other shape counts
+            // only the part of a large sphere near the other shape matters
             let own = |k: usize, reach: f64, size: DVec3, other: f64| match *kinds[items[k].shape] {
                 ShapeKind::Sphere { .. } => reach.min(4.0 * other),
                 _ => reach + size.max_element(),
@@ -148,7 +147,7 @@ fn find_contacts(items: &mut [Item], kinds: &[Cow<ShapeKind>], n: &Normalization
         for j in 0..items.len() {
             let grows = items[i].rank.or(items[j].rank).is_some();
             let Some((low, high, reach)) = items[j].bounds.filter(|_| grows) else { continue };
-            // of a large sphere what is next to the plane counts
+            // only the point of a large sphere next to the plane matters
             let reach = match *kinds[items[j].shape] {
                 ShapeKind::Sphere { .. } => {
                     let (center, radius) = (0.5 * (low + high), 0.5 * (high.y - low.y));
@@ -167,7 +166,7 @@ fn find_contacts(items: &mut [Item], kinds: &[Cow<ShapeKind>], n: &Normalization
     }
 }
 
-/// A shape whose surface lies `of` world units further out along its normals; of a mesh by triangle.
+/// Moves the surface outward by `of` world units, given for each triangle of a mesh.
 fn larger(kind: &ShapeKind, of: &dyn Fn(usize) -> f64) -> ShapeKind {
     let by = of(0);
     match kind {
@@ -223,7 +222,7 @@ fn larger_mesh(mesh: &Mesh, of: &dyn Fn(usize) -> f64) -> Mesh {
     Mesh { positions: mesh.positions.iter().zip(&places).map(moved).collect(), ..mesh.clone() }
 }
 
-/// The profile whose control polygon lies `by` further out; the outer side is on the right of its course.
+/// Offsets the control polygon outward, to the right of its direction, by `by`.
 fn larger_profile(segments: &[Vec<DVec2>], by: f64) -> Vec<Vec<DVec2>> {
     let points: Vec<DVec2> = segments.iter().flatten().copied().collect();
     let (Some(first), Some(last)) = (points.first(), points.last()) else { return Vec::new() };

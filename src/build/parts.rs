@@ -1,31 +1,31 @@
-//! The connected parts of a mesh.
+//! Connected components of a mesh.
 
 use crate::scene::{Mesh, Triangle};
 use glam::DVec3;
 use std::collections::HashMap;
 
-/// Triangles of a mesh whose parts are looked for, at most.
+/// Meshes with more triangles are not split into parts.
 pub const TRIANGLES: usize = 1 << 18;
 
-/// A connected part of a mesh, in the mesh's coordinates.
+/// A connected component, in the mesh's coordinates.
 #[derive(Clone, Debug)]
 pub struct Part {
-    /// Six times its signed volume; above zero where it faces outward. Of a closed part.
+    /// Six times the signed volume, positive if a closed part faces outward.
     pub volume: f64,
-    /// Twice the sum of its faces' area vectors; zero for a closed part.
+    /// Twice the summed area vector; zero for a closed part.
     pub facing: DVec3,
-    /// Twice its area.
+    /// Twice the area.
     pub area: f64,
-    /// Least corner of its box.
+    /// Minimum corner of the bounding box.
     pub low: DVec3,
-    /// Greatest corner of its box.
+    /// Maximum corner of the bounding box.
     pub high: DVec3,
-    /// Whether every edge is met once in each direction.
+    /// Whether every edge is used once in each direction.
     pub closed: bool,
 }
 
 impl Part {
-    /// Whether its box holds that of another part and is not the same.
+    /// Returns whether the bounding box contains that of `other` and differs from it.
     pub fn holds(&self, other: &Part) -> bool {
         self.low.cmple(other.low).all()
             && self.high.cmpge(other.high).all()
@@ -33,7 +33,7 @@ impl Part {
     }
 }
 
-/// The parts of a mesh, and the part of each triangle; corners at the same place are one.
+/// Returns the parts and the part index of each triangle. Vertices at equal positions are merged.
 pub fn parts(mesh: &Mesh) -> (Vec<Part>, Vec<u32>) {
     let corners = places(mesh);
     let triangles: Vec<[usize; 3]> =
@@ -94,7 +94,7 @@ pub fn parts(mesh: &Mesh) -> (Vec<Part>, Vec<u32>) {
     (parts, of)
 }
 
-/// For each position of a mesh the first position at the same place.
+/// Returns for each vertex the first vertex with an equal position.
 pub fn places(mesh: &Mesh) -> Vec<usize> {
     let mut first: HashMap<[u64; 3], usize> = HashMap::new();
     let place = |(i, position): (usize, &DVec3)| {
@@ -105,14 +105,14 @@ pub fn places(mesh: &Mesh) -> Vec<usize> {
     mesh.positions.iter().enumerate().map(place).collect()
 }
 
-/// The mesh without walls that two of its parts share exactly, once on either side: glass goes on there.
-/// Nothing where there are none.
+/// Removes pairs of triangles with equal vertices and opposite orientation: walls that two parts of a glass
+/// mesh share. Returns `None` if there are none.
 pub fn without_shared_walls(mesh: &Mesh) -> Option<Mesh> {
     if mesh.triangles.len() > TRIANGLES {
         return None;
     }
     let places = places(mesh);
-    // the least corner first, so that turning a triangle changes nothing
+    // rotated so that the smallest index comes first
     let key = |t: &Triangle| {
         let [a, b, c] = t.position.map(|i| places[i as usize]);
         if a < b && a < c {

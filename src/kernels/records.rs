@@ -66,8 +66,8 @@ pub struct Dispatch {
     pub points: Points,
 }
 
-/// Faces of glass that bend and reflect nothing, between which a path goes on as if they were not there: of more
-/// the rest of the path is left out.
+/// Maximum number of hidden glass faces that a path passes (see [`super::materials::interior::is_hidden`]); it
+/// ends beyond that.
 pub const HIDDEN_FACES: u32 = 256;
 
 /// The driver stopped the kernel's loops: the point is to be found again.

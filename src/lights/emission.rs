@@ -23,7 +23,7 @@ pub struct Emission {
     /// Flux over that of the same photon if no map had sent it and it passed the center of what the
     /// camera sees at half the near radius.
     pub excess: Real,
-    /// The glass that it starts in.
+    /// Interior list at its origin.
     pub interior: Interior,
 }
 

@@ -1,7 +1,8 @@
-//! Which bodies of glass a place lies in, found by looking. Twin: `shaders/materials/enclosing.wgsl`.
+//! Point-in-body test by ray casting. Twin: `shaders/materials/enclosing.wgsl`.
 //!
-//! A look out of a closed body leaves it, whatever its direction. An open sheet, such as the surface of a
-//! lake, has below it what a look along its mean normal leaves through it.
+//! A closed body contains a point if a ray from the point, in any direction, leaves the body before it enters
+//! it. An open sheet, such as a water surface, contains a point if a ray along the sheet's mean normal leaves
+//! through it.
 
 use super::interior::{Interior, entered, holds, interior_of, left};
 use super::math::{FAR, offset_origin};
@@ -11,19 +12,19 @@ use super::shapes::ray::Ray;
 use super::shapes::surface::surface_at;
 use super::tables::*;
 
-/// Surfaces that one look passes at most.
+/// Maximum number of surfaces that one ray passes.
 const FACES: u32 = 256;
-/// Direction of the look for closed bodies, unit: askew, so that it seldom meets edges of what people build.
+/// Unit direction of the rays for closed bodies, oblique so that it rarely hits edges of axis-aligned models.
 const LOOK: Vec3 = Vec3::new(0.3104505, 0.8912933, 0.3304795);
 
-/// The bodies around `position`, of which `known` is what the host could tell of a whole lamp or lens: one
-/// body, [`NONE`], or [`ASTRIDE`].
+/// Interior list at `position` on a lamp or lens whose medium is `known`: a glass material index, [`NONE`], or
+/// [`ASTRIDE`] if it has to be determined for each point.
 #[inline(always)]
 pub fn interior_at(scene: &Scene, known: u32, position: Vec3) -> Interior {
     if known == ASTRIDE { enclosing(scene, position) } else { interior_of(known) }
 }
 
-/// The bodies around `position`.
+/// Interior list at `position`.
 pub fn enclosing(scene: &Scene, position: Vec3) -> Interior {
     let mut interior = looked(scene, position, LOOK, NONE, &interior_of(NONE));
     for k in 0..scene.world.body_count {
@@ -36,8 +37,8 @@ pub fn enclosing(scene: &Scene, position: Vec3) -> Interior {
     interior
 }
 
-/// `known` and what a look along `direction` leaves without having entered it: `body`, which is open, or with
-/// [`NONE`] all that are closed.
+/// Adds to `known` the bodies that a ray along `direction` leaves without having entered them: all closed bodies
+/// if `body` is [`NONE`], otherwise only the open sheet `body`.
 fn looked(scene: &Scene, position: Vec3, direction: Vec3, body: u32, known: &Interior) -> Interior {
     let mut found = *known;
     let mut ahead = interior_of(NONE);

@@ -1,26 +1,25 @@
-//! The bodies of glass that a place lies in. Twin: `shaders/materials/interior.wgsl`.
+//! Interior list: the glass bodies that contain a point. Twin: `shaders/materials/interior.wgsl`.
 //!
-//! Where bodies overlap, one of them is the medium: that of the highest priority and, of equal ones, the
-//! smaller (Schmidt & Budge 2002, "Simple nested dielectrics in ray traced images"). Glass materials stand
-//! in that order in the table of materials, one for each body, so that the least index is the medium.
-//! A list is a set: a face that is met once more than it should be, by rounding or because a mesh overlaps
-//! itself, changes nothing. Where no bodies of glass meet, a list holds one.
+//! Where bodies overlap, the medium is the body with the highest priority, or the smaller one if priorities
+//! are equal (Schmidt & Budge 2002, "Simple nested dielectrics in ray traced images"). Each body has its own
+//! entry in the material table, sorted by rank, so the medium is the smallest index in the list. The list is
+//! a set: hitting a face twice does not change it. In scenes without overlapping bodies it holds one entry.
 
 use super::real::{Real, Vec3};
 use super::shapes::surface::Surface;
 use super::tables::*;
 
-/// Bodies that one place may lie in; of more, those that are never the medium are forgotten first.
+/// Maximum length of an interior list; the lowest-ranked bodies are dropped beyond it.
 pub const BODIES: usize = 8;
 
-/// Glass materials by index, ascending, [`NONE`] behind them.
+/// Glass material indices in ascending order, padded with [`NONE`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Interior {
-    /// The first is the medium.
+    /// The indices; the first one is the medium.
     pub bodies: [u32; BODIES],
 }
 
-/// Of a place in one body, or with [`NONE`] in none.
+/// List of one body, or an empty list for [`NONE`].
 #[inline(always)]
 pub const fn interior_of(body: u32) -> Interior {
     let mut bodies = [NONE; BODIES];
@@ -28,13 +27,13 @@ pub const fn interior_of(body: u32) -> Interior {
     Interior { bodies }
 }
 
-/// The medium: a glass material or [`NONE`].
+/// Medium: a glass material index or [`NONE`].
 #[inline(always)]
 pub fn medium_of(interior: &Interior) -> u32 {
     interior.bodies[0]
 }
 
-/// Whether `body` is among them.
+/// Returns whether the list contains `body`.
 pub fn holds(interior: &Interior, body: u32) -> bool {
     let mut found = false;
     for k in 0..BODIES {
@@ -43,7 +42,7 @@ pub fn holds(interior: &Interior, body: u32) -> bool {
     found
 }
 
-/// The same and `body`.
+/// Inserts `body`.
 #[inline(always)]
 pub fn entered(scene: &Scene, interior: &Interior, body: u32) -> Interior {
     if scene.world.nested == 0 {
@@ -59,7 +58,7 @@ pub fn entered(scene: &Scene, interior: &Interior, body: u32) -> Interior {
     next
 }
 
-/// The same without `body`.
+/// Removes `body`.
 #[inline(always)]
 pub fn left(scene: &Scene, interior: &Interior, body: u32) -> Interior {
     if scene.world.nested == 0 {
@@ -81,21 +80,21 @@ pub fn ior_of(scene: &Scene, medium: u32) -> Real {
     if medium == NONE { 1.0 } else { scene.materials[medium as usize].ior }
 }
 
-/// Where the ray with direction `-wo` was before it met `s`: glass met from inside says itself that the
-/// ray was there.
+/// Interior list of the ray with direction `-wo` before it hits `s`. A ray that hits glass from the inside
+/// was inside that glass, even if the list did not contain it.
 #[inline(always)]
 pub fn interior_before(scene: &Scene, s: &Surface, wo: Vec3, interior: &Interior) -> Interior {
     let inside = scene.materials[s.material as usize].kind == MATERIAL_GLASS && wo.dot(s.normal) < 0.0;
     if inside { entered(scene, interior, s.material) } else { *interior }
 }
 
-/// Where the ray is beyond a face of glass.
+/// Interior list of the ray after it has passed the glass face `s`.
 #[inline(always)]
 pub fn interior_beyond(scene: &Scene, s: &Surface, wo: Vec3, before: &Interior) -> Interior {
     if wo.dot(s.normal) >= 0.0 { entered(scene, before, s.material) } else { left(scene, before, s.material) }
 }
 
-/// Index of refraction before a face of glass over that beyond.
+/// Index of refraction in front of a glass face divided by that behind it.
 #[inline(always)]
 pub fn relative_ior(scene: &Scene, s: &Surface, wo: Vec3, before: &Interior, beyond: &Interior) -> Real {
     let mut here = medium_of(before);
@@ -105,16 +104,16 @@ pub fn relative_ior(scene: &Scene, s: &Surface, wo: Vec3, before: &Interior, bey
     ior_of(scene, here) / ior_of(scene, medium_of(beyond))
 }
 
-/// Whether, in a scene of nested bodies, a face bends and reflects nothing, because another body is the medium on both sides or the
-/// media have the same index.
+/// Returns whether the media on both sides of a face have the same index, so that the face neither refracts
+/// nor reflects. Only for scenes with nested bodies.
 #[inline(always)]
 pub fn is_hidden(scene: &Scene, s: &Surface, before: &Interior, beyond: &Interior) -> bool {
     let glass = scene.materials[s.material as usize].kind == MATERIAL_GLASS;
     glass && ior_of(scene, medium_of(before)) == ior_of(scene, medium_of(beyond))
 }
 
-/// Where light from infinity that travels along `direction` is before it meets anything: behind the planes
-/// of glass that it comes from behind of.
+/// Initial interior list of a photon from an infinitely distant light: the glass planes whose back it
+/// approaches.
 pub fn interior_from(scene: &Scene, direction: Vec3) -> Interior {
     let mut interior = interior_of(NONE);
     for i in 0..scene.world.unbounded_count {

@@ -23,7 +23,7 @@ const ADJOINT_COS_MIN: Real = 1e-2;
 pub struct Scatter {
     /// Unit direction.
     pub direction: Vec3,
-    /// The glass ahead.
+    /// Interior list of the new ray.
     pub interior: Interior,
     /// BSDF times cosine over density; zero where the path ends.
     pub weight: Vec3,
@@ -61,7 +61,7 @@ pub fn shading_normal(scene: &Scene, s: &Surface, wo: Vec3) -> Vec3 {
     if diffuse || wo.dot(ns) > 0.0 { ns } else { ng }
 }
 
-/// Mirror and glass. `interior` is that before the surface; `u` decides between reflection and refraction.
+/// Mirror and glass. `interior` is the list in front of the surface; `u` decides between reflection and refraction.
 #[inline(always)]
 pub fn scatter_specular(
     scene: &Scene,

@@ -1,4 +1,4 @@
-//! Bodies of glass in the tables, and in which of them lamps and cameras lie.
+//! Packs glass bodies into the tables and determines the media of lamps and the camera.
 
 use super::lights::shape::sample_shape;
 use super::materials::enclosing::enclosing;
@@ -9,9 +9,9 @@ use super::tables::*;
 use crate::build::bodies::Bodies;
 use crate::scene;
 
-/// Puts a material for each body into `out`, where one is needed: the least is that of the body that is the
-/// medium wherever it is. Returns for each shape the materials of its triangles, or one, and tells `sources`
-/// the scene's material of each of the tables'.
+/// Appends a material for each body to `out`, in the order of rank, if the scene needs them. Returns for each
+/// shape the material indices of its triangles, or a single one. Fills `sources` with the scene material index
+/// of each table entry.
 pub fn pack_bodies(
     scene: &scene::Scene,
     bodies: &Bodies,
@@ -43,7 +43,7 @@ pub fn pack_bodies(
     materials
 }
 
-/// Tells of each lamp whether all of it lies in one body of glass, in none, or astride.
+/// Sets the medium of each lamp.
 pub fn stand_lights(out: &mut Scene) {
     for i in 0..out.lights.len() {
         let light = &out.lights[i];
@@ -60,14 +60,15 @@ pub fn stand_lights(out: &mut Scene) {
     }
 }
 
-/// The same of the camera's lens.
+/// Sets the medium of the camera's lens.
 pub fn stand_camera(out: &mut Scene) {
     let camera = &out.camera;
     let half = Vec3::splat(camera.aperture);
     out.camera.medium = medium_of_box(out, camera.position, camera.position - half, camera.position + half);
 }
 
-/// The medium of all of a box, as the surroundings of `position` in it tell.
+/// Medium of everything in a box around `position`: a material index, [`NONE`], or [`ASTRIDE`] if a glass face
+/// crosses the box or several bodies contain it.
 fn medium_of_box(out: &Scene, position: Vec3, low: Vec3, high: Vec3) -> u32 {
     if out.materials.iter().all(|m| m.kind != MATERIAL_GLASS) {
         return NONE;
@@ -79,7 +80,7 @@ fn medium_of_box(out: &Scene, position: Vec3, low: Vec3, high: Vec3) -> u32 {
     medium_of(&interior)
 }
 
-/// The box of a lamp in the tables, of a revolution with all that it may reach.
+/// Bounding box of a packed shape; conservative for surfaces of revolution.
 fn lamp_box(out: &Scene, kind: u32, index: usize) -> (Vec3, Vec3) {
     let hull = |points: &[Vec3]| {
         let low = points.iter().fold(Vec3::splat(FAR), |a, p| a.min(*p));
@@ -114,7 +115,7 @@ fn lamp_box(out: &Scene, kind: u32, index: usize) -> (Vec3, Vec3) {
     }
 }
 
-/// Whether some surface of glass may cross a box.
+/// Returns whether a glass face may cross a box.
 fn glass_crosses(out: &Scene, low: Vec3, high: Vec3) -> bool {
     let slack = Vec3::splat(64.0 * EPS * low.abs().max(high.abs()).max_element());
     let (low, high) = (low - slack, high + slack);
@@ -142,7 +143,7 @@ fn glass_crosses(out: &Scene, low: Vec3, high: Vec3) -> bool {
     false
 }
 
-/// Whether the shape that `reference` names is of glass and its surface may cross a box.
+/// Returns whether `reference` is a glass shape whose surface may cross a box.
 fn reference_crosses(out: &Scene, reference: u32, low: Vec3, high: Vec3) -> bool {
     let index = (reference & ((1 << REFERENCE_BITS) - 1)) as usize;
     let glass = |material: u32| out.materials[material as usize].kind == MATERIAL_GLASS;

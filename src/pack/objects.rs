@@ -1,16 +1,16 @@
-//! Which shape of the scene each entry of the tables comes from, and which material.
+//! Maps table entries to the scene's shapes and materials.
 
 use super::tables::*;
 
 /// Number of reference kinds.
 const KINDS: usize = KIND_PLANE as usize + 1;
 
-/// What the tables' numbers are in the scene.
+/// Scene indices of table entries.
 #[derive(Clone, Debug, Default)]
 pub struct Objects {
-    /// For each kind of reference, the shape's number by the reference's index.
+    /// Shape index for each kind of reference and index.
     shapes: [Vec<u32>; KINDS],
-    /// The material's number by that of the table's; empty where they are the same.
+    /// Scene material index of each table material; empty if they are equal.
     pub materials: Vec<u32>,
 }
 
@@ -47,7 +47,7 @@ impl Objects {
         self.shapes.get((reference >> REFERENCE_BITS) as usize)?.get(index).copied()
     }
 
-    /// The scene's material of a material of the tables; [`NONE`] for [`NONE`].
+    /// Scene material index of a table material; [`NONE`] for [`NONE`].
     pub fn material(&self, index: u32) -> u32 {
         self.materials.get(index as usize).copied().unwrap_or(index)
     }

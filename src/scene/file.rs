@@ -160,15 +160,15 @@ pub enum MaterialFile {
         /// Share of light reflected.
         reflectance: Paint,
     },
-    /// A smooth dielectric with air outside, or other glass where bodies overlap.
+    /// A smooth dielectric. Outside is air, or the other glass where bodies overlap.
     Glass {
         /// Index of refraction.
         ior: Positive,
         /// Absorption per scene unit inside (Beer-Lambert).
         #[serde(default)]
         absorption: Spectrum<NonNegative>,
-        /// Where bodies of glass overlap, the one of the highest priority is there; of equal ones the
-        /// smaller body.
+        /// Where glass bodies overlap, the medium is the one with the highest priority, or the smaller one if
+        /// priorities are equal.
         #[serde(default)]
         priority: i32,
     },
