@@ -6,7 +6,7 @@ use super::lab::*;
 
 /// Both ways to bring light by photons, and path tracing.
 fn ways() -> [RenderSettings; 3] {
-    let base = RenderSettings { photons: 1 << 14, passes: 16, max_bounces: 100, ..settings(0.05) };
+    let base = RenderSettings { photons: 1 << 13, passes: 16, max_bounces: 100, ..settings(0.05) };
     let path = RenderSettings { method: Method::Path, passes: 128, ..base.clone() };
     [Direct::Sampled, Direct::Photons]
         .map(|direct| RenderSettings { direct, ..base.clone() })
@@ -255,7 +255,7 @@ fn what_stands_on_a_floor() {
             + &shape(floor, "white")
             + &shape(&(ball("[0.5, 3, 0.5]", 0.5) + "\nemission = 10.0"), "black");
         for settings in ways() {
-            let settings = RenderSettings { passes: settings.passes / 2, ..settings };
+            let settings = RenderSettings { passes: settings.passes / 4, photons: 1 << 12, ..settings };
             if settings.direct == Direct::Photons || settings.method == Method::Path && *floor != floors[0] {
                 continue;
             }
