@@ -2,10 +2,10 @@
 
 const ALPHA_MIN: f32 = 1e-3;
 
-fn ggx_d(cos: f32, alpha: f32) -> f32 {
+fn ggx_d(h: vec3f, alpha: f32) -> f32 {
     let a2 = alpha * alpha;
-    let sin_sq = max(1.0 - cos * cos, 0.0);
-    let d = cos * cos * a2 + sin_sq;
+    let sin_sq = h.x * h.x + h.y * h.y;
+    let d = h.z * h.z * a2 + sin_sq;
     return a2 / (PI * d * d);
 }
 
@@ -27,7 +27,7 @@ fn eval_metal(wo: vec3f, wi: vec3f, f0: vec3f, alpha: f32) -> vec3f {
     }
     let h = unit(wo + wi);
     let g = 1.0 / (1.0 + ggx_lambda(wo.z, alpha) + ggx_lambda(wi.z, alpha));
-    return schlick(f0, dot(wo, h)) * (ggx_d(h.z, alpha) * g / (4.0 * wo.z * wi.z));
+    return schlick(f0, dot(wo, h)) * (ggx_d(h, alpha) * g / (4.0 * wo.z * wi.z));
 }
 
 fn sample_metal(wo: vec3f, alpha: f32, u: vec2f) -> vec3f {
@@ -52,7 +52,7 @@ fn pdf_metal(wo: vec3f, wi: vec3f, alpha: f32) -> f32 {
         return 0.0;
     }
     let h = unit(wo + wi);
-    return ggx_d(h.z, alpha) / (4.0 * wo.z * (1.0 + ggx_lambda(wo.z, alpha)));
+    return ggx_d(h, alpha) / (4.0 * wo.z * (1.0 + ggx_lambda(wo.z, alpha)));
 }
 
 fn weight_metal(wo: vec3f, h: vec3f, wi: vec3f, f0: vec3f, alpha: f32) -> vec3f {

@@ -9,11 +9,12 @@ use super::real::{Real, Vec2, Vec3, root_roundings};
 /// Least `alpha`: below it rounding spoils the lobe's peak.
 pub const ALPHA_MIN: Real = root_roundings(1e-3);
 
-/// Distribution of microfacet normals, GGX.
-pub fn ggx_d(cos: Real, alpha: Real) -> Real {
+/// Distribution of microfacet normals `h`, GGX. The sine comes from `h.x` and `h.y`: in a narrow lobe
+/// `1 - cos^2` has no digits left.
+pub fn ggx_d(h: Vec3, alpha: Real) -> Real {
     let a2 = alpha * alpha;
-    let sin_sq = (1.0 - cos * cos).max(0.0);
-    let d = cos * cos * a2 + sin_sq;
+    let sin_sq = h.x * h.x + h.y * h.y;
+    let d = h.z * h.z * a2 + sin_sq;
     a2 / (PI * d * d)
 }
 
@@ -38,7 +39,7 @@ pub fn eval_metal(wo: Vec3, wi: Vec3, f0: Vec3, alpha: Real) -> Vec3 {
     }
     let h = unit(wo + wi);
     let g = 1.0 / (1.0 + ggx_lambda(wo.z, alpha) + ggx_lambda(wi.z, alpha));
-    schlick(f0, wo.dot(h)) * (ggx_d(h.z, alpha) * g / (4.0 * wo.z * wi.z))
+    schlick(f0, wo.dot(h)) * (ggx_d(h, alpha) * g / (4.0 * wo.z * wi.z))
 }
 
 /// A microfacet normal `h` by the distribution of visible normals (Heitz 2018); the direction is `mirrored(wo, h)`.
@@ -65,7 +66,7 @@ pub fn pdf_metal(wo: Vec3, wi: Vec3, alpha: Real) -> Real {
         return 0.0;
     }
     let h = unit(wo + wi);
-    ggx_d(h.z, alpha) / (4.0 * wo.z * (1.0 + ggx_lambda(wo.z, alpha)))
+    ggx_d(h, alpha) / (4.0 * wo.z * (1.0 + ggx_lambda(wo.z, alpha)))
 }
 
 /// `eval_metal * cos / pdf_metal` in closed form, `F G2 / G1`, for `wi` mirrored at `h`. (From `wo + wi` a shader
