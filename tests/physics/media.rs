@@ -220,6 +220,8 @@ fn lamps_astride() {
     };
     let (whole, cut) = (part(-0.8, 0.8), part(-0.8, 0.05) + &part(0.05, 0.8));
     for settings in ways() {
+        let passes = if settings.method == Method::Path { 8 * settings.passes } else { settings.passes };
+        let settings = RenderSettings { passes, ..settings };
         let [a, b] = [&whole, &cut].map(|lamps| runs(&(base.clone() + lamps), &settings));
         // on the right the lamp itself is seen
         for (half, rows) in [("upper", 0..6), ("lower", 6..12)] {
@@ -256,7 +258,9 @@ fn what_stands_on_a_floor() {
             + &shape(floor, "white")
             + &shape(&(ball("[0.5, 3, 0.5]", 0.5) + "\nemission = 10.0"), "black");
         for settings in ways() {
-            let settings = RenderSettings { passes: settings.passes / 4, photons: 1 << 12, ..settings };
+            let passes =
+                if settings.method == Method::Path { 4 * settings.passes } else { settings.passes / 4 };
+            let settings = RenderSettings { passes, photons: 1 << 12, ..settings };
             if settings.direct == Direct::Photons || settings.method == Method::Path && *floor != floors[0] {
                 continue;
             }
