@@ -320,3 +320,21 @@ fn lamps_in_ceilings() {
         }
     }
 }
+
+/// Theory: light that has passed hidden faces alone, of bodies of index 1 that overlap, comes as if they were not
+/// there; shadow rays end at them, so photons must bring it.
+#[test]
+fn light_through_hidden_faces() {
+    let base = camera("[0, 1.5, 0.01]", "[0, 0, 0]", 30.0)
+        + &lamp()
+        + &glass("air", 1.0, "")
+        + &shape("type = \"disc\"\ncenter = [0, 0, 0]\nnormal = [0, 1, 0]\nradius = 3.0", "white");
+    let hidden = shape(&block("[-9, 3, -9]", "[9, 3.4, 9]"), "air")
+        + &shape(&block("[-9, 3.2, -9]", "[9, 3.6, 9]"), "air");
+    for direct in [Direct::Sampled, Direct::Photons] {
+        let settings = RenderSettings { direct, photons: 1 << 14, passes: 8, ..settings(0.1) };
+        let [a, b] =
+            [base.clone() + &hidden, base.clone()].map(|text| runs(&text, &settings).region(|_, _| true));
+        assert_same(&format!("{direct:?}"), a, b, 0.08);
+    }
+}
