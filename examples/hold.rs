@@ -73,7 +73,9 @@ fn make_truth(full: &Path, out: &Path, relmse: Option<f64>) -> Result<(), Box<dy
     let noise = match (exr.picture("SE."), relmse) {
         (_, Some(e)) => PixelNoise::RelMse(e),
         (Some(errors), None) => PixelNoise::Known(errors),
-        (None, None) => return Err("it has no standard errors SE.R, SE.G, SE.B; say --relmse".into()),
+        (None, None) => {
+            return Err("it has no standard errors SE.R, SE.G, SE.B; say --relmse".into());
+        }
     };
     let truth = BlockTruth::from_picture(&picture, &noise)
         .ok_or_else(|| format!("its sides are no multiples of {BLOCK}"))?;

@@ -58,8 +58,9 @@ pub struct PassReport {
     pub radius: f64,
 }
 
-/// What an engine keeps from pass to pass; everything else is made again from the scene, the settings and the pass's number. The
-/// bytes are those of `kernels::bytes`, alike for all engines that count in numbers of so many bits.
+/// What an engine keeps from pass to pass; everything else is made again from the scene, the
+/// settings and the pass's number. The bytes are those of `kernels::bytes`, alike for all engines
+/// that count in numbers of so many bits.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct State {
     /// Number of the first pass in it, from 0.
@@ -100,8 +101,8 @@ pub struct Space {
     pub radiance_unit: f64,
     /// Whether photons are gathered.
     pub photons: bool,
-    /// Luminance of the brightest thing that eye paths may meet by mirrors or through glass, world units;
-    /// 0 where there is nothing of the kind.
+    /// Luminance of the brightest thing that eye paths may meet by mirrors or through glass, world
+    /// units; 0 where there is nothing of the kind.
     #[serde(default)]
     pub glint: f64,
 }
@@ -184,7 +185,8 @@ impl From<OverBudget> for EngineError {
 }
 
 impl EngineError {
-    /// Whether the device failed, so that the same render may go well on another one or another time.
+    /// Whether the device failed, so that the same render may go well on another one or another
+    /// time.
     pub fn is_of_device(&self) -> bool {
         matches!(self, Self::DeviceLost(_) | Self::OutOfMemory(_))
     }
@@ -215,7 +217,8 @@ pub trait Engine {
     fn results(&mut self) -> Result<(Picture, Rejections), EngineError> {
         Ok((self.picture()?, self.rejections()?))
     }
-    /// Whether it can fail and take along what it holds. One that counts in the program's own memory does not.
+    /// Whether it can fail and take along what it holds. One that counts in the program's own
+    /// memory does not.
     fn can_be_lost(&self) -> bool {
         true
     }
@@ -227,12 +230,13 @@ pub trait Engine {
         let _ = state;
         Err(error)
     }
-    /// What the passes so far left behind. After a pass that failed it is that of the passes before, or an error.
+    /// What the passes so far left behind. After a pass that failed it is that of the passes
+    /// before, or an error.
     fn save(&mut self) -> Result<State, EngineError> {
         Err(EngineError::Unsupported(format!("{} cannot hand over what it holds", self.device())))
     }
-    /// Goes on from there, with the same bits as the engine that saved it, if both have one scene and one set of settings. For an
-    /// engine that has made no pass.
+    /// Goes on from there, with the same bits as the engine that saved it, if both have one scene
+    /// and one set of settings. For an engine that has made no pass.
     fn restore(&mut self, state: &State) -> Result<(), EngineError> {
         let _ = state;
         Err(EngineError::Unsupported(format!("{} cannot take over what another one holds", self.device())))
@@ -241,7 +245,8 @@ pub trait Engine {
     fn layers(&mut self) -> Result<Vec<Channel>, EngineError> {
         Ok(Vec::new())
     }
-    /// Photons that the last pass found around all visible points; 0 where the engine does not tell.
+    /// Photons that the last pass found around all visible points; 0 where the engine does not
+    /// tell.
     fn gathered(&mut self) -> Result<u64, EngineError> {
         Ok(0)
     }

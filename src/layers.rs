@@ -200,8 +200,9 @@ impl Layering {
         let scale = self.scale_sq.sqrt();
         let Space { unit, photons, .. } = self.space;
         let mut own = kept.statistics.chunks(self.eye_samples.max(1) as usize).map(|points| {
-            let scale_sq =
-                |s: &Statistics| if s.scale_sq == 0.0 { 1.0 } else { one(s.scale_sq) - one(s.drop) };
+            let scale_sq = |s: &Statistics| {
+                if s.scale_sq == 0.0 { 1.0 } else { one(s.scale_sq) - one(s.drop) }
+            };
             points.iter().map(|s| scale_sq(s).sqrt()).sum::<f64>() / points.len() as f64
         });
         let radius = |p: &AovPixel| {

@@ -1,8 +1,10 @@
-//! caustica: a photon mapper for caustics, soft shadows and depth of field, on GPU, lavapipe and CPU.
+//! caustica: a photon mapper for caustics, soft shadows and depth of field, on GPU, lavapipe and
+//! CPU.
 //!
-//! A scene file becomes a [`scene::Scene`] (f64, as written), [`pack::pack`] flattens it into the tables that the
-//! kernels read (f32, moved to its own centre), [`plan::Plan`] says what a pass does, and an [`engine::Engine`]
-//! carries it out: [`cpu::CpuEngine`] in Rust, [`gpu::GpuEngine`] in WGSL.
+//! A scene file becomes a [`scene::Scene`] (f64, as written), [`pack::pack`] flattens it into the
+//! tables that the kernels read (f32, moved to its own centre), [`plan::Plan`] says what a pass
+//! does, and an [`engine::Engine`] carries it out: [`cpu::CpuEngine`] in Rust, [`gpu::GpuEngine`]
+//! in WGSL.
 //!
 //! A render from Rust, in 20 lines:
 //!
@@ -30,8 +32,9 @@
 //! # }
 //! ```
 //!
-//! A test of one's own that holds a GPU, or any driver, against the CPU. The bits are the same on the software driver lavapipe;
-//! GPUs may round otherwise, so that a share of relMSE is what to ask of them:
+//! A test of one's own that holds a GPU, or any driver, against the CPU. The bits are the same on
+//! the software driver lavapipe; GPUs may round otherwise, so that a share of relMSE is what to ask
+//! of them:
 //!
 //! ```
 //! use caustica::film::metrics::compare;
@@ -55,10 +58,14 @@
 //! # }
 //! ```
 //!
-//! Modules depend on one another one way: [`stage`], [`compilation`], [`storage`], [`srgb`], [`memory`], [`real`] and [`math`], then [`tables`], [`shapes`], [`materials`], [`lights`],
-//! [`camera`] and [`grid`], then [`scene`], [`build`], [`limits`], [`pack`], then [`kernels`], [`radius`], [`sobol`], [`probe`], [`readout`], [`plan`], then [`cpu`]
-//! and [`gpu`], then [`identity`], [`device`], [`relay`], [`quality`], [`calibration`], [`showing`], [`render`] and [`checkpoint`], and last [`bench`](mod@bench), [`burden`], [`hold`], [`study`] and, where it is not left out, `preview`.
-//! Those from [`real`] to [`cpu`] are compiled twice: [`double`] is the same in f64.
+//! Modules depend on one another one way: [`stage`], [`compilation`], [`storage`], [`srgb`],
+//! [`memory`], [`real`] and [`math`], then [`tables`], [`shapes`], [`materials`], [`lights`],
+//! [`camera`] and [`grid`], then [`scene`], [`build`], [`limits`], [`pack`], then [`kernels`],
+//! [`radius`], [`sobol`], [`probe`], [`readout`], [`plan`], then [`cpu`] and [`gpu`], then
+//! [`identity`], [`device`], [`relay`], [`quality`], [`calibration`], [`showing`], [`render`] and
+//! [`checkpoint`], and last [`bench`](mod@bench), [`burden`], [`hold`], [`study`] and, where it is
+//! not left out, `preview`. Those from [`real`] to [`cpu`] are compiled twice: [`double`] is the
+//! same in f64.
 
 pub mod bench;
 pub mod build;

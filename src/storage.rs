@@ -64,7 +64,9 @@ pub fn write(
     fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> io::Result<()> {
     let (target, before) = match place(file)? {
-        Place::Special(_) | Place::Output if purpose == Purpose::Keepsake => return Err(not_regular()),
+        Place::Special(_) | Place::Output if purpose == Purpose::Keepsake => {
+            return Err(not_regular());
+        }
         Place::Output => {
             let mut out = io::stdout().lock();
             return fill(&mut out).and_then(|()| out.flush());
@@ -265,7 +267,9 @@ fn place(file: &Path) -> io::Result<Place> {
     }
     let found = match fs::metadata(file) {
         Ok(found) => found,
-        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Place::Free(target(file)?)),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => {
+            return Ok(Place::Free(target(file)?));
+        }
         Err(error) => return Err(error),
     };
     if found.is_dir() {

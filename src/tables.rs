@@ -1,8 +1,9 @@
-//! The flattened scene: plain data that the kernels of both engines read, in scene space (the host has moved
-//! the scene to its own centre and scaled it near one; see [`crate::build::normalize`]).
+//! The flattened scene: plain data that the kernels of both engines read, in scene space (the host
+//! has moved the scene to its own centre and scaled it near one; see [`crate::build::normalize`]).
 //!
-//! Each struct is the twin of the WGSL struct of the same name in `shaders/tables.wgsl`; a test compares the
-//! layouts by name. The short tables travel in one storage buffer, `scene`; the long ones have their own.
+//! Each struct is the twin of the WGSL struct of the same name in `shaders/tables.wgsl`; a test
+//! compares the layouts by name. The short tables travel in one storage buffer, `scene`; the long
+//! ones have their own.
 
 use super::real::{Bits, Plain, Real, Vec2, Vec3};
 use super::shapes::fours::{FourRectangles, FourSpheres};
@@ -279,8 +280,8 @@ pub const MATERIAL_METAL: u32 = 3;
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Plain, Zeroable)]
 pub struct Material {
-    /// Reflectance, in [0, 1]; at normal incidence for metal. For an open glass sheet: its unit mean normal; zero
-    /// for closed glass.
+    /// Reflectance, in [0, 1]; at normal incidence for metal. For an open glass sheet: its unit
+    /// mean normal; zero for closed glass.
     pub reflectance: Vec3,
     /// One of `MATERIAL_*`.
     pub kind: u32,
@@ -360,8 +361,8 @@ pub const LIGHT_IMAGE: u32 = 5;
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Plain, Zeroable)]
 pub struct Light {
-    /// Radiance (area, constant: W sr^-1 m^-2; image: factor), intensity (point, spot: W/sr) or irradiance
-    /// (sun: W m^-2), all in scene units.
+    /// Radiance (area, constant: W sr^-1 m^-2; image: factor), intensity (point, spot: W/sr) or
+    /// irradiance (sun: W m^-2), all in scene units.
     pub color: Vec3,
     /// One of `LIGHT_*`.
     pub kind: u32,
@@ -375,11 +376,12 @@ pub struct Light {
     pub area: Real,
     /// Area: the shape's reference; image: texture index.
     pub reference: u32,
-    /// First entry in `distributions`: revolution: where each patch's part of v starts, then the cumulative share
-    /// of the area by patch; image: cumulative rows, then each row's cumulative columns.
+    /// First entry in `distributions`: revolution: where each patch's part of v starts, then the
+    /// cumulative share of the area by patch; image: cumulative rows, then each row's cumulative
+    /// columns.
     pub first: u32,
-    /// Spot: 1 - cos of the angle where it is dark, which f32 holds for narrow ones, too; image: cosine of
-    /// the rotation about y.
+    /// Spot: 1 - cos of the angle where it is dark, which f32 holds for narrow ones, too; image:
+    /// cosine of the rotation about y.
     pub outer: Real,
     /// Spot: 1 - cos of the angle up to which it is full; image: sine of the rotation.
     pub inner: Real,
@@ -403,8 +405,8 @@ pub struct Cell {
     pub split: Real,
     /// Axis of the splitting plane, 0 to 2; 3 marks a leaf.
     pub axis: u32,
-    /// The child below the plane, the one above follows; in a leaf the first entry in `distributions`
-    /// of the cumulative probabilities of the lights.
+    /// The child below the plane, the one above follows; in a leaf the first entry in
+    /// `distributions` of the cumulative probabilities of the lights.
     pub first: u32,
     /// Padding.
     pub pad: u32,
@@ -441,8 +443,8 @@ pub struct Scene {
     pub textures: Vec<Texture>,
     /// Lights.
     pub lights: Vec<Light>,
-    /// Cumulative distributions: first the light of a photon, then what `Light::first` points at, then
-    /// what was learned from pilots.
+    /// Cumulative distributions: first the light of a photon, then what `Light::first` points at,
+    /// then what was learned from pilots.
     pub distributions: Vec<Real>,
     /// Where which light is chosen for shadow rays; empty where there is one light at most.
     pub cells: Vec<Cell>,
@@ -456,7 +458,8 @@ pub struct Scene {
     pub attributes: Vec<Attributes>,
     /// Outlines of flat shapes.
     pub facets: Vec<Facet>,
-    /// The rectangles, four at a time: for the CPU alone, as are the spheres. Where they are missing, one at a time is taken.
+    /// The rectangles, four at a time: for the CPU alone, as are the spheres. Where they are
+    /// missing, one at a time is taken.
     pub four_rectangles: Vec<FourRectangles>,
     /// The spheres, four at a time.
     pub four_spheres: Vec<FourSpheres>,

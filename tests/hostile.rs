@@ -212,7 +212,9 @@ fn a_picture_that_claims_much_is_refused_by_its_header() {
     let crc = !claims[12..29].iter().fold(u32::MAX, |crc, &byte| {
         (0..8).fold(
             crc ^ u32::from(byte),
-            |crc, _| if crc & 1 == 1 { crc >> 1 ^ 0xedb8_8320 } else { crc >> 1 },
+            |crc, _| {
+                if crc & 1 == 1 { crc >> 1 ^ 0xedb8_8320 } else { crc >> 1 }
+            },
         )
     });
     claims[29..33].copy_from_slice(&crc.to_be_bytes());

@@ -1,4 +1,5 @@
-//! Newton's step, normals, boxes and error bounds of surfaces of revolution, each against its definition.
+//! Newton's step, normals, boxes and error bounds of surfaces of revolution, each against its
+//! definition.
 
 mod revolution;
 
@@ -32,7 +33,8 @@ fn differences(placed: &Placed, patch: usize, theta: f64, tau: f64) -> (DVec3, D
     ((s(e, 0.0) - s(-e, 0.0)) / (2.0 * e), (s(0.0, e) - s(0.0, -e)) / (2.0 * e))
 }
 
-// Theory: Newton's step x solves J x = -f, where f = o + l d - S has the Jacobian J = (d, -S_theta, -S_tau).
+// Theory: Newton's step x solves J x = -f, where f = o + l d - S has the Jacobian J = (d, -S_theta,
+// -S_tau).
 #[test]
 fn newton_step_solves_the_linear_system() {
     let mut random = Random(5);
@@ -74,8 +76,8 @@ fn newton_step_solves_the_linear_system() {
     assert!(checked > 5000, "{checked}");
 }
 
-// Theory: the normal is that of the exact surface, -(S_theta x S_t) normalised where r > 0 (outward when the
-// profile rises); v is (segment + t) / segments and u = 1/2 - theta / 2 pi.
+// Theory: the normal is that of the exact surface, -(S_theta x S_t) normalised where r > 0 (outward
+// when the profile rises); v is (segment + t) / segments and u = 1/2 - theta / 2 pi.
 #[test]
 fn normals_and_uv_are_the_surfaces() {
     let mut random = Random(6);
@@ -104,14 +106,16 @@ fn normals_and_uv_are_the_surfaces() {
             assert!((f64::from(s.uv.y) - v).abs() < 1e-6 && (f64::from(s.uv.x) - u).abs() < 1e-6);
         }
     }
-    // On the axis, where dS/dtheta is zero, the drop's bottom looks down and the cone's tip along its side.
+    // On the axis, where dS/dtheta is zero, the drop's bottom looks down and the cone's tip along
+    // its side.
     let placed = place(&profiles()[4], &Placement::default());
     let t = &placed.tables;
     let s = revolution_surface(&t.profile_points, &t.revolutions[0], &t.patches[0], 0.7, 0.0);
     assert!(s.normal.distance(Vec3::NEG_Y) < 1e-6);
 }
 
-// Theory: every surface point lies in a box of its patch, and the patches of a segment cover all of [0, 1].
+// Theory: every surface point lies in a box of its patch, and the patches of a segment cover all of
+// [0, 1].
 #[test]
 fn boxes_enclose_the_surface() {
     let mut random = Random(8);
@@ -145,8 +149,9 @@ fn boxes_enclose_the_surface() {
     }
 }
 
-// Theory: an origin moved off the hit by the error bound, to either side, is on that side of the true surface:
-// a ray into that side does not meet the surface where it starts. The f64 solver knows what it meets.
+// Theory: an origin moved off the hit by the error bound, to either side, is on that side of the
+// true surface: a ray into that side does not meet the surface where it starts. The f64 solver
+// knows what it meets.
 #[test]
 fn offset_origins_do_not_meet_their_own_surface() {
     let mut random = Random(9);

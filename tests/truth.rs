@@ -1,10 +1,12 @@
-//! Renders against pictures of other renderers: the short form of `cargo run --release --example hold`.
+//! Renders against pictures of other renderers: the short form of `cargo run --release --example
+//! hold`.
 //!
-//! Theory: a box-filtered picture of any size has the same expected means over the same squares, so small films with
-//! 2 x 2 pixels to a block are held against the block means of large pictures. Differences are measured in standard
-//! errors of both (see `caustica::hold`); density estimation is biased, for which 1 % of a block is allowed, and path
-//! tracing is not. Films, seeds and passes are fixed: on one device these tests always say the same. What they can
-//! see is shown by planted errors.
+//! Theory: a box-filtered picture of any size has the same expected means over the same squares, so
+//! small films with 2 x 2 pixels to a block are held against the block means of large pictures.
+//! Differences are measured in standard errors of both (see `caustica::hold`); density estimation
+//! is biased, for which 1 % of a block is allowed, and path tracing is not. Films, seeds and passes
+//! are fixed: on one device these tests always say the same. What they can see is shown by planted
+//! errors.
 
 mod support;
 
@@ -85,7 +87,8 @@ fn every_rule_agrees_in_both_direct_modes() {
         ("cornell", RadiusRule::Fixed, Direct::Photons),
     ] {
         let small = Radius::Pixels(if radius_rule == RadiusRule::Fixed { 0.25 } else { 0.5 });
-        // on wide ground few photons reach so small a disc, and few of a kind tell no standard error
+        // on wide ground few photons reach so small a disc, and few of a kind tell no standard
+        // error
         let photons = if name == "mesh" { 1 << 16 } else { settings().photons };
         assert_agrees(
             name,
@@ -95,7 +98,8 @@ fn every_rule_agrees_in_both_direct_modes() {
     }
 }
 
-/// Photons that a diffuse surface has scattered have a disc three times as wide, and half of the photons are sent by a map.
+/// Photons that a diffuse surface has scattered have a disc three times as wide, and half of the
+/// photons are sent by a map.
 #[test]
 fn two_discs_agree_under_every_rule_and_in_both_direct_modes() {
     for (radius_rule, direct) in [
@@ -120,7 +124,8 @@ fn ppm_agrees_under_every_rule_and_in_both_direct_modes() {
     ] {
         let small = Radius::Pixels(0.25);
         let ppm = RenderSettings { method: Method::Ppm, radius: small, ..settings() };
-        // of a thousand eye paths at the drop's tip one or two see the lamp, and bring two thirds of the light there
+        // of a thousand eye paths at the drop's tip one or two see the lamp, and bring two thirds
+        // of the light there
         let eye_samples = if name == "drop" { 64 } else { ppm.eye_samples };
         assert_agrees(name, &RenderSettings { radius_rule, direct, eye_samples, ..ppm }, BIAS);
     }
@@ -132,8 +137,9 @@ fn path_tracing_agrees_without_any_allowance() {
     assert_agrees("mesh", &path, 0.0);
 }
 
-/// What is planted into a render that agrees is found: 1.5 % of brightness, one channel's 1.5 %, one wrong block, a
-/// band that is 8 % too dark, a picture upside down, and a part that is not finite.
+/// What is planted into a render that agrees is found: 1.5 % of brightness, one channel's 1.5 %,
+/// one wrong block, a band that is 8 % too dark, a picture upside down, and a part that is not
+/// finite.
 #[test]
 fn planted_errors_are_found() {
     let (rendered, truth) = rendered("cornell", &settings());
@@ -156,7 +162,8 @@ fn planted_errors_are_found() {
     assert!(hold(&turned, &truth, BIAS).faults().contains(&"blocks"));
 }
 
-/// Numbers of mean zero and variance one, nearly normal: the sum of twelve uniform ones (an LCG of Knuth's).
+/// Numbers of mean zero and variance one, nearly normal: the sum of twelve uniform ones (an LCG of
+/// Knuth's).
 fn noise() -> impl FnMut() -> f64 {
     let mut state = 1_u64;
     move || {
@@ -167,8 +174,9 @@ fn noise() -> impl FnMut() -> f64 {
     }
 }
 
-/// Without a renderer: parts made of a truth plus noise of known size agree with it, their deviations are as wide as
-/// Student's t says or a little narrower (pooled variances), and their mean's error is the one that was put in.
+/// Without a renderer: parts made of a truth plus noise of known size agree with it, their
+/// deviations are as wide as Student's t says or a little narrower (pooled variances), and their
+/// mean's error is the one that was put in.
 #[test]
 fn noise_of_known_size_agrees() {
     let mut next = noise();
@@ -190,8 +198,8 @@ fn noise_of_known_size_agrees() {
     assert!((a.ratio_error[1] * 2.0 / error - 1.0).abs() < 0.5, "{:?}", a.ratio_error);
 }
 
-/// Means and errors of blocks by hand: 16 x 8 pixels are two blocks; 64 pixels of error e have a mean of error e / 8,
-/// and the mean of two blocks an error of sqrt(2) / 2 of one's.
+/// Means and errors of blocks by hand: 16 x 8 pixels are two blocks; 64 pixels of error e have a
+/// mean of error e / 8, and the mean of two blocks an error of sqrt(2) / 2 of one's.
 #[test]
 fn blocks_of_a_picture() {
     let picture = Picture::from_fn(16, 8, |x, _| if x < 8 { [1.0; 3] } else { [3.0 + (x % 2) as f32; 3] });

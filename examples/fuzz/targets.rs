@@ -137,12 +137,12 @@ fn mend_png(input: &mut [u8]) {
         let length = u32::from_be_bytes([word[0], word[1], word[2], word[3]]) as usize;
         let end = at + 8 + length;
         let Some(content) = input.get(at + 4..end) else { return };
-        let crc = !content.iter().fold(u32::MAX, |crc, &byte| {
-            (0..8).fold(
-                crc ^ u32::from(byte),
-                |crc, _| if crc & 1 == 1 { crc >> 1 ^ 0xedb8_8320 } else { crc >> 1 },
-            )
-        });
+        let crc =
+            !content.iter().fold(u32::MAX, |crc, &byte| {
+                (0..8).fold(crc ^ u32::from(byte), |crc, _| {
+                    if crc & 1 == 1 { crc >> 1 ^ 0xedb8_8320 } else { crc >> 1 }
+                })
+            });
         let Some(place) = input.get_mut(end..end + 4) else { return };
         place.copy_from_slice(&crc.to_be_bytes());
         at = end + 4;

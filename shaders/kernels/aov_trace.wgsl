@@ -1,5 +1,5 @@
-// What a pixel shows beside radiance: twin of src/kernels/aov_trace.rs. Run by one invocation per pixel of a chunk for
-// one of its samples; reads the scene, updates `aovs`, adds to `counters`.
+// What a pixel shows beside radiance: twin of src/kernels/aov_trace.rs. Run by one invocation per
+// pixel of a chunk for one of its samples; reads the scene, updates `aovs`, adds to `counters`.
 
 struct AovPixel {
     albedo: vec3f,
@@ -78,11 +78,8 @@ fn aov_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
         }
         //#end
         //#if nested
-        let beyond = interior_beyond(s, wo, interior);
-        if is_hidden(s, interior, beyond) {
+        if passes_hidden(s, &ray, &interior) {
             hidden += 1u;
-            interior = beyond;
-            ray = Ray(offset_origin(s.position, s.error, s.normal, ray.direction), 0.0, ray.direction, FAR);
             continue;
         }
         //#end
@@ -95,7 +92,8 @@ fn aov_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
                 next.radius += (start_radius(camera.pixel * length) - next.radius) * (1.0 / next.points);
                 //#if sampled && direct_layer
                 let ng = toward(s.normal, wo);
-                direct = throughput * direct_light(s, wo, normal, ng, reflectance, interior, &rng).radiance;
+                let found = direct_light(s, wo, normal, ng, reflectance, interior, &rng);
+                direct = throughput * found.radiance;
                 //#end
             }
             break;

@@ -44,11 +44,8 @@ fn eye_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
         }
         //#end
         //#if nested
-        let beyond = interior_beyond(s, wo, interior);
-        if is_hidden(s, interior, beyond) {
+        if passes_hidden(s, &ray, &interior) {
             hidden += 1u;
-            interior = beyond;
-            ray = Ray(offset_origin(s.position, s.error, s.normal, ray.direction), 0.0, ray.direction, FAR);
             continue;
         }
         //#end

@@ -1,7 +1,7 @@
-// Path of one photon: twin of src/kernels/photon_trace.rs. Run by one invocation per photon of a batch; reads the
-// scene, appends to `records` (in any order) and adds to `counters`. Beyond the capacity it counts on but stores
-// nothing. A record with direction 0, which
-// no vector has, says that the driver stopped the loops of photon `key`, which is to be traced again.
+// Path of one photon: twin of src/kernels/photon_trace.rs. Run by one invocation per photon of a
+// batch; reads the scene, appends to `records` (in any order) and adds to `counters`. Beyond the
+// capacity it counts on but stores nothing. A record with direction 0, which no vector has, says
+// that the driver stopped the loops of photon `key`, which is to be traced again.
 
 const ESCAPED: u32 = 0u;
 const ABSORBED: u32 = 1u;
@@ -42,11 +42,8 @@ fn photon_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgrou
         interior = interior_before(s, wo, interior);
         flux *= transmittance(medium_of(interior), max(hit.t, 0.0));
         //#if nested
-        let beyond = interior_beyond(s, wo, interior);
-        if is_hidden(s, interior, beyond) {
+        if passes_hidden(s, &ray, &interior) {
             hidden += 1u;
-            interior = beyond;
-            ray = Ray(offset_origin(s.position, s.error, s.normal, ray.direction), 0.0, ray.direction, FAR);
             continue;
         }
         //#end
@@ -57,10 +54,11 @@ fn photon_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgrou
         if is_specular(kind) {
             scattered = scatter_specular(s, wo, interior, u.x, IMPORTANCE);
         } else {
-            scattered = stored_and_scattered(id, bounce, bounce + hidden > 0u, &family, s, wo, interior, flux, u);
+            scattered =
+                stored_and_scattered(id, bounce, hidden, &family, s, wo, interior, flux, u);
         }
         //#else
-        scattered = stored_and_scattered(id, bounce, bounce + hidden > 0u, &family, s, wo, interior, flux, u);
+        scattered = stored_and_scattered(id, bounce, hidden, &family, s, wo, interior, flux, u);
         //#end
         let weight = max_component(scattered.weight);
         //#if far || guided
@@ -92,7 +90,7 @@ fn photon_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgrou
 fn stored_and_scattered(
     id: u32,
     bounce: u32,
-    indirect: bool,
+    hidden: u32,
     family: ptr<function, u32>,
     s: Surface,
     wo: vec3f,
@@ -100,7 +98,7 @@ fn stored_and_scattered(
     flux: vec3f,
     u: vec4f,
 ) -> Scatter {
-    store_record(id, bounce, indirect, *family, s, wo, flux);
+    store_record(id, bounce, hidden, *family, s, wo, flux);
     let scattered = scatter_rough(s, wo, interior, vec2f(u.x, u.y), IMPORTANCE);
     //#if split
     if scene.materials[s.material].kind == MATERIAL_DIFFUSE {
@@ -114,9 +112,18 @@ fn stored_and_scattered(
     //#end
 }
 
-fn store_record(id: u32, bounce: u32, indirect: bool, family: u32, s: Surface, wo: vec3f, flux: vec3f) {
+fn store_record(
+    id: u32,
+    bounce: u32,
+    hidden: u32,
+    family: u32,
+    s: Surface,
+    wo: vec3f,
+    flux: vec3f,
+) {
     //#if sampled
-    let stored = indirect;
+    // shadow rays stop at every face, hidden ones too
+    let stored = bounce > 0u || hidden > 0u;
     //#else
     let stored = true;
     //#end

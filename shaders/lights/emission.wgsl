@@ -31,7 +31,8 @@ fn emit_from(light: Light, u: vec4f, v: vec4f) -> Emission {
     emission.interior = interior_at(light.medium, emission.ray.origin);
     return emission;
     //#else
-    return Emission(Ray(light.position, 0.0, vec3f(0.0, 0.0, 1.0), FAR), vec3f(0.0), 1.0, interior_of(NONE));
+    let ray = Ray(light.position, 0.0, vec3f(0.0, 0.0, 1.0), FAR);
+    return Emission(ray, vec3f(0.0), 1.0, interior_of(NONE));
     //#end
 }
 

@@ -109,9 +109,18 @@ fn relative_ior(s: Surface, wo: vec3f, before: Interior, beyond: Interior) -> f3
 //#end
 
 //#if nested
-fn is_hidden(s: Surface, before: Interior, beyond: Interior) -> bool {
-    let glass = scene.materials[s.material].kind == MATERIAL_GLASS;
-    return glass && ior_of(medium_of(before)) == ior_of(medium_of(beyond));
+fn passes_hidden(s: Surface, ray: ptr<function, Ray>, interior: ptr<function, Interior>) -> bool {
+    if scene.materials[s.material].kind != MATERIAL_GLASS {
+        return false;
+    }
+    let direction = (*ray).direction;
+    let beyond = interior_beyond(s, -direction, *interior);
+    if ior_of(medium_of(*interior)) != ior_of(medium_of(beyond)) {
+        return false;
+    }
+    *ray = Ray(offset_origin(s.position, s.error, s.normal, direction), 0.0, direction, FAR);
+    *interior = beyond;
+    return true;
 }
 //#end
 

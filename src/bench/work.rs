@@ -53,7 +53,9 @@ impl Work {
             "photon_trace" => {
                 vec![("photons_per_second", self.photons), ("rays_per_second", self.photon_rays)]
             }
-            "gather" => vec![("gathers_per_second", self.gathers), ("photons_per_second", self.gathered)],
+            "gather" => {
+                vec![("gathers_per_second", self.gathers), ("photons_per_second", self.gathered)]
+            }
             _ if !gpu && kernel.starts_with("grid_") => vec![],
             _ => {
                 return self.least_bytes(plan, kernel).map(|b| ("bytes_per_second", b)).into_iter().collect();

@@ -118,9 +118,9 @@ fn facing(kind: &ShapeKind) -> Option<DVec3> {
     }
 }
 
-/// Splits a mesh into bodies. Returns the mean normal (if open) and bounding box of each body, and the body
-/// index of each triangle, or a single index for all of them. Parts become separate bodies if their bounding
-/// boxes meet. The inner wall of a hollow body belongs to that body.
+/// Splits a mesh into bodies. Returns the mean normal (if open) and bounding box of each body, and
+/// the body index of each triangle, or a single index for all of them. Parts become separate bodies
+/// if their bounding boxes meet. The inner wall of a hollow body belongs to that body.
 fn bodies_of_mesh(mesh: &Mesh) -> (Vec<(Option<DVec3>, Bounds)>, Vec<u32>) {
     let hull = || {
         mesh.positions

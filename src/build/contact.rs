@@ -1,9 +1,9 @@
 //! Coincident surfaces: glass on a floor, water in a glass, a light in the plane of a ceiling.
 //!
-//! Rounding would decide which of two coincident surfaces a ray hits first. Glass bodies that touch another
-//! shape are therefore grown by a few hit error bounds before anything is rounded, and area lights by more.
-//! Glass then reaches into the floor below it and into adjacent glass, where the ranks decide, and a light
-//! lies in front of the ceiling.
+//! Rounding would decide which of two coincident surfaces a ray hits first. Glass bodies that touch
+//! another shape are therefore grown by a few hit error bounds before anything is rounded, and area
+//! lights by more. Glass then reaches into the floor below it and into adjacent glass, where the
+//! ranks decide, and a light lies in front of the ceiling.
 
 use super::bodies::Bodies;
 use super::math::EPS;
@@ -15,10 +15,11 @@ use std::borrow::Cow;
 
 /// Growth in units of the summed error bounds of two touching surfaces.
 const GROWTH: f64 = 4.0;
-/// A body grows by one more multiple than the lower-ranked bodies that it touches, up to this many, so that
-/// flush faces are hit in the order of rank.
+/// A body grows by one more multiple than the lower-ranked bodies that it touches, up to this many,
+/// so that flush faces are hit in the order of rank.
 const MOST_TIMES: u32 = 16;
-/// Hit error bound in units of the rounding error of the largest coordinate, as in the shapes' own bounds.
+/// Hit error bound in units of the rounding error of the largest coordinate, as in the shapes' own
+/// bounds.
 const ROUNDINGS: f64 = 16.0;
 /// Maximum growth relative to the body's size, and in scene units.
 const MOST: f64 = 1e-3;
@@ -39,7 +40,8 @@ struct Item {
     times: u32,
 }
 
-/// Grows the shapes that touch others. Both precisions use the rounding error of f32 and hence the same scene.
+/// Grows the shapes that touch others. Both precisions use the rounding error of f32 and hence the
+/// same scene.
 pub fn grown<'a>(
     scene: &Scene,
     kinds: Vec<Cow<'a, ShapeKind>>,

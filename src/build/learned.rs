@@ -30,7 +30,9 @@ impl LightSource {
                 format!("the {kind} lights[{index}]")
             }
             Self::Shape(index) => {
-                let Some(shape) = scene.shapes.get(index) else { return format!("shapes[{index}]") };
+                let Some(shape) = scene.shapes.get(index) else {
+                    return format!("shapes[{index}]");
+                };
                 let kind = match &shape.kind {
                     ShapeKind::Sphere { .. } => "sphere",
                     ShapeKind::Rectangle { .. } => "rectangle",

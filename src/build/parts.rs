@@ -73,7 +73,8 @@ pub fn parts(mesh: &Mesh) -> (Vec<Part>, Vec<u32>) {
         });
         of.push(number);
         let [a, b, c] = triangle.position.map(|i| mesh.positions[i as usize]);
-        // about a corner of the mesh: far from the origin products of coordinates have no digits left
+        // about a corner of the mesh: far from the origin products of coordinates have no digits
+        // left
         let [p, q, r] = [a, b, c].map(|corner| corner - origin);
         let across = (b - a).cross(c - a);
         let part = &mut parts[number as usize];
@@ -105,8 +106,8 @@ pub fn places(mesh: &Mesh) -> Vec<usize> {
     mesh.positions.iter().enumerate().map(place).collect()
 }
 
-/// Removes pairs of triangles with equal vertices and opposite orientation: walls that two parts of a glass
-/// mesh share. Returns `None` if there are none.
+/// Removes pairs of triangles with equal vertices and opposite orientation: walls that two parts of
+/// a glass mesh share. Returns `None` if there are none.
 pub fn without_shared_walls(mesh: &Mesh) -> Option<Mesh> {
     if mesh.triangles.len() > TRIANGLES {
         return None;

@@ -140,7 +140,9 @@ fn approach_line(approach: &Approach) -> Option<String> {
         format!("relMSE{place} {:.3e} after {} passes, {}", last.rel_mse, last.passes, time(last.seconds));
     Some(match (approach.goal, approach.reached_seconds) {
         (None, _) => end,
-        (Some(goal), Some(seconds)) => format!("time to relMSE{place} {goal}: {} ({end})", time(seconds)),
+        (Some(goal), Some(seconds)) => {
+            format!("time to relMSE{place} {goal}: {} ({end})", time(seconds))
+        }
         (Some(goal), None) => format!("relMSE{place} {goal} was not reached ({end})"),
     })
 }

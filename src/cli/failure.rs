@@ -131,7 +131,9 @@ impl From<DeviceError> for Failure {
             DeviceError::NoSuchDevice { ref available, .. } => {
                 let help = match available.as_slice() {
                     [] => "no device was found at all".to_owned(),
-                    names => format!("there is: {}; `caustica devices` tells more", names.join(", ")),
+                    names => {
+                        format!("there is: {}; `caustica devices` tells more", names.join(", "))
+                    }
                 };
                 let hidden = gpu::hidden().iter().map(|hidden| format!("note: {hidden}"));
                 let details = hidden.collect::<Vec<_>>().join("\n");

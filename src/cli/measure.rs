@@ -17,7 +17,8 @@ const PASSES: u32 = 5;
 /// Kernels whose code depends on the scene.
 const KERNELS: [Kernel; 3] = [Kernel::EyeTrace, Kernel::PhotonTrace, Kernel::Gather];
 
-/// Prints a table, or a JSON object for each of its lines: the scene as it is, with each thing more, and with everything.
+/// Prints a table, or a JSON object for each of its lines: the scene as it is, with each thing
+/// more, and with everything.
 pub fn on_device(
     wanted: &str,
     packed: &Packed,
@@ -34,7 +35,8 @@ pub fn on_device(
             "measure sppm or ppm on gpu, software or cpu",
         ));
     }
-    // one disc: what is added may bring photons that ask for a second, in which sums are rounded otherwise
+    // one disc: what is added may bring photons that ask for a second, in which sums are rounded
+    // otherwise
     let settings = &RenderSettings { indirect_radius: Some(1.0), ..settings.clone() };
     let cost = |packed: Packed| match device.kind {
         DeviceKind::Cpu => on_cpu(packed, settings, PASSES),
@@ -68,7 +70,8 @@ pub fn on_device(
     Ok(Done::Fully)
 }
 
-/// A line of the table; times in seconds, of all kernels of the fastest pass and of each whose code depends on the scene.
+/// A line of the table; times in seconds, of all kernels of the fastest pass and of each whose code
+/// depends on the scene.
 fn as_json(device: &str, added: &str, costs: &Costs, plain: &Costs) -> Value {
     let kernels = costs.kernels.iter().map(|(name, cost)| {
         (name.to_string(), json!({ "compile_seconds": cost.compile, "seconds": cost.run }))

@@ -43,27 +43,32 @@ pub struct Arguments {
     /// Scene file
     #[arg(required_unless_present = "like")]
     scene: Option<PathBuf>,
-    /// Picture to write, by its extension: .png (tone-mapped), .exr, .pfm, .hdr; may be given several times
-    /// [default: the scene's name with .png, in the current folder]
+    /// Picture to write, by its extension: .png (tone-mapped), .exr, .pfm, .hdr; may be given
+    /// several times [default: the scene's name with .png, in the current folder]
     #[arg(short, long, value_name = "FILE")]
     output: Vec<PathBuf>,
-    /// Device to render on: auto, gpu, software, cpu, cpu-f64, or a part of a device's name [default: auto]
+    /// Device to render on: auto, gpu, software, cpu, cpu-f64, or a part of a device's name
+    /// [default: auto]
     #[arg(long, value_name = "DEVICE", value_parser = NonEmptyStringValueParser::new())]
     device: Option<String>,
-    /// Make the picture of an .exr file again, with its scene, settings, size, passes and device; other options change single
-    /// ones [default output: the file's name with -again.exr, in the current folder]
+    /// Make the picture of an .exr file again, with its scene, settings, size, passes and device;
+    /// other options change single ones [default output: the file's name with -again.exr, in the
+    /// current folder]
     #[arg(long, value_name = "FILE")]
     like: Option<PathBuf>,
-    /// Send the picture while it is rendered to the viewer tev that listens there [without an address: 127.0.0.1:14158]
+    /// Send the picture while it is rendered to the viewer tev that listens there [without an
+    /// address: 127.0.0.1:14158]
     #[arg(long, value_name = "HOST:PORT", num_args = 0..=1, require_equals = true, default_missing_value = ADDRESS)]
     tev: Option<String>,
     /// Begin no pass after this time, as in 30s or 5m; without --passes, the only limit
     #[arg(long, value_name = "TIME", value_parser = duration)]
     time: Option<Duration>,
-    /// Stop once the stated relative error is no larger, as in 2% or 0.02; without --passes and --time, the only limit
+    /// Stop once the stated relative error is no larger, as in 2% or 0.02; without --passes and
+    /// --time, the only limit
     #[arg(long, value_name = "E", value_parser = target_error, allow_hyphen_values = true)]
     target_error: Option<f64>,
-    /// File to keep the render in, now and then and where it stops, so that --resume can go on from there
+    /// File to keep the render in, now and then and where it stops, so that --resume can go on from
+    /// there
     #[arg(long, value_name = "FILE")]
     checkpoint: Option<PathBuf>,
     /// Time between two of them, as in 30s or 5m
@@ -72,8 +77,8 @@ pub struct Arguments {
     /// Go on from this checkpoint, to the picture of a render that never stopped
     #[arg(long, value_name = "FILE")]
     resume: Option<PathBuf>,
-    /// Show in .png files a denoised picture, which .exr files hold beside the render as the layer denoised; no measure sees it
-    /// (takes a build with the cargo feature denoise)
+    /// Show in .png files a denoised picture, which .exr files hold beside the render as the layer
+    /// denoised; no measure sees it (takes a build with the cargo feature denoise)
     #[arg(long)]
     denoise: bool,
     /// Fail, with the pictures written, if a sample had to be left out because it was not finite
@@ -299,7 +304,8 @@ fn check_range(first_pass: u32, settings: &RenderSettings) -> Result<(), Failure
     Ok(())
 }
 
-/// Fails where a part of the error stays however many passes there are, so that a render might never end.
+/// Fails where a part of the error stays however many passes there are, so that a render might
+/// never end.
 fn check_target(settings: &RenderSettings) -> Result<(), Failure> {
     let (what, instead) = match settings {
         RenderSettings { method: Method::Ppm, .. } => ("ppm keeps its eye paths", "--method sppm"),
@@ -392,8 +398,8 @@ pub fn load(file: &Path, overrides: &Overrides) -> Result<(Scene, RenderSettings
     in_force(overrides.allowed.load(file)?, overrides)
 }
 
-/// Puts the options in force and prints the warnings, for commands that begin with the first pass. What the film asks for beside radiance is
-/// left out.
+/// Puts the options in force and prints the warnings, for commands that begin with the first pass.
+/// What the film asks for beside radiance is left out.
 pub fn in_force(loaded: Loaded, overrides: &Overrides) -> Result<(Scene, RenderSettings), Failure> {
     if overrides.begins_later() {
         return Err(Failure::wrong_use(

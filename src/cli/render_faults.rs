@@ -89,7 +89,9 @@ fn the_program_ends_in_the_same_bits() {
                 let resumed = [&["--resume", file], &kept[..]].concat();
                 assert!(matches!(render(&folder, &resumed, &[], true), Ok(Done::Fully)), "step {number}");
             }
-            Ok(Done::Fully) => assert!(faulty.borrow().asked.len() <= number, "step {number} went unnoticed"),
+            Ok(Done::Fully) => {
+                assert!(faulty.borrow().asked.len() <= number, "step {number} went unnoticed")
+            }
             Ok(other) => panic!("step {number}: {other:?}"),
             Err(failure) => {
                 assert!(made <= 2, "step {number}: {made} passes are lost");

@@ -1,4 +1,4 @@
-//! Waits for Ctrl-C, SIGTERM and SIGHUP on a thread of its own.
+//! Waits for Ctrl-C, SIGTERM and SIGHUP on a separate thread.
 
 use std::io;
 

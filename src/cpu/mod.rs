@@ -64,8 +64,9 @@ impl CpuEngine {
         let buckets = if photons { plan.buckets as usize } else { 0 };
         let path = plan.settings.method == Method::Path;
         let points_kept = if path { 0 } else { points };
-        let held =
-            |name: &str| if plan.in_turn().contains(&name) { plan.chunk(0).1 as usize } else { points };
+        let held = |name: &str| {
+            if plan.in_turn().contains(&name) { plan.chunk(0).1 as usize } else { points }
+        };
         let held = |name: &str| if path { 0 } else { held(name) };
         Self {
             passes_done: 0,

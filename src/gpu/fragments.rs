@@ -1,7 +1,8 @@
 //! The shader files, and the preprocessor that leaves out what a scene does not require.
 //!
-//! Optional code is fenced by whole lines `//#if CONDITION`, `//#else` and `//#end`; a condition is made of names,
-//! `&&` and, binding less, `||`. Lines that are left out stay as empty lines, so that line numbers hold.
+//! Optional code is fenced by whole lines `//#if CONDITION`, `//#else` and `//#end`; a condition is
+//! made of names, `&&` and, binding less, `||`. Lines that are left out stay as empty lines, so
+//! that line numbers hold.
 
 use std::collections::BTreeSet;
 
@@ -111,7 +112,8 @@ impl Names {
     }
 }
 
-/// `text` with the lines emptied whose fences do not hold. An error is a line number (from 1) and what is wrong.
+/// `text` with the lines emptied whose fences do not hold. An error is a line number (from 1) and
+/// what is wrong.
 pub fn preprocess(text: &str, names: &Names) -> Result<String, (u32, String)> {
     struct Fence {
         opened: u32,

@@ -1,5 +1,6 @@
-//! The flattened scene as a kernel sees it: the struct `Scene` of the short tables in one storage buffer, each table
-//! an array of fixed length at a multiple of 16 bytes, and the bindings of every kernel.
+//! The flattened scene as a kernel sees it: the struct `Scene` of the short tables in one storage
+//! buffer, each table an array of fixed length at a multiple of 16 bytes, and the bindings of every
+//! kernel.
 
 use crate::features::{Features, few};
 use crate::plan::Kernel;
@@ -79,8 +80,9 @@ impl SceneTables {
         format!("struct Scene {{\n{members}}}\n{lights}{}", self.intersect_few())
     }
 
-    /// The function that tests the few shapes, in the order in which the twin does. Since the compiler knows which they are, a software
-    /// driver reads one for all its lanes at once, where each would read for itself.
+    /// The function that tests the few shapes, in the order in which the twin does. Since the
+    /// compiler knows which they are, a software driver reads one for all its lanes at once, where
+    /// each would read for itself.
     fn intersect_few(&self) -> String {
         if self.few.is_empty() {
             return String::new();

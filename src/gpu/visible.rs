@@ -149,12 +149,12 @@ pub fn hidden() -> &'static [Hidden] {
             _ => Vec::new(),
         };
         let excluded = excluded.into_iter().map(|(_, summary)| summary).collect();
-        told(&filter, excluded, misnamed.clone())
+        described(&filter, excluded, misnamed.clone())
     })
 }
 
 /// What there is to say of each variable.
-fn told(filter: &Filter, excluded: Vec<AdapterSummary>, misnamed: Vec<AdapterSummary>) -> Vec<Hidden> {
+fn described(filter: &Filter, excluded: Vec<AdapterSummary>, misnamed: Vec<AdapterSummary>) -> Vec<Hidden> {
     let of = |variable, value: &Option<String>, adapters, unknown| {
         let value = value.clone()?;
         Some(Hidden { variable, value, adapters, unknown })
@@ -188,7 +188,7 @@ mod tests {
     fn lines(backend: Option<&str>, name: Option<&str>, excluded: &[&str], misnamed: &[&str]) -> Vec<String> {
         let filter = Filter { backend: backend.map(str::to_owned), name: name.map(str::to_owned) };
         let list = |names: &[&str]| names.iter().map(|name| adapter(name)).collect();
-        told(&filter, list(excluded), list(misnamed)).iter().map(Hidden::to_string).collect()
+        described(&filter, list(excluded), list(misnamed)).iter().map(Hidden::to_string).collect()
     }
 
     #[test]

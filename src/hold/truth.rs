@@ -23,8 +23,8 @@ pub struct Blocks {
 }
 
 impl Blocks {
-    /// Means of `picture` over `width * height` blocks of equal squares; none when they do not nest in the picture.
-    /// A box-filtered picture of any such size gives the same blocks but for noise.
+    /// Means of `picture` over `width * height` blocks of equal squares; none when they do not nest
+    /// in the picture. A box-filtered picture of any such size gives the same blocks but for noise.
     pub fn of(picture: &Picture, width: u32, height: u32) -> Option<Self> {
         let edge = picture.width / width.max(1);
         if edge == 0 || (picture.width, picture.height) != (width * edge, height * edge) {
@@ -95,12 +95,14 @@ pub struct BlockTruth {
 pub enum PixelNoise {
     /// A picture of them.
     Known(Picture),
-    /// Given as relMSE `e` of the whole: a pixel of value `v` is taken to have the variance `e (v^2 + 0.01)`.
+    /// Given as relMSE `e` of the whole: a pixel of value `v` is taken to have the variance `e (v^2
+    /// + 0.01)`.
     RelMse(f64),
 }
 
 impl BlockTruth {
-    /// Blocks of [`BLOCK`] pixels of a picture whose pixels' errors are independent; none when they do not fill it.
+    /// Blocks of [`BLOCK`] pixels of a picture whose pixels' errors are independent; none when they
+    /// do not fill it.
     pub fn from_picture(picture: &Picture, noise: &PixelNoise) -> Option<Self> {
         let (width, height) = (picture.width / BLOCK, picture.height / BLOCK);
         let mean = Blocks::of(picture, width, height)?;
@@ -157,7 +159,8 @@ impl BlockTruth {
         Ok(Self { mean: blocks("")?, standard_error: blocks("SE.")? })
     }
 
-    /// Writes an EXR file with a pixel per block: means as R, G, B and standard errors as SE.R, SE.G, SE.B.
+    /// Writes an EXR file with a pixel per block: means as R, G, B and standard errors as SE.R,
+    /// SE.G, SE.B.
     ///
     /// # Errors
     /// When the file cannot be written.

@@ -7,7 +7,7 @@ use super::direct::{direct_light, transmittance};
 use super::eye_sample::{start_radius, stratified, window_pixel};
 use super::lights::light::eval_environment;
 use super::materials::enclosing::interior_at;
-use super::materials::interior::{interior_before, interior_beyond, is_hidden, medium_of};
+use super::materials::interior::{interior_before, medium_of, passes_hidden};
 use super::materials::scatter::{
     RADIANCE, is_specular, reflectance_at, scatter_specular, shading_normal, toward,
 };
@@ -106,15 +106,9 @@ pub fn aov_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, id: u32, aov
         if s.light != NONE && wo.dot(s.normal) > 0.0 {
             emission += throughput * scene.lights[s.light as usize].color;
         }
-        if scene.world.nested != 0 {
-            let beyond = interior_beyond(scene, &s, wo, &interior);
-            if is_hidden(scene, &s, &interior, &beyond) {
-                hidden += 1;
-                interior = beyond;
-                let origin = offset_origin(s.position, s.error, s.normal, ray.direction);
-                ray = Ray { origin, t_min: 0.0, direction: ray.direction, t_max: FAR };
-                continue;
-            }
+        if passes_hidden(scene, &s, &mut ray, &mut interior) {
+            hidden += 1;
+            continue;
         }
         if !is_specular(scene.materials[s.material as usize].kind) {
             let reflectance = reflectance_at(scene, s.material, s.uv);

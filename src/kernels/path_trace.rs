@@ -7,7 +7,7 @@ use super::eye_sample::window_pixel;
 use super::lights::light::{eval_environment, pdf_environment, pdf_light};
 use super::lights::select::{share_of, shares_at};
 use super::materials::enclosing::interior_at;
-use super::materials::interior::{interior_before, interior_beyond, is_hidden, medium_of};
+use super::materials::interior::{interior_before, medium_of, passes_hidden};
 use super::materials::scatter::{
     RADIANCE, is_specular, pdf_rough, reflectance_at, scatter_rough, scatter_specular, shading_normal, toward,
 };
@@ -60,16 +60,10 @@ pub fn path_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, place: u32)
             let weight = if pdf > 0.0 { balance(pdf, other) } else { 1.0 };
             radiance += throughput * scene.lights[s.light as usize].color * weight;
         }
-        if scene.world.nested != 0 {
-            let beyond = interior_beyond(scene, &s, wo, &interior);
-            if is_hidden(scene, &s, &interior, &beyond) {
-                hidden += 1;
-                interior = beyond;
-                pdf = 0.0;
-                let origin = offset_origin(s.position, s.error, s.normal, ray.direction);
-                ray = Ray { origin, t_min: 0.0, direction: ray.direction, t_max: FAR };
-                continue;
-            }
+        if passes_hidden(scene, &s, &mut ray, &mut interior) {
+            hidden += 1;
+            pdf = 0.0;
+            continue;
         }
         if bounce == dispatch.max_bounces {
             break;

@@ -5,7 +5,7 @@
 use super::direct::transmittance;
 use super::lights::aim::aimed_scatter;
 use super::lights::emission::{Emission, emit_photon};
-use super::materials::interior::{Interior, interior_before, interior_beyond, is_hidden, medium_of};
+use super::materials::interior::{Interior, interior_before, medium_of, passes_hidden};
 use super::materials::scatter::{IMPORTANCE, is_specular, reflectance_at, scatter_rough, scatter_specular};
 use super::math::rng::{Rng, STREAM_PHOTON, rng_new, rng_next};
 use super::math::{FAR, max_component, oct_encode, offset_origin};
@@ -103,23 +103,17 @@ impl PhotonPath {
         let s = surface_at(scene, &self.ray, hit);
         let wo = -self.ray.direction;
         // the first ray of light from infinity starts behind its origin, outside of every medium
-        let interior = interior_before(scene, &s, wo, &self.interior);
-        self.flux *= transmittance(scene, medium_of(&interior), hit.t.max(0.0));
-        if scene.world.nested != 0 {
-            let beyond = interior_beyond(scene, &s, wo, &interior);
-            if is_hidden(scene, &s, &interior, &beyond) {
-                self.hidden += 1;
-                self.interior = beyond;
-                let origin = offset_origin(s.position, s.error, s.normal, self.ray.direction);
-                self.ray = Ray { origin, t_min: 0.0, direction: self.ray.direction, t_max: FAR };
-                return true;
-            }
+        self.interior = interior_before(scene, &s, wo, &self.interior);
+        self.flux *= transmittance(scene, medium_of(&self.interior), hit.t.max(0.0));
+        if passes_hidden(scene, &s, &mut self.ray, &mut self.interior) {
+            self.hidden += 1;
+            return true;
         }
         let kind = scene.materials[s.material as usize].kind;
         let u = rng_next(&mut self.rng);
         let mut scattered;
         if is_specular(kind) {
-            scattered = scatter_specular(scene, &s, wo, &interior, u.x, IMPORTANCE);
+            scattered = scatter_specular(scene, &s, wo, &self.interior, u.x, IMPORTANCE);
         } else {
             // shadow rays end at faces, hidden ones too
             let stored = self.bounce > 0 || self.hidden > 0 || !sampled;
@@ -127,7 +121,7 @@ impl PhotonPath {
                 let key = self.id << dispatch.key_bits | self.bounce << 1 | self.family;
                 store(PhotonRecord { position: s.position, key, flux: self.flux, direction: oct_encode(wo) });
             }
-            scattered = scatter_rough(scene, &s, wo, &interior, Vec2::new(u.x, u.y), IMPORTANCE);
+            scattered = scatter_rough(scene, &s, wo, &self.interior, Vec2::new(u.x, u.y), IMPORTANCE);
             if far {
                 scattered = aimed_scatter(scene, &s, wo, u, scattered);
             }

@@ -49,8 +49,8 @@ pub struct Dispatch {
     pub strata: u32,
     /// Passes that the film holds already.
     pub passes_done: u32,
-    /// Classes of photons with a disc and a grid of their own: 1, or 2 where those that a diffuse surface has scattered
-    /// have a wider disc.
+    /// Classes of photons with a disc and a grid of their own: 1, or 2 where those that a diffuse
+    /// surface has scattered have a wider disc.
     pub families: u32,
     /// Radius of the second family over that of the first.
     pub indirect_radius: Real,
@@ -66,8 +66,8 @@ pub struct Dispatch {
     pub points: Points,
 }
 
-/// Maximum number of hidden glass faces that a path passes (see [`super::materials::interior::is_hidden`]); it
-/// ends beyond that.
+/// Maximum number of hidden glass faces that a path passes (see
+/// [`super::materials::interior::passes_hidden`]); it ends beyond that.
 pub const HIDDEN_FACES: u32 = 256;
 
 /// The driver stopped the kernel's loops: the point is to be found again.
@@ -113,8 +113,8 @@ pub struct VisiblePoint {
 pub struct PhotonRecord {
     /// In scene space.
     pub position: Vec3,
-    /// (photon within the batch, bounce, family): the order of summation. On the GPU the cell's code stands here once the
-    /// record is sorted.
+    /// (photon within the batch, bounce, family): the order of summation. On the GPU the cell's
+    /// code stands here once the record is sorted.
     pub key: u32,
     /// Flux in W times the number of photons in the pass.
     pub flux: Vec3,
@@ -132,17 +132,21 @@ pub struct Gathered {
     pub count: u32,
     /// The part of `flux` of the first of two families.
     pub caustic: Vec3,
-    /// Luminance of what the outer half of the disc's area holds of `flux`, less that of the inner half.
+    /// Luminance of what the outer half of the disc's area holds of `flux`, less that of the inner
+    /// half.
     pub ring: Real,
 }
 
-/// Local rule: statistics of a pixel (SPPM) or visible point (PPM), with radii over the start radius.
+/// Local rule: statistics of a pixel (SPPM) or visible point (PPM), with radii over the start
+/// radius.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Plain, Zeroable)]
 pub struct Statistics {
-    /// `R^2` over the squared start radius, less what `drop` still holds back; 0 in fresh memory stands for 1.
+    /// `R^2` over the squared start radius, less what `drop` still holds back; 0 in fresh memory
+    /// stands for 1.
     pub scale_sq: Real,
-    /// Decrease of `R^2` not yet taken from `scale_sq`: small terms are summed here first, so that they count.
+    /// Decrease of `R^2` not yet taken from `scale_sq`: small terms are summed here first, so that
+    /// they count.
     pub drop: Real,
     /// Photons so far, low word; `N = alpha` times this count.
     pub count_low: u32,
@@ -169,18 +173,21 @@ pub struct FilmPixel {
     pub mean: Vec3,
     /// Luminance: mean square of the passes' deviations (see [`super::resolve::fold`]).
     pub spread: Real,
-    /// Change of the mean not yet put into `mean`: small terms are summed here first, so that they count.
+    /// Change of the mean not yet put into `mean`: small terms are summed here first, so that they
+    /// count.
     pub carry: Vec3,
-    /// Luminance of the mean over the first 2^k passes, 2^k the greatest power of two below the number of passes.
+    /// Luminance of the mean over the first 2^k passes, 2^k the greatest power of two below the
+    /// number of passes.
     pub early: Real,
     /// Passes whose value was not finite and was left out, by cause: see `REJECTED_*`.
     pub rejected: [u32; 4],
-    /// Luminance: mean over the passes of the estimate in the whole disc less that in the inner half of its area.
+    /// Luminance: mean over the passes of the estimate in the whole disc less that in the inner
+    /// half of its area.
     pub ring: Real,
     /// The same mean with odd passes turned over.
     pub ring_swing: Real,
-    /// Luminance: mean over the passes of what two halves of the eye samples differ by, scaled so that its square is
-    /// the variance of the mean over all.
+    /// Luminance: mean over the passes of what two halves of the eye samples differ by, scaled so
+    /// that its square is the variance of the mean over all.
     pub halves: Real,
     /// Luminance of the mean over the first 2^(k-1) passes.
     pub earlier: Real,

@@ -1,8 +1,8 @@
 //! Point-in-body test by ray casting. Twin: `shaders/materials/enclosing.wgsl`.
 //!
-//! A closed body contains a point if a ray from the point, in any direction, leaves the body before it enters
-//! it. An open sheet, such as a water surface, contains a point if a ray along the sheet's mean normal leaves
-//! through it.
+//! A closed body contains a point if a ray from the point, in any direction, leaves the body before
+//! it enters it. An open sheet, such as a water surface, contains a point if a ray along the
+//! sheet's mean normal leaves through it.
 
 use super::interior::{Interior, entered, holds, interior_of, left};
 use super::math::{FAR, offset_origin};
@@ -14,11 +14,12 @@ use super::tables::*;
 
 /// Maximum number of surfaces that one ray passes.
 const FACES: u32 = 256;
-/// Unit direction of the rays for closed bodies, oblique so that it rarely hits edges of axis-aligned models.
+/// Unit direction of the rays for closed bodies, oblique so that it rarely hits edges of
+/// axis-aligned models.
 const LOOK: Vec3 = Vec3::new(0.3104505, 0.8912933, 0.3304795);
 
-/// Interior list at `position` on a lamp or lens whose medium is `known`: a glass material index, [`NONE`], or
-/// [`ASTRIDE`] if it has to be determined for each point.
+/// Interior list at `position` on a lamp or lens whose medium is `known`: a glass material index,
+/// [`NONE`], or [`ASTRIDE`] if it has to be determined for each point.
 #[inline(always)]
 pub fn interior_at(scene: &Scene, known: u32, position: Vec3) -> Interior {
     if known == ASTRIDE { enclosing(scene, position) } else { interior_of(known) }
@@ -37,8 +38,8 @@ pub fn enclosing(scene: &Scene, position: Vec3) -> Interior {
     interior
 }
 
-/// Adds to `known` the bodies that a ray along `direction` leaves without having entered them: all closed bodies
-/// if `body` is [`NONE`], otherwise only the open sheet `body`.
+/// Adds to `known` the bodies that a ray along `direction` leaves without having entered them: all
+/// closed bodies if `body` is [`NONE`], otherwise only the open sheet `body`.
 fn looked(scene: &Scene, position: Vec3, direction: Vec3, body: u32, known: &Interior) -> Interior {
     let mut found = *known;
     let mut ahead = interior_of(NONE);

@@ -1,11 +1,14 @@
 //! Interior list: the glass bodies that contain a point. Twin: `shaders/materials/interior.wgsl`.
 //!
-//! Where bodies overlap, the medium is the body with the highest priority, or the smaller one if priorities
-//! are equal (Schmidt & Budge 2002, "Simple nested dielectrics in ray traced images"). Each body has its own
-//! entry in the material table, sorted by rank, so the medium is the smallest index in the list. The list is
-//! a set: hitting a face twice does not change it. In scenes without overlapping bodies it holds one entry.
+//! Where bodies overlap, the medium is the body with the highest priority, or the smaller one if
+//! priorities are equal (Schmidt & Budge 2002, "Simple nested dielectrics in ray traced images").
+//! Each body has its own entry in the material table, sorted by rank, so the medium is the smallest
+//! index in the list. The list is a set: hitting a face twice does not change it. In scenes without
+//! overlapping bodies it holds one entry.
 
+use super::math::{FAR, offset_origin};
 use super::real::{Real, Vec3};
+use super::shapes::ray::Ray;
 use super::shapes::surface::Surface;
 use super::tables::*;
 
@@ -80,8 +83,8 @@ pub fn ior_of(scene: &Scene, medium: u32) -> Real {
     if medium == NONE { 1.0 } else { scene.materials[medium as usize].ior }
 }
 
-/// Interior list of the ray with direction `-wo` before it hits `s`. A ray that hits glass from the inside
-/// was inside that glass, even if the list did not contain it.
+/// Interior list of the ray with direction `-wo` before it hits `s`. A ray that hits glass from the
+/// inside was inside that glass, even if the list did not contain it.
 #[inline(always)]
 pub fn interior_before(scene: &Scene, s: &Surface, wo: Vec3, interior: &Interior) -> Interior {
     let inside = scene.materials[s.material as usize].kind == MATERIAL_GLASS && wo.dot(s.normal) < 0.0;
@@ -104,16 +107,26 @@ pub fn relative_ior(scene: &Scene, s: &Surface, wo: Vec3, before: &Interior, bey
     ior_of(scene, here) / ior_of(scene, medium_of(beyond))
 }
 
-/// Returns whether the media on both sides of a face have the same index, so that the face neither refracts
-/// nor reflects. Only for scenes with nested bodies.
+/// Passes a hidden face, one with the same index of refraction on both sides: such a face neither
+/// refracts nor reflects. Moves the ray and the interior list behind it, or returns false for any
+/// other face.
 #[inline(always)]
-pub fn is_hidden(scene: &Scene, s: &Surface, before: &Interior, beyond: &Interior) -> bool {
-    let glass = scene.materials[s.material as usize].kind == MATERIAL_GLASS;
-    glass && ior_of(scene, medium_of(before)) == ior_of(scene, medium_of(beyond))
+pub fn passes_hidden(scene: &Scene, s: &Surface, ray: &mut Ray, interior: &mut Interior) -> bool {
+    if scene.world.nested == 0 || scene.materials[s.material as usize].kind != MATERIAL_GLASS {
+        return false;
+    }
+    let beyond = interior_beyond(scene, s, -ray.direction, interior);
+    if ior_of(scene, medium_of(interior)) != ior_of(scene, medium_of(&beyond)) {
+        return false;
+    }
+    let origin = offset_origin(s.position, s.error, s.normal, ray.direction);
+    *ray = Ray { origin, t_min: 0.0, direction: ray.direction, t_max: FAR };
+    *interior = beyond;
+    true
 }
 
-/// Initial interior list of a photon from an infinitely distant light: the glass planes whose back it
-/// approaches.
+/// Initial interior list of a photon from an infinitely distant light: the glass planes whose back
+/// it approaches.
 pub fn interior_from(scene: &Scene, direction: Vec3) -> Interior {
     let mut interior = interior_of(NONE);
     for i in 0..scene.world.unbounded_count {

@@ -1,6 +1,7 @@
-//! GGX microfacet conductor with Schlick's Fresnel term and the height-correlated Smith shadowing (Walter et
-//! al. 2007; Heitz 2014, 2018). The cosine is not in `eval_metal`. All directions are unit, point away from the
-//! surface and are given in the frame whose z is the shading normal. Twin: `shaders/materials/metal.wgsl`.
+//! GGX microfacet conductor with Schlick's Fresnel term and the height-correlated Smith shadowing
+//! (Walter et al. 2007; Heitz 2014, 2018). The cosine is not in `eval_metal`. All directions are
+//! unit, point away from the surface and are given in the frame whose z is the shading normal.
+//! Twin: `shaders/materials/metal.wgsl`.
 
 use super::math::trig::sin_cos;
 use super::math::{PI, TAU, unit};
@@ -9,8 +10,8 @@ use super::real::{Real, Vec2, Vec3, root_roundings};
 /// Least `alpha`: below it rounding spoils the lobe's peak.
 pub const ALPHA_MIN: Real = root_roundings(1e-3);
 
-/// Distribution of microfacet normals `h`, GGX. The sine comes from `h.x` and `h.y`: in a narrow lobe
-/// `1 - cos^2` has no digits left.
+/// Distribution of microfacet normals `h`, GGX. The sine comes from `h.x` and `h.y`: in a narrow
+/// lobe `1 - cos^2` has no digits left.
 pub fn ggx_d(h: Vec3, alpha: Real) -> Real {
     let a2 = alpha * alpha;
     let sin_sq = h.x * h.x + h.y * h.y;
@@ -42,7 +43,8 @@ pub fn eval_metal(wo: Vec3, wi: Vec3, f0: Vec3, alpha: Real) -> Vec3 {
     schlick(f0, wo.dot(h)) * (ggx_d(h, alpha) * g / (4.0 * wo.z * wi.z))
 }
 
-/// A microfacet normal `h` by the distribution of visible normals (Heitz 2018); the direction is `mirrored(wo, h)`.
+/// A microfacet normal `h` by the distribution of visible normals (Heitz 2018); the direction is
+/// `mirrored(wo, h)`.
 pub fn sample_metal(wo: Vec3, alpha: Real, u: Vec2) -> Vec3 {
     let vh = unit(Vec3::new(alpha * wo.x, alpha * wo.y, wo.z));
     let len_sq = vh.x * vh.x + vh.y * vh.y;
@@ -69,8 +71,8 @@ pub fn pdf_metal(wo: Vec3, wi: Vec3, alpha: Real) -> Real {
     ggx_d(h, alpha) / (4.0 * wo.z * (1.0 + ggx_lambda(wo.z, alpha)))
 }
 
-/// `eval_metal * cos / pdf_metal` in closed form, `F G2 / G1`, for `wi` mirrored at `h`. (From `wo + wi` a shader
-/// compiler could cancel `wo` against the one in `wi`.)
+/// `eval_metal * cos / pdf_metal` in closed form, `F G2 / G1`, for `wi` mirrored at `h`. (From `wo
+/// + wi` a shader compiler could cancel `wo` against the one in `wi`.)
 pub fn weight_metal(wo: Vec3, h: Vec3, wi: Vec3, f0: Vec3, alpha: Real) -> Vec3 {
     if wi.z <= 0.0 {
         return Vec3::ZERO;

@@ -51,8 +51,8 @@ pub fn toward(v: Vec3, w: Vec3) -> Vec3 {
     if v.dot(w) >= 0.0 { v } else { -v }
 }
 
-/// The shading normal on the side of `wo`. Where `wo` lies behind it: the geometric one, except on diffuse
-/// surfaces, which look the same from everywhere.
+/// The shading normal on the side of `wo`. Where `wo` lies behind it: the geometric one, except on
+/// diffuse surfaces, which look the same from everywhere.
 #[inline(always)]
 pub fn shading_normal(scene: &Scene, s: &Surface, wo: Vec3) -> Vec3 {
     let ng = toward(s.normal, wo);
@@ -61,7 +61,8 @@ pub fn shading_normal(scene: &Scene, s: &Surface, wo: Vec3) -> Vec3 {
     if diffuse || wo.dot(ns) > 0.0 { ns } else { ng }
 }
 
-/// Mirror and glass. `interior` is the list in front of the surface; `u` decides between reflection and refraction.
+/// Mirror and glass. `interior` is the list in front of the surface; `u` decides between reflection
+/// and refraction.
 #[inline(always)]
 pub fn scatter_specular(
     scene: &Scene,
@@ -134,7 +135,8 @@ pub fn scatter_rough(
     } else {
         let mut axis = n;
         if mode == IMPORTANCE {
-            // the adjoint of a diffuse surface sends about the geometric normal what the shading one receives
+            // the adjoint of a diffuse surface sends about the geometric normal what the shading
+            // one receives
             axis = ng;
             if s.shading != s.normal {
                 weight *= wo.dot(n).max(0.0) / wo.dot(ng).max(ADJOINT_COS_MIN);
@@ -154,7 +156,8 @@ pub fn scatter_rough(
     Scatter { direction: wi, interior: *interior, weight }
 }
 
-/// Adjoint correction of shading normals for particles (Veach 1997, eq. 5.19); 1 where both normals agree.
+/// Adjoint correction of shading normals for particles (Veach 1997, eq. 5.19); 1 where both normals
+/// agree.
 pub fn shading_correction(s: &Surface, n: Vec3, ng: Vec3, wo: Vec3, wi: Vec3) -> Real {
     if s.shading == s.normal {
         return 1.0;
@@ -166,7 +169,8 @@ pub fn shading_correction(s: &Surface, n: Vec3, ng: Vec3, wo: Vec3, wi: Vec3) ->
     (wo.dot(n) * wi.dot(ng)).abs() / denominator
 }
 
-/// BRDF of diffuse and metal times the cosine with the shading normal `n`, both directions on its side.
+/// BRDF of diffuse and metal times the cosine with the shading normal `n`, both directions on its
+/// side.
 #[inline(always)]
 pub fn eval_rough(kind: u32, alpha: Real, reflectance: Vec3, n: Vec3, wo: Vec3, wi: Vec3) -> Vec3 {
     let cos = wi.dot(n);

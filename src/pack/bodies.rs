@@ -9,9 +9,9 @@ use super::tables::*;
 use crate::build::bodies::Bodies;
 use crate::scene;
 
-/// Appends a material for each body to `out`, in the order of rank, if the scene needs them. Returns for each
-/// shape the material indices of its triangles, or a single one. Fills `sources` with the scene material index
-/// of each table entry.
+/// Appends a material for each body to `out`, in the order of rank, if the scene needs them.
+/// Returns for each shape the material indices of its triangles, or a single one. Fills `sources`
+/// with the scene material index of each table entry.
 pub fn pack_bodies(
     scene: &scene::Scene,
     bodies: &Bodies,
@@ -67,8 +67,8 @@ pub fn stand_camera(out: &mut Scene) {
     out.camera.medium = medium_of_box(out, camera.position, camera.position - half, camera.position + half);
 }
 
-/// Medium of everything in a box around `position`: a material index, [`NONE`], or [`ASTRIDE`] if a glass face
-/// crosses the box or several bodies contain it.
+/// Medium of everything in a box around `position`: a material index, [`NONE`], or [`ASTRIDE`] if a
+/// glass face crosses the box or several bodies contain it.
 fn medium_of_box(out: &Scene, position: Vec3, low: Vec3, high: Vec3) -> u32 {
     if out.materials.iter().all(|m| m.kind != MATERIAL_GLASS) {
         return NONE;

@@ -37,17 +37,18 @@ fn largest(points: &[Vec3]) -> Vec3 {
     points.iter().fold(Vec3::ZERO, |a, p| a.max(p.abs()))
 }
 
-/// What one rounding moves the hits with a flat shape of this `extent` off its plane, along each axis: nothing along
-/// the others where the plane stands square to one.
+/// What one rounding moves the hits with a flat shape of this `extent` off its plane, along each
+/// axis: nothing along the others where the plane stands square to one.
 fn off_plane(normal: DVec3, extent: DVec3) -> DVec3 {
     normal.abs() * normal.abs().dot(extent)
 }
 
 type Flattened = (Vec<Primitive>, Vec<u32>, Vec<Emitter>);
 
-/// Fills the shape tables; returns the kd-tree's primitives, the reference of each, and the emitters. An
-/// emitter's number is its light's. `kinds` are the shapes to pack, `materials` of each the material or
-/// those of its triangles. Where the film asks for shapes' numbers, `objects` tells them.
+/// Fills the shape tables; returns the kd-tree's primitives, the reference of each, and the
+/// emitters. An emitter's number is its light's. `kinds` are the shapes to pack, `materials` of
+/// each the material or those of its triangles. Where the film asks for shapes' numbers, `objects`
+/// tells them.
 pub fn pack_shapes(
     scene: &scene::Scene,
     kinds: &[Cow<ShapeKind>],
@@ -146,8 +147,8 @@ impl Pack<'_> {
         self.emitters.len() as u32 - 1
     }
 
-    /// A primitive whose computed hits lie in the box of `points`, grown by the rounding of those hits.
-    /// `grow` is in roundings of a length.
+    /// A primitive whose computed hits lie in the box of `points`, grown by the rounding of those
+    /// hits. `grow` is in roundings of a length.
     fn boxed(&mut self, reference: u32, points: &[Vec3], grow: Vec3) {
         let b = Aabb::of_points(points);
         let grow = (grow * (64.0 * EPS)).max(Vec3::splat(Real::MIN_POSITIVE));

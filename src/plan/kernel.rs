@@ -114,7 +114,9 @@ impl Kernel {
                     ("gathered", true),
                 ]
             }
-            Self::ResolveParts => vec![("visible_points", false), ("gathered", false), ("parts", true)],
+            Self::ResolveParts => {
+                vec![("visible_points", false), ("gathered", false), ("parts", true)]
+            }
             Self::Resolve => vec![("visible_points", false), ("gathered", false), ("film", true)],
         };
         if features.has("local") && matches!(self, Self::Gather | Self::ResolveParts | Self::Resolve) {

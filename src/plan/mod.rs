@@ -1,8 +1,10 @@
-//! A pass as data: which kernels run, over how many items, with which buffers and numbers. Engines carry it out.
+//! A pass as data: which kernels run, over how many items, with which buffers and numbers. Engines
+//! carry it out.
 //!
-//! The picture is cut into chunks of visible points and the photons into batches, so that no buffer passes a
-//! device's binding limit. Neither changes a result but for the grouping of the photons' sum, and batches are the
-//! same for every engine. Where memory is scarce chunks become tiles, which take turns with one set of buffers.
+//! The picture is cut into chunks of visible points and the photons into batches, so that no buffer
+//! passes a device's binding limit. Neither changes a result but for the grouping of the photons'
+//! sum, and batches are the same for every engine. Where memory is scarce chunks become tiles,
+//! which take turns with one set of buffers.
 
 mod buffers;
 mod kernel;
@@ -35,7 +37,8 @@ pub const BINDING_LIMIT: u64 = 128 << 20;
 const CHUNK_POINTS: u32 = 1 << 20;
 /// Most records that a batch may store.
 const CAPACITY_MAX: u32 = 1 << 22;
-/// Buckets of the grid for every record that there may be: fewer, and readers meet more photons of other rows.
+/// Buckets of the grid for every record that there may be: fewer, and readers meet more photons of
+/// other rows.
 const BUCKETS: u32 = 2;
 
 /// What a render of one scene with one set of settings does.
@@ -57,8 +60,8 @@ pub struct Plan {
     pub eye_samples: u32,
     /// Visible points per chunk, a multiple of `eye_samples`.
     pub chunk_points: u32,
-    /// Whether chunks are tiles: one after another goes through all steps of a pass, with the buffers of the one before for what
-    /// lives no longer than that.
+    /// Whether chunks are tiles: one after another goes through all steps of a pass, with the
+    /// buffers of the one before for what lives no longer than that.
     pub tiled: bool,
     /// Photons per batch.
     pub batch_photons: u32,
@@ -68,8 +71,8 @@ pub struct Plan {
     pub buckets: u32,
     /// What was found by looking at the scene before planning.
     pub probe: Probe,
-    /// Radius of the first family of photons over [`RenderSettings::radius`]: one, or where diffuse surfaces have scattered
-    /// all that are stored [`RenderSettings::indirect_radius`].
+    /// Radius of the first family of photons over [`RenderSettings::radius`]: one, or where diffuse
+    /// surfaces have scattered all that are stored [`RenderSettings::indirect_radius`].
     pub widening: f64,
     /// The world point at the scene's origin.
     pub center: DVec3,
@@ -79,7 +82,8 @@ pub struct Plan {
     pub unit: f64,
     /// Scene radiance times this is world radiance.
     pub radiance_unit: f64,
-    /// Luminance of the brightest thing that eye paths may meet by mirrors or through glass, world units.
+    /// Luminance of the brightest thing that eye paths may meet by mirrors or through glass, world
+    /// units.
     pub glint: f64,
     /// Number of the render's first pass; all others count from there.
     pub first_pass: u32,
@@ -196,7 +200,8 @@ impl Plan {
         Readout { width: self.width, unit: self.radiance_unit, glint: self.glint }
     }
 
-    /// Why the radius is what it is, where the settings left it open and photons are gathered at all.
+    /// Why the radius is what it is, where the settings left it open and photons are gathered at
+    /// all.
     pub fn told_radius(&self) -> Option<Automatic> {
         self.probe.automatic.filter(|_| self.features.has("photons"))
     }

@@ -177,7 +177,9 @@ pub(super) fn bytes(scene: &Scene, plan: &Plan) -> u64 {
 
 fn told(error: &DeviceError) -> String {
     match error {
-        DeviceError::NoSuchDevice { available, .. } => format!("{error}; there is: {}", available.join(", ")),
+        DeviceError::NoSuchDevice { available, .. } => {
+            format!("{error}; there is: {}", available.join(", "))
+        }
         DeviceError::Engine(_) => error.to_string(),
     }
 }

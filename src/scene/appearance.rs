@@ -124,8 +124,8 @@ pub enum MaterialKind {
         ior: f64,
         /// Absorption coefficient inside, per scene unit (Beer-Lambert), >= 0.
         absorption: Rgb,
-        /// Where glass bodies overlap, the medium is the one with the highest priority, or the smaller one if
-        /// priorities are equal.
+        /// Where glass bodies overlap, the medium is the one with the highest priority, or the
+        /// smaller one if priorities are equal.
         priority: i32,
     },
     /// GGX microfacet conductor with Schlick's Fresnel term, two-sided.

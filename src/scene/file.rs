@@ -1,7 +1,8 @@
 //! The scene format: what a person may write in a scene file, as types.
 //!
-//! Parser, checks and the JSON Schema for editors all come from these types: their names are the keys, their doc
-//! comments the descriptions. What a key means in full is said at the validated [`Scene`](super::Scene).
+//! Parser, checks and the JSON Schema for editors all come from these types: their names are the
+//! keys, their doc comments the descriptions. What a key means in full is said at the validated
+//! [`Scene`](super::Scene).
 
 use std::collections::BTreeMap;
 
@@ -17,8 +18,8 @@ use crate::settings::RenderSettings;
 /// Three coordinates.
 pub type Vec3 = [f64; 3];
 
-/// A caustica scene. Right-handed, y up; linear Rec. 709 colors; one scene unit is a metre; paths are relative to the
-/// file.
+/// A caustica scene. Right-handed, y up; linear Rec. 709 colors; one scene unit is a metre; paths
+/// are relative to the file.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SceneFile {
@@ -65,8 +66,8 @@ pub struct CameraFile {
     /// Radius of the lens in scene units; 0 is a pinhole.
     #[serde(default)]
     pub aperture: NonNegative,
-    /// Distance of the plane in focus from the lens along the view direction, in scene units; needed when the aperture
-    /// is not 0.
+    /// Distance of the plane in focus from the lens along the view direction, in scene units;
+    /// needed when the aperture is not 0.
     pub focus: Option<Positive>,
 }
 
@@ -167,8 +168,8 @@ pub enum MaterialFile {
         /// Absorption per scene unit inside (Beer-Lambert).
         #[serde(default)]
         absorption: Spectrum<NonNegative>,
-        /// Where glass bodies overlap, the medium is the one with the highest priority, or the smaller one if
-        /// priorities are equal.
+        /// Where glass bodies overlap, the medium is the one with the highest priority, or the
+        /// smaller one if priorities are equal.
         #[serde(default)]
         priority: i32,
     },
@@ -246,8 +247,8 @@ pub enum ShapeFile {
         #[serde(flatten)]
         surface: SurfaceFile,
     },
-    /// An axis-aligned box; each face is the unit square in uv, upright and unmirrored from outside (on top
-    /// v increases along -z, below along z).
+    /// An axis-aligned box; each face is the unit square in uv, upright and unmirrored from outside
+    /// (on top v increases along -z, below along z).
     Box {
         /// Least corner.
         min: Vec3,
@@ -263,8 +264,9 @@ pub enum ShapeFile {
     Mesh {
         /// A Wavefront OBJ file.
         file: String,
-        /// Use the file's normals, or make them where it has none, and turn faces to the side that they point to;
-        /// false: flat, and the order of a face's corners (counterclockwise from outside) says which side is outside.
+        /// Use the file's normals, or make them where it has none, and turn faces to the side that
+        /// they point to; false: flat, and the order of a face's corners (counterclockwise from
+        /// outside) says which side is outside.
         #[serde(default = "yes")]
         smooth: bool,
         /// Name of a material; without it, the OBJ's own MTL is used.
@@ -276,8 +278,8 @@ pub enum ShapeFile {
         #[serde(flatten)]
         surface: SurfaceFile,
     },
-    /// A Bezier profile turned about the local y axis. Outside is where the profile, drawn upward, has its
-    /// greater radii; a closed body that faces inward is warned of.
+    /// A Bezier profile turned about the local y axis. Outside is where the profile, drawn upward,
+    /// has its greater radii; a closed body that faces inward is warned of.
     Revolution {
         /// Control points (radius, height) of one Bezier curve.
         #[schemars(length(min = 2, max = 16))]

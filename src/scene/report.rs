@@ -304,7 +304,9 @@ impl Report {
         let last = faults.listed.len().saturating_sub(1);
         let findings = faults.listed.into_iter().enumerate().map(|(index, fault)| {
             let help = match faults.more {
-                more @ 1.. if index == last => format!("{more} more {what} in {file} are not shown"),
+                more @ 1.. if index == last => {
+                    format!("{more} more {what} in {file} are not shown")
+                }
                 _ => format!("{file} is named in {} at line {line}", self.path),
             };
             Finding {

@@ -1,4 +1,5 @@
-//! The folder of a study: what it is about, and each finished piece, so that a stopped study goes on where it was.
+//! The folder of a study: what it is about, and each finished piece, so that a stopped study goes
+//! on where it was.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -101,7 +102,8 @@ pub struct TruthRecord {
     pub lamp: Option<Lamp>,
     /// What it was made from.
     pub source: String,
-    /// Its own mean squared relative error, all pixels in it, by the scatter of its parts; none where it has only one.
+    /// Its own mean squared relative error, all pixels in it, by the scatter of its parts; none
+    /// where it has only one.
     pub variance: Option<f64>,
     /// Its own relMSE, likewise.
     pub rel_mse: Option<f64>,

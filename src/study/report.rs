@@ -16,7 +16,8 @@ use crate::film::file::write_whole;
 use crate::memory;
 use crate::storage;
 
-/// Writes `report.html`, `study.csv`, `study.json`, `study.md` and `charts/*.svg`; gives the figures.
+/// Writes `report.html`, `study.csv`, `study.json`, `study.md` and `charts/*.svg`; gives the
+/// figures.
 pub fn write(conducted: &Conducted, folder: &Folder) -> Result<Vec<Part>, StudyError> {
     let results = &conducted.results;
     let parts = analyse(results);
@@ -267,7 +268,9 @@ fn out_of(part: &Part) -> String {
 
 /// A picture of the folder as part of the page; nothing where it is missing.
 fn picture(folder: &Folder, file: &str, name: &str, figures: &str, title: String) -> String {
-    let Ok(bytes) = storage::read(&folder.file(file), memory::readable()) else { return String::new() };
+    let Ok(bytes) = storage::read(&folder.file(file), memory::readable()) else {
+        return String::new();
+    };
     format!(
         "<figure title=\"{}\"><img alt=\"{}\" src=\"data:image/png;base64,{}\"><figcaption><strong>{}</strong> {}\
          </figcaption></figure>",

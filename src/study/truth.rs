@@ -150,7 +150,9 @@ impl Maker<'_> {
             let truth = mean_of(&pair, String::new())?;
             pilots.push((truth.record.rel_mse.unwrap_or(0.0), mean_luminance(&truth.picture)));
         }
-        let [(path_error, path_mean), (sppm_error, sppm_mean)] = pilots[..] else { return Ok(None) };
+        let [(path_error, path_mean), (sppm_error, sppm_mean)] = pilots[..] else {
+            return Ok(None);
+        };
         let studied = |path: bool| self.configs.iter().any(|c| (c.settings.method == Method::Path) == path);
         let same_light = (path_mean / sppm_mean.max(1e-300) - 1.0).abs() < SAME_LIGHT;
         let handicap = match (studied(true), studied(false)) {

@@ -1,9 +1,10 @@
 //! What pictures hold beside radiance.
 //!
-//! Theory: in scenes of planes the first hit, and the first one behind a mirror or a pane, are known in closed form. A
-//! mirror multiplies the albedo by its reflectance; a pane of index n seen head-on lets (1 - R) / (1 + R) through, R its face's
-//! Fresnel reflectance. Emission is all of the picture where surfaces are black. The same window of a picture has the same
-//! bits whether it is rendered alone or with the rest.
+//! Theory: in scenes of planes the first hit, and the first one behind a mirror or a pane, are
+//! known in closed form. A mirror multiplies the albedo by its reflectance; a pane of index n seen
+//! head-on lets (1 - R) / (1 + R) through, R its face's Fresnel reflectance. Emission is all of the
+//! picture where surfaces are black. The same window of a picture has the same bits whether it is
+//! rendered alone or with the rest.
 
 mod parts;
 #[path = "../software/mod.rs"]
@@ -131,7 +132,8 @@ fn a_wall_is_where_it_is() {
     assert!(!near(moved.at(["depth.Z"], 3, 5), [5.0], 1e-5));
 }
 
-/// A mirror at 45 degrees shows the ceiling: albedo and normal are the ceiling's, all else the mirror's.
+/// A mirror at 45 degrees shows the ceiling: albedo and normal are the ceiling's, all else the
+/// mirror's.
 #[test]
 fn a_mirror_shows_what_it_reflects() {
     let rest = r#"
@@ -233,7 +235,8 @@ fn emission_is_all_of_a_dark_picture() {
         for (i, rgb) in seen.picture.rgb.iter().enumerate() {
             let emission = seen.at(names, i % 24, i / 24);
             let expected = rgb.map(f64::from);
-            // ends of paths by roulette are drawn in another order for path tracing, which this scene has none of
+            // ends of paths by roulette are drawn in another order for path tracing, which this
+            // scene has none of
             assert!(near(emission, expected, 1e-5), "{settings}, pixel {i}: {emission:?} and {expected:?}");
             lit += (rgb[0] > 1.0) as usize;
         }
@@ -278,7 +281,8 @@ fn radius_and_photons_are_those_of_the_last_pass() {
     assert!(radii.iter().all(|r| *r > 0.1 && *r <= 0.25 + 1e-6) && radii.iter().any(|r| *r < 0.24));
 }
 
-/// What nobody asks for is neither planned nor kept, and what is asked for changes no bit of the picture.
+/// What nobody asks for is neither planned nor kept, and what is asked for changes no bit of the
+/// picture.
 #[test]
 fn it_costs_nothing_unless_asked_for() {
     let mut plain = loaded("", WALL);

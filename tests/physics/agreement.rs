@@ -10,7 +10,8 @@ type Case = (Method, Direct, RadiusRule);
 
 const PATH: Case = (Method::Path, Direct::Sampled, RadiusRule::Fixed);
 
-/// Renders `text` by every case and compares all pairs: the whole picture to `power`, tiles to four times that.
+/// Renders `text` by every case and compares all pairs: the whole picture to `power`, tiles to four
+/// times that.
 fn pairwise(name: &str, text: &str, cases: &[Case], power: f64) {
     let found: Vec<(String, Runs)> = cases
         .iter()
@@ -36,9 +37,10 @@ fn pairwise(name: &str, text: &str, cases: &[Case], power: f64) {
     }
 }
 
-/// Theory: PPM and SPPM with every radius rule, direct light sampled and by photons, estimate one integral; their
-/// pictures agree pairwise, region by region. Discs of radius 0.02 blur and lose light at edges and corners, all alike
-/// at first and less under rules that shrink them: that bias lies within the noise asked for.
+/// Theory: PPM and SPPM with every radius rule, direct light sampled and by photons, estimate one
+/// integral; their pictures agree pairwise, region by region. Discs of radius 0.02 blur and lose
+/// light at edges and corners, all alike at first and less under rules that shrink them: that bias
+/// lies within the noise asked for.
 #[test]
 fn photon_mapping_agrees_pairwise() {
     let cases = [
@@ -50,8 +52,8 @@ fn photon_mapping_agrees_pairwise() {
     pairwise("everything", &everything(1.0, DVec3::ZERO, 24), &cases, 0.06);
 }
 
-/// Theory: path tracing finds all light except that of a point, a spot or a sun by way of mirrors and glass. With
-/// matte bodies in place of those, it agrees with photon mapping under all lights.
+/// Theory: path tracing finds all light except that of a point, a spot or a sun by way of mirrors
+/// and glass. With matte bodies in place of those, it agrees with photon mapping under all lights.
 #[test]
 fn path_tracing_agrees_on_matte_bodies() {
     let full = everything(1.0, DVec3::ZERO, 24);
@@ -86,4 +88,27 @@ fn path_tracing_agrees_under_lamp_and_sky() {
         (Method::Ppm, Direct::Photons, RadiusRule::Local),
     ];
     pairwise("lamp and sky", &text, &cases, 0.06);
+}
+
+/// Theory: path tracing with shadow rays combines both ways to reach a light with weights that add
+/// up to one, and so gives the image of path tracing without shadow rays. The weights contain the
+/// probability of the light at that point, which differs between the floor below a wide lamp and
+/// the floor below the sky.
+#[test]
+fn weights_follow_the_light_probabilities_of_each_place() {
+    let text = "version = 1\n[camera]\nposition = [0, 9, 0.01]\ntarget = [0, 0, 0]\nfov = 40.0\n[film]\nwidth = 12\n\
+                height = 12\n[materials.floor]\ntype = \"diffuse\"\nreflectance = 0.5\n[materials.black]\n\
+                type = \"diffuse\"\nreflectance = 0.0\n[[shapes]]\ntype = \"rectangle\"\norigin = [-4, 0, 4]\n\
+                u = [8, 0, 0]\nv = [0, 0, -8]\nmaterial = \"floor\"\n[[shapes]]\ntype = \"rectangle\"\n\
+                origin = [0.3, 1.0, -4]\nu = [0, 0, 8]\nv = [0, 3, 0]\nmaterial = \"black\"\nemission = 2.0\n\
+                [environment]\nradiance = 0.5\n";
+    let by = |direct| {
+        let path = RenderSettings { method: Method::Path, direct, passes: 1500, ..settings(1.0) };
+        runs(text, &RenderSettings { seed: 1000 * direct as u64, ..path })
+    };
+    let [shadow_rays, scattering] = DIRECT.map(by);
+    for (side, columns) in [("sky", 8..12), ("lamp", 0..4)] {
+        let [a, b] = [&shadow_rays, &scattering].map(|runs| runs.region(|x, _| columns.contains(&x)));
+        assert_same(side, a, b, 0.015);
+    }
 }

@@ -1,8 +1,8 @@
 //! Every way of drawing a direction or a point against the density it claims.
 //!
-//! A sampler with density p draws a bin with the bin's integral of p. Counts of N draws over bins then follow a
-//! multinomial law, and sum (count - N P)^2 / (N P) is chi-square with (bins - 1) degrees of freedom: mean k, variance 2k.
-//! Bins expected to hold fewer than 10 are pooled.
+//! A sampler with density p draws a bin with the bin's integral of p. Counts of N draws over bins
+//! then follow a multinomial law, and sum (count - N P)^2 / (N P) is chi-square with (bins - 1)
+//! degrees of freedom: mean k, variance 2k. Bins expected to hold fewer than 10 are pooled.
 
 use std::f64::consts::PI;
 
@@ -57,7 +57,8 @@ fn shares(pdf: impl Fn(Vec3) -> f32) -> Vec<f64> {
     shares
 }
 
-/// How many standard deviations chi-square lies above its mean; `slack` is the quadrature's relative error of a share.
+/// How many standard deviations chi-square lies above its mean; `slack` is the quadrature's
+/// relative error of a share.
 fn excess(counts: &[u32], shares: &[f64], slack: f64) -> f64 {
     let (mut sum, mut bins, mut pool) = (0.0, 0.0, (0.0, 0.0));
     let n = DRAWS as f64;
@@ -82,7 +83,8 @@ fn excess(counts: &[u32], shares: &[f64], slack: f64) -> f64 {
     (sum - k) / (2.0 * k).sqrt()
 }
 
-/// Draws with `draw` follow `pdf`; a density of which half the sphere is scaled by 1.05 must be told from it.
+/// Draws with `draw` follow `pdf`; a density of which half the sphere is scaled by 1.05 must be
+/// told from it.
 fn check(name: &str, draw: impl Fn(&mut Rng) -> Option<Vec3>, pdf: impl Fn(Vec3) -> f32) {
     let mut rng = rng();
     let mut counts = vec![0; ROWS * COLUMNS];
@@ -139,8 +141,8 @@ fn basic_maps() {
     }
 }
 
-/// Theory: draws of the visible-normal sampler follow `pdf_metal` (what falls below the surface is no direction), and
-/// weight = eval cos / pdf for each.
+/// Theory: draws of the visible-normal sampler follow `pdf_metal` (what falls below the surface is
+/// no direction), and weight = eval cos / pdf for each.
 #[test]
 fn metal() {
     for alpha in [0.3f32, 0.6, 1.0] {
@@ -175,8 +177,8 @@ fn placed(packed: &Packed, world: DVec3) -> Vec3 {
     ((world - packed.center) / packed.unit).as_vec3()
 }
 
-/// Theory: directions to a light follow `pdf_light` over the sphere of directions: what a ray in direction w meets tells
-/// the density there. The same for the environment with `pdf_environment`.
+/// Theory: directions to a light follow `pdf_light` over the sphere of directions: what a ray in
+/// direction w meets tells the density there. The same for the environment with `pdf_environment`.
 #[test]
 fn lights() {
     let mesh = "v -1 1.2 0\nv 1 1 0.5\nv 0 1.5 -1\nv 0 0.6 0\nf 1 2 3\nf 1 4 2\nf 2 4 3\nf 3 4 1\n";
@@ -196,8 +198,8 @@ fn lights() {
         // z is bin()'s axis: put the upward axis there
         let turn = |w: Vec3| Vec3::new(w.z, w.x, w.y);
         let back = |w: Vec3| Vec3::new(w.y, w.z, w.x);
-        // what a direction meets: its density where the surface is turned to the point, and not so grazing that the
-        // density's pole spoils the quadrature
+        // what a direction meets: its density where the surface is turned to the point, and not so
+        // grazing that the density's pole spoils the quadrature
         let pdf = |w: Vec3| {
             let ray = Ray { origin: from, t_min: 0.0, direction: back(w), t_max: 1e30 };
             let hit = intersect_scene(&scene, &ray);
@@ -254,9 +256,10 @@ fn environment() {
     }
 }
 
-/// Theory: a light is drawn with the probability that is stated for it, wherever the point lies; all
-/// probabilities are above zero and sum to one. Ten lamps of equal power in a row over a floor: below a
-/// lamp it, or it and the neighbour in the same cell, bring more light than all others together.
+/// Theory: a light is drawn with the probability that is stated for it, wherever the point lies;
+/// all probabilities are above zero and sum to one. Ten lamps of equal power in a row over a floor:
+/// below a lamp it, or it and the neighbour in the same cell, bring more light than all others
+/// together.
 #[test]
 fn choice_of_lights() {
     let lamp = |i: i32| {
@@ -294,8 +297,8 @@ fn choice_of_lights() {
     }
 }
 
-/// Theory: a lamp is sampled from its own surface, too, where a path has hit it; the sampled point may be the
-/// same. What comes back is finite, and nothing where there is no direction.
+/// Theory: a lamp is sampled from its own surface, too, where a path has hit it; the sampled point
+/// may be the same. What comes back is finite, and nothing where there is no direction.
 #[test]
 fn a_lamp_from_its_own_surface() {
     let text = "[[shapes]]\ntype = \"sphere\"\ncenter = [0.5, 3.0, 0.5]\nradius = 0.5\n\
@@ -317,8 +320,9 @@ fn a_lamp_from_its_own_surface() {
     assert!(same > 0, "no point was its own: the test sees nothing");
 }
 
-/// Theory: in a lobe of width alpha the density depends on the sine of the half vector's angle, which f32 holds
-/// to 1e-7 of 1; so to 1e-7 / alpha of itself. Compared with f64 for the same directions.
+/// Theory: in a lobe of width alpha the density depends on the sine of the half vector's angle,
+/// which f32 holds to 1e-7 of 1; so to 1e-7 / alpha of itself. Compared with f64 for the same
+/// directions.
 #[test]
 fn narrow_lobes_keep_their_digits() {
     use caustica::double::materials::metal as exact;

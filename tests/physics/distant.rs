@@ -31,7 +31,8 @@ struct Far {
 
 const HERE: Far = Far { name: "here", floor: 3.0, camera: 4.0, target: 4.0, lens: "", stray: None };
 
-/// The floor is wide, the camera far, its focus or target far, an object far: each alone and together.
+/// The floor is wide, the camera far, its focus or target far, an object far: each alone and
+/// together.
 fn far() -> Vec<Far> {
     vec![
         Far { name: "floor 100", floor: 1e2, ..HERE },
@@ -101,22 +102,22 @@ fn some_passes(method: Method) -> RenderSettings {
 const SUN: &str = "[[shapes]]\ntype = \"sphere\"\ncenter = [0.0, 0.45, 0.0]\nradius = 0.2\n\
                    material = \"glass\"\n[[lights]]\ntype = \"sun\"\ndirection = [0.3, -1.0, 0.2]\n\
                    irradiance = 3.0";
-/// A small lamp beside a dim sky.
+/// A small lamp and a dim sky.
 const LAMP_AND_SKY: &str = "[[shapes]]\ntype = \"sphere\"\ncenter = [0.0, 0.3, 0.0]\nradius = 0.3\n\
                             material = \"floor\"\n[[shapes]]\ntype = \"sphere\"\n\
                             center = [0.6, 1.8, -0.5]\nradius = 0.05\nmaterial = \"black\"\n\
                             emission = 100.0\n[environment]\nradiance = 0.1";
 
-/// Theory: a sun over a wide floor gives E = irradiance * cos everywhere, and the ball of glass moves
-/// light from its shadow to the caustic: nothing of this depends on what is far, so neither do the mean
-/// of the picture (but for the camera's perspective, which is weak) nor the noise.
+/// Theory: a sun over a wide floor gives E = irradiance * cos everywhere, and the ball of glass
+/// moves light from its shadow to the caustic: nothing of this depends on what is far, so neither
+/// do the mean of the picture (but for the camera's perspective, which is weak) nor the noise.
 #[test]
 fn caustic_of_a_sun() {
     compare(SUN, Method::Sppm, 0.01);
 }
 
-/// Theory: the same for a small lamp beside a dim sky. The lights' shares of power would depend on how
-/// much of the sky the world catches; what they bring to the picture does not.
+/// Theory: the same for a small lamp and a dim sky. The lights' shares of power would depend on
+/// how much of the sky the world catches; what they bring to the picture does not.
 #[test]
 fn lamp_and_dim_sky() {
     for method in [Method::Sppm, Method::Path] {
@@ -145,8 +146,9 @@ fn compare(near: &str, method: Method, power: f64) {
     }
 }
 
-/// Theory: what is stated after 16 passes is not less than the true error for nine of ten seeds, wherever the
-/// camera stands and whatever is far. The truth has six times the photons in discs a tenth as wide.
+/// Theory: what is stated after 16 passes is not less than the true error for nine of ten seeds,
+/// wherever the camera stands and whatever is far. The truth has six times the photons in discs a
+/// tenth as wide.
 #[test]
 fn promises_with_distant_objects() {
     let distant = [HERE].into_iter().chain(far());

@@ -1,4 +1,4 @@
-//! Bodies of glass within, across and beside one another, and what stands exactly on something.
+//! Bodies of glass within, across and next to each other, and what stands exactly on something.
 
 use caustica::settings::{Direct, Method, RenderSettings};
 
@@ -64,8 +64,8 @@ fn boxes(name: &str, boxes: &[([f64; 3], [f64; 3])]) -> String {
     format!("type = \"mesh\"\nfile = \"{}\"\nsmooth = false", file(name, obj.as_bytes()))
 }
 
-/// Theory: what has the index of its surroundings is not seen. A ball in water in front of a lamp, and under
-/// the surface of a lake over a floor, whatever the surface is made of; by every method.
+/// Theory: what has the index of its surroundings is not seen. A ball in water in front of a lamp,
+/// and under the surface of a lake over a floor, whatever the surface is made of; by every method.
 #[test]
 fn index_matched_bodies_are_invisible() {
     let sheet = |low: f64| {
@@ -109,8 +109,8 @@ fn index_matched_bodies_are_invisible() {
     }
 }
 
-/// Theory: in a room of radiance 1 everywhere, glass that absorbs nothing shows radiance 1, however bodies
-/// lie within, across and beside one another, and one mesh across itself (the second law).
+/// Theory: in a room of radiance 1 everywhere, glass that absorbs nothing shows radiance 1, however
+/// bodies lie within, across and next to each other, and one mesh across itself (the second law).
 #[test]
 fn overlapping_glass_neither_makes_nor_takes_light() {
     let base = camera("[2.5, 1.5, 3]", "[0, 0, 0]", 22.0)
@@ -119,7 +119,7 @@ fn overlapping_glass_neither_makes_nor_takes_light() {
         + &glass("b", 1.33, "")
         + &glass("c", 1.8, "priority = 3");
     let across = [([-0.8, -0.8, -0.8], [0.3, 0.3, 0.3]), ([-0.3, -0.3, -0.3], [0.8, 0.8, 0.8])];
-    let beside = [([-0.8, -0.8, -0.8], [0.1, 0.8, 0.8]), ([0.1, -0.8, -0.8], [0.8, 0.8, 0.8])];
+    let adjacent = [([-0.8, -0.8, -0.8], [0.1, 0.8, 0.8]), ([0.1, -0.8, -0.8], [0.8, 0.8, 0.8])];
     let can = "type = \"revolution\"\nsegments = [[[0, -0.5], [0.6, -0.5]], [[0.6, -0.5], [0.6, 0.5]], [[0.6, 0.5], [0, 0.5]]]";
     let cases = [
         ("balls", shape(&ball("[-0.3, 0, 0]", 0.7), "a") + &shape(&ball("[0.3, 0.1, 0]", 0.6), "b")),
@@ -133,12 +133,12 @@ fn overlapping_glass_neither_makes_nor_takes_light() {
                 + &shape(&block("[-0.9, -0.1, -0.9]", "[0.9, 0.3, 0.9]"), "b"),
         ),
         (
-            "beside",
+            "adjacent",
             shape(&block("[-0.9, -0.3, -0.9]", "[0.9, 0.0, 0.9]"), "a")
                 + &shape(&block("[-0.9, 0.0, -0.9]", "[0.9, 0.3, 0.9]"), "c"),
         ),
         ("one mesh across itself", shape(&boxes("physics-across.obj", &across), "a")),
-        ("one mesh beside itself", shape(&boxes("physics-beside.obj", &beside), "a")),
+        ("one mesh next to itself", shape(&boxes("physics-adjacent.obj", &adjacent), "a")),
         (
             "mesh and ball",
             shape(&boxes("physics-across.obj", &across), "b") + &shape(&ball("[0.2, 0.2, 0.2]", 0.4), "a"),
@@ -154,9 +154,10 @@ fn overlapping_glass_neither_makes_nor_takes_light() {
     }
 }
 
-/// Theory: with index 1 a chord leaves exp(-(s1 d1 + s2 d2)), d1 and d2 its lengths in either medium. Where a
-/// ball lies across a slab, what they share is the ball's (it is smaller), or the slab's, if its priority is
-/// higher. The chord is 1 long in the ball and 0.8 in the slab, of which 0.3 are shared.
+/// Theory: with index 1 a chord leaves exp(-(s1 d1 + s2 d2)), d1 and d2 its lengths in either
+/// medium. Where a ball lies across a slab, what they share is the ball's (it is smaller), or the
+/// slab's, if its priority is higher. The chord is 1 long in the ball and 0.8 in the slab, of which
+/// 0.3 are shared.
 #[test]
 fn the_medium_of_an_overlap() {
     for (priority, [in_slab, in_ball]) in [(-1, [0.5f64, 1.0]), (0, [0.5, 1.0]), (1, [0.8, 0.7])] {
@@ -175,8 +176,8 @@ fn the_medium_of_an_overlap() {
     }
 }
 
-/// Theory: a camera below the surface of a lake is in the water, whatever the surface is made of: of a lamp at
-/// distance d it sees exp(-s d).
+/// Theory: a camera below the surface of a lake is in the water, whatever the surface is made of:
+/// of a lamp at distance d it sees exp(-s d).
 #[test]
 fn cameras_under_open_surfaces() {
     for water in [
@@ -200,8 +201,8 @@ fn cameras_under_open_surfaces() {
     }
 }
 
-/// Theory: a lamp that is cut in two at the surface of water shines as before; each half lies in one medium.
-/// And photons and paths bring the same.
+/// Theory: a lamp that is cut in two at the surface of water shines as before; each half lies in
+/// one medium. And photons and paths bring the same.
 #[test]
 fn lamps_astride() {
     let base = camera("[0.5, 0, 3]", "[0.5, 0, 0]", 30.0)
@@ -279,8 +280,8 @@ fn what_stands_on_a_floor() {
     }
 }
 
-/// Theory: a lamp in the plane of a ceiling is seen with its own radiance, from corner to corner, and lights
-/// the floor as one a little below the ceiling does; by photons and by paths.
+/// Theory: a lamp in the plane of a ceiling is seen with its own radiance, from corner to corner,
+/// and lights the floor as one a little below the ceiling does; by photons and by paths.
 #[test]
 fn lamps_in_ceilings() {
     let lamps = |y: f64| {
@@ -321,8 +322,8 @@ fn lamps_in_ceilings() {
     }
 }
 
-/// Theory: light that has passed hidden faces alone, of bodies of index 1 that overlap, comes as if they were not
-/// there; shadow rays end at them, so photons must bring it.
+/// Theory: light that has passed hidden faces alone, of bodies of index 1 that overlap, comes as if
+/// they were not there; shadow rays end at them, so photons must bring it.
 #[test]
 fn light_through_hidden_faces() {
     let base = camera("[0, 1.5, 0.01]", "[0, 0, 0]", 30.0)

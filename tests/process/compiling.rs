@@ -42,8 +42,8 @@ fn a_compilation_is_shown() {
     let whole = begun.elapsed();
     assert!(whole > Duration::from_secs(2), "nothing is compiled, so this tests nothing: {whole:?}");
     assert!(first < whole / 2 && first < Duration::from_secs(3), "after {first:?} of {whole:?}: {line}");
-    let told = line.starts_with("compiling for ") && line.contains(" kernels done, ");
-    assert!(told && line.contains(": ") && !rest.contains("\r"), "{line}{rest}");
+    let shown = line.starts_with("compiling for ") && line.contains(" kernels done, ");
+    assert!(shown && line.contains(": ") && !rest.contains("\r"), "{line}{rest}");
 
     let output = ended(spawn(cold(&folder, &format!("{RENDER} --quiet"))));
     assert_eq!((output.status.code(), text(&output.stderr).as_str()), (Some(0), ""));

@@ -79,7 +79,7 @@ fn the_process_stays_what_it_was() {
 }
 
 /// What the program says with a variable set to a value.
-fn told(folder: &Path, line: &str, (variable, value): (&str, &str), code: i32) -> (String, String) {
+fn output_of(folder: &Path, line: &str, (variable, value): (&str, &str), code: i32) -> (String, String) {
     let mut command = command(folder, &words(line));
     let output = ended(spawn({
         command.env(variable, value);
@@ -108,26 +108,26 @@ fn variables_that_hide_devices_are_named() {
         let expected = [&format!("{variable}={value}"), &device, &remedy];
         let named = |error: &str| expected.iter().all(|word| error.contains(word.as_str()));
         for line in ["devices", &format!("{render} --device auto"), &format!("{render} --json")] {
-            let (_, error) = told(&folder, line, set, 0);
+            let (_, error) = output_of(&folder, line, set, 0);
             assert!(named(&error) && error.matches("warning").count() == 1, "{line}: {error}");
             assert_eq!(error.contains("no graphics interface by `vulcan`"), value == "vulcan", "{error}");
         }
-        let (stdout, _) = told(&folder, "devices --json", set, 0);
+        let (stdout, _) = output_of(&folder, "devices --json", set, 0);
         let hidden = &json_lines(stdout.as_bytes())[0]["hidden"][0];
         assert_eq!((&hidden["variable"], &hidden["value"]), (&variable.into(), &value.into()));
         assert_eq!(hidden["devices"][0], device.as_str());
         for wanted in ["software", "llvmpipe", "gpu"] {
-            let (_, error) = told(&folder, &format!("{render} --device {wanted}"), set, 4);
+            let (_, error) = output_of(&folder, &format!("{render} --device {wanted}"), set, 4);
             assert!(named(&error), "{wanted}: {error}");
         }
         // the processor is there whatever is hidden
-        assert_eq!(told(&folder, &format!("{render} --device cpu"), set, 0).1, "");
+        assert_eq!(output_of(&folder, &format!("{render} --device cpu"), set, 0).1, "");
     }
     for set in [("WGPU_BACKEND", "vulkan"), ("WGPU_BACKEND", ""), ("WGPU_ADAPTER_NAME", "LLVMpipe")] {
         for line in ["devices", &format!("{render} --device software")] {
-            assert_eq!(told(&folder, line, set, 0).1, "", "{set:?}");
+            assert_eq!(output_of(&folder, line, set, 0).1, "", "{set:?}");
         }
     }
-    let (_, error) = told(&folder, "devices", ("WGPU_BACKEND", "vulkan,vulcan"), 0);
+    let (_, error) = output_of(&folder, "devices", ("WGPU_BACKEND", "vulkan,vulcan"), 0);
     assert!(error.contains("`vulcan`") && error.contains("correct or unset") && !error.contains("hides"));
 }

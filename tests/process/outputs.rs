@@ -33,8 +33,8 @@ fn leftovers(folder: &Path) -> Vec<PathBuf> {
     entries.filter(|path| path.file_name().unwrap().to_str().unwrap().starts_with(".caustica-")).collect()
 }
 
-/// Theory: a name that is a link stands for the file at its end, there or not yet, through any number of
-/// folders; the link itself is no output.
+/// Theory: a name that is a link stands for the file at its end, there or not yet, through any
+/// number of folders; the link itself is no output.
 #[test]
 fn links_are_followed() {
     let folder = folder("links");
@@ -67,8 +67,9 @@ fn links_are_followed() {
     }
 }
 
-/// Theory: a file that is written over keeps its mode and its owner, at no time is its new content readable
-/// to more than these allow, and one that nobody may write to is refused before the work, even for root.
+/// Theory: a file that is written over keeps its mode and its owner, at no time is its new content
+/// readable to more than these allow, and one that nobody may write to is refused before the work,
+/// even for root.
 #[test]
 fn modes_and_owners_stay() {
     let folder = folder("modes");
@@ -106,8 +107,8 @@ fn modes_and_owners_stay() {
     assert_eq!(mode(&kept), 0o400);
 }
 
-/// Theory: a name may have 255 bytes, of which the program needs none for itself; names of unfinished
-/// files that somebody else has taken are passed over.
+/// Theory: a name may have 255 bytes, of which the program needs none for itself; names of
+/// unfinished files that somebody else has taken are passed over.
 #[test]
 fn names_may_be_long_and_taken() {
     let folder = folder("names");
@@ -134,8 +135,8 @@ fn names_may_be_long_and_taken() {
     assert_eq!(fs::read(&file).unwrap(), b"whole");
 }
 
-/// Theory: what is no file is a way for bytes: it gets the picture and stays what it is. A checkpoint, which
-/// is to be read again, is refused there before the work.
+/// Theory: what is no file is a way for bytes: it gets the picture and stays what it is. A
+/// checkpoint, which is to be read again, is refused there before the work.
 #[test]
 fn pipes_get_pictures() {
     let folder = folder("pipes");
@@ -179,8 +180,8 @@ fn pipes_get_pictures() {
     assert!(!folder.join("never.png").exists());
 }
 
-/// Theory: what one output meets is nothing to the others; all failures are said, the exit code is 1, and
-/// the work is saved in a place that is said.
+/// Theory: what one output meets is nothing to the others; all failures are said, the exit code is
+/// 1, and the work is saved in a place that is said.
 #[test]
 fn one_failed_output_keeps_no_other() {
     let folder = folder("gone");

@@ -18,8 +18,8 @@ fn refused(folder: &Path, line: &str, told: &[&str]) {
     told.iter().for_each(|word| assert!(error.contains(word), "{line} should say `{word}`: {error}"));
 }
 
-/// Theory: a pipe may have no writer and a device no end, so neither is read, by any command, whatever name
-/// leads there. `ended` kills what waits.
+/// Theory: a pipe may have no writer and a device no end, so neither is read, by any command,
+/// whatever name leads there. `ended` kills what waits.
 #[test]
 fn pipes_and_devices_are_refused() {
     let folder = folder("special");
@@ -51,7 +51,7 @@ fn pipes_and_devices_are_refused() {
     assert!(!folder.join("out.exr").exists());
 }
 
-/// Theory: a study's folder may be anybody's, too. None of the files that a study goes on from is
+/// Theory: a study's folder may be anybody's, too. None of the files that a study resumes from is
 /// waited for.
 #[test]
 fn a_study_does_not_wait_for_its_files() {
@@ -82,8 +82,9 @@ fn a_study_does_not_wait_for_its_files() {
     assert_eq!(output.status.code(), Some(0), "{}", error(&output));
 }
 
-/// Theory: a file of some hundred bytes may claim any number of pixels; none of them are made before it is
-/// known that there is memory for all. An allocation that fails would end the program by signal 6.
+/// Theory: a file of some hundred bytes may claim any number of pixels; none of them are made
+/// before it is known that there is memory for all. An allocation that fails would end the program
+/// by signal 6.
 #[test]
 fn sizes_are_not_believed() {
     let folder = folder("sizes");

@@ -6,7 +6,8 @@ use std::path::Path;
 use super::support::{command, text};
 use super::{SCENE, folder};
 
-/// A title, a cleared screen, hidden text, a bell, a return, a C1 sequence, and text from right to left.
+/// A title, a cleared screen, hidden text, a bell, a return, a C1 sequence, and text from right to
+/// left.
 const HARM: [&str; 7] = ["\x1b]0;PWNED\x07", "\x1b[2J", "\x1b[8m", "\x07", "a\rb", "\u{9b}2J", "\u{202e}txt"];
 
 /// Whether a report sets this: a colour, bold, faint, italic or underlined text, or none of them.
@@ -29,7 +30,8 @@ fn acts(output: &str) -> Vec<char> {
     rest.chars().filter(|c| (c.is_control() && *c != '\n') || turns(c)).collect()
 }
 
-/// Runs with and without colours; standard error must name the trouble and do nothing to the terminal.
+/// Runs with and without colours; standard error must name the trouble and do nothing to the
+/// terminal.
 #[track_caller]
 fn harmless(folder: &Path, arguments: &[&str], told: &str) {
     for colors in [false, true] {
@@ -45,8 +47,8 @@ fn harmless(folder: &Path, arguments: &[&str], told: &str) {
     }
 }
 
-/// Theory: a terminal acts on control characters. None comes from what the program quotes: lines of files,
-/// their names, names in them, arguments; with colours and without.
+/// Theory: a terminal acts on control characters. None comes from what the program quotes: lines of
+/// files, their names, names in them, arguments; with colours and without.
 #[test]
 fn control_characters_are_shown() {
     let folder = folder("control");
@@ -80,7 +82,7 @@ fn control_characters_are_shown() {
 }
 
 /// Theory: a line of a message is a line of the program. A line feed in a name is shown as an
-/// escape, so that no name can pretend to be a message of its own.
+/// escape, so that no name can look like a message.
 #[test]
 fn line_feeds_in_names_are_shown() {
     let folder = folder("feeds");
@@ -110,7 +112,8 @@ fn line_feeds_in_names_are_shown() {
     assert!(says(&["diff", &format!("{harm}.exr"), "b.exr"]).contains(shown));
 }
 
-/// Theory: the caret stands under what it means, also after a character that is replaced, which is as long.
+/// Theory: the caret stands under what it means, also after a character that is replaced, which is
+/// as long.
 #[test]
 fn carets_stand_where_they_did() {
     let folder = folder("carets");

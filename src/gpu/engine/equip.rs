@@ -177,7 +177,9 @@ impl GpuEngine {
                 compile_seconds.insert(program.kernel, CompileSeconds { checking, driver });
             }
             match checking {
-                Some(seconds) => log::debug!("{}: checked in {seconds:.3} s", program.kernel.stem()),
+                Some(seconds) => {
+                    log::debug!("{}: checked in {seconds:.3} s", program.kernel.stem())
+                }
                 None => log::debug!("{}: kept", program.kernel.stem()),
             }
             programs.insert(program.kernel, program);
