@@ -142,7 +142,7 @@ struct Attributes {
     v1: f32,
     u2: f32,
     v2: f32,
-    smooth_normals: u32,
+    facet_smooth: u32,
 }
 
 struct Material {

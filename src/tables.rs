@@ -263,8 +263,9 @@ pub struct Attributes {
     pub u2: Real,
     /// v at `p2`.
     pub v2: Real,
-    /// 1 where the corner normals are to be interpolated, else 0.
-    pub smooth_normals: u32,
+    /// Bit 0: whether corner normals are interpolated. The rest: one plus the facet of the flat
+    /// region that the triangle is part of, or 0.
+    pub facet_smooth: u32,
 }
 
 /// Lambertian reflection.

@@ -99,7 +99,7 @@ fn hosts() -> Vec<Layout> {
             step_tolerance
         }),
         layout!(Triangle { p0, material, p1, light, p2, attributes }),
-        layout!(Attributes { n0, u0, n1, v0, n2, u1, v1, u2, v2, smooth_normals }),
+        layout!(Attributes { n0, u0, n1, v0, n2, u1, v1, u2, v2, facet_smooth }),
         layout!(Material { reflectance, kind, absorption, ior, texture, alpha, planar_origin }),
         layout!(Texture { scale, kind, flags, first, width, height, format, color0, color1 }),
         layout!(Cell { split, axis, first }),

@@ -178,7 +178,7 @@ fn find_cuts(facet: Facet, position: vec3f, normal: vec3f, clip: ptr<function, C
         let wall = facets[i];
         let d = wall.origin - position;
         let rise = dot(d, wall.v);
-        if dot(wall.v, normal) > 0.5 && abs(rise) <= (*clip).depth {
+        if (dot(wall.v, normal) > 0.5 || wall.radius > 0.0) && abs(rise) <= (*clip).depth {
             let place = clamp(-dot(d, wall.u) / dot(wall.u, wall.u), 0.0, 1.0);
             let nearest = d + wall.u * place;
             if dot(nearest, nearest) < radius * radius && (*clip).count < CUTS {

@@ -41,7 +41,8 @@ fn surface_at(ray: Ray, hit: Hit) -> Surface {
                     a.u0 * w + a.u1 * hit.u + a.u2 * hit.v,
                     a.v0 * w + a.v1 * hit.u + a.v2 * hit.v,
                 );
-                if a.smooth_normals == 1u {
+                s.facet = (a.facet_smooth >> 1u) - 1u;
+                if (a.facet_smooth & 1u) == 1u {
                     let m = a.n0 * w + a.n1 * hit.u + a.n2 * hit.v;
                     if dot(m, m) > 0.0 {
                         let um = unit(m);

@@ -8,6 +8,7 @@ mod light;
 mod look;
 mod objects;
 mod order;
+mod outlines;
 mod pilots;
 mod shape;
 mod visibility;

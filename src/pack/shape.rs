@@ -349,7 +349,7 @@ impl Pack<'_> {
             v1: t[1].y,
             u2: t[2].x,
             v2: t[2].y,
-            smooth_normals: normals.is_some() as u32,
+            facet_smooth: normals.is_some() as u32,
         });
         self.out.attributes.len() as u32 - 1
     }

@@ -2,6 +2,7 @@
 //! the other.
 
 use super::real::{ToDouble, ToReal, Vec3};
+use super::outlines::{self, Region};
 use super::shapes::facet::WALL_BITS;
 use super::shapes::rectangle::rectangle_error;
 use super::tables::*;
@@ -31,6 +32,16 @@ struct Floor {
     facet: Facet,
     /// Place of the facet, or the plane's.
     place: Place,
+    /// Edges of a mesh's region that are not on the outline.
+    edges: Vec<[DVec3; 2]>,
+    /// Whether walls are searched for.
+    walls: bool,
+}
+
+impl Floor {
+    fn new(point: DVec3, normal: DVec3, facet: Facet, place: Place) -> Self {
+        Self { point, normal, facet, place, edges: Vec::new(), walls: true }
+    }
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -67,18 +78,38 @@ impl Polygon {
     }
 }
 
-/// A foot of a wall.
+/// A foot of a wall, or an edge of a mesh's region.
 #[derive(Clone, Copy)]
 struct Foot {
     from: DVec3,
     to: DVec3,
     up: DVec3,
+    /// Whether it counts on both sides of the floor.
+    both: bool,
 }
 
-/// Adds to the facets the walls that stand on them, and facets for the planes that have any.
+/// Adds facets for the flat regions of meshes, to all facets the walls that stand on them, and
+/// facets for the planes that have any.
 pub fn find_walls(out: &mut Scene) {
-    let floors = floors(out);
+    let regions = outlines::regions(out);
+    outlines::add_facets(out, &regions);
+    let mut floors = floors(out);
+    let first = out.facets.len() - regions.len();
+    let floor = |(k, region): (usize, Region)| Floor {
+        point: region.point,
+        normal: region.normal,
+        facet: region.facet,
+        place: Place::Facet((first + k) as u32),
+        edges: region.edges,
+        walls: true,
+    };
+    let flat = regions.into_iter().enumerate().map(floor);
     let mut polygons = polygons(out);
+    if (floors.len() + flat.len()) * (polygons.len() + out.triangles.len()) <= PAIRS {
+        floors.extend(flat);
+    } else {
+        floors.extend(flat.map(|floor| Floor { walls: false, ..floor }));
+    }
     if floors.len() * (polygons.len() + out.triangles.len()) <= PAIRS {
         polygons.extend(out.triangles.iter().map(|t| Polygon::new(&[t.p0, t.p1, t.p2])));
     }
@@ -87,7 +118,7 @@ pub fn find_walls(out: &mut Scene) {
     }
     let mut found: Vec<(Place, Facet, Vec<Foot>)> = floors
         .par_iter()
-        .map(|f| (f.place, f.facet, polygons.iter().flat_map(|p| feet_of(f, p)).collect::<Vec<_>>()))
+        .map(|f| (f.place, f.facet, feet(f, &polygons)))
         .filter(|(_, _, feet)| !feet.is_empty())
         .collect();
     // opposite faces of a cuboid have one outline
@@ -110,6 +141,7 @@ pub fn find_walls(out: &mut Scene) {
             origin: f.from.to_real(),
             u: (f.to - f.from).to_real(),
             v: f.up.to_real(),
+            radius: if f.both { 1.0 } else { 0.0 },
             ..Facet::zeroed()
         }));
     }
@@ -120,7 +152,7 @@ fn floors(out: &Scene) -> Vec<Floor> {
     for r in &out.rectangles {
         let facet = out.facets[r.facet as usize];
         let (point, normal) = (r.origin.to_double(), r.normal.to_double());
-        floors.push(Floor { point, normal, facet, place: Place::Facet(r.facet) });
+        floors.push(Floor::new(point, normal, facet, Place::Facet(r.facet)));
     }
     for c in &out.cuboids {
         for face in 0..6 {
@@ -129,7 +161,7 @@ fn floors(out: &Scene) -> Vec<Floor> {
             let index = c.facet + axis as u32;
             let facet = out.facets[index as usize];
             let normal = DVec3::from_array(std::array::from_fn(|i| if i == axis { sign } else { 0.0 }));
-            floors.push(Floor { point: corner.to_double(), normal, facet, place: Place::Facet(index) });
+            floors.push(Floor::new(corner.to_double(), normal, facet, Place::Facet(index)));
         }
     }
     for (i, plane) in out.planes.iter().enumerate() {
@@ -150,7 +182,7 @@ fn floors(out: &Scene) -> Vec<Floor> {
             }),
             ..Facet::zeroed()
         };
-        floors.push(Floor { point, normal, facet, place: Place::Plane(i) });
+        floors.push(Floor::new(point, normal, facet, Place::Plane(i)));
     }
     floors
 }
@@ -176,6 +208,26 @@ fn polygons(out: &Scene) -> Vec<Polygon> {
         }
     }
     polygons
+}
+
+/// The edges of a floor, and the feet of the walls that stand on it elsewhere.
+fn feet(floor: &Floor, polygons: &[Polygon]) -> Vec<Foot> {
+    let edge = |[from, to]: &[DVec3; 2]| Foot { from: *from, to: *to, up: floor.normal, both: true };
+    let mut feet: Vec<Foot> = floor.edges.iter().map(edge).collect();
+    if floor.walls {
+        let inside = |foot: &Foot| !floor.edges.iter().any(|edge| along(edge, foot));
+        feet.extend(polygons.iter().flat_map(|p| feet_of(floor, p)).filter(inside));
+    }
+    feet
+}
+
+/// Returns whether a foot lies on an edge of the floor.
+fn along([a, b]: &[DVec3; 2], foot: &Foot) -> bool {
+    let (length, direction) = (a.distance(*b), (*b - *a).normalize_or_zero());
+    [foot.from, foot.to].iter().all(|p| {
+        let place = (*p - *a).dot(direction).clamp(0.0, length);
+        p.distance(*a + direction * place) <= EDGE * length
+    })
 }
 
 /// The feet of a polygon on the two sides of a floor.
@@ -218,7 +270,7 @@ fn foot(floor: &Floor, up: DVec3, polygon: &Polygon) -> Option<Foot> {
     if from.distance(to) <= error || !within(&floor.facet, from, to) {
         return None;
     }
-    Some(Foot { from, to, up })
+    Some(Foot { from, to, up, both: false })
 }
 
 /// Whether a foot passes the inside of an outline.

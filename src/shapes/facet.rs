@@ -31,7 +31,7 @@ const CORNERS: usize = 8 + CUTS;
 /// The outline of a flat shape: a parallelogram `origin + s u + t v`, s and t in [0, 1], or a circle.
 ///
 /// A wall on a facet is one too: it stands on the segment `origin + s u`, on the side that `v`, a
-/// unit vector, points to.
+/// unit vector, points to. An edge of a mesh's flat region is a wall on both sides, of `radius` 1.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Plain, Zeroable)]
 pub struct Facet {
@@ -234,7 +234,7 @@ fn find_cuts(facets: &[Facet], facet: &Facet, position: Vec3, normal: Vec3, clip
         let d = wall.origin - position;
         let rise = d.dot(wall.v);
         // what stands on the other side or on the opposite face of a box is no wall here
-        if wall.v.dot(normal) > 0.5 && rise.abs() <= clip.depth {
+        if (wall.v.dot(normal) > 0.5 || wall.radius > 0.0) && rise.abs() <= clip.depth {
             let place = (-d.dot(wall.u) / wall.u.dot(wall.u)).clamp(0.0, 1.0);
             let nearest = d + wall.u * place;
             if nearest.dot(nearest) < radius * radius && clip.count < CUTS as u32 {

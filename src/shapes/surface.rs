@@ -61,7 +61,8 @@ pub fn surface_at(scene: &Scene, ray: &Ray, hit: &Hit) -> Surface {
                 let w = 1.0 - hit.u - hit.v;
                 s.uv =
                     Vec2::new(a.u0 * w + a.u1 * hit.u + a.u2 * hit.v, a.v0 * w + a.v1 * hit.u + a.v2 * hit.v);
-                if a.smooth_normals == 1 {
+                s.facet = (a.facet_smooth >> 1).wrapping_sub(1);
+                if a.facet_smooth & 1 == 1 {
                     let m = a.n0 * w + a.n1 * hit.u + a.n2 * hit.v;
                     if m.dot(m) > 0.0 {
                         let m = unit(m);

@@ -34,6 +34,62 @@ fn slim_boxes_under_an_even_sky() {
     }
 }
 
+/// A prism over a convex polygon in (x, y), from z = `back` to 0, as one mesh whose faces are split
+/// into triangles.
+fn prism(polygon: &[[f64; 2]], back: f64) -> String {
+    let n = polygon.len();
+    let mut text = String::new();
+    for z in [0.0, back] {
+        polygon.iter().for_each(|[x, y]| {
+            let _ = writeln!(text, "v {x:?} {y:?} {z:?}");
+        });
+    }
+    for i in 1..n - 1 {
+        let _ = writeln!(text, "f 1 {} {}\nf {} {} {}", i + 1, i + 2, n + 1, n + i + 2, n + i + 1);
+    }
+    for i in 0..n {
+        let (a, b) = (i + 1, (i + 1) % n + 1);
+        let _ = writeln!(text, "f {a} {} {b}\nf {b} {} {}", n + a, n + a, n + b);
+    }
+    text
+}
+
+/// Theory: the same holds of any convex body that was modelled as triangles, since its flat faces
+/// have outlines too. Without them the faces of these prisms are 7 to 30 % off.
+#[test]
+fn slim_meshes_under_an_even_sky() {
+    let regular = |n: usize, size: f64| -> Vec<[f64; 2]> {
+        let corner = |k: usize| (std::f64::consts::TAU * (k as f64 + 0.2) / n as f64).sin_cos();
+        (0..n).map(|k| corner(k)).map(|(sin, cos)| [cos * size, sin * size]).collect()
+    };
+    let square = |w: f64, h: f64| vec![[-w, -h], [w, -h], [w, h], [-w, h]];
+    let shapes = [
+        ("bar", square(0.006, 0.1), -0.012, 0.05),
+        ("plate", square(0.03, 0.1), -0.002, 0.015),
+        ("triangle", regular(3, 0.012), -0.01, 0.02),
+        ("pentagon", regular(5, 0.012), -0.01, 0.012),
+    ];
+    for (name, polygon, back, radius) in shapes {
+        let file = format!("prism-{name}.obj");
+        std::fs::write(folder().join(&file), prism(&polygon, back)).expect("written");
+        let camera = Camera {
+            position: DVec3::new(0.137, 0.211, 0.2),
+            target: DVec3::new(0.137, 0.211, 0.0),
+            fov: 1.5,
+            size: 4,
+        };
+        let text = format!(
+            "{}[materials.m]\ntype = \"diffuse\"\nreflectance = 0.8\n[[shapes]]\ntype = \"mesh\"\n\
+             file = \"{file}\"\nsmooth = false\nmaterial = \"m\"\n\
+             transform = {{ translate = [0.137, 0.211, 0] }}\n[environment]\nradiance = 1.0\n",
+            camera.toml(),
+        );
+        let settings = RenderSettings { direct: Direct::Photons, ..settings(radius) };
+        let found = runs_to(0.03, &text, &settings).region(|_, _| true);
+        assert_agrees(&format!("{name}, radius {radius}"), found, 0.8, 0.03);
+    }
+}
+
 const HEAD: &str = r#"
 [materials.white]
 type = "diffuse"
@@ -51,17 +107,36 @@ const WALLS: [(&str, &str); 4] = [
     ("mesh", "type = \"mesh\"\nfile = \"thin-wall.obj\""),
 ];
 
-const FLOORS: [(&str, &str); 3] = [
+const FLOORS: [(&str, &str); 5] = [
     ("rectangle", "type = \"rectangle\"\norigin = [-1, 0, 1]\nu = [2, 0, 0]\nv = [0, 0, -2]"),
     ("box", "type = \"box\"\nmin = [-1, -0.2, -1]\nmax = [1, 0, 1]"),
     ("plane", "type = \"plane\"\npoint = [0.3, 0, 0]\nnormal = [0, 1, 0]"),
+    ("mesh", "type = \"mesh\"\nfile = \"floor-1.obj\""),
+    ("mesh of 72 triangles", "type = \"mesh\"\nfile = \"floor-6.obj\""),
 ];
+
+/// The square [-1, 1]^2 in y = 0 as `n` by `n` squares of two triangles.
+fn grid(n: usize) -> String {
+    let at = |i: usize| 2.0 * i as f64 / n as f64 - 1.0;
+    let mut text = String::new();
+    for i in 0..(n + 1) * (n + 1) {
+        let _ = writeln!(text, "v {:?} 0 {:?}", at(i % (n + 1)), at(i / (n + 1)));
+    }
+    for i in 0..n * n {
+        let a = i / n * (n + 1) + i % n + 1;
+        let _ = writeln!(text, "f {a} {} {}\nf {a} {} {}", a + n + 1, a + n + 2, a + n + 2, a + 1);
+    }
+    text
+}
 
 /// Two rooms, a lamp in the right one; the camera looks down at the floor on either side of the
 /// wall.
 fn rooms(wall: &str, floor: &str, camera: Camera, material: &str) -> String {
     let mesh = "v 0 0 -1\nv 0 0 1\nv 0 1 1\nv 0 1 -1\nf 1 2 3\nf 1 3 4\n";
     std::fs::write(folder().join("thin-wall.obj"), mesh).expect("written");
+    for n in [1, 6] {
+        std::fs::write(folder().join(format!("floor-{n}.obj")), grid(n)).expect("written");
+    }
     let mut text = camera.toml() + HEAD;
     for (shape, material) in [(floor, "white"), (wall, material)] {
         let _ = write!(text, "[[shapes]]\n{shape}\nmaterial = \"{material}\"\n");
