@@ -5,8 +5,10 @@
 
 use super::parts::{TRIANGLES, parts};
 use crate::scene::{Mesh, ShapeKind};
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
+/// A large mesh whose summed area vector is shorter than this share of its area counts as closed.
+const LEAST_FACING: f64 = 1e-3;
 /// Points of a profile's segment.
 const STEPS: u32 = 64;
 
@@ -50,11 +52,61 @@ fn de_casteljau(points: &[DVec2], t: f64) -> DVec2 {
 
 fn mesh_faces_inward(mesh: &Mesh) -> bool {
     if mesh.triangles.len() > TRIANGLES {
-        return false;
+        return large_mesh_faces_inward(mesh);
     }
     let (parts, _) = parts(mesh);
     // a shell within another one may face inward: the wall of a hollow body
     parts.iter().any(|part| {
         part.closed && part.volume < 0.0 && !parts.iter().any(|other| other.closed && other.holds(part))
     })
+}
+
+/// The same of a mesh that is too large to be split: one body if its area vectors cancel.
+fn large_mesh_faces_inward(mesh: &Mesh) -> bool {
+    let origin = mesh.positions.first().copied().unwrap_or_default();
+    let (mut volume, mut facing, mut area) = (0.0, DVec3::ZERO, 0.0);
+    for triangle in &mesh.triangles {
+        let [a, b, c] = triangle.position.map(|i| mesh.positions[i as usize] - origin);
+        let across = (b - a).cross(c - a);
+        volume += a.dot(across);
+        facing += across;
+        area += across.length();
+    }
+    volume < 0.0 && facing.length() <= LEAST_FACING * area
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Triangle;
+
+    /// Theory: a closed body whose triangles are listed clockwise faces inward, however many they
+    /// are; an open sheet does not face anywhere.
+    #[test]
+    fn large_meshes() {
+        let n = 400;
+        let at = |i: usize, j: usize| {
+            let (u, v) = (i as f64 / n as f64, j as f64 / n as f64);
+            let (phi, theta) = (std::f64::consts::TAU * u, std::f64::consts::PI * v);
+            DVec3::new(theta.sin() * phi.cos(), theta.cos(), theta.sin() * phi.sin())
+        };
+        let mut mesh =
+            Mesh { positions: Vec::new(), normals: Vec::new(), uvs: Vec::new(), triangles: Vec::new() };
+        for j in 0..=n {
+            mesh.positions.extend((0..=n).map(|i| at(i, j)));
+        }
+        let quad = |i: usize, j: usize| {
+            let a = (j * (n + 1) + i) as u32;
+            let b = a + n as u32 + 1;
+            [[a, a + 1, b], [b, a + 1, b + 1]]
+        };
+        let faces = (0..n * n).flat_map(|k| quad(k % n, k / n));
+        mesh.triangles.extend(faces.map(|position| Triangle { position, uv: None, normal: None }));
+        assert!(mesh.triangles.len() > TRIANGLES);
+        assert!(!mesh_faces_inward(&mesh));
+        mesh.triangles.iter_mut().for_each(|t| t.position.swap(0, 1));
+        assert!(mesh_faces_inward(&mesh));
+        mesh.triangles.truncate(TRIANGLES + 1);
+        assert!(!mesh_faces_inward(&mesh));
+    }
 }

@@ -143,7 +143,8 @@ impl Surface {
 
     fn meeting(&self, (s, j): (u32, u8), (t, k): (u32, u8)) -> Meeting {
         let across = |t: u32, k: u8| self.corners[t as usize][(k as usize + 2) % 3];
-        let (from, to) = (self.corners[s as usize][j as usize], self.corners[s as usize][(j as usize + 1) % 3]);
+        let (from, to) =
+            (self.corners[s as usize][j as usize], self.corners[s as usize][(j as usize + 1) % 3]);
         let (n, m) = (self.normals[s as usize], self.normals[t as usize]);
         let (a, b) = (across(s, j) - from, across(t, k) - from);
         let inward = n.cross(to - from);
@@ -268,9 +269,8 @@ fn joined(surface: &Surface, sides: &[(u32, u8)], error: f64) -> Vec<[DVec3; 2]>
         let along = (to - from).normalize_or_zero();
         chain.iter().all(|p| (*p - from).reject_from_normalized(along).length() <= 4.0 * error)
     };
-    let points = |set: &[u32]| -> Vec<DVec3> {
-        set.iter().flat_map(|i| ends[*i as usize].map(|(_, p)| p)).collect()
-    };
+    let points =
+        |set: &[u32]| -> Vec<DVec3> { set.iter().flat_map(|i| ends[*i as usize].map(|(_, p)| p)).collect() };
     let mut sets = Sets::new(ends.len());
     for meeting in at.values() {
         if let [(i, j), (k, l)] = meeting[..] {
@@ -299,9 +299,8 @@ fn joined(surface: &Surface, sides: &[(u32, u8)], error: f64) -> Vec<[DVec3; 2]>
 /// farthest from it.
 fn extremes(points: &[DVec3]) -> (DVec3, DVec3) {
     let farthest = |from: DVec3| {
-        let far = points.iter().max_by(|a, b| {
-            from.distance_squared(**a).total_cmp(&from.distance_squared(**b))
-        });
+        let far =
+            points.iter().max_by(|a, b| from.distance_squared(**a).total_cmp(&from.distance_squared(**b)));
         far.copied().unwrap_or(from)
     };
     let from = farthest(points.first().copied().unwrap_or_default());

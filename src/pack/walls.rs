@@ -1,8 +1,8 @@
 //! Walls: flat shapes that stand on facets and planes, where they part what lies on one side from
 //! the other.
 
-use super::real::{ToDouble, ToReal, Vec3};
 use super::outlines::{self, Region};
+use super::real::{ToDouble, ToReal, Vec3};
 use super::shapes::facet::WALL_BITS;
 use super::shapes::rectangle::rectangle_error;
 use super::tables::*;
@@ -18,7 +18,7 @@ const GAP: f64 = 1e-3;
 /// Feet this close to an edge, in edge lengths, are the outline's business.
 const EDGE: f64 = 1e-4;
 /// Walls of one facet, the longest ones.
-const WALLS: usize = 32;
+const WALLS: usize = (1 << WALL_BITS) - 1;
 /// Pairs of facet and polygon that are looked at; where there are more, triangles are no walls, or
 /// nothing is.
 const PAIRS: usize = 1 << 26;

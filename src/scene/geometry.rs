@@ -103,7 +103,7 @@ pub struct Triangle {
     pub position: [u32; 3],
     /// Into [`Mesh::normals`]; `None` is flat.
     pub normal: Option<[u32; 3]>,
-    /// Into [`Mesh::uvs`]; `None` reads textures at the barycentric coordinates of the second and third corner.
+    /// Into [`Mesh::uvs`]; `None` reads textures at (0, 0).
     pub uv: Option<[u32; 3]>,
 }
 

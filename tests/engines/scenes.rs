@@ -205,6 +205,12 @@ pub const SCENES: [(&str, &str, &str); 10] = [
         file = "cube.obj"
         material = "label"
         transform = { scale = 0.4, rotate = { axis = [0, 1, 0], degrees = 30 }, translate = [0.5, 0.4, 0.0] }
+        [[shapes]]
+        type = "mesh"
+        file = "wedge.obj"
+        smooth = false
+        material = "label"
+        transform = { translate = [-0.7, 0.0, 0.3] }
         "#,
     ),
     (
@@ -394,10 +400,15 @@ fn assets() -> &'static Path {
             image::Rgb([0.2 + 0.05 * x as f32 + sun, 0.3 + sun, 1.0 - 0.1 * y as f32 + sun])
         });
         sky.save(folder.join("sky.hdr")).unwrap();
+        std::fs::write(folder.join("wedge.obj"), WEDGE).unwrap();
         std::fs::write(folder.join("ball.obj"), ball(12, 8)).unwrap();
         folder
     })
 }
+
+/// A wedge, whose ends are triangles.
+const WEDGE: &str = "v 0 0 0\nv 0.5 0 0.1\nv 0.1 0.3 0\nv 0 0 0.6\nv 0.5 0 0.7\nv 0.1 0.3 0.6\n\
+    f 1 3 2\nf 4 5 6\nf 1 2 5 4\nf 2 3 6 5\nf 3 1 4 6\n";
 
 /// A sphere as a mesh with normals and uv.
 fn ball(columns: u32, rows: u32) -> String {

@@ -192,7 +192,9 @@ fn nothing_passes_under_a_wall() {
 #[test]
 fn the_lit_side_is_even_up_to_the_wall() {
     for (floor_name, floor) in FLOORS {
-        for (wall_name, wall) in WALLS {
+        // each wall once and each floor once
+        let pairs = |(wall_name, _): &&(&str, &str)| floor_name == "rectangle" || *wall_name == "mesh";
+        for (wall_name, wall) in WALLS.iter().filter(pairs) {
             let camera = camera(1.0);
             let text = rooms(wall, floor, camera, "black");
             let settings = RenderSettings { direct: Direct::Photons, ..settings(0.03) };
