@@ -1,7 +1,7 @@
 //! The density estimate at a visible point on the CPU. `cargo bench --bench gather`.
 //!
-//! Sizes: a disc holds about one photon where a picture is dark or a radius has shrunk, ten to a hundred where it is tuned, and
-//! a thousand in a caustic or at the start of a render.
+//! Sizes: a disc holds about one photon where a picture is dark or a radius has shrunk, ten to a
+//! hundred where it is tuned, and a thousand in a caustic or at the start of a render.
 
 use bytemuck::Zeroable;
 use caustica::kernels::gather::gather;

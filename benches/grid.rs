@@ -1,8 +1,8 @@
 //! The hash grid's construction on the CPU, step by step. `cargo bench --bench grid`.
 //!
-//! Sizes: 2^16 records fit the second-level cache of most processors with everything that goes with them, 2^19 the last level
-//! of some, and 2^22, as many as a batch may have, none. There are as many buckets as records, as in a plan, and
-//! lists as long as those of a task of photons.
+//! Sizes: 2^16 records fit the second-level cache of most processors with everything that goes with
+//! them, 2^19 the last level of some, and 2^22, as many as a batch may have, none. There are as
+//! many buckets as records, as in a plan, and lists as long as those of a task of photons.
 
 use bytemuck::Zeroable;
 use caustica::kernels::grid_build::{
@@ -21,7 +21,8 @@ fn main() {
 /// Records of a list.
 const LIST: usize = 1 << 13;
 
-/// Records on the walls of a cube of such a size that a cell of the wall holds about four, as around visible points.
+/// Records on the walls of a cube of such a size that a cell of the wall holds about four, as
+/// around visible points.
 fn lists(count: u32) -> (Dispatch, Vec<RecordList>) {
     let side = (count as f32 / 24.0).sqrt();
     let mut state = 1u32;
@@ -36,7 +37,13 @@ fn lists(count: u32) -> (Dispatch, Vec<RecordList>) {
     };
     let records: Vec<_> = (0..count).map(record).collect();
     let list = |records: &[PhotonRecord]| RecordList::new(records.to_vec());
-    let d = Dispatch { capacity: count, mask: count - 1, inv_cell: 1.0, families: 1, ..Dispatch::zeroed() };
+    let d = Dispatch {
+        capacity: count,
+        mask: count - 1,
+        inv_cell: 1.0,
+        families: 1,
+        ..Dispatch::zeroed()
+    };
     (d, records.chunks(LIST).map(list).collect())
 }
 

@@ -1,11 +1,13 @@
-//! Rays and trees: each test of a shape, rays through the kd-tree, and its construction. Rates are rays or triangles
-//! per second on one thread; the build uses all.
+//! Rays and trees: each test of a shape, rays through the kd-tree, and its construction. Rates are
+//! rays or triangles per second on one thread; the build uses all.
 
 mod workload;
 
 use caustica::build::kdtree::{self, Primitive};
 use caustica::real::Real;
-use caustica::shapes::intersect::{intersect_primitive, intersect_scene, intersect_scene_many, occluded};
+use caustica::shapes::intersect::{
+    intersect_primitive, intersect_scene, intersect_scene_many, occluded,
+};
 use caustica::shapes::ray::{Hit, Ray};
 use caustica::shapes::triangle::RayShear;
 use caustica::tables::*;
@@ -18,8 +20,8 @@ fn main() {
 /// Enough rays that each size of tree is walked all over, few enough for a run in a second.
 const RAYS: usize = 1 << 14;
 
-/// One shape in the middle that many of the rays meet; the triangle is one of six. The profile is a cubic, whose patch takes
-/// Newton.
+/// One shape in the middle that many of the rays meet; the triangle is one of six. The profile is a
+/// cubic, whose patch takes Newton.
 const SHAPES: [(&str, u32, &str); 6] = [
     ("sphere", KIND_SPHERE, "type = \"sphere\"\ncenter = [0, 0, 0]\nradius = 0.6"),
     (
@@ -40,7 +42,8 @@ const SHAPES: [(&str, u32, &str); 6] = [
 #[divan::bench(args = SHAPES.map(|s| s.0))]
 fn shape(bencher: Bencher, name: &str) {
     let Some((_, kind, text)) = SHAPES.iter().find(|s| s.0 == name) else { return };
-    let packed = if text.is_empty() { workload::displaced_sphere(3, 2) } else { workload::packed(text) };
+    let packed =
+        if text.is_empty() { workload::displaced_sphere(3, 2) } else { workload::packed(text) };
     let rays = workload::incoherent_rays(&packed, RAYS);
     let reference = reference(*kind, 0);
     bencher.counter(ItemsCount::new(RAYS)).bench_local(|| {
@@ -54,8 +57,9 @@ fn shape(bencher: Bencher, name: &str) {
     });
 }
 
-/// (nu, nv) of a mesh of about 1e3 triangles (the tree fits the first-level cache), 1e4 (the second level), 1e5 (the
-/// size of the comparison with Embree; the triangles do not fit the second level) and 1e6 (little fits).
+/// (nu, nv) of a mesh of about 1e3 triangles (the tree fits the first-level cache), 1e4 (the second
+/// level), 1e5 (the size of the comparison with Embree; the triangles do not fit the second level)
+/// and 1e6 (little fits).
 const MESHES: [(u32, u32); 4] = [(32, 17), (100, 51), (316, 159), (1000, 501)];
 
 fn trace(bencher: Bencher, (nu, nv): (u32, u32), hit: impl Fn(&Scene, &Ray) -> bool) {
@@ -98,5 +102,7 @@ fn build(bencher: Bencher, (nu, nv): (u32, u32)) {
     let packed = workload::displaced_sphere(nu, nv);
     let triangles: Vec<Primitive> =
         packed.scene.triangles.iter().map(|t| Primitive::Triangle([t.p0, t.p1, t.p2])).collect();
-    bencher.counter(ItemsCount::new(triangles.len())).bench_local(|| kdtree::build(black_box(&triangles)));
+    bencher
+        .counter(ItemsCount::new(triangles.len()))
+        .bench_local(|| kdtree::build(black_box(&triangles)));
 }

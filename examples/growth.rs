@@ -1,9 +1,10 @@
-//! How cost grows: one thing at a time is made larger, and the exponent of each kernel's seconds, of loading and of building is
-//! fitted. `cargo run --release --example growth -- [--device cpu] [--axis pixels]... [--full]` prints a table;
-//! docs/performance.md tells what it says.
+//! How cost grows: one thing at a time is made larger, and the exponent of each kernel's seconds,
+//! of loading and of building is fitted. `cargo run --release --example growth -- [--device cpu]
+//! [--axis pixels]... [--full]` prints a table; docs/performance.md tells what it says.
 //!
-//! Seconds are those of the processor (all threads) where the system tells them, so that other work on the machine does not
-//! count, in the mean of several passes. The exponent is that of the larger half of the sizes: fixed costs hide it before.
+//! Seconds are those of the processor (all threads) where the system tells them, so that other work
+//! on the machine does not count, in the mean of several passes. The exponent is that of the larger
+//! half of the sizes: fixed costs hide it before.
 
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -36,7 +37,8 @@ struct Axis {
 
 fn axes(full: bool) -> Vec<Axis> {
     let decades = |last: i32| (0..=last).map(|k| 10f64.powi(k)).collect::<Vec<_>>();
-    let doublings = |first: i32, last: i32| (first..=last).map(|k| 2f64.powi(k)).collect::<Vec<_>>();
+    let doublings =
+        |first: i32, last: i32| (first..=last).map(|k| 2f64.powi(k)).collect::<Vec<_>>();
     vec![
         Axis {
             name: "pixels",
@@ -95,7 +97,8 @@ material = "white"
 transform = { scale = 0.4, translate = [0.0, 0.6, 0.0] }
 "#;
 
-/// A closed box of grey walls around the camera, `side` pixels square, lit by point lights below its ceiling.
+/// A closed box of grey walls around the camera, `side` pixels square, lit by point lights below
+/// its ceiling.
 fn cornell(side: u32, lights: u32, grey: f64) -> String {
     let mut text = format!(
         "version = 1\n[camera]\nposition = [0.0, 1.0, 4.0]\ntarget = [0.0, 1.0, 0.0]\nfov = 39.0\n\
@@ -138,7 +141,13 @@ fn displaced_sphere(triangles: f64) -> String {
             let v = std::f64::consts::PI * f64::from(i) / f64::from(rows);
             let u = std::f64::consts::TAU * f64::from(j) / f64::from(columns);
             let r = 1.0 + 0.1 * (7.0 * u).sin() * (9.0 * v).sin();
-            let _ = writeln!(text, "v {} {} {}", r * v.sin() * u.cos(), r * v.cos(), r * v.sin() * u.sin());
+            let _ = writeln!(
+                text,
+                "v {} {} {}",
+                r * v.sin() * u.cos(),
+                r * v.cos(),
+                r * v.sin() * u.sin()
+            );
         }
     }
     for i in 0..rows {
@@ -185,14 +194,16 @@ fn measure(
     let begun = Instant::now();
     let before = spent(begun);
     // ten million triangles are a little more than what is allowed unasked
-    let allowance = Allowance { mesh_triangles: 1 << 24, mesh_bytes: 4 << 30, ..Allowance::default() };
+    let allowance =
+        Allowance { mesh_triangles: 1 << 24, mesh_bytes: 4 << 30, ..Allowance::default() };
     let mut loaded = scene::load_within(&file, &allowance)?;
     let mut seconds = BTreeMap::from([("(load)".to_owned(), spent(begun) - before)]);
     (axis.settings)(size, &mut loaded.settings);
     let devices = device::list();
     let (device, _) = device::pick(&device::parse(device), &devices)?;
     let before = spent(begun);
-    let packed = caustica::pack::pack(&loaded.scene, loaded.scene.film.width, loaded.scene.film.height)?;
+    let packed =
+        caustica::pack::pack(&loaded.scene, loaded.scene.film.width, loaded.scene.film.height)?;
     seconds.insert("(build)".to_owned(), spent(begun) - before);
     drop(packed);
     let mut ready = setup::ready(device, &loaded.scene, &loaded.settings, Compiling::Together)?;
@@ -221,7 +232,10 @@ fn run() -> Result<(), Box<dyn Error>> {
             "--axis" => chosen.push(arguments.next().ok_or("--axis takes a name")?),
             "--full" => full = true,
             other => {
-                return Err(format!("unknown option {other}; there are --device, --axis and --full").into());
+                return Err(format!(
+                    "unknown option {other}; there are --device, --axis and --full"
+                )
+                .into());
             }
         }
     }
@@ -230,11 +244,14 @@ fn run() -> Result<(), Box<dyn Error>> {
         let names: Vec<_> = all.iter().map(|axis| axis.name).collect();
         return Err(format!("there is no axis {unknown}; there are {}", names.join(", ")).into());
     }
-    let folder: PathBuf = std::env::temp_dir().join(format!("caustica-growth-{}", std::process::id()));
+    let folder: PathBuf =
+        std::env::temp_dir().join(format!("caustica-growth-{}", std::process::id()));
     fs::create_dir_all(&folder)?;
     println!("| grows | from | to | what | s at the least | s at the most | exponent | n log n |");
     println!("|---|---|---|---|---|---|---|---|");
-    for axis in all.iter().filter(|axis| chosen.is_empty() || chosen.iter().any(|name| name == axis.name)) {
+    for axis in
+        all.iter().filter(|axis| chosen.is_empty() || chosen.iter().any(|name| name == axis.name))
+    {
         let mut series: BTreeMap<String, Vec<(f64, f64)>> = BTreeMap::new();
         for &size in &axis.sizes {
             for (what, seconds) in measure(axis, size, &device, &folder)? {
@@ -243,7 +260,8 @@ fn run() -> Result<(), Box<dyn Error>> {
         }
         let largest = |points: &Vec<(f64, f64)>| points[points.len() - 1].1;
         let of_the_pass = |what: &str| !what.starts_with('(');
-        let pass: f64 = series.iter().filter(|(what, _)| of_the_pass(what)).map(|(_, p)| largest(p)).sum();
+        let pass: f64 =
+            series.iter().filter(|(what, _)| of_the_pass(what)).map(|(_, p)| largest(p)).sum();
         for (what, points) in series {
             let (first, last) = (points[0], points[points.len() - 1]);
             if last.1 < NOTICEABLE * pass {

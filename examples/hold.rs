@@ -42,8 +42,8 @@ struct Arguments {
     relmse: Option<f64>,
 }
 
-/// Scene files and truths by these names lie in tests/data/reference and tests/data/truth. Of variants, which have a
-/// hyphen, only the first two lines are made.
+/// Scene files and truths by these names lie in tests/data/reference and tests/data/truth. Of
+/// variants, which have a hyphen, only the first two lines are made.
 const SCENES: [&str; 5] = ["cornell", "drop", "drop-clear", "mesh", "mesh-turned"];
 /// Independent renders per line.
 const RENDERS: u32 = 16;
@@ -85,7 +85,8 @@ fn make_truth(full: &Path, out: &Path, relmse: Option<f64>) -> Result<(), Box<dy
 /// What one line of the table renders, and the bias that it may have.
 fn lines() -> Vec<(String, RenderSettings, f64)> {
     let mut lines = Vec::new();
-    let path = RenderSettings { method: Method::Path, passes: 8 * PASSES, ..RenderSettings::default() };
+    let path =
+        RenderSettings { method: Method::Path, passes: 8 * PASSES, ..RenderSettings::default() };
     lines.push(("path".to_owned(), path, 0.0));
     lines.push((
         "sppm default".to_owned(),
@@ -120,7 +121,18 @@ fn hold_all(arguments: &Arguments) -> Result<bool, Box<dyn Error>> {
     let wanted = device::parse(&arguments.device);
     println!(
         "{:10} {:20} {:>8} {:>8} {:>8} {:>8} {:>8} {:>9} {:>13} {:>6} {:>9} {:>6}",
-        "scene", "render", "R", "G", "B", "+- %", "truth %", "relMSE", "outside", "worst", "regions", "s"
+        "scene",
+        "render",
+        "R",
+        "G",
+        "B",
+        "+- %",
+        "truth %",
+        "relMSE",
+        "outside",
+        "worst",
+        "regions",
+        "s"
     );
     let mut agrees = true;
     for name in SCENES {
@@ -157,11 +169,15 @@ fn hold_all(arguments: &Arguments) -> Result<bool, Box<dyn Error>> {
 fn print_line(scene: &str, line: &str, a: &Agreement, seconds: f64) {
     let percent = |e: [f64; 3]| 100.0 * e[0].max(e[1]).max(e[2]);
     let [r, g, b] = a.mean_ratio;
-    let outside = format!("{}/{} <= {}", a.blocks.outside(), a.blocks.values.len(), a.blocks.allowed);
+    let outside =
+        format!("{}/{} <= {}", a.blocks.outside(), a.blocks.values.len(), a.blocks.allowed);
     let regions = format!("{} <= {}", a.regions.outside(), a.regions.allowed);
     let faults = a.faults();
-    let verdict =
-        if faults.is_empty() { "agrees".to_owned() } else { format!("FAILS: {}", faults.join(", ")) };
+    let verdict = if faults.is_empty() {
+        "agrees".to_owned()
+    } else {
+        format!("FAILS: {}", faults.join(", "))
+    };
     println!(
         "{scene:10} {line:20} {r:8.4} {g:8.4} {b:8.4} {:8.3} {:8.3} {:9.2e} {outside:>13} {:6.1} {regions:>9} {seconds:6.1} {verdict}",
         percent(a.ratio_error),
@@ -177,8 +193,9 @@ fn write_map(
     (width, height): (u32, u32),
     settings: &RenderSettings,
 ) -> Result<(), Box<dyn Error>> {
-    let map =
-        Picture::from_fn(width, height, |x, y| [agreement.blocks.values[(y * width + x) as usize] as f32; 3]);
+    let map = Picture::from_fn(width, height, |x, y| {
+        [agreement.blocks.values[(y * width + x) as usize] as f32; 3]
+    });
     let provenance = Provenance {
         scene: String::new(),
         scene_text: String::new(),

@@ -22,10 +22,13 @@ const PHOTONS: u32 = 100_000;
 fn main() -> Result<(), Box<dyn Error>> {
     let mut scenes: Vec<PathBuf> = std::env::args().skip(1).map(PathBuf::from).collect();
     if scenes.is_empty() {
-        let names = ["caustics", "cornell", "depth-of-field", "soft-shadows", "still-life", "water-drop"];
+        let names =
+            ["caustics", "cornell", "depth-of-field", "soft-shadows", "still-life", "water-drop"];
         scenes = names.map(|name| Path::new("scenes").join(name).with_extension("toml")).into();
     }
-    println!("| scene | median pixel | means | RMS pixel | RMS noise | noise / cost | time f64 / f32 |");
+    println!(
+        "| scene | median pixel | means | RMS pixel | RMS noise | noise / cost | time f64 / f32 |"
+    );
     println!("|---|--:|--:|--:|--:|--:|--:|");
     for path in scenes {
         scene_row(&path)?;
@@ -51,7 +54,8 @@ fn render(
     Ok((engine.picture()?, start.elapsed()))
 }
 
-/// f32 and f64 with the same random numbers; then f32 with others, which tells the noise. RMS as in relMSE.
+/// f32 and f64 with the same random numbers; then f32 with others, which tells the noise. RMS as in
+/// relMSE.
 fn scene_row(path: &Path) -> Result<(), Box<dyn Error>> {
     let mut loaded = scene::load(path)?;
     let film = &mut loaded.scene.film;
@@ -78,7 +82,8 @@ fn scene_row(path: &Path) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Light of a spherical lamp whose radius is the `over`th part of its distance, over what it is in closed form.
+/// Light of a spherical lamp whose radius is the `over`th part of its distance, over what it is in
+/// closed form.
 fn lamp_row(over: f64) -> Result<(), Box<dyn Error>> {
     let distance = 9.0;
     let text = format!(
@@ -98,7 +103,8 @@ fn lamp_row(over: f64) -> Result<(), Box<dyn Error>> {
     let settings = RenderSettings { passes: PASSES, photons: 1, ..RenderSettings::default() };
     let ratio = |wanted: &Wanted| -> Result<f64, Box<dyn Error>> {
         let (picture, _) = render(wanted, &scene, &settings)?;
-        let mean = picture.rgb.iter().map(|rgb| luminance(*rgb)).sum::<f64>() / picture.rgb.len() as f64;
+        let mean =
+            picture.rgb.iter().map(|rgb| luminance(*rgb)).sum::<f64>() / picture.rgb.len() as f64;
         Ok(mean / (0.5 / (over * over)))
     };
     println!("| 1 / {over} | {:.6} | {:.6} |", ratio(&Wanted::Cpu)?, ratio(&Wanted::CpuDouble)?);

@@ -1,6 +1,7 @@
-//! How soon the preview shows something: from a scene and from a turned camera to the small picture and to the first pass of the
-//! whole one, on each device; medians of three. The whole one has a quarter of the scene's sides and a sixteenth of its photons, so
-//! that what it takes to begin is not lost in the pass. `cargo run --release --example preview [SCENE...]`
+//! How soon the preview shows something: from a scene and from a turned camera to the small picture
+//! and to the first pass of the whole one, on each device; medians of three. The whole one has a
+//! quarter of the scene's sides and a sixteenth of its photons, so that what it takes to begin is
+//! not lost in the pass. `cargo run --release --example preview [SCENE...]`
 
 use std::error::Error;
 use std::sync::Arc;
@@ -20,7 +21,9 @@ const ROUNDS: usize = 3;
 fn main() -> Result<(), Box<dyn Error>> {
     let mut files: Vec<String> = std::env::args().skip(1).collect();
     if files.is_empty() {
-        files = ["cornell", "caustics", "still-life"].map(|name| format!("scenes/{name}.toml")).to_vec();
+        files = ["cornell", "caustics", "still-life"]
+            .map(|name| format!("scenes/{name}.toml"))
+            .to_vec();
     }
     println!(
         "| scene | device | scene: small | scene: whole | camera: small | camera: whole |\n|---|---|---|---|---|---|"
@@ -60,14 +63,17 @@ fn main() -> Result<(), Box<dyn Error>> {
             println!("| {} | {device:?} | {} |", scene.name, middle.join(" | "));
         }
     }
-    println!("\n| scene | packing | GPU engine: new | with the programs of another |\n|---|---|---|---|");
+    println!(
+        "\n| scene | packing | GPU engine: new | with the programs of another |\n|---|---|---|---|"
+    );
     for file in &files {
         println!("| {file} | {} |", renewal(file)?);
     }
     Ok(())
 }
 
-/// What it takes to flatten a scene, to make an engine on the software driver, and to make it again.
+/// What it takes to flatten a scene, to make an engine on the software driver, and to make it
+/// again.
 fn renewal(file: &str) -> Result<String, Box<dyn Error>> {
     let loaded = scene::load(file.as_ref())?;
     let film = loaded.scene.film;
@@ -86,7 +92,12 @@ fn renewal(file: &str) -> Result<String, Box<dyn Error>> {
 }
 
 /// Since `begun`, until a picture for wish `number` is there; the whole one's first pass, or any.
-fn until(worker: &Worker, number: u64, whole: bool, begun: Instant) -> Result<Duration, Box<dyn Error>> {
+fn until(
+    worker: &Worker,
+    number: u64,
+    whole: bool,
+    begun: Instant,
+) -> Result<Duration, Box<dyn Error>> {
     loop {
         if worker.frame().is_some_and(|frame| frame.number == number && !(whole && frame.quick)) {
             return Ok(begun.elapsed());

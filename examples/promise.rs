@@ -2,9 +2,10 @@
 //!
 //!     cargo run --release --example promise [-- --only "cornell sppm" --seeds 20 --device cpu]
 //!
-//! Truths of `cornell`, `drop` and `mesh` are those of tests/data/truth; those of the others, and of a larger `drop`, are made
-//! first, two renders of each, and kept in target/promise. Exits with 1 when fewer than nine of ten promises of a line are kept.
-//! docs/error-estimate.md explains the table.
+//! Truths of `cornell`, `drop` and `mesh` are those of tests/data/truth; those of the others, and
+//! of a larger `drop`, are made first, two renders of each, and kept in target/promise. Exits with
+//! 1 when fewer than nine of ten promises of a line are kept. docs/error-estimate.md explains the
+//! table.
 
 use std::error::Error;
 use std::path::{Path, PathBuf};
@@ -38,8 +39,9 @@ const PROMISED: f64 = 0.9;
 /// Each of the two renders of a truth: passes, photons of each, and the start radius in pixels.
 const TRUTH: (u32, u32, f64) = (512, 131_072, 0.5);
 
-/// Scene and film, as large as the truth in tests/data/truth, or a size for which a truth is made. `drop` has both: among the
-/// 1200 pixels of the former too few have a glint for one to be seen in every render.
+/// Scene and film, as large as the truth in tests/data/truth, or a size for which a truth is made.
+/// `drop` has both: among the 1200 pixels of the former too few have a glint for one to be seen in
+/// every render.
 const SCENES: [(&str, Option<(u32, u32)>); 6] = [
     ("cornell", None),
     ("drop", None),
@@ -118,13 +120,18 @@ fn hold_all(arguments: &Arguments) -> Result<bool, Box<dyn Error>> {
             }
         }
     }
-    println!("within, in all: {} of {}", all.iter().filter(|promise| promise.kept()).count(), all.len());
+    println!(
+        "within, in all: {} of {}",
+        all.iter().filter(|promise| promise.kept()).count(),
+        all.len()
+    );
     Ok(kept)
 }
 
 fn print_line(scene: &str, line: &str, passes: u32, promises: &[Promise]) -> bool {
-    let mean =
-        |value: &dyn Fn(&Promise) -> f64| promises.iter().map(value).sum::<f64>() / promises.len() as f64;
+    let mean = |value: &dyn Fn(&Promise) -> f64| {
+        promises.iter().map(value).sum::<f64>() / promises.len() as f64
+    };
     let kept = promises.iter().filter(|promise| promise.kept()).count();
     let [truth, noise, bias, stated] = [
         mean(&|p| 100.0 * p.truth),
@@ -150,11 +157,13 @@ fn scene_and_truth(
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let file = |folder| root.join(folder).join(name).with_extension("toml");
     let (shipped, reference) = (file("scenes"), file("tests/data/reference"));
-    let mut loaded = scene::load(if size.is_some() && shipped.exists() { &shipped } else { &reference })?;
+    let mut loaded =
+        scene::load(if size.is_some() && shipped.exists() { &shipped } else { &reference })?;
     let film = &mut loaded.scene.film;
     let truth = match size {
         None => {
-            let truth = BlockTruth::read(&root.join("tests/data/truth").join(name).with_extension("exr"))?;
+            let truth =
+                BlockTruth::read(&root.join("tests/data/truth").join(name).with_extension("exr"))?;
             (film.width, film.height) = (truth.mean.width, truth.mean.height);
             NoisyTruth::Blocks(truth)
         }
@@ -168,7 +177,12 @@ fn scene_and_truth(
 }
 
 /// One of the renders of a truth, from its file if there is one.
-fn truth_half(wanted: &Wanted, scene: &Scene, name: &str, seed: u64) -> Result<Picture, Box<dyn Error>> {
+fn truth_half(
+    wanted: &Wanted,
+    scene: &Scene,
+    name: &str,
+    seed: u64,
+) -> Result<Picture, Box<dyn Error>> {
     let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("target/promise");
     std::fs::create_dir_all(&folder)?;
     let file = folder.join(format!("{name}-{seed}.exr"));
@@ -176,8 +190,13 @@ fn truth_half(wanted: &Wanted, scene: &Scene, name: &str, seed: u64) -> Result<P
         return Ok(film::read(&file)?);
     }
     let (passes, photons, pixels) = TRUTH;
-    let settings =
-        RenderSettings { passes, photons, radius: Radius::Pixels(pixels), seed, ..RenderSettings::default() };
+    let settings = RenderSettings {
+        passes,
+        photons,
+        radius: Radius::Pixels(pixels),
+        seed,
+        ..RenderSettings::default()
+    };
     let opened = device::open(wanted, scene, &settings)?;
     let mut engine = opened.engine;
     for _ in 0..passes {

@@ -1,6 +1,7 @@
-//! Our side of the comparison with Embree (`benches/embree.py`): writes the mesh and the rays as raw f32 to a folder, then
-//! traces all rays on one thread for every line that it reads, one by one and side by side, and prints the seconds of both;
-//! at the end it writes the distances, which are the same to the bit, or it fails.
+//! Our side of the comparison with Embree (`benches/embree.py`): writes the mesh and the rays as
+//! raw f32 to a folder, then traces all rays on one thread for every line that it reads, one by one
+//! and side by side, and prints the seconds of both; at the end it writes the distances, which are
+//! the same to the bit, or it fails.
 
 #[path = "../benches/workload/mod.rs"]
 mod workload;

@@ -2,8 +2,8 @@
 //!
 //!     cargo run --release --example speed_accuracy -- FOLDER PAGE
 //!
-//! FOLDER holds a study `scene-NAME` (each setting by itself) and `preset-NAME` (the presets' settings, longer) for each of
-//! the shipped scenes.
+//! FOLDER holds a study `scene-NAME` (each setting by itself) and `preset-NAME` (the presets'
+//! settings, longer) for each of the shipped scenes.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -73,7 +73,8 @@ impl Studied {
         if name != "photons" {
             return format!("{name}={value}");
         }
-        let fewer = value.parse::<f64>().is_ok_and(|v| v < number(&configs[0]["settings"]["photons"]));
+        let fewer =
+            value.parse::<f64>().is_ok_and(|v| v < number(&configs[0]["settings"]["photons"]));
         if fewer { "photons/4".to_owned() } else { "photons*4".to_owned() }
     }
 
@@ -95,7 +96,8 @@ impl Studied {
         Self::of_runs(&self.preset, "automatic_radius")
     }
 
-    /// relMSE by the presets' settings after so many passes, and whether it is drawn out along the last two pictures.
+    /// relMSE by the presets' settings after so many passes, and whether it is drawn out along the
+    /// last two pictures.
     fn after(&self, passes: u32) -> Option<(f64, bool)> {
         let curve = curves(&self.preset).first()?;
         let at = |point: &Value| number(&point["passes"]);
@@ -119,14 +121,16 @@ impl Studied {
     fn seconds(&self) -> f64 {
         let size = &self.preset["results"]["about"]["size"];
         let pixels = number(&size[0]) * number(&size[1]);
-        curves(&self.preset).first().map_or(f64::NAN, |c| number(&c["seconds_per_pass"])) * 1e6 / pixels
+        curves(&self.preset).first().map_or(f64::NAN, |c| number(&c["seconds_per_pass"])) * 1e6
+            / pixels
     }
 }
 
 /// Median, least and greatest.
 fn range(mut values: Vec<f64>) -> Option<[f64; 3]> {
     values.sort_by(f64::total_cmp);
-    let middle = 0.5 * (values.get(values.len().saturating_sub(1) / 2)? + values.get(values.len() / 2)?);
+    let middle =
+        0.5 * (values.get(values.len().saturating_sub(1) / 2)? + values.get(values.len() / 2)?);
     Some([middle, *values.first()?, *values.last()?])
 }
 
@@ -139,12 +143,15 @@ fn page(studies: &[Studied]) -> String {
         let _ = write!(out, "| {words} |");
         for study in studies {
             let ratio = study.end(choice).zip(study.end("")).map(|(other, own)| other / own);
-            let _ = write!(out, " {} |", ratio.map_or("–".to_owned(), |ratio| format!("{ratio:.2}")));
+            let _ =
+                write!(out, " {} |", ratio.map_or("–".to_owned(), |ratio| format!("{ratio:.2}")));
         }
         out.push('\n');
     }
-    let _ =
-        write!(out, "\n## The automatic radius\n\n{RADIUS}\n| |{columns}\n|---|{ruler}\n| automatic, px |");
+    let _ = write!(
+        out,
+        "\n## The automatic radius\n\n{RADIUS}\n| |{columns}\n|---|{ruler}\n| automatic, px |"
+    );
     studies.iter().for_each(|s| write!(out, " {} |", s.automatic()).unwrap_or(()));
     out.push_str("\n| best single disc of those tried, px |");
     let widths = ["1px", "2px", "4px", "8px", "16px"];
@@ -164,7 +171,8 @@ fn page(studies: &[Studied]) -> String {
     out.push_str("| | passes | error, median | from | to | exponent, median | from | to |\n|---|---:|---:|---:|---:|---:|---:|---:|\n");
     for quality in Quality::ALL {
         let passes = quality.passes();
-        let errors = range(studies.iter().filter_map(|s| s.after(passes)).map(|(e, _)| e).collect());
+        let errors =
+            range(studies.iter().filter_map(|s| s.after(passes)).map(|(e, _)| e).collect());
         let decays = range(studies.iter().filter_map(|s| s.decay(passes)).collect());
         let (Some(errors), Some(decays)) = (errors, decays) else { continue };
         let drawn = studies.iter().filter_map(|s| s.after(passes)).any(|(_, drawn)| drawn);
@@ -194,7 +202,8 @@ fn page(studies: &[Studied]) -> String {
         );
         for sentence in study.star["recommendations"][0].as_array().into_iter().flatten() {
             let sentence = sentence.as_str().unwrap_or("");
-            let _ = writeln!(out, "- {}", sentence.replace("preset final", "the presets' settings"));
+            let _ =
+                writeln!(out, "- {}", sentence.replace("preset final", "the presets' settings"));
         }
         let _ = write!(
             out,

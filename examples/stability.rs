@@ -1,4 +1,5 @@
-//! Prints the table of docs/stability.md: every extreme with its figure on the CPU and on lavapipe, and its bound.
+//! Prints the table of docs/stability.md: every extreme with its figure on the CPU and on lavapipe,
+//! and its bound.
 //!
 //!     cargo run --release --example stability [WORD] > table.md
 //!
@@ -32,7 +33,8 @@ fn main() -> ExitCode {
     ExitCode::from(u8::from(!holds))
 }
 
-/// Prints the table as Markdown, section by section, measured on both devices; whether every row holds.
+/// Prints the table as Markdown, section by section, measured on both devices; whether every row
+/// holds.
 fn print_table(only: &str) -> bool {
     let benches = [On::Cpu, On::Software].map(|on| Bench::new(on, true));
     let mut holds = true;
@@ -40,8 +42,9 @@ fn print_table(only: &str) -> bool {
         if rows.iter().all(|row| !row.name.contains(only)) {
             continue;
         }
-        let mut text =
-            format!("## {section}\n\n| extreme | figure | CPU | lavapipe | bound |\n|---|---|---|---|---|\n");
+        let mut text = format!(
+            "## {section}\n\n| extreme | figure | CPU | lavapipe | bound |\n|---|---|---|---|---|\n"
+        );
         let mut notes = String::new();
         for row in rows.iter().filter(|row| row.name.contains(only)) {
             eprintln!("{}", row.name);
@@ -51,8 +54,12 @@ fn print_table(only: &str) -> bool {
                 let mark = if row.admits(figure) { "" } else { " **fails**" };
                 format!("{}{mark}", number(figure.value))
             });
-            text +=
-                &format!("| {} | {} | {cpu} | {software} | {} |\n", row.name, row.unit, number(row.bound));
+            text += &format!(
+                "| {} | {} | {cpu} | {software} | {} |\n",
+                row.name,
+                row.unit,
+                number(row.bound)
+            );
             notes += &format!("- *{}*: {}", row.name, row.how);
             let [cpu, software] = figures.map(|figure| figure.note);
             if !cpu.is_empty() {

@@ -1,4 +1,5 @@
-// The hash grid over photon records: twin of src/grid.rs, and of what src/kernels/grid_build.rs says of a record.
+// The hash grid over photon records: twin of src/grid.rs, and of what src/kernels/grid_build.rs
+// says of a record.
 
 const CELL_MAX: f32 = 1e9;
 const ALONG: f32 = 4.0;

@@ -1,5 +1,6 @@
-//! What specialisation leaves out, put back: scenes with one thing more that nothing refers to, so that its code is compiled
-//! and its tables are bound but the picture stays. Holding the two against each other gives the gain as a figure.
+//! What specialisation leaves out, put back: scenes with one thing more that nothing refers to, so
+//! that its code is compiled and its tables are bound but the picture stays. Holding the two
+//! against each other gives the gain as a figure.
 
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -17,8 +18,9 @@ use crate::plan::Plan;
 use crate::settings::RenderSettings;
 use crate::tables::*;
 
-/// Features that a scene can be given without a change of its picture. The others change what is rendered (`local`,
-/// `sampled`, `far`, `kdtree`, `unbounded`, `lens`, `environment`), or come with one of these (`specular`, `lights`).
+/// Features that a scene can be given without a change of its picture. The others change what is
+/// rendered (`local`, `sampled`, `far`, `kdtree`, `unbounded`, `lens`, `environment`), or come with
+/// one of these (`specular`, `lights`).
 pub const BURDENS: [&str; 19] = [
     "sphere",
     "rectangle",
@@ -44,9 +46,14 @@ pub const BURDENS: [&str; 19] = [
 /// The scene with one thing more of a feature of [`BURDENS`], which nothing refers to.
 pub fn burdened(scene: &Scene, feature: &str) -> Scene {
     let mut scene = scene.clone();
-    let material = |kind| Material { kind, ior: 1.5, alpha: 0.1, texture: NONE, ..Material::zeroed() };
+    let material =
+        |kind| Material { kind, ior: 1.5, alpha: 0.1, texture: NONE, ..Material::zeroed() };
     let light = |kind| Light { kind, ..Light::zeroed() };
-    let area = |shape: u32| Light { kind: LIGHT_AREA, reference: shape << REFERENCE_BITS, ..Light::zeroed() };
+    let area = |shape: u32| Light {
+        kind: LIGHT_AREA,
+        reference: shape << REFERENCE_BITS,
+        ..Light::zeroed()
+    };
     match feature {
         "sphere" => scene.spheres.push(Sphere::zeroed()),
         "rectangle" => scene.rectangles.push(Rectangle::zeroed()),
@@ -71,7 +78,12 @@ pub fn burdened(scene: &Scene, feature: &str) -> Scene {
         "metal" => scene.materials.push(material(MATERIAL_METAL)),
         "checker" => scene.textures.push(Texture { kind: TEXTURE_CHECKER, ..Texture::zeroed() }),
         "texels" => {
-            scene.textures.push(Texture { kind: TEXTURE_IMAGE, width: 1, height: 1, ..Texture::zeroed() });
+            scene.textures.push(Texture {
+                kind: TEXTURE_IMAGE,
+                width: 1,
+                height: 1,
+                ..Texture::zeroed()
+            });
             scene.texels.resize(scene.texels.len() + 257, 0);
         }
         "area_sphere" => {
@@ -133,7 +145,9 @@ pub fn on_gpu(
     let compiled = engine.compile_seconds().clone();
     let mut kernels: BTreeMap<&'static str, KernelCost> = compiled
         .iter()
-        .map(|(kernel, seconds)| (kernel.stem(), KernelCost { compile: seconds.total(), run: f64::INFINITY }))
+        .map(|(kernel, seconds)| {
+            (kernel.stem(), KernelCost { compile: seconds.total(), run: f64::INFINITY })
+        })
         .collect();
     let mut pass = f64::INFINITY;
     for _ in 0..passes.max(1) {
@@ -148,7 +162,11 @@ pub fn on_gpu(
 }
 
 /// Times `passes` passes (at least one) on the CPU.
-pub fn on_cpu(packed: Packed, settings: &RenderSettings, passes: u32) -> Result<Costs, EngineError> {
+pub fn on_cpu(
+    packed: Packed,
+    settings: &RenderSettings,
+    passes: u32,
+) -> Result<Costs, EngineError> {
     let plan = Plan::new(&packed, settings);
     let mut engine = CpuEngine::new(packed, plan);
     let mut pass = f64::INFINITY;

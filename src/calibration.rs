@@ -1,4 +1,5 @@
-//! What the first two passes tell about those to come. They are passes of the render like all others.
+//! What the first two passes tell about those to come. They are passes of the render like all
+//! others.
 
 use std::time::Instant;
 
@@ -47,7 +48,8 @@ impl Engine for Calibrating<'_> {
             match self.first.take() {
                 None => self.first = Some(picture),
                 Some(first) => {
-                    // Pictures of one engine have one size; without pixels there is nothing to tell.
+                    // Pictures of one engine have one size; without pixels there is nothing to
+                    // tell.
                     if let Ok(one_pass) = one_pass_error(&first, &picture) {
                         (self.tell)(&Calibration { seconds_per_pass: self.seconds, one_pass });
                     }
@@ -98,7 +100,8 @@ impl Engine for Calibrating<'_> {
     }
 }
 
-/// Theory: an engine whose passes show 1, 3, 1, 3, ... has the mean 2 after two; a pass is off by 1 there.
+/// Theory: an engine whose passes show 1, 3, 1, 3, ... has the mean 2 after two; a pass is off by 1
+/// there.
 #[cfg(test)]
 mod tests {
     use super::*;

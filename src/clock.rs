@@ -60,7 +60,8 @@ impl Clock {
     }
 }
 
-/// Theory: the kernels' seconds are the parts of one stretch of time, and a clock that is not wound tells none.
+/// Theory: the kernels' seconds are the parts of one stretch of time, and a clock that is not wound
+/// tells none.
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -78,8 +78,9 @@ mod tests {
     #[test]
     fn each_kernel_is_heard_of() {
         assert!(observe(|event| {
-            let text =
-                event.map_or("end".to_owned(), |c| format!("{} {} {}/{}", c.device, c.kernel, c.done, c.of));
+            let text = event.map_or("end".to_owned(), |c| {
+                format!("{} {} {}/{}", c.device, c.kernel, c.done, c.of)
+            });
             HEARD.lock().unwrap().push(text);
         }));
         assert!(!observe(|_| ()));

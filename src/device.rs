@@ -61,7 +61,8 @@ pub enum DeviceKind {
     Software,
     /// The Rust engine.
     Cpu,
-    /// The Rust engine in f64: the same passes with the same random numbers, to measure what f32 costs.
+    /// The Rust engine in f64: the same passes with the same random numbers, to measure what f32
+    /// costs.
     CpuDouble,
 }
 
@@ -159,7 +160,10 @@ fn cpu(kind: DeviceKind) -> DeviceInfo {
 }
 
 /// The device that a wish means, and why.
-pub fn pick<'a>(wanted: &Wanted, devices: &'a [DeviceInfo]) -> Result<(&'a DeviceInfo, String), DeviceError> {
+pub fn pick<'a>(
+    wanted: &Wanted,
+    devices: &'a [DeviceInfo],
+) -> Result<(&'a DeviceInfo, String), DeviceError> {
     let of_kind = |kind| devices.iter().find(|device| device.kind == kind);
     let (found, why) = match wanted {
         Wanted::Gpu => (of_kind(DeviceKind::Gpu), "asked for"),
@@ -168,7 +172,10 @@ pub fn pick<'a>(wanted: &Wanted, devices: &'a [DeviceInfo]) -> Result<(&'a Devic
         Wanted::CpuDouble => (of_kind(DeviceKind::CpuDouble), "asked for"),
         Wanted::Named(name) => {
             let name = name.to_lowercase();
-            (devices.iter().find(|device| device.name.to_lowercase().contains(&name)), "asked for by name")
+            (
+                devices.iter().find(|device| device.name.to_lowercase().contains(&name)),
+                "asked for by name",
+            )
         }
         Wanted::Auto => match of_kind(DeviceKind::Gpu) {
             Some(device) => (Some(device), "auto: a hardware GPU"),
@@ -194,9 +201,13 @@ pub fn pick<'a>(wanted: &Wanted, devices: &'a [DeviceInfo]) -> Result<(&'a Devic
     }
 }
 
-/// Makes an engine for a scene on the device that is wanted; with `auto`, on the first that can. Path tracing runs on the CPU alone,
-/// so `auto` takes it.
-pub fn open(wanted: &Wanted, scene: &Scene, settings: &RenderSettings) -> Result<Opened, DeviceError> {
+/// Makes an engine for a scene on the device that is wanted; with `auto`, on the first that can.
+/// Path tracing runs on the CPU alone, so `auto` takes it.
+pub fn open(
+    wanted: &Wanted,
+    scene: &Scene,
+    settings: &RenderSettings,
+) -> Result<Opened, DeviceError> {
     let mut candidates = Candidates::of(wanted, settings)?;
     Ok(candidates.open(scene, settings, &Memory::default(), &mut |name, error| {
         log::warn!("{name} cannot render this: {error}");
@@ -256,7 +267,8 @@ fn start(
         let place = double::plan::Place::Program { saves: memory.saves };
         let plan = plan.within(tables, place, memory)?;
         let cut = cut(plan.tiled, plan.chunks(), plan.settings.batch, settings.batch);
-        let (settings, automatic, space) = (plan.settings.clone(), plan.told_radius(), plan.space());
+        let (settings, automatic, space) =
+            (plan.settings.clone(), plan.told_radius(), plan.space());
         return Ok(opened(
             Box::new(double::cpu::CpuEngine::new(wide, plan)),
             settings,
@@ -280,14 +292,18 @@ fn start(
     Ok(opened(engine, settings, automatic, space, cut))
 }
 
-/// Fails where the processor's engine would find no memory for its buffers in the middle of a render.
+/// Fails where the processor's engine would find no memory for its buffers in the middle of a
+/// render.
 fn hold(plan: &Plan, scene: &crate::tables::Scene, place: Place) -> Result<(), EngineError> {
     let parts = plan.memory(plan::scene_bytes(scene), place);
     match place {
         Place::Program { .. } if !can_be_had(total(&parts)) => {
-            let largest = parts.iter().max_by_key(|part| part.bytes).map_or("nothing", |part| part.what);
+            let largest =
+                parts.iter().max_by_key(|part| part.bytes).map_or("nothing", |part| part.what);
             let needed = memory::words(total(&parts));
-            Err(EngineError::OutOfMemory(format!("{needed} for the render, most of it for {largest}")))
+            Err(EngineError::OutOfMemory(format!(
+                "{needed} for the render, most of it for {largest}"
+            )))
         }
         _ => Ok(()),
     }
@@ -378,7 +394,8 @@ mod tests {
         is("cpu-f64", &all, "cpu-f64");
         is("radeon", &all, "Radeon Y");
         assert_eq!(picked("gpu", &all[..2]), None);
-        let Err(DeviceError::NoSuchDevice { wanted, available }) = pick(&parse("Arc"), &all[..2]) else {
+        let Err(DeviceError::NoSuchDevice { wanted, available }) = pick(&parse("Arc"), &all[..2])
+        else {
             panic!("there is no Arc");
         };
         assert_eq!((wanted.as_str(), available.len()), ("Arc", 2));

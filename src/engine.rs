@@ -138,7 +138,9 @@ pub enum EngineError {
     #[error("the device was lost: {0}")]
     DeviceLost(String),
     /// The device had no memory left; `0` says for what.
-    #[error("the device is out of memory: {0}; make the picture smaller, or take less by --memory-budget")]
+    #[error(
+        "the device is out of memory: {0}; make the picture smaller, or take less by --memory-budget"
+    )]
     OutOfMemory(String),
     /// A kernel did not compile; a fault of this program.
     #[error("shader: {0}")]
@@ -239,7 +241,10 @@ pub trait Engine {
     /// and one set of settings. For an engine that has made no pass.
     fn restore(&mut self, state: &State) -> Result<(), EngineError> {
         let _ = state;
-        Err(EngineError::Unsupported(format!("{} cannot take over what another one holds", self.device())))
+        Err(EngineError::Unsupported(format!(
+            "{} cannot take over what another one holds",
+            self.device()
+        )))
     }
     /// What the film asks for beside radiance, in world units.
     fn layers(&mut self) -> Result<Vec<Channel>, EngineError> {

@@ -1,4 +1,5 @@
-//! What a scene and its settings require; whatever is not named here is neither compiled nor allocated.
+//! What a scene and its settings require; whatever is not named here is neither compiled nor
+//! allocated.
 
 use super::shapes::intersect::has_patch_set;
 use super::tables::*;
@@ -51,15 +52,17 @@ pub const ALL: [&str; 42] = [
     "split",
 ];
 
-/// A set of names from [`ALL`], and "photons" where photons are traced at all, "first" where such are stored that no
-/// diffuse surface has scattered, and "direct_layer" where direct light is to be told by itself.
+/// A set of names from [`ALL`], and "photons" where photons are traced at all, "first" where such
+/// are stored that no diffuse surface has scattered, and "direct_layer" where direct light is to be
+/// told by itself.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Features(BTreeSet<&'static str>);
 
 /// Most shapes that shaders test one after another, without a kd-tree.
 const FEW: usize = 16;
 
-/// The shapes of a kd-tree that is one leaf, where they are few and the code to test one is short: shaders name each of them.
+/// The shapes of a kd-tree that is one leaf, where they are few and the code to test one is short:
+/// shaders name each of them.
 pub fn few(scene: &Scene) -> &[u32] {
     match scene.nodes.first() {
         Some(root) if root.is_leaf() => {
@@ -108,8 +111,12 @@ impl Features {
         put("checker", scene.textures.iter().any(|t| t.kind == TEXTURE_CHECKER));
         put("texels", !scene.texels.is_empty());
         let light = |kind| scene.lights.iter().any(|l| l.kind == kind);
-        let area =
-            |kind| scene.lights.iter().any(|l| l.kind == LIGHT_AREA && l.reference >> REFERENCE_BITS == kind);
+        let area = |kind| {
+            scene
+                .lights
+                .iter()
+                .any(|l| l.kind == LIGHT_AREA && l.reference >> REFERENCE_BITS == kind)
+        };
         put("lights", !scene.lights.is_empty());
         put("cells", !scene.cells.is_empty());
         put("area_triangle", area(KIND_TRIANGLE));

@@ -1,4 +1,5 @@
-//! Which scene a picture is of, and which program makes it: digests of all that a scene file says and names, and of the kernels.
+//! Which scene a picture is of, and which program makes it: digests of all that a scene file says
+//! and names, and of the kernels.
 
 use std::fmt::{self, Write};
 
@@ -9,8 +10,9 @@ use crate::film::provenance::VERSION;
 use crate::gpu::fragments::FRAGMENTS;
 use crate::scene::{ImageData, Mesh, Scene, ShapeKind, Texels};
 
-/// This program: its version, and a digest of its kernels' text, since programs on the way from one version to the next may make
-/// other bits. The text is that of the shaders, which the Rust twins follow; line ends do not count.
+/// This program: its version, and a digest of its kernels' text, since programs on the way from one
+/// version to the next may make other bits. The text is that of the shaders, which the Rust twins
+/// follow; line ends do not count.
 pub fn program() -> String {
     let mut digest = Digest::default();
     for line in FRAGMENTS.iter().flat_map(|fragment| fragment.text.lines()) {
@@ -20,8 +22,9 @@ pub fn program() -> String {
     format!("{VERSION}, kernels {:016x}", digest.0.digest())
 }
 
-/// Digests of the parts of a scene, 128 bits each: of what its file says and of what that names, whatever names and order of
-/// keys it uses. Pictures of scenes with equal ones are equal, if size, settings, device and program are; the film is no part of it.
+/// Digests of the parts of a scene, 128 bits each: of what its file says and of what that names,
+/// whatever names and order of keys it uses. Pictures of scenes with equal ones are equal, if size,
+/// settings, device and program are; the film is no part of it.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Identity {
     /// The camera.
@@ -39,8 +42,17 @@ pub struct Identity {
 impl Identity {
     /// That of a scene.
     pub fn of(scene: &Scene) -> Self {
-        let Scene { name: _, camera, film: _, images, textures, materials, shapes, lights, environment } =
-            scene;
+        let Scene {
+            name: _,
+            camera,
+            film: _,
+            images,
+            textures,
+            materials,
+            shapes,
+            lights,
+            environment,
+        } = scene;
         let mut all_shapes = Digest::default();
         for shape in shapes {
             all_shapes.text(&(shape.material, shape.emission, shape.planar_uv));
@@ -128,7 +140,9 @@ impl Digest {
                 self.text(srgb);
                 self.bytes(data.as_flattened());
             }
-            Texels::Float(data) => data.as_flattened().iter().for_each(|x| self.bytes(&x.to_le_bytes())),
+            Texels::Float(data) => {
+                data.as_flattened().iter().for_each(|x| self.bytes(&x.to_le_bytes()))
+            }
         }
     }
 
@@ -144,8 +158,8 @@ impl Write for Digest {
     }
 }
 
-/// Theory: a scene has one identity, and each kind of change shows in the part that it belongs to and in no other; names, the
-/// film and the place of a file are no change.
+/// Theory: a scene has one identity, and each kind of change shows in the part that it belongs to
+/// and in no other; names, the film and the place of a file are no change.
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -177,12 +191,17 @@ mod tests {
         };
         shows(|_| (), &[]);
         shows(|s| (s.film.width, s.film.exposure, s.name) = (33, 1.0, "other".to_owned()), &[]);
-        shows(|s| s.images.iter_mut().for_each(|image| image.path = "elsewhere.png".to_owned()), &[]);
+        shows(
+            |s| s.images.iter_mut().for_each(|image| image.path = "elsewhere.png".to_owned()),
+            &[],
+        );
         shows(|s| s.camera.fov_degrees *= 1.0 + 1e-15, &["camera"]);
         shows(|s| s.materials.iter_mut().for_each(|m| m.name += "x"), &[]);
         shows(
             |s| {
-                let MaterialKind::Diffuse { reflectance } = &mut s.materials[0].kind else { panic!() };
+                let MaterialKind::Diffuse { reflectance } = &mut s.materials[0].kind else {
+                    panic!()
+                };
                 *reflectance = Reflectance::Color([0.123, 0.0, 0.0]);
             },
             &["materials"],
@@ -198,6 +217,9 @@ mod tests {
             },
             &["textures"],
         );
-        shows(|s| s.environment = Some(scene::Environment::Constant { radiance: [0.5; 3] }), &["lights"]);
+        shows(
+            |s| s.environment = Some(scene::Environment::Constant { radiance: [0.5; 3] }),
+            &["lights"],
+        );
     }
 }

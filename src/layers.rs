@@ -81,7 +81,9 @@ impl Plan {
         let pixels = self.pixels as usize;
         self.aovs.are_traced() && state.aovs.len() != pixels * AOV_BYTES
             || self.parts_photons() && state.parts.len() != pixels * PARTS_BYTES
-            || self.aovs.has(Aov::Photons) && self.features.has("photons") && state.counts.is_empty()
+            || self.aovs.has(Aov::Photons)
+                && self.features.has("photons")
+                && state.counts.is_empty()
     }
 
     /// What tells the render's numbers in those of the world.
@@ -127,7 +129,8 @@ pub struct Layering {
     pub method: Method,
     /// How radii change.
     pub rule: RadiusRule,
-    /// Squared radius of the last pass over the squared start radius; of no use under the local rule.
+    /// Squared radius of the last pass over the squared start radius; of no use under the local
+    /// rule.
     pub scale_sq: f64,
 }
 
@@ -142,9 +145,14 @@ impl Layering {
             let plane = |c: usize| self.plane(kept.aovs.iter().map(|p| of(p)[c]));
             (0..3).map(|c| Channel::float(names[c], plane(c))).collect()
         };
-        let float = |name, values: Vec<f64>| vec![Channel::float(name, self.plane(values.into_iter()))];
+        let float =
+            |name, values: Vec<f64>| vec![Channel::float(name, self.plane(values.into_iter()))];
         let whole = |name, values: &mut dyn Iterator<Item = u32>| {
-            vec![Channel { name, plane: self.plane(values.map(f64::from)), numbers: Numbers::Whole }]
+            vec![Channel {
+                name,
+                plane: self.plane(values.map(f64::from)),
+                numbers: Numbers::Whole,
+            }]
         };
         let hit = |p: &AovPixel| p.hits > 0.0;
         match aov {
@@ -163,13 +171,18 @@ impl Layering {
                 wide(p.direct).map(|x| x * self.space.radiance_unit)
             }),
             Aov::Caustic => self.part(["caustic.R", "caustic.G", "caustic.B"], kept, |p| p.caustic),
-            Aov::Indirect => self.part(["indirect.R", "indirect.G", "indirect.B"], kept, |p| p.indirect),
+            Aov::Indirect => {
+                self.part(["indirect.R", "indirect.G", "indirect.B"], kept, |p| p.indirect)
+            }
             Aov::Depth => {
-                let depth = |p: &AovPixel| if hit(p) { one(p.depth) * self.space.unit } else { NO_DEPTH };
+                let depth =
+                    |p: &AovPixel| if hit(p) { one(p.depth) * self.space.unit } else { NO_DEPTH };
                 float("depth.Z", kept.aovs.iter().map(depth).collect())
             }
             Aov::Object => whole("object.ID", &mut kept.objects.iter().copied()),
-            Aov::Material => whole("material.ID", &mut kept.aovs.iter().map(|p| p.material.wrapping_add(1))),
+            Aov::Material => {
+                whole("material.ID", &mut kept.aovs.iter().map(|p| p.material.wrapping_add(1)))
+            }
             Aov::Radius => float("radius.Y", self.radii(kept)),
             Aov::Photons => float("photons.Y", self.photons(kept)),
             // a part of what the picture says of its error, which files hold anyway
@@ -177,8 +190,14 @@ impl Layering {
         }
     }
 
-    /// What photons bring in one way; nothing where path tracing brings it, 0 where there are no photons.
-    fn part(&self, names: [&'static str; 3], kept: &Kept, of: fn(&PartsPixel) -> Vec3) -> Vec<Channel> {
+    /// What photons bring in one way; nothing where path tracing brings it, 0 where there are no
+    /// photons.
+    fn part(
+        &self,
+        names: [&'static str; 3],
+        kept: &Kept,
+        of: fn(&PartsPixel) -> Vec3,
+    ) -> Vec<Channel> {
         if self.method == Method::Path {
             return Vec::new();
         }
@@ -195,7 +214,8 @@ impl Layering {
         Plane { width: self.width as usize, values: values.collect() }
     }
 
-    /// Each pixel's gather radius in the last pass; under the local rule, where it is after that pass.
+    /// Each pixel's gather radius in the last pass; under the local rule, where it is after that
+    /// pass.
     fn radii(&self, kept: &Kept) -> Vec<f64> {
         let scale = self.scale_sq.sqrt();
         let Space { unit, photons, .. } = self.space;
@@ -215,7 +235,8 @@ impl Layering {
     /// How many photons each pixel's visible points found in the last pass.
     fn photons(&self, kept: &Kept) -> Vec<f64> {
         let points = kept.counts.chunks(self.eye_samples.max(1) as usize);
-        let mut counts: Vec<f64> = points.map(|counts| counts.iter().copied().map(f64::from).sum()).collect();
+        let mut counts: Vec<f64> =
+            points.map(|counts| counts.iter().copied().map(f64::from).sum()).collect();
         counts.resize(self.pixels as usize, 0.0);
         counts
     }

@@ -1,7 +1,8 @@
 //! What single precision cannot hold, told before it is rendered.
 //!
-//! Kernels count in f32 about the scene's own centre, in units of about its size, and round every coordinate by 6e-8
-//! of that. The thresholds are those up to which the rows of docs/stability.md hold.
+//! Kernels count in f32 about the scene's own centre, in units of about its size, and round every
+//! coordinate by 6e-8 of that. The thresholds are those up to which the rows of docs/stability.md
+//! hold.
 
 use crate::build::normalize::{Normalization, extent};
 use crate::build::orientation::faces_inward;
@@ -13,11 +14,14 @@ use glam::DVec3;
 const LEAST_RADIUS: f64 = 1e-6;
 /// Least width of a shape, over the scene's radius.
 const LEAST_WIDTH: f64 = 1e-5;
-/// Least extent of all shapes together, over the scene's radius, to which the camera's distance counts.
+/// Least extent of all shapes together, over the scene's radius, to which the camera's distance
+/// counts.
 const LEAST_CONTENT: f64 = 1e-4;
-/// Greatest radius of a sphere, over the scene's radius: beyond it f64 no longer holds where its surface is.
+/// Greatest radius of a sphere, over the scene's radius: beyond it f64 no longer holds where its
+/// surface is.
 const GREATEST_SPHERE: f64 = 1e9;
-/// Greatest distance of the scene from the origin, over the scene's radius, for f64 as it is written in the file.
+/// Greatest distance of the scene from the origin, over the scene's radius, for f64 as it is
+/// written in the file.
 const GREATEST_SHIFT: f64 = 1e8;
 /// Greatest width of a lamp that is sampled by its area, over the distance that it shines over.
 const GREATEST_LAMP: f64 = 100.0;
@@ -70,7 +74,9 @@ impl Limits<'_> {
         let giant = |(a, b): &(DVec3, DVec3)| a.distance(*b) > 64.0 * self.size;
         let boxes = self.scene.shapes.iter().filter_map(|s| extent(&s.kind)).filter(|b| !giant(b));
         let (low, high) = boxes
-            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), (a, b)| (low.min(a), high.max(b)));
+            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), (a, b)| {
+                (low.min(a), high.max(b))
+            });
         let planes = self.scene.shapes.iter().any(|s| matches!(s.kind, ShapeKind::Plane { .. }));
         let share = 0.5 * low.distance(high) / self.size;
         (!planes && low.x <= high.x && share < LEAST_CONTENT).then(|| {
@@ -80,7 +86,10 @@ impl Limits<'_> {
                     "the camera is {:.1e} times as far away as the shapes are wide together",
                     1.0 / share
                 ),
-                format!("expected at most {:e}: single precision rounds their surfaces", 1.0 / LEAST_CONTENT),
+                format!(
+                    "expected at most {:e}: single precision rounds their surfaces",
+                    1.0 / LEAST_CONTENT
+                ),
             )
         })
     }
@@ -91,7 +100,8 @@ impl Limits<'_> {
             Radius::Units(units) => (units, "the gather radius"),
             Radius::Auto | Radius::Pixels(_) => {
                 // The least that is chosen is one pixel.
-                let pixels = if let Radius::Pixels(pixels) = settings.radius { pixels } else { 1.0 };
+                let pixels =
+                    if let Radius::Pixels(pixels) = settings.radius { pixels } else { 1.0 };
                 let tan = (0.5 * camera.fov_degrees.to_radians()).tan();
                 let width = 2.0 * tan / f64::from(self.scene.film.height);
                 let radius = pixels * width * (camera.target - camera.position).length();
@@ -103,7 +113,9 @@ impl Limits<'_> {
             self.places.warning(
                 &["render.radius", "camera.fov"],
                 format!("{from} is {share:.1e} of the scene's radius"),
-                format!("expected at least {LEAST_RADIUS:e}: photons' positions are rounded by 6e-8"),
+                format!(
+                    "expected at least {LEAST_RADIUS:e}: photons' positions are rounded by 6e-8"
+                ),
             )
         })
     }
@@ -146,16 +158,21 @@ impl Limits<'_> {
             self.places.warning(
                 &[&format!("{path}.{key}"), path],
                 format!("{path} is {share:.1e} of the scene's radius wide"),
-                format!("expected at least {LEAST_WIDTH:e}: single precision rounds its place by 6e-8"),
+                format!(
+                    "expected at least {LEAST_WIDTH:e}: single precision rounds its place by 6e-8"
+                ),
             )
         })
     }
 
-    /// Lamps sampled by their area that are far wider than the scene: nearly every sample lands where it does not matter.
+    /// Lamps sampled by their area that are far wider than the scene: nearly every sample lands
+    /// where it does not matter.
     fn lamps(&self) -> Vec<Finding> {
         let lamp = |(index, shape): (usize, &crate::scene::Shape)| {
-            let sampled_by_area = !matches!(shape.kind, ShapeKind::Sphere { .. } | ShapeKind::Plane { .. });
-            let (low, high) = extent(&shape.kind).filter(|_| shape.is_emitter() && sampled_by_area)?;
+            let sampled_by_area =
+                !matches!(shape.kind, ShapeKind::Sphere { .. } | ShapeKind::Plane { .. });
+            let (low, high) =
+                extent(&shape.kind).filter(|_| shape.is_emitter() && sampled_by_area)?;
             // what it shines over: the way from it to the camera's target, which lies in the scene
             let way = self.scene.camera.target;
             let near = way.clamp(low, high).distance(way).max(f64::MIN_POSITIVE);
@@ -213,7 +230,8 @@ impl Limits<'_> {
     }
 }
 
-/// The least width of a shape that matters, and the key that it comes from. A flat shape's thickness does not.
+/// The least width of a shape that matters, and the key that it comes from. A flat shape's
+/// thickness does not.
 fn width(kind: &ShapeKind) -> Option<(f64, &'static str)> {
     Some(match kind {
         ShapeKind::Sphere { radius, .. } => (2.0 * radius, "radius"),

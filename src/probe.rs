@@ -1,5 +1,5 @@
-//! A short look at the scene before planning: how wide a pixel is where the picture is, and how many records a
-//! photon leaves. Always on the CPU, so that every engine plans alike.
+//! A short look at the scene before planning: how wide a pixel is where the picture is, and how
+//! many records a photon leaves. Always on the CPU, so that every engine plans alike.
 
 use super::kernels::eye_trace::eye_trace;
 use super::kernels::photon_trace::photon_trace;
@@ -57,7 +57,8 @@ pub fn probe(packed: &Packed, settings: &RenderSettings) -> Probe {
     let sampled = settings.direct == Direct::Sampled;
     let photon = |id| {
         let mut positions = Vec::new();
-        let _ = photon_trace(scene, &dispatch, sampled, id, |record| positions.push(record.position));
+        let _ =
+            photon_trace(scene, &dispatch, sampled, id, |record| positions.push(record.position));
         positions
     };
     let photons = if scene.lights.is_empty() { 0 } else { PHOTONS };
@@ -76,7 +77,11 @@ pub fn probe(packed: &Packed, settings: &RenderSettings) -> Probe {
     };
     let automatic = (settings.radius == Radius::Auto).then(|| {
         let density = density(&points, &records) * settings.photons as f64 / PHOTONS as f64;
-        automatic(density, settings.photons as f64 / total as f64, caustic_share(scene, &dispatch, photons))
+        automatic(
+            density,
+            settings.photons as f64 / total as f64,
+            caustic_share(scene, &dispatch, photons),
+        )
     });
     let widths = points.iter().map(|point| point.radius).collect();
     let width = median(widths).unwrap_or(scene.camera.pixel) as f64;
@@ -87,7 +92,12 @@ pub fn probe(packed: &Packed, settings: &RenderSettings) -> Probe {
         }
         (Radius::Auto, None) => (width, RADIUS_SPREAD * width),
     };
-    Probe { radius, radius_max, records_per_photon: records.len() as f64 / PHOTONS as f64, automatic }
+    Probe {
+        radius,
+        radius_max,
+        records_per_photon: records.len() as f64 / PHOTONS as f64,
+        automatic,
+    }
 }
 
 /// Share of the light not straight from lights that met nothing but mirrors and glass before.
@@ -123,7 +133,8 @@ fn density(points: &[VisiblePoint], records: &[Vec3]) -> f64 {
             return 0.0;
         }
         let (_, reach_sq, _) = distances.select_nth_unstable_by(NEAREST - 1, Real::total_cmp);
-        NEAREST as Real * point.radius * point.radius / (consts::PI * reach_sq.max(Real::MIN_POSITIVE))
+        NEAREST as Real * point.radius * point.radius
+            / (consts::PI * reach_sq.max(Real::MIN_POSITIVE))
     };
     let chosen: Vec<&VisiblePoint> = points.iter().step_by(every).collect();
     median(chosen.into_par_iter().map(at).collect()).unwrap_or(0.0) as f64

@@ -1,4 +1,5 @@
-//! Presets: settings by what a picture is for, and how far its error is from that of its first passes.
+//! Presets: settings by what a picture is for, and how far its error is from that of its first
+//! passes.
 //!
 //! The numbers are those of docs/speed-accuracy.md, which `scenes/studies/run` makes again.
 
@@ -49,7 +50,8 @@ impl Quality {
         }
     }
 
-    /// Puts the preset in force for a picture of so many pixels. Bounces, eye samples and seed stay.
+    /// Puts the preset in force for a picture of so many pixels. Bounces, eye samples and seed
+    /// stay.
     pub fn apply(self, pixels: u64, settings: &mut RenderSettings) {
         *settings = RenderSettings {
             method: Method::Sppm,
@@ -64,8 +66,8 @@ impl Quality {
     }
 }
 
-/// relMSE of a picture of one pass, by two pictures, the second of which holds the pass of the first and one more: the mean
-/// of both lies half of their distance from either.
+/// relMSE of a picture of one pass, by two pictures, the second of which holds the pass of the
+/// first and one more: the mean of both lies half of their distance from either.
 ///
 /// # Errors
 /// Where the pictures cannot be compared.
@@ -73,8 +75,8 @@ pub fn one_pass_error(first: &Picture, both: &Picture) -> Result<f64, MetricsErr
     Ok(2.0 * compare(first, both)?.rel_mse)
 }
 
-/// Passes, and the exponent with which relMSE falls from one pass to so many: over the shipped scenes the median, the least
-/// and the greatest.
+/// Passes, and the exponent with which relMSE falls from one pass to so many: over the shipped
+/// scenes the median, the least and the greatest.
 const DECAY: [(u32, [f64; 3]); 4] = [
     (4, [1.17, 0.99, 2.29]),
     (16, [1.10, 0.89, 1.68]),
@@ -109,12 +111,13 @@ fn decay(passes: u32) -> [f64; 3] {
     let Some([(low, from), (high, to)]) = between else {
         return if passes < first.0 { first.1 } else { last.1 };
     };
-    let part = (f64::from(passes) / f64::from(*low)).ln() / (f64::from(*high) / f64::from(*low)).ln();
+    let part =
+        (f64::from(passes) / f64::from(*low)).ln() / (f64::from(*high) / f64::from(*low)).ln();
     [0, 1, 2].map(|i| from[i] + part * (to[i] - from[i]))
 }
 
-/// Theory: two pictures of independent passes with variance V each have the mean squared distance 2 V; the first's from
-/// their mean is half of either's from the other.
+/// Theory: two pictures of independent passes with variance V each have the mean squared distance 2
+/// V; the first's from their mean is half of either's from the other.
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -124,7 +127,9 @@ mod tests {
         let mut state = 5u64;
         let mut noisy = || {
             Picture::from_fn(100, 80, |_, _| {
-                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                state = state
+                    .wrapping_mul(6_364_136_223_846_793_005)
+                    .wrapping_add(1_442_695_040_888_963_407);
                 // Uniform in [1, 1.2): variance 1/300.
                 [1.0 + 0.2 * (state >> 40) as f32 / (1u64 << 24) as f32; 3]
             })
@@ -143,15 +148,20 @@ mod tests {
     #[test]
     fn more_passes_and_better_presets_promise_less_error() {
         let errors = Quality::ALL.map(|quality| expected(0.1, quality.passes(), Method::Sppm));
-        assert!(errors.windows(2).all(|pair| pair[1].high < pair[0].high && pair[1].low < pair[0].low));
+        assert!(
+            errors.windows(2).all(|pair| pair[1].high < pair[0].high && pair[1].low < pair[0].low)
+        );
         assert!(errors.iter().all(|e| e.low <= e.rel_mse && e.rel_mse <= e.high));
         assert_eq!(expected(0.1, 1, Method::Sppm).rel_mse, 0.1);
-        // Between the table's lines the exponent lies between theirs, on them it is theirs, beyond them the last.
-        let exponent =
-            |passes: u32| -(expected(1.0, passes, Method::Sppm).rel_mse).ln() / f64::from(passes).ln();
+        // Between the table's lines the exponent lies between theirs, on them it is theirs, beyond
+        // them the last.
+        let exponent = |passes: u32| {
+            -(expected(1.0, passes, Method::Sppm).rel_mse).ln() / f64::from(passes).ln()
+        };
         assert!((exponent(64) - 0.5 * (exponent(16) + exponent(256))).abs() < 1e-9);
         assert!(
-            (exponent(2) - exponent(4)).abs() < 1e-9 && (exponent(1 << 20) - exponent(4096)).abs() < 1e-9
+            (exponent(2) - exponent(4)).abs() < 1e-9
+                && (exponent(1 << 20) - exponent(4096)).abs() < 1e-9
         );
         assert!((expected(0.1, 10, Method::Path).rel_mse - 0.01).abs() < 1e-12);
     }

@@ -1,23 +1,25 @@
 //! The start radius where nobody names one.
 //!
-//! Mean squared error is variance, which falls as the photons in the disc grow, and squared bias, which grows as r^4: the
-//! radius with the least sum goes as the sixth root of one over the photons' density (Silverman 1986, section 4.3, for
-//! densities in the plane). What stands before the root is measured: docs/speed-accuracy.md, made by
-//! `scenes/studies/run`, shows it beside other radii.
+//! Mean squared error is variance, which falls as the photons in the disc grow, and squared bias,
+//! which grows as r^4: the radius with the least sum goes as the sixth root of one over the
+//! photons' density (Silverman 1986, section 4.3, for densities in the plane). What stands before
+//! the root is measured: docs/speed-accuracy.md, made by `scenes/studies/run`, shows it beside
+//! other radii.
 
 use std::fmt;
 
-/// Start radius in pixels, for one photon a pass on each pixel, of photons that a diffuse surface has scattered: their light is
-/// smooth.
+/// Start radius in pixels, for one photon a pass on each pixel, of photons that a diffuse surface
+/// has scattered: their light is smooth.
 const INDIRECT: f64 = 5.5;
-/// The same of the others where they bring caustics, for one photon a pass emitted for each pixel: a wide disc blurs their
-/// edges, and maps send photons enough.
+/// The same of the others where they bring caustics, for one photon a pass emitted for each pixel:
+/// a wide disc blurs their edges, and maps send photons enough.
 const CAUSTIC: f64 = 2.0;
 /// Radius of the first over that of the others where there are no caustics.
 const SMOOTH: f64 = 3.0;
 /// Least share of caustics in the photons' light that counts.
 const LEAST_SHARE: f64 = 0.01;
-/// Pixels that are chosen; steps of about a square root of two, so that the choice hangs on no rounding and can be said.
+/// Pixels that are chosen; steps of about a square root of two, so that the choice hangs on no
+/// rounding and can be said.
 const STEPS: [f64; 9] = [1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0];
 
 /// A choice and its reasons.
@@ -33,7 +35,8 @@ pub struct Automatic {
     pub caustics: f64,
 }
 
-/// Chooses for `density` photons of a pass on a pixel and `emitted` that are emitted for each pixel.
+/// Chooses for `density` photons of a pass on a pixel and `emitted` that are emitted for each
+/// pixel.
 pub fn automatic(density: f64, emitted: f64, caustics: f64) -> Automatic {
     // No photon at all asks for the widest disc.
     let best = |one: f64, photons: f64| one * photons.max(1e-9).powf(-1.0 / 6.0);

@@ -11,7 +11,8 @@ pub struct Readout {
     pub width: u32,
     /// Scene radiance times this is world radiance.
     pub unit: f64,
-    /// Luminance of the brightest thing that eye paths may meet by mirrors or through glass, world units.
+    /// Luminance of the brightest thing that eye paths may meet by mirrors or through glass, world
+    /// units.
     pub glint: f64,
 }
 
@@ -36,7 +37,8 @@ impl Readout {
 
     /// The same where `early` and `earlier` are the means over the first `parts` passes.
     pub fn errors_by_parts(&self, film: &[FilmPixel], passes: u32, parts: &[[u32; 2]]) -> ErrorMap {
-        let pixels = film.iter().zip(parts).map(|(p, parts)| self.error(p, counted(p, passes), *parts));
+        let pixels =
+            film.iter().zip(parts).map(|(p, parts)| self.error(p, counted(p, passes), *parts));
         let glint = self.glint / f64::from(passes.max(1));
         ErrorMap { width: self.width, pixels: pixels.collect(), glint }
     }
@@ -65,7 +67,8 @@ impl Readout {
     /// What was left out of the picture.
     pub fn rejections(&self, film: &[FilmPixel]) -> Rejections {
         let count = |cause: u32| film.iter().map(|p| u64::from(p.rejected[cause as usize])).sum();
-        let too_bright = |p: &&FilmPixel| mean(p).iter().any(|x| x * self.unit > f64::from(f32::MAX));
+        let too_bright =
+            |p: &&FilmPixel| mean(p).iter().any(|x| x * self.unit > f64::from(f32::MAX));
         Rejections {
             eye_path: count(REJECTED_EYE),
             direct_light: count(REJECTED_DIRECT),

@@ -1,7 +1,8 @@
 //! The numbers that kernels count in: here f32, as on a GPU.
 //!
-//! The modules that name [`Real`] by `super::real` are compiled a second time below [`crate::double`], where
-//! `super::real` is `double/real.rs`: the same kernels in f64, which measure what f32 costs.
+//! The modules that name [`Real`] by `super::real` are compiled a second time below
+//! [`crate::double`], where `super::real` is `double/real.rs`: the same kernels in f64, which
+//! measure what f32 costs.
 
 use glam::{DVec2, DVec3};
 
@@ -21,7 +22,8 @@ pub type WideBits = u64;
 pub const ENGINE: &str = "CPU";
 /// The exponent's bits.
 pub const EXPONENT: Bits = 0x7f80_0000;
-/// The bits of the leading half of the mantissa and all above: products of two such numbers are exact.
+/// The bits of the leading half of the mantissa and all above: products of two such numbers are
+/// exact.
 pub const LEADING: Bits = 0xffff_f000;
 
 /// A tolerance of some roundings, written as it is in f32 and in WGSL, for this precision.

@@ -5,11 +5,13 @@ use crate::engine::{Engine, EngineError, PassReport, State};
 use crate::film::exr_file::Channel;
 use crate::film::{ErrorMap, Picture, Rejections};
 
-/// Gives the next engine, or says why one could not be had; nothing where there is none left. It is told why the last one failed,
-/// and what the next one is to go on from.
-pub type Next<'a> = dyn FnMut(&EngineError, &State) -> Option<Result<Box<dyn Engine>, EngineError>> + 'a;
+/// Gives the next engine, or says why one could not be had; nothing where there is none left. It is
+/// told why the last one failed, and what the next one is to go on from.
+pub type Next<'a> =
+    dyn FnMut(&EngineError, &State) -> Option<Result<Box<dyn Engine>, EngineError>> + 'a;
 
-/// One engine at a time. What it holds is lost where it fails; [`Engine::go_on`] gives it to the next one.
+/// One engine at a time. What it holds is lost where it fails; [`Engine::go_on`] gives it to the
+/// next one.
 pub struct Relay<'a> {
     engine: Option<Box<dyn Engine>>,
     next: &'a mut Next<'a>,

@@ -1,4 +1,5 @@
-//! Render settings: what a pass does and how many there are. Each field names its unit and the paper's symbol.
+//! Render settings: what a pass does and how many there are. Each field names its unit and the
+//! paper's symbol.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -44,7 +45,8 @@ pub enum Direct {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Radius {
-    /// Chosen by a look at the scene, from how many photons fall on a pixel and whether they are caustics.
+    /// Chosen by a look at the scene, from how many photons fall on a pixel and whether they are
+    /// caustics.
     #[default]
     Auto,
     /// In widths of a pixel's footprint at the visible point.
@@ -63,16 +65,17 @@ pub struct RenderSettings {
     pub passes: u32,
     /// Photons emitted per pass, `M`.
     pub photons: u32,
-    /// Photons of a pass that are traced and gathered at once, at the most; where it is not given, as many as four million records
-    /// hold. Sums are rounded batch by batch.
+    /// Photons of a pass that are traced and gathered at once, at the most; where it is not given,
+    /// as many as four million records hold. Sums are rounded batch by batch.
     #[schemars(range(min = 1))]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub batch: Option<u32>,
     /// Start radius, `r_1`.
     pub radius: Radius,
-    /// Start radius of photons that a diffuse surface has scattered before, over `radius`. Their light changes more slowly
-    /// from place to place than that of the others. Under the local rule one count shrinks both. Where it is not given it
-    /// goes with `radius`: 1 beside a number, chosen beside "auto".
+    /// Start radius of photons that a diffuse surface has scattered before, over `radius`. Their
+    /// light changes more slowly from place to place than that of the others. Under the local rule
+    /// one count shrinks both. Where it is not given it goes with `radius`: 1 beside a number,
+    /// chosen beside "auto".
     #[schemars(range(min = 1.0, max = 16.0))]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub indirect_radius: Option<f64>,
@@ -82,8 +85,8 @@ pub struct RenderSettings {
     pub alpha: f64,
     /// Where direct light comes from.
     pub direct: Direct,
-    /// Most scattering events on a photon path and on an eye path. With 0 only light seen directly and, but for path
-    /// tracing, light straight from lights is left.
+    /// Most scattering events on a photon path and on an eye path. With 0 only light seen directly
+    /// and, but for path tracing, light straight from lights is left.
     #[schemars(range(max = 65535))]
     pub max_bounces: u32,
     /// PPM: fixed visible points per pixel, stratified over pixel and lens.
@@ -113,8 +116,8 @@ impl Default for RenderSettings {
 }
 
 impl RenderSettings {
-    /// Start radius of photons that a diffuse surface has scattered over that of the others, but for one that is still to be
-    /// chosen.
+    /// Start radius of photons that a diffuse surface has scattered over that of the others, but
+    /// for one that is still to be chosen.
     pub fn wider(&self) -> f64 {
         self.indirect_radius.unwrap_or(1.0)
     }

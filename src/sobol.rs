@@ -1,10 +1,11 @@
-//! Sobol's sequence in sixteen dimensions (Sobol 1967), with the direction numbers of Joe & Kuo 2008, "Constructing
-//! Sobol sequences with better two-dimensional projections" (their table new-joe-kuo-6).
+//! Sobol's sequence in sixteen dimensions (Sobol 1967), with the direction numbers of Joe & Kuo
+//! 2008, "Constructing Sobol sequences with better two-dimensional projections" (their table
+//! new-joe-kuo-6).
 
 use crate::math::rng::Points;
 
-/// For the second dimension and those after it: degree of the primitive polynomial, its inner coefficients as bits, and
-/// the first direction numbers.
+/// For the second dimension and those after it: degree of the primitive polynomial, its inner
+/// coefficients as bits, and the first direction numbers.
 const JOE_KUO: [(u32, u32, [u32; 6]); 15] = [
     (1, 0, [1, 0, 0, 0, 0, 0]),
     (2, 1, [1, 3, 0, 0, 0, 0]),
@@ -55,9 +56,9 @@ pub fn points(index: u32) -> Points {
 mod tests {
     use super::*;
 
-    /// Theory: the first 2^m points have one in each of the 2^m intervals of every dimension, and in the first two one
-    /// in each box of volume 2^-m that is 2^-a wide and 2^(a-m) high (Sobol 1967). A coordinate with a wrong
-    /// direction number leaves some empty.
+    /// Theory: the first 2^m points have one in each of the 2^m intervals of every dimension, and
+    /// in the first two one in each box of volume 2^-m that is 2^-a wide and 2^(a-m) high (Sobol
+    /// 1967). A coordinate with a wrong direction number leaves some empty.
     #[test]
     fn nets() {
         let filled = |m: u32, cell: &dyn Fn(u32) -> u32| {

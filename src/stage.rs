@@ -1,4 +1,5 @@
-//! Stages of the work and their seconds, for logs (the `log` crate; the program writes them with `-v`).
+//! Stages of the work and their seconds, for logs (the `log` crate; the program writes them with
+//! `-v`).
 
 use std::time::Instant;
 

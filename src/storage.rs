@@ -1,8 +1,9 @@
 //! Files as the program writes and reads them.
 //!
-//! A regular file is complete or as it was: it is written under a name of this writer alone in the same
-//! folder, then renamed. Links are followed, mode and owner stay, and a file without write permission is
-//! refused, even for root. What is no regular file (a pipe, a device) is written to, never replaced.
+//! A regular file is complete or as it was: it is written under a name of this writer alone in the
+//! same folder, then renamed. Links are followed, mode and owner stay, and a file without write
+//! permission is refused, even for root. What is no regular file (a pipe, a device) is written to,
+//! never replaced.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Read, Write};
@@ -89,8 +90,8 @@ pub fn write(
     })
 }
 
-/// Moves `unfinished` to the place of `target`. What is mounted there by itself, as a container's volume
-/// of one file, cannot be replaced, and is written over.
+/// Moves `unfinished` to the place of `target`. What is mounted there by itself, as a container's
+/// volume of one file, cannot be replaced, and is written over.
 fn put_in_place(unfinished: &Path, target: &Path) -> io::Result<()> {
     match fs::rename(unfinished, target) {
         Err(error) if is_mount(&error) => {
@@ -136,14 +137,16 @@ pub fn read(file: &Path, most: u64) -> io::Result<Vec<u8>> {
 /// # Errors
 /// As [`read`], and where it is not UTF-8.
 pub fn read_text(file: &Path, most: u64) -> io::Result<String> {
-    String::from_utf8(read(file, most)?).map_err(|error| io::Error::new(io::ErrorKind::InvalidData, error))
+    String::from_utf8(read(file, most)?)
+        .map_err(|error| io::Error::new(io::ErrorKind::InvalidData, error))
 }
 
 /// Whether two names are of one file, links followed.
 pub fn same(a: &Path, b: &Path) -> bool {
     match (target(a), target(b)) {
         (Ok(a), Ok(b)) => {
-            let real = |path: &Path| path.canonicalize().or_else(|_| std::path::absolute(path)).ok();
+            let real =
+                |path: &Path| path.canonicalize().or_else(|_| std::path::absolute(path)).ok();
             real(&a) == real(&b)
         }
         _ => false,
@@ -155,10 +158,12 @@ pub fn same(a: &Path, b: &Path) -> bool {
 pub fn is_stream(file: &Path) -> bool {
     let folders = ["/dev/fd", "/proc/self/fd"];
     let names = ["-", "/dev/stdout", "/dev/stderr"];
-    names.iter().any(|name| file == Path::new(name)) || folders.iter().any(|folder| file.starts_with(folder))
+    names.iter().any(|name| file == Path::new(name))
+        || folders.iter().any(|folder| file.starts_with(folder))
 }
 
-/// Held while a render writes to a file: no other one that asks can hold it. It ends with the process.
+/// Held while a render writes to a file: no other one that asks can hold it. It ends with the
+/// process.
 #[derive(Debug)]
 pub struct Lock {
     path: PathBuf,
@@ -176,8 +181,8 @@ pub enum LockError {
 }
 
 impl Lock {
-    /// Locks `file`, which need not exist, and removes what a killed writer left of it. Where the file system
-    /// knows no locks there is none to hold.
+    /// Locks `file`, which need not exist, and removes what a killed writer left of it. Where the
+    /// file system knows no locks there is none to hold.
     ///
     /// # Errors
     /// Where another process holds the lock, or the system refuses.
@@ -215,7 +220,9 @@ impl Lock {
 /// and only the holder's number cannot be put in.
 fn open_lock(path: &Path) -> io::Result<File> {
     match OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path) {
-        Err(error) if error.kind() == io::ErrorKind::PermissionDenied => File::open(path).map_err(|_| error),
+        Err(error) if error.kind() == io::ErrorKind::PermissionDenied => {
+            File::open(path).map_err(|_| error)
+        }
         opened => opened,
     }
 }
@@ -227,7 +234,8 @@ impl Drop for Lock {
     }
 }
 
-/// Whether the file system has no locks at all, or none left (`ENOLCK`, as NFS without its lock service).
+/// Whether the file system has no locks at all, or none left (`ENOLCK`, as NFS without its lock
+/// service).
 fn knows_no_locks(error: &io::Error) -> bool {
     const NO_LOCKS: i32 = 37;
     error.kind() == io::ErrorKind::Unsupported
@@ -320,8 +328,9 @@ fn folder(file: &Path) -> PathBuf {
     }
 }
 
-/// A new file beside `target`, of this writer alone. Another process may have the same number (in another
-/// container, on another machine), and one that was killed may have left its file: such names are passed over.
+/// A new file beside `target`, of this writer alone. Another process may have the same number (in
+/// another container, on another machine), and one that was killed may have left its file: such
+/// names are passed over.
 fn unfinished(target: &Path) -> io::Result<(PathBuf, File)> {
     static COUNT: AtomicU64 = AtomicU64::new(0);
     loop {

@@ -18,7 +18,8 @@ static MADE: LazyLock<Vec<assets::Asset>> = LazyLock::new(assets::all);
 /// Most bytes in one file.
 const SIZE_LIMIT: u64 = 1 << 20;
 
-/// What is wrong with `mesh`, or nothing. `closed` asks that its first `closed` triangles bound a solid.
+/// What is wrong with `mesh`, or nothing. `closed` asks that its first `closed` triangles bound a
+/// solid.
 fn faults(mesh: &Mesh, closed: usize) -> Vec<String> {
     let mut faults = Vec::new();
     let count = mesh.positions.len();
@@ -45,7 +46,8 @@ fn faults(mesh: &Mesh, closed: usize) -> Vec<String> {
             faults.push(format!("triangle {k} at {a} faces away from its normals"));
         }
     }
-    // A surface bounds a solid if each edge, as a pair of places, is passed as often one way as the other.
+    // A surface bounds a solid if each edge, as a pair of places, is passed as often one way as the
+    // other.
     let place = |i: usize| (mesh.positions[i] * 1e5).to_array().map(|x| x.round() as i64);
     let mut edges: HashMap<_, i64> = HashMap::new();
     for t in mesh.triangles.iter().take(closed).filter(|t| t.iter().all(|&i| i < count)) {
@@ -63,8 +65,8 @@ fn faults(mesh: &Mesh, closed: usize) -> Vec<String> {
     faults
 }
 
-/// Six times the volume inside the first `closed` triangles, by the divergence theorem: positive if they wind
-/// counter-clockwise seen from outside.
+/// Six times the volume inside the first `closed` triangles, by the divergence theorem: positive if
+/// they wind counter-clockwise seen from outside.
 fn volume(mesh: &Mesh, closed: usize) -> f64 {
     let part = |t: &[usize; 3]| {
         let [a, b, c] = t.map(|i| mesh.positions[i]);
@@ -82,8 +84,8 @@ fn difference(made: &[u8], shipped: &[u8]) -> Option<String> {
     (count > 0).then(|| format!("{count} bytes differ"))
 }
 
-/// Every file is what the generator makes: text byte for byte, pictures value for value (how a picture is
-/// compressed may change with the encoder's version).
+/// Every file is what the generator makes: text byte for byte, pictures value for value (how a
+/// picture is compressed may change with the encoder's version).
 #[test]
 fn shipped_assets_are_current() {
     let mut wrong = Vec::new();
@@ -97,14 +99,19 @@ fn shipped_assets_are_current() {
                 difference(&canvas.to_rgb8(), image.as_raw())
             }
             Content::Radiance(..) => {
-                let decode = |bytes: &[u8]| image::load_from_memory(bytes).expect(asset.name).to_rgb32f();
+                let decode =
+                    |bytes: &[u8]| image::load_from_memory(bytes).expect(asset.name).to_rgb32f();
                 let made = decode(&asset.content.to_bytes().expect(asset.name));
                 (made != decode(&shipped)).then(|| "radiance differs".into())
             }
         };
         wrong.extend(differs.map(|d| format!("{}: {d}", asset.name)));
     }
-    assert!(wrong.is_empty(), "run `cargo run --release --example make_assets`:\n{}", wrong.join("\n"));
+    assert!(
+        wrong.is_empty(),
+        "run `cargo run --release --example make_assets`:\n{}",
+        wrong.join("\n")
+    );
     assert!(difference(b"one", b"two").is_some() && difference(b"one", b"on").is_some());
 }
 
@@ -126,7 +133,12 @@ fn every_file_has_a_maker_and_is_small() {
 fn meshes_are_well_formed() {
     for named in assets::meshes() {
         let mesh = &named.mesh;
-        println!("{}: {} vertices, {} triangles", named.name, mesh.positions.len(), mesh.triangles.len());
+        println!(
+            "{}: {} vertices, {} triangles",
+            named.name,
+            mesh.positions.len(),
+            mesh.triangles.len()
+        );
         assert_eq!(faults(mesh, 0), Vec::<String>::new(), "{}", named.name);
         if named.name == "car.obj" {
             let body = assets::car::body(&assets::car_shape::Unwrapping::new()).triangles.len();
@@ -148,7 +160,8 @@ fn meshes_are_well_formed() {
 fn house_materials_match() {
     let library = assets::house::materials();
     let house = assets::house::house();
-    let known: Vec<&str> = library.lines().filter_map(|line| line.strip_prefix("newmtl ")).collect();
+    let known: Vec<&str> =
+        library.lines().filter_map(|line| line.strip_prefix("newmtl ")).collect();
     for (material, _) in &house.groups {
         assert!(known.contains(material), "{material} is not in house.mtl");
     }

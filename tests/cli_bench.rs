@@ -1,8 +1,9 @@
 //! `caustica bench` through the program, on a tiny scene.
 //!
-//! Theory: what the JSON says must agree with itself on every device: the kernels' seconds and the rest make up the timed
-//! pass, shares make up one, a rate times its time is the count that the work names, and the same scene on the CPU and on the
-//! software driver does the same work. Times themselves are not judged.
+//! Theory: what the JSON says must agree with itself on every device: the kernels' seconds and the
+//! rest make up the timed pass, shares make up one, a rate times its time is the count that the
+//! work names, and the same scene on the CPU and on the software driver does the same work. Times
+//! themselves are not judged.
 
 mod software;
 mod support;
@@ -54,7 +55,8 @@ intensity = [10.0, 10.0, 10.0]
 
 fn folder(name: &str) -> PathBuf {
     let folder = folder_with(name, &[("ball.toml", SCENE)]);
-    fs::write(folder.join("dark.pfm"), pfm::encode(&Picture::from_fn(24, 16, |_, _| [0.0; 3]))).unwrap();
+    fs::write(folder.join("dark.pfm"), pfm::encode(&Picture::from_fn(24, 16, |_, _| [0.0; 3])))
+        .unwrap();
     folder
 }
 
@@ -88,11 +90,16 @@ fn faults(device: &Value, rounds: f64) -> Vec<String> {
     let close = |a: f64, b: f64| (a - b).abs() <= 1e-6 * b.abs().max(1e-9);
     let shares: f64 = kernels.values().map(|kernel| number(&kernel["share"])).sum();
     hold("shares make up one", close(shares, 1.0));
-    for spread in
-        kernels.values().map(|kernel| &kernel["seconds"]).chain([&device["pass"], &device["timed_pass"]])
+    for spread in kernels
+        .values()
+        .map(|kernel| &kernel["seconds"])
+        .chain([&device["pass"], &device["timed_pass"]])
     {
         let [least, median, most] = ["least", "median", "most"].map(|key| number(&spread[key]));
-        hold("the median lies between the extremes", 0.0 <= least && least <= median && median <= most);
+        hold(
+            "the median lies between the extremes",
+            0.0 <= least && least <= median && median <= most,
+        );
         hold("every round is counted", number(&spread["count"]) == rounds);
     }
     let least: f64 = kernels.values().map(|kernel| number(&kernel["seconds"]["least"])).sum();
@@ -126,7 +133,9 @@ fn faults(device: &Value, rounds: f64) -> Vec<String> {
         close(paths, number(&work["photons"]) + number(&work["eye_paths"])),
     );
     let buffers = device["memory"]["buffers"].as_object().unwrap();
-    let film = number(&buffers["film"]) + number(&buffers["visible_points"]) + number(&buffers["gathered"]);
+    let film = number(&buffers["film"])
+        + number(&buffers["visible_points"])
+        + number(&buffers["gathered"]);
     hold("bytes of a pixel", close(film, 384.0 * number(&device["memory"]["per_pixel"])));
     list
 }
@@ -152,7 +161,9 @@ fn figures_agree_with_themselves_and_between_devices() {
             "--json",
         ],
     );
-    for (key, expected) in [("event", "bench"), ("version", env!("CARGO_PKG_VERSION")), ("scene", "ball")] {
+    for (key, expected) in
+        [("event", "bench"), ("version", env!("CARGO_PKG_VERSION")), ("scene", "ball")]
+    {
         assert_eq!(report[key], expected);
     }
     assert!(report["machine"]["os"].is_string() && number(&report["machine"]["threads"]) >= 1.0);
@@ -170,7 +181,10 @@ fn figures_agree_with_themselves_and_between_devices() {
     }
     let [cpu, driver] = [&devices[0], &devices[1]];
     assert_eq!(cpu["work"], driver["work"]);
-    assert!(cpu["compile"].as_object().unwrap().is_empty() && cpu["slices"].as_array().unwrap().is_empty());
+    assert!(
+        cpu["compile"].as_object().unwrap().is_empty()
+            && cpu["slices"].as_array().unwrap().is_empty()
+    );
     for kernel in driver["kernels"].as_object().unwrap().keys() {
         assert!(number(&driver["compile"][kernel]["checking"]) > 0.0, "{kernel}");
     }
@@ -186,7 +200,10 @@ fn figures_agree_with_themselves_and_between_devices() {
 #[test]
 fn people_get_a_table() {
     let folder = folder("table");
-    let output = bench(&folder, &["--device", "cpu", "--size", "16x16", "--photons", "500", "--passes", "1"]);
+    let output = bench(
+        &folder,
+        &["--device", "cpu", "--size", "16x16", "--photons", "500", "--passes", "1"],
+    );
     assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
     let table = text(&output.stdout);
     for word in [
@@ -201,7 +218,8 @@ fn people_get_a_table() {
     }
 }
 
-/// Against a black truth the error never falls below the lit scene's own; against itself it is nothing.
+/// Against a black truth the error never falls below the lit scene's own; against itself it is
+/// nothing.
 #[test]
 fn time_to_error() {
     let folder = folder("error");
@@ -218,19 +236,30 @@ fn time_to_error() {
     ];
     let reached = json(&folder, &[&common[..], &["--max-relMSE", "1e6", "--json"]].concat());
     let approaches = reached["devices"][0]["to_error"].as_array().unwrap();
-    assert_eq!(approaches.iter().map(|a| &a["region"]).collect::<Vec<_>>(), [&Value::Null, &"floor".into()]);
+    assert_eq!(
+        approaches.iter().map(|a| &a["region"]).collect::<Vec<_>>(),
+        [&Value::Null, &"floor".into()]
+    );
     assert!(number(&approaches[0]["reached_seconds"]) > 0.0);
     assert_eq!(approaches[0]["series"].as_array().unwrap().len(), 1);
     assert_eq!(approaches[1]["reached_seconds"], Value::Null);
 
     let output = bench(&folder, &[&common[..], &["--max-relMSE", "floor=1e-9", "--json"]].concat());
     assert_eq!(output.status.code(), Some(3), "{}", text(&output.stderr));
-    assert!(text(&output.stderr).contains("not reached: relMSE of floor"), "{}", text(&output.stderr));
+    assert!(
+        text(&output.stderr).contains("not reached: relMSE of floor"),
+        "{}",
+        text(&output.stderr)
+    );
     let missed: Value = report(&output.stdout);
     let series = missed["devices"][0]["to_error"][1]["series"].as_array().unwrap();
-    assert_eq!(series.iter().map(|p| number(&p["passes"])).collect::<Vec<_>>(), [1.0, 2.0, 3.0, 4.0]);
+    assert_eq!(
+        series.iter().map(|p| number(&p["passes"])).collect::<Vec<_>>(),
+        [1.0, 2.0, 3.0, 4.0]
+    );
     let noise = json(&folder, &[&common[..], &["--truth-noise", "0.5", "--json"]].concat());
-    let whole = |report: &Value| number(&report["devices"][0]["to_error"][0]["series"][0]["rel_mse"]);
+    let whole =
+        |report: &Value| number(&report["devices"][0]["to_error"][0]["series"][0]["rel_mse"]);
     assert!((whole(&missed) - whole(&noise) - 0.5).abs() < 1e-9);
 }
 
@@ -254,9 +283,17 @@ fn mistakes_are_told_before_the_work() {
     let truth = ["ball.toml", "--device", "cpu", "--truth", "dark.pfm"];
     let with = |more: &[&'static str]| [&truth[..], more].concat();
     fails(&with(&["--max-relMSE", "lamp=0.1"]), 2, &["lamp", "--region"]);
-    fails(&with(&["--max-relMSE", "0.1", "--max-relMSE", "0.2"]), 2, &["whole picture", "one for each"]);
+    fails(
+        &with(&["--max-relMSE", "0.1", "--max-relMSE", "0.2"]),
+        2,
+        &["whole picture", "one for each"],
+    );
     fails(&with(&["--region", "a=0,0,9,9", "--region", "a=1,1,9,9"]), 2, &["two regions"]);
     fails(&with(&["--region", "a=0,0,25,9"]), 2, &["beyond the picture", "24 columns"]);
     fails(&with(&["--size", "8x8"]), 1, &["8x8", "24x16", "--size"]);
-    fails(&["ball.toml", "--device", "software", "--method", "path"], 2, &["path tracing", "--device cpu"]);
+    fails(
+        &["ball.toml", "--device", "software", "--method", "path"],
+        2,
+        &["path tracing", "--device cpu"],
+    );
 }

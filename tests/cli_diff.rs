@@ -1,7 +1,8 @@
 //! `caustica diff` through the program.
 //!
-//! Theory: flat pictures of known values have figures known in closed form; a figure beyond its threshold is exit code
-//! 3, a picture that cannot be used 1, and arguments that cannot be meant 2, each with words that name it.
+//! Theory: flat pictures of known values have figures known in closed form; a figure beyond its
+//! threshold is exit code 3, a picture that cannot be used 1, and arguments that cannot be meant 2,
+//! each with words that name it.
 
 mod support;
 
@@ -28,7 +29,8 @@ fn write_exr(folder: &Path, name: &str, picture: &Picture) {
     .unwrap();
 }
 
-/// A fresh folder with pictures to compare. `a.exr` and `b.exr` differ in the columns 32 to 39 of 40.
+/// A fresh folder with pictures to compare. `a.exr` and `b.exr` differ in the columns 32 to 39 of
+/// 40.
 fn folder(name: &str) -> PathBuf {
     let folder = support::folder(name);
     write_exr(&folder, "a.exr", &picture(40, 32));
@@ -42,7 +44,9 @@ fn folder(name: &str) -> PathBuf {
     let coded = |level: u8, alpha: u8| {
         move |x, _| image::Rgba([level, level, level, if x == 3 { alpha } else { 255 }])
     };
-    for (name, level, alpha) in [("white.png", 255, 255), ("grey.png", 188, 255), ("glassy.png", 188, 128)] {
+    for (name, level, alpha) in
+        [("white.png", 255, 255), ("grey.png", 188, 255), ("glassy.png", 188, 128)]
+    {
         image::RgbaImage::from_fn(16, 16, coded(level, alpha)).save(folder.join(name)).unwrap();
     }
     let glassy = SpecificChannels::rgba(|at: exr::prelude::Vec2<usize>| {
@@ -70,13 +74,15 @@ fn json(folder: &Path, arguments: &[&str]) -> Value {
     serde_json::from_str(&shown).unwrap_or_else(|error| panic!("{error}: {shown}"))
 }
 
-/// A fifth of the pixels is off by 0.25: MSE 0.0125, PSNR 20 log10(0.25 / sqrt(0.0125)), ratio 1.2, and relMSE without
-/// its largest pixel (one of 960) 0.0625 / 0.0725 * 191 / 959.
+/// A fifth of the pixels is off by 0.25: MSE 0.0125, PSNR 20 log10(0.25 / sqrt(0.0125)), ratio 1.2,
+/// and relMSE without its largest pixel (one of 960) 0.0625 / 0.0725 * 191 / 959.
 #[test]
 fn figures_are_those_of_the_formulas() {
     let folder = folder("figures");
-    let found =
-        json(&folder, &["a.exr", "b.exr", "--region", "wrong=32,0,40,24", "--region", "right=0,0,8,24"]);
+    let found = json(
+        &folder,
+        &["a.exr", "b.exr", "--region", "wrong=32,0,40,24", "--region", "right=0,0,8,24"],
+    );
     let close = |place: &Value, key: &str, expected: f64| {
         let value = place[key].as_f64().unwrap();
         assert!((value - expected).abs() < 1e-9, "{key}: {value}, expected {expected}");
@@ -100,10 +106,15 @@ fn figures_are_those_of_the_formulas() {
     assert_eq!((&right["psnr"], &right["mean_ratio"][0]), (&Value::Null, &Value::from(1.0)));
     assert_eq!(found["passed"], serde_json::json!([]));
     // The same in words, from another format.
-    let shown = text(&caustica(&folder, &["a.pfm", "b.exr", "--region", "wrong=32,0,40,24"]).stdout);
-    for words in
-        ["1.2500e-2", "1.200000", "wrong: columns 32 to 39, rows 0 to 23", "2 exposures", "192 of 960"]
-    {
+    let shown =
+        text(&caustica(&folder, &["a.pfm", "b.exr", "--region", "wrong=32,0,40,24"]).stdout);
+    for words in [
+        "1.2500e-2",
+        "1.200000",
+        "wrong: columns 32 to 39, rows 0 to 23",
+        "2 exposures",
+        "192 of 960",
+    ] {
         assert!(shown.contains(words), "{words}: {shown}");
     }
 }
@@ -116,17 +127,27 @@ fn thresholds_are_held_one_by_one() {
         ("--max-RMSE=0.12", "--max-RMSE=0.11", ["RMSE 1.1180e-1", "at most 1.1000e-1"]),
         ("--max-relMSE=0.18", "--max-relMSE=0.17", ["relMSE 1.7169e-1", "at most 1.7000e-1"]),
         ("--min-PSNR=6.9", "--min-PSNR=7", ["PSNR 6.98", "at least 7.0000e0"]),
-        ("--max-mean-ratio=0.21", "--max-mean-ratio=0.19", ["means 2.0000e-1", "at most 1.9000e-1"]),
+        (
+            "--max-mean-ratio=0.21",
+            "--max-mean-ratio=0.19",
+            ["means 2.0000e-1", "at most 1.9000e-1"],
+        ),
         ("--max-FLIP=1", "--max-FLIP=0.01", ["LDR-FLIP", "at most 1.0000e-2"]),
         ("--max-HDR-FLIP=1", "--max-HDR-FLIP=0.01", ["HDR-FLIP", "at most 1.0000e-2"]),
         ("--min-SSIM=0.1", "--min-SSIM=0.9999", ["SSIM", "at least 9.9990e-1"]),
     ] {
         ends(&folder, &["a.exr", "b.exr", inside], 0, &[]);
-        ends(&folder, &["a.exr", "b.exr", beyond], 3, &[&["over the threshold"], &words[..]].concat());
+        ends(
+            &folder,
+            &["a.exr", "b.exr", beyond],
+            3,
+            &[&["over the threshold"], &words[..]].concat(),
+        );
         // Equal pictures pass the strictest of each; lower case will do.
         ends(&folder, &["b.exr", "b.exr", &beyond.to_lowercase()], 0, &[]);
     }
-    let strict = ["--max-FLIP=0", "--max-HDR-FLIP=0", "--max-MSE=0", "--min-SSIM=1", "--max-mean-ratio=0"];
+    let strict =
+        ["--max-FLIP=0", "--max-HDR-FLIP=0", "--max-MSE=0", "--min-SSIM=1", "--max-mean-ratio=0"];
     ends(&folder, &[&["b.exr", "b.exr"], &strict[..]].concat(), 0, &[]);
     ends(
         &folder,
@@ -137,7 +158,12 @@ fn thresholds_are_held_one_by_one() {
     // One place's bound says nothing of another's.
     let regions = ["a.exr", "b.exr", "--region", "left=0,0,20,24", "--region", "right=20,0,40,24"];
     ends(&folder, &[&regions[..], &["--max-MSE", "left=0"]].concat(), 0, &[]);
-    ends(&folder, &[&regions[..], &["--max-MSE", "right=0.02"]].concat(), 3, &["MSE of right 2.5000e-2"]);
+    ends(
+        &folder,
+        &[&regions[..], &["--max-MSE", "right=0.02"]].concat(),
+        3,
+        &["MSE of right 2.5000e-2"],
+    );
     let found = json(&folder, &[&regions[..], &["--max-MSE=1", "--max-MSE=right=0.02"]].concat());
     assert_eq!(found["passed"].as_array().unwrap().len(), 1);
     assert_eq!(
@@ -152,7 +178,12 @@ fn pictures_that_cannot_be_used_are_1() {
     ends(&folder, &["a.exr", "none.exr"], 1, &["none.exr", "cannot be read"]);
     ends(&folder, &["broken.exr", "b.exr"], 1, &["broken.exr", "not a usable picture"]);
     ends(&folder, &["a.exr", "wide.exr"], 1, &["40x24 and 41x24", "a.exr", "wide.exr"]);
-    ends(&folder, &["a.exr", "nan.exr"], 1, &["2 values of the second", "column 7, row 2", "nan.exr"]);
+    ends(
+        &folder,
+        &["a.exr", "nan.exr"],
+        1,
+        &["2 values of the second", "column 7, row 2", "nan.exr"],
+    );
     ends(&folder, &["nan.exr", "a.exr"], 1, &["2 values of the first", "NaN"]);
     ends(
         &folder,
@@ -160,7 +191,12 @@ fn pictures_that_cannot_be_used_are_1() {
         1,
         &["glassy.png: 16 pixels are not opaque", "column 3, row 0"],
     );
-    ends(&folder, &["glassy.exr", "a.exr"], 1, &["glassy.exr: 24 pixels are not opaque", "background"]);
+    ends(
+        &folder,
+        &["glassy.exr", "a.exr"],
+        1,
+        &["glassy.exr: 24 pixels are not opaque", "background"],
+    );
     ends(&folder, &["a.exr", "b.exr", "-o", "no/flip.png"], 1, &["no folder `no`"]);
 }
 
@@ -169,15 +205,35 @@ fn wrong_use_is_2() {
     let folder = folder("use");
     ends(&folder, &["a.exr"], 2, &["<B>"]);
     ends(&folder, &["a.exr", "b.gif"], 2, &["b.gif", ".exr, .pfm, .hdr, .png or .jpg"]);
-    ends(&folder, &["a.exr", "grey.png"], 2, &["a.exr holds radiance", "grey.png what a display shows"]);
+    ends(
+        &folder,
+        &["a.exr", "grey.png"],
+        2,
+        &["a.exr holds radiance", "grey.png what a display shows"],
+    );
     for region in ["x", "x=1,2,3", "=0,0,1,1", "x=4,0,4,9", "x=-1,0,4,9", "x=0,0,1.5,9"] {
-        ends(&folder, &["a.exr", "b.exr", "--region", region], 2, &["four whole numbers", "caustic=290"]);
+        ends(
+            &folder,
+            &["a.exr", "b.exr", "--region", region],
+            2,
+            &["four whole numbers", "caustic=290"],
+        );
     }
     let region = ["a.exr", "b.exr", "--region", "x=0,0,41,9"];
     ends(&folder, &region, 2, &["region x", "columns 0 to 40", "40 columns and 24 rows"]);
-    ends(&folder, &["a.exr", "b.exr", "--region=x=0,0,4,4", "--region=x=4,4,8,8"], 2, &["two regions `x`"]);
+    ends(
+        &folder,
+        &["a.exr", "b.exr", "--region=x=0,0,4,4", "--region=x=4,4,8,8"],
+        2,
+        &["two regions `x`"],
+    );
     ends(&folder, &["a.exr", "b.exr", "--max-FLIP=y=0.1"], 2, &["no region `y`", "--region y="]);
-    ends(&folder, &["a.exr", "b.exr", "--region=x=0,0,4,4", "--max-FLIP=y=0.1"], 2, &["the regions are x"]);
+    ends(
+        &folder,
+        &["a.exr", "b.exr", "--region=x=0,0,4,4", "--max-FLIP=y=0.1"],
+        2,
+        &["the regions are x"],
+    );
     ends(&folder, &["a.exr", "b.exr", "--max-FLIP", "-1"], 2, &["zero or more"]);
     ends(&folder, &["a.exr", "b.exr", "--max-FLIP", "nan"], 2, &["caustic=0.1"]);
     ends(&folder, &["a.exr", "b.exr", "--min-SSIM", "1.5"], 2, &["-1 to 1"]);
@@ -187,10 +243,20 @@ fn wrong_use_is_2() {
         2,
         &["no SSIM of the region x", "11 x 11"],
     );
-    ends(&folder, &["grey.png", "white.png", "--max-HDR-FLIP", "0.5"], 2, &["no HDR-FLIP", "--max-FLIP"]);
+    ends(
+        &folder,
+        &["grey.png", "white.png", "--max-HDR-FLIP", "0.5"],
+        2,
+        &["no HDR-FLIP", "--max-FLIP"],
+    );
     ends(&folder, &["grey.png", "white.png", "--hdr-map", "m.png"], 2, &["no HDR-FLIP"]);
     ends(&folder, &["a.exr", "b.exr", "-o", "flip.exr"], 2, &["flip.exr", ".png"]);
-    ends(&folder, &["a.exr", "b.exr", "-o", "m.png", "--hdr-map", "m.png"], 2, &["m.png", "more than once"]);
+    ends(
+        &folder,
+        &["a.exr", "b.exr", "-o", "m.png", "--hdr-map", "m.png"],
+        2,
+        &["m.png", "more than once"],
+    );
     ends(&folder, &["grey.png", "white.png", "-o", "./grey.png"], 2, &["would replace"]);
     assert!(read_any(&folder.join("grey.png")).is_ok(), "the inputs are untouched");
     assert!(!folder.join("m.png").exists());
@@ -204,7 +270,10 @@ fn pictures_for_a_display_are_decoded() {
     let light = ((188.0_f64 / 255.0 + 0.055) / 1.055).powf(2.4);
     let ratio = found["picture"]["mean_ratio"][0].as_f64().unwrap();
     assert!((ratio - light).abs() < 1e-6 && (light - 0.5029).abs() < 1e-4, "{ratio} {light}");
-    assert_eq!((&found["picture"]["hdr_flip"], &found["coding"]), (&Value::Null, &Value::from("display")));
+    assert_eq!(
+        (&found["picture"]["hdr_flip"], &found["coding"]),
+        (&Value::Null, &Value::from("display"))
+    );
     assert!(found["picture"]["ldr_flip"].as_f64().unwrap() > 0.1);
     let fine = image::ImageBuffer::from_pixel(16, 16, image::Luma([188_u16 * 257 + 1]));
     fine.save(folder.join("fine.png")).unwrap();
@@ -215,7 +284,8 @@ fn pictures_for_a_display_are_decoded() {
     assert_eq!(json(&folder, &["white.png", "white.png"])["picture"]["ldr_flip"], 0.0);
 }
 
-/// The maps are as large as the pictures, black where nothing differs and bright where something does.
+/// The maps are as large as the pictures, black where nothing differs and bright where something
+/// does.
 #[test]
 fn maps_show_where() {
     let folder = folder("maps");
@@ -226,7 +296,10 @@ fn maps_show_where() {
         let map = image::open(folder.join("map.png")).unwrap().to_rgb8();
         assert_eq!(map.dimensions(), (40, 24));
         assert_eq!(map.get_pixel(2, 12).0, [0, 0, 4], "magma begins there");
-        assert!(map.get_pixel(38, 12).0.iter().map(|v| u32::from(*v)).sum::<u32>() > 60, "{option}");
+        assert!(
+            map.get_pixel(38, 12).0.iter().map(|v| u32::from(*v)).sum::<u32>() > 60,
+            "{option}"
+        );
         fs::remove_file(folder.join("map.png")).unwrap();
     }
 }

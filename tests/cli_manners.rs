@@ -1,4 +1,5 @@
-//! How the program fits in among others: completions, manual pages, colours, logs, events, and no folder of its own.
+//! How the program fits in among others: completions, manual pages, colours, logs, events, and no
+//! folder of its own.
 
 mod software;
 mod support;
@@ -57,8 +58,8 @@ fn names(events: &[Value]) -> Vec<&str> {
     events.iter().filter_map(|event| event["event"].as_str()).collect()
 }
 
-/// Theory: the scripts come from the parser, so each names every command and an option of `render`; bash, where it is there, can
-/// read its own, and refuses the same cut in the middle of a block.
+/// Theory: the scripts come from the parser, so each names every command and an option of `render`;
+/// bash, where it is there, can read its own, and refuses the same cut in the middle of a block.
 #[test]
 fn completions() {
     let folder = folder("completions");
@@ -100,7 +101,8 @@ fn manual_pages() {
         }
     }
     let render = folder.join("caustica-render.1");
-    if let Ok(output) = Command::new("groff").args(["-ww", "-man", "-Tascii"]).arg(&render).output() {
+    if let Ok(output) = Command::new("groff").args(["-ww", "-man", "-Tascii"]).arg(&render).output()
+    {
         assert_eq!((output.status.success(), text(&output.stderr)), (true, String::new()));
         assert!(text(&output.stdout).contains("Render a scene into pictures"));
     }
@@ -109,8 +111,8 @@ fn manual_pages() {
     assert!(text(&output.stderr).contains("missing"), "{}", text(&output.stderr));
 }
 
-/// Theory: standard error here is no terminal, so nothing is coloured unless `CLICOLOR_FORCE` says so, over which `NO_COLOR` wins,
-/// whatever its value but nothing.
+/// Theory: standard error here is no terminal, so nothing is coloured unless `CLICOLOR_FORCE` says
+/// so, over which `NO_COLOR` wins, whatever its value but nothing.
 #[test]
 fn colours() {
     let folder = folder("colours");
@@ -129,14 +131,15 @@ fn colours() {
     }
 }
 
-/// Theory: logs come on request, to standard error alone; each level has what the one before has, and standard output is the same
-/// events.
+/// Theory: logs come on request, to standard error alone; each level has what the one before has,
+/// and standard output is the same events.
 #[test]
 fn logs() {
     let folder = folder("logs");
     let file = scene("cornell.toml");
     let run = |more: &[&str]| {
-        let small = ["--size", "8x8", "--photons", "500", "--passes", "2", "--device", "cpu", "--json"];
+        let small =
+            ["--size", "8x8", "--photons", "500", "--passes", "2", "--device", "cpu", "--json"];
         let output = with(&folder, &[], &[&["render", &file], &small[..], more].concat());
         assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
         (text(&output.stdout), text(&output.stderr))
@@ -145,26 +148,37 @@ fn logs() {
     assert_eq!(none, "");
     let (_, stages) = run(&["-v"]);
     for stage in ["parse", "pack", "kd-tree", "maps", "plan", "passes"] {
-        let line = stages.lines().find(|line| line.contains(&format!("caustica::stage: {stage}: ")));
+        let line =
+            stages.lines().find(|line| line.contains(&format!("caustica::stage: {stage}: ")));
         assert!(line.is_some_and(|line| line.ends_with(" s")), "{stage}: {stages}");
     }
     assert!(stages.contains("cpu [cpu]") && stages.contains("(asked for)"), "{stages}");
     assert!(!stages.contains("pass 2"), "{stages}");
     let (told, all) = run(&["-vv"]);
-    assert!(all.contains("pass 1: ") && all.contains("pass 2: ") && all.contains("kd-tree"), "{all}");
+    assert!(
+        all.contains("pass 1: ") && all.contains("pass 2: ") && all.contains("kd-tree"),
+        "{all}"
+    );
     assert_eq!(names(&events(&told)), names(&events(&quiet)));
 
     let output = with(&folder, &[], &["-v", "devices"]);
-    assert_eq!(output.status.code(), Some(0), "-v may stand before the command: {}", text(&output.stderr));
+    assert_eq!(
+        output.status.code(),
+        Some(0),
+        "-v may stand before the command: {}",
+        text(&output.stderr)
+    );
 }
 
-/// Theory: with `--json` standard output is events alone, which end with the result; docs/command-line.md names each of them.
+/// Theory: with `--json` standard output is events alone, which end with the result;
+/// docs/command-line.md names each of them.
 #[test]
 fn every_long_command_has_events() {
     let folder = folder("events");
     let file = scene("cornell.toml");
     let docs =
-        fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/command-line.md")).unwrap();
+        fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/command-line.md"))
+            .unwrap();
     let ends = |arguments: &[&str], expected: &[&str]| {
         let events = events(&done(&folder, &[arguments, &["--json"]].concat()));
         let mut names = names(&events);
@@ -175,7 +189,8 @@ fn every_long_command_has_events() {
     };
     let small = ["--size", "8x8", "--photons", "500", "--passes", "2"];
     let part = |range: &str, checkpoint: &str| {
-        let arguments = ["render", &file, "--passes", range, "--checkpoint", checkpoint, "-o", "part.pfm"];
+        let arguments =
+            ["render", &file, "--passes", range, "--checkpoint", checkpoint, "-o", "part.pfm"];
         let done = ends(
             &[&arguments[..], &small[..4], &["--device", "cpu"]].concat(),
             &["start", "progress", "checkpoint", "done"],
@@ -185,7 +200,10 @@ fn every_long_command_has_events() {
     part("0..2", "a.checkpoint");
     part("2..4", "b.checkpoint");
     let merged = ends(&["merge", "b.checkpoint", "a.checkpoint", "-o", "all.pfm"], &["merged"]);
-    assert_eq!((&merged["first_pass"], &merged["end"], &merged["passes"]), (&0.into(), &4.into(), &4.into()));
+    assert_eq!(
+        (&merged["first_pass"], &merged["end"], &merged["passes"]),
+        (&0.into(), &4.into(), &4.into())
+    );
     assert!(merged["error"].as_f64().is_some_and(|error| error > 0.0), "{merged}");
     assert!(folder.join("all.pfm").exists());
 
@@ -197,13 +215,28 @@ fn every_long_command_has_events() {
     ends(&["diff", "all.pfm", "part.pfm"], &["difference"]);
     let bench = ["bench", &file, "--warm-up", "1", "--device", "cpu"];
     ends(&[&bench[..], &small].concat(), &["measuring", "bench"]);
-    let last =
-        ends(&[&["info", &file, "--measure", "--device", "cpu"], &small[..]].concat(), &["info", "measured"]);
+    let last = ends(
+        &[&["info", &file, "--measure", "--device", "cpu"], &small[..]].concat(),
+        &["info", "measured"],
+    );
     assert!(last["pass_seconds"].as_f64().is_some_and(|seconds| seconds > 0.0), "{last}");
     ends(&["check", &file], &["checked"]);
-    assert_eq!(ends(&["devices"], &["devices"])["devices"].as_array().map(Vec::is_empty), Some(false));
-    let study =
-        ["study", &file, "--budget", "2s", "--seeds", "2", "--vary", "photons=200,400", "--device", "cpu"];
+    assert_eq!(
+        ends(&["devices"], &["devices"])["devices"].as_array().map(Vec::is_empty),
+        Some(false)
+    );
+    let study = [
+        "study",
+        &file,
+        "--budget",
+        "2s",
+        "--seeds",
+        "2",
+        "--vary",
+        "photons=200,400",
+        "--device",
+        "cpu",
+    ];
     let events = events(&done(&folder, &[&study[..], &["--size", "8x8", "--json"]].concat()));
     assert!(
         names(&events).iter().all(|name| docs.contains(&format!("| `{name}` |"))),
@@ -233,7 +266,8 @@ fn errors_as_events() {
     );
 }
 
-/// Theory: the shaders are in the program. A copy of it, away from everything, renders from an empty folder what is rendered in place.
+/// Theory: the shaders are in the program. A copy of it, away from everything, renders from an
+/// empty folder what is rendered in place.
 #[test]
 fn needs_no_folder() {
     software();
@@ -242,10 +276,24 @@ fn needs_no_folder() {
     fs::copy(env!("CARGO_BIN_EXE_caustica"), &program).unwrap();
     let file = scene("cornell.toml");
     let render = |program: &Path, device: &str, output: &str| {
-        let arguments =
-            ["render", &file, "--size", "16x16", "--photons", "1000", "--passes", "1", "--device", device];
-        let run =
-            Command::new(program).args(arguments).args(["-o", output]).current_dir(&folder).output().unwrap();
+        let arguments = [
+            "render",
+            &file,
+            "--size",
+            "16x16",
+            "--photons",
+            "1000",
+            "--passes",
+            "1",
+            "--device",
+            device,
+        ];
+        let run = Command::new(program)
+            .args(arguments)
+            .args(["-o", output])
+            .current_dir(&folder)
+            .output()
+            .unwrap();
         assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
         fs::read(folder.join(output)).unwrap()
     };

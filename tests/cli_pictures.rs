@@ -1,8 +1,8 @@
-//! Pictures to work on, through the program on the CPU engine: layers, windows, 16 bits, a picture made again, and one sent
-//! to a viewer.
+//! Pictures to work on, through the program on the CPU engine: layers, windows, 16 bits, a picture
+//! made again, and one sent to a viewer.
 //!
-//! Theory: a window and a picture made again have the bits of the first one; what tev is sent, put together by its own
-//! protocol, is what the file holds.
+//! Theory: a window and a picture made again have the bits of the first one; what tev is sent, put
+//! together by its own protocol, is what the file holds.
 
 mod support;
 
@@ -40,7 +40,10 @@ fn exr(folder: &Path, name: &str) -> ExrFile {
 fn layers_stand_beside_radiance() {
     let folder = folder("layers");
     rendered(&folder, &["ball.toml", "--device", "cpu", "-o", "plain.exr"]);
-    rendered(&folder, &["ball.toml", "--device", "cpu", "--aov", "all", "-o", "all.exr", "-o", "all.png"]);
+    rendered(
+        &folder,
+        &["ball.toml", "--device", "cpu", "--aov", "all", "-o", "all.exr", "-o", "all.png"],
+    );
     let (plain, all) = (exr(&folder, "plain.exr"), exr(&folder, "all.exr"));
     assert_eq!(plain.picture(""), all.picture(""));
     let names: Vec<&str> = all.channels.keys().map(String::as_str).collect();
@@ -80,8 +83,11 @@ fn layers_stand_beside_radiance() {
         &["no output can hold", "-o picture.exr"],
     );
     refused(&folder, &["ball.toml", "--aov", "depht"], 2, &["did you mean `depth`?"]);
-    fs::write(folder.join("ball.toml"), SCENE.replace("height = 24", "height = 24\naov = [\"albedoo\"]"))
-        .unwrap();
+    fs::write(
+        folder.join("ball.toml"),
+        SCENE.replace("height = 24", "height = 24\naov = [\"albedoo\"]"),
+    )
+    .unwrap();
     refused(&folder, &["ball.toml"], 1, &["did you mean `albedo`?"]);
 }
 
@@ -99,7 +105,11 @@ fn a_window_is_a_part_of_the_picture() {
     for name in ["R", "G", "B", "depth.Z", "Variance.Y"] {
         for (i, value) in part.channels[name].iter().enumerate() {
             let (x, y) = (10 + i % 15, 4 + i / 15);
-            assert_eq!(value.to_bits(), whole.channels[name][y * 32 + x].to_bits(), "{name} at {x}, {y}");
+            assert_eq!(
+                value.to_bits(),
+                whole.channels[name][y * 32 + x].to_bits(),
+                "{name} at {x}, {y}"
+            );
         }
     }
     let shifted = |i: usize| whole.channels["R"][(4 + i / 15) * 32 + 11 + i % 15];
@@ -121,7 +131,10 @@ fn a_window_is_a_part_of_the_picture() {
         refused(&folder, &["ball.toml", "--crop", wrong], 2, &["four whole numbers with x0 < x1"]);
     }
     // the window lies in the picture of the size that is asked for
-    rendered(&folder, &["ball.toml", "--device", "cpu", "--size", "64x48", "--crop", "40,30,64,48"]);
+    rendered(
+        &folder,
+        &["ball.toml", "--device", "cpu", "--size", "64x48", "--crop", "40,30,64,48"],
+    );
 }
 
 #[test]
@@ -154,7 +167,8 @@ fn sixteen_bits_hold_what_eight_round() {
 #[test]
 fn a_denoiser_that_is_not_built_in_is_told() {
     let folder = folder("denoise");
-    let words = ["--denoise: this caustica is built without a denoiser", "OIDN_DIR", "--features denoise"];
+    let words =
+        ["--denoise: this caustica is built without a denoiser", "OIDN_DIR", "--features denoise"];
     refused(&folder, &["ball.toml", "--device", "cpu", "--denoise"], 2, &words);
     assert!(!folder.join("ball.png").exists());
 }
@@ -170,7 +184,19 @@ fn a_picture_is_made_again() {
     let folder = folder("like");
     for (name, options) in [
         ("plain", &["--device", "cpu"][..]),
-        ("window", &["--device", "cpu", "--crop", "3,4,20,20", "--size", "40x30", "--aov", "albedo,object"]),
+        (
+            "window",
+            &[
+                "--device",
+                "cpu",
+                "--crop",
+                "3,4,20,20",
+                "--size",
+                "40x30",
+                "--aov",
+                "albedo,object",
+            ],
+        ),
         (
             "ppm",
             &[
@@ -210,7 +236,10 @@ fn a_picture_is_made_again() {
     fs::write(folder.join("floor.obj"), FLOOR).unwrap();
     fs::rename(folder.join("ball.toml"), folder.join("moved.toml")).unwrap();
     let told = rendered(&folder, &["--like", "plain.exr", "-o", "text.exr"]);
-    assert!(told.contains("read from the text in plain.exr") && !told.contains("warning"), "{told}");
+    assert!(
+        told.contains("read from the text in plain.exr") && !told.contains("warning"),
+        "{told}"
+    );
     assert_eq!(bits(&exr(&folder, "plain.exr")), bits(&exr(&folder, "text.exr")));
     // a scene that is named is taken, wherever it is
     let told = rendered(&folder, &["moved.toml", "--like", "plain.exr", "-o", "moved.exr"]);
@@ -218,9 +247,11 @@ fn a_picture_is_made_again() {
     assert_eq!(bits(&exr(&folder, "plain.exr")), bits(&exr(&folder, "moved.exr")));
     // another version, by its attribute
     let mut bytes = fs::read(folder.join("plain.exr")).unwrap();
-    let here =
-        [b"caustica.version\0string\0".as_slice(), &(env!("CARGO_PKG_VERSION").len() as u32).to_le_bytes()]
-            .concat();
+    let here = [
+        b"caustica.version\0string\0".as_slice(),
+        &(env!("CARGO_PKG_VERSION").len() as u32).to_le_bytes(),
+    ]
+    .concat();
     let at = bytes.windows(here.len()).position(|w| w == here).unwrap() + here.len();
     bytes[at] = b'9';
     fs::write(folder.join("future.exr"), bytes).unwrap();
@@ -381,7 +412,8 @@ fn a_viewer_may_go_away() {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let tev = format!("--tev={}", listener.local_addr().unwrap());
     let gone = std::thread::spawn(move || drop(listener.accept().unwrap()));
-    let options = ["ball.toml", "--device", "cpu", "--size", "400x300", "--passes", "6", "-o", "a.exr", &tev];
+    let options =
+        ["ball.toml", "--device", "cpu", "--size", "400x300", "--passes", "6", "-o", "a.exr", &tev];
     let told = rendered(&folder, &options);
     gone.join().unwrap();
     assert!(told.contains("tev takes no more pictures"), "{told}");

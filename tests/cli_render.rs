@@ -1,7 +1,7 @@
 //! Renders through the program on the CPU engine.
 //!
-//! Theory: the files, the exit code and the JSON lines are what a script sees; the same command gives the same bytes, and
-//! an interrupted render leaves the picture of whole passes.
+//! Theory: the files, the exit code and the JSON lines are what a script sees; the same command
+//! gives the same bytes, and an interrupted render leaves the picture of whole passes.
 
 mod support;
 
@@ -24,7 +24,10 @@ fn folder(name: &str) -> PathBuf {
 #[test]
 fn writes_what_is_asked_for_and_says_where() {
     let folder = folder("outputs");
-    let output = caustica(&folder, &["render", "ball.toml", "--device", "cpu", "-o", "a.exr", "-o", "b.png"]);
+    let output = caustica(
+        &folder,
+        &["render", "ball.toml", "--device", "cpu", "-o", "a.exr", "-o", "b.png"],
+    );
     let error = text(&output.stderr);
     assert_eq!(output.status.code(), Some(0), "{error}");
     assert_eq!(text(&output.stdout), "a.exr\nb.png\n");
@@ -48,8 +51,18 @@ fn writes_what_is_asked_for_and_says_where() {
 fn options_replace_the_file_and_equal_commands_give_equal_bytes() {
     let folder = folder("options");
     let render = |output: &str, seed: &str| {
-        let options =
-            ["--size", "20x10", "--passes", "2", "--photons", "1500", "--seed", seed, "--radius", "0.1"];
+        let options = [
+            "--size",
+            "20x10",
+            "--passes",
+            "2",
+            "--photons",
+            "1500",
+            "--seed",
+            seed,
+            "--radius",
+            "0.1",
+        ];
         let run = ["render", "ball.toml", "--device", "cpu", "--quiet", "-o", output];
         assert_eq!(caustica(&folder, &[&run[..], &options].concat()).status.code(), Some(0));
         fs::read(folder.join(output)).unwrap()
@@ -66,7 +79,8 @@ fn options_replace_the_file_and_equal_commands_give_equal_bytes() {
 #[test]
 fn json_tells_start_progress_and_end() {
     let folder = folder("json");
-    let output = caustica(&folder, &["render", "ball.toml", "--device", "cpu", "--json", "-o", "a.pfm"]);
+    let output =
+        caustica(&folder, &["render", "ball.toml", "--device", "cpu", "--json", "-o", "a.pfm"]);
     assert_eq!(text(&output.stderr), "");
     let lines = json_lines(&output.stdout);
     let events: Vec<&str> = lines.iter().map(|line| line["event"].as_str().unwrap()).collect();
@@ -91,10 +105,14 @@ fn time_ends_a_render() {
     assert_eq!(output.status.code(), Some(0));
     let done = json_lines(&output.stdout).pop().unwrap();
     assert_eq!(done["ended"], "time");
-    assert!(done["passes"].as_u64().unwrap() >= 1 && done["elapsed"].as_f64().unwrap() >= 0.3, "{done}");
+    assert!(
+        done["passes"].as_u64().unwrap() >= 1 && done["elapsed"].as_f64().unwrap() >= 0.3,
+        "{done}"
+    );
 }
 
-/// Theory: the passes after which the error is estimated are the same in every run, and so is the one that ends it.
+/// Theory: the passes after which the error is estimated are the same in every run, and so is the
+/// one that ends it.
 #[test]
 fn an_error_aimed_at_ends_a_render() {
     let folder = folder("target_error");
@@ -112,7 +130,11 @@ fn an_error_aimed_at_ends_a_render() {
     let legs = ["error_noise", "error_bias"].map(|leg| done[leg].as_f64().unwrap());
     assert!(legs[0] > 0.0 && legs[0].hypot(legs[1]) <= stated, "{done}");
     let progress: Vec<_> = lines.iter().filter(|line| line["event"] == "progress").collect();
-    assert!(progress.iter().all(|line| line["error"].is_null() == (line["passes"].as_u64().unwrap() < 4)));
+    assert!(
+        progress
+            .iter()
+            .all(|line| line["error"].is_null() == (line["passes"].as_u64().unwrap() < 4))
+    );
     // the layers stand beside the picture, which reads as ever
     let exr = file::read_exr(&folder.join("a.exr")).unwrap();
     assert!(exr.channels["Variance.Y"].iter().all(|variance| *variance >= 0.0));
@@ -124,7 +146,8 @@ fn an_error_aimed_at_ends_a_render() {
     let (_, _, lines) = aimed("0.05", "c.pfm");
     assert!(lines.last().unwrap()["passes"].as_u64().unwrap() > passes);
     // fewer passes than an estimate needs: none is told, and no layers are written
-    let output = caustica(&folder, &["render", "ball.toml", "--device", "cpu", "--json", "-o", "d.exr"]);
+    let output =
+        caustica(&folder, &["render", "ball.toml", "--device", "cpu", "--json", "-o", "d.exr"]);
     assert!(json_lines(&output.stdout).pop().unwrap()["error"].is_null());
     assert_eq!(file::read_exr(&folder.join("d.exr")).unwrap().channels.len(), 3);
     for wrong in ["0", "0%", "-1%", "-0.5", "nan", "200%", "2", "much"] {
@@ -143,7 +166,11 @@ fn compare_holds_its_thresholds() {
     };
     let same = compare(&["--bits", "--max-relmse", "0", "--max-mean-ratio", "0", "-o", "map.png"]);
     assert_eq!(same.status.code(), Some(0), "{}", text(&same.stderr));
-    assert!(text(&same.stdout).contains("pixels of other bits  0 of 768"), "{}", text(&same.stdout));
+    assert!(
+        text(&same.stdout).contains("pixels of other bits  0 of 768"),
+        "{}",
+        text(&same.stdout)
+    );
     assert!(text(&same.stdout).ends_with("map.png\n") && folder.join("map.png").exists());
     // f32 against f64: other bits, the same picture
     let rounded = |bound: &[&str]| {
@@ -167,8 +194,9 @@ fn compare_holds_its_thresholds() {
     }
 }
 
-/// Theory: a preset is a set of settings, and what it promises is told from passes that the picture holds anyway: the
-/// same settings without a preset give the same bytes. Options change single settings.
+/// Theory: a preset is a set of settings, and what it promises is told from passes that the picture
+/// holds anyway: the same settings without a preset give the same bytes. Options change single
+/// settings.
 #[test]
 fn presets_promise_and_keep_their_passes() {
     let folder = folder("quality");
@@ -186,10 +214,14 @@ fn presets_promise_and_keep_their_passes() {
     // One photon for each of 32 x 24 pixels, and a radius in numbers.
     assert_eq!((&settings["photons"], &settings["passes"]), (&768.into(), &4.into()));
     let pixels = settings["radius"]["pixels"].as_f64().unwrap();
-    assert!(of(&draft, "start")["radius_why"].as_str().unwrap().starts_with(&format!("{pixels} px, ")));
+    assert!(
+        of(&draft, "start")["radius_why"].as_str().unwrap().starts_with(&format!("{pixels} px, "))
+    );
     assert_eq!((&told["quality"], &told["passes"]), (&"draft".into(), &4.into()));
     let error = |key: &str| told["expected_relMSE"][key].as_f64().unwrap();
-    assert!(0.0 < error("low") && error("low") <= error("rel_mse") && error("rel_mse") <= error("high"));
+    assert!(
+        0.0 < error("low") && error("low") <= error("rel_mse") && error("rel_mse") <= error("high")
+    );
     assert!(error("high") < told["one_pass_relMSE"].as_f64().unwrap(), "{told}");
     assert!(told["expected_seconds"].as_f64().unwrap() > 0.0);
     assert_eq!(of(&draft, "done")["passes"], 4, "the calibration's passes are among them");
@@ -198,8 +230,11 @@ fn presets_promise_and_keep_their_passes() {
     let discs = ["--radius", &radius, "--indirect-radius", &indirect];
     let by_hand = [&["--photons", "768", "--passes", "4", "-o", "hand.pfm"][..], &discs].concat();
     assert_eq!(of(&render(&by_hand), "calibration"), serde_json::Value::Null);
-    assert!(fs::read(folder.join("draft.pfm")).unwrap() == fs::read(folder.join("hand.pfm")).unwrap());
-    // Options are stronger than the preset, which is stronger than the scene; it knows the size that options set.
+    assert!(
+        fs::read(folder.join("draft.pfm")).unwrap() == fs::read(folder.join("hand.pfm")).unwrap()
+    );
+    // Options are stronger than the preset, which is stronger than the scene; it knows the size
+    // that options set.
     let changed = render(&[
         "--quality",
         "preview",
@@ -220,7 +255,8 @@ fn presets_promise_and_keep_their_passes() {
     assert_eq!(of(&changed, "start")["radius_why"], serde_json::Value::Null);
     assert_eq!(of(&changed, "calibration")["passes"], 3);
     // For people.
-    let output = caustica(&folder, &["render", "ball.toml", "--device", "cpu", "--quality", "draft"]);
+    let output =
+        caustica(&folder, &["render", "ball.toml", "--device", "cpu", "--quality", "draft"]);
     let error = text(&output.stderr);
     for word in [
         "start radius",
@@ -238,7 +274,8 @@ fn presets_promise_and_keep_their_passes() {
     assert!(text(&output.stderr).contains("'final'"), "{}", text(&output.stderr));
 }
 
-/// An interrupt while passes are being made: exit 130, and a picture of whole passes, fewer than asked for.
+/// An interrupt while passes are being made: exit 130, and a picture of whole passes, fewer than
+/// asked for.
 #[cfg(unix)]
 #[test]
 fn interrupts_save_the_picture() {
@@ -253,10 +290,13 @@ fn interrupts_save_the_picture() {
         .unwrap();
     let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
     // The first progress line is there: the render is under way.
-    let first_progress = lines.by_ref().map(Result::unwrap).find(|line| line.contains("\"progress\""));
+    let first_progress =
+        lines.by_ref().map(Result::unwrap).find(|line| line.contains("\"progress\""));
     assert!(first_progress.is_some());
     std::thread::sleep(Duration::from_millis(100));
-    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    assert!(
+        Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success()
+    );
     let last = lines.map(Result::unwrap).last().unwrap();
     assert_eq!(child.wait().unwrap().code(), Some(130));
     let done: serde_json::Value = serde_json::from_str(&last).unwrap();
@@ -267,12 +307,14 @@ fn interrupts_save_the_picture() {
     assert_eq!(read(&folder.join("a.exr")).unwrap().not_finite(), 0);
 }
 
-/// Theory: nothing is left out of a sound picture, and --strict changes nothing. Where a pixel is too bright for f32 the
-/// picture is written all the same, the cause is told, and --strict ends with 1.
+/// Theory: nothing is left out of a sound picture, and --strict changes nothing. Where a pixel is
+/// too bright for f32 the picture is written all the same, the cause is told, and --strict ends
+/// with 1.
 #[test]
 fn what_is_left_out_is_told() {
     let folder = folder("strict");
-    let sound = caustica(&folder, &["render", "ball.toml", "--device", "cpu", "--json", "--strict"]);
+    let sound =
+        caustica(&folder, &["render", "ball.toml", "--device", "cpu", "--json", "--strict"]);
     assert_eq!(sound.status.code(), Some(0), "{}", text(&sound.stderr));
     let causes = ["eye_path", "direct_light", "photons", "estimate", "too_bright"];
     let rejected = |output: &Output| {
@@ -291,9 +333,15 @@ fn what_is_left_out_is_told() {
     fs::write(folder.join("bright.toml"), bright).unwrap();
     let told = caustica(&folder, &["render", "bright.toml", "--device", "cpu", "-o", "a.exr"]);
     assert_eq!(told.status.code(), Some(0), "{}", text(&told.stderr));
-    assert!(text(&told.stderr).contains("pixels brighter than a picture can hold"), "{}", text(&told.stderr));
-    let strict =
-        caustica(&folder, &["render", "bright.toml", "--device", "cpu", "-o", "b.exr", "--json", "--strict"]);
+    assert!(
+        text(&told.stderr).contains("pixels brighter than a picture can hold"),
+        "{}",
+        text(&told.stderr)
+    );
+    let strict = caustica(
+        &folder,
+        &["render", "bright.toml", "--device", "cpu", "-o", "b.exr", "--json", "--strict"],
+    );
     assert_eq!(strict.status.code(), Some(1));
     assert!(text(&strict.stderr).contains("--strict"), "{}", text(&strict.stderr));
     assert!(rejected(&strict)[4] > 0);
@@ -305,11 +353,15 @@ fn what_is_left_out_is_told() {
 fn a_target_out_of_reach() {
     let folder = folder("target");
     let render = |options: &[&str]| {
-        let output = caustica(&folder, &[&["render", "ball.toml", "--device", "cpu"][..], options].concat());
+        let output =
+            caustica(&folder, &[&["render", "ball.toml", "--device", "cpu"][..], options].concat());
         (output.status.code(), support::error(&output))
     };
     let (code, error) = render(&["--target-error", "0.1%", "--passes", "5"]);
-    assert!(code == Some(0) && error.contains("the error aimed at, 0.10 %, is not reached"), "{error}");
+    assert!(
+        code == Some(0) && error.contains("the error aimed at, 0.10 %, is not reached"),
+        "{error}"
+    );
     let (code, error) = render(&["--target-error", "100%", "--passes", "500"]);
     assert!(code == Some(0) && !error.contains("is not reached"), "{error}");
     for (option, value, instead) in

@@ -1,8 +1,8 @@
 //! `caustica study` as a script sees it: exit codes, files, and what a second call does.
 //!
-//! Theory: a study is the set of its renders, one for each configuration and seed. However it is cut by interrupts, the
-//! same command ends with the same set; renders that were finished are kept, and equal seeds make equal pictures, so that
-//! their errors are equal to the last digit.
+//! Theory: a study is the set of its renders, one for each configuration and seed. However it is
+//! cut by interrupts, the same command ends with the same set; renders that were finished are kept,
+//! and equal seeds make equal pictures, so that their errors are equal to the last digit.
 
 mod support;
 
@@ -82,7 +82,10 @@ fn a_small_study_writes_what_it_promises() {
     // Variance and bias of all three configurations, and errors that fall.
     for curve in study["parts"][0]["curves"].as_array().unwrap() {
         let points = curve["points"].as_array().unwrap();
-        assert!(points.len() > 2 && points[0]["split"]["variance"].as_f64().unwrap() > 0.0, "{curve}");
+        assert!(
+            points.len() > 2 && points[0]["split"]["variance"].as_f64().unwrap() > 0.0,
+            "{curve}"
+        );
         let error = |i: usize| points[i]["rel_mse"]["mean"].as_f64().unwrap();
         assert!(error(points.len() - 1) < error(0), "{curve}");
     }
@@ -93,12 +96,16 @@ fn a_small_study_writes_what_it_promises() {
     }
     assert!(page.contains("data:image/png;base64,") && page.contains("prefers-color-scheme:dark"));
     assert_eq!(page.matches("<svg").count(), page.matches("</svg>").count());
-    assert!(fs::read_dir(folder.join("out/unfinished")).unwrap().next().is_none(), "pictures are gone");
+    assert!(
+        fs::read_dir(folder.join("out/unfinished")).unwrap().next().is_none(),
+        "pictures are gone"
+    );
     // Nothing is left to do, and nothing is done again.
     let before = runs(&folder);
     let again = caustica(&folder, &[&SMALL[..], &["--json"]].concat());
     assert_eq!(again.status.code(), Some(0), "{}", text(&again.stderr));
-    let events: Vec<Value> = text(&again.stdout).lines().map(|l| serde_json::from_str(l).unwrap()).collect();
+    let events: Vec<Value> =
+        text(&again.stdout).lines().map(|l| serde_json::from_str(l).unwrap()).collect();
     let names: Vec<&str> = events.iter().map(|event| event["event"].as_str().unwrap()).collect();
     assert_eq!(names, ["start", "done"]);
     assert_eq!((events[1]["runs"].as_u64(), runs(&folder)), (Some(9), before));
@@ -120,7 +127,9 @@ fn an_interrupted_study_goes_on_to_the_same_end() {
     let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
     let second = lines.by_ref().map(Result::unwrap).filter(|line| line.contains("\"run\"")).nth(1);
     assert!(second.is_some());
-    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    assert!(
+        Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success()
+    );
     let last = lines.map(Result::unwrap).last().unwrap();
     assert_eq!(child.wait().unwrap().code(), Some(130), "{last}");
     assert!(last.contains("\"complete\":false"), "{last}");
@@ -187,7 +196,8 @@ fn what_does_not_belong_is_refused() {
     refused(&small, 2, "an older text of this scene");
     fs::create_dir(folder.join("mine")).unwrap();
     fs::write(folder.join("mine/letter"), "dear").unwrap();
-    let mine: Vec<&str> = small.iter().map(|word| if *word == "out" { "mine" } else { word }).collect();
+    let mine: Vec<&str> =
+        small.iter().map(|word| if *word == "out" { "mine" } else { word }).collect();
     refused(&mine, 2, "something else than a study");
     assert_eq!(fs::read_to_string(folder.join("mine/letter")).unwrap(), "dear");
 }
@@ -196,33 +206,58 @@ fn what_does_not_belong_is_refused() {
 #[test]
 fn lamps_shrink() {
     let folder = folder("lamps");
-    let study =
-        ["study", "ball.toml", "-o", "out", "--device", "cpu", "--budget", "4s", "--seeds", "2", "--quiet"];
+    let study = [
+        "study",
+        "ball.toml",
+        "-o",
+        "out",
+        "--device",
+        "cpu",
+        "--budget",
+        "4s",
+        "--seeds",
+        "2",
+        "--quiet",
+    ];
     let grid = ["--grid", "lamp_area=1,1e-4,point", "--grid", "method=sppm,path"];
     let output = caustica(&folder, &[&study[..], &grid].concat());
     assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
     let study_json = json(&folder.join("out/study.json"));
     assert_eq!(study_json["parts"].as_array().unwrap().len(), 3);
-    assert!(fs::read_to_string(folder.join("out/report.html")).unwrap().contains("As the lamp shrinks"));
+    assert!(
+        fs::read_to_string(folder.join("out/report.html")).unwrap().contains("As the lamp shrinks")
+    );
     assert!(folder.join("out/charts/lamps.svg").exists());
     let flat = SCENE.replace(
         "type = \"sphere\"\ncenter = [0.0, 3.0, 1.0]\nradius = 0.3",
         "type = \"disc\"\ncenter = [0.0, 3.0, 1.0]\nnormal = [0.0, -1.0, 0.0]\nradius = 0.3",
     );
     fs::write(folder.join("ball.toml"), flat).unwrap();
-    let other: Vec<&str> = study.iter().map(|word| if *word == "out" { "flat" } else { word }).collect();
+    let other: Vec<&str> =
+        study.iter().map(|word| if *word == "out" { "flat" } else { word }).collect();
     let output = caustica(&folder, &[&other[..], &grid].concat());
     assert_eq!(output.status.code(), Some(2));
     assert!(text(&output.stderr).contains("spheres"), "{}", text(&output.stderr));
 }
 
-/// What surfaces of revolution are made of is an axis; all are held against one truth, of the exact surfaces. A scene that has
-/// none is told before any time is spent.
+/// What surfaces of revolution are made of is an axis; all are held against one truth, of the exact
+/// surfaces. A scene that has none is told before any time is spent.
 #[test]
 fn revolutions_become_meshes() {
     let folder = folder("revolutions");
-    let study =
-        ["study", "ball.toml", "-o", "out", "--device", "cpu", "--budget", "4s", "--seeds", "2", "--quiet"];
+    let study = [
+        "study",
+        "ball.toml",
+        "-o",
+        "out",
+        "--device",
+        "cpu",
+        "--budget",
+        "4s",
+        "--seeds",
+        "2",
+        "--quiet",
+    ];
     let vary = ["--vary", "revolutions=exact,16", "--vary", "newton_tolerance=1e-2"];
     let output = caustica(&folder, &[&study[..], &vary].concat());
     assert_eq!(output.status.code(), Some(2));
@@ -231,7 +266,8 @@ fn revolutions_become_meshes() {
     let with = SCENE.clone()
         + "[[shapes]]\ntype = \"revolution\"\nprofile = [[0.0, 0.0], [0.6, 0.3], [0.0, 1.0]]\nmaterial = \"white\"\n";
     fs::write(folder.join("ball.toml"), with).unwrap();
-    let other: Vec<&str> = study.iter().map(|word| if *word == "out" { "with" } else { word }).collect();
+    let other: Vec<&str> =
+        study.iter().map(|word| if *word == "out" { "with" } else { word }).collect();
     let output = caustica(&folder, &[&other[..], &vary].concat());
     assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
     let study_json = json(&folder.join("with/study.json"));
@@ -241,7 +277,8 @@ fn revolutions_become_meshes() {
     assert_eq!(study_json["parts"].as_array().unwrap().len(), 1, "one truth");
     let csv = fs::read_to_string(folder.join("with/study.csv")).unwrap();
     assert!(
-        csv.lines().next().unwrap().contains("revolutions,newton_tolerance") && csv.contains(",16,least,")
+        csv.lines().next().unwrap().contains("revolutions,newton_tolerance")
+            && csv.contains(",16,least,")
     );
 }
 
@@ -252,14 +289,18 @@ fn info_measures_what_is_left_out() {
     let output = caustica(&folder, &["info", "ball.toml", "--measure", "--device", "cpu"]);
     assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
     let said = text(&output.stdout);
-    let rows: Vec<&str> =
-        said.lines().filter(|line| line.starts_with("+ ") || line.starts_with("as it is")).collect();
+    let rows: Vec<&str> = said
+        .lines()
+        .filter(|line| line.starts_with("+ ") || line.starts_with("as it is"))
+        .collect();
     assert!(rows.len() > 5 && rows.iter().all(|row| row.ends_with("yes")), "{said}");
     for word in ["+ metal", "+ revolution", "+ all of these"] {
         assert!(rows.iter().any(|row| row.starts_with(word)), "{word}: {said}");
     }
     assert!(!said.contains("+ glass"), "it has that: {said}");
-    let nothing =
-        caustica(&folder, &["info", "ball.toml", "--measure", "--device", "cpu", "--method", "path"]);
+    let nothing = caustica(
+        &folder,
+        &["info", "ball.toml", "--measure", "--device", "cpu", "--method", "path"],
+    );
     assert_eq!(nothing.status.code(), Some(2));
 }

@@ -1,9 +1,10 @@
 //! `caustica tessellate` through the program.
 //!
-//! Theory: a profile of straight lines turned in N sectors is a prism, a pyramid or stumps of one, exactly: its rings are
-//! regular N-gons of circumradius r. An N-gon has the perimeter 2 N r sin(pi/N) and the area N r^2 sin(2 pi/N) / 2; the
-//! sides of a pyramid of height h have the apothem sqrt(h^2 + r^2 cos^2(pi/N)). A curved profile's volume is that of the
-//! round body times the ratio of N-gon and circle, within the flatness asked for.
+//! Theory: a profile of straight lines turned in N sectors is a prism, a pyramid or stumps of one,
+//! exactly: its rings are regular N-gons of circumradius r. An N-gon has the perimeter 2 N r
+//! sin(pi/N) and the area N r^2 sin(2 pi/N) / 2; the sides of a pyramid of height h have the
+//! apothem sqrt(h^2 + r^2 cos^2(pi/N)). A curved profile's volume is that of the round body times
+//! the ratio of N-gon and circle, within the flatness asked for.
 
 mod support;
 
@@ -49,7 +50,8 @@ fn mesh(name: &str, profile: &str, options: &[&str]) -> Mesh {
 
 /// Area, and the volume on the side that the normals point away from.
 fn area_and_volume(mesh: &Mesh) -> (f64, f64) {
-    let corners = mesh.triangles.iter().map(|t| t.position.map(|index| mesh.positions[index as usize]));
+    let corners =
+        mesh.triangles.iter().map(|t| t.position.map(|index| mesh.positions[index as usize]));
     corners.fold((0.0, 0.0), |(area, volume), [a, b, c]| {
         let normal = (b - a).cross(c - a);
         (area + 0.5 * normal.length(), volume + a.dot(normal) / 6.0)
@@ -93,14 +95,18 @@ fn cone_with_transform() {
     let (area, volume) = area_and_volume(&mesh);
     assert!(close(area, base + 0.5 * perimeter * apothem), "{area}");
     assert!(close(volume, base * 4.0 / 3.0), "{volume}");
-    let tip = mesh.positions.iter().copied().fold(DVec3::splat(-1e9), |a, b| if b.x > a.x { b } else { a });
+    let tip = mesh
+        .positions
+        .iter()
+        .copied()
+        .fold(DVec3::splat(-1e9), |a, b| if b.x > a.x { b } else { a });
     assert!(tip.distance(DVec3::new(14.0, 0.0, 0.0)) < 1e-9, "{tip}");
     let lowest = mesh.positions.iter().map(|p| p.x).fold(1e9, f64::min);
     assert!((lowest - 10.0).abs() < 1e-9, "{lowest}");
 }
 
-/// The profile (0, 0), (a/2, 0), (a, h) is the paraboloid y = h r^2 / a^2, half the volume of its cylinder. A finer mesh is
-/// nearer to it.
+/// The profile (0, 0), (a/2, 0), (a, h) is the paraboloid y = h r^2 / a^2, half the volume of its
+/// cylinder. A finer mesh is nearer to it.
 #[test]
 fn paraboloid_within_the_flatness() {
     let profile = "segments = [[[0, 0], [0.5, 0], [1, 1]], [[1, 1], [0, 1]]]\n";
@@ -198,7 +204,13 @@ fn faults_of_a_profile_are_told_at_once() {
         "`degrees` is missing in transform.rotate",
     ];
     fails("many", many, &["p.toml"], 1, &words);
-    fails("empty", "", &["p.toml"], 1, &["p.toml:1:1", "the file has neither `profile` nor `segments`"]);
+    fails(
+        "empty",
+        "",
+        &["p.toml"],
+        1,
+        &["p.toml:1:1", "the file has neither `profile` nor `segments`"],
+    );
     fails(
         "both",
         &format!("{TUBE}segments = [[[1, 0], [1, 2]]]\n"),
@@ -229,7 +241,13 @@ fn faults_of_a_profile_are_told_at_once() {
         1,
         &["p.toml:2:33", "`transform.rotate.axis` has no direction"],
     );
-    fails("large", "profile = [[1, 0], [1, 1e16]]\n", &["p.toml"], 1, &["p.toml:1:24", "too large"]);
+    fails(
+        "large",
+        "profile = [[1, 0], [1, 1e16]]\n",
+        &["p.toml"],
+        1,
+        &["p.toml:1:24", "too large"],
+    );
     fails("not toml", "profile = [[1, 0]\n", &["p.toml"], 1, &["not TOML"]);
     fails(
         "thin",

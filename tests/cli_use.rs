@@ -1,7 +1,7 @@
 //! The program's manners, without a render: exit codes and messages.
 //!
-//! Theory: a mistake ends with its own exit code and a message on standard error that names the mistake and the way out;
-//! standard output stays empty, and so does the folder.
+//! Theory: a mistake ends with its own exit code and a message on standard error that names the
+//! mistake and the way out; standard output stays empty, and so does the folder.
 
 mod support;
 
@@ -39,12 +39,13 @@ fn folder(name: &str) -> PathBuf {
     folder_with(name, &[("ball.toml", SCENE)])
 }
 
-/// Runs in a fresh folder; the code must be as said, standard error must hold all the words, standard output nothing,
-/// and no file may be left.
+/// Runs in a fresh folder; the code must be as said, standard error must hold all the words,
+/// standard output nothing, and no file may be left.
 fn fails(name: &str, arguments: &[&str], code: i32, words: &[&str]) {
     let folder = folder(name);
     support::fails(&folder, arguments, code, words);
-    let left: Vec<_> = fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    let left: Vec<_> =
+        fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name()).collect();
     assert_eq!(left, ["ball.toml"], "{arguments:?}");
 }
 
@@ -54,7 +55,12 @@ fn wrong_use_is_2() {
     fails("command", &["rendr", "ball.toml"], 2, &["rendr", "render"]);
     fails("option", &["render", "ball.toml", "--pases", "3"], 2, &["--pases", "--passes"]);
     fails("no scene", &["render"], 2, &["<SCENE>"]);
-    fails("method", &["render", "ball.toml", "--method", "sspm"], 2, &["sspm", "sppm", "ppm", "path"]);
+    fails(
+        "method",
+        &["render", "ball.toml", "--method", "sspm"],
+        2,
+        &["sspm", "sppm", "ppm", "path"],
+    );
     fails("rule", &["render", "ball.toml", "--radius-rule", "x"], 2, &["global", "local", "fixed"]);
     fails("direct", &["render", "ball.toml", "--direct", "x"], 2, &["sampled", "photons"]);
     fails("radius", &["render", "ball.toml", "--radius", "-1"], 2, &["2px", "0.01"]);
@@ -63,14 +69,24 @@ fn wrong_use_is_2() {
     fails("size", &["render", "ball.toml", "--size", "640"], 2, &["640x480"]);
     fails("time", &["render", "ball.toml", "--time", "30"], 2, &["30s"]);
     fails("device", &["render", "ball.toml", "--device", ""], 2, &["--device"]);
-    fails("devices", &["compare", "ball.toml", "--device", "cpu"], 2, &["two devices", "--device gpu"]);
+    fails(
+        "devices",
+        &["compare", "ball.toml", "--device", "cpu"],
+        2,
+        &["two devices", "--device gpu"],
+    );
     fails("bits", &["compare", "ball.toml", "--max-relmse", "-1"], 2, &["zero or more"]);
 }
 
 #[test]
 fn outputs_are_known_before_the_scene_is_read() {
     let known = [".png", ".exr", ".pfm", ".hdr"];
-    fails("extension", &["render", "missing.toml", "-o", "a.jpg"], 2, &[&["a.jpg"], &known[..]].concat());
+    fails(
+        "extension",
+        &["render", "missing.toml", "-o", "a.jpg"],
+        2,
+        &[&["a.jpg"], &known[..]].concat(),
+    );
     fails("bare", &["render", "missing.toml", "-o", "picture"], 2, &known);
     fails(
         "twice",
@@ -84,7 +100,12 @@ fn outputs_are_known_before_the_scene_is_read() {
         1,
         &["no/a.png", "no folder `no`", "create"],
     );
-    fails("second", &["render", "missing.toml", "-o", "a.exr", "-o", "no/a.png"], 1, &["no folder `no`"]);
+    fails(
+        "second",
+        &["render", "missing.toml", "-o", "a.exr", "-o", "no/a.png"],
+        1,
+        &["no folder `no`"],
+    );
     fails("map", &["compare", "missing.toml", "-o", "map.exr"], 2, &["map.exr", ".png"]);
     fails("map folder", &["compare", "missing.toml", "-o", "no/map.png"], 1, &["no folder `no`"]);
 }
@@ -119,8 +140,11 @@ fn a_device_that_is_not_there_is_4() {
 #[test]
 fn check_tells_good_from_bad() {
     let folder = folder("check");
-    fs::write(folder.join("bad.toml"), SCENE.replace("\"white\"\n[[lights]]", "\"whit\"\n[[lights]]"))
-        .unwrap();
+    fs::write(
+        folder.join("bad.toml"),
+        SCENE.replace("\"white\"\n[[lights]]", "\"whit\"\n[[lights]]"),
+    )
+    .unwrap();
     let good = caustica(&folder, &["check", "ball.toml"]);
     assert_eq!((good.status.code(), text(&good.stdout).as_str()), (Some(0), "ball.toml: good\n"));
     assert_eq!(text(&good.stderr), "");
@@ -146,13 +170,15 @@ fn info_tells_what_is_needed_and_what_is_not() {
         "{shown}"
     );
     assert!(
-        line("features left out").contains("glass") && !line("features left out").contains("diffuse"),
+        line("features left out").contains("glass")
+            && !line("features left out").contains("diffuse"),
         "{shown}"
     );
     assert_eq!(line("triangles"), "", "no table that the scene does without: {shown}");
     // What was chosen where nobody names a radius, and why; path tracing has none.
-    let chosen =
-        |output: &Output| text(&output.stdout).lines().filter(|l| l.starts_with("start radius: ")).count();
+    let chosen = |output: &Output| {
+        text(&output.stdout).lines().filter(|l| l.starts_with("start radius: ")).count()
+    };
     assert!(line("start radius: ").contains(" px for light"), "{shown}");
     assert_eq!(chosen(&caustica(&folder, &["info", "ball.toml", "--radius", "2px"])), 0);
     let path = caustica(&folder, &["info", "ball.toml", "--method", "path"]);
@@ -232,7 +258,8 @@ fn examples_of_the_help_texts_run() {
                 if !["--crop", "--like"].iter().any(|option| example.contains(option)) {
                     arguments.extend(["--size", "16x16"]);
                 }
-                arguments.extend(["--device", "cpu"].iter().filter(|_| !example.contains("--device")));
+                arguments
+                    .extend(["--device", "cpu"].iter().filter(|_| !example.contains("--device")));
             }
             let output = caustica(&folder, &arguments);
             assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", text(&output.stderr));
@@ -240,7 +267,8 @@ fn examples_of_the_help_texts_run() {
         }
     }
     assert_eq!(run, 12, "two, seven, one, one and one");
-    let mut left: Vec<_> = fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    let mut left: Vec<_> =
+        fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name()).collect();
     left.sort();
     assert_eq!(
         left,
@@ -258,8 +286,9 @@ fn examples_of_the_help_texts_run() {
     );
 }
 
-/// Theory: what single precision cannot hold is no error: `check` counts it as a warning and shows number, file, line and
-/// column, and `render` says the same before it renders, also of what the command line asks for.
+/// Theory: what single precision cannot hold is no error: `check` counts it as a warning and shows
+/// number, file, line and column, and `render` says the same before it renders, also of what the
+/// command line asks for.
 #[test]
 fn limits_are_told() {
     let folder = folder("limits");
@@ -267,13 +296,18 @@ fn limits_are_told() {
     fs::write(folder.join("tiny.toml"), tiny).unwrap();
     let output = caustica(&folder, &["check", "tiny.toml"]);
     assert_eq!(output.status.code(), Some(0));
-    assert!(text(&output.stdout).contains("tiny.toml: good, 2 warnings"), "{}", text(&output.stdout));
+    assert!(
+        text(&output.stdout).contains("tiny.toml: good, 2 warnings"),
+        "{}",
+        text(&output.stdout)
+    );
     let error = text(&output.stderr);
     for word in ["shapes[0] is", "tiny.toml:16:10", "expected at least 1e-5", "the camera is"] {
         assert!(error.contains(word), "{word}: {error}");
     }
     let quick = ["--device", "cpu", "--passes", "1", "--photons", "10", "--quiet"];
-    let output = caustica(&folder, &[&["render", "ball.toml", "--radius", "1e-7"], &quick[..]].concat());
+    let output =
+        caustica(&folder, &[&["render", "ball.toml", "--radius", "1e-7"], &quick[..]].concat());
     assert_eq!(output.status.code(), Some(0));
     assert!(text(&output.stderr).contains("the gather radius is"), "{}", text(&output.stderr));
     let output = caustica(&folder, &[&["render", "ball.toml"], &quick[..]].concat());

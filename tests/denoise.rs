@@ -1,9 +1,11 @@
-//! `render --denoise` with Open Image Denoise: `cargo test --release --features denoise --test denoise`.
+//! `render --denoise` with Open Image Denoise: `cargo test --release --features denoise --test
+//! denoise`.
 //!
-//! Theory: the mean square of independent noise falls where like pixels are averaged, and a path-traced picture is full of it, so that a
-//! denoised one is many times nearer to what photons make of the scene in a long render. Layers lead it only if they lie over the
-//! picture as they should. Radiance has no upper bound, so a picture in another unit is the same picture in that unit. Nothing else
-//! knows of it: all that is measured has the same bits.
+//! Theory: the mean square of independent noise falls where like pixels are averaged, and a
+//! path-traced picture is full of it, so that a denoised one is many times nearer to what photons
+//! make of the scene in a long render. Layers lead it only if they lie over the picture as they
+//! should. Radiance has no upper bound, so a picture in another unit is the same picture in that
+//! unit. Nothing else knows of it: all that is measured has the same bits.
 
 #![cfg(feature = "denoise")]
 
@@ -24,7 +26,8 @@ const ON: [&str; 6] = ["render", SCENE, "--device", "cpu", "--size", "96x72"];
 
 /// By path tracing with few paths.
 fn rendered(folder: &Path, arguments: &[&str]) -> Vec<u8> {
-    ends(folder, &[&ON[..], &["--method", "path", "--passes", "8"], arguments].concat(), 0, &[]).stdout
+    ends(folder, &[&ON[..], &["--method", "path", "--passes", "8"], arguments].concat(), 0, &[])
+        .stdout
 }
 
 fn exr(folder: &Path, name: &str) -> ExrFile {
@@ -75,7 +78,9 @@ fn a_denoised_picture_is_nearer_to_the_truth() {
 fn layers_lead_the_filter() {
     let colors = [[0.8, 0.1, 0.2], [0.1, 0.3, 0.8], [0.6, 0.7, 0.1]];
     let striped = |order: [usize; 3], width: u32, first: u32| {
-        Picture::from_fn(96, 96, |x, y| order.map(|c| colors[((x + y + first) / width % 3) as usize][c]))
+        Picture::from_fn(96, 96, |x, y| {
+            order.map(|c| colors[((x + y + first) / width % 3) as usize][c])
+        })
     };
     let truth = striped([0, 1, 2], 5, 0);
     let facing = Picture::from_fn(96, 96, |_, _| [0.0, 0.0, 1.0]);
@@ -87,13 +92,17 @@ fn layers_lead_the_filter() {
     let rgb = truth.rgb.iter().map(|rgb| rgb.map(|x| x * noise())).collect();
     let noisy = Picture { rgb, ..truth };
     let denoiser = Denoiser::open().unwrap();
-    let led_by =
-        |albedo: &Picture| error(&denoiser.denoise(&noisy, &layers(albedo, &facing)).unwrap(), &truth);
+    let led_by = |albedo: &Picture| {
+        error(&denoiser.denoise(&noisy, &layers(albedo, &facing)).unwrap(), &truth)
+    };
     let right = led_by(&truth);
     // planted: channels in another order, stripes elsewhere, none at all
     let wrong = [striped([2, 0, 1], 5, 0), striped([0, 1, 2], 5, 7), striped([0, 1, 2], 1000, 0)];
     for wrong in wrong.map(|albedo| led_by(&albedo)) {
-        assert!(wrong > 2.0 * right, "relMSE {wrong} with wrong layers, {right} with the right ones");
+        assert!(
+            wrong > 2.0 * right,
+            "relMSE {wrong} with wrong layers, {right} with the right ones"
+        );
     }
 }
 
@@ -103,13 +112,18 @@ fn radiance_may_be_in_any_unit() {
     rendered(&folder, &["--denoise", "--aov", "albedo,normal", "-o", "a.exr"]);
     let a = exr(&folder, "a.exr");
     let (noisy, denoised) = (a.picture("").unwrap(), a.picture("denoised.").unwrap());
-    let scaled =
-        |p: &Picture, k: f32| Picture { rgb: p.rgb.iter().map(|rgb| rgb.map(|x| k * x)).collect(), ..*p };
+    let scaled = |p: &Picture, k: f32| Picture {
+        rgb: p.rgb.iter().map(|rgb| rgb.map(|x| k * x)).collect(),
+        ..*p
+    };
     let bright = Denoiser::open().unwrap().denoise(&scaled(&noisy, 1024.0), &guides(&a)).unwrap();
     let differs = error(&scaled(&bright, 1.0 / 1024.0), &denoised);
     assert!(differs < 1e-4, "relMSE {differs}");
     // planted: values cut at 1, as display values are
-    let cut = Picture { rgb: denoised.rgb.iter().map(|rgb| rgb.map(|x| x.min(1.0))).collect(), ..denoised };
+    let cut = Picture {
+        rgb: denoised.rgb.iter().map(|rgb| rgb.map(|x| x.min(1.0))).collect(),
+        ..denoised
+    };
     let differs = error(&cut, &denoised);
     assert!(differs > 1e-4, "relMSE {differs} where the lamp is cut");
 }
@@ -127,7 +141,8 @@ fn nothing_measured_sees_it() {
     let [plain, a] = ["plain.exr", "a.exr"].map(|name| exr(&folder, name));
     let mut names: Vec<_> = plain.channels.keys().map(String::as_str).collect();
     for name in &names {
-        let bits = |file: &ExrFile| file.channels[*name].iter().map(|x| x.to_bits()).collect::<Vec<_>>();
+        let bits =
+            |file: &ExrFile| file.channels[*name].iter().map(|x| x.to_bits()).collect::<Vec<_>>();
         assert_eq!(bits(&plain), bits(&a), "{name}");
     }
     names.extend(["denoised.B", "denoised.G", "denoised.R"]);

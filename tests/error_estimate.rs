@@ -1,8 +1,8 @@
 //! The error that a picture states of itself.
 //!
-//! Theory, part by part: the variance of a mean is known where the values are; the bias of a disc is known over a plane that
-//! is lit by half and over one whose light grows with the square of the distance; and nine of ten renders are to be no
-//! farther from the truth than they state.
+//! Theory, part by part: the variance of a mean is known where the values are; the bias of a disc
+//! is known over a plane that is lit by half and over one whose light grows with the square of the
+//! distance; and nine of ten renders are to be no farther from the truth than they state.
 
 use bytemuck::Zeroable;
 use caustica::cpu::CpuEngine;
@@ -31,7 +31,8 @@ struct Random(u64);
 
 impl Random {
     fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        self.0 =
+            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1u64 << 53) as f64
     }
 }
@@ -40,7 +41,10 @@ impl Random {
 fn one_pixel() -> Plan {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/cornell.toml");
     let scene = scene::load(&path).unwrap().scene;
-    Plan::new(&pack(&scene, 1, 1).unwrap(), &RenderSettings { photons: 1, ..RenderSettings::default() })
+    Plan::new(
+        &pack(&scene, 1, 1).unwrap(),
+        &RenderSettings { photons: 1, ..RenderSettings::default() },
+    )
 }
 
 /// A pixel's film after passes of these grey values.
@@ -54,8 +58,9 @@ fn folded(values: impl Iterator<Item = f64>) -> FilmPixel {
     film
 }
 
-/// Theory: with values x the variance of their mean is `sum (x - mean)^2 / (n (n - 1))`, and the two partitions follow from
-/// the means over the first 2^k. A hundred thousand passes lose nothing of it that counts.
+/// Theory: with values x the variance of their mean is `sum (x - mean)^2 / (n (n - 1))`, and the
+/// two partitions follow from the means over the first 2^k. A hundred thousand passes lose nothing
+/// of it that counts.
 #[test]
 fn variance_of_known_values() {
     let plan = one_pixel();
@@ -69,7 +74,11 @@ fn variance_of_known_values() {
         let all = mean(&values);
         let squares = values.iter().map(|x| (x - all).powi(2)).sum::<f64>();
         let variance = unit * unit * squares / (n * (n - 1)) as f64;
-        assert!((error.variance / variance - 1.0).abs() < 2e-4, "{n}: {} and {variance}", error.variance);
+        assert!(
+            (error.variance / variance - 1.0).abs() < 2e-4,
+            "{n}: {} and {variance}",
+            error.variance
+        );
         let part = early_passes(n as u32);
         for (deviation, part) in error.deviations.iter().zip([part, part / 2]) {
             let (a, b) = values.split_at(part as usize);
@@ -84,8 +93,8 @@ fn variance_of_known_values() {
     }
 }
 
-/// Theory: the squares of both deviations have the variance of the mean, s^2 / n, for every n; the mean of 20,000 of them is
-/// within 5 of its standard errors, some 1 % each.
+/// Theory: the squares of both deviations have the variance of the mean, s^2 / n, for every n; the
+/// mean of 20,000 of them is within 5 of its standard errors, some 1 % each.
 #[test]
 fn deviations_have_the_variance_of_the_mean() {
     let mut random = Random(1);
@@ -107,12 +116,14 @@ fn deviations_have_the_variance_of_the_mean() {
     }
 }
 
-/// Theory: weights that sum to zero leave out what both halves share, and the sum of their squares, 1 / n, is the variance of
-/// the mean over that of a sample. Where rows or columns are even in number, a slope across the pixel is shared.
+/// Theory: weights that sum to zero leave out what both halves share, and the sum of their squares,
+/// 1 / n, is the variance of the mean over that of a sample. Where rows or columns are even in
+/// number, a slope across the pixel is shared.
 #[test]
 fn halves_of_eye_samples() {
     for (samples, strata) in [(2u32, 1u32), (3, 1), (4, 2), (6, 2), (9, 3), (16, 4), (12, 3)] {
-        let weights: Vec<f64> = (0..samples).map(|k| f64::from(half_weight(k, samples, strata))).collect();
+        let weights: Vec<f64> =
+            (0..samples).map(|k| f64::from(half_weight(k, samples, strata))).collect();
         let sum: f64 = weights.iter().sum();
         let squares: f64 = weights.iter().map(|w| w * w).sum();
         assert!(
@@ -120,16 +131,18 @@ fn halves_of_eye_samples() {
             "{samples}: {weights:?}"
         );
         if samples == 4 || samples == 16 {
-            let slope: f64 =
-                (0..).zip(&weights).map(|(k, w)| f64::from(k % strata + 3 * (k / strata)) * w).sum();
+            let slope: f64 = (0..)
+                .zip(&weights)
+                .map(|(k, w)| f64::from(k % strata + 3 * (k / strata)) * w)
+                .sum();
             assert!(slope.abs() < 1e-6, "{samples}: {slope}");
         }
     }
     assert_eq!(half_weight(0, 1, 1), 0.0);
 }
 
-/// What the disc about the origin gathers in its outer less its inner half, per area, from a lattice of photons with flux
-/// `light(x, z)` per area.
+/// What the disc about the origin gathers in its outer less its inner half, per area, from a
+/// lattice of photons with flux `light(x, z)` per area.
 fn ring(radius: f32, light: impl Fn(f64, f64) -> f64) -> f64 {
     const SIDE: i32 = 500;
     let step = 1.1 * f64::from(radius) / f64::from(SIDE);
@@ -146,7 +159,12 @@ fn ring(radius: f32, light: impl Fn(f64, f64) -> f64) -> f64 {
             });
         }
     }
-    let d = Dispatch { mask: 1023, inv_cell: 1.0 / (2.0 * radius), scale_sq: 1.0, ..Dispatch::zeroed() };
+    let d = Dispatch {
+        mask: 1023,
+        inv_cell: 1.0 / (2.0 * radius),
+        scale_sq: 1.0,
+        ..Dispatch::zeroed()
+    };
     let (starts, sorted) = build_grid(&d, records);
     let up = oct_encode(Vec3::Y);
     let point = VisiblePoint {
@@ -163,9 +181,10 @@ fn ring(radius: f32, light: impl Fn(f64, f64) -> f64) -> f64 {
     f64::from(gathered.ring) / (PI * f64::from(radius).powi(2))
 }
 
-/// Theory: of light E + c rho^2 the disc of radius r sees E + c r^2 / 2 and the inner half c r^2 / 4 less: half of the bias.
-/// Of light beyond a straight edge at the distance u r it sees the segment's share g(u) = (acos u - u sqrt(1 - u^2)) / pi,
-/// the inner half g(sqrt(2) u). Even light leaves nothing.
+/// Theory: of light E + c rho^2 the disc of radius r sees E + c r^2 / 2 and the inner half c r^2 /
+/// 4 less: half of the bias. Of light beyond a straight edge at the distance u r it sees the
+/// segment's share g(u) = (acos u - u sqrt(1 - u^2)) / pi, the inner half g(sqrt(2) u). Even light
+/// leaves nothing.
 #[test]
 fn rings_of_known_light() {
     let r = 0.25;
@@ -190,8 +209,13 @@ fn reference(name: &str) -> (scene::Scene, NoisyTruth) {
     (scene, NoisyTruth::Blocks(truth))
 }
 
-/// What 20 renders say after their passes, and what their maps say when they are changed by `spoil`.
-fn promised(name: &str, settings: &RenderSettings, spoil: fn(&mut PixelError)) -> [Vec<Promise>; 2] {
+/// What 20 renders say after their passes, and what their maps say when they are changed by
+/// `spoil`.
+fn promised(
+    name: &str,
+    settings: &RenderSettings,
+    spoil: fn(&mut PixelError),
+) -> [Vec<Promise>; 2] {
     let (scene, truth) = reference(name);
     let packed = pack(&scene, scene.film.width, scene.film.height).unwrap();
     let mut found = [Vec::new(), Vec::new()];
@@ -214,8 +238,9 @@ fn kept(promises: &[Promise]) -> usize {
     promises.iter().filter(|promise| promise.kept()).count()
 }
 
-/// Short form of the example `promise`: by noise (mesh, whose floor shows the shadow rays' noise) and by bias (cornell by
-/// photons alone in wide discs), where an estimate that leaves either out is caught.
+/// Short form of the example `promise`: by noise (mesh, whose floor shows the shadow rays' noise)
+/// and by bias (cornell by photons alone in wide discs), where an estimate that leaves either out
+/// is caught.
 #[test]
 fn promises_are_kept() {
     let noisy = RenderSettings { passes: 4, photons: 4096, ..RenderSettings::default() };
@@ -233,16 +258,20 @@ fn promises_are_kept() {
     {
         let [right, wrong] = promised(name, settings, spoil);
         let ratio = right.iter().map(|p| p.said.stated / p.truth).sum::<f64>() / 20.0;
-        println!("{name}: {} of 20 kept, stated over true {ratio:.2}, {} spoilt", kept(&right), kept(&wrong));
+        println!(
+            "{name}: {} of 20 kept, stated over true {ratio:.2}, {} spoilt",
+            kept(&right),
+            kept(&wrong)
+        );
         assert!(kept(&right) >= 18 && ratio < 1.8, "{name}: {ratio} {right:?}");
         assert!(kept(&wrong) < 10, "{name}: {} kept with a planted error", kept(&wrong));
     }
 }
 
-/// Theory: of `drop` at 40 x 30 pixels a few glint at the lamp in one of hundreds of passes. In one render
-/// of five none has done so after 64 passes, and no statistics of the picture speaks for what it lacks:
-/// that a lamp is seen through glass does. Nine of ten promises are kept. Without the lamp's glint they
-/// are not, and neither are they all by stating far too much.
+/// Theory: of `drop` at 40 x 30 pixels a few glint at the lamp in one of hundreds of passes. In one
+/// render of five none has done so after 64 passes, and no statistics of the picture speaks for
+/// what it lacks: that a lamp is seen through glass does. Nine of ten promises are kept. Without
+/// the lamp's glint they are not, and neither are they all by stating far too much.
 #[test]
 fn glints_that_nobody_has_seen() {
     let settings = RenderSettings { passes: 64, photons: 8192, ..RenderSettings::default() };
@@ -252,10 +281,11 @@ fn glints_that_nobody_has_seen() {
     assert!(kept(&right) >= 18 && ratio < 2.5, "{ratio} {right:?}");
 }
 
-/// Theory: thirty of 4000 pixels have a glint in one of 160 passes, of mean 0.1 beside 0.1 that is always there. After 16
-/// passes three of the thirty have seen theirs, and are among the four pixels left out. The others lack 0.1 of 0.2, which no
-/// variance tells: sqrt(27 / 4000 * 0.1^2 / (0.2^2 + 0.01)) = 3.7 %. What was seen once must speak for them. One picture in
-/// 20 sees none (e^-3). With pixels that seem to have seen a tenfold crowd of glints, nothing speaks.
+/// Theory: thirty of 4000 pixels have a glint in one of 160 passes, of mean 0.1 beside 0.1 that is
+/// always there. After 16 passes three of the thirty have seen theirs, and are among the four
+/// pixels left out. The others lack 0.1 of 0.2, which no variance tells: sqrt(27 / 4000 * 0.1^2 /
+/// (0.2^2 + 0.01)) = 3.7 %. What was seen once must speak for them. One picture in 20 sees none
+/// (e^-3). With pixels that seem to have seen a tenfold crowd of glints, nothing speaks.
 #[test]
 fn glints_seen_once_speak_for_those_unseen() {
     const PASSES: u32 = 16;
@@ -306,7 +336,8 @@ fn a_render_reaches_its_target() {
     assert!(stated <= 0.3 && error <= stated && error > 0.05, "{error}");
 }
 
-/// A pixel with too few passes knows nothing of its error, and a picture of such pixels states none.
+/// A pixel with too few passes knows nothing of its error, and a picture of such pixels states
+/// none.
 #[test]
 fn too_few_passes_promise_nothing() {
     let plan = one_pixel();

@@ -52,7 +52,8 @@ fn case(i: u32) -> (Facet, Vec3, Vec3, f32) {
     let (t, s) = basis(normal);
     let radius = 2f32.powf(6.0 * a.w - 4.0);
     if i.is_multiple_of(3) {
-        let facet = Facet { origin: Vec3::new(b.x, b.y, b.z), radius: 0.5 + b.w, ..Facet::zeroed() };
+        let facet =
+            Facet { origin: Vec3::new(b.x, b.y, b.z), radius: 0.5 + b.w, ..Facet::zeroed() };
         let turn = c.x * 6.0;
         let place = (t * turn.cos() + s * turn.sin()) * (0.999 * c.y.sqrt() * facet.radius);
         return (facet, facet.origin + place, normal, radius);
@@ -63,9 +64,9 @@ fn case(i: u32) -> (Facet, Vec3, Vec3, f32) {
     (parallelogram(origin, u, v), origin + u * c.x + v * c.y, normal, radius)
 }
 
-/// Theory: the share is the area that disc and outline have in common over the disc's: counting points that are spread
-/// evenly over the disc gives it to a few times their spacing times the outline's length, below 0.004 here. A
-/// facet with an edge five hundredths longer is noticed.
+/// Theory: the share is the area that disc and outline have in common over the disc's: counting
+/// points that are spread evenly over the disc gives it to a few times their spacing times the
+/// outline's length, below 0.004 here. A facet with an edge five hundredths longer is noticed.
 #[test]
 fn shares_are_areas() {
     let mut noticed = 0;
@@ -74,24 +75,33 @@ fn shares_are_areas() {
         let exact = counted(&facet, position, normal, radius);
         for side in [normal, -normal] {
             let share = f64::from(facet_share(&facet, position, side, radius));
-            assert!((share - exact).abs() < 0.004, "{i}: {share} and {exact} of {facet:?}, radius {radius}");
+            assert!(
+                (share - exact).abs() < 0.004,
+                "{i}: {share} and {exact} of {facet:?}, radius {radius}"
+            );
         }
         let u = facet.u * 1.05;
         let longer = parallelogram(facet.origin, u, facet.v);
-        let longer = if facet.radius > 0.0 { Facet { radius: 1.05 * facet.radius, ..facet } } else { longer };
+        let longer = if facet.radius > 0.0 {
+            Facet { radius: 1.05 * facet.radius, ..facet }
+        } else {
+            longer
+        };
         let wrong = f64::from(facet_share(&longer, position, normal, radius));
         noticed += u32::from((wrong - exact).abs() >= 0.004);
     }
     assert!(noticed > 100, "{noticed}");
 }
 
-/// Theory: at a corner of a rectangle a quarter of the disc is covered, at an edge a half, at a distance of x radii from
-/// an edge 1 - (acos x - x sqrt(1 - x^2)) / pi; of a facet within the disc all of it. For a circle far larger than the
-/// disc the edge is a parabola, which takes 1 / (3 pi R) from the half.
+/// Theory: at a corner of a rectangle a quarter of the disc is covered, at an edge a half, at a
+/// distance of x radii from an edge 1 - (acos x - x sqrt(1 - x^2)) / pi; of a facet within the disc
+/// all of it. For a circle far larger than the disc the edge is a parabola, which takes 1 / (3 pi
+/// R) from the half.
 #[test]
 fn shares_in_closed_form() {
     let square = parallelogram(Vec3::ZERO, 2.0 * Vec3::X, 2.0 * Vec3::Y);
-    let share = |x: f32, y: f32, r: f32| f64::from(facet_share(&square, Vec3::new(x, y, 0.0), Vec3::Z, r));
+    let share =
+        |x: f32, y: f32, r: f32| f64::from(facet_share(&square, Vec3::new(x, y, 0.0), Vec3::Z, r));
     for r in [1e-5, 1e-3, 0.5] {
         assert!((share(0.0, 0.0, r) - 0.25).abs() < 1e-6);
         assert!((share(1.0, 2.0, r) - 0.5).abs() < 1e-6);
@@ -118,7 +128,8 @@ struct Room {
 }
 
 impl Room {
-    /// Photons of irradiance one on the floor [0, 1]^2 and of five on the wall x = 0 and on a floor beyond z = 1.
+    /// Photons of irradiance one on the floor [0, 1]^2 and of five on the wall x = 0 and on a floor
+    /// beyond z = 1.
     fn new(radius: f32, photons: u32) -> Self {
         let floor = parallelogram(Vec3::ZERO, Vec3::Z, Vec3::X);
         let share = 4.0 / photons as f32;
@@ -174,9 +185,9 @@ impl Room {
     }
 }
 
-/// Theory: with the photons of its facet alone, over the covered area, a point anywhere on the floor sees irradiance
-/// one, to 3 deviations of the count; nor does its ring find a bias. Without the facet the corner sees a quarter of
-/// it, and what lies beyond.
+/// Theory: with the photons of its facet alone, over the covered area, a point anywhere on the
+/// floor sees irradiance one, to 3 deviations of the count; nor does its ring find a bias. Without
+/// the facet the corner sees a quarter of it, and what lies beyond.
 #[test]
 fn edges_see_even_light() {
     let room = Room::new(0.1, 400_000);
@@ -186,7 +197,10 @@ fn edges_see_even_light() {
     for (gathered, (x, z)) in room.gather(&points(0)).iter().zip(places) {
         let irradiance = f64::from(gathered.flux.x) / area;
         let deviation = 1.0 / f64::from(gathered.count).sqrt();
-        assert!((irradiance - 1.0).abs() < 3.0 * deviation, "({x}, {z}): {irradiance} +- {deviation}");
+        assert!(
+            (irradiance - 1.0).abs() < 3.0 * deviation,
+            "({x}, {z}): {irradiance} +- {deviation}"
+        );
         let ring = f64::from(gathered.ring) / area;
         assert!(ring.abs() < 4.0 * deviation, "({x}, {z}): ring {ring}, deviation {deviation}");
     }
@@ -207,7 +221,8 @@ fn walls_part_the_light() {
     let record = |key: u32| {
         let u = random(key);
         let on_wall = key % 5 == 4;
-        let position = if on_wall { Vec3::new(0.5, 0.1 * u.x, u.y) } else { Vec3::new(u.x, 0.0, u.y) };
+        let position =
+            if on_wall { Vec3::new(0.5, 0.1 * u.x, u.y) } else { Vec3::new(u.x, 0.0, u.y) };
         // one, two and four in the parts of the floor, which the walls x = 0.5 and z = 0.5 leave
         let irradiance = match (on_wall, position.x < 0.5, position.z < 0.5) {
             (true, _, _) => 9.0,
@@ -239,7 +254,10 @@ fn walls_part_the_light() {
     for (gathered, ((x, z), expected)) in room.gather(&points).iter().zip(places) {
         let irradiance = f64::from(gathered.flux.x) / area / expected;
         let deviation = 1.0 / f64::from(gathered.count).sqrt();
-        assert!((irradiance - 1.0).abs() < 3.5 * deviation, "({x}, {z}): {irradiance} +- {deviation}");
+        assert!(
+            (irradiance - 1.0).abs() < 3.5 * deviation,
+            "({x}, {z}): {irradiance} +- {deviation}"
+        );
         let ring = f64::from(gathered.ring) / area / expected;
         assert!(ring.abs() < 4.0 * deviation, "({x}, {z}): ring {ring}, deviation {deviation}");
     }
@@ -248,7 +266,8 @@ fn walls_part_the_light() {
     assert!(open > 1.3, "without walls: {open}");
 }
 
-/// Theory: the driver forms the same sums in the same order, so the same bits. A depth that differs would show.
+/// Theory: the driver forms the same sums in the same order, so the same bits. A depth that differs
+/// would show.
 #[test]
 fn the_driver_gathers_the_same() {
     // few enough that the driver stops no loop
@@ -292,7 +311,13 @@ fn the_driver_gathers_the_same() {
     let found: Vec<Gathered> = pod_collect_to_vec(&bytes);
     let (mut crossed, mut cut) = (0, 0);
     for ((point, ours), theirs) in points.iter().zip(room.gather(&points)).zip(found) {
-        let clip = clip_at(&room.facets, point.facet, point.position, oct_decode(point.normal), point.radius);
+        let clip = clip_at(
+            &room.facets,
+            point.facet,
+            point.position,
+            oct_decode(point.normal),
+            point.radius,
+        );
         crossed += u32::from(clip.crossed);
         cut += u32::from(clip.count > 1);
         assert_eq!(ours, theirs, "{point:?}, {clip:?}");

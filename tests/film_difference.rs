@@ -1,8 +1,9 @@
 //! FLIP and SSIM against the programs of others, and all measures together.
 //!
-//! Theory: pictures that formulas of exact binary fractions make are the same here and in Python. Their figures were
-//! computed by `tests/data/measures.py` with flip-evaluator 1.7, the FLIP authors' own program, which works in f32
-//! (hence a tolerance of 5e-6), and scikit-image 0.26.0 in f64.
+//! Theory: pictures that formulas of exact binary fractions make are the same here and in Python.
+//! Their figures were computed by `tests/data/measures.py` with flip-evaluator 1.7, the FLIP
+//! authors' own program, which works in f32 (hence a tolerance of 5e-6), and scikit-image 0.26.0 in
+//! f64.
 
 use caustica::film::colors::magma;
 use caustica::film::flip::{Exposures, PIXELS_PER_DEGREE, hdr_flip, ldr_flip};
@@ -127,11 +128,18 @@ fn assert_close(what: &str, found: f64, expected: f64, tolerance: f64) {
 #[test]
 fn flip_is_that_of_its_authors_program() {
     assert_close("pixels per degree", PIXELS_PER_DEGREE, 67.020_645, 1e-5);
-    for Expected { name, test, truth, ldr: mean, pixels, hdr: hdr_mean, exposures, .. } in expected() {
+    for Expected { name, test, truth, ldr: mean, pixels, hdr: hdr_mean, exposures, .. } in
+        expected()
+    {
         let map = ldr_flip(&test, &truth).unwrap();
         assert_close(name, map.mean(&Region::whole(&truth)), mean, 5e-6);
         for ((x, y), value) in [(0, 0), (40, 20), (95, 63)].into_iter().zip(pixels) {
-            assert_close(&format!("{name} at {x}, {y}"), map.values[y * WIDTH as usize + x], value, 5e-6);
+            assert_close(
+                &format!("{name} at {x}, {y}"),
+                map.values[y * WIDTH as usize + x],
+                value,
+                5e-6,
+            );
         }
         let hdr = hdr_flip(&test, &truth).unwrap();
         assert_close(name, hdr.map.mean(&Region::whole(&truth)), hdr_mean, 5e-6);
@@ -161,15 +169,21 @@ fn planted_errors_are_seen() {
     assert!(ssim(&spot, &plain) < ssim(&noisy, &plain) - 1e-4);
     // A shift by a pixel, which leaves all values where they are in the sum.
     let shifted = picture(|x, y| ramps(x, y, 1));
-    assert!(ldr(&shifted, &plain) > 0.05 && hdr(&shifted, &plain) > 0.05 && ssim(&shifted, &plain) < 0.99);
+    assert!(
+        ldr(&shifted, &plain) > 0.05
+            && hdr(&shifted, &plain) > 0.05
+            && ssim(&shifted, &plain) < 0.99
+    );
     // What LDR-FLIP clips HDR-FLIP sees.
-    let brighter =
-        picture(|x, y| bright().rgb[(y * WIDTH + x) as usize].map(|v| if v > 4.0 { 1.5 * v } else { v }));
+    let brighter = picture(|x, y| {
+        bright().rgb[(y * WIDTH + x) as usize].map(|v| if v > 4.0 { 1.5 * v } else { v })
+    });
     assert_eq!(ldr(&brighter, &bright()), 0.0);
     assert!(hdr(&brighter, &bright()) > 0.01);
 }
 
-/// Equal pictures: nothing by any measure, to the last bit. LDR-FLIP and SSIM are symmetric by their definitions.
+/// Equal pictures: nothing by any measure, to the last bit. LDR-FLIP and SSIM are symmetric by
+/// their definitions.
 #[test]
 fn equality_and_symmetry_are_exact() {
     let plain = plain();
@@ -180,22 +194,29 @@ fn equality_and_symmetry_are_exact() {
     assert_eq!((same.pixels.mse, same.pixels.psnr), (0.0, f64::INFINITY));
     assert_eq!(ldr_flip(&noisy(), &plain), ldr_flip(&plain, &noisy()));
     assert_eq!(ssim(&noisy(), &plain), ssim(&plain, &noisy()));
-    let [a, b] = [(&noisy(), &plain), (&plain, &noisy())]
-        .map(|(a, b)| Difference::new(a, b, Coding::Radiance).unwrap().measures(None).unwrap().pixels);
+    let [a, b] = [(&noisy(), &plain), (&plain, &noisy())].map(|(a, b)| {
+        Difference::new(a, b, Coding::Radiance).unwrap().measures(None).unwrap().pixels
+    });
     assert_eq!((a.mse, a.rmse), (b.mse, b.rmse));
     assert!(a.rel_mse != b.rel_mse, "relMSE divides by the truth");
 }
 
-/// FLIP and SSIM stay in their ranges for the worst that can be: black against white, and random pixels.
+/// FLIP and SSIM stay in their ranges for the worst that can be: black against white, and random
+/// pixels.
 #[test]
 fn extremes() {
     let flat = |value| picture(move |_, _| [value; 3]);
-    let dots =
-        |seed| picture(move |x, y| [0_u32, 1, 2].map(|c| if unit(x, y, seed + c) < 0.5 { 0.0 } else { 1.0 }));
+    let dots = |seed| {
+        picture(move |x, y| {
+            [0_u32, 1, 2].map(|c| if unit(x, y, seed + c) < 0.5 { 0.0 } else { 1.0 })
+        })
+    };
     for (a, b) in [(flat(0.0), flat(1.0)), (flat(1e30), flat(-1.0)), (dots(1), dots(5))] {
         let found = ldr_flip(&a, &b).unwrap();
         assert!(found.values.iter().all(|value| (0.0..=1.0).contains(value)));
-        assert!(hdr_flip(&a, &b).unwrap().map.values.iter().all(|value| (0.0..=1.0).contains(value)));
+        assert!(
+            hdr_flip(&a, &b).unwrap().map.values.iter().all(|value| (0.0..=1.0).contains(value))
+        );
         assert!(ldr(&a, &b) > 0.5 && (-1.0..0.5).contains(&ssim(&a, &b)));
     }
     // The exposures of pictures that are dark by half or altogether.
@@ -220,13 +241,17 @@ fn regions_look_at_their_own_pixels() {
     let wrong = picture(|x, y| if x < 32 { [0.5; 3] } else { ramps(x, y, 0) });
     let difference = Difference::new(&wrong, &plain, Coding::Radiance).unwrap();
     let at = |x0, y0, x1, y1| difference.measures(Some(Region { x0, y0, x1, y1 }));
-    let (left, right): (Measures, Measures) = (at(0, 0, 32, 64).unwrap(), at(64, 0, 96, 64).unwrap());
+    let (left, right): (Measures, Measures) =
+        (at(0, 0, 32, 64).unwrap(), at(64, 0, 96, 64).unwrap());
     assert_eq!(
         (right.pixels.mse, right.ldr_flip, right.hdr_flip, right.ssim),
         (0.0, 0.0, Some(0.0), Some(1.0))
     );
     assert!(
-        left.pixels.mse > 0.01 && left.ldr_flip > 0.1 && left.hdr_flip > Some(0.1) && left.ssim < Some(0.9)
+        left.pixels.mse > 0.01
+            && left.ldr_flip > 0.1
+            && left.hdr_flip > Some(0.1)
+            && left.ssim < Some(0.9)
     );
     assert_eq!((left.pixels.pixels, left.pixels.pixels_differing), (32 * 64, 32 * 64));
     // The whole picture's figures are the means of its parts', weighted by their pixels.
@@ -247,7 +272,8 @@ fn regions_look_at_their_own_pixels() {
     }
 }
 
-/// Entries of matplotlib 3's table of magma, most of them between the stops kept here, and lightness that rises.
+/// Entries of matplotlib 3's table of magma, most of them between the stops kept here, and
+/// lightness that rises.
 #[test]
 fn magma_is_magma() {
     for (entry, expected) in [

@@ -1,7 +1,8 @@
 //! Picture files.
 //!
-//! Theory: EXR and PFM keep every bit of a finite f32; HDR keeps 8 bits of the largest channel, so a value is within
-//! 1/256 of the pixel's largest (Ward 1991); PNG keeps 8-bit display values. A file is there whole or not at all.
+//! Theory: EXR and PFM keep every bit of a finite f32; HDR keeps 8 bits of the largest channel, so
+//! a value is within 1/256 of the pixel's largest (Ward 1991); PNG keeps 8-bit display values. A
+//! file is there whole or not at all.
 
 mod support;
 
@@ -14,7 +15,8 @@ use caustica::film::{
 use caustica::settings::RenderSettings;
 use support::folder;
 
-/// Not square and unlike its mirror images, over many magnitudes; with denormal, negative zero and large values.
+/// Not square and unlike its mirror images, over many magnitudes; with denormal, negative zero and
+/// large values.
 fn sample() -> Picture {
     let mut picture = Picture::from_fn(19, 7, |x, y| {
         let base = (1.7f32).powi(x as i32 - 9);
@@ -105,7 +107,8 @@ fn exr_attributes_tell_how_the_picture_was_made() {
     assert_eq!(exr.attributes["caustica.device"], "a device");
     assert_eq!(exr.attributes["caustica.passes_done"], "17");
     assert_eq!(exr.attributes["caustica.version"], env!("CARGO_PKG_VERSION"));
-    let settings: RenderSettings = serde_json::from_str(&exr.attributes["caustica.settings"]).unwrap();
+    let settings: RenderSettings =
+        serde_json::from_str(&exr.attributes["caustica.settings"]).unwrap();
     assert_eq!(settings, provenance().settings);
 }
 
@@ -113,15 +116,18 @@ fn exr_attributes_tell_how_the_picture_was_made() {
 #[test]
 fn equal_pictures_give_equal_bytes() {
     let attributes = provenance().attributes();
-    let first = exr_file::encode(&sample(), exr_file::Frame::of(&sample()), &[], &attributes).unwrap();
+    let first =
+        exr_file::encode(&sample(), exr_file::Frame::of(&sample()), &[], &attributes).unwrap();
     for _ in 0..20 {
         assert!(
-            exr_file::encode(&sample(), exr_file::Frame::of(&sample()), &[], &attributes).unwrap() == first
+            exr_file::encode(&sample(), exr_file::Frame::of(&sample()), &[], &attributes).unwrap()
+                == first
         );
     }
     let other = Provenance { passes_done: 18, ..provenance() };
     assert!(
-        exr_file::encode(&sample(), exr_file::Frame::of(&sample()), &[], &other.attributes()).unwrap()
+        exr_file::encode(&sample(), exr_file::Frame::of(&sample()), &[], &other.attributes())
+            .unwrap()
             != first
     );
 }
@@ -130,8 +136,9 @@ fn equal_pictures_give_equal_bytes() {
 #[test]
 fn outputs_are_checked_up_front() {
     let folder = folder("check");
-    let check =
-        |names: &[&str]| check_outputs(&names.iter().map(|name| folder.join(name)).collect::<Vec<_>>());
+    let check = |names: &[&str]| {
+        check_outputs(&names.iter().map(|name| folder.join(name)).collect::<Vec<_>>())
+    };
     check(&["a.png", "b.exr", "c.pfm", "d.hdr", "e.PNG"]).unwrap();
     check_outputs(&["in-the-current-folder.png".into()]).unwrap();
     let unknown = check(&["a.png", "b.jpg"]).unwrap_err();
@@ -147,11 +154,13 @@ fn outputs_are_checked_up_front() {
     assert!(matches!(check(&["a.png", "a.png"]), Err(FileError::Repeated { .. })));
     fs::create_dir(folder.join("sub.png")).unwrap();
     assert!(matches!(check(&["sub.png"]), Err(FileError::IsFolder { .. })));
-    let left: Vec<_> = fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    let left: Vec<_> =
+        fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name()).collect();
     assert_eq!(left, ["sub.png"], "checking leaves nothing");
 }
 
-/// A write that fails leaves neither the file nor a part of it; one that succeeds replaces the old file.
+/// A write that fails leaves neither the file nor a part of it; one that succeeds replaces the old
+/// file.
 #[test]
 fn nothing_half_written_is_left() {
     let folder = folder("whole");
@@ -160,9 +169,11 @@ fn nothing_half_written_is_left() {
     write_sample(&file, &sample());
     assert_eq!(bits(&read(&file).unwrap()), bits(&sample()));
     fs::create_dir(folder.join("b.pfm")).unwrap();
-    let refused = write(&folder.join("b.pfm"), &sample(), &[], &Development::default(), &provenance());
+    let refused =
+        write(&folder.join("b.pfm"), &sample(), &[], &Development::default(), &provenance());
     assert!(matches!(refused, Err(FileError::Io { verb: "written", .. })), "{refused:?}");
-    let mut left: Vec<_> = fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    let mut left: Vec<_> =
+        fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name()).collect();
     left.sort();
     assert_eq!(left, ["a.pfm", "b.pfm"]);
 }
@@ -189,10 +200,14 @@ fn damaged_files_are_errors() {
         for length in [0, 3, 9, whole.len() / 2, whole.len() - 5] {
             fs::write(&file, &whole[..length]).unwrap();
             let error = read(&file).expect_err(name);
-            assert!(matches!(error, FileError::Malformed { .. }), "{name} cut to {length}: {error:?}");
+            assert!(
+                matches!(error, FileError::Malformed { .. }),
+                "{name} cut to {length}: {error:?}"
+            );
         }
     }
-    for header in ["P6\n1 1\n-1.0\n", "PF\n0 1\n-1.0\n", "PF\n1 -1\n-1.0\n", "PF\n1 1\n0\n", "PF\n1 1\nnan\n"]
+    for header in
+        ["P6\n1 1\n-1.0\n", "PF\n0 1\n-1.0\n", "PF\n1 -1\n-1.0\n", "PF\n1 1\n0\n", "PF\n1 1\nnan\n"]
     {
         let bytes = [header.as_bytes(), &[0; 12]].concat();
         assert!(pfm::decode(&bytes).is_err(), "{header:?}");

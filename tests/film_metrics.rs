@@ -1,7 +1,7 @@
 //! Measures of difference.
 //!
-//! Theory: each figure of a constructed pair of pictures is known in closed form, and each must move when an error is
-//! planted.
+//! Theory: each figure of a constructed pair of pictures is known in closed form, and each must
+//! move when an error is planted.
 
 use caustica::film::blocks::{block_deviations, share_outside};
 use caustica::film::heat::heat_map;
@@ -14,8 +14,9 @@ fn grey(width: u32, height: u32, value: f32) -> Picture {
 
 /// Uniform noise in [-0.5, 0.5] that depends on the seed alone (SplitMix64).
 fn noise(seed: u64, index: u64) -> f32 {
-    let mut z =
-        seed.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(index.wrapping_mul(0xd1b5_4a32_d192_ed03));
+    let mut z = seed
+        .wrapping_mul(0x9e37_79b9_7f4a_7c15)
+        .wrapping_add(index.wrapping_mul(0xd1b5_4a32_d192_ed03));
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
     ((z ^ (z >> 31)) >> 40) as f32 / (1u64 << 24) as f32 - 0.5
@@ -39,7 +40,8 @@ fn equal_pictures() {
     assert_eq!(compare(&black, &black).unwrap().mean_ratio, [1.0; 3]);
 }
 
-/// Every pixel of `a` is 0.5 and of `b` 0.25: ratio 2, relMSE 0.0625 / 0.0725, RMSE 0.25, PSNR 0 dB.
+/// Every pixel of `a` is 0.5 and of `b` 0.25: ratio 2, relMSE 0.0625 / 0.0725, RMSE 0.25, PSNR 0
+/// dB.
 #[test]
 fn constant_offset() {
     let c = compare(&grey(40, 50, 0.5), &grey(40, 50, 0.25)).unwrap();
@@ -53,7 +55,8 @@ fn constant_offset() {
     assert_eq!(compare(&tinted, &grey(4, 4, 0.25)).unwrap().mean_ratio, [1.0, 2.0, 1.0]);
 }
 
-/// relMSE drops one pixel in a thousand, so one firefly in 1000 pixels vanishes and a second one is seen.
+/// relMSE drops one pixel in a thousand, so one firefly in 1000 pixels vanishes and a second one is
+/// seen.
 #[test]
 fn rel_mse_drops_the_largest_thousandth() {
     let truth = grey(50, 20, 1.0);
@@ -87,14 +90,21 @@ fn what_cannot_be_compared() {
     assert_eq!(compare(&good, &grey(4, 5, 1.0)), Err(MetricsError::Size { a: (4, 4), b: (4, 5) }));
     let mut bad = good.clone();
     bad.rgb[5] = [f32::NAN, 0.0, f32::INFINITY];
-    assert_eq!(compare(&good, &bad), Err(MetricsError::NotFinite { which: "second", count: 2, at: (1, 1) }));
-    assert_eq!(compare(&bad, &good), Err(MetricsError::NotFinite { which: "first", count: 2, at: (1, 1) }));
+    assert_eq!(
+        compare(&good, &bad),
+        Err(MetricsError::NotFinite { which: "second", count: 2, at: (1, 1) })
+    );
+    assert_eq!(
+        compare(&bad, &good),
+        Err(MetricsError::NotFinite { which: "first", count: 2, at: (1, 1) })
+    );
     assert_eq!(compare(&grey(0, 0, 0.0), &grey(0, 0, 0.0)), Err(MetricsError::Empty));
 }
 
-/// Two pictures of the same mean and independent noise: at 4 sigma about 1.7e-4 of 1024 blocks, so 2 at most (the
-/// chance of more is below 1e-3, and the noise is fixed). A shift of 2 % of the mean in a quarter of the picture
-/// (noise of a block mean: 0.2 / sqrt(12) / 8 * sqrt(2) = 0.01, shift 0.1 = 10 sigma) must fill that quarter.
+/// Two pictures of the same mean and independent noise: at 4 sigma about 1.7e-4 of 1024 blocks, so
+/// 2 at most (the chance of more is below 1e-3, and the noise is fixed). A shift of 2 % of the mean
+/// in a quarter of the picture (noise of a block mean: 0.2 / sqrt(12) / 8 * sqrt(2) = 0.01, shift
+/// 0.1 = 10 sigma) must fill that quarter.
 #[test]
 fn blocks_agree_within_noise_and_show_a_shift() {
     let truth = noisy(256, 256, 3, 5.0);
@@ -102,7 +112,8 @@ fn blocks_agree_within_noise_and_show_a_shift() {
     let blocks = block_deviations(&render, &truth, None, 0.0).unwrap();
     assert_eq!(blocks.len(), 1024);
     assert!(share_outside(&blocks) <= 2.0 / 1024.0, "{}", share_outside(&blocks));
-    // The deviations are of unit variance: Student-t of 63 degrees of freedom has 63/61, within 5 sigma of 1024 draws.
+    // The deviations are of unit variance: Student-t of 63 degrees of freedom has 63/61, within 5
+    // sigma of 1024 draws.
     let variance = blocks.iter().map(|block| block.deviation.powi(2)).sum::<f64>() / 1024.0;
     assert!((variance - 63.0 / 61.0).abs() < 5.0 * (2.0f64 / 1024.0).sqrt(), "{variance}");
 
@@ -118,8 +129,8 @@ fn blocks_agree_within_noise_and_show_a_shift() {
     assert!(share_outside(&block_deviations(&shifted, &truth, None, 0.03).unwrap()) == 0.0);
 }
 
-/// One block of constant difference d = 0.3, standard error 0.4 in each pixel's every channel: the mean's error is
-/// lum(0.4) / 8 = 0.05, so the deviation is 6.
+/// One block of constant difference d = 0.3, standard error 0.4 in each pixel's every channel: the
+/// mean's error is lum(0.4) / 8 = 0.05, so the deviation is 6.
 #[test]
 fn standard_errors_enter_the_sigma() {
     let (render, truth) = (grey(8, 8, 1.3), grey(8, 8, 1.0));
@@ -133,7 +144,8 @@ fn standard_errors_enter_the_sigma() {
     assert_eq!(block_deviations(&grey(23, 9, 1.0), &grey(23, 9, 1.0), None, 0.0).unwrap().len(), 2);
 }
 
-/// Equal pixels are black, differing ones are not, brighter for more; the top of the scale is the next power of ten.
+/// Equal pixels are black, differing ones are not, brighter for more; the top of the scale is the
+/// next power of ten.
 #[test]
 fn heat_map_shows_where_and_how_much() {
     let truth = grey(400, 30, 0.5);

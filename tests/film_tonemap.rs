@@ -1,8 +1,8 @@
 //! Tone mapping.
 //!
-//! Theory: a tone curve must rise with radiance, keep grey grey, and stay in [0, 1] whatever comes in. AgX spans 16.5
-//! stops and its base curve turns about middle grey, 0.18, which becomes one half on a display of exponent 2.2; the sRGB
-//! curve is that of IEC 61966-2-1.
+//! Theory: a tone curve must rise with radiance, keep grey grey, and stay in [0, 1] whatever comes
+//! in. AgX spans 16.5 stops and its base curve turns about middle grey, 0.18, which becomes one
+//! half on a display of exponent 2.2; the sRGB curve is that of IEC 61966-2-1.
 
 use caustica::film::Development;
 use caustica::film::tonemap::Bits;
@@ -27,11 +27,15 @@ fn is_rising(values: impl Iterator<Item = f64>) -> bool {
 #[test]
 fn rises_with_radiance() {
     for tonemap in BOTH {
-        assert!(is_rising(ramp().map(|value| development(tonemap).display([value; 3])[0])), "{tonemap:?}");
+        assert!(
+            is_rising(ramp().map(|value| development(tonemap).display([value; 3])[0])),
+            "{tonemap:?}"
+        );
     }
     // AgX rises strictly where an eye sees it.
     let visible = ramp().filter(|value| (0.002..10.0).contains(value));
-    let values: Vec<f64> = visible.map(|value| development(ToneMap::Agx).display([value; 3])[0]).collect();
+    let values: Vec<f64> =
+        visible.map(|value| development(ToneMap::Agx).display([value; 3])[0]).collect();
     assert!(values.windows(2).all(|pair| pair[1] > pair[0]));
     assert!(!is_rising([0.1, 0.3, 0.2].into_iter()), "the check sees a fall");
 }
@@ -41,7 +45,10 @@ fn grey_stays_grey() {
     for tonemap in BOTH {
         for value in ramp() {
             let [r, g, b] = development(tonemap).display([value; 3]);
-            assert!((r - g).abs() < 1e-12 && (g - b).abs() < 1e-12, "{tonemap:?} {value}: {r} {g} {b}");
+            assert!(
+                (r - g).abs() < 1e-12 && (g - b).abs() < 1e-12,
+                "{tonemap:?} {value}: {r} {g} {b}"
+            );
         }
         let [r, g, _] = development(tonemap).display([0.2, 0.25, 0.2]);
         assert!(g - r > 0.01, "the check sees a tint");
@@ -50,7 +57,8 @@ fn grey_stays_grey() {
 
 #[test]
 fn stays_in_range() {
-    let extremes = [0.0, -1.0, 1e-45, 0.18, 1.0, 100.0, f32::MAX, f32::INFINITY, f32::NEG_INFINITY, f32::NAN];
+    let extremes =
+        [0.0, -1.0, 1e-45, 0.18, 1.0, 100.0, f32::MAX, f32::INFINITY, f32::NEG_INFINITY, f32::NAN];
     for tonemap in BOTH {
         for r in extremes {
             for g in extremes {

@@ -1,7 +1,7 @@
-//! The hash grid's kernels on the software driver against a naive loop.
-//! Theory: the grid is right if `starts` are the naive prefix sums and `sorted` holds, bucket by bucket, the records in
-//! the order of their keys; since keys differ, this fixes every bit. Output buffers are poisoned first, so that what
-//! no invocation wrote shows.
+//! The hash grid's kernels on the software driver against a naive loop. Theory: the grid is right
+//! if `starts` are the naive prefix sums and `sorted` holds, bucket by bucket, the records in the
+//! order of their keys; since keys differ, this fixes every bit. Output buffers are poisoned first,
+//! so that what no invocation wrote shows.
 
 mod software;
 
@@ -58,7 +58,9 @@ impl Grid {
         let capacity = d.capacity as usize;
         let buckets = d.mask as usize + 1;
         let poison = |words: usize| vec![POISON; words];
-        let upload = |name: &'static str, words: &[u32]| (name, gpu.upload(name, cast_slice(words)).unwrap());
+        let upload = |name: &'static str, words: &[u32]| {
+            (name, gpu.upload(name, cast_slice(words)).unwrap())
+        };
         let mut all_records: Vec<u32> = cast_slice(records).to_vec();
         all_records.resize(capacity * 8, POISON);
         let buffers = BTreeMap::from([
@@ -76,7 +78,8 @@ impl Grid {
                 Kernel::GridScanSums => buckets as u32 / SCAN_BLOCK,
                 _ => buckets as u32,
             };
-            let group = program.bind(gpu, &self.recorder.dispatches, |name| buffers.get(name)).unwrap();
+            let group =
+                program.bind(gpu, &self.recorder.dispatches, |name| buffers.get(name)).unwrap();
             let step = piece.next_multiple_of(workgroup_items(program.kernel)).min(end);
             let mut first = 0;
             while first < end {
@@ -108,7 +111,10 @@ fn faults(records: &[PhotonRecord], d: &Dispatch, built: &Built) -> Vec<String> 
     let mut place = 0;
     for bucket in 0..=d.mask {
         if built.starts[bucket as usize] != place as u32 {
-            list.push(format!("bucket {bucket} starts at {}, not {place}", built.starts[bucket as usize]));
+            list.push(format!(
+                "bucket {bucket} starts at {}, not {place}",
+                built.starts[bucket as usize]
+            ));
             break;
         }
         let mut own = by_bucket.remove(&bucket).unwrap_or_default();
@@ -174,14 +180,21 @@ fn agrees_with_a_naive_loop() {
     }
 }
 
-/// Long buckets take the workgroup's sort: all records in one, buckets about the length where sorts change, and as many of
-/// them as a workgroup can meet.
+/// Long buckets take the workgroup's sort: all records in one, buckets about the length where sorts
+/// change, and as many of them as a workgroup can meet.
 #[test]
 fn long_buckets_are_sorted() {
     let mut grid = Grid::new();
-    for (count, size) in
-        [(20_000, 0.5), (31, 0.5), (32, 0.5), (33, 0.5), (64, 0.5), (65, 0.5), (30_000, 8.0), (300_000, 16.0)]
-    {
+    for (count, size) in [
+        (20_000, 0.5),
+        (31, 0.5),
+        (32, 0.5),
+        (33, 0.5),
+        (64, 0.5),
+        (65, 0.5),
+        (30_000, 8.0),
+        (300_000, 16.0),
+    ] {
         let mut records = scattered(count, size);
         if size < 1.0 {
             records.iter_mut().for_each(|r| r.position += Vec3::splat(0.5));
@@ -193,7 +206,8 @@ fn long_buckets_are_sorted() {
     }
 }
 
-/// As many buckets as a plan ever has: more blocks than a workgroup has invocations, more workgroups than fit a row.
+/// As many buckets as a plan ever has: more blocks than a workgroup has invocations, more
+/// workgroups than fit a row.
 #[test]
 fn four_million_buckets() {
     let mut grid = Grid::new();
@@ -204,7 +218,8 @@ fn four_million_buckets() {
     assert!(list.is_empty(), "{list:#?}");
 }
 
-/// Each kind of damage is noticed: two records of a bucket swapped, a start that is off, a record lost.
+/// Each kind of damage is noticed: two records of a bucket swapped, a start that is off, a record
+/// lost.
 #[test]
 fn planted_faults_are_found() {
     let mut grid = Grid::new();

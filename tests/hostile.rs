@@ -1,8 +1,9 @@
-//! Scenes of strangers: what lies outside of the root is refused, by whatever way it is named, and every limit is told
-//! before the memory is taken.
+//! Scenes of strangers: what lies outside of the root is refused, by whatever way it is named, and
+//! every limit is told before the memory is taken.
 //!
-//! Theory: a path is inside if, with all links resolved, it begins with the root, links resolved. So each way out is
-//! paired here with one that looks alike and stays inside, which must be read: a check that refuses everything fails.
+//! Theory: a path is inside if, with all links resolved, it begins with the root, links resolved.
+//! So each way out is paired here with one that looks alike and stays inside, which must be read: a
+//! check that refuses everything fails.
 
 mod support;
 
@@ -20,7 +21,8 @@ fn lit(rest: &str) -> String {
 
 const OBJ: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
 
-/// A folder `root` with a mesh, a picture and a profile, and beside it a folder `out` with the same.
+/// A folder `root` with a mesh, a picture and a profile, and beside it a folder `out` with the
+/// same.
 fn folders(name: &str) -> (PathBuf, PathBuf) {
     let base = support::folder(name);
     let (root, out) = (base.join("root"), base.join("out"));
@@ -28,7 +30,8 @@ fn folders(name: &str) -> (PathBuf, PathBuf) {
         fs::create_dir_all(folder.join("sub")).unwrap();
         fs::write(folder.join("mesh.obj"), OBJ).unwrap();
         fs::copy("tests/data/reference/grid.png", folder.join("grid.png")).unwrap();
-        fs::write(folder.join("p.toml"), "profile = [[0.0, 0.0], [0.6, 0.0], [0.0, 1.0]]\n").unwrap();
+        fs::write(folder.join("p.toml"), "profile = [[0.0, 0.0], [0.6, 0.0], [0.0, 1.0]]\n")
+            .unwrap();
     }
     (root, out)
 }
@@ -38,7 +41,8 @@ fn mesh(file: &str) -> String {
 }
 
 fn picture(file: &str) -> String {
-    let sphere = "[[shapes]]\ntype = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1\nmaterial = \"m\"\n";
+    let sphere =
+        "[[shapes]]\ntype = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1\nmaterial = \"m\"\n";
     lit(&format!("{sphere}[environment]\nfile = {file:?}\n"))
 }
 
@@ -48,7 +52,12 @@ fn within(root: &Path) -> Allowance {
 
 fn refusal(errors: SceneErrors) -> String {
     let finding = &errors.errors[0];
-    format!("{:?} {finding} | {} | {}", finding.line_column(), finding.label(), finding.help().unwrap_or(""))
+    format!(
+        "{:?} {finding} | {} | {}",
+        finding.line_column(),
+        finding.label(),
+        finding.help().unwrap_or("")
+    )
 }
 
 /// The first error of a scene in `root/scene.toml`; none where it is read.
@@ -135,13 +144,18 @@ fn files_named_by_meshes_are_confined_too() {
     let own = |library: &str| {
         fs::write(root.join("own.obj"), format!("mtllib {library}\nusemtl a\n{OBJ}")).unwrap()
     };
-    let library =
-        |picture: &str| fs::write(root.join("own.mtl"), format!("newmtl a\nmap_Kd {picture}\n")).unwrap();
+    let library = |picture: &str| {
+        fs::write(root.join("own.mtl"), format!("newmtl a\nmap_Kd {picture}\n")).unwrap()
+    };
     let first = |line: usize, file: &str| {
-        let errors = parse_within(&root.join("scene.toml"), scene.as_bytes(), &within(&root)).unwrap_err();
+        let errors =
+            parse_within(&root.join("scene.toml"), scene.as_bytes(), &within(&root)).unwrap_err();
         assert!(errors.errors[0].file().ends_with(file), "{}", errors.errors[0].file());
         let told = refusal(errors);
-        assert!(told.contains("lies outside of") && told.starts_with(&format!("Some(({line},")), "{told}");
+        assert!(
+            told.contains("lies outside of") && told.starts_with(&format!("Some(({line},")),
+            "{told}"
+        );
     };
     own("own.mtl");
     library("grid.png");
@@ -159,15 +173,19 @@ fn files_named_by_meshes_are_confined_too() {
 #[test]
 fn only_regular_files_are_read() {
     let (root, _) = folders("kinds");
-    for (scene, file) in
-        [(mesh as fn(&str) -> String, "sub"), (picture, "sub"), (mesh, "/dev/zero"), (picture, "/dev/zero")]
-    {
+    for (scene, file) in [
+        (mesh as fn(&str) -> String, "sub"),
+        (picture, "sub"),
+        (mesh, "/dev/zero"),
+        (picture, "/dev/zero"),
+    ] {
         let told = told(&root, &scene(file), &Allowance::default()).unwrap();
         assert!(told.contains("it is not a regular file"), "{told}");
     }
 }
 
-/// Each limit at what a scene has, which is read, and at one less, which is told by the limit's name.
+/// Each limit at what a scene has, which is read, and at one less, which is told by the limit's
+/// name.
 #[test]
 fn limits_are_told_by_name() {
     let (root, _) = folders("limits");
@@ -210,12 +228,9 @@ fn a_picture_that_claims_much_is_refused_by_its_header() {
     let mut claims = fs::read(root.join("grid.png")).unwrap();
     claims[16..24].copy_from_slice(&[0, 1, 0x86, 0xa0, 0, 1, 0x86, 0xa0]);
     let crc = !claims[12..29].iter().fold(u32::MAX, |crc, &byte| {
-        (0..8).fold(
-            crc ^ u32::from(byte),
-            |crc, _| {
-                if crc & 1 == 1 { crc >> 1 ^ 0xedb8_8320 } else { crc >> 1 }
-            },
-        )
+        (0..8).fold(crc ^ u32::from(byte), |crc, _| {
+            if crc & 1 == 1 { crc >> 1 ^ 0xedb8_8320 } else { crc >> 1 }
+        })
     });
     claims[29..33].copy_from_slice(&crc.to_be_bytes());
     fs::write(root.join("claims.png"), claims).unwrap();
@@ -248,7 +263,8 @@ fn long_lines_are_cut() {
     let text = lit(&format!(
         "[[shapes]]\ntype = \"revolution\"\nmaterial = \"m\"\nprofile = [{numbers}[0, 'here']]\n"
     ));
-    let errors = parse_within("scene.toml".as_ref(), text.as_bytes(), &Allowance::default()).unwrap_err();
+    let errors =
+        parse_within("scene.toml".as_ref(), text.as_bytes(), &Allowance::default()).unwrap_err();
     let report = format!("{:?}", miette::Report::new(errors));
     assert!(report.len() < 20_000 && report.contains("here"), "{} bytes", report.len());
 }
@@ -263,7 +279,8 @@ fn faces_too_intricate_are_refused() {
         // A spiral that winds many times: it cuts itself wherever it closes.
         let angle = f64::from(n) * 2.4;
         let radius = 1.0 + f64::from(n % 7);
-        obj += &format!("v {} {} {}\n", radius * angle.cos(), radius * angle.sin(), f64::from(n % 5));
+        obj +=
+            &format!("v {} {} {}\n", radius * angle.cos(), radius * angle.sin(), f64::from(n % 5));
     }
     obj += "f";
     (1..=count).for_each(|n| obj += &format!(" {n}"));

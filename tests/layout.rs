@@ -1,6 +1,6 @@
-//! Host structs lie in memory as the shaders' structs do.
-//! Theory: naga's offsets and spans are those that the driver is given, so equality by name with `offset_of!` and
-//! `size_of` proves the layout.
+//! Host structs lie in memory as the shaders' structs do. Theory: naga's offsets and spans are
+//! those that the driver is given, so equality by name with `offset_of!` and `size_of` proves the
+//! layout.
 
 mod ingredients;
 
@@ -62,7 +62,19 @@ fn hosts() -> Vec<Layout> {
             medium
         }),
         layout!(Sphere { anchor, curvature, normal, radius, material, light, uv }),
-        layout!(Rectangle { origin, material, normal, light, u, uv, v, area, dual_u, facet, dual_v }),
+        layout!(Rectangle {
+            origin,
+            material,
+            normal,
+            light,
+            u,
+            uv,
+            v,
+            area,
+            dual_u,
+            facet,
+            dual_v
+        }),
         layout!(Disc { center, radius, normal, material, light, uv, facet }),
         layout!(Cuboid { lower, material, upper, light, uv, facet }),
         layout!(Plane { point, material, normal, uv, tangent, u0, bitangent, v0, facet }),
@@ -163,7 +175,17 @@ fn hosts() -> Vec<Layout> {
         layout!(PhotonRecord { position, key, flux, direction }),
         layout!(Gathered { flux, count, caustic, ring }),
         layout!(Statistics { scale_sq, drop, count_low, count_high }),
-        layout!(FilmPixel { mean, spread, carry, early, rejected, ring, ring_swing, halves, earlier }),
+        layout!(FilmPixel {
+            mean,
+            spread,
+            carry,
+            early,
+            rejected,
+            ring,
+            ring_swing,
+            halves,
+            earlier
+        }),
     ]
 }
 
@@ -184,9 +206,11 @@ fn everything_of(kernel: Kernel) -> (Mixture, naga::Module) {
 }
 
 fn members<'a>(module: &'a naga::Module, name: &str) -> Option<(&'a [naga::StructMember], usize)> {
-    module.types.iter().find(|(_, t)| t.name.as_deref() == Some(name)).and_then(|(_, t)| match &t.inner {
-        naga::TypeInner::Struct { members, span } => Some((members.as_slice(), *span as usize)),
-        _ => None,
+    module.types.iter().find(|(_, t)| t.name.as_deref() == Some(name)).and_then(|(_, t)| {
+        match &t.inner {
+            naga::TypeInner::Struct { members, span } => Some((members.as_slice(), *span as usize)),
+            _ => None,
+        }
     })
 }
 
@@ -201,7 +225,8 @@ fn differences(module: &naga::Module, hosts: &[Layout]) -> Vec<String> {
         if span != *size {
             list.push(format!("{name}: {size} bytes here, {span} in WGSL"));
         }
-        let is_padding = |m: &&naga::StructMember| m.name.as_deref().is_some_and(|n| n.starts_with("pad"));
+        let is_padding =
+            |m: &&naga::StructMember| m.name.as_deref().is_some_and(|n| n.starts_with("pad"));
         let shown: Vec<_> = members
             .iter()
             .filter(|m| !is_padding(m))
@@ -296,8 +321,10 @@ fn scene_tables_agree() {
     let shader = compose(Kernel::EyeTrace, &mixture.features(), &tables).unwrap();
     let (module, _) = shader.validate().unwrap();
     let (members, span) = members(&module, "Scene").unwrap();
-    let theirs: Vec<_> =
-        members.iter().map(|m| (m.name.as_deref().unwrap_or_default(), m.offset as usize)).collect();
+    let theirs: Vec<_> = members
+        .iter()
+        .map(|m| (m.name.as_deref().unwrap_or_default(), m.offset as usize))
+        .collect();
     let ours: Vec<_> = tables.members.iter().map(|m| (m.name, m.offset)).collect();
     assert_eq!(ours, theirs);
     assert_eq!(tables.bytes.len(), span);

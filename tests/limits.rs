@@ -1,12 +1,14 @@
 //! What single precision cannot hold is told before it is rendered, at its place in the file.
 //!
-//! Theory: each case changes one number of a sound scene. Just inside the limit nothing is said; just beyond there is one
-//! warning, with the number that is out of range, at the value that makes it so.
+//! Theory: each case changes one number of a sound scene. Just inside the limit nothing is said;
+//! just beyond there is one warning, with the number that is out of range, at the value that makes
+//! it so.
 
 use caustica::limits::warnings;
 use caustica::scene::{Finding, load, parse};
 
-/// The scene's radius is half the diagonal of what holds camera, target and floor: sqrt(4 + 1 + 4) = 3.
+/// The scene's radius is half the diagonal of what holds camera, target and floor: sqrt(4 + 1 + 4)
+/// = 3.
 const SOUND: &str = r#"version = 1
 [camera]
 position = [0.0, 2.0, 0.0]
@@ -48,8 +50,8 @@ fn told(text: &str) -> Vec<Finding> {
     warnings(&loaded.scene, &loaded.settings, &loaded.places)
 }
 
-/// The scene with one text replaced says nothing with `inside` and, with `beyond`, one warning that holds `words` and
-/// stands at the line of `at`.
+/// The scene with one text replaced says nothing with `inside` and, with `beyond`, one warning that
+/// holds `words` and stands at the line of `at`.
 fn limit(from: &str, inside: &str, beyond: &str, at: &str, words: &[&str]) {
     assert_eq!(SOUND.matches(from).count(), 1, "{from}");
     let with = |to: &str| SOUND.replace(from, to);
@@ -70,7 +72,9 @@ fn limit(from: &str, inside: &str, beyond: &str, at: &str, words: &[&str]) {
 #[test]
 fn a_sound_scene_says_nothing() {
     assert!(told(SOUND).is_empty());
-    for name in ["caustics", "cornell", "depth-of-field", "soft-shadows", "still-life", "water-drop"] {
+    for name in
+        ["caustics", "cornell", "depth-of-field", "soft-shadows", "still-life", "water-drop"]
+    {
         let file = format!("{}/scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
         let loaded = load(file.as_ref()).unwrap();
         let found = warnings(&loaded.scene, &loaded.settings, &loaded.places);
@@ -96,18 +100,22 @@ fn gather_radius() {
 fn camera_and_field_of_view() {
     // without a radius in the file the narrow view is the place
     let narrow = |fov: &str| {
-        let text = SOUND.replace("[render]\nradius = { units = 0.01 }\n", "").replace("fov = 40.0", fov);
+        let text =
+            SOUND.replace("[render]\nradius = { units = 0.01 }\n", "").replace("fov = 40.0", fov);
         told(&text).len()
     };
     assert_eq!((narrow("fov = 0.01"), narrow("fov = 0.001")), (0, 1));
     let found = told(
-        &SOUND.replace("[render]\nradius = { units = 0.01 }\n", "").replace("fov = 40.0", "fov = 0.001"),
+        &SOUND
+            .replace("[render]\nradius = { units = 0.01 }\n", "")
+            .replace("fov = 40.0", "fov = 0.001"),
     );
     assert_eq!(found[0].line_column(), Some((6, 7)), "{found:?}");
     // half the way to the camera over half the diagonal of the shapes
     let from = "position = [0.0, 2.0, 0.0]";
     let words = ["camera is", "times as far", "1e4"];
-    let radius = SOUND.replace("units = 0.01", "units = 10.0").replace("radius = 0.25", "radius = 2.0");
+    let radius =
+        SOUND.replace("units = 0.01", "units = 10.0").replace("radius = 0.25", "radius = 2.0");
     let at = |y: &str| told(&radius.replace(from, &format!("position = [0.0, {y}, 0.0]")));
     assert!(at("4e4").is_empty(), "{:?}", at("4e4"));
     let found = at("8e4");
@@ -119,8 +127,20 @@ fn camera_and_field_of_view() {
 
 #[test]
 fn small_and_giant_shapes() {
-    limit("radius = 0.25", "radius = 1.6e-5", "radius = 1.4e-5", "1.4e-5", &["shapes[1]", "9.3e-6", "1e-5"]);
-    limit("radius = 0.25", "radius = 2.9e9", "radius = 3.1e9", "3.1e9", &["shapes[1]", "1.0e9", "1e9"]);
+    limit(
+        "radius = 0.25",
+        "radius = 1.6e-5",
+        "radius = 1.4e-5",
+        "1.4e-5",
+        &["shapes[1]", "9.3e-6", "1e-5"],
+    );
+    limit(
+        "radius = 0.25",
+        "radius = 2.9e9",
+        "radius = 3.1e9",
+        "3.1e9",
+        &["shapes[1]", "1.0e9", "1e9"],
+    );
     let floor = "u = [4.0, 0.0, 0.0]";
     limit(floor, "u = [4e-5, 0.0, 0.0]", "u = [1e-5, 0.0, 0.0]", "[1e-5", &["shapes[0]", "1e-5"]);
     // a needle counts by its radius, a thin plate does not
@@ -130,8 +150,17 @@ fn small_and_giant_shapes() {
         )
     };
     let needle = revolution("[[1e-5, 0.0], [0.0, 1.0]]");
-    limit("type = \"sphere\"", &revolution("[[1e-4, 0.0], [0.0, 1.0]]"), &needle, "[[1e-5", &["shapes[1]"]);
-    assert!(told(&SOUND.replace("type = \"sphere\"", &revolution("[[1.0, 0.0], [0.0, 1e-7]]"))).is_empty());
+    limit(
+        "type = \"sphere\"",
+        &revolution("[[1e-4, 0.0], [0.0, 1.0]]"),
+        &needle,
+        "[[1e-5",
+        &["shapes[1]"],
+    );
+    assert!(
+        told(&SOUND.replace("type = \"sphere\"", &revolution("[[1.0, 0.0], [0.0, 1e-7]]")))
+            .is_empty()
+    );
 }
 
 #[test]
@@ -187,9 +216,10 @@ fn smooth_metal() {
     );
 }
 
-/// Theory: the signed volume of a closed body is above zero where its surface faces outward. A tetrahedron
-/// wound inward, a drop drawn from the top down and a ring drawn the wrong way round have their glass outside; the same
-/// bodies the right way round, open ones, the inner wall of a hollow body, and bodies on which it does not matter are fine.
+/// Theory: the signed volume of a closed body is above zero where its surface faces outward. A
+/// tetrahedron wound inward, a drop drawn from the top down and a ring drawn the wrong way round
+/// have their glass outside; the same bodies the right way round, open ones, the inner wall of a
+/// hollow body, and bodies on which it does not matter are fine.
 #[test]
 fn closed_bodies_that_face_inward() {
     let folder = std::env::temp_dir().join(format!("caustica-inward-{}", std::process::id()));
@@ -255,8 +285,10 @@ fn closed_bodies_that_face_inward() {
                  [[lights]]\ntype = \"point\"\nposition = [0.0"
                 ),
             );
-            let found: Vec<_> =
-                told(&text).into_iter().filter(|finding| finding.to_string().contains("inward")).collect();
+            let found: Vec<_> = told(&text)
+                .into_iter()
+                .filter(|finding| finding.to_string().contains("inward"))
+                .collect();
             assert_eq!(found.len(), usize::from(warns && matters), "{shape} {material}: {found:?}");
         }
     }

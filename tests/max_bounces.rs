@@ -1,8 +1,9 @@
 //! A render without bounces: only light seen directly and light straight from lights.
 //!
-//! Theory: a diffuse floor of reflectance rho under a point light of intensity I at height h shows rho I / (pi h^2) right
-//! below it. A white wall behind it sends light back, which counts from one bounce on. Sampled from a point, direct
-//! light has no variance; by photons it is the mean over the gather disc of a known flux.
+//! Theory: a diffuse floor of reflectance rho under a point light of intensity I at height h shows
+//! rho I / (pi h^2) right below it. A white wall behind it sends light back, which counts from one
+//! bounce on. Sampled from a point, direct light has no variance; by photons it is the mean over
+//! the gather disc of a known flux.
 
 use std::f64::consts::PI;
 use std::path::Path;
@@ -12,7 +13,8 @@ use caustica::film::Picture;
 use caustica::scene;
 use caustica::settings::{Direct, Method, RenderSettings};
 
-/// The camera sees a patch of 1/100 about the point below the light; `looks_at` is the material there.
+/// The camera sees a patch of 1/100 about the point below the light; `looks_at` is the material
+/// there.
 fn scene_text(looks_at: &str) -> String {
     format!(
         "version = 1\n[camera]\nposition = [0, 1, 2]\ntarget = [0, 0, 0]\nfov = 0.25\n[film]\nwidth = 4\nheight = 4\n\
@@ -31,7 +33,8 @@ fn render(looks_at: &str, wanted: &Wanted, change: impl Fn(&mut RenderSettings))
         .unwrap_or_else(|errors| panic!("{:?}", miette::Report::new(errors)));
     assert_eq!(loaded.settings.max_bounces, 0);
     change(&mut loaded.settings);
-    let opened = device::open(wanted, &loaded.scene, &loaded.settings).unwrap_or_else(|e| panic!("{e}"));
+    let opened =
+        device::open(wanted, &loaded.scene, &loaded.settings).unwrap_or_else(|e| panic!("{e}"));
     let mut engine = opened.engine;
     for _ in 0..loaded.settings.passes {
         engine.pass().unwrap_or_else(|e| panic!("{e}"));
@@ -42,7 +45,9 @@ fn render(looks_at: &str, wanted: &Wanted, change: impl Fn(&mut RenderSettings))
 /// Largest relative deviation of a pixel from the closed form.
 fn deviation(picture: &Picture) -> f64 {
     let exact = [3.0, 2.0, 1.0].map(|intensity| 0.6 * intensity / (PI * 1.5 * 1.5));
-    let of = |rgb: &[f32; 3]| (0..3).map(|c| (f64::from(rgb[c]) / exact[c] - 1.0).abs()).fold(0.0, f64::max);
+    let of = |rgb: &[f32; 3]| {
+        (0..3).map(|c| (f64::from(rgb[c]) / exact[c] - 1.0).abs()).fold(0.0, f64::max)
+    };
     picture.rgb.iter().map(of).fold(0.0, f64::max)
 }
 
@@ -52,7 +57,8 @@ fn direct_light_is_left() {
         let sampled = deviation(&render("grey", &Wanted::Cpu, |s| s.method = method));
         assert!(sampled < 1e-4, "{method:?}: {sampled}");
         let photons = |s: &mut RenderSettings| (s.method, s.direct) = (method, Direct::Photons);
-        // 4 x 200 000 photons over 4 pi 1.5^2, times the disc's pi 0.05^2: 222 on average, 6.7 % of one sigma.
+        // 4 x 200 000 photons over 4 pi 1.5^2, times the disc's pi 0.05^2: 222 on average, 6.7 % of
+        // one sigma.
         let by_photons = deviation(&render("grey", &Wanted::Cpu, photons));
         assert!(by_photons < 0.3, "{method:?}: {by_photons}");
     }
@@ -66,8 +72,9 @@ fn nothing_is_seen_by_a_mirror_and_path_tracing_sees_lights_alone() {
     let black = |picture: Picture| picture.rgb.iter().flatten().all(|&value| value == 0.0);
     assert!(black(render("chrome", &Wanted::Cpu, |_| ())));
     assert!(!black(render("chrome", &Wanted::Cpu, |s| s.max_bounces = 1)));
-    let path =
-        |max_bounces| move |s: &mut RenderSettings| (s.method, s.max_bounces) = (Method::Path, max_bounces);
+    let path = |max_bounces| {
+        move |s: &mut RenderSettings| (s.method, s.max_bounces) = (Method::Path, max_bounces)
+    };
     assert!(black(render("grey", &Wanted::Cpu, path(0))));
     assert!(deviation(&render("grey", &Wanted::Cpu, path(1))) < 1e-4);
 }
@@ -76,8 +83,8 @@ fn nothing_is_seen_by_a_mirror_and_path_tracing_sees_lights_alone() {
 #[test]
 fn engines_agree() {
     for direct in [Direct::Sampled, Direct::Photons] {
-        let [cpu, software] =
-            [Wanted::Cpu, Wanted::Software].map(|wanted| render("grey", &wanted, |s| s.direct = direct).rgb);
+        let [cpu, software] = [Wanted::Cpu, Wanted::Software]
+            .map(|wanted| render("grey", &wanted, |s| s.direct = direct).rgb);
         assert!(cpu.iter().flatten().any(|&value| value > 0.0));
         assert_eq!(cpu, software, "{direct:?}");
     }

@@ -1,8 +1,9 @@
 //! Memory that is counted before it is taken, and renders cut so that they fit.
 //!
-//! Theory: a visible point's estimate needs the photons and itself alone, so that tiles, one after another with one set of buffers, give
-//! the bits of the whole picture at once; so do visible points and photons that are traced again for each tile, since random numbers
-//! hang on their numbers alone. Smaller batches group the photons' sums otherwise, the same way on every engine.
+//! Theory: a visible point's estimate needs the photons and itself alone, so that tiles, one after
+//! another with one set of buffers, give the bits of the whole picture at once; so do visible
+//! points and photons that are traced again for each tile, since random numbers hang on their
+//! numbers alone. Smaller batches group the photons' sums otherwise, the same way on every engine.
 
 mod software;
 
@@ -90,7 +91,8 @@ fn on_driver(packed: &Packed, plan: &Plan) -> Given {
 /// What differs.
 fn difference(a: &Given, b: &Given) -> Option<String> {
     let bits = |p: &Picture| p.rgb.iter().flatten().map(|x| x.to_bits()).collect::<Vec<_>>();
-    let differing = bits(&a.picture).iter().zip(bits(&b.picture)).filter(|(a, b)| **a != *b).count();
+    let differing =
+        bits(&a.picture).iter().zip(bits(&b.picture)).filter(|(a, b)| **a != *b).count();
     if differing > 0 {
         return Some(format!("{differing} numbers of the picture"));
     }
@@ -121,8 +123,18 @@ fn tiles_change_no_bit() {
         let whole = on_cpu(&packed, &plan);
         assert!(whole.picture.rgb.iter().flatten().any(|x| *x > 0.0));
         let tiled = tiled(&plan);
-        assert_eq!(difference(&whole, &on_cpu(&packed, &tiled)), None, "{}, tiles on the CPU", case.1);
-        assert_eq!(difference(&whole, &on_driver(&packed, &tiled)), None, "{}, tiles on lavapipe", case.1);
+        assert_eq!(
+            difference(&whole, &on_cpu(&packed, &tiled)),
+            None,
+            "{}, tiles on the CPU",
+            case.1
+        );
+        assert_eq!(
+            difference(&whole, &on_driver(&packed, &tiled)),
+            None,
+            "{}, tiles on lavapipe",
+            case.1
+        );
     }
 }
 
@@ -146,10 +158,15 @@ fn batches_are_the_same_in_tiles() {
     let whole = on_cpu(&packed, &tight);
     assert!(whole.records > 4096 * u64::from(PASSES), "no batch overflows");
     assert_eq!(difference(&whole, &on_cpu(&packed, &tiled(&tight))), None, "overflow on the CPU");
-    assert_eq!(difference(&whole, &on_driver(&packed, &tiled(&tight))), None, "overflow on lavapipe");
+    assert_eq!(
+        difference(&whole, &on_driver(&packed, &tiled(&tight))),
+        None,
+        "overflow on lavapipe"
+    );
 }
 
-/// Whatever the budget, the plan keeps to it or is refused, and as long as no smaller batch is needed the bits are the same.
+/// Whatever the budget, the plan keeps to it or is refused, and as long as no smaller batch is
+/// needed the bits are the same.
 #[test]
 fn budgets_are_kept() {
     let mut loaded = scene::load("scenes/cornell.toml".as_ref()).unwrap();
@@ -190,7 +207,11 @@ fn budgets_are_kept() {
                 Err(error) => panic!("{error}"),
             }
         }
-        assert_eq!(seen, (true, true), "{place:?}: no budget asks for tiles alone, or none for batches");
+        assert_eq!(
+            seen,
+            (true, true),
+            "{place:?}: no budget asks for tiles alone, or none for batches"
+        );
         assert!(matches!(within(1, false), Err(EngineError::OverBudget(_))));
         // a plan that is one byte too large is not let through
         assert!(within(most - 1, false).unwrap().tiled);
@@ -230,9 +251,15 @@ fn what_is_counted_is_what_is_made() {
                 made.iter().filter(|(name, _)| names.contains(name)).map(|(_, bytes)| bytes).sum()
             };
             let parts = plan.memory(0, ON_DEVICE);
-            let counted = |what: &str| parts.iter().find(|p| p.what == what).map_or(0, |p: &Part| p.bytes);
+            let counted =
+                |what: &str| parts.iter().find(|p| p.what == what).map_or(0, |p: &Part| p.bytes);
             assert_eq!(counted("the film, and any copy of it"), 2 * of(&["film"]), "{}", case.1);
-            assert_eq!(counted("visible points"), of(&["visible_points", "gathered"]), "{}", case.1);
+            assert_eq!(
+                counted("visible points"),
+                of(&["visible_points", "gathered"]),
+                "{}",
+                case.1
+            );
             assert_eq!(counted("layers, and any copy"), 2 * of(&["aovs", "parts"]), "{}", case.1);
             assert_eq!(
                 counted("radii of visible points, and any copy"),

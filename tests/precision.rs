@@ -1,9 +1,10 @@
 //! The CPU engine in f64 against truths, against the engine in f32 and against exact answers.
 //!
-//! Theory: both engines are one source, and their random numbers are the same bits. So their pictures differ where
-//! rounding does: by some 1e-7 relative per operation in nearly every pixel, and by a whole path's light in the few
-//! where rounding turned a decision (an edge hit, a roulette, a photon inside the disc). The median over pixels sees
-//! the first, the mean over the picture the second.
+//! Theory: both engines are one source, and their random numbers are the same bits. So their
+//! pictures differ where rounding does: by some 1e-7 relative per operation in nearly every pixel,
+//! and by a whole path's light in the few where rounding turned a decision (an edge hit, a
+//! roulette, a photon inside the disc). The median over pixels sees the first, the mean over the
+//! picture the second.
 
 use std::path::{Path, PathBuf};
 
@@ -31,8 +32,8 @@ fn render(wanted: &Wanted, scene: &Scene, settings: &RenderSettings) -> Picture 
     engine.picture().unwrap()
 }
 
-/// The same under a sky: the passes are few, and light from far away comes in bright photons whose paths
-/// part by a rounding. After 200 passes the means differ by 1e-4.
+/// The same under a sky: the passes are few, and light from far away comes in bright photons whose
+/// paths part by a rounding. After 200 passes the means differ by 1e-4.
 const MEAN_UNDER_SKY: f64 = 2e-2;
 
 /// f32 against f64.
@@ -77,7 +78,9 @@ fn f64_agrees_with_the_truth() {
 
 #[test]
 fn shipped_scenes_differ_by_rounding() {
-    for name in ["caustics", "cornell", "depth-of-field", "soft-shadows", "still-life", "water-drop"] {
+    for name in
+        ["caustics", "cornell", "depth-of-field", "soft-shadows", "still-life", "water-drop"]
+    {
         let (scene, settings) = shipped(name);
         for method in [Method::Sppm, Method::Ppm, Method::Path] {
             let c = cost(&scene, &RenderSettings { method, ..settings.clone() }, |picture| picture);
@@ -109,8 +112,9 @@ fn the_comparator_sees_planted_errors() {
     assert!(!rounding_alone(&compare(&other, &double).unwrap()));
 }
 
-/// A floor under a spherical lamp of radius r at distance d receives `pi L (r / d)^2`, so that its radiance is
-/// `reflectance L (r / d)^2`, less 3.4e-5 for the part of the floor beside the middle that the picture shows.
+/// A floor under a spherical lamp of radius r at distance d receives `pi L (r / d)^2`, so that its
+/// radiance is `reflectance L (r / d)^2`, less 3.4e-5 for the part of the floor beside the middle
+/// that the picture shows.
 #[test]
 fn a_small_lamp_loses_no_light() {
     let d = 9.0;
@@ -128,11 +132,16 @@ fn a_small_lamp_loses_no_light() {
             ]"#
         );
         let scene = scene::parse(Path::new("lamp.toml"), text.as_bytes()).unwrap().scene;
-        let settings =
-            RenderSettings { passes: 16, photons: 1, direct: Direct::Sampled, ..RenderSettings::default() };
+        let settings = RenderSettings {
+            passes: 16,
+            photons: 1,
+            direct: Direct::Sampled,
+            ..RenderSettings::default()
+        };
         for device in [Wanted::Cpu, Wanted::CpuDouble] {
             let picture = render(&device, &scene, &settings);
-            let mean = picture.rgb.iter().map(|rgb| luminance(*rgb)).sum::<f64>() / picture.rgb.len() as f64;
+            let mean = picture.rgb.iter().map(|rgb| luminance(*rgb)).sum::<f64>()
+                / picture.rgb.len() as f64;
             let ratio = mean / (0.5 * 100.0 * (r / d) * (r / d));
             println!("{device:?}, r = {r}: {ratio}");
             assert!((ratio - 1.0 + 3.4e-5).abs() < 3e-6, "{device:?}, r = {r}: {ratio}");
@@ -162,7 +171,16 @@ macro_rules! problems {
                 tables.push(&[points], &Placement::default(), Attributes::default()).unwrap();
                 let hits = tables.patches.iter().map(|patch| {
                     let points = &tables.profile_points;
-                    intersect_patch(points, &tables.revolutions[0], patch, origin, direction, 0.0, 1e4).t
+                    intersect_patch(
+                        points,
+                        &tables.revolutions[0],
+                        patch,
+                        origin,
+                        direction,
+                        0.0,
+                        1e4,
+                    )
+                    .t
                 });
                 hits.fold(Real::MAX, Real::min) as f64
             }
@@ -179,7 +197,8 @@ macro_rules! problems {
                 4.0 - revolution(&[[0.0, 0.0], [1.0, 0.0], [2.0, 1.0]], origin, Vec3::NEG_Z)
             }
 
-            /// A ray of length `5 scale` to the point (3, -1) on a sphere of radius 5 about (0, -5).
+            /// A ray of length `5 scale` to the point (3, -1) on a sphere of radius 5 about (0,
+            /// -5).
             pub fn sphere(scale: f64) -> f64 {
                 let s = scale as Real;
                 let ball = Sphere {
@@ -189,7 +208,8 @@ macro_rules! problems {
                     ..Sphere::zeroed()
                 };
                 let origin = Vec3::new(0.0, 3.0 * s, 0.0);
-                let ray = Ray { origin, t_min: 0.0, direction: Vec3::new(0.6, -0.8, 0.0), t_max: 1e30 };
+                let ray =
+                    Ray { origin, t_min: 0.0, direction: Vec3::new(0.6, -0.8, 0.0), t_max: 1e30 };
                 let mut hit = Hit::none(&ray);
                 intersect_sphere(&ball, 0, &ray, &mut hit);
                 hit.t as f64 / scale
@@ -200,8 +220,8 @@ macro_rules! problems {
 problems!(single, caustica);
 problems!(double, caustica::double);
 
-/// Theory: at 1 - e from the axis half the chord is sqrt(2 e - e^2), and an error x in the distance from the axis
-/// becomes x / sqrt(2 e) in the chord: 724 roundings. The sphere's legs are 3, 4, 5.
+/// Theory: at 1 - e from the axis half the chord is sqrt(2 e - e^2), and an error x in the distance
+/// from the axis becomes x / sqrt(2 e) in the chord: 724 roundings. The sphere's legs are 3, 4, 5.
 #[test]
 fn f64_is_nearer_to_exact_answers() {
     let e = 0.5_f64.powi(20);

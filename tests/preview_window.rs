@@ -1,7 +1,8 @@
-//! The preview's window, for real: under Xvfb, drawn and rendered by the software Vulkan driver, with a hand made by xdotool.
+//! The preview's window, for real: under Xvfb, drawn and rendered by the software Vulkan driver,
+//! with a hand made by xdotool.
 //!
-//! Theory: what a hand does to the window is in the files that it saves: the camera it turned, the setting it changed, and a
-//! picture that a plain render makes again bit for bit.
+//! Theory: what a hand does to the window is in the files that it saves: the camera it turned, the
+//! setting it changed, and a picture that a plain render makes again bit for bit.
 #![cfg(all(feature = "preview", target_os = "linux"))]
 
 mod software;
@@ -57,7 +58,8 @@ const COLUMNS: usize = 1100;
 /// An X server without a screen; its display. What it shows is in the file `Xvfb_screen0` of
 /// `folder`.
 fn server(folder: &Path) -> (Owned, String) {
-    let screen = ["-displayfd", "1", "-screen", "0", &format!("{COLUMNS}x760x24"), "-nolisten", "tcp"];
+    let screen =
+        ["-displayfd", "1", "-screen", "0", &format!("{COLUMNS}x760x24"), "-nolisten", "tcp"];
     let started = Command::new("Xvfb")
         .args(screen)
         .arg("-fbdir")
@@ -102,8 +104,12 @@ fn a_hand_turns_changes_saves_and_closes() {
     software::software();
     let folder = folder("hand");
     let (_server, display) = server(&folder);
-    let mut window =
-        opened(&folder, &display, "ball", &["ball.toml", "--device", "software", "-o", "picture.exr"]);
+    let mut window = opened(
+        &folder,
+        &display,
+        "ball",
+        &["ball.toml", "--device", "software", "-o", "picture.exr"],
+    );
     let key = |key: &str| {
         hand(&display, &["key", key]);
     };
@@ -112,10 +118,12 @@ fn a_hand_turns_changes_saves_and_closes() {
     assert_eq!(photons(&picture).as_deref(), Some("2000"));
 
     // a drag to the right and down from the middle of the picture
-    let steps = ["mousemove", "280", "280", "mousedown", "1", "sleep", "0.1", "mousemove", "310", "290"];
+    let steps =
+        ["mousemove", "280", "280", "mousedown", "1", "sleep", "0.1", "mousemove", "310", "290"];
     hand(
         &display,
-        &[&steps[..], &["sleep", "0.1", "mousemove", "340", "300", "sleep", "0.1", "mouseup", "1"]].concat(),
+        &[&steps[..], &["sleep", "0.1", "mousemove", "340", "300", "sleep", "0.1", "mouseup", "1"]]
+            .concat(),
     );
     key("comma");
     key("ctrl+s");
@@ -143,7 +151,12 @@ fn a_hand_turns_changes_saves_and_closes() {
     // a plain render of what was saved has the same bits
     good(&folder, &["render", "--quiet", "--like", "picture.exr", "-o", "again.exr"]);
     let bits = |name: &str| {
-        read(&folder.join(name)).unwrap().rgb.iter().map(|p| p.map(f32::to_bits)).collect::<Vec<_>>()
+        read(&folder.join(name))
+            .unwrap()
+            .rgb
+            .iter()
+            .map(|p| p.map(f32::to_bits))
+            .collect::<Vec<_>>()
     };
     assert!(bits("again.exr") == bits("picture.exr"));
 }
@@ -189,16 +202,23 @@ fn seen(folder: &Path) -> Vec<u8> {
 
 /// Pictures that the screen shows one after another while the mouse drags for 3 s at 60 Hz.
 fn pictures_of_a_drag(folder: &Path, display: &str) -> u32 {
-    let mut words: Vec<String> = ["mousemove", "150", "450", "mousedown", "1"].map(str::to_owned).to_vec();
+    let mut words: Vec<String> =
+        ["mousemove", "150", "450", "mousedown", "1"].map(str::to_owned).to_vec();
     for step in 0..180 {
         let place = [150 + step, 450 + step / 9].map(|at| at.to_string());
         words.extend(
-            [["mousemove".to_owned()].as_slice(), &place, &["sleep".to_owned(), "0.016".to_owned()]].concat(),
+            [
+                ["mousemove".to_owned()].as_slice(),
+                &place,
+                &["sleep".to_owned(), "0.016".to_owned()],
+            ]
+            .concat(),
         );
     }
     words.extend(["mouseup".to_owned(), "1".to_owned()]);
     let begun = Instant::now();
-    let mut mouse = Owned(Command::new("xdotool").args(&words).env("DISPLAY", display).spawn().unwrap());
+    let mut mouse =
+        Owned(Command::new("xdotool").args(&words).env("DISPLAY", display).spawn().unwrap());
     let (mut pictures, mut last) = (0, seen(folder));
     while mouse.0.try_wait().unwrap().is_none() {
         let now = seen(folder);
@@ -221,7 +241,8 @@ fn a_drag_shows_many_pictures() {
     software::software();
     let folder = folder("drag");
     let (_server, display) = server(&folder);
-    let _window = opened(&folder, &display, "cornell", &[&shipped("cornell.toml"), "--device", "cpu"]);
+    let _window =
+        opened(&folder, &display, "cornell", &[&shipped("cornell.toml"), "--device", "cpu"]);
     // the scene is there, and its first picture
     let blank = seen(&folder);
     until("a picture", || (), || seen(&folder) != blank);

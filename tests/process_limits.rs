@@ -1,8 +1,8 @@
 //! What the system gives the program: threads and memory.
 //!
-//! Theory: a process may be refused threads and memory at any time, and a program that counts both before
-//! it takes them ends as documented: with a picture, or with a message and exit code 1. A panic (101) or an
-//! abort by the allocator (134, by signal 6) is neither.
+//! Theory: a process may be refused threads and memory at any time, and a program that counts both
+//! before it takes them ends as documented: with a picture, or with a message and exit code 1. A
+//! panic (101) or an abort by the allocator (134, by signal 6) is neither.
 
 mod support;
 
@@ -31,7 +31,8 @@ fn program() -> PathBuf {
     PathBuf::from(env!("CARGO_BIN_EXE_caustica"))
 }
 
-/// Under every limit of the address space the render is cut until it fits, or says that it does not.
+/// Under every limit of the address space the render is cut until it fits, or says that it does
+/// not.
 #[test]
 fn little_address_space() {
     let folder = folder("address-space");
@@ -47,7 +48,10 @@ fn little_address_space() {
         match output.status.code() {
             Some(0) => cut += u32::from(error.contains("to save memory")),
             Some(1) => {
-                assert!(error.contains("ulimit -v") && error.contains("--size"), "{megabytes} MB: {error}");
+                assert!(
+                    error.contains("ulimit -v") && error.contains("--size"),
+                    "{megabytes} MB: {error}"
+                );
                 refused += 1;
             }
             code => panic!("{megabytes} MB: {code:?} {:?} {error}", output.status),
@@ -56,8 +60,8 @@ fn little_address_space() {
     assert!(cut > 0 && refused > 0, "{cut} renders were cut and {refused} refused");
 }
 
-/// Under every limit of processes there are fewer threads, down to the main thread alone, and the same
-/// picture. Root has no such limit, so that the program runs as another user then.
+/// Under every limit of processes there are fewer threads, down to the main thread alone, and the
+/// same picture. Root has no such limit, so that the program runs as another user then.
 #[test]
 fn few_threads() {
     let folder = std::env::temp_dir().join(format!("caustica-threads-{}", std::process::id()));
@@ -78,22 +82,38 @@ fn few_threads() {
     for processes in [1, 2, 4, 7, 100] {
         let picture = folder.join(format!("{processes}.pfm"));
         let limit = format!("--nproc={processes}");
-        let arguments =
-            ["render", "cornell.toml", "--size", "16x16", "--photons", "2000", "--passes", "2", "--device"];
+        let arguments = [
+            "render",
+            "cornell.toml",
+            "--size",
+            "16x16",
+            "--photons",
+            "2000",
+            "--passes",
+            "2",
+            "--device",
+        ];
         let mut command = limited(&program, &limit, &arguments);
         if root {
             let mut other = Command::new("setpriv");
             other.args(["--reuid=65534", "--clear-groups", "prlimit"]).args(command.get_args());
             command = other;
         }
-        command.args(["cpu", "-o"]).arg(&picture).current_dir(&folder).env("RAYON_NUM_THREADS", "6");
+        command
+            .args(["cpu", "-o"])
+            .arg(&picture)
+            .current_dir(&folder)
+            .env("RAYON_NUM_THREADS", "6");
         let output = output(command);
         let error = text(&output.stderr);
         assert_eq!(output.status.code(), Some(0), "{processes} processes: {error}");
         assert_eq!(error.contains("of 6 threads"), processes < 9, "{processes} processes: {error}");
         pictures.push(fs::read(&picture).unwrap());
     }
-    assert!(pictures.windows(2).all(|pair| pair[0] == pair[1]), "the picture depends on the threads");
+    assert!(
+        pictures.windows(2).all(|pair| pair[0] == pair[1]),
+        "the picture depends on the threads"
+    );
     fs::remove_dir_all(&folder).unwrap();
 }
 
@@ -105,5 +125,8 @@ fn too_many_threads() {
     command.args(["check", &scene("cornell.toml")]).env("RAYON_NUM_THREADS", "100000");
     let output = output(command);
     let error = text(&output.stderr);
-    assert!(output.status.success() && error.contains(&format!("{} are started", 4 * cores)), "{error}");
+    assert!(
+        output.status.success() && error.contains(&format!("{} are started", 4 * cores)),
+        "{error}"
+    );
 }

@@ -1,4 +1,5 @@
-//! No NaN and no infinity gets into a picture: what would be one is left out and counted by cause, alike on both engines.
+//! No NaN and no infinity gets into a picture: what would be one is left out and counted by cause,
+//! alike on both engines.
 
 use bytemuck::Zeroable;
 use caustica::cpu::CpuEngine;
@@ -76,7 +77,8 @@ fn on_both(packed: &Packed, settings: &RenderSettings) -> (Picture, Rejections) 
     let plan = Plan::new(packed, settings);
     let choice = software::software();
     let cpu = rendered(CpuEngine::new(packed.clone(), plan.clone()), settings.passes);
-    let driver = rendered(GpuEngine::new(&choice, packed, plan).expect("an engine"), settings.passes);
+    let driver =
+        rendered(GpuEngine::new(&choice, packed, plan).expect("an engine"), settings.passes);
     assert_eq!(cpu.1, driver.1);
     let bits = |p: &Picture| p.rgb.as_flattened().iter().map(|x| x.to_bits()).collect::<Vec<_>>();
     assert_eq!(bits(&cpu.0), bits(&driver.0));
@@ -99,9 +101,10 @@ fn nothing_is_left_out_of_a_sound_scene() {
     }
 }
 
-/// Theory: scene files cannot make such numbers, so the flattened scene is poisoned, one number at a time. A lamp of
-/// infinite radiance that is seen spoils the eye paths that meet it; a point light of NaN the samples of direct light, or with
-/// `direct = "photons"` the photons. Each pass of each pixel is counted once, under the first cause.
+/// Theory: scene files cannot make such numbers, so the flattened scene is poisoned, one number at
+/// a time. A lamp of infinite radiance that is seen spoils the eye paths that meet it; a point
+/// light of NaN the samples of direct light, or with `direct = "photons"` the photons. Each pass of
+/// each pixel is counted once, under the first cause.
 #[test]
 fn causes_are_told_apart() {
     use caustica::tables::{LIGHT_AREA, LIGHT_POINT};
@@ -127,8 +130,8 @@ fn causes_are_told_apart() {
     }
 }
 
-/// Theory: flux and radius are finite, but over the area of a disc of radius 1e-19 (squared 1e-38) the sum of 1e9 of flux is
-/// beyond f32. Photons hardly meet such a disc, so the twin is fed.
+/// Theory: flux and radius are finite, but over the area of a disc of radius 1e-19 (squared 1e-38)
+/// the sum of 1e9 of flux is beyond f32. Photons hardly meet such a disc, so the twin is fed.
 #[test]
 fn an_estimate_that_overflows_is_left_out() {
     let d = Dispatch { eye_samples: 1, scale_sq: 1.0, photons: 1.0, ..Dispatch::zeroed() };
@@ -186,8 +189,8 @@ position = [0.0, 1e-5, 0.0]
 intensity = 1e30
 "#;
 
-/// Theory: radiance 1e30 / (1e-5)^2 0.5 / pi = 1.6e39 is beyond f32's 3.4e38: the pixel below the light holds f32's largest number
-/// and is counted, the dim ones at the border are not.
+/// Theory: radiance 1e30 / (1e-5)^2 0.5 / pi = 1.6e39 is beyond f32's 3.4e38: the pixel below the
+/// light holds f32's largest number and is counted, the dim ones at the border are not.
 #[test]
 fn too_bright_pixels_are_counted() {
     let scene = packed(TOO_BRIGHT);

@@ -108,8 +108,8 @@ fn agrees_with_the_oracle() {
     assert!(newton > 0 && total.bracketed > 0, "both solvers are used");
 }
 
-// Theory: the comparison above is worth something only if it sees a lost patch, a profile that is off by
-// 1e-4, and a surface that is not there.
+// Theory: the comparison above is worth something only if it sees a lost patch, a profile that is
+// off by 1e-4, and a surface that is not there.
 #[test]
 fn the_comparison_notices_planted_errors() {
     let profile = &profiles()[3];

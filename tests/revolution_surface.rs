@@ -90,12 +90,20 @@ fn normals_and_uv_are_the_surfaces() {
             let q = &t.patches[patch];
             let (theta, tau) = (3.0 * random.signed(), 0.05 + 0.9 * random.next());
             let (s_theta, s_tau) = differences(&placed, patch, theta, tau);
-            if s_theta.length() < 1e-3 || s_tau.length() < 1e-3 * f64::from(q.length) || !wide(&placed, patch)
+            if s_theta.length() < 1e-3
+                || s_tau.length() < 1e-3 * f64::from(q.length)
+                || !wide(&placed, patch)
             {
                 continue;
             }
             let normal = s_tau.cross(s_theta).normalize();
-            let s = revolution_surface(&t.profile_points, &t.revolutions[0], q, theta as f32, tau as f32);
+            let s = revolution_surface(
+                &t.profile_points,
+                &t.revolutions[0],
+                q,
+                theta as f32,
+                tau as f32,
+            );
             let found = axes.map(|a| f64::from(a.dot(s.normal)));
             let off = normal.distance(DVec3::from_array(found));
             assert!(off < 1e-4, "{} patch {patch} tau {tau}: {off}", placed.name);
@@ -131,19 +139,30 @@ fn boxes_enclose_the_surface() {
             let patch = i % t.patches.len();
             let q = &t.patches[patch];
             let (theta, tau) = (3.2 * random.signed(), random.next());
-            let s = revolution_surface(&t.profile_points, &t.revolutions[0], q, theta as f32, tau as f32);
+            let s = revolution_surface(
+                &t.profile_points,
+                &t.revolutions[0],
+                q,
+                theta as f32,
+                tau as f32,
+            );
             assert!(inside(patch, s.position, 0.0), "{} {patch} {theta} {tau}", placed.name);
             shrunk += u32::from(!inside(patch, s.position, -1e-3));
         }
         assert!(shrunk > 0, "boxes a thousandth smaller would not enclose it");
         for (segment, points) in placed.segments.iter().enumerate() {
-            let mut spans: Vec<(f32, f32)> =
-                t.patches.iter().filter(|q| q.segment as usize == segment).map(|q| (q.t0, q.t1)).collect();
+            let mut spans: Vec<(f32, f32)> = t
+                .patches
+                .iter()
+                .filter(|q| q.segment as usize == segment)
+                .map(|q| (q.t0, q.t1))
+                .collect();
             spans.sort_by(|a, b| a.0.total_cmp(&b.0));
             assert!(spans[0].0 == 0.0 && spans[spans.len() - 1].1 == 1.0);
             // At a cusp a piece shorter than any rounding may be missing.
             let place = |t: f32| curve(points, f64::from(t)).0;
-            let covered = |w: &[(f32, f32)]| w[1].0 <= w[0].1 || place(w[0].1).distance(place(w[1].0)) < 1e-8;
+            let covered =
+                |w: &[(f32, f32)]| w[1].0 <= w[0].1 || place(w[0].1).distance(place(w[1].0)) < 1e-8;
             assert!(spans.windows(2).all(covered), "{}: {spans:?}", placed.name);
         }
     }
@@ -163,7 +182,8 @@ fn offset_origins_do_not_meet_their_own_surface() {
             let nearest = |o: Vec3, d: Vec3| {
                 let mut best = (FAR, None);
                 for q in &t.patches {
-                    let hit = intersect_patch(&t.profile_points, &t.revolutions[0], q, o, d, 0.0, best.0);
+                    let hit =
+                        intersect_patch(&t.profile_points, &t.revolutions[0], q, o, d, 0.0, best.0);
                     if hit.t < best.0 {
                         best = (hit.t, Some((q, hit)));
                     }
@@ -173,7 +193,8 @@ fn offset_origins_do_not_meet_their_own_surface() {
             for _ in 0..3000 {
                 let (o, d) = ray(&placed, Class::Random, &mut random);
                 let Some((q, hit)) = nearest(o, d) else { continue };
-                let s = revolution_surface(&t.profile_points, &t.revolutions[0], q, hit.theta, hit.tau);
+                let s =
+                    revolution_surface(&t.profile_points, &t.revolutions[0], q, hit.theta, hit.tau);
                 let out = random.direction().as_vec3();
                 let side = if out.dot(s.normal) > 0.0 { s.normal } else { -s.normal };
                 if out.dot(side) < 0.02 {
@@ -182,17 +203,22 @@ fn offset_origins_do_not_meet_their_own_surface() {
                 let origin = s.position + side * s.error;
                 let found = nearest(origin, out).map_or(f64::from(FAR), |(_, h)| f64::from(h.t));
                 let (lo, ld) = oracle::local_ray(&t.revolutions[0], origin, out);
-                let truth =
-                    oracle::all_hits(&placed.segments, lo, ld).first().map_or(f64::from(FAR), |h| h.t);
+                let truth = oracle::all_hits(&placed.segments, lo, ld)
+                    .first()
+                    .map_or(f64::from(FAR), |h| h.t);
                 // Where truth is another hit, found must be it; a hit close by is an own hit.
-                wrong += u32::from((found - truth).abs() > 1e-4 * f64::from(t.revolutions[0].scale));
+                wrong +=
+                    u32::from((found - truth).abs() > 1e-4 * f64::from(t.revolutions[0].scale));
                 checked += 1;
-                let still = nearest(s.position, out).map_or(f64::from(FAR), |(_, h)| f64::from(h.t));
+                let still =
+                    nearest(s.position, out).map_or(f64::from(FAR), |(_, h)| f64::from(h.t));
                 unmoved += u32::from(still < 1e-5);
             }
         }
     }
-    println!("{checked} rays from hits: {wrong} wrong; without the offset {unmoved} meet their own surface");
+    println!(
+        "{checked} rays from hits: {wrong} wrong; without the offset {unmoved} meet their own surface"
+    );
     assert!(checked > 10_000 && wrong * 10_000 <= checked);
     assert!(unmoved > 100, "the offset is needed");
 }

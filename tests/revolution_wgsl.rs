@@ -1,5 +1,5 @@
-//! The WGSL of surfaces of revolution and of the elementary functions: valid, laid out like the host's structs,
-//! and on the Vulkan software adapter the same bits as the Rust twin.
+//! The WGSL of surfaces of revolution and of the elementary functions: valid, laid out like the
+//! host's structs, and on the Vulkan software adapter the same bits as the Rust twin.
 
 #[path = "revolution/device.rs"]
 mod device;
@@ -9,7 +9,9 @@ use bytemuck::{Pod, Zeroable};
 use caustica::build::revolution::Placement;
 use caustica::math::FAR;
 use caustica::math::trig::{arctan2, exponential, logarithm, power, sin_cos};
-use caustica::shapes::revolution::{Patch, Revolution, intersect_patch, patch_miss, revolution_surface};
+use caustica::shapes::revolution::{
+    Patch, Revolution, intersect_patch, patch_miss, revolution_surface,
+};
 use device::{Device, module};
 use glam::Vec3;
 use revolution::profiles::{Placed, place, profiles, skew};
@@ -96,8 +98,13 @@ fn twin(placed: &Placed, ray: &TestRay) -> Answer {
     let mut answer = [0; 16];
     answer[0] = best.t.to_bits();
     if best.t < ray.t_max {
-        let s =
-            revolution_surface(&t.profile_points, &t.revolutions[0], &t.patches[which], best.theta, best.tau);
+        let s = revolution_surface(
+            &t.profile_points,
+            &t.revolutions[0],
+            &t.patches[which],
+            best.theta,
+            best.tau,
+        );
         let floats = [
             best.t,
             best.theta,
@@ -125,7 +132,8 @@ fn differing(a: &[Answer], b: &[Answer]) -> usize {
     a.iter().zip(b).filter(|(a, b)| a != b).count()
 }
 
-// Theory: both use only operations that IEEE 754 rounds in one way, in the same order, so every bit agrees.
+// Theory: both use only operations that IEEE 754 rounds in one way, in the same order, so every bit
+// agrees.
 #[test]
 fn wgsl_gives_the_twins_bits() {
     let device = Device::open();
@@ -148,12 +156,17 @@ fn wgsl_gives_the_twins_bits() {
             scene.resize(scene.len().next_multiple_of(16), 0);
             let start = std::time::Instant::now();
             let size = (rays.len() * size_of::<Answer>()) as u64;
-            let bytes =
-                device.run(&kernel(&placed), &[&scene, bytemuck::cast_slice(&rays)], size, rays.len() as u32);
+            let bytes = device.run(
+                &kernel(&placed),
+                &[&scene, bytemuck::cast_slice(&rays)],
+                size,
+                rays.len() as u32,
+            );
             println!("{}: {:.1?}", placed.name, start.elapsed());
             let gpu: Vec<Answer> = bytemuck::pod_collect_to_vec(&bytes);
             let mut cpu: Vec<Answer> = rays.iter().map(|r| twin(&placed, r)).collect();
-            for (i, (a, b)) in gpu.iter().zip(&cpu).enumerate().filter(|(_, (a, b))| a != b).take(3) {
+            for (i, (a, b)) in gpu.iter().zip(&cpu).enumerate().filter(|(_, (a, b))| a != b).take(3)
+            {
                 println!(
                     "{} ray {i}: {:?} against {:?}",
                     placed.name,
@@ -224,9 +237,16 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let gpu: Vec<[u32; 6]> = bytemuck::pod_collect_to_vec(&bytes);
     let wrong: Vec<usize> = (0..cpu.len()).filter(|&i| cpu[i] != gpu[i]).collect();
     for &i in wrong.iter().take(3) {
-        println!("{:?}: {:?} {:?}", arguments[i], gpu[i].map(f32::from_bits), cpu[i].map(f32::from_bits));
+        println!(
+            "{:?}: {:?} {:?}",
+            arguments[i],
+            gpu[i].map(f32::from_bits),
+            cpu[i].map(f32::from_bits)
+        );
     }
-    for (k, name) in ["sin", "cos", "arctan2", "exponential", "logarithm", "power"].iter().enumerate() {
+    for (k, name) in
+        ["sin", "cos", "arctan2", "exponential", "logarithm", "power"].iter().enumerate()
+    {
         println!("{name}: {} differ", (0..cpu.len()).filter(|&i| cpu[i][k] != gpu[i][k]).count());
     }
     assert!(wrong.is_empty(), "{} of {} differ", wrong.len(), cpu.len());
@@ -252,11 +272,14 @@ macro_rules! same_layout {
 #[test]
 fn wgsl_is_valid_and_laid_out_like_the_host() {
     let source = kernel(&place(&profiles()[3], &skew()));
-    let module =
-        naga::front::wgsl::parse_str(&source).unwrap_or_else(|e| panic!("{}", e.emit_to_string(&source)));
-    naga::valid::Validator::new(naga::valid::ValidationFlags::all(), naga::valid::Capabilities::empty())
-        .validate(&module)
+    let module = naga::front::wgsl::parse_str(&source)
         .unwrap_or_else(|e| panic!("{}", e.emit_to_string(&source)));
+    naga::valid::Validator::new(
+        naga::valid::ValidationFlags::all(),
+        naga::valid::Capabilities::empty(),
+    )
+    .validate(&module)
+    .unwrap_or_else(|e| panic!("{}", e.emit_to_string(&source)));
     same_layout!(
         &module,
         Revolution {

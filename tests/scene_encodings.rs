@@ -1,7 +1,9 @@
-//! Text files as other systems write them: line ends of Windows, the byte order mark of UTF-8, UTF-16.
+//! Text files as other systems write them: line ends of Windows, the byte order mark of UTF-8,
+//! UTF-16.
 //!
-//! Theory: neither line ends nor the mark are content. A scene has the same content whichever way its files are written, and
-//! an error stands at the same line and column with the same words. Text in UTF-16 or UTF-32 is told as such, by file name.
+//! Theory: neither line ends nor the mark are content. A scene has the same content whichever way
+//! its files are written, and an error stands at the same line and column with the same words. Text
+//! in UTF-16 or UTF-32 is told as such, by file name.
 
 mod support;
 
@@ -60,9 +62,13 @@ const SAME: [(&str, Write); 4] = [
 ];
 
 const FOREIGN: [(&str, Write); 3] = [
-    ("UTF-16", |text| format!("\u{feff}{text}").encode_utf16().flat_map(u16::to_le_bytes).collect()),
+    ("UTF-16", |text| {
+        format!("\u{feff}{text}").encode_utf16().flat_map(u16::to_le_bytes).collect()
+    }),
     ("UTF-16", |text| text.encode_utf16().flat_map(u16::to_be_bytes).collect()),
-    ("UTF-32", |text| format!("\u{feff}{text}").chars().flat_map(|c| u32::from(c).to_le_bytes()).collect()),
+    ("UTF-32", |text| {
+        format!("\u{feff}{text}").chars().flat_map(|c| u32::from(c).to_le_bytes()).collect()
+    }),
 ];
 
 /// A fresh folder with the files that scenes name, as UTF-8 of Unix.

@@ -5,8 +5,8 @@ mod support;
 use std::path::Path;
 
 use caustica::scene::{
-    Environment, Loaded, MaterialKind, Reflectance, Scene, SceneErrors, ShapeKind, Texels, TextureKind, load,
-    parse,
+    Environment, Loaded, MaterialKind, Reflectance, Scene, SceneErrors, ShapeKind, Texels,
+    TextureKind, load, parse,
 };
 use glam::{DVec2, DVec3};
 use support::HEAD;
@@ -44,7 +44,9 @@ fn reference_scenes() {
         .shapes
         .iter()
         .filter_map(|shape| match &shape.kind {
-            ShapeKind::Revolution { segments, .. } => Some(segments.iter().map(Vec::len).collect::<Vec<_>>()),
+            ShapeKind::Revolution { segments, .. } => {
+                Some(segments.iter().map(Vec::len).collect::<Vec<_>>())
+            }
             _ => None,
         })
         .collect();
@@ -53,7 +55,10 @@ fn reference_scenes() {
     let MaterialKind::Diffuse { reflectance: Reflectance::Texture(tiles) } = floor.kind else {
         panic!("{floor:?}")
     };
-    assert!(matches!(drop.scene.textures[tiles].kind, TextureKind::Checker { scale: [12.0, 12.0], .. }));
+    assert!(matches!(
+        drop.scene.textures[tiles].kind,
+        TextureKind::Checker { scale: [12.0, 12.0], .. }
+    ));
 
     let mesh = reference("mesh.toml");
     assert!(mesh.warnings.is_empty(), "{:?}", mesh.warnings);
@@ -62,24 +67,31 @@ fn reference_scenes() {
     let grid = &mesh.scene.images[0];
     assert_eq!((grid.width, grid.height), (64, 64));
     let Texels::Rgba8 { srgb: true, data } = &grid.texels else { panic!() };
-    // make_assets.py draws a line of (30, 40, 60) through the corner and an arrow of (250, 250, 250) at row 20.
+    // make_assets.py draws a line of (30, 40, 60) through the corner and an arrow of (250, 250,
+    // 250) at row 20.
     assert_eq!((data[0], data[20 * 64 + 10]), ([30, 40, 60, 255], [250, 250, 250, 255]));
 }
 
-/// The torus R = 1, r = 0.38 of 48 x 20 quads, scaled by s = 0.5, turned and moved to c: 1920 triangles; every vertex
-/// p = R s w + r s n + c with its own normal n and w a unit vector of the ring, so p - c - r s n has length R s. Faces are
-/// wound as their normals point: a closed polyhedron's volume from its winding is positive, and at these facets within
-/// 3 % of 2 pi^2 R r^2 s^3.
+/// The torus R = 1, r = 0.38 of 48 x 20 quads, scaled by s = 0.5, turned and moved to c: 1920
+/// triangles; every vertex p = R s w + r s n + c with its own normal n and w a unit vector of the
+/// ring, so p - c - r s n has length R s. Faces are wound as their normals point: a closed
+/// polyhedron's volume from its winding is positive, and at these facets within 3 % of 2 pi^2 R r^2
+/// s^3.
 #[test]
 fn torus_of_the_mesh_scene() {
     let scene = reference("mesh.toml").scene;
-    let ShapeKind::Mesh(mesh) = &scene.shapes[1].kind else { panic!("the second shape is the mesh") };
+    let ShapeKind::Mesh(mesh) = &scene.shapes[1].kind else {
+        panic!("the second shape is the mesh")
+    };
     assert_eq!((mesh.triangles.len(), mesh.uvs.len()), (1920, 49 * 21));
     let centre = DVec3::new(-0.95, 0.62, 0.0);
     let mut volume = 0.0;
     for triangle in &mesh.triangles {
         let p = triangle.position.map(|index| mesh.positions[index as usize] - centre);
-        let n = triangle.normal.expect("the file has normals").map(|index| mesh.normals[index as usize]);
+        let n = triangle
+            .normal
+            .expect("the file has normals")
+            .map(|index| mesh.normals[index as usize]);
         for corner in 0..3 {
             assert!((n[corner].length() - 1.0).abs() < 1e-12);
             let ring = p[corner] - 0.38 * 0.5 * n[corner];
@@ -91,7 +103,8 @@ fn torus_of_the_mesh_scene() {
     assert!((volume / exact - 1.0).abs() < 0.03, "{volume} {exact}");
 }
 
-/// A rotation by 90 degrees about y takes +z to +x (right-hand rule), after the scale and before the translation.
+/// A rotation by 90 degrees about y takes +z to +x (right-hand rule), after the scale and before
+/// the translation.
 #[test]
 fn transform_order() {
     let scene = scene_of(&format!(
@@ -104,38 +117,53 @@ fn transform_order() {
     assert!(transform.direction(DVec3::Z).distance(DVec3::X) < 1e-12);
 }
 
-/// tests/data/parts.obj: a red quad, a glowing triangle, a glass triangle, a mirror L-shape (concave hexagon of area 3),
-/// a triangle without area, a line. One shape for each material; total area is kept by triangulation.
+/// tests/data/parts.obj: a red quad, a glowing triangle, a glass triangle, a mirror L-shape
+/// (concave hexagon of area 3), a triangle without area, a line. One shape for each material; total
+/// area is kept by triangulation.
 #[test]
 fn materials_of_an_obj() {
-    let loaded = parse_text(&format!("{HEAD}[[shapes]]\ntype = \"mesh\"\nfile = \"parts.obj\"\n")).unwrap();
+    let loaded =
+        parse_text(&format!("{HEAD}[[shapes]]\ntype = \"mesh\"\nfile = \"parts.obj\"\n")).unwrap();
     let scene = loaded.scene;
     let kinds: Vec<_> = scene.shapes.iter().map(|shape| &scene.materials[shape.material]).collect();
     let names: Vec<_> = kinds.iter().map(|material| material.name.as_str()).collect();
-    assert_eq!(names, ["parts.obj:red paint", "parts.obj:lamp", "parts.obj:glass", "parts.obj:chrome"]);
+    assert_eq!(
+        names,
+        ["parts.obj:red paint", "parts.obj:lamp", "parts.obj:glass", "parts.obj:chrome"]
+    );
     let MaterialKind::Diffuse { reflectance: Reflectance::Texture(texture) } = kinds[0].kind else {
         panic!()
     };
     assert!(matches!(scene.textures[texture].kind, TextureKind::Image { image: 0, .. }));
     assert_eq!(scene.shapes[1].emission, [5.0, 4.0, 3.0]);
     assert_eq!(kinds[2].kind, MaterialKind::Glass { ior: 1.33, absorption: [0.0; 3], priority: 0 });
-    assert_eq!(kinds[3].kind, MaterialKind::Mirror { reflectance: Reflectance::Color([0.9, 0.8, 0.7]) });
+    assert_eq!(
+        kinds[3].kind,
+        MaterialKind::Mirror { reflectance: Reflectance::Color([0.9, 0.8, 0.7]) }
+    );
     let areas: Vec<_> = scene
         .shapes
         .iter()
         .map(|shape| {
             let ShapeKind::Mesh(mesh) = &shape.kind else { panic!() };
             let area = |p: [DVec3; 3]| 0.5 * (p[1] - p[0]).cross(p[2] - p[0]).length();
-            mesh.triangles.iter().map(|t| area(t.position.map(|i| mesh.positions[i as usize]))).sum::<f64>()
+            mesh.triangles
+                .iter()
+                .map(|t| area(t.position.map(|i| mesh.positions[i as usize])))
+                .sum::<f64>()
         })
         .collect();
     assert_eq!(areas, [1.0, 0.5, 0.5, 3.0]);
     let warnings: Vec<_> = loaded.warnings.iter().map(|warning| warning.message()).collect();
-    assert_eq!(warnings, ["parts.obj: 1 `l` not used", "parts.obj: 1 triangle without area dropped"]);
+    assert_eq!(
+        warnings,
+        ["parts.obj: 1 `l` not used", "parts.obj: 1 triangle without area dropped"]
+    );
 }
 
-/// A cube without normals: the angle-weighted normal at each corner is the diagonal, however its squares are cut (weights
-/// by area alone would lean to the faces cut at that corner). Flat on request; the quad's uv survive.
+/// A cube without normals: the angle-weighted normal at each corner is the diagonal, however its
+/// squares are cut (weights by area alone would lean to the faces cut at that corner). Flat on
+/// request; the quad's uv survive.
 #[test]
 fn normals_made_and_refused() {
     let text = |smooth: bool| {
@@ -155,10 +183,16 @@ fn normals_made_and_refused() {
         assert!(triangle.uv.is_some());
     }
     let unit_square = [DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::Y];
-    assert!(mesh.uvs.len() == 4 && unit_square.iter().all(|uv| mesh.uvs.contains(uv)), "{:?}", mesh.uvs);
+    assert!(
+        mesh.uvs.len() == 4 && unit_square.iter().all(|uv| mesh.uvs.contains(uv)),
+        "{:?}",
+        mesh.uvs
+    );
     let flat = scene_of(&text(false));
     let ShapeKind::Mesh(mesh) = &flat.shapes[0].kind else { panic!() };
-    assert!(mesh.triangles.iter().all(|triangle| triangle.normal.is_none()) && mesh.normals.is_empty());
+    assert!(
+        mesh.triangles.iter().all(|triangle| triangle.normal.is_none()) && mesh.normals.is_empty()
+    );
 }
 
 /// A byte-order mark and CRLF change nothing.
@@ -206,8 +240,8 @@ fn schema_is_current() {
     );
 }
 
-/// Each image format keeps its numbers: 8-bit as they are, 16-bit through the sRGB curve (or not), hdr and exr in linear
-/// floats. The same file in the same color space is read once.
+/// Each image format keeps its numbers: 8-bit as they are, 16-bit through the sRGB curve (or not),
+/// hdr and exr in linear floats. The same file in the same color space is read once.
 #[test]
 fn image_formats() {
     let folder = support::folder("images");
@@ -215,7 +249,8 @@ fn image_formats() {
     deep.save(folder.join("deep.png")).unwrap();
     let floats = image::ImageBuffer::from_fn(3, 2, |x, y| image::Rgb([x as f32, y as f32, 0.5]));
     image::DynamicImage::ImageRgb32F(floats).save(folder.join("sky.hdr")).unwrap();
-    exr::prelude::write_rgb_file(folder.join("sky.exr"), 3, 2, |x, y| (x as f32, y as f32, 1e4f32)).unwrap();
+    exr::prelude::write_rgb_file(folder.join("sky.exr"), 3, 2, |x, y| (x as f32, y as f32, 1e4f32))
+        .unwrap();
     let load = |texture: &str, environment: &str| {
         let text = format!(
             "{HEAD}[textures.a]\ntype = \"image\"\nfile = \"deep.png\"\n{texture}\n\
@@ -245,8 +280,10 @@ fn image_formats() {
     let text = format!("{HEAD}[textures.a]\ntype = \"image\"\nfile = \"sky.exr\"\n");
     let errors = parse(&folder.join("scene.toml"), text.as_bytes()).unwrap_err();
     assert!(errors.errors[0].message().contains("is 10000, above 1"));
-    exr::prelude::write_rgb_file(folder.join("nan.exr"), 2, 2, |x, _| (x as f32 / 0.0, 0.0f32, 0.0f32))
-        .unwrap();
+    exr::prelude::write_rgb_file(folder.join("nan.exr"), 2, 2, |x, _| {
+        (x as f32 / 0.0, 0.0f32, 0.0f32)
+    })
+    .unwrap();
     let errors = load("", "nan.exr").unwrap_err();
     assert!(errors.errors[0].message().contains("texel (0, 0)"), "{errors:?}");
     // A truncated file.

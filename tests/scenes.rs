@@ -1,8 +1,9 @@
 //! Every shipped scene, small, through every engine of this machine.
 //!
-//! Theory: random numbers are counter-based and sums have a fixed order, so the same scene, settings and device
-//! give the same bits. The software Vulkan driver rounds + - * / sqrt as Rust does and the twins use nothing else, so
-//! the CPU engine and lavapipe give the same bits as each other, too.
+//! Theory: random numbers are counter-based and sums have a fixed order, so the same scene,
+//! settings and device give the same bits. The software Vulkan driver rounds + - * / sqrt as Rust
+//! does and the twins use nothing else, so the CPU engine and lavapipe give the same bits as each
+//! other, too.
 
 use caustica::device::{self, Wanted};
 use caustica::film::Picture;
@@ -31,7 +32,8 @@ fn render(path: &Path, wanted: &Wanted, change: impl Fn(&mut RenderSettings)) ->
     settings.photons = 20_000;
     settings.eye_samples = 2;
     change(settings);
-    let opened = device::open(wanted, &loaded.scene, settings).unwrap_or_else(|e| panic!("{wanted:?}: {e}"));
+    let opened =
+        device::open(wanted, &loaded.scene, settings).unwrap_or_else(|e| panic!("{wanted:?}: {e}"));
     let mut engine = opened.engine;
     for _ in 0..2 {
         engine.pass().unwrap_or_else(|e| panic!("{}: {e}", path.display()));
@@ -65,7 +67,11 @@ fn two_runs_give_the_same_bits() {
         assert!(a.rgb.iter().flatten().all(|x| x.is_finite() && *x >= 0.0), "{}", path.display());
         assert_eq!(difference(&a, &b), (0, 0.0), "{}", path.display());
         let other = render(&path, &Wanted::Cpu, |s| s.seed = 1);
-        assert!(difference(&a, &other).0 > a.rgb.len(), "{}: the seed changes nothing", path.display());
+        assert!(
+            difference(&a, &other).0 > a.rgb.len(),
+            "{}: the seed changes nothing",
+            path.display()
+        );
     }
 }
 

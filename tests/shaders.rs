@@ -1,5 +1,6 @@
-//! Every composition of the shaders parses and validates: each feature alone, all of them, and a spread of mixtures.
-//! Theory: naga is the compiler that wgpu uses, so what it accepts here it accepts in a render.
+//! Every composition of the shaders parses and validates: each feature alone, all of them, and a
+//! spread of mixtures. Theory: naga is the compiler that wgpu uses, so what it accepts here it
+//! accepts in a render.
 
 mod ingredients;
 
@@ -22,7 +23,8 @@ fn mixtures(count: usize) -> Vec<Vec<&'static str>> {
             features::ALL
                 .into_iter()
                 .filter(|_| {
-                    state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+                    state =
+                        state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
                     state >> 62 == 0
                 })
                 .collect(),
@@ -31,7 +33,8 @@ fn mixtures(count: usize) -> Vec<Vec<&'static str>> {
     all
 }
 
-/// The faults of all compositions from `fragments`, each once, with the first mixture that shows it.
+/// The faults of all compositions from `fragments`, each once, with the first mixture that shows
+/// it.
 fn faults(fragments: &[Fragment], count: usize) -> Vec<String> {
     let mut seen = BTreeSet::new();
     let mut list = Vec::new();
@@ -86,7 +89,9 @@ fn every_feature_is_mixed() {
 fn only_what_is_required() {
     let source = |names: &[&str]| {
         let mixture = Mixture::of(names);
-        compose(Kernel::EyeTrace, &mixture.features(), &SceneTables::new(&mixture.scene)).unwrap().source
+        compose(Kernel::EyeTrace, &mixture.features(), &SceneTables::new(&mixture.scene))
+            .unwrap()
+            .source
     };
     let plain = source(&["sphere", "unbounded"]);
     for word in [
@@ -121,7 +126,8 @@ fn only_what_is_required() {
 fn at_most_eight_storage_buffers() {
     let features = Mixture::of(&features::ALL).features();
     for kernel in Kernel::ALL {
-        let storage = bindings(kernel, &features).iter().filter(|b| b.access != Access::Uniform).count();
+        let storage =
+            bindings(kernel, &features).iter().filter(|b| b.access != Access::Uniform).count();
         assert!(storage <= 8, "{}: {storage}", kernel.stem());
     }
 }
@@ -149,7 +155,10 @@ fn a_planted_error_is_found() {
         fragment.text = Box::leak(fragment.text.replacen(right, wrong, 1).into_boxed_str());
         let list = faults(&fragments, 0);
         let at = [format!("{path}:{line}:"), format!("{path}:{}:", line + 1)];
-        assert!(list.iter().any(|f| at.iter().any(|at| f.starts_with(at))), "{path}:{line} not in {list:#?}");
+        assert!(
+            list.iter().any(|f| at.iter().any(|at| f.starts_with(at))),
+            "{path}:{line} not in {list:#?}"
+        );
         assert!(list.iter().all(|f| f.starts_with(path)), "{list:#?}");
     }
 }

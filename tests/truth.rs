@@ -37,7 +37,12 @@ fn load(name: &str) -> (Scene, BlockTruth) {
 
 /// Half a pixel here is two of the truth's pixels.
 fn settings() -> RenderSettings {
-    RenderSettings { passes: 4, photons: 16_384, radius: Radius::Pixels(0.5), ..RenderSettings::default() }
+    RenderSettings {
+        passes: 4,
+        photons: 16_384,
+        radius: Radius::Pixels(0.5),
+        ..RenderSettings::default()
+    }
 }
 
 fn rendered(name: &str, settings: &RenderSettings) -> (Rendered, BlockTruth) {
@@ -107,7 +112,11 @@ fn two_discs_agree_under_every_rule_and_in_both_direct_modes() {
         (RadiusRule::Global, Direct::Photons),
         (RadiusRule::Local, Direct::Sampled),
     ] {
-        let discs = RenderSettings { indirect_radius: Some(3.0), radius: Radius::Pixels(0.25), ..settings() };
+        let discs = RenderSettings {
+            indirect_radius: Some(3.0),
+            radius: Radius::Pixels(0.25),
+            ..settings()
+        };
         assert_agrees("cornell", &RenderSettings { radius_rule, direct, ..discs }, BIAS);
     }
 }
@@ -155,9 +164,13 @@ fn planted_errors_are_found() {
     assert!(faults(&|_, [r, g, b]| [r, g * 1.015, b]).contains(&"mean"));
     let lit = 24 * 64 + 32;
     assert_eq!(faults(&|i, rgb| if i == lit { rgb.map(|v| v * 1.5) } else { rgb }), ["one block"]);
-    assert!(faults(&|i, rgb| if i / 256 == 6 { rgb.map(|v| v * 0.92) } else { rgb }).contains(&"regions"));
+    assert!(
+        faults(&|i, rgb| if i / 256 == 6 { rgb.map(|v| v * 0.92) } else { rgb })
+            .contains(&"regions")
+    );
     assert_eq!(faults(&|i, rgb| if i == lit { [f64::NAN; 3] } else { rgb }), ["mean", "one block"]);
-    let upside_down = |part: &Blocks| Blocks::from_fn(64, 64, |x, y| part.rgb[((63 - y) * 64 + x) as usize]);
+    let upside_down =
+        |part: &Blocks| Blocks::from_fn(64, 64, |x, y| part.rgb[((63 - y) * 64 + x) as usize]);
     let turned: Vec<_> = rendered.parts.iter().map(upside_down).collect();
     assert!(hold(&turned, &truth, BIAS).faults().contains(&"blocks"));
 }
@@ -168,7 +181,9 @@ fn noise() -> impl FnMut() -> f64 {
     let mut state = 1_u64;
     move || {
         (0..12).fold(-6.0, |sum, _| {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
             sum + (state >> 11) as f64 / (1_u64 << 53) as f64
         })
     }
@@ -181,13 +196,18 @@ fn noise() -> impl FnMut() -> f64 {
 fn noise_of_known_size_agrees() {
     let mut next = noise();
     let (width, height, parts) = (40, 30, 24);
-    let mean =
-        Blocks::from_fn(width, height, |x, y| [1.0 + 0.1 * f64::from(x), 2.0, 0.5 + 0.1 * f64::from(y)]);
+    let mean = Blocks::from_fn(width, height, |x, y| {
+        [1.0 + 0.1 * f64::from(x), 2.0, 0.5 + 0.1 * f64::from(y)]
+    });
     let standard_error = Blocks::from_fn(width, height, |_, _| [0.01; 3]);
-    let seen =
-        Blocks::from_fn(width, height, |x, y| mean.rgb[(y * width + x) as usize].map(|v| v + 0.01 * next()));
+    let seen = Blocks::from_fn(width, height, |x, y| {
+        mean.rgb[(y * width + x) as usize].map(|v| v + 0.01 * next())
+    });
     let truth = BlockTruth { mean: seen, standard_error };
-    let part = |_| Blocks { rgb: mean.rgb.iter().map(|rgb| rgb.map(|v| v + 0.1 * next())).collect(), ..mean };
+    let part = |_| Blocks {
+        rgb: mean.rgb.iter().map(|rgb| rgb.map(|v| v + 0.1 * next())).collect(),
+        ..mean
+    };
     let parts: Vec<_> = (0..parts).map(part).collect();
     let a: Agreement = hold(&parts, &truth, 0.0);
     assert!(a.faults().is_empty() && a.blocks.worst().abs() < LIMIT_FAR, "{a:?}");
@@ -202,7 +222,8 @@ fn noise_of_known_size_agrees() {
 /// mean of error e / 8, and the mean of two blocks an error of sqrt(2) / 2 of one's.
 #[test]
 fn blocks_of_a_picture() {
-    let picture = Picture::from_fn(16, 8, |x, _| if x < 8 { [1.0; 3] } else { [3.0 + (x % 2) as f32; 3] });
+    let picture =
+        Picture::from_fn(16, 8, |x, _| if x < 8 { [1.0; 3] } else { [3.0 + (x % 2) as f32; 3] });
     let errors = Picture::from_fn(16, 8, |_, _| [0.4; 3]);
     let truth = BlockTruth::from_picture(&picture, &PixelNoise::Known(errors)).unwrap();
     assert_eq!(truth.mean.rgb, [[1.0; 3], [3.5; 3]]);

@@ -1,4 +1,5 @@
-//! Every WGSL file has a Rust twin of the same stem that names it, every kernel an entry point of its stem.
+//! Every WGSL file has a Rust twin of the same stem that names it, every kernel an entry point of
+//! its stem.
 
 use caustica::gpu::compose::compose;
 use caustica::gpu::layout::SceneTables;
@@ -27,7 +28,8 @@ fn root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// Shader files that implement one Rust module together, and the one helper that Rust does in a loop.
+/// Shader files that implement one Rust module together, and the one helper that Rust does in a
+/// loop.
 const PARTS: [(&str, &str); 9] = [
     ("kernels/grid_count", "kernels/grid_build"),
     ("kernels/grid_scan_reduce", "kernels/grid_build"),
@@ -47,7 +49,10 @@ fn shaders_have_rust_twins() {
     for shader in files(&shaders, "wgsl") {
         let stem = shader.strip_prefix(&shaders).unwrap().with_extension("");
         let stem = stem.to_str().unwrap().replace('\\', "/");
-        let twin = PARTS.iter().find(|(part, _)| *part == stem).map_or(stem.as_str(), |(_, module)| module);
+        let twin = PARTS
+            .iter()
+            .find(|(part, _)| *part == stem)
+            .map_or(stem.as_str(), |(_, module)| module);
         let rust = root().join("src").join(twin).with_extension("rs");
         if !rust.is_file() {
             missing.push(format!("{} has no {}", shader.display(), rust.display()));
@@ -62,7 +67,8 @@ fn rust_twins_name_shaders_that_exist() {
     for rust in files(&root().join("src"), "rs") {
         let text = fs::read_to_string(&rust).unwrap();
         let header: String = text.lines().take_while(|l| l.starts_with("//!")).collect();
-        for name in header.split('`').filter(|w| w.starts_with("shaders/") && w.ends_with(".wgsl")) {
+        for name in header.split('`').filter(|w| w.starts_with("shaders/") && w.ends_with(".wgsl"))
+        {
             if !root().join(name).is_file() {
                 missing.push(format!("{} names {name}", rust.display()));
             }
@@ -71,7 +77,8 @@ fn rust_twins_name_shaders_that_exist() {
     assert!(missing.is_empty(), "{}", missing.join("\n"));
 }
 
-/// Each kernel's module has exactly one entry point: the stem, which is also the file's name and the Rust function's.
+/// Each kernel's module has exactly one entry point: the stem, which is also the file's name and
+/// the Rust function's.
 #[test]
 fn entry_points_are_stems() {
     let rust: String = files(&root().join("src/kernels"), "rs")
@@ -84,7 +91,8 @@ fn entry_points_are_stems() {
     for kernel in Kernel::ALL {
         let stem = kernel.stem();
         assert!(root().join(format!("shaders/kernels/{stem}.wgsl")).is_file(), "{stem}");
-        let shader = compose(kernel, &mixture.features(), &SceneTables::new(&mixture.scene)).unwrap();
+        let shader =
+            compose(kernel, &mixture.features(), &SceneTables::new(&mixture.scene)).unwrap();
         let (module, _) = shader.validate().unwrap();
         let entries: Vec<_> = module.entry_points.iter().map(|e| e.name.as_str()).collect();
         assert_eq!(entries, [stem]);

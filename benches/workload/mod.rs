@@ -1,5 +1,6 @@
-//! What is traced: the displaced sphere of the comparison with Embree, r = 1 + 0.1 sin 7u sin 9v, and rays that have
-//! nothing in common, from a sphere of radius 2 toward random points of a cube of half-width 0.7.
+//! What is traced: the displaced sphere of the comparison with Embree, r = 1 + 0.1 sin 7u sin 9v,
+//! and rays that have nothing in common, from a sphere of radius 2 toward random points of a cube
+//! of half-width 0.7.
 
 #![allow(dead_code)] // each program uses its part
 
@@ -54,9 +55,10 @@ fn mesh(nu: u32, nv: u32) -> Mesh {
     let mut triangles = Vec::new();
     for i in 0..nu {
         for j in 0..nv {
-            for position in
-                [[at(i, j), at(i + 1, j), at(i + 1, j + 1)], [at(i, j), at(i + 1, j + 1), at(i, j + 1)]]
-            {
+            for position in [
+                [at(i, j), at(i + 1, j), at(i + 1, j + 1)],
+                [at(i, j), at(i + 1, j + 1), at(i, j + 1)],
+            ] {
                 let [a, b, c] = position;
                 if a != b && b != c && c != a {
                     triangles.push(Triangle { position, normal: None, uv: None });
@@ -84,7 +86,8 @@ impl Random {
     }
 }
 
-/// `count` rays from a sphere of radius 2 about the scene's middle toward its inner cube, in the units of `packed`.
+/// `count` rays from a sphere of radius 2 about the scene's middle toward its inner cube, in the
+/// units of `packed`.
 pub fn incoherent_rays(packed: &Packed, count: usize) -> Vec<Ray> {
     let mut random = Random(5);
     let middle = 0.5 * (packed.scene.world.bounds_min + packed.scene.world.bounds_max).to_double();

@@ -1,8 +1,10 @@
-//! Throws broken files at everything that reads files: `cargo run --release --example fuzz -- --seconds 60 scene obj`.
-//! docs/hostile-input.md tells what it looks for and how memory is bounded.
+//! Throws broken files at everything that reads files: `cargo run --release --example fuzz --
+//! --seconds 60 scene obj`. docs/hostile-input.md tells what it looks for and how memory is
+//! bounded.
 //!
-//! Inputs are mutated seeds. One whose outcome (its one error without names and numbers) is new joins the seeds. A panic,
-//! or a run longer than the bound, is a finding; its input is kept in the folder `fuzz-findings`.
+//! Inputs are mutated seeds. One whose outcome (its one error without names and numbers) is new
+//! joins the seeds. A panic, or a run longer than the bound, is a finding; its input is kept in the
+//! folder `fuzz-findings`.
 
 mod mutate;
 mod seeds;
@@ -122,8 +124,8 @@ fn fuzz(target: Target, arguments: &Arguments) -> u64 {
             }
         }
     });
-    let [runs, accepted, findings] =
-        [&shared.runs, &shared.accepted, &shared.findings].map(|count| count.load(Ordering::Relaxed));
+    let [runs, accepted, findings] = [&shared.runs, &shared.accepted, &shared.findings]
+        .map(|count| count.load(Ordering::Relaxed));
     println!(
         "{target:?}: {runs} runs in {:.0} s, {accepted} accepted, {} outcomes, {findings} findings",
         start.elapsed().as_secs_f64(),
@@ -176,7 +178,8 @@ impl Shared {
             took = took.min(run().1);
         }
         let Ok(outcome) = outcome else {
-            let message = LAST_PANIC.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).clone();
+            let message =
+                LAST_PANIC.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).clone();
             return self.keep(&message, input);
         };
         if took > most {

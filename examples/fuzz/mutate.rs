@@ -82,8 +82,21 @@ const TOKENS: &[&str] = &[
 ];
 
 /// Values of one, two and four bytes that lie at borders.
-const BORDERS: &[u32] =
-    &[0, 1, 0x7f, 0x80, 0xff, 0x100, 0x7fff, 0x8000, 0xffff, 0x1_0000, 0x7fff_ffff, 0x8000_0000, u32::MAX];
+const BORDERS: &[u32] = &[
+    0,
+    1,
+    0x7f,
+    0x80,
+    0xff,
+    0x100,
+    0x7fff,
+    0x8000,
+    0xffff,
+    0x1_0000,
+    0x7fff_ffff,
+    0x8000_0000,
+    u32::MAX,
+];
 
 /// Random numbers (SplitMix64; Steele, Lea & Flood 2014) and the words to use.
 pub struct Mutator {
@@ -143,7 +156,8 @@ impl Mutator {
             6 | 7 => self.replace_word(input),
             8 => {
                 let bytes = BORDERS[self.below(BORDERS.len())];
-                let bytes = if self.below(2) == 0 { bytes.to_le_bytes() } else { bytes.to_be_bytes() };
+                let bytes =
+                    if self.below(2) == 0 { bytes.to_le_bytes() } else { bytes.to_be_bytes() };
                 let width = [1, 2, 4][self.below(3)];
                 for (byte, new) in input.iter_mut().skip(at).zip(bytes.into_iter().take(width)) {
                     *byte = new;
@@ -203,11 +217,15 @@ fn collect(schema: &Json, words: &mut BTreeSet<String>) {
         Json::Object(table) => {
             for (key, value) in table {
                 if key == "properties" {
-                    words.extend(value.as_object().into_iter().flat_map(|keys| keys.keys().cloned()));
+                    words.extend(
+                        value.as_object().into_iter().flat_map(|keys| keys.keys().cloned()),
+                    );
                 }
                 if key == "const" || key == "enum" {
                     let texts = value.as_array().map_or(std::slice::from_ref(value), Vec::as_slice);
-                    words.extend(texts.iter().filter_map(Json::as_str).map(|text| format!("\"{text}\"")));
+                    words.extend(
+                        texts.iter().filter_map(Json::as_str).map(|text| format!("\"{text}\"")),
+                    );
                 }
                 collect(value, words);
             }

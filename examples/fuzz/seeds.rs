@@ -31,7 +31,9 @@ pub fn folder(name: &str) -> PathBuf {
     let picture = picture(ImageFormat::Png);
     let sky = picture_of(ImageFormat::Hdr, true);
     let write = |name: &str, bytes: &[u8]| fs::write(folder.join(name), bytes).expect("a file");
-    for name in ["car.png", "porcelain.png", "planks.png", "grass.png", "stone.png", "grid.png", "t.png"] {
+    for name in
+        ["car.png", "porcelain.png", "planks.png", "grass.png", "stone.png", "grid.png", "t.png"]
+    {
         write(name, &picture);
     }
     for name in ["car.obj", "car-chrome.obj", "house.obj", "torus.obj", "mesh.obj"] {
@@ -68,7 +70,9 @@ fn scenes() -> Vec<Vec<u8>> {
         let entries = fs::read_dir(root().join(folder)).expect("a folder of this repository");
         let mut files: Vec<_> = entries.flatten().map(|entry| entry.path()).collect();
         files.sort();
-        for file in files.iter().filter(|file| file.extension().is_some_and(|extension| extension == "toml"))
+        for file in files
+            .iter()
+            .filter(|file| file.extension().is_some_and(|extension| extension == "toml"))
         {
             let text = fs::read_to_string(file).expect("a scene");
             scenes.push(text.replace("../assets/", "").into_bytes());
@@ -94,7 +98,8 @@ fn encode(image: &DynamicImage, format: ImageFormat) -> Vec<u8> {
 }
 
 fn pictures() -> Vec<Vec<u8>> {
-    let image = image::RgbaImage::from_fn(6, 5, |x, y| image::Rgba([x as u8 * 40, y as u8 * 50, 7, 250]));
+    let image =
+        image::RgbaImage::from_fn(6, 5, |x, y| image::Rgba([x as u8 * 40, y as u8 * 50, 7, 250]));
     let image = DynamicImage::from(image);
     let mut pictures = vec![
         picture(ImageFormat::Png),
@@ -107,7 +112,8 @@ fn pictures() -> Vec<Vec<u8>> {
         encode(&image.to_luma8().into(), ImageFormat::Jpeg),
     ];
     let file = std::env::temp_dir().join(format!("caustica-fuzz-{}.exr", std::process::id()));
-    exr::prelude::write_rgb_file(&file, 6, 5, |x, y| (x as f32, y as f32, 0.5f32)).expect("an EXR file");
+    exr::prelude::write_rgb_file(&file, 6, 5, |x, y| (x as f32, y as f32, 0.5f32))
+        .expect("an EXR file");
     pictures.push(fs::read(&file).expect("an EXR file"));
     let _ = fs::remove_file(file);
     pictures
@@ -123,7 +129,8 @@ pub fn opened(rule: RadiusRule) -> (Loaded, Opened) {
     loaded.scene.film.aovs = scene::Aovs::parse("all").expect("layers");
     loaded.scene.film.window = Some([1, 0, 3, 2]);
     loaded.settings.radius_rule = rule;
-    let opened = device::open(&Wanted::Cpu, &loaded.scene, &loaded.settings).expect("the CPU engine");
+    let opened =
+        device::open(&Wanted::Cpu, &loaded.scene, &loaded.settings).expect("the CPU engine");
     (loaded, opened)
 }
 
@@ -136,7 +143,8 @@ fn checkpoint(rule: RadiusRule) -> Vec<u8> {
         state: opened.engine.save().expect("what the engine holds"),
         cuts: Vec::new(),
     };
-    let file = std::env::temp_dir().join(format!("caustica-fuzz-{}.checkpoint", std::process::id()));
+    let file =
+        std::env::temp_dir().join(format!("caustica-fuzz-{}.checkpoint", std::process::id()));
     checkpoint::write(&file, &checkpoint).expect("a checkpoint");
     let bytes = fs::read(&file).expect("a checkpoint");
     let _ = fs::remove_file(file);

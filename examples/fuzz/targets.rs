@@ -37,8 +37,15 @@ const SUM: usize = 16;
 
 impl Target {
     /// All of them.
-    pub const ALL: [Self; 7] =
-        [Self::Scene, Self::Plan, Self::Obj, Self::Mtl, Self::Texture, Self::Profile, Self::Checkpoint];
+    pub const ALL: [Self; 7] = [
+        Self::Scene,
+        Self::Plan,
+        Self::Obj,
+        Self::Mtl,
+        Self::Texture,
+        Self::Profile,
+        Self::Checkpoint,
+    ];
 
     /// Reads an input; the outcome is empty where it is accepted, else says why not.
     pub fn run(self, folder: &Path, input: &[u8]) -> String {
@@ -56,8 +63,10 @@ impl Target {
             Self::Plan => told(scene(input).map(|loaded| plan(&loaded))),
             Self::Obj => {
                 write(folder, "mesh.obj", input);
-                told(scene(reader("mesh.obj", "smooth = true\nmaterial = \"m\"").as_bytes()).map(warnings))
-                    + &told(scene(reader("mesh.obj", "").as_bytes()).map(warnings))
+                told(
+                    scene(reader("mesh.obj", "smooth = true\nmaterial = \"m\"").as_bytes())
+                        .map(warnings),
+                ) + &told(scene(reader("mesh.obj", "").as_bytes()).map(warnings))
             }
             Self::Mtl => {
                 write(folder, "mesh.mtl", input);
@@ -65,7 +74,11 @@ impl Target {
             }
             Self::Texture => {
                 // The content decides the format.
-                let name = if input.starts_with(&[0x76, 0x2f, 0x31, 0x01]) { "sky.exr" } else { "sky.png" };
+                let name = if input.starts_with(&[0x76, 0x2f, 0x31, 0x01]) {
+                    "sky.exr"
+                } else {
+                    "sky.png"
+                };
                 write(folder, name, input);
                 let text = format!(
                     "{READER}[materials.m]\ntype = \"diffuse\"\nreflectance = 0.5\n[[shapes]]\ntype = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1\nmaterial = \"m\"\n[environment]\nfile = \"{name}\"\n"
@@ -76,7 +89,8 @@ impl Target {
                 write(folder, "profile.toml", input);
                 let loaded = scene::load_profile_within(&folder.join("profile.toml"), &allowance);
                 told(loaded.map(|profile| {
-                    let mesh = tessellate(&profile.segments, &Fineness { sectors: 3, flatness: 1e-2 });
+                    let mesh =
+                        tessellate(&profile.segments, &Fineness { sectors: 3, flatness: 1e-2 });
                     mesh.map(|mesh| drop(mesh.to_obj("")))
                         .map_or_else(|error| general(&error.to_string()), |()| String::new())
                 }))
@@ -98,7 +112,8 @@ impl Target {
             Self::Checkpoint if mutator.below(8) > 0 && input.len() > PREFIX + SUM => {
                 let (total, end) = (input.len() as u64, input.len() - SUM);
                 input[16..24].copy_from_slice(&total.to_le_bytes());
-                if let Some(length) = header(&input[PREFIX..end]).filter(|_| mutator.below(2) == 0) {
+                if let Some(length) = header(&input[PREFIX..end]).filter(|_| mutator.below(2) == 0)
+                {
                     input[12..16].copy_from_slice(&length.to_le_bytes());
                 }
                 let sum = xxh3_128(&input[..end]).to_le_bytes();
@@ -117,7 +132,11 @@ impl Target {
 fn resume(checkpoint: &Checkpoint) -> String {
     let (_, mut opened) = seeds::opened(checkpoint.origin.settings.radius_rule);
     let engine = &mut opened.engine;
-    match engine.restore(&checkpoint.state).and_then(|()| engine.pass()).and_then(|_| engine.results()) {
+    match engine
+        .restore(&checkpoint.state)
+        .and_then(|()| engine.pass())
+        .and_then(|_| engine.results())
+    {
         Ok(_) => String::new(),
         Err(error) => general(&error.to_string()),
     }
@@ -130,19 +149,19 @@ fn header(bytes: &[u8]) -> Option<u32> {
     u32::try_from(stream.byte_offset()).ok()
 }
 
-/// Makes the check sums of a PNG file's chunks right (ISO 3309, as the PNG specification's annex D has it).
+/// Makes the check sums of a PNG file's chunks right (ISO 3309, as the PNG specification's annex D
+/// has it).
 fn mend_png(input: &mut [u8]) {
     let mut at = 8;
     while let Some(word) = input.get(at..at + 4) {
         let length = u32::from_be_bytes([word[0], word[1], word[2], word[3]]) as usize;
         let end = at + 8 + length;
         let Some(content) = input.get(at + 4..end) else { return };
-        let crc =
-            !content.iter().fold(u32::MAX, |crc, &byte| {
-                (0..8).fold(crc ^ u32::from(byte), |crc, _| {
-                    if crc & 1 == 1 { crc >> 1 ^ 0xedb8_8320 } else { crc >> 1 }
-                })
-            });
+        let crc = !content.iter().fold(u32::MAX, |crc, &byte| {
+            (0..8).fold(crc ^ u32::from(byte), |crc, _| {
+                if crc & 1 == 1 { crc >> 1 ^ 0xedb8_8320 } else { crc >> 1 }
+            })
+        });
         let Some(place) = input.get_mut(end..end + 4) else { return };
         place.copy_from_slice(&crc.to_be_bytes());
         at = end + 4;
@@ -188,7 +207,8 @@ fn told(outcome: Result<String, SceneErrors>) -> String {
     match outcome {
         Ok(told) => told,
         Err(errors) => {
-            let first = errors.errors.first().map_or(String::new(), |error| general(error.message()));
+            let first =
+                errors.errors.first().map_or(String::new(), |error| general(error.message()));
             let others = if errors.errors.len() > 1 { MORE } else { "" };
             if first.len() % 4 == 0 {
                 let _ = format!("{:?}", miette::Report::new(errors));

@@ -45,17 +45,14 @@ impl Canvas {
     /// The picture as the bytes of a PNG file.
     pub fn to_png(&self) -> Result<Vec<u8>, image::ImageError> {
         let mut bytes = Vec::new();
-        PngEncoder::new_with_quality(&mut bytes, CompressionType::Best, FilterType::Adaptive).write_image(
-            &self.to_rgb8(),
-            self.width,
-            self.height,
-            ExtendedColorType::Rgb8,
-        )?;
+        PngEncoder::new_with_quality(&mut bytes, CompressionType::Best, FilterType::Adaptive)
+            .write_image(&self.to_rgb8(), self.width, self.height, ExtendedColorType::Rgb8)?;
         Ok(bytes)
     }
 }
 
-/// How far `p` is inside (negative) or outside a rectangle with rounded corners, in the units of `p`.
+/// How far `p` is inside (negative) or outside a rectangle with rounded corners, in the units of
+/// `p`.
 pub fn rounded_rectangle(p: DVec2, center: DVec2, half: DVec2, corner: f64) -> f64 {
     let q = (p - center).abs() - half + DVec2::splat(corner);
     q.max(DVec2::ZERO).length() + q.x.max(q.y).min(0.0) - corner

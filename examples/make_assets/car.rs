@@ -22,8 +22,10 @@ pub const TAILLIGHT: [f64; 4] = [0.74, 0.0, 0.94, 0.16];
 pub const PLATE: [f64; 4] = [0.52, 0.18, 0.94, 0.26];
 
 /// Where the lamps sit: (position, direction, radius, depth).
-const HEADLIGHTS: (DVec3, DVec3, f64) = (DVec3::new(1.72, 0.665, 0.58), DVec3::new(1.0, 0.08, 0.12), 0.115);
-const TAILLIGHTS: (DVec3, DVec3, f64) = (DVec3::new(-1.70, 0.60, 0.60), DVec3::new(-1.0, 0.12, 0.22), 0.065);
+const HEADLIGHTS: (DVec3, DVec3, f64) =
+    (DVec3::new(1.72, 0.665, 0.58), DVec3::new(1.0, 0.08, 0.12), 0.115);
+const TAILLIGHTS: (DVec3, DVec3, f64) =
+    (DVec3::new(-1.70, 0.60, 0.60), DVec3::new(-1.0, 0.12, 0.22), 0.065);
 
 /// Everything that is painted: body, wheels, lamps and number plates. The body is closed.
 pub fn painted(unwrapping: &Unwrapping) -> Mesh {
@@ -92,15 +94,17 @@ pub fn chrome() -> Mesh {
     mesh
 }
 
-/// The closed shell: each section runs from the middle of the underside out, up the side and to the roof's
-/// middle, then down the other side. Wheel wells are where the lower edge is higher than the floor.
+/// The closed shell: each section runs from the middle of the underside out, up the side and to the
+/// roof's middle, then down the other side. Wheel wells are where the lower edge is higher than the
+/// floor.
 pub fn body(unwrapping: &Unwrapping) -> Mesh {
     const SIDE: usize = 25;
     const INNER: f64 = 0.42;
     let stations = unwrapping.stations();
     let mut mesh = Mesh::default();
-    let atlas =
-        |u: f64, v: f64| DVec2::new(lerp(0.004, 0.996, u), lerp(BODY_V.0 + 0.004, BODY_V.1 - 0.004, v));
+    let atlas = |u: f64, v: f64| {
+        DVec2::new(lerp(0.004, 0.996, u), lerp(BODY_V.0 + 0.004, BODY_V.1 - 0.004, v))
+    };
     // the first and the last section shrink to a point
     let tip_or = |row: usize, u: f64, v: f64| {
         let p = unwrapping.point(u, v);
@@ -108,7 +112,8 @@ pub fn body(unwrapping: &Unwrapping) -> Mesh {
     };
     for side in [1.0, -1.0] {
         let outward = |p: DVec3| DVec3::new(p.x, p.y, p.z * side);
-        // the left half is the mirror image: its columns run the other way, so that it winds outward too
+        // the left half is the mirror image: its columns run the other way, so that it winds
+        // outward too
         let column = |col: usize| if side > 0.0 { col } else { SIDE - col };
         mesh.grid(stations.len(), SIDE + 1, |row, col| {
             let u = stations[row];
@@ -120,10 +125,16 @@ pub fn body(unwrapping: &Unwrapping) -> Mesh {
         });
         // underside: from the edge in to the well's inner wall, down it, and to the middle
         let section = |row: usize| {
-            let edge = tip_or(row, stations[row], unwrapping.lower_edge(unwrapping.x(stations[row])));
+            let edge =
+                tip_or(row, stations[row], unwrapping.lower_edge(unwrapping.x(stations[row])));
             let inner = edge.z.min(INNER);
             let floor = if in_arch(edge.x) { FLOOR.min(edge.y) } else { edge.y };
-            [edge, edge.with_z(inner), DVec3::new(edge.x, floor, inner), DVec3::new(edge.x, floor, 0.0)]
+            [
+                edge,
+                edge.with_z(inner),
+                DVec3::new(edge.x, floor, inner),
+                DVec3::new(edge.x, floor, 0.0),
+            ]
         };
         for (part, normal) in [-DVec3::Y, DVec3::Z, -DVec3::Y].into_iter().enumerate() {
             mesh.grid(stations.len(), 2, |row, col| {
@@ -198,7 +209,8 @@ fn lathe(profile: &[[f64; 2]], around: usize, region: [f64; 4]) -> Mesh {
     mesh
 }
 
-/// A tube with an elliptic section (`high` along y, `deep` across) along a path, closed by points at its ends.
+/// A tube with an elliptic section (`high` along y, `deep` across) along a path, closed by points
+/// at its ends.
 fn tube(mesh: &mut Mesh, path: &[DVec3], high: f64, deep: f64) {
     const AROUND: usize = 10;
     let last = path.len() - 1;

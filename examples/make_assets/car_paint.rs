@@ -1,5 +1,5 @@
-//! The car's atlas: every texel of the body knows its place in space, so that doors, windows and trim are
-//! drawn where they are, in metres, and no seam shows.
+//! The car's atlas: every texel of the body knows its place in space, so that doors, windows and
+//! trim are drawn where they are, in metres, and no seam shows.
 
 use crate::assets::canvas::{Canvas, Color, hex, rounded_polygon, rounded_rectangle};
 use crate::assets::car::{BODY_V, HEADLIGHT, PLATE, TAILLIGHT, WHEEL};
@@ -52,13 +52,16 @@ fn body(p: DVec3, n: DVec3) -> Color {
     color = over(color, hex(CREAM), -gutter);
     color = over(color, hex(CHROME) * 0.8, gutter.abs() - 0.008);
 
-    let corners = |list: &[(f64, f64)]| list.iter().map(|&(x, y)| DVec2::new(x, y)).collect::<Vec<_>>();
+    let corners =
+        |list: &[(f64, f64)]| list.iter().map(|&(x, y)| DVec2::new(x, y)).collect::<Vec<_>>();
     if n.z > 0.35 {
-        let door = corners(&[(0.50, 0.32), (0.50, 0.95), (0.26, 1.22), (-0.29, 1.25), (-0.29, 0.32)]);
+        let door =
+            corners(&[(0.50, 0.32), (0.50, 0.95), (0.26, 1.22), (-0.29, 1.25), (-0.29, 0.32)]);
         let d = rounded_polygon(side, &door, 0.03);
         color = over(color, hex(SEAM), d.abs() - 0.005);
         let fore = corners(&[(0.34, 0.93), (0.15, 1.15), (-0.20, 1.17), (-0.20, 0.93)]);
-        let aft = corners(&[(-0.38, 0.93), (-0.38, 1.18), (-0.72, 1.15), (-1.0, 0.97), (-0.98, 0.93)]);
+        let aft =
+            corners(&[(-0.38, 0.93), (-0.38, 1.18), (-0.72, 1.15), (-1.0, 0.97), (-0.98, 0.93)]);
         for outline in [fore, aft] {
             color = window(color, side, rounded_polygon(side, &outline, 0.035));
         }
@@ -106,7 +109,8 @@ fn lids(front: DVec2, p: DVec3, n: DVec3, mut color: Color) -> Color {
     color
 }
 
-/// A pane: rubber seal and chrome bead round it, glass that shows the sky above and the dark within.
+/// A pane: rubber seal and chrome bead round it, glass that shows the sky above and the dark
+/// within.
 fn window(color: Color, q: DVec2, d: f64) -> Color {
     let glass = hex(0x1d_2a33).lerp(hex(0x8f_a9b8), smoothstep(0.98, 1.26, q.y));
     let streak = ((q.x * 0.8 + q.y) / 0.30).rem_euclid(1.0);
@@ -122,8 +126,8 @@ fn wheel(q: DVec2) -> Color {
     let row = q.y * 13.0;
     if row < 9.0 {
         let groove = ((q.x * 48.0 + 0.5 * row) % 1.0 - 0.5).abs();
-        let tread =
-            hex(0x20_1f20).lerp(hex(0x0d_0d0d), if row < 6.0 { smoothstep(0.36, 0.44, groove) } else { 0.0 });
+        let tread = hex(0x20_1f20)
+            .lerp(hex(0x0d_0d0d), if row < 6.0 { smoothstep(0.36, 0.44, groove) } else { 0.0 });
         return tread.lerp(hex(0xe9_e3d6), smoothstep(6.55, 6.7, row) - smoothstep(8.3, 8.45, row));
     }
     if row < 10.0 {
@@ -134,12 +138,14 @@ fn wheel(q: DVec2) -> Color {
     if slot { hex(0x1a_1010) } else { hex(CREAM) }
 }
 
-/// A lamp's glass: u round it, v from the rim to the middle; fluted, brighter where the reflector shows.
+/// A lamp's glass: u round it, v from the rim to the middle; fluted, brighter where the reflector
+/// shows.
 fn headlight(q: DVec2) -> Color {
     let r = 1.0 - q.y;
     let x = r * sin_cos(TAU * q.x).1;
     let flute = (x * 7.0).rem_euclid(1.0);
-    hex(0xf4_f2e6).lerp(hex(0xb8_bcb8), 0.75 * smoothstep(0.35, 0.5, (flute - 0.5).abs()) + 0.2 * r * r)
+    hex(0xf4_f2e6)
+        .lerp(hex(0xb8_bcb8), 0.75 * smoothstep(0.35, 0.5, (flute - 0.5).abs()) + 0.2 * r * r)
 }
 
 fn taillight(q: DVec2) -> Color {

@@ -1,5 +1,5 @@
-//! The body of the car as an implicit surface, and its unwrapping: x = forward, y = up, z = to the right,
-//! the ground at y = 0, in metres.
+//! The body of the car as an implicit surface, and its unwrapping: x = forward, y = up, z = to the
+//! right, the ground at y = 0, in metres.
 
 use crate::assets::numbers::{lerp, sin_cos, smoothstep};
 use glam::{DVec2, DVec3};
@@ -27,7 +27,8 @@ fn length4(a: f64, b: f64) -> f64 {
     (a * a * a * a + b * b * b * b).sqrt().sqrt()
 }
 
-/// The smaller of `a` and `b`, rounded where they differ by less than `k` (polynomial smooth minimum).
+/// The smaller of `a` and `b`, rounded where they differ by less than `k` (polynomial smooth
+/// minimum).
 fn smooth_min(a: f64, b: f64, k: f64) -> f64 {
     let h = (k - (a - b).abs()).max(0.0);
     a.min(b) - h * h / (4.0 * k)
@@ -64,13 +65,14 @@ pub fn body_normal(p: DVec3) -> DVec3 {
     DVec3::new(slope(DVec3::X), slope(DVec3::Y), slope(DVec3::Z)).normalize()
 }
 
-/// The last point inside the body on the way from `from`, a point outside, back along `toward`: where a ray
-/// from outside meets it. None if it does not, within `reach`.
+/// The last point inside the body on the way from `from`, a point outside, back along `toward`:
+/// where a ray from outside meets it. None if it does not, within `reach`.
 pub fn meet(from: DVec3, toward: DVec3, reach: f64) -> Option<DVec3> {
     let steps = 120;
     let at = |t: f64| from + toward * (reach * t);
     let k = (1..=steps).find(|&k| body(at(f64::from(k) / f64::from(steps))) < 0.0)?;
-    let (mut out, mut inside) = (f64::from(k - 1) / f64::from(steps), f64::from(k) / f64::from(steps));
+    let (mut out, mut inside) =
+        (f64::from(k - 1) / f64::from(steps), f64::from(k) / f64::from(steps));
     for _ in 0..24 {
         let middle = 0.5 * (out + inside);
         if body(at(middle)) < 0.0 { inside = middle } else { out = middle }
@@ -78,7 +80,8 @@ pub fn meet(from: DVec3, toward: DVec3, reach: f64) -> Option<DVec3> {
     Some(at(out))
 }
 
-/// The body's right half unwrapped: `u` from nose to tail, `v` from under the sill to the roof's middle.
+/// The body's right half unwrapped: `u` from nose to tail, `v` from under the sill to the roof's
+/// middle.
 pub struct Unwrapping {
     /// (arc length from the nose as a fraction, x), fine enough for linear interpolation.
     table: Vec<(f64, f64)>,
@@ -88,7 +91,8 @@ impl Unwrapping {
     /// Measures the body.
     pub fn new() -> Unwrapping {
         let end = |sign: f64| {
-            meet(DVec3::new(2.5 * sign, AXIS_HEIGHT, 0.0), -DVec3::X * sign, 2.0).map_or(sign, |p| p.x)
+            meet(DVec3::new(2.5 * sign, AXIS_HEIGHT, 0.0), -DVec3::X * sign, 2.0)
+                .map_or(sign, |p| p.x)
         };
         let (nose, tail) = (end(1.0) - 1e-4, end(-1.0) + 1e-4);
         let (center, half) = (0.5 * (nose + tail), 0.5 * (nose - tail));
@@ -126,8 +130,8 @@ impl Unwrapping {
         at_angle(self.x(u), lerp(ANGLES.0, ANGLES.1, v))
     }
 
-    /// The v of the body's lower edge at `x`: the sill, which draws in under nose and tail, or the rim of a
-    /// wheel arch, which runs out into the sill.
+    /// The v of the body's lower edge at `x`: the sill, which draws in under nose and tail, or the
+    /// rim of a wheel arch, which runs out into the sill.
     pub fn lower_edge(&self, x: f64) -> f64 {
         let ends = smoothstep(1.66, 1.92, x).max(smoothstep(-1.66, -1.94, x));
         let sill = SILL_V * (1.0 - ends);
@@ -143,7 +147,8 @@ impl Unwrapping {
 
     /// Stations from nose to tail as u, with one at each edge of each arch and more beside these.
     pub fn stations(&self) -> Vec<f64> {
-        // x where each stretch ends, into how many steps it is cut, and whether these crowd at its ends
+        // x where each stretch ends, into how many steps it is cut, and whether these crowd at its
+        // ends
         let mut stretches = Vec::new();
         for (axle, before) in AXLES.iter().zip([12, 16]) {
             stretches.push((axle + ARCH_RADIUS + ARCH_FOOT, before, false));
@@ -180,7 +185,12 @@ fn ends_closer(x: f64) -> f64 {
 /// The mean radius of the section at `x`.
 fn radius(x: f64) -> f64 {
     let centre = DVec3::new(x, AXIS_HEIGHT, 0.0);
-    [0.0, 0.5, 1.0].iter().map(|v| at_angle(x, v * FRAC_PI_2) - centre).map(DVec3::length).sum::<f64>() / 3.0
+    [0.0, 0.5, 1.0]
+        .iter()
+        .map(|v| at_angle(x, v * FRAC_PI_2) - centre)
+        .map(DVec3::length)
+        .sum::<f64>()
+        / 3.0
 }
 
 /// Where the section at `x` is met by a ray that comes in at `angle` (0: level, pi/2: from above).

@@ -8,8 +8,9 @@ use std::f64::consts::TAU;
 /// Boards side by side in the picture of the floor.
 const BOARDS: f64 = 4.0;
 
-/// Oak boards: four side by side, each two pieces long, with joints at different heights, so that a floor
-/// laid of this picture does not show its repeat at a glance. Grain runs along y; repeats in both directions.
+/// Oak boards: four side by side, each two pieces long, with joints at different heights, so that a
+/// floor laid of this picture does not show its repeat at a glance. Grain runs along y; repeats in
+/// both directions.
 pub fn planks() -> Canvas {
     Canvas::paint(512, 1024, |p| {
         let board = (p.x * BOARDS).floor();
@@ -37,11 +38,13 @@ fn oak(x: f64, y: f64, piece: i64) -> Color {
     let tone = hash(piece, 1, 11);
     let long = (1 << 20, 1 << 20);
     // the pith lies beside or under the board: rings are arcs that wander slowly along it
-    let wander = 0.5 * fbm(y * 3.0, 0.5, long, seed) + 0.25 * fbm(y * 7.0, x * 1.5 + 9.0, long, seed + 7);
+    let wander =
+        0.5 * fbm(y * 3.0, 0.5, long, seed) + 0.25 * fbm(y * 7.0, x * 1.5 + 9.0, long, seed + 7);
     let pith = lerp(-0.5, 1.5, hash(piece, 2, 12));
     let mut across = (x - pith) * 1.2 + wander;
     // a knot pushes the rings aside
-    let knot = DVec2::new(lerp(0.25, 0.75, hash(piece, 3, 13)), lerp(0.08, 0.92, hash(piece, 4, 14)));
+    let knot =
+        DVec2::new(lerp(0.25, 0.75, hash(piece, 3, 13)), lerp(0.08, 0.92, hash(piece, 4, 14)));
     let has_knot = hash(piece, 5, 15) < 0.45;
     let from_knot = ((x - knot.x) * (x - knot.x) + (y - knot.y) * (y - knot.y) * 90.0).sqrt();
     if has_knot {
@@ -54,19 +57,21 @@ fn oak(x: f64, y: f64, piece: i64) -> Color {
     let late = smoothstep(0.15, 0.85, ring) * (1.0 - smoothstep(0.90, 1.0, ring));
     // fibres and pores are long and thin
     let fibre = fbm(x * 60.0, y * 14.0, long, seed + 3);
-    let pore = smoothstep(0.66, 0.80, noise(x * 110.0, y * 44.0, long, seed + 5)) * (0.35 + 0.65 * late);
+    let pore =
+        smoothstep(0.66, 0.80, noise(x * 110.0, y * 44.0, long, seed + 5)) * (0.35 + 0.65 * late);
     let base = hex(0xc7_9a62).lerp(hex(0x9c_6a3a), tone);
     let mut color = base.lerp(hex(0x86_5428), 0.42 * late) * lerp(0.86, 1.10, fibre);
     color *= 1.0 - 0.28 * pore;
     if has_knot {
-        let heart = 1.0 - smoothstep(0.02, 0.11, from_knot + 0.02 * noise(x * 30.0, y * 200.0, long, seed));
+        let heart =
+            1.0 - smoothstep(0.02, 0.11, from_knot + 0.02 * noise(x * 30.0, y * 200.0, long, seed));
         color = color.lerp(hex(0x3c_2112), 0.8 * heart);
     }
     color
 }
 
-/// Cobalt on white glaze. The vase's profile has five segments, so v = 0.2, 0.4, ... are its joints: foot,
-/// belly, shoulder, neck and the inside, which stays white.
+/// Cobalt on white glaze. The vase's profile has five segments, so v = 0.2, 0.4, ... are its
+/// joints: foot, belly, shoulder, neck and the inside, which stays white.
 pub fn porcelain() -> Canvas {
     const BLUE: u32 = 0x1f_3f94;
     Canvas::paint(1024, 512, |p| {
@@ -98,7 +103,8 @@ pub fn porcelain() -> Canvas {
     })
 }
 
-/// A row of `count` pointed petals that stand on v = `foot` and are `high` tall: outlines and a heart.
+/// A row of `count` pointed petals that stand on v = `foot` and are `high` tall: outlines and a
+/// heart.
 fn petals(p: DVec2, foot: f64, high: f64, count: f64) -> f64 {
     let y = (p.y - foot) / high;
     if !(0.0..=1.0).contains(&y) {
@@ -149,7 +155,8 @@ fn flowers(p: DVec2) -> f64 {
         let leaf = b.abs() - (1.0 - a * a);
         if a.abs() < 1.0 {
             ink = ink.max(
-                (1.0 - smoothstep(-0.1, 0.1, leaf)) * (1.0 - 0.75 * (1.0 - smoothstep(0.06, 0.14, b.abs()))),
+                (1.0 - smoothstep(-0.1, 0.1, leaf))
+                    * (1.0 - 0.75 * (1.0 - smoothstep(0.06, 0.14, b.abs()))),
             );
         }
     }

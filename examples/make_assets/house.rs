@@ -1,5 +1,5 @@
-//! A brick cottage as one mesh, in metres: its front looks along +z, x is to the right of someone who faces
-//! the front, the ground is y = 0 and the origin is under its middle.
+//! A brick cottage as one mesh, in metres: its front looks along +z, x is to the right of someone
+//! who faces the front, the ground is y = 0 and the origin is under its middle.
 
 use crate::assets::mesh::Mesh;
 use crate::assets::numbers::{lerp, sin_cos};
@@ -33,7 +33,8 @@ fn opening(center: f64, sill: f64, width: f64, height: f64, filling: &'static st
     Opening { low, high: low + DVec2::new(width, height), filling }
 }
 
-/// A vertical wall: `origin` its lower left corner seen from outside, `along` to the right; y is up.
+/// A vertical wall: `origin` its lower left corner seen from outside, `along` to the right; y is
+/// up.
 struct Wall {
     origin: DVec3,
     along: DVec3,
@@ -72,10 +73,14 @@ fn ridge() -> f64 {
 
 fn walls(mesh: &mut Mesh) {
     let (x, y, z) = (HALF.x, HALF.y, HALF.z);
-    let front = Wall { origin: DVec3::new(-x, 0.0, z), along: DVec3::X, size: DVec2::new(2.0 * x, y) };
-    let back = Wall { origin: DVec3::new(x, 0.0, -z), along: -DVec3::X, size: DVec2::new(2.0 * x, y) };
-    let right = Wall { origin: DVec3::new(x, 0.0, z), along: -DVec3::Z, size: DVec2::new(2.0 * z, y) };
-    let left = Wall { origin: DVec3::new(-x, 0.0, -z), along: DVec3::Z, size: DVec2::new(2.0 * z, y) };
+    let front =
+        Wall { origin: DVec3::new(-x, 0.0, z), along: DVec3::X, size: DVec2::new(2.0 * x, y) };
+    let back =
+        Wall { origin: DVec3::new(x, 0.0, -z), along: -DVec3::X, size: DVec2::new(2.0 * x, y) };
+    let right =
+        Wall { origin: DVec3::new(x, 0.0, z), along: -DVec3::Z, size: DVec2::new(2.0 * z, y) };
+    let left =
+        Wall { origin: DVec3::new(-x, 0.0, -z), along: DVec3::Z, size: DVec2::new(2.0 * z, y) };
     let window = |center: f64| opening(center, 1.15, 1.0, 1.5, "window");
     wall(mesh, &front, &[window(1.35), window(6.05), opening(3.7, PLINTH, 1.0, 2.1, "door")]);
     wall(mesh, &back, &[window(1.6), window(5.8)]);
@@ -114,28 +119,37 @@ fn wall(mesh: &mut Mesh, wall: &Wall, openings: &[Opening]) {
                 continue;
             }
             let corner = |s: f64, t: f64| (wall.at(s, t, 0.0), DVec2::new(s, t) / BRICKWORK);
-            mesh.polygon(&[corner(s[0], t[0]), corner(s[1], t[0]), corner(s[1], t[1]), corner(s[0], t[1])]);
+            mesh.polygon(&[
+                corner(s[0], t[0]),
+                corner(s[1], t[0]),
+                corner(s[1], t[1]),
+                corner(s[0], t[1]),
+            ]);
         }
     }
     for hole in openings {
         mesh.set_material("brick");
-        let around = [hole.low, hole.high.with_y(hole.low.y), hole.high, hole.low.with_y(hole.high.y)];
+        let around =
+            [hole.low, hole.high.with_y(hole.low.y), hole.high, hole.low.with_y(hole.high.y)];
         for (k, &a) in around.iter().enumerate() {
             let b = around[(k + 1) % 4];
-            let corner =
-                |p: DVec2, out: f64| (wall.at(p.x, p.y, out), DVec2::new(p.x + out, p.y) / BRICKWORK);
+            let corner = |p: DVec2, out: f64| {
+                (wall.at(p.x, p.y, out), DVec2::new(p.x + out, p.y) / BRICKWORK)
+            };
             mesh.polygon(&[corner(a, 0.0), corner(b, 0.0), corner(b, -REVEAL), corner(a, -REVEAL)]);
         }
         pane(mesh, wall, hole, -REVEAL);
     }
 }
 
-/// A window or a door with its frame, standing `depth` in front of the wall's plane; and what goes with it.
+/// A window or a door with its frame, standing `depth` in front of the wall's plane; and what goes
+/// with it.
 fn pane(mesh: &mut Mesh, wall: &Wall, hole: &Opening, depth: f64) {
     let Opening { low, high, filling } = *hole;
     mesh.set_material(filling);
-    let corner =
-        |s: f64, t: f64| (wall.at(lerp(low.x, high.x, s), lerp(low.y, high.y, t), depth), DVec2::new(s, t));
+    let corner = |s: f64, t: f64| {
+        (wall.at(lerp(low.x, high.x, s), lerp(low.y, high.y, t), depth), DVec2::new(s, t))
+    };
     mesh.polygon(&[corner(0.0, 0.0), corner(1.0, 0.0), corner(1.0, 1.0), corner(0.0, 1.0)]);
     mesh.set_material("trim");
     let at = |s: f64, t: f64| wall.at(s, t, depth);
@@ -147,7 +161,14 @@ fn pane(mesh: &mut Mesh, wall: &Wall, hole: &Opening, depth: f64) {
     if filling == "window" {
         mesh.set_material("stone");
         let sill = wall.at(0.0, low.y - 0.05, 0.0);
-        beam(mesh, sill + wall.along * (low.x - 0.08), sill + wall.along * (high.x + 0.08), up, 0.05, 0.09);
+        beam(
+            mesh,
+            sill + wall.along * (low.x - 0.08),
+            sill + wall.along * (high.x + 0.08),
+            up,
+            0.05,
+            0.09,
+        );
     }
     if depth < 0.0 {
         mesh.set_material("stone");
@@ -169,7 +190,9 @@ fn pane(mesh: &mut Mesh, wall: &Wall, hole: &Opening, depth: f64) {
 fn shutters(mesh: &mut Mesh, wall: &Wall, low: DVec2, high: DVec2) {
     for s in [low.x - 0.52, high.x + 0.04] {
         mesh.set_material("shutter");
-        let corner = |a: f64, t: f64| (wall.at(s + 0.48 * a, lerp(low.y, high.y, t), 0.06), DVec2::new(a, t));
+        let corner = |a: f64, t: f64| {
+            (wall.at(s + 0.48 * a, lerp(low.y, high.y, t), 0.06), DVec2::new(a, t))
+        };
         mesh.polygon(&[corner(0.0, 0.0), corner(1.0, 0.0), corner(1.0, 1.0), corner(0.0, 1.0)]);
         // the edges, in a plain part of the picture
         let around = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)];
@@ -187,7 +210,8 @@ fn shutters(mesh: &mut Mesh, wall: &Wall, low: DVec2, high: DVec2) {
     }
 }
 
-/// A gable roof: two tiled slabs that meet at the ridge. `half_x` and `half_z` reach to their edges.
+/// A gable roof: two tiled slabs that meet at the ridge. `half_x` and `half_z` reach to their
+/// edges.
 fn roof(mesh: &mut Mesh, half_x: f64, half_z: f64, top: f64, thick: f64, at: DVec3, tiles: bool) {
     let drop = half_z * PITCH;
     let slope = (half_z * half_z + drop * drop).sqrt();
@@ -251,19 +275,30 @@ fn chimney(mesh: &mut Mesh, at: DVec3) {
     let base = HALF.y + 0.8;
     mesh.set_material("brick");
     let stack = DVec3::new(half, 0.0, half);
-    mesh.cuboid(at - stack + DVec3::Y * base, at + stack + DVec3::Y * top, |p, n| metres(p, n) / BRICKWORK);
-    let course = stack + DVec3::new(0.06, 0.0, 0.06);
-    mesh.cuboid(at - course + DVec3::Y * (top - 0.30), at + course + DVec3::Y * (top - 0.15), |p, n| {
+    mesh.cuboid(at - stack + DVec3::Y * base, at + stack + DVec3::Y * top, |p, n| {
         metres(p, n) / BRICKWORK
     });
+    let course = stack + DVec3::new(0.06, 0.0, 0.06);
+    mesh.cuboid(
+        at - course + DVec3::Y * (top - 0.30),
+        at + course + DVec3::Y * (top - 0.15),
+        |p, n| metres(p, n) / BRICKWORK,
+    );
     mesh.set_material("stone");
     mesh.cuboid(at - course + DVec3::Y * top, at + course + DVec3::Y * (top + 0.09), |p, n| {
         metres(p, n) / 1.2
     });
     mesh.set_material("pot");
     for x in [-0.16, 0.16] {
-        let profile =
-            [(0.13, 0.0), (0.115, 0.36), (0.14, 0.38), (0.14, 0.44), (0.10, 0.44), (0.10, 0.20), (0.0, 0.20)];
+        let profile = [
+            (0.13, 0.0),
+            (0.115, 0.36),
+            (0.14, 0.38),
+            (0.14, 0.44),
+            (0.10, 0.44),
+            (0.10, 0.20),
+            (0.0, 0.20),
+        ];
         let foot = at + DVec3::new(x, top + 0.09, 0.0);
         for pair in profile.windows(2) {
             let slope = DVec2::new(pair[1].1 - pair[0].1, pair[0].0 - pair[1].0);
@@ -328,10 +363,19 @@ fn porch(mesh: &mut Mesh) {
             0.065,
         );
         let foot = DVec3::new(x, PLINTH, front - 0.15);
-        mesh.cuboid(foot - DVec3::new(0.10, 0.0, 0.10), foot + DVec3::new(0.10, 0.16, 0.10), |_, _| {
-            DVec2::ZERO
-        });
-        beam(mesh, DVec3::new(x, beam_y, HALF.z), DVec3::new(x, beam_y, front), DVec3::Y, 0.07, 0.06);
+        mesh.cuboid(
+            foot - DVec3::new(0.10, 0.0, 0.10),
+            foot + DVec3::new(0.10, 0.16, 0.10),
+            |_, _| DVec2::ZERO,
+        );
+        beam(
+            mesh,
+            DVec3::new(x, beam_y, HALF.z),
+            DVec3::new(x, beam_y, front),
+            DVec3::Y,
+            0.07,
+            0.06,
+        );
     }
     beam(
         mesh,

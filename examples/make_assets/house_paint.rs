@@ -11,7 +11,8 @@ pub fn brick() -> Canvas {
         let row = (p.y * courses).floor();
         let x = p.x * columns + 0.5 * row.rem_euclid(2.0);
         let column = x.floor();
-        let d = brick_edge(DVec2::new(x - column, p.y * courses - row), DVec2::new(0.25, 0.075), 0.005);
+        let d =
+            brick_edge(DVec2::new(x - column, p.y * courses - row), DVec2::new(0.25, 0.075), 0.005);
         let column = (column as i64).rem_euclid(columns as i64);
         let grain = fbm(p.x * 64.0, p.y * 64.0, (64, 64), 3);
         let stain = fbm(p.x * 4.0, p.y * 4.0, (4, 4), 21);
@@ -28,7 +29,8 @@ pub fn brick() -> Canvas {
     })
 }
 
-/// The distance (metres, negative inside) to a brick of `size` with joints of twice `joint`; q in [0, 1]^2.
+/// The distance (metres, negative inside) to a brick of `size` with joints of twice `joint`; q in
+/// [0, 1]^2.
 fn brick_edge(q: DVec2, size: DVec2, joint: f64) -> f64 {
     rounded_rectangle(q * size, size * 0.5, size * 0.5 - DVec2::splat(joint), 0.006)
 }
@@ -50,7 +52,8 @@ pub fn roof() -> Canvas {
             .lerp(hex(0xad_6546), tone)
             .lerp(hex(0x5e_3a34), 0.7 * hash(column, row as i64, 37).powi(2));
         let clay = clay.lerp(hex(0x6d_6a44), 0.35 * moss) * lerp(0.8, 1.12, grain);
-        // each tile is rounded across, its lower end stands proud and throws a shadow on the next below
+        // each tile is rounded across, its lower end stands proud and throws a shadow on the next
+        // below
         let round = 1.0 - 1.1 * (x - 0.5) * (x - 0.5);
         let tail = 0.10 * (1.0 - 4.0 * (x - 0.5) * (x - 0.5)) * 0.6;
         let lip = smoothstep(0.0, 0.06, y + tail - 0.04);
@@ -69,13 +72,14 @@ pub fn stone() -> Canvas {
         let d = brick_edge(DVec2::new(x - column, p.y * 3.0 - row), DVec2::new(0.40, 0.30), 0.007);
         let column = (column as i64).rem_euclid(3);
         let grain = fbm(p.x * 16.0, p.y * 16.0, (16, 16), 51);
-        let face =
-            hex(0x9a_948a).lerp(hex(0xb7_ad9c), hash(column, row as i64, 53)) * lerp(0.80, 1.10, grain);
+        let face = hex(0x9a_948a).lerp(hex(0xb7_ad9c), hash(column, row as i64, 53))
+            * lerp(0.80, 1.10, grain);
         (hex(0x74_6c62) * lerp(0.8, 1.0, grain)).lerp(face, smoothstep(0.003, -0.003, d))
     })
 }
 
-/// A front door of four panels with a glazed fanlight, letter box and brass knob; fills its picture.
+/// A front door of four panels with a glazed fanlight, letter box and brass knob; fills its
+/// picture.
 pub fn door() -> Canvas {
     Canvas::paint(256, 512, |p| {
         let q = p * DVec2::new(1.0, 2.1);
@@ -97,10 +101,14 @@ pub fn door() -> Canvas {
             color = color.lerp(green * if lit > 0.0 { 1.45 } else { 0.55 }, moulding);
         }
         let light = rounded_rectangle(q, DVec2::new(0.5, 1.82), DVec2::new(0.385, 0.17), 0.02);
-        let bars = ((q.x - 0.5).abs() - 0.012).min((q.x - 0.24).abs().min((q.x - 0.76).abs()) - 0.009);
+        let bars =
+            ((q.x - 0.5).abs() - 0.012).min((q.x - 0.24).abs().min((q.x - 0.76).abs()) - 0.009);
         let glass = hex(0x33_4450).lerp(hex(0x9d_b4c0), smoothstep(1.65, 2.0, q.y + 0.25 * q.x));
         color = color.lerp(hex(0xe9_e6dc), smoothstep(0.024, 0.018, light));
-        color = color.lerp(if bars < 0.0 { hex(0xe9_e6dc) } else { glass }, smoothstep(0.002, -0.002, light));
+        color = color.lerp(
+            if bars < 0.0 { hex(0xe9_e6dc) } else { glass },
+            smoothstep(0.002, -0.002, light),
+        );
         let brass = hex(0xc9_a24c);
         let knob = q.distance(DVec2::new(0.92, 0.92)) - 0.028;
         let plate = rounded_rectangle(q, DVec2::new(0.5, 0.755), DVec2::new(0.11, 0.03), 0.01);
@@ -113,7 +121,8 @@ pub fn door() -> Canvas {
     })
 }
 
-/// A sash window behind its frame: glass bars, the sky in the panes, curtains and the dark room behind.
+/// A sash window behind its frame: glass bars, the sky in the panes, curtains and the dark room
+/// behind.
 pub fn window() -> Canvas {
     Canvas::paint(256, 384, |p| {
         let q = p * DVec2::new(1.0, 1.5);
@@ -123,12 +132,16 @@ pub fn window() -> Canvas {
         let drape = 0.34 - 0.16 * smoothstep(1.35, 0.45, q.y) + 0.05 * smoothstep(0.45, 0.1, q.y);
         let side = q.x.min(1.0 - q.x);
         let curtain = smoothstep(drape, drape - 0.015, side);
-        let valance =
-            smoothstep(1.30, 1.315, q.y + 0.03 * (q.x * 8.0).fract().min(1.0 - (q.x * 8.0).fract()));
+        let valance = smoothstep(
+            1.30,
+            1.315,
+            q.y + 0.03 * (q.x * 8.0).fract().min(1.0 - (q.x * 8.0).fract()),
+        );
         let cloth = hex(0xd8_d2c2) * lerp(0.66, 1.0, fold);
         let inside = room.lerp(cloth * 0.85, curtain.max(valance));
         // the sky, stronger above, with the edge of a cloud
-        let cloud = smoothstep(0.45, 0.62, fbm(q.x * 2.0 + 3.0, q.y * 2.0 - q.x, (1 << 16, 1 << 16), 73));
+        let cloud =
+            smoothstep(0.45, 0.62, fbm(q.x * 2.0 + 3.0, q.y * 2.0 - q.x, (1 << 16, 1 << 16), 73));
         let sky = hex(0x8f_b0cc).lerp(hex(0xe4_eaee), cloud);
         let glass = inside.lerp(sky, lerp(0.16, 0.52, smoothstep(0.1, 1.5, q.y + 0.35 * q.x)));
         let bar = |x: f64, half: f64| x.abs() - half;
@@ -147,12 +160,14 @@ pub fn window() -> Canvas {
 pub fn shutter() -> Canvas {
     Canvas::paint(128, 384, |p| {
         let q = p * DVec2::new(0.5, 1.5);
-        let paint = hex(0x4d_6f62) * lerp(0.94, 1.05, fbm(q.x * 60.0, q.y * 3.0, (1 << 16, 1 << 16), 81));
+        let paint =
+            hex(0x4d_6f62) * lerp(0.94, 1.05, fbm(q.x * 60.0, q.y * 3.0, (1 << 16, 1 << 16), 81));
         let field = |y: f64| rounded_rectangle(q, DVec2::new(0.25, y), DVec2::new(0.19, 0.32), 0.0);
         let d = field(0.38).min(field(1.12));
         let slat = (q.y * 22.0).fract();
-        let louvre =
-            paint * lerp(0.40, 1.15, smoothstep(0.0, 0.9, slat)) * smoothstep(1.0, 0.93, slat).max(0.35);
+        let louvre = paint
+            * lerp(0.40, 1.15, smoothstep(0.0, 0.9, slat))
+            * smoothstep(1.0, 0.93, slat).max(0.35);
         let rim = smoothstep(0.010, 0.004, d.abs());
         (if d < 0.0 { louvre } else { paint }) * lerp(1.0, 0.55, rim)
     })
@@ -172,7 +187,8 @@ pub fn grass() -> Canvas {
     Canvas::paint(512, 512, |p| {
         let patch = fbm(p.x * 4.0, p.y * 4.0, (4, 4), 101);
         // blades: short strokes that lean two ways
-        let lean = |s: f64, seed: u32| noise(p.x * 128.0 + s * p.y * 32.0, p.y * 32.0, (128, 32), seed);
+        let lean =
+            |s: f64, seed: u32| noise(p.x * 128.0 + s * p.y * 32.0, p.y * 32.0, (128, 32), seed);
         let blades = lean(1.0, 103).max(lean(-1.0, 105));
         let green: Color = hex(0x3f_5c26).lerp(hex(0x6c_8438), patch);
         green * lerp(0.50, 1.25, blades)

@@ -14,7 +14,8 @@ fn glyph(c: char) -> [u8; 7] {
     }
 }
 
-/// 1 where `p` in [0, 1]^2 (y upward) lies on the strokes of `text` stretched over that square, else 0.
+/// 1 where `p` in [0, 1]^2 (y upward) lies on the strokes of `text` stretched over that square,
+/// else 0.
 pub fn ink(text: &str, p: DVec2) -> f64 {
     let column = p.x * (text.chars().count() as f64 * 6.0 - 1.0);
     let row = (1.0 - p.y) * 7.0;

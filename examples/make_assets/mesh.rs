@@ -1,4 +1,5 @@
-//! An indexed triangle mesh with normals and texture coordinates, grouped by material, written as OBJ.
+//! An indexed triangle mesh with normals and texture coordinates, grouped by material, written as
+//! OBJ.
 
 use glam::{DMat3, DVec2, DVec3};
 use std::fmt::Write;
@@ -42,8 +43,9 @@ impl Mesh {
         }
     }
 
-    /// Adds a grid of `rows` x `cols` vertices, `vertex(row, col)` giving (position, normal, uv). Quads wind
-    /// so that (next column - this) x (next row - this) points outward; quads without area are left out.
+    /// Adds a grid of `rows` x `cols` vertices, `vertex(row, col)` giving (position, normal, uv).
+    /// Quads wind so that (next column - this) x (next row - this) points outward; quads without
+    /// area are left out.
     pub fn grid(
         &mut self,
         rows: usize,
@@ -120,7 +122,8 @@ impl Mesh {
         self.triangles.extend(other.triangles.iter().map(|t| t.map(|k| k + first)));
     }
 
-    /// The mesh as a Wavefront OBJ; `comment` goes on top, `library` names the MTL file of the groups.
+    /// The mesh as a Wavefront OBJ; `comment` goes on top, `library` names the MTL file of the
+    /// groups.
     pub fn to_obj(&self, comment: &str, library: Option<&str>) -> String {
         let mut out = format!("# {comment}\n# {} triangles\n", self.triangles.len());
         if let Some(library) = library {

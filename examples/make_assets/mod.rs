@@ -112,10 +112,9 @@ pub fn pictures() -> Vec<Asset> {
 /// Every asset.
 pub fn all() -> Vec<Asset> {
     let mut assets = pictures();
-    assets.extend(
-        meshes()
-            .into_iter()
-            .map(|m| Asset { name: m.name, content: Content::Text(m.mesh.to_obj(m.comment, m.library)) }),
-    );
+    assets.extend(meshes().into_iter().map(|m| Asset {
+        name: m.name,
+        content: Content::Text(m.mesh.to_obj(m.comment, m.library)),
+    }));
     assets
 }

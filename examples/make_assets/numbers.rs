@@ -1,8 +1,10 @@
-//! Arithmetic that gives the same bits on every machine: only + - * / and square roots, no system `sin`.
+//! Arithmetic that gives the same bits on every machine: only + - * / and square roots, no system
+//! `sin`.
 
 use std::f64::consts::PI;
 
-/// Sine and cosine of `x` radians, by Taylor series after reduction to [-pi/4, pi/4]; error below 1e-15.
+/// Sine and cosine of `x` radians, by Taylor series after reduction to [-pi/4, pi/4]; error below
+/// 1e-15.
 pub fn sin_cos(x: f64) -> (f64, f64) {
     let quarter = (x / (PI / 2.0)).round();
     let r = x - quarter * (PI / 2.0);
@@ -38,7 +40,8 @@ pub fn bump(x: f64, width: f64) -> f64 {
     1.0 / (1.0 + (x / width) * (x / width))
 }
 
-/// The integer hash "pcg" (Jarzynski & Olano 2020) of two coordinates and a seed, as a number in [0, 1).
+/// The integer hash "pcg" (Jarzynski & Olano 2020) of two coordinates and a seed, as a number in
+/// [0, 1).
 pub fn hash(x: i64, y: i64, seed: u32) -> f64 {
     let mut h = seed;
     for word in [x as u32, y as u32] {
@@ -53,8 +56,9 @@ pub fn hash(x: i64, y: i64, seed: u32) -> f64 {
 pub fn noise(x: f64, y: f64, period: (i64, i64), seed: u32) -> f64 {
     let (i, j) = (x.floor(), y.floor());
     let (u, v) = (smoothstep(0.0, 1.0, x - i), smoothstep(0.0, 1.0, y - j));
-    let at =
-        |a: i64, b: i64| hash((i as i64 + a).rem_euclid(period.0), (j as i64 + b).rem_euclid(period.1), seed);
+    let at = |a: i64, b: i64| {
+        hash((i as i64 + a).rem_euclid(period.0), (j as i64 + b).rem_euclid(period.1), seed)
+    };
     lerp(lerp(at(0, 0), at(1, 0), u), lerp(at(0, 1), at(1, 1), u), v)
 }
 

@@ -5,7 +5,8 @@ use crate::assets::numbers::sin_cos;
 use glam::{DMat3, DVec2, DVec3};
 use std::f64::consts::PI;
 
-/// A bar with a rectangular section from `a` to `b`: `high` to both sides of the line, `out` before and behind.
+/// A bar with a rectangular section from `a` to `b`: `high` to both sides of the line, `out` before
+/// and behind.
 pub fn beam(mesh: &mut Mesh, a: DVec3, b: DVec3, up: DVec3, high: f64, out: f64) {
     let along = b - a;
     let across = along.normalize().cross(up);
@@ -52,7 +53,8 @@ pub fn half_pipe(mesh: &mut Mesh, a: DVec3, b: DVec3, radius: f64) {
     }
 }
 
-/// World metres along a flat side with this normal: across and up on walls, x and z on what is level.
+/// World metres along a flat side with this normal: across and up on walls, x and z on what is
+/// level.
 pub fn metres(p: DVec3, normal: DVec3) -> DVec2 {
     if normal.y.abs() > 0.5 {
         DVec2::new(p.x, -p.z)

@@ -37,10 +37,14 @@ fn radiance(direction: DVec3, around: f64) -> DVec3 {
     let cloud = DVec3::new(1.05, 1.02, 0.98) * lerp(0.72, 1.15, smoothstep(0.35, 0.75, puff));
     let sky = clear.lerp(cloud, 0.92 * cover);
     // trees, then fields
-    let crowns =
-        0.045 * fbm(around * 24.0, 0.5, (24, 8), 221) + 0.022 * fbm(around * 150.0, 0.5, (150, 8), 223);
+    let crowns = 0.045 * fbm(around * 24.0, 0.5, (24, 8), 221)
+        + 0.022 * fbm(around * 150.0, 0.5, (150, 8), 223);
     let leaf = fbm(around * 220.0, up * 40.0, (220, 1 << 20), 227);
-    let trees = DVec3::new(0.045, 0.075, 0.040).lerp(DVec3::new(0.11, 0.15, 0.07), leaf).lerp(clear, 0.08);
+    let trees =
+        DVec3::new(0.045, 0.075, 0.040).lerp(DVec3::new(0.11, 0.15, 0.07), leaf).lerp(clear, 0.08);
     let field = DVec3::new(0.08, 0.12, 0.035);
-    field.lerp(trees.lerp(sky, smoothstep(-0.003, 0.003, up - crowns)), smoothstep(-0.012, -0.004, up))
+    field.lerp(
+        trees.lerp(sky, smoothstep(-0.003, 0.003, up - crowns)),
+        smoothstep(-0.012, -0.004, up),
+    )
 }

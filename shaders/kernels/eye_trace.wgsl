@@ -1,5 +1,5 @@
-// Eye path of one visible point: twin of src/kernels/eye_trace.rs. Run by one invocation per visible point of a
-// chunk; reads the scene, writes `visible_points`, adds to `counters`.
+// Eye path of one visible point: twin of src/kernels/eye_trace.rs. Run by one invocation per
+// visible point of a chunk; reads the scene, writes `visible_points`, adds to `counters`.
 
 @compute @workgroup_size(64)
 fn eye_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups) groups: vec3u) {

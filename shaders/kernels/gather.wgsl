@@ -1,13 +1,15 @@
-// Density estimate at one visible point: twin of src/kernels/gather.rs. Run by one invocation per visible point of a
-// chunk and photon batch; reads `visible_points`, `starts`, `sorted` (and `statistics` under the local rule), adds to
-// `gathered` and, where the driver stopped it, to `counters`.
+// Density estimate at one visible point: twin of src/kernels/gather.rs. Run by one invocation per
+// visible point of a chunk and photon batch; reads `visible_points`, `starts`, `sorted` (and
+// `statistics` under the local rule), adds to `gathered` and, where the driver stopped it, to
+// `counters`.
 
 const FLATNESS: f32 = 0.25;
 const COS_MIN: f32 = 1e-2;
 const BOX_SLACK: f32 = 1e-4;
 const BLOCK: u32 = 1024u;
 
-// A photon record as four words twice, since a driver reads four as quickly as one: position and key, flux and direction.
+// A photon record as four words twice, since a driver reads four as quickly as one: position and
+// key, flux and direction.
 const PLACE: u32 = 0u;
 const LIGHT: u32 = 1u;
 
@@ -114,7 +116,8 @@ fn gather_family(point: VisiblePoint, frame: Frame, family: u32, radius_sq: f32)
     let wide = min(u32(high.x - low.x), dispatch.mask);
     var row = low.yz;
     var done = 0u;
-    // each loop asks at its end whether to go on: a software driver runs through a body once more where that is asked first
+    // each loop asks at its end whether to go on: a software driver runs through a body once more
+    // where that is asked first
     loop {
         let cell = vec3i(low.x + i32(done), row);
         let code = grid_code(cell, family);

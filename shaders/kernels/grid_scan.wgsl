@@ -1,6 +1,6 @@
-// Exclusive prefix sums of the buckets, the last of three steps of `grid_scan` in src/kernels/grid_build.rs. Run by
-// one workgroup per block of 4096 buckets; reads `counts` and `block_sums`, writes `starts`, whose entry past the
-// buckets becomes the total.
+// Exclusive prefix sums of the buckets, the last of three steps of `grid_scan` in
+// src/kernels/grid_build.rs. Run by one workgroup per block of 4096 buckets; reads `counts` and
+// `block_sums`, writes `starts`, whose entry past the buckets becomes the total.
 
 @compute @workgroup_size(256)
 fn grid_scan(

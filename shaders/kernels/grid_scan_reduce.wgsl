@@ -1,5 +1,5 @@
-// Sums of blocks of 4096 buckets, the first of three steps of `grid_scan` in src/kernels/grid_build.rs. Run by one
-// workgroup per block; reads `counts`, writes `block_sums`.
+// Sums of blocks of 4096 buckets, the first of three steps of `grid_scan` in
+// src/kernels/grid_build.rs. Run by one workgroup per block; reads `counts`, writes `block_sums`.
 
 @compute @workgroup_size(256)
 fn grid_scan_reduce(

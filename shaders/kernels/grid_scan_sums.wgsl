@@ -1,6 +1,6 @@
 // Exclusive prefix sums of at most 4096 blocks' sums, the second of three steps of `grid_scan` in
-// src/kernels/grid_build.rs. Run by one workgroup; updates `block_sums`, whose entry past the blocks becomes the
-// total.
+// src/kernels/grid_build.rs. Run by one workgroup; updates `block_sums`, whose entry past the
+// blocks becomes the total.
 
 @compute @workgroup_size(256)
 fn grid_scan_sums(@builtin(local_invocation_index) local: u32) {

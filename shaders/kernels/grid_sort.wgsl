@@ -1,5 +1,6 @@
-// Each short bucket into the order of its keys: twin of `grid_sort` in src/kernels/grid_build.rs. Run by one invocation per
-// bucket; reads `records` and `starts`, sorts slices of `order`, writes `sorted`.
+// Each short bucket into the order of its keys: twin of `grid_sort` in src/kernels/grid_build.rs.
+// Run by one invocation per bucket; reads `records` and `starts`, sorts slices of `order`, writes
+// `sorted`.
 
 @compute @workgroup_size(64)
 fn grid_sort(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups) groups: vec3u) {

@@ -1,6 +1,8 @@
-// Each long bucket into the order of its keys, by a whole workgroup (radix sort, four bits at a time): the rest of the twin
-// of `grid_sort` in src/kernels/grid_build.rs. Run by one workgroup per 256 buckets: most have no long one and barriers are
-// dear on a software driver, but that driver counts a loop's rounds over all buckets of a workgroup and ends it after 65535; reads `records` and `starts`, sorts slices of `order`, writes `sorted`.
+// Each long bucket into the order of its keys, by a whole workgroup (radix sort, four bits at a
+// time): the rest of the twin of `grid_sort` in src/kernels/grid_build.rs. Run by one workgroup per
+// 256 buckets: most have no long one and barriers are dear on a software driver, but that driver
+// counts a loop's rounds over all buckets of a workgroup and ends it after 65535; reads `records`
+// and `starts`, sorts slices of `order`, writes `sorted`.
 
 const RADIX: u32 = 16u;
 const SORT_BUCKETS: u32 = 256u;

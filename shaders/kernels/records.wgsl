@@ -91,8 +91,9 @@ struct FilmPixel {
     earlier: f32,
 }
 
-// Records appended to the batch (also those beyond the capacity, which are not stored), the pass's rays in two words,
-// the invocations whose loops the driver stopped, and the pass's photons by how they ended (the last is unused).
+// Records appended to the batch (also those beyond the capacity, which are not stored), the pass's
+// rays in two words, the invocations whose loops the driver stopped, and the pass's photons by how
+// they ended (the last is unused).
 struct Counters {
     records: atomic<u32>,
     rays_low: atomic<u32>,
@@ -107,9 +108,10 @@ fn invocation(gid: vec3u, groups: vec3u) -> u32 {
 }
 
 //#if eye_trace || aov_trace || photon_trace || grid_sort_long || gather
-// Whether the driver has stopped running loops; counts it. Mesa's software driver leaves every loop, without a word, once all loops of an
-// invocation together have made 65535 rounds; from then on each is left after its first round, and so is this one.
-// (`end` is below 2^31, which no compiler knows.)
+// Whether the driver has stopped running loops; counts it. Mesa's software driver leaves every
+// loop, without a word, once all loops of an invocation together have made 65535 rounds; from then
+// on each is left after its first round, and so is this one. (`end` is below 2^31, which no
+// compiler knows.)
 fn loops_stopped() -> bool {
     let wanted = 2u + (dispatch.end >> 31u);
     var rounds = 0u;

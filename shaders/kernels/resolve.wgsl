@@ -1,5 +1,6 @@
-// One pixel's estimate of the pass into the film: twin of src/kernels/resolve.rs. Run by one invocation per pixel of a
-// chunk; reads `visible_points` and `gathered`, updates `film` (and `statistics` under the local rule).
+// One pixel's estimate of the pass into the film: twin of src/kernels/resolve.rs. Run by one
+// invocation per pixel of a chunk; reads `visible_points` and `gathered`, updates `film` (and
+// `statistics` under the local rule).
 
 const DROP_SHARE: f32 = 1.0 / 256.0;
 const CARRY_SHARE: f32 = 1.0 / 256.0;

@@ -1,5 +1,6 @@
-// What photons bring to a pixel in a pass, by the way they came: twin of src/kernels/resolve_parts.rs. Run by one invocation
-// per pixel of a chunk; reads `visible_points` and `gathered` (and `statistics` under the local rule), updates `parts`.
+// What photons bring to a pixel in a pass, by the way they came: twin of
+// src/kernels/resolve_parts.rs. Run by one invocation per pixel of a chunk; reads `visible_points`
+// and `gathered` (and `statistics` under the local rule), updates `parts`.
 
 struct PartsPixel {
     caustic: vec3f,

@@ -1,4 +1,5 @@
-// Prefix sum within a workgroup of 256 invocations with 16 items each, for the kernels of the grid's scan.
+// Prefix sum within a workgroup of 256 invocations with 16 items each, for the kernels of the
+// grid's scan.
 
 const SCAN_ITEMS: u32 = 16u;
 const SCAN_BLOCK: u32 = 4096u;

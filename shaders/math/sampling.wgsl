@@ -1,4 +1,5 @@
-// Maps from uniform numbers to discs, spheres, hemispheres and triangles: twin of src/math/sampling.rs.
+// Maps from uniform numbers to discs, spheres, hemispheres and triangles: twin of
+// src/math/sampling.rs.
 
 fn sample_disc(u: vec2f) -> vec2f {
     let r = sqrt(u.x);

@@ -1,4 +1,5 @@
-// Elementary functions as fixed polynomials; twin: src/math/trig.rs, which states errors and sources.
+// Elementary functions as fixed polynomials; twin: src/math/trig.rs, which states errors and
+// sources.
 
 // `x` itself, hidden from compilers that would rewrite a sum.
 fn kept(x: f32) -> f32 {

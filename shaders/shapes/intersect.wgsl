@@ -39,8 +39,8 @@ fn names(kind: u32, i: u32, last: u32) -> bool {
     return i < last && refs[i] >> REFERENCE_BITS == kind;
 }
 
-// The references stand in the order of their kinds. Each kind has a loop of its own, since a software driver runs through
-// whatever a loop may test.
+// The references stand in the order of their kinds. Each kind has a loop of its own, since a
+// software driver runs through whatever a loop may test.
 fn intersect_leaf(first: u32, last: u32, ray: Ray, any_hit: bool, hit: ptr<function, Hit>) {
     var i = first;
     //#if triangle

@@ -1,6 +1,6 @@
-// Rays through the kd-tree: twin of src/shapes/kdtree.rs, which explains the method.
-// Reads `nodes: array<vec2u>` and `scene.world.bounds_min`, `bounds_max`, `primitive_size`; calls `intersect_leaf(first, last, ray, any_hit, hit)`
-// for the references of a leaf.
+// Rays through the kd-tree: twin of src/shapes/kdtree.rs, which explains the method. Reads `nodes:
+// array<vec2u>` and `scene.world.bounds_min`, `bounds_max`, `primitive_size`; calls
+// `intersect_leaf(first, last, ray, any_hit, hit)` for the references of a leaf.
 
 const MAX_DEPTH: u32 = 32u;
 const SLACK: f32 = 3.8146973e-6;

@@ -1,5 +1,6 @@
-// Bezier surfaces of revolution: frame, ray intersection and surface data. Twin: src/shapes/revolution.rs,
-// which explains the fields. Needs math/vector.wgsl, math/trig.wgsl, revolution_profile.wgsl, revolution_roots.wgsl.
+// Bezier surfaces of revolution: frame, ray intersection and surface data. Twin:
+// src/shapes/revolution.rs, which explains the fields. Needs math/vector.wgsl, math/trig.wgsl,
+// revolution_profile.wgsl, revolution_roots.wgsl.
 
 const REVOLUTION_ERROR: f32 = 9.6e-7;
 
@@ -102,7 +103,8 @@ fn revolution_surface(revolution: Revolution, piece: Patch, theta: f32, tau: f32
     load_control_points(piece);
     var at = ring_point(piece, theta, tau);
     let p = at.point * revolution.scale;
-    // The tangent alone gives the normal, on the axis too; at a cusp the tangent next to it stands in.
+    // The tangent alone gives the normal, on the axis too; at a cusp the tangent next to it stands
+    // in.
     if dot(at.d_tau, at.d_tau) <= 1e-8 * piece.length * piece.length {
         at = ring_point(piece, theta, tau + (0.5 - tau) * 0.001);
     }

@@ -1,5 +1,6 @@
-// The profile of a surface of revolution, piece by piece, and a ray seen in the profile's half-plane.
-// Twin: src/shapes/revolution_profile.rs, which explains the fields. Reads `scene.profile_points`.
+// The profile of a surface of revolution, piece by piece, and a ray seen in the profile's
+// half-plane. Twin: src/shapes/revolution_profile.rs, which explains the fields. Reads
+// `scene.profile_points`.
 
 const MAX_DEGREE: u32 = 15u;
 
@@ -45,7 +46,8 @@ struct RingPoint {
     d_tau: vec3f,
 }
 
-// The first four control points of the patch at hand: some devices read buffers slowly, and a patch is evaluated often.
+// The first four control points of the patch at hand: some devices read buffers slowly, and a patch
+// is evaluated often.
 struct ControlPoints {
     b0: vec2f,
     b1: vec2f,
@@ -67,7 +69,8 @@ fn load_control_points(piece: Patch) {
     );
 }
 
-// (s, h, ds/dtau, dh/dtau), by de Casteljau. The usual degrees need no array and no loop, which are dear, too.
+// (s, h, ds/dtau, dh/dtau), by de Casteljau. The usual degrees need no array and no loop, which are
+// dear, too.
 fn profile_point(piece: Patch, tau: f32) -> vec4f {
     let n = piece.degree;
     if n > 3u {

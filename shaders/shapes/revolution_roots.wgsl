@@ -1,5 +1,5 @@
-// Where a ray meets one patch of a surface of revolution: twin of src/shapes/revolution_roots.rs, which
-// explains the method.
+// Where a ray meets one patch of a surface of revolution: twin of src/shapes/revolution_roots.rs,
+// which explains the method.
 
 const NEWTON_STEPS: u32 = 15u;
 const NEWTON_HALVINGS: u32 = 10u;

@@ -33,13 +33,14 @@ fn sheared(p: vec3f, ray: Ray) -> vec3f {
     return vec3f(q.x - ray_shear.shear.x * q.z, q.y - ray_shear.shear.y * q.z, ray_shear.shear.z * q.z);
 }
 
-// The value itself. A compiler cannot know that, so it cannot fuse the product that made `p` with a later sum.
+// The value itself. A compiler cannot know that, so it cannot fuse the product that made `p` with a
+// later sum.
 fn rounded(p: f32) -> f32 {
     return bitcast<f32>(bitcast<u32>(p) | (ray_shear.axis >> 2u));
 }
 
-// p - q for two products. Where a compiler fuses one of them into the difference, the sign stays right, since a
-// fused difference can only go astray where the rounded products are equal.
+// p - q for two products. Where a compiler fuses one of them into the difference, the sign stays
+// right, since a fused difference can only go astray where the rounded products are equal.
 fn edge(p: f32, q: f32) -> f32 {
     return select(p - q, 0.0, p == q);
 }

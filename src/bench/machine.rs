@@ -20,18 +20,21 @@ pub struct Machine {
 impl Machine {
     /// This one.
     pub fn this() -> Self {
-        let release = field("/etc/os-release", "PRETTY_NAME=").map(|name| name.trim_matches('"').to_owned());
+        let release =
+            field("/etc/os-release", "PRETTY_NAME=").map(|name| name.trim_matches('"').to_owned());
         let os = std::env::consts::OS;
         Self {
             os: release.map_or(os.to_owned(), |release| format!("{os}, {release}")),
             architecture: std::env::consts::ARCH,
-            processor: field("/proc/cpuinfo", "model name").or(std::env::var("PROCESSOR_IDENTIFIER").ok()),
+            processor: field("/proc/cpuinfo", "model name")
+                .or(std::env::var("PROCESSOR_IDENTIFIER").ok()),
             threads: rayon::current_num_threads(),
         }
     }
 }
 
-/// The most main memory that this program has held since [`forget_peak`], where the system tells (Linux).
+/// The most main memory that this program has held since [`forget_peak`], where the system tells
+/// (Linux).
 pub fn peak_resident_bytes() -> Option<u64> {
     let kib = field("/proc/self/status", "VmHWM")?;
     kib.strip_suffix("kB")?.trim().parse::<u64>().ok().map(|kib| kib << 10)
@@ -47,5 +50,6 @@ pub fn forget_peak() {
 fn field(file: &str, key: &str) -> Option<String> {
     let text = fs::read_to_string(file).ok()?;
     let value = text.lines().find_map(|line| line.strip_prefix(key))?;
-    Some(value.trim_start_matches([' ', '\t', ':']).trim().to_owned()).filter(|value| !value.is_empty())
+    Some(value.trim_start_matches([' ', '\t', ':']).trim().to_owned())
+        .filter(|value| !value.is_empty())
 }

@@ -1,8 +1,9 @@
-//! What a device does with a scene, in figures: times and rates of the kernels, compile times, memory, what splitting costs,
-//! and time to error. The same figures on every device, in a form that can be sent on.
+//! What a device does with a scene, in figures: times and rates of the kernels, compile times,
+//! memory, what splitting costs, and time to error. The same figures on every device, in a form
+//! that can be sent on.
 //!
-//! [`setup`] makes an engine, [`device_report`] runs passes on it, [`work`] counts what they do, [`to_error`] holds a render
-//! against a truth, [`spread`] and [`machine`] are what they say.
+//! [`setup`] makes an engine, [`device_report`] runs passes on it, [`work`] counts what they do,
+//! [`to_error`] holds a render against a truth, [`spread`] and [`machine`] are what they say.
 
 pub mod machine;
 pub mod setup;
@@ -35,8 +36,9 @@ pub struct Conduct {
     pub passes: u32,
     /// No round is begun after this time.
     pub time: Option<Duration>,
-    /// Seconds that a submission to a GPU is to take, infinite for no splitting; 50 ms where there are none. The first one's
-    /// passes count. The CPU engine makes as many passes, so that those of all devices are the same.
+    /// Seconds that a submission to a GPU is to take, infinite for no splitting; 50 ms where there
+    /// are none. The first one's passes count. The CPU engine makes as many passes, so that those
+    /// of all devices are the same.
     pub slices: Vec<f64>,
 }
 
@@ -114,7 +116,8 @@ pub struct SliceReport {
     pub longest: f64,
     /// The kernels in that.
     pub longest_kernels: Vec<&'static str>,
-    /// Seconds of a pass over those of a pass that is not split, less one, by the medians; none where there is none.
+    /// Seconds of a pass over those of a pass that is not split, less one, by the medians; none
+    /// where there is none.
     pub loss: Option<f64>,
 }
 
@@ -129,7 +132,8 @@ pub struct Memory {
     pub per_photon: f64,
     /// Of these, by record that fits.
     pub per_record: f64,
-    /// The most main memory that the program held from before the setup until after the passes, where the system tells.
+    /// The most main memory that the program held from before the setup until after the passes,
+    /// where the system tells.
     pub peak_resident: Option<u64>,
 }
 
@@ -165,7 +169,9 @@ pub fn device_report(
             Some(gpu) => gpu
                 .compile_seconds()
                 .iter()
-                .map(|(kernel, c)| (kernel.stem(), Compile { checking: c.checking, driver: c.driver }))
+                .map(|(kernel, c)| {
+                    (kernel.stem(), Compile { checking: c.checking, driver: c.driver })
+                })
                 .collect(),
         },
         first_pass: run.first_pass,
@@ -213,7 +219,8 @@ fn run(ready: &mut Ready, conduct: &Conduct, stop: &dyn Fn() -> bool) -> Result<
     let begun = Instant::now();
     let mut kernels: BTreeMap<&'static str, Vec<f64>> = BTreeMap::new();
     let (mut timed, mut rest, mut gathered) = (Vec::new(), Vec::new(), Vec::new());
-    let mut plain: Vec<(Vec<f64>, u64, crate::gpu::Submissions)> = vec![Default::default(); slices.len()];
+    let mut plain: Vec<(Vec<f64>, u64, crate::gpu::Submissions)> =
+        vec![Default::default(); slices.len()];
     let mut last = PassReport::default();
     for round in 0..conduct.passes.max(1) {
         if round > 0 && (stop() || conduct.time.is_some_and(|time| begun.elapsed() >= time)) {
@@ -226,8 +233,9 @@ fn run(ready: &mut Ready, conduct: &Conduct, stop: &dyn Fn() -> bool) -> Result<
         timed.push(whole);
         rest.push((whole - seconds.values().sum::<f64>()).max(0.0));
         // the CPU engine scans and sorts in one go
-        let skipped =
-            |kernel: &str| cpu && ["grid_scan_reduce", "grid_scan_sums", "grid_sort_long"].contains(&kernel);
+        let skipped = |kernel: &str| {
+            cpu && ["grid_scan_reduce", "grid_scan_sums", "grid_sort_long"].contains(&kernel)
+        };
         for (kernel, seconds) in seconds.into_iter().filter(|(kernel, _)| !skipped(kernel)) {
             kernels.entry(kernel).or_default().push(seconds);
         }
@@ -249,17 +257,18 @@ fn run(ready: &mut Ready, conduct: &Conduct, stop: &dyn Fn() -> bool) -> Result<
     }
     let unsplit = slices.iter().position(|slice| slice.is_infinite());
     let whole = unsplit.map(|at| Spread::of(&plain[at].0).median);
-    let report = |(slice, (passes, count, longest)): (&f64, &(Vec<f64>, u64, crate::gpu::Submissions))| {
-        let pass = Spread::of(passes);
-        SliceReport {
-            slice: slice.is_finite().then_some(*slice),
-            submissions: *count as f64 / passes.len() as f64,
-            longest: longest.longest_seconds,
-            longest_kernels: longest.longest.iter().map(|kernel| kernel.stem()).collect(),
-            loss: whole.map(|whole| pass.median / whole - 1.0),
-            pass,
-        }
-    };
+    let report =
+        |(slice, (passes, count, longest)): (&f64, &(Vec<f64>, u64, crate::gpu::Submissions))| {
+            let pass = Spread::of(passes);
+            SliceReport {
+                slice: slice.is_finite().then_some(*slice),
+                submissions: *count as f64 / passes.len() as f64,
+                longest: longest.longest_seconds,
+                longest_kernels: longest.longest.iter().map(|kernel| kernel.stem()).collect(),
+                loss: whole.map(|whole| pass.median / whole - 1.0),
+                pass,
+            }
+        };
     let slices = slices.iter().zip(&plain).map(report).collect();
     gathered.sort_unstable();
     let gathered = gathered[gathered.len() / 2];
@@ -329,5 +338,6 @@ fn memory(ready: &Ready) -> Memory {
 
 /// Whether a device can run a method at all.
 pub fn can_run(device: &DeviceInfo, settings: &RenderSettings) -> bool {
-    settings.method != Method::Path || matches!(device.kind, DeviceKind::Cpu | DeviceKind::CpuDouble)
+    settings.method != Method::Path
+        || matches!(device.kind, DeviceKind::Cpu | DeviceKind::CpuDouble)
 }

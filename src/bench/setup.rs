@@ -66,7 +66,8 @@ pub struct Ready {
     pub seconds: SetupSeconds,
 }
 
-/// Makes an engine on `device`, and if kernels are to be compiled one by one, after its time was taken another.
+/// Makes an engine on `device`, and if kernels are to be compiled one by one, after its time was
+/// taken another.
 pub fn ready(
     device: &DeviceInfo,
     scene: &Scene,

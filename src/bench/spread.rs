@@ -36,7 +36,10 @@ mod tests {
     #[test]
     fn median_and_extremes() {
         assert_eq!(Spread::of(&[]), Spread::default());
-        assert_eq!(Spread::of(&[3.0, 1.0, 2.0]), Spread { median: 2.0, least: 1.0, most: 3.0, count: 3 });
+        assert_eq!(
+            Spread::of(&[3.0, 1.0, 2.0]),
+            Spread { median: 2.0, least: 1.0, most: 3.0, count: 3 }
+        );
         assert_eq!(Spread::of(&[4.0, 1.0, 2.0, 9.0]).median, 3.0);
     }
 }

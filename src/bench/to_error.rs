@@ -62,8 +62,8 @@ pub enum ToErrorError {
     Metrics(#[from] MetricsError),
 }
 
-/// When the error of a series passes `goal` for good: between the last measurement above it and the next, by a power law
-/// through both; from the first on if none is above; none if the last is.
+/// When the error of a series passes `goal` for good: between the last measurement above it and the
+/// next, by a power law through both; from the first on if none is above; none if the last is.
 pub fn reached(series: &[Point], goal: f64) -> Option<f64> {
     // an error that is no number is above every goal
     let above = |point: &Point| point.rel_mse.is_nan() || point.rel_mse > goal;
@@ -116,7 +116,8 @@ pub fn approach(
             };
             let rel_mse = comparison.rel_mse - goal.truth_noise;
             approach.series.push(Point { passes, seconds: time.as_secs_f64(), rel_mse });
-            approach.reached_seconds = goal.rel_mse.and_then(|goal| reached(&approach.series, goal));
+            approach.reached_seconds =
+                goal.rel_mse.and_then(|goal| reached(&approach.series, goal));
         }
         let open = |a: &Approach| a.goal.is_some() && a.reached_seconds.is_none();
         let sought = approaches.iter().any(|a| a.goal.is_some());
@@ -127,8 +128,8 @@ pub fn approach(
     Ok(approaches)
 }
 
-/// Theory: an error that falls as `c / t` passes `g` at `c / g`, wherever it is measured; noise on it that lifts it above the
-/// goal again moves the time to the last such place.
+/// Theory: an error that falls as `c / t` passes `g` at `c / g`, wherever it is measured; noise on
+/// it that lifts it above the goal again moves the time to the last such place.
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -136,7 +137,10 @@ mod tests {
     use crate::film::{ErrorMap, Rejections};
 
     fn falling(times: &[f64], error: impl Fn(f64) -> f64) -> Vec<Point> {
-        (1..).zip(times).map(|(passes, &t)| Point { passes, seconds: t, rel_mse: error(t) }).collect()
+        (1..)
+            .zip(times)
+            .map(|(passes, &t)| Point { passes, seconds: t, rel_mse: error(t) })
+            .collect()
     }
 
     #[test]
@@ -197,7 +201,8 @@ mod tests {
         let endless = Limit { time: Duration::from_secs(1000), passes: 1000 };
         let found = approach(&mut Halver(1.0), &truth, &goals, endless, &|| false).unwrap();
         let passes = |a: &Approach| a.series.last().unwrap().passes;
-        // the mean of both halves, less the largest pixel, 36 / 15 4^-p / 1.01, is below 0.001 from the sixth pass on
+        // the mean of both halves, less the largest pixel, 36 / 15 4^-p / 1.01, is below 0.001 from
+        // the sixth pass on
         assert_eq!(found.iter().map(passes).collect::<Vec<_>>(), [6, 6, 6]);
         assert!((found[0].series[0].rel_mse - 0.25 / 1.01).abs() < 1e-6);
         assert_eq!(found[0].reached_seconds, Some(found[0].series[0].seconds));
@@ -206,7 +211,8 @@ mod tests {
         // the limit, and noise that is taken off
         let short = Limit { passes: 3, ..endless };
         let found =
-            approach(&mut Halver(1.0), &truth, &[goal(None, Some(1e-3), 0.01)], short, &|| false).unwrap();
+            approach(&mut Halver(1.0), &truth, &[goal(None, Some(1e-3), 0.01)], short, &|| false)
+                .unwrap();
         assert_eq!((passes(&found[0]), found[0].reached_seconds), (3, None));
         let error = found[0].series[2].rel_mse;
         let stopped = approach(&mut Halver(1.0), &truth, &goals, endless, &|| true).unwrap();

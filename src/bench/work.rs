@@ -43,8 +43,8 @@ impl Work {
         }
     }
 
-    /// What is counted of a kernel: the name of the rate, and how much. The CPU engine builds its grid in other steps than a GPU, whose
-    /// bytes are not counted.
+    /// What is counted of a kernel: the name of the rate, and how much. The CPU engine builds its
+    /// grid in other steps than a GPU, whose bytes are not counted.
     pub fn counts(&self, plan: &Plan, kernel: &str, gpu: bool) -> Vec<(&'static str, f64)> {
         let counts = match kernel {
             "eye_trace" | "path_trace" => {
@@ -58,13 +58,18 @@ impl Work {
             }
             _ if !gpu && kernel.starts_with("grid_") => vec![],
             _ => {
-                return self.least_bytes(plan, kernel).map(|b| ("bytes_per_second", b)).into_iter().collect();
+                return self
+                    .least_bytes(plan, kernel)
+                    .map(|b| ("bytes_per_second", b))
+                    .into_iter()
+                    .collect();
             }
         };
         counts.into_iter().map(|(name, count)| (name, count as f64)).collect()
     }
 
-    /// Bytes that a GPU's kernel of the grid, or `resolve`, has to move in a pass, if every datum travels once each way.
+    /// Bytes that a GPU's kernel of the grid, or `resolve`, has to move in a pass, if every datum
+    /// travels once each way.
     fn least_bytes(&self, plan: &Plan, kernel: &str) -> Option<f64> {
         let record = size_of::<PhotonRecord>() as f64;
         let records = self.records as f64;

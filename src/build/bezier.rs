@@ -44,8 +44,8 @@ pub fn derivative(points: &[DVec2]) -> Vec<DVec2> {
     points.windows(2).map(|w| (w[1] - w[0]) * n).collect()
 }
 
-/// Places in (0, 1) where the Bernstein polynomial changes its sign or touches zero, sorted; to about 1e-13.
-/// None for a polynomial within `noise` of zero everywhere.
+/// Places in (0, 1) where the Bernstein polynomial changes its sign or touches zero, sorted; to
+/// about 1e-13. None for a polynomial within `noise` of zero everywhere.
 pub fn roots(coefficients: &[f64], noise: f64) -> Vec<f64> {
     let mut found = Vec::new();
     if coefficients.iter().any(|c| c.abs() > noise) {
@@ -78,11 +78,16 @@ fn isolate(c: &[f64], a: f64, b: f64, found: &mut Vec<f64>) {
 mod tests {
     use super::*;
 
-    // Theory: de Casteljau subdivision describes the same curve; roots of (t - 1/4)(t - 3/4)^2 are 1/4 and,
-    // touching, 3/4.
+    // Theory: de Casteljau subdivision describes the same curve; roots of (t - 1/4)(t - 3/4)^2 are
+    // 1/4 and, touching, 3/4.
     #[test]
     fn restriction_is_the_same_curve() {
-        let p = [DVec2::new(0.0, 0.0), DVec2::new(1.0, 0.2), DVec2::new(0.3, 0.7), DVec2::new(0.5, 1.0)];
+        let p = [
+            DVec2::new(0.0, 0.0),
+            DVec2::new(1.0, 0.2),
+            DVec2::new(0.3, 0.7),
+            DVec2::new(0.5, 1.0),
+        ];
         let q = restrict(&p, 0.3, 0.8);
         for i in 0..=10 {
             let s = f64::from(i) / 10.0;

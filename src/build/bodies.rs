@@ -66,11 +66,18 @@ impl Bodies {
                 bodies.of.push(Vec::new());
                 continue;
             };
-            let body =
-                |facing, bounds| Body { shape: index, material: shape.material, priority, bounds, facing };
+            let body = |facing, bounds| Body {
+                shape: index,
+                material: shape.material,
+                priority,
+                bounds,
+                facing,
+            };
             if let ShapeKind::Mesh(mesh) = &**kind {
                 let (found, numbers) = bodies_of_mesh(mesh);
-                bodies.all.extend(found.into_iter().map(|(facing, bounds)| body(facing, Some(bounds))));
+                bodies
+                    .all
+                    .extend(found.into_iter().map(|(facing, bounds)| body(facing, Some(bounds))));
                 bodies.of.push(numbers.into_iter().map(|number| first + number).collect());
             } else {
                 bodies.all.push(body(facing(kind), extent(kind)));
@@ -79,7 +86,8 @@ impl Bodies {
         }
         // any body may lie below an open sheet
         let open = bodies.all.iter().any(|body| body.facing.is_some()) && bodies.all.len() > 1;
-        bodies.nested = open || any_meet(bodies.all.iter().filter_map(|body| body.bounds).collect());
+        bodies.nested =
+            open || any_meet(bodies.all.iter().filter_map(|body| body.bounds).collect());
         bodies
     }
 
@@ -97,8 +105,9 @@ pub fn joined(scene: &Scene) -> Vec<Cow<'_, ShapeKind>> {
         (ShapeKind::Mesh(mesh), MaterialKind::Glass { .. }) => without_shared_walls(mesh),
         _ => None,
     };
-    let kind =
-        |shape| joined(shape).map_or(Cow::Borrowed(&shape.kind), |mesh| Cow::Owned(ShapeKind::Mesh(mesh)));
+    let kind = |shape| {
+        joined(shape).map_or(Cow::Borrowed(&shape.kind), |mesh| Cow::Owned(ShapeKind::Mesh(mesh)))
+    };
     scene.shapes.iter().map(kind).collect()
 }
 
@@ -108,7 +117,10 @@ fn facing(kind: &ShapeKind) -> Option<DVec3> {
         ShapeKind::Rectangle { u, v, .. } => Some(u.cross(*v).normalize_or_zero()),
         ShapeKind::Disc { normal, .. } | ShapeKind::Plane { normal, .. } => Some(*normal),
         ShapeKind::Revolution { segments, transform, .. } => {
-            let ends = segments.first().and_then(|s| s.first()).zip(segments.last().and_then(|s| s.last()));
+            let ends = segments
+                .first()
+                .and_then(|s| s.first())
+                .zip(segments.last().and_then(|s| s.last()));
             let closed = |(a, b): &(&DVec2, &DVec2)| a == b || (a.x == 0.0 && b.x == 0.0);
             // the area vector from radius a to b is pi (a^2 - b^2) along y
             let open = ends.filter(|ends| !closed(ends)).filter(|(a, b)| a.x != b.x);
@@ -123,16 +135,19 @@ fn facing(kind: &ShapeKind) -> Option<DVec3> {
 /// if their bounding boxes meet. The inner wall of a hollow body belongs to that body.
 fn bodies_of_mesh(mesh: &Mesh) -> (Vec<(Option<DVec3>, Bounds)>, Vec<u32>) {
     let hull = || {
-        mesh.positions
-            .iter()
-            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(*p), high.max(*p)))
+        mesh.positions.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| {
+            (low.min(*p), high.max(*p))
+        })
     };
     if mesh.triangles.len() > TRIANGLES {
         return (vec![(None, hull())], vec![0]);
     }
     let (parts, of) = parts(mesh);
     let whole = || (vec![(facing_of(&parts), hull())], vec![0]);
-    if parts.len() <= 1 || parts.len() > PARTS || !any_meet(parts.iter().map(|p| (p.low, p.high)).collect()) {
+    if parts.len() <= 1
+        || parts.len() > PARTS
+        || !any_meet(parts.iter().map(|p| (p.low, p.high)).collect())
+    {
         return whole();
     }
     let size = |other: &usize| (parts[*other].high - parts[*other].low).element_product();
@@ -149,7 +164,8 @@ fn bodies_of_mesh(mesh: &Mesh) -> (Vec<(Option<DVec3>, Bounds)>, Vec<u32>) {
     if bodies.iter().all(|body| *body == bodies[0]) {
         return whole();
     }
-    let found = parts.iter().map(|part| (facing_of(std::slice::from_ref(part)), (part.low, part.high)));
+    let found =
+        parts.iter().map(|part| (facing_of(std::slice::from_ref(part)), (part.low, part.high)));
     (found.collect(), of.iter().map(|part| bodies[*part as usize]).collect())
 }
 

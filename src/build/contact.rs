@@ -135,7 +135,8 @@ fn find_contacts(items: &mut [Item], kinds: &[Cow<ShapeKind>], n: &Normalization
                 ShapeKind::Sphere { .. } => reach.min(4.0 * other),
                 _ => reach + size.max_element(),
             };
-            let reach = own(i, reach_i, high_i - low_i, reach_j) + own(j, reach_j, high_j - low_j, reach_i);
+            let reach =
+                own(i, reach_i, high_i - low_i, reach_j) + own(j, reach_j, high_j - low_j, reach_i);
             let error = ROUNDINGS * eps * reach;
             let slack = DVec3::splat(GROWTH * error);
             if low_j.cmple(high_i + slack).all() && high_j.cmpge(low_i - slack).all() {
@@ -172,7 +173,9 @@ fn find_contacts(items: &mut [Item], kinds: &[Cow<ShapeKind>], n: &Normalization
 fn larger(kind: &ShapeKind, of: &dyn Fn(usize) -> f64) -> ShapeKind {
     let by = of(0);
     match kind {
-        ShapeKind::Sphere { center, radius } => ShapeKind::Sphere { center: *center, radius: radius + by },
+        ShapeKind::Sphere { center, radius } => {
+            ShapeKind::Sphere { center: *center, radius: radius + by }
+        }
         ShapeKind::Cuboid { min, max } => {
             ShapeKind::Cuboid { min: *min - DVec3::splat(by), max: *max + DVec3::splat(by) }
         }
@@ -282,9 +285,11 @@ mod tests {
             }
         }
         let corner = |k: u32| DVec3::new((k & 1) as f64, (k >> 1 & 1) as f64, (k >> 2 & 1) as f64);
-        let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        let faces =
+            [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
         let triangle = |position| crate::scene::Triangle { position, normal: None, uv: None };
-        let triangles = faces.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]).map(triangle);
+        let triangles =
+            faces.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]).map(triangle);
         let mesh = Mesh {
             positions: (0..8).map(corner).collect(),
             normals: Vec::new(),

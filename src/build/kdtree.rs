@@ -1,10 +1,10 @@
-//! The kd-tree over everything finite, by the surface area heuristic (Wald & Havran 2006, "On building fast kd-trees
-//! for ray tracing, and on doing that in O(N log N)").
+//! The kd-tree over everything finite, by the surface area heuristic (Wald & Havran 2006, "On
+//! building fast kd-trees for ray tracing, and on doing that in O(N log N)").
 //!
-//! Large nodes are split at one of some evenly spaced planes (`kdtree_bins`); below a few thousand primitives
-//! all planes that bound a primitive are tried, from sorted lists that are kept sorted (`kdtree_sweep`). Both
-//! clip the primitives to the cells that they fall in ("perfect splits", `kdtree_clip`). Last, the nodes are put in the
-//! order that rays like (`kdtree_layout`).
+//! Large nodes are split at one of some evenly spaced planes (`kdtree_bins`); below a few thousand
+//! primitives all planes that bound a primitive are tried, from sorted lists that are kept sorted
+//! (`kdtree_sweep`). Both clip the primitives to the cells that they fall in ("perfect splits",
+//! `kdtree_clip`). Last, the nodes are put in the order that rays like (`kdtree_layout`).
 
 use super::kdtree_bins::{best_plane, partition};
 use super::kdtree_clip::Geometry;
@@ -28,8 +28,8 @@ pub enum Primitive {
 /// Facts about a tree.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Stats {
-    /// Expected cost of a ray that crosses the root's box, in node visits: the surface area heuristic summed over the
-    /// tree with [`INTERSECTION_COST`].
+    /// Expected cost of a ray that crosses the root's box, in node visits: the surface area
+    /// heuristic summed over the tree with [`INTERSECTION_COST`].
     pub cost: f64,
     /// Number of leaves.
     pub leaves: usize,
@@ -143,8 +143,11 @@ impl Heuristic {
 pub fn build(prims: &[Primitive]) -> KdTree {
     let _stage = stage("kd-tree");
     let geometry = Geometry::new(prims);
-    let mut items: Vec<Item> =
-        prims.par_iter().enumerate().map(|(i, p)| Item { prim: i as u32, bounds: p.bounds() }).collect();
+    let mut items: Vec<Item> = prims
+        .par_iter()
+        .enumerate()
+        .map(|(i, p)| Item { prim: i as u32, bounds: p.bounds() })
+        .collect();
     let bounds = match items.iter().map(|i| i.bounds).reduce(Aabb::union) {
         Some(b) => b,
         None => Aabb { min: Vec3::ZERO, max: Vec3::ZERO },
@@ -155,14 +158,16 @@ pub fn build(prims: &[Primitive]) -> KdTree {
         }
     });
     let levels = 8.0 + 1.3 * (prims.len().max(1) as f64).log2();
-    let Subtree { nodes, refs } = subtree(&geometry, items, bounds, MAX_DEPTH.min(levels.round() as u32));
+    let Subtree { nodes, refs } =
+        subtree(&geometry, items, bounds, MAX_DEPTH.min(levels.round() as u32));
     let nodes = laid_out(&nodes, bounds);
     let stats = stats(&nodes, bounds);
     KdTree { nodes, refs, bounds, primitive_size: geometry.size, stats }
 }
 
 fn subtree(geometry: &Geometry, items: Vec<Item>, cell: Aabb, levels: u32) -> Subtree {
-    let plane = if items.len() > SWEEP_LIMIT && levels > 0 { best_plane(&items, cell) } else { None };
+    let plane =
+        if items.len() > SWEEP_LIMIT && levels > 0 { best_plane(&items, cell) } else { None };
     let Some(plane) = plane else {
         return Sweep::new(geometry, &items, levels).build(&items, cell);
     };

@@ -80,7 +80,8 @@ pub(super) fn best_plane(items: &[Item], cell: Aabb) -> Option<Plane> {
     best
 }
 
-/// The items of the two cells `low` and `high` beside `plane`; what lies in the plane goes to the first.
+/// The items of the two cells `low` and `high` beside `plane`; what lies in the plane goes to the
+/// first.
 pub(super) fn partition(
     geometry: &Geometry,
     items: &[Item],
@@ -105,7 +106,12 @@ pub(super) fn partition(
 }
 
 /// The boxes of a primitive in two cells. Should rounding take it from both, it stays in both.
-pub(super) fn parts(geometry: &Geometry, prim: u32, low: Aabb, high: Aabb) -> (Option<Aabb>, Option<Aabb>) {
+pub(super) fn parts(
+    geometry: &Geometry,
+    prim: u32,
+    low: Aabb,
+    high: Aabb,
+) -> (Option<Aabb>, Option<Aabb>) {
     match (geometry.clipped(prim, low), geometry.clipped(prim, high)) {
         (None, None) => (Some(low), Some(high)),
         parts => parts,

@@ -102,7 +102,10 @@ fn clipped_large(points: &[Vec3; 3], cell: Aabb) -> Option<Aabb> {
     loop {
         let grown = |b: Aabb| {
             let min = (b.min.to_double() - pad).to_array().map(rounded_down);
-            Aabb { min: min.into(), max: (b.max.to_double() + pad).to_array().map(rounded_up).into() }
+            Aabb {
+                min: min.into(),
+                max: (b.max.to_double() + pad).to_array().map(rounded_up).into(),
+            }
         };
         let part = polygon(points, grown(cell));
         let bounds = part.bounds(pad)?;
@@ -159,10 +162,13 @@ impl Polygon {
         let corners = &self.corners[..self.count];
         let distances = |q: DVec3| [a, b, c].map(|p| (p - q).abs().max_element());
         let bound = |q: &DVec3| {
-            let weight = |from: DVec3, to: DVec3| (to - from).cross(*q - from).dot(normal) / area_sq;
+            let weight =
+                |from: DVec3, to: DVec3| (to - from).cross(*q - from).dot(normal) / area_sq;
             let weights = [weight(b, c), weight(c, a), weight(a, b)];
-            let sum = distances(*q).iter().zip(weights).map(|(d, w)| d * w.clamp(0.0, 1.0)).sum::<f64>();
-            let extent = corners.iter().map(|other| (*other - *q).abs().max_element()).fold(0.0, f64::max);
+            let sum =
+                distances(*q).iter().zip(weights).map(|(d, w)| d * w.clamp(0.0, 1.0)).sum::<f64>();
+            let extent =
+                corners.iter().map(|other| (*other - *q).abs().max_element()).fold(0.0, f64::max);
             // without area no weight is known
             if area_sq > 0.0 { sum + extent } else { f64::MAX }
         };

@@ -1,7 +1,8 @@
 //! Exact splits: every plane that bounds a primitive is tried (Wald & Havran 2006, section 4.3).
 //!
-//! Per axis a sorted list of events says where primitives end, lie flat or start. A split filters the lists, which
-//! keeps them sorted, and merges in the events of the primitives that straddle the plane.
+//! Per axis a sorted list of events says where primitives end, lie flat or start. A split filters
+//! the lists, which keeps them sorted, and merges in the events of the primitives that straddle the
+//! plane.
 
 use super::kdtree::{Heuristic, INTERSECTION_COST, Item, Part, Subtree};
 use super::kdtree_bins::parts;
@@ -14,7 +15,8 @@ const END: Event = 0;
 const PLANAR: Event = 1;
 const START: Event = 2;
 
-/// Position (in an order-preserving code), kind and item in one word, so that events sort as integers.
+/// Position (in an order-preserving code), kind and item in one word, so that events sort as
+/// integers.
 type Event = WideBits;
 /// Sorted events along each axis.
 type Events = [Vec<Event>; 3];
@@ -115,20 +117,29 @@ impl<'a> Sweep<'a> {
         self.tree.nodes.push(Part::Leaf { first: 0, count: 0 });
         self.node(left, left_count, low, level + 1);
         let upper = self.tree.nodes.len() as u32;
-        self.tree.nodes[index] = Part::Split { axis: split.axis as u8, position: split.position, upper };
+        self.tree.nodes[index] =
+            Part::Split { axis: split.axis as u8, position: split.position, upper };
         self.node(right, right_count, high, level + 1);
     }
 
     fn leaf(&mut self, events: &[Event]) {
         let first = self.tree.refs.len();
-        self.tree.refs.extend(events.iter().filter(|&&e| kind(e) != END).map(|&e| self.ids[item(e)]));
+        self.tree
+            .refs
+            .extend(events.iter().filter(|&&e| kind(e) != END).map(|&e| self.ids[item(e)]));
         self.tree.refs[first..].sort_unstable();
         let count = (self.tree.refs.len() - first) as u32;
         self.tree.nodes.push(Part::Leaf { first: first as u32, count });
     }
 
     /// The events and numbers of items in the two cells beside the plane.
-    fn divide(&mut self, events: Events, split: Split, low: Aabb, high: Aabb) -> ([Events; 2], [usize; 2]) {
+    fn divide(
+        &mut self,
+        events: Events,
+        split: Split,
+        low: Aabb,
+        high: Aabb,
+    ) -> ([Events; 2], [usize; 2]) {
         let mut counts = [0; 2];
         for &e in &events[split.axis] {
             let p = position(e);
@@ -207,7 +218,8 @@ fn best_split(events: &Events, count: usize, cell: Aabb) -> Option<Split> {
             if p > cell.min[axis] && p < cell.max[axis] {
                 let choices: &[bool] = if planar > 0 { &[true, false] } else { &[true] };
                 for &planar_left in choices {
-                    let (l, r) = if planar_left { (left + planar, right) } else { (left, right + planar) };
+                    let (l, r) =
+                        if planar_left { (left + planar, right) } else { (left, right + planar) };
                     let cost = heuristic.cost(p, l, r);
                     if cost < best_cost {
                         best_cost = cost;

@@ -1,5 +1,5 @@
-//! What was learned from pilots before a render, in f64: for an engine of another precision that is to
-//! render the same.
+//! What was learned from pilots before a render, in f64: for an engine of another precision that is
+//! to render the same.
 
 use super::normalize::{Normalization, extent};
 use crate::scene::{Light, Scene, ShapeKind};

@@ -4,8 +4,8 @@
 use crate::scene::{Scene, ShapeKind};
 use glam::DVec3;
 
-/// Shapes more than this many times wider than what is smaller than they and the camera's surroundings do
-/// not decide the scene's size.
+/// Shapes more than this many times wider than what is smaller than they and the camera's
+/// surroundings do not decide the scene's size.
 const GIANT: f64 = 64.0;
 /// Distance that counts as far where a plane is infinite, over the radius of what the camera sees.
 const HORIZON: f64 = 1e4;
@@ -22,11 +22,12 @@ pub struct Normalization {
 }
 
 impl Normalization {
-    /// Of the camera's surroundings and all shapes but giant ones: a first guess that decides no more than
-    /// how numbers are rounded. A scene may hold objects far from what its camera sees; [`Self::suits`]
-    /// tells whether the guess does.
+    /// Of the camera's surroundings and all shapes but giant ones: a first guess that decides no
+    /// more than how numbers are rounded. A scene may hold objects far from what its camera sees;
+    /// [`Self::suits`] tells whether the guess does.
     pub fn of(scene: &Scene) -> Self {
-        let mut boxes: Vec<(DVec3, DVec3)> = scene.shapes.iter().filter_map(|s| extent(&s.kind)).collect();
+        let mut boxes: Vec<(DVec3, DVec3)> =
+            scene.shapes.iter().filter_map(|s| extent(&s.kind)).collect();
         boxes.sort_by(|a, b| a.1.distance_squared(a.0).total_cmp(&b.1.distance_squared(b.0)));
         let camera = &scene.camera;
         let aim = camera.position + (camera.target - camera.position).normalize() * camera.focus;
@@ -46,8 +47,8 @@ impl Normalization {
         Self { center, unit: radius.log2().ceil().exp2(), radius }
     }
 
-    /// Whether f32 has enough digits left, in scene space, for a sphere of the given world center and
-    /// radius.
+    /// Whether f32 has enough digits left, in scene space, for a sphere of the given world center
+    /// and radius.
     pub fn suits(&self, center: DVec3, radius: f64) -> bool {
         const SLACK: f64 = 16.0;
         let off = center.distance(self.center);

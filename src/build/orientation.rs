@@ -1,7 +1,7 @@
 //! Which side of a closed body its surface faces.
 //!
-//! The winding of a mesh's faces, and the direction of a profile, say where outside is. Of a closed body
-//! the signed volume tells whether that is so.
+//! The winding of a mesh's faces, and the direction of a profile, say where outside is. Of a closed
+//! body the signed volume tells whether that is so.
 
 use super::parts::{TRIANGLES, parts};
 use crate::scene::{Mesh, ShapeKind};
@@ -25,8 +25,8 @@ pub fn faces_inward(kind: &ShapeKind) -> bool {
     }
 }
 
-/// A profile that begins and ends on the axis, or where it began, encloses `pi` times the integral of
-/// `r^2 dy`: above zero where it is drawn upward on its outer side.
+/// A profile that begins and ends on the axis, or where it began, encloses `pi` times the integral
+/// of `r^2 dy`: above zero where it is drawn upward on its outer side.
 fn profile_faces_inward(segments: &[Vec<DVec2>]) -> bool {
     let ends = segments.first().and_then(|s| s.first()).zip(segments.last().and_then(|s| s.last()));
     let closed = ends.is_some_and(|(a, b)| (a.x == 0.0 && b.x == 0.0) || a == b);
@@ -57,7 +57,9 @@ fn mesh_faces_inward(mesh: &Mesh) -> bool {
     let (parts, _) = parts(mesh);
     // a shell within another one may face inward: the wall of a hollow body
     parts.iter().any(|part| {
-        part.closed && part.volume < 0.0 && !parts.iter().any(|other| other.closed && other.holds(part))
+        part.closed
+            && part.volume < 0.0
+            && !parts.iter().any(|other| other.closed && other.holds(part))
     })
 }
 
@@ -90,8 +92,12 @@ mod tests {
             let (phi, theta) = (std::f64::consts::TAU * u, std::f64::consts::PI * v);
             DVec3::new(theta.sin() * phi.cos(), theta.cos(), theta.sin() * phi.sin())
         };
-        let mut mesh =
-            Mesh { positions: Vec::new(), normals: Vec::new(), uvs: Vec::new(), triangles: Vec::new() };
+        let mut mesh = Mesh {
+            positions: Vec::new(),
+            normals: Vec::new(),
+            uvs: Vec::new(),
+            triangles: Vec::new(),
+        };
         for j in 0..=n {
             mesh.positions.extend((0..=n).map(|i| at(i, j)));
         }

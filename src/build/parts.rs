@@ -49,7 +49,8 @@ pub fn parts(mesh: &Mesh) -> (Vec<Part>, Vec<u32>) {
     let mut edges: HashMap<[usize; 2], i32> = HashMap::new();
     for [a, b, c] in &triangles {
         for [from, to] in [[*a, *b], [*b, *c], [*c, *a]] {
-            *edges.entry([from.min(to), from.max(to)]).or_default() += if from < to { 1 } else { -1 };
+            *edges.entry([from.min(to), from.max(to)]).or_default() +=
+                if from < to { 1 } else { -1 };
             let (x, y) = (find(&mut root, from), find(&mut root, to));
             root[x] = y;
         }

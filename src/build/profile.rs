@@ -4,12 +4,13 @@ use super::bezier::{derivative, point, restrict, roots};
 use crate::shapes::revolution::MAX_DEGREE;
 use glam::{DQuat, DVec2, DVec3};
 
-/// Slope over the chord at which a piece of profile counts as flat: a bend of about 11 degrees to each side.
+/// Slope over the chord at which a piece of profile counts as flat: a bend of about 11 degrees to
+/// each side.
 const FLAT_SLOPE: f64 = 0.2;
 /// Halvings of a segment at most; what bends below that becomes a straight sliver.
 const MAX_DEPTH: u32 = 24;
-/// Part of its length by which a patch reaches over its neighbour on the same segment, so that no hit is
-/// lost between them: both are the same polynomial there.
+/// Part of its length by which a patch reaches over its neighbour on the same segment, so that no
+/// hit is lost between them: both are the same polynomial there.
 const OVERLAP: f64 = 1.0 / 64.0;
 
 /// Why a profile cannot be turned into a surface.
@@ -82,8 +83,9 @@ pub fn check(segments: &[Vec<DVec2>], placement: &Placement) -> Result<(), Profi
     if finite { Ok(()) } else { Err(ProfileError::NotFinite) }
 }
 
-/// Cuts a segment (local units) where it has a cusp or crosses the axis, and then in halves until every
-/// piece is a flat graph over its chord. Pieces on the far side of the axis are mirrored to radius >= 0.
+/// Cuts a segment (local units) where it has a cusp or crosses the axis, and then in halves until
+/// every piece is a flat graph over its chord. Pieces on the far side of the axis are mirrored to
+/// radius >= 0.
 pub fn pieces(segment: &[DVec2]) -> Vec<Piece> {
     let mut out = Vec::new();
     let extent = segment.iter().fold(0.0_f64, |a, p| a.max(p.distance(segment[0])));
@@ -92,7 +94,8 @@ pub fn pieces(segment: &[DVec2]) -> Vec<Piece> {
     }
     let velocity = derivative(segment);
     let speed = velocity.iter().fold(0.0_f64, |a, v| a.max(v.length()));
-    let component = |points: &[DVec2], of: fn(&DVec2) -> f64| points.iter().map(of).collect::<Vec<f64>>();
+    let component =
+        |points: &[DVec2], of: fn(&DVec2) -> f64| points.iter().map(of).collect::<Vec<f64>>();
     let mut cuts = roots(&component(segment, |p| p.x), 1e-12);
     let stops = [component(&velocity, |v| v.x), component(&velocity, |v| v.y)];
     let stops = stops.iter().flat_map(|c| roots(c, 1e-12 * speed));
@@ -101,8 +104,11 @@ pub fn pieces(segment: &[DVec2]) -> Vec<Piece> {
     cuts.sort_by(f64::total_cmp);
     cuts.dedup_by(|b, a| *b - *a < 1e-6);
     for w in cuts.windows(2) {
-        let side =
-            if point(segment, 0.5 * (w[0] + w[1])).x < 0.0 { DVec2::new(-1.0, 1.0) } else { DVec2::ONE };
+        let side = if point(segment, 0.5 * (w[0] + w[1])).x < 0.0 {
+            DVec2::new(-1.0, 1.0)
+        } else {
+            DVec2::ONE
+        };
         let mirrored: Vec<DVec2> = segment.iter().map(|&p| p * side).collect();
         halve(&mirrored, [w[0], w[1]], w[0], w[1], 0, &mut out);
     }
@@ -125,9 +131,9 @@ fn halve(segment: &[DVec2], limits: [f64; 2], t0: f64, t1: f64, depth: u32, out:
     }
 }
 
-/// Bounds on |dh/ds| of a curve over its chord and on how far it leaves the range between its ends, from the
-/// legs of its control polygon (variation diminishing: dh/ds is a rational Bezier function with their slopes
-/// as coefficients). None when it is no flat graph.
+/// Bounds on |dh/ds| of a curve over its chord and on how far it leaves the range between its ends,
+/// from the legs of its control polygon (variation diminishing: dh/ds is a rational Bezier function
+/// with their slopes as coefficients). None when it is no flat graph.
 fn slopes(points: &[DVec2]) -> Option<(f64, f64)> {
     let chord = points[points.len() - 1] - points[0];
     let length = chord.length();
@@ -137,7 +143,8 @@ fn slopes(points: &[DVec2]) -> Option<(f64, f64)> {
     let e = chord / length;
     // A leg of no length (at a cusp) turns no tangent.
     let legs = points.windows(2).map(|w| w[1] - w[0]).filter(|leg| leg.length() > 1e-7 * length);
-    let slope = |leg: DVec2| if e.dot(leg) > 0.0 { leg.perp_dot(e) / e.dot(leg) } else { f64::INFINITY };
+    let slope =
+        |leg: DVec2| if e.dot(leg) > 0.0 { leg.perp_dot(e) / e.dot(leg) } else { f64::INFINITY };
     let slopes: Vec<f64> = legs.map(slope).collect();
     let bound = slopes.iter().fold(0.0_f64, |a, x| a.max(x.abs()));
     if bound > FLAT_SLOPE {

@@ -1,5 +1,5 @@
-//! Cuts Bezier profiles into the patches that `shapes::revolution` intersects, and boxes them for the
-//! kd-tree. All in f64; rounded to f32 at the end.
+//! Cuts Bezier profiles into the patches that `shapes::revolution` intersects, and boxes them for
+//! the kd-tree. All in f64; rounded to f32 at the end.
 
 use super::real::{Real, ToDouble, ToReal, Vec2, Vec3};
 use glam::{DMat3, DVec2, DVec3};
@@ -24,7 +24,8 @@ pub struct Attributes {
     pub light: u32,
     /// The caller's uv mode.
     pub uv: u32,
-    /// Newton steps shorter than this, in sizes of the profile, end the search of a hit; 0 leaves it to the precision.
+    /// Newton steps shorter than this, in sizes of the profile, end the search of a hit; 0 leaves
+    /// it to the precision.
     pub step_tolerance: f64,
 }
 
@@ -51,8 +52,8 @@ pub struct RevolutionTables {
 }
 
 impl RevolutionTables {
-    /// Adds the surface that `segments` (control points (radius, height), any degree from 1 to 15) make about
-    /// the y axis, placed in the scene, and returns the boxes of its patches.
+    /// Adds the surface that `segments` (control points (radius, height), any degree from 1 to 15)
+    /// make about the y axis, placed in the scene, and returns the boxes of its patches.
     ///
     /// # Errors
     /// When the profile is no surface; nothing is added then.
@@ -122,7 +123,8 @@ impl RevolutionTables {
         }
         let low = piece.points.iter().fold(DVec2::INFINITY, |a, p| a.min(*p)) - BOUNDS_PAD;
         let high = piece.points.iter().fold(DVec2::NEG_INFINITY, |a, p| a.max(*p)) + BOUNDS_PAD;
-        let (phi_min, phi_max) = local.iter().fold((0.0_f64, 0.0_f64), |(a, b), p| (a.min(p.y), b.max(p.y)));
+        let (phi_min, phi_max) =
+            local.iter().fold((0.0_f64, 0.0_f64), |(a, b), p| (a.min(p.y), b.max(p.y)));
         let patch = Patch {
             revolution: self.revolutions.len() as u32,
             segment,
@@ -147,7 +149,8 @@ impl RevolutionTables {
         self.patches.push(patch);
         self.profile_points.extend(local.iter().map(|p| p.to_real()));
         let sectors = if f64::from(patch.r_min) > 0.4 * reach { SECTORS } else { 1 };
-        boxes.extend((0..sectors).map(|k| sector_box(revolution, index, &piece.points, k, sectors)));
+        boxes
+            .extend((0..sectors).map(|k| sector_box(revolution, index, &piece.points, k, sectors)));
     }
 }
 
@@ -176,12 +179,19 @@ fn frame(
 }
 
 /// Box of sector `k` of `sectors` of the ring that the hull of `points` (local r, y) sweeps.
-fn sector_box(revolution: &Revolution, patch: u32, points: &[DVec2], k: u32, sectors: u32) -> PatchBox {
+fn sector_box(
+    revolution: &Revolution,
+    patch: u32,
+    points: &[DVec2],
+    k: u32,
+    sectors: u32,
+) -> PatchBox {
     let [from, to] = [k, k + 1].map(|i| std::f64::consts::TAU * f64::from(i) / f64::from(sectors));
     let scale = f64::from(revolution.scale);
     let center = revolution.center.to_double();
     let axes = [revolution.x_axis, revolution.y_axis, revolution.z_axis].map(Vec3::to_double);
-    // Largest value over the sector of the scene direction's component; linear in the hull's points.
+    // Largest value over the sector of the scene direction's component; linear in the hull's
+    // points.
     let support = |direction: DVec3| {
         let [x, y, z] = axes.map(|a| a.dot(direction));
         let (g_min, g_max) = cosine_range(x, z, from, to);

@@ -1,5 +1,5 @@
-//! A Bezier profile turned about the y axis as a triangle mesh with smooth normals and (u, v), as Wavefront
-//! OBJ text; all in f64.
+//! A Bezier profile turned about the y axis as a triangle mesh with smooth normals and (u, v), as
+//! Wavefront OBJ text; all in f64.
 
 use std::collections::HashMap;
 use std::fmt::Write as _;
@@ -27,8 +27,8 @@ impl Default for Fineness {
 }
 
 impl Fineness {
-    /// So many sectors, and along the profile as fine as around the axis: a circle leaves its chords by the square of
-    /// their number.
+    /// So many sectors, and along the profile as fine as around the axis: a circle leaves its
+    /// chords by the square of their number.
     pub fn of_sectors(sectors: u32) -> Self {
         let Self { sectors: own, flatness } = Self::default();
         let coarser = f64::from(own) / f64::from(sectors.max(3));
@@ -39,7 +39,8 @@ impl Fineness {
 /// A corner of a triangle: indices into positions, uvs and normals.
 pub type Corner = [u32; 3];
 
-/// A mesh whose positions are shared wherever they coincide: on the seam, on the axis, between segments.
+/// A mesh whose positions are shared wherever they coincide: on the seam, on the axis, between
+/// segments.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RevolutionMesh {
     /// Vertex positions.
@@ -61,12 +62,15 @@ struct Sample {
     v: f64,
 }
 
-/// The mesh of the surface that `segments` (control points (radius, height)) make about the y axis, in the profile's own
-/// coordinates.
+/// The mesh of the surface that `segments` (control points (radius, height)) make about the y axis,
+/// in the profile's own coordinates.
 ///
 /// # Errors
 /// When the profile is no surface; see [`ProfileError`].
-pub fn tessellate(segments: &[Vec<DVec2>], fineness: &Fineness) -> Result<RevolutionMesh, ProfileError> {
+pub fn tessellate(
+    segments: &[Vec<DVec2>],
+    fineness: &Fineness,
+) -> Result<RevolutionMesh, ProfileError> {
     for (segment, points) in segments.iter().enumerate() {
         if !(2..=MAX_DEGREE + 1).contains(&points.len()) {
             return Err(ProfileError::Degree { segment, points: points.len() });
@@ -103,7 +107,8 @@ pub fn tessellate(segments: &[Vec<DVec2>], fineness: &Fineness) -> Result<Revolu
     if builder.mesh.triangles.is_empty() { Err(ProfileError::Empty) } else { Ok(builder.mesh) }
 }
 
-/// Parameters at which to cut a segment: halved until it lies within `tolerance` of its chord and bends little.
+/// Parameters at which to cut a segment: halved until it lies within `tolerance` of its chord and
+/// bends little.
 fn parameters(segment: &[DVec2], tolerance: f64) -> Vec<f64> {
     fn halve(points: &[DVec2], a: f64, b: f64, tolerance: f64, out: &mut Vec<f64>) {
         let chord = points[points.len() - 1] - points[0];
@@ -134,8 +139,11 @@ fn sample(segment: &[DVec2], t: f64, v: f64) -> Sample {
     let fastest = velocity.iter().fold(0.0_f64, |a, d| a.max(d.length()));
     // At a cusp the tangent next to it stands in.
     let exact = point(&velocity, t);
-    let tangent =
-        if exact.length() > 1e-6 * fastest { exact } else { point(&velocity, t + (0.5 - t) * 1e-3) };
+    let tangent = if exact.length() > 1e-6 * fastest {
+        exact
+    } else {
+        point(&velocity, t + (0.5 - t) * 1e-3)
+    };
     let p = point(segment, t);
     // A profile on the far side of the axis draws the same circles.
     let side = if p.x < 0.0 { -1.0 } else { 1.0 };
@@ -159,7 +167,8 @@ impl Builder {
         let r = if sample.point.x <= self.weld { 0.0 } else { sample.point.x };
         let mut corner = |k: u32| {
             // theta from -pi to pi, u = 1/2 - theta / 2 pi from 1 to 0.
-            let theta = std::f64::consts::TAU * f64::from(k % n) / f64::from(n) - std::f64::consts::PI;
+            let theta =
+                std::f64::consts::TAU * f64::from(k % n) / f64::from(n) - std::f64::consts::PI;
             let (sin, cos) = theta.sin_cos();
             let position = DVec3::new(r * cos, sample.point.y, r * sin);
             let key = position.to_array().map(|x| (x / (4.0 * self.weld)).round() as i64);
@@ -170,7 +179,11 @@ impl Builder {
             }
             let other = self.mesh.uvs.len() as u32;
             self.mesh.uvs.push(DVec2::new(1.0 - f64::from(k) / f64::from(n), sample.v));
-            self.mesh.normals.push(DVec3::new(sample.normal.x * cos, sample.normal.y, sample.normal.x * sin));
+            self.mesh.normals.push(DVec3::new(
+                sample.normal.x * cos,
+                sample.normal.y,
+                sample.normal.x * sin,
+            ));
             [index, other, other]
         };
         (0..=n).map(&mut corner).collect()
@@ -228,7 +241,10 @@ mod tests {
 
     fn drop_profile() -> Vec<Vec<DVec2>> {
         let p = |x: f64, y: f64| DVec2::new(x, y);
-        vec![vec![p(0.0, 0.0), p(0.4, 0.0)], vec![p(0.4, 0.0), p(0.9, 0.4), p(0.35, 0.7), p(0.0, 1.3)]]
+        vec![
+            vec![p(0.0, 0.0), p(0.4, 0.0)],
+            vec![p(0.4, 0.0), p(0.9, 0.4), p(0.35, 0.7), p(0.0, 1.3)],
+        ]
     }
 
     /// Directed edges that have no partner in the other direction.
@@ -243,8 +259,9 @@ mod tests {
         count.values().filter(|&&c| c != 0).count()
     }
 
-    // Theory: a profile with both ends on the axis closes: every edge is met once in each direction, the
-    // enclosed volume is positive (outward) and tends to pi times the integral of r^2 dy.
+    // Theory: a profile with both ends on the axis closes: every edge is met once in each
+    // direction, the enclosed volume is positive (outward) and tends to pi times the integral of
+    // r^2 dy.
     #[test]
     fn a_closed_profile_makes_a_closed_mesh() {
         let profile = drop_profile();
@@ -279,15 +296,20 @@ mod tests {
 
     #[test]
     fn obj_text_reads_back() {
-        let mesh = tessellate(&drop_profile(), &Fineness { sectors: 12, flatness: 1e-2 }).expect("a surface");
+        let mesh = tessellate(&drop_profile(), &Fineness { sectors: 12, flatness: 1e-2 })
+            .expect("a surface");
         let text = mesh.to_obj("a drop");
-        let options = tobj::LoadOptions { triangulate: true, single_index: false, ..Default::default() };
+        let options =
+            tobj::LoadOptions { triangulate: true, single_index: false, ..Default::default() };
         let read = tobj::load_obj_buf(&mut text.as_bytes(), &options, |_| Ok(Default::default()));
         let (models, _) = read.expect("an OBJ file");
         let m = &models[0].mesh;
         assert_eq!(m.indices.len(), 3 * mesh.triangles.len());
         assert_eq!(m.positions.len(), 3 * mesh.positions.len());
-        assert_eq!((m.normal_indices.len(), m.texcoord_indices.len()), (m.indices.len(), m.indices.len()));
+        assert_eq!(
+            (m.normal_indices.len(), m.texcoord_indices.len()),
+            (m.indices.len(), m.indices.len())
+        );
         assert!(m.texcoords.iter().all(|x| (0.0..=1.0).contains(x)));
         assert!(text.starts_with("# a drop\nv "));
     }

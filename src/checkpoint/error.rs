@@ -22,7 +22,9 @@ pub enum CheckpointError {
     },
     /// It is something else.
     #[error("{}: this is no checkpoint: {what}", file.display())]
-    #[diagnostic(help("name a file that `caustica render --checkpoint` or `caustica merge` wrote"))]
+    #[diagnostic(help(
+        "name a file that `caustica render --checkpoint` or `caustica merge` wrote"
+    ))]
     NotOne {
         /// The file.
         file: PathBuf,

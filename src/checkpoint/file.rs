@@ -1,8 +1,8 @@
 //! Checkpoints as files.
 //!
-//! In this order, numbers with the least byte first: 8 bytes [`MAGIC`]; the format, 4 bytes; the header's length, 4; the whole
-//! file's, 8; the header, JSON; the sections that it lists; XXH3 of all before, 16 bytes. A file is complete or absent
-//! (`storage`).
+//! In this order, numbers with the least byte first: 8 bytes [`MAGIC`]; the format, 4 bytes; the
+//! header's length, 4; the whole file's, 8; the header, JSON; the sections that it lists; XXH3 of
+//! all before, 16 bytes. A file is complete or absent (`storage`).
 
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
@@ -52,7 +52,8 @@ struct Header {
     objects: u64,
 }
 
-/// Writes a checkpoint, so that at any moment either the one before or this one is whole on the disk.
+/// Writes a checkpoint, so that at any moment either the one before or this one is whole on the
+/// disk.
 ///
 /// # Errors
 /// Where the system refuses; the one before stays.
@@ -94,7 +95,9 @@ pub fn lock(file: &Path) -> Result<Option<Lock>, CheckpointError> {
             },
             mend: "wait for it to end, or name another file".to_owned(),
         },
-        LockError::Io(cause) => CheckpointError::Io { file: file.to_owned(), verb: "locked", cause },
+        LockError::Io(cause) => {
+            CheckpointError::Io { file: file.to_owned(), verb: "locked", cause }
+        }
     })
 }
 
@@ -132,7 +135,8 @@ fn write_to(out: &mut dyn Write, checkpoint: &Checkpoint) -> io::Result<()> {
     };
     let header = serde_json::to_vec(&header)?;
     let length = u32::try_from(header.len()).map_err(io::Error::other)?;
-    let sections = [&header, film, statistics, &cuts, &layers.aovs, &layers.parts, &counts, &objects];
+    let sections =
+        [&header, film, statistics, &cuts, &layers.aovs, &layers.parts, &counts, &objects];
     let total = PREFIX + sections.iter().map(|section| section.len()).sum::<usize>() + SUM;
     out.write_all(&MAGIC)?;
     out.write_all(&FORMAT.to_le_bytes())?;
@@ -177,7 +181,8 @@ impl<W: Write> Write for Summing<W> {
 /// # Errors
 /// As [`read`].
 pub fn decode(file: &Path, bytes: &[u8]) -> Result<Checkpoint, CheckpointError> {
-    let not_one = |what: &str| CheckpointError::NotOne { file: file.to_owned(), what: what.to_owned() };
+    let not_one =
+        |what: &str| CheckpointError::NotOne { file: file.to_owned(), what: what.to_owned() };
     let damaged = |what: String| CheckpointError::Damaged { file: file.to_owned(), what };
     if !bytes.starts_with(&MAGIC) {
         return Err(not_one("it does not begin as one"));
@@ -188,14 +193,19 @@ pub fn decode(file: &Path, bytes: &[u8]) -> Result<Checkpoint, CheckpointError> 
     let word = |at: usize| u32::from_le_bytes([0, 1, 2, 3].map(|k| prefix[at + k]));
     let format = word(8);
     if format != FORMAT {
-        return Err(CheckpointError::Format { file: file.to_owned(), expected: FORMAT, found: format });
+        return Err(CheckpointError::Format {
+            file: file.to_owned(),
+            expected: FORMAT,
+            found: format,
+        });
     }
     let expected = u64::from(word(16)) | u64::from(word(20)) << 32;
     if expected != bytes.len() as u64 {
         let found = bytes.len() as u64;
         return Err(CheckpointError::Length { file: file.to_owned(), expected, found });
     }
-    let Some((content, sum)) = bytes.split_last_chunk::<SUM>().filter(|(content, _)| content.len() >= PREFIX)
+    let Some((content, sum)) =
+        bytes.split_last_chunk::<SUM>().filter(|(content, _)| content.len() >= PREFIX)
     else {
         return Err(damaged("it ends before its checksum".to_owned()));
     };
@@ -203,7 +213,8 @@ pub fn decode(file: &Path, bytes: &[u8]) -> Result<Checkpoint, CheckpointError> 
         return Err(damaged("its checksum is not that of its content".to_owned()));
     }
     let short = || damaged("its parts are longer than it is".to_owned());
-    let (header, mut rest) = content[PREFIX..].split_at_checked(word(12) as usize).ok_or_else(short)?;
+    let (header, mut rest) =
+        content[PREFIX..].split_at_checked(word(12) as usize).ok_or_else(short)?;
     let header: Header =
         serde_json::from_slice(header).map_err(|error| damaged(format!("its header: {error}")))?;
     let mut section = |length: u64| {
@@ -236,7 +247,8 @@ pub fn decode(file: &Path, bytes: &[u8]) -> Result<Checkpoint, CheckpointError> 
             objects: words_of(objects),
         },
     };
-    let cuts: Vec<[u32; 2]> = words_of(cuts).chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect();
+    let cuts: Vec<[u32; 2]> =
+        words_of(cuts).chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect();
     values::check(&state, &cuts).map_err(damaged)?;
     Ok(Checkpoint { origin: header.origin, totals: header.totals, state, cuts })
 }
@@ -286,7 +298,11 @@ fn check_header(header: &Header) -> Result<(), String> {
         return Err(format!("{} bytes of counts", header.counts));
     }
     let each = |bytes: u64, size: usize| bytes / size as u64;
-    values::check_points(&header.origin, each(header.statistics, statistics_bytes), each(header.counts, 4))?;
+    values::check_points(
+        &header.origin,
+        each(header.statistics, statistics_bytes),
+        each(header.counts, 4),
+    )?;
     if header.totals.elapsed.as_secs() > ELAPSED_MAX {
         return Err(format!("{} s of rendering", header.totals.elapsed.as_secs()));
     }

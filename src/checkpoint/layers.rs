@@ -1,7 +1,8 @@
 //! What checkpoints hold beside radiance: as channels, and of two ranges as of one. In f64.
 //!
-//! Means are weighted by what they are means of: passes, samples that hit anything, or samples that end at a visible point. Numbers of
-//! surfaces and materials are those of the first pass, photons and radii those of the last one.
+//! Means are weighted by what they are means of: passes, samples that hit anything, or samples that
+//! end at a visible point. Numbers of surfaces and materials are those of the first pass, photons
+//! and radii those of the last one.
 
 use super::{Checkpoint, Origin};
 use crate::double::kernels::aov_trace::AovPixel;

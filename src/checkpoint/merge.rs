@@ -1,12 +1,14 @@
 //! Ranges of passes into one. Sums are made in f64.
 //!
-//! Means are weighted by the passes that count in a pixel, and the spread is joined by the parallel form of Welford's method (Chan,
-//! Golub & LeVeque 1979): `n S = n_a S_a + n_b S_b + delta^2 n_a n_b / n`, delta the difference of both means. So mean, spread,
-//! `ring`, `ring_swing` and `halves` are those of one render but for rounding.
+//! Means are weighted by the passes that count in a pixel, and the spread is joined by the parallel
+//! form of Welford's method (Chan, Golub & LeVeque 1979): `n S = n_a S_a + n_b S_b + delta^2 n_a
+//! n_b / n`, delta the difference of both means. So mean, spread, `ring`, `ring_swing` and `halves`
+//! are those of one render but for rounding.
 //!
-//! `early` and `earlier` are not: those means over the first passes that a render of all would have kept are in no file. Any
-//! other two cuts into first and later passes serve the estimate alike, so of the five that the files know, where one ends and where either
-//! was cut itself, those are taken that are nearest to the middle and to a quarter of the passes from either end.
+//! `early` and `earlier` are not: those means over the first passes that a render of all would have
+//! kept are in no file. Any other two cuts into first and later passes serve the estimate alike, so
+//! of the five that the files know, where one ends and where either was cut itself, those are taken
+//! that are nearest to the middle and to a quarter of the passes from either end.
 
 use std::path::PathBuf;
 
@@ -22,7 +24,8 @@ use crate::engine::{Space, State};
 use crate::kernels;
 use crate::settings::{Method, RadiusRule};
 
-/// Makes one checkpoint of those of ranges that follow one another, given in any order with their files.
+/// Makes one checkpoint of those of ranges that follow one another, given in any order with their
+/// files.
 ///
 /// # Errors
 /// Where there is none, they are not of one render, or passes are missing or in two of them.
@@ -56,7 +59,8 @@ fn check_follows(
         differences.push(format!("the layers: expected {}, found {}", told(expected), told(found)));
     }
     if !differences.is_empty() {
-        let mend = format!("expected is what {} is of: render one of both anew", first_file.display());
+        let mend =
+            format!("expected is what {} is of: render one of both anew", first_file.display());
         return Err(CheckpointError::Other { file: file.clone(), differences, mend });
     }
     let unfit = |what: String, mend: &str| {
@@ -100,10 +104,12 @@ fn join(first: &Checkpoint, next: &Checkpoint) -> Checkpoint {
         let cuts = |i: usize, pixel: &FilmPixel| {
             known.get(i).copied().unwrap_or_else(|| early_parts(counted(pixel, passes)))
         };
-        let part = |(i, film): (usize, &FilmPixel)| Part { passes, cuts: cuts(i, film), film: *film };
+        let part =
+            |(i, film): (usize, &FilmPixel)| Part { passes, cuts: cuts(i, film), film: *film };
         film.par_iter().enumerate().map(part).collect::<Vec<Part>>()
     });
-    let joined: Vec<Part> = halves[0].par_iter().zip(&halves[1]).map(|(a, b)| Part::joined(a, b)).collect();
+    let joined: Vec<Part> =
+        halves[0].par_iter().zip(&halves[1]).map(|(a, b)| Part::joined(a, b)).collect();
     let film: Vec<FilmPixel> = joined.iter().map(|part| part.film).collect();
     let (a, b) = (&first.totals, &next.totals);
     let mut ends = a.ends;
@@ -172,9 +178,13 @@ impl Part {
     }
 }
 
-/// The cut nearest to the middle and the other one nearest to a quarter from either end, each with the mean before it.
-/// With too few passes for two of them, 0 stands for none. Each part has its passes that count and its mean.
-fn joined_cuts((a, na, mean_a): (&Part, u32, f64), (b, nb, mean_b): (&Part, u32, f64)) -> [(u32, f64); 2] {
+/// The cut nearest to the middle and the other one nearest to a quarter from either end, each with
+/// the mean before it. With too few passes for two of them, 0 stands for none. Each part has its
+/// passes that count and its mean.
+fn joined_cuts(
+    (a, na, mean_a): (&Part, u32, f64),
+    (b, nb, mean_b): (&Part, u32, f64),
+) -> [(u32, f64); 2] {
     let n = na + nb;
     let after_a = |cut: u32, mean: f64| {
         let all = f64::from(na) + f64::from(cut);
@@ -193,7 +203,9 @@ fn joined_cuts((a, na, mean_a): (&Part, u32, f64), (b, nb, mean_b): (&Part, u32,
     let shorter = |cut: u32| u64::from(cut.min(n - cut));
     let nearest = |part: u64, but: u32| {
         let others = inside.clone().filter(|(cut, _)| *cut != but);
-        others.min_by_key(|(cut, _)| (part * shorter(*cut)).abs_diff(u64::from(n))).unwrap_or((0, 0.0))
+        others
+            .min_by_key(|(cut, _)| (part * shorter(*cut)).abs_diff(u64::from(n)))
+            .unwrap_or((0, 0.0))
     };
     let middle = nearest(2, 0);
     [middle, nearest(4, middle.0)]
@@ -224,8 +236,8 @@ pub(super) fn wide_film(state: &State) -> Vec<FilmPixel> {
     kernels::bytes::film_of(&state.film).iter().map(wide).collect()
 }
 
-/// Theory: the f64 kernel `fold` folds all passes into one pixel, or two ranges into two; joined, these are the first but for
-/// rounding, and the cuts are means over the first passes.
+/// Theory: the f64 kernel `fold` folds all passes into one pixel, or two ranges into two; joined,
+/// these are the first but for rounding, and the cuts are means over the first passes.
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -235,9 +247,14 @@ mod tests {
 
     /// What pass `number` finds; one in eleven does not count.
     fn found(number: u32) -> (u32, Found) {
-        let x = |k: u32| f64::from((number * 2_654_435_761u32.wrapping_mul(k + 1)) >> 8) / f64::from(1 << 24);
-        let found =
-            Found { radiance: Vec3::new(x(1), 2.0 * x(2), 0.5 + x(3)), ring: x(4) - 0.3, halves: x(5) - 0.5 };
+        let x = |k: u32| {
+            f64::from((number * 2_654_435_761u32.wrapping_mul(k + 1)) >> 8) / f64::from(1 << 24)
+        };
+        let found = Found {
+            radiance: Vec3::new(x(1), 2.0 * x(2), 0.5 + x(3)),
+            ring: x(4) - 0.3,
+            halves: x(5) - 0.5,
+        };
         (if number % 11 == 5 { REJECTED_PHOTONS } else { ACCEPTED }, found)
     }
 
@@ -273,11 +290,14 @@ mod tests {
     #[test]
     fn two_ranges_are_one() {
         let mut worst = 0f64;
-        for (cut, end) in [(1, 2), (1, 40), (39, 40), (5, 6), (6, 12), (500, 1000), (333, 1000), (512, 1024)]
+        for (cut, end) in
+            [(1, 2), (1, 40), (39, 40), (5, 6), (6, 12), (500, 1000), (333, 1000), (512, 1024)]
         {
             let joined = Part::joined(&range(0, cut), &range(cut, end));
             worst = worst.max(distance(&joined, &range(0, end)));
-            for (passes, mean) in joined.cuts.into_iter().zip([joined.film.early, joined.film.earlier]) {
+            for (passes, mean) in
+                joined.cuts.into_iter().zip([joined.film.early, joined.film.earlier])
+            {
                 let n = counted(&joined.film, end);
                 assert!(passes < n && (passes > 0 || n < 4), "{passes} of {n}");
                 assert!(passes == 0 || (mean - mean_of_first(passes)).abs() < 1e-12, "{cut} {end}");
@@ -299,7 +319,8 @@ mod tests {
 
     #[test]
     fn cuts_are_near_the_middle() {
-        let part = |passes: u32| Part { film: FilmPixel::zeroed(), passes, cuts: early_parts(passes) };
+        let part =
+            |passes: u32| Part { film: FilmPixel::zeroed(), passes, cuts: early_parts(passes) };
         let cuts = |a: u32, b: u32| Part::joined(&part(a), &part(b)).cuts;
         // those of one render, where the files know them
         assert_eq!(cuts(512, 512), early_parts(1024));

@@ -1,7 +1,8 @@
 //! Renders on disk: what an engine holds between two passes, and what tells whose it is.
 //!
-//! A render that goes on from one ends in the bits of a render that never stopped, and those of ranges of passes merge into one.
-//! docs/checkpoints.md tells what is in the file and what is promised.
+//! A render that goes on from one ends in the bits of a render that never stopped, and those of
+//! ranges of passes merge into one. docs/checkpoints.md tells what is in the file and what is
+//! promised.
 
 mod belongs;
 mod error;
@@ -33,7 +34,8 @@ pub struct Checkpoint {
     pub totals: Totals,
     /// What the engine held.
     pub state: State,
-    /// Merged: of each pixel, how many passes the film's `early` and `earlier` are means of; else empty.
+    /// Merged: of each pixel, how many passes the film's `early` and `earlier` are means of; else
+    /// empty.
     pub cuts: Vec<[u32; 2]>,
 }
 
@@ -75,7 +77,8 @@ impl Checkpoint {
         self.state.first_pass + self.state.passes
     }
 
-    /// The picture, what it says of its error, and what was left out of it; the same bits that the render would have given.
+    /// The picture, what it says of its error, and what was left out of it; the same bits that the
+    /// render would have given.
     pub fn develop(&self) -> (Picture, ErrorMap, Rejections) {
         let film = merge::wide_film(&self.state);
         let readout = merge::readout(&self.origin);
@@ -104,6 +107,10 @@ impl Checkpoint {
 
     /// How its pictures are tone-mapped.
     pub fn development(&self) -> Development {
-        Development { exposure: self.origin.exposure, tonemap: self.origin.tonemap, ..Development::default() }
+        Development {
+            exposure: self.origin.exposure,
+            tonemap: self.origin.tonemap,
+            ..Development::default()
+        }
     }
 }

@@ -25,13 +25,15 @@ pub struct Origin {
     pub width: u32,
     /// Rows of the whole picture.
     pub height: u32,
-    /// The part of it that is rendered: columns x0 to x1 and rows y0 to y1, x1 and y1 left out; `None` is all.
+    /// The part of it that is rendered: columns x0 to x1 and rows y0 to y1, x1 and y1 left out;
+    /// `None` is all.
     pub window: Option<[u32; 4]>,
     /// What is found beside radiance.
     pub aovs: Aovs,
     /// What tells its numbers in those of the world.
     pub space: Space,
-    /// All settings, with a radius in the place of "auto". The number of passes is where the render was to end.
+    /// All settings, with a radius in the place of "auto". The number of passes is where the render
+    /// was to end.
     pub settings: RenderSettings,
     /// The device's name; of merged ones the names of all.
     pub device: String,

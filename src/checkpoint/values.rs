@@ -1,5 +1,5 @@
-//! Whether the numbers of a checkpoint can be those of a render: a forged file must neither hang a render
-//! nor fill it with nonsense. Lengths of what is kept by pixel are checked before (`file`).
+//! Whether the numbers of a checkpoint can be those of a render: a forged file must neither hang a
+//! render nor fill it with nonsense. Lengths of what is kept by pixel are checked before (`file`).
 
 use super::Origin;
 use crate::engine::{Space, State};
@@ -35,10 +35,14 @@ pub(super) fn check_points(origin: &Origin, statistics: u64, counts: u64) -> Res
     let points = (columns * rows).saturating_mul(samples);
     let gathers = settings.method != Method::Path;
     let local = gathers && settings.radius_rule == RadiusRule::Local;
-    for (name, found, kept) in [("statistics", statistics, local), ("photon counts", counts, gathers)] {
+    for (name, found, kept) in
+        [("statistics", statistics, local), ("photon counts", counts, gathers)]
+    {
         if found != 0 && (found != points || !kept) {
             let points = if kept { points } else { 0 };
-            return Err(format!("{name} of {found} visible points, and the picture has {points} with them"));
+            return Err(format!(
+                "{name} of {found} visible points, and the picture has {points} with them"
+            ));
         }
     }
     Ok(())
@@ -87,12 +91,18 @@ macro_rules! precision {
                 }
                 #[allow(clippy::unnecessary_cast)] // no cast where a real number is an f64
                 let most = f64::from(state.passes) as real::Real;
-                for (number, bytes) in state.layers.parts.chunks(PARTS_BYTES * TOGETHER).enumerate() {
+                for (number, bytes) in state.layers.parts.chunks(PARTS_BYTES * TOGETHER).enumerate()
+                {
                     let sound = |p: &kernels::resolve_parts::PartsPixel| {
-                        (0.0..=most).contains(&p.passes) && all_finite(&p.caustic) && all_finite(&p.indirect)
+                        (0.0..=most).contains(&p.passes)
+                            && all_finite(&p.caustic)
+                            && all_finite(&p.indirect)
                     };
                     if let Some(i) = parts_of(bytes).iter().position(|p| !sound(p)) {
-                        return Err(format!("pixel {} holds no parts of its light", number * TOGETHER + i));
+                        return Err(format!(
+                            "pixel {} holds no parts of its light",
+                            number * TOGETHER + i
+                        ));
                     }
                 }
                 Ok(())
@@ -105,21 +115,28 @@ macro_rules! precision {
                         let means = [p.mean.x, p.mean.y, p.mean.z, p.carry.x, p.carry.y, p.carry.z];
                         // squares of bright passes may go beyond what a number holds
                         let rest = [p.spread, p.early, p.earlier, p.ring, p.ring_swing, p.halves];
-                        let numbers = means.iter().all(|x| x.is_finite()) && rest.iter().all(|x| !x.is_nan());
+                        let numbers =
+                            means.iter().all(|x| x.is_finite()) && rest.iter().all(|x| !x.is_nan());
                         if !numbers || p.spread < 0.0 {
                             return Err(format!("pixel {at} holds no radiance"));
                         }
                         let rejected: u64 = p.rejected.iter().map(|n| u64::from(*n)).sum();
                         if rejected > u64::from(state.passes) {
                             let passes = state.passes;
-                            return Err(format!("pixel {at} leaves out {rejected} of {passes} passes"));
+                            return Err(format!(
+                                "pixel {at} leaves out {rejected} of {passes} passes"
+                            ));
                         }
                     }
                 }
-                for (number, bytes) in state.statistics.chunks(STATISTICS_BYTES * TOGETHER).enumerate() {
+                for (number, bytes) in
+                    state.statistics.chunks(STATISTICS_BYTES * TOGETHER).enumerate()
+                {
                     for (i, s) in statistics_of(bytes).iter().enumerate() {
                         // radii only shrink; 0 is a point that no pass has looked at
-                        if !((0.0..=1.0).contains(&s.scale_sq) && (0.0..=s.scale_sq).contains(&s.drop)) {
+                        if !((0.0..=1.0).contains(&s.scale_sq)
+                            && (0.0..=s.scale_sq).contains(&s.drop))
+                        {
                             let at = number * TOGETHER + i;
                             return Err(format!(
                                 "visible point {at} has {} of its squared radius",

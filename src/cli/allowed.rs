@@ -15,8 +15,9 @@ pub struct Allowed {
     /// Folder that holds every file that may be read, the scene's own among them, links resolved
     #[arg(long, value_name = "DIR")]
     root: Option<PathBuf>,
-    /// Another limit than the default: scene-bytes, shapes, mesh-bytes, mesh-triangles, triangles, texture-pixels,
-    /// texture-bytes, picture-pixels or errors, as in triangles=1e6; may be given several times
+    /// Another limit than the default: scene-bytes, shapes, mesh-bytes, mesh-triangles, triangles,
+    /// texture-pixels, texture-bytes, picture-pixels or errors, as in triangles=1e6; may be given
+    /// several times
     #[arg(long, value_name = "NAME=N", value_parser = limit)]
     limit: Vec<(String, u64)>,
     /// What an MTL or texture file that does not exist is: an error, or a warning and mid-gray in
@@ -47,7 +48,10 @@ impl Allowed {
     pub fn allowance(&self) -> Result<Allowance, Failure> {
         if let Some(root) = self.root.as_ref().filter(|root| !root.is_dir()) {
             let what = format!("--root {}: there is no such folder", root.display());
-            return Err(Failure::wrong_use(&what, "name the folder that holds the scene and its files"));
+            return Err(Failure::wrong_use(
+                &what,
+                "name the folder that holds the scene and its files",
+            ));
         }
         let (root, missing) = (self.root.clone(), self.missing.into());
         let allowance = Allowance { root, missing, ..Allowance::default() };
@@ -72,12 +76,14 @@ impl Allowed {
 
 fn limit(text: &str) -> Result<(String, u64), String> {
     let names = Allowance::LIMITS.join(", ");
-    let (name, value) = text.split_once('=').ok_or("expected NAME=N, as in triangles=1e6".to_owned())?;
+    let (name, value) =
+        text.split_once('=').ok_or("expected NAME=N, as in triangles=1e6".to_owned())?;
     if !Allowance::LIMITS.contains(&name) {
         return Err(format!("no limit is called {name}; there are {names}"));
     }
     let exact = value.parse::<u64>().ok();
-    let rounded = || value.parse::<f64>().ok().filter(|n| (0.0..1e19).contains(n)).map(|n| n as u64);
+    let rounded =
+        || value.parse::<f64>().ok().filter(|n| (0.0..1e19).contains(n)).map(|n| n as u64);
     let value = exact
         .or_else(rounded)
         .ok_or(format!("`{value}` is not a number above zero, as in 1000000 or 1e6"))?;
@@ -92,9 +98,16 @@ mod tests {
     fn limits_are_names_and_numbers() {
         assert_eq!(limit("triangles=1e6"), Ok(("triangles".to_owned(), 1_000_000)));
         assert_eq!(limit("errors=18446744073709551615"), Ok(("errors".to_owned(), u64::MAX)));
-        for bad in
-            ["", "triangles", "triangles=", "triangle=1", "shapes=-1", "shapes=nan", "shapes=1e20", "=1"]
-        {
+        for bad in [
+            "",
+            "triangles",
+            "triangles=",
+            "triangle=1",
+            "shapes=-1",
+            "shapes=nan",
+            "shapes=1e20",
+            "=1",
+        ] {
             assert!(limit(bad).is_err(), "{bad}");
         }
         for name in Allowance::LIMITS {

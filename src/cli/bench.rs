@@ -40,18 +40,19 @@ pub struct Arguments {
     /// Device to measure, as for `render`; several are measured one after another
     #[arg(long, value_name = "DEVICE", value_parser = NonEmptyStringValueParser::new(), default_value = "auto")]
     device: Vec<String>,
-    /// Begin no pass after this time, as in 30s; each run to a truth has the same time, and then no other limit [default: 60s
-    /// for a run to a truth, unless --passes limits it]
+    /// Begin no pass after this time, as in 30s; each run to a truth has the same time, and then no
+    /// other limit [default: 60s for a run to a truth, unless --passes limits it]
     #[arg(long, value_name = "TIME", value_parser = duration)]
     time: Option<Duration>,
     /// Passes before those that count
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..))]
     warm_up: u32,
-    /// Time that a submission to a GPU is to take, as in 50ms, or `none` for all in one; given several times, passes are
-    /// measured with each, and the first one's count
+    /// Time that a submission to a GPU is to take, as in 50ms, or `none` for all in one; given
+    /// several times, passes are measured with each, and the first one's count
     #[arg(long, value_name = "TIME|none", value_parser = slice, default_value = "50ms")]
     slice: Vec<f64>,
-    /// Print one JSON object per line: what is measured, then all figures, times in seconds, memory in bytes
+    /// Print one JSON object per line: what is measured, then all figures, times in seconds, memory
+    /// in bytes
     #[arg(long)]
     json: bool,
     #[command(flatten)]
@@ -67,7 +68,8 @@ struct Truth {
     /// Picture that counts as the truth (.exr, .pfm, .hdr): tells relMSE over time
     #[arg(long, value_name = "FILE")]
     truth: Option<PathBuf>,
-    /// Tell the error of a region too: columns x0 to x1 and rows y0 to y1 from the top left, x1 and y1 left out
+    /// Tell the error of a region too: columns x0 to x1 and rows y0 to y1 from the top left, x1 and
+    /// y1 left out
     #[arg(long, value_name = "NAME=x0,y0,x1,y1", value_parser = region, requires = "truth")]
     region: Vec<(String, Region)>,
     /// relMSE to reach; exit with 3 where it is not
@@ -91,7 +93,9 @@ Examples:
 fn slice(text: &str) -> Result<f64, String> {
     match text {
         "none" => Ok(f64::INFINITY),
-        _ => duration(text).map(|time| time.as_secs_f64()).map_err(|error| format!("{error}, or none")),
+        _ => duration(text)
+            .map(|time| time.as_secs_f64())
+            .map_err(|error| format!("{error}, or none")),
     }
 }
 
@@ -173,7 +177,8 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
         return Ok(Done::Interrupted);
     }
     let missed = |a: &Approach| a.goal.is_some() && a.reached_seconds.is_none();
-    let missed: Vec<&Approach> = reports.iter().flat_map(|r| &r.to_error).filter(|a| missed(a)).collect();
+    let missed: Vec<&Approach> =
+        reports.iter().flat_map(|r| &r.to_error).filter(|a| missed(a)).collect();
     for Approach { region, goal, .. } in &missed {
         let place = region.as_ref().map(|name| format!(" of {name}")).unwrap_or_default();
         message(format_args!("not reached: relMSE{place} {:.4e}", goal.unwrap_or_default()));
@@ -220,11 +225,13 @@ fn measure(
             (None, Some(passes)) => Limit { time: Duration::MAX, passes },
             (None, None) => Limit { time: TO_ERROR, passes: u32::MAX },
         };
-        report.to_error = approach(ready.runner.engine(), truth, &goals(&arguments.truth), limit, stop)
-            .map_err(|error| match error {
-                ToErrorError::Engine(error) => Failure::from(error),
-                ToErrorError::Metrics(error) => Failure::from(error),
-            })?;
+        report.to_error =
+            approach(ready.runner.engine(), truth, &goals(&arguments.truth), limit, stop).map_err(
+                |error| match error {
+                    ToErrorError::Engine(error) => Failure::from(error),
+                    ToErrorError::Metrics(error) => Failure::from(error),
+                },
+            )?;
     }
     Ok(report)
 }
@@ -242,12 +249,15 @@ fn goals(truth: &Truth) -> Vec<Goal> {
             truth_noise: of(&truth.truth_noise, name).unwrap_or(0.0),
         }
     };
-    std::iter::once(goal(None)).chain(truth.region.iter().map(|region| goal(Some(region)))).collect()
+    std::iter::once(goal(None))
+        .chain(truth.region.iter().map(|region| goal(Some(region))))
+        .collect()
 }
 
 /// Fails where a place has two bounds.
 fn check_single(bounds: &[Bound]) -> Result<(), Failure> {
-    let twice = bounds.iter().enumerate().find(|(i, b)| bounds[..*i].iter().any(|a| a.region == b.region));
+    let twice =
+        bounds.iter().enumerate().find(|(i, b)| bounds[..*i].iter().any(|a| a.region == b.region));
     match twice {
         None => Ok(()),
         Some((_, bound)) => Err(Failure::wrong_use(

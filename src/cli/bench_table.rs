@@ -54,7 +54,8 @@ pub fn device_text(report: &DeviceReport) -> String {
     ));
     lines.extend(report.slices.iter().map(slice_line));
     let memory = &report.memory;
-    let peak = memory.peak_resident.map(|bytes| format!(", {}B resident at most", count(bytes as f64)));
+    let peak =
+        memory.peak_resident.map(|bytes| format!(", {}B resident at most", count(bytes as f64)));
     lines.push(format!(
         "memory: {:.0} bytes a pixel, {:.0} bytes a photon, {:.0} bytes a record{}",
         memory.per_pixel,
@@ -84,14 +85,18 @@ fn kernel_table(report: &DeviceReport) -> Vec<String> {
         if compiled {
             let cell = |seconds: Option<f64>| seconds.map_or("-".to_owned(), time);
             let compile = report.compile.get(stem);
-            line +=
-                &format!("{:>10}{:>10}", cell(compile.map(|c| c.checking)), cell(compile.map(|c| c.driver)));
+            line += &format!(
+                "{:>10}{:>10}",
+                cell(compile.map(|c| c.checking)),
+                cell(compile.map(|c| c.driver))
+            );
         }
         line + &kernel_cells(kernel)
     }));
     let sum: f64 = report.kernels.values().map(|kernel| kernel.seconds.median).sum();
     let blank = if compiled {
-        let all = |part: fn(&caustica::bench::Compile) -> f64| report.compile.values().map(part).sum();
+        let all =
+            |part: fn(&caustica::bench::Compile) -> f64| report.compile.values().map(part).sum();
         format!("{:>10}{:>10}", time(all(|c| c.checking)), time(all(|c| c.driver)))
     } else {
         String::new()
@@ -115,11 +120,17 @@ fn kernel_cells(kernel: &KernelReport) -> String {
         format!("{} {what}", count(*rate).trim_end())
     });
     let rates: Vec<String> = rates.collect();
-    format!("{:>10}{range:>20}{:>5.0} %   {}", time(seconds.median), 100.0 * kernel.share, rates.join(", "))
+    format!(
+        "{:>10}{range:>20}{:>5.0} %   {}",
+        time(seconds.median),
+        100.0 * kernel.share,
+        rates.join(", ")
+    )
 }
 
 fn slice_line(slice: &SliceReport) -> String {
-    let name = slice.slice.map_or("not split".to_owned(), |seconds| format!("split at {}", time(seconds)));
+    let name =
+        slice.slice.map_or("not split".to_owned(), |seconds| format!("split at {}", time(seconds)));
     let loss = match (slice.slice, slice.loss) {
         (Some(_), Some(loss)) => format!(", {:+.1} % by splitting", 100.0 * loss),
         _ => String::new(),
@@ -136,8 +147,12 @@ fn slice_line(slice: &SliceReport) -> String {
 fn approach_line(approach: &Approach) -> Option<String> {
     let last = approach.series.last()?;
     let place = approach.region.as_ref().map(|name| format!(" of {name}")).unwrap_or_default();
-    let end =
-        format!("relMSE{place} {:.3e} after {} passes, {}", last.rel_mse, last.passes, time(last.seconds));
+    let end = format!(
+        "relMSE{place} {:.3e} after {} passes, {}",
+        last.rel_mse,
+        last.passes,
+        time(last.seconds)
+    );
     Some(match (approach.goal, approach.reached_seconds) {
         (None, _) => end,
         (Some(goal), Some(seconds)) => {

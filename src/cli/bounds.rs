@@ -108,7 +108,9 @@ impl Bounds {
             ("RMSE", "at most", &self.max_rmse, |m| Some(m.pixels.rmse)),
             ("PSNR", "at least", &self.min_psnr, |m| Some(m.pixels.psnr)),
             ("SSIM", "at least", &self.min_ssim, |m| m.ssim),
-            ("difference of the means", "at most", &self.max_mean_ratio, |m| Some(m.pixels.mean_error())),
+            ("difference of the means", "at most", &self.max_mean_ratio, |m| {
+                Some(m.pixels.mean_error())
+            }),
         ]
     }
 
@@ -123,10 +125,13 @@ impl Bounds {
         let mut passed = Vec::new();
         for (measure, side, bounds, figure) in self.rules() {
             for bound in bounds {
-                for place in measured.iter().filter(|place| place.region == bound.region.as_deref()) {
-                    let value = figure(&place.measures).ok_or_else(|| no_figure(measure, place.region))?;
+                for place in measured.iter().filter(|place| place.region == bound.region.as_deref())
+                {
+                    let value =
+                        figure(&place.measures).ok_or_else(|| no_figure(measure, place.region))?;
                     // A value that is no number is beyond every bound.
-                    let within = if side == "at most" { value <= bound.limit } else { value >= bound.limit };
+                    let within =
+                        if side == "at most" { value <= bound.limit } else { value >= bound.limit };
                     if !within {
                         passed.push(Passed {
                             measure,
@@ -144,7 +149,10 @@ impl Bounds {
 }
 
 /// Fails for a bound on a region that is none of `regions`.
-pub fn check_regions<'a>(bounds: impl Iterator<Item = &'a Bound>, regions: &[&str]) -> Result<(), Failure> {
+pub fn check_regions<'a>(
+    bounds: impl Iterator<Item = &'a Bound>,
+    regions: &[&str],
+) -> Result<(), Failure> {
     let mut named = bounds.filter_map(|bound| bound.region.as_deref());
     let Some(unknown) = named.find(|name| !regions.contains(name)) else {
         return Ok(());
@@ -160,7 +168,9 @@ fn no_figure(measure: &str, region: Option<&str>) -> Failure {
     let place = region.map_or("these pictures".to_owned(), |name| format!("the region {name}"));
     let help = match measure {
         "SSIM" => "it needs a window of 11 x 11 pixels inside the picture",
-        _ => "it is for radiance: .exr, .pfm or .hdr; for pictures for a display there is --max-FLIP",
+        _ => {
+            "it is for radiance: .exr, .pfm or .hdr; for pictures for a display there is --max-FLIP"
+        }
     };
     Failure::wrong_use(&format!("there is no {measure} of {place}"), help)
 }

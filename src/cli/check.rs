@@ -51,7 +51,10 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     }
     match bad {
         0 => Ok(Done::Fully),
-        _ => Err(Failure::failed(miette!("{bad} of {} scenes cannot be rendered", arguments.scenes.len()))),
+        _ => Err(Failure::failed(miette!(
+            "{bad} of {} scenes cannot be rendered",
+            arguments.scenes.len()
+        ))),
     }
 }
 
@@ -72,7 +75,8 @@ fn tell(file: &Path, errors: Option<SceneErrors>, warnings: Vec<Finding>) -> Res
     result(format_args!("{}: good{count}", file.display()))
 }
 
-/// Lines and columns count from 1, columns in characters; they are null where a whole file is meant.
+/// Lines and columns count from 1, columns in characters; they are null where a whole file is
+/// meant.
 fn as_json(file: &Path, errors: Option<&SceneErrors>, warnings: &[Finding]) -> Value {
     let finding = |finding: &Finding| {
         let place = finding.line_column();

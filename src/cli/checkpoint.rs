@@ -1,4 +1,5 @@
-//! The checkpoints of `caustica render`: which files, what is read at the start and written on the way.
+//! The checkpoints of `caustica render`: which files, what is read at the start and written on the
+//! way.
 
 use std::path::{Path, PathBuf};
 
@@ -28,7 +29,8 @@ impl Files {
     /// Those that are asked for; the one to go on from is read.
     ///
     /// # Errors
-    /// Where that is no whole checkpoint, none can be written to the place of the other, or another render's would be lost there.
+    /// Where that is no whole checkpoint, none can be written to the place of the other, or another
+    /// render's would be lost there.
     pub fn new(kept: Option<&Path>, resumed: Option<&Path>) -> Result<Self, Failure> {
         let mut lock = None;
         if let Some(file) = kept {
@@ -87,7 +89,8 @@ impl Files {
     }
 }
 
-/// Writes checkpoints. One that cannot be written ends no render, but is told, and if it is the last one fails the command.
+/// Writes checkpoints. One that cannot be written ends no render, but is told, and if it is the
+/// last one fails the command.
 pub struct Keeper {
     file: Option<PathBuf>,
     origin: Origin,
@@ -112,8 +115,8 @@ impl Keeper {
         checkpoint.state
     }
 
-    /// What is left of a render whose device failed. Where no checkpoint was asked for, it is written beside the first picture,
-    /// unless something is there.
+    /// What is left of a render whose device failed. Where no checkpoint was asked for, it is
+    /// written beside the first picture, unless something is there.
     pub fn rest(&mut self, state: State, progress: &Progress, pictures: &[PathBuf]) -> Checkpoint {
         let rest = self.checkpoint(state, progress);
         let beside = pictures.first().map(|picture| picture.with_extension(EXTENSION));
@@ -132,7 +135,12 @@ impl Keeper {
     }
 
     fn checkpoint(&self, state: State, progress: &Progress) -> Checkpoint {
-        Checkpoint { origin: self.origin.clone(), totals: Totals::of(progress), state, cuts: Vec::new() }
+        Checkpoint {
+            origin: self.origin.clone(),
+            totals: Totals::of(progress),
+            state,
+            cuts: Vec::new(),
+        }
     }
 
     fn write(&mut self, file: &Path, checkpoint: &Checkpoint) {
@@ -151,7 +159,8 @@ impl Keeper {
         }
     }
 
-    /// Writes what did not go to `file` into the current folder or that of temporary files, and says where.
+    /// Writes what did not go to `file` into the current folder or that of temporary files, and
+    /// says where.
     fn write_elsewhere(&mut self, file: &Path, checkpoint: &Checkpoint) {
         let stem = file.file_stem().unwrap_or_default().to_string_lossy();
         // what the system takes as a name has at most 255 bytes

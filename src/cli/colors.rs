@@ -1,4 +1,5 @@
-//! Whether reports on standard error have colours. Usage and help, which clap prints, follow the same rule by themselves.
+//! Whether reports on standard error have colours. Usage and help, which clap prints, follow the
+//! same rule by themselves.
 
 use std::ffi::OsString;
 use std::io::IsTerminal;
@@ -16,8 +17,9 @@ pub fn on_errors() -> bool {
     colored(|name| std::env::var_os(name), std::io::stderr().is_terminal())
 }
 
-/// `NO_COLOR`, set to anything but nothing, says no (<https://no-color.org>); `CLICOLOR_FORCE` says yes, even where there is no
-/// terminal (<https://bixense.com/clicolors>); else a terminal that knows colours has them.
+/// `NO_COLOR`, set to anything but nothing, says no (<https://no-color.org>); `CLICOLOR_FORCE` says
+/// yes, even where there is no terminal (<https://bixense.com/clicolors>); else a terminal that
+/// knows colours has them.
 fn colored(variable: impl Fn(&str) -> Option<OsString>, terminal: bool) -> bool {
     let set = |name| variable(name).is_some_and(|value| !value.is_empty());
     let is = |name, word: &str| variable(name).is_some_and(|value| value == word);
@@ -38,7 +40,9 @@ mod tests {
     #[test]
     fn who_decides() {
         let with = |set: &[(&str, &str)], terminal| {
-            let find = |name: &str| set.iter().find(|(key, _)| *key == name).map(|(_, v)| OsString::from(v));
+            let find = |name: &str| {
+                set.iter().find(|(key, _)| *key == name).map(|(_, v)| OsString::from(v))
+            };
             colored(find, terminal)
         };
         assert!(with(&[], true) && !with(&[], false));
@@ -48,7 +52,9 @@ mod tests {
         }
         assert!(with(&[("NO_COLOR", "")], true), "empty is as if not set");
         assert!(with(&[("CLICOLOR_FORCE", "1")], false));
-        assert!(!with(&[("CLICOLOR_FORCE", "0")], false) && !with(&[("CLICOLOR_FORCE", "")], false));
+        assert!(
+            !with(&[("CLICOLOR_FORCE", "0")], false) && !with(&[("CLICOLOR_FORCE", "")], false)
+        );
         assert!(!with(&[("TERM", "dumb")], true) && with(&[("TERM", "xterm")], true));
         assert!(!with(&[("CLICOLOR", "0")], true));
     }

@@ -87,7 +87,8 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     let a = render_on(first, &scene, &settings, &arguments.voice)?;
     let b = render_on(second, &scene, &settings, &arguments.voice)?;
     let comparison = compare(&a.picture, &b.picture)?;
-    let outside = blocks::share_outside(&blocks::block_deviations(&a.picture, &b.picture, None, 0.0)?);
+    let outside =
+        blocks::share_outside(&blocks::block_deviations(&a.picture, &b.picture, None, 0.0)?);
     if arguments.voice.json {
         result(as_json(&a.device, &b.device, &comparison, outside))?;
     } else {
@@ -152,7 +153,10 @@ fn as_text(a: &str, b: &str, comparison: &Comparison, outside: f64) -> String {
         format!("PSNR                  {:.2} dB", comparison.psnr),
         format!("blocks over 4 sigma   {:.2} %", 100.0 * outside),
         format!("pixels of other bits  {} of {}", comparison.pixels_differing, comparison.pixels),
-        format!("worst pixel           column {}, row {}: {:?} and {:?}", worst.x, worst.y, worst.a, worst.b),
+        format!(
+            "worst pixel           column {}, row {}: {:?} and {:?}",
+            worst.x, worst.y, worst.a, worst.b
+        ),
     ]
     .join("\n")
 }

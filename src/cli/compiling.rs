@@ -113,7 +113,8 @@ pub fn begin(quiet: bool, json: bool) {
 /// Begins to show a compilation; a system that gives no thread shows nothing.
 fn start(form: Form, compilation: &Compilation) -> Option<(Arc<Shared>, thread::JoinHandle<()>)> {
     let Compilation { device, kernel, done, of } = *compilation;
-    let state = State { begun: Instant::now(), device: device.to_owned(), kernel, done, of, ended: false };
+    let state =
+        State { begun: Instant::now(), device: device.to_owned(), kernel, done, of, ended: false };
     let shared = Arc::new(Shared { state: Mutex::new(Some(state)), changed: Condvar::new() });
     let theirs = shared.clone();
     let thread = thread::Builder::new().spawn(move || match form {

@@ -24,8 +24,8 @@ pub struct Arguments {
     a: PathBuf,
     /// Picture that counts as the truth, of the same kind and size
     b: PathBuf,
-    /// Measure a region by itself too: columns x0 to x1 and rows y0 to y1 from the top left, x1 and y1 left out; may be
-    /// given several times
+    /// Measure a region by itself too: columns x0 to x1 and rows y0 to y1 from the top left, x1 and
+    /// y1 left out; may be given several times
     #[arg(long, value_name = "NAME=x0,y0,x1,y1", value_parser = region)]
     region: Vec<(String, Region)>,
     /// Picture of LDR-FLIP to write (.png), black for 0 by violet and orange to light yellow for 1
@@ -55,7 +55,8 @@ Examples:
 /// A named region, as in `caustic=290,425,425,485`.
 pub fn region(text: &str) -> Result<(String, Region), String> {
     let parsed = text.split_once('=').and_then(|(name, numbers)| {
-        let numbers: Vec<u32> = numbers.split(',').map(|n| n.trim().parse().ok()).collect::<Option<_>>()?;
+        let numbers: Vec<u32> =
+            numbers.split(',').map(|n| n.trim().parse().ok()).collect::<Option<_>>()?;
         let [x0, y0, x1, y1] = numbers[..] else { return None };
         Some((name.to_owned(), Region { x0, y0, x1, y1 }))
     });
@@ -71,9 +72,11 @@ pub fn region(text: &str) -> Result<(String, Region), String> {
 pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     check(&arguments)?;
     let (a, b, coding) = read_both(&arguments)?;
-    let difference = Difference::new(&a, &b, coding).map_err(|error| incomparable(error, &arguments))?;
+    let difference =
+        Difference::new(&a, &b, coding).map_err(|error| incomparable(error, &arguments))?;
     let places = [(None, None)].into_iter();
-    let places = places.chain(arguments.region.iter().map(|(name, at)| (Some(name.as_str()), Some(*at))));
+    let places =
+        places.chain(arguments.region.iter().map(|(name, at)| (Some(name.as_str()), Some(*at))));
     let measured = places
         .map(|(region, at)| Ok(Measured { region, measures: difference.measures(at)? }))
         .collect::<Result<Vec<_>, MetricsError>>()
@@ -87,7 +90,9 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     }
     write_map(&arguments.output, Some(&difference.ldr_flip))?;
     write_map(&arguments.hdr_map, difference.hdr_flip.as_ref().map(|flip| &flip.map))?;
-    for output in [&arguments.output, &arguments.hdr_map].into_iter().flatten().filter(|_| !arguments.json) {
+    for output in
+        [&arguments.output, &arguments.hdr_map].into_iter().flatten().filter(|_| !arguments.json)
+    {
         result(output.display())?;
     }
     for passed in &passed {
@@ -100,7 +105,8 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
 fn check(arguments: &Arguments) -> Result<(), Failure> {
     let names = region_names(&arguments.region)?;
     arguments.bounds.check_regions(&names)?;
-    let outputs: Vec<&PathBuf> = [&arguments.output, &arguments.hdr_map].into_iter().flatten().collect();
+    let outputs: Vec<&PathBuf> =
+        [&arguments.output, &arguments.hdr_map].into_iter().flatten().collect();
     for output in &outputs {
         file::check_png(output)?;
         if storage::same(&arguments.a, output) || storage::same(&arguments.b, output) {
@@ -169,7 +175,9 @@ fn incomparable(error: MetricsError, arguments: &Arguments) -> Failure {
                 &format!("the picture has {width} columns and {height} rows, counted from 0"),
             )
         }
-        _ => Failure::failed(miette!(help = format!("the first is {a}, the second {b}"), "{error}")),
+        _ => {
+            Failure::failed(miette!(help = format!("the first is {a}, the second {b}"), "{error}"))
+        }
     }
 }
 
@@ -217,7 +225,8 @@ fn as_json(
     passed: &[Passed],
 ) -> Value {
     let regions = measured.iter().filter_map(|place| {
-        let (name, region) = arguments.region.iter().find(|(name, _)| place.region == Some(name))?;
+        let (name, region) =
+            arguments.region.iter().find(|(name, _)| place.region == Some(name))?;
         let mut figures = measures_json(&place.measures);
         figures["rectangle"] = json!([region.x0, region.y0, region.x1, region.y1]);
         Some((name.clone(), figures))

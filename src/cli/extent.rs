@@ -15,7 +15,8 @@ pub struct Extent {
     /// Channels of .exr files beside radiance, names divided by commas, or all
     #[arg(long, value_name = "NAME,...", value_parser = Aovs::parse)]
     pub aov: Option<Aovs>,
-    /// Render a window alone: columns x0 to x1 and rows y0 to y1 from the top left, x1 and y1 left out
+    /// Render a window alone: columns x0 to x1 and rows y0 to y1 from the top left, x1 and y1 left
+    /// out
     #[arg(long, value_name = "x0,y0,x1,y1", value_parser = window, allow_hyphen_values = true)]
     pub crop: Option<[u32; 4]>,
     /// Bits of each channel in .png files
@@ -24,14 +25,17 @@ pub struct Extent {
 }
 
 impl Extent {
-    /// Puts the options in force on a film whose size is settled. Channels that no output can hold are left out, and are an
-    /// error where they are asked for here.
+    /// Puts the options in force on a film whose size is settled. Channels that no output can hold
+    /// are left out, and are an error where they are asked for here.
     pub fn apply(&self, film: &mut Film, outputs: &[PathBuf]) -> Result<(), Failure> {
         film.aovs = self.aov.unwrap_or(film.aovs);
         if !outputs.iter().any(|output| Format::of(output) == Some(Format::Exr)) {
             if self.aov.is_some() {
                 let help = "add an output with the extension .exr, as in -o picture.exr";
-                return Err(Failure::wrong_use("--aov: no output can hold more than radiance", help));
+                return Err(Failure::wrong_use(
+                    "--aov: no output can hold more than radiance",
+                    help,
+                ));
             }
             film.aovs = Aovs::default();
         }
@@ -39,7 +43,10 @@ impl Extent {
         match film.window {
             Some([_, _, x1, y1]) if x1 > film.width || y1 > film.height => Err(Failure::wrong_use(
                 &format!("--crop: columns up to {x1} and rows up to {y1} reach beyond the picture"),
-                &format!("the picture has {} columns and {} rows, counted from 0", film.width, film.height),
+                &format!(
+                    "the picture has {} columns and {} rows, counted from 0",
+                    film.width, film.height
+                ),
             )),
             _ => Ok(()),
         }
@@ -56,10 +63,14 @@ fn bits(text: &str) -> Result<Bits, String> {
 
 /// Four whole numbers, as in 100,40,180,120.
 pub fn window(text: &str) -> Result<[u32; 4], String> {
-    let numbers: Option<Vec<u32>> = text.split(',').map(|number| number.trim().parse().ok()).collect();
+    let numbers: Option<Vec<u32>> =
+        text.split(',').map(|number| number.trim().parse().ok()).collect();
     match numbers.as_deref() {
         Some(&[x0, y0, x1, y1]) if x0 < x1 && y0 < y1 => Ok([x0, y0, x1, y1]),
-        _ => Err("expected four whole numbers with x0 < x1 and y0 < y1, as in 100,40,180,120".to_owned()),
+        _ => {
+            Err("expected four whole numbers with x0 < x1 and y0 < y1, as in 100,40,180,120"
+                .to_owned())
+        }
     }
 }
 
@@ -70,9 +81,17 @@ mod tests {
     #[test]
     fn windows_have_four_numbers_in_order() {
         assert_eq!(window("1, 2,3,4"), Ok([1, 2, 3, 4]));
-        for bad in
-            ["", "1,2,3", "1,2,3,4,5", "3,2,1,4", "1,2,3,2", "1,2,1,4", "-1,0,2,2", "0,0,1.5,2", "a,b,c,d"]
-        {
+        for bad in [
+            "",
+            "1,2,3",
+            "1,2,3,4,5",
+            "3,2,1,4",
+            "1,2,3,2",
+            "1,2,1,4",
+            "-1,0,2,2",
+            "0,0,1.5,2",
+            "a,b,c,d",
+        ] {
             assert!(window(bad).is_err(), "{bad}");
         }
     }

@@ -76,9 +76,9 @@ impl From<SceneErrors> for Failure {
 impl From<FileError> for Failure {
     fn from(error: FileError) -> Self {
         let code = match error {
-            FileError::UnknownFormat { .. } | FileError::StreamName { .. } | FileError::Repeated { .. } => {
-                Self::WRONG_USE
-            }
+            FileError::UnknownFormat { .. }
+            | FileError::StreamName { .. }
+            | FileError::Repeated { .. } => Self::WRONG_USE,
             _ => Self::FAILED,
         };
         Self { code, report: error.into(), details: String::new() }
@@ -137,7 +137,11 @@ impl From<DeviceError> for Failure {
                 };
                 let hidden = gpu::hidden().iter().map(|hidden| format!("note: {hidden}"));
                 let details = hidden.collect::<Vec<_>>().join("\n");
-                Self { code: Self::NO_SUCH_DEVICE, report: miette!(help = help, "{error}"), details }
+                Self {
+                    code: Self::NO_SUCH_DEVICE,
+                    report: miette!(help = help, "{error}"),
+                    details,
+                }
             }
             DeviceError::Engine(error) => error.into(),
         }

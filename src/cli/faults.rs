@@ -21,7 +21,8 @@ pub fn begin() {
 fn text(info: &PanicHookInfo) -> String {
     let payload = info.payload();
     let owned = || payload.downcast_ref::<String>().map(String::as_str);
-    let what = payload.downcast_ref::<&str>().copied().or_else(owned).unwrap_or("a value that is no text");
+    let what =
+        payload.downcast_ref::<&str>().copied().or_else(owned).unwrap_or("a value that is no text");
     match info.location() {
         Some(place) => format!("{what} ({}:{})", short(place.file()), place.line()),
         None => what.to_owned(),
@@ -30,9 +31,12 @@ fn text(info: &PanicHookInfo) -> String {
 
 /// A source file from its library on: what is before the library's folder is about the machine.
 fn short(file: &str) -> &str {
-    let file =
-        file.strip_prefix("/rustc/").and_then(|rest| rest.split_once('/')).map_or(file, |(_, rest)| rest);
-    let libraries = file.split_once("/registry/src/").or_else(|| file.split_once("/git/checkouts/"));
+    let file = file
+        .strip_prefix("/rustc/")
+        .and_then(|rest| rest.split_once('/'))
+        .map_or(file, |(_, rest)| rest);
+    let libraries =
+        file.split_once("/registry/src/").or_else(|| file.split_once("/git/checkouts/"));
     match libraries.and_then(|(_, rest)| rest.split_once('/')) {
         Some((_, rest)) => rest,
         None if !file.starts_with('/') => file,

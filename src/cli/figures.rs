@@ -52,8 +52,9 @@ pub fn table(measured: &[Measured]) -> String {
     rows.extend(ROWS.iter().map(|(name, figure)| {
         ((*name).to_owned(), measured.iter().map(|place| figure(&place.measures)).collect())
     }));
-    let width =
-        |column: usize| rows.iter().map(|(_, cells)| cells[column].chars().count()).max().unwrap_or(0);
+    let width = |column: usize| {
+        rows.iter().map(|(_, cells)| cells[column].chars().count()).max().unwrap_or(0)
+    };
     let widths: Vec<_> = (0..measured.len()).map(width).collect();
     let line = |(name, cells): &(String, Vec<String>)| {
         let cells = cells.iter().zip(&widths).map(|(cell, &width)| format!("  {cell:>width$}"));

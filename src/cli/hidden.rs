@@ -12,7 +12,8 @@ pub fn warn(wanted: &Wanted) {
     if matches!(wanted, Wanted::Cpu | Wanted::CpuDouble) {
         return;
     }
-    let auto = *wanted == Wanted::Auto && device::list().iter().all(|device| device.kind != DeviceKind::Gpu);
+    let auto = *wanted == Wanted::Auto
+        && device::list().iter().all(|device| device.kind != DeviceKind::Gpu);
     gpu::hidden().iter().filter(|hidden| auto || !hidden.unknown.is_empty()).for_each(tell);
 }
 

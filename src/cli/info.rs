@@ -28,7 +28,8 @@ pub struct Arguments {
     /// Time every kernel with and without each thing that is left out, on each of these devices
     #[arg(long)]
     measure: bool,
-    /// Device to measure on: auto, gpu, software, cpu, or a part of a device's name; several are measured
+    /// Device to measure on: auto, gpu, software, cpu, or a part of a device's name; several are
+    /// measured
     #[arg(long, value_name = "DEVICE", value_parser = NonEmptyStringValueParser::new(), default_value = "auto", requires = "measure")]
     device: Vec<String>,
     /// Print the figures as one JSON object per line: bytes, seconds
@@ -68,7 +69,8 @@ impl Need {
         match plan.clone().within(scene, place, &given) {
             Ok(plan) => {
                 let (tiles, batches) = (if plan.tiled { plan.chunks() } else { 0 }, plan.batches());
-                let tiles = if tiles > 0 { format!("{tiles} tiles") } else { "one piece".to_owned() };
+                let tiles =
+                    if tiles > 0 { format!("{tiles} tiles") } else { "one piece".to_owned() };
                 Self {
                     parts: plan.memory(scene, place),
                     cut: format!("in {tiles}, photons in {batches} batches"),
@@ -123,7 +125,8 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
         figures["scene"] = json!(scene.name);
         figures["width"] = json!(film.width);
         figures["height"] = json!(film.height);
-        figures["memory"] = Value::from_iter(memory.iter().map(|(name, need)| (*name, need.as_json())));
+        figures["memory"] =
+            Value::from_iter(memory.iter().map(|(name, need)| (*name, need.as_json())));
         figures["settings"] = json!(plan.settings);
         figures["radius_why"] = json!(plan.told_radius().map(|radius| radius.to_string()));
         result(figures)?;
@@ -155,12 +158,17 @@ fn report(packed: &Packed, plan: &Plan) -> InfoReport {
     let used = |kernel| steps.iter().any(|step| step.kernel == kernel);
     // A path tracer is one kernel, of the CPU engine, and keeps nothing but the film.
     let path = plan.settings.method == Method::Path;
-    let kernels = Kernel::ALL.iter().map(|kernel| (kernel.stem().to_owned(), !path && used(*kernel)));
+    let kernels =
+        Kernel::ALL.iter().map(|kernel| (kernel.stem().to_owned(), !path && used(*kernel)));
     let kernels = kernels.chain([("path_trace".to_owned(), path)]);
     let tables = scene_tables(&packed.scene).into_iter().filter(|(_, bytes)| *bytes > 0);
     let own_buffers = plan.buffers().into_iter().filter(|(name, _)| !path || *name == "film");
     let buffers = tables.chain(own_buffers).map(|(name, bytes)| (name.to_owned(), bytes));
-    InfoReport { features: features.collect(), kernels: kernels.collect(), buffers: buffers.collect() }
+    InfoReport {
+        features: features.collect(),
+        kernels: kernels.collect(),
+        buffers: buffers.collect(),
+    }
 }
 
 impl InfoReport {
@@ -215,7 +223,9 @@ mod tests {
         };
         let text = report.to_string();
         assert!(
-            text.contains("features needed: glass\nfeatures left out: lens\nkernels needed: gather\n"),
+            text.contains(
+                "features needed: glass\nfeatures left out: lens\nkernels needed: gather\n"
+            ),
             "{text}"
         );
         assert!(text.lines().last().unwrap().ends_with(" 4104"), "{text}");

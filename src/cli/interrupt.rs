@@ -1,5 +1,5 @@
-//! Ctrl-C and termination signals. While something is prepared, one ends the program at once; while a
-//! render has passes to keep, the first asks for an end and the second ends at once.
+//! Ctrl-C and termination signals. While something is prepared, one ends the program at once; while
+//! a render has passes to keep, the first asks for an end and the second ends at once.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, OnceLock, PoisonError};
@@ -22,9 +22,9 @@ pub fn is_end() -> bool {
     arguments.next().is_some_and(|argument| argument == END) && arguments.next().is_none()
 }
 
-/// Ends the process at once, with the code of an interrupt, whatever its other threads are at. What C
-/// libraries do at a regular exit takes a driver's compiler apart while it compiles, which ends in a crash;
-/// so the program gives its place to a new one, of a single thread, that exits.
+/// Ends the process at once, with the code of an interrupt, whatever its other threads are at. What
+/// C libraries do at a regular exit takes a driver's compiler apart while it compiles, which ends
+/// in a crash; so the program gives its place to a new one, of a single thread, that exits.
 fn end() -> ! {
     ENDING.store(true, Ordering::SeqCst);
     #[cfg(unix)]
@@ -50,7 +50,9 @@ pub fn wait_if_ending() {
 pub fn begin(renders: bool) {
     let handler = move || {
         if !RENDERING.load(Ordering::Relaxed) {
-            if let Some(last_words) = LAST_WORDS.lock().unwrap_or_else(PoisonError::into_inner).take() {
+            if let Some(last_words) =
+                LAST_WORDS.lock().unwrap_or_else(PoisonError::into_inner).take()
+            {
                 last_words();
             }
             paragraph(match renders {
@@ -80,7 +82,9 @@ pub fn last_words(last_words: impl FnOnce() + Send + 'static) {
 pub fn flag() -> &'static AtomicBool {
     RENDERING.store(true, Ordering::Relaxed);
     if let Some(error) = FAILED.get() {
-        message(format_args!("warning: Ctrl-C will end the program without saving the picture: {error}"));
+        message(format_args!(
+            "warning: Ctrl-C will end the program without saving the picture: {error}"
+        ));
     }
     &INTERRUPTED
 }

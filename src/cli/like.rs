@@ -45,7 +45,8 @@ impl Like {
         &self.made.device
     }
 
-    /// Where it goes where no name is given: beside nothing that is there by this program's own naming.
+    /// Where it goes where no name is given: beside nothing that is there by this program's own
+    /// naming.
     pub fn output(&self) -> PathBuf {
         let stem = self.file.file_stem().unwrap_or_default().to_string_lossy();
         PathBuf::from(format!("{stem}-again.exr"))
@@ -85,8 +86,10 @@ impl Like {
                 self.version
             )
         });
-        let other = self.made.digest.as_ref().is_some_and(|digest| *digest != Identity::of(scene).digest());
-        let scene = other.then(|| "the scene, or a file that it names, has changed since".to_owned());
+        let other =
+            self.made.digest.as_ref().is_some_and(|digest| *digest != Identity::of(scene).digest());
+        let scene =
+            other.then(|| "the scene, or a file that it names, has changed since".to_owned());
         version.into_iter().chain(scene).collect()
     }
 }

@@ -1,4 +1,5 @@
-//! Logs on standard error: `-v` tells the device and the stages with their seconds, `-vv` every pass too.
+//! Logs on standard error: `-v` tells the device and the stages with their seconds, `-vv` every
+//! pass too.
 
 use std::sync::OnceLock;
 use std::time::Instant;
@@ -33,7 +34,8 @@ pub fn is_on() -> bool {
     log::max_level() > LevelFilter::Off
 }
 
-/// Libraries are heard one level later than the program itself: `-v` has their warnings, `-vv` what they find worth telling.
+/// Libraries are heard one level later than the program itself: `-v` has their warnings, `-vv` what
+/// they find worth telling.
 fn wanted(level: Level, target: &str, most: LevelFilter) -> bool {
     let own = target.split("::").next() == Some(OWN);
     let most = match (own, most) {
@@ -53,7 +55,11 @@ impl Log for Writer {
         if self.enabled(record.metadata()) {
             let seconds = self.begun.get().map_or(0.0, |begun| begun.elapsed().as_secs_f64());
             let level = record.level().as_str().to_ascii_lowercase();
-            paragraph(format_args!("{seconds:9.3} s {level:<5} {}: {}", record.target(), record.args()));
+            paragraph(format_args!(
+                "{seconds:9.3} s {level:<5} {}: {}",
+                record.target(),
+                record.args()
+            ));
         }
     }
 
@@ -68,7 +74,10 @@ mod tests {
     #[test]
     fn libraries_are_quieter() {
         let (v, vv) = (LevelFilter::Info, LevelFilter::Debug);
-        assert!(wanted(Level::Info, "caustica::stage", v) && !wanted(Level::Debug, "caustica::device", v));
+        assert!(
+            wanted(Level::Info, "caustica::stage", v)
+                && !wanted(Level::Debug, "caustica::device", v)
+        );
         assert!(wanted(Level::Debug, "caustica::device", vv));
         assert!(wanted(Level::Warn, "wgpu_hal::vulkan", v) && !wanted(Level::Info, "wgpu_core", v));
         assert!(wanted(Level::Info, "wgpu_core", vv) && !wanted(Level::Debug, "wgpu_core", vv));

@@ -71,7 +71,8 @@ impl Made {
         layers.extend_from_slice(&self.layers);
         layers.extend(self.denoised.iter().flat_map(denoise::layer));
         let write = |output: &Path| {
-            let denoised = self.denoised.as_ref().filter(|_| Format::of(output) == Some(Format::Png));
+            let denoised =
+                self.denoised.as_ref().filter(|_| Format::of(output) == Some(Format::Png));
             film::write(output, denoised.unwrap_or(&self.picture), &layers, development, made)
         };
         let saved = Cell::new(false);
@@ -87,7 +88,12 @@ impl Made {
     }
 
     /// Tells how it came about, and the files.
-    pub fn tell(&self, json: bool, reporter: &Reporter, outputs: &[PathBuf]) -> Result<(), Failure> {
+    pub fn tell(
+        &self,
+        json: bool,
+        reporter: &Reporter,
+        outputs: &[PathBuf],
+    ) -> Result<(), Failure> {
         let progress = &self.progress;
         if json {
             let mut done = event("done", progress);
@@ -111,15 +117,18 @@ impl Made {
             reporter.note(&format!("the error aimed at, {}, is not reached", percent(target)));
         }
         if self.denoised.is_some() {
-            reporter
-                .note(&format!("denoised by {}; the error is that of the render before it", denoise::NAME));
+            reporter.note(&format!(
+                "denoised by {}; the error is that of the render before it",
+                denoise::NAME
+            ));
         }
         outputs.iter().try_for_each(|output| result(output.display()))
     }
 }
 
-/// Saves a picture that could not be written where it should go, with its radiance, in the first of these
-/// places that takes it: the folder of another output, the current one, that of temporary files.
+/// Saves a picture that could not be written where it should go, with its radiance, in the first of
+/// these places that takes it: the folder of another output, the current one, that of temporary
+/// files.
 fn save_elsewhere(outputs: &[PathBuf], write: impl Fn(&Path) -> Result<(), FileError>) {
     let folders = outputs.iter().filter_map(|output| Some(output.parent()?.to_owned()));
     let folders = folders.chain([PathBuf::from("."), std::env::temp_dir()]);
@@ -137,8 +146,8 @@ fn save_elsewhere(outputs: &[PathBuf], write: impl Fn(&Path) -> Result<(), FileE
     message("the picture could not be saved anywhere else");
 }
 
-/// Writes each output; one that fails keeps no other from being written. All failures but the last are
-/// printed, and that one is returned.
+/// Writes each output; one that fails keeps no other from being written. All failures but the last
+/// are printed, and that one is returned.
 pub fn write_all(
     outputs: &[impl AsRef<Path>],
     write: impl Fn(&Path) -> Result<(), FileError>,

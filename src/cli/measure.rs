@@ -42,8 +42,12 @@ pub fn on_device(
         DeviceKind::Cpu => on_cpu(packed, settings, PASSES),
         _ => on_gpu(&AdapterChoice::Named(device.name.clone()), &packed, settings, PASSES),
     };
-    if device.kind == DeviceKind::Software && std::env::var_os("MESA_SHADER_CACHE_DISABLE").is_none() {
-        message("warning: Mesa keeps compiled shaders; for true times say MESA_SHADER_CACHE_DISABLE=true");
+    if device.kind == DeviceKind::Software
+        && std::env::var_os("MESA_SHADER_CACHE_DISABLE").is_none()
+    {
+        message(
+            "warning: Mesa keeps compiled shaders; for true times say MESA_SHADER_CACHE_DISABLE=true",
+        );
     }
     let features = Features::of(&packed.scene, settings);
     let with = |scene| {

@@ -18,11 +18,12 @@ use super::{Done, Failure};
 #[derive(clap::Args)]
 #[command(after_help = HELP)]
 pub struct Arguments {
-    /// Checkpoints of ranges of passes that follow one another, in any order; a single one gives its picture
+    /// Checkpoints of ranges of passes that follow one another, in any order; a single one gives
+    /// its picture
     #[arg(required = true, value_name = "CHECKPOINT")]
     checkpoints: Vec<PathBuf>,
-    /// File to write, by its extension: .png (tone-mapped), .exr, .pfm, .hdr, or .checkpoint to merge further; may be given several
-    /// times
+    /// File to write, by its extension: .png (tone-mapped), .exr, .pfm, .hdr, or .checkpoint to
+    /// merge further; may be given several times
     #[arg(short, long, required = true, value_name = "FILE")]
     output: Vec<PathBuf>,
     /// Print the result as a JSON object
@@ -41,8 +42,10 @@ The picture is that of a render of all passes, but for rounding (docs/checkpoint
 /// Merges and writes.
 pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     let Arguments { checkpoints, output: outputs, json } = arguments;
-    let (merged, pictures): (Vec<PathBuf>, Vec<PathBuf>) =
-        outputs.iter().cloned().partition(|output| output.extension().is_some_and(|e| e == EXTENSION));
+    let (merged, pictures): (Vec<PathBuf>, Vec<PathBuf>) = outputs
+        .iter()
+        .cloned()
+        .partition(|output| output.extension().is_some_and(|e| e == EXTENSION));
     if let Some(file) = pictures.iter().find(|picture| Format::of(picture).is_none()) {
         return Err(FileError::UnknownFormat {
             file: file.clone(),
@@ -87,7 +90,10 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     Ok(Done::Fully)
 }
 
-fn write_pictures(pictures: &[impl AsRef<Path>], all: &Checkpoint) -> Result<Option<RelativeError>, Failure> {
+fn write_pictures(
+    pictures: &[impl AsRef<Path>],
+    all: &Checkpoint,
+) -> Result<Option<RelativeError>, Failure> {
     let (picture, errors, rejections) = all.develop();
     if !rejections.is_empty() {
         message(format_args!("warning: {}", left_out(&rejections)));

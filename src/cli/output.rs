@@ -1,5 +1,5 @@
-//! Lines on standard output and standard error. A reader that went away, as in `caustica info scene.toml | head`, is no
-//! failure; results that cannot be written for another reason are.
+//! Lines on standard output and standard error. A reader that went away, as in `caustica info
+//! scene.toml | head`, is no failure; results that cannot be written for another reason are.
 //!
 //! Names and texts come from files that may be anybody's: control characters in them never reach a
 //! terminal.
@@ -58,7 +58,8 @@ fn to_stderr(line: &str) {
     let _ = writeln!(io::stderr(), "{line}");
 }
 
-/// Whether a terminal shows `c` and does nothing else. Characters that turn the direction of writing do.
+/// Whether a terminal shows `c` and does nothing else. Characters that turn the direction of
+/// writing do.
 fn is_plain(c: char) -> bool {
     let turns = matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
     (!c.is_control() && !turns) || matches!(c, '\n' | '\t')
@@ -85,8 +86,8 @@ pub fn one_line(text: &str) -> String {
     printable(text).replace('\n', "\\n")
 }
 
-/// Theory: a terminal acts on C0 and C1 control characters, and on sequences that begin with one; even
-/// colours can hide what follows.
+/// Theory: a terminal acts on C0 and C1 control characters, and on sequences that begin with one;
+/// even colours can hide what follows.
 #[cfg(test)]
 mod tests {
     use super::*;

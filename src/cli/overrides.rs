@@ -16,26 +16,30 @@ use super::allowed::Allowed;
 #[derive(Args, Debug, Default)]
 #[command(next_help_heading = "Instead of the scene file's settings")]
 pub struct Overrides {
-    /// Settings by what the picture is for, in the place of the scene's method, passes, photons, radius, rule, alpha and
-    /// direct; other options change them further
+    /// Settings by what the picture is for, in the place of the scene's method, passes, photons,
+    /// radius, rule, alpha and direct; other options change them further
     #[arg(long, value_name = "draft|preview|final|reference", value_parser = quality(), hide_possible_values = true)]
     pub quality: Option<Quality>,
-    /// Light transport: stochastic progressive photon mapping, progressive photon mapping, or path tracing (CPU only)
+    /// Light transport: stochastic progressive photon mapping, progressive photon mapping, or path
+    /// tracing (CPU only)
     #[arg(long, value_name = "sppm|ppm|path", value_parser = word::<Method>)]
     method: Option<Method>,
-    /// Number of passes; render alone also takes those numbered from A to before B, counted from 0, to be merged with others
+    /// Number of passes; render alone also takes those numbered from A to before B, counted from 0,
+    /// to be merged with others
     #[arg(long, value_name = "N|A..B", value_parser = passes)]
     passes: Option<Passes>,
     /// Photons emitted per pass
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub photons: Option<u32>,
-    /// Photons that are traced and gathered at once, at the most [default: as many as four million records hold]
+    /// Photons that are traced and gathered at once, at the most [default: as many as four million
+    /// records hold]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     batch: Option<u32>,
     /// Start radius: pixels at the visible point as 2px, scene units as 0.01, or auto
     #[arg(long, value_name = "R", value_parser = radius, allow_negative_numbers = true)]
     radius: Option<Radius>,
-    /// Start radius of photons that a diffuse surface has scattered, over that of the others, from 1 to 16
+    /// Start radius of photons that a diffuse surface has scattered, over that of the others, from
+    /// 1 to 16
     #[arg(long, value_name = "X", value_parser = times, allow_negative_numbers = true)]
     indirect_radius: Option<f64>,
     /// How the radius shrinks

@@ -20,8 +20,8 @@ use super::{Done, Failure, hidden, threads};
 pub struct Arguments {
     /// Scene file
     scene: PathBuf,
-    /// Picture that the key S writes, by its extension: .png (tone-mapped), .exr, .pfm, .hdr; may be given several times
-    /// [default: the scene's name with .png, in the current folder]
+    /// Picture that the key S writes, by its extension: .png (tone-mapped), .exr, .pfm, .hdr; may
+    /// be given several times [default: the scene's name with .png, in the current folder]
     #[arg(short, long, value_name = "FILE")]
     output: Vec<PathBuf>,
     /// Device to render on: auto, gpu, software, cpu, cpu-f64, or a part of a device's name
@@ -61,10 +61,13 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     overrides.apply(&mut loaded.scene, &mut loaded.settings);
     let device = device::parse(&device);
     // a device that is not there is told here, before there is a window
-    let needs_list =
-        |wanted: &device::Wanted| !matches!(wanted, device::Wanted::Cpu | device::Wanted::CpuDouble);
+    let needs_list = |wanted: &device::Wanted| {
+        !matches!(wanted, device::Wanted::Cpu | device::Wanted::CpuDouble)
+    };
     let others = against_device.as_deref().map(device::parse);
-    for wanted in [Some(&device), others.as_ref()].into_iter().flatten().filter(|wanted| needs_list(wanted)) {
+    for wanted in
+        [Some(&device), others.as_ref()].into_iter().flatten().filter(|wanted| needs_list(wanted))
+    {
         device::pick(wanted, &device::list())?;
         hidden::warn(wanted);
     }

@@ -34,8 +34,8 @@ impl Reporter {
             Self::Silent
         } else if std::io::stderr().is_terminal() && !log::is_on() {
             let bar = ProgressBar::with_draw_target(Some(BAR_LENGTH), ProgressDrawTarget::stderr());
-            let style =
-                ProgressStyle::with_template("{bar:16} {wide_msg}").unwrap_or(ProgressStyle::default_bar());
+            let style = ProgressStyle::with_template("{bar:16} {wide_msg}")
+                .unwrap_or(ProgressStyle::default_bar());
             bar.set_style(style);
             Self::Bar(bar)
         } else {
@@ -80,8 +80,8 @@ impl Reporter {
     }
 }
 
-/// The progress as a JSON object with the name of an event; times in seconds, the radius in scene units, errors relative (null
-/// where there is no estimate yet).
+/// The progress as a JSON object with the name of an event; times in seconds, the radius in scene
+/// units, errors relative (null where there is no estimate yet).
 pub fn event(name: &str, progress: &Progress) -> serde_json::Value {
     json!({
         "event": name,
@@ -103,8 +103,9 @@ pub fn event(name: &str, progress: &Progress) -> serde_json::Value {
     })
 }
 
-/// Decides which passes get a line: the first, the last, every tenth part, and those that come `every` after the last
-/// line or later; in a long render the gap grows to a share of the time gone by, so that a log stays readable.
+/// Decides which passes get a line: the first, the last, every tenth part, and those that come
+/// `every` after the last line or later; in a long render the gap grows to a share of the time gone
+/// by, so that a log stays readable.
 pub struct Pace {
     every: Duration,
     growth: f64,
@@ -180,8 +181,8 @@ pub fn time(duration: Duration) -> String {
     }
 }
 
-/// Theory: a watcher of a log wants a sign of life every two seconds or tenth part, and no more than some dozens of
-/// lines an hour.
+/// Theory: a watcher of a log wants a sign of life every two seconds or tenth part, and no more
+/// than some dozens of lines an hour.
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -205,7 +206,9 @@ mod tests {
     /// Lines of a render of `passes` passes of so many seconds each.
     fn lines(passes: u32, seconds: f64) -> Vec<u32> {
         let mut pace = Pace::new(Duration::from_secs(2), 0.05);
-        (1..=passes).filter(|&pass| pace.due(&at(pass, passes, f64::from(pass) * seconds))).collect()
+        (1..=passes)
+            .filter(|&pass| pace.due(&at(pass, passes, f64::from(pass) * seconds)))
+            .collect()
     }
 
     #[test]
@@ -232,7 +235,10 @@ mod tests {
         assert_eq!(count(1000.0), "1.00 k");
         assert_eq!(count(99_940.0), "99.9 k");
         assert_eq!(count(2.5e9), "2.50 G");
-        assert_eq!([0.000_12, 0.0234, 0.123, 1.5].map(percent), ["0.01 %", "2.34 %", "12.3 %", "150 %"]);
+        assert_eq!(
+            [0.000_12, 0.0234, 0.123, 1.5].map(percent),
+            ["0.01 %", "2.34 %", "12.3 %", "150 %"]
+        );
         assert_eq!(time(Duration::from_millis(3210)), "3.2 s");
         assert_eq!(time(Duration::from_secs(125)), "2 min 05 s");
         assert_eq!(time(Duration::from_secs(4800)), "1 h 20 min");

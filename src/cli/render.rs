@@ -154,7 +154,8 @@ fn run_on(arguments: Arguments, find: &Find) -> Result<Done, Failure> {
         named => named.to_vec(),
     };
     check_outputs(&outputs)?;
-    let files = checkpoint::Files::new(arguments.checkpoint.as_deref(), arguments.resume.as_deref())?;
+    let files =
+        checkpoint::Files::new(arguments.checkpoint.as_deref(), arguments.resume.as_deref())?;
     let loaded = match &like {
         Some(like) => {
             let mut loaded = like.load(&file, &arguments.overrides.allowed)?;
@@ -168,9 +169,11 @@ fn run_on(arguments: Arguments, find: &Find) -> Result<Done, Failure> {
     scene.film.aovs = asked;
     arguments.extent.apply(&mut scene.film, &outputs)?;
     let asked = scene.film.aovs;
-    let denoiser = arguments.denoise.then(|| denoise::begin(&mut scene.film, &outputs)).transpose()?;
+    let denoiser =
+        arguments.denoise.then(|| denoise::begin(&mut scene.film, &outputs)).transpose()?;
     let passes = arguments.overrides.passes();
-    let first_pass = passes.map_or(like.as_ref().map_or(0, Like::first_pass), |passes| passes.first);
+    let first_pass =
+        passes.map_or(like.as_ref().map_or(0, Like::first_pass), |passes| passes.first);
     check_range(first_pass, &settings)?;
     let device = arguments.device.as_deref().or(like.as_ref().map(Like::device)).unwrap_or("auto");
     let json = arguments.voice.json;
@@ -217,7 +220,8 @@ fn run_on(arguments: Arguments, find: &Find) -> Result<Done, Failure> {
     let outcome = match arguments.overrides.quality.filter(|_| from.is_none()) {
         Some(quality) => {
             let promise = Promise { quality, stop, settings: &opened.settings, json };
-            let mut tell = |calibration: &Calibration| promise.tell(calibration, &reporter.borrow());
+            let mut tell =
+                |calibration: &Calibration| promise.tell(calibration, &reporter.borrow());
             let mut watched = Calibrating::new(engine, &mut tell);
             resume(&mut watched, state, progress, interrupt::flag(), &mut show, saving)
         }
@@ -292,7 +296,10 @@ fn broken_off(error: EngineError, passes: u32, keeper: &Keeper) -> Result<Done, 
 
 /// Fails where passes do not stand by themselves, but are to begin in the middle.
 fn check_range(first_pass: u32, settings: &RenderSettings) -> Result<(), Failure> {
-    if first_pass > 0 && settings.radius_rule == RadiusRule::Local && settings.method != Method::Path {
+    if first_pass > 0
+        && settings.radius_rule == RadiusRule::Local
+        && settings.method != Method::Path
+    {
         return Err(Failure::wrong_use(
             &format!(
                 "passes from {first_pass} on cannot be rendered by themselves under the local rule, where each needs the photon \
@@ -315,7 +322,9 @@ fn check_target(settings: &RenderSettings) -> Result<(), Failure> {
         _ => return Ok(()),
     };
     Err(Failure::wrong_use(
-        &format!("{what}, and what the picture is off by that stays: it may never state the error aimed at"),
+        &format!(
+            "{what}, and what the picture is off by that stays: it may never state the error aimed at"
+        ),
         &format!("give --passes or --time beside --target-error, or take {instead}"),
     ))
 }
@@ -361,7 +370,8 @@ impl Promise<'_> {
     /// Tells the expected error and time of the whole render.
     fn tell(&self, calibration: &Calibration, reporter: &Reporter) {
         let Calibration { seconds_per_pass, one_pass } = *calibration;
-        let in_time = self.stop.time.map_or(f64::MAX, |time| time.as_secs_f64() / seconds_per_pass.max(1e-9));
+        let in_time =
+            self.stop.time.map_or(f64::MAX, |time| time.as_secs_f64() / seconds_per_pass.max(1e-9));
         let passes = f64::from(self.stop.passes).min(in_time.max(2.0)) as u32;
         let seconds = seconds_per_pass * f64::from(passes);
         let expected = expected(one_pass, passes, self.settings.method);

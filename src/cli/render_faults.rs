@@ -1,7 +1,8 @@
 //! The command `render` on devices that fail, at every step in turn.
 //!
-//! Theory: a person who named a device gets the picture of the passes that are left, a checkpoint of them, and exit code 5; one who
-//! left the choice to the program gets the picture. Both end in the bits of a render that never failed.
+//! Theory: a person who named a device gets the picture of the passes that are left, a checkpoint
+//! of them, and exit code 5; one who left the choice to the program gets the picture. Both end in
+//! the bits of a render that never failed.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -15,7 +16,8 @@ use super::{Arguments, Done, Failure, run_on};
 
 /// An empty folder.
 fn folder(name: &str) -> PathBuf {
-    let folder = std::env::temp_dir().join(format!("caustica-faults-{}-{name}", std::process::id()));
+    let folder =
+        std::env::temp_dir().join(format!("caustica-faults-{}-{name}", std::process::id()));
     if folder.exists() {
         fs::remove_dir_all(&folder).unwrap();
     }
@@ -23,7 +25,8 @@ fn folder(name: &str) -> PathBuf {
     folder
 }
 
-/// What the command is asked: the scene, small, into `a.exr` in a folder, with an error to aim at, so that no step depends on a clock.
+/// What the command is asked: the scene, small, into `a.exr` in a folder, with an error to aim at,
+/// so that no step depends on a clock.
 fn arguments(folder: &Path, more: &[&str]) -> Arguments {
     let output = folder.join("a.exr");
     let common = [
@@ -40,12 +43,18 @@ fn arguments(folder: &Path, more: &[&str]) -> Arguments {
     ];
     let rest = ["--target-error", "0.000001%", "--quiet", "-o", output.to_str().unwrap()];
     let all = common.iter().chain(&rest).chain(more);
-    let matches = Arguments::augment_args(Command::new("render")).try_get_matches_from(all).unwrap();
+    let matches =
+        Arguments::augment_args(Command::new("render")).try_get_matches_from(all).unwrap();
     Arguments::from_arg_matches(&matches).unwrap()
 }
 
 /// Renders on devices of which each fails by its script, and perhaps one more that does not.
-fn render(folder: &Path, more: &[&str], scripts: &[&Shared], and_cpu: bool) -> Result<Done, Failure> {
+fn render(
+    folder: &Path,
+    more: &[&str],
+    scripts: &[&Shared],
+    and_cpu: bool,
+) -> Result<Done, Failure> {
     let list = || {
         let faulty = scripts.iter().map(|script| candidate(script));
         Candidates::from_list(faulty.chain(and_cpu.then(successor)))
@@ -57,7 +66,8 @@ fn pixels(folder: &Path) -> Vec<u32> {
     read(&folder.join("a.exr")).unwrap().rgb.iter().flatten().map(|x| x.to_bits()).collect()
 }
 
-/// The picture without failures, for one test, and what the device is asked for on the way with these options.
+/// The picture without failures, for one test, and what the device is asked for on the way with
+/// these options.
 fn whole(test: &str, more: &[&str]) -> (Vec<u32>, Vec<Step>) {
     let (folder, script) = (folder(&format!("{test}-whole")), script(None));
     assert!(matches!(render(&folder, more, &[&script], false), Ok(Done::Fully)));
@@ -87,7 +97,10 @@ fn the_program_ends_in_the_same_bits() {
             Ok(Done::DeviceLost) => {
                 assert!(folder.join("a.exr").exists(), "step {number}: no picture");
                 let resumed = [&["--resume", file], &kept[..]].concat();
-                assert!(matches!(render(&folder, &resumed, &[], true), Ok(Done::Fully)), "step {number}");
+                assert!(
+                    matches!(render(&folder, &resumed, &[], true), Ok(Done::Fully)),
+                    "step {number}"
+                );
             }
             Ok(Done::Fully) => {
                 assert!(faulty.borrow().asked.len() <= number, "step {number} went unnoticed")
@@ -137,7 +150,10 @@ fn batches_stay() {
     assert!(batched != whole("batches", &[]).0, "sums are rounded batch by batch");
     let third = (0..steps.len()).filter(|i| steps[*i] == Step::Pass).nth(2).unwrap();
     let faulty = script(Some((third, Fault::OutOfMemory)));
-    assert!(matches!(render(&folder, &["--batch", "150"], &[&faulty], false), Ok(Done::DeviceLost)));
+    assert!(matches!(
+        render(&folder, &["--batch", "150"], &[&faulty], false),
+        Ok(Done::DeviceLost)
+    ));
     let kept = folder.join("a.checkpoint");
     let resumed = ["--resume", kept.to_str().unwrap(), "--memory-budget", "100MB"];
     assert!(matches!(render(&folder, &resumed, &[], true), Ok(Done::Fully)));

@@ -1,5 +1,6 @@
-//! Reports as a terminal may show them: without the control characters of what they quote. Lines of files
-//! come without them already (`scene::report`). Line feeds come from names too, and are escaped.
+//! Reports as a terminal may show them: without the control characters of what they quote. Lines of
+//! files come without them already (`scene::report`). Line feeds come from names too, and are
+//! escaped.
 
 use std::error::Error;
 use std::fmt;
@@ -47,7 +48,11 @@ impl<'a> Shown<'a> {
     pub fn of(found: &'a dyn Diagnostic) -> Self {
         let cause = found.source().map(|cause| Box::new(Words::of(cause)));
         let words = Words { text: one_line(&found.to_string()), cause };
-        Self { found, words, related: found.related().into_iter().flatten().map(Self::of).collect() }
+        Self {
+            found,
+            words,
+            related: found.related().into_iter().flatten().map(Self::of).collect(),
+        }
     }
 
     /// The whole report, in colours where these are wanted.

@@ -17,7 +17,8 @@ pub fn listen(handler: impl Fn() + Send + 'static) -> io::Result<()> {
     use signal_hook::iterator::Signals;
 
     let ignored = ignored();
-    let caught = [SIGINT, SIGTERM, SIGHUP].map(|signal| (ignored >> (signal - 1) & 1 == 0).then_some(signal));
+    let caught = [SIGINT, SIGTERM, SIGHUP]
+        .map(|signal| (ignored >> (signal - 1) & 1 == 0).then_some(signal));
     // Handlers that nobody waits for would swallow signals, so that the thread comes first. It
     // allocates nothing before a signal comes: glibc would reserve 64 MiB of address space for it.
     let signals = Arc::new(Mutex::new(None::<Signals>));

@@ -39,13 +39,16 @@ pub struct Arguments {
     /// Time for everything, as in 2m or 1h
     #[arg(long, value_name = "TIME", value_parser = duration, default_value = "2m")]
     budget: Duration,
-    /// Picture of radiance that counts as the truth; several, made independently, show its own error
+    /// Picture of radiance that counts as the truth; several, made independently, show its own
+    /// error
     #[arg(long, value_name = "FILE", conflicts_with_all = ["truth_time", "truth_method", "truth_seeds"])]
     truth: Vec<PathBuf>,
-    /// Time for a truth of its own [default: a third of the budget, shared by all sizes of the lamp]
+    /// Time for a truth of its own [default: a third of the budget, shared by all sizes of the
+    /// lamp]
     #[arg(long, value_name = "TIME", value_parser = duration)]
     truth_time: Option<Duration>,
-    /// How it is made [default: the other method than those studied, unless that is much noisier or misses light]
+    /// How it is made [default: the other method than those studied, unless that is much noisier or
+    /// misses light]
     #[arg(long, value_name = "sppm|ppm|path", value_parser = word::<Method>)]
     truth_method: Option<Method>,
     /// Renders that the truth is the mean of
@@ -61,10 +64,12 @@ pub struct Arguments {
     /// [default, without --grid: method, radius_rule, radius, photons, direct, alpha]
     #[arg(long, value_name = "NAME=V1,V2", value_parser = axis)]
     vary: Vec<Axis>,
-    /// Device to render on: auto, gpu, software, cpu, or a part of a device's name; several are compared
+    /// Device to render on: auto, gpu, software, cpu, or a part of a device's name; several are
+    /// compared
     #[arg(long, value_name = "DEVICE", value_parser = NonEmptyStringValueParser::new(), default_value = "auto")]
     device: Vec<String>,
-    /// Part of the picture to show, columns x0 to x1 and rows y0 to y1 [default: the one with most contrast]
+    /// Part of the picture to show, columns x0 to x1 and rows y0 to y1 [default: the one with most
+    /// contrast]
     #[arg(long, value_name = "x0,y0,x1,y1", value_parser = region)]
     crop: Option<Region>,
     #[command(flatten)]
@@ -98,7 +103,8 @@ fn region(text: &str) -> Result<Region, String> {
     let numbers: Option<Vec<u32>> = text.split(',').map(|n| n.trim().parse().ok()).collect();
     match numbers.as_deref() {
         Some(&[x0, y0, x1, y1]) if x0 < x1 && y0 < y1 => Ok(Region { x0, y0, x1, y1 }),
-        _ => Err("expected four whole numbers with x0 < x1 and y0 < y1, as in 290,425,425,485".to_owned()),
+        _ => Err("expected four whole numbers with x0 < x1 and y0 < y1, as in 290,425,425,485"
+            .to_owned()),
     }
 }
 
@@ -108,18 +114,28 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     let own_size = (scene.film.width, scene.film.height);
     fit_size(&arguments, &mut scene, &mut settings)?;
     let about = about(&arguments, &scene, settings, own_size)?;
-    if let Some(crop) = arguments.crop.filter(|crop| !crop.fits(scene.film.width, scene.film.height)) {
+    if let Some(crop) =
+        arguments.crop.filter(|crop| !crop.fits(scene.film.width, scene.film.height))
+    {
         let (width, height) = about.size;
         return Err(Failure::wrong_use(
             &format!("the crop ({crop}) reaches beyond the picture"),
-            &format!("the study's pictures have {width} columns and {height} rows; --size sets that"),
+            &format!(
+                "the study's pictures have {width} columns and {height} rows; --size sets that"
+            ),
         ));
     }
     let path = arguments.output.clone().unwrap_or_else(|| default_output(&arguments.scene));
     let folder = Folder::open(&path, &about)?;
     let mut teller = Teller { quiet: arguments.voice.quiet, json: arguments.voice.json };
     teller.begin(&about, &path)?;
-    let study = Study { scene: &scene, about, folder, crop: arguments.crop, interrupted: interrupt::flag() };
+    let study = Study {
+        scene: &scene,
+        about,
+        folder,
+        crop: arguments.crop,
+        interrupted: interrupt::flag(),
+    };
     compiling::begin(arguments.voice.quiet, arguments.voice.json);
     let conducted = study.conduct(&mut |event| teller.tell(event))?;
     if conducted.results.runs.is_empty() {
@@ -154,7 +170,9 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
         return Ok(Done::Interrupted);
     }
     match conducted.results.runs.iter().all(|run| run.failed.is_some()) {
-        true => Err(Failure::failed(miette!("none of the settings could be rendered; the report says why"))),
+        true => Err(Failure::failed(miette!(
+            "none of the settings could be rendered; the report says why"
+        ))),
         false => Ok(Done::Fully),
     }
 }
@@ -164,8 +182,13 @@ fn default_output(scene: &Path) -> PathBuf {
     PathBuf::from(format!("{stem}-study"))
 }
 
-/// The size that the user says, or the truth has, or one that is small enough to learn much in little time.
-fn fit_size(arguments: &Arguments, scene: &mut Scene, settings: &mut RenderSettings) -> Result<(), Failure> {
+/// The size that the user says, or the truth has, or one that is small enough to learn much in
+/// little time.
+fn fit_size(
+    arguments: &Arguments,
+    scene: &mut Scene,
+    settings: &mut RenderSettings,
+) -> Result<(), Failure> {
     let film = &mut scene.film;
     if arguments.overrides.size.is_some() {
         return Ok(());
@@ -180,7 +203,8 @@ fn fit_size(arguments: &Arguments, scene: &mut Scene, settings: &mut RenderSetti
         let scaled = |side: u32| ((f64::from(side) * factor).round() as u32).max(1);
         (film.width, film.height) = (scaled(film.width), scaled(film.height));
         if arguments.overrides.photons.is_none() {
-            settings.photons = ((f64::from(settings.photons) * factor * factor).round() as u32).max(1);
+            settings.photons =
+                ((f64::from(settings.photons) * factor * factor).round() as u32).max(1);
         }
     }
     Ok(())
@@ -308,7 +332,12 @@ impl Teller {
             (Event::Note(text), ..) => message(text),
             (Event::Run { done, of, label, seed, last, remaining }, ..) => {
                 let figures = last.map_or("failed".to_owned(), |p| {
-                    format!("{} passes in {:.1} s, relMSE {}", p.passes, p.seconds, words::short(p.rel_mse))
+                    format!(
+                        "{} passes in {:.1} s, relMSE {}",
+                        p.passes,
+                        p.seconds,
+                        words::short(p.rel_mse)
+                    )
                 });
                 message(format_args!(
                     "{done}/{of}  {label}, seed {seed}: {figures}; {} left",

@@ -32,7 +32,15 @@ impl<'a> Succession<'a> {
         json: bool,
     ) -> Self {
         let settings = settings.clone();
-        Self { candidates, scene, settings, memory, json, last: String::new(), rendered: Vec::new() }
+        Self {
+            candidates,
+            scene,
+            settings,
+            memory,
+            json,
+            last: String::new(),
+            rendered: Vec::new(),
+        }
     }
 
     /// An engine on the first device that can render this.
@@ -40,7 +48,8 @@ impl<'a> Succession<'a> {
         let mut refused = |name: &str, error: &EngineError| {
             paragraph(format_args!("warning: {name} cannot render this: {error}"));
         };
-        let opened = self.candidates.open(self.scene, &self.settings, &self.memory, &mut refused)?;
+        let opened =
+            self.candidates.open(self.scene, &self.settings, &self.memory, &mut refused)?;
         // the devices after it are to round alike
         self.settings.batch = opened.settings.batch;
         self.memory.same_batches = true;
@@ -48,7 +57,8 @@ impl<'a> Succession<'a> {
         Ok(opened)
     }
 
-    /// After the last one failed: an engine on the next one, which is to go on from `state`; nothing where there is none.
+    /// After the last one failed: an engine on the next one, which is to go on from `state`;
+    /// nothing where there is none.
     pub fn next(
         &mut self,
         error: &EngineError,

@@ -25,8 +25,9 @@ pub struct Arguments {
     #[arg(long, value_name = "N", default_value_t = Fineness::default().sectors,
           value_parser = clap::value_parser!(u32).range(3..=4096))]
     sectors: u32,
-    /// Largest distance of the mesh's outline from the profile, as a share of the profile's size, 1e-6 to 0.1
-    /// [default: as fine as around the axis: 2e-4 with 96 sectors, a quarter of that with twice as many]
+    /// Largest distance of the mesh's outline from the profile, as a share of the profile's size,
+    /// 1e-6 to 0.1 [default: as fine as around the axis: 2e-4 with 96 sectors, a quarter of that
+    /// with twice as many]
     #[arg(long, value_name = "F", value_parser = flatness, allow_negative_numbers = true)]
     flatness: Option<f64>,
     #[command(flatten)]
@@ -55,7 +56,8 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
         .transformed(&loaded.transform);
     let (vertices, triangles) = (mesh.positions.len(), mesh.triangles.len());
     let name = arguments.profile.file_name().unwrap_or_default().to_string_lossy();
-    let header = format!("{name} turned about its axis: {vertices} vertices, {triangles} triangles");
+    let header =
+        format!("{name} turned about its axis: {vertices} vertices, {triangles} triangles");
     write_whole(&output, mesh.to_obj(&header).as_bytes())?;
     message(format_args!("{vertices} vertices, {triangles} triangles"));
     result(output.display())?;

@@ -32,10 +32,13 @@ impl Viewer {
         }
     }
 
-    /// Sends the picture so far. A viewer that does not take it is told once and left alone: the render goes on.
+    /// Sends the picture so far. A viewer that does not take it is told once and left alone: the
+    /// render goes on.
     pub fn show(&mut self, picture: &Picture) {
         if let Some(error) = self.0.as_mut().and_then(|tev| tev.show(picture).err()) {
-            message(format_args!("warning: tev takes no more pictures: {error}; the render goes on"));
+            message(format_args!(
+                "warning: tev takes no more pictures: {error}; the render goes on"
+            ));
             self.0 = None;
         }
     }

@@ -1,7 +1,7 @@
 //! The thread pool, built before anything needs it.
 //!
-//! A system may refuse threads (`ulimit -u`, a container's `pids.max`). Then there are fewer, and where
-//! it gives none, all work is done on the main thread.
+//! A system may refuse threads (`ulimit -u`, a container's `pids.max`). Then there are fewer, and
+//! where it gives none, all work is done on the main thread.
 
 use std::num::NonZero;
 use std::sync::{Arc, Mutex, mpsc};
@@ -20,8 +20,8 @@ const SPACE: u64 = 160 << 20;
 /// Threads that the program needs beside the pool: signals, and those of a driver.
 const OTHERS: usize = 2;
 
-/// Builds the pool: as many threads as the process may use cores, which on Linux follows the affinity and
-/// the cgroup's CPU quota, or as `RAYON_NUM_THREADS` says.
+/// Builds the pool: as many threads as the process may use cores, which on Linux follows the
+/// affinity and the cgroup's CPU quota, or as `RAYON_NUM_THREADS` says.
 ///
 /// # Errors
 /// Where the system allows no pool at all.
@@ -50,7 +50,8 @@ pub fn begin() -> Result<(), Failure> {
         ));
     }
     let pool = rayon::ThreadPoolBuilder::new().num_threads(given);
-    // Only where there is no other: work that another thread gives to the pool waits for this one then.
+    // Only where there is no other: work that another thread gives to the pool waits for this one
+    // then.
     let pool = if spare == 0 { pool.use_current_thread() } else { pool };
     pool.build_global().map_err(|error| {
         Failure::failed(miette!(

@@ -4,8 +4,12 @@ mod photons;
 mod tasks;
 
 use super::kernels::aov_trace::AovPixel;
-use super::kernels::bytes::{aovs_of, film_bytes, film_of, parts_of, statistics_bytes, statistics_of};
-use super::kernels::grid_build::{RecordList, SortedRecords, grid_count, grid_scan, grid_scatter, grid_sort};
+use super::kernels::bytes::{
+    aovs_of, film_bytes, film_of, parts_of, statistics_bytes, statistics_of,
+};
+use super::kernels::grid_build::{
+    RecordList, SortedRecords, grid_count, grid_scan, grid_scatter, grid_sort,
+};
 use super::kernels::path_trace::path_trace;
 use super::kernels::records::*;
 use super::kernels::resolve::{Found, fold, resolve};
@@ -72,10 +76,19 @@ impl CpuEngine {
             passes_done: 0,
             visible_points: vec![VisiblePoint::zeroed(); held("visible_points")],
             gathered: vec![Gathered::zeroed(); held("gathered")],
-            statistics: vec![Statistics::zeroed(); if plan.features.has("local") { points_kept } else { 0 }],
+            statistics: vec![
+                Statistics::zeroed();
+                if plan.features.has("local") { points_kept } else { 0 }
+            ],
             film: vec![FilmPixel::zeroed(); plan.pixels as usize],
-            aovs: vec![AovPixel::zeroed(); if plan.aovs.are_traced() { plan.pixels as usize } else { 0 }],
-            parts: vec![PartsPixel::zeroed(); if plan.parts_photons() { plan.pixels as usize } else { 0 }],
+            aovs: vec![
+                AovPixel::zeroed();
+                if plan.aovs.are_traced() { plan.pixels as usize } else { 0 }
+            ],
+            parts: vec![
+                PartsPixel::zeroed();
+                if plan.parts_photons() { plan.pixels as usize } else { 0 }
+            ],
             records: Vec::new(),
             part_starts: Vec::new(),
             starts: vec![0; buckets + 1],
@@ -91,7 +104,8 @@ impl CpuEngine {
     fn photon_pass(&mut self, report: &mut PassReport) -> Result<(), EngineError> {
         let mut batch = self.plan.batch_photons;
         loop {
-            *report = PassReport { photons: self.plan.settings.photons as u64, ..PassReport::default() };
+            *report =
+                PassReport { photons: self.plan.settings.photons as u64, ..PassReport::default() };
             match self.steps(batch, report) {
                 Ok(()) => return Ok(()),
                 // a pass that overflowed is thrown away and run again with batches half as large
@@ -104,7 +118,9 @@ impl CpuEngine {
     fn steps(&mut self, batch_photons: u32, report: &mut PassReport) -> Result<(), Unfinished> {
         let turn = self.plan.in_turn();
         let mut resolved = false;
-        for (number, steps) in self.plan.phases(self.passes_done, batch_photons).into_iter().enumerate() {
+        for (number, steps) in
+            self.plan.phases(self.passes_done, batch_photons).into_iter().enumerate()
+        {
             if number == 0 || turn.contains(&"gathered") {
                 self.gathered.par_iter_mut().for_each(|g| *g = Gathered::zeroed());
             }
@@ -140,7 +156,8 @@ impl CpuEngine {
         let chunk = first as usize..(first + points) as usize;
         let turn = self.plan.in_turn();
         // where a chunk's part of a buffer is
-        let place = |name: &str| if turn.contains(&name) { 0..points as usize } else { chunk.clone() };
+        let place =
+            |name: &str| if turn.contains(&name) { 0..points as usize } else { chunk.clone() };
         let (seen, found) = (place("visible_points"), place("gathered"));
         match step.kernel {
             Kernel::EyeTrace => {
@@ -157,9 +174,11 @@ impl CpuEngine {
                 report.eye_rays += rays;
             }
             Kernel::PhotonTrace => {
-                let (rays, ends) = trace_photons(self.arch, scene, d, sampled, cancel, &mut self.records);
+                let (rays, ends) =
+                    trace_photons(self.arch, scene, d, sampled, cancel, &mut self.records);
                 report.rays += rays;
-                let records = self.records.iter().map(|list| list.records.len() as u64).sum::<u64>();
+                let records =
+                    self.records.iter().map(|list| list.records.len() as u64).sum::<u64>();
                 // photons that are traced again for another tile are the same
                 if first_phase {
                     report.ends.add(&PhotonEnds::of(ends));
@@ -181,23 +200,26 @@ impl CpuEngine {
             Kernel::Gather => {
                 let points = self.visible_points[seen].par_chunks(GATHER_TASK);
                 let gathered = self.gathered[found].par_chunks_mut(GATHER_TASK);
-                let mut statistics = self.statistics.get(chunk).unwrap_or_default().chunks(GATHER_TASK);
+                let mut statistics =
+                    self.statistics.get(chunk).unwrap_or_default().chunks(GATHER_TASK);
                 let statistics: Vec<_> = (0..points.len()).map(|_| statistics.next()).collect();
-                gathered.zip(points).zip(statistics).for_each(|((gathered, points), statistics)| {
-                    let (starts, sorted) = (&self.starts, &self.sorted);
-                    if cancel.is_asked() {
-                        return;
-                    }
-                    self.arch.dispatch(Gathers {
-                        facets: &scene.facets,
-                        dispatch: d,
-                        points,
-                        statistics,
-                        starts,
-                        sorted,
-                        gathered,
-                    });
-                });
+                gathered.zip(points).zip(statistics).for_each(
+                    |((gathered, points), statistics)| {
+                        let (starts, sorted) = (&self.starts, &self.sorted);
+                        if cancel.is_asked() {
+                            return;
+                        }
+                        self.arch.dispatch(Gathers {
+                            facets: &scene.facets,
+                            dispatch: d,
+                            points,
+                            statistics,
+                            starts,
+                            sorted,
+                            gathered,
+                        });
+                    },
+                );
             }
             Kernel::AovTrace => trace_aovs(scene, d, &self.plan.features, &mut self.aovs),
             Kernel::ResolveParts => {
@@ -340,7 +362,9 @@ impl Engine for CpuEngine {
 
     fn gathered(&mut self) -> Result<u64, EngineError> {
         if self.plan.in_turn().contains(&"gathered") {
-            return Err(EngineError::Unsupported("what tiles have gathered is not kept".to_owned()));
+            return Err(EngineError::Unsupported(
+                "what tiles have gathered is not kept".to_owned(),
+            ));
         }
         Ok(self.gathered.par_iter().map(|gathered| u64::from(gathered.count)).sum())
     }

@@ -15,8 +15,8 @@ use std::ops::Range;
 /// Photons that one task traces, at the least and at the most, and tasks between.
 const PHOTON_TASK: (u32, u32) = (1024, 8192);
 const PHOTON_TASKS: u32 = 256;
-/// Bytes of the tree and its triangles above which it pays to trace photons side by side: below, they stay in a core's
-/// own cache.
+/// Bytes of the tree and its triangles above which it pays to trace photons side by side: below,
+/// they stay in a core's own cache.
 const LARGE: usize = 1 << 20;
 
 /// Whether rays wait for memory.
@@ -55,7 +55,8 @@ impl Photons<'_> {
         let Self { scene, dispatch, sampled, ids, list, .. } = self;
         let mut all = (0, [0; 3]);
         for id in ids {
-            let path = photon_trace(scene, dispatch, sampled, id, |record| list.records.push(record));
+            let path =
+                photon_trace(scene, dispatch, sampled, id, |record| list.records.push(record));
             add_path(&mut all, &path);
         }
         all
@@ -113,8 +114,8 @@ fn add_path((rays, ends): &mut Ends, path: &PhotonPath) {
     ends[path.end] += 1;
 }
 
-/// Photons of one batch; the lists come in the order of their keys. The number of rays, and of photons by how they ended.
-/// Tasks that begin after `cancel` was asked are empty.
+/// Photons of one batch; the lists come in the order of their keys. The number of rays, and of
+/// photons by how they ended. Tasks that begin after `cancel` was asked are empty.
 pub fn trace_photons(
     arch: pulp::Arch,
     scene: &Scene,
@@ -140,7 +141,9 @@ pub fn trace_photons(
             list,
         })
     });
-    let sum = |(sum, all): Ends, (rays, ends): Ends| (sum + rays, std::array::from_fn(|k| all[k] + ends[k]));
+    let sum = |(sum, all): Ends, (rays, ends): Ends| {
+        (sum + rays, std::array::from_fn(|k| all[k] + ends[k]))
+    };
     traced.reduce(|| (0, [0; 3]), sum)
 }
 
@@ -152,15 +155,16 @@ mod tests {
     use crate::scene;
     use pulp::WithSimd;
 
-    // Theory: a photon's path depends on its number alone, and lists are in the order of keys. So both ways leave the same
-    // records in the same order, whatever the shapes and the lights.
+    // Theory: a photon's path depends on its number alone, and lists are in the order of keys. So
+    // both ways leave the same records in the same order, whatever the shapes and the lights.
     #[test]
     fn side_by_side_is_one_by_one() {
         for name in ["still-life", "caustics", "water-drop", "cornell"] {
             let path = format!("{}/scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
             let loaded = scene::load(path.as_ref()).unwrap_or_else(|errors| panic!("{errors:?}"));
             let scene = &loaded.scene;
-            let packed = pack(scene, scene.film.width, scene.film.height).unwrap_or_else(|e| panic!("{e}"));
+            let packed =
+                pack(scene, scene.film.width, scene.film.height).unwrap_or_else(|e| panic!("{e}"));
             let plan = Plan::new(&packed, &loaded.settings);
             let dispatch = plan.dispatch(0);
             let trace = |dispatch: &Dispatch, side_by_side| {

@@ -49,7 +49,8 @@ impl Candidates {
     pub fn of(wanted: &Wanted, settings: &RenderSettings) -> Result<Self, DeviceError> {
         let path = Self::is_path_on_cpu(wanted, settings);
         let wanted = if path { &Wanted::Cpu } else { wanted };
-        // drivers take a while to answer and may write to standard error, so they are not asked for nothing
+        // drivers take a while to answer and may write to standard error, so they are not asked for
+        // nothing
         let devices = match wanted {
             Wanted::Cpu => vec![cpu(DeviceKind::Cpu)],
             Wanted::CpuDouble => vec![cpu(DeviceKind::CpuDouble)],
@@ -62,11 +63,9 @@ impl Candidates {
         let why = if path { "auto: path tracing runs on the CPU".to_owned() } else { why };
         let mut candidates = vec![Candidate::of(first, why)];
         if *wanted == Wanted::Auto {
-            candidates.extend(
-                successors(first, &devices)
-                    .into_iter()
-                    .map(|next| Candidate::of(next, "auto: the next after one that failed".to_owned())),
-            );
+            candidates.extend(successors(first, &devices).into_iter().map(|next| {
+                Candidate::of(next, "auto: the next after one that failed".to_owned())
+            }));
         }
         Ok(Self(candidates.into()))
     }
@@ -118,10 +117,12 @@ impl Candidates {
     }
 }
 
-/// The devices that `auto` goes on with after the first: other hardware GPUs, then the CPU. After the CPU there is none.
+/// The devices that `auto` goes on with after the first: other hardware GPUs, then the CPU. After
+/// the CPU there is none.
 fn successors<'a>(first: &DeviceInfo, devices: &'a [DeviceInfo]) -> Vec<&'a DeviceInfo> {
-    let of_kind =
-        |kind| devices.iter().filter(move |device| device.kind == kind && first.kind == DeviceKind::Gpu);
+    let of_kind = |kind| {
+        devices.iter().filter(move |device| device.kind == kind && first.kind == DeviceKind::Gpu)
+    };
     let others = of_kind(DeviceKind::Gpu).filter(|device| device.name != first.name);
     others.chain(of_kind(DeviceKind::Cpu)).collect()
 }

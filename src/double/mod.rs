@@ -1,7 +1,7 @@
-//! The CPU engine in f64: the sources of the f32 engine, compiled once more with `double/real.rs` in the place of
-//! `real.rs`. It draws the same random numbers, packs the scene without rounding it to f32 and keeps directions as
-//! they are, so that a picture of it and one of [`crate::cpu`] differ by what single precision costs, and by that
-//! alone.
+//! The CPU engine in f64: the sources of the f32 engine, compiled once more with `double/real.rs`
+//! in the place of `real.rs`. It draws the same random numbers, packs the scene without rounding it
+//! to f32 and keeps directions as they are, so that a picture of it and one of [`crate::cpu`]
+//! differ by what single precision costs, and by that alone.
 
 #![allow(clippy::duplicate_mod, clippy::useless_conversion, clippy::unnecessary_cast)]
 

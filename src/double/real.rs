@@ -17,7 +17,8 @@ pub type WideBits = u128;
 pub const ENGINE: &str = "CPU in f64";
 /// The exponent's bits.
 pub const EXPONENT: Bits = 0x7ff0_0000_0000_0000;
-/// The bits of the leading half of the mantissa and all above: products of two such numbers are exact.
+/// The bits of the leading half of the mantissa and all above: products of two such numbers are
+/// exact.
 pub const LEADING: Bits = 0xffff_ffff_f800_0000;
 
 /// An f64 rounding over an f32 rounding: 2^-29.

@@ -17,18 +17,21 @@ pub enum Coding {
     Display,
 }
 
-/// Reads a picture as linear light. That of a file for a display is its values without the sRGB curve, in [0, 1];
-/// a tone map that made them is not undone.
+/// Reads a picture as linear light. That of a file for a display is its values without the sRGB
+/// curve, in [0, 1]; a tone map that made them is not undone.
 ///
 /// # Errors
 /// Beside those of [`read`], for pictures with pixels that are not opaque.
 pub fn read_any(file: &Path) -> Result<(Picture, Coding), FileError> {
-    let extension = file.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase);
+    let extension =
+        file.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase);
     match (Format::of(file), extension.as_deref()) {
         (Some(Format::Exr), _) => Ok((read_opaque_exr(file)?, Coding::Radiance)),
         (Some(Format::Pfm | Format::Hdr), _) => Ok((read(file)?, Coding::Radiance)),
         (Some(Format::Png), _) => Ok((read_display(file, ImageFormat::Png)?, Coding::Display)),
-        (None, Some("jpg" | "jpeg")) => Ok((read_display(file, ImageFormat::Jpeg)?, Coding::Display)),
+        (None, Some("jpg" | "jpeg")) => {
+            Ok((read_display(file, ImageFormat::Jpeg)?, Coding::Display))
+        }
         (None, _) => Err(FileError::UnknownFormat {
             file: file.to_owned(),
             what: "its extension names no kind of picture that can be read".to_owned(),
@@ -55,7 +58,9 @@ fn read_display(file: &Path, format: ImageFormat) -> Result<Picture, FileError> 
         .map_err(|what| FileError::Malformed { file: file.to_owned(), what })?;
     // Eight bits widen to sixteen without a loss: 65535 = 255 * 257.
     let opaque = match image.color().has_alpha() {
-        true => Some(image.to_rgba16().pixels().map(|pixel| pixel.0[3] == u16::MAX).collect::<Vec<_>>()),
+        true => {
+            Some(image.to_rgba16().pixels().map(|pixel| pixel.0[3] == u16::MAX).collect::<Vec<_>>())
+        }
         false => None,
     };
     let picture = decoded(&image);
@@ -69,7 +74,11 @@ fn decoded(image: &DynamicImage) -> Picture {
     Picture::from_fn(pixels.width(), pixels.height(), |x, y| pixels.get_pixel(x, y).0.map(linear))
 }
 
-fn check_opaque(file: &Path, picture: &Picture, opaque: impl Iterator<Item = bool>) -> Result<(), FileError> {
+fn check_opaque(
+    file: &Path,
+    picture: &Picture,
+    opaque: impl Iterator<Item = bool>,
+) -> Result<(), FileError> {
     let mut others = opaque.enumerate().filter(|(_, opaque)| !opaque).map(|(index, _)| index);
     match others.next() {
         Some(first) => Err(FileError::Transparent {

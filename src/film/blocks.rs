@@ -6,9 +6,10 @@
 //! sigma^2 = s^2 / n + sum SE^2 / n^2 + (model * truth)^2
 //! ```
 //!
-//! from the scatter `s` of the difference inside the block (both pictures' noise, and detail that differs), the truth's
-//! standard errors `SE`, and an allowance for the bias of density estimation. For a render that agrees, `d / sigma` is
-//! Student-t of 63 degrees of freedom, so |d| > 4 sigma happens by chance in 1.7e-4 of the blocks.
+//! from the scatter `s` of the difference inside the block (both pictures' noise, and detail that
+//! differs), the truth's standard errors `SE`, and an allowance for the bias of density estimation.
+//! For a render that agrees, `d / sigma` is Student-t of 63 degrees of freedom, so |d| > 4 sigma
+//! happens by chance in 1.7e-4 of the blocks.
 
 use super::metrics::{MetricsError, check_comparable};
 use super::{Picture, luminance};
@@ -40,8 +41,8 @@ impl Block {
     }
 }
 
-/// Holds `render` against `truth`, whose standard errors are `standard_error` if they are known. `model` is the
-/// allowed bias as a share of the block's mean luminance, e.g. 0.01.
+/// Holds `render` against `truth`, whose standard errors are `standard_error` if they are known.
+/// `model` is the allowed bias as a share of the block's mean luminance, e.g. 0.01.
 pub fn block_deviations(
     render: &Picture,
     truth: &Picture,
@@ -55,15 +56,18 @@ pub fn block_deviations(
     let mut blocks = Vec::new();
     for y in (0..truth.height / BLOCK).map(|row| row * BLOCK) {
         for x in (0..truth.width / BLOCK).map(|column| column * BLOCK) {
-            let pixels = || (0..BLOCK * BLOCK).map(|i| pixel_index(truth, x + i % BLOCK, y + i / BLOCK));
-            let mean =
-                |value: &dyn Fn(usize) -> f64| pixels().map(value).sum::<f64>() / f64::from(BLOCK * BLOCK);
+            let pixels =
+                || (0..BLOCK * BLOCK).map(|i| pixel_index(truth, x + i % BLOCK, y + i / BLOCK));
+            let mean = |value: &dyn Fn(usize) -> f64| {
+                pixels().map(value).sum::<f64>() / f64::from(BLOCK * BLOCK)
+            };
             let difference = |i: usize| luminance(render.rgb[i]) - luminance(truth.rgb[i]);
             let d = mean(&difference);
             let scatter = mean(&|i| (difference(i) - d).powi(2));
             let error = standard_error.map_or(0.0, |se| mean(&|i| luminance(se.rgb[i]).powi(2)));
             let bias = model * mean(&|i| luminance(truth.rgb[i]));
-            let variance = (scatter + error) / f64::from(BLOCK * BLOCK) + bias.powi(2) + SMALLEST_VARIANCE;
+            let variance =
+                (scatter + error) / f64::from(BLOCK * BLOCK) + bias.powi(2) + SMALLEST_VARIANCE;
             blocks.push(Block { x, y, deviation: d / variance.sqrt() });
         }
     }

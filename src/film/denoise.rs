@@ -1,8 +1,9 @@
-//! A picture made smooth by [Open Image Denoise](https://www.openimagedenoise.org) 2, a C library that only the cargo feature
-//! `denoise` links. What it makes is to be looked at: it is no estimate, its bias is not known, and nothing here measures it.
+//! A picture made smooth by [Open Image Denoise](https://www.openimagedenoise.org) 2, a C library
+//! that only the cargo feature `denoise` links. What it makes is to be looked at: it is no
+//! estimate, its bias is not known, and nothing here measures it.
 //!
-//! The filter `RT` takes radiance as it is (HDR), with the layers `albedo` and `normal` as auxiliary pictures that may be noisy
-//! themselves.
+//! The filter `RT` takes radiance as it is (HDR), with the layers `albedo` and `normal` as
+//! auxiliary pictures that may be noisy themselves.
 
 use thiserror::Error;
 
@@ -10,7 +11,8 @@ use super::exr_file::Channel;
 use super::{Picture, Plane};
 use crate::scene::{Aov, Aovs};
 
-/// What made a denoised picture, as files tell it. The library's safe interface in Rust does not give the rest of its version.
+/// What made a denoised picture, as files tell it. The library's safe interface in Rust does not
+/// give the rest of its version.
 pub const NAME: &str = "Open Image Denoise 2";
 
 /// Why there is no denoised picture.
@@ -47,7 +49,8 @@ impl Denoiser {
         backend::open().map(Self)
     }
 
-    /// The picture without its noise, in the same unit. `layers` hold [`guides`] of the same pixels.
+    /// The picture without its noise, in the same unit. `layers` hold [`guides`] of the same
+    /// pixels.
     ///
     /// # Errors
     /// Where a layer is missing or of another size, or the library fails.
@@ -69,7 +72,8 @@ impl Denoiser {
 /// A denoised picture as the layer `denoised`.
 pub fn layer(denoised: &Picture) -> [Channel; 3] {
     let plane = |c: usize| Plane::of(denoised, |rgb| f64::from(rgb[c]));
-    [("denoised.R", 0), ("denoised.G", 1), ("denoised.B", 2)].map(|(name, c)| Channel::float(name, plane(c)))
+    [("denoised.R", 0), ("denoised.G", 1), ("denoised.B", 2)]
+        .map(|(name, c)| Channel::float(name, plane(c)))
 }
 
 /// Three channels, pixel by pixel.
@@ -103,7 +107,8 @@ mod backend {
     ) -> Result<(), DenoiseError> {
         let mut filter = RayTracing::try_new(device)?;
         filter.image_dimensions(width, height).hdr(true).srgb(false);
-        filter.albedo_normal_buffer(device.create_buffer(albedo)?, device.create_buffer(normal)?)?;
+        filter
+            .albedo_normal_buffer(device.create_buffer(albedo)?, device.create_buffer(normal)?)?;
         Ok(filter.filter_in_place(rgb)?)
     }
 

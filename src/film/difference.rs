@@ -6,8 +6,8 @@ use super::plane::Plane;
 use super::ssim::Similarity;
 use super::{Coding, Picture, Region, colors};
 
-/// A picture against a truth. What looks at a pixel's neighbours is computed once, over the whole pictures; the regions
-/// then take its means.
+/// A picture against a truth. What looks at a pixel's neighbours is computed once, over the whole
+/// pictures; the regions then take its means.
 pub struct Difference<'a> {
     a: &'a Picture,
     truth: &'a Picture,
@@ -23,7 +23,8 @@ pub struct Difference<'a> {
 pub struct Measures {
     /// Those of pixels by themselves, of linear light.
     pub pixels: Comparison,
-    /// Mean structural similarity; none where no window of 11 x 11 pixels about one of the region's lies in the picture.
+    /// Mean structural similarity; none where no window of 11 x 11 pixels about one of the region's
+    /// lies in the picture.
     pub ssim: Option<f64>,
     /// Mean LDR-FLIP.
     pub ldr_flip: f64,

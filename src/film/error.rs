@@ -78,7 +78,9 @@ pub enum FileError {
     },
     /// Some of its pixels are not opaque.
     #[error("{}: {pixels} pixels are not opaque, the first in column {}, row {}", file.display(), at.0, at.1)]
-    #[diagnostic(help("lay it over a background first: what is seen behind it is not in the file"))]
+    #[diagnostic(help(
+        "lay it over a background first: what is seen behind it is not in the file"
+    ))]
     Transparent {
         /// The file.
         file: PathBuf,

@@ -1,16 +1,18 @@
-//! What a picture says of its own error: variance and bias of every pixel, and one number for the whole.
-//! docs/error-estimate.md tells the method and how good it is.
+//! What a picture says of its own error: variance and bias of every pixel, and one number for the
+//! whole. docs/error-estimate.md tells the method and how good it is.
 
 use super::Plane;
 use super::exr_file::Channel;
 use super::plane::{gaussian, normalized};
 
-/// Least number of passes whose picture has an estimate: with three the earlier part is a single pass.
+/// Least number of passes whose picture has an estimate: with three the earlier part is a single
+/// pass.
 pub const LEAST_PASSES: u32 = 4;
 
-/// Bias of the estimate in a disc over what it differs by from that in the inner half of the disc's area. Where bias
-/// falls as the p-th power of the radius this is `1 / (1 - 2^(-p/2))`: 2 where radiance is smooth (p = 2), some 3.7 over
-/// straight edges; over whole pictures 1.7 to 2.3 were measured.
+/// Bias of the estimate in a disc over what it differs by from that in the inner half of the disc's
+/// area. Where bias falls as the p-th power of the radius this is `1 / (1 - 2^(-p/2))`: 2 where
+/// radiance is smooth (p = 2), some 3.7 over straight edges; over whole pictures 1.7 to 2.3 were
+/// measured.
 pub const BIAS_OVER_RING: f64 = 2.25;
 
 /// The stated error is so many of the estimate's standard errors above the estimate.
@@ -33,12 +35,14 @@ const SMOOTHING: f64 = 2.0;
 pub struct PixelError {
     /// The estimate.
     pub luminance: f64,
-    /// Variance of the mean over the passes from their mean squared deviation, as if they were independent.
+    /// Variance of the mean over the passes from their mean squared deviation, as if they were
+    /// independent.
     pub variance: f64,
-    /// Deviations of the mean, from two partitions of the passes into earlier and later ones. Each has mean zero and the
-    /// variance of the mean over all, also where passes even one another out.
+    /// Deviations of the mean, from two partitions of the passes into earlier and later ones. Each
+    /// has mean zero and the variance of the mean over all, also where passes even one another out.
     pub deviations: [f64; 2],
-    /// Deviation of the mean over fixed eye samples, from two halves of them; 0 where each pass has its own.
+    /// Deviation of the mean over fixed eye samples, from two halves of them; 0 where each pass has
+    /// its own.
     pub halves: f64,
     /// Estimate in the disc less that in the inner half of its area, mean over the passes.
     pub ring: f64,
@@ -57,8 +61,8 @@ impl PixelError {
         ring_swing: 0.0,
     };
 
-    /// Unbiased estimate of the squared bias, from the product of the means over even and over odd passes; it may be
-    /// negative.
+    /// Unbiased estimate of the squared bias, from the product of the means over even and over odd
+    /// passes; it may be negative.
     pub fn bias_sq(&self) -> f64 {
         BIAS_OVER_RING.powi(2) * (self.ring + self.ring_swing) * (self.ring - self.ring_swing)
     }
@@ -71,9 +75,9 @@ pub fn early_passes(passes: u32) -> u32 {
 
 /// Deviation of `mean` over `all` passes, of which the first `part` have `part_mean`.
 ///
-/// The difference of the means over the first and over the other passes times `sqrt(a b) / (a + b)`, a and b passes in them,
-/// has the variance of the mean over all: exactly for independent passes, and for others as far as their sums over a part
-/// and over all behave alike.
+/// The difference of the means over the first and over the other passes times `sqrt(a b) / (a +
+/// b)`, a and b passes in them, has the variance of the mean over all: exactly for independent
+/// passes, and for others as far as their sums over a part and over all behave alike.
 pub fn partition(mean: f64, part_mean: f64, part: u32, all: u32) -> f64 {
     let (n, a) = (f64::from(all), f64::from(part));
     let b = n - a;
@@ -88,7 +92,8 @@ pub struct ErrorMap {
     pub width: u32,
     /// Row by row, row 0 on top.
     pub pixels: Vec<PixelError>,
-    /// What one glint, met by one eye path of one pass, adds to a pixel's luminance; 0 where none can be.
+    /// What one glint, met by one eye path of one pass, adds to a pixel's luminance; 0 where none
+    /// can be.
     pub glint: f64,
 }
 
@@ -97,7 +102,8 @@ pub struct ErrorMap {
 pub struct RelativeError {
     /// Part of the estimate that is noise.
     pub noise: f64,
-    /// Part of the estimate that is bias; both are the legs of which the estimate is the hypotenuse.
+    /// Part of the estimate that is bias; both are the legs of which the estimate is the
+    /// hypotenuse.
     pub bias: f64,
     /// The true error is within this one in nine of ten renders.
     pub stated: f64,
@@ -109,8 +115,8 @@ impl ErrorMap {
         self.plane(|p| p.variance + p.halves * p.halves)
     }
 
-    /// Bias of each pixel's luminance, in W sr^-1 m^-2, smoothed by a Gaussian of two pixels: a single pixel's estimate
-    /// has more than twice the noise of the pixel itself.
+    /// Bias of each pixel's luminance, in W sr^-1 m^-2, smoothed by a Gaussian of two pixels: a
+    /// single pixel's estimate has more than twice the noise of the pixel itself.
     pub fn bias(&self) -> Plane {
         let weights = normalized(&gaussian(SMOOTHING, 3 * SMOOTHING as usize));
         self.plane(|p| BIAS_OVER_RING * p.ring).along_x(&weights).along_y(&weights)
@@ -129,8 +135,12 @@ impl ErrorMap {
     pub fn relative(&self) -> RelativeError {
         let third = [1.0 / 3.0; 3];
         let around = self.plane(|p| p.luminance).along_x(&third).along_y(&third);
-        let terms: Vec<Term> =
-            self.pixels.iter().zip(&around.values).map(|(p, around)| Term::of(p, *around)).collect();
+        let terms: Vec<Term> = self
+            .pixels
+            .iter()
+            .zip(&around.values)
+            .map(|(p, around)| Term::of(p, *around))
+            .collect();
         let kept = kept(&terms);
         let count = kept.iter().filter(|kept| **kept).count().max(1) as f64;
         let sum = |part: fn(&Term) -> f64| {
@@ -139,9 +149,10 @@ impl ErrorMap {
         };
         let (noise, bias) = (sum(|t| t.noise) / count, sum(|t| t.bias) / count);
         let blocks = self.block_sums(&terms, &kept).iter().map(|sum| sum * sum).sum::<f64>();
-        // one glint more than were seen (the rule of succession): where no pixel has met one yet, nothing
-        // else speaks for those that some pixel lacks
-        let mean = self.pixels.iter().map(|p| p.luminance).sum::<f64>() / self.pixels.len().max(1) as f64;
+        // one glint more than were seen (the rule of succession): where no pixel has met one yet,
+        // nothing else speaks for those that some pixel lacks
+        let mean =
+            self.pixels.iter().map(|p| p.luminance).sum::<f64>() / self.pixels.len().max(1) as f64;
         let mut unseen = lacking(self.glint, mean);
         let mut unseen_sq = unseen * unseen;
         for (term, _) in terms.iter().zip(&kept).filter(|(_, kept)| !**kept) {
@@ -155,7 +166,8 @@ impl ErrorMap {
         RelativeError { noise: noise.max(0.0).sqrt(), bias: bias.max(0.0).sqrt(), stated }
     }
 
-    /// Sums over blocks of what each kept pixel's squared error may be off by together with its neighbours'.
+    /// Sums over blocks of what each kept pixel's squared error may be off by together with its
+    /// neighbours'.
     fn block_sums(&self, terms: &[Term], kept: &[bool]) -> Vec<f64> {
         let width = (self.width as usize).max(1);
         let columns = width.div_ceil(BLOCK);
@@ -183,9 +195,10 @@ struct Term {
 }
 
 impl Term {
-    /// Noise of the passes and bias are relative to the estimate less its standard deviation: where a single pass was bright
-    /// this is what the others found, so that a rare bright sample does not dwarf its own error. That of some few eye
-    /// samples is relative to the mean of the pixels around, for where all of them agree by chance the estimate is far off.
+    /// Noise of the passes and bias are relative to the estimate less its standard deviation: where
+    /// a single pass was bright this is what the others found, so that a rare bright sample does
+    /// not dwarf its own error. That of some few eye samples is relative to the mean of the pixels
+    /// around, for where all of them agree by chance the estimate is far off.
     fn of(p: &PixelError, around: f64) -> Self {
         let share_of = |reference: f64| 1.0 / (reference * reference + DARK);
         let share = share_of((p.luminance - p.variance.sqrt()).max(0.0));
@@ -206,15 +219,17 @@ impl Term {
 
 /// Squared relative error that pixels without an event owe to those with one, where `p` had one.
 ///
-/// A glint that one pass in hundreds sees is in the mean of some pixels and of others not; what it leaves the others short of
-/// is in no variance. The rates of events in all pixels without one sum up to the expected number of pixels with one (Good
-/// 1953), so the light v of a single event stands for as much light unseen. Of unseen light x beside b that is always seen
-/// the squared relative error is `x^2 / ((b + x)^2 + DARK) <= x / (2 (b + sqrt(b^2 + DARK)))`, hence v over that. The number
-/// of events is told by the mean over its deviation, squared: n events of v each have the mean n v and the variance n v^2.
-/// What is always seen adds to the mean, so two events' worth still count half.
+/// A glint that one pass in hundreds sees is in the mean of some pixels and of others not; what it
+/// leaves the others short of is in no variance. The rates of events in all pixels without one sum
+/// up to the expected number of pixels with one (Good 1953), so the light v of a single event
+/// stands for as much light unseen. Of unseen light x beside b that is always seen the squared
+/// relative error is `x^2 / ((b + x)^2 + DARK) <= x / (2 (b + sqrt(b^2 + DARK)))`, hence v over
+/// that. The number of events is told by the mean over its deviation, squared: n events of v each
+/// have the mean n v and the variance n v^2. What is always seen adds to the mean, so two events'
+/// worth still count half.
 ///
-/// However bright, an event counts for [`UNSEEN_MOST`] pixels: those that have less than one chance in that many to meet
-/// theirs are what the largest 0.1 % are left out for.
+/// However bright, an event counts for [`UNSEEN_MOST`] pixels: those that have less than one chance
+/// in that many to meet theirs are what the largest 0.1 % are left out for.
 fn unseen(p: &PixelError) -> f64 {
     let single = 0.5 * (3.0 - p.luminance * p.luminance / p.variance);
     let event = p.variance.sqrt();
@@ -227,8 +242,8 @@ fn lacking(event: f64, seen: f64) -> f64 {
     (event / (2.0 * (seen + seen.hypot(DARK.sqrt())))).min(UNSEEN_MOST)
 }
 
-/// All pixels but the 0.1 %, rounded up, of the largest variance; of a single pixel that one. The rank does not look at
-/// deviations, which would favour those that happen to be small.
+/// All pixels but the 0.1 %, rounded up, of the largest variance; of a single pixel that one. The
+/// rank does not look at deviations, which would favour those that happen to be small.
 fn kept(terms: &[Term]) -> Vec<bool> {
     let dropped = terms.len().div_ceil(1000).min(terms.len().saturating_sub(1));
     let mut kept = vec![true; terms.len()];

@@ -24,8 +24,9 @@ pub struct ExrFile {
 }
 
 impl ExrFile {
-    /// The channels `<prefix>R`, `<prefix>G` and `<prefix>B` as a picture; none when one is missing. The prefix is
-    /// empty for radiance and `SE.` for the standard errors in reference pictures.
+    /// The channels `<prefix>R`, `<prefix>G` and `<prefix>B` as a picture; none when one is
+    /// missing. The prefix is empty for radiance and `SE.` for the standard errors in reference
+    /// pictures.
     pub fn picture(&self, prefix: &str) -> Option<Picture> {
         let channel = |name| self.channels.get(&format!("{prefix}{name}"));
         let (r, g, b) = (channel("R")?, channel("G")?, channel("B")?);
@@ -81,8 +82,8 @@ impl Frame {
     }
 }
 
-/// The bytes of a losslessly compressed EXR file with the layers' channels beside R, G and B: the picture is the data window,
-/// the frame the display window. Equal arguments give equal bytes.
+/// The bytes of a losslessly compressed EXR file with the layers' channels beside R, G and B: the
+/// picture is the data window, the frame the display window. Equal arguments give equal bytes.
 pub fn encode(
     picture: &Picture,
     frame: Frame,
@@ -92,7 +93,9 @@ pub fn encode(
     let channel = |name: &str, values| AnyChannel::new(Text::from(name), values);
     let colors = ["R", "G", "B"].into_iter().enumerate();
     let mut channels: SmallVec<[_; 4]> = colors
-        .map(|(c, name)| channel(name, FlatSamples::F32(picture.rgb.iter().map(|rgb| rgb[c]).collect())))
+        .map(|(c, name)| {
+            channel(name, FlatSamples::F32(picture.rgb.iter().map(|rgb| rgb[c]).collect()))
+        })
         .collect();
     // numbers beyond f32 become its largest
     let held = |x: &f64| x.clamp(f64::from(f32::MIN), f64::from(f32::MAX)) as f32;
@@ -120,7 +123,11 @@ pub fn encode(
     image.attributes.display_window =
         IntegerBounds::new((0, 0), (frame.width as usize, frame.height as usize));
     let mut bytes = Vec::new();
-    image.write().non_parallel().to_buffered(Cursor::new(&mut bytes)).map_err(|error| error.to_string())?;
+    image
+        .write()
+        .non_parallel()
+        .to_buffered(Cursor::new(&mut bytes))
+        .map_err(|error| error.to_string())?;
     sort_attributes(&mut bytes).ok_or("the header's attributes do not end")?;
     Ok(bytes)
 }
@@ -151,8 +158,11 @@ pub fn decode(bytes: &[u8]) -> std::result::Result<ExrFile, String> {
         AttributeValue::Text(value) => Some((text(name), text(value))),
         _ => None,
     });
-    let channels =
-        layer.channel_data.list.iter().map(|c| (text(&c.name), c.sample_data.values_as_f32().collect()));
+    let channels = layer
+        .channel_data
+        .list
+        .iter()
+        .map(|c| (text(&c.name), c.sample_data.values_as_f32().collect()));
     Ok(ExrFile {
         width: layer.size.width() as u32,
         height: layer.size.height() as u32,
@@ -162,27 +172,31 @@ pub fn decode(bytes: &[u8]) -> std::result::Result<ExrFile, String> {
     })
 }
 
-/// Fails where the pixels take more memory than there is: a short file may claim any number of them.
+/// Fails where the pixels take more memory than there is: a short file may claim any number of
+/// them.
 fn check_size(bytes: &[u8]) -> std::result::Result<(), String> {
     /// As the file's samples and as floats.
     const BYTES_OF_SAMPLE: u64 = 8;
-    let meta = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(|error| error.to_string())?;
+    let meta = MetaData::read_from_buffered(Cursor::new(bytes), false)
+        .map_err(|error| error.to_string())?;
     meta.headers.iter().try_for_each(|header| {
-        let [width, height] = [header.layer_size.width(), header.layer_size.height()].map(|n| n as u64);
+        let [width, height] =
+            [header.layer_size.width(), header.layer_size.height()].map(|n| n as u64);
         let each = BYTES_OF_SAMPLE * header.channels.list.len() as u64;
         memory::check_pixels(width, height, each)
     })
 }
 
-/// Puts a single-part file's attributes into the order of their names. The `exr` crate keeps them in a hash map
-/// whose order changes from run to run, and the same picture must give the same file. None when the header is cut
-/// short.
+/// Puts a single-part file's attributes into the order of their names. The `exr` crate keeps them
+/// in a hash map whose order changes from run to run, and the same picture must give the same file.
+/// None when the header is cut short.
 fn sort_attributes(file: &mut [u8]) -> Option<()> {
     const MAGIC_AND_VERSION: usize = 8;
     let mut attributes = Vec::new();
     let mut at = MAGIC_AND_VERSION;
     while *file.get(at)? != 0 {
-        let after_zero = |from: usize| Some(from + 1 + file.get(from..)?.iter().position(|&byte| byte == 0)?);
+        let after_zero =
+            |from: usize| Some(from + 1 + file.get(from..)?.iter().position(|&byte| byte == 0)?);
         let size_at = after_zero(after_zero(at)?)?;
         let size = i32::from_le_bytes(file.get(size_at..size_at + 4)?.try_into().ok()?);
         let end = size_at + 4 + usize::try_from(size).ok()?;

@@ -51,8 +51,8 @@ impl Format {
     }
 }
 
-/// Finds out before the work whether the pictures can be written after it: known extensions, existing folders, no
-/// name twice, and folders that take new files.
+/// Finds out before the work whether the pictures can be written after it: known extensions,
+/// existing folders, no name twice, and folders that take new files.
 pub fn check_outputs(files: &[PathBuf]) -> Result<(), FileError> {
     let mut seen: Vec<&PathBuf> = Vec::new();
     for file in files {
@@ -80,8 +80,8 @@ pub fn check_png(file: &Path) -> Result<(), FileError> {
 
 /// Writes display values, three to a pixel, as PNG.
 pub fn write_rgb8(file: &Path, width: u32, height: u32, rgb: &[u8]) -> Result<(), FileError> {
-    let bytes =
-        encode_rgb8(width, height, rgb).map_err(|what| FileError::Encode { file: file.to_owned(), what })?;
+    let bytes = encode_rgb8(width, height, rgb)
+        .map_err(|what| FileError::Encode { file: file.to_owned(), what })?;
     write_whole(file, &bytes)
 }
 
@@ -100,8 +100,8 @@ pub fn check_place(file: &Path) -> Result<(), FileError> {
     storage::check(file, Purpose::Result).map_err(|e| not_written(file, e))
 }
 
-/// Writes a picture in the format that the extension names. `development` counts for PNG, `layers` and `provenance` for
-/// EXR.
+/// Writes a picture in the format that the extension names. `development` counts for PNG, `layers`
+/// and `provenance` for EXR.
 pub fn write(
     file: &Path,
     picture: &Picture,
@@ -111,7 +111,9 @@ pub fn write(
 ) -> Result<(), FileError> {
     let bytes = match Format::of_output(file)? {
         Format::Png => encode_png(picture, development),
-        Format::Exr => exr_file::encode(picture, provenance.frame(picture), layers, &provenance.attributes()),
+        Format::Exr => {
+            exr_file::encode(picture, provenance.frame(picture), layers, &provenance.attributes())
+        }
         Format::Pfm => Ok(pfm::encode(picture)),
         Format::Hdr => encode_hdr(picture),
     };
@@ -145,7 +147,8 @@ pub fn read(file: &Path) -> Result<Picture, FileError> {
 
 /// Reads all channels and text attributes of an EXR file's first layer.
 pub fn read_exr(file: &Path) -> Result<exr_file::ExrFile, FileError> {
-    exr_file::decode(&read_bytes(file)?).map_err(|what| FileError::Malformed { file: file.to_owned(), what })
+    exr_file::decode(&read_bytes(file)?)
+        .map_err(|what| FileError::Malformed { file: file.to_owned(), what })
 }
 
 pub(super) fn read_bytes(file: &Path) -> Result<Vec<u8>, FileError> {
@@ -164,11 +167,13 @@ fn encode_png(picture: &Picture, development: &Development) -> Result<Vec<u8>, S
     let Picture { width, height, ref rgb } = *picture;
     match development.bits {
         Bits::Eight => {
-            let rgb: Vec<[u8; 3]> = rgb.par_iter().map(|&radiance| development.bytes(radiance)).collect();
+            let rgb: Vec<[u8; 3]> =
+                rgb.par_iter().map(|&radiance| development.bytes(radiance)).collect();
             encode_rgb8(width, height, rgb.as_flattened())
         }
         Bits::Sixteen => {
-            let rgb: Vec<[u16; 3]> = rgb.par_iter().map(|&radiance| development.words(radiance)).collect();
+            let rgb: Vec<[u16; 3]> =
+                rgb.par_iter().map(|&radiance| development.words(radiance)).collect();
             // the encoder takes words as they lie in memory
             encode_rgb(width, height, bytemuck::cast_slice(&rgb), ExtendedColorType::Rgb16)
         }
@@ -180,7 +185,12 @@ fn encode_rgb8(width: u32, height: u32, rgb: &[u8]) -> Result<Vec<u8>, String> {
     encode_rgb(width, height, rgb, ExtendedColorType::Rgb8)
 }
 
-fn encode_rgb(width: u32, height: u32, rgb: &[u8], color: ExtendedColorType) -> Result<Vec<u8>, String> {
+fn encode_rgb(
+    width: u32,
+    height: u32,
+    rgb: &[u8],
+    color: ExtendedColorType,
+) -> Result<Vec<u8>, String> {
     let mut bytes = Vec::new();
     codecs::png::PngEncoder::new(&mut bytes)
         .write_image(rgb, width, height, color)
@@ -190,7 +200,8 @@ fn encode_rgb(width: u32, height: u32, rgb: &[u8], color: ExtendedColorType) -> 
 
 fn encode_hdr(picture: &Picture) -> Result<Vec<u8>, String> {
     // The format's exponent is shared and its mantissas have no sign.
-    let rgb: Vec<_> = picture.rgb.iter().map(|rgb| image::Rgb(rgb.map(|value| value.max(0.0)))).collect();
+    let rgb: Vec<_> =
+        picture.rgb.iter().map(|rgb| image::Rgb(rgb.map(|value| value.max(0.0)))).collect();
     let mut bytes = Vec::new();
     codecs::hdr::HdrEncoder::new(&mut bytes)
         .encode(&rgb, picture.width as usize, picture.height as usize)
@@ -198,7 +209,8 @@ fn encode_hdr(picture: &Picture) -> Result<Vec<u8>, String> {
     Ok(bytes)
 }
 
-/// Decodes a file that is no EXR or PFM file; its size is known before memory is taken for its pixels.
+/// Decodes a file that is no EXR or PFM file; its size is known before memory is taken for its
+/// pixels.
 pub(super) fn decode_common(bytes: &[u8], format: ImageFormat) -> Result<DynamicImage, String> {
     /// What a decoder may take beside the pixels, and the picture made of them.
     const DECODER_BYTES: u64 = 64 << 20;

@@ -28,12 +28,14 @@ pub struct HeatMap {
     pub top: f64,
 }
 
-/// Draws the largest absolute channel difference of each pixel on a logarithmic scale of six decades that ends at the
-/// next power of ten above the largest one. Pixels of equal bits are black; smaller differences than the scale's have
-/// its first color. Below the picture stands the scale with a label at each decade.
+/// Draws the largest absolute channel difference of each pixel on a logarithmic scale of six
+/// decades that ends at the next power of ten above the largest one. Pixels of equal bits are
+/// black; smaller differences than the scale's have its first color. Below the picture stands the
+/// scale with a label at each decade.
 pub fn heat_map(a: &Picture, b: &Picture) -> Result<HeatMap, MetricsError> {
     check_comparable(a, b)?;
-    let largest = a.rgb.iter().zip(&b.rgb).fold(0.0, |largest: f64, (a, b)| largest.max(difference(*a, *b)));
+    let largest =
+        a.rgb.iter().zip(&b.rgb).fold(0.0, |largest: f64, (a, b)| largest.max(difference(*a, *b)));
     let top = if largest > 0.0 { largest.log10().ceil() as i32 } else { 0 };
     let width = (a.width as usize).max(SCALE_WIDTH);
     let height = a.height as usize + SCALE_HEIGHT;
@@ -49,7 +51,12 @@ pub fn heat_map(a: &Picture, b: &Picture) -> Result<HeatMap, MetricsError> {
         canvas.set(x as usize, y as usize, color);
     }
     draw_scale(&mut canvas, a.height as usize, top);
-    Ok(HeatMap { width: width as u32, height: height as u32, rgb: canvas.rgb, top: 10f64.powi(top) })
+    Ok(HeatMap {
+        width: width as u32,
+        height: height as u32,
+        rgb: canvas.rgb,
+        top: 10f64.powi(top),
+    })
 }
 
 /// Writes a difference picture as PNG.
@@ -105,8 +112,14 @@ fn draw_scale(canvas: &mut Canvas, top_row: usize, top: i32) {
 
 /// Dark violet through red and yellow to white for `x` from 0 to 1, of rising luminance.
 pub fn heat(x: f64) -> [u8; 3] {
-    const STOPS: [[u8; 3]; 6] =
-        [[40, 11, 84], [101, 21, 110], [188, 55, 84], [237, 105, 37], [251, 180, 26], [252, 255, 214]];
+    const STOPS: [[u8; 3]; 6] = [
+        [40, 11, 84],
+        [101, 21, 110],
+        [188, 55, 84],
+        [237, 105, 37],
+        [251, 180, 26],
+        [252, 255, 214],
+    ];
     gradient(&STOPS, x)
 }
 

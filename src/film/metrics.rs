@@ -9,7 +9,8 @@ use super::{Picture, Region, luminance};
 pub struct Comparison {
     /// Mean of `a` over mean of `b` per channel; 1 where both are zero.
     pub mean_ratio: [f64; 3],
-    /// Mean over pixels of `(La - Lb)^2 / (Lb^2 + 0.01)`, the largest 0.1 % dropped (rounded up); `L` is luminance.
+    /// Mean over pixels of `(La - Lb)^2 / (Lb^2 + 0.01)`, the largest 0.1 % dropped (rounded up);
+    /// `L` is luminance.
     pub rel_mse: f64,
     /// Mean squared difference over all channel values, in the square of their unit.
     pub mse: f64,
@@ -17,9 +18,11 @@ pub struct Comparison {
     pub median: f64,
     /// Root of the mean squared difference over all channel values, in W sr^-1 m^-2.
     pub rmse: f64,
-    /// Peak signal-to-noise ratio in dB; the peak is the largest value of the whole truth. Infinite for equal pictures.
+    /// Peak signal-to-noise ratio in dB; the peak is the largest value of the whole truth. Infinite
+    /// for equal pictures.
     pub psnr: f64,
-    /// The pixel with the largest absolute difference in a channel; the first such in reading order.
+    /// The pixel with the largest absolute difference in a channel; the first such in reading
+    /// order.
     pub worst: WorstPixel,
     /// How many pixels differ in at least one bit.
     pub pixels_differing: usize,
@@ -101,14 +104,19 @@ fn peak(truth: &Picture) -> f32 {
 }
 
 fn figures(a: &Picture, b: &Picture, peak: f32) -> Comparison {
-    let mse = mean(a.rgb.as_flattened().iter().zip(b.rgb.as_flattened()).map(|(&a, &b)| squared(a, b)));
+    let mse =
+        mean(a.rgb.as_flattened().iter().zip(b.rgb.as_flattened()).map(|(&a, &b)| squared(a, b)));
     Comparison {
         mean_ratio: mean_ratio(a, b),
         rel_mse: rel_mse(a, b),
         mse,
         median: median(a, b),
         rmse: mse.sqrt(),
-        psnr: if mse == 0.0 { f64::INFINITY } else { 10.0 * (f64::from(peak).powi(2) / mse).log10() },
+        psnr: if mse == 0.0 {
+            f64::INFINITY
+        } else {
+            10.0 * (f64::from(peak).powi(2) / mse).log10()
+        },
         worst: worst_pixel(a, b),
         pixels_differing: a.rgb.iter().zip(&b.rgb).filter(|(a, b)| !same_bits(**a, **b)).count(),
         pixels: a.rgb.len(),

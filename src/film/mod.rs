@@ -45,7 +45,11 @@ pub struct Picture {
 
 impl Picture {
     /// A picture whose pixel in column `x` and row `y` is `radiance(x, y)`.
-    pub fn from_fn(width: u32, height: u32, mut radiance: impl FnMut(u32, u32) -> [f32; 3]) -> Self {
+    pub fn from_fn(
+        width: u32,
+        height: u32,
+        mut radiance: impl FnMut(u32, u32) -> [f32; 3],
+    ) -> Self {
         let mut rgb = Vec::with_capacity(width as usize * height as usize);
         for y in 0..height {
             for x in 0..width {

@@ -13,7 +13,8 @@ pub fn encode(picture: &Picture) -> Vec<u8> {
     bytes
 }
 
-/// Reads a color or grey PFM file of either byte order; values are multiplied by the header's scale.
+/// Reads a color or grey PFM file of either byte order; values are multiplied by the header's
+/// scale.
 pub fn decode(bytes: &[u8]) -> Result<Picture, String> {
     let mut rest = bytes;
     let mut word = || -> Result<&str, String> {

@@ -24,7 +24,8 @@ impl Plane {
 
     /// A number of each pixel's numbers in two planes of one size.
     pub fn zip(&self, other: &Self, value: impl Fn(f64, f64) -> f64 + Sync) -> Self {
-        let values = self.values.par_iter().zip(&other.values).map(|(&a, &b)| value(a, b)).collect();
+        let values =
+            self.values.par_iter().zip(&other.values).map(|(&a, &b)| value(a, b)).collect();
         Self { width: self.width, values }
     }
 
@@ -36,8 +37,8 @@ impl Plane {
         sum / (columns.len() as f64 * f64::from(region.y1 - region.y0))
     }
 
-    /// Correlates every row with `weights`, whose middle one is that of the pixel itself. Pixels beyond the border
-    /// repeat those on it.
+    /// Correlates every row with `weights`, whose middle one is that of the pixel itself. Pixels
+    /// beyond the border repeat those on it.
     pub fn along_x(&self, weights: &[f64]) -> Self {
         let (width, radius) = (self.width, weights.len() / 2);
         self.by_row(|y, sums| {

@@ -59,7 +59,8 @@ impl Provenance {
             let text = value.as_str().map_or_else(|| value.to_string(), str::to_owned);
             attributes.insert(format!("caustica.{key}"), text);
         }
-        let mut put = |name: &str, value: String| attributes.insert(format!("caustica.{name}"), value);
+        let mut put =
+            |name: &str, value: String| attributes.insert(format!("caustica.{name}"), value);
         if let Some(digest) = &self.digest {
             put("scene_file", self.scene_file.clone());
             put("scene_digest", digest.clone());
@@ -85,8 +86,8 @@ impl Provenance {
         attributes
     }
 
-    /// Reads what [`Self::attributes`] wrote, but for exposure, tone map and the materials' names; an error says what is
-    /// missing or not understood.
+    /// Reads what [`Self::attributes`] wrote, but for exposure, tone map and the materials' names;
+    /// an error says what is missing or not understood.
     pub fn read(attributes: &BTreeMap<String, String>) -> Result<Self, String> {
         let get = |name: &str| attributes.get(&format!("caustica.{name}"));
         let need = |name: &str| {
@@ -94,14 +95,18 @@ impl Provenance {
                 format!("it lacks the attribute caustica.{name}, which `caustica render` writes")
             })
         };
-        let wrong =
-            |name: &str, what: &str| format!("its attribute caustica.{name} is not understood: {what}");
+        let wrong = |name: &str, what: &str| {
+            format!("its attribute caustica.{name} is not understood: {what}")
+        };
         let settings = |name: &str| match get(name) {
-            Some(text) => serde_json::from_str(text).map(Some).map_err(|e| wrong(name, &e.to_string())),
+            Some(text) => {
+                serde_json::from_str(text).map(Some).map_err(|e| wrong(name, &e.to_string()))
+            }
             None => Ok(None),
         };
         let numbers = |name: &str, text: &str, between: char| {
-            let all: Option<Vec<u32>> = text.split(between).map(|number| number.parse().ok()).collect();
+            let all: Option<Vec<u32>> =
+                text.split(between).map(|number| number.parse().ok()).collect();
             all.ok_or_else(|| wrong(name, "no whole numbers"))
         };
         let [width, height] = numbers("size", need("size")?, 'x')?[..] else {
@@ -145,7 +150,9 @@ impl Provenance {
     /// Where the picture lies in the whole that it is a window of.
     pub fn frame(&self, picture: &Picture) -> Frame {
         match self.film {
-            Some(Film { width, height, window: Some([x, y, _, _]), .. }) => Frame { x, y, width, height },
+            Some(Film { width, height, window: Some([x, y, _, _]), .. }) => {
+                Frame { x, y, width, height }
+            }
             _ => Frame::of(picture),
         }
     }

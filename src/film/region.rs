@@ -4,7 +4,8 @@ use std::fmt;
 
 use super::Picture;
 
-/// Columns `x0` to `x1` and rows `y0` to `y1` of a picture, row 0 on top; the last of each are left out.
+/// Columns `x0` to `x1` and rows `y0` to `y1` of a picture, row 0 on top; the last of each are left
+/// out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Region {
     /// First column.

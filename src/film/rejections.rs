@@ -2,7 +2,8 @@
 
 use serde::Serialize;
 
-/// How many of a pixel's passes did not count, over all pixels, by the first cause that their parts show.
+/// How many of a pixel's passes did not count, over all pixels, by the first cause that their parts
+/// show.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Rejections {
     /// Emission, environment or throughput along an eye path was not finite.
@@ -13,7 +14,8 @@ pub struct Rejections {
     pub photons: u64,
     /// Each part was finite, the estimate made of them not.
     pub estimate: u64,
-    /// No pass, but pixels of the picture with a radiance beyond f32, which hold f32's largest number instead.
+    /// No pass, but pixels of the picture with a radiance beyond f32, which hold f32's largest
+    /// number instead.
     pub too_bright: u64,
 }
 

@@ -1,9 +1,9 @@
 //! Structural similarity.
 //!
-//! Wang, Bovik, Sheikh & Simoncelli, "Image Quality Assessment: From Error Visibility to Structural Similarity" (2004),
-//! equation 13 with the paper's window, 11 x 11 pixels of a Gaussian of 1.5 pixels, and constants K1 = 0.01, K2 = 0.03.
-//! It is taken of the luma `Y' = 0.2126 R' + 0.7152 G' + 0.0722 B'` (Rec. 709) of the sRGB-coded picture, clipped to
-//! [0, 1].
+//! Wang, Bovik, Sheikh & Simoncelli, "Image Quality Assessment: From Error Visibility to Structural
+//! Similarity" (2004), equation 13 with the paper's window, 11 x 11 pixels of a Gaussian of 1.5
+//! pixels, and constants K1 = 0.01, K2 = 0.03. It is taken of the luma `Y' = 0.2126 R' + 0.7152 G'
+//! + 0.0722 B'` (Rec. 709) of the sRGB-coded picture, clipped to [0, 1].
 
 use super::metrics::{MetricsError, check_comparable};
 use super::plane::{Plane, gaussian, normalized};
@@ -33,14 +33,17 @@ impl Similarity {
             mean(&product(p, q)).zip(&product(mean_p, mean_q), |both, apart| both - apart)
         };
         let variances = covariance(&a, &a, &mean_a, &mean_a)
-            .zip(&covariance(&b, &b, &mean_b, &mean_b), |variance_a, variance_b| variance_a + variance_b);
+            .zip(&covariance(&b, &b, &mean_b, &mean_b), |variance_a, variance_b| {
+                variance_a + variance_b
+            });
         let structure = covariance(&a, &b, &mean_a, &mean_b)
             .zip(&variances, |covariance, variances| (2.0 * covariance + C2) / (variances + C2));
         let luminance = mean_a.zip(&mean_b, |a, b| (2.0 * (a * b) + C1) / (a * a + b * b + C1));
         Ok(Self(product(&luminance, &structure)))
     }
 
-    /// Mean over the windows that lie in the picture and whose middle lies in the region; none when there are none.
+    /// Mean over the windows that lie in the picture and whose middle lies in the region; none when
+    /// there are none.
     pub fn mean(&self, region: &Region) -> Option<f64> {
         let (width, height) = (self.0.width, self.0.values.len() / self.0.width);
         let middles = region.inside(WINDOW_RADIUS, width as u32, height as u32);

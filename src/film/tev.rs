@@ -1,8 +1,10 @@
-//! Pictures on their way to the viewer tev (<https://github.com/Tom94/tev>), by its protocol over TCP.
+//! Pictures on their way to the viewer tev (<https://github.com/Tom94/tev>), by its protocol over
+//! TCP.
 //!
-//! A packet is its length in bytes as u32, the length's own four included, a byte that names its kind, and fields; all
-//! numbers are little endian, strings end with a zero byte. Two kinds do here: CreateImage (4) and UpdateImage in its third
-//! version (6), which sends values of several channels with an offset and a stride for each.
+//! A packet is its length in bytes as u32, the length's own four included, a byte that names its
+//! kind, and fields; all numbers are little endian, strings end with a zero byte. Two kinds do
+//! here: CreateImage (4) and UpdateImage in its third version (6), which sends values of several
+//! channels with an offset and a stride for each.
 
 use std::io::{self, Write};
 use std::net::{TcpStream, ToSocketAddrs};
@@ -37,7 +39,8 @@ impl Tev<TcpStream> {
     /// # Errors
     /// Where nothing answers within a few seconds, or what answers does not read.
     pub fn connect(address: &str, name: &str, frame: Frame) -> io::Result<Self> {
-        let mut failure = io::Error::new(io::ErrorKind::AddrNotAvailable, "the name has no address");
+        let mut failure =
+            io::Error::new(io::ErrorKind::AddrNotAvailable, "the name has no address");
         for address in address.to_socket_addrs()? {
             match TcpStream::connect_timeout(&address, PATIENCE) {
                 Ok(stream) => {
@@ -88,8 +91,8 @@ impl<W: Write> Tev<W> {
 struct Packet(Vec<u8>);
 
 impl Packet {
-    /// A packet about the picture of this name. A new one comes to the front, and stays there only as long as nobody looks at
-    /// another.
+    /// A packet about the picture of this name. A new one comes to the front, and stays there only
+    /// as long as nobody looks at another.
     fn new(kind: u8, name: &str) -> Self {
         let mut packet = Self(vec![0; 4]);
         packet.bytes(&[kind, u8::from(kind == CREATE_IMAGE)]);

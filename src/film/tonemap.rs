@@ -36,7 +36,9 @@ impl Development {
             ToneMap::Agx => agx(exposed),
             ToneMap::Srgb => exposed,
         };
-        linear.to_array().map(|value| if value > 0.0 { srgb_from_linear(value.min(1.0)) } else { 0.0 })
+        linear
+            .to_array()
+            .map(|value| if value > 0.0 { srgb_from_linear(value.min(1.0)) } else { 0.0 })
     }
 
     /// Display values as 8-bit numbers.
@@ -53,8 +55,8 @@ impl Development {
 /// Exposures that AgX's curve spans, in stops about a radiance of one.
 const AGX_STOPS: (f64, f64) = (-12.473_93, 4.026_069);
 
-/// AgX's inset: pulls saturated colors toward grey before the curve, so that bright lights run to white. Each row is
-/// scaled to sum to one, so that grey stays grey exactly.
+/// AgX's inset: pulls saturated colors toward grey before the curve, so that bright lights run to
+/// white. Each row is scaled to sum to one, so that grey stays grey exactly.
 static AGX_INSET: LazyLock<DMat3> = LazyLock::new(|| {
     let rows = [
         DVec3::new(0.842_479_062_253_094, 0.078_433_599_999_999_2, 0.079_223_745_147_764_3),
@@ -67,8 +69,9 @@ static AGX_INSET: LazyLock<DMat3> = LazyLock::new(|| {
 
 static AGX_OUTSET: LazyLock<DMat3> = LazyLock::new(|| AGX_INSET.inverse());
 
-/// The AgX picture formation of Troy Sobotka (2022), with the matrices and the sixth-order fit of the curve by
-/// Benjamin Wrensch ("Minimal AgX Implementation", mean squared error 3.7e-6). Linear in, linear out.
+/// The AgX picture formation of Troy Sobotka (2022), with the matrices and the sixth-order fit of
+/// the curve by Benjamin Wrensch ("Minimal AgX Implementation", mean squared error 3.7e-6). Linear
+/// in, linear out.
 fn agx(exposed: DVec3) -> DVec3 {
     let (low, high) = AGX_STOPS;
     let inset = *AGX_INSET * exposed.max(DVec3::ZERO);

@@ -1,5 +1,5 @@
-//! A kernel's shader from the files it needs, one after another, with the declarations of what it binds; and the way
-//! back from naga's line numbers to files.
+//! A kernel's shader from the files it needs, one after another, with the declarations of what it
+//! binds; and the way back from naga's line numbers to files.
 
 use super::fragments::{FRAGMENTS, Fragment, Names, preprocess};
 use super::layout::{SceneTables, bindings, declarations};
@@ -31,11 +31,13 @@ pub struct Shader {
     parts: Vec<(&'static str, u32)>,
 }
 
-/// The names that fences may use for `kernel`: the features, `photons`, `direct_layer`, every kernel's stem, `scene` (the kernel reads
-/// the flattened scene) and `area` (some light is a shape).
+/// The names that fences may use for `kernel`: the features, `photons`, `direct_layer`, every
+/// kernel's stem, `scene` (the kernel reads the flattened scene) and `area` (some light is a
+/// shape).
 pub fn names(kernel: Kernel, features: &Features) -> Names {
     let stems = Kernel::ALL.map(Kernel::stem);
-    let known = features::ALL.into_iter().chain(stems).chain(["photons", "scene", "area", "direct_layer"]);
+    let known =
+        features::ALL.into_iter().chain(stems).chain(["photons", "scene", "area", "direct_layer"]);
     let mut held: BTreeSet<&'static str> = features.names().collect();
     held.insert(kernel.stem());
     if kernel.reads_scene() {
@@ -48,7 +50,11 @@ pub fn names(kernel: Kernel, features: &Features) -> Names {
 }
 
 /// The shader of `kernel` for a scene that needs `features` and has the tables `scene`.
-pub fn compose(kernel: Kernel, features: &Features, scene: &SceneTables) -> Result<Shader, ShaderError> {
+pub fn compose(
+    kernel: Kernel,
+    features: &Features,
+    scene: &SceneTables,
+) -> Result<Shader, ShaderError> {
     compose_from(FRAGMENTS, kernel, features, scene)
 }
 
@@ -69,7 +75,8 @@ pub fn compose_from(
     for fragment in fragments {
         let fault = |line, message| ShaderError { file: fragment.path, line, message };
         if names.holds(fragment.condition).map_err(|message| fault(0, message))? {
-            let text = preprocess(fragment.text, &names).map_err(|(line, message)| fault(line, message))?;
+            let text = preprocess(fragment.text, &names)
+                .map_err(|(line, message)| fault(line, message))?;
             shader.push(fragment.path, &text);
         }
     }

@@ -1,4 +1,5 @@
-//! Adapters, the choice among them, and an open device that reports failures as errors instead of panicking.
+//! Adapters, the choice among them, and an open device that reports failures as errors instead of
+//! panicking.
 
 use super::visible::adapters;
 use crate::engine::EngineError;
@@ -94,7 +95,8 @@ pub(super) fn summarize(adapter: &wgpu::Adapter) -> AdapterSummary {
     }
 }
 
-/// Adapters that the kernels can run on, hardware first; those that `WGPU_BACKEND` and `WGPU_ADAPTER_NAME` allow.
+/// Adapters that the kernels can run on, hardware first; those that `WGPU_BACKEND` and
+/// `WGPU_ADAPTER_NAME` allow.
 pub fn list() -> Vec<AdapterSummary> {
     adapters().iter().map(|(_, summary)| summary.clone()).collect()
 }
@@ -123,8 +125,9 @@ impl Gpu {
     /// Opens the adapter of `choice` with its own limits.
     pub fn open(choice: &AdapterChoice) -> Result<Self, EngineError> {
         let found = adapters().iter().find(|(_, summary)| choice.takes(summary));
-        let (adapter, summary) =
-            found.ok_or_else(|| EngineError::Unsupported(format!("there is no adapter for {choice:?}")))?;
+        let (adapter, summary) = found.ok_or_else(|| {
+            EngineError::Unsupported(format!("there is no adapter for {choice:?}"))
+        })?;
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("caustica"),
             // a clock, where there is one, for those who ask for times
@@ -136,9 +139,13 @@ impl Gpu {
             .map_err(|e| EngineError::DeviceLost(format!("{} does not open: {e}", summary.name)))?;
         let failure = Failure::default();
         let uncaptured = failure.clone();
-        device.on_uncaptured_error(Arc::new(move |error| record(&uncaptured, as_engine_error(&error))));
+        device.on_uncaptured_error(Arc::new(move |error| {
+            record(&uncaptured, as_engine_error(&error))
+        }));
         let lost = failure.clone();
-        device.set_device_lost_callback(move |_, message| record(&lost, EngineError::DeviceLost(message)));
+        device.set_device_lost_callback(move |_, message| {
+            record(&lost, EngineError::DeviceLost(message))
+        });
         Ok(Self { device, queue, summary: summary.clone(), failure })
     }
 

@@ -34,7 +34,8 @@ pub struct SceneTables {
 impl SceneTables {
     /// Lays out `scene`. Empty tables are left out.
     pub fn new(scene: &tables::Scene) -> Self {
-        let mut out = Self { few: few(scene).to_vec(), lights: scene.lights.len(), ..Self::default() };
+        let mut out =
+            Self { few: few(scene).to_vec(), lights: scene.lights.len(), ..Self::default() };
         out.push("world", "World".into(), bytes_of(&scene.world));
         out.push("camera", "Camera".into(), bytes_of(&scene.camera));
         out.table("spheres", "Sphere", &scene.spheres);
@@ -74,8 +75,11 @@ impl SceneTables {
 
     /// The WGSL declarations of the struct, and of what else is particular to the scene.
     pub fn declaration(&self) -> String {
-        let members: String =
-            self.members.iter().map(|m| format!("    @align(16) {}: {},\n", m.name, m.wgsl_type)).collect();
+        let members: String = self
+            .members
+            .iter()
+            .map(|m| format!("    @align(16) {}: {},\n", m.name, m.wgsl_type))
+            .collect();
         let lights = format!("const LIGHT_COUNT: u32 = {}u;\n", self.lights);
         format!("struct Scene {{\n{members}}}\n{lights}{}", self.intersect_few())
     }
@@ -98,13 +102,19 @@ impl SceneTables {
                 _ => ("plane", "scene.planes"),
             };
             let stop = "if any_hit && (*hit).reference != NONE { return; }";
-            format!("    intersect_{function}({shape}[{index}], {reference}u, ray, hit);\n    {stop}\n")
+            format!(
+                "    intersect_{function}({shape}[{index}], {reference}u, ray, hit);\n    {stop}\n"
+            )
         };
         let tests: String = self.few.iter().map(test).collect();
-        let triangles =
-            self.few.iter().any(|reference| reference >> tables::REFERENCE_BITS == tables::KIND_TRIANGLE);
+        let triangles = self
+            .few
+            .iter()
+            .any(|reference| reference >> tables::REFERENCE_BITS == tables::KIND_TRIANGLE);
         let shear = if triangles { "    ray_shear = shear_of(ray);\n" } else { "" };
-        format!("fn intersect_few(ray: Ray, any_hit: bool, hit: ptr<function, Hit>) {{\n{shear}{tests}}}\n")
+        format!(
+            "fn intersect_few(ray: Ray, any_hit: bool, hit: ptr<function, Hit>) {{\n{shear}{tests}}}\n"
+        )
     }
 }
 
@@ -144,9 +154,11 @@ pub struct Binding {
 
 /// What `kernel` binds, in group 0.
 pub fn bindings(kernel: Kernel, features: &Features) -> Vec<Binding> {
-    let mut list = vec![Binding { name: "dispatch", access: Access::Uniform, wgsl_type: "Dispatch" }];
+    let mut list =
+        vec![Binding { name: "dispatch", access: Access::Uniform, wgsl_type: "Dispatch" }];
     if kernel.reads_scene() {
-        let mut read = |name, wgsl_type| list.push(Binding { name, access: Access::Read, wgsl_type });
+        let mut read =
+            |name, wgsl_type| list.push(Binding { name, access: Access::Read, wgsl_type });
         read("scene", "Scene");
         for (name, feature, wgsl_type) in [
             ("nodes", "kdtree", "array<vec2u>"),
@@ -181,7 +193,9 @@ fn buffer_type(kernel: Kernel, name: &str) -> &'static str {
         "parts" => "array<PartsPixel>",
         "statistics" => "array<Statistics>",
         "counters" => "Counters",
-        "counts" if matches!(kernel, Kernel::GridCount | Kernel::GridScatter) => "array<atomic<u32>>",
+        "counts" if matches!(kernel, Kernel::GridCount | Kernel::GridScatter) => {
+            "array<atomic<u32>>"
+        }
         _ => "array<u32>",
     }
 }

@@ -14,8 +14,9 @@ impl Gpu {
         self.summary.binding_bytes.min(self.summary.buffer_bytes)
     }
 
-    /// Whether buffers of these sizes can be had: each by itself, and on a software driver, which commits memory
-    /// lazily and never says no, all of them together. `mend` says which setting to change.
+    /// Whether buffers of these sizes can be had: each by itself, and on a software driver, which
+    /// commits memory lazily and never says no, all of them together. `mend` says which setting to
+    /// change.
     pub fn check_sizes(&self, sizes: &[(&str, u64)], mend: &str) -> Result<(), EngineError> {
         let too_large = |what: &str, needed, limit| EngineError::TooLarge {
             what: what.to_owned(),
@@ -45,7 +46,12 @@ impl Gpu {
     }
 
     /// A buffer of at least `bytes` bytes, filled with zeros.
-    pub fn buffer(&self, label: &str, bytes: u64, usage: BufferUsages) -> Result<wgpu::Buffer, EngineError> {
+    pub fn buffer(
+        &self,
+        label: &str,
+        bytes: u64,
+        usage: BufferUsages,
+    ) -> Result<wgpu::Buffer, EngineError> {
         let size = bytes.next_multiple_of(16).max(16);
         self.check_sizes(&[(label, size)], "make the picture or the scene smaller")?;
         let descriptor =
@@ -87,8 +93,9 @@ impl Gpu {
             // a failure shows in `wait` and in the view below
             staging.map_async(wgpu::MapMode::Read, ..size, |_| ());
             self.wait()?;
-            let view =
-                staging.get_mapped_range(..size).map_err(|e| EngineError::DeviceLost(e.to_string()))?;
+            let view = staging
+                .get_mapped_range(..size)
+                .map_err(|e| EngineError::DeviceLost(e.to_string()))?;
             out.extend_from_slice(&view);
             drop(view);
             staging.unmap();

@@ -1,8 +1,9 @@
 //! Paths that a software driver stopped, traced again by the Rust twins of the kernels.
 //!
-//! Mesa's software driver leaves all loops of an invocation, without a word, once they have made 65535 rounds together
-//! (`LP_MAX_TGSI_LOOP_ITERATIONS`); long paths through surfaces of revolution need more. The kernels notice and mark what
-//! they then wrote. The twins find the same bits as the driver would have.
+//! Mesa's software driver leaves all loops of an invocation, without a word, once they have made
+//! 65535 rounds together (`LP_MAX_TGSI_LOOP_ITERATIONS`); long paths through surfaces of revolution
+//! need more. The kernels notice and mark what they then wrote. The twins find the same bits as the
+//! driver would have.
 
 use super::context::Gpu;
 use crate::engine::EngineError;
@@ -84,7 +85,8 @@ pub fn mend_photons(
     let mut records: Vec<PhotonRecord> = pod_collect_to_vec(&gpu.read(buffer, bytes)?);
     // no direction has the code 0
     let is_mark = |record: &PhotonRecord| record.direction == 0;
-    let marked: BTreeSet<u32> = records.iter().filter(|r| is_mark(r)).map(|mark| mark.key).collect();
+    let marked: BTreeSet<u32> =
+        records.iter().filter(|r| is_mark(r)).map(|mark| mark.key).collect();
     records.retain(|r| !is_mark(r) && !marked.contains(&(r.key >> dispatch.key_bits)));
     let photons = marked.len() as u32;
     let traced: Vec<(Vec<PhotonRecord>, PhotonPath)> = marked

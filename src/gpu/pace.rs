@@ -1,5 +1,5 @@
-//! How much work goes into one submission: desktop drivers kill what runs for about two seconds, so each submission
-//! is to take about 50 ms, by the time that earlier ones took.
+//! How much work goes into one submission: desktop drivers kill what runs for about two seconds, so
+//! each submission is to take about 50 ms, by the time that earlier ones took.
 
 use crate::plan::Kernel;
 use std::collections::BTreeMap;
@@ -10,8 +10,9 @@ pub const SLICE: f64 = 0.05;
 const FIRST_ITEMS: u32 = 1 << 14;
 /// Factor by which one measurement can change an estimate.
 const STEP: f64 = 8.0;
-/// Power of the ratio by which the submissions of a whole step lower an estimate if all are quick. One of them alone says little: the
-/// cost of items changes over a picture, and the next may be the dear ones again.
+/// Power of the ratio by which the submissions of a whole step lower an estimate if all are quick.
+/// One of them alone says little: the cost of items changes over a picture, and the next may be the
+/// dear ones again.
 const LOWERING: f64 = 0.5;
 
 /// Estimated seconds per item of each kernel, and what the submission under way holds.
@@ -40,8 +41,8 @@ impl Pace {
         self.slice.is_finite()
     }
 
-    /// How many of `items` items of `kernel` still fit; 0 when the submission is full. A kernel of which nothing is
-    /// known gets a submission of its own.
+    /// How many of `items` items of `kernel` still fit; 0 when the submission is full. A kernel of
+    /// which nothing is known gets a submission of its own.
     pub fn fit(&self, kernel: Kernel, items: u32) -> u32 {
         if !self.splits() {
             return items;
@@ -92,8 +93,9 @@ impl Pace {
     }
 }
 
-/// By what an estimate is multiplied after `share` of a step took `ratio` times as long: at once where it took longer, slowly where it
-/// was quicker, since too long a submission costs more than too short a one.
+/// By what an estimate is multiplied after `share` of a step took `ratio` times as long: at once
+/// where it took longer, slowly where it was quicker, since too long a submission costs more than
+/// too short a one.
 fn correction(ratio: f64, share: f64) -> f64 {
     if ratio > 1.0 { ratio.min(STEP) } else { ratio.powf(LOWERING * share).max(1.0 / STEP) }
 }
@@ -142,8 +144,8 @@ mod tests {
         }
     }
 
-    /// Where a third of the items costs three times as much, as the floor of a picture does, none takes much longer than a slice for
-    /// that, and not many are much shorter.
+    /// Where a third of the items costs three times as much, as the floor of a picture does, none
+    /// takes much longer than a slice for that, and not many are much shorter.
     #[test]
     fn dear_items_are_expected() {
         let (mut pace, mut times) = (Pace::default(), Vec::new());

@@ -28,7 +28,8 @@ impl Program {
         features: &Features,
         scene: &SceneTables,
     ) -> Result<Self, EngineError> {
-        let shader = compose(kernel, features, scene).map_err(|e| EngineError::Shader(e.to_string()))?;
+        let shader =
+            compose(kernel, features, scene).map_err(|e| EngineError::Shader(e.to_string()))?;
         Self::of_shader(gpu, kernel, features, shader)
     }
 
@@ -78,7 +79,8 @@ impl Program {
         }
     }
 
-    /// Binds the buffers that `buffer` finds by name; `dispatches` holds the numbers of the dispatches.
+    /// Binds the buffers that `buffer` finds by name; `dispatches` holds the numbers of the
+    /// dispatches.
     pub fn bind<'a>(
         &self,
         gpu: &Gpu,
@@ -96,7 +98,8 @@ impl Program {
                 _ => match buffer(binding.name) {
                     Some(buffer) => buffer.as_entire_binding(),
                     None => {
-                        let text = format!("{} has no buffer `{}`", self.kernel.stem(), binding.name);
+                        let text =
+                            format!("{} has no buffer `{}`", self.kernel.stem(), binding.name);
                         return Err(EngineError::Shader(text));
                     }
                 },
@@ -121,7 +124,8 @@ pub enum Compiling {
     OneByOne,
 }
 
-/// Composes and compiles kernels, and hands each over as soon as it is ready, with the seconds that it took.
+/// Composes and compiles kernels, and hands each over as soon as it is ready, with the seconds that
+/// it took.
 pub fn make_programs(
     gpu: &Gpu,
     kernels: &[Kernel],
@@ -132,10 +136,13 @@ pub fn make_programs(
 ) -> Result<(), EngineError> {
     let make = |kernel: &Kernel| {
         let begun = Instant::now();
-        Program::new(gpu, *kernel, features, scene).map(|made| (made, begun.elapsed().as_secs_f64()))
+        Program::new(gpu, *kernel, features, scene)
+            .map(|made| (made, begun.elapsed().as_secs_f64()))
     };
     if compiling == Compiling::OneByOne {
-        return kernels.iter().try_for_each(|kernel| make(kernel).and_then(|(made, time)| take(made, time)));
+        return kernels
+            .iter()
+            .try_for_each(|kernel| make(kernel).and_then(|(made, time)| take(made, time)));
     }
     let threads = std::thread::available_parallelism().map_or(1, |n| n.get()).min(kernels.len());
     let next = AtomicUsize::new(0);
@@ -172,7 +179,8 @@ pub fn workgroup_items(kernel: Kernel) -> u32 {
     }
 }
 
-/// Rows and columns of `groups` workgroups, at most 65535 in a row; surplus invocations find nothing to do.
+/// Rows and columns of `groups` workgroups, at most 65535 in a row; surplus invocations find
+/// nothing to do.
 pub fn arrange(groups: u32) -> (u32, u32) {
     const ROW: u32 = 65535;
     let rows = groups.div_ceil(ROW).max(1);

@@ -1,4 +1,5 @@
-//! Commands on their way to the device. One submission at a time is under way, so that its time can be measured.
+//! Commands on their way to the device. One submission at a time is under way, so that its time can
+//! be measured.
 
 use super::context::Gpu;
 use super::program::{Program, arrange, workgroup_items};
@@ -64,14 +65,21 @@ impl Recorder {
     }
 
     /// Records one dispatch; there must be a slot.
-    pub fn dispatch(&mut self, gpu: &Gpu, program: &Program, group: &wgpu::BindGroup, dispatch: &Dispatch) {
+    pub fn dispatch(
+        &mut self,
+        gpu: &Gpu,
+        program: &Program,
+        group: &wgpu::BindGroup,
+        dispatch: &Dispatch,
+    ) {
         let offset = self.staged.len();
         self.staged.extend_from_slice(bytes_of(dispatch));
         self.staged.resize(offset + self.stride, 0);
         let items = (dispatch.end - dispatch.first).div_ceil(workgroup_items(program.kernel));
         let (columns, rows) = arrange(items);
         let Self { encoder, stamps, .. } = self;
-        let encoder = encoder.get_or_insert_with(|| gpu.device.create_command_encoder(&Default::default()));
+        let encoder =
+            encoder.get_or_insert_with(|| gpu.device.create_command_encoder(&Default::default()));
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
             label: Some(program.kernel.stem()),
             timestamp_writes: stamps.as_mut().map(|stamps| stamps.next(program.kernel)),
@@ -105,7 +113,8 @@ impl Recorder {
         true
     }
 
-    /// Seconds of each dispatch of the last submission by the device's clock, where dispatches are stamped.
+    /// Seconds of each dispatch of the last submission by the device's clock, where dispatches are
+    /// stamped.
     pub fn stamped(&mut self, gpu: &Gpu) -> Result<Vec<(Kernel, f64)>, EngineError> {
         self.stamps.as_mut().map_or(Ok(Vec::new()), |stamps| stamps.read(gpu))
     }

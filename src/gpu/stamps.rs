@@ -55,7 +55,8 @@ impl Stamps {
         let kernels = std::mem::take(&mut self.kernels);
         let bytes = gpu.read(&self.resolved, 16 * kernels.len() as u64)?;
         let counts: Vec<u64> = bytemuck::pod_collect_to_vec(&bytes);
-        let seconds = counts.chunks_exact(2).map(|pair| pair[1].saturating_sub(pair[0]) as f64 * self.period);
+        let seconds =
+            counts.chunks_exact(2).map(|pair| pair[1].saturating_sub(pair[0]) as f64 * self.period);
         Ok(kernels.into_iter().zip(seconds).collect())
     }
 }

@@ -103,8 +103,9 @@ fn found() -> &'static Found {
     static FOUND: OnceLock<Found> = OnceLock::new();
     FOUND.get_or_init(|| {
         let filter = Filter::from_env();
-        let (visible, misnamed): (Vec<_>, Vec<_>) =
-            of_backends(filter.backends().0).into_iter().partition(|(_, summary)| filter.takes(summary));
+        let (visible, misnamed): (Vec<_>, Vec<_>) = of_backends(filter.backends().0)
+            .into_iter()
+            .partition(|(_, summary)| filter.takes(summary));
         Found { visible, misnamed: misnamed.into_iter().map(|(_, summary)| summary).collect() }
     })
 }
@@ -154,7 +155,11 @@ pub fn hidden() -> &'static [Hidden] {
 }
 
 /// What there is to say of each variable.
-fn described(filter: &Filter, excluded: Vec<AdapterSummary>, misnamed: Vec<AdapterSummary>) -> Vec<Hidden> {
+fn described(
+    filter: &Filter,
+    excluded: Vec<AdapterSummary>,
+    misnamed: Vec<AdapterSummary>,
+) -> Vec<Hidden> {
     let of = |variable, value: &Option<String>, adapters, unknown| {
         let value = value.clone()?;
         Some(Hidden { variable, value, adapters, unknown })
@@ -185,7 +190,12 @@ mod tests {
         }
     }
 
-    fn lines(backend: Option<&str>, name: Option<&str>, excluded: &[&str], misnamed: &[&str]) -> Vec<String> {
+    fn lines(
+        backend: Option<&str>,
+        name: Option<&str>,
+        excluded: &[&str],
+        misnamed: &[&str],
+    ) -> Vec<String> {
         let filter = Filter { backend: backend.map(str::to_owned), name: name.map(str::to_owned) };
         let list = |names: &[&str]| names.iter().map(|name| adapter(name)).collect();
         described(&filter, list(excluded), list(misnamed)).iter().map(Hidden::to_string).collect()
@@ -204,20 +214,28 @@ mod tests {
         );
         assert_eq!(
             lines(Some("vulcan"), None, &["GeForce"], &[]),
-            ["WGPU_BACKEND=vulcan names no graphics interface by `vulcan` (known: vulkan, metal, dx12) and \
-              hides GeForce; unset WGPU_BACKEND to use it"]
+            [
+                "WGPU_BACKEND=vulcan names no graphics interface by `vulcan` (known: vulkan, metal, dx12) and \
+              hides GeForce; unset WGPU_BACKEND to use it"
+            ]
         );
         assert_eq!(
             lines(Some("vk,vulcan"), None, &[], &[]),
-            ["WGPU_BACKEND=vk,vulcan names no graphics interface by `vulcan` (known: vulkan, metal, dx12); \
-              correct or unset WGPU_BACKEND"]
+            [
+                "WGPU_BACKEND=vk,vulcan names no graphics interface by `vulcan` (known: vulkan, metal, dx12); \
+              correct or unset WGPU_BACKEND"
+            ]
         );
     }
 
     #[test]
     fn words_name_interfaces() {
-        let backends = |text: &str| Filter { backend: Some(text.to_owned()), name: None }.backends();
-        assert_eq!(backends("Vulkan , mtl"), (wgpu::Backends::VULKAN | wgpu::Backends::METAL, vec![]));
+        let backends =
+            |text: &str| Filter { backend: Some(text.to_owned()), name: None }.backends();
+        assert_eq!(
+            backends("Vulkan , mtl"),
+            (wgpu::Backends::VULKAN | wgpu::Backends::METAL, vec![])
+        );
         assert_eq!(backends("x"), (wgpu::Backends::empty(), vec!["x".to_owned()]));
         assert_eq!(Filter::default().backends(), (wgpu::Backends::all(), vec![]));
     }

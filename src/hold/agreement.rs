@@ -6,11 +6,12 @@
 //! sigma^2 = s^2 / K + SE^2 + (bias T)^2
 //! ```
 //!
-//! from the scatter `s` of the render's `K` parts (the larger of the block's own and the mean over the 3 x 3 blocks
-//! around it, since a few parts may all miss what is bright and rarely found), the truth's standard error, and an
-//! allowance for the bias of density estimation, a share of the truth `T`. Where both agree, `d / sigma` is about
-//! Student-t of `K - 1` degrees of freedom, or narrower. A block is outside when one of its channels is. The same is
-//! done for regions of 4 x 4 blocks, whose means have less noise: smaller errors show there, if they are wider.
+//! from the scatter `s` of the render's `K` parts (the larger of the block's own and the mean over
+//! the 3 x 3 blocks around it, since a few parts may all miss what is bright and rarely found), the
+//! truth's standard error, and an allowance for the bias of density estimation, a share of the
+//! truth `T`. Where both agree, `d / sigma` is about Student-t of `K - 1` degrees of freedom, or
+//! narrower. A block is outside when one of its channels is. The same is done for regions of 4 x 4
+//! blocks, whose means have less noise: smaller errors show there, if they are wider.
 
 use super::student::{poisson_limit, two_sided_tail};
 use super::truth::{BlockTruth, Blocks};
@@ -22,7 +23,8 @@ pub const LIMIT: f64 = 4.0;
 pub const LIMIT_FAR: f64 = 8.0;
 /// Largest difference of a channel's mean over the picture, as a share of the truth.
 pub const MEAN_LIMIT: f64 = 0.005;
-/// Standard errors of the ratio, the truth's and the render's joined, that are allowed beside [`MEAN_LIMIT`].
+/// Standard errors of the ratio, the truth's and the render's joined, that are allowed beside
+/// [`MEAN_LIMIT`].
 pub const MEAN_ERRORS: f64 = 3.0;
 /// Chance that an agreeing render has more blocks outside than allowed.
 pub const CHANCE: f64 = 1e-3;
@@ -67,10 +69,11 @@ impl Deviations {
             let ((mean, own), around) = (&squares[i], neighbours(i, &truth.mean));
             (0..3).fold(0.0, |largest: f64, c| {
                 let share = bias * bias + ROUNDING * ROUNDING;
-                let pooled =
-                    around.iter().map(|&j| squares[j].1[c].powi(2)).sum::<f64>() / around.len() as f64;
-                let variance =
-                    own[c].powi(2).max(pooled) + truth_error[c].powi(2) + share * truth_value[c].powi(2);
+                let pooled = around.iter().map(|&j| squares[j].1[c].powi(2)).sum::<f64>()
+                    / around.len() as f64;
+                let variance = own[c].powi(2).max(pooled)
+                    + truth_error[c].powi(2)
+                    + share * truth_value[c].powi(2);
                 let deviation = (mean[c] - truth_value[c]) / (variance + f64::MIN_POSITIVE).sqrt();
                 larger(largest, deviation)
             })
@@ -90,13 +93,15 @@ impl Deviations {
     }
 }
 
-/// Holds the mean of `parts` (two at least) against `truth`. `bias` is the allowed bias as a share of a block's
-/// value.
+/// Holds the mean of `parts` (two at least) against `truth`. `bias` is the allowed bias as a share
+/// of a block's value.
 pub fn hold(parts: &[Blocks], truth: &BlockTruth, bias: f64) -> Agreement {
     let (mean, error) = mean_and_error(parts.iter().map(Blocks::mean), parts.len() as f64);
     let (truth_mean, truth_error) = (truth.mean.mean(), truth.mean_error());
-    let render =
-        Blocks { rgb: block_means(parts, truth).iter().map(|(mean, _)| *mean).collect(), ..truth.mean };
+    let render = Blocks {
+        rgb: block_means(parts, truth).iter().map(|(mean, _)| *mean).collect(),
+        ..truth.mean
+    };
     let coarse: Vec<_> = parts.iter().map(|part| part.coarser(REGION)).collect();
     Agreement {
         mean_ratio: [0, 1, 2].map(|c| mean[c] / truth_mean[c]),
@@ -141,8 +146,10 @@ fn neighbours(i: usize, blocks: &Blocks) -> Vec<usize> {
     let (width, height) = (blocks.width as usize, blocks.height as usize);
     let (x, y) = (i % width, i / width);
     let rows = y.saturating_sub(1)..(y + 2).min(height);
-    rows.flat_map(|row| (x.saturating_sub(1)..(x + 2).min(width)).map(move |column| row * width + column))
-        .collect()
+    rows.flat_map(|row| {
+        (x.saturating_sub(1)..(x + 2).min(width)).map(move |column| row * width + column)
+    })
+    .collect()
 }
 
 /// Mean of `K` values per channel and its standard error.

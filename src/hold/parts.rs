@@ -32,8 +32,9 @@ pub struct Rendered {
     pub parts: Vec<Blocks>,
 }
 
-/// Renders `scene` on the device that is wanted `renders` times, with a seed each, and means over `width * height`
-/// blocks of each. (Passes are no parts: PPM's share their eye paths, and SPPM's share a walk through the pixel.)
+/// Renders `scene` on the device that is wanted `renders` times, with a seed each, and means over
+/// `width * height` blocks of each. (Passes are no parts: PPM's share their eye paths, and SPPM's
+/// share a walk through the pixel.)
 ///
 /// # Errors
 /// When the scene does not run on the device or its film does not divide into the blocks.
@@ -54,7 +55,9 @@ pub fn render_parts(
             engine.pass()?;
         }
         let picture = engine.picture()?;
-        parts.push(Blocks::of(&picture, width, height).ok_or(HoldError::Size(film.width, film.height))?);
+        parts.push(
+            Blocks::of(&picture, width, height).ok_or(HoldError::Size(film.width, film.height))?,
+        );
         let share = 1.0 / renders as f32;
         let channels = sum.rgb.as_flattened_mut().iter_mut().zip(picture.rgb.as_flattened());
         channels.for_each(|(sum, value)| *sum += value * share);

@@ -7,16 +7,16 @@ use crate::film::{Picture, RelativeError, luminance};
 /// A picture of the truth that knows its own noise.
 #[derive(Clone, Debug)]
 pub enum NoisyTruth {
-    /// Two renders that share nothing but what they converge to: the product of the differences from both has the
-    /// expectation of the squared error.
+    /// Two renders that share nothing but what they converge to: the product of the differences
+    /// from both has the expectation of the squared error.
     Halves([Picture; 2]),
     /// A pixel for each block, with standard errors.
     Blocks(BlockTruth),
 }
 
 impl NoisyTruth {
-    /// relMSE of docs/measures.md of a picture of the same size, less what the truth's own noise adds to it; below zero by
-    /// chance where the error is small against that noise.
+    /// relMSE of docs/measures.md of a picture of the same size, less what the truth's own noise
+    /// adds to it; below zero by chance where the error is small against that noise.
     pub fn rel_mse(&self, picture: &Picture) -> f64 {
         let mut errors: Vec<[f64; 2]> =
             picture.rgb.iter().enumerate().map(|(i, rgb)| self.pixel(i, luminance(*rgb))).collect();
@@ -33,8 +33,8 @@ impl NoisyTruth {
                 (a, b, 0.0)
             }
             Self::Blocks(truth) => {
-                let [mean, error] =
-                    [&truth.mean, &truth.standard_error].map(|blocks| blocks.rgb[i].map(|x| x as f32));
+                let [mean, error] = [&truth.mean, &truth.standard_error]
+                    .map(|blocks| blocks.rgb[i].map(|x| x as f32));
                 let weights = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(luminance);
                 let noise = (0..3).map(|c| (weights[c] * f64::from(error[c])).powi(2)).sum();
                 (luminance(mean), luminance(mean), noise)
@@ -67,7 +67,8 @@ impl Promise {
     }
 }
 
-/// Renders on until each of the numbers of passes, which rise, and hears what the picture says there.
+/// Renders on until each of the numbers of passes, which rise, and hears what the picture says
+/// there.
 ///
 /// # Errors
 /// When the engine fails.

@@ -5,8 +5,8 @@ use std::f64::consts::FRAC_PI_2;
 /// Intervals of Simpson's rule; the integrand is smooth.
 const INTERVALS: usize = 2000;
 
-/// `P(|t| > limit)` for Student's t of `degrees` degrees of freedom: with `t = sqrt(degrees) tan a`, the density of
-/// `a` is proportional to `cos^(degrees - 1) a`.
+/// `P(|t| > limit)` for Student's t of `degrees` degrees of freedom: with `t = sqrt(degrees) tan
+/// a`, the density of `a` is proportional to `cos^(degrees - 1) a`.
 pub fn two_sided_tail(limit: f64, degrees: u32) -> f64 {
     let density = |a: f64| a.cos().max(0.0).powi(degrees as i32 - 1);
     let from = (limit / f64::from(degrees).sqrt()).atan();

@@ -108,9 +108,12 @@ impl BlockTruth {
         let mean = Blocks::of(picture, width, height)?;
         let variance = |index: usize| match noise {
             PixelNoise::Known(errors) => errors.rgb[index].map(|e| e * e),
-            PixelNoise::RelMse(e) => picture.rgb[index].map(|v| (e * (f64::from(v * v) + 0.01)) as f32),
+            PixelNoise::RelMse(e) => {
+                picture.rgb[index].map(|v| (e * (f64::from(v * v) + 0.01)) as f32)
+            }
         };
-        if matches!(noise, PixelNoise::Known(e) if (e.width, e.height) != (picture.width, picture.height)) {
+        if matches!(noise, PixelNoise::Known(e) if (e.width, e.height) != (picture.width, picture.height))
+        {
             return None;
         }
         let rgb = (0..picture.rgb.len()).map(variance).collect();
@@ -141,7 +144,8 @@ impl BlockTruth {
     /// Standard error of the whole picture's mean.
     pub fn mean_error(&self) -> [f64; 3] {
         let errors = &self.standard_error.rgb;
-        [0, 1, 2].map(|c| errors.iter().map(|e| e[c] * e[c]).sum::<f64>().sqrt() / errors.len() as f64)
+        [0, 1, 2]
+            .map(|c| errors.iter().map(|e| e[c] * e[c]).sum::<f64>().sqrt() / errors.len() as f64)
     }
 
     /// Reads a file that [`BlockTruth::write`] made.
@@ -186,7 +190,10 @@ impl BlockTruth {
             .write()
             .non_parallel()
             .to_buffered(Cursor::new(&mut bytes))
-            .map_err(|error| FileError::Encode { file: file.to_owned(), what: error.to_string() })?;
+            .map_err(|error| FileError::Encode {
+                file: file.to_owned(),
+                what: error.to_string(),
+            })?;
         write_whole(file, &bytes)
     }
 }

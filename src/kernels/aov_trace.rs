@@ -1,6 +1,6 @@
-//! What a pixel shows beside radiance, from the same eye path as a visible point: at the first hit, and beyond mirrors
-//! and glass at the first hit that is neither. Run by one invocation per pixel for one of its samples; reads the scene,
-//! updates `aovs`. Twin: `shaders/kernels/aov_trace.wgsl`.
+//! What a pixel shows beside radiance, from the same eye path as a visible point: at the first hit,
+//! and beyond mirrors and glass at the first hit that is neither. Run by one invocation per pixel
+//! for one of its samples; reads the scene, updates `aovs`. Twin: `shaders/kernels/aov_trace.wgsl`.
 
 use super::camera::camera_ray;
 use super::direct::{direct_light, transmittance};
@@ -25,11 +25,13 @@ use bytemuck::Zeroable;
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Plain, Zeroable)]
 pub struct AovPixel {
-    /// Reflectance of the first hit that is neither mirror nor glass times the throughput before it; 0 where there is none.
+    /// Reflectance of the first hit that is neither mirror nor glass times the throughput before
+    /// it; 0 where there is none.
     pub albedo: Vec3,
     /// Distance of the first hit along the view direction, over the samples that hit anything.
     pub depth: Real,
-    /// Shading normal toward the viewer of the first hit that is neither mirror nor glass; 0 where there is none.
+    /// Shading normal toward the viewer of the first hit that is neither mirror nor glass; 0 where
+    /// there is none.
     pub normal: Vec3,
     /// Samples that hit anything.
     pub hits: Real,
@@ -53,8 +55,8 @@ pub struct AovPixel {
     pub pad: [u32; 2],
 }
 
-/// Adds to pixel `id` of the chunk the sample after the `passes_done` that it holds. `sampled`: with direct light by shadow
-/// rays.
+/// Adds to pixel `id` of the chunk the sample after the `passes_done` that it holds. `sampled`:
+/// with direct light by shadow rays.
 pub fn aov_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, id: u32, aov: &mut AovPixel) {
     let camera = &scene.camera;
     let pixel = window_pixel(dispatch, camera, dispatch.chunk_first / dispatch.eye_samples + id);
@@ -71,8 +73,12 @@ pub fn aov_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, id: u32, aov
         }
     }
     let k = dispatch.passes_done % dispatch.eye_samples;
-    let mut rng =
-        rng_eye(pixel * dispatch.eye_samples + k, dispatch.pass_number, dispatch.seed, dispatch.points);
+    let mut rng = rng_eye(
+        pixel * dispatch.eye_samples + k,
+        dispatch.pass_number,
+        dispatch.seed,
+        dispatch.points,
+    );
     let mut ray = camera_ray(camera, x, y, stratified(rng_next(&mut rng), k, pixel, dispatch));
     let mut throughput = Vec3::ONE;
     let mut interior = interior_at(scene, camera.medium, ray.origin);
@@ -116,8 +122,8 @@ pub fn aov_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, id: u32, aov
             normal = shading_normal(scene, &s, wo);
             if max_component(reflectance) > 0.0 {
                 next.points += 1.0;
-                next.radius +=
-                    (start_radius(dispatch, camera.pixel * length) - next.radius) * (1.0 / next.points);
+                next.radius += (start_radius(dispatch, camera.pixel * length) - next.radius)
+                    * (1.0 / next.points);
                 if sampled {
                     let ng = toward(s.normal, wo);
                     let (radiance, _) =

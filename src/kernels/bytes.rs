@@ -1,5 +1,5 @@
-//! What engines keep of pixels and visible points as bytes: fields in the order of their structs, numbers with the least byte first. In f32 these are the
-//! bytes of the device's buffers.
+//! What engines keep of pixels and visible points as bytes: fields in the order of their structs,
+//! numbers with the least byte first. In f32 these are the bytes of the device's buffers.
 
 use super::aov_trace::AovPixel;
 use super::real::{Real, Vec3};
@@ -176,8 +176,8 @@ impl Reader<'_> {
     }
 }
 
-/// Theory: what is written is read again bit by bit, in f32 it is what a device holds, and no field is left out or exchanged
-/// with another.
+/// Theory: what is written is read again bit by bit, in f32 it is what a device holds, and no field
+/// is left out or exchanged with another.
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -201,13 +201,19 @@ mod tests {
         assert_eq!(bytes.len(), 2 * FILM_BYTES);
         let back = film_of(&bytes);
         assert_eq!(film_bytes(&back), bytes);
-        assert_eq!((back[0].mean, back[0].rejected, back[1].spread), (pixel.mean, pixel.rejected, x(20)));
+        assert_eq!(
+            (back[0].mean, back[0].rejected, back[1].spread),
+            (pixel.mean, pixel.rejected, x(20))
+        );
         assert_eq!(bytes[..REAL], x(0).to_le_bytes());
         assert_eq!(bytes[8 * REAL + 12..8 * REAL + 16], [4, 3, 2, 1]);
         let point = Statistics { scale_sq: x(1), drop: x(2), count_low: u32::MAX, count_high: 7 };
         assert_eq!(statistics_bytes(&[point; 3]).len(), 3 * STATISTICS_BYTES);
         assert_eq!(statistics_of(&statistics_bytes(&[point; 3])), [point; 3]);
-        assert_ne!(statistics_bytes(&[Statistics { count_high: 0, ..point }]), statistics_bytes(&[point]));
+        assert_ne!(
+            statistics_bytes(&[Statistics { count_high: 0, ..point }]),
+            statistics_bytes(&[point])
+        );
     }
 
     #[test]

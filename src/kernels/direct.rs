@@ -1,5 +1,5 @@
-//! Direct light at a non-specular hit: one shadow ray to a sampled light and, on metal, one ray by the
-//! material's density, joined by multiple importance sampling (Veach & Guibas 1995). Twin:
+//! Direct light at a non-specular hit: one shadow ray to a sampled light and, on metal, one ray by
+//! the material's density, joined by multiple importance sampling (Veach & Guibas 1995). Twin:
 //! `shaders/kernels/direct.wgsl`.
 
 use super::lights::light::{eval_environment, pdf_environment, pdf_light, sample_light};
@@ -26,8 +26,8 @@ pub fn transmittance(scene: &Scene, medium: u32, distance: Real) -> Vec3 {
     Vec3::new(exponential(depth.x), exponential(depth.y), exponential(depth.z))
 }
 
-/// Radiance toward `wo` from one sampled light, and the number of shadow rays. `mis`: weighted against
-/// scattered rays that could meet the same light.
+/// Radiance toward `wo` from one sampled light, and the number of shadow rays. `mis`: weighted
+/// against scattered rays that could meet the same light.
 #[inline(always)]
 pub fn next_event(
     scene: &Scene,
@@ -106,8 +106,16 @@ pub fn direct_light(
                 let at = surface_at(scene, &ray, &hit);
                 if at.light != NONE && ray.direction.dot(at.normal) < 0.0 {
                     let light = &scene.lights[at.light as usize];
-                    let other =
-                        pdf_light(scene, shares, at.light, origin, ray.direction, hit.t, at.normal, at.v);
+                    let other = pdf_light(
+                        scene,
+                        shares,
+                        at.light,
+                        origin,
+                        ray.direction,
+                        hit.t,
+                        at.normal,
+                        at.v,
+                    );
                     let seen = light.color * transmittance(scene, medium_of(interior), hit.t);
                     radiance += scattered.weight * seen * balance(pdf, other);
                 }

@@ -1,6 +1,6 @@
-//! Eye path of one visible point: lens and pixel sample, through mirrors and glass, to the first non-specular
-//! hit. Run by one invocation per visible point; reads the scene, writes `visible_points`. Twin:
-//! `shaders/kernels/eye_trace.wgsl`.
+//! Eye path of one visible point: lens and pixel sample, through mirrors and glass, to the first
+//! non-specular hit. Run by one invocation per visible point; reads the scene, writes
+//! `visible_points`. Twin: `shaders/kernels/eye_trace.wgsl`.
 
 use super::camera::camera_ray;
 use super::direct::{direct_light, transmittance};
@@ -21,16 +21,25 @@ use super::shapes::surface::surface_at;
 use super::tables::*;
 use bytemuck::Zeroable;
 
-/// Traces visible point `id` of the chunk; also returns the number of rays. `sampled`: direct light by shadow
-/// rays.
+/// Traces visible point `id` of the chunk; also returns the number of rays. `sampled`: direct light
+/// by shadow rays.
 #[inline(always)]
-pub fn eye_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, id: u32) -> (VisiblePoint, u32) {
+pub fn eye_trace(
+    scene: &Scene,
+    dispatch: &Dispatch,
+    sampled: bool,
+    id: u32,
+) -> (VisiblePoint, u32) {
     let camera = &scene.camera;
     let place = (dispatch.chunk_first + id) / dispatch.eye_samples;
     let k = dispatch.chunk_first + id - place * dispatch.eye_samples;
     let pixel = window_pixel(dispatch, camera, place);
-    let mut rng =
-        rng_eye(pixel * dispatch.eye_samples + k, dispatch.pass_number, dispatch.seed, dispatch.points);
+    let mut rng = rng_eye(
+        pixel * dispatch.eye_samples + k,
+        dispatch.pass_number,
+        dispatch.seed,
+        dispatch.points,
+    );
     let u = stratified(rng_next(&mut rng), k, pixel, dispatch);
     let mut ray = camera_ray(camera, pixel % camera.width, pixel / camera.width, u);
     let mut throughput = Vec3::ONE;
@@ -83,7 +92,8 @@ pub fn eye_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, id: u32) -> 
                 point.wo = oct_encode(wo);
             }
             if sampled {
-                let (radiance, spent) = direct_light(scene, &s, wo, n, ng, reflectance, &interior, &mut rng);
+                let (radiance, spent) =
+                    direct_light(scene, &s, wo, n, ng, reflectance, &interior, &mut rng);
                 let direct = throughput * radiance;
                 rays += spent;
                 if is_finite(direct) {

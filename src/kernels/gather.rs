@@ -1,8 +1,9 @@
-//! Density estimate at one visible point: the sum over the photons in its disc, or in two discs where photons that a
-//! diffuse surface has scattered have a wider one. Run by one invocation per visible point and photon batch; reads
-//! `visible_points`, `sorted`, `starts` (and `statistics` under the local rule), adds to `gathered`. Twin:
-//! `shaders/kernels/gather.wgsl`, which tests photons one at a time; here some are tested at once, and those that are
-//! near are taken in the same order.
+//! Density estimate at one visible point: the sum over the photons in its disc, or in two discs
+//! where photons that a diffuse surface has scattered have a wider one. Run by one invocation per
+//! visible point and photon batch; reads `visible_points`, `sorted`, `starts` (and `statistics`
+//! under the local rule), adds to `gathered`. Twin: `shaders/kernels/gather.wgsl`, which tests
+//! photons one at a time; here some are tested at once, and those that are near are taken in the
+//! same order.
 
 use super::grid::{grid_bucket, grid_cell, grid_code};
 use super::grid_build::SortedRecords;
@@ -21,11 +22,12 @@ const FLATNESS: Real = 0.25;
 /// Least cosine with the geometric normal for which the shading normal's correction is formed.
 const COS_MIN: Real = 1e-2;
 
-/// Added to the squared sine between an axis and the normal, so that no rounding makes the box about a disc too small.
+/// Added to the squared sine between an axis and the normal, so that no rounding makes the box
+/// about a disc too small.
 const BOX_SLACK: Real = 1e-4;
 
-/// Photons in a row that are summed up before they are added to the whole sum: so a million photons lose no more than
-/// some thousand roundings.
+/// Photons in a row that are summed up before they are added to the whole sum: so a million photons
+/// lose no more than some thousand roundings.
 const BLOCK: usize = 1024;
 /// Photons that are tested at once.
 const LANES: usize = 16;
@@ -58,8 +60,8 @@ pub fn scale_sq(dispatch: &Dispatch, local: bool, statistics: &Statistics) -> Re
     if statistics.scale_sq == 0.0 { 1.0 } else { statistics.scale_sq - statistics.drop }
 }
 
-/// Adds the photons of one batch around a visible point to `gathered`. Inlined, so that it becomes code for the processor's
-/// widest vectors inside of [`pulp::Arch::dispatch`].
+/// Adds the photons of one batch around a visible point to `gathered`. Inlined, so that it becomes
+/// code for the processor's widest vectors inside of [`pulp::Arch::dispatch`].
 #[inline(always)]
 pub fn gather(
     facets: &[Facet],
@@ -79,7 +81,8 @@ pub fn gather(
     if dispatch.families == 2 {
         gathered.caustic += point.weight * found.flux;
         let wider_sq = dispatch.indirect_radius * dispatch.indirect_radius;
-        let wide = gather_family(facets, dispatch, point, &frame, 1, radius_sq * wider_sq, starts, sorted);
+        let wide =
+            gather_family(facets, dispatch, point, &frame, 1, radius_sq * wider_sq, starts, sorted);
         found.flux += wide.flux * (1.0 / wider_sq);
         found.count += wide.count;
         found.ring += wide.ring * (1.0 / wider_sq);
@@ -89,7 +92,8 @@ pub fn gather(
     gathered.ring += found.ring;
 }
 
-/// The photons of one family: their BRDF times flux, but for the point's weight, their number, and their ring.
+/// The photons of one family: their BRDF times flux, but for the point's weight, their number, and
+/// their ring.
 #[inline(always)]
 fn gather_family(
     facets: &[Facet],
@@ -125,14 +129,23 @@ fn gather_family(
             for part in 0..1 + (last > dispatch.mask) as u32 {
                 let begin = if part == 0 { bucket } else { 0 };
                 let to = if part == 0 { last.min(dispatch.mask) } else { last - dispatch.mask - 1 };
-                let (mut first, end) = (starts[begin as usize] as usize, starts[to as usize + 1] as usize);
+                let (mut first, end) =
+                    (starts[begin as usize] as usize, starts[to as usize + 1] as usize);
                 while first < end {
                     let mut block = Vec4::ZERO;
                     let last = (first + BLOCK).min(end);
                     while first < last {
                         let lanes = first..last;
-                        let mut near =
-                            near(sorted, lanes, code, point.position, ng, radius_sq, depth, &mut outer);
+                        let mut near = near(
+                            sorted,
+                            lanes,
+                            code,
+                            point.position,
+                            ng,
+                            radius_sq,
+                            depth,
+                            &mut outer,
+                        );
                         while near != 0 {
                             let k = near.trailing_zeros() as usize / 8;
                             let i = first + k;
@@ -150,11 +163,13 @@ fn gather_family(
                             if !flat || point.alpha > 0.0 {
                                 let [us, vs, ws] = &sorted.directions;
                                 let wi = unit(Vec3::new(us[i], vs[i], ws[i]));
-                                // flux arrives by the geometric cosine, the BRDF asks for the shading one
+                                // flux arrives by the geometric cosine, the BRDF asks for the
+                                // shading one
                                 let cos_g = wi.dot(ng).max(COS_MIN);
                                 if point.alpha > 0.0 {
                                     let (alpha, reflectance) = (point.alpha, point.reflectance);
-                                    let f = eval_rough(MATERIAL_METAL, alpha, reflectance, n, wo, wi);
+                                    let f =
+                                        eval_rough(MATERIAL_METAL, alpha, reflectance, n, wo, wi);
                                     flux = f.extend(0.0) * flux * (1.0 / cos_g);
                                 } else {
                                     flux *= wi.dot(n).max(0.0) / cos_g;
@@ -175,14 +190,16 @@ fn gather_family(
     Gathered { flux: sum.truncate() * clip.whole, count, ring, ..Gathered::zeroed() }
 }
 
-/// How far along each axis the points of a disc about the origin reach that are no farther than `depth` from its plane.
+/// How far along each axis the points of a disc about the origin reach that are no farther than
+/// `depth` from its plane.
 fn disc_reach(normal: Vec3, radius: Real, depth: Real) -> Vec3 {
     let sine_sq = (Vec3::splat(1.0 + BOX_SLACK) - normal * normal).max(Vec3::ZERO);
     Vec3::new(sine_sq.x.sqrt(), sine_sq.y.sqrt(), sine_sq.z.sqrt()) * radius + normal.abs() * depth
 }
 
-/// Which of the first [`LANES`] photons of `range` lie in the disc and in the row, no farther than `depth` from its plane, and
-/// come from the side that is seen: a byte of one for each. `outer` tells those in the outer half of the disc's area.
+/// Which of the first [`LANES`] photons of `range` lie in the disc and in the row, no farther than
+/// `depth` from its plane, and come from the side that is seen: a byte of one for each. `outer`
+/// tells those in the outer half of the disc's area.
 #[inline(always)]
 fn near(
     sorted: &SortedRecords,

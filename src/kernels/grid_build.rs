@@ -1,10 +1,11 @@
-//! The hash grid's construction: count, scan, scatter, sort. Twins: `shaders/kernels/grid_count.wgsl`,
-//! `grid_scan_reduce.wgsl`, `grid_scan_sums.wgsl`, `grid_scan.wgsl`, `grid_scatter.wgsl`, `grid_sort.wgsl` and
-//! `grid_sort_long.wgsl`.
+//! The hash grid's construction: count, scan, scatter, sort. Twins:
+//! `shaders/kernels/grid_count.wgsl`, `grid_scan_reduce.wgsl`, `grid_scan_sums.wgsl`,
+//! `grid_scan.wgsl`, `grid_scatter.wgsl`, `grid_sort.wgsl` and `grid_sort_long.wgsl`.
 //!
-//! The result does not depend on the order in which threads arrive: within a bucket the records stand in the
-//! order of their keys. On the CPU each task that traced photons parts its records by the leading bits of their buckets;
-//! then each part of the buckets is sorted by itself, within the cache.
+//! The result does not depend on the order in which threads arrive: within a bucket the records
+//! stand in the order of their keys. On the CPU each task that traced photons parts its records by
+//! the leading bits of their buckets; then each part of the buckets is sorted by itself, within the
+//! cache.
 
 use super::grid::{grid_bucket, grid_cell, grid_code};
 use super::math::oct_vector;
@@ -15,8 +16,8 @@ use glam::IVec3;
 use rayon::prelude::*;
 use std::mem::{swap, take};
 
-/// Parts of the buckets, at the most: so many streams a processor writes at once without losing its pages, and a part of
-/// four million records fits the second-level cache.
+/// Parts of the buckets, at the most: so many streams a processor writes at once without losing its
+/// pages, and a part of four million records fits the second-level cache.
 const PARTS: u32 = 256;
 
 /// Records of one task of photons: in the order of their keys until [`grid_scatter`] parts them.
@@ -61,7 +62,10 @@ fn record_family(dispatch: &Dispatch, record: &PhotonRecord) -> u32 {
 /// Cell of a record in the grid of its family.
 fn record_cell(dispatch: &Dispatch, record: &PhotonRecord) -> IVec3 {
     let indirect = record_family(dispatch, record) == 1;
-    grid_cell(record.position, if indirect { dispatch.inv_cell_indirect } else { dispatch.inv_cell })
+    grid_cell(
+        record.position,
+        if indirect { dispatch.inv_cell_indirect } else { dispatch.inv_cell },
+    )
 }
 
 /// Bucket of a record.
@@ -132,8 +136,9 @@ pub fn grid_scatter(dispatch: &Dispatch, lists: &mut [RecordList]) {
     });
 }
 
-/// Copies the records to `sorted` in the order of their buckets; `starts[b]` becomes the number of records in the buckets
-/// before `b`, and one more entry holds their total. `part_starts` is what [`grid_scan`] gave.
+/// Copies the records to `sorted` in the order of their buckets; `starts[b]` becomes the number of
+/// records in the buckets before `b`, and one more entry holds their total. `part_starts` is what
+/// [`grid_scan`] gave.
 pub fn grid_sort(
     dispatch: &Dispatch,
     lists: &[RecordList],
@@ -201,7 +206,10 @@ impl SortedRecords {
     /// Makes room for `records` and the entries after them, which lie in no cell.
     fn resize(&mut self, records: usize) {
         let length = records + TAIL;
-        self.positions.iter_mut().chain(&mut self.directions).for_each(|values| values.resize(length, 0.0));
+        self.positions
+            .iter_mut()
+            .chain(&mut self.directions)
+            .for_each(|values| values.resize(length, 0.0));
         self.codes.resize(length, u32::MAX);
         self.codes[records..].fill(u32::MAX);
         self.fluxes.resize(length, Vec4::ZERO);
@@ -230,7 +238,8 @@ impl Places<'_> {
 
     #[inline]
     fn put(&mut self, i: usize, dispatch: &Dispatch, record: &PhotonRecord) {
-        let (position, direction) = (record.position.to_array(), oct_vector(record.direction).to_array());
+        let (position, direction) =
+            (record.position.to_array(), oct_vector(record.direction).to_array());
         for axis in 0..3 {
             self.positions[axis][i] = position[axis];
             self.directions[axis][i] = direction[axis];
@@ -261,15 +270,26 @@ mod tests {
             (state >> 8) as Real / 16_777_216.0
         };
         let record = |key| {
-            let at = Vec3::new(random(), random(), random()) * if key % 5 == 0 { 0.0 } else { side };
-            PhotonRecord { position: at, key, flux: at, direction: oct_encode(Vec3::new(0.6, 0.0, -0.8)) }
+            let at =
+                Vec3::new(random(), random(), random()) * if key % 5 == 0 { 0.0 } else { side };
+            PhotonRecord {
+                position: at,
+                key,
+                flux: at,
+                direction: oct_encode(Vec3::new(0.6, 0.0, -0.8)),
+            }
         };
         (0..count).map(record).collect()
     }
 
-    /// Whether a grid is what the definition says: the records stably sorted by bucket, and the number of records in the
-    /// buckets before each.
-    fn is_grid(d: &Dispatch, mut records: Vec<PhotonRecord>, starts: &[u32], sorted: &SortedRecords) -> bool {
+    /// Whether a grid is what the definition says: the records stably sorted by bucket, and the
+    /// number of records in the buckets before each.
+    fn is_grid(
+        d: &Dispatch,
+        mut records: Vec<PhotonRecord>,
+        starts: &[u32],
+        sorted: &SortedRecords,
+    ) -> bool {
         records.sort_by_key(|record| record_bucket(d, record));
         let before = |b: u32| records.partition_point(|record| record_bucket(d, record) < b) as u32;
         let same = |(i, record): (usize, &PhotonRecord)| {
@@ -284,26 +304,32 @@ mod tests {
             && sorted.codes[records.len()..] == [u32::MAX; TAIL]
     }
 
-    // Theory: the grid is defined by its records alone, however they are cut into lists and the buckets into parts.
-    // What is left from a larger grid must not show.
+    // Theory: the grid is defined by its records alone, however they are cut into lists and the
+    // buckets into parts. What is left from a larger grid must not show.
     #[test]
     fn grid_is_its_definition() {
         let mut sorted = SortedRecords::default();
         for (count, buckets, list) in
             [(70_000, 1 << 16, 1000), (5000, 1 << 12, 5000), (900, 64, 7), (3, 1, 1)]
         {
-            let d = Dispatch { mask: buckets - 1, inv_cell: 1.0, families: 2, ..Dispatch::zeroed() };
+            let d =
+                Dispatch { mask: buckets - 1, inv_cell: 1.0, families: 2, ..Dispatch::zeroed() };
             let d = Dispatch { inv_cell_indirect: 0.3, ..d };
             let records = random_records(count, (count as Real).sqrt());
-            let mut lists: Vec<_> = records.chunks(list).map(|r| RecordList::new(r.to_vec())).collect();
+            let mut lists: Vec<_> =
+                records.chunks(list).map(|r| RecordList::new(r.to_vec())).collect();
             lists.push(RecordList::default());
             let mut starts = vec![7; buckets as usize + 1];
             grid_count(&d, &mut lists);
             let part_starts = grid_scan(&lists);
             grid_scatter(&d, &mut lists);
             grid_sort(&d, &lists, &part_starts, &mut starts, &mut sorted);
-            assert!(is_grid(&d, records.clone(), &starts, &sorted), "{count} records, {buckets} buckets");
-            // the comparator notices two neighbours that changed places, and a bucket that begins late
+            assert!(
+                is_grid(&d, records.clone(), &starts, &sorted),
+                "{count} records, {buckets} buckets"
+            );
+            // the comparator notices two neighbours that changed places, and a bucket that begins
+            // late
             let last = count as usize - 1;
             let mut planted = sorted.clone();
             planted.fluxes.swap(0, last);

@@ -1,5 +1,5 @@
-//! The kernels of a pass, each the twin of `shaders/kernels/` file of the same stem: a function of the
-//! invocation's number and of what the kernel reads, returning what it writes.
+//! The kernels of a pass, each the twin of `shaders/kernels/` file of the same stem: a function of
+//! the invocation's number and of what the kernel reads, returning what it writes.
 
 use super::{camera, grid, lights, materials, math, real, shapes, tables};
 

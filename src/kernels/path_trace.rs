@@ -1,5 +1,6 @@
-//! Path tracing with next-event estimation and multiple importance sampling: the independent check that photon
-//! mapping converges to the right picture wherever path tracing gets there. CPU engine only.
+//! Path tracing with next-event estimation and multiple importance sampling: the independent check
+//! that photon mapping converges to the right picture wherever path tracing gets there. CPU engine
+//! only.
 
 use super::camera::camera_ray;
 use super::direct::{next_event, transmittance};
@@ -9,7 +10,8 @@ use super::lights::select::{share_of, shares_at};
 use super::materials::enclosing::interior_at;
 use super::materials::interior::{interior_before, medium_of, passes_hidden};
 use super::materials::scatter::{
-    RADIANCE, is_specular, pdf_rough, reflectance_at, scatter_rough, scatter_specular, shading_normal, toward,
+    RADIANCE, is_specular, pdf_rough, reflectance_at, scatter_rough, scatter_specular,
+    shading_normal, toward,
 };
 use super::math::rng::{rng_eye, rng_next};
 use super::math::sampling::balance;
@@ -21,19 +23,22 @@ use super::shapes::ray::Ray;
 use super::shapes::surface::surface_at;
 use super::tables::*;
 
-/// One path through the pixel at place `place` of the window: its radiance and the number of rays. `sampled`: next-event estimation.
+/// One path through the pixel at place `place` of the window: its radiance and the number of rays.
+/// `sampled`: next-event estimation.
 pub fn path_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, place: u32) -> (Vec3, u32) {
     let camera = &scene.camera;
     let pixel = window_pixel(dispatch, camera, place);
     let mut rng = rng_eye(pixel, dispatch.pass_number, dispatch.seed, dispatch.points);
-    let mut ray = camera_ray(camera, pixel % camera.width, pixel / camera.width, rng_next(&mut rng));
+    let mut ray =
+        camera_ray(camera, pixel % camera.width, pixel / camera.width, rng_next(&mut rng));
     let mut radiance = Vec3::ZERO;
     let mut throughput = Vec3::ONE;
     let mut interior = interior_at(scene, camera.medium, ray.origin);
     let mut hidden = 0;
     let mut bounce = 0;
     let mut rays = 0;
-    // density of the last scattering; 0 where next-event estimation could not have found what is met now
+    // density of the last scattering; 0 where next-event estimation could not have found what is
+    // met now
     let mut pdf = 0.0;
     // where the probabilities of the lights at that place begin
     let mut shares = 0;
@@ -44,7 +49,8 @@ pub fn path_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, place: u32)
             if scene.world.environment != NONE {
                 let sky = scene.world.environment;
                 let light = &scene.lights[sky as usize];
-                let other = pdf_environment(scene, light, ray.direction) * share_of(scene, shares, sky);
+                let other =
+                    pdf_environment(scene, light, ray.direction) * share_of(scene, shares, sky);
                 let weight = if pdf > 0.0 { balance(pdf, other) } else { 1.0 };
                 radiance += throughput * eval_environment(scene, light, ray.direction) * weight;
             }
@@ -56,7 +62,8 @@ pub fn path_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, place: u32)
         throughput *= transmittance(scene, medium_of(&interior), hit.t);
         if s.light != NONE && wo.dot(s.normal) > 0.0 {
             let from = ray.origin;
-            let other = pdf_light(scene, shares, s.light, from, ray.direction, hit.t, s.normal, s.v);
+            let other =
+                pdf_light(scene, shares, s.light, from, ray.direction, hit.t, s.normal, s.v);
             let weight = if pdf > 0.0 { balance(pdf, other) } else { 1.0 };
             radiance += throughput * scene.lights[s.light as usize].color * weight;
         }
@@ -81,7 +88,8 @@ pub fn path_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, place: u32)
             if sampled {
                 shares = shares_at(scene, s.position);
                 let u = rng_next(&mut rng);
-                let (direct, spent) = next_event(scene, &s, wo, n, ng, reflectance, &interior, true, u);
+                let (direct, spent) =
+                    next_event(scene, &s, wo, n, ng, reflectance, &interior, true, u);
                 radiance += throughput * direct;
                 rays += spent;
             }

@@ -1,12 +1,14 @@
-//! Path of one photon: emission, then a record at every non-specular hit and on to the next until roulette
-//! ends it. Run by one invocation per photon; reads the scene, appends to `records`. Twin:
+//! Path of one photon: emission, then a record at every non-specular hit and on to the next until
+//! roulette ends it. Run by one invocation per photon; reads the scene, appends to `records`. Twin:
 //! `shaders/kernels/photon_trace.wgsl`.
 
 use super::direct::transmittance;
 use super::lights::aim::aimed_scatter;
 use super::lights::emission::{Emission, emit_photon};
 use super::materials::interior::{Interior, interior_before, medium_of, passes_hidden};
-use super::materials::scatter::{IMPORTANCE, is_specular, reflectance_at, scatter_rough, scatter_specular};
+use super::materials::scatter::{
+    IMPORTANCE, is_specular, reflectance_at, scatter_rough, scatter_specular,
+};
 use super::math::rng::{Rng, STREAM_PHOTON, rng_new, rng_next};
 use super::math::{FAR, max_component, oct_encode, offset_origin};
 use super::real::{Real, Vec2, Vec3};
@@ -46,7 +48,8 @@ impl PhotonPath {
     /// Emits photon `id` of the batch.
     #[inline(always)]
     pub fn new(scene: &Scene, dispatch: &Dispatch, id: u32) -> PhotonPath {
-        let mut rng = rng_new(dispatch.batch_first + id, dispatch.pass_number, STREAM_PHOTON, dispatch.seed);
+        let mut rng =
+            rng_new(dispatch.batch_first + id, dispatch.pass_number, STREAM_PHOTON, dispatch.seed);
         let emission = emit_photon(scene, &mut rng);
         Self::emitted(emission, rng, id)
     }
@@ -83,8 +86,9 @@ impl PhotonPath {
         true
     }
 
-    /// From what its ray hit to the next ray, or to its end. Hands a record to `store`, if it leaves one. `sampled`: photons straight
-    /// from a light are not stored, since shadow rays bring that light.
+    /// From what its ray hit to the next ray, or to its end. Hands a record to `store`, if it
+    /// leaves one. `sampled`: photons straight from a light are not stored, since shadow rays bring
+    /// that light.
     #[inline(always)]
     pub fn meet(
         &mut self,
@@ -119,9 +123,15 @@ impl PhotonPath {
             let stored = self.bounce > 0 || self.hidden > 0 || !sampled;
             if stored && max_component(reflectance_at(scene, s.material, s.uv)) > 0.0 {
                 let key = self.id << dispatch.key_bits | self.bounce << 1 | self.family;
-                store(PhotonRecord { position: s.position, key, flux: self.flux, direction: oct_encode(wo) });
+                store(PhotonRecord {
+                    position: s.position,
+                    key,
+                    flux: self.flux,
+                    direction: oct_encode(wo),
+                });
             }
-            scattered = scatter_rough(scene, &s, wo, &self.interior, Vec2::new(u.x, u.y), IMPORTANCE);
+            scattered =
+                scatter_rough(scene, &s, wo, &self.interior, Vec2::new(u.x, u.y), IMPORTANCE);
             if far {
                 scattered = aimed_scatter(scene, &s, wo, u, scattered);
             }

@@ -1,10 +1,10 @@
-//! One pixel's estimate of the pass into the film, and the local rule's statistics. Run by one invocation per
-//! pixel; reads `visible_points` and `gathered`, updates `statistics` and `film`. Twin:
-//! `shaders/kernels/resolve.wgsl`.
+//! One pixel's estimate of the pass into the film, and the local rule's statistics. Run by one
+//! invocation per pixel; reads `visible_points` and `gathered`, updates `statistics` and `film`.
+//! Twin: `shaders/kernels/resolve.wgsl`.
 //!
-//! Under every rule the film holds the mean over passes of `radiance + flux / (M pi r^2)`. For the local rule
-//! this is the paper's `tau / (N_emitted pi R^2)`: tau and R^2 shrink by the same factor, so that
-//! `tau_P / R_P^2 = tau_{P-1} / R_{P-1}^2 + Phi_P / R_{P-1}^2`.
+//! Under every rule the film holds the mean over passes of `radiance + flux / (M pi r^2)`. For the
+//! local rule this is the paper's `tau / (N_emitted pi R^2)`: tau and R^2 shrink by the same
+//! factor, so that `tau_P / R_P^2 = tau_{P-1} / R_{P-1}^2 + Phi_P / R_{P-1}^2`.
 
 use super::gather::scale_sq;
 use super::math::{PI, is_finite, luminance, max_abs};
@@ -29,23 +29,34 @@ pub struct Found {
 }
 
 /// What one visible point found in this pass; it is no half of anything.
-pub fn pass_found(point: &VisiblePoint, gathered: &Gathered, scale_sq: Real, photons: Real) -> Found {
+pub fn pass_found(
+    point: &VisiblePoint,
+    gathered: &Gathered,
+    scale_sq: Real,
+    photons: Real,
+) -> Found {
     if gathered.count == 0 {
         return Found { radiance: point.radiance, ring: 0.0, halves: 0.0 };
     }
     let area = PI * point.radius * point.radius * scale_sq;
     let share = 1.0 / (photons * area);
-    Found { radiance: point.radiance + gathered.flux * share, ring: gathered.ring * share, halves: 0.0 }
+    Found {
+        radiance: point.radiance + gathered.flux * share,
+        ring: gathered.ring * share,
+        halves: 0.0,
+    }
 }
 
-/// What sample `k` of a pixel weighs in [`Found::halves`]. The halves are the strata's fields of either colour of a
-/// chessboard, so that a slope across the pixel is in both alike. With a and b samples in them the difference of
-/// their means times `sqrt(a b) / (a + b)` has the variance of the mean over all.
+/// What sample `k` of a pixel weighs in [`Found::halves`]. The halves are the strata's fields of
+/// either colour of a chessboard, so that a slope across the pixel is in both alike. With a and b
+/// samples in them the difference of their means times `sqrt(a b) / (a + b)` has the variance of
+/// the mean over all.
 pub fn half_weight(k: u32, eye_samples: u32, strata: u32) -> Real {
     if eye_samples == 1 {
         return 0.0;
     }
-    // an odd number of strata has one more of the first colour; an even number of columns has as many of both
+    // an odd number of strata has one more of the first colour; an even number of columns has as
+    // many of both
     let first = eye_samples.div_ceil(2) as Real;
     let second = (eye_samples / 2) as Real;
     let row = k / strata;
@@ -55,7 +66,8 @@ pub fn half_weight(k: u32, eye_samples: u32, strata: u32) -> Real {
     if odd == 0 { size } else { -size }
 }
 
-/// Hachisuka's rule with `N = alpha T`, T photons so far: `R'^2 = R^2 alpha (T + m) / (alpha T + m)`.
+/// Hachisuka's rule with `N = alpha T`, T photons so far: `R'^2 = R^2 alpha (T + m) / (alpha T +
+/// m)`.
 pub fn update_statistics(statistics: &mut Statistics, m: u32, alpha: Real) {
     if statistics.scale_sq == 0.0 {
         statistics.scale_sq = 1.0;
@@ -77,8 +89,8 @@ pub fn update_statistics(statistics: &mut Statistics, m: u32, alpha: Real) {
     statistics.count_low = low;
 }
 
-/// Folds a pixel's visible points of this pass into `film`. `statistics` holds one entry per visible point under
-/// the local rule.
+/// Folds a pixel's visible points of this pass into `film`. `statistics` holds one entry per
+/// visible point under the local rule.
 pub fn resolve(
     dispatch: &Dispatch,
     points: &[VisiblePoint],
@@ -100,8 +112,8 @@ pub fn resolve(
         let found = pass_found(&points[k], &gathered[k], scale, dispatch.photons);
         sum.radiance += found.radiance;
         sum.ring += found.ring;
-        sum.halves +=
-            half_weight(k as u32, dispatch.eye_samples, dispatch.strata) * luminance(found.radiance);
+        sum.halves += half_weight(k as u32, dispatch.eye_samples, dispatch.strata)
+            * luminance(found.radiance);
     }
     let share = 1.0 / dispatch.eye_samples as Real;
     let mean = Found { radiance: sum.radiance * share, ring: sum.ring * share, halves: sum.halves };
@@ -121,8 +133,9 @@ pub fn cause(state: u32, photons_finite: bool) -> u32 {
 
 /// Adds what one pass found to a pixel's means, or counts it under its cause.
 ///
-/// The n-th pass deviates from the mean of those before by delta. `sqrt((n - 1) / n) delta` has mean zero and the
-/// variance of a pass, and does not correlate with its predecessors (Helmert 1876).
+/// The n-th pass deviates from the mean of those before by delta. `sqrt((n - 1) / n) delta` has
+/// mean zero and the variance of a pass, and does not correlate with its predecessors (Helmert
+/// 1876).
 pub fn fold(dispatch: &Dispatch, cause: u32, found: Found, film: &mut FilmPixel) {
     let value = found.radiance;
     let counted = if cause == ACCEPTED && !is_finite(value) { REJECTED_ESTIMATE } else { cause };

@@ -1,6 +1,6 @@
-//! What photons bring to a pixel in a pass, by the way they came. Run by one invocation per pixel, before `resolve`; reads
-//! `visible_points` and `gathered` (and `statistics` under the local rule), updates `parts`. Twin:
-//! `shaders/kernels/resolve_parts.wgsl`.
+//! What photons bring to a pixel in a pass, by the way they came. Run by one invocation per pixel,
+//! before `resolve`; reads `visible_points` and `gathered` (and `statistics` under the local rule),
+//! updates `parts`. Twin: `shaders/kernels/resolve_parts.wgsl`.
 
 use super::gather::scale_sq;
 use super::math::{PI, is_finite};
@@ -22,7 +22,8 @@ pub struct PartsPixel {
     pub pad: u32,
 }
 
-/// Adds what a pixel's visible points have gathered. `statistics` holds one entry per visible point under the local rule.
+/// Adds what a pixel's visible points have gathered. `statistics` holds one entry per visible point
+/// under the local rule.
 pub fn resolve_parts(
     dispatch: &Dispatch,
     points: &[VisiblePoint],

@@ -1,10 +1,11 @@
 //! Photons that scatter far outside, aimed back at the scene. Twin: `shaders/lights/aim.wgsl`.
 //!
-//! Light from infinity that falls on wide ground far away carries a flux that grows with the square of its distance and
-//! returns to the scene with a probability that falls faster: few photons bring it, each a bright dot. So half of
-//! the directions that a diffuse surface sends from far outside are drawn from the cone about the sphere of radius
-//! `near_radius`, by the one-sample model with the balance heuristic (Veach & Guibas 1995); roulette then measures
-//! the flux against what a photon through the narrowest emission disc carries.
+//! Light from infinity that falls on wide ground far away carries a flux that grows with the square
+//! of its distance and returns to the scene with a probability that falls faster: few photons bring
+//! it, each a bright dot. So half of the directions that a diffuse surface sends from far outside
+//! are drawn from the cone about the sphere of radius `near_radius`, by the one-sample model with
+//! the balance heuristic (Veach & Guibas 1995); roulette then measures the flux against what a
+//! photon through the narrowest emission disc carries.
 
 use super::materials::scatter::{Scatter, toward};
 use super::math::sampling::sample_cone;
@@ -16,8 +17,8 @@ use super::tables::*;
 /// Square of the distance, in near radii, from which on photons are aimed.
 const FAR_OUTSIDE_SQ: Real = 4.0;
 
-/// `scattered`, which a diffuse surface drew by its cosine from `u.xy`, or a direction into the cone about the
-/// scene in its place, `u.z` deciding, with the weight of the mixture of both.
+/// `scattered`, which a diffuse surface drew by its cosine from `u.xy`, or a direction into the
+/// cone about the scene in its place, `u.z` deciding, with the weight of the mixture of both.
 pub fn aimed_scatter(scene: &Scene, s: &Surface, wo: Vec3, u: Vec4, scattered: Scatter) -> Scatter {
     let p = s.position - scene.world.near_center;
     let distance_sq = p.dot(p);

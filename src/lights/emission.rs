@@ -1,7 +1,9 @@
 //! Photon emission from every kind of light. Twin: `shaders/lights/emission.wgsl`.
 
 use super::guide::{GUIDED, guided, pdf_guide};
-use super::light::{eval_environment, find_interval, pdf_environment, sample_environment, spot_falloff};
+use super::light::{
+    eval_environment, find_interval, pdf_environment, sample_environment, spot_falloff,
+};
 use super::materials::enclosing::interior_at;
 use super::materials::interior::{Interior, interior_from, interior_of};
 use super::math::rng::{Rng, rng_next};
@@ -54,8 +56,8 @@ pub fn emit_from(scene: &Scene, light: &Light, u: Vec4, v: Vec4) -> Emission {
 fn emit_nearby(scene: &Scene, light: &Light, u: Vec4, across: Vec2) -> Emission {
     let mut ray = Ray { origin: light.position, t_min: 0.0, direction: Vec3::Z, t_max: FAR };
     if light.kind == LIGHT_AREA && light.reference >> REFERENCE_BITS == KIND_SPHERE {
-        // first the direction, then the point on the disc that is seen from there: the same density, and `across` says
-        // where in the scene the photon goes
+        // first the direction, then the point on the disc that is seen from there: the same
+        // density, and `across` says where in the scene the photon goes
         ray.direction = sample_sphere(across);
         let p = sample_sphere_facing(scene, light, Vec2::new(u.y, u.z), ray.direction);
         ray.origin = p.position + p.normal * p.error;
@@ -73,8 +75,8 @@ fn emit_nearby(scene: &Scene, light: &Light, u: Vec4, across: Vec2) -> Emission 
         let local = sample_cone(across, light.outer);
         ray.direction = unit(from_frame(light.direction, local));
         let solid_angle = TAU * light.outer;
-        let flux =
-            light.color * (spot_falloff(light, across.x * light.outer) * solid_angle / light.selection);
+        let flux = light.color
+            * (spot_falloff(light, across.x * light.outer) * solid_angle / light.selection);
         return Emission { ray, flux, excess: 1.0, interior: interior_of(NONE) };
     }
     ray.direction = unit(sample_sphere(across));
@@ -82,8 +84,8 @@ fn emit_nearby(scene: &Scene, light: &Light, u: Vec4, across: Vec2) -> Emission 
     Emission { ray, flux, excess: 1.0, interior: interior_of(NONE) }
 }
 
-/// A photon of light from infinity. It enters through one of the emission discs about what the camera
-/// sees, each twice as wide as the one before; or, if the light has a map, with probability
+/// A photon of light from infinity. It enters through one of the emission discs about what the
+/// camera sees, each twice as wide as the one before; or, if the light has a map, with probability
 /// [`GUIDED`] through a cell of the square about the near disc. Both are one density (the balance
 /// heuristic's).
 #[inline(always)]
@@ -105,7 +107,8 @@ fn emit_from_infinity(scene: &Scene, light: &Light, u: Vec4, v: Vec4) -> Emissio
     }
     let mut pdf = pdf_discs(scene, d.dot(d));
     if light.guide != 0 {
-        let by_map = pdf_guide(scene, light, (d * (1.0 / near) + Vec2::ONE) * 0.5) / (4.0 * near * near);
+        let by_map =
+            pdf_guide(scene, light, (d * (1.0 / near) + Vec2::ONE) * 0.5) / (4.0 * near * near);
         pdf = GUIDED * by_map + (1.0 - GUIDED) * pdf;
     }
     let (tangent, bitangent) = basis(ray.direction);

@@ -1,7 +1,7 @@
-//! Where a light's photons pass mirrors and glass on their way to what the camera sees: a map of their
-//! two main numbers (projection maps, Jensen 1996), which the host learns from pilot photons before the
-//! render (`pack::pilots`; Peter & Pietrek 1998). A photon carries flux over its density: nothing is
-//! missed and nothing counted twice. Twin: `shaders/lights/guide.wgsl`.
+//! Where a light's photons pass mirrors and glass on their way to what the camera sees: a map of
+//! their two main numbers (projection maps, Jensen 1996), which the host learns from pilot photons
+//! before the render (`pack::pilots`; Peter & Pietrek 1998). A photon carries flux over its
+//! density: nothing is missed and nothing counted twice. Twin: `shaders/lights/guide.wgsl`.
 
 use super::light::find_interval;
 use super::real::{Real, Vec2};
@@ -15,8 +15,8 @@ pub const GUIDE_CELLS: u32 = GUIDE_SIDE * GUIDE_SIDE;
 /// Share of a light's photons that its map sends.
 pub const GUIDED: Real = 0.5;
 
-/// Numbers in place of `across`, by the map of `light` if it has one, and one over their density. `u`
-/// chooses the cell.
+/// Numbers in place of `across`, by the map of `light` if it has one, and one over their density.
+/// `u` chooses the cell.
 #[inline(always)]
 pub fn guided(scene: &Scene, light: &Light, across: Vec2, u: Real) -> (Vec2, Real) {
     if light.guide == 0 {

@@ -19,7 +19,8 @@ pub struct LightSample {
     pub distance: Real,
     /// Radiance, or irradiance at normal incidence for lights without extent.
     pub radiance: Vec3,
-    /// Density per solid angle times the probability of this light; for lights without extent that probability.
+    /// Density per solid angle times the probability of this light; for lights without extent that
+    /// probability.
     pub pdf: Real,
     /// Whether a scattered ray could have met the same light.
     pub extended: bool,
@@ -39,8 +40,8 @@ pub fn find_interval(scene: &Scene, first: u32, count: u32, u: Real) -> u32 {
     low
 }
 
-/// Light at `position` from the light that `u.x` chooses by the probabilities at `shares`, sampled by
-/// the other three numbers.
+/// Light at `position` from the light that `u.x` chooses by the probabilities at `shares`, sampled
+/// by the other three numbers.
 #[inline(always)]
 pub fn sample_light(scene: &Scene, shares: u32, position: Vec3, u: Vec4) -> LightSample {
     let index = choose_light(scene, shares, u.x);
@@ -50,9 +51,20 @@ pub fn sample_light(scene: &Scene, shares: u32, position: Vec3, u: Vec4) -> Ligh
 
 /// Light at `position` from `light`, which is chosen with probability `share`.
 #[inline(always)]
-pub fn sample_one_light(scene: &Scene, light: &Light, share: Real, position: Vec3, u: Vec4) -> LightSample {
-    let none =
-        LightSample { direction: Vec3::Z, distance: 0.0, radiance: Vec3::ZERO, pdf: 1.0, extended: true };
+pub fn sample_one_light(
+    scene: &Scene,
+    light: &Light,
+    share: Real,
+    position: Vec3,
+    u: Vec4,
+) -> LightSample {
+    let none = LightSample {
+        direction: Vec3::Z,
+        distance: 0.0,
+        radiance: Vec3::ZERO,
+        pdf: 1.0,
+        extended: true,
+    };
     if light.kind == LIGHT_AREA {
         if light.reference >> REFERENCE_BITS == KIND_SPHERE {
             let sphere = &scene.spheres[(light.reference & ((1 << REFERENCE_BITS) - 1)) as usize];
@@ -148,8 +160,9 @@ pub fn spot_falloff(light: &Light, versine: Real) -> Real {
     x * x * (3.0 - 2.0 * x)
 }
 
-/// Density with which [`sample_light`] at `from` would have looked along `direction` and met area light
-/// `index` at distance `t`, where the surface has unit normal `normal` and profile parameter `v`.
+/// Density with which [`sample_light`] at `from` would have looked along `direction` and met area
+/// light `index` at distance `t`, where the surface has unit normal `normal` and profile parameter
+/// `v`.
 pub fn pdf_light(
     scene: &Scene,
     shares: u32,
@@ -173,7 +186,8 @@ pub fn pdf_light(
     pdf_shape(scene, light, v) * t * t / cos.max(1e-12) * share
 }
 
-/// Zenith-down texture coordinates of a direction seen in an equirectangular picture turned about y.
+/// Zenith-down texture coordinates of a direction seen in an equirectangular picture turned about
+/// y.
 pub fn environment_uv(light: &Light, direction: Vec3) -> Vec2 {
     let x = light.outer * direction.x - light.inner * direction.z;
     let z = light.inner * direction.x + light.outer * direction.z;
@@ -196,8 +210,14 @@ pub fn sample_environment(scene: &Scene, light: &Light, u: Vec4) -> Vec3 {
     }
     let texture = &scene.textures[light.reference as usize];
     let row = find_interval(scene, light.first, texture.height, u.y);
-    let column = find_interval(scene, light.first + texture.height + row * texture.width, texture.width, u.z);
-    // of the number's lower bits: a row that few numbers choose is not looked at along its edge alone
+    let column = find_interval(
+        scene,
+        light.first + texture.height + row * texture.width,
+        texture.width,
+        u.z,
+    );
+    // of the number's lower bits: a row that few numbers choose is not looked at along its edge
+    // alone
     let fine = u.w * 4096.0;
     let across = (column as Real + u.w) / texture.width as Real;
     let down = (row as Real + (fine - fine.floor())) / texture.height as Real;

@@ -1,8 +1,9 @@
-//! Which light a shadow ray goes to: a light is chosen by what it contributes near the surface point.
+//! Which light a shadow ray goes to: a light is chosen by what it contributes near the surface
+//! point.
 //!
-//! A tree over space has leaves with cumulative probabilities of the lights of their own, learned by
-//! the host (`pack::cells`) from what the camera sees. A scene with one light has no tree.
-//! Twin: `shaders/lights/select.wgsl`.
+//! A tree over space has leaves with cumulative probabilities of the lights of their own, learned
+//! by the host (`pack::cells`) from what the camera sees. A scene with one light has no tree. Twin:
+//! `shaders/lights/select.wgsl`.
 
 use super::light::find_interval;
 use super::real::{Real, Vec3};

@@ -90,7 +90,12 @@ pub fn sample_shape(scene: &Scene, light: &Light, u: Vec2, w: Real) -> ShapePoin
             } else if axis == 1.0 {
                 q = Vec3::new(s, face, u.y);
             }
-            ShapePoint { position: cuboid.lower + e * q, error: cuboid_error(cuboid), normal: n, pdf }
+            ShapePoint {
+                position: cuboid.lower + e * q,
+                error: cuboid_error(cuboid),
+                normal: n,
+                pdf,
+            }
         }
         _ => {
             let k = find_interval(scene, light.first + light.patch_count, light.patch_count, w);
@@ -112,7 +117,8 @@ pub fn sample_shape(scene: &Scene, light: &Light, u: Vec2, w: Real) -> ShapePoin
     }
 }
 
-/// A point on the hemisphere of a spherical light that faces `direction`, even on the disc that is seen from there.
+/// A point on the hemisphere of a spherical light that faces `direction`, even on the disc that is
+/// seen from there.
 pub fn sample_sphere_facing(scene: &Scene, light: &Light, u: Vec2, direction: Vec3) -> ShapePoint {
     let sphere = &scene.spheres[(light.reference & ((1 << REFERENCE_BITS) - 1)) as usize];
     let d = sample_disc(u);
@@ -167,18 +173,22 @@ pub fn pdf_shape(scene: &Scene, light: &Light, v: Real) -> Real {
     if light.reference >> REFERENCE_BITS == KIND_REVOLUTION {
         // the last patch whose part starts at or before v
         let k = find_interval(scene, light.first, light.patch_count, v);
-        let k = if k > 0 && scene.distributions[(light.first + k) as usize] > v { k - 1 } else { k };
+        let k =
+            if k > 0 && scene.distributions[(light.first + k) as usize] > v { k - 1 } else { k };
         let start = scene.distributions[(light.first + k) as usize];
-        let end =
-            if k + 1 < light.patch_count { scene.distributions[(light.first + k + 1) as usize] } else { 1.0 };
+        let end = if k + 1 < light.patch_count {
+            scene.distributions[(light.first + k + 1) as usize]
+        } else {
+            1.0
+        };
         let r = patch_point(scene, light, k, v, 0.0);
         return pdf_patch(scene, light, k, end - start) / r.stretch.max(1e-30);
     }
     1.0 / light.area
 }
 
-/// A point on an emitting sphere as seen from `from` outside: uniform in the cone that the sphere fills.
-/// `pdf` is per solid angle here.
+/// A point on an emitting sphere as seen from `from` outside: uniform in the cone that the sphere
+/// fills. `pdf` is per solid angle here.
 pub fn sample_sphere_cone(sphere: &Sphere, from: Vec3, u: Vec2) -> ShapePoint {
     let center = sphere.anchor - sphere.normal * sphere.radius;
     let d = center - from;
@@ -187,8 +197,8 @@ pub fn sample_sphere_cone(sphere: &Sphere, from: Vec3, u: Vec2) -> ShapePoint {
     let one_minus_cos = cone_one_minus_cos(sin_sq);
     let local = sample_cone(u, one_minus_cos);
     let w = from_frame(unit(d), local);
-    // nearest crossing of the ray with the sphere, clamped at the tangent; from the sine, since the distances of
-    // a small sphere's middle and rim differ by less than a rounding
+    // nearest crossing of the ray with the sphere, clamped at the tangent; from the sine, since the
+    // distances of a small sphere's middle and rim differ by less than a rounding
     let along = dist_sq.sqrt() * local.z;
     let off_sq = (local.x * local.x + local.y * local.y) / sin_sq;
     let half = sphere.radius * (1.0 - off_sq).max(0.0).sqrt();
@@ -206,7 +216,8 @@ pub fn cone_one_minus_cos(sin_sq: Real) -> Real {
     sin_sq / (1.0 + (1.0 - sin_sq).max(0.0).sqrt())
 }
 
-/// Density per solid angle with which [`sample_sphere_cone`] looks toward the sphere from `from`; 0 inside.
+/// Density per solid angle with which [`sample_sphere_cone`] looks toward the sphere from `from`; 0
+/// inside.
 pub fn pdf_sphere_cone(sphere: &Sphere, from: Vec3) -> Real {
     let d = sphere.anchor - sphere.normal * sphere.radius - from;
     let sin_sq = sphere.radius * sphere.radius / d.dot(d);

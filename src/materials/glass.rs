@@ -14,7 +14,8 @@ pub struct Interface {
 
 /// Fresnel's equations: `cos_i` > 0 on the side the ray comes from, `eta` = ior there / ior beyond.
 pub fn fresnel(cos_i: Real, eta: Real) -> Interface {
-    // as a product: 1 - cos^2 has no digits left near the normal, where dense glass has its critical angle
+    // as a product: 1 - cos^2 has no digits left near the normal, where dense glass has its
+    // critical angle
     let sin_t_sq = eta * eta * ((1.0 - cos_i) * (1.0 + cos_i)).max(0.0);
     if sin_t_sq >= 1.0 {
         return Interface { reflectance: 1.0, cos_t: 0.0 };

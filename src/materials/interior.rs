@@ -87,19 +87,30 @@ pub fn ior_of(scene: &Scene, medium: u32) -> Real {
 /// inside was inside that glass, even if the list did not contain it.
 #[inline(always)]
 pub fn interior_before(scene: &Scene, s: &Surface, wo: Vec3, interior: &Interior) -> Interior {
-    let inside = scene.materials[s.material as usize].kind == MATERIAL_GLASS && wo.dot(s.normal) < 0.0;
+    let inside =
+        scene.materials[s.material as usize].kind == MATERIAL_GLASS && wo.dot(s.normal) < 0.0;
     if inside { entered(scene, interior, s.material) } else { *interior }
 }
 
 /// Interior list of the ray after it has passed the glass face `s`.
 #[inline(always)]
 pub fn interior_beyond(scene: &Scene, s: &Surface, wo: Vec3, before: &Interior) -> Interior {
-    if wo.dot(s.normal) >= 0.0 { entered(scene, before, s.material) } else { left(scene, before, s.material) }
+    if wo.dot(s.normal) >= 0.0 {
+        entered(scene, before, s.material)
+    } else {
+        left(scene, before, s.material)
+    }
 }
 
 /// Index of refraction in front of a glass face divided by that behind it.
 #[inline(always)]
-pub fn relative_ior(scene: &Scene, s: &Surface, wo: Vec3, before: &Interior, beyond: &Interior) -> Real {
+pub fn relative_ior(
+    scene: &Scene,
+    s: &Surface,
+    wo: Vec3,
+    before: &Interior,
+    beyond: &Interior,
+) -> Real {
     let mut here = medium_of(before);
     if scene.world.nested == 0 && wo.dot(s.normal) >= 0.0 {
         here = NONE;

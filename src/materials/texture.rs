@@ -20,8 +20,10 @@ pub fn eval_texture(scene: &Scene, index: u32, uv: Vec2) -> Vec3 {
     }
     let clamp_u = texture.flags & TEXTURE_CLAMP_U != 0;
     let clamp_v = texture.flags & TEXTURE_CLAMP_V != 0;
-    let x = if clamp_u { st.x.clamp(0.0, 1.0) } else { st.x - st.x.floor() } * texture.width as Real;
-    let y = (1.0 - if clamp_v { st.y.clamp(0.0, 1.0) } else { st.y - st.y.floor() }) * texture.height as Real;
+    let x =
+        if clamp_u { st.x.clamp(0.0, 1.0) } else { st.x - st.x.floor() } * texture.width as Real;
+    let y = (1.0 - if clamp_v { st.y.clamp(0.0, 1.0) } else { st.y - st.y.floor() })
+        * texture.height as Real;
     if texture.flags & TEXTURE_NEAREST != 0 {
         return eval_texel(scene, texture, x.floor() as i32, y.floor() as i32);
     }
@@ -31,9 +33,10 @@ pub fn eval_texture(scene: &Scene, index: u32, uv: Vec2) -> Vec3 {
     let fy = y - 0.5 - y0;
     let i = x0 as i32;
     let j = y0 as i32;
-    let top = eval_texel(scene, texture, i, j) * (1.0 - fx) + eval_texel(scene, texture, i + 1, j) * fx;
-    let bottom =
-        eval_texel(scene, texture, i, j + 1) * (1.0 - fx) + eval_texel(scene, texture, i + 1, j + 1) * fx;
+    let top =
+        eval_texel(scene, texture, i, j) * (1.0 - fx) + eval_texel(scene, texture, i + 1, j) * fx;
+    let bottom = eval_texel(scene, texture, i, j + 1) * (1.0 - fx)
+        + eval_texel(scene, texture, i + 1, j + 1) * fx;
     top * (1.0 - fy) + bottom * fy
 }
 

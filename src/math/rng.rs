@@ -1,4 +1,5 @@
-//! Counter-based random numbers: an integer hash of (index, pass, dimension, seed), the same in every engine.
+//! Counter-based random numbers: an integer hash of (index, pass, dimension, seed), the same in
+//! every engine.
 
 use super::real::{Real, Vec4};
 
@@ -57,9 +58,10 @@ pub fn pcg4d(mut v: [u32; 4]) -> [u32; 4] {
     v
 }
 
-/// Owen's scrambling of a digital net: a hash that lets each bit depend on those above it alone. `reversed` holds a
-/// coordinate's bits in reverse (Laine & Karras 2011, "Stratified Sampling for Stochastic Transparency"; Burley 2020,
-/// "Practical Hash-based Owen Scrambling"; constants of Vegdahl 2021).
+/// Owen's scrambling of a digital net: a hash that lets each bit depend on those above it alone.
+/// `reversed` holds a coordinate's bits in reverse (Laine & Karras 2011, "Stratified Sampling for
+/// Stochastic Transparency"; Burley 2020, "Practical Hash-based Owen Scrambling"; constants of
+/// Vegdahl 2021).
 #[inline(always)]
 fn scrambled(reversed: u32, seed: u32) -> u32 {
     let mut x = reversed;
@@ -71,9 +73,10 @@ fn scrambled(reversed: u32, seed: u32) -> u32 {
     x.reverse_bits()
 }
 
-/// Four uniform numbers in [0, 1), multiples of 2^-24. The first sixteen of an eye path are the pass's Sobol point,
-/// scrambled for each visible point: every pass is uniform by itself, and the passes together cover the pixel, the lens,
-/// the ways through glass and the lights more evenly than chance.
+/// Four uniform numbers in [0, 1), multiples of 2^-24. The first sixteen of an eye path are the
+/// pass's Sobol point, scrambled for each visible point: every pass is uniform by itself, and the
+/// passes together cover the pixel, the lens, the ways through glass and the lights more evenly
+/// than chance.
 #[inline(always)]
 pub fn rng_next(rng: &mut Rng) -> Vec4 {
     let k = rng.dimension.wrapping_sub(STREAM_EYE);

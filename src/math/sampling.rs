@@ -1,4 +1,5 @@
-//! Maps from uniform numbers to discs, spheres, hemispheres and triangles. Twin: `shaders/math/sampling.wgsl`.
+//! Maps from uniform numbers to discs, spheres, hemispheres and triangles. Twin:
+//! `shaders/math/sampling.wgsl`.
 
 use super::real::{Real, Vec2, Vec3};
 use super::trig::sin_cos;

@@ -1,11 +1,12 @@
-//! Elementary functions as fixed polynomials, so that every device rounds them alike. WGSL leaves the
-//! accuracy of its own `sin`, `exp`, ... open. Coefficients: Moshier, Cephes (single precision).
-//! Twin: `shaders/math/trig.wgsl`.
+//! Elementary functions as fixed polynomials, so that every device rounds them alike. WGSL leaves
+//! the accuracy of its own `sin`, `exp`, ... open. Coefficients: Moshier, Cephes (single
+//! precision). Twin: `shaders/math/trig.wgsl`.
 
 use std::f32::consts::{FRAC_2_PI, FRAC_PI_2, FRAC_PI_4, LOG2_E, PI};
 
 /// `x` itself (a number below 1e30), hidden from compilers. Mesa's turns a b + a c into a (b + c),
-/// and (a + b) + constant into (a + constant) + b: the parts of a reduction, or the order of a sum, would be lost.
+/// and (a + b) + constant into (a + constant) + b: the parts of a reduction, or the order of a sum,
+/// would be lost.
 pub fn kept(x: f32) -> f32 {
     x.min(1e30)
 }
@@ -23,7 +24,10 @@ pub fn sin_cos(x: f32) -> (f32, f32) {
     let odd = (quadrant & 1) == 1;
     let sin = if odd { c } else { s };
     let cos = if odd { s } else { c };
-    (if quadrant >= 2 { -sin } else { sin }, if quadrant == 1 || quadrant == 2 { -cos } else { cos })
+    (
+        if quadrant >= 2 { -sin } else { sin },
+        if quadrant == 1 || quadrant == 2 { -cos } else { cos },
+    )
 }
 
 /// Angle of (x, y) in (-pi, pi], radians; absolute error below 4e-7. Zero for the origin.
@@ -39,8 +43,9 @@ pub fn arctan2(y: f32, x: f32) -> f32 {
     let shifted = ratio > 0.414_213_57;
     let w = if shifted { (ratio - 1.0) / (ratio + 1.0) } else { ratio };
     let z = w * w;
-    let p =
-        kept((((8.053_744_5e-2 * z - 1.387_768_6e-1) * z + 1.997_771_1e-1) * z - 3.333_295e-1) * z * w) + w;
+    let p = kept(
+        (((8.053_744_5e-2 * z - 1.387_768_6e-1) * z + 1.997_771_1e-1) * z - 3.333_295e-1) * z * w,
+    ) + w;
     let octant = if shifted { kept(p) + FRAC_PI_4 } else { p };
     let quadrant = if ay > ax { FRAC_PI_2 - octant } else { octant };
     let half = if x < 0.0 { PI - quadrant } else { quadrant };
@@ -65,8 +70,8 @@ pub fn exponential(x: f32) -> f32 {
     (kept(kept(p * z) + r) + 1.0) * power_of_two
 }
 
-/// Natural logarithm; absolute error below 1e-7 times max(1, |ln x|). Numbers below 2^-126, zero and
-/// the negative ones included, count as 2^-126.
+/// Natural logarithm; absolute error below 1e-7 times max(1, |ln x|). Numbers below 2^-126, zero
+/// and the negative ones included, count as 2^-126.
 pub fn logarithm(x: f32) -> f32 {
     let bits = x.max(1.175_494_4e-38).to_bits();
     let mut exponent = (bits >> 23) as i32 - 126;
@@ -86,7 +91,8 @@ pub fn logarithm(x: f32) -> f32 {
     (r + tail) + kept(e * 0.693_359_4)
 }
 
-/// x^y for x >= 0 as exp(y ln x); relative error about 1e-7 (2 + |y ln x|). 0^y is 0 for y > 0, 1 for y = 0.
+/// x^y for x >= 0 as exp(y ln x); relative error about 1e-7 (2 + |y ln x|). 0^y is 0 for y > 0, 1
+/// for y = 0.
 pub fn power(x: f32, y: f32) -> f32 {
     if x <= 0.0 {
         return if y == 0.0 { 1.0 } else { 0.0 };
@@ -100,7 +106,9 @@ mod tests {
 
     /// Largest value of `error` over `count` points of [a, b].
     fn worst(a: f64, b: f64, count: u32, error: impl Fn(f32) -> f64) -> f64 {
-        (0..=count).map(|i| error((a + (b - a) * f64::from(i) / f64::from(count)) as f32)).fold(0.0, f64::max)
+        (0..=count)
+            .map(|i| error((a + (b - a) * f64::from(i) / f64::from(count)) as f32))
+            .fold(0.0, f64::max)
     }
 
     // Theory: the f32 argument is exact, so std's f64 function of it is the true value to 1e-15.
@@ -118,7 +126,9 @@ mod tests {
         }
         // The comparator notices an argument that is one part in a million off.
         assert!(
-            worst(-10.0, 10.0, 1000, |x| (f64::from(sin_cos(x * 1.000_001).0) - f64::from(x).sin()).abs())
+            worst(-10.0, 10.0, 1000, |x| (f64::from(sin_cos(x * 1.000_001).0)
+                - f64::from(x).sin())
+            .abs())
                 > 1e-6
         );
     }
@@ -140,8 +150,9 @@ mod tests {
 
     #[test]
     fn exponential_agrees_with_f64() {
-        let e =
-            worst(-87.0, 88.0, 2_000_000, |x| (f64::from(exponential(x)) / f64::from(x).exp() - 1.0).abs());
+        let e = worst(-87.0, 88.0, 2_000_000, |x| {
+            (f64::from(exponential(x)) / f64::from(x).exp() - 1.0).abs()
+        });
         println!("exponential: {e:.2e}");
         assert!(e < 2e-7, "{e}");
         assert_eq!(exponential(0.0), 1.0);
@@ -167,7 +178,8 @@ mod tests {
         for y in [0.5, 1.0 / 2.4, 2.2, -3.0] {
             let e = worst(1e-3, 10.0, 200_000, |x| {
                 let t = f64::from(x).powf(f64::from(y));
-                (f64::from(power(x, y)) / t - 1.0).abs() / (2.0 + (f64::from(y) * f64::from(x).ln()).abs())
+                (f64::from(power(x, y)) / t - 1.0).abs()
+                    / (2.0 + (f64::from(y) * f64::from(x).ln()).abs())
             });
             println!("power y = {y}: {e:.2e}");
             assert!(e < 1e-7, "{e}");

@@ -60,8 +60,8 @@ pub fn mirrored(w: Vec3, n: Vec3) -> Vec3 {
     n * (2.0 * w.dot(n)) - w
 }
 
-/// The origin of a ray that leaves `position` along `direction`, moved off the surface by the bound of the hit's
-/// error (the idea of pbrt-v4, section 6.8, with a scalar bound).
+/// The origin of a ray that leaves `position` along `direction`, moved off the surface by the bound
+/// of the hit's error (the idea of pbrt-v4, section 6.8, with a scalar bound).
 pub fn offset_origin(position: Vec3, error: Real, normal: Vec3, direction: Vec3) -> Vec3 {
     if direction.dot(normal) >= 0.0 { position + normal * error } else { position - normal * error }
 }

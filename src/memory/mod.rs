@@ -7,13 +7,14 @@ pub use system::{address_space, limited};
 /// How much memory a render may take.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Memory {
-    /// At most so many bytes, on the device and beside it together. None: on the processor what the system and the limits of
-    /// the process leave, else what the device gives.
+    /// At most so many bytes, on the device and beside it together. None: on the processor what the
+    /// system and the limits of the process leave, else what the device gives.
     pub budget: Option<u64>,
-    /// Whether the film is copied on the way, for checkpoints; that of a device that may be lost is anyway.
+    /// Whether the film is copied on the way, for checkpoints; that of a device that may be lost is
+    /// anyway.
     pub saves: bool,
-    /// Photons are not traced in smaller batches than the settings say, since their sums would be rounded
-    /// otherwise. Without a budget or a limit of the process they never are.
+    /// Photons are not traced in smaller batches than the settings say, since their sums would be
+    /// rounded otherwise. Without a budget or a limit of the process they never are.
     pub same_batches: bool,
 }
 
@@ -27,8 +28,8 @@ impl Memory {
         }
     }
 
-    /// Whether photons may be traced in smaller batches: where a budget is given, or the process has a
-    /// limit.
+    /// Whether photons may be traced in smaller batches: where a budget is given, or the process
+    /// has a limit.
     pub fn cuts_batches(&self) -> bool {
         !self.same_batches && (self.budget.is_some() || limited().is_some())
     }
@@ -131,7 +132,8 @@ pub fn readable() -> u64 {
     available().map_or(READ_MAX, |limit| limit.0)
 }
 
-/// Checks that a picture of so many pixels, which take so many bytes each while it is read, can be held.
+/// Checks that a picture of so many pixels, which take so many bytes each while it is read, can be
+/// held.
 ///
 /// # Errors
 /// What it takes, and what there is.
@@ -146,8 +148,8 @@ pub fn check_pixels(width: u64, height: u64, bytes_each: u64) -> Result<(), Stri
     }
 }
 
-/// Bytes of main memory that can still be had, by what is free and by the limits of the process and of its
-/// control group; and in whose words.
+/// Bytes of main memory that can still be had, by what is free and by the limits of the process and
+/// of its control group; and in whose words.
 pub fn available() -> Option<(u64, &'static str)> {
     system::free().into_iter().chain(limited()).min_by_key(|limit| limit.0)
 }

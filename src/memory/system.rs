@@ -14,14 +14,16 @@ const KEPT: u64 = 32 << 20;
 /// Share of the limit kept for the same: one part of so many.
 const KEPT_PART: u64 = 8;
 
-/// Bytes of main memory that are free, on the disk too where the system swaps; where the system says so.
+/// Bytes of main memory that are free, on the disk too where the system swaps; where the system
+/// says so.
 pub fn free() -> Option<Limit> {
     let text = fs::read_to_string("/proc/meminfo").ok()?;
     let bytes = |name| kilobytes(&text, name);
     Some((bytes("MemAvailable:")? + bytes("SwapFree:").unwrap_or(0), "what the system has left"))
 }
 
-/// The least that a limit of the process or of its control group leaves, if there is any such limit.
+/// The least that a limit of the process or of its control group leaves, if there is any such
+/// limit.
 pub fn limited() -> Option<Limit> {
     let process = process_limits(Path::new("/proc/self"));
     let groups = group_limits(Path::new("/"));
@@ -44,7 +46,10 @@ fn kilobytes(text: &str, name: &str) -> Option<u64> {
 
 /// Bytes of address space that the limit of the process leaves (`ulimit -v`), if it has one.
 pub fn address_space() -> Option<u64> {
-    process_limits(Path::new("/proc/self")).into_iter().find(|limit| limit.1 == SPACE).map(|limit| limit.0)
+    process_limits(Path::new("/proc/self"))
+        .into_iter()
+        .find(|limit| limit.1 == SPACE)
+        .map(|limit| limit.0)
 }
 
 /// What the resource limits of a process leave, from its folder in /proc.
@@ -58,12 +63,13 @@ fn process_limits(process: &Path) -> Vec<Limit> {
         Some((soft.saturating_sub(kilobytes(&status, used)?), whose))
     };
     let space = left("Max address space", "VmSize:", SPACE);
-    let data = left("Max data size", "VmData:", "what the limit of this process (ulimit -d) leaves");
+    let data =
+        left("Max data size", "VmData:", "what the limit of this process (ulimit -d) leaves");
     space.into_iter().chain(data).collect()
 }
 
-/// What the control groups of this process leave, those that its own lies in included. `root` is the
-/// root of the file system.
+/// What the control groups of this process leave, those that its own lies in included. `root` is
+/// the root of the file system.
 fn group_limits(root: &Path) -> Vec<Limit> {
     let groups = fs::read_to_string(root.join("proc/self/cgroup")).unwrap_or_default();
     let mounts = fs::read_to_string(root.join("proc/self/mountinfo")).unwrap_or_default();
@@ -77,7 +83,8 @@ fn group_limits(root: &Path) -> Vec<Limit> {
             _ => continue,
         };
         let Some((mounted_root, mount)) = mount_of(&mounts, version) else { continue };
-        // inside a container the group's path may be that on the host, of which the mount shows a part
+        // inside a container the group's path may be that on the host, of which the mount shows a
+        // part
         let inside = Path::new(group).strip_prefix(&mounted_root).unwrap_or(Path::new(""));
         let top = root.join(mount.strip_prefix("/").unwrap_or(&mount));
         let here = top.join(inside.strip_prefix("/").unwrap_or(inside));
@@ -94,7 +101,8 @@ fn mount_of(mounts: &str, version: &Version) -> Option<(PathBuf, PathBuf)> {
         let mut fields = filesystem.split_whitespace();
         let (kind, options) = (fields.next()?, fields.nth(1).unwrap_or_default());
         let ours = kind == version.filesystem
-            && (version.option.is_empty() || options.split(',').any(|option| option == version.option));
+            && (version.option.is_empty()
+                || options.split(',').any(|option| option == version.option));
         let mut fields = mount.split_whitespace().skip(3);
         ours.then(|| Some((fields.next()?.into(), fields.next()?.into()))).flatten()
     })
@@ -138,7 +146,10 @@ impl Version {
         let line = stat.lines().find_map(|line| line.strip_prefix(self.reclaimable));
         let reclaimable = line.and_then(|line| line.trim().parse::<u64>().ok()).unwrap_or(0);
         let used = number(self.used)?.saturating_sub(reclaimable);
-        Some((limit.saturating_sub(used), "what the memory limit of this control group (container) leaves"))
+        Some((
+            limit.saturating_sub(used),
+            "what the memory limit of this control group (container) leaves",
+        ))
     }
 }
 
@@ -179,11 +190,17 @@ mod tests {
             "v2",
             &[
                 ("proc/self/cgroup", "0::/user/job/step\n"),
-                ("proc/self/mountinfo", "30 23 0:26 / /sys/fs/cgroup rw,nosuid - cgroup2 cgroup2 rw\n"),
+                (
+                    "proc/self/mountinfo",
+                    "30 23 0:26 / /sys/fs/cgroup rw,nosuid - cgroup2 cgroup2 rw\n",
+                ),
                 ("sys/fs/cgroup/user/job/step/memory.max", "max\n"),
                 ("sys/fs/cgroup/user/job/memory.max", "500\n"),
                 ("sys/fs/cgroup/user/job/memory.current", "300\n"),
-                ("sys/fs/cgroup/user/job/memory.stat", "anon 7\ninactive_file 100\nactive_file 9\n"),
+                (
+                    "sys/fs/cgroup/user/job/memory.stat",
+                    "anon 7\ninactive_file 100\nactive_file 9\n",
+                ),
                 ("sys/fs/cgroup/user/memory.max", "1000\n"),
                 ("sys/fs/cgroup/user/memory.current", "400\n"),
             ],

@@ -54,7 +54,9 @@ pub fn stand_lights(out: &mut Scene) {
                 let (low, high) = lamp_box(out, light.reference >> REFERENCE_BITS, index);
                 medium_of_box(out, p.position + p.normal * p.error, low, high)
             }
-            LIGHT_POINT | LIGHT_SPOT => medium_of_box(out, light.position, light.position, light.position),
+            LIGHT_POINT | LIGHT_SPOT => {
+                medium_of_box(out, light.position, light.position, light.position)
+            }
             _ => NONE,
         };
     }
@@ -64,7 +66,8 @@ pub fn stand_lights(out: &mut Scene) {
 pub fn stand_camera(out: &mut Scene) {
     let camera = &out.camera;
     let half = Vec3::splat(camera.aperture);
-    out.camera.medium = medium_of_box(out, camera.position, camera.position - half, camera.position + half);
+    out.camera.medium =
+        medium_of_box(out, camera.position, camera.position - half, camera.position + half);
 }
 
 /// Medium of everything in a box around `position`: a material index, [`NONE`], or [`ASTRIDE`] if a

@@ -1,5 +1,5 @@
-//! Which light a shadow ray goes to, by place: a tree whose leaves hold about as many points of the look
-//! each, and in each leaf the lights' probabilities by what they contribute there.
+//! Which light a shadow ray goes to, by place: a tree whose leaves hold about as many points of the
+//! look each, and in each leaf the lights' probabilities by what they contribute there.
 
 use super::discs::cumulative;
 use super::lights::light::sample_one_light;
@@ -56,8 +56,8 @@ pub fn learn_cells(out: &mut Scene, look: &Look, power: &[f64]) {
     out.cells = cells;
 }
 
-/// Makes the tree below cell `index`, at most `depth` levels deep, by halving points along their widest
-/// extent.
+/// Makes the tree below cell `index`, at most `depth` levels deep, by halving points along their
+/// widest extent.
 fn divide(
     cells: &mut Vec<Cell>,
     index: usize,
@@ -103,24 +103,27 @@ fn move_to_front(points: &mut [Seen], first: impl Fn(&Seen) -> bool) -> usize {
     count
 }
 
-/// Cumulative probabilities of the lights at `points`: in proportion to the root mean square of what a
-/// sample contributes, which has the least variance.
+/// Cumulative probabilities of the lights at `points`: in proportion to the root mean square of
+/// what a sample contributes, which has the least variance.
 fn probabilities(scene: &Scene, points: &[Seen], each: usize, power: &[f64]) -> Vec<Real> {
     let total: f64 = power.iter().sum();
     let step = (points.len() / each).max(1);
     let chosen: Vec<&Seen> = points.iter().step_by(step).take(each).collect();
-    let values: Vec<f64> = (0..scene.lights.len()).map(|index| contribution(scene, &chosen, index)).collect();
+    let values: Vec<f64> =
+        (0..scene.lights.len()).map(|index| contribution(scene, &chosen, index)).collect();
     let sum: f64 = values.iter().sum();
     let kept = if sum > 0.0 { KEPT } else { 1.0 };
     let learned = |value: f64| if sum > 0.0 { value / sum } else { 0.0 };
-    let mixed =
-        values.iter().zip(power).map(|(value, power)| (1.0 - kept) * learned(*value) + kept * power / total);
+    let mixed = values
+        .iter()
+        .zip(power)
+        .map(|(value, power)| (1.0 - kept) * learned(*value) + kept * power / total);
     dyadic(&cumulative(&mixed.collect::<Vec<_>>()).collect::<Vec<_>>())
 }
 
-/// Cumulative probabilities moved to multiples of large powers of 1/2, as far as no probability changes by
-/// more than a factor of [`MOVED`]: Sobol's points are even in such intervals, and chosen by others they
-/// are as good as random.
+/// Cumulative probabilities moved to multiples of large powers of 1/2, as far as no probability
+/// changes by more than a factor of [`MOVED`]: Sobol's points are even in such intervals, and
+/// chosen by others they are as good as random.
 fn dyadic(ends: &[f64]) -> Vec<Real> {
     let (mut before, mut moved_before) = (0.0, 0.0);
     let moved = ends.iter().enumerate().map(|(index, end)| {
@@ -131,7 +134,8 @@ fn dyadic(ends: &[f64]) -> Vec<Real> {
             let left = ends.get(index + 1).copied().unwrap_or(*end) - moved;
             near(moved - moved_before, share) && near(left, next) && *moved < 1.0
         };
-        let candidates = (1..=FINEST).map(|bits| (end * f64::from(1 << bits)).round() / f64::from(1 << bits));
+        let candidates =
+            (1..=FINEST).map(|bits| (end * f64::from(1 << bits)).round() / f64::from(1 << bits));
         let moved = candidates.into_iter().find(fits).unwrap_or(*end);
         (before, moved_before) = (*end, moved);
         moved as Real

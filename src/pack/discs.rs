@@ -15,8 +15,8 @@ const FOOTPRINTS: f64 = 4.0;
 /// Rounds of the search.
 const ROUNDS: u32 = 40;
 
-/// Sets the near sphere, and the discs and their probabilities if light comes from infinity. `far`: how
-/// far surfaces lie from the center of `region`, scene units.
+/// Sets the near sphere, and the discs and their probabilities if light comes from infinity. `far`:
+/// how far surfaces lie from the center of `region`, scene units.
 pub fn learn_discs(out: &mut Scene, look: &Look, region: Region, far: f64) {
     let near = f64::from(region.radius);
     out.world.near_center = region.center;
@@ -41,7 +41,8 @@ pub fn learn_discs(out: &mut Scene, look: &Look, region: Region, far: f64) {
     out.distributions.extend(cumulative(&mixed.collect::<Vec<_>>()).map(|x| x as Real));
 }
 
-/// Squared distance from the center and weight, one over the area that gathers there, of each point.
+/// Squared distance from the center and weight, one over the area that gathers there, of each
+/// point.
 fn points(look: &Look, region: Region) -> Vec<[f64; 2]> {
     let median = f64::from(look.footprint());
     let at = |point: &Seen| {
@@ -58,8 +59,8 @@ fn density(radii: &[f64], p: &[f64], r_sq: f64) -> f64 {
     inside.map(|(radius, p)| p / (radius * radius)).sum()
 }
 
-/// Probabilities with the least sum of `weight / density`, the variance of the photons gathered: a convex
-/// problem, at whose solution the derivatives by all used probabilities are equal.
+/// Probabilities with the least sum of `weight / density`, the variance of the photons gathered: a
+/// convex problem, at whose solution the derivatives by all used probabilities are equal.
 fn probabilities(points: &[[f64; 2]], radii: &[f64]) -> Vec<f64> {
     let mut p = vec![1.0 / radii.len() as f64; radii.len()];
     for _ in 0..ROUNDS {
@@ -85,8 +86,8 @@ fn probabilities(points: &[[f64; 2]], radii: &[f64]) -> Vec<f64> {
     p
 }
 
-/// Half of the photons through the narrowest disc that holds the near sphere, half of the others through
-/// the next one, and so on.
+/// Half of the photons through the narrowest disc that holds the near sphere, half of the others
+/// through the next one, and so on.
 fn by_width(radii: &[f64], near: f64) -> Vec<f64> {
     let first = radii.iter().position(|radius| *radius >= near).unwrap_or(radii.len() - 1);
     let last = radii.len() - 1;
@@ -119,8 +120,9 @@ pub fn cumulative(weights: &[f64]) -> impl Iterator<Item = f64> {
     ends.into_iter()
 }
 
-/// Theory: the discs' probabilities are those of least variance. Points on one circle need the narrowest
-/// disc that holds it and no other; points spread evenly over a disc want photons spread evenly.
+/// Theory: the discs' probabilities are those of least variance. Points on one circle need the
+/// narrowest disc that holds it and no other; points spread evenly over a disc want photons spread
+/// evenly.
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -130,7 +132,8 @@ mod tests {
         let radii = [1.0, 2.0, 4.0, 8.0];
         let circle = probabilities(&[[2.25, 1.0]], &radii);
         assert!(circle[1] > 0.99, "{circle:?}");
-        let even: Vec<[f64; 2]> = (0..1000).map(|i| [16.0 * (f64::from(i) + 0.5) / 1000.0, 1.0]).collect();
+        let even: Vec<[f64; 2]> =
+            (0..1000).map(|i| [16.0 * (f64::from(i) + 0.5) / 1000.0, 1.0]).collect();
         let even = probabilities(&even, &radii);
         assert!(even[2] > 0.98, "{even:?}");
         // no other choice is better
@@ -138,16 +141,26 @@ mod tests {
         let best = probabilities(&points, &radii);
         let cost = |p: &[f64]| points.iter().map(|[r, w]| w / density(&radii, p, *r)).sum::<f64>();
         for k in 0..4 {
-            let other: Vec<f64> = (0..4).map(|j| 0.95 * best[j] + if j == k { 0.05 } else { 0.0 }).collect();
-            assert!(cost(&best) < 1.001 * cost(&other), "{k}: {} and {}", cost(&best), cost(&other));
+            let other: Vec<f64> =
+                (0..4).map(|j| 0.95 * best[j] + if j == k { 0.05 } else { 0.0 }).collect();
+            assert!(
+                cost(&best) < 1.001 * cost(&other),
+                "{k}: {} and {}",
+                cost(&best),
+                cost(&other)
+            );
         }
     }
 
     #[test]
     fn every_weight_has_a_step() {
         let ends: Vec<f64> = cumulative(&[1.0, 0.0, 1e-30, 5.0, 0.0]).collect();
-        let steps: Vec<f64> = (0..5).map(|i| ends[i] - if i > 0 { ends[i - 1] } else { 0.0 }).collect();
-        assert!(steps[0] > 0.16 && steps[1] == 0.0 && steps[2] > 0.0 && steps[3] > 0.83, "{steps:?}");
+        let steps: Vec<f64> =
+            (0..5).map(|i| ends[i] - if i > 0 { ends[i - 1] } else { 0.0 }).collect();
+        assert!(
+            steps[0] > 0.16 && steps[1] == 0.0 && steps[2] > 0.0 && steps[3] > 0.83,
+            "{steps:?}"
+        );
         assert!(ends.iter().all(|x| (x * 16777216.0).fract() == 0.0) && ends[4] == 1.0);
     }
 }

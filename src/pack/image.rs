@@ -7,12 +7,14 @@ use crate::srgb::linear_from_srgb;
 use bytemuck::Zeroable;
 use glam::{DVec2, DVec3};
 
-/// Fills `textures` and `texels`; an environment's picture becomes one more texture behind the scene's own.
+/// Fills `textures` and `texels`; an environment's picture becomes one more texture behind the
+/// scene's own.
 pub fn pack_textures(scene: &scene::Scene, out: &mut Scene) {
     if scene.images.iter().any(|i| matches!(i.texels, Texels::Rgba8 { srgb: true, .. })) {
         out.texels.extend((0..256).map(|i| (linear_from_srgb(i as f64 / 255.0) as Real).to_bits()));
     }
-    let images: Vec<Texture> = scene.images.iter().map(|image| pack_image(image, &mut out.texels)).collect();
+    let images: Vec<Texture> =
+        scene.images.iter().map(|image| pack_image(image, &mut out.texels)).collect();
     for texture in &scene.textures {
         out.textures.push(match &texture.kind {
             TextureKind::Checker { colors, scale } => Texture {

@@ -34,10 +34,11 @@ pub fn pack_lights(
     emitters: &[Emitter],
     out: &mut Scene,
 ) -> PackedLights {
-    // strengths in world radiance first: areas and distances are in scene units already, so that irradiance
-    // is radiance times steradian in either
+    // strengths in world radiance first: areas and distances are in scene units already, so that
+    // irradiance is radiance times steradian in either
     let mut lights: Vec<(Light, DVec3, f64)> = Vec::new();
-    let mut sources: Vec<LightSource> = emitters.iter().map(|e| LightSource::Shape(e.shape)).collect();
+    let mut sources: Vec<LightSource> =
+        emitters.iter().map(|e| LightSource::Shape(e.shape)).collect();
     sources.extend((0..scene.lights.len()).map(LightSource::Light));
     let mut distributions = Vec::new();
     let luminance = |color: DVec3| color.dot(DVec3::new(0.2126, 0.7152, 0.0722));
@@ -55,8 +56,11 @@ pub fn pack_lights(
         let unit_sq = n.unit * n.unit;
         lights.push(match l {
             scene::Light::Point { position, intensity } => {
-                let light =
-                    Light { kind: LIGHT_POINT, position: n.point(*position).to_real(), ..Light::zeroed() };
+                let light = Light {
+                    kind: LIGHT_POINT,
+                    position: n.point(*position).to_real(),
+                    ..Light::zeroed()
+                };
                 (light, DVec3::from(*intensity) / unit_sq, 4.0 * PI)
             }
             scene::Light::Spot { position, target, intensity, angle_degrees, blend } => {
@@ -75,8 +79,11 @@ pub fn pack_lights(
                 (light, DVec3::from(*intensity) / unit_sq, PI * (inner + outer))
             }
             scene::Light::Sun { direction, irradiance } => {
-                let light =
-                    Light { kind: LIGHT_SUN, direction: direction.normalize().to_real(), ..Light::zeroed() };
+                let light = Light {
+                    kind: LIGHT_SUN,
+                    direction: direction.normalize().to_real(),
+                    ..Light::zeroed()
+                };
                 (light, DVec3::from(*irradiance), 1.0)
             }
         });
@@ -110,7 +117,8 @@ pub fn pack_lights(
     if lights.len() > sources.len() {
         sources.push(LightSource::Environment);
     }
-    let power: Vec<f64> = lights.iter().map(|(_, c, factor)| (c.x + c.y + c.z) / 3.0 * factor).collect();
+    let power: Vec<f64> =
+        lights.iter().map(|(_, c, factor)| (c.x + c.y + c.z) / 3.0 * factor).collect();
     let total: f64 = power.iter().sum();
     let brightest = lights.iter().map(|(_, c, _)| c.max_element()).fold(0.0, f64::max);
     let radiance_unit = if brightest > 0.0 { brightest.log2().round().exp2() } else { 1.0 };
@@ -129,8 +137,8 @@ pub fn pack_lights(
     PackedLights { radiance_unit, brightest: luminance_max, power, sources }
 }
 
-/// The parts of v by patch and the cumulative shares of area; returns the area. A patch overlaps its neighbour,
-/// so that its part ends where the next one starts.
+/// The parts of v by patch and the cumulative shares of area; returns the area. A patch overlaps
+/// its neighbour, so that its part ends where the next one starts.
 fn revolution_distribution(out: &Scene, light: &mut Light, distributions: &mut Vec<Real>) -> f64 {
     let index = light.reference & ((1 << REFERENCE_BITS) - 1);
     let patches: Vec<&Patch> = out.patches.iter().filter(|p| p.revolution == index).collect();
@@ -159,11 +167,15 @@ fn revolution_distribution(out: &Scene, light: &mut Light, distributions: &mut V
     areas.iter().sum()
 }
 
-/// The cumulative shares of rows and of columns within each row, by luminance times solid angle; returns the
-/// mean and the greatest luminance, or nothing for a black picture. A texel counts with the root mean square of the filtered picture
-/// inside it, the share with the least variance; its neighbours shine into it, so that it is dark only where they
-/// are, too.
-fn image_distribution(out: &Scene, light: &mut Light, distributions: &mut Vec<Real>) -> Option<[f64; 2]> {
+/// The cumulative shares of rows and of columns within each row, by luminance times solid angle;
+/// returns the mean and the greatest luminance, or nothing for a black picture. A texel counts with
+/// the root mean square of the filtered picture inside it, the share with the least variance; its
+/// neighbours shine into it, so that it is dark only where they are, too.
+fn image_distribution(
+    out: &Scene,
+    light: &mut Light,
+    distributions: &mut Vec<Real>,
+) -> Option<[f64; 2]> {
     let texture = &out.textures[light.reference as usize];
     let (w, h) = (texture.width, texture.height);
     light.first = distributions.len() as u32;
@@ -199,8 +211,8 @@ fn image_distribution(out: &Scene, light: &mut Light, distributions: &mut Vec<Re
     Some([mean, most])
 }
 
-/// Appends cumulative shares in the steps of random numbers; no value above zero is without a step, however
-/// bright the others are.
+/// Appends cumulative shares in the steps of random numbers; no value above zero is without a step,
+/// however bright the others are.
 fn push_cumulative(values: &[f64], target: &mut Vec<Real>) {
     let even = vec![1.0; values.len()];
     let dark = values.iter().sum::<f64>() <= 0.0;

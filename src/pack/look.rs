@@ -1,6 +1,6 @@
-//! What the camera sees: visible points of pilot eye paths, and where the light that scatters toward
-//! them comes from. Emission and the choice of lights follow from it. The camera's own place does not
-//! count.
+//! What the camera sees: visible points of pilot eye paths, and where the light that scatters
+//! toward them comes from. Emission and the choice of lights follow from it. The camera's own place
+//! does not count.
 
 use super::kernels::eye_trace::eye_trace;
 use super::kernels::records::{Dispatch, VisiblePoint};

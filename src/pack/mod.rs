@@ -62,14 +62,15 @@ pub struct Packed {
     power: Vec<f64>,
     /// Where each light comes from.
     sources: Vec<LightSource>,
-    /// Each light's share of the light that the camera sees, as far as pilots found; empty where they did
-    /// not look.
+    /// Each light's share of the light that the camera sees, as far as pilots found; empty where
+    /// they did not look.
     brought: Vec<f64>,
     /// Entries of the distributions before those that were learned.
     flattened: usize,
 }
 
-/// Flattens `scene` for a picture of `width` by `height` pixels, and learns from pilots how to light it.
+/// Flattens `scene` for a picture of `width` by `height` pixels, and learns from pilots how to
+/// light it.
 pub fn pack(scene: &scene::Scene, width: u32, height: u32) -> Result<Packed, PackError> {
     let mut packed = flatten(scene, Normalization::of(scene), width, height)?;
     let mut look = look(&packed.scene);
@@ -94,7 +95,12 @@ pub fn pack_like(
 }
 
 /// Flattens `scene`; nothing is learned.
-fn flatten(scene: &scene::Scene, n: Normalization, width: u32, height: u32) -> Result<Packed, PackError> {
+fn flatten(
+    scene: &scene::Scene,
+    n: Normalization,
+    width: u32,
+    height: u32,
+) -> Result<Packed, PackError> {
     let _stage = stage("pack");
     let mut out = Scene::empty();
     out.camera = camera(scene, &n, width, height);
@@ -156,15 +162,15 @@ fn flatten(scene: &scene::Scene, n: Normalization, width: u32, height: u32) -> R
 }
 
 impl Packed {
-    /// Takes the picture from where `scene`'s camera is now, everything else staying as it is, what was
-    /// learned for the camera before included.
+    /// Takes the picture from where `scene`'s camera is now, everything else staying as it is, what
+    /// was learned for the camera before included.
     pub fn move_camera(&mut self, scene: &scene::Scene, width: u32, height: u32) {
         self.scene.camera = camera(scene, &self.normalization, width, height);
         bodies::stand_camera(&mut self.scene);
     }
 
-    /// Learns anew for the camera as it is now; then the tables are those of [`pack`]. False, and nothing
-    /// learned, where `pack` may choose another place for scene space.
+    /// Learns anew for the camera as it is now; then the tables are those of [`pack`]. False, and
+    /// nothing learned, where `pack` may choose another place for scene space.
     pub fn learn_again(&mut self, scene: &scene::Scene) -> bool {
         if self.normalization != Normalization::of(scene) {
             return false;
@@ -194,7 +200,8 @@ impl Packed {
         // where nothing is seen, everything counts alike
         let all = Region { center: Vec3::ZERO, radius: (n.radius / n.unit) as Real };
         let region = look.region().unwrap_or(all);
-        let (center, radius) = (n.world(region.center.to_double()), f64::from(region.radius) * n.unit);
+        let (center, radius) =
+            (n.world(region.center.to_double()), f64::from(region.radius) * n.unit);
         discs::learn_discs(out, look, region, reach(scene, center, radius) / n.unit);
         let area = PI * f64::from(region.radius) * f64::from(region.radius);
         let lights = out.lights.iter().zip(&self.power);
@@ -205,8 +212,8 @@ impl Packed {
         cells::learn_cells(out, look, &power);
     }
 
-    /// Light that a picture with these settings may lack, and its stated error with it: of each such light
-    /// what a reader of the scene file calls it, and what to do.
+    /// Light that a picture with these settings may lack, and its stated error with it: of each
+    /// such light what a reader of the scene file calls it, and what to do.
     pub fn warnings(&self, scene: &scene::Scene, settings: &RenderSettings) -> Vec<String> {
         let has = |kinds: &[u32]| self.scene.materials.iter().any(|m| kinds.contains(&m.kind));
         let path = settings.method == Method::Path;

@@ -15,7 +15,8 @@ pub struct Objects {
 }
 
 impl Objects {
-    /// Tells that what was put into the tables since the last call, and the first `patches` patches, is of shape `shape`.
+    /// Tells that what was put into the tables since the last call, and the first `patches`
+    /// patches, is of shape `shape`.
     pub fn mark(&mut self, scene: &Scene, patches: usize, shape: u32) {
         let lengths = [
             (KIND_TRIANGLE, scene.triangles.len()),

@@ -1,9 +1,11 @@
-//! The order of the triangles in memory: as the leaves of the kd-tree name them, so that those of a leaf lie together.
+//! The order of the triangles in memory: as the leaves of the kd-tree name them, so that those of a
+//! leaf lie together.
 
 use super::shape::Emitter;
 use super::tables::*;
 
-/// Puts the triangles in the order in which the leaves name them first, and renames them everywhere. Where each went.
+/// Puts the triangles in the order in which the leaves name them first, and renames them
+/// everywhere. Where each went.
 pub fn triangles_as_met(out: &mut Scene, emitters: &mut [Emitter]) -> Vec<u32> {
     let is_triangle = |reference: u32| reference >> REFERENCE_BITS == KIND_TRIANGLE;
     let mut places = vec![NONE; out.triangles.len()];
@@ -16,7 +18,9 @@ pub fn triangles_as_met(out: &mut Scene, emitters: &mut [Emitter]) -> Vec<u32> {
         }
         *reference = *place;
     }
-    for (place, triangle) in places.iter_mut().zip(&out.triangles).filter(|(place, _)| **place == NONE) {
+    for (place, triangle) in
+        places.iter_mut().zip(&out.triangles).filter(|(place, _)| **place == NONE)
+    {
         *place = ordered.len() as u32;
         ordered.push(*triangle);
     }

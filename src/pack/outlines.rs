@@ -20,7 +20,8 @@ const REGIONS: usize = 256;
 const EDGES: usize = 31;
 /// Minimum share of the boundary that these edges must have.
 const COVERED: f64 = 0.9;
-/// Cosine of the angle between the normals of two triangles above which they are one curved surface.
+/// Cosine of the angle between the normals of two triangles above which they are one curved
+/// surface.
 const SOFT: f64 = 0.866;
 /// Error of a vertex relative to the largest coordinate, in both precisions.
 const VERTEX_ERROR: f64 = 4.0 * f32::EPSILON as f64;
@@ -214,7 +215,9 @@ fn region(surface: &Surface, triangles: Vec<u32>, sides: &[(u32, u8)]) -> Option
     let (point, normal) = (surface.corners[largest as usize][0], surface.normals[largest as usize]);
     let error = triangles.iter().map(|t| surface.error(*t)).fold(0.0, f64::max);
     let off = |p: &DVec3| (*p - point).dot(normal).abs() > 4.0 * error;
-    if normal == DVec3::ZERO || triangles.iter().any(|t| surface.corners[*t as usize].iter().any(off)) {
+    if normal == DVec3::ZERO
+        || triangles.iter().any(|t| surface.corners[*t as usize].iter().any(off))
+    {
         return None;
     }
     let edges = joined(surface, sides, error);
@@ -238,7 +241,8 @@ fn region(surface: &Surface, triangles: Vec<u32>, sides: &[(u32, u8)]) -> Option
     edges.sort_by(|a, b| length(b).total_cmp(&length(a)));
     let total: f64 = edges.iter().map(length).sum();
     edges.truncate(EDGES);
-    if edges.iter().map(length).sum::<f64>() < COVERED * total || width.min(height) <= 16.0 * error {
+    if edges.iter().map(length).sum::<f64>() < COVERED * total || width.min(height) <= 16.0 * error
+    {
         return None;
     }
     let facet = with_margins(Facet {
@@ -259,7 +263,8 @@ fn joined(surface: &Surface, sides: &[(u32, u8)], error: f64) -> Vec<[DVec3; 2]>
         let corner = (k as usize + i) % 3;
         (surface.vertices[t as usize][corner], surface.corners[t as usize][corner])
     };
-    let ends: Vec<[(u32, DVec3); 2]> = sides.iter().map(|side| [end(*side, 0), end(*side, 1)]).collect();
+    let ends: Vec<[(u32, DVec3); 2]> =
+        sides.iter().map(|side| [end(*side, 0), end(*side, 1)]).collect();
     let mut at: HashMap<u32, Vec<(u32, usize)>> = HashMap::new();
     for (i, pair) in ends.iter().enumerate() {
         (0..2).for_each(|k| at.entry(pair[k].0).or_default().push((i as u32, k)));
@@ -269,8 +274,9 @@ fn joined(surface: &Surface, sides: &[(u32, u8)], error: f64) -> Vec<[DVec3; 2]>
         let along = (to - from).normalize_or_zero();
         chain.iter().all(|p| (*p - from).reject_from_normalized(along).length() <= 4.0 * error)
     };
-    let points =
-        |set: &[u32]| -> Vec<DVec3> { set.iter().flat_map(|i| ends[*i as usize].map(|(_, p)| p)).collect() };
+    let points = |set: &[u32]| -> Vec<DVec3> {
+        set.iter().flat_map(|i| ends[*i as usize].map(|(_, p)| p)).collect()
+    };
     let mut sets = Sets::new(ends.len());
     for meeting in at.values() {
         if let [(i, j), (k, l)] = meeting[..] {
@@ -299,8 +305,9 @@ fn joined(surface: &Surface, sides: &[(u32, u8)], error: f64) -> Vec<[DVec3; 2]>
 /// farthest from it.
 fn extremes(points: &[DVec3]) -> (DVec3, DVec3) {
     let farthest = |from: DVec3| {
-        let far =
-            points.iter().max_by(|a, b| from.distance_squared(**a).total_cmp(&from.distance_squared(**b)));
+        let far = points
+            .iter()
+            .max_by(|a, b| from.distance_squared(**a).total_cmp(&from.distance_squared(**b)));
         far.copied().unwrap_or(from)
     };
     let from = farthest(points.first().copied().unwrap_or_default());

@@ -1,6 +1,6 @@
-//! Pilot photons: how much each light contributes to what the camera sees, and where its photons pass
-//! mirrors and glass on the way there. From them come the probability with which a photon starts at a
-//! light, and the lights' maps (`lights::guide`).
+//! Pilot photons: how much each light contributes to what the camera sees, and where its photons
+//! pass mirrors and glass on the way there. From them come the probability with which a photon
+//! starts at a light, and the lights' maps (`lights::guide`).
 
 use super::discs::cumulative;
 use super::kernels::photon_trace::PhotonPath;
@@ -18,8 +18,8 @@ use crate::stage::stage;
 use bytemuck::Zeroable;
 use rayon::prelude::*;
 
-/// Pilots of all lights together in each of two rounds, as far as a light has neither more nor fewer than
-/// the numbers below.
+/// Pilots of all lights together in each of two rounds, as far as a light has neither more nor
+/// fewer than the numbers below.
 const PILOTS: usize = 1 << 16;
 /// Most pilots of a light in a round.
 const MOST: usize = 1 << 14;
@@ -56,9 +56,9 @@ struct Tally {
     cells: Vec<[f64; 2]>,
 }
 
-/// Sets the probabilities of the lights of photons and gives lights their maps. `power` is that of each
-/// light. Returns each light's share of the light that the camera sees, or nothing where one light
-/// brings all.
+/// Sets the probabilities of the lights of photons and gives lights their maps. `power` is that of
+/// each light. Returns each light's share of the light that the camera sees, or nothing where one
+/// light brings all.
 pub fn learn_emission(out: &mut Scene, visibility: &Visibility, power: &[f64]) -> Vec<f64> {
     let specular = out.materials.iter().any(|m| is_specular(m.kind));
     for light in &mut out.lights {
@@ -101,7 +101,10 @@ pub fn learn_emission(out: &mut Scene, visibility: &Visibility, power: &[f64]) -
     out.world.guided = out.lights.iter().any(|light| light.guide != 0) as u32;
     choose_by(out, &shares(&tallies, power));
     let all: f64 = tallies.iter().map(|tally| tally.sum / tally.count).sum();
-    tallies.iter().map(|tally| if all > 0.0 { tally.sum / tally.count / all } else { 0.0 }).collect()
+    tallies
+        .iter()
+        .map(|tally| if all > 0.0 { tally.sum / tally.count / all } else { 0.0 })
+        .collect()
 }
 
 /// Chooses the lights of photons in proportion to `shares`.
@@ -114,15 +117,19 @@ fn choose_by(out: &mut Scene, shares: &[f64]) {
     }
 }
 
-/// The lights that may get a map: all, or those whose first pilots brought most through mirrors and glass.
+/// The lights that may get a map: all, or those whose first pilots brought most through mirrors and
+/// glass.
 fn candidates(scene: &Scene, visibility: &Visibility, count: usize) -> Vec<usize> {
     let mut lights: Vec<usize> = (0..scene.lights.len()).collect();
     if lights.len() > MAPS {
         let sums: Vec<f64> = lights
             .iter()
-            .map(|index| explore(scene, visibility, *index, 2, count).cells.iter().map(|c| c[1]).sum())
+            .map(|index| {
+                explore(scene, visibility, *index, 2, count).cells.iter().map(|c| c[1]).sum()
+            })
             .collect();
-        let strength = |index: usize| sums[index] * f64::from(scene.lights[index].selection).powi(2);
+        let strength =
+            |index: usize| sums[index] * f64::from(scene.lights[index].selection).powi(2);
         lights.sort_by(|a, b| strength(*b).total_cmp(&strength(*a)));
         lights.truncate(MAPS);
         lights.sort_unstable();
@@ -130,11 +137,12 @@ fn candidates(scene: &Scene, visibility: &Visibility, count: usize) -> Vec<usize
     lights
 }
 
-/// Probabilities of the lights: in proportion to the root mean square of what a photon contributes, which
-/// has the least variance.
+/// Probabilities of the lights: in proportion to the root mean square of what a photon contributes,
+/// which has the least variance.
 fn shares(tallies: &[Tally], power: &[f64]) -> Vec<f64> {
     let total: f64 = power.iter().sum();
-    let by_power: f64 = tallies.iter().zip(power).map(|(tally, power)| tally.count * power * power).sum();
+    let by_power: f64 =
+        tallies.iter().zip(power).map(|(tally, power)| tally.count * power * power).sum();
     let prior = tallies.iter().map(|tally| tally.sum_sq).sum::<f64>() / by_power;
     let rms = tallies.iter().zip(power).map(|(tally, power)| {
         ((tally.sum_sq + PRIOR * prior * power * power) / (tally.count + PRIOR)).sqrt()
@@ -160,7 +168,13 @@ struct Pilot {
 }
 
 /// Sends `count` pilots of a round from a light.
-fn explore(scene: &Scene, visibility: &Visibility, index: usize, round: usize, count: usize) -> Tally {
+fn explore(
+    scene: &Scene,
+    visibility: &Visibility,
+    index: usize,
+    round: usize,
+    count: usize,
+) -> Tally {
     let first = round * count;
     let (even, whole) = (round == 0, scene.lights.len() > 1);
     let pilots: Vec<Pilot> = (first..first + count)
@@ -182,9 +196,16 @@ fn explore(scene: &Scene, visibility: &Visibility, index: usize, round: usize, c
     tally
 }
 
-/// Sends pilot `id` from a light; in the first round those that its map sends go cell after cell. Only if
-/// `whole` is its path followed beyond the first surface that scatters.
-fn pilot(scene: &Scene, visibility: &Visibility, index: usize, id: u32, even: bool, whole: bool) -> Pilot {
+/// Sends pilot `id` from a light; in the first round those that its map sends go cell after cell.
+/// Only if `whole` is its path followed beyond the first surface that scatters.
+fn pilot(
+    scene: &Scene,
+    visibility: &Visibility,
+    index: usize,
+    id: u32,
+    even: bool,
+    whole: bool,
+) -> Pilot {
     let light = &scene.lights[index];
     let infinite = light.kind >= LIGHT_SUN;
     let mut rng = rng_new(id, PASS, STREAM_PHOTON, index as u32);
@@ -202,7 +223,8 @@ fn pilot(scene: &Scene, visibility: &Visibility, index: usize, id: u32, even: bo
     } else {
         guided(scene, light, Vec2::new(v.x, v.y), v.w).0
     };
-    let dispatch = Dispatch { max_bounces: BOUNCES, families: 2, key_bits: KEY_BITS, ..Dispatch::zeroed() };
+    let dispatch =
+        Dispatch { max_bounces: BOUNCES, families: 2, key_bits: KEY_BITS, ..Dispatch::zeroed() };
     let mut path = PhotonPath::emitted(emission, rng, 0);
     let (mut contribution, mut share, mut scattered) = (0.0, 0.0, false);
     while path.goes_on(&dispatch) {
@@ -233,9 +255,10 @@ fn on_square(scene: &Scene, origin: Vec3, direction: Vec3) -> Vec2 {
     (Vec2::new(d.dot(t), d.dot(b)) * (1.0 / scene.world.near_radius) + Vec2::ONE) * 0.5
 }
 
-/// A map's cumulative probabilities; none where no pilot came through. A cell is chosen in proportion to
-/// the root mean square of the shares, which has the least variance, and a little by its neighbours',
-/// since pilots are few. `even` is the probability of all cells alike. The map of a lamp wraps in y.
+/// A map's cumulative probabilities; none where no pilot came through. A cell is chosen in
+/// proportion to the root mean square of the shares, which has the least variance, and a little by
+/// its neighbours', since pilots are few. `even` is the probability of all cells alike. The map of
+/// a lamp wraps in y.
 fn map(cells: &[[f64; 2]], even: f64, wraps: bool) -> Option<Vec<Real>> {
     let side = GUIDE_SIDE as i32;
     let mean_sq = |x: i32, y: i32| {
@@ -254,6 +277,7 @@ fn map(cells: &[[f64; 2]], even: f64, wraps: bool) -> Option<Vec<Real>> {
     if !(total > 0.0 && total.is_finite()) {
         return None;
     }
-    let mixed = values.iter().map(|value| even / f64::from(GUIDE_CELLS) + (1.0 - even) * value / total);
+    let mixed =
+        values.iter().map(|value| even / f64::from(GUIDE_CELLS) + (1.0 - even) * value / total);
     Some(cumulative(&mixed.collect::<Vec<_>>()).map(|x| x as Real).collect())
 }

@@ -71,12 +71,18 @@ pub fn pack_shapes(
         pack.shape = i;
         let material = materials[i].first().copied().unwrap_or_default();
         let uv = if shape.planar_uv { UV_PLANAR } else { UV_NATURAL };
-        pack.period =
-            scene.materials.get(shape.material).map_or(DVec2::INFINITY, |m| image::period(scene, m));
+        pack.period = scene
+            .materials
+            .get(shape.material)
+            .map_or(DVec2::INFINITY, |m| image::period(scene, m));
         let emission = shape.is_emitter().then(|| DVec3::from(shape.emission));
         match &*kinds[i] {
-            ShapeKind::Sphere { center, radius } => pack.sphere(*center, *radius, material, uv, emission),
-            ShapeKind::Rectangle { origin, u, v } => pack.rectangle(*origin, *u, *v, material, uv, emission),
+            ShapeKind::Sphere { center, radius } => {
+                pack.sphere(*center, *radius, material, uv, emission)
+            }
+            ShapeKind::Rectangle { origin, u, v } => {
+                pack.rectangle(*origin, *u, *v, material, uv, emission)
+            }
             ShapeKind::Disc { center, normal, radius } => {
                 pack.disc(*center, *normal, *radius, material, uv, emission);
             }
@@ -84,8 +90,11 @@ pub fn pack_shapes(
             ShapeKind::Cuboid { min, max } => pack.cuboid(*min, *max, material, uv, emission),
             ShapeKind::Mesh(mesh) => pack.mesh(mesh, &materials[i], uv, emission),
             ShapeKind::Revolution { segments, transform, newton_tolerance } => {
-                let light =
-                    pack.light(emission, reference(KIND_REVOLUTION, revolutions.revolutions.len()), 0.0);
+                let light = pack.light(
+                    emission,
+                    reference(KIND_REVOLUTION, revolutions.revolutions.len()),
+                    0.0,
+                );
                 let uv = if uv == UV_NATURAL && is_loop(segments) { UV_LOOP } else { uv };
                 let attributes =
                     RevolutionAttributes { material, light, uv, step_tolerance: *newton_tolerance };
@@ -156,7 +165,14 @@ impl Pack<'_> {
         self.references.push(reference);
     }
 
-    fn sphere(&mut self, center: DVec3, radius: f64, material: u32, uv: u32, emission: Option<DVec3>) {
+    fn sphere(
+        &mut self,
+        center: DVec3,
+        radius: f64,
+        material: u32,
+        uv: u32,
+        emission: Option<DVec3>,
+    ) {
         let c = self.n.point(center);
         let r = radius / self.n.unit;
         // the anchor faces the scene's middle, which is the origin
@@ -215,7 +231,8 @@ impl Pack<'_> {
         let outline = &mut self.out.facets[facet as usize];
         *outline = with_margins(Facet { error, ..*outline });
         let corners = [o, o + u, o + v, o + u + v].map(DVec3::to_real);
-        let length = |edge: DVec3, dual: Vec3| edge.abs() * dual.to_double().abs().dot(u.abs() + v.abs());
+        let length =
+            |edge: DVec3, dual: Vec3| edge.abs() * dual.to_double().abs().dot(u.abs() + v.abs());
         let edges = length(u, rectangle.dual_u) + length(v, rectangle.dual_v);
         let grow = off_plane(normal.normalize(), u.abs() + v.abs()) + edges;
         self.boxed(id, &corners, grow.to_real() + largest(&corners));
@@ -304,7 +321,9 @@ impl Pack<'_> {
         let cuboid = Cuboid { lower, material, upper, light, uv, facet, pad: [0; 2] };
         self.out.cuboids.push(cuboid);
         let error = cuboid_error(&cuboid);
-        self.out.facets[facet as usize..].iter_mut().for_each(|f| *f = with_margins(Facet { error, ..*f }));
+        self.out.facets[facet as usize..]
+            .iter_mut()
+            .for_each(|f| *f = with_margins(Facet { error, ..*f }));
         self.boxed(id, &[lower, upper], largest(&[lower, upper]));
     }
 
@@ -327,7 +346,14 @@ impl Pack<'_> {
             let normals = triangle.normal.map(|t| t.map(|i| mesh.normals[i as usize]));
             let attributes = self.attributes(uvs, normals);
             let p = p.map(|q| q.to_real());
-            self.out.triangles.push(Triangle { p0: p[0], material, p1: p[1], light, p2: p[2], attributes });
+            self.out.triangles.push(Triangle {
+                p0: p[0],
+                material,
+                p1: p[1],
+                light,
+                p2: p[2],
+                attributes,
+            });
             self.primitives.push(Primitive::Triangle(p));
             self.references.push(id);
         }

@@ -44,7 +44,8 @@ impl Visibility {
         ([grid, d.x as i32, d.y as i32, d.z as i32], width)
     }
 
-    /// Visible points per area around `position`, as a share of all: from the finest grid that has some.
+    /// Visible points per area around `position`, as a share of all: from the finest grid that has
+    /// some.
     pub fn density(&self, position: Vec3) -> f64 {
         for grid in 0..GRIDS {
             let (cell, width) = self.cell(position, grid);

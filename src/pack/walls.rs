@@ -160,7 +160,8 @@ fn floors(out: &Scene) -> Vec<Floor> {
             let (corner, sign) = if face < 3 { (c.lower, -1.0) } else { (c.upper, 1.0) };
             let index = c.facet + axis as u32;
             let facet = out.facets[index as usize];
-            let normal = DVec3::from_array(std::array::from_fn(|i| if i == axis { sign } else { 0.0 }));
+            let normal =
+                DVec3::from_array(std::array::from_fn(|i| if i == axis { sign } else { 0.0 }));
             floors.push(Floor::new(corner.to_double(), normal, facet, Place::Facet(index)));
         }
     }
@@ -198,12 +199,13 @@ fn polygons(out: &Scene) -> Vec<Polygon> {
         for face in 0..6 {
             let axis = face % 3;
             let (b, d) = ((axis + 1) % 3, (axis + 2) % 3);
-            let corners = [(false, false), (true, false), (true, true), (false, true)].map(|(on_b, on_d)| {
-                let mut p = if face < 3 { c.lower } else { c.upper };
-                p[b] = if on_b { c.upper[b] } else { c.lower[b] };
-                p[d] = if on_d { c.upper[d] } else { c.lower[d] };
-                p
-            });
+            let corners =
+                [(false, false), (true, false), (true, true), (false, true)].map(|(on_b, on_d)| {
+                    let mut p = if face < 3 { c.lower } else { c.upper };
+                    p[b] = if on_b { c.upper[b] } else { c.lower[b] };
+                    p[d] = if on_d { c.upper[d] } else { c.lower[d] };
+                    p
+                });
             polygons.push(Polygon::new(&corners));
         }
     }
@@ -212,7 +214,8 @@ fn polygons(out: &Scene) -> Vec<Polygon> {
 
 /// The edges of a floor, and the feet of the walls that stand on it elsewhere.
 fn feet(floor: &Floor, polygons: &[Polygon]) -> Vec<Foot> {
-    let edge = |[from, to]: &[DVec3; 2]| Foot { from: *from, to: *to, up: floor.normal, both: true };
+    let edge =
+        |[from, to]: &[DVec3; 2]| Foot { from: *from, to: *to, up: floor.normal, both: true };
     let mut feet: Vec<Foot> = floor.edges.iter().map(edge).collect();
     if floor.walls {
         let inside = |foot: &Foot| !floor.edges.iter().any(|edge| along(edge, foot));
@@ -237,7 +240,8 @@ fn feet_of(floor: &Floor, polygon: &Polygon) -> impl Iterator<Item = Foot> {
     let (center, half) = (0.5 * (polygon.low + polygon.high), 0.5 * (polygon.high - polygon.low));
     let reach = (1.0 + 2.0 * GAP) * half.dot(floor.normal.abs()) + error;
     let near = (center - floor.point).dot(floor.normal).abs() <= reach;
-    let sides = near.then(|| [foot(floor, floor.normal, polygon), foot(floor, -floor.normal, polygon)]);
+    let sides =
+        near.then(|| [foot(floor, floor.normal, polygon), foot(floor, -floor.normal, polygon)]);
     sides.into_iter().flatten().flatten()
 }
 

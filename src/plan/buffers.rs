@@ -8,7 +8,8 @@ use super::kernel::SCAN_BLOCK;
 use crate::scene::Aov;
 
 impl Plan {
-    /// Buffers of visible points that chunks take turns with. The counts of `gathered` are kept where a layer shows them.
+    /// Buffers of visible points that chunks take turns with. The counts of `gathered` are kept
+    /// where a layer shows them.
     pub fn in_turn(&self) -> &'static [&'static str] {
         match (self.tiled, self.aovs.has(Aov::Photons)) {
             (false, _) => &[],

@@ -34,7 +34,8 @@ pub enum Kernel {
     Resolve,
 }
 
-/// Buckets that one workgroup of the scan kernels covers; the same number of blocks is the most there may be.
+/// Buckets that one workgroup of the scan kernels covers; the same number of blocks is the most
+/// there may be.
 pub const SCAN_BLOCK: u32 = 4096;
 /// Buckets that one workgroup of [`Kernel::GridSortLong`] looks through.
 pub const SORT_BUCKETS: u32 = 256;
@@ -76,7 +77,8 @@ impl Kernel {
         }
     }
 
-    /// The buffers it binds beside the scene's (see [`Plan::buffers`](super::Plan::buffers)) and whether it writes them.
+    /// The buffers it binds beside the scene's (see [`Plan::buffers`](super::Plan::buffers)) and
+    /// whether it writes them.
     pub fn buffers(self, features: &Features) -> Vec<(&'static str, bool)> {
         let mut list = match self {
             Self::EyeTrace => vec![("visible_points", true), ("counters", true)],
@@ -119,7 +121,9 @@ impl Kernel {
             }
             Self::Resolve => vec![("visible_points", false), ("gathered", false), ("film", true)],
         };
-        if features.has("local") && matches!(self, Self::Gather | Self::ResolveParts | Self::Resolve) {
+        if features.has("local")
+            && matches!(self, Self::Gather | Self::ResolveParts | Self::Resolve)
+        {
             list.push(("statistics", self == Self::Resolve));
         }
         list
@@ -138,6 +142,7 @@ pub struct Step {
     pub kernel: Kernel,
     /// Which chunk's `visible_points`, `gathered`, `statistics` and `film` it binds.
     pub chunk: u32,
-    /// Its numbers. Kernels over records run over the whole capacity and stop at the count in `counters`.
+    /// Its numbers. Kernels over records run over the whole capacity and stop at the count in
+    /// `counters`.
     pub dispatch: Dispatch,
 }

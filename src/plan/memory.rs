@@ -46,14 +46,17 @@ impl Plan {
     pub fn memory(&self, scene: u64, place: Place) -> Vec<Part> {
         let pixels = u64::from(self.pixels);
         let buffers = self.buffers();
-        let bytes = |name: &str| buffers.iter().find(|(n, _)| *n == name).map_or(0, |(_, bytes)| *bytes);
+        let bytes =
+            |name: &str| buffers.iter().find(|(n, _)| *n == name).map_or(0, |(_, bytes)| *bytes);
         let path = self.settings.method == Method::Path;
         // buffers of chunks are told for the largest one
         let points = pixels * u64::from(self.eye_samples);
-        let whole = |name: &str| match self.in_turn().contains(&name) {
-            true => bytes(name),
-            false => (bytes(name) as f64 * points as f64 / f64::from(self.chunk(0).1.max(1))).ceil() as u64,
-        };
+        let whole =
+            |name: &str| match self.in_turn().contains(&name) {
+                true => bytes(name),
+                false => (bytes(name) as f64 * points as f64 / f64::from(self.chunk(0).1.max(1)))
+                    .ceil() as u64,
+            };
         let visible = if path { 0 } else { whole("visible_points") + whole("gathered") };
         let statistics =
             if self.features.has("local") && !path { points * STATISTICS_BYTES as u64 } else { 0 };
@@ -71,7 +74,8 @@ impl Plan {
         } else {
             0
         };
-        // the picture and what it says of its error, beside the film on its way from the device or channels on theirs to a file
+        // the picture and what it says of its error, beside the film on its way from the device or
+        // channels on theirs to a file
         let channels = (8 + 3 * self.aovs.iter().count() as u64) * CHANNEL_BYTES;
         let on_its_way = if device { channels.max(FILM_BYTES as u64) } else { channels };
         let result = pixels * (12 + size_of::<PixelError>() as u64 + on_its_way);
@@ -89,13 +93,20 @@ impl Plan {
         parts.into_iter().filter(|part| part.bytes > 0).collect()
     }
 
-    /// The same plan, cut so that it fits: the picture in tiles, which changes no bit, and where that is not enough and `memory`
-    /// lets it, photons in smaller batches, whose sums are rounded otherwise. [`Self::settings`] then name the batch.
+    /// The same plan, cut so that it fits: the picture in tiles, which changes no bit, and where
+    /// that is not enough and `memory` lets it, photons in smaller batches, whose sums are rounded
+    /// otherwise. [`Self::settings`] then name the batch.
     ///
     /// # Errors
     /// Where nothing of it fits.
-    pub fn within(mut self, scene: u64, place: Place, memory: &Memory) -> Result<Self, EngineError> {
-        let Some((limit, of)) = memory.limit(place != Place::Device { in_main_memory: false }) else {
+    pub fn within(
+        mut self,
+        scene: u64,
+        place: Place,
+        memory: &Memory,
+    ) -> Result<Self, EngineError> {
+        let Some((limit, of)) = memory.limit(place != Place::Device { in_main_memory: false })
+        else {
             return Ok(self);
         };
         let fits = |plan: &Self| total(&plan.memory(scene, place)) <= limit;
@@ -104,7 +115,8 @@ impl Plan {
         }
         let gathers = self.features.has("photons") && self.settings.method != Method::Path;
         let (planned, whole) = (self.settings.batch, self.batch_photons);
-        // first no smaller batches at all, then some in large tiles, since each tile has the photons of smaller ones traced anew
+        // first no smaller batches at all, then some in large tiles, since each tile has the
+        // photons of smaller ones traced anew
         let rounds: &[u32] =
             if memory.cuts_batches() && gathers { &[1, MANY_BATCHES, u32::MAX] } else { &[1] };
         for most in rounds {
@@ -112,7 +124,9 @@ impl Plan {
             loop {
                 self.settings.batch = planned;
                 self = self.in_tiles(points).in_batches();
-                while !fits(&self) && self.capacity > SCAN_BLOCK && 2 * (whole / self.batch_photons) <= *most
+                while !fits(&self)
+                    && self.capacity > SCAN_BLOCK
+                    && 2 * (whole / self.batch_photons) <= *most
                 {
                     let half = (self.batch_photons / 2).max(1);
                     self = self.with_batch(half);
@@ -129,7 +143,8 @@ impl Plan {
         Err(OverBudget::new(&self.memory(scene, place), (limit, of)).into())
     }
 
-    /// The same with the picture in tiles of about so many visible points, of which one at a time is on the device.
+    /// The same with the picture in tiles of about so many visible points, of which one at a time
+    /// is on the device.
     pub fn in_tiles(self, points: u32) -> Self {
         let chunk_points = (points / self.eye_samples).max(1) * self.eye_samples;
         Self { tiled: true, chunk_points, ..self }
@@ -137,7 +152,11 @@ impl Plan {
 
     /// Number of batches that a pass's photons come in.
     pub fn batches(&self) -> u32 {
-        if self.features.has("photons") { self.settings.photons.div_ceil(self.batch_photons) } else { 0 }
+        if self.features.has("photons") {
+            self.settings.photons.div_ceil(self.batch_photons)
+        } else {
+            0
+        }
     }
 }
 

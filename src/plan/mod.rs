@@ -99,9 +99,11 @@ impl Plan {
         let _stage = stage("plan");
         let features = Features::of(&packed.scene, settings);
         let probe = probe(packed, settings);
-        let chosen = probe.automatic.map_or(settings.radius, |automatic| Radius::Pixels(automatic.pixels));
+        let chosen =
+            probe.automatic.map_or(settings.radius, |automatic| Radius::Pixels(automatic.pixels));
         let wider = settings.indirect_radius.or(probe.automatic.map(|a| a.indirect)).unwrap_or(1.0);
-        let settings = &RenderSettings { radius: chosen, indirect_radius: Some(wider), ..settings.clone() };
+        let settings =
+            &RenderSettings { radius: chosen, indirect_radius: Some(wider), ..settings.clone() };
         let specular = features.has("specular");
         let widening = if features.has("first") { 1.0 } else { wider };
         let camera = &packed.scene.camera;
@@ -166,7 +168,8 @@ impl Plan {
 
     /// Whether what photons bring is parted by the way they came.
     pub fn parts_photons(&self) -> bool {
-        self.features.has("photons") && (self.aovs.has(Aov::Caustic) || self.aovs.has(Aov::Indirect))
+        self.features.has("photons")
+            && (self.aovs.has(Aov::Caustic) || self.aovs.has(Aov::Indirect))
     }
 
     /// Plans to go on from `state`.
@@ -176,15 +179,18 @@ impl Plan {
     pub fn take_over(&mut self, state: &State) -> Result<(), EngineError> {
         let local = self.features.has("local") && self.settings.method != Method::Path;
         if local && state.first_pass > 0 {
-            let text =
-                "under the local rule a pass needs the photon counts of all before it: start with pass 0";
+            let text = "under the local rule a pass needs the photon counts of all before it: start with pass 0";
             return Err(EngineError::Unsupported(text.into()));
         }
         let points = if local { self.pixels as usize * self.eye_samples as usize } else { 0 };
-        let wanted =
-            (8 * size_of::<Real>() as u32, self.pixels as usize * FILM_BYTES, points * STATISTICS_BYTES);
+        let wanted = (
+            8 * size_of::<Real>() as u32,
+            self.pixels as usize * FILM_BYTES,
+            points * STATISTICS_BYTES,
+        );
         if state.passes > 0 && (state.bits, state.film.len(), state.statistics.len()) != wanted {
-            let text = "what is to be gone on from is of another picture size, radius rule or precision";
+            let text =
+                "what is to be gone on from is of another picture size, radius rule or precision";
             return Err(EngineError::Unsupported(text.into()));
         }
         if state.passes > 0 && self.lacks_layers(&state.layers) {

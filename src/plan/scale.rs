@@ -4,8 +4,8 @@ use super::Plan;
 use crate::settings::RadiusRule;
 
 impl Plan {
-    /// Squared radius in pass `pass` of this render over the squared start radius; the local rule's is the plan's guess,
-    /// which only sets the cell size.
+    /// Squared radius in pass `pass` of this render over the squared start radius; the local rule's
+    /// is the plan's guess, which only sets the cell size.
     pub fn scale_sq(&self, pass: u32) -> f64 {
         match self.settings.radius_rule {
             RadiusRule::Fixed => 1.0,
@@ -13,14 +13,15 @@ impl Plan {
         }
     }
 
-    /// Typical gather radius of pass `pass` in world units; of the first family, where there are two.
+    /// Typical gather radius of pass `pass` in world units; of the first family, where there are
+    /// two.
     pub fn radius(&self, pass: u32) -> f64 {
         self.widening * self.probe.radius * self.scale_sq(pass).sqrt() * self.unit
     }
 }
 
-/// `r_i^2 / r_1^2 = prod_{k=1}^{i-1} (k + alpha) / (k + 1)` (Knaus & Zwicker 2011, eq. 20), in closed form
-/// through the gamma function for large `i`.
+/// `r_i^2 / r_1^2 = prod_{k=1}^{i-1} (k + alpha) / (k + 1)` (Knaus & Zwicker 2011, eq. 20), in
+/// closed form through the gamma function for large `i`.
 pub fn global_scale_sq(i: u64, alpha: f64) -> f64 {
     const DIRECT: u64 = 256;
     let head: f64 = (1..i.min(DIRECT)).map(|k| (k as f64 + alpha) / (k as f64 + 1.0)).product();
@@ -35,5 +36,6 @@ pub fn global_scale_sq(i: u64, alpha: f64) -> f64 {
 /// Stirling's series; good to 1e-15 relative for x >= 100.
 fn ln_gamma(x: f64) -> f64 {
     let r = 1.0 / x;
-    (x - 0.5) * x.ln() - x + 0.918_938_533_204_672_7 + r / 12.0 - r * r * r / 360.0 + r.powi(5) / 1260.0
+    (x - 0.5) * x.ln() - x + 0.918_938_533_204_672_7 + r / 12.0 - r * r * r / 360.0
+        + r.powi(5) / 1260.0
 }

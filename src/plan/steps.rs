@@ -8,10 +8,11 @@ use crate::settings::{Method, Radius};
 use bytemuck::Zeroable;
 use std::ops::Range;
 
-/// Grid cells are this many mean radii wide: with smaller ones more rows are visited, with larger ones more photons in vain.
+/// Grid cells are this many mean radii wide: with smaller ones more rows are visited, with larger
+/// ones more photons in vain.
 const CELL_RADII: f64 = 1.2;
-/// The same for photons that no diffuse surface has scattered, where they are apart: there are few outside of caustics, so that
-/// the rows count.
+/// The same for photons that no diffuse surface has scattered, where they are apart: there are few
+/// outside of caustics, so that the rows count.
 const SPARSE_RADII: f64 = 3.0;
 
 impl Plan {
@@ -56,7 +57,8 @@ impl Plan {
         }
     }
 
-    /// The numbers of a pass for its eye paths: fixed visible points are those of pass 0, whoever makes the first pass.
+    /// The numbers of a pass for its eye paths: fixed visible points are those of pass 0, whoever
+    /// makes the first pass.
     fn eye_dispatch(&self, common: Dispatch) -> Dispatch {
         if self.settings.method != Method::Ppm {
             return common;
@@ -64,15 +66,17 @@ impl Plan {
         Dispatch { pass_number: 0, points: crate::sobol::points(0), ..common }
     }
 
-    /// Pass `pass` of this render, from 0, with `batch_photons` photons a batch (fewer than planned when a batch overflowed): all of
-    /// [`Self::phases`].
+    /// Pass `pass` of this render, from 0, with `batch_photons` photons a batch (fewer than planned
+    /// when a batch overflowed): all of [`Self::phases`].
     pub fn steps(&self, pass: u32, batch_photons: u32) -> Vec<Step> {
         self.phases(pass, batch_photons).into_iter().flatten().collect()
     }
 
-    /// The same in phases, one or a tile's each. Before the first step of one an engine clears the `gathered` of its chunks, before each
-    /// [`Kernel::PhotonTrace`] the record counter. Its steps from the first [`Kernel::ResolveParts`] or [`Kernel::Resolve`] on add to
-    /// what passes before have found. Where photons come in one batch tiles share its grid, else each tile has them traced anew.
+    /// The same in phases, one or a tile's each. Before the first step of one an engine clears the
+    /// `gathered` of its chunks, before each [`Kernel::PhotonTrace`] the record counter. Its steps
+    /// from the first [`Kernel::ResolveParts`] or [`Kernel::Resolve`] on add to what passes before
+    /// have found. Where photons come in one batch tiles share its grid, else each tile has them
+    /// traced anew.
     pub fn phases(&self, pass: u32, batch_photons: u32) -> Vec<Vec<Step>> {
         let all = 0..self.chunks();
         let tiles = if self.tiled { all.map(|c| c..c + 1).collect() } else { vec![all] };
@@ -133,8 +137,8 @@ impl Plan {
         steps
     }
 
-    /// The steps of [`Kernel::AovTrace`] in pass `pass`, one for each sample of the pixels that the pass traces eye paths
-    /// through.
+    /// The steps of [`Kernel::AovTrace`] in pass `pass`, one for each sample of the pixels that the
+    /// pass traces eye paths through.
     pub fn aov_steps(&self, pass: u32) -> Vec<Step> {
         let ppm = self.settings.method == Method::Ppm;
         if !self.aovs.are_traced() || ppm && pass > 0 {
@@ -149,7 +153,9 @@ impl Plan {
             Step { kernel: Kernel::AovTrace, chunk: c, dispatch }
         };
         let samples = 0..self.eye_samples;
-        (0..self.chunks()).flat_map(|c| samples.clone().map(move |sample| step(c, sample))).collect()
+        (0..self.chunks())
+            .flat_map(|c| samples.clone().map(move |sample| step(c, sample)))
+            .collect()
     }
 }
 

@@ -1,4 +1,5 @@
-//! What the picture is held against: one from a file, one kept from before, or the same scene on another device.
+//! What the picture is held against: one from a file, one kept from before, or the same scene on
+//! another device.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -27,7 +28,8 @@ impl Beside {
     /// Reads a picture file.
     pub fn file(path: &Path) -> Result<Self, FileError> {
         let (picture, coding) = read_any(path)?;
-        let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+        let name =
+            path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
         Ok(Self { name, what: What::File(picture, coding) })
     }
 
@@ -67,8 +69,14 @@ impl Beside {
         }
     }
 
-    /// What there is to see of it, by the scale of the picture that it is held against. A file has radiance, or display values that are shown as they are, and nothing else.
-    pub fn show(&self, view: View, development: &Development, scale: Option<Scale>) -> Option<Shown> {
+    /// What there is to see of it, by the scale of the picture that it is held against. A file has
+    /// radiance, or display values that are shown as they are, and nothing else.
+    pub fn show(
+        &self,
+        view: View,
+        development: &Development,
+        scale: Option<Scale>,
+    ) -> Option<Shown> {
         let (picture, coding) = match &self.what {
             What::File(picture, coding) => (picture, coding),
             _ => return show(&*self.frame()?, view, development, scale),

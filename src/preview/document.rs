@@ -51,16 +51,21 @@ pub enum SaveError {
     },
 }
 
-/// Writes what differs between `before` and `after` into a scene file, as it lies on the disk now; nothing else in it changes.
-/// That the result is a scene is found out with what may be read.
-pub fn save(file: &Path, allowance: &Allowance, before: &Edits, after: &Edits) -> Result<(), SaveError> {
+/// Writes what differs between `before` and `after` into a scene file, as it lies on the disk now;
+/// nothing else in it changes. That the result is a scene is found out with what may be read.
+pub fn save(
+    file: &Path,
+    allowance: &Allowance,
+    before: &Edits,
+    after: &Edits,
+) -> Result<(), SaveError> {
     let text = storage::read_text(file, memory::readable()).map_err(|cause| FileError::Io {
         file: file.to_owned(),
         verb: "read",
         cause,
     })?;
-    let edited =
-        edited(&text, before, after).map_err(|what| SaveError::Toml { file: file.to_owned(), what })?;
+    let edited = edited(&text, before, after)
+        .map_err(|what| SaveError::Toml { file: file.to_owned(), what })?;
     parse_within(file, edited.as_bytes(), allowance)
         .map_err(|errors| SaveError::Scene { file: file.to_owned(), errors: Box::new(errors) })?;
     Ok(write_whole(file, edited.as_bytes())?)
@@ -68,7 +73,8 @@ pub fn save(file: &Path, allowance: &Allowance, before: &Edits, after: &Edits) -
 
 /// The text with what differs between `before` and `after`; an error says why it is no TOML.
 pub fn edited(text: &str, before: &Edits, after: &Edits) -> Result<String, String> {
-    let mut document: DocumentMut = text.parse().map_err(|error: toml_edit::TomlError| error.to_string())?;
+    let mut document: DocumentMut =
+        text.parse().map_err(|error: toml_edit::TomlError| error.to_string())?;
     let focus = document.get("camera").and_then(|camera| number(camera.get("focus")?.as_value()?));
     let mut put = |section: &str, key: &str, differs: bool, new: Value| {
         if !differs {
@@ -146,10 +152,14 @@ fn written(setting: &impl Serialize) -> Value {
     match json!(setting) {
         Json::String(word) => word.into(),
         Json::Object(members) => {
-            let one = |(key, member): (String, Json)| (key, Value::from(member.as_f64().unwrap_or_default()));
+            let one = |(key, member): (String, Json)| {
+                (key, Value::from(member.as_f64().unwrap_or_default()))
+            };
             Value::InlineTable(InlineTable::from_iter(members.into_iter().map(one)))
         }
-        other => other.as_i64().map_or_else(|| other.as_f64().unwrap_or_default().into(), Value::from),
+        other => {
+            other.as_i64().map_or_else(|| other.as_f64().unwrap_or_default().into(), Value::from)
+        }
     }
 }
 
@@ -192,8 +202,8 @@ fn stamp(file: &Path) -> Stamp {
     Some((data.modified().ok()?, data.len()))
 }
 
-/// Theory: of an edited file only the lines of edited keys differ, comments stay on all lines, and what is read again is what
-/// was edited.
+/// Theory: of an edited file only the lines of edited keys differ, comments stay on all lines, and
+/// what is read again is what was edited.
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -266,7 +276,9 @@ photons = 1000 # few
             let text = edited(TEXT, &before, &after).unwrap();
             assert_eq!(of(&text), after);
             let comments = |text: &str| {
-                text.lines().filter_map(|l| l.split_once('#').map(|(_, c)| c.to_owned())).collect::<Vec<_>>()
+                text.lines()
+                    .filter_map(|l| l.split_once('#').map(|(_, c)| c.to_owned()))
+                    .collect::<Vec<_>>()
             };
             assert_eq!(comments(&text), comments(TEXT));
         }
@@ -280,7 +292,11 @@ photons = 1000 # few
         let text = edited(TEXT, &before, &after).unwrap();
         assert_eq!(changed(TEXT, &text), ["focus = 2.5"]);
         assert_eq!(of(&text), after);
-        assert_eq!(of(&edited(&text, &after, &before).unwrap()), before, "and the one of the target");
+        assert_eq!(
+            of(&edited(&text, &after, &before).unwrap()),
+            before,
+            "and the one of the target"
+        );
     }
 
     /// An aperture needs its focus, also where that is what it was without being written.
@@ -306,7 +322,8 @@ photons = 1000 # few
             [("version = ", "not TOML"), (&TEXT.replace("0.5", "1.5"), "would not be a scene")]
         {
             std::fs::write(&file, text).unwrap();
-            let error = save(&file, &Allowance::default(), &before, &after).unwrap_err().to_string();
+            let error =
+                save(&file, &Allowance::default(), &before, &after).unwrap_err().to_string();
             assert!(error.contains(word), "{error}");
             assert_eq!(std::fs::read_to_string(&file).unwrap(), text);
         }

@@ -131,8 +131,8 @@ impl Board {
         state.failure = None;
     }
 
-    /// Shows a picture, unless a newer one is shown already: while wishes come faster than pictures, as in a drag, the
-    /// last one that there is. Whether it is of the newest wish.
+    /// Shows a picture, unless a newer one is shown already: while wishes come faster than
+    /// pictures, as in a drag, the last one that there is. Whether it is of the newest wish.
     pub fn show(&self, frame: Frame) -> bool {
         let mut state = self.state();
         let current = state.number == frame.number;
@@ -208,8 +208,14 @@ impl Passes {
         }
     }
 
-    /// Makes the next pass and shows the picture if it is time, after the first pass and after the last one always.
-    pub fn step(&mut self, engine: &mut dyn Engine, last: u32, board: &Board) -> Result<(), EngineError> {
+    /// Makes the next pass and shows the picture if it is time, after the first pass and after the
+    /// last one always.
+    pub fn step(
+        &mut self,
+        engine: &mut dyn Engine,
+        last: u32,
+        board: &Board,
+    ) -> Result<(), EngineError> {
         let begun = Instant::now();
         let report = engine.pass()?;
         self.elapsed += begun.elapsed();

@@ -1,4 +1,5 @@
-//! The whole picture, by the device asked for, on a thread of its own: until it is done, or no longer wanted.
+//! The whole picture, by the device asked for, on a thread of its own: until it is done, or no
+//! longer wanted.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
@@ -36,7 +37,8 @@ pub struct Full {
 }
 
 impl Full {
-    /// Starts to render `wish` over a copy of `ground`; `spare` is a GPU engine that nobody needs any more.
+    /// Starts to render `wish` over a copy of `ground`; `spare` is a GPU engine that nobody needs
+    /// any more.
     pub fn start(
         number: u64,
         ground: Ground,

@@ -6,8 +6,8 @@ use crate::engine::EngineError;
 use crate::pack::{Packed, pack};
 use crate::scene::{Camera, Film, Scene};
 
-/// A scene and its tables. The kd-tree does not depend on the camera, but what pilots learn does. It is
-/// kept while the camera moves, and learned again when it is still.
+/// A scene and its tables. The kd-tree does not depend on the camera, but what pilots learn does.
+/// It is kept while the camera moves, and learned again when it is still.
 pub struct Ground {
     scene: Arc<Scene>,
     packed: Arc<Packed>,
@@ -58,8 +58,8 @@ impl Ground {
     }
 }
 
-/// Theory: what flattens anew only where it must has the tables of one that always does, wherever the
-/// camera stands.
+/// Theory: what flattens anew only where it must has the tables of one that always does, wherever
+/// the camera stands.
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -121,7 +121,11 @@ pub const TABLE: &[Line] = &[
             (sign(Key::Equals), Command::Act(Action::Expose(1.0 / 3.0))),
         ],
     },
-    Line { keys: "T", what: "next tone map", bindings: &[(plain(Key::T), Command::Act(Action::ToneMap))] },
+    Line {
+        keys: "T",
+        what: "next tone map",
+        bindings: &[(plain(Key::T), Command::Act(Action::ToneMap))],
+    },
     Line {
         keys: "1 to 9, 0",
         what: "views: picture, direct, caustic, indirect, albedo, normal, depth, radius, photons, variance",
@@ -151,7 +155,11 @@ pub const TABLE: &[Line] = &[
         what: "start radius chosen by the program",
         bindings: &[(plain(Key::A), Command::Act(Action::AutoRadius))],
     },
-    Line { keys: "R", what: "next radius rule", bindings: &[(plain(Key::R), Command::Act(Action::Rule))] },
+    Line {
+        keys: "R",
+        what: "next radius rule",
+        bindings: &[(plain(Key::R), Command::Act(Action::Rule))],
+    },
     Line {
         keys: ", .",
         what: "half, twice the photons of a pass",
@@ -190,7 +198,11 @@ pub const TABLE: &[Line] = &[
         what: "save camera and settings into the scene file",
         bindings: &[(control(Key::S), Command::Act(Action::SaveScene))],
     },
-    Line { keys: "H", what: "hide or show the settings", bindings: &[(plain(Key::H), Command::Panel)] },
+    Line {
+        keys: "H",
+        what: "hide or show the settings",
+        bindings: &[(plain(Key::H), Command::Panel)],
+    },
     Line {
         keys: "? or F1",
         what: "this help",
@@ -242,7 +254,8 @@ mod tests {
                 assert!(!(a.key == b.key && a.control == b.control && shifts), "{a:?}");
             }
         }
-        let save = |command| self::command(Key::S, egui::Modifiers { command, ..Default::default() });
+        let save =
+            |command| self::command(Key::S, egui::Modifiers { command, ..Default::default() });
         assert_eq!(save(false), Some(Command::Act(Action::SavePicture)));
         assert_eq!(save(true), Some(Command::Act(Action::SaveScene)));
         assert_eq!(self::command(Key::Z, egui::Modifiers::NONE), None);

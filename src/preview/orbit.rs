@@ -1,6 +1,8 @@
-//! The camera in a person's hand: orbit, pan, dolly, focus and aperture, as functions from camera to camera.
+//! The camera in a person's hand: orbit, pan, dolly, focus and aperture, as functions from camera
+//! to camera.
 //!
-//! What comes out is [`tidy`]: its numbers have few digits, so that a scene file that holds them has the same camera.
+//! What comes out is [`tidy`]: its numbers have few digits, so that a scene file that holds them
+//! has the same camera.
 
 use glam::{DQuat, DVec3};
 
@@ -30,8 +32,8 @@ pub fn distance(camera: &Camera) -> f64 {
     camera.target.distance(camera.position)
 }
 
-/// Turns the camera about its target: `across` radians about the up vector, to the right where positive, and `over` radians
-/// toward it, short of the pole. Its distance and focus stay.
+/// Turns the camera about its target: `across` radians about the up vector, to the right where
+/// positive, and `over` radians toward it, short of the pole. Its distance and focus stay.
 pub fn orbit(camera: &Camera, across: f64, over: f64) -> Camera {
     let pole = camera.up.normalize();
     let offset = camera.position - camera.target;
@@ -45,8 +47,8 @@ pub fn orbit(camera: &Camera, across: f64, over: f64) -> Camera {
     tidy(&Camera { position: camera.target + turned, ..*camera })
 }
 
-/// Moves camera and target across the view, so that what is at the target's distance moves by `right` and `down`, in heights
-/// of the picture.
+/// Moves camera and target across the view, so that what is at the target's distance moves by
+/// `right` and `down`, in heights of the picture.
 pub fn pan(camera: &Camera, right: f64, down: f64) -> Camera {
     let [x, y, _] = axes(camera);
     let height = 2.0 * distance(camera) * (0.5 * camera.fov_degrees.to_radians()).tan();
@@ -54,8 +56,8 @@ pub fn pan(camera: &Camera, right: f64, down: f64) -> Camera {
     tidy(&Camera { position: camera.position + shift, target: camera.target + shift, ..*camera })
 }
 
-/// Moves the camera to `factor` times its distance from the target. The plane in focus stays where it is in the world, or just
-/// before the lens where that has passed it.
+/// Moves the camera to `factor` times its distance from the target. The plane in focus stays where
+/// it is in the world, or just before the lens where that has passed it.
 pub fn dolly(camera: &Camera, factor: f64) -> Camera {
     let before = distance(camera);
     let position = camera.target + (camera.position - camera.target) * factor;
@@ -68,7 +70,8 @@ pub fn focus(camera: &Camera, depth: f64) -> Camera {
     tidy(&Camera { focus: depth, ..*camera })
 }
 
-/// Opens (`factor` above 1) or closes the lens. From a pinhole it opens to a small one, and a smaller one closes to a pinhole.
+/// Opens (`factor` above 1) or closes the lens. From a pinhole it opens to a small one, and a
+/// smaller one closes to a pinhole.
 pub fn aperture(camera: &Camera, factor: f64) -> Camera {
     let first = FIRST_APERTURE * camera.focus;
     let wanted = camera.aperture * factor;
@@ -80,8 +83,9 @@ pub fn aperture(camera: &Camera, factor: f64) -> Camera {
     tidy(&Camera { aperture, ..*camera })
 }
 
-/// The same camera in numbers of six digits, counted from the first one of its distance; lens and focus have six of their own. The
-/// focus of a pinhole that is about at the target is just there, where scene files without a focus have it.
+/// The same camera in numbers of six digits, counted from the first one of its distance; lens and
+/// focus have six of their own. The focus of a pinhole that is about at the target is just there,
+/// where scene files without a focus have it.
 pub fn tidy(camera: &Camera) -> Camera {
     let places = DIGITS - 1 - distance(camera).log10().floor() as i32;
     let point = |p: DVec3| DVec3::from(p.to_array().map(|x| rounded(x, places)));
@@ -93,7 +97,8 @@ pub fn tidy(camera: &Camera) -> Camera {
     Camera { position, target, aperture: own(camera.aperture), focus, ..*camera }
 }
 
-/// The number nearest to `x` that is written with so many places after the point, or with so many zeros before it.
+/// The number nearest to `x` that is written with so many places after the point, or with so many
+/// zeros before it.
 fn rounded(x: f64, places: i32) -> f64 {
     let text = match usize::try_from(places) {
         Ok(places) => format!("{x:.places$}"),
@@ -106,8 +111,9 @@ fn rounded(x: f64, places: i32) -> f64 {
     text.parse::<f64>().unwrap_or(x) + 0.0
 }
 
-/// Depth along the view direction, in the scene's units, of what is seen at a place in the picture (0, 0 at the top left and 1,
-/// 1 at the bottom right) through the middle of the lens; none where nothing is met.
+/// Depth along the view direction, in the scene's units, of what is seen at a place in the picture
+/// (0, 0 at the top left and 1, 1 at the bottom right) through the middle of the lens; none where
+/// nothing is met.
 pub fn depth_at(packed: &Packed, x: f64, y: f64) -> Option<f64> {
     let mut camera = packed.scene.camera;
     camera.aperture = 0.0;
@@ -119,9 +125,10 @@ pub fn depth_at(packed: &Packed, x: f64, y: f64) -> Option<f64> {
     (hit.reference != NONE && hit.t < FAR && depth > 0.0).then_some(depth)
 }
 
-/// Theory: turning about a target keeps the distance; a full turn is none; what lies at the target's distance follows the hand
-/// when the camera is panned, by the pinhole's projection; the plane in focus stays in the world when the camera moves along
-/// its axis; a sphere's nearest point lies at the distance of its centre less its radius.
+/// Theory: turning about a target keeps the distance; a full turn is none; what lies at the
+/// target's distance follows the hand when the camera is panned, by the pinhole's projection; the
+/// plane in focus stays in the world when the camera moves along its axis; a sphere's nearest point
+/// lies at the distance of its centre less its radius.
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -144,7 +151,8 @@ mod tests {
         a.distance(b) < 1e-4
     }
 
-    /// Where the picture has a world point, in heights of the picture from its middle, right and down.
+    /// Where the picture has a world point, in heights of the picture from its middle, right and
+    /// down.
     fn projected(camera: &Camera, p: DVec3) -> [f64; 2] {
         let [x, y, z] = axes(camera);
         let d = p - camera.position;
@@ -161,11 +169,17 @@ mod tests {
             assert_eq!((turned.target, turned.focus), (at.target, at.focus));
         }
         assert!(near(orbit(&at, TAU, 0.0).position, at.position), "a full turn");
-        assert!(near(orbit(&orbit(&at, 0.7, 0.2), -0.7, -0.2).position, at.position), "there and back");
+        assert!(
+            near(orbit(&orbit(&at, 0.7, 0.2), -0.7, -0.2).position, at.position),
+            "there and back"
+        );
         assert!(!near(orbit(&at, PI, 0.0).position, at.position), "half a turn is another place");
         assert!(orbit(&at, 0.0, 0.2).position.y > at.position.y, "over leads up");
         // to the right of who looks from +z to -z is +x
-        assert!(orbit(&Camera { position: DVec3::Z, target: DVec3::ZERO, ..at }, 0.1, 0.0).position.x > 0.0);
+        assert!(
+            orbit(&Camera { position: DVec3::Z, target: DVec3::ZERO, ..at }, 0.1, 0.0).position.x
+                > 0.0
+        );
     }
 
     #[test]
@@ -237,8 +251,8 @@ mod tests {
         let depth = depth_at(&packed, 0.5, 0.5).unwrap();
         assert!((depth - 3.0).abs() < 1e-5, "{depth}");
         assert_eq!(depth_at(&packed, 0.01, 0.5), None, "beside it is nothing");
-        // off the axis the depth is that along the view direction, not along the ray: 20 degrees up meet the sphere at
-        // t = 5 cos a - sqrt(4 - 25 sin^2 a)
+        // off the axis the depth is that along the view direction, not along the ray: 20 degrees up
+        // meet the sphere at t = 5 cos a - sqrt(4 - 25 sin^2 a)
         let up = (0.5f64 * (40f64).to_radians()).tan();
         let angle = (0.5 * up).atan();
         let t = 5.0 * angle.cos() - (4.0 - 25.0 * angle.sin().powi(2)).sqrt();

@@ -79,7 +79,12 @@ fn picture(ui: &mut Ui, session: &mut Session) {
         );
     });
     row(ui, "tone map", |ui| {
-        choice(ui, "tone map", &mut film.tonemap, &[(ToneMap::Agx, "AgX"), (ToneMap::Srgb, "sRGB")]);
+        choice(
+            ui,
+            "tone map",
+            &mut film.tonemap,
+            &[(ToneMap::Agx, "AgX"), (ToneMap::Srgb, "sRGB")],
+        );
     });
     if let Some(beside) = &session.beside {
         row(ui, "beside", |ui| {
@@ -103,7 +108,11 @@ fn render(ui: &mut Ui, session: &mut Session) {
     row(ui, "radius", |ui| {
         ui.horizontal(|ui| radius(ui, &mut settings.radius));
     });
-    let rules = [(RadiusRule::Global, "global"), (RadiusRule::Local, "local"), (RadiusRule::Fixed, "fixed")];
+    let rules = [
+        (RadiusRule::Global, "global"),
+        (RadiusRule::Local, "local"),
+        (RadiusRule::Fixed, "fixed"),
+    ];
     row(ui, "radius rule", |ui| choice(ui, "rule", &mut settings.radius_rule, &rules));
     row(ui, "alpha", |ui| {
         ui.add(DragValue::new(&mut settings.alpha).range(0.01..=1.0).speed(0.005).max_decimals(3));
@@ -159,12 +168,21 @@ fn camera(ui: &mut Ui, session: &mut Session) {
     let camera = &mut session.now.camera;
     row(ui, "field of view", |ui| {
         ui.add(
-            DragValue::new(&mut camera.fov_degrees).range(1.0..=170.0).speed(0.1).max_decimals(2).suffix("°"),
+            DragValue::new(&mut camera.fov_degrees)
+                .range(1.0..=170.0)
+                .speed(0.1)
+                .max_decimals(2)
+                .suffix("°"),
         );
     });
     row(ui, "aperture", |ui| {
         let speed = 0.002 * camera.focus.max(camera.aperture);
-        ui.add(DragValue::new(&mut camera.aperture).range(0.0..=1e6).speed(0.1 * speed).max_decimals(6));
+        ui.add(
+            DragValue::new(&mut camera.aperture)
+                .range(0.0..=1e6)
+                .speed(0.1 * speed)
+                .max_decimals(6),
+        );
     });
     row(ui, "focus", |ui| {
         let speed = 0.005 * camera.focus;
@@ -195,13 +213,17 @@ pub fn figures(frame: &Frame, passes: u32, paused: bool) -> [String; 2] {
         format!("pass {} of {passes}{rest}", frame.passes)
     };
     let error = frame.error.map_or("error not known before pass 4".to_owned(), |error| {
-        let [stated, noise, bias] = [error.stated, error.noise, error.bias].map(|share| 100.0 * share);
+        let [stated, noise, bias] =
+            [error.stated, error.noise, error.bias].map(|share| 100.0 * share);
         format!("error {stated:.1} % (noise {noise:.1} %, bias {bias:.1} %)")
     });
     let rays = frame.rays_per_second() / 1e6;
     let mebibytes = frame.setup.bytes as f64 / f64::from(1 << 20);
     [
-        format!("{made}  ·  {per_second:.1} passes/s, {rays:.1} M rays/s  ·  {}", frame.setup.device),
+        format!(
+            "{made}  ·  {per_second:.1} passes/s, {rays:.1} M rays/s  ·  {}",
+            frame.setup.device
+        ),
         format!("{error}  ·  radius {:.4}  ·  {mebibytes:.0} MiB", frame.radius),
     ]
 }
@@ -211,7 +233,8 @@ pub fn scale(ui: &mut Ui, scale: &Scale) {
     const STEPS: usize = 48;
     ui.horizontal(|ui| {
         ui.label(number(scale.low));
-        let (rect, _) = ui.allocate_exact_size(egui::vec2(3.0 * STEPS as f32, 10.0), egui::Sense::hover());
+        let (rect, _) =
+            ui.allocate_exact_size(egui::vec2(3.0 * STEPS as f32, 10.0), egui::Sense::hover());
         for step in 0..STEPS {
             let share = (step as f64 + 0.5) / STEPS as f64;
             let value = match scale.logarithmic {
@@ -220,8 +243,10 @@ pub fn scale(ui: &mut Ui, scale: &Scale) {
             };
             let [r, g, b] = scale.color(value);
             let left = rect.left() + 3.0 * step as f32;
-            let cell =
-                egui::Rect::from_min_size(egui::pos2(left, rect.top()), egui::vec2(3.0, rect.height()));
+            let cell = egui::Rect::from_min_size(
+                egui::pos2(left, rect.top()),
+                egui::vec2(3.0, rect.height()),
+            );
             ui.painter().rect_filled(cell, 0.0, egui::Color32::from_rgb(r, g, b));
         }
         let steps = if scale.logarithmic { ", logarithmic" } else { "" };
@@ -244,7 +269,10 @@ pub fn help(ui: &mut Ui) {
         Grid::new("help").num_columns(2).spacing([16.0, 1.0]).min_row_height(14.0).show(ui, |ui| {
             for line in TABLE {
                 ui.label(RichText::new(line.keys).strong());
-                ui.add(egui::Label::new(format!("{}  ", line.what)).wrap_mode(egui::TextWrapMode::Extend));
+                ui.add(
+                    egui::Label::new(format!("{}  ", line.what))
+                        .wrap_mode(egui::TextWrapMode::Extend),
+                );
                 ui.end_row();
             }
         });

@@ -1,5 +1,5 @@
-//! The small picture that is there soon: fewer pixels, fewer photons, by the CPU engine, whose tables need no way to a device
-//! and no compiler.
+//! The small picture that is there soon: fewer pixels, fewer photons, by the CPU engine, whose
+//! tables need no way to a device and no compiler.
 
 use std::time::{Duration, Instant};
 
@@ -14,7 +14,8 @@ use crate::settings::RenderSettings;
 
 /// Passes after which a small picture is good enough to wait with.
 const PASSES: u32 = 32;
-/// A first picture that takes longer is made of fewer pixels the next time; one that takes less than a quarter, of more.
+/// A first picture that takes longer is made of fewer pixels the next time; one that takes less
+/// than a quarter, of more.
 const SLOW: Duration = Duration::from_millis(200);
 /// Sides of the picture over those of a small one, at the least and at the most.
 const DIVISORS: (u32, u32) = (2, 8);
@@ -48,7 +49,8 @@ impl Divisor {
         Film { width: side(film.width), height: side(film.height), window: None, ..*film }
     }
 
-    /// Settings for it: as many photons for a pixel. Radii in pixels grow with the pixels, so that as many photons fall in a disc.
+    /// Settings for it: as many photons for a pixel. Radii in pixels grow with the pixels, so that
+    /// as many photons fall in a disc.
     pub fn settings(self, settings: &RenderSettings) -> RenderSettings {
         let photons = (settings.photons / (self.0 * self.0)).max(settings.photons.min(FEWEST));
         RenderSettings { photons, eye_samples: 1, ..settings.clone() }
@@ -102,7 +104,8 @@ impl Quick {
     }
 }
 
-/// Theory: a slow machine gets fewer pixels and a fast one more, within bounds, and photons go with the pixels.
+/// Theory: a slow machine gets fewer pixels and a fast one more, within bounds, and photons go with
+/// the pixels.
 #[cfg(test)]
 mod tests {
     use super::*;

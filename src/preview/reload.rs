@@ -14,7 +14,8 @@ const EVERY: Duration = Duration::from_millis(250);
 /// What a file that changed has become.
 pub type Reloaded = Result<Loaded, SceneErrors>;
 
-/// What is done to a scene when it has been read, such as to put the command line's options in force.
+/// What is done to a scene when it has been read, such as to put the command line's options in
+/// force.
 pub type Adjust = Box<dyn Fn(&mut Loaded) + Send>;
 
 /// Looks at a scene's files; ends when dropped.

@@ -112,8 +112,13 @@ impl Session {
     /// Begins to render. `wake` is called on some thread when there is something new.
     pub fn start(start: Start, wake: impl Fn() + Send + Sync + Clone + 'static) -> Self {
         let Start { file, loaded, allowance, adjust, outputs, device } = start;
-        let reloader =
-            Reloader::start(file.clone(), loaded.files.clone(), allowance.clone(), adjust, wake.clone());
+        let reloader = Reloader::start(
+            file.clone(),
+            loaded.files.clone(),
+            allowance.clone(),
+            adjust,
+            wake.clone(),
+        );
         let now = edits(&loaded);
         let scene = Arc::new(loaded.scene);
         let view = View::default();
@@ -270,12 +275,13 @@ impl Session {
         }
     }
 
-    /// What is to be rendered now. Where nothing else has changed, layers that were asked for before stay, so that to look at
-    /// them again begins nothing anew.
+    /// What is to be rendered now. Where nothing else has changed, layers that were asked for
+    /// before stay, so that to look at them again begins nothing anew.
     fn wish(&self) -> Wish {
         let mut wish = wish(&self.now, self.view, &self.device);
         let own = std::mem::replace(&mut wish.film.aovs, self.sent.film.aovs);
-        wish.film.aovs = if wish.same_passes(&self.sent) { own.union(self.sent.film.aovs) } else { own };
+        wish.film.aovs =
+            if wish.same_passes(&self.sent) { own.union(self.sent.film.aovs) } else { own };
         wish
     }
 
@@ -289,8 +295,8 @@ impl Session {
         }
     }
 
-    /// Takes a scene that was read anew. What the file has changed of camera, film and settings counts; the rest stays as it is
-    /// in the window. A fault leaves everything as it is.
+    /// Takes a scene that was read anew. What the file has changed of camera, film and settings
+    /// counts; the rest stays as it is in the window. A fault leaves everything as it is.
     fn take(&mut self, reloaded: Reloaded) {
         let loaded = match reloaded {
             Ok(loaded) => loaded,
@@ -351,9 +357,13 @@ impl Session {
             film::write(output, &frame.picture, &layers, &development, &made)
                 .map_err(|error| error.to_string())?;
         }
-        let names: Vec<_> = self.outputs.iter().map(|output| output.display().to_string()).collect();
-        let camera =
-            if self.now.camera == self.saved.camera { "" } else { "; its camera is not in the scene file" };
+        let names: Vec<_> =
+            self.outputs.iter().map(|output| output.display().to_string()).collect();
+        let camera = if self.now.camera == self.saved.camera {
+            ""
+        } else {
+            "; its camera is not in the scene file"
+        };
         Ok(format!("saved {} after {} passes{camera}", names.join(", "), frame.passes))
     }
 
@@ -366,7 +376,8 @@ impl Session {
 }
 
 fn edits(loaded: &Loaded) -> Edits {
-    let film = Film { aovs: std::iter::empty::<Aov>().collect(), window: None, ..loaded.scene.film };
+    let film =
+        Film { aovs: std::iter::empty::<Aov>().collect(), window: None, ..loaded.scene.film };
     Edits { camera: loaded.scene.camera, film, settings: loaded.settings.clone() }
 }
 
@@ -389,7 +400,9 @@ fn times(radius: Radius, factor: f64) -> Radius {
 /// What is wrong with a scene, an error a line.
 fn told(errors: &SceneErrors) -> String {
     let line = |finding: &crate::scene::Finding| {
-        let place = finding.line_column().map_or(String::new(), |(line, column)| format!(":{line}:{column}"));
+        let place = finding
+            .line_column()
+            .map_or(String::new(), |(line, column)| format!(":{line}:{column}"));
         let hint = [Some(finding.label()), finding.help()];
         let hint: Vec<_> = hint.into_iter().flatten().filter(|text| !text.is_empty()).collect();
         let hint = if hint.is_empty() { String::new() } else { format!(" ({})", hint.join("; ")) };

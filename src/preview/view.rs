@@ -1,5 +1,5 @@
-//! What is shown of a picture: radiance developed for a display, one of its parts, or what a picture file holds beside it, in
-//! colors with a scale.
+//! What is shown of a picture: radiance developed for a display, one of its parts, or what a
+//! picture file holds beside it, in colors with a scale.
 
 use std::num::NonZero;
 use std::sync::{Mutex, PoisonError};
@@ -116,9 +116,14 @@ impl Scale {
     }
 }
 
-/// Shows a frame, in the colors of `scale` where another has one; nothing where it does not have what the view needs, as before
-/// the fourth pass for the variance.
-pub fn show(frame: &Frame, view: View, development: &Development, scale: Option<Scale>) -> Option<Shown> {
+/// Shows a frame, in the colors of `scale` where another has one; nothing where it does not have
+/// what the view needs, as before the fourth pass for the variance.
+pub fn show(
+    frame: &Frame,
+    view: View,
+    development: &Development,
+    scale: Option<Scale>,
+) -> Option<Shown> {
     let Picture { width, height, .. } = frame.picture;
     let of = |rgb, scale| Some(Shown { width, height, rgb, scale });
     let plane = |name: &str| {
@@ -177,8 +182,8 @@ pub fn developed(picture: &Picture, development: &Development) -> Vec<[u8; 3]> {
     mapped(picture.rgb.len(), |i| development.bytes(picture.rgb[i]))
 }
 
-/// Colors by number, on threads of their own: those that render may be busy for as long as a pass takes, and a window must not
-/// wait for them.
+/// Colors by number, on threads of their own: those that render may be busy for as long as a pass
+/// takes, and a window must not wait for them.
 fn mapped(count: usize, color: impl Fn(usize) -> [u8; 3] + Sync) -> Vec<[u8; 3]> {
     const LEAST: usize = 1 << 14;
     let threads = thread::available_parallelism().map_or(1, NonZero::get);
@@ -193,7 +198,8 @@ fn mapped(count: usize, color: impl Fn(usize) -> [u8; 3] + Sync) -> Vec<[u8; 3]>
     };
     thread::scope(|scope| {
         // a thread that the system refuses leaves its part to the others, this one among them
-        let started = (1..count.div_ceil(chunk)).map(|_| thread::Builder::new().spawn_scoped(scope, work));
+        let started =
+            (1..count.div_ceil(chunk)).map(|_| thread::Builder::new().spawn_scoped(scope, work));
         let _started: Vec<_> = started.flatten().collect();
         work();
     });

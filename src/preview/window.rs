@@ -5,8 +5,8 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use eframe::egui::{
-    self, Align2, CentralPanel, Color32, ColorImage, Context, FontId, Panel, PointerButton, Pos2, Rect,
-    Response, Sense, TextureHandle, TextureOptions, Ui, ViewportBuilder, ViewportCommand,
+    self, Align2, CentralPanel, Color32, ColorImage, Context, FontId, Panel, PointerButton, Pos2,
+    Rect, Response, Sense, TextureHandle, TextureOptions, Ui, ViewportBuilder, ViewportCommand,
 };
 use thiserror::Error;
 
@@ -20,7 +20,8 @@ use crate::film::{Development, FileError};
 
 /// Width of the settings, points.
 const PANEL: f32 = 250.0;
-/// Making pictures for the display takes at most one part in so many of the window's time, or the hand would wait.
+/// Making pictures for the display takes at most one part in so many of the window's time, or the
+/// hand would wait.
 const SHARE: u32 = 4;
 /// How near the hand must be to the line between two pictures, points.
 const GRIP: f32 = 8.0;
@@ -138,7 +139,8 @@ impl Painted {
         };
         let size = [shown.width as usize, shown.height as usize];
         let image = ColorImage::from_rgb(size, shown.rgb.as_flattened());
-        let magnification = if smooth { egui::TextureFilter::Linear } else { egui::TextureFilter::Nearest };
+        let magnification =
+            if smooth { egui::TextureFilter::Linear } else { egui::TextureFilter::Nearest };
         let options = TextureOptions { magnification, ..TextureOptions::LINEAR };
         match &mut self.texture {
             Some(texture) => texture.set(image, options),
@@ -264,7 +266,8 @@ impl Window {
         }
         painter.vline(line, rect.y_range(), egui::Stroke::new(1.5, Color32::WHITE));
         let label = |at: Pos2, anchor: Align2, text: &str| {
-            let galley = painter.layout_no_wrap(text.to_owned(), FontId::proportional(13.0), Color32::WHITE);
+            let galley =
+                painter.layout_no_wrap(text.to_owned(), FontId::proportional(13.0), Color32::WHITE);
             let place = anchor.anchor_size(at, galley.size());
             painter.rect_filled(place.expand(3.0), 2.0, Color32::from_black_alpha(160));
             painter.galley(place.min, galley, Color32::WHITE);
@@ -276,7 +279,8 @@ impl Window {
     fn hand(&mut self, ui: &Ui, rect: Rect, response: &Response) {
         let shift = ui.input(|input| input.modifiers.shift);
         let line = self.session.split.map(|split| rect.left() + split * rect.width());
-        let near = |at: Option<Pos2>| line.zip(at).is_some_and(|(line, at)| (line - at.x).abs() < GRIP);
+        let near =
+            |at: Option<Pos2>| line.zip(at).is_some_and(|(line, at)| (line - at.x).abs() < GRIP);
         if self.gripped || near(response.hover_pos()) {
             ui.ctx().set_cursor_icon(egui::CursorIcon::ResizeHorizontal);
         }

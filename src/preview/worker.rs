@@ -1,7 +1,9 @@
-//! The render thread: takes wishes, shows a small picture at once and the whole one when nothing has changed for a while.
+//! The render thread: takes wishes, shows a small picture at once and the whole one when nothing
+//! has changed for a while.
 //!
-//! It makes the small picture itself, by the CPU engine, and leaves the whole one to [`Full`], so that no wish waits for a
-//! pass over all pixels, for a compiler, or for a kd-tree that is built anew.
+//! It makes the small picture itself, by the CPU engine, and leaves the whole one to [`Full`], so
+//! that no wish waits for a pass over all pixels, for a compiler, or for a kd-tree that is built
+//! anew.
 
 use std::sync::Arc;
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
@@ -52,7 +54,8 @@ impl Worker {
         let closing = Cancel::default();
         let closes = closing.clone();
         let thread = thread::spawn(move || {
-            // threads of its own, since the others may be busy with the whole picture for as long as a pass takes
+            // threads of its own, since the others may be busy with the whole picture for as long
+            // as a pass takes
             let work = move || Hand::new(own, closes).work(&receiver);
             let threads = rayon::current_num_threads();
             match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
@@ -72,8 +75,8 @@ impl Worker {
         self.number
     }
 
-    /// Renders the scene in another way; the wish's number, which is that of the last one where only the number of passes
-    /// differs.
+    /// Renders the scene in another way; the wish's number, which is that of the last one where
+    /// only the number of passes differs.
     pub fn change(&mut self, wish: Wish) -> u64 {
         let passes = wish.settings.passes;
         let command = match self.last.replace(wish.clone()) {
@@ -93,7 +96,8 @@ impl Worker {
         self.send(Command::Pause(paused));
     }
 
-    /// Looks how deep a place in the picture is, from 0, 0 at the top left to 1, 1; [`Board::take_depth`] tells.
+    /// Looks how deep a place in the picture is, from 0, 0 at the top left to 1, 1;
+    /// [`Board::take_depth`] tells.
     pub fn look(&self, x: f64, y: f64) {
         self.send(Command::Look(x, y));
     }
@@ -183,7 +187,8 @@ impl Hand {
                     },
                     Command::Pause(paused) => self.pause(paused),
                     Command::Look(x, y) => {
-                        let depth = self.ground.as_ref().and_then(|ground| depth_at(ground.packed(), x, y));
+                        let depth =
+                            self.ground.as_ref().and_then(|ground| depth_at(ground.packed(), x, y));
                         depth.into_iter().for_each(|depth| self.board.tell_depth(depth));
                     }
                 }
@@ -254,7 +259,14 @@ impl Hand {
         let Some(ground) = &mut self.ground else {
             return;
         };
-        match Quick::first(self.number, ground, &wish, &mut self.divisor, &self.closing, &self.board) {
+        match Quick::first(
+            self.number,
+            ground,
+            &wish,
+            &mut self.divisor,
+            &self.closing,
+            &self.board,
+        ) {
             Ok(quick) => {
                 self.quick = Some(quick);
                 self.settle = Some(Instant::now() + after);

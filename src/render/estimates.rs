@@ -5,7 +5,8 @@ use std::time::Duration;
 use super::progress::Progress;
 use crate::film::estimate::LEAST_PASSES;
 
-/// Which passes are followed by an estimate of the error. Each reads the film and takes about as long as a picture.
+/// Which passes are followed by an estimate of the error. Each reads the film and takes about as
+/// long as a picture.
 pub struct Estimates {
     next: u32,
     spent: Duration,
@@ -15,14 +16,16 @@ pub struct Estimates {
 const ESTIMATES_SHARE: u32 = 50;
 
 impl Estimates {
-    /// Those still to come after so many passes; also the one after the last of them, which may not have been made.
+    /// Those still to come after so many passes; also the one after the last of them, which may not
+    /// have been made.
     pub fn after(passes: u32) -> Self {
         let places = std::iter::successors(Some(LEAST_PASSES), |place| Some(following(*place)));
         let next = places.into_iter().find(|place| *place >= passes || *place == u32::MAX);
         Self { next: next.unwrap_or(u32::MAX), spent: Duration::ZERO }
     }
 
-    /// With a target the passes depend on their number alone, since the picture's bits may not depend on a clock.
+    /// With a target the passes depend on their number alone, since the picture's bits may not
+    /// depend on a clock.
     pub fn due(&self, progress: &Progress) -> bool {
         let cheap = || self.spent * ESTIMATES_SHARE <= progress.elapsed;
         progress.passes >= self.next && (progress.stop.target_error.is_some() || cheap())

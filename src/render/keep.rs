@@ -1,4 +1,5 @@
-//! What is kept of a render in the program's memory, since a device that is lost takes its buffers along.
+//! What is kept of a render in the program's memory, since a device that is lost takes its buffers
+//! along.
 
 use std::borrow::Cow;
 use std::time::Duration;
@@ -16,7 +17,8 @@ pub struct Keep {
     pub times_cost: u32,
 }
 
-/// At most ten seconds of work are lost, or one pass if it takes longer, and copies take at most a twentieth of the time.
+/// At most ten seconds of work are lost, or one pass if it takes longer, and copies take at most a
+/// twentieth of the time.
 pub const KEEP: Keep = Keep { every: Duration::from_secs(10), times_cost: 20 };
 
 /// The newest copy.

@@ -1,4 +1,5 @@
-//! The loop over passes: stop conditions, progress, and what is kept of a render for the case that its device fails.
+//! The loop over passes: stop conditions, progress, and what is kept of a render for the case that
+//! its device fails.
 
 mod estimates;
 mod keep;
@@ -71,13 +72,13 @@ pub struct Broken {
 pub struct Saving<'a> {
     /// Time between two calls.
     pub every: Duration,
-    /// Keeps what an engine held, and gives it back. Called between passes, at the end, and once more where the device fails, if
-    /// there is more by then.
+    /// Keeps what an engine held, and gives it back. Called between passes, at the end, and once
+    /// more where the device fails, if there is more by then.
     pub save: &'a mut dyn FnMut(State, &Progress) -> State,
 }
 
-/// Makes passes until a stop condition holds or `interrupted` is set, which ends it after the pass in hand; calls
-/// `observer` after each.
+/// Makes passes until a stop condition holds or `interrupted` is set, which ends it after the pass
+/// in hand; calls `observer` after each.
 ///
 /// # Errors
 /// Where the engine fails and cannot [go on](Engine::go_on) elsewhere.
@@ -95,8 +96,8 @@ pub fn render(
     )
 }
 
-/// The same from where `progress` is, with an engine that has made no pass and takes over `state`, saved now and then. Time counts
-/// on. With nothing left to do it makes no pass.
+/// The same from where `progress` is, with an engine that has made no pass and takes over `state`,
+/// saved now and then. Time counts on. With nothing left to do it makes no pass.
 ///
 /// # Errors
 /// As above.
@@ -109,5 +110,9 @@ pub fn resume<'a>(
     saving: Option<Saving<'a>>,
 ) -> Result<Outcome, Broken> {
     let failed = engine.restore(state).err();
-    Run::new(progress, state, saving, KEEP).carry_out(engine, Watch { interrupted, observer }, failed)
+    Run::new(progress, state, saving, KEEP).carry_out(
+        engine,
+        Watch { interrupted, observer },
+        failed,
+    )
 }

@@ -33,7 +33,8 @@ pub struct Progress {
     pub ends: PhotonEnds,
     /// Gather radius of the last pass in scene units, mean over the visible points.
     pub radius: f64,
-    /// Since the first pass began; of a render that was gone on from, that of all its parts together.
+    /// Since the first pass began; of a render that was gone on from, that of all its parts
+    /// together.
     pub elapsed: Duration,
     /// The newest estimate of the picture's error; none in the first passes.
     pub error: Option<RelativeError>,
@@ -63,9 +64,12 @@ impl Progress {
     /// Share of the work that is done, in [0, 1].
     pub fn share(&self) -> f64 {
         let passes = f64::from(self.passes) / f64::from(self.stop.passes.max(1));
-        let time =
-            self.stop.time.map_or(0.0, |time| self.elapsed.as_secs_f64() / time.as_secs_f64().max(1e-9));
-        // the error of progressive photon mapping falls as N^(-1/3) (Kaplanyan & Dachsbacher 2013), or a little faster
+        let time = self
+            .stop
+            .time
+            .map_or(0.0, |time| self.elapsed.as_secs_f64() / time.as_secs_f64().max(1e-9));
+        // the error of progressive photon mapping falls as N^(-1/3) (Kaplanyan & Dachsbacher 2013),
+        // or a little faster
         let error = match (self.stop.target_error, self.error) {
             (Some(target), Some(error)) => (target / error.stated).powi(3),
             _ => 0.0,

@@ -33,12 +33,25 @@ pub struct Run<'a> {
 
 impl<'a> Run<'a> {
     /// At `progress`, with an engine that holds `state`.
-    pub fn new(progress: Progress, state: &'a State, saving: Option<Saving<'a>>, keep: Keep) -> Self {
+    pub fn new(
+        progress: Progress,
+        state: &'a State,
+        saving: Option<Saving<'a>>,
+        keep: Keep,
+    ) -> Self {
         let kept = Keeping::new(state, progress, keep);
-        Self { progress, kept, saving, saved: None, before: progress.elapsed, start: Instant::now() }
+        Self {
+            progress,
+            kept,
+            saving,
+            saved: None,
+            before: progress.elapsed,
+            start: Instant::now(),
+        }
     }
 
-    /// To its picture, unless the engine has failed already. After a failure it goes on elsewhere from what is kept.
+    /// To its picture, unless the engine has failed already. After a failure it goes on elsewhere
+    /// from what is kept.
     pub fn carry_out(
         mut self,
         engine: &mut dyn Engine,
@@ -62,7 +75,11 @@ impl<'a> Run<'a> {
         }
     }
 
-    fn passes(&mut self, engine: &mut dyn Engine, watch: &mut Watch) -> Result<Outcome, EngineError> {
+    fn passes(
+        &mut self,
+        engine: &mut dyn Engine,
+        watch: &mut Watch,
+    ) -> Result<Outcome, EngineError> {
         let stop = self.progress.stop;
         let mut estimates = Estimates::after(self.progress.passes);
         let mut next_save = self.next_save(self.progress.elapsed);
@@ -127,7 +144,8 @@ impl<'a> Run<'a> {
         Ok(())
     }
 
-    /// Keeps what an engine that has failed can still give, if it is more than what is kept and as many passes as were counted.
+    /// Keeps what an engine that has failed can still give, if it is more than what is kept and as
+    /// many passes as were counted.
     fn rescue(&mut self, engine: &mut dyn Engine) {
         let passes = self.progress.passes;
         if passes > self.kept.progress.passes

@@ -1,5 +1,5 @@
-//! Theory: an engine that counts its passes into the picture shows by the picture alone how many were made, and the
-//! totals are the sums over its reports.
+//! Theory: an engine that counts its passes into the picture shows by the picture alone how many
+//! were made, and the totals are the sums over its reports.
 
 use std::sync::atomic::Ordering;
 
@@ -8,8 +8,8 @@ use super::*;
 use crate::engine::{EngineError, PassReport, PhotonEnds};
 use crate::film::estimate::{LEAST_PASSES, PixelError};
 
-/// Each pixel of its picture is the number of passes made. It fails in pass `fails_in`, and after that gives what it
-/// holds only if `survives`.
+/// Each pixel of its picture is the number of passes made. It fails in pass `fails_in`, and after
+/// that gives what it holds only if `survives`.
 struct Counter {
     passes: u32,
     fails_in: u32,
@@ -115,9 +115,10 @@ fn shown(outcome: &Outcome) -> f32 {
 fn makes_all_passes_and_adds_them_up() {
     let mut seen = Vec::new();
     let mut engine = counter(NEVER, true);
-    let outcome =
-        render(&mut engine, passes(5), &AtomicBool::new(false), &mut |p| seen.push((p.passes, p.share())))
-            .unwrap();
+    let outcome = render(&mut engine, passes(5), &AtomicBool::new(false), &mut |p| {
+        seen.push((p.passes, p.share()))
+    })
+    .unwrap();
     assert!(matches!(outcome.ending, Ending::Passes));
     assert_eq!(shown(&outcome), 5.0);
     let p = outcome.progress;
@@ -130,12 +131,14 @@ fn makes_all_passes_and_adds_them_up() {
 fn an_interrupt_ends_it_after_the_pass_in_hand() {
     let interrupted = AtomicBool::new(false);
     let mut observer = |p: &Progress| interrupted.store(p.passes == 3, Ordering::Relaxed);
-    let outcome = render(&mut counter(NEVER, true), passes(100), &interrupted, &mut observer).unwrap();
+    let outcome =
+        render(&mut counter(NEVER, true), passes(100), &interrupted, &mut observer).unwrap();
     assert!(matches!(outcome.ending, Ending::Interrupted));
     assert_eq!((shown(&outcome), outcome.progress.passes), (3.0, 3));
     // One that comes before the first pass still leaves a picture.
     let outcome =
-        render(&mut counter(NEVER, true), passes(100), &AtomicBool::new(true), &mut |_| ()).unwrap();
+        render(&mut counter(NEVER, true), passes(100), &AtomicBool::new(true), &mut |_| ())
+            .unwrap();
     assert_eq!(shown(&outcome), 1.0);
 }
 
@@ -143,7 +146,8 @@ fn an_interrupt_ends_it_after_the_pass_in_hand() {
 fn time_ends_it_between_passes() {
     let stop = Stop { passes: u32::MAX, time: Some(Duration::from_millis(20)), target_error: None };
     let mut slow = |_: &Progress| std::thread::sleep(Duration::from_millis(8));
-    let outcome = render(&mut counter(NEVER, true), stop, &AtomicBool::new(false), &mut slow).unwrap();
+    let outcome =
+        render(&mut counter(NEVER, true), stop, &AtomicBool::new(false), &mut slow).unwrap();
     assert!(matches!(outcome.ending, Ending::Time));
     assert!((2..=4).contains(&outcome.progress.passes), "{:?}", outcome.progress);
     assert_eq!(outcome.progress.share(), 1.0);
@@ -151,7 +155,8 @@ fn time_ends_it_between_passes() {
     assert_eq!(shown(&run(&mut counter(NEVER, true), none, KEEP).unwrap()), 1.0);
 }
 
-/// The error after N passes is 1 / N, so that 0.05 takes 20 passes, or one or two more where no estimate comes then.
+/// The error after N passes is 1 / N, so that 0.05 takes 20 passes, or one or two more where no
+/// estimate comes then.
 #[test]
 fn an_error_ends_it() {
     let stop = Stop { passes: u32::MAX, time: None, target_error: Some(0.05) };
@@ -215,7 +220,8 @@ fn saved_between_passes_and_at_the_end() {
         let saving = Saving { every, save: &mut save };
         let flag = AtomicBool::new(false);
         let outcome = resume(&mut engine, &state, progress, &flag, &mut |_| (), Some(saving));
-        let made = outcome.map_or_else(|broken| broken.kept.unwrap().progress.passes, |o| o.progress.passes);
+        let made = outcome
+            .map_or_else(|broken| broken.kept.unwrap().progress.passes, |o| o.progress.passes);
         (saved, made, engine.passes)
     };
     assert_eq!(saved_at(NEVER, Duration::ZERO, 0), (vec![1, 2, 3, 4], 4, 4));

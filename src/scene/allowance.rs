@@ -23,11 +23,12 @@ impl Missing {
     pub(super) const ADVICE: &str = "or render it in gray: --missing warn";
 }
 
-/// Where the files of a scene may lie, and limits that are checked before memory is taken. docs/hostile-input.md tells
-/// what they promise.
+/// Where the files of a scene may lie, and limits that are checked before memory is taken.
+/// docs/hostile-input.md tells what they promise.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Allowance {
-    /// The folder that holds every file that may be read, the scene's own among them, links resolved; `None` is everywhere.
+    /// The folder that holds every file that may be read, the scene's own among them, links
+    /// resolved; `None` is everywhere.
     pub root: Option<PathBuf>,
     /// What becomes of MTL and texture files that do not exist.
     pub missing: Missing,
@@ -43,7 +44,8 @@ pub struct Allowance {
     pub triangles: u64,
     /// Pixels of one texture or environment picture.
     pub texture_pixels: u64,
-    /// Bytes of the texels of all textures and environment pictures, and of each file that holds one.
+    /// Bytes of the texels of all textures and environment pictures, and of each file that holds
+    /// one.
     pub texture_bytes: u64,
     /// Pixels of the picture that the scene asks for.
     pub picture_pixels: u64,
@@ -94,8 +96,9 @@ impl Allowance {
         "errors",
     ];
 
-    /// The same for a process that has `left` bytes of memory: no more of anything than that holds. Of other
-    /// scenes a process without limits is not kept either; one with limits is ended by them without a word.
+    /// The same for a process that has `left` bytes of memory: no more of anything than that holds.
+    /// Of other scenes a process without limits is not kept either; one with limits is ended by
+    /// them without a word.
     pub fn within_memory(self, left: u64) -> Self {
         let left = left.max(LEAST);
         Self {
@@ -125,7 +128,8 @@ impl Allowance {
         })
     }
 
-    /// Opens a file that a scene names, of at most so many bytes; `most` tells the limit's name and what is left of it.
+    /// Opens a file that a scene names, of at most so many bytes; `most` tells the limit's name and
+    /// what is left of it.
     pub(super) fn open(&self, path: &Path, most: (&'static str, u64)) -> Result<File, Refusal> {
         let place = self.place(path)?;
         // Opening a pipe would wait for its writer.
@@ -169,16 +173,21 @@ impl Allowance {
         bytes(file, most)
     }
 
-    /// The place of a file, links resolved where a root confines it. What is outside is refused whether it is there or not.
+    /// The place of a file, links resolved where a root confines it. What is outside is refused
+    /// whether it is there or not.
     fn place(&self, path: &Path) -> Result<PathBuf, Refusal> {
         let Some(root) = &self.root else { return Ok(path.to_owned()) };
-        let inside =
-            root.canonicalize().ok().zip(resolved(path)).filter(|(root, place)| place.starts_with(root));
+        let inside = root
+            .canonicalize()
+            .ok()
+            .zip(resolved(path))
+            .filter(|(root, place)| place.starts_with(root));
         inside.map(|(_, place)| place).ok_or_else(|| Refusal::Outside { root: root.clone() })
     }
 }
 
-/// An absolute path without links; of a file that is not there, its nearest folder that is, and the rest.
+/// An absolute path without links; of a file that is not there, its nearest folder that is, and the
+/// rest.
 fn resolved(path: &Path) -> Option<PathBuf> {
     let mut known = std::path::absolute(path).ok()?;
     let mut rest = Vec::new();
@@ -199,7 +208,12 @@ fn bytes(file: File, (limit, most): (&'static str, u64)) -> Result<Vec<u8>, Refu
 }
 
 /// Whether so many of something are within what is left of a limit.
-pub(super) fn within(limit: &'static str, what: &'static str, found: u64, most: u64) -> Result<(), Refusal> {
+pub(super) fn within(
+    limit: &'static str,
+    what: &'static str,
+    found: u64,
+    most: u64,
+) -> Result<(), Refusal> {
     if found <= most { Ok(()) } else { Err(Refusal::TooMuch { limit, what, found, most }) }
 }
 
@@ -220,7 +234,9 @@ impl Refusal {
     /// How to mend it.
     pub fn help(&self) -> Option<String> {
         match self {
-            Self::Outside { .. } => Some("put it into that folder, or allow another one (--root)".to_owned()),
+            Self::Outside { .. } => {
+                Some("put it into that folder, or allow another one (--root)".to_owned())
+            }
             Self::TooMuch { limit, .. } => {
                 Some(format!("make it smaller, or raise the limit: --limit {limit}=N"))
             }

@@ -1,4 +1,5 @@
-//! What a picture may hold beside radiance: arbitrary output variables, for denoisers and compositing.
+//! What a picture may hold beside radiance: arbitrary output variables, for denoisers and
+//! compositing.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -7,7 +8,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Aov {
-    /// Reflectance of the first hit that is neither mirror nor glass, times what mirrors and glass before it let through.
+    /// Reflectance of the first hit that is neither mirror nor glass, times what mirrors and glass
+    /// before it let through.
     Albedo,
     /// Shading normal of that hit, world space, toward the viewer.
     Normal,
@@ -15,16 +17,19 @@ pub enum Aov {
     Depth,
     /// Place of the first hit, world space.
     Position,
-    /// Number of the surface seen through the pixel's centre, counted from 1 in the order of the file.
+    /// Number of the surface seen through the pixel's centre, counted from 1 in the order of the
+    /// file.
     Object,
-    /// Number of its material, counted from 1 in the order of names; the file's attribute `caustica.materials` has these.
+    /// Number of its material, counted from 1 in the order of names; the file's attribute
+    /// `caustica.materials` has these.
     Material,
     /// Light that comes to the eye straight or by mirrors and glass alone.
     Emission,
-    /// Light straight from lamps to the first hit that is neither mirror nor glass, found by shadow rays.
+    /// Light straight from lamps to the first hit that is neither mirror nor glass, found by shadow
+    /// rays.
     Direct,
-    /// Light that photons bring which no diffuse surface has scattered: caustics, and where there are no shadow rays also
-    /// light straight from lamps.
+    /// Light that photons bring which no diffuse surface has scattered: caustics, and where there
+    /// are no shadow rays also light straight from lamps.
     Caustic,
     /// Light that photons bring which diffuse surfaces have scattered.
     Indirect,
@@ -188,7 +193,10 @@ mod tests {
 
     #[test]
     fn slips_are_named() {
-        assert_eq!(Aovs::parse("albedo,nornal").unwrap_err(), "there is no `nornal`; did you mean `normal`?");
+        assert_eq!(
+            Aovs::parse("albedo,nornal").unwrap_err(),
+            "there is no `nornal`; did you mean `normal`?"
+        );
         for far in ["", "albedo,", "cryptomatte"] {
             assert!(Aovs::parse(far).unwrap_err().contains("there is: albedo, normal"), "{far}");
         }

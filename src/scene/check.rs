@@ -1,5 +1,5 @@
-//! Holds a parsed file against the schema and reports every difference: unknown and missing keys, wrong types, numbers
-//! out of range, words that are not listed.
+//! Holds a parsed file against the schema and reports every difference: unknown and missing keys,
+//! wrong types, numbers out of range, words that are not listed.
 
 use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;
@@ -58,7 +58,8 @@ pub(crate) struct Document<'a> {
 }
 
 impl<'a> Document<'a> {
-    /// Parts under a top-level key: the elements of an array, the entries of a table of named things, or the one value.
+    /// Parts under a top-level key: the elements of an array, the entries of a table of named
+    /// things, or the one value.
     pub fn items(&self, section: &str) -> impl Iterator<Item = &Item<'a>> {
         self.sections.get(section).into_iter().flatten()
     }
@@ -131,8 +132,9 @@ struct Checker<'c> {
 }
 
 impl<'c> Checker<'c> {
-    /// Checks a value and gives it as JSON, without unknown keys; `None` if its type does not fit. A number out of range
-    /// is reported and passed on, so that later checks find what else is wrong.
+    /// Checks a value and gives it as JSON, without unknown keys; `None` if its type does not fit.
+    /// A number out of range is reported and passed on, so that later checks find what else is
+    /// wrong.
     fn value(&mut self, schema: &'c Json, node: Node, path: &str) -> Option<Json> {
         let all = alternatives(self.root, schema);
         let fits = |one: &&&Json| {
@@ -190,7 +192,12 @@ impl<'c> Checker<'c> {
         let fits = in_range(schema, number) && integer_fits(schema, number);
         if !fits {
             let message = format!("`{path}` = {number} is out of range");
-            self.report.error(node.span(), message, format!("expected {expected}"), description(whole));
+            self.report.error(
+                node.span(),
+                message,
+                format!("expected {expected}"),
+                description(whole),
+            );
         }
         if !has_type(schema, "integer") {
             let largest = schema["x-largest"].as_f64().unwrap_or(LARGEST);
@@ -247,7 +254,13 @@ impl<'c> Checker<'c> {
         elements.filter(|_| fits).map(Json::Array)
     }
 
-    fn table(&mut self, whole: &'c Json, fitting: &[&'c Json], node: Node, path: &str) -> Option<Json> {
+    fn table(
+        &mut self,
+        whole: &'c Json,
+        fitting: &[&'c Json],
+        node: Node,
+        path: &str,
+    ) -> Option<Json> {
         let schema = self.variant(whole, fitting, node, path)?;
         let place = match tag(schema) {
             Some(kind) => format!("{path} ({kind})"),
@@ -268,17 +281,29 @@ impl<'c> Checker<'c> {
     }
 
     /// Which of several table schemas is meant: by `type`, or else by a key that only it has.
-    fn variant(&mut self, whole: &Json, fitting: &[&'c Json], node: Node, path: &str) -> Option<&'c Json> {
+    fn variant(
+        &mut self,
+        whole: &Json,
+        fitting: &[&'c Json],
+        node: Node,
+        path: &str,
+    ) -> Option<&'c Json> {
         if let [only] = fitting {
             return Some(only);
         }
         let tags: Vec<_> = fitting.iter().filter_map(|one| tag(one)).collect();
         if tags.is_empty() {
-            let has_key = |one: &&&Json| node.entries().any(|(key, ..)| one["properties"].get(key).is_some());
+            let has_key =
+                |one: &&&Json| node.entries().any(|(key, ..)| one["properties"].get(key).is_some());
             let found = fitting.iter().find(has_key).copied();
             if found.is_none() {
                 let expected = format!("expected {}", describe(self.root, whole));
-                self.report.error(node.span(), format!("`{path}` has no known key"), expected, None);
+                self.report.error(
+                    node.span(),
+                    format!("`{path}` has no known key"),
+                    expected,
+                    None,
+                );
             }
             return found;
         }
@@ -296,13 +321,24 @@ impl<'c> Checker<'c> {
         let found = fitting.iter().find(|one| tag(one) == Some(text)).copied();
         if found.is_none() {
             let label = self.report.did_you_mean(text, tags, "not a known type");
-            self.report.error(kind.span(), format!("unknown type \"{text}\" in {path}"), label, Some(kinds));
+            self.report.error(
+                kind.span(),
+                format!("unknown type \"{text}\" in {path}"),
+                label,
+                Some(kinds),
+            );
         }
         found
     }
 
     /// The schema under a key, or a report that there is none.
-    fn property(&mut self, schema: &'c Json, key: &str, span: Range<usize>, place: &str) -> Option<&'c Json> {
+    fn property(
+        &mut self,
+        schema: &'c Json,
+        key: &str,
+        span: Range<usize>,
+        place: &str,
+    ) -> Option<&'c Json> {
         let properties = schema["properties"].as_object();
         let found = properties.and_then(|all| all.get(key));
         if found.is_none() {

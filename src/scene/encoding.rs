@@ -17,7 +17,8 @@ impl Foreign {
 /// The bytes behind the byte order mark of UTF-8, if there is one.
 ///
 /// # Errors
-/// Text in UTF-16 or UTF-32, by its byte order mark or, since every text here begins with ASCII, by its zeros.
+/// Text in UTF-16 or UTF-32, by its byte order mark or, since every text here begins with ASCII, by
+/// its zeros.
 pub(super) fn unmarked(bytes: &[u8]) -> Result<&[u8], Foreign> {
     match bytes {
         [0xef, 0xbb, 0xbf, text @ ..] => Ok(text),
@@ -44,13 +45,17 @@ mod tests {
             assert_eq!(unmarked(text.as_bytes()), Ok(text.as_bytes()));
             assert_eq!(unmarked(format!("\u{feff}{text}").as_bytes()), Ok(text.as_bytes()));
             for mark in [false, true] {
-                let little: Vec<u8> = utf16(text, mark).iter().flat_map(|unit| unit.to_le_bytes()).collect();
-                let big: Vec<u8> = utf16(text, mark).iter().flat_map(|unit| unit.to_be_bytes()).collect();
+                let little: Vec<u8> =
+                    utf16(text, mark).iter().flat_map(|unit| unit.to_le_bytes()).collect();
+                let big: Vec<u8> =
+                    utf16(text, mark).iter().flat_map(|unit| unit.to_be_bytes()).collect();
                 assert_eq!(unmarked(&little), Err(Foreign("UTF-16")));
                 assert_eq!(unmarked(&big), Err(Foreign("UTF-16")));
                 let text = if mark { format!("\u{feff}{text}") } else { text.to_owned() };
-                let little: Vec<u8> = utf32(&text).iter().flat_map(|unit| unit.to_le_bytes()).collect();
-                let big: Vec<u8> = utf32(&text).iter().flat_map(|unit| unit.to_be_bytes()).collect();
+                let little: Vec<u8> =
+                    utf32(&text).iter().flat_map(|unit| unit.to_le_bytes()).collect();
+                let big: Vec<u8> =
+                    utf32(&text).iter().flat_map(|unit| unit.to_be_bytes()).collect();
                 assert_eq!(unmarked(&little), Err(Foreign("UTF-32")));
                 assert_eq!(unmarked(&big), Err(Foreign("UTF-32")));
             }

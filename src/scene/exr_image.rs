@@ -61,18 +61,25 @@ pub(super) fn choose(meta: &MetaData) -> Result<Chosen, String> {
     }
     let only = (found.len() == 1).then(|| found.pop_first()).flatten().map(|(_, chosen)| chosen);
     let Some((mut chosen, part)) = only.or_else(|| found.remove("")) else {
-        let why =
-            if found.is_empty() { "no channels R, G, B and no Y" } else { "several layers with colors" };
+        let why = if found.is_empty() {
+            "no channels R, G, B and no Y"
+        } else {
+            "several layers with colors"
+        };
         return Err(format!("it has {why}; its channels are {}", listed(meta)));
     };
     let channels = &meta.headers[part].channels.list;
     if let Some(channel) = channels.iter().find(|channel| channel.sampling != Vec2(1, 1)) {
-        let is_read =
-            |name: &Text| channels.iter().any(|one| one.name == *name && one.sampling == Vec2(1, 1));
+        let is_read = |name: &Text| {
+            channels.iter().any(|one| one.name == *name && one.sampling == Vec2(1, 1))
+        };
         if !matches!(&chosen.colors, Colors::Gray(y) if is_read(y)) {
             let (name, Vec2(x, y)) = (&channel.name, channel.sampling);
             let what = format!("its channel `{name}` has one value for {x} x {y} pixels");
-            return Err(format!("{what}, which is not supported; its channels are {}", listed(meta)));
+            return Err(format!(
+                "{what}, which is not supported; its channels are {}",
+                listed(meta)
+            ));
         }
         chosen.subsampled = Some(part);
     }
@@ -88,7 +95,8 @@ fn layer_of(channel: &str) -> &str {
 }
 
 fn listed(meta: &MetaData) -> String {
-    let all: BTreeSet<_> = meta.headers.iter().flat_map(|header| channels(header).into_keys()).collect();
+    let all: BTreeSet<_> =
+        meta.headers.iter().flat_map(|header| channels(header).into_keys()).collect();
     let names: Vec<_> = all.iter().take(MOST_LISTED).map(|name| format!("`{name}`")).collect();
     match all.len() - names.len() {
         0 => names.join(", "),
@@ -125,7 +133,8 @@ pub(super) fn read(
     chosen: Chosen,
 ) -> exr::error::Result<Picture> {
     type Store = (usize, Vec<[f32; 3]>, bool);
-    let create = |size: Vec2<usize>| -> Store { (size.width(), vec![[0.0; 3]; size.area()], false) };
+    let create =
+        |size: Vec2<usize>| -> Store { (size.width(), vec![[0.0; 3]; size.area()], false) };
     let set = |(width, texels, transparent): &mut Store, at: Vec2<usize>, texel, alpha: f32| {
         texels[at.y() * *width + at.x()] = texel;
         *transparent |= alpha < 1.0;
@@ -137,7 +146,8 @@ pub(super) fn read(
     let reader = exr::prelude::read().no_deep_data().largest_resolution_level().specific_channels();
     let (size, (_, texels, transparent)) = match chosen.colors {
         Colors::Rgb([r, g, b]) => {
-            let channels = reader.required(r).required(g).required(b).optional(chosen.alpha, 1.0f32);
+            let channels =
+                reader.required(r).required(g).required(b).optional(chosen.alpha, 1.0f32);
             let image = channels
                 .collect_pixels(
                     move |size, _: &_| create(size),

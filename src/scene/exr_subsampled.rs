@@ -51,7 +51,8 @@ pub(super) fn read(
             return Err(Error::NotSupported("tiles of channels of several resolutions".into()));
         };
         let first = i64::from(block.y_coordinate) - i64::from(top);
-        let first = usize::try_from(first).ok().filter(|&first| first < height).ok_or_else(damaged)?;
+        let first =
+            usize::try_from(first).ok().filter(|&first| first < height).ok_or_else(damaged)?;
         let lines = header.compression.scan_lines_per_block().min(height - first);
         let section = IntegerBounds::new(Vec2(left, block.y_coordinate), Vec2(width, lines));
         let bytes = decompress(header, block.compressed_pixels_le, section)?;
@@ -65,7 +66,9 @@ pub(super) fn read(
                 rest = behind;
                 if part.name == *channel {
                     let row = &mut texels[(first + line) * width..][..width];
-                    values(part.sample_type, samples).zip(row).for_each(|(value, texel)| *texel = [value; 3]);
+                    values(part.sample_type, samples)
+                        .zip(row)
+                        .for_each(|(value, texel)| *texel = [value; 3]);
                 }
             }
         }
@@ -127,6 +130,7 @@ fn decompress(header: &Header, compressed: Vec<u8>, section: IntegerBounds) -> R
         }
     };
     header.channels.bytes_per_pixel = bytes_per_pixel;
-    let bytes = header.compression.decompress_image_section_from_le(&header, compressed, section, false)?;
+    let bytes =
+        header.compression.decompress_image_section_from_le(&header, compressed, section, false)?;
     if bytes.len() == size { Ok(bytes) } else { Err(damaged()) }
 }

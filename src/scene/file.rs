@@ -91,7 +91,13 @@ pub struct FilmFile {
 
 impl Default for FilmFile {
     fn default() -> Self {
-        Self { width: 512, height: 512, exposure: 0.0, tonemap: ToneMap::default(), aov: Vec::new() }
+        Self {
+            width: 512,
+            height: 512,
+            exposure: 0.0,
+            tonemap: ToneMap::default(),
+            aov: Vec::new(),
+        }
     }
 }
 
@@ -301,7 +307,9 @@ pub enum ShapeFile {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(transparent)]
 #[schemars(inline)]
-pub struct Segments(#[schemars(length(min = 1), inner(length(min = 2, max = 16)))] pub Vec<Vec<[f64; 2]>>);
+pub struct Segments(
+    #[schemars(length(min = 1), inner(length(min = 2, max = 16)))] pub Vec<Vec<[f64; 2]>>,
+);
 
 /// What every shape may have.
 #[derive(Debug, Deserialize, JsonSchema)]

@@ -11,7 +11,8 @@ pub struct Shape {
     pub kind: ShapeKind,
     /// Index into [`super::Scene::materials`].
     pub material: usize,
-    /// Radiance in W sr^-1 m^-2 that leaves the side that the normal points to; zero for no light, and for planes.
+    /// Radiance in W sr^-1 m^-2 that leaves the side that the normal points to; zero for no light,
+    /// and for planes.
     pub emission: Rgb,
     /// Whether (u, v) is world (x, z) in place of the shape's own.
     pub planar_uv: bool,
@@ -34,8 +35,8 @@ pub enum ShapeKind {
         /// Radius, > 0.
         radius: f64,
     },
-    /// `origin + s u + t v`, s and t in [0, 1]; a parallelogram when `u` and `v` are not perpendicular. Normal along
-    /// `u x v`, which is not zero; uv = (s, t).
+    /// `origin + s u + t v`, s and t in [0, 1]; a parallelogram when `u` and `v` are not
+    /// perpendicular. Normal along `u x v`, which is not zero; uv = (s, t).
     Rectangle {
         /// A corner.
         origin: DVec3,
@@ -72,13 +73,13 @@ pub enum ShapeKind {
     /// Bezier profiles turned about the local y axis:
     /// `S(theta, t) = (r(t) cos theta, y(t), r(t) sin theta)`.
     Revolution {
-        /// Control points (radius, height) of each Bezier segment, degree 1 to 15; each segment starts where the one
-        /// before ends. The curve's radius is nowhere negative.
+        /// Control points (radius, height) of each Bezier segment, degree 1 to 15; each segment
+        /// starts where the one before ends. The curve's radius is nowhere negative.
         segments: Vec<Vec<DVec2>>,
         /// World from object.
         transform: Transform,
-        /// Newton steps shorter than this, in sizes of the profile, end the search of a ray's hit; 0, which scene files
-        /// mean, goes on as far as the precision allows.
+        /// Newton steps shorter than this, in sizes of the profile, end the search of a ray's hit;
+        /// 0, which scene files mean, goes on as far as the precision allows.
         newton_tolerance: f64,
     },
 }
@@ -120,7 +121,8 @@ pub struct Transform {
 
 impl Transform {
     /// Changes nothing.
-    pub const IDENTITY: Self = Self { scale: 1.0, rotation: DMat3::IDENTITY, translation: DVec3::ZERO };
+    pub const IDENTITY: Self =
+        Self { scale: 1.0, rotation: DMat3::IDENTITY, translation: DVec3::ZERO };
 
     /// A point of the object, in the world.
     pub fn point(&self, point: DVec3) -> DVec3 {

@@ -71,8 +71,9 @@ pub(super) fn jpeg_fault(mut file: impl Read) -> Option<&'static str> {
             0xc0 | 0xc1 => components = *segment.get(5)?,
             0xda => {
                 let is_split = *segment.first()? < components;
-                return is_split
-                    .then_some("it is a JPEG file of several sequential scans, which would be garbled");
+                return is_split.then_some(
+                    "it is a JPEG file of several sequential scans, which would be garbled",
+                );
             }
             _ => {}
         }

@@ -94,7 +94,9 @@ impl ImageStore {
         let moved = moved.map(|message| (message, "read as the limit"));
         let unread = self.unread.remove(&index).map(|message| (message, "read in gray"));
         let notes = moved.into_iter().chain(unread);
-        notes.map(|(message, label)| (format!("{}: {message}", self.images[index].path), label)).collect()
+        notes
+            .map(|(message, label)| (format!("{}: {message}", self.images[index].path), label))
+            .collect()
     }
 
     /// An image of one gray texel in place of a file that does not exist.
@@ -102,7 +104,12 @@ impl ImageStore {
         let images = &mut self.images;
         *self.stand_ins.entry(path.to_owned()).or_insert_with(|| {
             let texels = Texels::Float(vec![[Missing::STAND_IN as f32; 3]]);
-            images.push(ImageData { path: path.display().to_string(), width: 1, height: 1, texels });
+            images.push(ImageData {
+                path: path.display().to_string(),
+                width: 1,
+                height: 1,
+                texels,
+            });
             images.len() - 1
         })
     }
@@ -148,7 +155,8 @@ impl Moved {
     fn said(&self) -> Option<String> {
         let Self { count, what, .. } = self;
         let noun = if *count == 1 { "value" } else { "values" };
-        (*count > 0).then(|| format!("{count} {noun} out of range by rounding, the worst is {what}"))
+        (*count > 0)
+            .then(|| format!("{count} {noun} out of range by rounding, the worst is {what}"))
     }
 }
 
@@ -191,7 +199,10 @@ impl ImageStore {
     fn read(&mut self, path: &Path, space: Option<ColorSpace>) -> Result<Loaded, ImageFault> {
         let mut file = self.open(path)?;
         let mut head = Vec::new();
-        file.by_ref().take(HEAD as u64).read_to_end(&mut head).map_err(|error| fault(path, error))?;
+        file.by_ref()
+            .take(HEAD as u64)
+            .read_to_end(&mut head)
+            .map_err(|error| fault(path, error))?;
         file.rewind().map_err(|error| fault(path, error))?;
         let format = Format::of(&head).map_err(|other| fault(path, other))?;
         if space == Some(ColorSpace::Srgb) && format.is_linear() {
@@ -233,7 +244,9 @@ impl ImageStore {
         let Allowance { texture_pixels, texture_bytes, .. } = self.allowance;
         let bytes = pixels.saturating_mul(bytes_each);
         within("texture-pixels", "pixels", pixels, texture_pixels)
-            .and_then(|()| within("texture-bytes", "bytes of texels", bytes, texture_bytes - self.spent))
+            .and_then(|()| {
+                within("texture-bytes", "bytes of texels", bytes, texture_bytes - self.spent)
+            })
             .map_err(|refusal| refused(path, refusal))?;
         self.spent += bytes;
         Ok(())
@@ -282,15 +295,25 @@ impl ImageStore {
                     let share = f64::from(value) / 65535.0;
                     (if srgb { linear_from_srgb(share) } else { share }) as f32
                 };
-                Texels::Float(image.into_rgb16().pixels().map(|pixel| pixel.0.map(decode)).collect())
+                Texels::Float(
+                    image.into_rgb16().pixels().map(|pixel| pixel.0.map(decode)).collect(),
+                )
             }
-            _ => Texels::Rgba8 { srgb, data: image.into_rgba8().pixels().map(|pixel| pixel.0).collect() },
+            _ => Texels::Rgba8 {
+                srgb,
+                data: image.into_rgba8().pixels().map(|pixel| pixel.0).collect(),
+            },
         };
-        Ok((ImageData { path: path.display().to_string(), width, height, texels }, transparent, Vec::new()))
+        Ok((
+            ImageData { path: path.display().to_string(), width, height, texels },
+            transparent,
+            Vec::new(),
+        ))
     }
 
     fn read_exr(&mut self, path: &Path, mut file: BufReader<File>) -> Result<Loaded, ImageFault> {
-        let meta = MetaData::read_from_buffered(&mut file, false).map_err(|error| fault(path, error))?;
+        let meta =
+            MetaData::read_from_buffered(&mut file, false).map_err(|error| fault(path, error))?;
         let pixels = meta.headers.iter().map(|header| header.layer_size.area() as u64);
         self.spend(path, pixels.max().unwrap_or(0), 12)?;
         let chosen = exr_image::choose(&meta).map_err(|why| fault(path, why))?;

@@ -96,7 +96,8 @@ impl Libraries {
             if name.is_empty() {
                 continue;
             }
-            let (id, bytes, shown) = ((self.files.len(), index), library.text.bytes(name), name.to_owned());
+            let (id, bytes, shown) =
+                ((self.files.len(), index), library.text.bytes(name), name.to_owned());
             let shorter = before_comment(name).map(|name| library.text.bytes(name));
             if !own.insert(bytes.clone()) {
                 let message = format!("material `{}` is defined again", library.text.shown(name));
@@ -107,7 +108,10 @@ impl Libraries {
             self.by_bytes.entry(bytes).or_insert(id);
             self.by_text.entry(shown).or_insert(id);
             if let Some(shorter) = shorter {
-                self.before_comment.entry(shorter).and_modify(|known| *known = None).or_insert(Some(id));
+                self.before_comment
+                    .entry(shorter)
+                    .and_modify(|known| *known = None)
+                    .or_insert(Some(id));
             }
         }
         self.files.push(library);
@@ -117,8 +121,9 @@ impl Libraries {
     fn find<'n>(&self, text: &Text, name: &'n str) -> Option<(Id, &'n str)> {
         let in_bytes = |name: &'n str| self.by_bytes.get(&text.bytes(name)).map(|&id| (id, name));
         let in_text = |name: &'n str| self.by_text.get(name).map(|&id| (id, name));
-        let commented =
-            |name: &'n str| self.before_comment.get(&text.bytes(name)).and_then(|id| Some(((*id)?, name)));
+        let commented = |name: &'n str| {
+            self.before_comment.get(&text.bytes(name)).and_then(|id| Some(((*id)?, name)))
+        };
         readings(name)
             .find_map(in_bytes)
             .or_else(|| readings(name).find_map(in_text))
@@ -201,8 +206,10 @@ impl Libraries {
         // A file that could not be read has been reported, and may define it.
         if !self.incomplete {
             let other = format!("expected a material of the file's MTL, {}", Missing::ADVICE);
-            let all = self.files.iter().flat_map(|file| (0..file.entries.len()).map(|at| file.name(at)));
-            let expected = if scan.faults.is_full() { other } else { did_you_mean(&shown, all, &other) };
+            let all =
+                self.files.iter().flat_map(|file| (0..file.entries.len()).map(|at| file.name(at)));
+            let expected =
+                if scan.faults.is_full() { other } else { did_you_mean(&shown, all, &other) };
             scan.faults.push(at, message, expected);
         }
         None
@@ -220,13 +227,19 @@ fn unread(loader: &Loader, scan: &mut Scan, file: &Path, at: Range<usize>, error
         return scan.warnings.push(at, message, "its materials are rendered in gray");
     }
     let near = nearest_file(file).filter(|_| !scan.faults.is_full());
-    let mend = near.map_or("expected an MTL file".to_owned(), |near| format!("did you mean {near}?"));
+    let mend =
+        near.map_or("expected an MTL file".to_owned(), |near| format!("did you mean {near}?"));
     scan.faults.push(at, message, format!("{mend}, {}", Missing::ADVICE));
 }
 
 /// The files that the names behind one `mtllib` stand for. A name may hold blanks, several names
 /// are separated by blanks, and a comment may follow: what is there decides.
-fn files_of((name, at): Word, text: &Text, loader: &Loader, folder: &Path) -> Vec<(Range<usize>, PathBuf)> {
+fn files_of(
+    (name, at): Word,
+    text: &Text,
+    loader: &Loader,
+    folder: &Path,
+) -> Vec<(Range<usize>, PathBuf)> {
     let span = |part: &str| {
         let start = at.start + (part.as_ptr() as usize - name.as_ptr() as usize);
         start..start + part.len()
@@ -235,7 +248,8 @@ fn files_of((name, at): Word, text: &Text, loader: &Loader, folder: &Path) -> Ve
     let mut found = Vec::new();
     let mut rest = name;
     while !rest.is_empty() && (found.is_empty() || !rest.starts_with('#')) {
-        let ends = parts(rest).map(|word| word.as_ptr() as usize - rest.as_ptr() as usize + word.len());
+        let ends =
+            parts(rest).map(|word| word.as_ptr() as usize - rest.as_ptr() as usize + word.len());
         let ends: Vec<_> = ends.take(LONGEST_NAME).chain([rest.len()]).collect();
         let is_there = |&&end: &&usize| loader.allowance.has(&find(&rest[..end]));
         let is_named = |&&end: &&usize| rest[..end].to_ascii_lowercase().ends_with(".mtl");

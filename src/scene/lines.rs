@@ -49,7 +49,11 @@ impl Text {
 
     /// The bytes of a name as the file holds them.
     pub fn bytes(&self, name: &str) -> Vec<u8> {
-        if self.single_byte { name.chars().map(|c| c as u8).collect() } else { name.as_bytes().to_vec() }
+        if self.single_byte {
+            name.chars().map(|c| c as u8).collect()
+        } else {
+            name.as_bytes().to_vec()
+        }
     }
 
     /// A name for people: a file with a single byte that is not UTF-8 may hold names that are.
@@ -100,8 +104,9 @@ fn with_line_feeds(text: String) -> String {
 
 /// Keywords of statements that consist of numbers, where a backslash can be no part of a name.
 const NUMERIC: [&str; 30] = [
-    "v", "vt", "vn", "vp", "f", "l", "p", "curv", "curv2", "surf", "parm", "trim", "hole", "scrv", "sp",
-    "bmat", "deg", "step", "con", "s", "Ka", "Kd", "Ks", "Ke", "Ni", "Ns", "d", "Tr", "Tf", "illum",
+    "v", "vt", "vn", "vp", "f", "l", "p", "curv", "curv2", "surf", "parm", "trim", "hole", "scrv",
+    "sp", "bmat", "deg", "step", "con", "s", "Ka", "Kd", "Ks", "Ke", "Ni", "Ns", "d", "Tr", "Tf",
+    "illum",
 ];
 
 /// Joins lines that end in a backslash, by blanks in the place of it and of the line's end.
@@ -135,7 +140,8 @@ fn joined(text: &str) -> Cow<'_, str> {
 /// Whether a line that is this before its last backslash goes on in the next.
 fn goes_on(before: &str, numbers: bool) -> bool {
     let comment = |(at, _)| numbers || before[..at].ends_with(blank) || at == 0;
-    (numbers || before.is_empty() || before.ends_with(blank)) && !before.match_indices('#').any(comment)
+    (numbers || before.is_empty() || before.ends_with(blank))
+        && !before.match_indices('#').any(comment)
 }
 
 /// What separates words. Not all that Unicode holds blank: its characters may be parts of names
@@ -161,7 +167,8 @@ pub(super) fn statements(text: &str, part: Range<usize>) -> impl Iterator<Item =
         let line = line.strip_suffix('\n').unwrap_or(line);
         let indent = line.len() - line.trim_start_matches(blank).len();
         let words = &line[indent..];
-        let keyword = words.split(blank).next().filter(|word| !word.is_empty() && !word.starts_with('#'))?;
+        let keyword =
+            words.split(blank).next().filter(|word| !word.is_empty() && !word.starts_with('#'))?;
         let at = begin + indent..begin + indent + keyword.len();
         Some(Statement { keyword, at, rest: &words[keyword.len()..] })
     })
@@ -233,7 +240,8 @@ pub(super) fn readings(name: &str) -> impl Iterator<Item = &str> {
 /// What stands before a comment that begins with a `#` of its own, if there is one.
 pub(super) fn before_comment(name: &str) -> Option<&str> {
     let mut hashes = name.match_indices('#').filter(|&(at, _)| name[..at].ends_with(blank));
-    let (at, _) = hashes.find(|(at, _)| name[at + 1..].is_empty() || name[at + 1..].starts_with(blank))?;
+    let (at, _) =
+        hashes.find(|(at, _)| name[at + 1..].is_empty() || name[at + 1..].starts_with(blank))?;
     Some(name[..at].trim_end_matches(blank))
 }
 
@@ -295,7 +303,8 @@ mod tests {
         let file = names.map(|name| [b"usemtl ", name, b"\n"].concat()).concat();
         let text = Text::decode("m.obj".as_ref(), &file).unwrap();
         let lines = text.lines();
-        let found: Vec<_> = statements(lines, 0..lines.len()).map(|s| text.bytes(s.name().0)).collect();
+        let found: Vec<_> =
+            statements(lines, 0..lines.len()).map(|s| text.bytes(s.name().0)).collect();
         assert_eq!(found, names);
         assert_eq!(text.shown("\u{c3}\u{a9}"), "\u{e9}");
     }

@@ -1,4 +1,5 @@
-//! From a scene file to a [`Scene`]: parse, hold against the schema, resolve names, then check what the parts mean.
+//! From a scene file to a [`Scene`]: parse, hold against the schema, resolve names, then check what
+//! the parts mean.
 
 use std::collections::{BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
@@ -50,7 +51,8 @@ pub fn load_within(path: &Path, allowance: &Allowance) -> Result<Loaded, SceneEr
     parse_within(path, &text::read(path, allowance)?, allowance)
 }
 
-/// Reads a scene from a file's bytes; `path` names it in messages, and the files it names are relative to it.
+/// Reads a scene from a file's bytes; `path` names it in messages, and the files it names are
+/// relative to it.
 ///
 /// # Errors
 /// As [`load`].
@@ -62,13 +64,22 @@ pub fn parse(path: &Path, bytes: &[u8]) -> Result<Loaded, SceneErrors> {
 ///
 /// # Errors
 /// As [`load_within`].
-pub fn parse_within(path: &Path, bytes: &[u8], allowance: &Allowance) -> Result<Loaded, SceneErrors> {
+pub fn parse_within(
+    path: &Path,
+    bytes: &[u8],
+    allowance: &Allowance,
+) -> Result<Loaded, SceneErrors> {
     let _stage = stage("parse");
     let ((scene, settings, places, files), warnings) =
         text::parse(path, bytes, allowance, |root, report| {
             let count = root.get("shapes").map_or(0, |shapes| shapes.elements().count() as u64);
             if let Err(refusal) = within("shapes", "shapes", count, allowance.shapes) {
-                report.error(root.span_of("shapes"), format!("too much: {refusal}"), "here", refusal.help());
+                report.error(
+                    root.span_of("shapes"),
+                    format!("too much: {refusal}"),
+                    "here",
+                    refusal.help(),
+                );
                 return None;
             }
             let document = document(&SCHEMA, root, report);
@@ -153,7 +164,10 @@ impl<'l, 'a> Loader<'l, 'a> {
         });
         self.report.files.append(&mut self.images.files);
         let scene = Scene {
-            name: self.path.file_stem().map_or(String::new(), |stem| stem.to_string_lossy().into_owned()),
+            name: self
+                .path
+                .file_stem()
+                .map_or(String::new(), |stem| stem.to_string_lossy().into_owned()),
             camera: camera?,
             film: film?,
             images: std::mem::take(&mut self.images.images),
@@ -190,13 +204,21 @@ impl<'l, 'a> Loader<'l, 'a> {
         let singular = section.trim_end_matches('s');
         let known: Vec<_> = self.document.items(section).map(|item| item.name).collect();
         for node in self.document.items(user).filter_map(|item| item.node.get(key)) {
-            let Some(name) = node.str().filter(|name| self.document.index(section, name).is_none()) else {
+            let Some(name) = node.str().filter(|name| self.document.index(section, name).is_none())
+            else {
                 continue;
             };
-            let label = self.report.did_you_mean(name, known.iter().copied(), &format!("no such {singular}"));
+            let label = self.report.did_you_mean(
+                name,
+                known.iter().copied(),
+                &format!("no such {singular}"),
+            );
             let help = match known[..] {
                 [] => format!("define it: [{section}.{name}]"),
-                _ => format!("define [{section}.{name}], or use one of {}", list(known.iter().copied())),
+                _ => format!(
+                    "define [{section}.{name}], or use one of {}",
+                    list(known.iter().copied())
+                ),
             };
             let message = format!("{singular} `{name}` is not defined");
             self.report.error(node.span(), message, label, Some(help));

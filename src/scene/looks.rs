@@ -34,8 +34,12 @@ pub(super) fn material(loader: &Loader, item: &Item, file: MaterialFile) -> Mate
         Paint::Texture(name) => Reflectance::Texture(loader.index("textures", name)),
     };
     let kind = match file {
-        MaterialFile::Diffuse { reflectance } => MaterialKind::Diffuse { reflectance: paint(&reflectance) },
-        MaterialFile::Mirror { reflectance } => MaterialKind::Mirror { reflectance: paint(&reflectance) },
+        MaterialFile::Diffuse { reflectance } => {
+            MaterialKind::Diffuse { reflectance: paint(&reflectance) }
+        }
+        MaterialFile::Mirror { reflectance } => {
+            MaterialKind::Mirror { reflectance: paint(&reflectance) }
+        }
         MaterialFile::Glass { ior, absorption, priority } => {
             MaterialKind::Glass { ior: ior.0, absorption: absorption.rgb(), priority }
         }
@@ -48,7 +52,12 @@ pub(super) fn material(loader: &Loader, item: &Item, file: MaterialFile) -> Mate
 
 impl Loader<'_, '_> {
     /// The image under `item.file`.
-    pub fn image(&mut self, item: &Item, file: &str, color_space: Option<ColorSpace>) -> Option<usize> {
+    pub fn image(
+        &mut self,
+        item: &Item,
+        file: &str,
+        color_space: Option<ColorSpace>,
+    ) -> Option<usize> {
         let path = self.resolve(file);
         match self.images.load(&path, color_space) {
             Ok(image) => {
@@ -106,7 +115,8 @@ impl Loader<'_, '_> {
 
     fn image_error(&mut self, item: &Item, path: &Path, fault: ImageFault, advice: &str) {
         let near = (fault.missing && !self.report.errors.is_full()).then(|| nearest_file(path));
-        let help = fault.help.or_else(|| near.flatten().map(|near| format!("did you mean {near}?")));
+        let help =
+            fault.help.or_else(|| near.flatten().map(|near| format!("did you mean {near}?")));
         let help = match (help, advice) {
             (help, "") => help,
             (Some(help), advice) => Some(format!("{help} {advice}")),

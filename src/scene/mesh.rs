@@ -100,13 +100,20 @@ pub(super) fn load(
     };
     let built = build(&models, request, &own, &mut loader.spent.steps);
     if loader.spent.steps.are_used_up() {
-        let message = format!("the faces of {} are too intricate to cut into triangles", request.file);
+        let message =
+            format!("the faces of {} are too intricate to cut into triangles", request.file);
         let help = "triangulate the mesh where it comes from";
-        loader.report.error(named_at, message, "expected faces with fewer corners", Some(help.into()));
+        loader.report.error(
+            named_at,
+            message,
+            "expected faces with fewer corners",
+            Some(help.into()),
+        );
         return None;
     }
     if built.faces != scan.faces {
-        let message = format!("{} of {} faces of {} were read", built.faces, scan.faces, request.file);
+        let message =
+            format!("{} of {} faces of {} were read", built.faces, scan.faces, request.file);
         loader.report.error(named_at, message, "expected all", None);
         return None;
     }
@@ -128,7 +135,12 @@ fn read(loader: &mut Loader, item: &Item, path: &Path) -> Option<Text> {
             Err(foreign) => {
                 let message = format!("{}: {foreign}", path.display());
                 let label = "expected a Wavefront OBJ file";
-                loader.report.error(item.node.span_of("file"), message, label, Some(foreign.help()));
+                loader.report.error(
+                    item.node.span_of("file"),
+                    message,
+                    label,
+                    Some(foreign.help()),
+                );
                 None
             }
         },
@@ -137,7 +149,12 @@ fn read(loader: &mut Loader, item: &Item, path: &Path) -> Option<Text> {
             let near = || nearest_file(path).filter(|_| advise);
             let help = error.help().or_else(|| near().map(|near| format!("did you mean {near}?")));
             let message = format!("cannot read mesh {}: {error}", path.display());
-            loader.report.error(item.node.span_of("file"), message, "expected a Wavefront OBJ file", help);
+            loader.report.error(
+                item.node.span_of("file"),
+                message,
+                "expected a Wavefront OBJ file",
+                help,
+            );
             None
         }
     }
@@ -162,7 +179,12 @@ struct Built {
 }
 
 /// Triangles in the world, grouped by material.
-fn build(models: &[tobj::Model], request: &Request, own: &[Option<Own>], steps: &mut Steps) -> Built {
+fn build(
+    models: &[tobj::Model],
+    request: &Request,
+    own: &[Option<Own>],
+    steps: &mut Steps,
+) -> Built {
     let corners: Vec<_> = models.iter().map(|model| Polygon::of(&model.mesh)).collect();
     let shared = request.smooth.then(|| vertex_normals(corners.iter().flatten(), steps));
     let mut builders: Vec<(Own, Builder)> = Vec::new();
@@ -198,6 +220,10 @@ fn report_counts(loader: &mut Loader, file: &str, named_at: &Range<usize>, built
     ];
     for (count, what) in counts.into_iter().filter(|(count, _)| *count > 0) {
         let noun = if count == 1 { "triangle" } else { "triangles" };
-        loader.report.warn(named_at.clone(), format!("{file}: {count} {noun} {what}"), "in this file");
+        loader.report.warn(
+            named_at.clone(),
+            format!("{file}: {count} {noun} {what}"),
+            "in this file",
+        );
     }
 }

@@ -1,9 +1,10 @@
 //! Scene files in, validated scenes out.
 //!
-//! A [`Scene`] is what a person wrote, in f64 and in the units of the file, with every name resolved to an index
-//! and every number checked. Nothing in it depends on a device.
+//! A [`Scene`] is what a person wrote, in f64 and in the units of the file, with every name
+//! resolved to an index and every number checked. Nothing in it depends on a device.
 //!
-//! Conventions: right-handed, y up; linear Rec. 709 RGB; one scene unit is one metre; angles in degrees.
+//! Conventions: right-handed, y up; linear Rec. 709 RGB; one scene unit is one metre; angles in
+//! degrees.
 
 mod allowance;
 mod aov;
@@ -82,13 +83,15 @@ pub struct Camera {
     pub position: DVec3,
     /// A point on the view axis; differs from `position`.
     pub target: DVec3,
-    /// Points to the top of the picture; not parallel to the view axis, not necessarily perpendicular or unit.
+    /// Points to the top of the picture; not parallel to the view axis, not necessarily
+    /// perpendicular or unit.
     pub up: DVec3,
     /// Vertical field of view in degrees, in (0, 180).
     pub fov_degrees: f64,
     /// Radius of the lens in scene units, >= 0.
     pub aperture: f64,
-    /// Distance of the plane in focus along the view axis, > 0; `|target - position|` when the file gives none.
+    /// Distance of the plane in focus along the view axis, > 0; `|target - position|` when the file
+    /// gives none.
     pub focus: f64,
 }
 
@@ -105,8 +108,8 @@ pub struct Film {
     pub tonemap: ToneMap,
     /// What EXR files hold beside radiance.
     pub aovs: Aovs,
-    /// The window that is rendered, columns x0 to x1 and rows y0 to y1 as `[x0, y0, x1, y1]`, x1 and y1 left out; inside
-    /// of the picture and not empty. None is all of it.
+    /// The window that is rendered, columns x0 to x1 and rows y0 to y1 as `[x0, y0, x1, y1]`, x1
+    /// and y1 left out; inside of the picture and not empty. None is all of it.
     pub window: Option<[u32; 4]>,
 }
 
@@ -139,10 +142,11 @@ pub enum Light {
         target: DVec3,
         /// Radiant intensity on the axis in W/sr.
         intensity: Rgb,
-        /// Angle in degrees between the axis and the directions from which on it is dark, in (0, 180].
+        /// Angle in degrees between the axis and the directions from which on it is dark, in (0,
+        /// 180].
         angle_degrees: f64,
-        /// Share of `angle_degrees` over which the light fades, in [0, 1]: full up to `(1 - blend) angle`, then a
-        /// smoothstep in the angle's cosine down to zero at `angle`.
+        /// Share of `angle_degrees` over which the light fades, in [0, 1]: full up to `(1 - blend)
+        /// angle`, then a smoothstep in the angle's cosine down to zero at `angle`.
         blend: f64,
     },
     /// Parallel light from infinitely far away.
@@ -162,8 +166,8 @@ pub enum Environment {
         /// In W sr^-1 m^-2.
         radiance: Rgb,
     },
-    /// An equirectangular picture: row 0 is the zenith (+y). A direction `d` reads it at
-    /// `u = 0.5 - atan2(d.z, d.x) / 2pi`, `v = 1 - acos(d.y) / pi`, after `d` is turned back about y.
+    /// An equirectangular picture: row 0 is the zenith (+y). A direction `d` reads it at `u = 0.5 -
+    /// atan2(d.z, d.x) / 2pi`, `v = 1 - acos(d.y) / pi`, after `d` is turned back about y.
     Image {
         /// Index into [`Scene::images`].
         image: usize,

@@ -94,9 +94,20 @@ impl Library {
             entries.push(Entry { name: span, body: line_end(lines, begin)..lines.len() });
         }
         if let Some(at) = stray {
-            warnings.push(at, "a statement before any `newmtl` is not used", "expected `newmtl` above");
+            warnings.push(
+                at,
+                "a statement before any `newmtl` is not used",
+                "expected `newmtl` above",
+            );
         }
-        Self { path, text, entries, faults: Faults::default(), warnings, rounded: Rounded::default() }
+        Self {
+            path,
+            text,
+            entries,
+            faults: Faults::default(),
+            warnings,
+            rounded: Rounded::default(),
+        }
     }
 
     /// The name of a material.
@@ -109,7 +120,10 @@ impl Library {
         if let Some((at, message)) = std::mem::take(&mut self.rounded).take() {
             self.warnings.push(at, message, "read as the limit");
         }
-        (std::mem::take(&mut self.faults), std::mem::replace(&mut self.warnings, Faults::warnings()))
+        (
+            std::mem::take(&mut self.faults),
+            std::mem::replace(&mut self.warnings, Faults::warnings()),
+        )
     }
 }
 
@@ -142,13 +156,15 @@ pub(super) fn material(
         // The last of several counts. Only known keys are compared, so that their number bounds the
         // work.
         let known = READ.contains(&statement.keyword) || IDLE.contains(&statement.keyword);
-        if known && let Some(last) = given.iter_mut().find(|last| last.keyword == statement.keyword) {
+        if known && let Some(last) = given.iter_mut().find(|last| last.keyword == statement.keyword)
+        {
             *last = statement;
         } else if given.len() < MOST_KEYS {
             given.push(statement);
         }
     }
-    let mut reader = Reader { name: &name, given: &given, used: Vec::new(), faults, warnings, rounded };
+    let mut reader =
+        Reader { name: &name, given: &given, used: Vec::new(), faults, warnings, rounded };
     let (kind, emission) = reader.kind(path, text, target);
     reader.unused(matches!(kind, MaterialKind::Glass { .. }));
     (Material { name, kind }, emission)
@@ -176,7 +192,11 @@ impl<'t> Reader<'_, 't> {
         let ior = (is_glass || is_clear).then(|| self.number("Ni", LARGEST)).flatten();
         let ior = ior.filter(|&ior| ior > 0.0);
         let kind = if is_glass || (is_clear && ior.is_some_and(|ior| ior != 1.0)) {
-            MaterialKind::Glass { ior: ior.unwrap_or(DEFAULT_IOR), absorption: [0.0; 3], priority: 0 }
+            MaterialKind::Glass {
+                ior: ior.unwrap_or(DEFAULT_IOR),
+                absorption: [0.0; 3],
+                priority: 0,
+            }
         } else {
             if is_clear {
                 self.warn_unused("d");
@@ -219,7 +239,8 @@ impl<'t> Reader<'_, 't> {
             return None;
         }
         if let Some((_, at)) = words.get(count) {
-            let message = format!("`{key}` has {} values, of which the first {count} count", words.len());
+            let message =
+                format!("`{key}` has {} values, of which the first {count} count", words.len());
             self.warnings.push(at.clone(), message, expected(count));
         }
         let mut numbers = Vec::new();
@@ -257,7 +278,11 @@ impl<'t> Reader<'_, 't> {
                 Some(number as i64)
             }
             Ok(_) => {
-                self.faults.push(at, format!("`{word}` is not a whole number"), "expected a whole number");
+                self.faults.push(
+                    at,
+                    format!("`{word}` is not a whole number"),
+                    "expected a whole number",
+                );
                 None
             }
             Err(message) => {
@@ -268,7 +293,13 @@ impl<'t> Reader<'_, 't> {
     }
 
     /// The picture of `map_Kd`.
-    fn map(&mut self, map: &Statement, path: &Path, text: &Text, target: &mut Target) -> Reflectance {
+    fn map(
+        &mut self,
+        map: &Statement,
+        path: &Path,
+        text: &Text,
+        target: &mut Target,
+    ) -> Reflectance {
         let grey = Reflectance::Color([Missing::STAND_IN; 3]);
         self.used.push("map_Kd");
         let (name, at) = map.name();
@@ -292,8 +323,10 @@ impl<'t> Reader<'_, 't> {
         match image {
             Ok(image) => {
                 if target.images.is_transparent(image) {
-                    let message =
-                        format!("the alpha channel of map_Kd of material {} is not used", self.name);
+                    let message = format!(
+                        "the alpha channel of map_Kd of material {} is not used",
+                        self.name
+                    );
                     self.warnings.push(at.clone(), message, "every texel counts as opaque");
                 }
                 for (message, label) in target.images.take_notes(image) {
@@ -304,14 +337,19 @@ impl<'t> Reader<'_, 't> {
                 target.textures.push(Texture { name: self.name.to_owned(), kind });
                 Reflectance::Texture(target.textures.len() - 1)
             }
-            Err(ImageFault { missing: true, message, .. }) if target.allowance.missing == Missing::Warn => {
+            Err(ImageFault { missing: true, message, .. })
+                if target.allowance.missing == Missing::Warn =>
+            {
                 self.warnings.push(at, message, "rendered in gray");
                 grey
             }
             Err(fault) => {
                 let expected = fault.help.unwrap_or_else(|| fault.expected.to_owned());
-                let advice =
-                    if fault.missing { format!("{expected}, {}", Missing::ADVICE) } else { expected };
+                let advice = if fault.missing {
+                    format!("{expected}, {}", Missing::ADVICE)
+                } else {
+                    expected
+                };
                 self.faults.push(at, fault.message, advice);
                 grey
             }
@@ -349,7 +387,8 @@ impl<'t> Reader<'_, 't> {
                 let message = format!("`{key}` of material {} is not known", self.name);
                 let near = READ.iter().find(|known| known.eq_ignore_ascii_case(key)).copied();
                 let near = near.or_else(|| nearest(key, READ));
-                let label = near.map_or("not used".to_owned(), |near| format!("did you mean `{near}`?"));
+                let label =
+                    near.map_or("not used".to_owned(), |near| format!("did you mean `{near}`?"));
                 self.warnings.push(at, message, label);
             }
         }

@@ -1,4 +1,5 @@
-//! Numbers with a range, and colors made of them. Ranges stand in the JSON Schema, and are checked from there.
+//! Numbers with a range, and colors made of them. Ranges stand in the JSON Schema, and are checked
+//! from there.
 
 use std::ops::Range;
 
@@ -7,11 +8,12 @@ use serde::Deserialize;
 
 use super::appearance::Rgb;
 
-/// Largest magnitude of a length, a coordinate or any other number that is not the strength of a light, in the units of
-/// the file. Renderers work in f32, in units of about the scene's size; squares of lengths must stay below the
-/// 1e30 that stands for infinity there.
+/// Largest magnitude of a length, a coordinate or any other number that is not the strength of a
+/// light, in the units of the file. Renderers work in f32, in units of about the scene's size;
+/// squares of lengths must stay below the 1e30 that stands for infinity there.
 pub const LARGEST: f64 = 1e15;
-/// Smallest number where 0 is none: a radius, a size, a scale, an angle. Its square is above f32's least normal number.
+/// Smallest number where 0 is none: a radius, a size, a scale, an angle. Its square is above f32's
+/// least normal number.
 pub const SMALLEST: f64 = 1e-15;
 /// Greatest strength of a light. Pictures hold radiance in f32, up to 3e38, and light adds up.
 pub const BRIGHTEST: f64 = 1e30;
@@ -50,7 +52,10 @@ impl Rounded {
         let message = match self.count {
             0 => return None,
             1 => format!("`{}` is out of range by rounding", self.word),
-            count => format!("{count} numbers are out of range by rounding, the worst is `{}`", self.word),
+            count => format!(
+                "{count} numbers are out of range by rounding, the worst is `{}`",
+                self.word
+            ),
         };
         Some((self.at, message))
     }

@@ -1,5 +1,6 @@
-//! Looks through the text of a Wavefront OBJ file before tobj reads it: tobj names no lines in its errors, takes an
-//! index of 0 and numbers that are not finite, reads polylines as faces, and mixes up faces with and without normals.
+//! Looks through the text of a Wavefront OBJ file before tobj reads it: tobj names no lines in its
+//! errors, takes an index of 0 and numbers that are not finite, reads polylines as faces, and mixes
+//! up faces with and without normals.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::ops::Range;
@@ -78,7 +79,12 @@ pub(super) fn scan(text: &str, own_materials: bool) -> Scan<'_> {
 const LIBRARY: &str = "own";
 
 impl<'t> Scan<'t> {
-    fn fault(&mut self, span: Range<usize>, message: impl Into<String>, expected: impl Into<String>) {
+    fn fault(
+        &mut self,
+        span: Range<usize>,
+        message: impl Into<String>,
+        expected: impl Into<String>,
+    ) {
         self.faults.push(span, message, expected);
     }
 
@@ -114,9 +120,13 @@ impl<'t> Scan<'t> {
             let count = self.counts[kind];
             if index > count {
                 let name = KINDS[kind];
-                let message = format!("index {index} is out of bounds: the file has {count} {name}");
-                let expected =
-                    if count == 0 { "expected none".into() } else { format!("expected 1 to {count}") };
+                let message =
+                    format!("index {index} is out of bounds: the file has {count} {name}");
+                let expected = if count == 0 {
+                    "expected none".into()
+                } else {
+                    format!("expected 1 to {count}")
+                };
                 self.fault(at.clone(), message, expected);
             }
             let index = if index < 0 { index.saturating_add(counts[kind] + 1) } else { index };
@@ -140,7 +150,11 @@ impl<'t> Scan<'t> {
             "usemtl" if own_materials => {
                 let (name, at) = statement.name();
                 if name.is_empty() {
-                    self.fault(statement.at.clone(), "`usemtl` names no material", "expected a name");
+                    self.fault(
+                        statement.at.clone(),
+                        "`usemtl` names no material",
+                        "expected a name",
+                    );
                 }
                 let count = self.uses.len();
                 let index = *self.known_uses.entry(name).or_insert(count);
@@ -168,8 +182,10 @@ impl<'t> Scan<'t> {
         self.counts[kind] += 1;
         let words: Vec<_> = statement.words().collect();
         if words.len() < least {
-            let message = format!("{} number{}", words.len(), if words.len() == 1 { "" } else { "s" });
-            let expected = format!("expected {}", if kind == 1 { "2 numbers" } else { "3 numbers" });
+            let message =
+                format!("{} number{}", words.len(), if words.len() == 1 { "" } else { "s" });
+            let expected =
+                format!("expected {}", if kind == 1 { "2 numbers" } else { "3 numbers" });
             return self.fault(statement.at.clone(), message, expected);
         }
         // The fourth number of a vertex divides the others, unless they are colors.
@@ -192,7 +208,9 @@ impl<'t> Scan<'t> {
         let bad = words.iter().take(used).enumerate().find(is_bad).map(|(_, (_, at))| at.clone());
         self.cleaned.push_str(["v", "vt", "vn"][kind]);
         // tobj wants two numbers in a `vt`.
-        for (word, _) in words.iter().map(|(word, at)| (*word, at)).chain([("0", &(0..0))]).take(used) {
+        for (word, _) in
+            words.iter().map(|(word, at)| (*word, at)).chain([("0", &(0..0))]).take(used)
+        {
             self.cleaned.push(' ');
             self.cleaned.push_str(if bad.is_some() { "1" } else { word });
         }
@@ -210,7 +228,9 @@ impl<'t> Scan<'t> {
         }
         match self.current {
             Some(index) => self.uses[index].2 = true,
-            None if own_materials => self.bare_face = self.bare_face.take().or(Some(statement.at.clone())),
+            None if own_materials => {
+                self.bare_face = self.bare_face.take().or(Some(statement.at.clone()))
+            }
             None => {}
         }
         self.triangles += corners.len() as u64 - 2;
@@ -227,10 +247,15 @@ impl<'t> Scan<'t> {
             }
             match self.group {
                 Some(group) if group != has => {
-                    let message = "faces of one group differ in having texture coordinates or normals";
-                    let expected =
-                        ["v", "v//vn", "v/vt", "v/vt/vn"][usize::from(group[0]) * 2 + usize::from(group[1])];
-                    self.fault(at.clone(), message, format!("expected {expected}, as before in this group"));
+                    let message =
+                        "faces of one group differ in having texture coordinates or normals";
+                    let expected = ["v", "v//vn", "v/vt", "v/vt/vn"]
+                        [usize::from(group[0]) * 2 + usize::from(group[1])];
+                    self.fault(
+                        at.clone(),
+                        message,
+                        format!("expected {expected}, as before in this group"),
+                    );
                     return;
                 }
                 _ => self.group = Some(has),
@@ -254,7 +279,11 @@ impl<'t> Scan<'t> {
 
     fn index(&mut self, kind: usize, part: &str, at: &Range<usize>) {
         match part.parse::<i64>() {
-            Err(_) => self.fault(at.clone(), format!("`{part}` is not an index"), "expected a whole number"),
+            Err(_) => self.fault(
+                at.clone(),
+                format!("`{part}` is not an index"),
+                "expected a whole number",
+            ),
             Ok(0) => self.fault(
                 at.clone(),
                 "an index of 0",
@@ -262,7 +291,8 @@ impl<'t> Scan<'t> {
             ),
             Ok(index) if index < -self.counts[kind] => {
                 let message = format!("index {index} is out of bounds");
-                let expected = format!("expected at least -{}: so many stand above", self.counts[kind]);
+                let expected =
+                    format!("expected at least -{}: so many stand above", self.counts[kind]);
                 self.fault(at.clone(), message, expected);
             }
             // An index may point to what follows; whether it is there shows at the end.
@@ -275,7 +305,10 @@ impl<'t> Scan<'t> {
 fn unusable(word: &str) -> (String, String) {
     match finite(word) {
         Err(message) => (message, "expected a number".to_owned()),
-        Ok(0.0) => ("a vertex with w = 0 is infinitely far".to_owned(), "expected another number".to_owned()),
+        Ok(0.0) => (
+            "a vertex with w = 0 is infinitely far".to_owned(),
+            "expected another number".to_owned(),
+        ),
         Ok(_) => {
             let expected = format!("expected at most {LARGEST:e} in magnitude");
             (format!("`{word}` is too large for single precision"), expected)

@@ -38,7 +38,8 @@ impl Places {
         }
     }
 
-    /// A warning at the first of these paths that the file has, or at its head; `label` stands at the caret.
+    /// A warning at the first of these paths that the file has, or at its head; `label` stands at
+    /// the caret.
     pub fn warning(&self, paths: &[&str], message: String, label: String) -> Finding {
         let span = paths.iter().find_map(|path| self.spans.get(*path)).cloned().unwrap_or(0..0);
         Report::new(&self.path, self.source.clone(), 1).warning(span, message, label)

@@ -63,14 +63,15 @@ fn check_curve(report: &mut Report, curve: &[DVec2], node: Node) {
         let worst = (0..radii.len()).min_by(|&a, &b| radii[a].total_cmp(&radii[b])).unwrap_or(0);
         let span = node.at(worst).map_or(node.span(), |point| point.span());
         let message = format!("the profile crosses the axis: its radius falls to {radius:.3e}");
-        let help =
-            Some("a control radius may be negative only if the curve stays right of the axis".to_owned());
+        let help = Some(
+            "a control radius may be negative only if the curve stays right of the axis".to_owned(),
+        );
         report.error(span, message, "expected a larger radius here", help);
     }
 }
 
-/// A negative value of a polynomial in Bernstein form on [0, 1], if it has one below `-tolerance`: halves the interval
-/// until the hull of the coefficients decides.
+/// A negative value of a polynomial in Bernstein form on [0, 1], if it has one below `-tolerance`:
+/// halves the interval until the hull of the coefficients decides.
 fn negative(coefficients: &[f64], tolerance: f64, halvings: u32) -> Option<f64> {
     let (first, last) = (coefficients[0], coefficients[coefficients.len() - 1]);
     if let Some(value) = [first, last].into_iter().find(|&value| value < -tolerance) {
@@ -93,14 +94,16 @@ fn negative(coefficients: &[f64], tolerance: f64, halvings: u32) -> Option<f64> 
 
 /// Makes each segment start exactly where the one before ends, or reports the gap.
 fn join(report: &mut Report, curves: &mut [Vec<DVec2>], nodes: &[Node]) {
-    let extent = curves.iter().flatten().fold(0.0f64, |most, point| most.max(point.abs().max_element()));
+    let extent =
+        curves.iter().flatten().fold(0.0f64, |most, point| most.max(point.abs().max_element()));
     for index in 1..curves.len() {
         let (Some(&end), Some(&start)) = (curves[index - 1].last(), curves[index].first()) else {
             continue;
         };
         if start.distance(end) > JOIN_TOLERANCE * extent {
             let span = nodes.get(index).and_then(|node| node.at(0)).map(|point| point.span());
-            let message = format!("segment {index} does not start where segment {} ends", index - 1);
+            let message =
+                format!("segment {index} does not start where segment {} ends", index - 1);
             let label = format!("expected [{}, {}]", end.x, end.y);
             report.error(span.unwrap_or(0..0), message, label, None);
         }
@@ -112,17 +115,20 @@ fn join(report: &mut Report, curves: &mut [Vec<DVec2>], nodes: &[Node]) {
 mod tests {
     use super::negative;
 
-    /// A quadratic with coefficients (a, b, a) has its least value (a + b) / 2 in the middle: it is negative exactly
-    /// when b < -a.
+    /// A quadratic with coefficients (a, b, a) has its least value (a + b) / 2 in the middle: it is
+    /// negative exactly when b < -a.
     #[test]
     fn sign_of_a_quadratic() {
-        for (b, expected) in [(1.0, false), (-0.999, false), (-1.0, false), (-1.001, true), (-3.0, true)] {
+        for (b, expected) in
+            [(1.0, false), (-0.999, false), (-1.0, false), (-1.001, true), (-3.0, true)]
+        {
             assert_eq!(negative(&[1.0, b, 1.0], 1e-12, 40).is_some(), expected, "b = {b}");
         }
     }
 
-    /// The degree-15 curve through one negative control value among ones: B_7,15 is at most 0.203042 (at t = 7/15), so
-    /// 1 + (c - 1) 0.203042 is negative exactly when c < 1 - 1/0.203042 = -3.92509.
+    /// The degree-15 curve through one negative control value among ones: B_7,15 is at most
+    /// 0.203042 (at t = 7/15), so 1 + (c - 1) 0.203042 is negative exactly when c < 1 - 1/0.203042
+    /// = -3.92509.
     #[test]
     fn sign_at_degree_fifteen() {
         let curve = |c: f64| {

@@ -34,7 +34,8 @@ pub struct ProfileFile {
 /// What a profile file holds.
 #[derive(Clone, Debug)]
 pub struct LoadedProfile {
-    /// Control points (radius, height) of each Bezier segment, as in [`super::ShapeKind::Revolution`].
+    /// Control points (radius, height) of each Bezier segment, as in
+    /// [`super::ShapeKind::Revolution`].
     pub segments: Vec<Vec<DVec2>>,
     /// World from object.
     pub transform: Transform,
@@ -54,15 +55,19 @@ pub fn load_profile(path: &Path) -> Result<LoadedProfile, SceneErrors> {
 ///
 /// # Errors
 /// As [`load_profile`], and where something is not allowed.
-pub fn load_profile_within(path: &Path, allowance: &Allowance) -> Result<LoadedProfile, SceneErrors> {
+pub fn load_profile_within(
+    path: &Path,
+    allowance: &Allowance,
+) -> Result<LoadedProfile, SceneErrors> {
     static SCHEMA: LazyLock<Json> = LazyLock::new(schema::of::<ProfileFile>);
     let bytes = text::read(path, allowance)?;
-    let ((segments, transform), warnings) = text::parse(path, &bytes, allowance, |root, report| {
-        let item = whole(&SCHEMA, root, report);
-        let file: ProfileFile = item.read(report)?;
-        let segments = segments(report, &item, file.profile, file.segments);
-        let transform = placed(report, &item, &file.transform);
-        segments.zip(transform)
-    })?;
+    let ((segments, transform), warnings) =
+        text::parse(path, &bytes, allowance, |root, report| {
+            let item = whole(&SCHEMA, root, report);
+            let file: ProfileFile = item.read(report)?;
+            let segments = segments(report, &item, file.profile, file.segments);
+            let transform = placed(report, &item, &file.transform);
+            segments.zip(transform)
+        })?;
     Ok(LoadedProfile { segments, transform, warnings })
 }

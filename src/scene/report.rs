@@ -24,7 +24,8 @@ impl SourceFile {
     pub fn new(path: &Path, text: String) -> Self {
         let name = path.display().to_string();
         let dirty = [&name, &text].iter().any(|text| followed(text).any(is_control));
-        let shown = dirty.then(|| Arc::new(NamedSource::new(without_control(&name), without_control(&text))));
+        let shown = dirty
+            .then(|| Arc::new(NamedSource::new(without_control(&name), without_control(&text))));
         Self { file: Arc::new(NamedSource::new(name, text)), shown }
     }
 
@@ -42,16 +43,16 @@ fn followed(text: &str) -> impl Iterator<Item = (char, Option<char>)> {
     text.chars().zip(text.chars().skip(1).map(Some).chain([None]))
 }
 
-/// Whether a terminal would act on a character: all control characters but those between words and lines,
-/// and those that turn the direction of writing.
+/// Whether a terminal would act on a character: all control characters but those between words and
+/// lines, and those that turn the direction of writing.
 fn is_control((c, next): (char, Option<char>)) -> bool {
     let turns = matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
     let ends_line = c == '\r' && next == Some('\n');
     turns || c.is_control() && !matches!(c, '\n' | '\t') && !ends_line
 }
 
-/// `text` with other characters for control characters, each as long as the one it stands for, since spans
-/// count bytes.
+/// `text` with other characters for control characters, each as long as the one it stands for,
+/// since spans count bytes.
 fn without_control(text: &str) -> String {
     let shown = |followed: (char, Option<char>)| match followed.0.len_utf8() {
         _ if !is_control(followed) => followed.0,
@@ -79,7 +80,8 @@ impl SourceCode for SourceFile {
             return Ok(lines);
         }
         let (text, at) = (source.inner(), span.offset());
-        let boundary = |at: usize| (at..).find(|&at| text.is_char_boundary(at)).unwrap_or(text.len());
+        let boundary =
+            |at: usize| (at..).find(|&at| text.is_char_boundary(at)).unwrap_or(text.len());
         let line_start = text[..at].rfind('\n').map_or(0, |newline| newline + 1);
         let line_end = text[at..].find('\n').map_or(text.len(), |length| at + length);
         let start = boundary(at.saturating_sub(MOST_SHOWN / 4).max(line_start));
@@ -91,8 +93,8 @@ impl SourceCode for SourceFile {
     }
 }
 
-/// An error or a warning about a scene, with the place it is about. Prints through [`miette`] with the offending line
-/// and a caret.
+/// An error or a warning about a scene, with the place it is about. Prints through [`miette`] with
+/// the offending line and a caret.
 #[derive(Clone, Debug)]
 pub struct Finding {
     message: String,
@@ -100,7 +102,8 @@ pub struct Finding {
     severity: miette::Severity,
     file: String,
     place: Option<Place>,
-    /// An error in a value of the scene file, as opposed to a key that is missing or an error in another file.
+    /// An error in a value of the scene file, as opposed to a key that is missing or an error in
+    /// another file.
     about_value: bool,
 }
 
@@ -132,14 +135,15 @@ impl Finding {
         &self.file
     }
 
-    /// What it is about. Two errors in one value are about the same: they say it in other words, or the later follows from
-    /// the earlier.
+    /// What it is about. Two errors in one value are about the same: they say it in other words, or
+    /// the later follows from the earlier.
     pub(super) fn subject(&self) -> (String, Option<Range<usize>>, Option<String>) {
         let span = self.place.as_ref().map(|place| place.span.clone());
         (self.file.clone(), span, (!self.about_value).then(|| self.message.clone()))
     }
 
-    /// Line and column, from 1, the column in characters; `None` when the file itself cannot be read.
+    /// Line and column, from 1, the column in characters; `None` when the file itself cannot be
+    /// read.
     pub fn line_column(&self) -> Option<(usize, usize)> {
         let place = self.place.as_ref()?;
         let before = place.source.text().get(..place.span.start)?;
@@ -172,7 +176,8 @@ impl Diagnostic for Finding {
 
     fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
         let place = self.place.as_ref()?;
-        let label = LabeledSpan::new_primary_with_span(Some(place.label.clone()), place.span.clone());
+        let label =
+            LabeledSpan::new_primary_with_span(Some(place.label.clone()), place.span.clone());
         Some(Box::new(std::iter::once(label)))
     }
 }
@@ -243,13 +248,20 @@ impl Report {
         label: impl Into<String>,
         help: Option<String>,
     ) {
-        let mut finding = self.finding(miette::Severity::Error, span, message.into(), label.into(), help);
+        let mut finding =
+            self.finding(miette::Severity::Error, span, message.into(), label.into(), help);
         finding.about_value = true;
         self.errors.push(finding);
     }
 
     /// A key that a table of the scene file lacks; a table may lack several.
-    pub fn missing(&mut self, span: Range<usize>, message: String, label: String, help: Option<String>) {
+    pub fn missing(
+        &mut self,
+        span: Range<usize>,
+        message: String,
+        label: String,
+        help: Option<String>,
+    ) {
         let finding = self.finding(miette::Severity::Error, span, message, label, help);
         self.errors.push(finding);
     }
@@ -260,7 +272,12 @@ impl Report {
     }
 
     /// A warning about the scene file.
-    pub fn warn(&mut self, span: Range<usize>, message: impl Into<String>, label: impl Into<String>) {
+    pub fn warn(
+        &mut self,
+        span: Range<usize>,
+        message: impl Into<String>,
+        label: impl Into<String>,
+    ) {
         let finding = self.warning(span, message.into(), label.into());
         self.warnings.push(finding);
     }
@@ -314,7 +331,11 @@ impl Report {
                 help: Some(help),
                 severity,
                 file: file.clone(),
-                place: Some(Place { source: source.clone(), span: fault.span, label: fault.expected }),
+                place: Some(Place {
+                    source: source.clone(),
+                    span: fault.span,
+                    label: fault.expected,
+                }),
                 about_value: false,
             }
         });
@@ -328,7 +349,11 @@ impl Report {
         known: impl IntoIterator<Item = &'a str>,
         otherwise: &str,
     ) -> String {
-        if self.errors.is_full() { otherwise.to_owned() } else { did_you_mean(name, known, otherwise) }
+        if self.errors.is_full() {
+            otherwise.to_owned()
+        } else {
+            did_you_mean(name, known, otherwise)
+        }
     }
 
     /// Says of those that are not listed how many they are.
@@ -406,7 +431,12 @@ impl Faults {
         Self { most: MOST_WARNINGS_PER_ASSET, ..Self::default() }
     }
 
-    pub fn push(&mut self, span: Range<usize>, message: impl Into<String>, expected: impl Into<String>) {
+    pub fn push(
+        &mut self,
+        span: Range<usize>,
+        message: impl Into<String>,
+        expected: impl Into<String>,
+    ) {
         if !self.is_full() {
             self.listed.push(Fault { span, message: message.into(), expected: expected.into() });
         } else {
@@ -420,7 +450,8 @@ impl Faults {
     }
 }
 
-/// Longest name, in bytes, that is compared with known ones, and most of those: what it takes grows with their product.
+/// Longest name, in bytes, that is compared with known ones, and most of those: what it takes grows
+/// with their product.
 const LONGEST_COMPARED: usize = 80;
 const MOST_COMPARED: usize = 1000;
 
@@ -434,7 +465,9 @@ pub(crate) fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) 
         .into_iter()
         .filter(|candidate| candidate.len() <= LONGEST_COMPARED)
         .take(MOST_COMPARED)
-        .map(|candidate| (strsim::damerau_levenshtein(&lower, &candidate.to_lowercase()), candidate))
+        .map(|candidate| {
+            (strsim::damerau_levenshtein(&lower, &candidate.to_lowercase()), candidate)
+        })
         .filter(|&(distance, candidate)| distance <= candidate.chars().count().div_ceil(3))
         .min_by_key(|&(distance, _)| distance)
         .map(|(_, candidate)| candidate)
@@ -456,7 +489,8 @@ const MOST_LISTED: usize = 40;
 /// "`a`, `b`, `c`".
 pub(crate) fn list<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     let mut names = names.into_iter();
-    let mut quoted: Vec<_> = names.by_ref().take(MOST_LISTED).map(|name| format!("`{name}`")).collect();
+    let mut quoted: Vec<_> =
+        names.by_ref().take(MOST_LISTED).map(|name| format!("`{name}`")).collect();
     match names.count() {
         0 => {}
         more => quoted.push(format!("{more} more")),

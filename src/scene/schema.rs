@@ -25,7 +25,8 @@ pub(crate) fn close_variants(schema: &mut schemars::Schema) {
     }
 }
 
-/// The schemas that a value may match: references followed, nested alternatives flattened, `null` left out.
+/// The schemas that a value may match: references followed, nested alternatives flattened, `null`
+/// left out.
 pub(crate) fn alternatives<'s>(root: &'s Json, schema: &'s Json) -> Vec<&'s Json> {
     if let Some(reference) = schema["$ref"].as_str() {
         let target = reference.strip_prefix('#').and_then(|path| root.pointer(path));
@@ -67,7 +68,8 @@ pub(crate) fn describe(root: &Json, schema: &Json) -> String {
     if let Some(tags) = all.iter().map(|one| tag(one)).collect::<Option<Vec<_>>>() {
         return format!("a table with `type` {}", quoted(tags));
     }
-    let (words, rest): (Vec<_>, Vec<_>) = all.into_iter().partition(|one| listed_strings(one).is_some());
+    let (words, rest): (Vec<_>, Vec<_>) =
+        all.into_iter().partition(|one| listed_strings(one).is_some());
     let mut parts: Vec<_> = rest.into_iter().map(|one| describe_one(root, one)).collect();
     if !words.is_empty() {
         parts.push(quoted(words.into_iter().filter_map(listed_strings).flatten()));

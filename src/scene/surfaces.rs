@@ -56,8 +56,10 @@ pub(super) fn shapes(
         ShapeFile::Box { min, max, material, surface } => {
             if let Some(axis) = (0..3).find(|&axis| max[axis] - min[axis] < SMALLEST) {
                 let name = ["x", "y", "z"][axis];
-                let message =
-                    format!("{} is empty: min.{name} = {}, max.{name} = {}", item.path, min[axis], max[axis]);
+                let message = format!(
+                    "{} is empty: min.{name} = {}, max.{name} = {}",
+                    item.path, min[axis], max[axis]
+                );
                 let label = format!("expected {name} greater than {}", min[axis]);
                 loader.report.error(item.node.span_of("max"), message, label, None);
             }
@@ -67,7 +69,11 @@ pub(super) fn shapes(
             let segments = profile::segments(loader.report, item, profile, segments);
             let transform = placed(loader.report, item, &transform)?;
             let segments = segments?;
-            let reach = segments.iter().flatten().map(|point| point.abs().max_element()).fold(0.0, f64::max);
+            let reach = segments
+                .iter()
+                .flatten()
+                .map(|point| point.abs().max_element())
+                .fold(0.0, f64::max);
             within_reach(loader.report, item, reach * transform.scale);
             let kind = ShapeKind::Revolution { segments, transform, newton_tolerance: 0.0 };
             (kind, material, surface)
@@ -100,7 +106,8 @@ fn shape(kind: ShapeKind, material: usize, emission: [f64; 3], surface: &Surface
 /// Reports a shape that its transform blows up beyond what renderers can hold.
 fn within_reach(report: &mut Report, item: &Item, reach: f64) {
     if reach > LARGEST {
-        let message = format!("{} reaches to {reach:.1e}, too large for single precision", item.path);
+        let message =
+            format!("{} reaches to {reach:.1e}, too large for single precision", item.path);
         let label = format!("expected coordinates of at most {LARGEST:e} after the transform");
         report.error(item.node.span_of("transform"), message, label, None);
     }
@@ -121,5 +128,9 @@ pub(super) fn placed(report: &mut Report, item: &Item, file: &TransformFile) -> 
             DMat3::from_axis_angle(axis, rotate.degrees.to_radians())
         }
     };
-    Some(Transform { scale: file.scale.map_or(1.0, f64::from), rotation, translation: file.translate.into() })
+    Some(Transform {
+        scale: file.scale.map_or(1.0, f64::from),
+        rotation,
+        translation: file.translate.into(),
+    })
 }

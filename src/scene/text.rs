@@ -1,5 +1,6 @@
-//! TOML files on the way in: from bytes to a tree whose values know their place, or to findings. Every stage goes on
-//! after an error, so that one run shows them all; only a file that is not TOML stops early.
+//! TOML files on the way in: from bytes to a tree whose values know their place, or to findings.
+//! Every stage goes on after an error, so that one run shows them all; only a file that is not TOML
+//! stops early.
 
 use std::path::Path;
 
@@ -54,7 +55,12 @@ pub(super) fn parse<T>(
     if text.contains('\r') && !text.contains('\n') {
         let end = text.find('\r').unwrap_or(0);
         let help = Some("save it with line ends of Unix or Windows".to_owned());
-        report.error(end..end, "the lines end in carriage returns alone", "expected a line feed", help);
+        report.error(
+            end..end,
+            "the lines end in carriage returns alone",
+            "expected a line feed",
+            help,
+        );
         return Err(errors(path, report));
     }
     let (table, faults) = DeTable::parse_recoverable(&text);
@@ -84,7 +90,8 @@ fn errors(path: &Path, report: Report) -> SceneErrors {
 /// The file in the same folder whose name is nearest.
 pub(super) fn nearest_file(path: &Path) -> Option<String> {
     let wanted = path.file_name()?.to_string_lossy().into_owned();
-    let folder = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let folder =
+        path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let mut names: Vec<_> = std::fs::read_dir(folder)
         .ok()?
         .filter_map(|entry| Some(entry.ok()?.file_name().to_string_lossy().into_owned()))

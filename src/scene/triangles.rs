@@ -6,7 +6,8 @@ use glam::{DVec2, DVec3};
 
 use super::geometry::{Mesh, Transform, Triangle};
 
-/// A triangle is degenerate when its doubled area is at most this share of its longest edge squared.
+/// A triangle is degenerate when its doubled area is at most this share of its longest edge
+/// squared.
 const DEGENERATE: f64 = 1e-12;
 
 /// A corner of a polygon in the file's own space.
@@ -17,8 +18,8 @@ pub(super) struct Corner {
     pub uv: Option<DVec2>,
 }
 
-/// Steps of ear clipping that are left. It takes a polygon of n corners n^2 of them as a rule and n^3 at worst, which
-/// would be no end with some thousand corners.
+/// Steps of ear clipping that are left. It takes a polygon of n corners n^2 of them as a rule and
+/// n^3 at worst, which would be no end with some thousand corners.
 #[derive(Debug)]
 pub(super) struct Steps(u64);
 
@@ -51,7 +52,9 @@ pub(super) struct Polygon(pub Vec<Corner>);
 impl Polygon {
     /// The faces of a mesh that tobj has read with one index for all attributes.
     pub fn of(mesh: &tobj::Mesh) -> Vec<Self> {
-        let vec3 = |values: &[f64], index: usize| values.get(3 * index..3 * index + 3).map(DVec3::from_slice);
+        let vec3 = |values: &[f64], index: usize| {
+            values.get(3 * index..3 * index + 3).map(DVec3::from_slice)
+        };
         let corner = |&index: &u32| {
             let index = index as usize;
             Corner {
@@ -72,15 +75,17 @@ impl Polygon {
         polygons
     }
 
-    /// Twice the area times the normal (Newell); of a plane polygon exact, of a warped one the best plane.
+    /// Twice the area times the normal (Newell); of a plane polygon exact, of a warped one the best
+    /// plane.
     fn area_vector(&self) -> DVec3 {
         let base = self.0[0].position;
         let edges = self.0.windows(2);
         edges.map(|pair| (pair[0].position - base).cross(pair[1].position - base)).sum()
     }
 
-    /// Corners of the triangles that tile it, by ear clipping in the plane of [`Self::area_vector`]. A polygon that cuts
-    /// itself has no such tiling: what is left then becomes a fan.
+    /// Corners of the triangles that tile it, by ear clipping in the plane of
+    /// [`Self::area_vector`]. A polygon that cuts itself has no such tiling: what is left then
+    /// becomes a fan.
     fn triangulate(&self, steps: &mut Steps) -> Vec<[usize; 3]> {
         let axis = self.area_vector();
         let mut left: Vec<usize> = (0..self.0.len()).collect();
@@ -108,7 +113,8 @@ impl Polygon {
         }
         steps.take(left.len());
         let others = left.iter().filter(|corner| !corners.contains(corner));
-        let mut others = others.map(|&corner| self.0[corner].position).filter(|p| ![a, b, c].contains(p));
+        let mut others =
+            others.map(|&corner| self.0[corner].position).filter(|p| ![a, b, c].contains(p));
         !others.any(|p| turn(a, b, p) >= 0.0 && turn(b, c, p) >= 0.0 && turn(c, a, p) >= 0.0)
     }
 }
@@ -125,7 +131,8 @@ fn key<const N: usize>(values: [f64; N]) -> Key<N> {
     values.map(|value| (value + 0.0).to_bits())
 }
 
-/// Sums of face normals at each position, weighted by the corner's angle (Thuermer & Wuethrich 1998): not unit.
+/// Sums of face normals at each position, weighted by the corner's angle (Thuermer & Wuethrich
+/// 1998): not unit.
 pub(super) fn vertex_normals<'p>(
     polygons: impl Iterator<Item = &'p Polygon>,
     steps: &mut Steps,
@@ -175,7 +182,12 @@ impl Builder {
     }
 
     /// Adds a face. `smooth` holds normals for faces without their own; `None` makes all flat.
-    pub fn add(&mut self, polygon: &Polygon, smooth: Option<&HashMap<Key<3>, DVec3>>, steps: &mut Steps) {
+    pub fn add(
+        &mut self,
+        polygon: &Polygon,
+        smooth: Option<&HashMap<Key<3>, DVec3>>,
+        steps: &mut Steps,
+    ) {
         for triangle in polygon.triangulate(steps) {
             self.add_triangle(triangle.map(|corner| polygon.0[corner]), smooth);
         }
@@ -184,7 +196,8 @@ impl Builder {
     fn add_triangle(&mut self, mut corners: [Corner; 3], smooth: Option<&HashMap<Key<3>, DVec3>>) {
         let [a, b, c] = corners.map(|corner| corner.position);
         let area = (b - a).cross(c - a);
-        let longest = (b - a).length_squared().max((c - b).length_squared()).max((a - c).length_squared());
+        let longest =
+            (b - a).length_squared().max((c - b).length_squared()).max((a - c).length_squared());
         // Coordinates too large to square give no finite area.
         if area.length() <= DEGENERATE * longest || !area.is_finite() {
             self.degenerate += 1;
@@ -193,7 +206,8 @@ impl Builder {
         let normals = smooth.and_then(|smooth| self.corner_normals(&corners, smooth));
         let mut normals = normals.map(|normals| normals.map(|normal| self.normal(normal)));
         if let Some(own) = corners[0].normal.and(normals) {
-            // The file's normals say which side is outside; some exporters wind the corners the other way.
+            // The file's normals say which side is outside; some exporters wind the corners the
+            // other way.
             let side: DVec3 = own.iter().map(|&index| self.mesh.normals[index as usize]).sum();
             if self.transform.direction(area).dot(side) < 0.0 {
                 corners.swap(1, 2);

@@ -48,7 +48,9 @@ pub(super) fn film(loader: &mut Loader) -> Option<Film> {
         None => FilmFile::default(),
     };
     let pixels = u64::from(file.width) * u64::from(file.height);
-    if let Err(refusal) = within("picture-pixels", "pixels", pixels, loader.allowance.picture_pixels) {
+    if let Err(refusal) =
+        within("picture-pixels", "pixels", pixels, loader.allowance.picture_pixels)
+    {
         let span = loader.document.item("film").map_or(0..0, |item| item.node.span_of("width"));
         let message = format!("the picture is too large: {refusal}");
         loader.report.error(span, message, "expected fewer pixels", refusal.help());
@@ -69,7 +71,8 @@ pub(super) fn settings(loader: &mut Loader) -> Option<RenderSettings> {
     };
     let mut require = |key: &str, expected: &str, holds: fn(f64) -> bool| {
         let value = item.node.get(key);
-        let entries = value.into_iter().flat_map(|value| value.entries().map(|(.., number)| number));
+        let entries =
+            value.into_iter().flat_map(|value| value.entries().map(|(.., number)| number));
         for node in value.into_iter().chain(entries) {
             // A number below 0 that has to be whole is reported by the schema.
             if node.number().is_some_and(|number| number.is_finite() && !holds(number)) {
@@ -82,7 +85,9 @@ pub(super) fn settings(loader: &mut Loader) -> Option<RenderSettings> {
     for count in ["passes", "photons", "batch"] {
         require(count, "at least 1", |count| count != 0.0);
     }
-    require("radius", "a number from 1e-15 to 1e15", |radius| (SMALLEST..=LARGEST).contains(&radius));
+    require("radius", "a number from 1e-15 to 1e15", |radius| {
+        (SMALLEST..=LARGEST).contains(&radius)
+    });
     require("indirect_radius", "a number from 1 to 16", |times| (1.0..=16.0).contains(&times));
     require("alpha", "a number greater than 0 and at most 1", |alpha| alpha > 0.0 && alpha <= 1.0);
     item.read(loader.report)
@@ -122,12 +127,21 @@ pub(super) fn light(loader: &mut Loader, item: &Item, file: LightFile) -> Option
     Some(light)
 }
 
-pub(super) fn environment(loader: &mut Loader, item: &Item, file: &EnvironmentFile) -> Option<Environment> {
+pub(super) fn environment(
+    loader: &mut Loader,
+    item: &Item,
+    file: &EnvironmentFile,
+) -> Option<Environment> {
     let radiance = file.radiance.map(|radiance| radiance.rgb());
     let Some(path) = &file.file else {
         if file.rotate.is_some() {
             let message = "`rotate` has no meaning without a `file`";
-            loader.report.error(item.node.span_of("rotate"), message, "expected a `file` beside this", None);
+            loader.report.error(
+                item.node.span_of("rotate"),
+                message,
+                "expected a `file` beside this",
+                None,
+            );
         }
         if radiance.is_none() {
             let message = "the environment has neither `radiance` nor `file`";
@@ -144,7 +158,12 @@ pub(super) fn environment(loader: &mut Loader, item: &Item, file: &EnvironmentFi
 }
 
 /// A direction as a unit vector; reports a length of 0.
-pub(super) fn unit(loader: &mut Loader, item: &Item, key: &str, direction: [f64; 3]) -> Option<DVec3> {
+pub(super) fn unit(
+    loader: &mut Loader,
+    item: &Item,
+    key: &str,
+    direction: [f64; 3],
+) -> Option<DVec3> {
     let unit = DVec3::from(direction).try_normalize();
     if unit.is_none() {
         let message = format!("`{}.{key}` has no direction", item.path);

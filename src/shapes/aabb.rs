@@ -48,7 +48,8 @@ impl Aabb {
         d.x * d.y + d.y * d.z + d.z * d.x
     }
 
-    /// The parts at and below, and at and above, the plane `axis = position`, which must lie inside.
+    /// The parts at and below, and at and above, the plane `axis = position`, which must lie
+    /// inside.
     #[inline]
     pub fn split(self, axis: usize, position: Real) -> (Aabb, Aabb) {
         let (mut low, mut high) = (self, self);

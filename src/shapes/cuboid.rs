@@ -72,8 +72,8 @@ pub fn cuboid_error(cuboid: &Cuboid) -> Real {
     16.0 * EPS * max_abs(cuboid.lower).max(max_abs(cuboid.upper))
 }
 
-/// Each face is the unit square, upright and unmirrored to someone outside: v goes up along y; on top, v
-/// goes away along -z, and on the bottom along z.
+/// Each face is the unit square, upright and unmirrored to someone outside: v goes up along y; on
+/// top, v goes away along -z, and on the bottom along z.
 pub fn cuboid_uv(cuboid: &Cuboid, position: Vec3, face: Real) -> Vec2 {
     let q = (position - cuboid.lower) / (cuboid.upper - cuboid.lower);
     let n = cuboid_normal(face);

@@ -1,6 +1,6 @@
-//! Facets: flat outlines. A disc about a point near the outline reaches beyond it, where no photon can lie; what is
-//! found in it belongs to the part that the facet covers. Where a wall stands on the facet, it
-//! belongs to the part on this side of the wall. Twin: `shaders/shapes/facet.wgsl`.
+//! Facets: flat outlines. A disc about a point near the outline reaches beyond it, where no photon
+//! can lie; what is found in it belongs to the part that the facet covers. Where a wall stands on
+//! the facet, it belongs to the part on this side of the wall. Twin: `shaders/shapes/facet.wgsl`.
 
 use super::math::trig::{arctan2, kept};
 use super::math::{EPS, PI, max_abs, unit};
@@ -28,7 +28,8 @@ pub const WALL_BITS: u32 = 6;
 /// Corners of a square cut by the four edges of an outline and by walls, at the most.
 const CORNERS: usize = 8 + CUTS;
 
-/// The outline of a flat shape: a parallelogram `origin + s u + t v`, s and t in [0, 1], or a circle.
+/// The outline of a flat shape: a parallelogram `origin + s u + t v`, s and t in [0, 1], or a
+/// circle.
 ///
 /// A wall on a facet is one too: it stands on the segment `origin + s u`, on the side that `v`, a
 /// unit vector, points to. An edge of a mesh's flat region is a wall on both sides, of `radius` 1.
@@ -76,13 +77,15 @@ pub struct Clip {
     pub count: u32,
 }
 
-/// Angle, seen from the origin, from place `start` to place `end` on a line that passes it at `distance`.
+/// Angle, seen from the origin, from place `start` to place `end` on a line that passes it at
+/// `distance`.
 fn turn(distance: Real, start: Real, end: Real) -> Real {
     arctan2(distance * (kept(end) - start), distance * distance + start * end)
 }
 
-/// Signed area that the unit circle about the origin shares with the triangle of the origin and a piece of a line: the
-/// line passes at `distance`, to the right where positive, and the piece goes from `start` to `end` along it.
+/// Signed area that the unit circle about the origin shares with the triangle of the origin and a
+/// piece of a line: the line passes at `distance`, to the right where positive, and the piece goes
+/// from `start` to `end` along it.
 fn wedge(distance: Real, start: Real, end: Real) -> Real {
     let half_sq = 1.0 - distance * distance;
     let half = half_sq.max(0.0).sqrt();
@@ -99,7 +102,8 @@ fn cross_2d(a: Vec2, b: Vec2) -> Real {
     a.x * b.y - a.y * b.x
 }
 
-/// Area that the unit circle about the origin shares with the parallelogram `corner + s (width, 0) + t v`.
+/// Area that the unit circle about the origin shares with the parallelogram `corner + s (width, 0)
+/// + t v`.
 fn parallelogram_area(corner: Vec2, width: Real, v: Vec2) -> Real {
     let length = v.dot(v).sqrt();
     let along = v * (1.0 / length);
@@ -226,7 +230,14 @@ fn cut_share(facet: &Facet, clip: &Clip, position: Vec3, normal: Vec3, radius: R
 }
 
 /// Finds the walls on `facet` that stand in the disc.
-fn find_cuts(facets: &[Facet], facet: &Facet, position: Vec3, normal: Vec3, clip: &mut Clip, radius: Real) {
+fn find_cuts(
+    facets: &[Facet],
+    facet: &Facet,
+    position: Vec3,
+    normal: Vec3,
+    clip: &mut Clip,
+    radius: Real,
+) {
     let first = facet.walls >> WALL_BITS;
     let last = first + (facet.walls & ((1 << WALL_BITS) - 1));
     for i in first..last {
@@ -241,7 +252,8 @@ fn find_cuts(facets: &[Facet], facet: &Facet, position: Vec3, normal: Vec3, clip
                 let across = unit(wall.v.cross(wall.u));
                 let distance = d.dot(across);
                 let toward = across * if distance < 0.0 { -1.0 } else { 1.0 };
-                clip.cuts[clip.count as usize] = toward.extend(distance.abs() - MARGIN * facet.error);
+                clip.cuts[clip.count as usize] =
+                    toward.extend(distance.abs() - MARGIN * facet.error);
                 clip.count += 1;
             }
         }

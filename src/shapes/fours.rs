@@ -1,5 +1,5 @@
-//! Four rectangles or spheres at a time: lane by lane the operations of `rectangle.rs` and `sphere.rs`, and so the same
-//! bits. Only the CPU engine has this; on a GPU the lanes are rays.
+//! Four rectangles or spheres at a time: lane by lane the operations of `rectangle.rs` and
+//! `sphere.rs`, and so the same bits. Only the CPU engine has this; on a GPU the lanes are rays.
 
 use super::ray::{Hit, Ray};
 use super::real::{Real, Vec3, Vec4};
@@ -41,7 +41,11 @@ impl Vectors {
     /// The points at `t` along `direction` from here.
     #[inline(always)]
     fn along(&self, direction: &Self, t: Vec4) -> Self {
-        Self { x: self.x + direction.x * t, y: self.y + direction.y * t, z: self.z + direction.z * t }
+        Self {
+            x: self.x + direction.x * t,
+            y: self.y + direction.y * t,
+            z: self.z + direction.z * t,
+        }
     }
 }
 
@@ -73,7 +77,8 @@ impl FourRectangles {
     }
 
     /// Replaces `hit` by the nearest hit with those that `mask` names, as if by
-    /// [`intersect_rectangle`](super::rectangle::intersect_rectangle) with each in turn. `first` is the reference of lane 0.
+    /// [`intersect_rectangle`](super::rectangle::intersect_rectangle) with each in turn. `first` is
+    /// the reference of lane 0.
     #[inline(always)]
     pub fn intersect(&self, first: u32, mask: u32, ray: &Ray, hit: &mut Hit) {
         let direction = Vectors::splat(ray.direction);
@@ -119,7 +124,8 @@ impl FourSpheres {
     }
 
     /// Replaces `hit` by the nearest hit with those that `mask` names, as if by
-    /// [`intersect_sphere`](super::sphere::intersect_sphere) with each in turn. `first` is the reference of lane 0.
+    /// [`intersect_sphere`](super::sphere::intersect_sphere) with each in turn. `first` is the
+    /// reference of lane 0.
     #[inline(always)]
     pub fn intersect(&self, first: u32, mask: u32, ray: &Ray, hit: &mut Hit) {
         let k = self.curvature;
@@ -226,7 +232,8 @@ mod tests {
             let shapes: Vec<T> = (0..1 + i % 4).map(|_| make(&mut random)).collect();
             let mask = (i as u32 / 4 % 16) & ((1 << shapes.len()) - 1);
             let ray = random.ray();
-            let mut hits = [Hit { t: if i % 3 == 0 { 1.0 } else { ray.t_max }, ..Hit::none(&ray) }; 2];
+            let mut hits =
+                [Hit { t: if i % 3 == 0 { 1.0 } else { ray.t_max }, ..Hit::none(&ray) }; 2];
             four(&shapes, mask, &ray, &mut hits[0]);
             for (lane, shape) in (0..).zip(&shapes).filter(|(lane, _)| mask >> lane & 1 == 1) {
                 one(shape, 8 | lane, &ray, &mut hits[1]);
@@ -238,8 +245,9 @@ mod tests {
         (differ, met)
     }
 
-    // Theory: each lane does the operations of the test of one shape, and the nearest, of equals the first, is kept. So
-    // every bit agrees, for missing lanes, rays along an axis, from behind their origin, and ends before the shape too.
+    // Theory: each lane does the operations of the test of one shape, and the nearest, of equals
+    // the first, is kept. So every bit agrees, for missing lanes, rays along an axis, from behind
+    // their origin, and ends before the shape too.
     #[test]
     fn four_rectangles_are_one_by_one() {
         let four = |r: &[Rectangle], mask, ray: &Ray, hit: &mut Hit| {

@@ -16,7 +16,13 @@ use super::triangles::intersect_triangles;
 
 /// A ray against the shape that `reference` names.
 #[inline]
-pub fn intersect_primitive(scene: &Scene, shear: &RayShear, reference: u32, ray: &Ray, hit: &mut Hit) {
+pub fn intersect_primitive(
+    scene: &Scene,
+    shear: &RayShear,
+    reference: u32,
+    ray: &Ray,
+    hit: &mut Hit,
+) {
     let index = (reference & ((1 << REFERENCE_BITS) - 1)) as usize;
     match reference >> REFERENCE_BITS {
         KIND_TRIANGLE => intersect_triangle(&scene.triangles[index], reference, shear, ray, hit),
@@ -28,7 +34,15 @@ pub fn intersect_primitive(scene: &Scene, shear: &RayShear, reference: u32, ray:
             let patch = &scene.patches[index];
             let revolution = &scene.revolutions[patch.revolution as usize];
             let points = &scene.profile_points;
-            let at = intersect_patch(points, revolution, patch, ray.origin, ray.direction, ray.t_min, hit.t);
+            let at = intersect_patch(
+                points,
+                revolution,
+                patch,
+                ray.origin,
+                ray.direction,
+                ray.t_min,
+                hit.t,
+            );
             if at.t < hit.t {
                 *hit = Hit { t: at.t, reference, u: at.theta, v: at.tau };
             }
@@ -40,9 +54,10 @@ pub fn intersect_primitive(scene: &Scene, shear: &RayShear, reference: u32, ray:
 /// Bits of a set of patches.
 const PATCH_SET: usize = 128;
 
-/// Whether patches are put off until the walk through the tree is over. A ring lies in many leaves, and a search for a root
-/// costs more than all else; so each patch is searched once, and only up to what the ray hits besides. Where there are more
-/// patches than bits, they are searched in each leaf.
+/// Whether patches are put off until the walk through the tree is over. A ring lies in many leaves,
+/// and a search for a root costs more than all else; so each patch is searched once, and only up to
+/// what the ray hits besides. Where there are more patches than bits, they are searched in each
+/// leaf.
 pub fn has_patch_set(scene: &Scene) -> bool {
     !scene.patches.is_empty() && scene.patches.len() <= PATCH_SET
 }
@@ -69,7 +84,8 @@ impl Primitives for Shapes<'_> {
     #[inline(always)]
     fn expect(&self, references: &[u32]) {
         for reference in references.iter().take_while(|&r| r >> REFERENCE_BITS == KIND_TRIANGLE) {
-            let triangle = self.scene.triangles.get((reference & ((1 << REFERENCE_BITS) - 1)) as usize);
+            let triangle =
+                self.scene.triangles.get((reference & ((1 << REFERENCE_BITS) - 1)) as usize);
             fetch(triangle);
             fetch(triangle.map(|triangle| &triangle.attributes));
         }
@@ -118,8 +134,8 @@ impl Primitives for Shapes<'_> {
     }
 }
 
-/// A ray against the first of some references, spheres or rectangles, with those that lie in the same four; returns the
-/// other references.
+/// A ray against the first of some references, spheres or rectangles, with those that lie in the
+/// same four; returns the other references.
 #[inline(always)]
 fn intersect_fours<'a>(
     scene: &Scene,
@@ -168,10 +184,14 @@ pub fn intersect_scene(scene: &Scene, ray: &Ray) -> Hit {
     hit
 }
 
-/// [`intersect_scene`] for many rays: asks `next` for a ray in one of [`FLIGHT`](super::kdtree_many::FLIGHT) lanes and tells
-/// it what the ray before has hit in this lane, until no lane gets one. Which lane is asked when is not said.
+/// [`intersect_scene`] for many rays: asks `next` for a ray in one of
+/// [`FLIGHT`](super::kdtree_many::FLIGHT) lanes and tells it what the ray before has hit in this
+/// lane, until no lane gets one. Which lane is asked when is not said.
 #[inline(always)]
-pub fn intersect_scene_many(scene: &Scene, mut next: impl FnMut(usize, Option<&Hit>) -> Option<Ray>) {
+pub fn intersect_scene_many(
+    scene: &Scene,
+    mut next: impl FnMut(usize, Option<&Hit>) -> Option<Ray>,
+) {
     if scene.nodes.is_empty() {
         let mut last = None;
         while let Some(ray) = next(0, last.as_ref()) {
@@ -217,7 +237,8 @@ pub fn occluded(scene: &Scene, ray: &Ray) -> bool {
             return true;
         }
     }
-    !scene.nodes.is_empty() && traverse_any(&tree(scene), ray, &mut hit, Shapes::new(scene, ray, true))
+    !scene.nodes.is_empty()
+        && traverse_any(&tree(scene), ray, &mut hit, Shapes::new(scene, ray, true))
 }
 
 #[inline(always)]

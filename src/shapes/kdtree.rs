@@ -1,8 +1,8 @@
 //! Rays through the kd-tree. Twin: `shaders/shapes/kdtree.wgsl`.
 //!
-//! The far children that wait lie on a stack as deep as the tree. A node says which of its children are empty: these
-//! leaves, which are more than half of all, are neither read nor put on the stack. Both twins test the same leaves in the
-//! same order, so that ties in the distance end alike.
+//! The far children that wait lie on a stack as deep as the tree. A node says which of its children
+//! are empty: these leaves, which are more than half of all, are neither read nor put on the stack.
+//! Both twins test the same leaves in the same order, so that ties in the distance end alike.
 //!
 //! A computed hit lies off its primitive by at most some 30 roundings of the largest coordinate of
 //! the primitive as seen from the ray's origin. That is no more than the distance of the hit plus
@@ -24,18 +24,19 @@ pub const MAX_DEPTH: u32 = 32;
 /// roundings. The watertight triangle test is bounded by about 30 (7 is the most seen), the plane's
 /// distance by 3.
 pub const SLACK: Real = 64.0 * EPS;
-/// Stands for a direction component that is (nearly) zero: so small that a slab which the ray runs beside is never
-/// reached within the tree, and one which the ray runs in is never left.
+/// Stands for a direction component that is (nearly) zero: so small that a slab which the ray runs
+/// beside is never reached within the tree, and one which the ray runs in is never left.
 const LEVEL: Real = 1e-20;
 
-/// A node of the kd-tree in 8 bytes (16 in f64). Two siblings lie side by side, the lower one at an even index.
+/// A node of the kd-tree in 8 bytes (16 in f64). Two siblings lie side by side, the lower one at an
+/// even index.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain, Zeroable)]
 pub struct Node {
     /// Interior: bits of the splitting plane's position. Leaf: index of its first reference.
     pub word0: Bits,
-    /// Interior: half the index of the lower child << 4, | 8 or | 4 where the upper or lower child is empty, | axis.
-    /// Leaf: number of references << 2 | 3.
+    /// Interior: half the index of the lower child << 4, | 8 or | 4 where the upper or lower child
+    /// is empty, | axis. Leaf: number of references << 2 | 3.
     pub word1: u32,
 }
 
@@ -43,8 +44,8 @@ pub struct Node {
 pub(super) const NOTHING: u32 = 1;
 
 impl Node {
-    /// A node with two children, at `children`, which is even, and after it, split at `axis = position`; `empty`: which
-    /// of them are leaves without references.
+    /// A node with two children, at `children`, which is even, and after it, split at `axis =
+    /// position`; `empty`: which of them are leaves without references.
     pub fn interior(axis: usize, position: Real, children: u32, empty: [bool; 2]) -> Node {
         let empty = u32::from(empty[1]) << 3 | u32::from(empty[0]) << 2;
         Node { word0: position.to_bits(), word1: children << 3 | empty | axis as u32 }
@@ -166,7 +167,12 @@ pub fn traverse_closest(tree: &Tree, ray: &Ray, hit: &mut Hit, mut primitives: i
 
 /// Whether `hit` is not [`NONE`] after testing the leaves of the tree until something is hit.
 #[inline(always)]
-pub fn traverse_any(tree: &Tree, ray: &Ray, hit: &mut Hit, mut primitives: impl Primitives) -> bool {
+pub fn traverse_any(
+    tree: &Tree,
+    ray: &Ray,
+    hit: &mut Hit,
+    mut primitives: impl Primitives,
+) -> bool {
     traverse(tree, ray, true, hit, &mut primitives);
     if hit.reference == NONE {
         primitives.finish(ray, hit);
@@ -174,11 +180,15 @@ pub fn traverse_any(tree: &Tree, ray: &Ray, hit: &mut Hit, mut primitives: impl 
     hit.reference != NONE
 }
 
-/// What the walk needs to know of a ray, and the part of it up to `t_max` that lies in the tree's box, if any.
+/// What the walk needs to know of a ray, and the part of it up to `t_max` that lies in the tree's
+/// box, if any.
 #[inline(always)]
 pub(super) fn start(tree: &Tree, ray: &Ray, t_max: Real) -> Option<([Axis; 4], Real, Real)> {
-    let inverse =
-        Vec3::new(reciprocal(ray.direction.x), reciprocal(ray.direction.y), reciprocal(ray.direction.z));
+    let inverse = Vec3::new(
+        reciprocal(ray.direction.x),
+        reciprocal(ray.direction.y),
+        reciprocal(ray.direction.z),
+    );
     let to_min = tree.bounds_min - ray.origin;
     let to_max = tree.bounds_max - ray.origin;
     let reach = to_min.abs().max(to_max.abs());

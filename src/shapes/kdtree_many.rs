@@ -1,9 +1,11 @@
-//! Many rays through the kd-tree, [`FLIGHT`] of them at a time: while one waits for memory, the others go on, four of them
-//! with each instruction. A ray tests the leaves that [`traverse_closest`](super::kdtree::traverse_closest) tests, in that
-//! order, so that its hit is the same to the bit. Only the CPU engine has this; on a GPU the lanes are rays anyway.
+//! Many rays through the kd-tree, [`FLIGHT`] of them at a time: while one waits for memory, the
+//! others go on, four of them with each instruction. A ray tests the leaves that
+//! [`traverse_closest`](super::kdtree::traverse_closest) tests, in that order, so that its hit is
+//! the same to the bit. Only the CPU engine has this; on a GPU the lanes are rays anyway.
 //!
-//! A flight goes round by round. In each, rays at interior nodes take one step down, by the operations of `kdtree.rs`.
-//! Rays that come to a leaf wait there for two rounds: one for the leaf's references, one for what these name.
+//! A flight goes round by round. In each, rays at interior nodes take one step down, by the
+//! operations of `kdtree.rs`. Rays that come to a leaf wait there for two rounds: one for the
+//! leaf's references, one for what these name.
 
 use super::kdtree::{Axis, MAX_DEPTH, NOTHING, Primitives, Tree, Waiting, smaller, start};
 use super::ray::{Hit, Ray};
@@ -125,7 +127,8 @@ impl Steps {
         for i in 0..GROUPS {
             let word1 = self.word1.0[i];
             let (low, high) = (has(word1, 0), has(word1, 1));
-            let along = |x: &Each, y: &Each, z: &Each| high.blend(z.0[i], low.blend(y.0[i], x.0[i]));
+            let along =
+                |x: &Each, y: &Each, z: &Each| high.blend(z.0[i], low.blend(y.0[i], x.0[i]));
             let origin = along(&x.origin, &y.origin, &z.origin);
             let inverse = along(&x.inverse, &y.inverse, &z.inverse);
             let slack = along(&x.slack, &y.slack, &z.slack);
@@ -138,15 +141,18 @@ impl Steps {
             let (t_first, t_last) = (t - margin, t + margin);
             let (lower_empty, upper_empty) = (has(word1, 2), has(word1, 3));
             let leaf = low & high;
-            let enter_near = t_last.cmp_ge(begin) & !(backward.blend(upper_empty, lower_empty) | leaf);
-            let enter_far = t_first.cmp_le(end) & !(backward.blend(lower_empty, upper_empty) | leaf);
+            let enter_near =
+                t_last.cmp_ge(begin) & !(backward.blend(upper_empty, lower_empty) | leaf);
+            let enter_far =
+                t_first.cmp_le(end) & !(backward.blend(lower_empty, upper_empty) | leaf);
             let only_far = enter_far & !enter_near;
             let far_begin = begin.fast_max(t_first);
             self.far.0[i] = far;
             self.far_begin.0[i] = far_begin;
             self.far_end.0[i] = end;
             let node = numbers(self.node.0[i]);
-            self.node.0[i] = words(enter_near.blend(numbers(near), only_far.blend(numbers(far), node)));
+            self.node.0[i] =
+                words(enter_near.blend(numbers(near), only_far.blend(numbers(far), node)));
             self.begin.0[i] = only_far.blend(far_begin, begin);
             self.end.0[i] = enter_near.blend(end.fast_min(t_last), end);
             let set = |mask: Reals| (mask.move_mask() as u64) << (LANES * i);
@@ -160,8 +166,8 @@ impl Steps {
 
 /// Where the rays of a flight come from, and their hits go to.
 pub trait Rays {
-    /// The next ray in this lane, and its nearest hit with what is not in the tree; `last` is the hit of the ray before, if
-    /// there was one.
+    /// The next ray in this lane, and its nearest hit with what is not in the tree; `last` is the
+    /// hit of the ray before, if there was one.
     fn next(&mut self, lane: usize, last: Option<&Hit>) -> Option<(Ray, Hit)>;
 }
 
@@ -265,7 +271,8 @@ impl<R: Rays, P: Primitives, F: Fn(&Ray) -> P> Flight<'_, R, P, F> {
         let stack = &mut self.stacks[lane];
         #[allow(clippy::unnecessary_cast)] // indices are as wide as numbers, and these may be f64
         let node = *far.of(lane) as u32;
-        stack.children[stack.count] = Waiting { node, begin: *far_begin.of(lane), end: *far_end.of(lane) };
+        stack.children[stack.count] =
+            Waiting { node, begin: *far_begin.of(lane), end: *far_end.of(lane) };
         stack.count += 1;
     }
 
@@ -291,13 +298,15 @@ impl<R: Rays, P: Primitives, F: Fn(&Ray) -> P> Flight<'_, R, P, F> {
         self.take(lane, Some(hit));
     }
 
-    /// Takes the next ray that meets the tree's box. One in some dozens of steps, and its code is large: what shades the hit
-    /// may be part of it.
+    /// Takes the next ray that meets the tree's box. One in some dozens of steps, and its code is
+    /// large: what shades the hit may be part of it.
     #[inline(never)]
     fn take(&mut self, lane: usize, mut last: Option<Hit>) {
         while let Some((ray, hit)) = self.rays.next(lane, last.as_ref()) {
             if let Some((axes, begin, end)) = start(self.tree, &ray, hit.t) {
-                for (each, Axis { origin, inverse, slack, .. }) in self.steps.axes.iter_mut().zip(axes) {
+                for (each, Axis { origin, inverse, slack, .. }) in
+                    self.steps.axes.iter_mut().zip(axes)
+                {
                     *each.origin.of(lane) = origin;
                     *each.inverse.of(lane) = inverse;
                     *each.slack.of(lane) = slack;

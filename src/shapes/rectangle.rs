@@ -5,8 +5,8 @@ use super::ray::{Hit, Ray};
 use super::real::{Real, Vec3};
 use super::tables::Rectangle;
 
-/// How far beyond its edges, in edge lengths, a parallelogram still counts: neighbours that share an edge have
-/// no gap.
+/// How far beyond its edges, in edge lengths, a parallelogram still counts: neighbours that share
+/// an edge have no gap.
 pub const EDGE: Real = 8.0 * EPS;
 
 /// The crossing in `(t_min, hit.t)`; `hit.u`, `hit.v` are s and t.

@@ -11,7 +11,8 @@ use super::math::trig::sin_cos;
 use super::math::{FAR, TAU, unit};
 use super::revolution_roots::first_root;
 
-/// Relative error of a hit's position, measured in the coordinates' and the surface's size: 16 roundings.
+/// Relative error of a hit's position, measured in the coordinates' and the surface's size: 16
+/// roundings.
 const REVOLUTION_ERROR: Real = roundings(9.6e-7);
 
 /// A surface of revolution's frame and attributes. A scene point p has the local coordinates
@@ -48,8 +49,8 @@ pub struct Revolution {
 pub struct RevolutionSurface {
     /// Point on the surface, scene units.
     pub position: Vec3,
-    /// Bound on the distance from `position` to the true surface and to the ray's hit on it, across the
-    /// surface, scene units.
+    /// Bound on the distance from `position` to the true surface and to the ray's hit on it, across
+    /// the surface, scene units.
     pub error: Real,
     /// Unit normal; outward where the profile is drawn upward.
     pub normal: Vec3,
@@ -62,10 +63,12 @@ fn leading_bits(x: Real) -> Real {
     Real::from_bits(x.to_bits() & LEADING)
 }
 
-/// The ray in the frame of `revolution`, its origin moved next to the center. The move is exact up to a
-/// rounding of the result, however far the origin: distance and direction are split so that no product rounds.
+/// The ray in the frame of `revolution`, its origin moved next to the center. The move is exact up
+/// to a rounding of the result, however far the origin: distance and direction are split so that no
+/// product rounds.
 pub fn local_ray(revolution: &Revolution, origin: Vec3, direction: Vec3) -> LocalRay {
-    let high = Vec3::new(leading_bits(direction.x), leading_bits(direction.y), leading_bits(direction.z));
+    let high =
+        Vec3::new(leading_bits(direction.x), leading_bits(direction.y), leading_bits(direction.z));
     let low = direction - high;
     let far = leading_bits((revolution.center - origin).dot(direction));
     let p = ((origin + high * far) - revolution.center) + low * far;
@@ -81,9 +84,8 @@ pub fn local_ray(revolution: &Revolution, origin: Vec3, direction: Vec3) -> Loca
     LocalRay { origin: local_origin, start: far + near, direction: local_direction, side: -1.0 }
 }
 
-/// The first hit of the ray with the patch's whole ring at a distance from t_min to below t_max, scene
-/// units.
-/// `direction` is unit.
+/// The first hit of the ray with the patch's whole ring at a distance from t_min to below t_max,
+/// scene units. `direction` is unit.
 pub fn intersect_patch(
     points: &[Vec2],
     revolution: &Revolution,
@@ -148,7 +150,8 @@ pub fn revolution_surface(
 ) -> RevolutionSurface {
     let mut at = ring_point(points, piece, theta, tau);
     let p = at.point * revolution.scale;
-    // The tangent alone gives the normal, on the axis too; at a cusp the tangent next to it stands in.
+    // The tangent alone gives the normal, on the axis too; at a cusp the tangent next to it stands
+    // in.
     if at.d_tau.dot(at.d_tau) <= roundings(1e-8) * piece.length * piece.length {
         at = ring_point(points, piece, theta, tau + (0.5 - tau) * 0.001);
     }
@@ -156,8 +159,8 @@ pub fn revolution_surface(
     let dr = at.d_tau.x * cos + at.d_tau.z * sin;
     let dy = at.d_tau.y;
     let n = unit(Vec3::new(dy * cos, -dr, dy * sin));
-    let position =
-        ((revolution.center + revolution.x_axis * p.x) + revolution.y_axis * p.y) + revolution.z_axis * p.z;
+    let position = ((revolution.center + revolution.x_axis * p.x) + revolution.y_axis * p.y)
+        + revolution.z_axis * p.z;
     let normal = (revolution.x_axis * n.x + revolution.y_axis * n.y) + revolution.z_axis * n.z;
     let c = revolution.center;
     let size = revolution.scale + c.x.abs().max(c.y.abs()).max(c.z.abs());

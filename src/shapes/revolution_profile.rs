@@ -1,9 +1,10 @@
-//! The profile of a surface of revolution, piece by piece, and a ray seen in the profile's half-plane.
-//! Twin: `shaders/shapes/revolution_profile.wgsl`.
+//! The profile of a surface of revolution, piece by piece, and a ray seen in the profile's
+//! half-plane. Twin: `shaders/shapes/revolution_profile.wgsl`.
 //!
-//! A surface is S(theta, tau) = (r cos theta, y, r sin theta) in a local frame whose axis is y and in which
-//! the profile has size about one. The host cuts the profile into *patches*: short Bezier curves that are
-//! graphs h = phi(s) over their chord, with |phi'| <= `slope` and phi within [`phi_min`, `phi_max`].
+//! A surface is S(theta, tau) = (r cos theta, y, r sin theta) in a local frame whose axis is y and
+//! in which the profile has size about one. The host cuts the profile into *patches*: short Bezier
+//! curves that are graphs h = phi(s) over their chord, with |phi'| <= `slope` and phi within
+//! [`phi_min`, `phi_max`].
 
 use super::real::{Plain, Real, Vec2, Vec3, Vec4, roundings};
 use bytemuck::Zeroable;
@@ -13,9 +14,9 @@ use super::math::trig::{kept, sin_cos};
 /// Largest degree of a profile segment.
 pub const MAX_DEGREE: usize = 15;
 
-/// A short piece of profile, a graph over its chord, turned about the axis. Local units. Chord coordinates
-/// (s, h) of a profile point (r, y): s along `axis`, h along (axis.y, -axis.x), from `origin`; so h grows
-/// outward on an upward chord.
+/// A short piece of profile, a graph over its chord, turned about the axis. Local units. Chord
+/// coordinates (s, h) of a profile point (r, y): s along `axis`, h along (axis.y, -axis.x), from
+/// `origin`; so h grows outward on an upward chord.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Plain, Zeroable)]
 pub struct Patch {
@@ -57,8 +58,8 @@ pub struct Patch {
     pub step_tolerance: Real,
 }
 
-/// A ray in local units: `origin` is the point near the surface's center, `start` its distance along the
-/// scene's ray in scene units.
+/// A ray in local units: `origin` is the point near the surface's center, `start` its distance
+/// along the scene's ray in scene units.
 #[derive(Clone, Copy, Debug)]
 pub struct LocalRay {
     /// Local origin.
@@ -71,7 +72,8 @@ pub struct LocalRay {
     pub side: Real,
 }
 
-/// A point of a ray in chord coordinates; s(l) and h(l) are convex or concave on each side of the axis.
+/// A point of a ray in chord coordinates; s(l) and h(l) are convex or concave on each side of the
+/// axis.
 #[derive(Clone, Copy, Debug)]
 pub struct RayPoint {
     /// Distance from the local origin.
@@ -123,8 +125,11 @@ pub fn ray_point(piece: &Patch, ray: &LocalRay, l: Real) -> RayPoint {
     let z = o.z + d.z * l;
     let radius = (x * x + z * z).sqrt();
     // On the axis the radius has a kink: its slope there is the one-sided one.
-    let outward =
-        if radius > 0.0 { (x * d.x + z * d.z) / radius } else { ray.side * (d.x * d.x + d.z * d.z).sqrt() };
+    let outward = if radius > 0.0 {
+        (x * d.x + z * d.z) / radius
+    } else {
+        ray.side * (d.x * d.x + d.z * d.z).sqrt()
+    };
     let d_radius = if outward * ray.side > 0.0 { outward } else { 0.0 };
     let r = radius - piece.origin.x;
     let y = (o.y + d.y * l) - piece.origin.y;
@@ -164,8 +169,8 @@ pub fn tau_at(points: &[Vec2], piece: &Patch, s: Real) -> Real {
     tau
 }
 
-/// (F, phi'(s), tau) with F = h - phi(s); phi is continued past the chord's ends by its tangents. Unless
-/// `exact`, +-1 stands for F outside the band that holds phi.
+/// (F, phi'(s), tau) with F = h - phi(s); phi is continued past the chord's ends by its tangents.
+/// Unless `exact`, +-1 stands for F outside the band that holds phi.
 pub fn profile_offset(points: &[Vec2], piece: &Patch, at: RayPoint, exact: bool) -> Vec3 {
     let past = (-at.s).max(at.s - piece.length).max(0.0) * piece.slope;
     if !exact && at.h > piece.phi_max + past {

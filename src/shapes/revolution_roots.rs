@@ -1,12 +1,14 @@
-//! Where a ray meets one patch of a surface of revolution. Twin: `shaders/shapes/revolution_roots.wgsl`.
+//! Where a ray meets one patch of a surface of revolution. Twin:
+//! `shaders/shapes/revolution_roots.wgsl`.
 //!
-//! In the half-plane (radius, y) a ray is a branch of a hyperbola, radius(l) = sqrt(x^2 + z^2) convex in the
-//! distance l and y(l) linear. On either side of its closest approach to the axis both are monotone, so their
-//! chord coordinates s(l) and h(l) are bounded by their ends and end slopes. F(l) = h(l) - phi(s(l)) is zero
-//! at the hits. The search walks along the ray over intervals that hold no root (by the range of F), or at
-//! most one (F' has one sign there), or are halved. A root is found by damped Newton on the 3x3 system, started
-//! from the chord's cone; where that system is singular (axis, silhouette, cusp) or leaves the interval, by a
-//! bracketed solve of F in l alone, which is regular everywhere.
+//! In the half-plane (radius, y) a ray is a branch of a hyperbola, radius(l) = sqrt(x^2 + z^2)
+//! convex in the distance l and y(l) linear. On either side of its closest approach to the axis
+//! both are monotone, so their chord coordinates s(l) and h(l) are bounded by their ends and end
+//! slopes. F(l) = h(l) - phi(s(l)) is zero at the hits. The search walks along the ray over
+//! intervals that hold no root (by the range of F), or at most one (F' has one sign there), or are
+//! halved. A root is found by damped Newton on the 3x3 system, started from the chord's cone; where
+//! that system is singular (axis, silhouette, cusp) or leaves the interval, by a bracketed solve of
+//! F in l alone, which is regular everywhere.
 
 use super::real::{Real, Vec2, Vec3, Vec4, root_roundings, roundings};
 
@@ -24,11 +26,14 @@ pub const NEWTON_HALVINGS: u32 = 10;
 pub const BRACKETED: u32 = 256;
 /// Intervals looked at on one side of the axis at most.
 const MARCH_LIMIT: u32 = 256;
-/// Shortest interval, as a part of the first: nearer roots are a graze that rounding makes or undoes.
+/// Shortest interval, as a part of the first: nearer roots are a graze that rounding makes or
+/// undoes.
 const MARCH_LEAST: Real = root_roundings(1.0 / 8192.0);
-/// Length by which a patch reaches past its ends, in local units; several roundings of a local coordinate.
+/// Length by which a patch reaches past its ends, in local units; several roundings of a local
+/// coordinate.
 const END_TOLERANCE: Real = roundings(3e-7);
-/// Newton steps shorter than this (local units) may be rounding alone; see [`Patch::step_tolerance`].
+/// Newton steps shorter than this (local units) may be rounding alone; see
+/// [`Patch::step_tolerance`].
 pub const STEP_TOLERANCE: Real = roundings(4e-7);
 /// Residuals of this size may be rounding alone.
 const RESIDUAL_NOISE: Real = roundings(1e-6);
@@ -51,8 +56,8 @@ pub fn patch_miss() -> PatchHit {
     PatchHit { t: FAR, theta: 0.0, tau: 0.0, steps: 0 }
 }
 
-/// One Newton step (dl, dtheta, dtau) for f = o + l d - S, and D = d . (S_theta x S_tau); zero where D is
-/// as good as zero.
+/// One Newton step (dl, dtheta, dtau) for f = o + l d - S, and D = d . (S_theta x S_tau); zero
+/// where D is as good as zero.
 pub fn newton_step(direction: Vec3, f: Vec3, at: &RingPoint) -> Vec4 {
     let det = direction.dot(at.d_theta.cross(at.d_tau));
     if det * det <= (roundings(1e-8) * at.d_theta.dot(at.d_theta)) * at.d_tau.dot(at.d_tau) {
@@ -65,7 +70,8 @@ pub fn newton_step(direction: Vec3, f: Vec3, at: &RingPoint) -> Vec4 {
     Vec4::new(dl, d_theta, d_tau, det)
 }
 
-/// Damped Newton from (l, theta, tau), `t` standing for l; [`FAR`] in `t` when it does not converge.
+/// Damped Newton from (l, theta, tau), `t` standing for l; [`FAR`] in `t` when it does not
+/// converge.
 fn newton(points: &[Vec2], piece: &Patch, ray: &LocalRay, start: PatchHit) -> PatchHit {
     let mut x = start;
     let mut error_sq = FAR;
@@ -114,9 +120,15 @@ fn newton(points: &[Vec2], piece: &Patch, ray: &LocalRay, start: PatchHit) -> Pa
     PatchHit { t: FAR, ..x }
 }
 
-/// The root of F between `a` and `b`, where F has different signs: regula falsi (Illinois) with a bisection
-/// every third time.
-fn bracketed_root(points: &[Vec2], piece: &Patch, ray: &LocalRay, a: RayPoint, b: RayPoint) -> PatchHit {
+/// The root of F between `a` and `b`, where F has different signs: regula falsi (Illinois) with a
+/// bisection every third time.
+fn bracketed_root(
+    points: &[Vec2],
+    piece: &Patch,
+    ray: &LocalRay,
+    a: RayPoint,
+    b: RayPoint,
+) -> PatchHit {
     let mut low = a.l;
     let mut high = b.l;
     let mut f_low = 0.0;
@@ -161,8 +173,8 @@ fn bracketed_root(points: &[Vec2], piece: &Patch, ray: &LocalRay, a: RayPoint, b
     PatchHit { t: at.l, theta: arctan2(z, x), tau, steps: BRACKETED }
 }
 
-/// The root of F between the chord points `a` and `b` where F has different signs. `slack` is how far in s,
-/// per unit of |F|, the root can lie from a place in between.
+/// The root of F between the chord points `a` and `b` where F has different signs. `slack` is how
+/// far in s, per unit of |F|, the root can lie from a place in between.
 fn find_root(
     points: &[Vec2],
     piece: &Patch,
@@ -203,14 +215,23 @@ fn find_root(
 fn slope_range(a: RayPoint, b: RayPoint, d_phi_low: Real, d_phi_high: Real) -> Vec2 {
     let s_low = a.ds.min(b.ds);
     let s_high = a.ds.max(b.ds);
-    let least =
-        (d_phi_low * s_low).min(d_phi_low * s_high).min((d_phi_high * s_low).min(d_phi_high * s_high));
-    let most = (d_phi_low * s_low).max(d_phi_low * s_high).max((d_phi_high * s_low).max(d_phi_high * s_high));
+    let least = (d_phi_low * s_low)
+        .min(d_phi_low * s_high)
+        .min((d_phi_high * s_low).min(d_phi_high * s_high));
+    let most = (d_phi_low * s_low)
+        .max(d_phi_low * s_high)
+        .max((d_phi_high * s_low).max(d_phi_high * s_high));
     Vec2::new(a.dh.min(b.dh) - most, a.dh.max(b.dh) - least)
 }
 
 /// The first root of F in [begin, end], which lies on one side of the closest approach to the axis.
-pub fn first_root(points: &[Vec2], piece: &Patch, ray: &LocalRay, begin: Real, end: Real) -> PatchHit {
+pub fn first_root(
+    points: &[Vec2],
+    piece: &Patch,
+    ray: &LocalRay,
+    begin: Real,
+    end: Real,
+) -> PatchHit {
     if begin >= end {
         return patch_miss();
     }
@@ -224,8 +245,8 @@ pub fn first_root(points: &[Vec2], piece: &Patch, ray: &LocalRay, begin: Real, e
         }
         let next = (l + width).min(end);
         let b = ray_point(piece, ray, next);
-        // A function whose slope lies in an interval leaves the line between its ends by at most a quarter of
-        // that interval times the distance.
+        // A function whose slope lies in an interval leaves the line between its ends by at most a
+        // quarter of that interval times the distance.
         let quarter = 0.25 * (next - l);
         let bow_s = (b.ds - a.ds).abs() * quarter + END_TOLERANCE;
         let bow_h = (b.dh - a.dh).abs() * quarter;
@@ -247,10 +268,16 @@ pub fn first_root(points: &[Vec2], piece: &Patch, ray: &LocalRay, begin: Real, e
             }
             // While s runs one way, phi' is known from its ends.
             if exact && (a.ds > 0.0) == (b.ds > 0.0) {
-                range = slope_range(a, b, f_a.y.min(f_b.y) - piece.wobble, f_a.y.max(f_b.y) + piece.wobble);
+                range = slope_range(
+                    a,
+                    b,
+                    f_a.y.min(f_b.y) - piece.wobble,
+                    f_a.y.max(f_b.y) + piece.wobble,
+                );
             }
             let bow = (range.y - range.x) * quarter;
-            let touches = !exact || (f_a.x.min(f_b.x) - bow <= 0.0 && f_a.x.max(f_b.x) + bow >= 0.0);
+            let touches =
+                !exact || (f_a.x.min(f_b.x) - bow <= 0.0 && f_a.x.max(f_b.x) + bow >= 0.0);
             if touches && range.x <= 0.0 && range.y >= 0.0 && width > least {
                 width *= 0.5;
                 continue;

@@ -1,6 +1,6 @@
-//! Sphere of any radius, described about an anchor on its surface so that f32 holds from 1e-6 to 1e8.
-//! With d = o - anchor and k = 1/R a ray meets it where
-//! `(k/2) t^2 + (v.n + k d.v) t + (d.n + k |d|^2 / 2) = 0`. Twin: `shaders/shapes/sphere.wgsl`.
+//! Sphere of any radius, described about an anchor on its surface so that f32 holds from 1e-6 to
+//! 1e8. With d = o - anchor and k = 1/R a ray meets it where `(k/2) t^2 + (v.n + k d.v) t + (d.n +
+//! k |d|^2 / 2) = 0`. Twin: `shaders/shapes/sphere.wgsl`.
 
 use super::math::{EPS, PI, TAU, max_abs, trig::arctan2, unit};
 use super::ray::{Hit, Ray};
@@ -14,7 +14,10 @@ pub fn intersect_sphere(sphere: &Sphere, reference: u32, ray: &Ray, hit: &mut Hi
     let side = d0.dot(sphere.normal) + 0.5 * k * d0.dot(d0);
     // light from infinity starts behind its origin, so that the origin's side says nothing
     let backward = ray.t_min < 0.0;
-    if !backward && side >= 0.0 && ray.direction.dot(sphere.normal) + k * d0.dot(ray.direction) >= 0.0 {
+    if !backward
+        && side >= 0.0
+        && ray.direction.dot(sphere.normal) + k * d0.dot(ray.direction) >= 0.0
+    {
         return;
     }
     // from the point of the ray nearest to the anchor: small numbers however far the origin is

@@ -1,4 +1,5 @@
-//! What a hit means: position, normals, texture coordinates, material. Twin: `shaders/shapes/surface.wgsl`.
+//! What a hit means: position, normals, texture coordinates, material. Twin:
+//! `shaders/shapes/surface.wgsl`.
 
 use super::cuboid::{cuboid_axis, cuboid_error, cuboid_normal, cuboid_project, cuboid_uv};
 use super::disc::{disc_error, disc_uv, plane_error, plane_project};
@@ -59,8 +60,10 @@ pub fn surface_at(scene: &Scene, ray: &Ray, hit: &Hit) -> Surface {
             if triangle.attributes != NONE {
                 let a = &scene.attributes[triangle.attributes as usize];
                 let w = 1.0 - hit.u - hit.v;
-                s.uv =
-                    Vec2::new(a.u0 * w + a.u1 * hit.u + a.u2 * hit.v, a.v0 * w + a.v1 * hit.u + a.v2 * hit.v);
+                s.uv = Vec2::new(
+                    a.u0 * w + a.u1 * hit.u + a.u2 * hit.v,
+                    a.v0 * w + a.v1 * hit.u + a.v2 * hit.v,
+                );
                 s.facet = (a.facet_smooth >> 1).wrapping_sub(1);
                 if a.facet_smooth & 1 == 1 {
                     let m = a.n0 * w + a.n1 * hit.u + a.n2 * hit.v;
@@ -186,8 +189,8 @@ pub fn surface_at(scene: &Scene, ray: &Ray, hit: &Hit) -> Surface {
     s
 }
 
-/// `v` of a shape whose v ends at poles or rims, drawn in by half a row of its picture, so that no filter
-/// mixes in the other end.
+/// `v` of a shape whose v ends at poles or rims, drawn in by half a row of its picture, so that no
+/// filter mixes in the other end.
 fn within_ends(scene: &Scene, material: u32, v: Real) -> Real {
     if scene.textures.is_empty() {
         return v;

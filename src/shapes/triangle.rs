@@ -1,10 +1,12 @@
-//! Triangles: the watertight test of Woop, Benthin & Wald (JCGT 2013) in f32. Twin: `shaders/shapes/triangle.wgsl`.
+//! Triangles: the watertight test of Woop, Benthin & Wald (JCGT 2013) in f32. Twin:
+//! `shaders/shapes/triangle.wgsl`.
 //!
-//! Vertices are sheared so that the ray runs along +z; three edge functions then say on which side of each edge the
-//! ray passes. An edge function is a difference of two rounded products. Rounding is monotone, so its sign is right or
-//! it is 0, and it is the exact negative seen from the triangle on the other side: no ray slips between. Where
-//! the triangle is thin as the ray sees it, the rounding of the products (Dekker 1971) is added, which makes the signs
-//! exact and the weights accurate.
+//! Vertices are sheared so that the ray runs along +z; three edge functions then say on which side
+//! of each edge the ray passes. An edge function is a difference of two rounded products. Rounding
+//! is monotone, so its sign is right or it is 0, and it is the exact negative seen from the
+//! triangle on the other side: no ray slips between. Where the triangle is thin as the ray sees it,
+//! the rounding of the products (Dekker 1971) is added, which makes the signs exact and the weights
+//! accurate.
 
 use super::math::EPS;
 use super::ray::{Hit, Ray};
@@ -29,7 +31,8 @@ pub struct Triangle {
     pub attributes: u32,
 }
 
-/// What the triangle test needs to know of a ray: axis permutation and shear that turn its direction to +z.
+/// What the triangle test needs to know of a ray: axis permutation and shear that turn its
+/// direction to +z.
 #[derive(Clone, Copy, Debug)]
 pub struct RayShear {
     /// `(d_x / d_z, d_y / d_z, 1 / d_z)` after the permutation.
@@ -75,7 +78,8 @@ fn sheared(p: Vec3, shear: &RayShear, ray: &Ray) -> Vec3 {
     Vec3::new(q.x - shear.shear.x * q.z, q.y - shear.shear.y * q.z, shear.shear.z * q.z)
 }
 
-/// `a * b - p` exactly, where `p` is the rounded product (Dekker 1971, with the halves cut by a mask).
+/// `a * b - p` exactly, where `p` is the rounded product (Dekker 1971, with the halves cut by a
+/// mask).
 fn product_error(a: Real, b: Real, p: Real) -> Real {
     let a_high = Real::from_bits(a.to_bits() & LEADING);
     let b_high = Real::from_bits(b.to_bits() & LEADING);
@@ -91,9 +95,16 @@ fn exact_cross(a: Real, b: Real, c: Real, d: Real) -> Real {
     (p - q) + (product_error(a, d, p) - product_error(b, c, q))
 }
 
-/// Replaces `hit` if the ray meets the triangle, from either side, in `(t_min, hit.t)`. Edges belong to both sides.
+/// Replaces `hit` if the ray meets the triangle, from either side, in `(t_min, hit.t)`. Edges
+/// belong to both sides.
 #[inline]
-pub fn intersect_triangle(triangle: &Triangle, reference: u32, shear: &RayShear, ray: &Ray, hit: &mut Hit) {
+pub fn intersect_triangle(
+    triangle: &Triangle,
+    reference: u32,
+    shear: &RayShear,
+    ray: &Ray,
+    hit: &mut Hit,
+) {
     let a = sheared(triangle.p0, shear, ray);
     let b = sheared(triangle.p1, shear, ray);
     let c = sheared(triangle.p2, shear, ray);
@@ -110,8 +121,10 @@ pub fn intersect_triangle(triangle: &Triangle, reference: u32, shear: &RayShear,
         return;
     }
     let mut det = u + v + w;
-    // Thin: the rounding of the products would move the hit by more than about 8 roundings of the triangle's size.
-    let products = cb0.abs().max(cb1.abs()).max(ac0.abs()).max(ac1.abs()).max(ba0.abs()).max(ba1.abs());
+    // Thin: the rounding of the products would move the hit by more than about 8 roundings of the
+    // triangle's size.
+    let products =
+        cb0.abs().max(cb1.abs()).max(ac0.abs()).max(ac1.abs()).max(ba0.abs()).max(ba1.abs());
     if det.abs() < 0.5 * products {
         u = exact_cross(c.x, c.y, b.x, b.y);
         v = exact_cross(a.x, a.y, c.x, c.y);
@@ -144,9 +157,9 @@ pub fn triangle_point(triangle: &Triangle, u: Real, v: Real) -> Vec3 {
     triangle.p0 + (triangle.p1 - triangle.p0) * u + (triangle.p2 - triangle.p0) * v
 }
 
-/// How far (scene units) a new ray must start from [`triangle_point`] along the normal so as not to meet the triangle
-/// again: 16 roundings of the largest coordinate. The point itself is off by less than 6 of them, the
-/// moved origin by 2 more.
+/// How far (scene units) a new ray must start from [`triangle_point`] along the normal so as not to
+/// meet the triangle again: 16 roundings of the largest coordinate. The point itself is off by less
+/// than 6 of them, the moved origin by 2 more.
 pub fn triangle_error(triangle: &Triangle) -> Real {
     let m = triangle.p0.abs().max(triangle.p1.abs()).max(triangle.p2.abs());
     16.0 * EPS * m.x.max(m.y).max(m.z)

@@ -1,5 +1,5 @@
-//! Four triangles at a time: lane by lane the operations of `triangle.rs`, and so the same bits. Only the CPU engine has this;
-//! on a GPU the lanes are rays.
+//! Four triangles at a time: lane by lane the operations of `triangle.rs`, and so the same bits.
+//! Only the CPU engine has this; on a GPU the lanes are rays.
 
 use super::ray::{Hit, Ray};
 use super::real::{Vec3, Vec4};
@@ -7,8 +7,8 @@ use super::triangle::{RayShear, Triangle, intersect_triangle, permuted};
 
 const LANES: usize = 4;
 
-/// Replaces `hit` by the nearest hit with the triangles that `references` are the indices of, as if by
-/// [`intersect_triangle`] with each in turn.
+/// Replaces `hit` by the nearest hit with the triangles that `references` are the indices of, as if
+/// by [`intersect_triangle`] with each in turn.
 #[inline]
 pub fn intersect_triangles(
     triangles: &[Triangle],
@@ -35,7 +35,8 @@ struct Lanes {
 #[inline(always)]
 fn sheared<const AXIS: u32>(corner: [&Vec3; LANES], origin: &Lanes, slope: &Lanes) -> Lanes {
     let [a, b, c, d] = corner;
-    let (a, b, c, d) = (permuted(*a, AXIS), permuted(*b, AXIS), permuted(*c, AXIS), permuted(*d, AXIS));
+    let (a, b, c, d) =
+        (permuted(*a, AXIS), permuted(*b, AXIS), permuted(*c, AXIS), permuted(*d, AXIS));
     let x = Vec4::new(a.x, b.x, c.x, d.x) - origin.x;
     let y = Vec4::new(a.y, b.y, c.y, d.y) - origin.y;
     let z = Vec4::new(a.z, b.z, c.z, d.z) - origin.z;
@@ -76,7 +77,8 @@ fn along<const AXIS: u32>(
             continue;
         }
         let det = u + v + w;
-        let products = cb0.abs().max(cb1.abs()).max(ac0.abs()).max(ac1.abs()).max(ba0.abs()).max(ba1.abs());
+        let products =
+            cb0.abs().max(cb1.abs()).max(ac0.abs()).max(ac1.abs()).max(ba0.abs()).max(ba1.abs());
         let thin = det.abs().cmplt(products * 0.5).bitmask();
         // Where det is 0, t is no number and compares as false.
         let t = (u * a.z + v * b.z + w * c.z) / det;

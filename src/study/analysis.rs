@@ -13,7 +13,8 @@ use crate::settings::{Method, RadiusRule};
 pub struct CurvePoint {
     /// Passes.
     pub passes: u32,
-    /// Seconds of rendering, the least over the seeds: they do the same work, and what is more is the machine's.
+    /// Seconds of rendering, the least over the seeds: they do the same work, and what is more is
+    /// the machine's.
     pub seconds: f64,
     /// relMSE without the truth's own.
     pub rel_mse: Spread,
@@ -83,7 +84,8 @@ impl Part {
         self.truth.lamp
     }
 
-    /// The curves, best first, by relMSE after so many seconds; those that have no picture by then are left out.
+    /// The curves, best first, by relMSE after so many seconds; those that have no picture by then
+    /// are left out.
     pub fn ranking(&self, seconds: f64) -> Vec<(&Curve, f64)> {
         let with = self.curves.iter().filter_map(|curve| Some((curve, curve.error_at(seconds)?)));
         let mut ranking: Vec<_> = with.collect();
@@ -101,19 +103,23 @@ impl Part {
 }
 
 impl Curve {
-    /// relMSE after so many seconds, between two pictures as a power law; none before the first, the last one's after it.
+    /// relMSE after so many seconds, between two pictures as a power law; none before the first,
+    /// the last one's after it.
     pub fn error_at(&self, seconds: f64) -> Option<f64> {
         let last = self.points.last()?;
         if seconds >= last.seconds {
             return Some(last.rel_mse.mean);
         }
-        let pair =
-            self.points.windows(2).find(|pair| (pair[0].seconds..=pair[1].seconds).contains(&seconds))?;
+        let pair = self
+            .points
+            .windows(2)
+            .find(|pair| (pair[0].seconds..=pair[1].seconds).contains(&seconds))?;
         let points = [0, 1].map(|i| (pair[i].seconds, pair[i].rel_mse.mean));
         Some(fit(&points).map_or(pair[1].rel_mse.mean, |law| law.at(seconds)))
     }
 
-    /// Seconds to reach a relMSE for good, between two pictures as a power law; none where the last picture has not.
+    /// Seconds to reach a relMSE for good, between two pictures as a power law; none where the last
+    /// picture has not.
     pub fn time_to(&self, rel_mse: f64) -> Option<f64> {
         let above = self.points.iter().rposition(|point| point.rel_mse.mean > rel_mse);
         let Some(above) = above else { return Some(self.points.first()?.seconds) };
@@ -152,12 +158,17 @@ pub fn analyse(results: &Results) -> Vec<Part> {
 }
 
 fn curve(results: &Results, config: usize, setting: &Config, truth: &TruthRecord) -> Option<Curve> {
-    let runs: Vec<&[Point]> =
-        results.runs.iter().filter(|run| run.config == config).map(|run| run.points.as_slice()).collect();
+    let runs: Vec<&[Point]> = results
+        .runs
+        .iter()
+        .filter(|run| run.config == config)
+        .map(|run| run.points.as_slice())
+        .collect();
     let longest = runs.iter().max_by_key(|points| points.len())?;
     let mut points = Vec::new();
     for passes in longest.iter().map(|point| point.passes) {
-        let at = || runs.iter().filter_map(move |run| run.iter().find(|point| point.passes == passes));
+        let at =
+            || runs.iter().filter_map(move |run| run.iter().find(|point| point.passes == passes));
         let of = |value: fn(&Point) -> f64| spread(&at().map(value).collect::<Vec<_>>());
         let products = results.products.iter().find(|p| (p.config, p.passes) == (config, passes));
         let rel_mse = of(|point| point.rel_mse)?;
@@ -172,7 +183,8 @@ fn curve(results: &Results, config: usize, setting: &Config, truth: &TruthRecord
     }
     let last = points.last()?;
     let (alpha, settings) = (setting.settings.alpha, &setting.settings);
-    let (path, fixed) = (settings.method == Method::Path, settings.radius_rule == RadiusRule::Fixed);
+    let (path, fixed) =
+        (settings.method == Method::Path, settings.radius_rule == RadiusRule::Fixed);
     let noise_only = path || fixed;
     let by_passes = |value: &dyn Fn(&CurvePoint) -> Option<f64>| {
         let pairs = settled(&points).iter().filter_map(|p| Some((f64::from(p.passes), value(p)?)));
@@ -189,7 +201,10 @@ fn curve(results: &Results, config: usize, setting: &Config, truth: &TruthRecord
     Some(Curve {
         config,
         seconds_per_pass: last.seconds / f64::from(last.passes),
-        variance: Slope { fitted: by_passes(&|p| Some(p.split?.variance)), theory: Some(variance_theory) },
+        variance: Slope {
+            fitted: by_passes(&|p| Some(p.split?.variance)),
+            theory: Some(variance_theory),
+        },
         bias_sq: Slope {
             fitted: by_passes(&bias),
             theory: match (path, fixed) {
@@ -223,7 +238,8 @@ fn settled(points: &[CurvePoint]) -> &[CurvePoint] {
     }
 }
 
-/// Less the truth's own error, which is known to about a tenth: what is left below that is put there.
+/// Less the truth's own error, which is known to about a tenth: what is left below that is put
+/// there.
 fn without(values: Spread, own: f64) -> Spread {
     let less = |value: f64| (value - own).max(0.1 * own);
     Spread { mean: less(values.mean), low: less(values.low), high: less(values.high) }
@@ -298,7 +314,9 @@ mod tests {
         // Fast and coarse until the curves cross at 1 s, then slow and good.
         let curves = vec![power_law(0, 0.01, -0.5, 0.1), power_law(1, 0.01, -1.0, 0.15)];
         let front = front(&curves);
-        assert!(front.windows(2).all(|p| p[0].seconds < p[1].seconds && p[0].rel_mse > p[1].rel_mse));
+        assert!(
+            front.windows(2).all(|p| p[0].seconds < p[1].seconds && p[0].rel_mse > p[1].rel_mse)
+        );
         assert!(
             front.iter().all(|p| if p.config == 0 { p.seconds < 1.7 } else { p.seconds > 0.9 }),
             "{front:?}"

@@ -10,9 +10,11 @@ pub struct Range {
 }
 
 impl Range {
-    /// Around positive values, to the next of 1, 2, 5 times a power of ten; at least a factor of four.
+    /// Around positive values, to the next of 1, 2, 5 times a power of ten; at least a factor of
+    /// four.
     pub fn of(values: impl Iterator<Item = f64>) -> Self {
-        let (low, high) = values.fold((f64::MAX, 0.0_f64), |(low, high), v| (low.min(v), high.max(v)));
+        let (low, high) =
+            values.fold((f64::MAX, 0.0_f64), |(low, high), v| (low.min(v), high.max(v)));
         if high <= 0.0 {
             return Self { low: 0.1, high: 1.0 };
         }
@@ -22,8 +24,12 @@ impl Range {
             let decade = 10f64.powf(value.log10().floor());
             let steps = [1.0, 2.0, 5.0, 10.0].map(|step| step * decade);
             match up {
-                true => steps.into_iter().find(|step| *step >= value * 0.999).unwrap_or(10.0 * decade),
-                false => steps.into_iter().rev().find(|step| *step <= value * 1.001).unwrap_or(decade),
+                true => {
+                    steps.into_iter().find(|step| *step >= value * 0.999).unwrap_or(10.0 * decade)
+                }
+                false => {
+                    steps.into_iter().rev().find(|step| *step <= value * 1.001).unwrap_or(decade)
+                }
             }
         };
         Self { low: step(low, false), high: step(high, true) }
@@ -34,7 +40,8 @@ impl Range {
         (self.high / self.low).log10()
     }
 
-    /// About as many ticks as there is room for: every, or every second, ... power of ten, or 1, 2, 5 of each.
+    /// About as many ticks as there is room for: every, or every second, ... power of ten, or 1, 2,
+    /// 5 of each.
     pub fn ticks(self, room: f64) -> Vec<(f64, String)> {
         let (first, last) = (self.low.log10().floor() as i32, self.high.log10().ceil() as i32);
         let inside = |value: &f64| (self.low * 0.999..=self.high * 1.001).contains(value);
@@ -42,9 +49,11 @@ impl Range {
             .flat_map(|decade| [1.0, 2.0, 5.0].map(|step| step * 10f64.powi(decade)))
             .filter(inside)
             .collect();
-        let every = (1..).find(|every| (last - first) as f64 / f64::from(*every) <= room).unwrap_or(1);
-        let coarse =
-            (first..=last).filter(|decade| decade.rem_euclid(every) == 0).map(|decade| 10f64.powi(decade));
+        let every =
+            (1..).find(|every| (last - first) as f64 / f64::from(*every) <= room).unwrap_or(1);
+        let coarse = (first..=last)
+            .filter(|decade| decade.rem_euclid(every) == 0)
+            .map(|decade| 10f64.powi(decade));
         let values = if fine.len() as f64 <= room { fine } else { coarse.filter(inside).collect() };
         values.into_iter().map(|value| (value, number(value))).collect()
     }

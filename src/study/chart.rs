@@ -1,4 +1,5 @@
-//! Charts with logarithmic axes as SVG, with labels beside the curves or, where there is no room, in a legend below.
+//! Charts with logarithmic axes as SVG, with labels beside the curves or, where there is no room,
+//! in a legend below.
 
 use std::fmt::Write;
 
@@ -86,7 +87,8 @@ impl Chart {
         let legend = if narrow { labels.len() as f64 * (LINE + 3.0) + 8.0 } else { 0.0 };
         let height = plot.bottom + 44.0 + legend;
         let mut out = String::new();
-        let xmlns = if format == Format::File { " xmlns=\"http://www.w3.org/2000/svg\"" } else { "" };
+        let xmlns =
+            if format == Format::File { " xmlns=\"http://www.w3.org/2000/svg\"" } else { "" };
         let _ = write!(
             out,
             "<svg{xmlns} class=\"chart\" viewBox=\"0 0 {width} {height:.0}\" \
@@ -235,8 +237,9 @@ fn curve(series: &Series, plot: &Plot, out: &mut String) {
         })
         .collect();
     let path = |places: &mut dyn Iterator<Item = (f64, f64)>| {
-        let steps =
-            places.enumerate().map(|(i, (x, y))| format!("{}{x:.1} {y:.1}", if i == 0 { 'M' } else { 'L' }));
+        let steps = places
+            .enumerate()
+            .map(|(i, (x, y))| format!("{}{x:.1} {y:.1}", if i == 0 { 'M' } else { 'L' }));
         steps.collect::<String>()
     };
     let line = path(&mut places.iter().map(|(x, y, _)| (*x, *y)));
@@ -245,7 +248,8 @@ fn curve(series: &Series, plot: &Plot, out: &mut String) {
         return;
     };
     let _ = write!(out, "<g class=\"s{}\">", color % SERIES);
-    let ranges = || places.iter().filter_map(|(x, _, range)| range.map(|(low, high)| (*x, low, high)));
+    let ranges =
+        || places.iter().filter_map(|(x, _, range)| range.map(|(low, high)| (*x, low, high)));
     if ranges().count() > 1 {
         let around = ranges().map(|(x, low, _)| (x, low)).collect::<Vec<_>>();
         let back = ranges().map(|(x, _, high)| (x, high)).collect::<Vec<_>>();
@@ -274,20 +278,26 @@ fn mark(color: usize, hollow: bool, x: f64, y: f64) -> String {
             y - 3.2
         ),
         2 => format!("<path class=\"{class}\" d=\"M{x:.1} {:.1}l4.2 7.2h-8.4z\"/>", y - 4.6),
-        _ => format!("<path class=\"{class}\" d=\"M{x:.1} {:.1}l4.4 4.4l-4.4 4.4l-4.4-4.4z\"/>", y - 4.4),
+        _ => format!(
+            "<path class=\"{class}\" d=\"M{x:.1} {:.1}l4.4 4.4l-4.4 4.4l-4.4-4.4z\"/>",
+            y - 4.4
+        ),
     }
 }
 
-/// Names at the right, level with the curves' ends as far as there is room, with a line to where they belong.
+/// Names at the right, level with the curves' ends as far as there is room, with a line to where
+/// they belong.
 fn labels_beside(labels: &[&Series], plot: &Plot, out: &mut String) {
     let end = |series: &Series| {
         let last = series.points.iter().rev().find(|(x, y, _)| *x > 0.0 && *y > 0.0);
         last.map(|(x, y, _)| (plot.at_x(*x), plot.at_y(*y)))
     };
-    let mut ends: Vec<(&Series, (f64, f64))> = labels.iter().filter_map(|s| Some((*s, end(s)?))).collect();
+    let mut ends: Vec<(&Series, (f64, f64))> =
+        labels.iter().filter_map(|s| Some((*s, end(s)?))).collect();
     ends.sort_by(|a, b| a.1.1.total_cmp(&b.1.1));
     let wanted: Vec<f64> = ends.iter().map(|(_, (_, y))| *y).collect();
-    let places = spaced(&wanted, LINE, plot.top, plot.bottom.max(plot.top + LINE * wanted.len() as f64));
+    let places =
+        spaced(&wanted, LINE, plot.top, plot.bottom.max(plot.top + LINE * wanted.len() as f64));
     for ((series, (x, y)), place) in ends.iter().zip(places) {
         let _ = write!(
             out,
@@ -303,7 +313,8 @@ fn labels_beside(labels: &[&Series], plot: &Plot, out: &mut String) {
     }
 }
 
-/// Places near the wanted ones, which are in order, at least `gap` apart and inside the bounds if they fit.
+/// Places near the wanted ones, which are in order, at least `gap` apart and inside the bounds if
+/// they fit.
 fn spaced(wanted: &[f64], gap: f64, low: f64, high: f64) -> Vec<f64> {
     let mut places = Vec::with_capacity(wanted.len());
     let mut next = low;
@@ -344,9 +355,12 @@ mod tests {
     /// Labels keep their distance, their order and the bounds, and do not move when there is room.
     #[test]
     fn labels_do_not_overlap() {
-        for wanted in
-            [vec![50.0, 51.0, 52.0, 53.0], vec![0.0, 0.0, 0.0], vec![290.0, 299.0, 300.0], vec![10.0]]
-        {
+        for wanted in [
+            vec![50.0, 51.0, 52.0, 53.0],
+            vec![0.0, 0.0, 0.0],
+            vec![290.0, 299.0, 300.0],
+            vec![10.0],
+        ] {
             let places = spaced(&wanted, 15.0, 20.0, 300.0);
             assert!(places.windows(2).all(|p| p[1] - p[0] >= 15.0 - 1e-9), "{places:?}");
             assert!(places.iter().all(|p| (20.0 - 1e-9..=300.0).contains(p)), "{places:?}");
@@ -376,8 +390,13 @@ mod tests {
         };
         for format in [Format::Wide, Format::Narrow, Format::File] {
             let svg = chart.svg(format);
-            assert_eq!(svg.matches("<circle").count(), if format == Format::Narrow { 3 } else { 2 });
-            assert!(svg.contains("a &amp; b") && !svg.contains("a & b") && svg.contains("a &lt; b"));
+            assert_eq!(
+                svg.matches("<circle").count(),
+                if format == Format::Narrow { 3 } else { 2 }
+            );
+            assert!(
+                svg.contains("a &amp; b") && !svg.contains("a & b") && svg.contains("a &lt; b")
+            );
             assert_eq!(svg.matches("class=\"faint\"").count(), 1);
             assert!(!svg.contains("NaN") && !svg.contains("inf"), "{svg}");
             assert_eq!(svg.matches("<g").count(), svg.matches("</g>").count());

@@ -1,4 +1,5 @@
-//! Goes through truths and renders, keeps each when it is finished, and can be stopped between any two passes.
+//! Goes through truths and renders, keeps each when it is finished, and can be stopped between any
+//! two passes.
 
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
@@ -100,13 +101,18 @@ impl Study<'_> {
             // Whatever else is varied is held against the exact surfaces.
             let exact = Variant { lamp: *lamp, ..Variant::default() }.of(self.scene)?;
             let Some(truth) = self.truth(number, *lamp, &exact, observer)? else {
-                return Ok(Conducted { results, crop: self.crop.unwrap_or(whole), complete: false });
+                return Ok(Conducted {
+                    results,
+                    crop: self.crop.unwrap_or(whole),
+                    complete: false,
+                });
             };
             results.truths.push(truth.record.clone());
             truths.push(truth);
         }
-        let chosen =
-            self.crop.or(truths.first().map(|truth| crop::choose(&truth.picture, &self.development())));
+        let chosen = self
+            .crop
+            .or(truths.first().map(|truth| crop::choose(&truth.picture, &self.development())));
         let crop = chosen.unwrap_or(whole);
         for (number, truth) in truths.iter().enumerate() {
             self.write_crop(&format!("crops/truth-{number}.png"), &truth.picture, crop)?;
@@ -114,13 +120,14 @@ impl Study<'_> {
         let start = Instant::now();
         let mut made = 0;
         let total = self.about.configs.len() * self.about.seeds as usize;
-        // Seed by seed, so that a study that is stopped has something of everything, and so that what else the machine
-        // does in a while falls on all alike.
+        // Seed by seed, so that a study that is stopped has something of everything, and so that
+        // what else the machine does in a while falls on all alike.
         for seed in 0..self.about.seeds {
             for (number, config) in self.about.configs.iter().enumerate() {
                 let lamp = lamps.iter().position(|lamp| *lamp == config.variant.lamp).unwrap_or(0);
                 let scene = variants.iter().position(|v| *v == config.variant).unwrap_or(0);
-                let place = Place { number, config, scene: &scenes[scene], truth: &truths[lamp], crop };
+                let place =
+                    Place { number, config, scene: &scenes[scene], truth: &truths[lamp], crop };
                 if !self.is_done(&results, number, seed) {
                     results.runs.retain(|run| (run.config, run.seed) != (number, seed));
                     let passes = passes_of(&results, number);
@@ -133,7 +140,14 @@ impl Study<'_> {
                     made += 1;
                     let (done, label) = (results.runs.len(), config.label());
                     let remaining = start.elapsed() / made * total.saturating_sub(done) as u32;
-                    observer(&Event::Run { done, of: total, label, seed: seed + 1, last, remaining });
+                    observer(&Event::Run {
+                        done,
+                        of: total,
+                        label,
+                        seed: seed + 1,
+                        last,
+                        remaining,
+                    });
                 }
                 if seed + 1 == self.about.seeds {
                     self.finish(&mut results, number, place.truth)?;
@@ -172,12 +186,15 @@ impl Study<'_> {
         let truth = match &self.about.truth {
             TruthSpec::Files(files) => Some(from_files(files)?),
             TruthSpec::Made { method, seconds, seeds } => {
-                let of_lamp = self.about.configs.iter().filter(|config| config.variant.lamp == lamp);
+                let of_lamp =
+                    self.about.configs.iter().filter(|config| config.variant.lamp == lamp);
                 let configs: Vec<&Config> = of_lamp.collect();
                 let (seconds, seeds) = (*seconds, *seeds);
                 let interrupted = self.interrupted;
                 let maker = Maker { scene, number, configs: &configs, seconds, seeds, interrupted };
-                maker.make(*method, &self.folder, &mut |text| observer(&Event::Note(text.to_owned())))?
+                maker.make(*method, &self.folder, &mut |text| {
+                    observer(&Event::Note(text.to_owned()))
+                })?
             }
         };
         let Some(mut truth) = truth else { return Ok(None) };
@@ -187,17 +204,24 @@ impl Study<'_> {
         Ok(Some(truth))
     }
 
-    /// Whether a render is finished and, as long as its configuration is not, its pictures are there.
+    /// Whether a render is finished and, as long as its configuration is not, its pictures are
+    /// there.
     fn is_done(&self, results: &Results, config: usize, seed: u32) -> bool {
         let finished = results.products.iter().any(|p| p.config == config);
         results.runs.iter().filter(|run| (run.config, run.seed) == (config, seed)).any(|run| {
-            let kept = |point: &Point| self.folder.file(unfinished(config, seed, point.passes)).exists();
+            let kept =
+                |point: &Point| self.folder.file(unfinished(config, seed, point.passes)).exists();
             finished || self.about.seeds < 2 || run.points.iter().all(kept)
         })
     }
 
     /// One render, measured; none where it was interrupted.
-    fn run(&self, place: &Place, seed: u32, passes: Option<u32>) -> Result<Option<RunRecord>, StudyError> {
+    fn run(
+        &self,
+        place: &Place,
+        seed: u32,
+        passes: Option<u32>,
+    ) -> Result<Option<RunRecord>, StudyError> {
         let Place { number, config, scene, truth, crop } = *place;
         let mut settings = config.settings.clone();
         settings.seed = settings.seed.wrapping_add(u64::from(seed));
@@ -222,14 +246,17 @@ impl Study<'_> {
         let setup_seconds = start.elapsed().as_secs_f64();
         let until = passes.map_or(Until::Seconds(self.about.run_seconds), Until::Passes);
         let mut snapshots = Vec::new();
-        match progressive(engine.as_mut(), until, self.interrupted, &mut |snapshot| snapshots.push(snapshot))
-        {
+        match progressive(engine.as_mut(), until, self.interrupted, &mut |snapshot| {
+            snapshots.push(snapshot)
+        }) {
             Ok(true) => (),
             Ok(false) => return Ok(None),
             Err(error) => return Ok(Some(failed(error.to_string(), &name))),
         }
         let one_pass = match snapshots.as_slice() {
-            [first, both, ..] if both.passes == 2 => one_pass_error(&first.picture, &both.picture).ok(),
+            [first, both, ..] if both.passes == 2 => {
+                one_pass_error(&first.picture, &both.picture).ok()
+            }
             _ => None,
         };
         let mut points = Vec::new();
@@ -239,7 +266,8 @@ impl Study<'_> {
                 Err(error) => return Ok(Some(failed(error.to_string(), &name))),
             }
             if self.about.seeds > 1 {
-                self.folder.keep_picture(&unfinished(number, seed, snapshot.passes), &snapshot.picture)?;
+                self.folder
+                    .keep_picture(&unfinished(number, seed, snapshot.passes), &snapshot.picture)?;
             }
             if seed == 0 {
                 self.write_crop(&crop_name(number, snapshot.passes), &snapshot.picture, crop)?;
@@ -257,19 +285,28 @@ impl Study<'_> {
         }))
     }
 
-    /// When all renders of a configuration are there: the products of their errors, after which the pictures can go.
-    fn finish(&self, results: &mut Results, config: usize, truth: &Truth) -> Result<(), StudyError> {
+    /// When all renders of a configuration are there: the products of their errors, after which the
+    /// pictures can go.
+    fn finish(
+        &self,
+        results: &mut Results,
+        config: usize,
+        truth: &Truth,
+    ) -> Result<(), StudyError> {
         if self.about.seeds < 2 || results.products.iter().any(|p| p.config == config) {
             return Ok(());
         }
-        let runs: Vec<&RunRecord> = results.runs.iter().filter(|run| run.config == config).collect();
-        let Some(shortest) = runs.iter().map(|run| &run.points).min_by_key(|points| points.len()) else {
+        let runs: Vec<&RunRecord> =
+            results.runs.iter().filter(|run| run.config == config).collect();
+        let Some(shortest) = runs.iter().map(|run| &run.points).min_by_key(|points| points.len())
+        else {
             return Ok(());
         };
         let mut found = Vec::new();
         for passes in shortest.iter().map(|point| point.passes) {
             let names = (0..self.about.seeds).map(|seed| unfinished(config, seed, passes));
-            let pictures: Option<Vec<Picture>> = names.map(|name| self.folder.picture(&name)).collect();
+            let pictures: Option<Vec<Picture>> =
+                names.map(|name| self.folder.picture(&name)).collect();
             if let Some(pictures) = pictures {
                 let products = Products::of(&pictures, &truth.picture);
                 found.push(ProductsRecord { config, passes, products });
@@ -277,7 +314,9 @@ impl Study<'_> {
         }
         let names: Vec<String> = runs
             .iter()
-            .flat_map(|run| run.points.iter().map(|point| unfinished(config, run.seed, point.passes)))
+            .flat_map(|run| {
+                run.points.iter().map(|point| unfinished(config, run.seed, point.passes))
+            })
             .collect();
         results.products.extend(found);
         self.folder.keep_products(&results.products)?;

@@ -4,12 +4,15 @@ use crate::film::{Development, Picture, Region};
 
 /// Sides of the part, at most, in pixels.
 const SIDE: u32 = 96;
-/// Contrast is looked for between the means of blocks of so many pixels a side, so that noise is none.
+/// Contrast is looked for between the means of blocks of so many pixels a side, so that noise is
+/// none.
 const BLOCK: u32 = 4;
-/// More contrast than this, in display values of three channels, counts as this: a lamp's edge is not worth more than any.
+/// More contrast than this, in display values of three channels, counts as this: a lamp's edge is
+/// not worth more than any.
 const ENOUGH: f64 = 0.3;
 
-/// The square with the most contrast on the screen: the largest sum of differences of neighbouring blocks.
+/// The square with the most contrast on the screen: the largest sum of differences of neighbouring
+/// blocks.
 pub fn choose(picture: &Picture, development: &Development) -> Region {
     let side = SIDE.min(picture.width).min(picture.height);
     let (columns, rows) = (picture.width / BLOCK, picture.height / BLOCK);
@@ -45,29 +48,39 @@ pub fn choose(picture: &Picture, development: &Development) -> Region {
 
 /// Mean over a block of the sum of its display values.
 fn mean_shown(picture: &Picture, development: &Development, column: u32, row: u32) -> f64 {
-    let block =
-        Region { x0: column * BLOCK, y0: row * BLOCK, x1: (column + 1) * BLOCK, y1: (row + 1) * BLOCK };
+    let block = Region {
+        x0: column * BLOCK,
+        y0: row * BLOCK,
+        x1: (column + 1) * BLOCK,
+        y1: (row + 1) * BLOCK,
+    };
     let pixels = block.crop(picture).rgb;
-    pixels.iter().map(|rgb| development.display(*rgb).iter().sum::<f64>()).sum::<f64>() / pixels.len() as f64
+    pixels.iter().map(|rgb| development.display(*rgb).iter().sum::<f64>()).sum::<f64>()
+        / pixels.len() as f64
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// A patch of large squares in a noisy picture is what is chosen, and a small picture is taken whole.
+    /// A patch of large squares in a noisy picture is what is chosen, and a small picture is taken
+    /// whole.
     #[test]
     fn contrast_attracts() {
         let patch = |x: u32, y: u32| (200..260).contains(&x) && (40..100).contains(&y);
-        let picture =
-            Picture::from_fn(320, 200, |x, y| match (patch(x, y), (x / 8 + y / 8) % 2, (x + y) % 2) {
+        let picture = Picture::from_fn(320, 200, |x, y| {
+            match (patch(x, y), (x / 8 + y / 8) % 2, (x + y) % 2) {
                 (true, 0, _) => [0.9; 3],
                 (true, ..) => [0.2; 3],
                 (false, _, 0) => [0.15; 3],
                 (false, ..) => [0.9; 3],
-            });
+            }
+        });
         let region = choose(&picture, &Development::default());
-        assert!(region.x0 <= 200 && region.x1 >= 260 && region.y0 <= 40 && region.y1 >= 100, "{region}");
+        assert!(
+            region.x0 <= 200 && region.x1 >= 260 && region.y0 <= 40 && region.y1 >= 100,
+            "{region}"
+        );
         assert!(region.fits(320, 200));
         for (width, height) in [(7, 5), (3, 2), (96, 96), (97, 400)] {
             let small = Picture::from_fn(width, height, |x, _| [x as f32; 3]);

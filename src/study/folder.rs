@@ -142,22 +142,26 @@ impl Folder {
         if file.exists() {
             // what is added to later: a pipe would wait for a reader
             for file in [RUNS, PRODUCTS].map(|name| path.join(name)) {
-                storage::check(&file, Purpose::Keepsake).map_err(|cause| io(&file, "written", cause))?;
+                storage::check(&file, Purpose::Keepsake)
+                    .map_err(|cause| io(&file, "written", cause))?;
             }
             let text = storage::read_text(&file, memory::readable());
             let text = text.map_err(|cause| io(&file, "read", cause))?;
-            let found: About = serde_json::from_str(&text)
-                .map_err(|error| other(format!("its {ABOUT} is not one of this version's: {error}")))?;
+            let found: About = serde_json::from_str(&text).map_err(|error| {
+                other(format!("its {ABOUT} is not one of this version's: {error}"))
+            })?;
             return match difference(&found, about) {
                 None => Ok(folder),
-                Some(what) => {
-                    Err(other(format!("it holds a study of {what}; name another folder, or remove this one")))
-                }
+                Some(what) => Err(other(format!(
+                    "it holds a study of {what}; name another folder, or remove this one"
+                ))),
             };
         }
         let used = fs::read_dir(path).is_ok_and(|mut entries| entries.next().is_some());
         if used || path.is_file() {
-            return Err(other("it holds something else than a study; name another folder".to_owned()));
+            return Err(other(
+                "it holds something else than a study; name another folder".to_owned(),
+            ));
         }
         for sub in ["truth", "unfinished", "crops", "charts"] {
             let sub = path.join(sub);
@@ -218,9 +222,12 @@ impl Folder {
     fn keep<T: Serialize>(&self, name: &str, items: &[T]) -> Result<(), FileError> {
         let file = self.file(name);
         let lines = items.iter().map(serde_json::to_string).collect::<Result<Vec<_>, _>>();
-        let lines =
-            lines.map_err(|error| FileError::Encode { file: file.clone(), what: error.to_string() })?;
-        write_whole(&file, lines.iter().flat_map(|line| [line.as_str(), "\n"]).collect::<String>().as_bytes())
+        let lines = lines
+            .map_err(|error| FileError::Encode { file: file.clone(), what: error.to_string() })?;
+        write_whole(
+            &file,
+            lines.iter().flat_map(|line| [line.as_str(), "\n"]).collect::<String>().as_bytes(),
+        )
     }
 }
 
@@ -230,7 +237,8 @@ fn io(file: &Path, verb: &'static str, cause: std::io::Error) -> FileError {
 
 /// In which way a study is another one.
 fn difference(found: &About, wanted: &About) -> Option<String> {
-    let About { version, scene, scene_text, size, own_size: _, configs, seeds, run_seconds, truth } = found;
+    let About { version, scene, scene_text, size, own_size: _, configs, seeds, run_seconds, truth } =
+        found;
     let checks = [
         (*scene != wanted.scene, format!("the scene `{scene}`")),
         (*scene_text != wanted.scene_text, "an older text of this scene".to_owned()),

@@ -76,11 +76,18 @@ impl FromStr for Axis {
             return Err(form());
         }
         if !NAMES.iter().any(|(known, _)| *known == name) {
-            let nearest =
-                NAMES.iter().map(|(known, _)| (strsim::damerau_levenshtein(known, &name), *known)).min();
-            let near =
-                nearest.filter(|(distance, known)| *distance <= known.len() / 3).map(|(_, known)| known);
-            return Err(GridError::Name { name, near, known: NAMES.map(|(known, _)| known).join(", ") });
+            let nearest = NAMES
+                .iter()
+                .map(|(known, _)| (strsim::damerau_levenshtein(known, &name), *known))
+                .min();
+            let near = nearest
+                .filter(|(distance, known)| *distance <= known.len() / 3)
+                .map(|(_, known)| known);
+            return Err(GridError::Name {
+                name,
+                near,
+                known: NAMES.map(|(known, _)| known).join(", "),
+            });
         }
         // Each value has to be one, whatever it will be combined with.
         let mut any = Config::new(RenderSettings::default(), "auto");
@@ -125,7 +132,8 @@ impl Config {
     }
 
     fn set(&mut self, name: &str, text: &str) -> Result<(), GridError> {
-        let fault = |what: String| GridError::Value { name: name.to_owned(), value: text.to_owned(), what };
+        let fault =
+            |what: String| GridError::Value { name: name.to_owned(), value: text.to_owned(), what };
         match name {
             "device" => self.device = text.to_owned(),
             "lamp_area" => self.variant.lamp = Some(text.parse().map_err(fault)?),
@@ -146,7 +154,11 @@ impl Config {
     pub fn label(&self) -> String {
         match self.choices.as_slice() {
             [] => self.base.clone(),
-            choices => choices.iter().map(|(name, value)| label(name, value)).collect::<Vec<_>>().join(", "),
+            choices => choices
+                .iter()
+                .map(|(name, value)| label(name, value))
+                .collect::<Vec<_>>()
+                .join(", "),
         }
     }
 
@@ -160,16 +172,20 @@ impl Config {
             ("radius", Radius::Auto) => "auto".to_owned(),
             ("radius", Radius::Pixels(r)) => format!("{r}px"),
             ("radius", Radius::Units(r)) => format!("{r}"),
-            ("indirect_radius", Radius::Auto) if self.settings.indirect_radius.is_none() => "auto".to_owned(),
+            ("indirect_radius", Radius::Auto) if self.settings.indirect_radius.is_none() => {
+                "auto".to_owned()
+            }
             ("indirect_radius", _) => format!("{}", self.settings.wider()),
-            _ => match serde_json::to_value(&self.settings).map(|settings| settings[name].clone()) {
-                Ok(Value::String(word)) => word,
-                Ok(Value::Number(number)) => format!("{:.4}", number.as_f64().unwrap_or(0.0))
-                    .trim_end_matches('0')
-                    .trim_end_matches('.')
-                    .to_owned(),
-                _ => String::new(),
-            },
+            _ => {
+                match serde_json::to_value(&self.settings).map(|settings| settings[name].clone()) {
+                    Ok(Value::String(word)) => word,
+                    Ok(Value::Number(number)) => format!("{:.4}", number.as_f64().unwrap_or(0.0))
+                        .trim_end_matches('0')
+                        .trim_end_matches('.')
+                        .to_owned(),
+                    _ => String::new(),
+                }
+            }
         }
     }
 
@@ -222,12 +238,14 @@ fn thousands(number: f64) -> String {
     }
 }
 
-/// All combinations of the axes' values, and with `varied` each of those axes' values alone beside the scene's own.
+/// All combinations of the axes' values, and with `varied` each of those axes' values alone beside
+/// the scene's own.
 pub fn configs(base: &Config, product: &[Axis], varied: &[Axis]) -> Result<Vec<Config>, GridError> {
     let mut configs = vec![base.clone()];
     for axis in product {
-        let combine =
-            |config: &Config| axis.values.iter().map(|v| config.with(&axis.name, v)).collect::<Vec<_>>();
+        let combine = |config: &Config| {
+            axis.values.iter().map(|v| config.with(&axis.name, v)).collect::<Vec<_>>()
+        };
         configs = configs.iter().flat_map(combine).collect::<Result<_, _>>()?;
     }
     for axis in varied {
@@ -279,15 +297,22 @@ fn radius(text: &str) -> Result<Radius, String> {
 }
 
 /// Settings with one of their fields read from text, as a scene file would.
-fn with_setting(settings: &RenderSettings, name: &str, text: &str) -> Result<RenderSettings, String> {
+fn with_setting(
+    settings: &RenderSettings,
+    name: &str,
+    text: &str,
+) -> Result<RenderSettings, String> {
     let value = match text.parse::<f64>() {
-        Ok(number) if number.fract() == 0.0 && (0.0..1e15).contains(&number) => Value::from(number as u64),
+        Ok(number) if number.fract() == 0.0 && (0.0..1e15).contains(&number) => {
+            Value::from(number as u64)
+        }
         Ok(number) => Value::from(number),
         Err(_) => Value::from(text),
     };
     let mut object = serde_json::to_value(settings).map_err(|error| error.to_string())?;
     object[name] = value;
-    let changed: RenderSettings = serde_json::from_value(object).map_err(|error| error.to_string())?;
+    let changed: RenderSettings =
+        serde_json::from_value(object).map_err(|error| error.to_string())?;
     let within = |least: u32, value: u32, most: u32| match (least..=most).contains(&value) {
         true => Ok(()),
         false => Err(format!("expected a whole number from {least} to {most}")),
@@ -317,9 +342,13 @@ mod tests {
     #[test]
     fn products_and_stars() {
         let base = Config::new(RenderSettings::default(), "cpu");
-        let all = configs(&base, &axes(&["radius_rule=global,local", "photons=1e4,2e4,4e4"]), &[]).unwrap();
+        let all = configs(&base, &axes(&["radius_rule=global,local", "photons=1e4,2e4,4e4"]), &[])
+            .unwrap();
         assert_eq!(all.len(), 6);
-        assert_eq!((all[5].settings.radius_rule, all[5].settings.photons), (RadiusRule::Local, 40_000));
+        assert_eq!(
+            (all[5].settings.radius_rule, all[5].settings.photons),
+            (RadiusRule::Local, 40_000)
+        );
         assert_eq!(all[5].label(), "local rule, 40k photons");
         assert_eq!(all[5].label_without(&["radius_rule"]), "40k photons");
         // The scene's own is there once: sppm is the default.
@@ -329,8 +358,11 @@ mod tests {
         assert_eq!(star[1].settings.method, Method::Path);
         assert_eq!(star[2].settings.method, Method::Sppm);
         // What differs in the scene alone is another point of the grid too.
-        let star =
-            configs(&base, &[], &axes(&["revolutions=exact,16", "newton_tolerance=1e-3", "lamp_area=point"]));
+        let star = configs(
+            &base,
+            &[],
+            &axes(&["revolutions=exact,16", "newton_tolerance=1e-3", "lamp_area=point"]),
+        );
         let labels: Vec<_> = star.unwrap().iter().map(Config::label).collect();
         assert_eq!(
             labels,

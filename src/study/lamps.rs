@@ -1,4 +1,5 @@
-//! A scene with its lamps made larger or smaller at equal power, for studies of what small lamps cost.
+//! A scene with its lamps made larger or smaller at equal power, for studies of what small lamps
+//! cost.
 
 use std::f64::consts::PI;
 use std::fmt;
@@ -40,13 +41,16 @@ impl fmt::Display for Lamp {
     }
 }
 
-/// The scene with lamps of another size: each is scaled about its centre, and its radiance so that its power stays. A
-/// sphere that becomes a point has the same intensity in every direction, `pi r^2 L`.
+/// The scene with lamps of another size: each is scaled about its centre, and its radiance so that
+/// its power stays. A sphere that becomes a point has the same intensity in every direction, `pi
+/// r^2 L`.
 ///
 /// # Errors
-/// In words, for a scene without a lamp that has an area, and for lamps that cannot be scaled or be points.
+/// In words, for a scene without a lamp that has an area, and for lamps that cannot be scaled or be
+/// points.
 pub fn with_lamp(scene: &Scene, lamp: Lamp) -> Result<Scene, String> {
-    let areas = scene.shapes.iter().filter(|shape| shape.is_emitter()).map(|shape| area(&shape.kind));
+    let areas =
+        scene.shapes.iter().filter(|shape| shape.is_emitter()).map(|shape| area(&shape.kind));
     let total = areas
         .sum::<Option<f64>>()
         .ok_or("lamps that are meshes, planes or of revolution have no size to set")?;
@@ -67,7 +71,8 @@ pub fn with_lamp(scene: &Scene, lamp: Lamp) -> Result<Scene, String> {
             for shape in scene.shapes.iter().filter(|shape| shape.is_emitter()) {
                 let ShapeKind::Sphere { center, radius } = shape.kind else {
                     return Err(
-                        "only lamps that are spheres shine like points when they are small".to_owned()
+                        "only lamps that are spheres shine like points when they are small"
+                            .to_owned(),
                     );
                 };
                 let intensity = shape.emission.map(|radiance| radiance * PI * radius.powi(2));
@@ -151,7 +156,10 @@ emission = [2.0, 4.0, 8.0]
             let total: f64 = after.shapes.iter().map(|shape| area(&shape.kind).unwrap()).sum();
             assert!((total / 1e-4 - 1.0).abs() < 1e-12, "{lamp}: {total}");
             assert!((power(&after) / power(&before) - 1.0).abs() < 1e-12, "{lamp}");
-            assert!(power(&after) / power(&scene(lamp)) < 1.5, "the comparison sees a factor of two");
+            assert!(
+                power(&after) / power(&scene(lamp)) < 1.5,
+                "the comparison sees a factor of two"
+            );
         }
     }
 
@@ -160,11 +168,15 @@ emission = [2.0, 4.0, 8.0]
         let sphere = scene("type = \"sphere\"\ncenter = [1.0, 2.0, 3.0]\nradius = 0.5");
         let point = with_lamp(&sphere, Lamp::Point).unwrap();
         assert!(point.shapes.is_empty());
-        let Light::Point { position, intensity } = point.lights[0] else { panic!("{:?}", point.lights) };
+        let Light::Point { position, intensity } = point.lights[0] else {
+            panic!("{:?}", point.lights)
+        };
         assert_eq!(position, DVec3::new(1.0, 2.0, 3.0));
         // Power of a point is 4 pi I.
         assert!((4.0 * PI * intensity[1] / (PI * power(&sphere)) - 1.0).abs() < 1e-12);
-        let disc = scene("type = \"disc\"\ncenter = [1.0, 2.0, 3.0]\nnormal = [0.0, 1.0, 0.0]\nradius = 0.5");
+        let disc = scene(
+            "type = \"disc\"\ncenter = [1.0, 2.0, 3.0]\nnormal = [0.0, 1.0, 0.0]\nradius = 0.5",
+        );
         assert!(with_lamp(&disc, Lamp::Point).is_err());
         assert!(with_lamp(&point, Lamp::Area(1.0)).is_err(), "no lamp with a surface");
     }

@@ -1,10 +1,11 @@
-//! Speed against accuracy: one scene rendered with a grid of settings and several seeds, measured against a truth while it
-//! gets better, and told as curves, tables and a page.
+//! Speed against accuracy: one scene rendered with a grid of settings and several seeds, measured
+//! against a truth while it gets better, and told as curves, tables and a page.
 //!
-//! [`grid`] says which settings there are, [`truth`] what they are held against, [`render`] makes one progressive render
-//! with snapshots, [`conduct`] goes through all of them and keeps what it has in a [`folder`]. [`statistics`] and
-//! [`analysis`] make figures of that, [`axis`], [`chart`] and [`panels`] pictures, [`tables`] and [`report`] the files.
-//! docs/study.md tells how to read them.
+//! [`grid`] says which settings there are, [`truth`] what they are held against, [`render`] makes
+//! one progressive render with snapshots, [`conduct`] goes through all of them and keeps what it
+//! has in a [`folder`]. [`statistics`] and [`analysis`] make figures of that, [`axis`], [`chart`]
+//! and [`panels`] pictures, [`tables`] and [`report`] the files. docs/study.md tells how to read
+//! them.
 
 pub mod analysis;
 pub mod axis;

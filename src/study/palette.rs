@@ -1,5 +1,6 @@
-//! Colors of charts and pages, for light and dark screens. The series' hues are those of Okabe & Ito (2008), which
-//! color-blind eyes can tell apart, darkened or lightened until each stands out from the ground.
+//! Colors of charts and pages, for light and dark screens. The series' hues are those of Okabe &
+//! Ito (2008), which color-blind eyes can tell apart, darkened or lightened until each stands out
+//! from the ground.
 
 /// How many series there are before colors repeat.
 pub const SERIES: usize = 8;
@@ -12,7 +13,8 @@ const DARK: [&str; SERIES] =
 /// A style sheet that sets the color variables and the classes of charts.
 pub fn style() -> String {
     let variables = |ink: &str, soft: &str, line: &str, ground: &str, series: [&str; SERIES]| {
-        let series: String = (0..).zip(series).map(|(i, color)| format!("--s{i}:{color};")).collect();
+        let series: String =
+            (0..).zip(series).map(|(i, color)| format!("--s{i}:{color};")).collect();
         format!("--ink:{ink};--soft:{soft};--line:{line};--ground:{ground};{series}")
     };
     let light = variables("#1c1f23", "#5b636d", "#d9dde2", "#ffffff", LIGHT);

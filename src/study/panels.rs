@@ -26,7 +26,8 @@ struct Group {
     members: Vec<(usize, String)>,
 }
 
-/// The panels of a part: one for each setting of a star, one for each value of the first setting of a large product.
+/// The panels of a part: one for each setting of a star, one for each value of the first setting of
+/// a large product.
 pub fn panels(about: &About, part: &Part) -> Vec<Panel> {
     let groups = groups(about, part);
     groups.into_iter().map(|group| panel(part, &group)).collect()
@@ -41,7 +42,9 @@ fn groups(about: &About, part: &Part) -> Vec<Group> {
     let base = members.iter().find(|(_, config)| choices(config).is_empty());
     let mut axes: Vec<(String, String)> = Vec::new();
     for choice in members.iter().flat_map(|(_, config)| choices(config).into_iter().take(1)) {
-        if !axes.iter().any(|(name, value)| (name, base.is_some() || *value == choice.1) == (&choice.0, true))
+        if !axes
+            .iter()
+            .any(|(name, value)| (name, base.is_some() || *value == choice.1) == (&choice.0, true))
         {
             axes.push(choice);
         }
@@ -118,10 +121,15 @@ fn panel(part: &Part, group: &Group) -> Panel {
         x_ticks: None,
     };
     let time = "seconds of rendering";
-    let error = curves(|p| (p.seconds, p.rel_mse.mean, Some((p.rel_mse.low, p.rel_mse.high))), false);
+    let error =
+        curves(|p| (p.seconds, p.rel_mse.mean, Some((p.rel_mse.low, p.rel_mse.high))), false);
     let flip = curves(|p| (p.seconds, p.flip.mean, Some((p.flip.low, p.flip.high))), false);
-    let mut parts = curves(|p| (f64::from(p.passes), p.split.map_or(0.0, |s| s.variance), None), false);
-    parts.extend(curves(|p| (f64::from(p.passes), p.split.map_or(0.0, significant_bias), None), true));
+    let mut parts =
+        curves(|p| (f64::from(p.passes), p.split.map_or(0.0, |s| s.variance), None), false);
+    parts.extend(curves(
+        |p| (f64::from(p.passes), p.split.map_or(0.0, significant_bias), None),
+        true,
+    ));
     Panel {
         title: group.title.clone(),
         key: group.key.clone(),
@@ -194,7 +202,8 @@ pub fn lamp_chart(about: &About, parts: &[Part], seconds: f64) -> Option<Chart> 
     }
     let series = names.iter().enumerate().map(|(color, name)| {
         let points = parts.iter().filter_map(|part| {
-            let of_name = |curve: &&Curve| about.configs[curve.config].label_without(&["lamp_area"]) == *name;
+            let of_name =
+                |curve: &&Curve| about.configs[curve.config].label_without(&["lamp_area"]) == *name;
             let curve = part.curves.iter().find(of_name)?;
             let end = curve.points.iter().rev().find(|p| p.seconds <= 1.25 * seconds)?;
             let range = Some((end.rel_mse.low, end.rel_mse.high));

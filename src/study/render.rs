@@ -30,8 +30,8 @@ pub enum Until {
     Passes(u32),
 }
 
-/// Makes passes until the end, and hands over each power of two and the last. False where `interrupted` was set: the last
-/// snapshot is then missing.
+/// Makes passes until the end, and hands over each power of two and the last. False where
+/// `interrupted` was set: the last snapshot is then missing.
 pub fn progressive(
     engine: &mut dyn Engine,
     until: Until,
@@ -52,7 +52,13 @@ pub fn progressive(
             Until::Passes(wanted) => passes >= wanted,
         };
         if last || passes.is_power_of_two() {
-            take(Snapshot { passes, seconds: time.as_secs_f64(), photons, rays, picture: engine.picture()? });
+            take(Snapshot {
+                passes,
+                seconds: time.as_secs_f64(),
+                photons,
+                rays,
+                picture: engine.picture()?,
+            });
         }
         if last {
             return Ok(true);
@@ -106,7 +112,8 @@ mod tests {
         let mut taken = Vec::new();
         let mut engine = Counter { passes: 0, slow_picture: true };
         let flag = AtomicBool::new(interrupted);
-        let whole = progressive(&mut engine, until, &flag, &mut |snapshot| taken.push(snapshot)).unwrap();
+        let whole =
+            progressive(&mut engine, until, &flag, &mut |snapshot| taken.push(snapshot)).unwrap();
         (whole, taken)
     }
 
@@ -115,11 +122,9 @@ mod tests {
         let (whole, taken) = run(Until::Passes(11), false);
         assert!(whole);
         assert_eq!(taken.iter().map(|s| s.passes).collect::<Vec<_>>(), [1, 2, 4, 8, 11]);
-        assert!(
-            taken
-                .iter()
-                .all(|s| s.picture.rgb[0][0] == s.passes as f32 && s.photons == 5 * u64::from(s.passes))
-        );
+        assert!(taken.iter().all(
+            |s| s.picture.rgb[0][0] == s.passes as f32 && s.photons == 5 * u64::from(s.passes)
+        ));
         assert!(taken.windows(2).all(|pair| pair[0].seconds < pair[1].seconds));
         assert_eq!(run(Until::Passes(8), false).1.len(), 4, "the last is not taken twice");
     }
@@ -129,7 +134,12 @@ mod tests {
     fn taking_pictures_is_no_rendering() {
         let (_, taken) = run(Until::Seconds(0.05), false);
         let last = taken.last().unwrap();
-        assert!(last.passes >= 3 && last.seconds < 0.1, "{} passes in {} s", last.passes, last.seconds);
+        assert!(
+            last.passes >= 3 && last.seconds < 0.1,
+            "{} passes in {} s",
+            last.passes,
+            last.seconds
+        );
     }
 
     #[test]

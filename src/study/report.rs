@@ -22,7 +22,10 @@ pub fn write(conducted: &Conducted, folder: &Folder) -> Result<Vec<Part>, StudyE
     let results = &conducted.results;
     let parts = analyse(results);
     for (name, chart) in named_charts(&results.about, &parts) {
-        write_whole(&folder.file(format!("charts/{name}.svg")), chart.svg(Format::File).as_bytes())?;
+        write_whole(
+            &folder.file(format!("charts/{name}.svg")),
+            chart.svg(Format::File).as_bytes(),
+        )?;
     }
     write_whole(&folder.file("study.csv"), csv(results).as_bytes())?;
     write_whole(&folder.file("study.json"), format!("{:#}\n", json(results, &parts)).as_bytes())?;
@@ -41,8 +44,12 @@ fn named_charts(about: &About, parts: &[Part]) -> Vec<(String, Chart)> {
         charts.push((name("overview".to_owned()), overview(about, part)));
         for panel in panels(about, part) {
             let key = panel.key.clone();
-            charts
-                .extend(panel.charts.into_iter().map(|(what, chart)| (name(format!("{key}-{what}")), chart)));
+            charts.extend(
+                panel
+                    .charts
+                    .into_iter()
+                    .map(|(what, chart)| (name(format!("{key}-{what}")), chart)),
+            );
         }
     }
     charts
@@ -70,7 +77,12 @@ fn tables(about: &About, parts: &[Part]) -> String {
         for sentence in recommendations(about, part) {
             let _ = writeln!(out, "- {sentence}");
         }
-        let _ = write!(out, "\n{}\n{}", markdown(&rows(about, part)), markdown(&slope_rows(about, part)));
+        let _ = write!(
+            out,
+            "\n{}\n{}",
+            markdown(&rows(about, part)),
+            markdown(&slope_rows(about, part))
+        );
     }
     out
 }
@@ -148,18 +160,23 @@ fn introduction(results: &Results, complete: bool, out: &mut String) {
     radii.sort_by_key(|(config, _)| *config);
     radii.dedup();
     if !radii.is_empty() {
-        let radii = radii
-            .iter()
-            .map(|(config, radius)| format!("{}: {radius} px", configured(&about.configs[*config])));
+        let radii = radii.iter().map(|(config, radius)| {
+            format!("{}: {radius} px", configured(&about.configs[*config]))
+        });
         let radii: Vec<String> = radii.collect();
-        let _ = write!(out, "<p>Start radii that were left open: {}.</p>", escape(&radii.join("; ")));
+        let _ =
+            write!(out, "<p>Start radii that were left open: {}.</p>", escape(&radii.join("; ")));
     }
     let failed = results.runs.iter().filter_map(|run| Some((run.config, run.failed.as_ref()?)));
     let mut failed: Vec<_> = failed.collect();
     failed.dedup();
     for (config, why) in failed {
-        let _ =
-            write!(out, "<p>Not rendered: {}: {}</p>", escape(&about.configs[config].label()), escape(why));
+        let _ = write!(
+            out,
+            "<p>Not rendered: {}: {}</p>",
+            escape(&about.configs[config].label()),
+            escape(why)
+        );
     }
 }
 
@@ -183,8 +200,11 @@ fn section(conducted: &Conducted, part: &Part, number: usize, folder: &Folder, o
     );
     let overview = overview(about, part);
     let all = part.curves.len() <= super::palette::SERIES;
-    let caption =
-        if all { "All settings." } else { "All settings; colored are those that lead at some time." };
+    let caption = if all {
+        "All settings."
+    } else {
+        "All settings; colored are those that lead at some time."
+    };
     figure(&overview, caption, out);
     out.push_str("</div><h3>Figures</h3><p class=\"soft\">Times in brackets are extrapolated along the fitted slope.</p>");
     table(&rows(about, part), out);
@@ -196,7 +216,9 @@ fn section(conducted: &Conducted, part: &Part, number: usize, folder: &Folder, o
             let caption = match *what {
                 "error" => "relMSE without the truth's own; the band is the spread over the seeds.",
                 "flip" => "What the eye sees; the truth's own noise is in it.",
-                _ => "Solid: variance. Dashed, hollow: squared bias, where it is clear of its own error.",
+                _ => {
+                    "Solid: variance. Dashed, hollow: squared bias, where it is clear of its own error."
+                }
             };
             small_figure(chart, caption, out);
         }
@@ -224,19 +246,28 @@ fn front(about: &About, part: &Part, out: &mut String) {
 fn crops(conducted: &Conducted, part: &Part, number: usize, folder: &Folder, out: &mut String) {
     let about = &conducted.results.about;
     let truth = || picture(folder, &format!("crops/truth-{number}.png"), "truth", "", out_of(part));
-    let _ =
-        write!(out, "<h3>Equal time: {} s</h3><div class=\"crops\">{}", short(about.run_seconds), truth());
+    let _ = write!(
+        out,
+        "<h3>Equal time: {} s</h3><div class=\"crops\">{}",
+        short(about.run_seconds),
+        truth()
+    );
     for curve in &part.curves {
         let Some(last) = curve.points.last() else { continue };
         let name = configured(&about.configs[curve.config]);
-        let figures = format!("relMSE {}, FLIP {}", short(last.rel_mse.mean), short(last.flip.mean));
+        let figures =
+            format!("relMSE {}, FLIP {}", short(last.rel_mse.mean), short(last.flip.mean));
         let file = crop_name(curve.config, last.passes);
         out.push_str(&picture(folder, &file, &name, &figures, String::new()));
     }
     out.push_str("</div>");
     let Some(goal) = part.common_error() else { return };
-    let _ =
-        write!(out, "<h3>Equal error: relMSE {} or less</h3><div class=\"crops\">{}", short(goal), truth());
+    let _ = write!(
+        out,
+        "<h3>Equal error: relMSE {} or less</h3><div class=\"crops\">{}",
+        short(goal),
+        truth()
+    );
     let mut missed = Vec::new();
     let mut order: Vec<_> = part.curves.iter().map(|curve| (curve, curve.time_to(goal))).collect();
     order.sort_by(|a, b| a.1.unwrap_or(f64::MAX).total_cmp(&b.1.unwrap_or(f64::MAX)));
@@ -258,7 +289,11 @@ fn crops(conducted: &Conducted, part: &Part, number: usize, folder: &Folder, out
     }
     out.push_str("</div>");
     if !missed.is_empty() {
-        let _ = write!(out, "<p class=\"soft\">Not reached in time by: {}.</p>", escape(&missed.join("; ")));
+        let _ = write!(
+            out,
+            "<p class=\"soft\">Not reached in time by: {}.</p>",
+            escape(&missed.join("; "))
+        );
     }
 }
 
@@ -307,7 +342,8 @@ fn table(rows: &[Vec<String>], out: &mut String) {
     out.push_str("<div class=\"scroll\" tabindex=\"0\"><table>");
     for (number, row) in rows.iter().enumerate() {
         let cell = if number == 0 { "th" } else { "td" };
-        let cells: String = row.iter().map(|text| format!("<{cell}>{}</{cell}>", escape(text))).collect();
+        let cells: String =
+            row.iter().map(|text| format!("<{cell}>{}</{cell}>", escape(text))).collect();
         let _ = write!(out, "<tr>{cells}</tr>");
     }
     out.push_str("</table></div>");
@@ -334,8 +370,8 @@ fn base64(bytes: &[u8]) -> String {
     const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut out = String::with_capacity(bytes.len().div_ceil(3) * 4);
     for chunk in bytes.chunks(3) {
-        let word =
-            chunk.iter().fold(0u32, |word, byte| word << 8 | u32::from(*byte)) << (8 * (3 - chunk.len()));
+        let word = chunk.iter().fold(0u32, |word, byte| word << 8 | u32::from(*byte))
+            << (8 * (3 - chunk.len()));
         for place in 0..4 {
             let digit = DIGITS[(word >> (18 - 6 * place)) as usize & 63];
             out.push(if place <= chunk.len() { char::from(digit) } else { '=' });

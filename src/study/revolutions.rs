@@ -1,4 +1,5 @@
-//! A scene with its surfaces of revolution as meshes, or met less exactly, for studies of what the exact surface costs.
+//! A scene with its surfaces of revolution as meshes, or met less exactly, for studies of what the
+//! exact surface costs.
 
 use std::fmt;
 use std::str::FromStr;
@@ -58,7 +59,9 @@ impl FromStr for Newton {
         match (text, text.parse::<f64>()) {
             ("least", _) => Ok(Self::Least),
             (_, Ok(length)) if (1e-7..=1.0).contains(&length) => Ok(Self::Tolerance(length)),
-            _ => Err("expected least, or a length from 1e-7 to 1 in sizes of the profile".to_owned()),
+            _ => {
+                Err("expected least, or a length from 1e-7 to 1 in sizes of the profile".to_owned())
+            }
         }
     }
 }
@@ -128,8 +131,9 @@ fn smooth(mesh: RevolutionMesh) -> Mesh {
     }
 }
 
-/// Theory: a paraboloid r^2 = y turned about its axis, open at the top, has its vertices on the surface and its faces within
-/// a chord's height of it, which falls with the square of the sectors' number.
+/// Theory: a paraboloid r^2 = y turned about its axis, open at the top, has its vertices on the
+/// surface and its faces within a chord's height of it, which falls with the square of the sectors'
+/// number.
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -160,7 +164,8 @@ material = "white"
         crate::scene::parse("bowl.toml".as_ref(), text.as_bytes()).unwrap().scene
     }
 
-    /// Greatest distance, of middles of faces and edges, between the mesh and the paraboloid x^2 + z^2 = 2 (y - 3).
+    /// Greatest distance, of middles of faces and edges, between the mesh and the paraboloid x^2 +
+    /// z^2 = 2 (y - 3).
     fn off(scene: &Scene) -> f64 {
         let ShapeKind::Mesh(mesh) = &scene.shapes[0].kind else { panic!("no mesh") };
         let height = |p: DVec3| (0.5 * (p.x * p.x + p.z * p.z) + 3.0 - p.y).abs();
@@ -168,7 +173,10 @@ material = "white"
         let mut most = 0.0f64;
         for t in &mesh.triangles {
             let [a, b, c] = t.position.map(|i| mesh.positions[i as usize]);
-            most = most.max(height((a + b) / 2.0)).max(height((b + c) / 2.0)).max(height((a + b + c) / 3.0));
+            most = most
+                .max(height((a + b) / 2.0))
+                .max(height((b + c) / 2.0))
+                .max(height((a + b + c) / 3.0));
             // Smooth normals are the surface's own: along (x, -1, z).
             for (p, n) in t.position.iter().zip(t.normal.unwrap()) {
                 let (p, n) = (mesh.positions[*p as usize], mesh.normals[n as usize]);
@@ -205,8 +213,8 @@ material = "white"
         }
     }
 
-    /// Newton's steps shrink as their squares: one that ends the search at 1e-3 leaves an error near 1e-6, one at 1e-1
-    /// near 1e-2, and the least tolerance is what scene files mean.
+    /// Newton's steps shrink as their squares: one that ends the search at 1e-3 leaves an error
+    /// near 1e-6, one at 1e-1 near 1e-2, and the least tolerance is what scene files mean.
     #[test]
     fn a_tolerance_reaches_the_patches() {
         let own = scene(SCENE);

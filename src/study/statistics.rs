@@ -11,8 +11,8 @@ pub struct PowerLaw {
     pub slope: f64,
     /// `ln y` at `x = 1`.
     pub intercept: f64,
-    /// Half the width of the slope's 95 % interval (Student's t), if the points scatter independently; none for two
-    /// points, which leave no scatter to judge by.
+    /// Half the width of the slope's 95 % interval (Student's t), if the points scatter
+    /// independently; none for two points, which leave no scatter to judge by.
     pub half_width: Option<f64>,
 }
 
@@ -29,10 +29,14 @@ impl PowerLaw {
     }
 }
 
-/// Fits a power law to the points with positive coordinates; none where fewer than two differ in `x`.
+/// Fits a power law to the points with positive coordinates; none where fewer than two differ in
+/// `x`.
 pub fn fit(points: &[(f64, f64)]) -> Option<PowerLaw> {
-    let logs: Vec<(f64, f64)> =
-        points.iter().filter(|(x, y)| *x > 0.0 && *y > 0.0).map(|(x, y)| (x.ln(), y.ln())).collect();
+    let logs: Vec<(f64, f64)> = points
+        .iter()
+        .filter(|(x, y)| *x > 0.0 && *y > 0.0)
+        .map(|(x, y)| (x.ln(), y.ln()))
+        .collect();
     let n = logs.len() as f64;
     let mean_x = logs.iter().map(|(x, _)| x).sum::<f64>() / n;
     let mean_y = logs.iter().map(|(_, y)| y).sum::<f64>() / n;
@@ -45,12 +49,14 @@ pub fn fit(points: &[(f64, f64)]) -> Option<PowerLaw> {
     let intercept = mean_y - slope * mean_x;
     let residual: f64 = logs.iter().map(|(x, y)| (y - intercept - slope * x).powi(2)).sum();
     let freedom = logs.len() - 2;
-    let half_width = (freedom > 0).then(|| student_t_95(freedom) * (residual / freedom as f64 / sxx).sqrt());
+    let half_width =
+        (freedom > 0).then(|| student_t_95(freedom) * (residual / freedom as f64 / sxx).sqrt());
     Some(PowerLaw { slope, intercept, half_width })
 }
 
-/// The two-sided 95 % quantile of Student's t with `freedom` >= 1 degrees of freedom: the table's values up to ten, then
-/// the Cornish-Fisher expansion (Abramowitz & Stegun 26.7.5), which is good to 1e-4 there.
+/// The two-sided 95 % quantile of Student's t with `freedom` >= 1 degrees of freedom: the table's
+/// values up to ten, then the Cornish-Fisher expansion (Abramowitz & Stegun 26.7.5), which is good
+/// to 1e-4 there.
 pub fn student_t_95(freedom: usize) -> f64 {
     const TABLE: [f64; 10] =
         [12.7062, 4.3027, 3.1824, 2.7764, 2.5706, 2.4469, 2.3646, 2.3060, 2.2622, 2.2281];
@@ -64,9 +70,10 @@ pub fn student_t_95(freedom: usize) -> f64 {
     z + first / f + second / f.powi(2) + third / f.powi(3)
 }
 
-/// Mean over pixels of the products of the relative errors of renders with different seeds: entry (j, k) is
-/// `mean e_j e_k` with `e = (L - T) / sqrt(T^2 + 0.01)`, luminance and the truth's, so that (k, k) is relMSE with all pixels
-/// in it. All that is said about variance and bias follows from it.
+/// Mean over pixels of the products of the relative errors of renders with different seeds: entry
+/// (j, k) is `mean e_j e_k` with `e = (L - T) / sqrt(T^2 + 0.01)`, luminance and the truth's, so
+/// that (k, k) is relMSE with all pixels in it. All that is said about variance and bias follows
+/// from it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Products(pub Vec<Vec<f64>>);
 
@@ -75,26 +82,30 @@ pub struct Products(pub Vec<Vec<f64>>);
 pub struct Split {
     /// Mean squared relative error of one render, without the truth's.
     pub mse: f64,
-    /// Its variance: mean over the seeds of the squared distance from their mean, times K / (K - 1).
+    /// Its variance: mean over the seeds of the squared distance from their mean, times K / (K -
+    /// 1).
     pub variance: f64,
-    /// Its squared bias: squared error of the seeds' mean less `variance / K` and the truth's variance. An estimate: it
-    /// may fall below zero where it is lost in the noise.
+    /// Its squared bias: squared error of the seeds' mean less `variance / K` and the truth's
+    /// variance. An estimate: it may fall below zero where it is lost in the noise.
     pub bias_sq: f64,
-    /// Standard error of `bias_sq`, by leaving out one seed at a time (jackknife); none for two seeds.
+    /// Standard error of `bias_sq`, by leaving out one seed at a time (jackknife); none for two
+    /// seeds.
     pub bias_sq_error: Option<f64>,
 }
 
 impl Products {
     /// Of pictures of one size against a truth of that size.
     pub fn of(pictures: &[Picture], truth: &Picture) -> Self {
-        let errors: Vec<Vec<f64>> = pictures.iter().map(|picture| relative_errors(picture, truth)).collect();
-        let product =
-            |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>() / a.len().max(1) as f64;
+        let errors: Vec<Vec<f64>> =
+            pictures.iter().map(|picture| relative_errors(picture, truth)).collect();
+        let product = |a: &[f64], b: &[f64]| {
+            a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>() / a.len().max(1) as f64
+        };
         Self(errors.iter().map(|a| errors.iter().map(|b| product(a, b)).collect()).collect())
     }
 
-    /// Variance and squared bias; none for fewer than two seeds. `truth_variance` is the mean squared relative error of the
-    /// truth itself.
+    /// Variance and squared bias; none for fewer than two seeds. `truth_variance` is the mean
+    /// squared relative error of the truth itself.
     pub fn split(&self, truth_variance: f64) -> Option<Split> {
         let all: Vec<usize> = (0..self.0.len()).collect();
         let (mse, bias_sq) = self.parts(&all)?;
@@ -116,8 +127,8 @@ impl Products {
         })
     }
 
-    /// Mean squared error of one render, and its part that all renders share: the mean product of two different ones.
-    /// Their difference is the sample variance.
+    /// Mean squared error of one render, and its part that all renders share: the mean product of
+    /// two different ones. Their difference is the sample variance.
     fn parts(&self, seeds: &[usize]) -> Option<(f64, f64)> {
         let n = seeds.len() as f64;
         if seeds.len() < 2 {
@@ -153,19 +164,22 @@ pub fn spread(values: &[f64]) -> Option<Spread> {
     Some(Spread { mean: values.iter().sum::<f64>() / values.len() as f64, low, high })
 }
 
-/// Theory: a power law is a straight line in logarithms; noise of known variance and a bias of known size are found again
-/// within their sampling error, and the identities of the definitions hold to rounding.
+/// Theory: a power law is a straight line in logarithms; noise of known variance and a bias of
+/// known size are found again within their sampling error, and the identities of the definitions
+/// hold to rounding.
 #[cfg(test)]
 mod tests {
     use super::*;
 
     /// Uniform in [-1, 1), variance 1/3.
     fn noise(state: &mut u64) -> f64 {
-        *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        *state =
+            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (*state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
     }
 
-    /// Renders of a grey truth: relative noise of amplitude `a` (variance a^2 / 3), all too bright by the share `bias`.
+    /// Renders of a grey truth: relative noise of amplitude `a` (variance a^2 / 3), all too bright
+    /// by the share `bias`.
     fn renders(seeds: u64, a: f64, bias: f64) -> (Vec<Picture>, Picture) {
         let truth = Picture::from_fn(64, 64, |x, y| [0.3 + (x + y) as f32 / 128.0; 3]);
         let one = |seed: u64| {
@@ -186,7 +200,10 @@ mod tests {
             let points: Vec<_> =
                 (0..7).map(|i| f64::from(1 << i)).map(|x| (x, 3.0 * x.powf(slope))).collect();
             let law = fit(&points).unwrap();
-            assert!((law.slope - slope).abs() < 1e-12 && (law.at(1.0) - 3.0).abs() < 1e-12, "{law:?}");
+            assert!(
+                (law.slope - slope).abs() < 1e-12 && (law.at(1.0) - 3.0).abs() < 1e-12,
+                "{law:?}"
+            );
             assert!(law.half_width.unwrap() < 1e-10);
         }
         let law = fit(&[(1.0, 8.0), (4.0, 2.0)]).unwrap();
@@ -196,22 +213,25 @@ mod tests {
         assert_eq!(fit(&[(1.0, 1.0), (2.0, -1.0)]), None, "a negative value has no logarithm");
     }
 
-    /// Closed form of a small regression: x = 0, 1, 2, 3, y = 0, 2, 1, 3 (logarithms) has slope 0.8, residual sum
-    /// of squares 1.8, so the interval is 4.3027 sqrt(0.9 / 5).
+    /// Closed form of a small regression: x = 0, 1, 2, 3, y = 0, 2, 1, 3 (logarithms) has slope
+    /// 0.8, residual sum of squares 1.8, so the interval is 4.3027 sqrt(0.9 / 5).
     #[test]
     fn the_interval_is_students() {
-        let points =
-            [(0.0, 0.0), (1.0, 2.0), (2.0, 1.0), (3.0, 3.0)].map(|(x, y): (f64, f64)| (x.exp(), y.exp()));
+        let points = [(0.0, 0.0), (1.0, 2.0), (2.0, 1.0), (3.0, 3.0)]
+            .map(|(x, y): (f64, f64)| (x.exp(), y.exp()));
         let law = fit(&points).unwrap();
         assert!((law.slope - 0.8).abs() < 1e-12, "{law:?}");
         assert!((law.half_width.unwrap() - 4.3027 * (0.9_f64 / 5.0).sqrt()).abs() < 1e-9);
-        // Of many noisy lines 95 % hold the true slope; an interval of half the width would hold 75 %.
+        // Of many noisy lines 95 % hold the true slope; an interval of half the width would hold 75
+        // %.
         let mut state = 5;
         let held = |width: f64, state: &mut u64| {
             let hits = (0..2000).filter(|_| {
                 let normal = |state: &mut u64| (0..12).map(|_| noise(state)).sum::<f64>() / 2.0;
                 let points: Vec<_> = (0..6)
-                    .map(|i| (f64::from(i).exp(), (-0.7 * f64::from(i) + 0.1 * normal(state)).exp()))
+                    .map(|i| {
+                        (f64::from(i).exp(), (-0.7 * f64::from(i) + 0.1 * normal(state)).exp())
+                    })
                     .collect();
                 let law = fit(&points).unwrap();
                 (law.slope + 0.7).abs() <= width * law.half_width.unwrap()
@@ -226,7 +246,9 @@ mod tests {
     /// Quantiles of the t table (11: 2.2010, 20: 2.0860, 60: 2.0003).
     #[test]
     fn quantiles_of_the_table() {
-        for (freedom, quantile) in [(1, 12.7062), (4, 2.7764), (11, 2.2010), (20, 2.0860), (60, 2.0003)] {
+        for (freedom, quantile) in
+            [(1, 12.7062), (4, 2.7764), (11, 2.2010), (20, 2.0860), (60, 2.0003)]
+        {
             assert!((student_t_95(freedom) - quantile).abs() < 2e-4, "{freedom}");
         }
     }
@@ -237,7 +259,9 @@ mod tests {
         let split = Products::of(&pictures, &truth).split(0.002).unwrap();
         let mean = Picture::from_fn(64, 64, |x, y| {
             let at = (y * 64 + x) as usize;
-            [0, 1, 2].map(|c| (pictures.iter().map(|p| f64::from(p.rgb[at][c])).sum::<f64>() / 5.0) as f32)
+            [0, 1, 2].map(|c| {
+                (pictures.iter().map(|p| f64::from(p.rgb[at][c])).sum::<f64>() / 5.0) as f32
+            })
         });
         let distance = |a: &Picture, b: &Picture| {
             let pairs = a.rgb.iter().zip(&b.rgb).zip(&truth.rgb);
@@ -283,6 +307,10 @@ mod tests {
         let products = Products::of(&pictures, &noisy);
         let own = 0.0025 / 3.0;
         assert!(products.split(0.0).unwrap().bias_sq > 0.9 * own);
-        assert!(products.split(own).unwrap().bias_sq.abs() < 0.1 * own, "{:?}", products.split(own));
+        assert!(
+            products.split(own).unwrap().bias_sq.abs() < 0.1 * own,
+            "{:?}",
+            products.split(own)
+        );
     }
 }

@@ -8,7 +8,8 @@ use super::analysis::Part;
 use super::folder::{About, Results};
 use super::words::{configured, fitted, preview_seconds, recommendations, short, theory};
 
-/// One line for each picture: configuration, seed, passes and its figures. The truth's own error is in them.
+/// One line for each picture: configuration, seed, passes and its figures. The truth's own error is
+/// in them.
 pub fn csv(results: &Results) -> String {
     let mut out = String::from(
         "config,label,lamp,method,radius_rule,alpha,radius,photons_per_pass,direct,max_bounces,revolutions,newton_tolerance,device,seed,passes,seconds,\
@@ -79,7 +80,9 @@ pub fn rows(about: &About, part: &Part) -> Vec<Vec<String>> {
         let Some(last) = curve.points.last() else { continue };
         let time = goal.map(|goal| match curve.time_to(goal) {
             Some(seconds) => short(seconds),
-            None => curve.extrapolated_time_to(goal).map_or("–".to_owned(), |s| format!("({})", short(s))),
+            None => curve
+                .extrapolated_time_to(goal)
+                .map_or("–".to_owned(), |s| format!("({})", short(s))),
         });
         rows.push(vec![
             configured(&about.configs[curve.config]),
@@ -96,7 +99,8 @@ pub fn rows(about: &About, part: &Part) -> Vec<Vec<String>> {
 
 /// Rows of a part's table of slopes.
 pub fn slope_rows(about: &About, part: &Part) -> Vec<Vec<String>> {
-    let head = ["settings", "variance", "theory", "bias²", "theory", "MSE", "theory"].map(str::to_owned);
+    let head =
+        ["settings", "variance", "theory", "bias²", "theory", "MSE", "theory"].map(str::to_owned);
     let mut rows = vec![head.to_vec()];
     for curve in &part.curves {
         let mut row = vec![configured(&about.configs[curve.config])];

@@ -49,7 +49,8 @@ const OTHER_METHOD: f64 = 4.0;
 /// Methods whose mean luminances differ by more see different light.
 const SAME_LIGHT: f64 = 0.02;
 
-/// The mean of pictures and its own error: the mean over them of their distance from their mean, over K - 1.
+/// The mean of pictures and its own error: the mean over them of their distance from their mean,
+/// over K - 1.
 pub fn mean_of(pictures: &[Picture], source: String) -> Result<Truth, MetricsError> {
     let Some(first) = pictures.first() else { return Err(MetricsError::Empty) };
     for other in pictures {
@@ -59,7 +60,8 @@ pub fn mean_of(pictures: &[Picture], source: String) -> Result<Truth, MetricsErr
     let mut pixel = 0..;
     let mean = Picture::from_fn(first.width, first.height, |_, _| {
         let at = pixel.next().unwrap_or(0);
-        [0, 1, 2].map(|c| (pictures.iter().map(|p| f64::from(p.rgb[at][c])).sum::<f64>() / n) as f32)
+        [0, 1, 2]
+            .map(|c| (pictures.iter().map(|p| f64::from(p.rgb[at][c])).sum::<f64>() / n) as f32)
     });
     let (mut variance, mut rel_mse) = (0.0, 0.0);
     for picture in pictures {
@@ -69,7 +71,8 @@ pub fn mean_of(pictures: &[Picture], source: String) -> Result<Truth, MetricsErr
     }
     let several = pictures.len() > 1;
     let known = |value: f64| several.then_some(value);
-    let record = TruthRecord { lamp: None, source, variance: known(variance), rel_mse: known(rel_mse) };
+    let record =
+        TruthRecord { lamp: None, source, variance: known(variance), rel_mse: known(rel_mse) };
     Ok(Truth { picture: mean, record })
 }
 
@@ -104,8 +107,11 @@ impl Maker<'_> {
         folder: &Folder,
         note: &mut dyn FnMut(&str),
     ) -> Result<Option<Truth>, StudyError> {
-        let name = |method: Method, seed: u32| format!("truth/{}-{}-{seed}.pfm", self.number, word(method));
-        let begun = [Method::Path, Method::Sppm].into_iter().find(|m| folder.file(name(*m, 0)).exists());
+        let name = |method: Method, seed: u32| {
+            format!("truth/{}-{}-{seed}.pfm", self.number, word(method))
+        };
+        let begun =
+            [Method::Path, Method::Sppm].into_iter().find(|m| folder.file(name(*m, 0)).exists());
         let method = match method.or(begun) {
             Some(method) => method,
             None => match self.choose(note)? {
@@ -126,18 +132,27 @@ impl Maker<'_> {
                     folder.keep_picture(&name, &picture)?;
                     let left = seconds * f64::from(self.seeds - seed - 1);
                     let (method, of) = (word(method), self.seeds);
-                    note(&format!("truth: {method}, seed {} of {of}; {left:.0} s left for it", seed + 1));
+                    note(&format!(
+                        "truth: {method}, seed {} of {of}; {left:.0} s left for it",
+                        seed + 1
+                    ));
                     picture
                 }
             };
             pictures.push(picture);
         }
-        let source = format!("{} of its own, {} seeds, {:.1} s", described(method), self.seeds, self.seconds);
+        let source = format!(
+            "{} of its own, {} seeds, {:.1} s",
+            described(method),
+            self.seeds,
+            self.seconds
+        );
         Ok(Some(mean_of(&pictures, source)?))
     }
 
-    /// The method to trust: one that is not studied itself, unless it is much noisier or does not see all the light (path
-    /// tracing finds no caustics of points, and hardly any of small lamps). Judged by two short renders of each.
+    /// The method to trust: one that is not studied itself, unless it is much noisier or does not
+    /// see all the light (path tracing finds no caustics of points, and hardly any of small lamps).
+    /// Judged by two short renders of each.
     fn choose(&self, note: &mut dyn FnMut(&str)) -> Result<Option<Method>, StudyError> {
         let seconds = self.seconds / 20.0;
         let mut pilots = Vec::new();
@@ -153,7 +168,8 @@ impl Maker<'_> {
         let [(path_error, path_mean), (sppm_error, sppm_mean)] = pilots[..] else {
             return Ok(None);
         };
-        let studied = |path: bool| self.configs.iter().any(|c| (c.settings.method == Method::Path) == path);
+        let studied =
+            |path: bool| self.configs.iter().any(|c| (c.settings.method == Method::Path) == path);
         let same_light = (path_mean / sppm_mean.max(1e-300) - 1.0).abs() < SAME_LIGHT;
         let handicap = match (studied(true), studied(false)) {
             (false, true) => 1.0 / OTHER_METHOD,
@@ -172,7 +188,12 @@ impl Maker<'_> {
         Ok(Some(method))
     }
 
-    fn render(&self, method: Method, seed: u64, seconds: f64) -> Result<Option<Picture>, StudyError> {
+    fn render(
+        &self,
+        method: Method,
+        seed: u64,
+        seconds: f64,
+    ) -> Result<Option<Picture>, StudyError> {
         let settings = self.settings(method, seed);
         let device = match (method, self.configs.first()) {
             (Method::Path, _) | (_, None) => "cpu",
@@ -181,12 +202,14 @@ impl Maker<'_> {
         let mut engine = device::open(&device::parse(device), self.scene, &settings)?.engine;
         let mut picture = None;
         let until = Until::Seconds(seconds);
-        let whole =
-            progressive(engine.as_mut(), until, self.interrupted, &mut |s| picture = Some(s.picture))?;
+        let whole = progressive(engine.as_mut(), until, self.interrupted, &mut |s| {
+            picture = Some(s.picture)
+        })?;
         Ok(picture.filter(|_| whole))
     }
 
-    /// Photon mapping starts at a radius of a pixel, so that its bias stays below what a pixel shows.
+    /// Photon mapping starts at a radius of a pixel, so that its bias stays below what a pixel
+    /// shows.
     fn settings(&self, method: Method, seed: u64) -> RenderSettings {
         let all = || self.configs.iter().map(|config| &config.settings);
         RenderSettings {
@@ -195,7 +218,10 @@ impl Maker<'_> {
             radius: Radius::Pixels(1.0),
             radius_rule: RadiusRule::Global,
             direct: Direct::Sampled,
-            max_bounces: all().map(|s| s.max_bounces).max().unwrap_or(RenderSettings::default().max_bounces),
+            max_bounces: all()
+                .map(|s| s.max_bounces)
+                .max()
+                .unwrap_or(RenderSettings::default().max_bounces),
             seed: FIRST_SEED + seed,
             ..RenderSettings::default()
         }
@@ -233,7 +259,9 @@ mod tests {
         let mut state = 3u64;
         let mut noisy = || {
             Picture::from_fn(50, 40, |_, _| {
-                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                state = state
+                    .wrapping_mul(6_364_136_223_846_793_005)
+                    .wrapping_add(1_442_695_040_888_963_407);
                 // Uniform in [1, 1.1): variance 1/1200.
                 [1.0 + 0.1 * (state >> 40) as f32 / (1u64 << 24) as f32; 3]
             })
@@ -243,7 +271,8 @@ mod tests {
         let variance = truth.record.variance.unwrap();
         let expected = 1.0 / 4800.0 / (1.05_f64.powi(2) + 0.01);
         assert!((variance / expected - 1.0).abs() < 0.06, "{variance} {expected}");
-        let real = compare(&truth.picture, &Picture::from_fn(50, 40, |_, _| [1.05; 3])).unwrap().rel_mse;
+        let real =
+            compare(&truth.picture, &Picture::from_fn(50, 40, |_, _| [1.05; 3])).unwrap().rel_mse;
         let rel_mse = truth.record.rel_mse.unwrap();
         assert!((rel_mse / real - 1.0).abs() < 0.1, "{rel_mse} {real}");
         assert_eq!(mean_of(&pictures[..1], String::new()).unwrap().record.variance, None);

@@ -1,4 +1,5 @@
-//! How a configuration's scene differs from its file: the size of the lamps, and what surfaces of revolution are made of.
+//! How a configuration's scene differs from its file: the size of the lamps, and what surfaces of
+//! revolution are made of.
 
 use serde::{Deserialize, Serialize};
 
@@ -10,7 +11,8 @@ use crate::scene::Scene;
 /// What a grid changes in the scene itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Variant {
-    /// The size that the lamps are given; none leaves them as they are. It changes the true picture.
+    /// The size that the lamps are given; none leaves them as they are. It changes the true
+    /// picture.
     pub lamp: Option<Lamp>,
     /// What surfaces of revolution are made of.
     pub revolutions: Revolutions,
@@ -31,7 +33,8 @@ impl Variant {
         }
         let newton = self.newton;
         if newton != Newton::Least {
-            changed = with_newton(&changed, newton).map_err(fault(format!("newton_tolerance={newton}")))?;
+            changed = with_newton(&changed, newton)
+                .map_err(fault(format!("newton_tolerance={newton}")))?;
         }
         let revolutions = self.revolutions;
         if revolutions != Revolutions::Exact {

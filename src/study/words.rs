@@ -43,8 +43,8 @@ pub fn theory(slope: &Slope) -> String {
     }
 }
 
-/// After how many seconds a preview is judged: two, or a quarter of the time where the renders are short, but not before
-/// half of the settings have a picture.
+/// After how many seconds a preview is judged: two, or a quarter of the time where the renders are
+/// short, but not before half of the settings have a picture.
 pub fn preview_seconds(about: &About, part: &Part) -> f64 {
     let wanted = if about.run_seconds >= 4.0 { 2.0 } else { about.run_seconds / 4.0 };
     let firsts = part.curves.iter().filter_map(|curve| Some(curve.points.first()?.seconds));
@@ -61,13 +61,16 @@ pub fn recommendations(about: &About, part: &Part) -> Vec<String> {
     let mut advise = |what: &str, seconds: f64| {
         let ranking = part.ranking(seconds);
         let Some((best, error)) = ranking.first() else { return };
-        let mut text = format!("{what} {} s: {} (relMSE {}", short(seconds), name(best), short(*error));
+        let mut text =
+            format!("{what} {} s: {} (relMSE {}", short(seconds), name(best), short(*error));
         if let Some(range) = range_at(best, seconds) {
             text += &format!(", {} to {} over the seeds", short(range.low), short(range.high));
         }
         text += ").";
-        let as_good =
-            ranking[1..].iter().filter(|(curve, _)| overlap(best, curve, seconds)).map(|(c, _)| name(c));
+        let as_good = ranking[1..]
+            .iter()
+            .filter(|(curve, _)| overlap(best, curve, seconds))
+            .map(|(c, _)| name(c));
         let as_good: Vec<String> = as_good.collect();
         if !as_good.is_empty() {
             text += &format!(" As good within the seeds' scatter: {}.", as_good.join("; "));
@@ -75,7 +78,11 @@ pub fn recommendations(about: &About, part: &Part) -> Vec<String> {
         if let [.., (worst, error_of_worst)] = ranking.as_slice()
             && ranking.len() > 1
         {
-            text += &format!(" Last: {} ({} times the error).", name(worst), short(error_of_worst / error));
+            text += &format!(
+                " Last: {} ({} times the error).",
+                name(worst),
+                short(error_of_worst / error)
+            );
         }
         sentences.push(text);
     };
@@ -83,7 +90,8 @@ pub fn recommendations(about: &About, part: &Part) -> Vec<String> {
     advise("For a final picture, after", end);
     if let Some((best, error)) = part.ranking(end).first() {
         let goal = error / 4.0;
-        // The curve that gets there first if all go on as they did, not necessarily the one that leads now.
+        // The curve that gets there first if all go on as they did, not necessarily the one that
+        // leads now.
         let soonest = part.curves.iter().filter_map(|c| Some((c, c.extrapolated_time_to(goal)?)));
         if let Some((curve, seconds)) = soonest.min_by(|a, b| a.1.total_cmp(&b.1)) {
             sentences.push(format!(
@@ -95,8 +103,8 @@ pub fn recommendations(about: &About, part: &Part) -> Vec<String> {
         }
     }
     let (width, height) = about.size;
-    let share =
-        f64::from(about.own_size.0) * f64::from(about.own_size.1) / (f64::from(width) * f64::from(height));
+    let share = f64::from(about.own_size.0) * f64::from(about.own_size.1)
+        / (f64::from(width) * f64::from(height));
     if share > 1.01 {
         sentences.push(format!(
             "Times are for {width} x {height} pixels; {} x {} with photons in proportion takes about {} times as long.",
@@ -108,7 +116,8 @@ pub fn recommendations(about: &About, part: &Part) -> Vec<String> {
     sentences
 }
 
-/// The seeds' range about the curve's error after so many seconds: that of the last picture by then, in proportion.
+/// The seeds' range about the curve's error after so many seconds: that of the last picture by
+/// then, in proportion.
 fn range_at(curve: &Curve, seconds: f64) -> Option<Spread> {
     let mean = curve.error_at(seconds)?;
     let Spread { mean: own, low, high } =
@@ -126,14 +135,18 @@ fn overlap(best: &Curve, other: &Curve, seconds: f64) -> bool {
 pub fn crossings(about: &About, parts: &[Part]) -> Vec<String> {
     let mut sentences = Vec::new();
     let best = |part: &Part| {
-        part.ranking(about.run_seconds).first().map(|(curve, _)| configured(&about.configs[curve.config]))
+        part.ranking(about.run_seconds)
+            .first()
+            .map(|(curve, _)| configured(&about.configs[curve.config]))
     };
     for pair in parts.windows(2) {
         if let ([Some(from), Some(to)], [Some(a), Some(b)]) =
             ([best(&pair[0]), best(&pair[1])], [pair[0].lamp(), pair[1].lamp()])
             && from != to
         {
-            sentences.push(format!("Between lamp areas {a} and {b} the lead passes from {from} to {to}."));
+            sentences.push(format!(
+                "Between lamp areas {a} and {b} the lead passes from {from} to {to}."
+            ));
         }
     }
     sentences

@@ -123,7 +123,10 @@ fn a_wall_is_where_it_is() {
             // the mean of samples lies in the pixel
             let middle = [1.0 + (x as f64 - 11.5) * pixel, 2.0 - (y as f64 - 7.5) * pixel];
             let [px, py, pz] = seen.at(POSITION, x, y);
-            assert!(near([px, py], middle, 0.51 * pixel) && (pz + 1.0).abs() < 1e-5, "{px} {py} {pz}");
+            assert!(
+                near([px, py], middle, 0.51 * pixel) && (pz + 1.0).abs() < 1e-5,
+                "{px} {py} {pz}"
+            );
         }
     }
     // the comparison sees another wall, and another pixel
@@ -160,7 +163,11 @@ fn a_mirror_shows_what_it_reflects() {
     let seen = Seen::of("", rest, 4);
     let expected = [0.8 * 0.9, 0.3 * 0.8, 0.1 * 0.7];
     let middle = (12, 8);
-    assert!(near(seen.at(ALBEDO, middle.0, middle.1), expected, 1e-6), "{:?}", seen.at(ALBEDO, 12, 8));
+    assert!(
+        near(seen.at(ALBEDO, middle.0, middle.1), expected, 1e-6),
+        "{:?}",
+        seen.at(ALBEDO, 12, 8)
+    );
     assert!(
         near(seen.at(NORMAL, middle.0, middle.1), [0.0, -1.0, 0.0], 1e-6),
         "{:?}",
@@ -192,10 +199,14 @@ fn a_pane_dims_what_is_behind_it() {
     let through = (1.0 - faces) / (1.0 + faces);
     let mean = |name: &str| seen.plane(name).values.iter().sum::<f64>() / (24.0 * 16.0);
     // three standard errors of a share, and what a view up to 21 degrees off the axis reflects more
-    let tolerance = 3.0 * (through * (1.0 - through) / (24.0 * 16.0 * f64::from(passes))).sqrt() + 1e-3;
+    let tolerance =
+        3.0 * (through * (1.0 - through) / (24.0 * 16.0 * f64::from(passes))).sqrt() + 1e-3;
     for (name, reflectance) in ALBEDO.iter().zip([0.8, 0.3, 0.1]) {
         let share = mean(name) / reflectance;
-        assert!((share - through).abs() < tolerance, "{name}: {share}, {through} within {tolerance}");
+        assert!(
+            (share - through).abs() < tolerance,
+            "{name}: {share}, {through} within {tolerance}"
+        );
     }
     assert!((mean("normal.Z") - through).abs() < tolerance, "{}", mean("normal.Z"));
     // one face, or none, is not within the tolerance
@@ -237,7 +248,10 @@ fn emission_is_all_of_a_dark_picture() {
             let expected = rgb.map(f64::from);
             // ends of paths by roulette are drawn in another order for path tracing, which this
             // scene has none of
-            assert!(near(emission, expected, 1e-5), "{settings}, pixel {i}: {emission:?} and {expected:?}");
+            assert!(
+                near(emission, expected, 1e-5),
+                "{settings}, pixel {i}: {emission:?} and {expected:?}"
+            );
             lit += (rgb[0] > 1.0) as usize;
         }
         assert!(lit > 20, "{settings}: the lamp is in view: {lit}");
@@ -251,7 +265,9 @@ fn emission_is_all_of_a_dark_picture() {
 #[test]
 fn numbers_are_those_of_the_file() {
     let sphere = |x: f64| {
-        format!("[[shapes]]\ntype = \"sphere\"\ncenter = [{x}, 2.0, 0.0]\nradius = 0.3\nmaterial = \"red\"\n")
+        format!(
+            "[[shapes]]\ntype = \"sphere\"\ncenter = [{x}, 2.0, 0.0]\nradius = 0.3\nmaterial = \"red\"\n"
+        )
     };
     let cube = "[[shapes]]\ntype = \"mesh\"\nfile = \"tests/data/cube.obj\"\nmaterial = \"blue\"\n\
                 transform = { scale = 0.25, translate = [1.0, 2.0, 0.0] }\n";
@@ -260,23 +276,42 @@ fn numbers_are_those_of_the_file() {
     let seen = Seen::of("", &rest, 1);
     let ids = |x: usize| seen.at(["object.ID", "material.ID"], x, 8);
     // materials are numbered in the order of their names
-    assert_eq!([ids(6), ids(12), ids(18), ids(0)], [[1.0, 2.0], [2.0, 1.0], [4.0, 2.0], [3.0, 2.0]]);
-    let whole: Vec<&str> =
-        seen.layers.iter().filter(|l| l.numbers == Numbers::Whole).map(|layer| layer.name).collect();
+    assert_eq!(
+        [ids(6), ids(12), ids(18), ids(0)],
+        [[1.0, 2.0], [2.0, 1.0], [4.0, 2.0], [3.0, 2.0]]
+    );
+    let whole: Vec<&str> = seen
+        .layers
+        .iter()
+        .filter(|l| l.numbers == Numbers::Whole)
+        .map(|layer| layer.name)
+        .collect();
     assert_eq!(whole, ["object.ID", "material.ID"]);
 }
 
 #[test]
 fn radius_and_photons_are_those_of_the_last_pass() {
-    let fixed = Seen::of("radius = { units = 0.25 }\nradius_rule = \"fixed\"\ndirect = \"photons\"", WALL, 3);
+    let fixed = Seen::of(
+        "radius = { units = 0.25 }\nradius_rule = \"fixed\"\ndirect = \"photons\"",
+        WALL,
+        3,
+    );
     assert!(fixed.plane("radius.Y").values.iter().all(|r| (r - 0.25).abs() < 1e-6));
     let counted: f64 = fixed.plane("photons.Y").values.iter().sum();
-    assert!(counted > 100.0 && counted == fixed.gathered as f64, "{counted} and {}", fixed.gathered);
+    assert!(
+        counted > 100.0 && counted == fixed.gathered as f64,
+        "{counted} and {}",
+        fixed.gathered
+    );
     let global = Seen::of("radius = { units = 0.25 }\nalpha = 0.5\ndirect = \"photons\"", WALL, 3);
     // (1 + 1/2) / 2 and (2 + 1/2) / 3 of the squared radius are left
     let expected = 0.25 * (0.75f64 * 2.5 / 3.0).sqrt();
     assert!(global.plane("radius.Y").values.iter().all(|r| (r - expected).abs() < 1e-6));
-    let local = Seen::of("radius = { units = 0.25 }\nradius_rule = \"local\"\ndirect = \"photons\"", WALL, 3);
+    let local = Seen::of(
+        "radius = { units = 0.25 }\nradius_rule = \"local\"\ndirect = \"photons\"",
+        WALL,
+        3,
+    );
     let radii = &local.plane("radius.Y").values;
     assert!(radii.iter().all(|r| *r > 0.1 && *r <= 0.25 + 1e-6) && radii.iter().any(|r| *r < 0.24));
 }
@@ -313,7 +348,8 @@ fn both_precisions_agree() {
     let plan = double::plan::Plan::new(&packed, &loaded.settings).on(&loaded.scene.film);
     let double = Seen::by(double::cpu::CpuEngine::new(packed, plan), 2);
     for (a, b) in single.layers.iter().zip(&double.layers).filter(|(a, _)| a.name != "photons.Y") {
-        let unlike = a.plane.values.iter().zip(&b.plane.values).filter(|(a, b)| (*a - *b).abs() > 1e-3);
+        let unlike =
+            a.plane.values.iter().zip(&b.plane.values).filter(|(a, b)| (*a - *b).abs() > 1e-3);
         let unlike = unlike.count();
         assert!(unlike <= 6, "{}: {unlike} pixels", a.name);
     }
@@ -324,7 +360,8 @@ fn window_of(seen: &Seen, [x0, y0, x1, y1]: [u32; 4]) -> Vec<u64> {
     let width = seen.picture.width;
     let places = || (y0..y1).flat_map(|y| (x0..x1).map(move |x| (y * width + x) as usize));
     let pixels = places().flat_map(|i| seen.picture.rgb[i]).map(|value| u64::from(value.to_bits()));
-    let layers = seen.layers.iter().flat_map(|layer| places().map(|i| layer.plane.values[i].to_bits()));
+    let layers =
+        seen.layers.iter().flat_map(|layer| places().map(|i| layer.plane.values[i].to_bits()));
     pixels.chain(layers).collect()
 }
 
@@ -358,6 +395,9 @@ fn a_window_has_the_bits_of_the_whole() {
             let engine = GpuEngine::new(&software::software(), &packed, cut).unwrap();
             assert!(window_of(&Seen::by(engine, 3), alone) == expected, "{settings}");
         }
-        assert!(window_of(&whole, [6, 3, 17, 14]) != expected, "the comparison sees a column's shift");
+        assert!(
+            window_of(&whole, [6, 3, 17, 14]) != expected,
+            "the comparison sees a column's shift"
+        );
     }
 }

@@ -45,7 +45,8 @@ material = "red"
 emission = [8.0, 9.0, 10.0]
 "#;
 
-/// What each part is off by, over the picture where that is more than 0.01: the largest of any channel.
+/// What each part is off by, over the picture where that is more than 0.01: the largest of any
+/// channel.
 fn off(seen: &Seen, parts: &[[&str; 3]]) -> f64 {
     let pixels = seen.picture.rgb.iter().enumerate().flat_map(|(i, rgb)| {
         (0..3).map(move |c| {
@@ -70,25 +71,33 @@ fn the_parts_are_all_of_the_picture() {
         // means of six f32 in each part
         assert!(off(&seen, &PARTS) < 2e-5, "{settings}: {}", off(&seen, &PARTS));
         for missing in PARTS {
-            let others: Vec<[&str; 3]> = PARTS.into_iter().filter(|part| *part != missing).collect();
+            let others: Vec<[&str; 3]> =
+                PARTS.into_iter().filter(|part| *part != missing).collect();
             let empty = missing[0] == "direct.R" && settings.contains("\"photons\"");
             assert_eq!(off(&seen, &others) < 2e-5, empty, "{settings}: without {}", missing[0]);
         }
     }
 }
 
-/// A wall alone has no other light than direct, and a ball of glass casts its caustic where its shadow is.
+/// A wall alone has no other light than direct, and a ball of glass casts its caustic where its
+/// shadow is.
 #[test]
 fn light_is_told_by_its_way() {
     let alone = Seen::of("", WALL, 3);
     assert!(off(&alone, &PARTS[1..2]) < 2e-5);
-    let ball =
-        WAYS.split("[[shapes]]").nth(1).unwrap().replace("0.5]", "1.6]").replace("2.0, 1.6", "2.4, 1.6");
+    let ball = WAYS
+        .split("[[shapes]]")
+        .nth(1)
+        .unwrap()
+        .replace("0.5]", "1.6]")
+        .replace("2.0, 1.6", "2.4, 1.6");
     let materials = WAYS.split("[[shapes]]").next().unwrap();
     // photons that come off the wall are all indirect, also those that then meet the ball
     let rest = format!("{materials}[[shapes]]{ball}{WALL}");
-    let rest = rest
-        .replace("[materials.gold]\ntype = \"metal\"\nreflectance = [0.9, 0.7, 0.3]\nroughness = 0.4\n", "");
+    let rest = rest.replace(
+        "[materials.gold]\ntype = \"metal\"\nreflectance = [0.9, 0.7, 0.3]\nroughness = 0.4\n",
+        "",
+    );
     let seen = Seen::of("photons = 20000\nradius = { pixels = 2.0 }", &rest, 3);
     let sum = |part: usize| seen.plane(PARTS[part][1]).values.iter().sum::<f64>();
     assert!(sum(0) == 0.0 && sum(1) > 0.0 && sum(2) > 0.0, "{} {} {}", sum(0), sum(1), sum(2));
@@ -97,5 +106,10 @@ fn light_is_told_by_its_way() {
     let (direct, caustic) = (&seen.plane(PARTS[1][1]).values, &seen.plane(PARTS[2][1]).values);
     let shadow: Vec<usize> = (0..direct.len()).filter(|i| direct[*i] == 0.0).collect();
     let inside = shadow.iter().map(|i| caustic[*i]).sum::<f64>();
-    assert!(shadow.len() > 5 && inside > 0.3 * sum(2), "{} pixels, {inside} of {}", shadow.len(), sum(2));
+    assert!(
+        shadow.len() > 5 && inside > 0.3 * sum(2),
+        "{} pixels, {inside} of {}",
+        shadow.len(),
+        sum(2)
+    );
 }

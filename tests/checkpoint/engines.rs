@@ -31,8 +31,8 @@ const CHANGES: [(&str, Change); 7] = [
     ("path local", |s| (s.method, s.radius_rule) = (Method::Path, RadiusRule::Local)),
 ];
 
-/// What a render of six passes holds that starts on the first device and goes on, through a file, on the second after two and
-/// on the first again after five.
+/// What a render of six passes holds that starts on the first device and goes on, through a file,
+/// on the second after two and on the first again after five.
 fn broken(devices: [&Wanted; 2], name: &str, change: Change) -> State {
     let file = folder(&format!("engines {name}")).join("a.checkpoint");
     let mut state = State::before(0);
@@ -60,7 +60,10 @@ fn go_on_with_the_same_bits() {
         assert_eq!((state.first_pass, state.passes, state.bits), (0, 6, 32));
         assert_eq!(state.statistics.is_empty(), path || !name.contains("local"), "{name}");
         let other = if path { &Wanted::Cpu } else { &Wanted::Software };
-        assert!(broken([&Wanted::Cpu, other], name, change) == state, "{name}: cpu, {other:?}, cpu");
+        assert!(
+            broken([&Wanted::Cpu, other], name, change) == state,
+            "{name}: cpu, {other:?}, cpu"
+        );
         if !path {
             assert!(
                 broken([other, &Wanted::Cpu], name, change) == state,
@@ -84,11 +87,14 @@ fn the_f64_engine_too() {
         assert_eq!(state.bits, 64);
         assert!(broken([&Wanted::CpuDouble; 2], &format!("f64 {name}"), change) == state, "{name}");
         let (picture, errors, _) = checkpoint(&whole, SIZE, state).develop();
-        assert!(picture == whole.engine.picture().unwrap() && errors == whole.engine.errors().unwrap());
+        assert!(
+            picture == whole.engine.picture().unwrap() && errors == whole.engine.errors().unwrap()
+        );
     }
 }
 
-/// The comparison sees whatever is left behind: statistics, the film, the number of passes, the fixed visible points' pass.
+/// The comparison sees whatever is left behind: statistics, the film, the number of passes, the
+/// fixed visible points' pass.
 #[test]
 fn nothing_may_be_left_behind() {
     let change: Change = |s| (s.method, s.radius_rule) = (Method::Ppm, RadiusRule::Local);
@@ -124,7 +130,8 @@ fn nothing_may_be_left_behind() {
     assert!(same > 24 * 16 * 9 / 10, "all but what one photon lights: {same}");
 }
 
-/// More visible points than a chunk holds, so that buffers of more than one go into the file and out of it, those of layers too.
+/// More visible points than a chunk holds, so that buffers of more than one go into the file and
+/// out of it, those of layers too.
 #[test]
 fn chunks_are_put_together() {
     let film = |film: &mut Film| {
@@ -162,10 +169,19 @@ fn what_does_not_fit_is_refused() {
         };
         assert!(!refused(SIZE, |_| (), &state));
         assert!(refused((24, 17), |_| (), &state), "{device:?}: another size");
-        assert!(refused(SIZE, |s| s.radius_rule = RadiusRule::Local, &state), "{device:?}: no statistics");
-        assert!(refused(SIZE, |_| (), &State { bits: 64, ..state.clone() }), "{device:?}: precision");
+        assert!(
+            refused(SIZE, |s| s.radius_rule = RadiusRule::Local, &state),
+            "{device:?}: no statistics"
+        );
+        assert!(
+            refused(SIZE, |_| (), &State { bits: 64, ..state.clone() }),
+            "{device:?}: precision"
+        );
         let local: Change = |s| s.radius_rule = RadiusRule::Local;
-        assert!(refused(SIZE, local, &State::before(1)), "{device:?}: a range under the local rule");
+        assert!(
+            refused(SIZE, local, &State::before(1)),
+            "{device:?}: a range under the local rule"
+        );
         assert!(!refused(SIZE, local, &State::before(0)));
     }
 }

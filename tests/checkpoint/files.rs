@@ -41,7 +41,8 @@ fn refusal(file: &Path, bytes: &[u8]) -> Option<CheckpointError> {
     decode(file, bytes).err()
 }
 
-/// Theory: a checksum of 128 bits over everything before it, and a length, leave no prefix and no flipped bit unseen.
+/// Theory: a checksum of 128 bits over everything before it, and a length, leave no prefix and no
+/// flipped bit unseen.
 #[test]
 fn every_cut_and_every_flipped_byte_is_seen() {
     let (file, checkpoint) = made("damage");
@@ -79,20 +80,24 @@ fn what_is_no_checkpoint_is_told() {
     let picture = folder.join("a.png");
     assert!(matches!(refusal(&picture, b"\x89PNG\r\n"), Some(CheckpointError::NotOne { .. })));
     assert!(matches!(refusal(&picture, b""), Some(CheckpointError::NotOne { .. })));
-    for missing in [folder.join("none.checkpoint"), folder.clone(), "/dev/zero".into(), "/dev/null".into()] {
+    for missing in
+        [folder.join("none.checkpoint"), folder.clone(), "/dev/zero".into(), "/dev/null".into()]
+    {
         let error = read(&missing).err().unwrap();
         assert!(matches!(error, CheckpointError::Io { verb: "read", .. }), "{error:?}");
         assert!(error.to_string().contains(missing.to_str().unwrap()), "{error}");
     }
 }
 
-/// A file that lies: its checksum is right, its header is not. Nothing that it claims may be believed.
+/// A file that lies: its checksum is right, its header is not. Nothing that it claims may be
+/// believed.
 #[test]
 fn forged_headers_are_refused() {
     let (file, _) = made("forged");
     let bytes = fs::read(&file).unwrap();
     let length = u32::from_le_bytes(bytes[12..16].try_into().unwrap()) as usize;
-    let header: serde_json::Value = serde_json::from_slice(&bytes[PREFIX..PREFIX + length]).unwrap();
+    let header: serde_json::Value =
+        serde_json::from_slice(&bytes[PREFIX..PREFIX + length]).unwrap();
     let sections = &bytes[PREFIX + length..bytes.len() - SUM];
     let forged = |header: &[u8], told: u32| {
         let total = (PREFIX + header.len() + sections.len() + SUM) as u64;
@@ -140,7 +145,10 @@ fn forged_headers_are_refused() {
             lying["first_pass"] = 1.into();
         }
         let error = told(&lying);
-        assert!(matches!(error, Some(CheckpointError::Damaged { .. })), "{place} {value}: {error:?}");
+        assert!(
+            matches!(error, Some(CheckpointError::Damaged { .. })),
+            "{place} {value}: {error:?}"
+        );
     }
     for lie in [0, 1, length as u32 - 1, length as u32 + 1, u32::MAX] {
         let error = forged(header.to_string().as_bytes(), lie);
@@ -151,15 +159,17 @@ fn forged_headers_are_refused() {
     assert!(matches!(forged(&deep, deep.len() as u32), Some(CheckpointError::Damaged { .. })));
 }
 
-/// Any bytes at any places, with the right checksum: what is refused is refused with a reason, and what is taken for a checkpoint
-/// can be developed and merged, whatever comes of it, and gone on from. Nothing panics.
+/// Any bytes at any places, with the right checksum: what is refused is refused with a reason, and
+/// what is taken for a checkpoint can be developed and merged, whatever comes of it, and gone on
+/// from. Nothing panics.
 #[test]
 fn forged_bytes_do_no_harm() {
     let (file, _) = made("chance");
     let bytes = fs::read(&file).unwrap();
     let mut state = 3u64;
     let mut below = |end: usize| {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        state =
+            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         ((state >> 33) as usize) % end
     };
     let digits = b"0123456789.-e,:{}[]\"tn";
@@ -168,7 +178,8 @@ fn forged_bytes_do_no_harm() {
     for round in 0..20_000 {
         let mut content = bytes[..bytes.len() - SUM].to_vec();
         for _ in 0..1 + below(4) {
-            // half of them in the numbers at the header's end, where a digit for a digit is still a header
+            // half of them in the numbers at the header's end, where a digit for a digit is still a
+            // header
             let header = PREFIX + u32::from_le_bytes(bytes[12..16].try_into().unwrap()) as usize;
             let at = if round % 2 == 0 { header - 1 - below(500) } else { below(content.len()) };
             let in_header = (PREFIX..header).contains(&at);
@@ -218,12 +229,16 @@ fn a_failed_write_keeps_the_one_before() {
     fs::set_permissions(&file, writable).unwrap();
     write(&file, &other).unwrap();
     assert!(read(&file).unwrap() == other);
-    assert_eq!(fs::read_dir(file.parent().unwrap()).unwrap().count(), 3, "nothing is left beside it");
+    assert_eq!(
+        fs::read_dir(file.parent().unwrap()).unwrap().count(),
+        3,
+        "nothing is left beside it"
+    );
 }
 
-/// Theory: radii under the local rule shrink from 1, means of finite light are finite, no more passes are
-/// left out than there were. A file that says otherwise is no render's, whatever its checksum; one that
-/// says so is gone on from without an end that is not its own.
+/// Theory: radii under the local rule shrink from 1, means of finite light are finite, no more
+/// passes are left out than there were. A file that says otherwise is no render's, whatever its
+/// checksum; one that says so is gone on from without an end that is not its own.
 #[test]
 fn forged_numbers_are_refused() {
     let local = |s: &mut RenderSettings| (s.photons, s.radius_rule) = (50, RadiusRule::Local);
@@ -277,7 +292,10 @@ fn forged_numbers_are_refused() {
     }
     assert!(refused(&|c| c.cuts = vec![[2, 0]; 12]), "a mean over two passes of one");
     for points in [1, 11, 13] {
-        assert!(refused(&|c| c.state.statistics.resize(16 * points, 0)), "statistics of {points} points");
+        assert!(
+            refused(&|c| c.state.statistics.resize(16 * points, 0)),
+            "statistics of {points} points"
+        );
     }
     assert!(!refused(&|_| ()), "the forger's hand is right");
 }
@@ -305,14 +323,21 @@ fn forged_layers_are_refused() {
     };
     assert_eq!((sound.state.layers.aovs.len(), sound.state.layers.parts.len()), (12 * 96, 12 * 32));
     assert_eq!((sound.state.layers.counts.len(), sound.state.statistics.len()), (12, 0));
-    let put =
-        |bytes: &mut [u8], at: usize, number: f32| bytes[at..at + 4].copy_from_slice(&number.to_le_bytes());
+    let put = |bytes: &mut [u8], at: usize, number: f32| {
+        bytes[at..at + 4].copy_from_slice(&number.to_le_bytes())
+    };
     for number in [f32::NAN, f32::INFINITY, -f32::INFINITY] {
         for at in (0..19).map(|k| 4 * k) {
-            assert!(refused(&|c| put(&mut c.state.layers.aovs, 96 + at, number)), "{number} at {at}");
+            assert!(
+                refused(&|c| put(&mut c.state.layers.aovs, 96 + at, number)),
+                "{number} at {at}"
+            );
         }
         for at in (0..7).map(|k| 4 * k) {
-            assert!(refused(&|c| put(&mut c.state.layers.parts, 32 + at, number)), "parts: {number} at {at}");
+            assert!(
+                refused(&|c| put(&mut c.state.layers.parts, 32 + at, number)),
+                "parts: {number} at {at}"
+            );
         }
     }
     // samples that hit, samples that end at a visible point, passes
@@ -322,8 +347,14 @@ fn forged_layers_are_refused() {
     assert!(refused(&|c| put(&mut c.state.layers.parts, 12, 2.0)), "two passes of one");
     for points in [1, 11, 13, 24] {
         assert!(refused(&|c| c.state.layers.counts.resize(points, 0)), "counts of {points} points");
-        assert!(refused(&|c| c.state.statistics.resize(16 * points, 0)), "statistics of {points} points");
+        assert!(
+            refused(&|c| c.state.statistics.resize(16 * points, 0)),
+            "statistics of {points} points"
+        );
     }
-    assert!(refused(&|c| c.state.statistics.resize(16 * 12, 0)), "statistics without the local rule");
+    assert!(
+        refused(&|c| c.state.statistics.resize(16 * 12, 0)),
+        "statistics without the local rule"
+    );
     assert!(!refused(&|c| c.state.layers.counts.clear()) && !refused(&|_| ()));
 }

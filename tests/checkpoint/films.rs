@@ -1,7 +1,8 @@
 //! A part of the picture, and what pictures hold beside radiance.
 //!
-//! Theory: a window's pixels need nothing of those around it, and layers are means over passes like the picture; so with both a
-//! render that goes on has the bits of one that never stopped, and ranges merge into all but for rounding.
+//! Theory: a window's pixels need nothing of those around it, and layers are means over passes like
+//! the picture; so with both a render that goes on has the bits of one that never stopped, and
+//! ranges merge into all but for rounding.
 
 use caustica::checkpoint::{Checkpoint, merge, read, write};
 use caustica::device::Wanted;
@@ -42,14 +43,20 @@ fn go_on_with_the_same_bits() {
         passes(whole.engine.as_mut(), 5);
         let state = whole.engine.save().unwrap();
         let layers = whole.engine.layers().unwrap();
-        assert!(layers.len() > 15 && layers.iter().all(|layer| layer.plane.values.len() == 165), "{name}");
+        assert!(
+            layers.len() > 15 && layers.iter().all(|layer| layer.plane.values.len() == 165),
+            "{name}"
+        );
         for devices in [[&Wanted::Cpu, &other], [&other, &Wanted::Cpu]] {
             let file = folder(&format!("films {name}")).join("a.checkpoint");
             let mut held = State::before(0);
             for (device, count) in [(devices[0], 2), (devices[1], 3)] {
                 let mut opened = open_on(device, part, change);
                 opened.engine.restore(&held).unwrap();
-                assert!(held.passes == 0 || opened.engine.save().unwrap() == held, "{name}: in and out");
+                assert!(
+                    held.passes == 0 || opened.engine.save().unwrap() == held,
+                    "{name}: in and out"
+                );
                 passes(opened.engine.as_mut(), count);
                 let saved = opened.engine.save().unwrap();
                 let made = checkpoint_on(&opened, part, saved);
@@ -107,7 +114,10 @@ fn nothing_may_be_left_behind() {
         for count in [0, 1] {
             let sound = after(count, &|_| ());
             assert!(after(count, &|state| state.layers.aovs.fill(0)) != sound, "{device:?}: aovs");
-            assert!(after(count, &|state| state.layers.parts.fill(0)) != sound, "{device:?}: parts");
+            assert!(
+                after(count, &|state| state.layers.parts.fill(0)) != sound,
+                "{device:?}: parts"
+            );
             let spoilt = after(count, &|state| state.layers.counts.fill(0)) != sound;
             assert_eq!(spoilt, count == 0, "{device:?}: photons of the last pass");
         }
@@ -116,7 +126,9 @@ fn nothing_may_be_left_behind() {
             spoil(&mut state);
             open_on(&device, part, |_| ()).engine.restore(&state).is_err()
         };
-        assert!(lacks(&|state| state.layers.aovs.clear()) && lacks(&|state| state.layers.parts.clear()));
+        assert!(
+            lacks(&|state| state.layers.aovs.clear()) && lacks(&|state| state.layers.parts.clear())
+        );
         assert!(lacks(&|state| state.layers.counts.clear()) && !lacks(&|_| ()));
     }
 }
@@ -130,7 +142,8 @@ fn range(first: u32, end: u32, change: Change) -> Checkpoint {
 }
 
 fn merged(parts: &[Checkpoint]) -> Checkpoint {
-    let named = parts.iter().enumerate().map(|(i, part)| (format!("{i}.checkpoint").into(), part.clone()));
+    let named =
+        parts.iter().enumerate().map(|(i, part)| (format!("{i}.checkpoint").into(), part.clone()));
     merge(named.collect()).unwrap()
 }
 
@@ -161,7 +174,8 @@ fn ranges_give_the_layers_of_all() {
             println!("{name} {cuts:?}: {far:.1e}, {layer}");
             assert!(far <= BOUND, "{name} {cuts:?}: {layer} {far:e}");
         }
-        // the comparator sees one pass of 24 that was made twice in the place of another, but of fixed points
+        // the comparator sees one pass of 24 that was made twice in the place of another, but of
+        // fixed points
         let mut other = range(11, 23, change);
         other.state.first_pass = 12;
         let (far, layer) = distance(&merged(&[range(0, 12, change), other]), &whole);
@@ -169,7 +183,8 @@ fn ranges_give_the_layers_of_all() {
     }
 }
 
-/// Through the program: a crop goes on and merges, another one is told and so is the lack of layers.
+/// Through the program: a crop goes on and merges, another one is told and so is the lack of
+/// layers.
 #[test]
 fn the_program_keeps_crops_and_layers() {
     let folder = folder("crops");
@@ -182,7 +197,10 @@ fn the_program_keeps_crops_and_layers() {
     let [whole, gone_on] = ["whole.exr", "gone-on.exr"].map(channels);
     assert!(whole.channels == gone_on.channels && whole.frame == gone_on.frame);
     assert_eq!((whole.width, whole.height, whole.channels.len()), (15, 11, 3 + 2 + 3 + 1 + 3 + 1));
-    assert_eq!((whole.frame.x, whole.frame.y, whole.frame.width, whole.frame.height), (5, 3, 24, 16));
+    assert_eq!(
+        (whole.frame.x, whole.frame.y, whole.frame.width, whole.frame.height),
+        (5, 3, 24, 16)
+    );
     // one alone gives its own file's channels, two those of all but for rounding
     good(&folder, "merge whole.checkpoint -o same.exr");
     let same = channels("same.exr");
@@ -195,7 +213,8 @@ fn the_program_keeps_crops_and_layers() {
     assert!(ab.frame == whole.frame && ab.channels.keys().eq(whole.channels.keys()));
     for (name, values) in &whole.channels {
         let largest = values.iter().fold(0f32, |m, x| m.max(x.abs()));
-        let far = values.iter().zip(&ab.channels[name]).map(|(x, y)| (x - y).abs()).fold(0f32, f32::max);
+        let far =
+            values.iter().zip(&ab.channels[name]).map(|(x, y)| (x - y).abs()).fold(0f32, f32::max);
         assert!(far <= 1e-5 * largest, "{name}: {far} of {largest}");
     }
     // fewer layers may be asked for, others not
@@ -204,7 +223,9 @@ fn the_program_keeps_crops_and_layers() {
     assert_eq!(channels("depth.exr").channels["depth.Z"], whole.channels["depth.Z"]);
     let refused = |options: &str, words: &[&str]| {
         let words = [&["a.checkpoint: the checkpoint is of another render"], words].concat();
-        let line = format!("render ball.toml --device cpu --quiet --resume a.checkpoint -o x.exr {options}");
+        let line = format!(
+            "render ball.toml --device cpu --quiet --resume a.checkpoint -o x.exr {options}"
+        );
         fails(&folder, &line, 1, &words);
     };
     refused("", &["the crop: expected the whole picture, found 5,3,20,14"]);

@@ -1,8 +1,8 @@
 //! Renders that are killed at random moments and gone on with.
 //!
-//! Theory: the file's name is given to a whole checkpoint or to none, so after any kill there is one that can be read, it never
-//! holds fewer passes than before, and the render that at last comes to its end has written the bytes of one that never
-//! stopped.
+//! Theory: the file's name is given to a whole checkpoint or to none, so after any kill there is
+//! one that can be read, it never holds fewer passes than before, and the render that at last comes
+//! to its end has written the bytes of one that never stopped.
 
 use std::fs;
 use std::path::Path;
@@ -19,7 +19,8 @@ struct Chance(u64);
 
 impl Chance {
     fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        self.0 =
+            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 40) as f64 / (1u64 << 24) as f64
     }
 }
@@ -38,8 +39,15 @@ struct Tally {
     midway: u32,
 }
 
-/// Renders `line` to its end through as many lives as it takes, each on the next of `devices` and ended after a random time.
-fn through_kills(folder: &Path, line: &str, devices: &[&str], chance: &mut Chance, tally: &mut Tally) {
+/// Renders `line` to its end through as many lives as it takes, each on the next of `devices` and
+/// ended after a random time.
+fn through_kills(
+    folder: &Path,
+    line: &str,
+    devices: &[&str],
+    chance: &mut Chance,
+    tally: &mut Tally,
+) {
     let file = folder.join("a.checkpoint");
     let _ = fs::remove_file(&file);
     let (mut passes, mut wait) = (0, 0.2);
@@ -47,11 +55,12 @@ fn through_kills(folder: &Path, line: &str, devices: &[&str], chance: &mut Chanc
         let resume = if file.exists() { "--resume a.checkpoint" } else { "" };
         let device = devices[life % devices.len()];
         let keep = "--checkpoint a.checkpoint --checkpoint-every 1ms --quiet";
-        let mut child = command(folder, &format!("{line} --device {device} {keep} {resume} -o a.exr"))
-            .stdout(Stdio::null())
-            .stderr(Stdio::null())
-            .spawn()
-            .unwrap();
+        let mut child =
+            command(folder, &format!("{line} --device {device} {keep} {resume} -o a.exr"))
+                .stdout(Stdio::null())
+                .stderr(Stdio::null())
+                .spawn()
+                .unwrap();
         std::thread::sleep(Duration::from_secs_f64(wait * chance.next()));
         let signal = if chance.next() < 0.7 { "-9" } else { "-15" };
         let sent = Command::new("kill").args([signal, &child.id().to_string()]).status();
@@ -91,7 +100,8 @@ fn ends_in_the_same_bytes() {
         while tally.killed + tally.terminated < want {
             through_kills(&folder, &line, &["cpu"], &mut chance, &mut tally);
             assert!(
-                fs::read(folder.join("a.exr")).unwrap() == fs::read(folder.join("whole.exr")).unwrap(),
+                fs::read(folder.join("a.exr")).unwrap()
+                    == fs::read(folder.join("whole.exr")).unwrap(),
                 "{options}: {tally:?}"
             );
             assert!(channels(&folder, "a.exr").contains_key("Variance.Y"));
@@ -99,7 +109,8 @@ fn ends_in_the_same_bytes() {
     }
     println!("{tally:?}");
     assert!(tally.killed > 10 && tally.terminated > 3 && tally.midway > 10, "{tally:?}");
-    let mut left: Vec<_> = fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    let mut left: Vec<_> =
+        fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name()).collect();
     left.sort();
     // of a checkpoint the next render removes what a kill left; a picture's may stay
     left.retain(|name| {

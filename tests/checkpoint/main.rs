@@ -1,8 +1,9 @@
 //! Checkpoints: what an engine holds, as a file, and as the program uses it.
 //!
-//! Theory: everything that a pass needs beside what is saved is made again from the scene, the settings and the pass's number, with
-//! the same bits. So a render that goes on from a checkpoint, on the CPU or on lavapipe, ends in the bits of one that never
-//! stopped; and where passes do not need one another, ranges of them merge into all but for rounding.
+//! Theory: everything that a pass needs beside what is saved is made again from the scene, the
+//! settings and the pass's number, with the same bits. So a render that goes on from a checkpoint,
+//! on the CPU or on lavapipe, ends in the bits of one that never stopped; and where passes do not
+//! need one another, ranges of them merge into all but for rounding.
 
 #[path = "../support/mod.rs"]
 mod support;
@@ -70,11 +71,16 @@ pub fn open(wanted: &Wanted, size: (u32, u32), change: impl Fn(&mut RenderSettin
 }
 
 /// An engine for the scene on a film that is changed so.
-pub fn open_on(wanted: &Wanted, film: impl Fn(&mut Film), change: impl Fn(&mut RenderSettings)) -> Opened {
+pub fn open_on(
+    wanted: &Wanted,
+    film: impl Fn(&mut Film),
+    change: impl Fn(&mut RenderSettings),
+) -> Opened {
     let mut loaded = scene::load(&folder_once().join("ball.toml")).unwrap();
     film(&mut loaded.scene.film);
     change(&mut loaded.settings);
-    device::open(wanted, &loaded.scene, &loaded.settings).unwrap_or_else(|e| panic!("{wanted:?}: {e}"))
+    device::open(wanted, &loaded.scene, &loaded.settings)
+        .unwrap_or_else(|e| panic!("{wanted:?}: {e}"))
 }
 
 fn folder_once() -> &'static Path {

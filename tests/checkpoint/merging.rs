@@ -1,8 +1,9 @@
 //! Ranges of passes merged.
 //!
-//! Theory: a running mean over n passes in f32 with a carry is rounded in each pass by at most `2^-24 |x - mean| / n` in the change and
-//! `2^-24 |mean|` whenever the carry is put in, which happens while a pass changes the mean by a 256th, and with growing gaps later. The
-//! bound below, 32 roundings of the greatest of a pixel's values, is what docs/checkpoints.md states.
+//! Theory: a running mean over n passes in f32 with a carry is rounded in each pass by at most
+//! `2^-24 |x - mean| / n` in the change and `2^-24 |mean|` whenever the carry is put in, which
+//! happens while a pass changes the mean by a 256th, and with growing gaps later. The bound below,
+//! 32 roundings of the greatest of a pixel's values, is what docs/checkpoints.md states.
 
 use caustica::checkpoint::{Checkpoint, CheckpointError, merge};
 use caustica::device::Wanted;
@@ -15,7 +16,12 @@ const SIZE: (u32, u32) = (24, 16);
 const ROUNDING: f64 = 1.0 / 16_777_216.0;
 const BOUND: f64 = 32.0 * ROUNDING;
 
-fn range(first: u32, end: u32, wanted: &Wanted, change: impl Fn(&mut RenderSettings)) -> Checkpoint {
+fn range(
+    first: u32,
+    end: u32,
+    wanted: &Wanted,
+    change: impl Fn(&mut RenderSettings),
+) -> Checkpoint {
     let mut opened = open(wanted, SIZE, change);
     opened.engine.restore(&State::before(first)).unwrap();
     for _ in first..end {
@@ -28,11 +34,13 @@ fn range(first: u32, end: u32, wanted: &Wanted, change: impl Fn(&mut RenderSetti
 }
 
 fn merged(parts: &[Checkpoint]) -> Result<Checkpoint, CheckpointError> {
-    let named = parts.iter().enumerate().map(|(i, part)| (format!("{i}.checkpoint").into(), part.clone()));
+    let named =
+        parts.iter().enumerate().map(|(i, part)| (format!("{i}.checkpoint").into(), part.clone()));
     merge(named.collect())
 }
 
-/// How far two checkpoints' pictures and variances are apart, over the pixel's luminance in the second, and its square.
+/// How far two checkpoints' pictures and variances are apart, over the pixel's luminance in the
+/// second, and its square.
 fn distance(a: &Checkpoint, b: &Checkpoint) -> [f64; 2] {
     let ((pa, ea, ra), (pb, eb, rb)) = (a.develop(), b.develop());
     assert_eq!(ra, rb);
@@ -71,12 +79,19 @@ fn ranges_give_the_picture_of_all() {
                 picture / ROUNDING,
                 variance / ROUNDING
             );
-            assert!(picture <= BOUND && variance <= BOUND, "{name} {cuts:?}: {picture:e} {variance:e}");
-            // what passes of odd numbers say is turned over from the start of all, not of each range
-            let bias = |c: &Checkpoint| c.develop().1.pixels.iter().map(|p| p.ring_swing).collect::<Vec<_>>();
+            assert!(
+                picture <= BOUND && variance <= BOUND,
+                "{name} {cuts:?}: {picture:e} {variance:e}"
+            );
+            // what passes of odd numbers say is turned over from the start of all, not of each
+            // range
+            let bias = |c: &Checkpoint| {
+                c.develop().1.pixels.iter().map(|p| p.ring_swing).collect::<Vec<_>>()
+            };
             let (a, b) = (bias(&all), bias(&whole));
             let scale = whole.develop().0.rgb.iter().flatten().fold(0f32, |m, x| m.max(*x));
-            let far = a.iter().zip(&b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / f64::from(scale);
+            let far =
+                a.iter().zip(&b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / f64::from(scale);
             assert!(far <= BOUND, "{name} {cuts:?}: {far:e}");
             // the error is stated from other cuts of the same passes
             let stated = |c: &Checkpoint| c.develop().1.relative().stated;
@@ -97,7 +112,8 @@ fn ranges_give_the_picture_of_all() {
 fn two_times_five_hundred_passes() {
     let few = |s: &mut RenderSettings| s.photons = 300;
     let halves = [range(0, 500, &Wanted::Cpu, few), range(500, 1000, &Wanted::Cpu, few)];
-    let [picture, variance] = distance(&merged(&halves).unwrap(), &range(0, 1000, &Wanted::Cpu, few));
+    let [picture, variance] =
+        distance(&merged(&halves).unwrap(), &range(0, 1000, &Wanted::Cpu, few));
     println!("0..1000: {:.1} roundings, variance {:.1}", picture / ROUNDING, variance / ROUNDING);
     assert!(picture <= BOUND && variance <= BOUND, "{picture:e} {variance:e}");
     assert!(picture > 0.0, "sums in another order are rounded otherwise");
@@ -132,7 +148,10 @@ fn what_does_not_go_together_is_refused() {
     assert!(merged(&[a.clone(), b.clone()]).is_ok());
     fails(&[], &["nothing"]);
     fails(&[a.clone(), a.clone()], &["1.checkpoint", "passes 0..3 are in both"]);
-    fails(&[a.clone(), part(2, 5)], &["passes 2..3 are in both", "0.checkpoint ends before pass 3"]);
+    fails(
+        &[a.clone(), part(2, 5)],
+        &["passes 2..3 are in both", "0.checkpoint ends before pass 3"],
+    );
     fails(&[a.clone(), part(1, 2)], &["passes 1..2 are in both"]);
     fails(&[part(4, 6), a.clone()], &["0.checkpoint", "passes 3..4 are missing", "--passes 3..4"]);
     let seed = range(3, 5, &Wanted::Cpu, |s| s.seed = 1);

@@ -15,9 +15,15 @@ fn other_renders_are_refused_with_the_reason() {
     let on_cpu = format!("{line} --device cpu --resume a.checkpoint -o b.exr");
     let refused = |more: &str, words: &[&str]| {
         let words =
-            [&["a.checkpoint: the checkpoint is of another render", "leave out --resume"], words].concat();
+            [&["a.checkpoint: the checkpoint is of another render", "leave out --resume"], words]
+                .concat();
         let device = if more.contains("--device") { "" } else { "--device cpu" };
-        fails(&folder, &format!("{line} {device} --resume a.checkpoint -o b.exr {more}"), 1, &words);
+        fails(
+            &folder,
+            &format!("{line} {device} --resume a.checkpoint -o b.exr {more}"),
+            1,
+            &words,
+        );
         assert!(!folder.join("b.exr").exists());
     };
     refused("--seed 5", &["`seed`: expected 5, found 0"]);
@@ -37,7 +43,11 @@ fn other_renders_are_refused_with_the_reason() {
     fs::write(folder.join("ball.toml"), moved).unwrap();
     refused(
         "",
-        &["the scene (", "shapes", "expected `center = [0.0, 0.8, 0.0]`, found `center = [0.0, 0.7, 0.0]`"],
+        &[
+            "the scene (",
+            "shapes",
+            "expected `center = [0.0, 0.8, 0.0]`, found `center = [0.0, 0.7, 0.0]`",
+        ],
     );
     fs::write(folder.join("ball.toml"), SCENE.as_str()).unwrap();
     fs::write(folder.join("wall.obj"), MESH.replace("0 2 -1.5", "0 1.9 -1.5")).unwrap();
@@ -52,7 +62,12 @@ fn other_renders_are_refused_with_the_reason() {
     write(&file, &other).unwrap();
     refused("", &["caustica's version: expected", "found 0.0.9"]);
     write(&file, &sound).unwrap();
-    fails(&folder, &format!("{on_cpu} --passes 3"), 1, &["holds passes 0..4", "before pass 3", "--passes 4"]);
+    fails(
+        &folder,
+        &format!("{on_cpu} --passes 3"),
+        1,
+        &["holds passes 0..4", "before pass 3", "--passes 4"],
+    );
     // what changes no bit is no reason: comments, where it ends, development
     let told = SCENE
         .replace("version = 1", "# a comment\nversion = 1")
@@ -98,7 +113,12 @@ fn what_is_no_use_is_told_before_the_work() {
         2,
         &["local rule", "--resume", "global"],
     );
-    fails(&folder, "compare ball.toml --device cpu --device cpu --passes 2..5", 2, &["begins with pass 0"]);
+    fails(
+        &folder,
+        "compare ball.toml --device cpu --device cpu --passes 2..5",
+        2,
+        &["begins with pass 0"],
+    );
     fails(&folder, "info ball.toml --passes 2..5", 2, &["begins with pass 0"]);
     good(&folder, "info ball.toml --passes 0..5");
     // a checkpoint that is cut off
@@ -106,28 +126,38 @@ fn what_is_no_use_is_told_before_the_work() {
     let bytes = fs::read(folder.join("a.checkpoint")).unwrap();
     fs::write(folder.join("cut.checkpoint"), &bytes[..bytes.len() / 2]).unwrap();
     let half = (bytes.len() / 2).to_string();
-    fails(&folder, &format!("{line} --resume cut.checkpoint"), 1, &["should have", &half, "cut off"]);
+    fails(
+        &folder,
+        &format!("{line} --resume cut.checkpoint"),
+        1,
+        &["should have", &half, "cut off"],
+    );
     fails(&folder, "merge cut.checkpoint -o b.exr", 1, &["cut.checkpoint", "should have", &half]);
 }
 
-/// Theory: a render goes on to more passes than it was to have, on another device and in the same bits; where nothing is left to
-/// do, the picture is written again. All of it can be read in the JSON lines.
+/// Theory: a render goes on to more passes than it was to have, on another device and in the same
+/// bits; where nothing is left to do, the picture is written again. All of it can be read in the
+/// JSON lines.
 #[test]
 fn a_finished_render_goes_on() {
     let folder = folder("further");
     let line = "render ball.toml --json";
     let keep = "--checkpoint a.checkpoint";
     good(&folder, &format!("{line} --device cpu --passes 9 -o whole.exr"));
-    let first =
-        good(&folder, &format!("{line} --device cpu --passes 5 {keep} --checkpoint-every 1h -o a.exr"));
+    let first = good(
+        &folder,
+        &format!("{line} --device cpu --passes 5 {keep} --checkpoint-every 1h -o a.exr"),
+    );
     let events = |lines: &str, name: &str| -> Vec<serde_json::Value> {
-        let lines = lines.lines().map(|line| serde_json::from_str::<serde_json::Value>(line).unwrap());
+        let lines =
+            lines.lines().map(|line| serde_json::from_str::<serde_json::Value>(line).unwrap());
         lines.filter(|line| line["event"] == name).collect()
     };
     let kept = events(&first, "checkpoint");
     assert_eq!(kept.len(), 1, "one at the end: {first}");
     assert_eq!((&kept[0]["file"], &kept[0]["passes"]), (&"a.checkpoint".into(), &5.into()));
-    let again = good(&folder, &format!("{line} --device cpu --passes 5 --resume a.checkpoint -o b.exr"));
+    let again =
+        good(&folder, &format!("{line} --device cpu --passes 5 --resume a.checkpoint -o b.exr"));
     assert_eq!(events(&again, "resume")[0]["passes"], 5);
     assert_eq!(events(&again, "done")[0]["photons"], events(&first, "done")[0]["photons"]);
     assert!(fs::read(folder.join("a.exr")).unwrap() == fs::read(folder.join("b.exr")).unwrap());
@@ -153,8 +183,8 @@ fn a_finished_render_goes_on() {
     );
 }
 
-/// Theory: 0..9 is 0..4 and 4..9, on any devices, as a picture or as a checkpoint, whose attributes say so; one alone gives its own
-/// picture to the byte.
+/// Theory: 0..9 is 0..4 and 4..9, on any devices, as a picture or as a checkpoint, whose attributes
+/// say so; one alone gives its own picture to the byte.
 #[test]
 fn ranges_merge() {
     let folder = folder("merge");
@@ -186,7 +216,11 @@ fn ranges_merge() {
         (&ab.attributes["caustica.passes_done"], &ab.attributes["caustica.passes"]),
         (&"9".into(), &"9".into())
     );
-    assert!(ab.attributes["caustica.device"].starts_with("cpu + "), "{}", ab.attributes["caustica.device"]);
+    assert!(
+        ab.attributes["caustica.device"].starts_with("cpu + "),
+        "{}",
+        ab.attributes["caustica.device"]
+    );
     let b = read_exr(&folder.join("b.exr")).unwrap();
     assert_eq!(
         (&b.attributes["caustica.first_pass"], &b.attributes["caustica.passes_done"]),
@@ -216,11 +250,17 @@ fn ranges_merge() {
     range("4..9 --seed 3", "seed", "cpu");
     wrong("a.checkpoint seed.checkpoint", "x.exr", 1, &["`seed`: expected 0, found 3"]);
     let on = "render ball.toml --device cpu --quiet --passes 12 --resume ab.checkpoint";
-    fails(&folder, &format!("{on} -o x.exr"), 1, &["ab.checkpoint: it is merged", "passes from 9 on"]);
+    fails(
+        &folder,
+        &format!("{on} -o x.exr"),
+        1,
+        &["ab.checkpoint: it is merged", "passes from 9 on"],
+    );
     assert!(!folder.join("x.exr").exists());
 }
 
-/// Theory: an error that is aimed at ends a render after the same pass, wherever it was stopped before.
+/// Theory: an error that is aimed at ends a render after the same pass, wherever it was stopped
+/// before.
 #[test]
 fn an_error_aimed_at_is_met_in_the_same_pass() {
     let folder = folder("target");
@@ -244,18 +284,26 @@ fn an_error_aimed_at_is_met_in_the_same_pass() {
 fn the_help_tells_of_it() {
     let folder = folder("help");
     let help = good(&folder, "render --help");
-    for word in ["--checkpoint <FILE>", "--checkpoint-every <TIME>", "--resume <FILE>", "docs/checkpoints.md"]
-    {
+    for word in [
+        "--checkpoint <FILE>",
+        "--checkpoint-every <TIME>",
+        "--resume <FILE>",
+        "docs/checkpoints.md",
+    ] {
         assert!(help.contains(word), "{word}: {help}");
     }
     // the examples of merge run as they stand, but for their size
     let scenes = format!("{}/scenes/", env!("CARGO_MANIFEST_DIR"));
     let help = good(&folder, "merge --help");
-    let examples: Vec<_> = help.lines().filter_map(|line| line.strip_prefix("  caustica ")).collect();
+    let examples: Vec<_> =
+        help.lines().filter_map(|line| line.strip_prefix("  caustica ")).collect();
     assert_eq!(examples.len(), 3);
     for example in examples {
-        let small =
-            if example.starts_with("render") { "--size 8x8 --photons 100 --device cpu -o a.png" } else { "" };
+        let small = if example.starts_with("render") {
+            "--size 8x8 --photons 100 --device cpu -o a.png"
+        } else {
+            ""
+        };
         good(&folder, &format!("{} {small}", example.replace("scenes/", &scenes)));
     }
     assert!(folder.join("cornell.exr").exists());

@@ -17,7 +17,9 @@ type Make = fn(&Packed, Plan) -> Box<dyn Engine>;
 
 const ENGINES: [(&str, Make); 2] = [
     ("CPU", |packed, plan| Box::new(CpuEngine::new(packed.clone(), plan))),
-    ("lavapipe", |packed, plan| Box::new(GpuEngine::new(&software::software(), packed, plan).unwrap())),
+    ("lavapipe", |packed, plan| {
+        Box::new(GpuEngine::new(&software::software(), packed, plan).unwrap())
+    }),
 ];
 
 fn bits(picture: &Picture) -> Vec<[u32; 3]> {

@@ -1,7 +1,7 @@
-//! The CPU engine and the software driver give the same bits.
-//! Theory: both carry out the same operations in the same order on numbers that lavapipe rounds as Rust does, so every
-//! bit of every picture and every count of every pass is equal; one operation that differs shows somewhere in a scene
-//! that uses it, so the scenes together use every feature.
+//! The CPU engine and the software driver give the same bits. Theory: both carry out the same
+//! operations in the same order on numbers that lavapipe rounds as Rust does, so every bit of every
+//! picture and every count of every pass is equal; one operation that differs shows somewhere in a
+//! scene that uses it, so the scenes together use every feature.
 
 #[path = "../software/mod.rs"]
 mod software;
@@ -88,9 +88,11 @@ fn explain_pass(packed: &Packed, plan: &Plan, engine: &mut GpuEngine, pass: u32)
         if step.kernel == Kernel::EyeTrace {
             let theirs: Vec<VisiblePoint> =
                 pod_collect_to_vec(&engine.content("visible_points", step.chunk).unwrap());
-            let ours: Vec<_> = (0..d.end).map(|id| eye_trace(&packed.scene, d, sampled, id).0).collect();
-            let differing =
-                (0..).zip(ours.iter().zip(&theirs)).find(|(_, (a, b))| bytes_of(*a) != bytes_of(*b));
+            let ours: Vec<_> =
+                (0..d.end).map(|id| eye_trace(&packed.scene, d, sampled, id).0).collect();
+            let differing = (0..)
+                .zip(ours.iter().zip(&theirs))
+                .find(|(_, (a, b))| bytes_of(*a) != bytes_of(*b));
             text += &format!("\n  pass {pass}, visible point: {differing:?}");
         }
         if step.kernel == Kernel::PhotonTrace {
@@ -98,7 +100,8 @@ fn explain_pass(packed: &Packed, plan: &Plan, engine: &mut GpuEngine, pass: u32)
             for id in 0..d.end {
                 photon_trace(&packed.scene, d, sampled, id, |r| ours.push(r));
             }
-            let mut theirs: Vec<PhotonRecord> = pod_collect_to_vec(&engine.content("records", 0).unwrap());
+            let mut theirs: Vec<PhotonRecord> =
+                pod_collect_to_vec(&engine.content("records", 0).unwrap());
             theirs.truncate(ours.len());
             theirs.sort_by_key(|r| r.key);
             let differing = ours.iter().zip(&theirs).find(|(a, b)| bytes_of(*a) != bytes_of(*b));
@@ -116,7 +119,8 @@ fn engines_agree_to_the_bit() {
         let (packed, plan) = planned(settings, rest);
         let aovs = Aovs::parse("all").unwrap();
         let (width, height) = (48, 36);
-        let film = Film { width, height, exposure: 0.0, tonemap: ToneMap::Srgb, aovs, window: None };
+        let film =
+            Film { width, height, exposure: 0.0, tonemap: ToneMap::Srgb, aovs, window: None };
         let plan = plan.on(&film);
         used.extend(plan.features.names());
         let cpu = on_cpu(&packed, &plan);
@@ -136,8 +140,8 @@ fn engines_agree_to_the_bit() {
     assert!(unused.is_empty(), "no scene uses {unused:?}");
 }
 
-/// Theory: patches are put off where a set has a bit for each, and else searched leaf by leaf; either way the engines do the
-/// same.
+/// Theory: patches are put off where a set has a bit for each, and else searched leaf by leaf;
+/// either way the engines do the same.
 #[test]
 fn engines_agree_on_many_patches() {
     let beads = |count: u32| {
@@ -164,8 +168,8 @@ fn engines_agree_on_many_patches() {
     }
 }
 
-/// Chunks of visible points, a batch that overflows the records' buffers, and many batches change nothing between
-/// engines; chunks change nothing at all.
+/// Chunks of visible points, a batch that overflows the records' buffers, and many batches change
+/// nothing between engines; chunks change nothing at all.
 #[test]
 fn engines_agree_when_work_is_cut() {
     let (_, settings, rest) = SCENES[4];
@@ -175,18 +179,32 @@ fn engines_agree_when_work_is_cut() {
     assert!(chunked.chunks() > 10);
     assert_eq!(difference(&whole, &on_driver(&packed, &chunked)), None, "chunks");
     let batched = Plan { batch_photons: 1000, ..plan.clone() };
-    assert_eq!(difference(&on_cpu(&packed, &batched), &on_driver(&packed, &batched)), None, "batches");
+    assert_eq!(
+        difference(&on_cpu(&packed, &batched), &on_driver(&packed, &batched)),
+        None,
+        "batches"
+    );
     // a batch of all photons leaves more records than fit
     let (packed, plan) = planned("direct = \"photons\"", SCENES[0].2);
-    let tight =
-        Plan { capacity: 4096, buckets: 4096, batch_photons: 9000, settings: photons(9000, &plan), ..plan };
+    let tight = Plan {
+        capacity: 4096,
+        buckets: 4096,
+        batch_photons: 9000,
+        settings: photons(9000, &plan),
+        ..plan
+    };
     let overflowing = on_cpu(&packed, &tight);
-    assert!(overflowing.0.iter().all(|r| r.records > 4096), "no batch overflows: {:?}", overflowing.0);
+    assert!(
+        overflowing.0.iter().all(|r| r.records > 4096),
+        "no batch overflows: {:?}",
+        overflowing.0
+    );
     assert_eq!(difference(&overflowing, &on_driver(&packed, &tight)), None, "overflow");
 }
 
-/// Mesa's software driver stops an invocation's loops after 65535 rounds. A pass whose visible points each sum over
-/// more photons is then found in smaller batches: the same records, and the same sums up to their grouping.
+/// Mesa's software driver stops an invocation's loops after 65535 rounds. A pass whose visible
+/// points each sum over more photons is then found in smaller batches: the same records, and the
+/// same sums up to their grouping.
 #[test]
 fn long_gathers_are_whole() {
     let settings = "direct = \"photons\"\nradius = { units = 3.0 }\nradius_rule = \"fixed\"";
@@ -194,7 +212,8 @@ fn long_gathers_are_whole() {
                 intensity = [9.0, 5.0, 3.0]\nangle = 2.0\n";
     let (packed, plan) = planned_at((8, 6), settings, rest);
     let settings = photons(150_000, &plan);
-    let plan = Plan { capacity: 1 << 18, buckets: 1 << 18, batch_photons: 150_000, settings, ..plan };
+    let plan =
+        Plan { capacity: 1 << 18, buckets: 1 << 18, batch_photons: 150_000, settings, ..plan };
     let (ours, theirs) = (on_cpu(&packed, &plan), on_driver(&packed, &plan));
     assert_eq!(ours.0, theirs.0);
     let rgb = |p: &Picture| p.rgb.iter().flatten().copied().collect::<Vec<_>>();
@@ -233,7 +252,11 @@ fn planted_differences_are_found() {
     wrong.2.pixels[777].variance += 1e-9;
     assert!(difference(&right, &wrong).is_some());
     let with_layers = on_cpu(&packed, &Plan { aovs: Aovs::parse("normal").unwrap(), ..plan });
-    assert_eq!(difference(&right, &with_layers), None, "what is found beside radiance changes no bit of it");
+    assert_eq!(
+        difference(&right, &with_layers),
+        None,
+        "what is found beside radiance changes no bit of it"
+    );
     let mut wrong = with_layers.clone();
     wrong.3[2].plane.values[777] += 1e-9;
     assert!(difference(&with_layers, &wrong).is_some());

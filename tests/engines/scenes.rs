@@ -419,13 +419,18 @@ fn ball(columns: u32, rows: u32) -> String {
             let phi = std::f64::consts::TAU * column as f64 / columns as f64;
             let (x, y, z) = (theta.sin() * phi.cos(), theta.cos(), theta.sin() * phi.sin());
             text += &format!("v {x} {y} {z}\nvn {x} {y} {z}\n");
-            text += &format!("vt {} {}\n", column as f64 / columns as f64, 1.0 - row as f64 / rows as f64);
+            text += &format!(
+                "vt {} {}\n",
+                column as f64 / columns as f64,
+                1.0 - row as f64 / rows as f64
+            );
         }
     }
     for row in 0..rows {
         for column in 0..columns {
             let a = row * (columns + 1) + column + 1;
-            let [a, b, c, d] = [a, a + 1, a + columns + 2, a + columns + 1].map(|i| format!("{i}/{i}/{i}"));
+            let [a, b, c, d] =
+                [a, a + 1, a + columns + 2, a + columns + 1].map(|i| format!("{i}/{i}/{i}"));
             text += &format!("f {a} {b} {c} {d}\n");
         }
     }
@@ -440,12 +445,17 @@ pub fn planned(settings: &str, rest: &str) -> (Packed, Plan) {
 /// The same with a picture of another size.
 pub fn planned_at((width, height): (u32, u32), settings: &str, rest: &str) -> (Packed, Plan) {
     let film = format!("[film]\nwidth = {width}\nheight = {height}");
-    let lens =
-        if settings.contains("ppm") || rest.contains("lake") { "aperture = 0.1\nfocus = 4.3\n" } else { "" };
-    let text = format!("{HEAD}{lens}{film}\n[render]\nphotons = 6000\npasses = 3\n{settings}\n{FLOOR}{rest}");
+    let lens = if settings.contains("ppm") || rest.contains("lake") {
+        "aperture = 0.1\nfocus = 4.3\n"
+    } else {
+        ""
+    };
+    let text = format!(
+        "{HEAD}{lens}{film}\n[render]\nphotons = 6000\npasses = 3\n{settings}\n{FLOOR}{rest}"
+    );
     let path = assets().join("scene.toml");
-    let mut loaded =
-        parse(&path, text.as_bytes()).unwrap_or_else(|e| panic!("{:?}\n{text}", miette::Report::new(e)));
+    let mut loaded = parse(&path, text.as_bytes())
+        .unwrap_or_else(|e| panic!("{:?}\n{text}", miette::Report::new(e)));
     loaded.scene.film.aovs = Aovs::parse("object").unwrap();
     let packed = pack(&loaded.scene, loaded.scene.film.width, loaded.scene.film.height).unwrap();
     let plan = Plan::new(&packed, &loaded.settings);

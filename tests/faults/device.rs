@@ -82,7 +82,8 @@ fn losing(requests: u32) -> Candidate {
     })
 }
 
-/// Whatever it is asked for after it was taken away, and however often, it says so; it never gives what it no longer has.
+/// Whatever it is asked for after it was taken away, and however often, it says so; it never gives
+/// what it no longer has.
 #[test]
 fn a_lost_device_says_so() {
     let Loaded { scene, settings, .. } = loaded(|_| ());
@@ -103,7 +104,10 @@ fn a_lost_device_says_so() {
             engine.content("film", 0).err(),
         ];
         for (number, error) in errors.iter().enumerate() {
-            assert!(matches!(error, Some(EngineError::DeviceLost(_))), "request {number}: {error:?}");
+            assert!(
+                matches!(error, Some(EngineError::DeviceLost(_))),
+                "request {number}: {error:?}"
+            );
         }
     }
 }

@@ -82,9 +82,13 @@ fn ask(script: &Shared, step: Step) -> Result<(), (EngineError, bool)> {
                 script.gone = true;
                 (lost(), false)
             }
-            Fault::OutOfMemory => (EngineError::OutOfMemory("as the test wants it".to_owned()), false),
+            Fault::OutOfMemory => {
+                (EngineError::OutOfMemory("as the test wants it".to_owned()), false)
+            }
             Fault::Late => (lost(), true),
-            Fault::Unable => (EngineError::Unsupported("loops are left unfinished".to_owned()), false),
+            Fault::Unable => {
+                (EngineError::Unsupported("loops are left unfinished".to_owned()), false)
+            }
         }),
         _ => Ok(()),
     }
@@ -93,13 +97,16 @@ fn ask(script: &Shared, step: Step) -> Result<(), (EngineError, bool)> {
 /// The CPU engine, as a device that fails as its script says.
 pub fn candidate(script: &Shared) -> Candidate {
     let script = script.clone();
-    Candidate::new("a faulty device", move |scene: &Scene, settings: &RenderSettings, memory: &Memory| {
-        ask(&script, Step::Open).map_err(|(error, _)| error)?;
-        let mut opened = sound(scene, settings, memory)?;
-        opened.engine = Box::new(Faulty { inner: opened.engine, script });
-        opened.name = "a faulty device".to_owned();
-        Ok(opened)
-    })
+    Candidate::new(
+        "a faulty device",
+        move |scene: &Scene, settings: &RenderSettings, memory: &Memory| {
+            ask(&script, Step::Open).map_err(|(error, _)| error)?;
+            let mut opened = sound(scene, settings, memory)?;
+            opened.engine = Box::new(Faulty { inner: opened.engine, script });
+            opened.name = "a faulty device".to_owned();
+            Ok(opened)
+        },
+    )
 }
 
 /// The CPU engine as it is.

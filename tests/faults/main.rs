@@ -1,8 +1,9 @@
 //! Devices that fail, at every step in turn.
 //!
-//! Theory: what was kept of a render is whole passes, and what a pass finds depends on its number alone. So whatever step a device
-//! fails at and in whichever way, the next one ends in the bits of a render that never failed; and where there is no next one, what
-//! is left can be gone on from to the same bits.
+//! Theory: what was kept of a render is whole passes, and what a pass finds depends on its number
+//! alone. So whatever step a device fails at and in whichever way, the next one ends in the bits of
+//! a render that never failed; and where there is no next one, what is left can be gone on from to
+//! the same bits.
 
 mod device;
 mod engine;
@@ -80,11 +81,16 @@ fn render(
     (outcome, saved)
 }
 
-fn begin(loaded: &Loaded, candidates: Candidates, copies: Copies) -> (Result<Outcome, Broken>, Vec<State>) {
+fn begin(
+    loaded: &Loaded,
+    candidates: Candidates,
+    copies: Copies,
+) -> (Result<Outcome, Broken>, Vec<State>) {
     render(loaded, candidates, copies, (&State::before(0), Progress::before(stop())))
 }
 
-/// What differs between two outcomes, but for times and for the eye paths of fixed visible points, which each device traces anew.
+/// What differs between two outcomes, but for times and for the eye paths of fixed visible points,
+/// which each device traces anew.
 fn difference(a: &Outcome, b: &Outcome) -> Option<&'static str> {
     let bits = |p: &Picture| p.rgb.iter().flatten().map(|x| x.to_bits()).collect::<Vec<_>>();
     let counts = |p: &Progress| (p.passes, p.photons, p.ends, p.radius.to_bits());
@@ -131,7 +137,9 @@ fn the_next_device_ends_in_the_same_bits() {
         let without_copies = (name == "sppm").then_some(Copies::Never);
         for copies in [Copies::Always].into_iter().chain(without_copies) {
             let (whole, steps) = steps(&loaded, copies);
-            for step in [Step::Open, Step::Restore, Step::Pass, Step::Errors, Step::Results, Step::Layers] {
+            for step in
+                [Step::Open, Step::Restore, Step::Pass, Step::Errors, Step::Results, Step::Layers]
+            {
                 assert!(steps.contains(&step), "{step:?} is never asked for");
             }
             assert_eq!(steps.contains(&Step::Save), copies == Copies::Always);
@@ -157,15 +165,19 @@ fn the_third_device_too() {
     for first in (0..steps.len()).step_by(2) {
         for second in 0..4 {
             let scripts = [first, second].map(|number| script(Some((number, Fault::Lost))));
-            let devices =
-                Candidates::from_list([candidate(&scripts[0]), candidate(&scripts[1]), successor()]);
+            let devices = Candidates::from_list([
+                candidate(&scripts[0]),
+                candidate(&scripts[1]),
+                successor(),
+            ]);
             let outcome = begin(&loaded, devices, Copies::Always).0.unwrap();
             assert_eq!(difference(&whole, &outcome), None, "at steps {first} and {second}");
         }
     }
 }
 
-/// Where there is no next device, what is left is gone on from to the same bits, and no more than the pass at hand is lost.
+/// Where there is no next device, what is left is gone on from to the same bits, and no more than
+/// the pass at hand is lost.
 #[test]
 fn what_is_left_can_be_gone_on_from() {
     for (name, change) in CHANGES {
@@ -187,7 +199,11 @@ fn what_is_left_can_be_gone_on_from() {
                 };
                 let Kept { state, progress } = *kept;
                 assert_eq!(state.passes, progress.passes, "{told}");
-                assert!(made <= progress.passes + 1, "{told}: {} of {made} passes are left", progress.passes);
+                assert!(
+                    made <= progress.passes + 1,
+                    "{told}: {} of {made} passes are left",
+                    progress.passes
+                );
                 assert!(saved.last() == Some(&state), "{told}: what is left is saved");
                 let rest = Candidates::from_list([successor()]);
                 let outcome = render(&loaded, rest, Copies::Never, (&state, progress)).0.unwrap();
@@ -207,7 +223,8 @@ fn passes_before(steps: &[Step], number: usize) -> u32 {
 fn planted_differences_are_found() {
     let loaded = loaded(|_| ());
     let whole = steps(&loaded, Copies::Never).0;
-    // a state that says of itself that it has a pass less than it has is what a careless engine would hand over
+    // a state that says of itself that it has a pass less than it has is what a careless engine
+    // would hand over
     let mut opened = open(&Wanted::Cpu, &loaded.scene, &loaded.settings).unwrap();
     for _ in 0..3 {
         opened.engine.pass().unwrap();
@@ -215,7 +232,9 @@ fn planted_differences_are_found() {
     let state = opened.engine.save().unwrap();
     let go_on = |state: &State| {
         let progress = Progress { passes: state.passes, ..Progress::before(stop()) };
-        render(&loaded, Candidates::from_list([successor()]), Copies::Never, (state, progress)).0.unwrap()
+        render(&loaded, Candidates::from_list([successor()]), Copies::Never, (state, progress))
+            .0
+            .unwrap()
     };
     let same = |outcome: &Outcome| outcome.picture == whole.picture;
     assert!(same(&go_on(&state)));

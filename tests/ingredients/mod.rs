@@ -1,4 +1,5 @@
-//! Scenes made of named ingredients, one for each feature that shaders know, for tests of composition and layout.
+//! Scenes made of named ingredients, one for each feature that shaders know, for tests of
+//! composition and layout.
 
 use bytemuck::Zeroable;
 use caustica::features::Features;

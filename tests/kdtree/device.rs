@@ -27,17 +27,23 @@ fn shader() -> String {
 
 fn validated(text: &str) -> Result<(), String> {
     let module = naga::front::wgsl::parse_str(text).map_err(|e| e.emit_to_string(text))?;
-    naga::valid::Validator::new(naga::valid::ValidationFlags::all(), naga::valid::Capabilities::empty())
-        .validate(&module)
-        .map(|_| ())
-        .map_err(|e| e.emit_to_string(text))
+    naga::valid::Validator::new(
+        naga::valid::ValidationFlags::all(),
+        naga::valid::Capabilities::empty(),
+    )
+    .validate(&module)
+    .map(|_| ())
+    .map_err(|e| e.emit_to_string(text))
 }
 
 #[test]
 fn wgsl_is_valid() {
     let text = shader();
     assert_eq!(validated(&text), Ok(()));
-    assert!(validated(&text.replace("var waiting = 0u;", "var waiting = 0.0;")).is_err(), "planted");
+    assert!(
+        validated(&text.replace("var waiting = 0u;", "var waiting = 0.0;")).is_err(),
+        "planted"
+    );
 }
 
 #[repr(C)]
@@ -66,7 +72,8 @@ impl Gpu {
             .expect("no software Vulkan driver: install mesa-vulkan-drivers");
         println!("adapter: {} ({})", adapter.get_info().name, adapter.get_info().driver_info);
         let (device, queue) =
-            pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default())).expect("a device");
+            pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default()))
+                .expect("a device");
         Gpu { device, queue }
     }
 
@@ -85,7 +92,8 @@ impl Gpu {
             usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
-        let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let mut encoder =
+            self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         encoder.copy_buffer_to_buffer(source, 0, &target, 0, source.size());
         self.queue.submit([encoder.finish()]);
         target.map_async(wgpu::MapMode::Read, .., |done| done.expect("mapped"));
@@ -114,14 +122,18 @@ impl Gpu {
             .iter()
             .chain([&hits, &shadows])
             .enumerate()
-            .map(|(i, b)| wgpu::BindGroupEntry { binding: i as u32, resource: b.as_entire_binding() })
+            .map(|(i, b)| wgpu::BindGroupEntry {
+                binding: i as u32,
+                resource: b.as_entire_binding(),
+            })
             .collect();
         let group = self.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: None,
             layout: &pipeline.get_bind_group_layout(0),
             entries: &entries,
         });
-        let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let mut encoder =
+            self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
             pass.set_pipeline(&pipeline);
@@ -137,14 +149,15 @@ impl Gpu {
     }
 }
 
-/// Theory: both twins are the same IEEE operations in the same order, so every bit of every hit agrees, ties in t
-/// included.
+/// Theory: both twins are the same IEEE operations in the same order, so every bit of every hit
+/// agrees, ties in t included.
 #[test]
 fn device_gives_the_same_bits() {
     let gpu = Gpu::software();
     let mut mesh = displaced_torus(120, 60);
     // Flat grids on top, whose splitting planes hold triangles.
-    for (_, prims) in scenes().into_iter().filter(|s| s.0.starts_with("lattice") || s.0.starts_with("every"))
+    for (_, prims) in
+        scenes().into_iter().filter(|s| s.0.starts_with("lattice") || s.0.starts_with("every"))
     {
         mesh.extend(prims.iter().filter_map(|p| match p {
             caustica::build::kdtree::Primitive::Triangle(t) => Some(*t),
@@ -197,6 +210,7 @@ fn device_gives_the_same_bits() {
         ],
         rays.len(),
     );
-    let different = rays.iter().zip(&hits).filter(|(r, h)| closest(&prims, &view, r) != **h).count();
+    let different =
+        rays.iter().zip(&hits).filter(|(r, h)| closest(&prims, &view, r) != **h).count();
     assert!(different > 0, "planted");
 }

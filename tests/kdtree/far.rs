@@ -44,11 +44,16 @@ fn work(mesh: &[[Vec3; 3]], tree: &KdTree, rays: &[Ray]) -> (f64, f64) {
     let (leaves, tests) = (Cell::new(0usize), Cell::new(0usize));
     for ray in rays {
         let shear = RayShear::new(ray);
-        traverse_closest(&tree.view(), ray, &mut Hit::none(ray), |leaf: &[u32], ray: &Ray, hit: &mut Hit| {
-            leaves.set(leaves.get() + 1);
-            tests.set(tests.get() + leaf.len());
-            leaf.iter().for_each(|&r| intersect(&prims, &shear, r, ray, hit));
-        });
+        traverse_closest(
+            &tree.view(),
+            ray,
+            &mut Hit::none(ray),
+            |leaf: &[u32], ray: &Ray, hit: &mut Hit| {
+                leaves.set(leaves.get() + 1);
+                tests.set(tests.get() + leaf.len());
+                leaf.iter().for_each(|&r| intersect(&prims, &shear, r, ray, hit));
+            },
+        );
     }
     (leaves.get() as f64 / rays.len() as f64, tests.get() as f64 / rays.len() as f64)
 }
@@ -85,13 +90,23 @@ fn far_geometry_costs_no_leaves() {
                         direction = Vec3::ZERO;
                         direction[i / 2 % 3] = if i % 4 == 0 { -1.0 } else { 1.0 };
                     }
-                    Ray { origin, t_min: if i % 5 == 0 { -1e30 } else { 0.0 }, direction, t_max: 1e30 }
+                    Ray {
+                        origin,
+                        t_min: if i % 5 == 0 { -1e30 } else { 0.0 },
+                        direction,
+                        t_max: 1e30,
+                    }
                 })
                 .collect();
             let (leaves, tests) = work(&alone, &plain, &rays);
             let (far_leaves, far_tests) = work(&mesh, &far, &rays);
-            println!("{name}: {leaves:.2} leaves, {tests:.2} tests; {far_leaves:.2}, {far_tests:.2}");
-            assert!(far_leaves < 1.5 * leaves + 9.0, "{name}: {far_leaves} leaves, {leaves} without");
+            println!(
+                "{name}: {leaves:.2} leaves, {tests:.2} tests; {far_leaves:.2}, {far_tests:.2}"
+            );
+            assert!(
+                far_leaves < 1.5 * leaves + 9.0,
+                "{name}: {far_leaves} leaves, {leaves} without"
+            );
             assert!(far_tests < 1.5 * tests + 36.0, "{name}: {far_tests} tests, {tests} without");
         }
     }

@@ -13,8 +13,8 @@ use glam::Vec3;
 use scenes::*;
 use std::time::Instant;
 
-/// Rays for which the tree's answer is not that of exhaustive search. The nearest `t` must agree bit for bit; where
-/// several primitives share it, any of them may be named.
+/// Rays for which the tree's answer is not that of exhaustive search. The nearest `t` must agree
+/// bit for bit; where several primitives share it, any of them may be named.
 fn mismatches(prims: &[Primitive], tree: &KdTree, rays: &[Ray], truth: &[Hit]) -> usize {
     let wrong = |ray: &Ray, want: &Hit| {
         let got = closest(prims, &tree.view(), ray);
@@ -38,8 +38,9 @@ fn differ(prims: &[Primitive], tree: &KdTree, rays: &[Ray], one_by_one: &[Hit]) 
     many.iter().zip(one_by_one).filter(|(a, b)| bits(a) != bits(b)).count()
 }
 
-/// Theory: side by side each ray tests the leaves that it tests alone, in the same order. So every bit of its hit is the
-/// same, whatever flies beside it: no ray, fewer than there are lanes, or many.
+/// Theory: side by side each ray tests the leaves that it tests alone, in the same order. So every
+/// bit of its hit is the same, whatever flies beside it: no ray, fewer than there are lanes, or
+/// many.
 #[test]
 fn side_by_side_as_one_by_one() {
     let mut rng = Rng(17);
@@ -47,7 +48,8 @@ fn side_by_side_as_one_by_one() {
         let tree = build(&prims);
         let all = rays(&prims, &tree.view(), 4000, &mut rng);
         for rays in [&all[..], &all[..5], &all[..64], &all[..0]] {
-            let truth: Vec<Hit> = rays.iter().map(|ray| closest(&prims, &tree.view(), ray)).collect();
+            let truth: Vec<Hit> =
+                rays.iter().map(|ray| closest(&prims, &tree.view(), ray)).collect();
             assert_eq!(differ(&prims, &tree, rays, &truth), 0, "{name}");
         }
     }
@@ -56,13 +58,14 @@ fn side_by_side_as_one_by_one() {
     let mut tree = build(&prims);
     let rays = rays(&prims, &tree.view(), 20_000, &mut rng);
     let truth: Vec<Hit> = rays.iter().map(|ray| closest(&prims, &tree.view(), ray)).collect();
-    let full = (0..tree.nodes.len()).find(|&i| tree.nodes[i].is_leaf() && !tree.nodes[i].range().is_empty());
+    let full = (0..tree.nodes.len())
+        .find(|&i| tree.nodes[i].is_leaf() && !tree.nodes[i].range().is_empty());
     tree.nodes[full.expect("a torus fills leaves")].word1 = 3;
     assert!(differ(&prims, &tree, &rays, &truth) > 0);
 }
 
-/// Theory: a tree only leaves out what a ray cannot hit. So for every ray the nearest t is that of exhaustive
-/// search bit for bit.
+/// Theory: a tree only leaves out what a ray cannot hit. So for every ray the nearest t is that of
+/// exhaustive search bit for bit.
 #[test]
 fn same_hits_as_exhaustive_search() {
     let mut rng = Rng(7);
@@ -96,9 +99,14 @@ fn an_emptied_leaf_is_noticed() {
     assert!(mismatches(&prims, &tree, &rays, &truth) > 0);
 }
 
-/// Rays from inside a closed mesh that leave without a hit. Every ray aims at a vertex or at a point of an edge, where
-/// a test that rounds differently for the two neighbours lets some through.
-fn leaks(mesh: &[[Vec3; 3]], tree: &KdTree, inside: impl Fn(&mut Rng) -> Vec3, count: usize) -> usize {
+/// Rays from inside a closed mesh that leave without a hit. Every ray aims at a vertex or at a
+/// point of an edge, where a test that rounds differently for the two neighbours lets some through.
+fn leaks(
+    mesh: &[[Vec3; 3]],
+    tree: &KdTree,
+    inside: impl Fn(&mut Rng) -> Vec3,
+    count: usize,
+) -> usize {
     let prims = prims(mesh);
     let mut rng = Rng(11);
     let leaked = |rng: &mut Rng| {
@@ -127,13 +135,14 @@ fn closed_meshes_are_watertight() {
     };
     assert_eq!(leaks(&torus, &tree, tube, 500_000), 0);
     // Planted: one leaf lost.
-    let full = (0..tree.nodes.len()).find(|&i| tree.nodes[i].is_leaf() && !tree.nodes[i].range().is_empty());
+    let full = (0..tree.nodes.len())
+        .find(|&i| tree.nodes[i].is_leaf() && !tree.nodes[i].range().is_empty());
     tree.nodes[full.expect("a torus fills leaves")].word1 = 3;
     assert!(leaks(&torus, &tree, tube, 500_000) > 0);
 }
 
-/// The mesh and the rays of the comparison with Embree: prints the rate, which depends on the machine, and checks
-/// what does not.
+/// The mesh and the rays of the comparison with Embree: prints the rate, which depends on the
+/// machine, and checks what does not.
 #[test]
 fn rates() {
     let mesh = displaced_sphere(316, 158);
@@ -168,7 +177,9 @@ fn rates() {
                 ray,
                 &mut hit,
                 |leaf: &[u32], ray: &Ray, hit: &mut Hit| {
-                    caustica::shapes::triangles::intersect_triangles(&triangles, leaf, &shear, ray, hit)
+                    caustica::shapes::triangles::intersect_triangles(
+                        &triangles, leaf, &shear, ray, hit,
+                    )
                 },
             );
             hit.reference != NONE
@@ -176,7 +187,8 @@ fn rates() {
         .count();
     let seconds = start.elapsed().as_secs_f64();
     println!("closest hits: {:.3} M rays/s, one thread", rays.len() as f64 / seconds * 1e-6);
-    // Every such ray enters the ball of radius 0.7 sqrt 3 and most of the cube lies inside the surface.
+    // Every such ray enters the ball of radius 0.7 sqrt 3 and most of the cube lies inside the
+    // surface.
     assert!(hits > rays.len() * 9 / 10);
 
     let large = prims(&displaced_sphere(1000, 500));

@@ -210,7 +210,10 @@ pub fn scenes() -> Vec<(&'static str, Vec<Primitive>)> {
     out.push(("boxes", boxes.clone()));
     let mut mixed = prims(&sizes(&mut rng, 500));
     mixed.extend(boxes.iter().take(300));
-    mixed.push(Primitive::Box(Aabb { min: Vec3::new(-3.0, -0.5, -3.0), max: Vec3::new(3.0, -0.5, 3.0) }));
+    mixed.push(Primitive::Box(Aabb {
+        min: Vec3::new(-3.0, -0.5, -3.0),
+        max: Vec3::new(3.0, -0.5, 3.0),
+    }));
     out.push(("triangles and boxes", mixed));
     let mut lattice = Vec::new();
     for level in 0..3 {
@@ -227,19 +230,26 @@ pub fn scenes() -> Vec<(&'static str, Vec<Primitive>)> {
     let upright = lattice.iter().map(|t| t.map(|p| Vec3::new(p.y, p.x, p.z))).collect::<Vec<_>>();
     lattice.extend(upright);
     out.push(("lattice of coplanar grids", prims(&lattice)));
-    let flat: Vec<_> = sizes(&mut rng, 500).iter().map(|t| t.map(|p| Vec3::new(p.x, 0.3, p.z))).collect();
+    let flat: Vec<_> =
+        sizes(&mut rng, 500).iter().map(|t| t.map(|p| Vec3::new(p.x, 0.3, p.z))).collect();
     out.push(("all in the plane y = 0.3", prims(&flat)));
-    let tilted: Vec<_> =
-        sizes(&mut rng, 500).iter().map(|t| t.map(|p| Vec3::new(p.x, 0.5 * p.x + 0.25 * p.z, p.z))).collect();
+    let tilted: Vec<_> = sizes(&mut rng, 500)
+        .iter()
+        .map(|t| t.map(|p| Vec3::new(p.x, 0.5 * p.x + 0.25 * p.z, p.z)))
+        .collect();
     out.push(("all in a tilted plane", prims(&tilted)));
     let mut same = vec![tri(&mut rng, 0.5); 60];
     same.extend(sizes(&mut rng, 200));
     same.extend(same.clone());
     out.push(("duplicates", prims(&same)));
-    let line: Vec<_> = (0..40).map(|_| [0.0; 3].map(|_: f32| Vec3::new(rng.signed(), 0.0, 0.0))).collect();
+    let line: Vec<_> =
+        (0..40).map(|_| [0.0; 3].map(|_: f32| Vec3::new(rng.signed(), 0.0, 0.0))).collect();
     out.push(("degenerate, on a line", prims(&line)));
-    let mut range = prims(&sizes(&mut rng, 300).iter().map(|t| t.map(|p| p * 1e-3)).collect::<Vec<_>>());
-    range.extend(prims(&sizes(&mut rng, 20).iter().map(|t| t.map(|p| p * 100.0)).collect::<Vec<_>>()));
+    let mut range =
+        prims(&sizes(&mut rng, 300).iter().map(|t| t.map(|p| p * 1e-3)).collect::<Vec<_>>());
+    range.extend(prims(
+        &sizes(&mut rng, 20).iter().map(|t| t.map(|p| p * 100.0)).collect::<Vec<_>>(),
+    ));
     out.push(("a speck in a hall", range));
     out.push(("mesh past the sweep's limit", prims(&displaced_torus(150, 60))));
     out
@@ -275,15 +285,21 @@ pub fn far_scenes() -> Vec<(&'static str, Vec<[Vec3; 3]>)> {
     ]
 }
 
-/// Rays of every kind that meets rounding: random, axis-parallel, within splitting planes and through corners, from
-/// far away, with tiny direction components and with either zero.
+/// Rays of every kind that meets rounding: random, axis-parallel, within splitting planes and
+/// through corners, from far away, with tiny direction components and with either zero.
 pub fn rays(prims: &[Primitive], tree: &Tree, count: usize, rng: &mut Rng) -> Vec<Ray> {
     let bounds = Aabb { min: tree.bounds_min, max: tree.bounds_max };
     rays_about(bounds, prims, tree, count, rng)
 }
 
 /// [`rays`] that start and aim in `bounds`.
-pub fn rays_about(bounds: Aabb, prims: &[Primitive], tree: &Tree, count: usize, rng: &mut Rng) -> Vec<Ray> {
+pub fn rays_about(
+    bounds: Aabb,
+    prims: &[Primitive],
+    tree: &Tree,
+    count: usize,
+    rng: &mut Rng,
+) -> Vec<Ray> {
     let corner = |rng: &mut Rng| match prims.get(rng.below(prims.len().max(1))) {
         Some(Primitive::Triangle(p)) => p[rng.below(3)],
         Some(Primitive::Box(b)) => b.min,
@@ -298,10 +314,14 @@ pub fn rays_about(bounds: Aabb, prims: &[Primitive], tree: &Tree, count: usize, 
             let axis = rng.below(3);
             match i % 8 {
                 0 => {}
-                1 => d = Vec3::ZERO.with_component(axis, if rng.below(2) == 0 { -1.0 } else { 1.0 }),
+                1 => {
+                    d = Vec3::ZERO.with_component(axis, if rng.below(2) == 0 { -1.0 } else { 1.0 })
+                }
                 2 => {
                     // In a splitting plane, zero of either sign.
-                    if let Some(node) = tree.nodes.get(rng.below(tree.nodes.len())).filter(|n| !n.is_leaf()) {
+                    if let Some(node) =
+                        tree.nodes.get(rng.below(tree.nodes.len())).filter(|n| !n.is_leaf())
+                    {
                         let (axis, position, _) = node.plane();
                         origin[axis] = position;
                         d[axis] = if rng.below(2) == 0 { 0.0 } else { -0.0 };

@@ -1,4 +1,5 @@
-//! The tree's form: complete, perfect splits, costs as predicted, the same on any number of threads.
+//! The tree's form: complete, perfect splits, costs as predicted, the same on any number of
+//! threads.
 
 use crate::scenes::*;
 use caustica::build::kdtree::{INTERSECTION_COST, KdTree, Primitive, build};
@@ -68,8 +69,8 @@ fn no_point_of_a_triangle_is_lost() {
     for mesh in [displaced_torus(120, 60), displaced_sphere(40, 20)] {
         let mut tree = build(&prims(&mesh));
         assert_eq!(lost(&mesh, &tree), 0);
-        let full =
-            (0..tree.nodes.len()).find(|&i| tree.nodes[i].is_leaf() && !tree.nodes[i].range().is_empty());
+        let full = (0..tree.nodes.len())
+            .find(|&i| tree.nodes[i].is_leaf() && !tree.nodes[i].range().is_empty());
         tree.nodes[full.expect("a mesh fills leaves")].word1 = 3;
         assert!(lost(&mesh, &tree) > 0, "planted");
     }
@@ -108,7 +109,8 @@ fn nodes_know_empty_children() {
     }
 }
 
-/// Whether a plane separates triangle and box by more than `gap` (the 13 axes of Akenine-Moeller 2001).
+/// Whether a plane separates triangle and box by more than `gap` (the 13 axes of Akenine-Moeller
+/// 2001).
 fn separated(t: &[Vec3; 3], cell: Aabb, gap: f64) -> bool {
     let c = (cell.min.as_dvec3() + cell.max.as_dvec3()) * 0.5;
     let h = (cell.max.as_dvec3() - cell.min.as_dvec3()) * 0.5;
@@ -151,9 +153,10 @@ fn leaves_name_only_what_they_hold() {
     assert!(wrong(false) > 100, "planted: boxes in place of triangles: {}", wrong(false));
 }
 
-/// Theory (Santalo): of the uniformly distributed lines that cross a convex body, the share that crosses a convex part
-/// of it is the ratio of surface areas. So the mean number of primitives tested per line, with no hit to
-/// stop it, is the sum over leaves of area ratio times number, and the heuristic's cost adds the same over all nodes.
+/// Theory (Santalo): of the uniformly distributed lines that cross a convex body, the share that
+/// crosses a convex part of it is the ratio of surface areas. So the mean number of primitives
+/// tested per line, with no hit to stop it, is the sum over leaves of area ratio times number, and
+/// the heuristic's cost adds the same over all nodes.
 #[test]
 fn cost_is_what_random_lines_pay() {
     let mesh = displaced_torus(120, 60);
@@ -165,14 +168,20 @@ fn cost_is_what_random_lines_pay() {
     let mut rng = Rng(9);
     let (mut lines, mut sum, mut sum_sq) = (0.0, 0.0, 0.0);
     for _ in 0..400_000 {
-        // Uniform lines through a sphere about the box: a point on it, a cosine-distributed direction inward.
+        // Uniform lines through a sphere about the box: a point on it, a cosine-distributed
+        // direction inward.
         let n = rng.direction();
         let d = (rng.direction() - n).normalize_or(-n);
         let ray = Ray { origin: n * 2.0, t_min: 0.0, direction: d, t_max: 1e30 };
         let tests = Cell::new(0usize);
-        traverse_closest(&tree.view(), &ray, &mut Hit::none(&ray), |leaf: &[u32], _: &Ray, _: &mut Hit| {
-            tests.set(tests.get() + leaf.len());
-        });
+        traverse_closest(
+            &tree.view(),
+            &ray,
+            &mut Hit::none(&ray),
+            |leaf: &[u32], _: &Ray, _: &mut Hit| {
+                tests.set(tests.get() + leaf.len());
+            },
+        );
         if crosses(tree.bounds, &ray) {
             lines += 1.0;
             sum += tests.get() as f64;
@@ -201,7 +210,8 @@ fn crosses(b: Aabb, ray: &Ray) -> bool {
 fn one_input_one_tree() {
     let mesh = prims(&displaced_sphere(150, 75));
     let with = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a thread pool");
+        let pool =
+            rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a thread pool");
         pool.install(|| build(&mesh))
     };
     let tree = with(1);

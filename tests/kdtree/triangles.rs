@@ -31,8 +31,11 @@ fn inside(t: &[Vec3; 3], rng: &mut Rng) -> Vec3 {
 
 fn distance_to_segment(p: DVec3, a: DVec3, b: DVec3) -> f64 {
     let d = b - a;
-    let s =
-        if d.length_squared() > 0.0 { ((p - a).dot(d) / d.length_squared()).clamp(0.0, 1.0) } else { 0.0 };
+    let s = if d.length_squared() > 0.0 {
+        ((p - a).dot(d) / d.length_squared()).clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
     (p - a - d * s).length()
 }
 
@@ -46,8 +49,9 @@ fn distance_to_triangle(p: DVec3, t: &[Vec3; 3]) -> f64 {
     sides.iter().map(|(a, b)| distance_to_segment(p, *a, *b)).fold(f64::MAX, f64::min)
 }
 
-/// Theory: the point at the computed t lies within about 30 roundings (of the largest coordinate as seen from the
-/// origin) of the triangle, however slim or edge-on it is. The traversal's slack of 64 rests on that.
+/// Theory: the point at the computed t lies within about 30 roundings (of the largest coordinate as
+/// seen from the origin) of the triangle, however slim or edge-on it is. The traversal's slack of
+/// 64 rests on that.
 #[test]
 fn hits_lie_on_the_triangle() {
     let mut rng = Rng(31);
@@ -58,7 +62,8 @@ fn hits_lie_on_the_triangle() {
         let origin = rng.point() * 2.0;
         // Half of the rays edge-on: in the triangle's plane but for rounding.
         let aim = inside(&t, &mut rng);
-        let d = if i % 2 == 0 { aim - origin } else { inside(&t, &mut rng) - aim + rng.point() * 1e-7 };
+        let d =
+            if i % 2 == 0 { aim - origin } else { inside(&t, &mut rng) - aim + rng.point() * 1e-7 };
         if d.length_squared() < 1e-20 {
             continue;
         }
@@ -82,8 +87,8 @@ fn hits_lie_on_the_triangle() {
     assert!(worst_planted > 30.0, "planted: t off by 1e-5");
 }
 
-/// Theory: on triangles seen from the front, hit or miss and t are those of exact arithmetic but for rays within a few
-/// roundings of an edge, which are left out.
+/// Theory: on triangles seen from the front, hit or miss and t are those of exact arithmetic but
+/// for rays within a few roundings of an edge, which are left out.
 #[test]
 fn agrees_with_f64() {
     let mut rng = Rng(33);
@@ -103,14 +108,17 @@ fn agrees_with_f64() {
             continue;
         }
         let distance = n.dot(a) / n.dot(d);
-        let expected =
-            distance > 0.0 && (volumes.iter().all(|v| *v > 0.0) || volumes.iter().all(|v| *v < 0.0));
+        let expected = distance > 0.0
+            && (volumes.iter().all(|v| *v > 0.0) || volumes.iter().all(|v| *v < 0.0));
         let hit = trace(&t, &ray);
         assert_eq!(hit.reference != NONE, expected, "{t:?} {ray:?}");
         if expected {
             hits += 1;
             let sum: f64 = volumes.iter().sum();
-            assert!((f64::from(hit.t) - distance).abs() < 1e-4 * distance.max(1.0), "{hit:?} {distance}");
+            assert!(
+                (f64::from(hit.t) - distance).abs() < 1e-4 * distance.max(1.0),
+                "{hit:?} {distance}"
+            );
             assert!((f64::from(hit.u) - volumes[1] / sum).abs() < 1e-3);
             assert!((f64::from(hit.v) - volumes[2] / sum).abs() < 1e-3);
         } else {
@@ -129,7 +137,8 @@ fn met_again(offset: f32) -> usize {
         let tri = triangle(t);
         let n = triangle_normal(&tri);
         let origin = rng.point() * 2.0;
-        let ray = Ray { origin, t_min: 0.0, direction: unit(inside(&t, &mut rng) - origin), t_max: 1e30 };
+        let ray =
+            Ray { origin, t_min: 0.0, direction: unit(inside(&t, &mut rng) - origin), t_max: 1e30 };
         let hit = trace(&t, &ray);
         if hit.reference == NONE {
             continue;
@@ -159,16 +168,16 @@ fn met_again(offset: f32) -> usize {
     count
 }
 
-/// Theory: a hit's point is off the plane by less than the bound, so a ray that starts above it by the bound and leads
-/// away does not meet the triangle.
+/// Theory: a hit's point is off the plane by less than the bound, so a ray that starts above it by
+/// the bound and leads away does not meet the triangle.
 #[test]
 fn rays_do_not_meet_what_they_leave() {
     assert_eq!(met_again(1.0), 0);
     assert!(met_again(0.0) > 0, "planted: no offset");
 }
 
-/// Theory: the normal is perpendicular to both sides, of length one, and on the side from which p0, p1, p2 turn
-/// counter-clockwise.
+/// Theory: the normal is perpendicular to both sides, of length one, and on the side from which p0,
+/// p1, p2 turn counter-clockwise.
 #[test]
 fn normals() {
     let mut rng = Rng(37);
@@ -185,7 +194,8 @@ fn normals() {
     assert_eq!(triangle_point(&unit_triangle, 0.25, 0.5), Vec3::new(0.25, 0.5, 0.0));
 }
 
-/// Triangles for which every branch is taken: near and far, thin, the same several times, and without area.
+/// Triangles for which every branch is taken: near and far, thin, the same several times, and
+/// without area.
 fn crowd(rng: &mut Rng) -> Vec<Triangle> {
     let mut out: Vec<Triangle> = Vec::new();
     for _ in 0..200 {
@@ -200,11 +210,13 @@ fn crowd(rng: &mut Rng) -> Vec<Triangle> {
     out
 }
 
-/// Rays for which four at a time is not the same, bit for bit and ties included, as one after the other.
+/// Rays for which four at a time is not the same, bit for bit and ties included, as one after the
+/// other.
 fn differences(one: &[Triangle], many: &[Triangle], rng: &mut Rng) -> usize {
     (0..20_000)
         .filter(|_| {
-            let references: Vec<u32> = (0..1 + rng.below(11)).map(|_| rng.below(one.len()) as u32).collect();
+            let references: Vec<u32> =
+                (0..1 + rng.below(11)).map(|_| rng.below(one.len()) as u32).collect();
             let t = &one[references[rng.below(references.len())] as usize];
             let aim = if rng.below(3) == 0 { t.p1 } else { inside(&[t.p0, t.p1, t.p2], rng) };
             let mut d = aim - rng.point() * 2.0;
@@ -223,7 +235,8 @@ fn differences(one: &[Triangle], many: &[Triangle], rng: &mut Rng) -> usize {
         .count()
 }
 
-/// Theory: each lane carries out the operations of the test of one triangle, and lanes are taken in their order.
+/// Theory: each lane carries out the operations of the test of one triangle, and lanes are taken in
+/// their order.
 #[test]
 fn four_at_a_time_give_the_same_bits() {
     let mut rng = Rng(39);

@@ -57,7 +57,8 @@ fn photon_mapping_agrees_pairwise() {
 #[test]
 fn path_tracing_agrees_on_matte_bodies() {
     let full = everything(1.0, DVec3::ZERO, 24);
-    let (from, to) = (full.find("[materials.chrome]").unwrap(), full.find("[materials.black]").unwrap());
+    let (from, to) =
+        (full.find("[materials.chrome]").unwrap(), full.find("[materials.black]").unwrap());
     let matte = "[materials.chrome]\ntype = \"diffuse\"\nreflectance = 0.5\n[materials.glass]\ntype = \"metal\"\nreflectance = 0.8\nroughness = 0.7\n";
     let text = format!("{}{matte}{}", &full[..from], &full[to..]);
     let cases = [
@@ -108,7 +109,8 @@ fn weights_follow_the_light_probabilities_of_each_place() {
     };
     let [shadow_rays, scattering] = DIRECT.map(by);
     for (side, columns) in [("sky", 8..12), ("lamp", 0..4)] {
-        let [a, b] = [&shadow_rays, &scattering].map(|runs| runs.region(|x, _| columns.contains(&x)));
+        let [a, b] =
+            [&shadow_rays, &scattering].map(|runs| runs.region(|x, _| columns.contains(&x)));
         assert_same(side, a, b, 0.015);
     }
 }

@@ -1,8 +1,9 @@
-//! Flat walls whose corner normals all lean the same way: what interpolated normals do to light, in closed form.
+//! Flat walls whose corner normals all lean the same way: what interpolated normals do to light, in
+//! closed form.
 //!
-//! An eye path scatters about the shading normal n_s alone, so that a flat wall with n_s leaning from its geometric normal
-//! n_g acts as one whose every point is turned by that angle; photons must arrive at the same radiances, although their
-//! density follows n_g (Veach 1997, section 5.3).
+//! An eye path scatters about the shading normal n_s alone, so that a flat wall with n_s leaning
+//! from its geometric normal n_g acts as one whose every point is turned by that angle; photons
+//! must arrive at the same radiances, although their density follows n_g (Veach 1997, section 5.3).
 
 use std::f64::consts::PI;
 
@@ -16,14 +17,25 @@ use super::lab::*;
 const FLOOR: f64 = 0.002;
 const SUN: f64 = 3.0;
 
-/// A floor at y = 0 seen about (0.3, 0, 0), the sun, and a square through `corners` with the shading normal `ns`.
-fn scene(name: &str, material: &str, corners: &[DVec3; 4], ns: DVec3, sun: DVec3) -> (Camera, String) {
+/// A floor at y = 0 seen about (0.3, 0, 0), the sun, and a square through `corners` with the
+/// shading normal `ns`.
+fn scene(
+    name: &str,
+    material: &str,
+    corners: &[DVec3; 4],
+    ns: DVec3,
+    sun: DVec3,
+) -> (Camera, String) {
     let mut obj = String::new();
     corners.iter().for_each(|c| obj += &format!("v {} {} {}\n", c.x, c.y, c.z));
     obj += &format!("vn {} {} {}\nf 1//1 2//1 3//1 4//1\n", ns.x, ns.y, ns.z);
     let mesh = file(&format!("physics-bent-{name}.obj"), obj.as_bytes());
-    let camera =
-        Camera { position: DVec3::new(0.3, 0.9, 2.9), target: DVec3::new(0.3, 0.0, 0.0), fov: 6.0, size: 8 };
+    let camera = Camera {
+        position: DVec3::new(0.3, 0.9, 2.9),
+        target: DVec3::new(0.3, 0.0, 0.0),
+        fov: 6.0,
+        size: 8,
+    };
     let text = camera.toml()
         + &format!(
             "[materials.floor]\ntype = \"diffuse\"\nreflectance = {FLOOR}\n[materials.wall]\n{material}\n\
@@ -55,30 +67,36 @@ fn at_degrees(a: f64) -> DVec3 {
     DVec3::new(a.to_radians().cos(), a.to_radians().sin(), 0.0)
 }
 
-/// Theory: the mirrored sun is a sun in the direction mirrored at n_s, of the same irradiance: the floor has
-/// E (cos + cos'). Here the sun stands 60 degrees over n_g and the normal leans by 15: photons alone would bring
-/// cos 60 / cos 30 = 0.58 of the mirrored part.
+/// Theory: the mirrored sun is a sun in the direction mirrored at n_s, of the same irradiance: the
+/// floor has E (cos + cos'). Here the sun stands 60 degrees over n_g and the normal leans by 15:
+/// photons alone would bring cos 60 / cos 30 = 0.58 of the mirrored part.
 #[test]
 fn mirror() {
     let (to_sun, ns) = (at_degrees(60.0), at_degrees(15.0));
-    let (camera, text) = scene("mirror", "type = \"mirror\"\nreflectance = 1.0", &WALL, ns, -to_sun);
-    check("mirror", &camera, &text, |_| SUN * (60f64.to_radians().sin() + 30f64.to_radians().sin()));
+    let (camera, text) =
+        scene("mirror", "type = \"mirror\"\nreflectance = 1.0", &WALL, ns, -to_sun);
+    check("mirror", &camera, &text, |_| {
+        SUN * (60f64.to_radians().sin() + 30f64.to_radians().sin())
+    });
 }
 
-/// Theory: a wall under irradiance E n_s . w has the radiance rho / pi times that; the floor sees it as Lambert's
-/// polygon, besides the sun.
+/// Theory: a wall under irradiance E n_s . w has the radiance rho / pi times that; the floor sees
+/// it as Lambert's polygon, besides the sun.
 #[test]
 fn diffuse() {
     const RHO: f64 = 0.9;
     let (to_sun, ns) = (at_degrees(75.0), at_degrees(25.0));
-    let (camera, text) = scene("diffuse", "type = \"diffuse\"\nreflectance = 0.9", &WALL, ns, -to_sun);
+    let (camera, text) =
+        scene("diffuse", "type = \"diffuse\"\nreflectance = 0.9", &WALL, ns, -to_sun);
     let radiance = RHO / PI * SUN * to_sun.dot(ns);
     // seen from the floor in front, the wall's corners run the other way about
-    check("diffuse", &camera, &text, |p| SUN * to_sun.y + radiance * form::polygon(p, DVec3::Y, &WALL).abs());
+    check("diffuse", &camera, &text, |p| {
+        SUN * to_sun.y + radiance * form::polygon(p, DVec3::Y, &WALL).abs()
+    });
 }
 
-/// Theory: behind a flat face of glass with normal n_s the sun stands in the refracted direction with the
-/// irradiance T E cos_i / cos_t; the floor takes its cosine of that.
+/// Theory: behind a flat face of glass with normal n_s the sun stands in the refracted direction
+/// with the irradiance T E cos_i / cos_t; the floor takes its cosine of that.
 #[test]
 fn glass() {
     const N: f64 = 1.5;

@@ -7,7 +7,8 @@ use glam::DVec3;
 
 use super::lab::*;
 
-/// So dark that what the floor sends to mirror or glass and gets back counts for less than a thousandth.
+/// So dark that what the floor sends to mirror or glass and gets back counts for less than a
+/// thousandth.
 const ALBEDO: f64 = 0.002;
 const RADIUS: f64 = 0.03;
 
@@ -20,10 +21,11 @@ fn floor(camera: &Camera) -> String {
         )
 }
 
-/// Theory: a paraboloid y = r^2 / 4f makes the light of a point at its focus parallel. A ring of the mirror at radius r
-/// takes the solid angle 2 pi sin(theta) dtheta with r = 2 f tan(theta / 2), so that E(r) = (I / f^2) / (1 + r^2 / 4f^2)^2
-/// on any plane across the axis. The mirror hangs upside down over the floor; a disc between lamp and floor keeps direct
-/// light away (its shadow falls inside r < 0.2). The quadratic profile (0, 0), (a/2, 0), (a, a^2/4f) is that paraboloid
+/// Theory: a paraboloid y = r^2 / 4f makes the light of a point at its focus parallel. A ring of
+/// the mirror at radius r takes the solid angle 2 pi sin(theta) dtheta with r = 2 f tan(theta / 2),
+/// so that E(r) = (I / f^2) / (1 + r^2 / 4f^2)^2 on any plane across the axis. The mirror hangs
+/// upside down over the floor; a disc between lamp and floor keeps direct light away (its shadow
+/// falls inside r < 0.2). The quadratic profile (0, 0), (a/2, 0), (a, a^2/4f) is that paraboloid
 /// exactly.
 #[test]
 fn paraboloid_mirror() {
@@ -31,8 +33,12 @@ fn paraboloid_mirror() {
     const A: f64 = 1.2;
     const I: f64 = 2.0;
     const TOP: f64 = 1.6;
-    let camera =
-        Camera { position: DVec3::new(0.6, 1.7, 4.0), target: DVec3::new(0.6, 0.0, 0.0), fov: 6.0, size: 16 };
+    let camera = Camera {
+        position: DVec3::new(0.6, 1.7, 4.0),
+        target: DVec3::new(0.6, 0.0, 0.0),
+        fov: 6.0,
+        size: 16,
+    };
     let text = floor(&camera)
         + &format!(
             "[materials.mirror]\ntype = \"mirror\"\nreflectance = 1.0\n\
@@ -45,7 +51,8 @@ fn paraboloid_mirror() {
             TOP - F - 0.02,
             TOP - F
         );
-    for (direct, radius_rule) in [(Direct::Sampled, RadiusRule::Fixed), (Direct::Photons, RadiusRule::Global)]
+    for (direct, radius_rule) in
+        [(Direct::Sampled, RadiusRule::Fixed), (Direct::Photons, RadiusRule::Global)]
     {
         let truth = camera.floor_picture(RADIUS, |p| {
             let r2 = p.x * p.x + p.z * p.z;
@@ -53,21 +60,27 @@ fn paraboloid_mirror() {
         });
         let settings =
             RenderSettings { direct, radius_rule, passes: 4, photons: 1 << 14, ..settings(RADIUS) };
-        runs_to(0.05, &text, &settings).assert_picture(&format!("paraboloid, {direct:?}"), &truth, 0.05);
+        runs_to(0.05, &text, &settings).assert_picture(
+            &format!("paraboloid, {direct:?}"),
+            &truth,
+            0.05,
+        );
     }
 }
 
-/// Theory: rays of a point light at height h that pass a slab of thickness w and index n meet the floor at
-/// b(theta) = (h - w) tan(theta) + w tan(theta'), sin(theta) = n sin(theta'), so that E(b) = I T sin(theta) / (b db/dtheta)
-/// with T = (1 - R)^2. Light reflected to and fro inside goes 3, 5, ... times through the slab: the same map with 3 w
-/// for w and R^2 more, and so on. R is the mean of both polarisations, as the renderer keeps none.
+/// Theory: rays of a point light at height h that pass a slab of thickness w and index n meet the
+/// floor at b(theta) = (h - w) tan(theta) + w tan(theta'), sin(theta) = n sin(theta'), so that E(b)
+/// = I T sin(theta) / (b db/dtheta) with T = (1 - R)^2. Light reflected to and fro inside goes 3,
+/// 5, ... times through the slab: the same map with 3 w for w and R^2 more, and so on. R is the
+/// mean of both polarisations, as the renderer keeps none.
 #[test]
 fn slab_over_a_floor() {
     const N: f64 = 1.5;
     const W: f64 = 0.3;
     const H: f64 = 1.0;
     const I: f64 = 2.0;
-    let camera = Camera { position: DVec3::new(0.0, 0.35, 2.6), target: DVec3::ZERO, fov: 7.0, size: 16 };
+    let camera =
+        Camera { position: DVec3::new(0.0, 0.35, 2.6), target: DVec3::ZERO, fov: 7.0, size: 16 };
     let text = floor(&camera)
         + &format!(
             "[materials.glass]\ntype = \"glass\"\nior = {N:?}\n\
@@ -102,9 +115,10 @@ fn slab_over_a_floor() {
     runs_to(0.05, &text, &settings).assert_picture("slab", &truth, 0.05);
 }
 
-/// Theory: a ray from a source at (0, `h`) that leaves it at angle theta from straight down, and the plane y = 0: a
-/// one-dimensional map theta -> x (signed). E(b) = sum of I T sin(theta) / (b |dx/dtheta|) over all theta with |x| = b.
-/// `map` gives x and the transmittance T of a ray, if it arrives.
+/// Theory: a ray from a source at (0, `h`) that leaves it at angle theta from straight down, and
+/// the plane y = 0: a one-dimensional map theta -> x (signed). E(b) = sum of I T sin(theta) / (b
+/// |dx/dtheta|) over all theta with |x| = b. `map` gives x and the transmittance T of a ray, if it
+/// arrives.
 fn mapped(b: f64, intensity: f64, map: &impl Fn(f64) -> Option<(f64, f64)>) -> f64 {
     const STEPS: usize = 4000;
     const WIDEST: f64 = 0.4;
@@ -124,7 +138,8 @@ fn mapped(b: f64, intensity: f64, map: &impl Fn(f64) -> Option<(f64, f64)>) -> f
                 if off(middle).is_some_and(|m| m * a > 0.0) { low = middle } else { high = middle }
             }
             let theta = 0.5 * (low + high);
-            let (Some(right), Some(left), Some((_, t))) = (off(theta + 1e-6), off(theta - 1e-6), map(theta))
+            let (Some(right), Some(left), Some((_, t))) =
+                (off(theta + 1e-6), off(theta - 1e-6), map(theta))
             else {
                 continue;
             };
@@ -134,10 +149,11 @@ fn mapped(b: f64, intensity: f64, map: &impl Fn(f64) -> Option<(f64, f64)>) -> f
     sum
 }
 
-/// Theory: the map of [`mapped`] for a ball lens of index n and radius R about (0, c): two refractions by Snell's law,
-/// T = (1 - F)^2 with the Fresnel reflectance F of both polarisations' mean, the same at both faces. Light sent to and
-/// fro inside the ball leaves it upward, or less than F^2 of it. The views lie in the ball's shadow, inside and outside
-/// of the caustic's fold at 0.076.
+/// Theory: the map of [`mapped`] for a ball lens of index n and radius R about (0, c): two
+/// refractions by Snell's law, T = (1 - F)^2 with the Fresnel reflectance F of both polarisations'
+/// mean, the same at both faces. Light sent to and fro inside the ball leaves it upward, or less
+/// than F^2 of it. The views lie in the ball's shadow, inside and outside of the caustic's fold at
+/// 0.076.
 #[test]
 fn ball_lens() {
     const N: f64 = 1.2;
@@ -182,18 +198,21 @@ fn ball_lens() {
             );
         let truth = camera.floor_picture(radius, |p| ALBEDO / PI * mapped(p.x.hypot(p.z), I, &map));
         for radius_rule in [RadiusRule::Fixed, RadiusRule::Local] {
-            let settings = RenderSettings { radius_rule, passes: 4, photons: 1 << 14, ..settings(radius) };
+            let settings =
+                RenderSettings { radius_rule, passes: 4, photons: 1 << 14, ..settings(radius) };
             let what = format!("ball lens at {place}, {radius_rule:?}");
             runs_to(0.06, &text, &settings).assert_picture(&what, &truth, 0.06);
         }
     }
 }
 
-/// Theory: parallel light that falls into a mirror cylinder of radius R, seen along the axis, is turned at the wall's
-/// point R (cos phi, sin phi) into the direction -(cos 2 phi, sin 2 phi), and its tubes have the width |1 - 2 s / (R cos
-/// phi)| after the way s: they close at the caustic, a nephroid with its cusp at R / 2. Rays fall as far as they go
-/// (45 degrees), so that each place gets E_sun / sqrt 2 over the width from every turned ray through it that came in over
-/// the opposite rim and met the wall below its own, and as much from the sun itself where the rim throws no shadow.
+/// Theory: parallel light that falls into a mirror cylinder of radius R, seen along the axis, is
+/// turned at the wall's point R (cos phi, sin phi) into the direction -(cos 2 phi, sin 2 phi), and
+/// its tubes have the width |1 - 2 s / (R cos phi)| after the way s: they close at the caustic, a
+/// nephroid with its cusp at R / 2. Rays fall as far as they go (45 degrees), so that each place
+/// gets E_sun / sqrt 2 over the width from every turned ray through it that came in over the
+/// opposite rim and met the wall below its own, and as much from the sun itself where the rim
+/// throws no shadow.
 #[test]
 fn cylinder() {
     const HEIGHT: f64 = 0.8;
@@ -248,7 +267,8 @@ fn cylinder() {
         let radius = 0.02;
         let truth = camera.floor_picture(radius, |p| ALBEDO / PI * irradiance(p));
         for direct in DIRECT {
-            let settings = RenderSettings { direct, passes: 4, photons: 1 << 15, ..settings(radius) };
+            let settings =
+                RenderSettings { direct, passes: 4, photons: 1 << 15, ..settings(radius) };
             let what = format!("cylinder at ({x}, {z}), {direct:?}");
             runs_to(0.12, &text, &settings).assert_picture(&what, &truth, 0.12);
         }

@@ -1,12 +1,13 @@
-//! Irradiance in closed form, f64. Receivers are points `x` with unit normal `n`; sources have radiance 1 unless said.
+//! Irradiance in closed form, f64. Receivers are points `x` with unit normal `n`; sources have
+//! radiance 1 unless said.
 
 use std::f64::consts::{PI, TAU};
 
 use glam::DVec3;
 
-/// Under a polygon wholly above the horizon (Lambert 1760; Baum et al. 1989): half the sum over the edges of the angle
-/// each subtends times the cosine of its plane's normal. The corners run counter-clockwise seen from the lit side;
-/// negative for one that turns its back.
+/// Under a polygon wholly above the horizon (Lambert 1760; Baum et al. 1989): half the sum over the
+/// edges of the angle each subtends times the cosine of its plane's normal. The corners run
+/// counter-clockwise seen from the lit side; negative for one that turns its back.
 pub fn polygon(x: DVec3, n: DVec3, corners: &[DVec3]) -> f64 {
     let sum: f64 = (0..corners.len())
         .map(|i| {
@@ -31,9 +32,15 @@ pub fn disc(a: f64, h: f64, r: f64) -> f64 {
     0.5 * PI * (1.0 - (s - r * r) / ((s + r * r).powi(2) - 4.0 * r * r * a * a).sqrt())
 }
 
-/// Under a convex surface wholly above the horizon that `point(s, t)`, s and t in [0, 1], covers with its area vector
-/// element: midpoint rule with `n_s` x `n_t` points.
-pub fn surface(x: DVec3, n: DVec3, point: impl Fn(f64, f64) -> (DVec3, DVec3), n_s: u32, n_t: u32) -> f64 {
+/// Under a convex surface wholly above the horizon that `point(s, t)`, s and t in [0, 1], covers
+/// with its area vector element: midpoint rule with `n_s` x `n_t` points.
+pub fn surface(
+    x: DVec3,
+    n: DVec3,
+    point: impl Fn(f64, f64) -> (DVec3, DVec3),
+    n_s: u32,
+    n_t: u32,
+) -> f64 {
     let mut sum = 0.0;
     for i in 0..n_s {
         for j in 0..n_t {
@@ -46,7 +53,8 @@ pub fn surface(x: DVec3, n: DVec3, point: impl Fn(f64, f64) -> (DVec3, DVec3), n
     sum / (n_s as f64 * n_t as f64)
 }
 
-/// A cubic profile (radius, height) turned about y through `base`: point and outward area vector of (t, theta / 2 pi).
+/// A cubic profile (radius, height) turned about y through `base`: point and outward area vector of
+/// (t, theta / 2 pi).
 pub fn revolution(base: DVec3, profile: [[f64; 2]; 4]) -> impl Fn(f64, f64) -> (DVec3, DVec3) {
     move |t, turn| {
         let s = 1.0 - t;
@@ -60,14 +68,17 @@ pub fn revolution(base: DVec3, profile: [[f64; 2]; 4]) -> impl Fn(f64, f64) -> (
     }
 }
 
-/// Theory: a square of side 2 a at height h seen from below its middle is four times a corner's, and its quadrature
-/// must be the polygon's sum; a disc's too; an inscribed fine polygon is a disc; a sphere as a surface is a sphere.
+/// Theory: a square of side 2 a at height h seen from below its middle is four times a corner's,
+/// and its quadrature must be the polygon's sum; a disc's too; an inscribed fine polygon is a disc;
+/// a sphere as a surface is a sphere.
 #[test]
 fn closed_forms_agree_with_quadrature() {
     let x = DVec3::new(0.2, 0.0, -0.1);
     let n = DVec3::Y;
-    let square = [[-0.3, 0.3], [0.3, 0.3], [0.3, -0.3], [-0.3, -0.3]].map(|c| DVec3::new(c[0], 0.7, -c[1]));
-    let flat = |s: f64, t: f64| (DVec3::new(0.6 * s - 0.3, 0.7, 0.6 * t - 0.3), DVec3::NEG_Y * 0.36);
+    let square =
+        [[-0.3, 0.3], [0.3, 0.3], [0.3, -0.3], [-0.3, -0.3]].map(|c| DVec3::new(c[0], 0.7, -c[1]));
+    let flat =
+        |s: f64, t: f64| (DVec3::new(0.6 * s - 0.3, 0.7, 0.6 * t - 0.3), DVec3::NEG_Y * 0.36);
     let close = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 2e-5, "{a} {b}");
     close(polygon(x, n, &square), surface(x, n, flat, 200, 200));
     let ring: Vec<DVec3> = (0..4000)

@@ -1,4 +1,5 @@
-//! How the global rule converges: variance as N^-alpha, squared bias as N^-2(1 - alpha) (Knaus & Zwicker 2011).
+//! How the global rule converges: variance as N^-alpha, squared bias as N^-2(1 - alpha) (Knaus &
+//! Zwicker 2011).
 
 use std::f64::consts::PI;
 
@@ -55,10 +56,12 @@ fn slope(points: &[(f64, f64)]) -> f64 {
     sxy / sxx
 }
 
-/// [`slope`] of `figure` of all runs, and the standard error that leaving out one run at a time tells (jackknife).
+/// [`slope`] of `figure` of all runs, and the standard error that leaving out one run at a time
+/// tells (jackknife).
 fn fitted(runs: usize, figure: impl Fn(u32, Option<usize>) -> f64) -> Estimate {
     let fit = |left_out| {
-        let points: Vec<(f64, f64)> = COUNTS.iter().map(|&n| (f64::from(n), figure(n, left_out))).collect();
+        let points: Vec<(f64, f64)> =
+            COUNTS.iter().map(|&n| (f64::from(n), figure(n, left_out))).collect();
         slope(&points)
     };
     let parts: Vec<f64> = (0..runs).map(|k| fit(Some(k))).collect();
@@ -73,7 +76,8 @@ fn means(n: u32, alpha: f64, of: impl Fn(f64) -> f64) -> f64 {
     (1..=n).map(|i| of(global_scale_sq(u64::from(i), alpha))).sum::<f64>() / f64::from(n)
 }
 
-/// The slope of the exact curve at these counts, and how far it may lie from the one that it tends to.
+/// The slope of the exact curve at these counts, and how far it may lie from the one that it tends
+/// to.
 fn assert_slope(what: &str, found: Estimate, exact: f64, limit: f64) {
     println!(
         "{what}: slope {:.3} +- {:.3}, exact {exact:.3}, in the limit {limit:.3}",
@@ -86,8 +90,8 @@ fn assert_slope(what: &str, found: Estimate, exact: f64, limit: f64) {
 }
 
 /// Theory: under a point light at height h the mean irradiance over a disc of radius r below it is
-/// E(r) = (2 I / r^2) (1 - h / sqrt(h^2 + r^2)), against E(0) = I / h^2, so that the bias after N passes is the mean of
-/// E(r_i) - E(0), which falls as N^-(1 - alpha).
+/// E(r) = (2 I / r^2) (1 - h / sqrt(h^2 + r^2)), against E(0) = I / h^2, so that the bias after N
+/// passes is the mean of E(r_i) - E(0), which falls as N^-(1 - alpha).
 #[test]
 fn bias_of_the_global_rule() {
     const RADIUS: f64 = 0.22;
@@ -124,8 +128,10 @@ fn variance_of_the_global_rule() {
     let found = pictures(&scene(30.0, 16), ALPHA, 0.03, 1 << 11);
     let figure = |n: u32, left_out: Option<usize>| {
         let runs = &found[COUNTS.iter().position(|c| *c == n).expect("a count")];
-        let kept: Vec<&Vec<f64>> =
-            (0..runs.pixels.len()).filter(|k| Some(*k) != left_out).map(|k| &runs.pixels[k]).collect();
+        let kept: Vec<&Vec<f64>> = (0..runs.pixels.len())
+            .filter(|k| Some(*k) != left_out)
+            .map(|k| &runs.pixels[k])
+            .collect();
         let count = kept.len() as f64;
         (0..runs.pixels[0].len())
             .map(|i| {
@@ -134,8 +140,10 @@ fn variance_of_the_global_rule() {
             })
             .sum::<f64>()
     };
-    let exact: Vec<(f64, f64)> =
-        COUNTS.iter().map(|n| (f64::from(*n), means(*n, ALPHA, |s| 1.0 / s) / f64::from(*n))).collect();
+    let exact: Vec<(f64, f64)> = COUNTS
+        .iter()
+        .map(|n| (f64::from(*n), means(*n, ALPHA, |s| 1.0 / s) / f64::from(*n)))
+        .collect();
     let fit = fitted(found[0].pixels.len(), figure);
     assert_slope("variance", fit, slope(&exact), -ALPHA);
 }

@@ -119,7 +119,11 @@ fn basic_maps() {
     check("cosine", |r| Some(sample_cosine(two(r))), |w| w.z.max(0.0) / PI as f32);
     check("sphere", |r| Some(sample_sphere(two(r))), |_| PDF_SPHERE);
     // a bin's edge lies at the cone's: 1 - cos = 4 / 8
-    check("cone", |r| Some(sample_cone(two(r), 0.5)), |w| if w.z > 0.5 { 1.0 / (PI as f32) } else { 0.0 });
+    check(
+        "cone",
+        |r| Some(sample_cone(two(r), 0.5)),
+        |w| if w.z > 0.5 { 1.0 / (PI as f32) } else { 0.0 },
+    );
     let (mut disc, mut triangle) = ([0.0f64; 3], [0.0f64; 3]);
     let mut rng = rng();
     for _ in 0..DRAWS {
@@ -134,7 +138,8 @@ fn basic_maps() {
     }
     // second moments: disc 1/4, 1/4, 0; triangle 1/6, 1/6, 1/12
     let n = DRAWS as f64;
-    for (sum, truth) in [(disc, [0.25, 0.25, 0.0]), (triangle, [1.0 / 6.0, 1.0 / 6.0, 1.0 / 12.0])] {
+    for (sum, truth) in [(disc, [0.25, 0.25, 0.0]), (triangle, [1.0 / 6.0, 1.0 / 6.0, 1.0 / 12.0])]
+    {
         for (s, t) in sum.iter().zip(truth) {
             assert!((s / n - t).abs() < 6.0 * 0.3 / n.sqrt(), "{} {t}", s / n);
         }
@@ -210,7 +215,16 @@ fn lights() {
             if s.normal.dot(ray.direction) > -0.1 {
                 return 0.0;
             }
-            pdf_light(&scene, shares_at(&scene, from), s.light, from, ray.direction, hit.t, s.normal, s.v)
+            pdf_light(
+                &scene,
+                shares_at(&scene, from),
+                s.light,
+                from,
+                ray.direction,
+                hit.t,
+                s.normal,
+                s.v,
+            )
         };
         let draw = |r: &mut Rng| {
             let s = sample_light(&scene, shares_at(&scene, from), from, rng_next(r));

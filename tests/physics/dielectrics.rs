@@ -39,11 +39,13 @@ fn glass(body: &str, ior: f64, absorption: f64) -> String {
 
 /// A narrow view along -z through the origin onto a constant sky.
 fn along_z() -> String {
-    let camera = Camera { position: DVec3::new(0.0, 0.0, 3.0), target: DVec3::ZERO, fov: 0.5, size: 8 };
+    let camera =
+        Camera { position: DVec3::new(0.0, 0.0, 3.0), target: DVec3::ZERO, fov: 0.5, size: 8 };
     camera.toml() + "[environment]\nradiance = 1.0\n"
 }
 
-/// Theory: with index 1 nothing is reflected, so radiance 1 arrives times exp(-sigma d) (Beer-Lambert).
+/// Theory: with index 1 nothing is reflected, so radiance 1 arrives times exp(-sigma d)
+/// (Beer-Lambert).
 #[test]
 fn beer_lambert() {
     for (name, body) in bodies() {
@@ -60,10 +62,11 @@ fn beer_lambert() {
     }
 }
 
-/// Theory: a slab has reflectance R at each face, and all the light that goes to and fro inside gets out: with
-/// a = exp(-sigma d) it transmits (1 - R)^2 a / (1 - R^2 a^2) and reflects R + R (1 - R)^2 a^2 / (1 - R^2 a^2). Without
-/// absorption that is (1 - R) / (1 + R) and 2 R / (1 + R). A bright wall in front of and behind the slab tells the two
-/// apart. The factor 1 / n^2 on the way in is undone on the way out.
+/// Theory: a slab has reflectance R at each face, and all the light that goes to and fro inside
+/// gets out: with a = exp(-sigma d) it transmits (1 - R)^2 a / (1 - R^2 a^2) and reflects R + R (1
+/// - R)^2 a^2 / (1 - R^2 a^2). Without absorption that is (1 - R) / (1 + R) and 2 R / (1 + R). A
+/// bright wall in front of and behind the slab tells the two apart. The factor 1 / n^2 on the way
+/// in is undone on the way out.
 #[test]
 fn slab() {
     for (ior, sigma) in [(1.5f64, 0.7), (2.4, 0.0), (1.0 / 1.5, 0.0)] {
@@ -72,12 +75,22 @@ fn slab() {
             let a = (-sigma * 0.5f64).exp();
             let inside = (1.0 - r).powi(2) / (1.0 - r * r * a * a);
             let (through, back) = (inside * a, r + r * inside * a * a);
-            for (emission, truth, name) in [([1.0, 0.0], through, "through"), ([0.0, 1.0], back, "back")] {
-                let camera =
-                    Camera { position: DVec3::new(0.0, 0.0, 2.0), target: DVec3::ZERO, fov: 0.5, size: 8 };
+            for (emission, truth, name) in
+                [([1.0, 0.0], through, "through"), ([0.0, 1.0], back, "back")]
+            {
+                let camera = Camera {
+                    position: DVec3::new(0.0, 0.0, 2.0),
+                    target: DVec3::ZERO,
+                    fov: 0.5,
+                    size: 8,
+                };
                 let mut text = camera.toml()
                     + "[materials.black]\ntype = \"diffuse\"\nreflectance = 0.0\n"
-                    + &glass("type = \"box\"\nmin = [-9, -9, -0.25]\nmax = [9, 9, 0.25]", ior, sigma);
+                    + &glass(
+                        "type = \"box\"\nmin = [-9, -9, -0.25]\nmax = [9, 9, 0.25]",
+                        ior,
+                        sigma,
+                    );
                 for (z, normal, e) in [(-2.0, 1.0, emission[0]), (3.0, -1.0, emission[1])] {
                     text += &format!(
                         "[[shapes]]\ntype = \"disc\"\ncenter = [0, 0, {z}]\nnormal = [0, 0, {normal}]\nradius = 9\nmaterial = \"black\"\nemission = {e:?}\n"
@@ -93,8 +106,8 @@ fn slab() {
     }
 }
 
-/// Theory: Snell and Fresnel at 60 degrees, unpolarised: R = (R_s + R_p) / 2, for one face alone (a disc of glass with
-/// nothing behind it that light is sent back from).
+/// Theory: Snell and Fresnel at 60 degrees, unpolarised: R = (R_s + R_p) / 2, for one face alone (a
+/// disc of glass with nothing behind it that light is sent back from).
 #[test]
 fn fresnel_at_an_angle() {
     let (cos_i, n) = (0.5f64, 1.5f64);
@@ -121,10 +134,12 @@ fn fresnel_at_an_angle() {
     }
 }
 
-/// Theory: from inside an absorbing body of index 1, radiance 1 outside is seen through the rest of the way only.
+/// Theory: from inside an absorbing body of index 1, radiance 1 outside is seen through the rest of
+/// the way only.
 #[test]
 fn camera_inside_glass() {
-    let camera = Camera { position: DVec3::new(0.0, 0.0, 0.2), target: DVec3::ZERO, fov: 0.5, size: 8 };
+    let camera =
+        Camera { position: DVec3::new(0.0, 0.0, 0.2), target: DVec3::ZERO, fov: 0.5, size: 8 };
     for (name, body) in bodies() {
         let text = camera.toml() + "[environment]\nradiance = 1.0\n" + &glass(&body, 1.0, 1.0);
         for method in SPECULAR {
@@ -138,11 +153,12 @@ fn camera_inside_glass() {
     }
 }
 
-/// Theory: radiance over the squared index stays along a ray, and light that a clear body sends back to and fro
-/// inside comes from everywhere: in constant light 1 the inside holds n^2.
+/// Theory: radiance over the squared index stays along a ray, and light that a clear body sends
+/// back to and fro inside comes from everywhere: in constant light 1 the inside holds n^2.
 #[test]
 fn camera_inside_clear_glass() {
-    let camera = Camera { position: DVec3::new(0.0, 0.0, 0.2), target: DVec3::ZERO, fov: 5.0, size: 8 };
+    let camera =
+        Camera { position: DVec3::new(0.0, 0.0, 0.2), target: DVec3::ZERO, fov: 5.0, size: 8 };
     for (name, body) in bodies() {
         let text = camera.toml() + "[environment]\nradiance = 1.0\n" + &glass(&body, 1.5, 0.0);
         for method in SPECULAR {
@@ -152,12 +168,14 @@ fn camera_inside_clear_glass() {
     }
 }
 
-/// Theory: camera, floor and point light inside one absorbing body of index 1: E = I h / d^3 exp(-sigma d), and the way
-/// to the camera takes exp(-sigma c). Glass that shines through from outside must not change that.
+/// Theory: camera, floor and point light inside one absorbing body of index 1: E = I h / d^3
+/// exp(-sigma d), and the way to the camera takes exp(-sigma c). Glass that shines through from
+/// outside must not change that.
 #[test]
 fn all_inside_glass() {
     const SIGMA: f64 = 0.8;
-    let camera = Camera { position: DVec3::new(0.0, 1.6, 3.0), target: DVec3::ZERO, fov: 6.0, size: 8 };
+    let camera =
+        Camera { position: DVec3::new(0.0, 1.6, 3.0), target: DVec3::ZERO, fov: 6.0, size: 8 };
     let at = DVec3::new(0.1, 0.5, -0.1);
     let text = camera.toml()
         + &glass("type = \"sphere\"\ncenter = [0, 0, 0]\nradius = 6.0", 1.0, SIGMA)
@@ -171,10 +189,13 @@ fn all_inside_glass() {
             0.6 / std::f64::consts::PI * 2.0 * at.y / d.powi(3) * (-SIGMA * (d + c)).exp()
         })
     };
-    for (method, direct) in
-        [(Method::Sppm, Direct::Sampled), (Method::Sppm, Direct::Photons), (Method::Path, Direct::Sampled)]
-    {
-        let settings = RenderSettings { method, direct, passes: 8, photons: 1 << 14, ..settings(0.03) };
+    for (method, direct) in [
+        (Method::Sppm, Direct::Sampled),
+        (Method::Sppm, Direct::Photons),
+        (Method::Path, Direct::Sampled),
+    ] {
+        let settings =
+            RenderSettings { method, direct, passes: 8, photons: 1 << 14, ..settings(0.03) };
         runs_to(0.04, &text, &settings).assert_picture(
             &format!("inside, {method:?} {direct:?}"),
             &picture(direct),
@@ -183,11 +204,12 @@ fn all_inside_glass() {
     }
 }
 
-/// Theory: an absorbing ball of index 1 about a point light dims it by exp(-sigma R) and nothing else; only photons get
-/// through glass, in either direct mode.
+/// Theory: an absorbing ball of index 1 about a point light dims it by exp(-sigma R) and nothing
+/// else; only photons get through glass, in either direct mode.
 #[test]
 fn light_inside_glass() {
-    let camera = Camera { position: DVec3::new(0.0, 1.6, 3.0), target: DVec3::ZERO, fov: 6.0, size: 8 };
+    let camera =
+        Camera { position: DVec3::new(0.0, 1.6, 3.0), target: DVec3::ZERO, fov: 6.0, size: 8 };
     let at = DVec3::new(0.1, 0.5, -0.1);
     let text = camera.toml()
         + &glass(&format!("type = \"sphere\"\ncenter = {}\nradius = 0.2", list(at)), 1.0, 3.0)
@@ -198,17 +220,24 @@ fn light_inside_glass() {
     });
     for direct in DIRECT {
         let settings = RenderSettings { direct, passes: 8, photons: 1 << 14, ..settings(0.03) };
-        runs_to(0.04, &text, &settings).assert_picture(&format!("light in a ball, {direct:?}"), &truth, 0.04);
+        runs_to(0.04, &text, &settings).assert_picture(
+            &format!("light in a ball, {direct:?}"),
+            &truth,
+            0.04,
+        );
     }
 }
 
-/// Theory: a slab of index n transmits (1 - R) / (1 + R), R = ((n - 1) / (n + 1))^2: all but 5e-13 at n = 1.000001, 2e-6 at
-/// n = 1e6, which reflects the rest. At n = 1 the picture is that of the empty scene, to the bit.
+/// Theory: a slab of index n transmits (1 - R) / (1 + R), R = ((n - 1) / (n + 1))^2: all but 5e-13
+/// at n = 1.000001, 2e-6 at n = 1e6, which reflects the rest. At n = 1 the picture is that of the
+/// empty scene, to the bit.
 #[test]
 fn extreme_indices() {
     let scene = |glass: &str, emission: [f64; 2]| {
-        let camera = Camera { position: DVec3::new(0.0, 0.0, 2.0), target: DVec3::ZERO, fov: 40.0, size: 8 };
-        let mut text = camera.toml() + "[materials.black]\ntype = \"diffuse\"\nreflectance = 0.0\n" + glass;
+        let camera =
+            Camera { position: DVec3::new(0.0, 0.0, 2.0), target: DVec3::ZERO, fov: 40.0, size: 8 };
+        let mut text =
+            camera.toml() + "[materials.black]\ntype = \"diffuse\"\nreflectance = 0.0\n" + glass;
         for (z, normal, e) in [(-2.0, 1.0, emission[0]), (3.0, -1.0, emission[1])] {
             text += &format!(
                 "[[shapes]]\ntype = \"disc\"\ncenter = [0, 0, {z}]\nnormal = [0, 0, {normal}]\nradius = 90\nmaterial = \"black\"\nemission = {e:?}\n"
@@ -216,12 +245,17 @@ fn extreme_indices() {
         }
         text
     };
-    let slab = |ior| glass("type = \"box\"\nmin = [-90, -90, -0.25]\nmax = [90, 90, 0.25]", ior, 0.0);
+    let slab =
+        |ior| glass("type = \"box\"\nmin = [-90, -90, -0.25]\nmax = [90, 90, 0.25]", ior, 0.0);
     for method in SPECULAR {
         let picture = |text: &str| render(&parse(text), &seen(method)).rgb;
         for emission in [[1.0, 0.0], [0.0, 1.0]] {
             let empty = picture(&scene("", emission));
-            assert_eq!(picture(&scene(&slab(1.0), emission)), empty, "{method:?} {emission:?}: index 1");
+            assert_eq!(
+                picture(&scene(&slab(1.0), emission)),
+                empty,
+                "{method:?} {emission:?}: index 1"
+            );
             let thin = picture(&scene(&slab(1.000001), emission));
             for (a, b) in thin.iter().zip(&empty) {
                 assert!(
@@ -239,18 +273,20 @@ fn extreme_indices() {
     }
 }
 
-/// Theory: two slabs that touch are one: between glass and the same glass there is no interface, so that both together
-/// transmit (1 - R) / (1 + R), not the (1 - R) / (1 + 3 R) of two slabs with air between. Glass 2 on glass 1 has the three
-/// interfaces 1 : n1 : n2 : 1, which transmit, to and fro counted, 1 / (1 + sum R_i / (1 - R_i)) (reflectances of plates add
-/// up as resistances R / (1 - R) do). A body inside another is met from its glass likewise.
+/// Theory: two slabs that touch are one: between glass and the same glass there is no interface, so
+/// that both together transmit (1 - R) / (1 + R), not the (1 - R) / (1 + 3 R) of two slabs with air
+/// between. Glass 2 on glass 1 has the three interfaces 1 : n1 : n2 : 1, which transmit, to and fro
+/// counted, 1 / (1 + sum R_i / (1 - R_i)) (reflectances of plates add up as resistances R / (1 - R)
+/// do). A body inside another is met from its glass likewise.
 #[test]
 fn glass_on_glass() {
     let resistance = |a: f64, b: f64| {
         let r = ((a - b) / (a + b)).powi(2);
         r / (1.0 - r)
     };
-    let through =
-        |indices: &[f64]| 1.0 / (1.0 + indices.windows(2).map(|w| resistance(w[0], w[1])).sum::<f64>());
+    let through = |indices: &[f64]| {
+        1.0 / (1.0 + indices.windows(2).map(|w| resistance(w[0], w[1])).sum::<f64>())
+    };
     let slab = |name: &str, ior: f64, from: f64, to: f64, half: f64| {
         format!(
             "[materials.{name}]\ntype = \"glass\"\nior = {ior:?}\n\
@@ -285,7 +321,8 @@ fn glass_on_glass() {
             vec![1.0, 2.0, 1.0, 2.0, 1.0],
         ),
     ] {
-        let camera = Camera { position: DVec3::new(0.0, 0.0, 2.0), target: DVec3::ZERO, fov: 0.5, size: 8 };
+        let camera =
+            Camera { position: DVec3::new(0.0, 0.0, 2.0), target: DVec3::ZERO, fov: 0.5, size: 8 };
         let text = camera.toml()
             + "[materials.black]\ntype = \"diffuse\"\nreflectance = 0.0\n"
             + &bodies
@@ -298,10 +335,11 @@ fn glass_on_glass() {
     }
 }
 
-/// Theory: from inside glass of index n, total reflection begins where sin = 1 / n. Some roundings on either side of that
-/// angle the reflectance is that of Fresnel's equations in f64 at a squared cosine of the refracted ray that is off by
-/// a few roundings of 1 and no more, and exactly 1 beyond; the refracted ray is a direction. At once steep and short is the
-/// way from 1 down to Brewster's angle in dense glass, where `1 - cos^2` would have no digits left.
+/// Theory: from inside glass of index n, total reflection begins where sin = 1 / n. Some roundings
+/// on either side of that angle the reflectance is that of Fresnel's equations in f64 at a squared
+/// cosine of the refracted ray that is off by a few roundings of 1 and no more, and exactly 1
+/// beyond; the refracted ray is a direction. At once steep and short is the way from 1 down to
+/// Brewster's angle in dense glass, where `1 - cos^2` would have no digits left.
 #[test]
 fn critical_angle() {
     use caustica::materials::glass::{fresnel, refracted};
@@ -323,11 +361,16 @@ fn critical_angle() {
         for ulps in -40..=40i32 {
             let cos = f32::from_bits(critical.to_bits().wrapping_add_signed(ulps)).min(1.0);
             let interface = fresnel(cos, n);
-            let near: Vec<f64> =
-                (-20..=20).map(|k| exact(f64::from(cos), wide, ROUNDINGS * f64::from(k) / 20.0)).collect();
-            let (low, high) = near.iter().fold((1.0f64, 0.0f64), |(l, h), r| (l.min(*r), h.max(*r)));
+            let near: Vec<f64> = (-20..=20)
+                .map(|k| exact(f64::from(cos), wide, ROUNDINGS * f64::from(k) / 20.0))
+                .collect();
+            let (low, high) =
+                near.iter().fold((1.0f64, 0.0f64), |(l, h), r| (l.min(*r), h.max(*r)));
             let r = f64::from(interface.reflectance);
-            assert!(r >= low - 1e-6 && r <= high + 1e-6, "n {n}, {ulps} ulps: {r} not in {low} .. {high}");
+            assert!(
+                r >= low - 1e-6 && r <= high + 1e-6,
+                "n {n}, {ulps} ulps: {r} not in {low} .. {high}"
+            );
             if r < 1.0 {
                 let wo = Vec3::new(((1.0 - cos) * (1.0 + cos)).max(0.0).sqrt(), cos, 0.0);
                 let wi = refracted(wo, Vec3::Y, cos, interface.cos_t, n);

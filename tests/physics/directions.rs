@@ -1,5 +1,5 @@
-//! Narrow spots, skies at their seam and poles, and pictures on shapes: upright, unmirrored, far from the
-//! origin.
+//! Narrow spots, skies at their seam and poles, and pictures on shapes: upright, unmirrored, far
+//! from the origin.
 
 use std::f64::consts::PI;
 
@@ -15,14 +15,19 @@ use glam::{DVec3, Vec3};
 
 use super::lab::*;
 
-fn grey_file(name: &str, width: usize, height: usize, value: impl Fn(usize, usize) -> f32 + Sync) -> String {
+fn grey_file(
+    name: &str,
+    width: usize,
+    height: usize,
+    value: impl Fn(usize, usize) -> f32 + Sync,
+) -> String {
     let at = |x, y| (value(x, y), value(x, y), value(x, y));
     exr::prelude::write_rgb_file(folder().join(name), width, height, at).unwrap();
     name.to_owned()
 }
 
-/// Theory: within its full cone a spot gives the radiance `rho I / (pi d^2)` to what it faces, however
-/// narrow the cone is: by shadow rays, by photons alone and by path tracing.
+/// Theory: within its full cone a spot gives the radiance `rho I / (pi d^2)` to what it faces,
+/// however narrow the cone is: by shadow rays, by photons alone and by path tracing.
 #[test]
 fn narrow_spots() {
     for degrees in [0.001f64, 0.01, 0.02, 0.3, 1.0] {
@@ -30,8 +35,9 @@ fn narrow_spots() {
             let full = (degrees * (1.0 - blend)).to_radians();
             // the middle half of what the full cone lights
             let fov = 2.0 * full.tan().atan().to_degrees();
-            let camera =
-                format!("position = [0, 5, 0]\ntarget = [0, 0, 0]\nup = [0, 0, -1]\nfov = {fov:?}\n");
+            let camera = format!(
+                "position = [0, 5, 0]\ntarget = [0, 0, 0]\nup = [0, 0, -1]\nfov = {fov:?}\n"
+            );
             let text = format!(
                 "version = 1\n[camera]\n{camera}[film]\nwidth = 8\nheight = 8\n\
                  [materials.d]\ntype = \"diffuse\"\nreflectance = 0.5\n\
@@ -44,7 +50,12 @@ fn narrow_spots() {
             for direct in DIRECT {
                 let settings = RenderSettings { direct, radius, photons: 1 << 14, ..settings(1.0) };
                 let found = runs(&text, &settings).region(|_, _| true);
-                assert_agrees(&format!("{degrees} degrees, blend {blend}, {direct:?}"), found, truth, 0.05);
+                assert_agrees(
+                    &format!("{degrees} degrees, blend {blend}, {direct:?}"),
+                    found,
+                    truth,
+                    0.05,
+                );
             }
             let path = RenderSettings { method: Method::Path, ..settings(1.0) };
             let found = runs(&text, &path).region(|_, _| true);
@@ -53,9 +64,9 @@ fn narrow_spots() {
     }
 }
 
-/// Theory: of a picture of 4096 rows with light L in the top row alone the bilinear filter makes L up to
-/// half a row from the pole and a slope to 0 at one row and a half. A floor gets, with a row's angle
-/// `a = pi / 4096`, `E = 2 pi a^2 L (1/8 + 5/12)`.
+/// Theory: of a picture of 4096 rows with light L in the top row alone the bilinear filter makes L
+/// up to half a row from the pole and a slope to 0 at one row and a half. A floor gets, with a
+/// row's angle `a = pi / 4096`, `E = 2 pi a^2 L (1/8 + 5/12)`.
 #[test]
 fn light_at_the_pole() {
     let sky = grey_file("physics-pole.exr", 2, 4096, |_, y| if y == 0 { 1e6 } else { 0.0 });
@@ -81,8 +92,8 @@ fn packed(text: &str) -> Packed {
     pack(&parse(&format!("{head}{text}")), 8, 8).unwrap()
 }
 
-/// Theory: a sky goes on around: at the picture's left and right edge it is the mean of the columns on
-/// either side, as between any two columns.
+/// Theory: a sky goes on around: at the picture's left and right edge it is the mean of the columns
+/// on either side, as between any two columns.
 #[test]
 fn a_sky_has_no_seam() {
     let sky = grey_file("physics-seam.exr", 8, 4, |x, _| if x == 0 { 3.0 } else { x as f32 });
@@ -97,12 +108,14 @@ fn a_sky_has_no_seam() {
 }
 
 fn hit(scene: &Scene, from: DVec3, direction: DVec3) -> Surface {
-    let ray = Ray { origin: from.as_vec3(), t_min: 0.0, direction: direction.as_vec3(), t_max: 1e30 };
+    let ray =
+        Ray { origin: from.as_vec3(), t_min: 0.0, direction: direction.as_vec3(), t_max: 1e30 };
     surface_at(scene, &ray, &intersect_scene(scene, &ray))
 }
 
-/// Theory: someone outside who looks at a face along its normal n, with `up` upward, has `up x n` to the
-/// right: u increases that way and v upward, on all six faces. On top up is -z, on the bottom z.
+/// Theory: someone outside who looks at a face along its normal n, with `up` upward, has `up x n`
+/// to the right: u increases that way and v upward, on all six faces. On top up is -z, on the
+/// bottom z.
 #[test]
 fn pictures_on_boxes_are_not_mirrored() {
     let packed = packed(
@@ -117,15 +130,17 @@ fn pictures_on_boxes_are_not_mirrored() {
                 let from = (normal * 3.0 + right * a + up * b - packed.center) / packed.unit;
                 let s = hit(&packed.scene, from, -normal);
                 let expected = [0.5 + 0.5 * a, 0.5 + 0.5 * b];
-                let off = (f64::from(s.uv.x) - expected[0]).abs() + (f64::from(s.uv.y) - expected[1]).abs();
+                let off = (f64::from(s.uv.x) - expected[0]).abs()
+                    + (f64::from(s.uv.y) - expected[1]).abs();
                 assert!(off < 1e-5, "{normal}: {:?} and {expected:?}", s.uv);
             }
         }
     }
 }
 
-/// Theory: a picture whose rows are white at the top and black at the bottom is white at a sphere's north
-/// pole and black at its south pole, though it repeats; so at the ends of a vase. On a ring the picture goes on.
+/// Theory: a picture whose rows are white at the top and black at the bottom is white at a sphere's
+/// north pole and black at its south pole, though it repeats; so at the ends of a vase. On a ring
+/// the picture goes on.
 #[test]
 fn poles_do_not_mix() {
     let picture = grey_file("physics-rows.exr", 4, 4, |_, y| [1.0, 0.6, 0.3, 0.0][y]);
@@ -147,13 +162,14 @@ fn poles_do_not_mix() {
     let vase = "type = \"revolution\"\nprofile = [[1, 0], [1, 1]]";
     assert_eq!(reflectance(vase, DVec3::new(3.0, 0.999, 1e-3), DVec3::NEG_X), 1.0);
     assert_eq!(reflectance(vase, DVec3::new(3.0, 0.001, 1e-3), DVec3::NEG_X), 0.0);
-    let ring = "type = \"revolution\"\nsegments = [[[1, 0], [2, 0], [2, 1]], [[2, 1], [1, 1], [1, 0]]]";
+    let ring =
+        "type = \"revolution\"\nsegments = [[[1, 0], [2, 0], [2, 1]], [[2, 1], [1, 1], [1, 0]]]";
     let seam = reflectance(ring, DVec3::new(1.0005, -3.0, 1e-3), DVec3::Y);
     assert!((seam - 0.5).abs() < 0.1, "{seam}");
 }
 
-/// Theory: a checker, a repeated picture and planks look the same a whole number of their periods away, as
-/// far as the file's own numbers go.
+/// Theory: a checker, a repeated picture and planks look the same a whole number of their periods
+/// away, as far as the file's own numbers go.
 #[test]
 fn textures_far_from_the_origin() {
     let picture = grey_file("physics-far.exr", 4, 4, |x, y| ((x + 2 * y) % 4) as f32 / 4.0);
@@ -185,13 +201,20 @@ fn textures_far_from_the_origin() {
              [environment]\nradiance = 1.0\n",
             x + 1.5
         );
-        grey(&render(&parse(&text), &RenderSettings { method: Method::Path, passes: 1, ..settings(1.0) }))
+        grey(&render(
+            &parse(&text),
+            &RenderSettings { method: Method::Path, passes: 1, ..settings(1.0) },
+        ))
     };
     for texture in &textures {
         for (near, far) in shapes(0.0).iter().zip(shapes(1e7)) {
             let (near, far) = (render_at(texture, near, 0.0), render_at(texture, &far, 1e7));
             let differ = near.iter().zip(&far).filter(|(a, b)| (*a - *b).abs() > 0.02).count();
-            assert!(differ < near.len() / 20, "{differ} of {} pixels: {texture}\n{far:?}", near.len());
+            assert!(
+                differ < near.len() / 20,
+                "{differ} of {} pixels: {texture}\n{far:?}",
+                near.len()
+            );
             assert!(near.iter().any(|x| (x - near[0]).abs() > 0.2), "a single colour: {texture}");
         }
     }
@@ -200,8 +223,9 @@ fn textures_far_from_the_origin() {
 /// Shadow rays and photons alone tell the same of a sky with its light at the seam.
 #[test]
 fn a_lamp_across_the_seam() {
-    let sky =
-        grey_file("physics-lamp.exr", 64, 32, |x, y| if (x == 0 || x == 63) && y == 8 { 500.0 } else { 0.1 });
+    let sky = grey_file("physics-lamp.exr", 64, 32, |x, y| {
+        if (x == 0 || x == 63) && y == 8 { 500.0 } else { 0.1 }
+    });
     let text = format!(
         "version = 1\n[camera]\nposition = [0, 5, 0.01]\ntarget = [0, 0, 0]\nfov = 20.0\n\
          [film]\nwidth = 8\nheight = 8\n[materials.d]\ntype = \"diffuse\"\nreflectance = 0.5\n\
@@ -219,8 +243,8 @@ fn a_lamp_across_the_seam() {
 }
 
 /// Theory: a sky of radiance 1 over half of the directions lights a floor that faces that half with
-/// `rho pi / pi`, a sun beside it in the other half, 10^4 times as strong, not at all. Rows and texels of the
-/// dim half are drawn seldom, but drawn.
+/// `rho pi / pi`, a sun beside it in the other half, 10^4 times as strong, not at all. Rows and
+/// texels of the dim half are drawn seldom, but drawn.
 #[test]
 fn a_dim_sky_beside_a_bright_sun() {
     let (width, height) = (64, 1024);

@@ -155,7 +155,8 @@ fn promises_with_distant_objects() {
     for (far, near) in distant.flat_map(|far| [(far, SUN), (far, LAMP_AND_SKY)]) {
         let loaded = parse(&scene(&far, near));
         let exact = RenderSettings { passes: 12, photons: 1 << 17, ..settings(0.01) };
-        let halves = [900, 901].map(|seed| render(&loaded, &RenderSettings { seed, ..exact.clone() }));
+        let halves =
+            [900, 901].map(|seed| render(&loaded, &RenderSettings { seed, ..exact.clone() }));
         let truth = NoisyTruth::Halves(halves);
         let packed = pack(&loaded, SIZE, SIZE).unwrap();
         let promise = |seed| {
@@ -171,7 +172,10 @@ fn promises_with_distant_objects() {
         let found: Vec<Promise> = (0..10).map(promise).collect();
         let kept = found.iter().filter(|promise| promise.kept()).count();
         let ratio = found.iter().map(|p| p.said.stated / p.truth).sum::<f64>() / 10.0;
-        println!("{}: {kept} of 10 kept, stated over true {ratio:.2}, true {:.4}", far.name, found[0].truth);
+        println!(
+            "{}: {kept} of 10 kept, stated over true {ratio:.2}, true {:.4}",
+            far.name, found[0].truth
+        );
         assert!(kept >= 9, "{}: {found:?}", far.name);
         // a statement that is always large enough would say nothing
         assert!(ratio < 4.0, "{}: {ratio}", far.name);

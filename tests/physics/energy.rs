@@ -31,7 +31,12 @@ fn scene(closed: bool, h: f64) -> String {
 
 fn settings(closed: bool) -> RenderSettings {
     let max_bounces = if closed { CUT_AT } else { 64 };
-    RenderSettings { photons: 100_003, max_bounces, direct: Direct::Photons, ..super::lab::settings(0.05) }
+    RenderSettings {
+        photons: 100_003,
+        max_bounces,
+        direct: Direct::Photons,
+        ..super::lab::settings(0.05)
+    }
 }
 
 /// The ends of one pass on a device.
@@ -46,17 +51,18 @@ fn likely(count: u64, n: u32, p: f64) -> bool {
     (count as f64 - n * p).abs() <= 5.0 * (n * p * (1.0 - p)).sqrt()
 }
 
-/// Theory: every photon ends in one of three ways, so that the counts add up exactly, on every device and to the same
-/// numbers. Over a disc seen from h under the half angle a, (1 + cos a) / 2 of the photons miss it, and rho of the others
-/// leave it again: both escape. In a closed room nothing escapes, and rho^(b + 1) is cut after b bounces (the walls are
-/// met b + 1 times).
+/// Theory: every photon ends in one of three ways, so that the counts add up exactly, on every
+/// device and to the same numbers. Over a disc seen from h under the half angle a, (1 + cos a) / 2
+/// of the photons miss it, and rho of the others leave it again: both escape. In a closed room
+/// nothing escapes, and rho^(b + 1) is cut after b bounces (the walls are met b + 1 times).
 #[test]
 fn photons_are_counted() {
     let h = 0.7f64;
     let missed = 0.5 * (1.0 + h / (h * h + 1.0).sqrt());
-    for (closed, escaped, cut) in
-        [(false, missed + (1.0 - missed) * ALBEDO, 0.0), (true, 0.0, ALBEDO.powi(CUT_AT as i32 + 1))]
-    {
+    for (closed, escaped, cut) in [
+        (false, missed + (1.0 - missed) * ALBEDO, 0.0),
+        (true, 0.0, ALBEDO.powi(CUT_AT as i32 + 1)),
+    ] {
         let (text, settings) = (scene(closed, h), settings(closed));
         let found = ends("cpu", &text, &settings);
         println!("closed {closed}: {found:?}");
@@ -71,10 +77,11 @@ fn photons_are_counted() {
     }
 }
 
-/// Theory: at each hit of flux f the surface absorbs (1 - rho) f and sends on rho f, in the mean over roulette. So the
-/// stored flux times (1 - rho), and what escapes or is cut, is what was emitted: in a closed room that is
-/// Phi (1 - rho) sum rho^k = Phi (1 - rho^(b + 1)) for the walls. Roulette keeps the flux of a survivor on grey walls,
-/// so that the balance of each photon is one of counts: stored = hits.
+/// Theory: at each hit of flux f the surface absorbs (1 - rho) f and sends on rho f, in the mean
+/// over roulette. So the stored flux times (1 - rho), and what escapes or is cut, is what was
+/// emitted: in a closed room that is Phi (1 - rho) sum rho^k = Phi (1 - rho^(b + 1)) for the walls.
+/// Roulette keeps the flux of a survivor on grey walls, so that the balance of each photon is one
+/// of counts: stored = hits.
 #[test]
 fn stored_flux_is_emitted_flux() {
     let (text, settings) = (scene(true, 0.7), settings(true));
@@ -87,7 +94,9 @@ fn stored_flux_is_emitted_flux() {
         .map(|part| {
             let mut sum = 0.0;
             for id in part * 2000..(part + 1) * 2000 {
-                let _ = photon_trace(&packed.scene, &dispatch, false, id, |r| sum += f64::from(r.flux.x));
+                let _ = photon_trace(&packed.scene, &dispatch, false, id, |r| {
+                    sum += f64::from(r.flux.x)
+                });
             }
             sum * unit / 2000.0
         })

@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 
-/// A scene with every shape and kind of light, `scale` times as large and moved by `shift` afterwards; `mesh` is a file
-/// that holds [`MESH`]. Lengths scale;
-/// intensities scale by area, absorption by one over length; radiance and irradiance stay.
+/// A scene with every shape and kind of light, `scale` times as large and moved by `shift`
+/// afterwards; `mesh` is a file that holds [`MESH`]. Lengths scale; intensities scale by area,
+/// absorption by one over length; radiance and irradiance stay.
 pub fn everything_with(mesh: &str, scale: f64, shift: DVec3, size: u32) -> String {
     let list = |v: DVec3| format!("[{:?}, {:?}, {:?}]", v.x, v.y, v.z);
     let p = |x: f64, y: f64, z: f64| list(DVec3::new(x, y, z) * scale + shift);

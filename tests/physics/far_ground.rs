@@ -1,4 +1,5 @@
-//! Ground without end under light from infinity: what reaches an upright wall from it comes from near and from far.
+//! Ground without end under light from infinity: what reaches an upright wall from it comes from
+//! near and from far.
 
 use std::f64::consts::PI;
 
@@ -25,11 +26,12 @@ fn scene(h: f64, ground: &str, light: &str) -> String {
         )
 }
 
-/// Theory: an upright wall sees an endless floor of radiance B with the form factor 1/2, so E = pi B / 2 beside what
-/// comes from above. A sun that shines straight down throws no shadow of the wall and no light on it: B = rho E_sun / pi.
-/// A sky of radiance L gives B = rho L and sends pi L / 2 itself. Half of the light comes from ground farther away than
-/// the wall is high; the ground ends at 1e4 of the scene's size (planes) or at its horizon, which takes less than 1e-3.
-/// The wall hides under 4e-4 of the sky from the ground below it.
+/// Theory: an upright wall sees an endless floor of radiance B with the form factor 1/2, so E = pi
+/// B / 2 beside what comes from above. A sun that shines straight down throws no shadow of the wall
+/// and no light on it: B = rho E_sun / pi. A sky of radiance L gives B = rho L and sends pi L / 2
+/// itself. Half of the light comes from ground farther away than the wall is high; the ground ends
+/// at 1e4 of the scene's size (planes) or at its horizon, which takes less than 1e-3. The wall
+/// hides under 4e-4 of the sky from the ground below it.
 #[test]
 fn wall_above() {
     let plane = "type = \"plane\"\npoint = [0, 0, 0]\nnormal = [0, 1, 0]";
@@ -50,7 +52,11 @@ fn wall_above() {
         let settings = RenderSettings { photons: 1 << 13, ..settings(0.07) };
         for direct in if from_above > 0.0 { &DIRECT[..] } else { &DIRECT[..1] } {
             let settings = RenderSettings { direct: *direct, ..settings.clone() };
-            runs_to(0.08, &text, &settings).assert_picture(&format!("{name}, {direct:?}"), &truth, 0.08);
+            runs_to(0.08, &text, &settings).assert_picture(
+                &format!("{name}, {direct:?}"),
+                &truth,
+                0.08,
+            );
         }
         let path = RenderSettings { method: Method::Path, passes: 16, ..settings };
         runs_to(0.08, &text, &path).assert_picture(&format!("{name}, path"), &truth, 0.08);

@@ -1,4 +1,5 @@
-//! Furnaces: scenes in which the radiance is the same everywhere, or in which a body must not be seen.
+//! Furnaces: scenes in which the radiance is the same everywhere, or in which a body must not be
+//! seen.
 
 use std::f64::consts::PI;
 
@@ -7,16 +8,17 @@ use glam::{DVec2, DVec3};
 
 use super::lab::*;
 
-/// Theory: in a closed room whose walls all emit Le and reflect rho, L = Le + rho L, so L = Le / (1 - rho) everywhere,
-/// whatever the room's form; cut off after b scatterings, Le (1 - rho^(b+1)) / (1 - rho). Every shape that can shine is
-/// a wall here: a room inside a box would have its emission outside, so six rectangles close it and the others stand in
-/// it.
+/// Theory: in a closed room whose walls all emit Le and reflect rho, L = Le + rho L, so L = Le / (1
+/// - rho) everywhere, whatever the room's form; cut off after b scatterings, Le (1 - rho^(b+1)) /
+/// (1 - rho). Every shape that can shine is a wall here: a room inside a box would have its
+/// emission outside, so six rectangles close it and the others stand in it.
 #[test]
 fn closed_room() {
     const EMISSION: f64 = 0.25;
     const ALBEDO: f64 = 0.6;
     let mesh = file("physics-cube.obj", CUBE.as_bytes());
-    let view = |target, fov| Camera { position: DVec3::new(0.2, 0.8, 1.8), target, fov, size: 12 }.toml();
+    let view =
+        |target, fov| Camera { position: DVec3::new(0.2, 0.8, 1.8), target, fov, size: 12 }.toml();
     let mut text = format!("[materials.wall]\ntype = \"diffuse\"\nreflectance = {ALBEDO}\n");
     let shapes = [
         "type = \"rectangle\"\norigin = [-2, -1, -2]\nu = [0, 0, 4]\nv = [4, 0, 0]",
@@ -36,7 +38,8 @@ fn closed_room() {
         text += &format!("[[shapes]]\n{shape}\nmaterial = \"wall\"\nemission = {EMISSION}\n");
     }
     let truth = vec![EMISSION / (1.0 - ALBEDO); 144];
-    // the whole room by path tracing; photons, whose discs lose light at edges, on a wall and on the ball
+    // the whole room by path tracing; photons, whose discs lose light at edges, on a wall and on
+    // the ball
     let room = view(DVec3::new(0.0, -0.2, 0.0), 60.0) + &text;
     let path = RenderSettings { method: Method::Path, passes: 4, ..settings(0.02) };
     runs_to(0.03, &room, &path).assert_picture("room, Path", &truth, 0.03);
@@ -61,7 +64,8 @@ f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 3 4 8 7\nf 1 5 8 4\nf 2 3 7 6\n";
 
 /// A body alone in light of radiance 1 from everywhere, filling most of the picture.
 fn in_constant_light(body: &str) -> String {
-    let camera = Camera { position: DVec3::new(0.4, 1.1, 3.0), target: DVec3::ZERO, fov: 34.0, size: 12 };
+    let camera =
+        Camera { position: DVec3::new(0.4, 1.1, 3.0), target: DVec3::ZERO, fov: 34.0, size: 12 };
     camera.toml() + "[environment]\nradiance = 1.0\n" + body
 }
 
@@ -76,21 +80,28 @@ fn bodies() -> Vec<(&'static str, String)> {
     ]
 }
 
-/// Theory: a body that absorbs nothing reflects and refracts radiance 1 only, and radiance 1 comes out (the factor
-/// (n_i / n_t)^2 on the way in is undone on the way out): in constant light mirrors and clear glass cannot be seen. Light
-/// that goes on inside for more bounces than allowed would be lost; roulette must not lose it either.
+/// Theory: a body that absorbs nothing reflects and refracts radiance 1 only, and radiance 1 comes
+/// out (the factor (n_i / n_t)^2 on the way in is undone on the way out): in constant light mirrors
+/// and clear glass cannot be seen. Light that goes on inside for more bounces than allowed would be
+/// lost; roulette must not lose it either.
 #[test]
 fn mirrors_and_glass_are_invisible() {
     for (name, body) in bodies() {
-        for (kind, material) in
-            [("mirror", "type = \"mirror\"\nreflectance = 1.0"), ("glass", "type = \"glass\"\nior = 1.5")]
-        {
+        for (kind, material) in [
+            ("mirror", "type = \"mirror\"\nreflectance = 1.0"),
+            ("glass", "type = \"glass\"\nior = 1.5"),
+        ] {
             let text = in_constant_light(&format!(
                 "[materials.m]\n{material}\n[[shapes]]\n{body}\nmaterial = \"m\"\n"
             ));
             for method in [Method::Sppm, Method::Path] {
-                let settings =
-                    RenderSettings { method, passes: 8, photons: 1, max_bounces: 1000, ..settings(0.02) };
+                let settings = RenderSettings {
+                    method,
+                    passes: 8,
+                    photons: 1,
+                    max_bounces: 1000,
+                    ..settings(0.02)
+                };
                 // the path tracer's roulette is noisier inside glass, where radiance is lower
                 let power = if method == Method::Path { 0.02 } else { 0.002 };
                 let what = format!("{kind} {name}, {method:?}");
@@ -100,8 +111,8 @@ fn mirrors_and_glass_are_invisible() {
     }
 }
 
-/// Theory: a convex diffuse body in constant light L has E = pi L everywhere, so its radiance is rho L; behind it the
-/// picture is L.
+/// Theory: a convex diffuse body in constant light L has E = pi L everywhere, so its radiance is
+/// rho L; behind it the picture is L.
 #[test]
 fn diffuse_bodies() {
     const ALBEDO: f64 = 0.5;
@@ -117,20 +128,24 @@ fn diffuse_bodies() {
                 "[environment]\nradiance = 1.0\n[materials.m]\ntype = \"diffuse\"\nreflectance = {ALBEDO}\n\
                  [[shapes]]\n{body}\nmaterial = \"m\"\n"
             );
-        for (method, direct) in
-            [(Method::Sppm, Direct::Sampled), (Method::Ppm, Direct::Photons), (Method::Path, Direct::Photons)]
-        {
-            let settings = RenderSettings { method, direct, passes: 2, photons: 1 << 14, ..settings(0.03) };
+        for (method, direct) in [
+            (Method::Sppm, Direct::Sampled),
+            (Method::Ppm, Direct::Photons),
+            (Method::Path, Direct::Photons),
+        ] {
+            let settings =
+                RenderSettings { method, direct, passes: 2, photons: 1 << 14, ..settings(0.03) };
             let what = format!("diffuse {name}, {method:?} {direct:?}");
             runs_to(0.06, &text, &settings).assert_picture(&what, &[ALBEDO; 144], 0.06);
         }
     }
 }
 
-/// Directional albedo of GGX with F = 1 and the height-correlated Smith term at cosine `mu`: the integral over the half
-/// vector's angle and azimuth of D G2 / (4 mu cos_i) cos_i, here as the integral over visible normals
-/// of G2 / G1 by stratified quadrature of Walter's (2007, eq. 35) sampling of D(h) cos h, which shares no code with
-/// the renderer: albedo = E_h[ G2 (wo.h) / (mu cos h) ].
+/// Directional albedo of GGX with F = 1 and the height-correlated Smith term at cosine `mu`: the
+/// integral over the half vector's angle and azimuth of D G2 / (4 mu cos_i) cos_i, here as the
+/// integral over visible normals of G2 / G1 by stratified quadrature of Walter's (2007, eq. 35)
+/// sampling of D(h) cos h, which shares no code with the renderer: albedo = E_h[ G2 (wo.h) / (mu
+/// cos h) ].
 fn ggx_albedo(mu: f64, alpha: f64) -> f64 {
     let wo = DVec3::new((1.0 - mu * mu).sqrt(), 0.0, mu);
     let lambda = |c: f64| 0.5 * ((1.0 + alpha * alpha * (1.0 / (c * c) - 1.0)).sqrt() - 1.0);
@@ -152,8 +167,9 @@ fn ggx_albedo(mu: f64, alpha: f64) -> f64 {
     sum / (n_theta * n_phi) as f64
 }
 
-/// Theory: a plane of GGX metal with reflectance 1 in constant light shows its directional albedo, less than 1 by what
-/// the single-scattering model loses (Heitz et al. 2016); and that loss grows with roughness.
+/// Theory: a plane of GGX metal with reflectance 1 in constant light shows its directional albedo,
+/// less than 1 by what the single-scattering model loses (Heitz et al. 2016); and that loss grows
+/// with roughness.
 #[test]
 fn metal_loses_what_single_scattering_loses() {
     for (roughness, elevation) in [(0.3f64, 60.0f64), (0.7, 35.0), (1.0, 50.0), (1.0, 12.0)] {
@@ -173,8 +189,9 @@ fn metal_loses_what_single_scattering_loses() {
         let pixels = 64;
         let at = |i: usize| DVec2::new((i % 8) as f64 + 0.5, (i / 8) as f64 + 0.5) / 8.0;
         let alpha = roughness * roughness;
-        let truth: Vec<f64> =
-            (0..pixels).map(|i| ggx_albedo(-camera.direction(at(i)).normalize().y, alpha)).collect();
+        let truth: Vec<f64> = (0..pixels)
+            .map(|i| ggx_albedo(-camera.direction(at(i)).normalize().y, alpha))
+            .collect();
         for (method, direct) in [
             (Method::Sppm, Direct::Sampled),
             (Method::Sppm, Direct::Photons),
@@ -183,7 +200,8 @@ fn metal_loses_what_single_scattering_loses() {
             if direct == Direct::Photons && method == Method::Sppm && roughness < 0.9 {
                 continue; // photons seldom arrive within so narrow a lobe
             }
-            let settings = RenderSettings { method, direct, passes: 4, photons: 1 << 14, ..settings(0.05) };
+            let settings =
+                RenderSettings { method, direct, passes: 4, photons: 1 << 14, ..settings(0.05) };
             let what = format!("metal {roughness} at {elevation} degrees, {method:?} {direct:?}");
             runs_to(0.04, &text, &settings).assert_picture(&what, &truth, 0.04);
         }

@@ -35,10 +35,11 @@ fn wall(o: DVec3, d: DVec3) -> DVec3 {
     o + d * (-b + (b * b - o.length_squared() + R * R).sqrt())
 }
 
-/// Theory: a wall element sends the same irradiance to every other (cos cos' / d^2 = 1 / 4 R^2), so after k >= 1
-/// bounces E_k = Phi rho^k / (4 pi R^2) everywhere, and in sum Phi rho / (4 pi R^2 (1 - rho)); direct light is
-/// I cos / d^2, uniform for a source in the middle. `max_bounces` b cuts the sum: photons are recorded up to their b-th
-/// bounce. The curved wall spreads a disc of radius r over area pi r^2 (1 + O(r^2 / R^2)): below 1e-3 here.
+/// Theory: a wall element sends the same irradiance to every other (cos cos' / d^2 = 1 / 4 R^2), so
+/// after k >= 1 bounces E_k = Phi rho^k / (4 pi R^2) everywhere, and in sum Phi rho / (4 pi R^2 (1
+/// - rho)); direct light is I cos / d^2, uniform for a source in the middle. `max_bounces` b cuts
+/// the sum: photons are recorded up to their b-th bounce. The curved wall spreads a disc of radius
+/// r over area pi r^2 (1 + O(r^2 / R^2)): below 1e-3 here.
 #[test]
 fn total() {
     let phi = 4.0 * PI * INTENSITY;
@@ -80,7 +81,11 @@ fn total() {
             }
         }
         let path = RenderSettings { method: Method::Path, passes: 4, ..settings(0.05) };
-        runs_to(0.02, &text, &path).assert_picture(&format!("source at {source}, Path"), &truth, 0.02);
+        runs_to(0.02, &text, &path).assert_picture(
+            &format!("source at {source}, Path"),
+            &truth,
+            0.02,
+        );
     }
 }
 
@@ -101,9 +106,11 @@ fn per_bounce() {
         // direct light falls away: the same picture without bounces
         let none = RenderSettings { max_bounces: 0, ..settings.clone() };
         let (with, without) = (runs(&text, &settings), runs(&text, &none));
-        let means =
-            |r: &Runs| r.pixels.iter().map(|p| p.iter().sum::<f64>() / p.len() as f64).collect::<Vec<_>>();
-        let difference: Vec<f64> = means(&with).iter().zip(means(&without)).map(|(a, b)| a - b).collect();
+        let means = |r: &Runs| {
+            r.pixels.iter().map(|p| p.iter().sum::<f64>() / p.len() as f64).collect::<Vec<_>>()
+        };
+        let difference: Vec<f64> =
+            means(&with).iter().zip(means(&without)).map(|(a, b)| a - b).collect();
         let truth = ALBEDO / PI * INTENSITY / (R * R) * sum;
         assert_agrees(&format!("{bounces} bounces"), Estimate::of(&difference), truth, 0.06);
     }

@@ -22,13 +22,14 @@ fn settings_at(scale: f64, method: Method) -> RenderSettings {
     }
 }
 
-/// Theory: a power of two changes no mantissa: not of lengths, and squares of powers of two not of intensities, so every
-/// bit of the picture stays.
+/// Theory: a power of two changes no mantissa: not of lengths, and squares of powers of two not of
+/// intensities, so every bit of the picture stays.
 #[test]
 fn powers_of_two_change_no_bit() {
     for method in [Method::Sppm, Method::Path] {
-        let picture =
-            |scale: f64| render(&parse(&everything(scale, DVec3::ZERO, 32)), &settings_at(scale, method));
+        let picture = |scale: f64| {
+            render(&parse(&everything(scale, DVec3::ZERO, 32)), &settings_at(scale, method))
+        };
         let (one, other) = (picture(1.0), picture(3.0));
         for scale in [1.0 / 1024.0, 0.5, 4096.0] {
             let scaled = picture(scale);
@@ -39,8 +40,8 @@ fn powers_of_two_change_no_bit() {
     }
 }
 
-/// Theory: other scales and places change roundings only; paths part where they decide, so pictures agree within
-/// noise, which equal random numbers make small.
+/// Theory: other scales and places change roundings only; paths part where they decide, so pictures
+/// agree within noise, which equal random numbers make small.
 #[test]
 fn scale_and_place_change_nothing() {
     let size = 4.0;
@@ -77,16 +78,21 @@ fn scale_and_place_change_nothing() {
     }
 }
 
-/// Theory: no point of a convex ball that faces a lamp is in shadow. Under a sun along the camera's axis every pixel
-/// on the ball has radiance rho E cos / pi > 0, and a shadowed one has 0: at any scale, and beside giants.
+/// Theory: no point of a convex ball that faces a lamp is in shadow. Under a sun along the camera's
+/// axis every pixel on the ball has radiance rho E cos / pi > 0, and a shadowed one has 0: at any
+/// scale, and beside giants.
 #[test]
 fn no_ball_shadows_itself() {
     for exponent in -6..=6 {
         for place in [0.0, 1e3] {
             let scale = 10f64.powi(exponent);
             let at = DVec3::new(0.7, 0.4, -0.2) * place * scale;
-            let camera =
-                Camera { position: at + DVec3::new(0.0, 0.0, 4.0) * scale, target: at, fov: 20.0, size: 96 };
+            let camera = Camera {
+                position: at + DVec3::new(0.0, 0.0, 4.0) * scale,
+                target: at,
+                fov: 20.0,
+                size: 96,
+            };
             let text = camera.toml()
                 + &format!(
                     "[materials.m]\ntype = \"diffuse\"\nreflectance = 1.0\n\
@@ -95,8 +101,12 @@ fn no_ball_shadows_itself() {
                     list(at),
                     scale
                 );
-            let settings =
-                RenderSettings { method: Method::Path, passes: 1, max_bounces: 1, ..settings(scale) };
+            let settings = RenderSettings {
+                method: Method::Path,
+                passes: 1,
+                max_bounces: 1,
+                ..settings(scale)
+            };
             let scene = parse(&text);
             let picture = render(&scene, &settings);
             let to_sun = -DVec3::new(0.1, 0.05, -1.0).normalize();

@@ -1,4 +1,5 @@
-//! Irradiance on a diffuse floor under every kind of light, with sampled direct light and by photons.
+//! Irradiance on a diffuse floor under every kind of light, with sampled direct light and by
+//! photons.
 
 use std::f64::consts::PI;
 
@@ -43,7 +44,11 @@ fn check(name: &str, light: &str, irradiance: impl Fn(DVec3) -> f64 + Sync) {
         let blur = if sampled { 0.0 } else { RADIUS };
         let truth = camera().floor_picture(blur, |p| ALBEDO / PI * irradiance(p));
         let power = if sampled { 0.02 } else { 0.03 };
-        runs_to(power, &text, &settings).assert_picture(&format!("{name}, {direct:?}"), &truth, power);
+        runs_to(power, &text, &settings).assert_picture(
+            &format!("{name}, {direct:?}"),
+            &truth,
+            power,
+        );
     }
 }
 
@@ -55,7 +60,8 @@ fn point() {
     check("point", &light, |p| 2.0 * at.y / (at - p).length().powi(3));
 }
 
-/// Theory: as a point light times 1 up to (1 - blend) angle, 0 from angle on, and a smoothstep of the cosine between.
+/// Theory: as a point light times 1 up to (1 - blend) angle, 0 from angle on, and a smoothstep of
+/// the cosine between.
 #[test]
 fn spot() {
     let at = DVec3::new(-0.2, 0.7, 0.1);
@@ -100,7 +106,8 @@ fn sky() -> Vec<f64> {
     texels
 }
 
-/// Radiance of the picture from direction `d`: equirectangular, bilinear, turned about +y by `degrees`.
+/// Radiance of the picture from direction `d`: equirectangular, bilinear, turned about +y by
+/// `degrees`.
 fn sky_radiance(texels: &[f64], d: DVec3, degrees: f64) -> f64 {
     let d = glam::DQuat::from_rotation_y(-degrees.to_radians()) * d;
     let u = 0.5 - d.z.atan2(d.x) / (2.0 * PI);
@@ -131,7 +138,8 @@ fn image_environment() {
             let (sin, cos) = ((i as f64 + 0.5) / n_theta as f64 * 0.5 * PI).sin_cos();
             for k in 0..n_phi {
                 let (s, c) = ((k as f64 + 0.5) / n_phi as f64 * 2.0 * PI).sin_cos();
-                irradiance += sky_radiance(&texels, DVec3::new(sin * c, cos, sin * s), degrees) * sin * cos;
+                irradiance +=
+                    sky_radiance(&texels, DVec3::new(sin * c, cos, sin * s), degrees) * sin * cos;
             }
         }
         irradiance *= 0.5 * PI / n_theta as f64 * 2.0 * PI / n_phi as f64;
@@ -140,8 +148,8 @@ fn image_environment() {
     }
 }
 
-/// Theory: the rotation's sense, seen directly: a camera without scene that looks at the bright texels sees the picture's
-/// radiance there.
+/// Theory: the rotation's sense, seen directly: a camera without scene that looks at the bright
+/// texels sees the picture's radiance there.
 #[test]
 fn image_environment_seen() {
     let texels = sky();
@@ -157,14 +165,16 @@ fn image_environment_seen() {
             fov: 90.0,
             size: 12,
         };
-        let light = format!("[environment]\nfile = \"physics-sky-seen.exr\"\nrotate = {degrees:?}\n");
+        let light =
+            format!("[environment]\nfile = \"physics-sky-seen.exr\"\nrotate = {degrees:?}\n");
         let settings = RenderSettings { passes: 16, photons: 1, ..settings(RADIUS) };
         let n = camera.size as usize;
         let sub = 16;
         let truth: Vec<f64> = (0..n * n)
             .map(|i| {
                 let points = (0..sub * sub).map(|k| {
-                    let at = DVec2::new((k % sub) as f64 + 0.5, (k / sub) as f64 + 0.5) / sub as f64;
+                    let at =
+                        DVec2::new((k % sub) as f64 + 0.5, (k / sub) as f64 + 0.5) / sub as f64;
                     let at = (at + DVec2::new((i % n) as f64, (i / n) as f64)) / n as f64;
                     sky_radiance(&texels, camera.direction(at).normalize(), degrees)
                 });
@@ -185,7 +195,8 @@ fn write_exr(name: &str, picture: &caustica::film::Picture) {
         (c[0], c[1], c[2])
     };
     let path = folder().join(name);
-    exr::prelude::write_rgb_file(path, picture.width as usize, picture.height as usize, at).unwrap();
+    exr::prelude::write_rgb_file(path, picture.width as usize, picture.height as usize, at)
+        .unwrap();
 }
 
 fn emitting(shape: &str) -> String {
@@ -203,8 +214,10 @@ fn sphere() {
 /// Theory: Lambert's polygon sum, for a tilted rectangle that shines down.
 #[test]
 fn rectangle() {
-    let (o, u, v) = (DVec3::new(-0.3, 0.55, -0.3), DVec3::new(0.5, 0.1, 0.0), DVec3::new(0.05, 0.0, 0.45));
-    let shape = format!("type = \"rectangle\"\norigin = {}\nu = {}\nv = {}", list(o), list(u), list(v));
+    let (o, u, v) =
+        (DVec3::new(-0.3, 0.55, -0.3), DVec3::new(0.5, 0.1, 0.0), DVec3::new(0.05, 0.0, 0.45));
+    let shape =
+        format!("type = \"rectangle\"\norigin = {}\nu = {}\nv = {}", list(o), list(u), list(v));
     let corners = [o, o + u, o + u + v, o + v];
     check("rectangle", &emitting(&shape), |p| 5.0 * form::polygon(p, DVec3::Y, &corners));
 }
@@ -235,7 +248,8 @@ fn cuboid() {
 /// Theory: a tetrahedron of four triangles is the sum of those that are turned to the point.
 #[test]
 fn mesh() {
-    let p = [[0.3, 0.7, 0.2], [-0.3, 0.6, 0.1], [0.0, 0.65, -0.3], [0.05, 0.35, 0.0]].map(DVec3::from);
+    let p =
+        [[0.3, 0.7, 0.2], [-0.3, 0.6, 0.1], [0.0, 0.65, -0.3], [0.05, 0.35, 0.0]].map(DVec3::from);
     let faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
     let middle = (p[0] + p[1] + p[2] + p[3]) / 4.0;
     let faces = faces.map(|[a, b, c]| {
@@ -266,7 +280,8 @@ fn revolution() {
     let one = shape(format!("profile = {egg:?}"));
     let point = form::revolution(base, egg);
     check("egg", &emitting(&one), |p| 5.0 * form::surface(p, DVec3::Y, &point, 128, 48));
-    // a double cone drawn as two straight segments; a straight cubic has its control points evenly spaced
+    // a double cone drawn as two straight segments; a straight cubic has its control points evenly
+    // spaced
     let line = |a: [f64; 2], b: [f64; 2]| {
         let at = |s: f64| [a[0] + s * (b[0] - a[0]), a[1] + s * (b[1] - a[1])];
         [at(0.0), at(1.0 / 3.0), at(2.0 / 3.0), at(1.0)]
@@ -275,6 +290,7 @@ fn revolution() {
     let lower = form::revolution(base, line([0.0, 0.0], [0.25, 0.1]));
     let upper = form::revolution(base, line([0.25, 0.1], [0.0, 0.4]));
     check("double cone", &emitting(&two), |p| {
-        5.0 * (form::surface(p, DVec3::Y, &lower, 64, 48) + form::surface(p, DVec3::Y, &upper, 64, 48))
+        5.0 * (form::surface(p, DVec3::Y, &lower, 64, 48)
+            + form::surface(p, DVec3::Y, &upper, 64, 48))
     });
 }

@@ -1,8 +1,10 @@
-//! Renders a scene with independent seeds and compares means per region with the theory or with one another.
+//! Renders a scene with independent seeds and compares means per region with the theory or with one
+//! another.
 //!
-//! With K runs a region's mean m and standard error s satisfy |m - truth| <= T s with probability 1 - 1e-4 (Student's
-//! t with K - 1 degrees of freedom). A comparison also plants an error of stated size in the truth and fails unless the
-//! same test would reject it: a test too noisy to find such an error does not count.
+//! With K runs a region's mean m and standard error s satisfy |m - truth| <= T s with probability 1
+//! - 1e-4 (Student's t with K - 1 degrees of freedom). A comparison also plants an error of stated
+//! size in the truth and fails unless the same test would reject it: a test too noisy to find such
+//! an error does not count.
 
 use std::path::PathBuf;
 
@@ -61,10 +63,10 @@ impl Camera {
         self.position - d * (self.position.y / d.y)
     }
 
-    /// What the picture of a floor y = 0 with radiance `f` holds when photons are gathered from discs of radius `r`:
-    /// the mean over each pixel (2x2 Gauss points in each of its quarters) and over the disc (8 points on each of three rings
-    /// of equal area, turned against one another). Both are exact for quadratics; folds of caustics, where f is infinite, want
-    /// that many.
+    /// What the picture of a floor y = 0 with radiance `f` holds when photons are gathered from
+    /// discs of radius `r`: the mean over each pixel (2x2 Gauss points in each of its quarters) and
+    /// over the disc (8 points on each of three rings of equal area, turned against one another).
+    /// Both are exact for quadratics; folds of caustics, where f is infinite, want that many.
     pub fn floor_picture(&self, r: f64, f: impl Fn(DVec3) -> f64 + Sync) -> Vec<f64> {
         let n = self.size;
         let offset = |k: usize| {
@@ -72,17 +74,25 @@ impl Camera {
             let (sin, cos) = (turn * std::f64::consts::FRAC_PI_4).sin_cos();
             DVec3::new(cos, 0.0, sin) * r * ((ring.floor() + 0.5) / 3.0).sqrt()
         };
-        let offsets: Vec<DVec3> = if r > 0.0 { (0..24).map(offset).collect() } else { vec![DVec3::ZERO] };
+        let offsets: Vec<DVec3> =
+            if r > 0.0 { (0..24).map(offset).collect() } else { vec![DVec3::ZERO] };
         let gauss = |k: usize| {
             0.5 * (k / 2) as f64
-                + if k.is_multiple_of(2) { 0.25 - 0.25 / 3f64.sqrt() } else { 0.25 + 0.25 / 3f64.sqrt() }
+                + if k.is_multiple_of(2) {
+                    0.25 - 0.25 / 3f64.sqrt()
+                } else {
+                    0.25 + 0.25 / 3f64.sqrt()
+                }
         };
         let point = |i: u32, k: usize| {
             let pixel = DVec2::new((i % n) as f64, (i / n) as f64);
             self.on_floor((pixel + DVec2::new(gauss(k % 4), gauss(k / 4))) / n as f64)
         };
         let disc = |p: DVec3| offsets.iter().map(|o| f(p + *o)).sum::<f64>() / offsets.len() as f64;
-        (0..n * n).into_par_iter().map(|i| (0..16).map(|k| disc(point(i, k))).sum::<f64>() / 16.0).collect()
+        (0..n * n)
+            .into_par_iter()
+            .map(|i| (0..16).map(|k| disc(point(i, k))).sum::<f64>() / 16.0)
+            .collect()
     }
 }
 
@@ -91,7 +101,8 @@ pub fn list(v: DVec3) -> String {
     format!("[{:?}, {:?}, {:?}]", v.x, v.y, v.z)
 }
 
-/// The settings of all tests before they change any: photon mapping in a few passes, radius in scene units.
+/// The settings of all tests before they change any: photon mapping in a few passes, radius in
+/// scene units.
 pub fn settings(radius: f64) -> RenderSettings {
     RenderSettings {
         passes: 4,
@@ -128,11 +139,14 @@ pub fn render(scene: &Scene, settings: &RenderSettings) -> Picture {
 pub fn snapshots(scene: &Scene, settings: &RenderSettings, passes: &[u32]) -> Vec<Picture> {
     let device = std::env::var("CAUSTICA_DEVICE").unwrap_or_else(|_| "cpu".into());
     let mut engine: Box<dyn Engine> = if settings.method == Method::Path || device == "cpu" {
-        let packed = pack(scene, scene.film.width, scene.film.height).unwrap_or_else(|e| panic!("{e}"));
+        let packed =
+            pack(scene, scene.film.width, scene.film.height).unwrap_or_else(|e| panic!("{e}"));
         let plan = Plan::new(&packed, settings);
         Box::new(CpuEngine::new(packed, plan))
     } else {
-        device::open(&device::parse(&device), scene, settings).unwrap_or_else(|e| panic!("{e}")).engine
+        device::open(&device::parse(&device), scene, settings)
+            .unwrap_or_else(|e| panic!("{e}"))
+            .engine
     };
     let mut done = 0;
     let mut snapshot = |until: &u32| {
@@ -153,8 +167,9 @@ pub struct Runs {
     pub pixels: Vec<Vec<f64>>,
 }
 
-/// Renders `text` [`RUNS`] times with as many passes as a first look with other seeds, of `settings.passes`, says it takes
-/// for the whole picture's mean to be known to `power`, and with more where that was too few.
+/// Renders `text` [`RUNS`] times with as many passes as a first look with other seeds, of
+/// `settings.passes`, says it takes for the whole picture's mean to be known to `power`, and with
+/// more where that was too few.
 pub fn runs_to(power: f64, text: &str, settings: &RenderSettings) -> Runs {
     let reached = |runs: &Runs| {
         let Estimate { mean, error } = runs.region(|_, _| true);
@@ -177,8 +192,9 @@ pub fn runs_to(power: f64, text: &str, settings: &RenderSettings) -> Runs {
 /// Renders `text` [`RUNS`] times.
 pub fn runs(text: &str, settings: &RenderSettings) -> Runs {
     let scene = parse(text);
-    let run =
-        |seed| grey(&render(&scene, &RenderSettings { seed: settings.seed + seed, ..settings.clone() }));
+    let run = |seed| {
+        grey(&render(&scene, &RenderSettings { seed: settings.seed + seed, ..settings.clone() }))
+    };
     Runs { size: scene.film.width, pixels: (0..RUNS).map(run).collect() }
 }
 
@@ -203,7 +219,8 @@ impl Estimate {
         Self { mean, error: (variance / n).sqrt() }
     }
 
-    /// Whether the t-test lets `truth` pass; `slack` is a known numerical error of the truth or the arithmetic.
+    /// Whether the t-test lets `truth` pass; `slack` is a known numerical error of the truth or the
+    /// arithmetic.
     pub fn admits(&self, truth: f64, slack: f64) -> bool {
         (self.mean - truth).abs() <= T * self.error + slack * truth.abs()
     }
@@ -215,12 +232,13 @@ const ARITHMETIC: f64 = 2e-4;
 impl Runs {
     /// The mean over the pixels for which `inside` holds.
     pub fn region(&self, inside: impl Fn(u32, u32) -> bool) -> Estimate {
-        let means: Vec<f64> = self.pixels.iter().map(|p| region_mean(p, self.size, &inside)).collect();
+        let means: Vec<f64> =
+            self.pixels.iter().map(|p| region_mean(p, self.size, &inside)).collect();
         Estimate::of(&means)
     }
 
-    /// The whole picture and each of its quarters agree with `truth`, and would not with one that is off by `power`
-    /// (whole) or four times that (quarters). `what` names the case.
+    /// The whole picture and each of its quarters agree with `truth`, and would not with one that
+    /// is off by `power` (whole) or four times that (quarters). `what` names the case.
     pub fn assert_picture(&self, what: &str, truth: &[f64], power: f64) {
         let n = self.size;
         assert_agrees(what, self.region(|_, _| true), region_mean(truth, n, &|_, _| true), power);
@@ -255,7 +273,10 @@ pub fn assert_agrees(what: &str, found: Estimate, truth: f64, power: f64) {
     assert!(found.admits(truth, ARITHMETIC), "{report}");
     for planted in [truth * (1.0 + power), truth * (1.0 - power)] {
         let centred = Estimate { mean: truth, error };
-        assert!(!centred.admits(planted, ARITHMETIC), "{report}: too noisy to find an error of {power}");
+        assert!(
+            !centred.admits(planted, ARITHMETIC),
+            "{report}: too noisy to find an error of {power}"
+        );
     }
 }
 
@@ -286,8 +307,8 @@ pub fn file(name: &str, bytes: &[u8]) -> String {
     name.to_owned()
 }
 
-/// Two sets of runs agree over the whole picture (and would not if one were off by twice `power`) and in each of 4x4
-/// tiles, of which at least half would show an error of eight times `power`.
+/// Two sets of runs agree over the whole picture (and would not if one were off by twice `power`)
+/// and in each of 4x4 tiles, of which at least half would show an error of eight times `power`.
 pub fn assert_regions(what: &str, a: &Runs, b: &Runs, power: f64) {
     let n = a.size;
     assert_same(what, a.region(|_, _| true), b.region(|_, _| true), 2.0 * power);

@@ -1,5 +1,6 @@
-//! Light transport against closed forms: every test states its theory first, renders the scene in-process with several
-//! seeds, and holds region means against the answer within a t-test's interval (see [`lab`]).
+//! Light transport against closed forms: every test states its theory first, renders the scene
+//! in-process with several seeds, and holds region means against the answer within a t-test's
+//! interval (see [`lab`]).
 //!
 //! `CAUSTICA_DEVICE` chooses the device (default `cpu`).
 

@@ -43,7 +43,10 @@ fn block(min: &str, max: &str) -> String {
 
 /// A lamp above, of radiance 5.
 fn lamp() -> String {
-    shape("type = \"disc\"\ncenter = [0, 6, 0]\nnormal = [0, -1, 0]\nradius = 2.0\nemission = 5.0", "black")
+    shape(
+        "type = \"disc\"\ncenter = [0, 6, 0]\nnormal = [0, -1, 0]\nradius = 2.0\nemission = 5.0",
+        "black",
+    )
 }
 
 /// Axis-parallel boxes from `low` to `high` in one mesh.
@@ -56,7 +59,9 @@ fn boxes(name: &str, boxes: &[([f64; 3], [f64; 3])]) -> String {
         }
     }
     for k in 0..boxes.len() {
-        for face in [[1, 3, 4, 2], [5, 6, 8, 7], [1, 2, 6, 5], [3, 7, 8, 4], [1, 5, 7, 3], [2, 4, 8, 6]] {
+        for face in
+            [[1, 3, 4, 2], [5, 6, 8, 7], [1, 2, 6, 5], [3, 7, 8, 4], [1, 5, 7, 3], [2, 4, 8, 6]]
+        {
             let [a, b, c, d] = face.map(|i| i + 8 * k);
             obj += &format!("f {a} {b} {c} {d}\n");
         }
@@ -74,12 +79,19 @@ fn index_matched_bodies_are_invisible() {
         file("physics-lake.obj", (v + "f 4 3 2 1\n").as_bytes())
     };
     let lake = camera("[0, 3, 4]", "[0, -0.7, 0]", 30.0) + &lamp();
-    let floor = shape("type = \"rectangle\"\norigin = [-3, -1.5, 3]\nu = [6, 0, 0]\nv = [0, 0, -6]", "white");
+    let floor = shape(
+        "type = \"rectangle\"\norigin = [-3, -1.5, 3]\nu = [6, 0, 0]\nv = [0, 0, -6]",
+        "white",
+    );
     let tank = camera("[0, 0, 6]", "[0, 0, 0]", 15.0)
         + &shape(&(block("[-0.8, -0.8, -1.2]", "[0.8, 0.8, -0.8]") + "\nemission = 1.0"), "black");
     for (name, scene, water) in [
         ("tank", &tank, block("[-1.5, -1.5, -1.5]", "[1.5, 1.5, 1.5]")),
-        ("plane", &(lake.clone() + &floor), "type = \"plane\"\npoint = [0, 0, 0]\nnormal = [0, 1, 0]".into()),
+        (
+            "plane",
+            &(lake.clone() + &floor),
+            "type = \"plane\"\npoint = [0, 0, 0]\nnormal = [0, 1, 0]".into(),
+        ),
         (
             "rectangle",
             &(lake.clone() + &floor),
@@ -122,10 +134,15 @@ fn overlapping_glass_neither_makes_nor_takes_light() {
     let adjacent = [([-0.8, -0.8, -0.8], [0.1, 0.8, 0.8]), ([0.1, -0.8, -0.8], [0.8, 0.8, 0.8])];
     let can = "type = \"revolution\"\nsegments = [[[0, -0.5], [0.6, -0.5]], [[0.6, -0.5], [0.6, 0.5]], [[0.6, 0.5], [0, 0.5]]]";
     let cases = [
-        ("balls", shape(&ball("[-0.3, 0, 0]", 0.7), "a") + &shape(&ball("[0.3, 0.1, 0]", 0.6), "b")),
+        (
+            "balls",
+            shape(&ball("[-0.3, 0, 0]", 0.7), "a") + &shape(&ball("[0.3, 0.1, 0]", 0.6), "b"),
+        ),
         (
             "held",
-            shape(&ball("[0, 0, 0]", 1.0), "a") + &shape(&ball("[0.1, 0, 0]", 0.5), "c") + &shape(can, "b"),
+            shape(&ball("[0, 0, 0]", 1.0), "a")
+                + &shape(&ball("[0.1, 0, 0]", 0.5), "c")
+                + &shape(can, "b"),
         ),
         (
             "slabs",
@@ -141,13 +158,19 @@ fn overlapping_glass_neither_makes_nor_takes_light() {
         ("one mesh next to itself", shape(&boxes("physics-adjacent.obj", &adjacent), "a")),
         (
             "mesh and ball",
-            shape(&boxes("physics-across.obj", &across), "b") + &shape(&ball("[0.2, 0.2, 0.2]", 0.4), "a"),
+            shape(&boxes("physics-across.obj", &across), "b")
+                + &shape(&ball("[0.2, 0.2, 0.2]", 0.4), "a"),
         ),
     ];
     for (name, shapes) in cases {
         for method in [Method::Path, Method::Sppm] {
-            let settings =
-                RenderSettings { method, passes: 32, photons: 1, max_bounces: 200, ..settings(0.02) };
+            let settings = RenderSettings {
+                method,
+                passes: 32,
+                photons: 1,
+                max_bounces: 200,
+                ..settings(0.02)
+            };
             let found = runs(&(base.clone() + &shapes), &settings).region(|_, _| true);
             assert_agrees(&format!("{name}, {method:?}"), found, 1.0, 0.01);
         }
@@ -208,7 +231,10 @@ fn lamps_astride() {
     let base = camera("[0.5, 0, 3]", "[0.5, 0, 0]", 30.0)
         + &glass("water", 1.0, "absorption = 1.0")
         + &shape(&block("[-2, -2, -2]", "[4, 0.05, 2]"), "water")
-        + &shape("type = \"disc\"\ncenter = [0.3, 0, 0]\nnormal = [1, 0, 0.3]\nradius = 0.5", "white");
+        + &shape(
+            "type = \"disc\"\ncenter = [0.3, 0, 0]\nnormal = [1, 0, 0.3]\nradius = 0.5",
+            "white",
+        );
     let part = |low: f64, high: f64| {
         let height = high - low;
         shape(
@@ -221,7 +247,8 @@ fn lamps_astride() {
     };
     let (whole, cut) = (part(-0.8, 0.8), part(-0.8, 0.05) + &part(0.05, 0.8));
     for settings in ways() {
-        let passes = if settings.method == Method::Path { 8 * settings.passes } else { settings.passes };
+        let passes =
+            if settings.method == Method::Path { 8 * settings.passes } else { settings.passes };
         let settings = RenderSettings { passes, ..settings };
         let [a, b] = [&whole, &cut].map(|lamps| runs(&(base.clone() + lamps), &settings));
         // on the right the lamp itself is seen
@@ -259,10 +286,15 @@ fn what_stands_on_a_floor() {
             + &shape(floor, "white")
             + &shape(&(ball("[0.5, 3, 0.5]", 0.5) + "\nemission = 10.0"), "black");
         for settings in ways() {
-            let passes =
-                if settings.method == Method::Path { 4 * settings.passes } else { settings.passes / 4 };
+            let passes = if settings.method == Method::Path {
+                4 * settings.passes
+            } else {
+                settings.passes / 4
+            };
             let settings = RenderSettings { passes, photons: 1 << 12, ..settings };
-            if settings.direct == Direct::Photons || settings.method == Method::Path && *floor != floors[0] {
+            if settings.direct == Direct::Photons
+                || settings.method == Method::Path && *floor != floors[0]
+            {
                 continue;
             }
             let alone = runs(
@@ -272,7 +304,8 @@ fn what_stands_on_a_floor() {
             );
             for body in &bodies {
                 let with = runs(&(base.clone() + &shape(body, "air")), &settings);
-                let what = format!("{body} on {floor}, {:?} {:?}", settings.method, settings.direct);
+                let what =
+                    format!("{body} on {floor}, {:?} {:?}", settings.method, settings.direct);
                 let [a, b] = [&with, &alone].map(|runs| runs.region(|_, _| true));
                 assert_same(&what, a, b, 0.08);
             }
@@ -298,12 +331,16 @@ fn lamps_in_ceilings() {
         block("[-3, 2, -3]", "[3, 2.5, 3]"),
         boxes("physics-ceiling.obj", &[([-3.0, 2.0, -3.0], [3.0, 2.5, 3.0])]),
     ];
-    let floor = shape("type = \"disc\"\ncenter = [0, 0, 0]\nnormal = [0, 1, 0]\nradius = 3.0", "white");
+    let floor =
+        shape("type = \"disc\"\ncenter = [0, 0, 0]\nnormal = [0, 1, 0]\nradius = 3.0", "white");
     let emission = "\nemission = 4.0";
     for ceiling in &ceilings {
         for (lamp, lower) in lamps(2.0).iter().zip(&lamps(1.999)) {
             let scene = |camera: String, lamp: &str| {
-                camera + &floor + &shape(ceiling, "black") + &shape(&(lamp.to_owned() + emission), "black")
+                camera
+                    + &floor
+                    + &shape(ceiling, "black")
+                    + &shape(&(lamp.to_owned() + emission), "black")
             };
             let up = scene(camera("[0, 0.5, 0.01]", "[0, 2, 0]", 40.0), lamp);
             let path = RenderSettings { method: Method::Path, passes: 4, ..settings(0.05) };
@@ -314,8 +351,10 @@ fn lamps_in_ceilings() {
                     continue;
                 }
                 let down = |lamp: &str| scene(camera("[0.1, 1.5, 0.1]", "[0, 0, 0]", 40.0), lamp);
-                let what = format!("{lamp} in {ceiling}, {:?} {:?}", settings.method, settings.direct);
-                let [a, b] = [lamp, lower].map(|lamp| runs(&down(lamp), &settings).region(|_, _| true));
+                let what =
+                    format!("{lamp} in {ceiling}, {:?} {:?}", settings.method, settings.direct);
+                let [a, b] =
+                    [lamp, lower].map(|lamp| runs(&down(lamp), &settings).region(|_, _| true));
                 assert_same(&what, a, b, 0.08);
             }
         }
@@ -334,8 +373,8 @@ fn light_through_hidden_faces() {
         + &shape(&block("[-9, 3.2, -9]", "[9, 3.6, 9]"), "air");
     for direct in [Direct::Sampled, Direct::Photons] {
         let settings = RenderSettings { direct, photons: 1 << 14, passes: 8, ..settings(0.1) };
-        let [a, b] =
-            [base.clone() + &hidden, base.clone()].map(|text| runs(&text, &settings).region(|_, _| true));
+        let [a, b] = [base.clone() + &hidden, base.clone()]
+            .map(|text| runs(&text, &settings).region(|_, _| true));
         assert_same(&format!("{direct:?}"), a, b, 0.08);
     }
 }

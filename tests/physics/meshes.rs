@@ -1,5 +1,5 @@
-//! Smooth-shaded meshes: photon mapping and path tracing must see the same, although interpolated normals make the
-//! scattering of light non-symmetric (Veach 1997, section 5.3).
+//! Smooth-shaded meshes: photon mapping and path tracing must see the same, although interpolated
+//! normals make the scattering of light non-symmetric (Veach 1997, section 5.3).
 
 use std::f64::consts::TAU;
 
@@ -20,7 +20,8 @@ fn torus(m: u32, n: u32) -> Vec<u8> {
             v += &format!("v {} {} {}\n", p.x, p.y, p.z);
             vn += &format!("vn {} {} {}\n", normal.x, normal.y, normal.z);
             let at = |i: u32, j: u32| (i % m) * n + j % n + 1;
-            let q = [at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)].map(|k| format!("{k}//{k}"));
+            let q = [at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)]
+                .map(|k| format!("{k}//{k}"));
             f += &format!("f {}\n", q.join(" "));
         }
     }
@@ -67,9 +68,9 @@ emission = 6.0
         )
 }
 
-/// Theory: both methods estimate one integral with one BSDF, so their pictures agree region by region, photons' bias
-/// aside (radius a hundredth of the torus). Without the correction for shading normals, diffuse light scattered from such
-/// coarse facets is off by several percent.
+/// Theory: both methods estimate one integral with one BSDF, so their pictures agree region by
+/// region, photons' bias aside (radius a hundredth of the torus). Without the correction for
+/// shading normals, diffuse light scattered from such coarse facets is off by several percent.
 fn agree(name: &str, material: &str, modes: &[Direct], power: f64) {
     let text = scene(name, material);
     let run = |method, direct, passes, photons| {

@@ -159,7 +159,12 @@ fn rooms(wall: &str, floor: &str, camera: Camera, material: &str) -> String {
 /// Looks at the floor of the room with x of that sign, within 0.05 of the wall.
 fn camera(side: f64) -> Camera {
     let x = side * 0.0275;
-    Camera { position: DVec3::new(x, 0.9, 0.02), target: DVec3::new(x, 0.0, 0.0), fov: 3.1, size: 8 }
+    Camera {
+        position: DVec3::new(x, 0.9, 0.02),
+        target: DVec3::new(x, 0.0, 0.0),
+        fov: 3.1,
+        size: 8,
+    }
 }
 
 /// Theory: no light comes into the closed dark room, so every value there is exactly 0, with
@@ -193,7 +198,8 @@ fn nothing_passes_under_a_wall() {
 fn the_lit_side_is_even_up_to_the_wall() {
     for (floor_name, floor) in FLOORS {
         // each wall once and each floor once
-        let pairs = |(wall_name, _): &&(&str, &str)| floor_name == "rectangle" || *wall_name == "mesh";
+        let pairs =
+            |(wall_name, _): &&(&str, &str)| floor_name == "rectangle" || *wall_name == "mesh";
         for (wall_name, wall) in WALLS.iter().filter(pairs) {
             let camera = camera(1.0);
             let text = rooms(wall, floor, camera, "black");
@@ -205,7 +211,10 @@ fn the_lit_side_is_even_up_to_the_wall() {
             let off = found.mean / mean - 1.0;
             println!("{wall_name} on {floor_name}: {off:+.4} +- {:.4}", found.error / mean);
             assert!(found.admits(mean, 0.02), "{wall_name} on {floor_name}: {off:+.4}");
-            assert!(!found.admits(mean * 1.1, 0.02) && !found.admits(mean * 0.9, 0.02), "too noisy");
+            assert!(
+                !found.admits(mean * 1.1, 0.02) && !found.admits(mean * 0.9, 0.02),
+                "too noisy"
+            );
         }
     }
 }

@@ -1,8 +1,8 @@
 //! The preview without its window.
 //!
-//! Theory: passes are independent of what was asked for before them, so that after any way to a scene, camera and settings the
-//! picture has the bits of a plain render of these; a small picture is there before the whole one; what is wrong with a file or
-//! a device takes no picture away.
+//! Theory: passes are independent of what was asked for before them, so that after any way to a
+//! scene, camera and settings the picture has the bits of a plain render of these; a small picture
+//! is there before the whole one; what is wrong with a file or a device takes no picture away.
 #![cfg(feature = "preview")]
 
 mod session;
@@ -146,7 +146,11 @@ fn a_small_picture_comes_first() {
     wish.camera = orbit::dolly(&wish.camera, 0.9);
     let number = worker.change(wish.clone());
     let first = wait("a picture", || worker.frame().filter(|frame| frame.number == number));
-    assert!(first.quick && first.picture.width < 256 && first.picture.width * 3 == first.picture.height * 4);
+    assert!(
+        first.quick
+            && first.picture.width < 256
+            && first.picture.width * 3 == first.picture.height * 4
+    );
     let last = whole(&worker, number, 4);
     assert_eq!((last.picture.width, last.picture.height), (256, 192));
     // halted, small pictures come and the whole one does not
@@ -200,12 +204,19 @@ fn every_view_shows_something() {
         assert!(!seen.contains(&shown.rgb), "{view:?} is another view");
         if view.aov().is_some_and(|aov| aov != Aov::Variance) {
             let bare = Frame { layers: Vec::new(), ..Frame::clone(&frame) };
-            assert_eq!(show(&bare, view, &Default::default(), None), None, "{view:?} without its layer");
+            assert_eq!(
+                show(&bare, view, &Default::default(), None),
+                None,
+                "{view:?} without its layer"
+            );
         }
         if let Some(scale) = shown.scale {
             let wide = Scale { high: 2.0 * scale.high, ..scale };
             let other = show(&frame, view, &Default::default(), Some(wide)).unwrap();
-            assert!(other.scale == Some(wide) && other.rgb != shown.rgb, "{view:?} by another scale");
+            assert!(
+                other.scale == Some(wide) && other.rgb != shown.rgb,
+                "{view:?} by another scale"
+            );
         }
         seen.push(shown.rgb);
     }

@@ -1,4 +1,5 @@
-//! What the window shows and changes: files that change, pictures and scenes that are saved, and what is held beside.
+//! What the window shows and changes: files that change, pictures and scenes that are saved, and
+//! what is held beside.
 
 use std::fs;
 use std::path::Path;
@@ -51,7 +52,9 @@ fn files_that_change_are_read_anew() {
     let first = ticked(&mut session, "the picture", done);
     session.act(Action::Orbit(0.3, 0.0));
     let turned = session.now.camera;
-    let own = ticked(&mut session, "the picture turned", |s| done(s).filter(|f| f.number != first.number));
+    let own = ticked(&mut session, "the picture turned", |s| {
+        done(s).filter(|f| f.number != first.number)
+    });
 
     // a fault: it is told, and the picture stays
     fs::write(&file, SCENE.replace("ior = 1.5", "ior = -1.5")).unwrap();
@@ -61,16 +64,20 @@ fn files_that_change_are_read_anew() {
 
     // a mesh that is not there, then is
     fs::write(&file, SCENE.replace("floor.obj", "ground.obj")).unwrap();
-    ticked(&mut session, "other trouble", |s| s.trouble.clone().filter(|t| t.contains("ground.obj")));
+    ticked(&mut session, "other trouble", |s| {
+        s.trouble.clone().filter(|t| t.contains("ground.obj"))
+    });
     fs::write(folder.join("ground.obj"), FLOOR.replace("3 0 3", "3 0 4")).unwrap();
-    let mended = ticked(&mut session, "the mended picture", |s| done(s).filter(|f| f.number != own.number));
+    let mended =
+        ticked(&mut session, "the mended picture", |s| done(s).filter(|f| f.number != own.number));
     assert_eq!(session.trouble, None);
     assert_eq!(session.now.camera, turned, "which the file has not changed");
     assert!(bits(&mended.picture) != bits(&own.picture));
 
     // the mesh changes
     fs::write(folder.join("ground.obj"), FLOOR).unwrap();
-    let same = ticked(&mut session, "another mesh", |s| done(s).filter(|f| f.number != mended.number));
+    let same =
+        ticked(&mut session, "another mesh", |s| done(s).filter(|f| f.number != mended.number));
     assert!(bits(&same.picture) == bits(&own.picture), "the same scene by another file name");
 
     // what the file changes of camera and settings counts
@@ -80,8 +87,8 @@ fn files_that_change_are_read_anew() {
     assert_eq!(session.now.camera.position, DVec3::new(0.0, 2.0, 5.0));
 }
 
-/// Theory: what is read anew obeys what the first reading did. So does what is read to find out whether a file to be saved is a
-/// scene. With nothing confined the same files are read.
+/// Theory: what is read anew obeys what the first reading did. So does what is read to find out
+/// whether a file to be saved is a scene. With nothing confined the same files are read.
 #[test]
 fn files_that_change_keep_to_the_root_and_the_limits() {
     let outer = folder("confined");
@@ -113,7 +120,8 @@ fn files_that_change_keep_to_the_root_and_the_limits() {
     // more triangles than the limit
     fs::write(&file, SCENE.as_str()).unwrap();
     fs::write(root.join("floor.obj"), format!("{FLOOR}f 1 2 3\n")).unwrap();
-    let trouble = ticked(&mut session, "other trouble", |s| s.trouble.clone().filter(|t| *t != trouble));
+    let trouble =
+        ticked(&mut session, "other trouble", |s| s.trouble.clone().filter(|t| *t != trouble));
     assert!(trouble.contains("`triangles`"), "{trouble}");
     // the same texture inside
     fs::write(root.join("floor.obj"), FLOOR).unwrap();
@@ -141,11 +149,14 @@ fn pictures_and_scenes_are_saved() {
     session.act(Action::Photons(0.5));
     session.act(Action::Rule);
     session.act(Action::Focus(0.5, 0.5));
-    let focus =
-        ticked(&mut session, "a focus", |s| s.notice.contains("focus at").then_some(s.now.camera.focus));
+    let focus = ticked(&mut session, "a focus", |s| {
+        s.notice.contains("focus at").then_some(s.now.camera.focus)
+    });
     assert!((3.0..5.2).contains(&focus), "{focus}");
     session.act(Action::Aperture(1.25));
-    let frame = ticked(&mut session, "the picture", |s| done(s).filter(|f| f.setup.settings.photons == 1000));
+    let frame = ticked(&mut session, "the picture", |s| {
+        done(s).filter(|f| f.setup.settings.photons == 1000)
+    });
     assert!(session.is_edited());
     session.act(Action::SaveScene);
     session.act(Action::SavePicture);
@@ -183,7 +194,9 @@ fn views_that_were_there_before_begin_nothing_anew() {
     // another camera asks for what is looked at alone
     session.act(Action::View(View::Picture));
     session.act(Action::Orbit(0.1, 0.0));
-    let turned = ticked(&mut session, "the picture turned", |s| done(s).filter(|f| f.number != depth.number));
+    let turned = ticked(&mut session, "the picture turned", |s| {
+        done(s).filter(|f| f.number != depth.number)
+    });
     assert!(turned.layers.is_empty() && !depth.layers.is_empty());
 }
 
@@ -208,7 +221,8 @@ fn pictures_are_held_against_others() {
     session.act(Action::Home);
     let equal = ticked(&mut session, "both pictures", |s| {
         let (a, b) = (done(s)?, s.beside.as_ref()?.frame()?);
-        (!b.quick && b.passes == a.passes && b.number > 1).then(|| bits(&a.picture) == bits(&b.picture))
+        (!b.quick && b.passes == a.passes && b.number > 1)
+            .then(|| bits(&a.picture) == bits(&b.picture))
     });
     assert!(equal);
 }

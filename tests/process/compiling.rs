@@ -40,8 +40,14 @@ fn a_compilation_is_shown() {
     error.read_to_string(&mut rest).unwrap();
     assert_eq!(ended(child).status.code(), Some(0), "{line}{rest}");
     let whole = begun.elapsed();
-    assert!(whole > Duration::from_secs(2), "nothing is compiled, so this tests nothing: {whole:?}");
-    assert!(first < whole / 2 && first < Duration::from_secs(3), "after {first:?} of {whole:?}: {line}");
+    assert!(
+        whole > Duration::from_secs(2),
+        "nothing is compiled, so this tests nothing: {whole:?}"
+    );
+    assert!(
+        first < whole / 2 && first < Duration::from_secs(3),
+        "after {first:?} of {whole:?}: {line}"
+    );
     let shown = line.starts_with("compiling for ") && line.contains(" kernels done, ");
     assert!(shown && line.contains(": ") && !rest.contains("\r"), "{line}{rest}");
 
@@ -51,11 +57,14 @@ fn a_compilation_is_shown() {
     let output = ended(spawn(cold(&folder, &format!("{RENDER} --json"))));
     assert_eq!((output.status.code(), text(&output.stderr).as_str()), (Some(0), ""));
     let events = json_lines(&output.stdout);
-    let compiling: Vec<_> = events.iter().take_while(|event| event["event"] == "compiling").collect();
+    let compiling: Vec<_> =
+        events.iter().take_while(|event| event["event"] == "compiling").collect();
     assert!(!compiling.is_empty(), "{events:?}");
     assert!(events.iter().skip(compiling.len()).all(|event| event["event"] != "compiling"));
     for event in &compiling {
-        assert!(event["done"].as_u64() < event["of"].as_u64() && event["elapsed"].as_f64() > Some(0.0));
+        assert!(
+            event["done"].as_u64() < event["of"].as_u64() && event["elapsed"].as_f64() > Some(0.0)
+        );
         assert!(event["kernel"].is_string() && event["device"].is_string(), "{event}");
     }
 }

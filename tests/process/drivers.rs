@@ -25,7 +25,9 @@ fn drivers_are_quiet_without_a_desktop() {
     software();
     let folder = folder("quiet");
     let render = "render ball.toml --device software -o a.png";
-    for line in ["devices", "devices --json", render, &format!("{render} --json"), &format!("{render} -v")] {
+    for line in
+        ["devices", "devices --json", render, &format!("{render} --json"), &format!("{render} -v")]
+    {
         for runtime in [None, Some(""), Some("relative")] {
             let mut command = bare(&folder, line);
             runtime.into_iter().for_each(|value| {
@@ -64,7 +66,9 @@ fn the_process_stays_what_it_was() {
     signal(&child, "INT");
     assert_eq!(ended(child).status.code(), Some(130));
     // a render on the processor needs no driver, and a desktop keeps the layer
-    for (line, runtime) in [(line.replace("software", "cpu"), None), (line.to_owned(), Some("/run"))] {
+    for (line, runtime) in
+        [(line.replace("software", "cpu"), None), (line.to_owned(), Some("/run"))]
+    {
         let mut command = bare(&folder, &line);
         runtime.into_iter().for_each(|value| {
             command.env("XDG_RUNTIME_DIR", value);
@@ -79,7 +83,12 @@ fn the_process_stays_what_it_was() {
 }
 
 /// What the program says with a variable set to a value.
-fn output_of(folder: &Path, line: &str, (variable, value): (&str, &str), code: i32) -> (String, String) {
+fn output_of(
+    folder: &Path,
+    line: &str,
+    (variable, value): (&str, &str),
+    code: i32,
+) -> (String, String) {
     let mut command = command(folder, &words(line));
     let output = ended(spawn({
         command.env(variable, value);
@@ -101,7 +110,8 @@ fn variables_that_hide_devices_are_named() {
     let device = all["devices"].as_array().unwrap().iter().find(|device| named(device)).unwrap();
     let device = device["name"].as_str().unwrap().to_owned();
     let render = "render ball.toml --passes 1 --quiet -o a.png";
-    let hiding = [("WGPU_BACKEND", "dx12"), ("WGPU_BACKEND", "vulcan"), ("WGPU_ADAPTER_NAME", "nonesuch")];
+    let hiding =
+        [("WGPU_BACKEND", "dx12"), ("WGPU_BACKEND", "vulcan"), ("WGPU_ADAPTER_NAME", "nonesuch")];
     for (variable, value) in hiding {
         let set = (variable, value);
         let remedy = format!("unset {variable}");
@@ -110,7 +120,11 @@ fn variables_that_hide_devices_are_named() {
         for line in ["devices", &format!("{render} --device auto"), &format!("{render} --json")] {
             let (_, error) = output_of(&folder, line, set, 0);
             assert!(named(&error) && error.matches("warning").count() == 1, "{line}: {error}");
-            assert_eq!(error.contains("no graphics interface by `vulcan`"), value == "vulcan", "{error}");
+            assert_eq!(
+                error.contains("no graphics interface by `vulcan`"),
+                value == "vulcan",
+                "{error}"
+            );
         }
         let (stdout, _) = output_of(&folder, "devices --json", set, 0);
         let hidden = &json_lines(stdout.as_bytes())[0]["hidden"][0];
@@ -123,11 +137,16 @@ fn variables_that_hide_devices_are_named() {
         // the processor is there whatever is hidden
         assert_eq!(output_of(&folder, &format!("{render} --device cpu"), set, 0).1, "");
     }
-    for set in [("WGPU_BACKEND", "vulkan"), ("WGPU_BACKEND", ""), ("WGPU_ADAPTER_NAME", "LLVMpipe")] {
+    for set in [("WGPU_BACKEND", "vulkan"), ("WGPU_BACKEND", ""), ("WGPU_ADAPTER_NAME", "LLVMpipe")]
+    {
         for line in ["devices", &format!("{render} --device software")] {
             assert_eq!(output_of(&folder, line, set, 0).1, "", "{set:?}");
         }
     }
     let (_, error) = output_of(&folder, "devices", ("WGPU_BACKEND", "vulkan,vulcan"), 0);
-    assert!(error.contains("`vulcan`") && error.contains("correct or unset") && !error.contains("hides"));
+    assert!(
+        error.contains("`vulcan`")
+            && error.contains("correct or unset")
+            && !error.contains("hides")
+    );
 }

@@ -13,7 +13,9 @@ use super::{SCENE, ended, folder, spawn};
 fn helps(error: &str, option: &str) -> bool {
     let scene = error.contains(option);
     let process = error.contains("(ulimit -v)");
-    scene || process && ["take coarser meshes", "--size", "--limit"].iter().any(|help| error.contains(help))
+    scene
+        || process
+            && ["take coarser meshes", "--size", "--limit"].iter().any(|help| error.contains(help))
 }
 
 /// Theory: the reader knows how much memory there is before it reads a mesh or a picture, so that
@@ -35,17 +37,21 @@ fn large_scenes_in_little_memory() {
     let shape = "[[shapes]]\ntype = \"mesh\"\nfile = \"m.obj\"\nmaterial = \"white\"\n";
     fs::write(folder.join("mesh.toml"), format!("{}\n{shape}", *SCENE)).unwrap();
     let texture = "[textures.t]\ntype = \"image\"\nfile = \"t.png\"\n[materials.white]";
-    let textured =
-        SCENE.replace("[materials.white]", texture).replace("reflectance = 0.5", "reflectance = \"t\"");
+    let textured = SCENE
+        .replace("[materials.white]", texture)
+        .replace("reflectance = 0.5", "reflectance = \"t\"");
     fs::write(folder.join("texture.toml"), textured).unwrap();
     let run = |scene: &str, megabytes: u64, more: &str| {
-        let line = format!("render {scene} --device cpu --quiet --passes 1 --photons 100 -o a.png {more}");
+        let line =
+            format!("render {scene} --device cpu --quiet --passes 1 --photons 100 -o a.png {more}");
         let mut command = Command::new("prlimit");
         command.arg(format!("--as={}", megabytes * 1_000_000)).arg(env!("CARGO_BIN_EXE_caustica"));
         command.args(words(&line)).current_dir(&folder).env("RAYON_NUM_THREADS", "1");
         ended(spawn(command))
     };
-    for (scene, limit) in [("mesh.toml", "--limit mesh-triangles"), ("texture.toml", "--limit texture-")] {
+    for (scene, limit) in
+        [("mesh.toml", "--limit mesh-triangles"), ("texture.toml", "--limit texture-")]
+    {
         let (mut rendered, mut refused) = (0, 0);
         for megabytes in [120, 150, 200, 260, 340, 450, 700, 1200] {
             let output = run(scene, megabytes, "");

@@ -1,8 +1,8 @@
 //! The program and the system: files of every kind, terminals, signals.
 //!
-//! Theory: what the system does for other programs it does for this one. Names lead where links lead, modes
-//! and owners stay, pipes and devices are neither replaced nor waited for, terminals show text, and signals
-//! end a render by the code that the documentation names.
+//! Theory: what the system does for other programs it does for this one. Names lead where links
+//! lead, modes and owners stay, pipes and devices are neither replaced nor waited for, terminals
+//! show text, and signals end a render by the code that the documentation names.
 #![cfg(unix)]
 
 #[path = "../support/mod.rs"]
@@ -27,7 +27,8 @@ use std::time::{Duration, Instant};
 
 use support::{DISC, LAMP, ball, folder_with};
 
-static SCENE: LazyLock<String> = LazyLock::new(|| ball((12, 8), "passes = 2\nphotons = 500", &[DISC, LAMP]));
+static SCENE: LazyLock<String> =
+    LazyLock::new(|| ball((12, 8), "passes = 2\nphotons = 500", &[DISC, LAMP]));
 
 /// A fresh folder with a small scene in it.
 fn folder(name: &str) -> PathBuf {

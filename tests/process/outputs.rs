@@ -19,7 +19,9 @@ fn run(folder: &Path, line: &str, code: i32, words: &[&str]) -> Output {
     let output = ended(spawn(render(folder, &format!("--quiet {line}"))));
     let error = error(&output);
     assert_eq!(output.status.code(), Some(code), "{line}: {error}");
-    words.iter().for_each(|word| assert!(error.contains(word), "{line} should say `{word}`: {error}"));
+    words
+        .iter()
+        .for_each(|word| assert!(error.contains(word), "{line} should say `{word}`: {error}"));
     output
 }
 
@@ -30,7 +32,9 @@ fn mode(path: &Path) -> u32 {
 /// What this program has left unfinished or locked in a folder.
 fn leftovers(folder: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
-    entries.filter(|path| path.file_name().unwrap().to_str().unwrap().starts_with(".caustica-")).collect()
+    entries
+        .filter(|path| path.file_name().unwrap().to_str().unwrap().starts_with(".caustica-"))
+        .collect()
 }
 
 /// Theory: a name that is a link stands for the file at its end, there or not yet, through any
@@ -103,7 +107,12 @@ fn modes_and_owners_stay() {
     assert!(!folder.join("new.png").exists(), "it is refused before the work");
     assert_eq!((fs::read(&read_only).unwrap(), mode(&read_only)), (b"before".to_vec(), 0o444));
     let kept = file("locked.checkpoint", 0o400);
-    run(&folder, "-o new.png --checkpoint locked.checkpoint", 1, &["locked.checkpoint", "read-only"]);
+    run(
+        &folder,
+        "-o new.png --checkpoint locked.checkpoint",
+        1,
+        &["locked.checkpoint", "read-only"],
+    );
     assert_eq!(mode(&kept), 0o400);
 }
 
@@ -127,7 +136,8 @@ fn names_may_be_long_and_taken() {
         let mine = leftovers(&folder).remove(0);
         let (start, count) = mine.to_str().unwrap().rsplit_once('-').unwrap();
         let count = u64::from_str_radix(count, 16).unwrap();
-        (count + 1..count + 50).for_each(|n| fs::write(format!("{start}-{n:x}"), "another's").unwrap());
+        (count + 1..count + 50)
+            .for_each(|n| fs::write(format!("{start}-{n:x}"), "another's").unwrap());
         Ok(())
     })
     .unwrap();
@@ -162,17 +172,18 @@ fn pipes_get_pictures() {
     assert!(output.stdout.starts_with(PNG) && output.stdout.ends_with(b"out.png\n"));
     // a file that a shell has opened for several programs keeps what they wrote before and write
     // after
-    let line =
-        "{ echo before; \"$0\" render ball.toml --device cpu --quiet -o out.png; echo after; } >all.bin";
+    let line = "{ echo before; \"$0\" render ball.toml --device cpu --quiet -o out.png; echo after; } >all.bin";
     let mut shell = std::process::Command::new("sh");
     shell.args(["-c", line, env!("CARGO_BIN_EXE_caustica")]).current_dir(&folder);
     assert_eq!(super::ended(super::spawn(shell)).status.code(), Some(0));
     let all = fs::read(folder.join("all.bin")).unwrap();
-    let inner = all.strip_prefix(b"before\n").and_then(|rest| rest.strip_suffix(b"out.png\nafter\n"));
+    let inner =
+        all.strip_prefix(b"before\n").and_then(|rest| rest.strip_suffix(b"out.png\nafter\n"));
     assert!(inner == output.stdout.strip_suffix(b"out.png\n"), "{} bytes", all.len());
     // a name of standard output does not say which picture; the message says how one does
     for name in ["/dev/stdout", "-", "/dev/fd/1", "/proc/self/fd/1", "/dev/stderr"] {
-        let output = run(&folder, &format!("--output={name}"), 2, &[name, "which kind of picture", "ln -s"]);
+        let output =
+            run(&folder, &format!("--output={name}"), 2, &[name, "which kind of picture", "ln -s"]);
         assert!(output.stdout.is_empty());
     }
     run(&folder, "--checkpoint end -o never.png", 1, &["end", "no regular file"]);
@@ -200,7 +211,9 @@ fn one_failed_output_keeps_no_other() {
     let output = ended(child);
     let error = error(&output);
     assert_eq!(output.status.code(), Some(1), "{error}");
-    for word in ["gone/y.png: cannot be written", "lost/z.exr: cannot be written", "lost/kept.checkpoint"] {
+    for word in
+        ["gone/y.png: cannot be written", "lost/z.exr: cannot be written", "lost/kept.checkpoint"]
+    {
         assert!(error.contains(word), "{word}: {error}");
     }
     assert!(fs::read(folder.join("ok.png")).unwrap().starts_with(PNG), "{error}");

@@ -15,7 +15,8 @@ fn refused(folder: &Path, line: &str, told: &[&str]) {
     let output = ended(spawn(command(folder, &words(line))));
     let error = error(&output);
     assert_eq!(output.status.code(), Some(1), "{line}: {:?} {error}", output.status);
-    told.iter().for_each(|word| assert!(error.contains(word), "{line} should say `{word}`: {error}"));
+    told.iter()
+        .for_each(|word| assert!(error.contains(word), "{line} should say `{word}`: {error}"));
 }
 
 /// Theory: a pipe may have no writer and a device no end, so neither is read, by any command,
@@ -30,8 +31,11 @@ fn pipes_and_devices_are_refused() {
     }
     let picture = Picture::from_fn(12, 8, |_, _| [0.5; 3]);
     let frame = exr_file::Frame::of(&picture);
-    fs::write(folder.join("good.exr"), exr_file::encode(&picture, frame, &[], &BTreeMap::new()).unwrap())
-        .unwrap();
+    fs::write(
+        folder.join("good.exr"),
+        exr_file::encode(&picture, frame, &[], &BTreeMap::new()).unwrap(),
+    )
+    .unwrap();
     for name in ["pipe", "zero"] {
         for kind in ["exr", "pfm", "hdr", "png", "jpg"] {
             refused(&folder, &format!("diff {name}.{kind} good.exr"), &[name, "no regular file"]);
@@ -75,7 +79,8 @@ fn a_study_does_not_wait_for_its_files() {
     }
     // a picture of the report that is none is left out
     let crops = fs::read_dir(folder.join("studied/crops")).unwrap();
-    let crop = crops.map(|entry| entry.unwrap().path()).find(|path| path.extension().is_some()).unwrap();
+    let crop =
+        crops.map(|entry| entry.unwrap().path()).find(|path| path.extension().is_some()).unwrap();
     fs::remove_file(&crop).unwrap();
     symlink("/dev/zero", &crop).unwrap();
     let output = ended(spawn(command(&folder, &words(line))));
@@ -89,7 +94,8 @@ fn a_study_does_not_wait_for_its_files() {
 fn sizes_are_not_believed() {
     let folder = folder("sizes");
     let picture = Picture::from_fn(12, 8, |_, _| [0.5; 3]);
-    let mut exr = exr_file::encode(&picture, exr_file::Frame::of(&picture), &[], &BTreeMap::new()).unwrap();
+    let mut exr =
+        exr_file::encode(&picture, exr_file::Frame::of(&picture), &[], &BTreeMap::new()).unwrap();
     fs::write(folder.join("good.exr"), &exr).unwrap();
     for window in ["dataWindow\0box2i\0", "displayWindow\0box2i\0"] {
         let at = exr.windows(window.len()).position(|bytes| bytes == window.as_bytes()).unwrap();

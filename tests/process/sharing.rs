@@ -8,8 +8,9 @@ use caustica::checkpoint::read;
 use super::support::{error, fails, good, words};
 use super::{ended, folder, render, signal, spawn, until};
 
-/// Theory: of two renders that would write to one file, by whatever names, the second ends at its start and
-/// says who has it, whether there is a checkpoint yet or not; whoever is killed holds nothing.
+/// Theory: of two renders that would write to one file, by whatever names, the second ends at its
+/// start and says who has it, whether there is a checkpoint yet or not; whoever is killed holds
+/// nothing.
 #[test]
 fn a_checkpoint_has_one_writer() {
     let folder = folder("writers");
@@ -18,7 +19,8 @@ fn a_checkpoint_has_one_writer() {
     let endless = "--quiet --passes 1000000 --checkpoint a.checkpoint";
     for (round, kill) in ["KILL", "TERM"].into_iter().enumerate() {
         let resume = if round > 0 { "--resume a.checkpoint" } else { "" };
-        let holder = spawn(render(&folder, &format!("{endless} {resume} --checkpoint-every 1ms -o a.exr")));
+        let holder =
+            spawn(render(&folder, &format!("{endless} {resume} --checkpoint-every 1ms -o a.exr")));
         let locked = || {
             let names = fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name());
             let lock = names.into_iter().find(|name| name.to_str().unwrap().ends_with(".lock"));
@@ -51,9 +53,12 @@ fn a_checkpoint_has_one_writer() {
     }
     // nobody holds it now, and nothing unfinished is left
     let passes = read(&file).unwrap().state.passes + 1;
-    let line = format!("--quiet -o c.exr --checkpoint a.checkpoint --resume a.checkpoint --passes {passes}");
+    let line = format!(
+        "--quiet -o c.exr --checkpoint a.checkpoint --resume a.checkpoint --passes {passes}"
+    );
     assert_eq!(ended(spawn(render(&folder, &line))).status.code(), Some(0));
-    let mut left: Vec<_> = fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    let mut left: Vec<_> =
+        fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name()).collect();
     left.sort();
     assert_eq!(left, ["a.checkpoint", "a.exr", "ball.toml", "c.exr", "link.checkpoint"]);
 }
@@ -87,7 +92,9 @@ fn the_lock_of_another_user_counts() {
     } else {
         second = std::process::Command::new(&program);
     }
-    second.args(words("render ball.toml --device cpu")).args(words(&line.replace("a.exr", "b.exr")));
+    second
+        .args(words("render ball.toml --device cpu"))
+        .args(words(&line.replace("a.exr", "b.exr")));
     let output = ended(spawn({
         second.current_dir(&folder);
         second
@@ -110,7 +117,8 @@ fn what_is_merged_is_not_written_over() {
     }
     symlink("a.checkpoint", folder.join("l.checkpoint")).unwrap();
     let [a, b] = ["a.checkpoint", "b.checkpoint"].map(|name| fs::read(folder.join(name)).unwrap());
-    for target in ["a.checkpoint", "b.checkpoint", "./a.checkpoint", "../merge/b.checkpoint", "l.checkpoint"]
+    for target in
+        ["a.checkpoint", "b.checkpoint", "./a.checkpoint", "../merge/b.checkpoint", "l.checkpoint"]
     {
         let line = format!("merge a.checkpoint b.checkpoint -o {target}");
         fails(&folder, &words(&line), 2, &[target, "one of those that are merged", "another"]);

@@ -19,9 +19,9 @@ pub fn catches(child: &Child) -> bool {
     [2, 15, 1].iter().all(|signal| caught.is_some_and(|caught| caught >> (signal - 1) & 1 == 1))
 }
 
-/// Theory: from the moment at which it catches signals, and that is before anything is read, a render ends
-/// by the code of an interrupt, 130, whatever it is at. There is a picture if a pass is whole, else a word
-/// that there is none.
+/// Theory: from the moment at which it catches signals, and that is before anything is read, a
+/// render ends by the code of an interrupt, 130, whatever it is at. There is a picture if a pass is
+/// whole, else a word that there is none.
 #[test]
 fn a_signal_at_any_moment() {
     let folder = folder("moments");
@@ -38,8 +38,14 @@ fn a_signal_at_any_moment() {
         signal(&child, name);
         let output = ended(child);
         let error = error(&output);
-        assert_eq!(output.status.code(), Some(130), "{name} after {wait} ms: {:?} {error}", output.status);
-        let (nothing, saved) = (error.contains("nothing is saved"), error.contains("finishing the pass"));
+        assert_eq!(
+            output.status.code(),
+            Some(130),
+            "{name} after {wait} ms: {:?} {error}",
+            output.status
+        );
+        let (nothing, saved) =
+            (error.contains("nothing is saved"), error.contains("finishing the pass"));
         assert!(nothing != saved, "{name} after {wait} ms: {error}");
         assert_eq!(picture.exists(), saved, "{name} after {wait} ms: {error}");
         before += u32::from(nothing);
@@ -48,8 +54,8 @@ fn a_signal_at_any_moment() {
     assert!(before > 0 && after > 0, "{before} {after}");
 }
 
-/// Theory: a driver's compiler at work is no reason for another code. Lavapipe without its cache compiles for
-/// some seconds, on threads of its own.
+/// Theory: a driver's compiler at work is no reason for another code. Lavapipe without its cache
+/// compiles for some seconds, on threads of its own.
 #[test]
 fn a_signal_while_a_driver_compiles() {
     software();
@@ -75,7 +81,9 @@ fn a_signal_while_a_driver_compiles() {
 fn ignoring(folder: &Path, names: &str, line: &str) -> Child {
     let program = format!("trap '' {names}; exec \"$0\" \"$@\"");
     let mut command = std::process::Command::new("sh");
-    command.args(["-c", &program, env!("CARGO_BIN_EXE_caustica")]).args(super::support::words(line));
+    command
+        .args(["-c", &program, env!("CARGO_BIN_EXE_caustica")])
+        .args(super::support::words(line));
     command.current_dir(folder).env("NO_COLOR", "1");
     spawn(command)
 }
@@ -88,19 +96,30 @@ fn ignored_signals_stay_ignored() {
     let line = "render ball.toml --device cpu --quiet --passes 1000000 --time 60s -o a.png";
     let mask = |child: &Child, name: &str| {
         let status = fs::read_to_string(format!("/proc/{}/status", child.id())).unwrap_or_default();
-        let line = status.lines().find_map(|line| line.strip_prefix(name)).unwrap_or("0").trim().to_owned();
+        let line = status
+            .lines()
+            .find_map(|line| line.strip_prefix(name))
+            .unwrap_or("0")
+            .trim()
+            .to_owned();
         u64::from_str_radix(&line, 16).unwrap()
     };
-    for (names, ignored, ends) in
-        [("HUP", &["HUP"][..], "INT"), ("INT HUP", &["INT", "HUP"], "TERM"), ("TERM", &["TERM"], "HUP")]
-    {
+    for (names, ignored, ends) in [
+        ("HUP", &["HUP"][..], "INT"),
+        ("INT HUP", &["INT", "HUP"], "TERM"),
+        ("TERM", &["TERM"], "HUP"),
+    ] {
         let mut child = ignoring(&folder, names, line);
-        let number =
-            |name: &str| ["HUP", "INT", "TERM"].iter().position(|n| *n == name).map(|i| [1, 2, 15][i]);
+        let number = |name: &str| {
+            ["HUP", "INT", "TERM"].iter().position(|n| *n == name).map(|i| [1, 2, 15][i])
+        };
         let bit = |name: &str| 1u64 << (number(name).unwrap() - 1);
         // a shell with -c may itself catch a signal before it runs the program
-        let program = || fs::read_to_string(format!("/proc/{}/comm", child.id())).unwrap_or_default();
-        until("ready", || program().trim() == "caustica" && mask(&child, "SigCgt:") & bit(ends) != 0);
+        let program =
+            || fs::read_to_string(format!("/proc/{}/comm", child.id())).unwrap_or_default();
+        until("ready", || {
+            program().trim() == "caustica" && mask(&child, "SigCgt:") & bit(ends) != 0
+        });
         for name in ignored {
             assert!(mask(&child, "SigIgn:") & bit(name) != 0, "{names}: {name}");
             signal(&child, name);
@@ -123,10 +142,15 @@ fn an_interrupted_bench_keeps_its_figures() {
     let folder = folder("bench");
     let caustics = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/caustics.toml");
     let long = "bench ball.toml --device cpu --passes 1000000";
-    let next =
-        format!("bench {caustics} --size 16x16 --photons 1000 --passes 2 --device cpu --device software");
-    let cases =
-        [(long, "measuring", 1), (long, "on ", 1), (&next, "\"done\":1", 1), (&next, "a pass takes", 1)];
+    let next = format!(
+        "bench {caustics} --size 16x16 --photons 1000 --passes 2 --device cpu --device software"
+    );
+    let cases = [
+        (long, "measuring", 1),
+        (long, "on ", 1),
+        (&next, "\"done\":1", 1),
+        (&next, "a pass takes", 1),
+    ];
     for (line, begun, devices) in cases {
         let json = begun.starts_with(['m', '"']);
         let mut command = super::support::command(&folder, &super::support::words(line));
@@ -146,10 +170,17 @@ fn an_interrupted_bench_keeps_its_figures() {
         assert!(begun.elapsed() < Duration::from_secs(3), "{line}: {:?}", begun.elapsed());
         if json {
             let bench = super::support::json_lines(said.as_bytes()).pop().unwrap();
-            assert_eq!((&bench["event"], &bench["complete"]), (&"bench".into(), &false.into()), "{said}");
+            assert_eq!(
+                (&bench["event"], &bench["complete"]),
+                (&"bench".into(), &false.into()),
+                "{said}"
+            );
             let reports = bench["devices"].as_array().unwrap();
             assert_eq!(reports.len(), devices);
-            assert!(reports.iter().all(|report| report["pass"]["count"].as_u64() > Some(0)), "{said}");
+            assert!(
+                reports.iter().all(|report| report["pass"]["count"].as_u64() > Some(0)),
+                "{said}"
+            );
         } else {
             assert_eq!(said.matches("a pass takes").count(), devices, "{said}");
         }

@@ -8,7 +8,8 @@ use super::{SCENE, folder};
 
 /// A title, a cleared screen, hidden text, a bell, a return, a C1 sequence, and text from right to
 /// left.
-const HARM: [&str; 7] = ["\x1b]0;PWNED\x07", "\x1b[2J", "\x1b[8m", "\x07", "a\rb", "\u{9b}2J", "\u{202e}txt"];
+const HARM: [&str; 7] =
+    ["\x1b]0;PWNED\x07", "\x1b[2J", "\x1b[8m", "\x07", "a\rb", "\u{9b}2J", "\u{202e}txt"];
 
 /// Whether a report sets this: a colour, bold, faint, italic or underlined text, or none of them.
 fn is_color(code: &str) -> bool {
@@ -26,7 +27,8 @@ fn acts(output: &str) -> Vec<char> {
             _ => rest.extend(["\x1b[", part]),
         }
     }
-    let turns = |c: &char| ('\u{202a}'..='\u{202e}').contains(c) || ('\u{2066}'..='\u{2069}').contains(c);
+    let turns =
+        |c: &char| ('\u{202a}'..='\u{202e}').contains(c) || ('\u{2066}'..='\u{2069}').contains(c);
     rest.chars().filter(|c| (c.is_control() && *c != '\n') || turns(c)).collect()
 }
 
@@ -55,10 +57,15 @@ fn control_characters_are_shown() {
     let mesh = "[[shapes]]\ntype = \"mesh\"\nfile = \"m.obj\"\nmaterial = \"white\"\n";
     fs::write(folder.join("mesh.toml"), format!("{}\n{mesh}", *SCENE)).unwrap();
     for (number, harm) in HARM.iter().enumerate() {
-        fs::write(folder.join("m.obj"), format!("v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n{harm} 1 2\n")).unwrap();
+        fs::write(
+            folder.join("m.obj"),
+            format!("v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n{harm} 1 2\n"),
+        )
+        .unwrap();
         harmless(&folder, &["check", "mesh.toml"], "m.obj");
         // a comment of a scene beside an error, a name that is not known, one that is long
-        let beside = format!("{}\nshape = 3 # {harm}\n", SCENE.replace("[film]", "[film]\nwidht = 3"));
+        let beside =
+            format!("{}\nshape = 3 # {harm}\n", SCENE.replace("[film]", "[film]\nwidht = 3"));
         fs::write(folder.join("beside.toml"), beside).unwrap();
         harmless(&folder, &["check", "beside.toml"], "beside.toml");
         let escaped: String = harm.chars().map(|c| format!("\\u{:04x}", u32::from(c))).collect();
@@ -91,7 +98,8 @@ fn line_feeds_in_names_are_shown() {
     let says = |arguments: &[&str]| {
         let output = command(&folder, arguments).output().unwrap();
         let error = text(&output.stderr);
-        let lines = error.lines().map(|line| line.trim_start_matches([' ', '│', '×', '⚠', '╭', '─', '[']));
+        let lines =
+            error.lines().map(|line| line.trim_start_matches([' ', '│', '×', '⚠', '╭', '─', '[']));
         let forged: Vec<_> = lines.filter(|line| line.starts_with("warning: b")).collect();
         assert!(forged.is_empty(), "{arguments:?}: {error}");
         error.split_whitespace().collect::<Vec<_>>().join(" ")
@@ -107,7 +115,8 @@ fn line_feeds_in_names_are_shown() {
     assert!(says(&line).contains(shown));
     let picture = format!("{harm}.png");
     assert!(
-        says(&["render", "ball.toml", "--device", "cpu", "-o", &format!("no/{picture}")]).contains(shown)
+        says(&["render", "ball.toml", "--device", "cpu", "-o", &format!("no/{picture}")])
+            .contains(shown)
     );
     assert!(says(&["diff", &format!("{harm}.exr"), "b.exr"]).contains(shown));
 }
@@ -118,7 +127,8 @@ fn line_feeds_in_names_are_shown() {
 fn carets_stand_where_they_did() {
     let folder = folder("carets");
     let line = |start: &str| {
-        let scene = SCENE.replace("[film]", &format!("[film]\naov = [\"depth\", \"{start}\", \"nothing\"]"));
+        let scene = SCENE
+            .replace("[film]", &format!("[film]\naov = [\"depth\", \"{start}\", \"nothing\"]"));
         fs::write(folder.join("s.toml"), scene).unwrap();
         let output = command(&folder, &["info", "s.toml"]).output().unwrap();
         let error = text(&output.stderr);

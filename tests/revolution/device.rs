@@ -38,17 +38,20 @@ impl Device {
         let instance = wgpu::Instance::new(descriptor);
         let mut adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::VULKAN));
         adapters.sort_by_key(|a| a.get_info().device_type != wgpu::DeviceType::Cpu);
-        let adapter =
-            adapters.into_iter().next().expect("a Vulkan adapter (apt install mesa-vulkan-drivers)");
+        let adapter = adapters
+            .into_iter()
+            .next()
+            .expect("a Vulkan adapter (apt install mesa-vulkan-drivers)");
         let info = adapter.get_info();
         println!("adapter: {} ({})", info.name, info.driver_info);
         let (device, queue) =
-            pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default())).expect("a device");
+            pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default()))
+                .expect("a device");
         Self { device, queue }
     }
 
-    /// Runs entry point `main` (workgroups of 64) of `source` over `count` invocations. Bindings: the inputs in
-    /// order, read-only; then the output of `size` bytes, poisoned before.
+    /// Runs entry point `main` (workgroups of 64) of `source` over `count` invocations. Bindings:
+    /// the inputs in order, read-only; then the output of `size` bytes, poisoned before.
     pub fn run(&self, source: &str, inputs: &[&[u8]], size: u64, count: u32) -> Vec<u8> {
         let module = self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: None,
@@ -63,7 +66,11 @@ impl Device {
             cache: None,
         });
         let buffer = |contents: &[u8], usage| {
-            self.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: None, contents, usage })
+            self.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+                label: None,
+                contents,
+                usage,
+            })
         };
         let mut buffers: Vec<wgpu::Buffer> =
             inputs.iter().map(|b| buffer(b, wgpu::BufferUsages::STORAGE)).collect();
@@ -72,7 +79,10 @@ impl Device {
         let entries: Vec<wgpu::BindGroupEntry<'_>> = buffers
             .iter()
             .enumerate()
-            .map(|(i, b)| wgpu::BindGroupEntry { binding: i as u32, resource: b.as_entire_binding() })
+            .map(|(i, b)| wgpu::BindGroupEntry {
+                binding: i as u32,
+                resource: b.as_entire_binding(),
+            })
             .collect();
         let layout = &pipeline.get_bind_group_layout(0);
         let group = self.device.create_bind_group(&wgpu::BindGroupDescriptor {

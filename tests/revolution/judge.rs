@@ -70,8 +70,8 @@ impl Tally {
 /// Stands for the distance of a miss.
 const MISS: f64 = 1e30;
 
-/// Whether moving the ray by a few f32 roundings, across the surface that it grazes or to a side, moves the true hit at
-/// least as far as `t`: then no f32 solver can be held to it.
+/// Whether moving the ray by a few f32 roundings, across the surface that it grazes or to a side,
+/// moves the true hit at least as far as `t`: then no f32 solver can be held to it.
 fn excused(placed: &Placed, o: Vec3, d: Vec3, t: f64, first: Option<&OracleHit>) -> bool {
     let revolution = &placed.tables.revolutions[0];
     let scale = f64::from(revolution.scale);
@@ -87,7 +87,8 @@ fn excused(placed: &Placed, o: Vec3, d: Vec3, t: f64, first: Option<&OracleHit>)
     }
     let size = scale + f64::from(revolution.center.abs().max_element().max(o.abs().max_element()));
     let shift = ROUNDINGS * size / scale;
-    let mut shifts: Vec<DVec3> = directions.into_iter().flat_map(|n| [n * shift, n * -shift]).collect();
+    let mut shifts: Vec<DVec3> =
+        directions.into_iter().flat_map(|n| [n * shift, n * -shift]).collect();
     // a ray along the axis may lie on it
     if ld.x.hypot(ld.z) < 1e-3 && lo.x.hypot(lo.z) < shift {
         shifts.push(DVec3::new(-lo.x, 0.0, -lo.z));
@@ -100,7 +101,8 @@ fn excused(placed: &Placed, o: Vec3, d: Vec3, t: f64, first: Option<&OracleHit>)
     low <= t && t <= high
 }
 
-/// Holds a first hit at distance `found` against the oracle's; Newton's steps are left to the caller.
+/// Holds a first hit at distance `found` against the oracle's; Newton's steps are left to the
+/// caller.
 pub fn judge(placed: &Placed, o: Vec3, d: Vec3, found: Option<f64>) -> Tally {
     let mut tally = Tally { rays: 1, ..Tally::default() };
     let revolution = &placed.tables.revolutions[0];
@@ -108,8 +110,11 @@ pub fn judge(placed: &Placed, o: Vec3, d: Vec3, found: Option<f64>) -> Tally {
     let truth = oracle::all_hits(&placed.segments, lo, ld);
     tally.hits = u64::from(found.is_some());
     let (t, first) = (found.unwrap_or(MISS), truth.first().map_or(MISS, |first| first.t));
-    let error =
-        if t == first { 0.0 } else { (t - first).abs() / f64::from(revolution.scale).max(first.min(t)) };
+    let error = if t == first {
+        0.0
+    } else {
+        (t - first).abs() / f64::from(revolution.scale).max(first.min(t))
+    };
     let other = error > 1e-3;
     if !other {
         tally.worst = error;

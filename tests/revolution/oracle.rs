@@ -1,8 +1,8 @@
-//! All hits of a ray with a surface of revolution in f64, by a way of its own: the ray parameter at height y(t)
-//! is u(t) = (y(t) - o_y) / d_y, so a hit is a root of the polynomial
-//! g(t) = (o_x + u d_x)^2 + (o_z + u d_z)^2 - r^2, of twice the profile's degree. In Bernstein form its roots
-//! are isolated by subdivision (it lies in the hull of its coefficients, and has at most as many roots as they
-//! have sign changes). A horizontal ray instead meets the circles where y(t) = o_y.
+//! All hits of a ray with a surface of revolution in f64, by a way of its own: the ray parameter at
+//! height y(t) is u(t) = (y(t) - o_y) / d_y, so a hit is a root of the polynomial g(t) = (o_x + u
+//! d_x)^2 + (o_z + u d_z)^2 - r^2, of twice the profile's degree. In Bernstein form its roots are
+//! isolated by subdivision (it lies in the hull of its coefficients, and has at most as many roots
+//! as they have sign changes). A horizontal ray instead meets the circles where y(t) = o_y.
 
 use caustica::shapes::revolution::Revolution;
 use glam::{DVec2, DVec3, Vec3};
@@ -18,14 +18,16 @@ pub struct OracleHit {
 /// The f32 ray in the local frame that the f32 revolution describes; distances stay the scene's.
 pub fn local_ray(revolution: &Revolution, origin: Vec3, direction: Vec3) -> (DVec3, DVec3) {
     let axes = [revolution.x_axis, revolution.y_axis, revolution.z_axis].map(|a| a.as_dvec3());
-    let into =
-        |v: DVec3| DVec3::new(axes[0].dot(v), axes[1].dot(v), axes[2].dot(v)) / f64::from(revolution.scale);
+    let into = |v: DVec3| {
+        DVec3::new(axes[0].dot(v), axes[1].dot(v), axes[2].dot(v)) / f64::from(revolution.scale)
+    };
     (into(origin.as_dvec3() - revolution.center.as_dvec3()), into(direction.as_dvec3()))
 }
 
 /// Hits at distances above zero, nearest first.
 pub fn all_hits(segments: &[Vec<DVec2>], o: DVec3, d: DVec3) -> Vec<OracleHit> {
-    // Distances between which the ray is inside a ball around everything; from near it, coordinates are small.
+    // Distances between which the ray is inside a ball around everything; from near it, coordinates
+    // are small.
     let radius = segments.iter().flatten().fold(0.0_f64, |a, p| a.max(p.length())) * 1.001;
     let (dd, od) = (d.length_squared(), o.dot(d));
     let near = -od / dd;
@@ -85,8 +87,12 @@ fn slanted(points: &[DVec2], o: DVec3, d: DVec3, reach: f64, found: &mut impl Fn
         let (r, u) = (restrict(&r, w[0], w[1]), restrict(&u, w[0], w[1]));
         let line = |a: f64, b: f64| u.iter().map(|u| a + u * b).collect::<Vec<f64>>();
         let (x, z) = (line(o.x, d.x), line(o.z, d.z));
-        let g: Vec<f64> =
-            square(&x).iter().zip(square(&z)).zip(square(&r)).map(|((x, z), r)| x + z - r).collect();
+        let g: Vec<f64> = square(&x)
+            .iter()
+            .zip(square(&z))
+            .zip(square(&r))
+            .map(|((x, z), r)| x + z - r)
+            .collect();
         if o.x == 0.0 && o.z == 0.0 && d.x == 0.0 && d.z == 0.0 {
             // Along the axis g = -r^2: its roots are those of r, without a change of sign.
             for s in roots(&r) {
@@ -106,7 +112,9 @@ fn square(a: &[f64]) -> Vec<f64> {
     (0..=2 * n)
         .map(|k| {
             let terms = k.saturating_sub(n)..=k.min(n);
-            terms.map(|i| binomial(n, i) * binomial(n, k - i) / binomial(2 * n, k) * a[i] * a[k - i]).sum()
+            terms
+                .map(|i| binomial(n, i) * binomial(n, k - i) / binomial(2 * n, k) * a[i] * a[k - i])
+                .sum()
         })
         .collect()
 }
@@ -176,15 +184,19 @@ fn isolate(c: &[f64], a: f64, b: f64, noise: f64, out: &mut Vec<f64>) {
     isolate(&upper, middle, b, noise, out);
 }
 
-/// The one root of `c` on [a, b]: regula falsi (Illinois) and bisection in turn, on the coefficients of that
-/// interval.
+/// The one root of `c` on [a, b]: regula falsi (Illinois) and bisection in turn, on the
+/// coefficients of that interval.
 fn bisect(c: &[f64], a: f64, b: f64) -> f64 {
     let (mut low, mut high) = (0.0, 1.0);
     let (mut f_low, mut f_high) = (c[0], c[c.len() - 1]);
     let rising = f_low < 0.0;
     for i in 0..120 {
         let secant = low - f_low * (high - low) / (f_high - f_low);
-        let t = if i % 3 == 2 || !(secant > low && secant < high) { 0.5 * (low + high) } else { secant };
+        let t = if i % 3 == 2 || !(secant > low && secant < high) {
+            0.5 * (low + high)
+        } else {
+            secant
+        };
         if t <= low || t >= high || high - low < 1e-16 {
             break;
         }

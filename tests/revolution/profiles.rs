@@ -27,7 +27,10 @@ fn profile(name: &'static str, segments: &[&[[f64; 2]]]) -> Profile {
 pub fn profiles() -> Vec<Profile> {
     let wave: Vec<[f64; 2]> = (0..16)
         .map(|i| {
-            [0.5 + if i % 2 == 0 { 0.45 } else { -0.45 } * (1.0 - f64::from(i) / 20.0), f64::from(i) / 7.5]
+            [
+                0.5 + if i % 2 == 0 { 0.45 } else { -0.45 } * (1.0 - f64::from(i) / 20.0),
+                f64::from(i) / 7.5,
+            ]
         })
         .collect();
     // r' = (t - 0.37)(3 - t), y' = (t - 0.37)(4 t - 2): a cusp that rounding to f32 opens.
@@ -64,7 +67,8 @@ pub fn profiles() -> Vec<Profile> {
 /// The profile in a scene at the given placement.
 pub fn place(profile: &Profile, placement: &Placement) -> Placed {
     let mut tables = RevolutionTables::default();
-    let boxes = tables.push(&profile.segments, placement, Attributes::default()).expect("a surface");
+    let boxes =
+        tables.push(&profile.segments, placement, Attributes::default()).expect("a surface");
     let all = || profile.segments.iter().flatten();
     let low = all().fold(DVec2::INFINITY, |a, p| a.min(*p));
     let high = all().fold(DVec2::NEG_INFINITY, |a, p| a.max(*p));

@@ -52,7 +52,8 @@ pub enum Class {
     Interior,
 }
 
-pub const CLASSES: [Class; 5] = [Class::Random, Class::Far, Class::Grazing, Class::Axial, Class::Interior];
+pub const CLASSES: [Class; 5] =
+    [Class::Random, Class::Far, Class::Grazing, Class::Axial, Class::Interior];
 
 /// Point and derivative of a Bezier curve.
 pub fn curve(points: &[DVec2], t: f64) -> (DVec2, DVec2) {

@@ -58,13 +58,28 @@ impl Bits {
 pub type Pixel = (usize, usize, [i32; 3]);
 
 /// A file with these scans, each of components, and colors at some pixels.
-pub fn jpeg(Sampling(h, v): Sampling, scans: &[&[usize]], is_progressive: bool) -> (Vec<u8>, Vec<Pixel>) {
+pub fn jpeg(
+    Sampling(h, v): Sampling,
+    scans: &[&[usize]],
+    is_progressive: bool,
+) -> (Vec<u8>, Vec<Pixel>) {
     let (width, height) = (8 * h * SQUARES, 8 * v * SQUARES);
     let mut file = vec![0xff, 0xd8, 0xff, 0xdb, 0, 67, 0];
     file.extend([1; 64]);
     let [high, low] = (height as u16).to_be_bytes();
     let [left, right] = (width as u16).to_be_bytes();
-    file.extend([0xff, if is_progressive { 0xc2 } else { 0xc0 }, 0, 17, 8, high, low, left, right, 3]);
+    file.extend([
+        0xff,
+        if is_progressive { 0xc2 } else { 0xc0 },
+        0,
+        17,
+        8,
+        high,
+        low,
+        left,
+        right,
+        3,
+    ]);
     file.extend([1, (h << 4 | v) as u8, 0, 2, 0x11, 0, 3, 0x11, 0]);
     // Categories 0 to 11 in four bits each; the end of a block in one.
     file.extend([0xff, 0xc4, 0, 31, 0, 0, 0, 0, 12]);

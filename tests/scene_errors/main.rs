@@ -32,7 +32,8 @@ fn told(finding: &Finding) -> String {
 
 /// Whether the findings are those expected, in order; else what is wrong.
 fn differs(found: &[Finding], expected: &[Expected]) -> Option<String> {
-    let found: Vec<_> = found.iter().map(|finding| (finding.line_column(), told(finding))).collect();
+    let found: Vec<_> =
+        found.iter().map(|finding| (finding.line_column(), told(finding))).collect();
     let same = found.len() == expected.len()
         && found.iter().zip(expected).all(|((place, text), &(line, column, part))| {
             *place == Some((line, column)) && text.contains(part)
@@ -73,13 +74,22 @@ fn one_fault_each() {
         ("[materials.a]\nreflectance = 1\n", (6, 1, "`type` is missing")),
         ("[materials.a]\ntype = \"diffuse\"\nreflectance = 1.5\n", (8, 15, "from 0 to 1")),
         ("[materials.a]\ntype = \"glass\"\nior = 0\n", (8, 7, "greater than 0")),
-        ("[materials.a]\ntype = \"glass\"\nior = 1.5\nabsorption = [0, -1, 0]\n", (9, 18, "not below 0")),
-        ("[materials.a]\ntype = \"metal\"\nreflectance = 1\nroughness = 2\n", (9, 13, "from 0 to 1")),
+        (
+            "[materials.a]\ntype = \"glass\"\nior = 1.5\nabsorption = [0, -1, 0]\n",
+            (9, 18, "not below 0"),
+        ),
+        (
+            "[materials.a]\ntype = \"metal\"\nreflectance = 1\nroughness = 2\n",
+            (9, 13, "from 0 to 1"),
+        ),
         (
             "[materials.a]\ntype = \"diffuse\"\nreflectance = \"wood\"\n",
             (8, 15, "define it: [textures.wood]"),
         ),
-        ("[textures.a]\ntype = \"image\"\nfile = \"reference/grd.png\"\n", (8, 8, "did you mean grid.png?")),
+        (
+            "[textures.a]\ntype = \"image\"\nfile = \"reference/grd.png\"\n",
+            (8, 8, "did you mean grid.png?"),
+        ),
         (
             "[textures.a]\ntype = \"image\"\nfile = \"cube.obj\"\n",
             (8, 8, "expected a png, jpg, hdr or exr file"),
@@ -88,12 +98,18 @@ fn one_fault_each() {
             "[textures.a]\ntype = \"planks\"\nfile = \"reference/grid.png\"\nsize = [0, 1]\n",
             (9, 9, "greater than 0"),
         ),
-        ("[[lights]]\ntype = \"sun\"\ndirection = [0, 0, 0]\nirradiance = 1\n", (8, 13, "no direction")),
+        (
+            "[[lights]]\ntype = \"sun\"\ndirection = [0, 0, 0]\nirradiance = 1\n",
+            (8, 13, "no direction"),
+        ),
         (
             "[[lights]]\ntype = \"spot\"\nposition = [0, 0, 0]\ntarget = [0, 0, 0]\nintensity = 1\nangle = 20\n",
             (9, 10, "is its position"),
         ),
-        ("[[lights]]\ntype = \"point\"\nposition = [0, 0, 0]\nintensity = -1\n", (9, 13, "not below 0")),
+        (
+            "[[lights]]\ntype = \"point\"\nposition = [0, 0, 0]\nintensity = -1\n",
+            (9, 13, "not below 0"),
+        ),
         ("[lights]\ntype = \"point\"\n", (6, 1, "write [[lights]] with two brackets")),
         ("[environment]\n", (6, 1, "neither `radiance` nor `file`")),
         ("[environment]\nradiance = 1\nrotate = 3\n", (8, 10, "no meaning without a `file`")),
@@ -101,18 +117,21 @@ fn one_fault_each() {
         ("fov = 3\n", (6, 1, "duplicate key")),
         ("[film\n", (6, 6, "not TOML")),
     ];
-    let wrong = after_head
-        .iter()
-        .filter_map(|&(text, expected)| differs(&errors_of(&format!("{HEAD}{text}")).errors, &[expected]));
+    let wrong = after_head.iter().filter_map(|&(text, expected)| {
+        differs(&errors_of(&format!("{HEAD}{text}")).errors, &[expected])
+    });
     assert_eq!(wrong.collect::<Vec<_>>().join("\n"), "");
 }
 
-/// What f32 cannot hold once the scene is scaled: lengths above 1e15 or, where 0 is none, below 1e-15; light above 1e30.
-/// The bounds themselves pass.
+/// What f32 cannot hold once the scene is scaled: lengths above 1e15 or, where 0 is none, below
+/// 1e-15; light above 1e30. The bounds themselves pass.
 #[test]
 fn numbers_beyond_single_precision() {
     let cases: &[(&str, Expected)] = &[
-        ("up = [0, 1.1e15, 0]\n", (6, 10, "too large for single precision | expected at most 1e15")),
+        (
+            "up = [0, 1.1e15, 0]\n",
+            (6, 10, "too large for single precision | expected at most 1e15"),
+        ),
         ("up = [0, -1e300, 0]\n", (6, 10, "too large")),
         ("up = [0, 10_000_000_000_000_000, 0]\n", (6, 10, "too large")),
         ("aperture = 1e16\nfocus = 1\n", (6, 12, "too large")),
@@ -125,9 +144,9 @@ fn numbers_beyond_single_precision() {
             (8, 19, "expected at most 1e15"),
         ),
     ];
-    let wrong = cases
-        .iter()
-        .filter_map(|&(text, expected)| differs(&errors_of(&format!("{HEAD}{text}")).errors, &[expected]));
+    let wrong = cases.iter().filter_map(|&(text, expected)| {
+        differs(&errors_of(&format!("{HEAD}{text}")).errors, &[expected])
+    });
     assert_eq!(wrong.collect::<Vec<_>>().join("\n"), "");
     let shapes: &[(&str, Expected)] = &[
         (
@@ -155,14 +174,15 @@ fn numbers_beyond_single_precision() {
     assert!(parse(&data("scene.toml"), bounds.as_bytes()).is_ok());
     let folder = folder("large");
     std::fs::write(folder.join("far.obj"), "v 0 0 0\nv 1e16 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
-    let text =
-        format!("{HEAD}{MATERIAL}[[shapes]]\ntype = \"mesh\"\nfile = \"far.obj\"\nmaterial = \"grey\"\n");
+    let text = format!(
+        "{HEAD}{MATERIAL}[[shapes]]\ntype = \"mesh\"\nfile = \"far.obj\"\nmaterial = \"grey\"\n"
+    );
     let errors = parse(&folder.join("scene.toml"), text.as_bytes()).unwrap_err().errors;
     assert_eq!(differs(&errors, &[(2, 3, "`1e16` is too large")]), None);
 }
 
-/// One value is told of once, by the check that comes first; keys that are missing in one table, and several faults of
-/// one word of a mesh, are told each.
+/// One value is told of once, by the check that comes first; keys that are missing in one table,
+/// and several faults of one word of a mesh, are told each.
 #[test]
 fn one_report_for_a_value() {
     let plane = "[[shapes]]\ntype = \"plane\"\npoint = [0, 0, 0]\nnormal = [0, 1, 0]\nmaterial = \"grey\"\nemission = -1\n";
@@ -171,7 +191,10 @@ fn one_report_for_a_value() {
     let errors = errors_of(&format!("{HEAD}[render]\nalpha = 1e20\n")).errors;
     assert_eq!(differs(&errors, &[(7, 9, "too large")]), None);
     let errors = errors_of("version = 1\n[camera]\nfov = 30\n").errors;
-    assert_eq!(differs(&errors, &[(2, 1, "`position` is missing"), (2, 1, "`target` is missing")]), None);
+    assert_eq!(
+        differs(&errors, &[(2, 1, "`position` is missing"), (2, 1, "`target` is missing")]),
+        None
+    );
 
     let folder = folder("twice");
     std::fs::write(folder.join("bad.obj"), "v 0 0 0\nvt 0 0\nf 1 2/3 1\n").unwrap();
@@ -229,7 +252,10 @@ fn one_fault_in_a_shape() {
             "type = \"box\"\nmin = [0, 0, 0]\nmax = [1, 0, 1]\nmaterial = \"grey\"",
             (12, 7, "expected y greater than 0"),
         ),
-        ("type = \"mesh\"\nfile = \"cub.obj\"\nmaterial = \"grey\"", (11, 8, "did you mean cube.obj?")),
+        (
+            "type = \"mesh\"\nfile = \"cub.obj\"\nmaterial = \"grey\"",
+            (11, 8, "did you mean cube.obj?"),
+        ),
         (
             "type = \"mesh\"\nfile = \"cube.obj\"\nmaterial = \"grey\"\ntransform = { scale = 0 }",
             (13, 23, "greater than 0"),
@@ -243,12 +269,18 @@ fn one_fault_in_a_shape() {
             "type = \"revolution\"\nmaterial = \"grey\"\nprofile = [[1, 0], [1, 1]]\nsegments = [[[1, 0], [1, 1]]]",
             (13, 12, "has both"),
         ),
-        ("type = \"revolution\"\nmaterial = \"grey\"\nprofile = [[1, 0]]", (12, 11, "has 1 element")),
+        (
+            "type = \"revolution\"\nmaterial = \"grey\"\nprofile = [[1, 0]]",
+            (12, 11, "has 1 element"),
+        ),
         (
             "type = \"revolution\"\nmaterial = \"grey\"\nprofile = [[0, 0], [0, 1]]",
             (12, 11, "lies on the axis"),
         ),
-        ("type = \"revolution\"\nmaterial = \"grey\"\nprofile = [[1, 1], [1, 1]]", (12, 11, "single point")),
+        (
+            "type = \"revolution\"\nmaterial = \"grey\"\nprofile = [[1, 1], [1, 1]]",
+            (12, 11, "single point"),
+        ),
         (
             "type = \"revolution\"\nmaterial = \"grey\"\nprofile = [[1, 0], [-3, 1], [1, 2]]",
             (12, 20, "crosses the axis"),
@@ -287,14 +319,19 @@ fn many_faults_at_once() {
     assert_eq!(differs(&errors_of(text).errors, &expected), None);
 }
 
-/// The comparator of this file finds a wrong line, a wrong column, a wrong text and a missing error.
+/// The comparator of this file finds a wrong line, a wrong column, a wrong text and a missing
+/// error.
 #[test]
 fn comparator_finds_planted_errors() {
     let errors = errors_of(&format!("{HEAD}[flim]\n")).errors;
     assert_eq!(differs(&errors, &[(6, 2, "film")]), None);
-    for planted in
-        [&[(7, 2, "film")][..], &[(6, 1, "film")], &[(6, 2, "foil")], &[], &[(6, 2, "film"), (6, 2, "film")]]
-    {
+    for planted in [
+        &[(7, 2, "film")][..],
+        &[(6, 1, "film")],
+        &[(6, 2, "foil")],
+        &[],
+        &[(6, 2, "film"), (6, 2, "film")],
+    ] {
         assert!(differs(&errors, planted).is_some(), "{planted:?}");
     }
 }
@@ -304,7 +341,8 @@ fn comparator_finds_planted_errors() {
 fn faults_of_a_mesh() {
     let text = format!("{HEAD}[[shapes]]\ntype = \"mesh\"\nfile = \"broken.obj\"\n");
     let errors = errors_of(&text).errors;
-    let (mtl, obj): (Vec<_>, Vec<_>) = errors.into_iter().partition(|error| error.file().ends_with(".mtl"));
+    let (mtl, obj): (Vec<_>, Vec<_>) =
+        errors.into_iter().partition(|error| error.file().ends_with(".mtl"));
     assert!(obj.iter().all(|error| error.file().ends_with("broken.obj")));
     let expected = [
         (4, 5, "not a finite number"),
@@ -319,7 +357,8 @@ fn faults_of_a_mesh() {
         (14, 3, "`x` is not an index"),
     ];
     assert_eq!(differs(&obj, &expected), None);
-    let expected = [(2, 8, "from 0 to 1"), (5, 1, "expected 3 numbers"), (7, 8, "cannot read image")];
+    let expected =
+        [(2, 8, "from 0 to 1"), (5, 1, "expected 3 numbers"), (7, 8, "cannot read image")];
     assert_eq!(differs(&mtl, &expected), None);
 }
 
@@ -341,7 +380,9 @@ fn printed_form() {
     let errors = errors_of(&format!("{HEAD}[flim]\n"));
     let theme = miette::GraphicalTheme::unicode_nocolor();
     miette::GraphicalReportHandler::new_themed(theme).render_report(&mut text, &errors).unwrap();
-    for part in ["1 error", "scene.toml:6:2", "[flim]", "did you mean `film`?", "known keys: `camera`"] {
+    for part in
+        ["1 error", "scene.toml:6:2", "[flim]", "did you mean `film`?", "known keys: `camera`"]
+    {
         assert!(text.contains(part), "no {part} in\n{text}");
     }
 }
@@ -353,12 +394,14 @@ fn warnings() {
     let found = warnings(&format!("{HEAD}{MATERIAL}"));
     let expected = [(6, 1, "material `grey` is not used"), (1, 1, "no light")];
     assert_eq!(differs(&found, &expected), None);
-    let found =
-        warnings(&format!("{HEAD}[[lights]]\ntype = \"point\"\nposition = [0, 0, 0]\nintensity = 0\n"));
+    let found = warnings(&format!(
+        "{HEAD}[[lights]]\ntype = \"point\"\nposition = [0, 0, 0]\nintensity = 0\n"
+    ));
     assert_eq!(differs(&found, &[(9, 13, "gives no light")]), None);
 }
 
-/// An alpha channel is not used, and a warning says so where it would matter: not where it is 1 throughout.
+/// An alpha channel is not used, and a warning says so where it would matter: not where it is 1
+/// throughout.
 #[test]
 fn alpha_is_told_of() {
     let folder = folder("alpha");
@@ -374,7 +417,8 @@ fn alpha_is_told_of() {
     };
     exr("clear.exr", 0.5);
     exr("solid.exr", 1.0);
-    exr::prelude::write_rgb_file(folder.join("none.exr"), 3, 2, |_, _| (0.5f32, 0.5f32, 0.5f32)).unwrap();
+    exr::prelude::write_rgb_file(folder.join("none.exr"), 3, 2, |_, _| (0.5f32, 0.5f32, 0.5f32))
+        .unwrap();
     let warnings = |texture: &str| {
         let text = format!(
             "{HEAD}[textures.t]\ntype = \"image\"\nfile = \"{texture}\"\n[materials.m]\ntype = \"diffuse\"\nreflectance = \"t\"\n\
@@ -394,8 +438,9 @@ fn alpha_is_told_of() {
     )
     .unwrap();
     std::fs::write(folder.join("leaf.mtl"), "newmtl leaf\nmap_Kd clear.png\n").unwrap();
-    let text =
-        format!("{HEAD}[environment]\nradiance = 1\n[[shapes]]\ntype = \"mesh\"\nfile = \"leaf.obj\"\n");
+    let text = format!(
+        "{HEAD}[environment]\nradiance = 1\n[[shapes]]\ntype = \"mesh\"\nfile = \"leaf.obj\"\n"
+    );
     let found = parse(&folder.join("scene.toml"), text.as_bytes()).unwrap().warnings;
     assert_eq!(differs(&found, &[(2, 8, "alpha channel of map_Kd")]), None);
 }

@@ -8,7 +8,8 @@
 use std::path::Path;
 
 use caustica::scene::{
-    Allowance, Loaded, MaterialKind, Missing, Reflectance, Rgb, SceneErrors, ShapeKind, parse_within,
+    Allowance, Loaded, MaterialKind, Missing, Reflectance, Rgb, SceneErrors, ShapeKind,
+    parse_within,
 };
 
 use super::support::{ends, folder};
@@ -31,7 +32,9 @@ pub fn written(name: &str, files: &[(&str, &[u8])]) -> std::path::PathBuf {
 }
 
 fn read(folder: &Path, missing: Missing) -> Result<Loaded, SceneErrors> {
-    let text = format!("{HEAD}[environment]\nradiance = 1\n[[shapes]]\ntype = \"mesh\"\nfile = \"m.obj\"\n");
+    let text = format!(
+        "{HEAD}[environment]\nradiance = 1\n[[shapes]]\ntype = \"mesh\"\nfile = \"m.obj\"\n"
+    );
     let allowance = Allowance { missing, ..Allowance::default() };
     parse_within(&folder.join("scene.toml"), text.as_bytes(), &allowance)
 }
@@ -101,7 +104,10 @@ fn layout_is_no_content() {
         ("windows", lines.replace('\n', "\r\n")),
         ("joined", lines.replace("f 1 2 ", "f 1 2 \\\n").replace("v 1 1 0", "v 1 1\\\r\n0")),
         ("late", format!("{}mtllib m.mtl\n", lines.replace("mtllib m.mtl\n", ""))),
-        ("between", lines.replace("mtllib m.mtl\n", "").replace("usemtl b", "mtllib m.mtl\nusemtl b")),
+        (
+            "between",
+            lines.replace("mtllib m.mtl\n", "").replace("usemtl b", "mtllib m.mtl\nusemtl b"),
+        ),
         ("comments", lines.replace(" a\n", " a # the first\n").replace("3 4\n", "3 4# four\n")),
         ("library", lines.replace("m.mtl\n", "m.mtl # materials\n")),
     ];
@@ -109,7 +115,8 @@ fn layout_is_no_content() {
         let (found, warnings) = parts_of(name, obj.as_bytes(), mtl);
         assert_eq!((found, warnings), (vec![(RED, 2), (GREEN, 2)], vec![]), "{name}");
     }
-    let mtl = [b"newmtl a # red\nKd 1\t0  0 # 1\n# \\\n" as &[u8], b"newmtl\tb\r\nKd 0 1 0"].concat();
+    let mtl =
+        [b"newmtl a # red\nKd 1\t0  0 # 1\n# \\\n" as &[u8], b"newmtl\tb\r\nKd 0 1 0"].concat();
     assert_eq!(parts_of("mtl", lines.as_bytes(), &mtl), (vec![(RED, 2), (GREEN, 2)], vec![]));
 }
 
@@ -117,7 +124,8 @@ fn layout_is_no_content() {
 /// system or not.
 #[test]
 fn libraries_are_found() {
-    let (a, b) = (b"newmtl a\nKd 1 0 0\n" as &[u8], b"newmtl a\nKd 0 0 1\nnewmtl b\nKd 0 1 0\n" as &[u8]);
+    let (a, b) =
+        (b"newmtl a\nKd 1 0 0\n" as &[u8], b"newmtl a\nKd 0 0 1\nnewmtl b\nKd 0 1 0\n" as &[u8]);
     let rest = format!("{SQUARES}usemtl a\nf 1 2 3 4\nusemtl b\nf 2 5 6 3\n");
     let cases: [(&[u8], &str, &str); 9] = [
         (b"mtllib a.mtl b.mtl", "a.mtl", "b.mtl"),
@@ -134,7 +142,11 @@ fn libraries_are_found() {
         let obj = [statement, b"\n", rest.as_bytes()].concat();
         let files = [("m.obj", &obj[..]), (first, a), (second, b)];
         let folder = written(&format!("libraries {number}"), &files);
-        assert_eq!(parts(&folder, Missing::Error), (vec![(RED, 2), (GREEN, 2)], vec![]), "case {number}");
+        assert_eq!(
+            parts(&folder, Missing::Error),
+            (vec![(RED, 2), (GREEN, 2)], vec![]),
+            "case {number}"
+        );
     }
     // An OBJ file in Latin-1 and its library in UTF-8 mean the same name.
     let obj = [b"mtllib m.mtl\nusemtl \xe9\n", SQUARES.as_bytes(), b"f 1 2 3 4\n"].concat();
@@ -142,7 +154,8 @@ fn libraries_are_found() {
     assert_eq!(found, (vec![(RED, 2)], vec![]));
     // Within one library the first counts too, and a warning says so.
     let obj = format!("mtllib m.mtl\nusemtl a\n{SQUARES}f 1 2 3 4\n");
-    let (found, warnings) = parts_of("again", obj.as_bytes(), b"newmtl a\nKd 1 0 0\nnewmtl a\nKd 0 1 0\n");
+    let (found, warnings) =
+        parts_of("again", obj.as_bytes(), b"newmtl a\nKd 1 0 0\nnewmtl a\nKd 0 1 0\n");
     assert_eq!(found, [(RED, 2)]);
     assert!(warnings.len() == 1 && warnings[0].contains("`a` is defined again"), "{warnings:?}");
 }
@@ -155,7 +168,10 @@ fn undefined_materials() {
     let mtl = b"newmtl Grey #1\nKd 1 0 0\nnewmtl unused\nKd 7 x\nmap_Kd nothing.png\n";
     let folder = written("undefined", &[("m.obj", obj.as_bytes()), ("m.mtl", mtl)]);
     let errors = read(&folder, Missing::Error).unwrap_err().errors;
-    assert_eq!(differs(&errors, &[(10, 8, "`Grey #3` is not defined | did you mean `Grey #1`?")]), None);
+    assert_eq!(
+        differs(&errors, &[(10, 8, "`Grey #3` is not defined | did you mean `Grey #1`?")]),
+        None
+    );
     let (found, warnings) = parts(&folder, Missing::Warn);
     assert_eq!(found, [(RED, 1), (GRAY, 1)]);
     assert!(warnings.len() == 1 && warnings[0].contains("rendered in gray"), "{warnings:?}");
@@ -172,7 +188,8 @@ fn missing_files() {
     let expected = [(1, 8, "--missing warn"), (3, 8, "--missing warn")];
     assert_eq!(differs(&errors, &expected), None);
     let loaded = read(&folder, Missing::Warn).unwrap();
-    let expected = [(3, 8, "gone.png"), (1, 8, "gone.mtl"), (8, 8, "`a` is not defined | rendered in gray")];
+    let expected =
+        [(3, 8, "gone.png"), (1, 8, "gone.mtl"), (8, 8, "`a` is not defined | rendered in gray")];
     assert_eq!(differs(&loaded.warnings, &expected), None);
     assert_eq!(parts(&folder, Missing::Warn).0, [(GRAY, 2), (GRAY, 2)]);
     std::fs::write(folder.join("gone.png"), b"no picture").unwrap();
@@ -232,7 +249,11 @@ fn values_out_of_range() {
         ("ks", "Ks 1.5 1.5 1.5", "`1.5` is out of range, and is not used"),
         ("ns", "Ns -1.96", "`-1.96` is out of range, and is not used"),
         ("ni", "Ni nan", "`nan` is not a finite number, and is not used"),
-        ("kd", "Kd 1.000001 -1e-7 0", "2 numbers are out of range by rounding, the worst is `1.000001`"),
+        (
+            "kd",
+            "Kd 1.000001 -1e-7 0",
+            "2 numbers are out of range by rounding, the worst is `1.000001`",
+        ),
         ("ke", "Ke -0.0000001 0 0", "`-0.0000001` is out of range by rounding"),
     ] {
         let (found, warnings) = parts(&of(name, lines), Missing::Error);
@@ -243,7 +264,11 @@ fn values_out_of_range() {
     for (name, lines, expected) in [
         ("kd 3", "Kd 3 0 0", (3, 4, "from 0 to 1")),
         ("kd 1.01", "Kd 1.01 0 0", (3, 4, "from 0 to 1")),
-        ("ind", "Kd 0 -1.#IND 0", (3, 6, "`-1.#IND` is not a finite number, but how a program writes")),
+        (
+            "ind",
+            "Kd 0 -1.#IND 0",
+            (3, 6, "`-1.#IND` is not a finite number, but how a program writes"),
+        ),
         ("qnan", "Ke 0 0 1.#QNAN", (3, 8, "`1.#QNAN` is not a finite number")),
         ("comma", "Kd 0,5 0 0", (3, 4, "a point, not a comma")),
         ("illum x", "illum x", (3, 7, "expected a whole number")),
@@ -270,17 +295,35 @@ fn unused_vertices() {
         let (found, warnings) = parts_of(name, of(lines).as_bytes(), mtl);
         assert_eq!(found, [(RED, 2)], "{name}");
         let count = usize::from(!part.is_empty());
-        assert!(warnings.len() == count && warnings.iter().all(|w| w.contains(part)), "{name}: {warnings:?}");
+        assert!(
+            warnings.len() == count && warnings.iter().all(|w| w.contains(part)),
+            "{name}: {warnings:?}"
+        );
     }
     for (name, lines, face, expected) in [
-        ("used", "v 0 -1.#IND 0\n", "f 1 2 7\n", (8, 5, "`-1.#IND` is not a finite number, but how")),
+        (
+            "used",
+            "v 0 -1.#IND 0\n",
+            "f 1 2 7\n",
+            (8, 5, "`-1.#IND` is not a finite number, but how"),
+        ),
         ("ahead", "f 1 2 7\nv 1.#QNAN 0 0\n", "", (9, 3, "`1.#QNAN` is not a finite number")),
         ("behind", "v nan 0 0\n", "f 1 2 -1\n", (8, 3, "`nan` is not a finite number")),
         ("w", "v 1 0 0 0\n", "f 1 2 7\n", (8, 9, "w = 0")),
-        ("vn", "vn 1.#QNAN 0 0\n", "f 1//1 2//1 3//1\n", (8, 4, "`1.#QNAN` is not a finite number")),
+        (
+            "vn",
+            "vn 1.#QNAN 0 0\n",
+            "f 1//1 2//1 3//1\n",
+            (8, 4, "`1.#QNAN` is not a finite number"),
+        ),
     ] {
-        let obj = format!("usemtl a\n{}", of(lines).replace("usemtl a\n", face)).replace("f 1 2 3 4\n", "");
-        let obj = obj.replacen("usemtl a\n", "", 1).replacen("mtllib m.mtl\n", "usemtl a\nmtllib m.mtl\n", 1);
+        let obj = format!("usemtl a\n{}", of(lines).replace("usemtl a\n", face))
+            .replace("f 1 2 3 4\n", "");
+        let obj = obj.replacen("usemtl a\n", "", 1).replacen(
+            "mtllib m.mtl\n",
+            "usemtl a\nmtllib m.mtl\n",
+            1,
+        );
         let expected = (expected.0 + 1, expected.1, expected.2);
         let folder = written(name, &[("m.obj", obj.as_bytes()), ("m.mtl", mtl)]);
         let errors = read(&folder, Missing::Error).unwrap_err().errors;

@@ -5,7 +5,8 @@ use caustica::scene::parse;
 use super::data;
 use super::support::{HEAD, folder};
 
-/// Whatever bytes a file holds, it loads or is refused; nothing panics, and every error has a place in the text.
+/// Whatever bytes a file holds, it loads or is refused; nothing panics, and every error has a place
+/// in the text.
 #[test]
 fn mutated_files() {
     let mut state = 0x2545_f491_4f6c_dd1d_u64;
@@ -33,7 +34,10 @@ fn mutated_files() {
             if let Err(errors) = parse(&data(name), &bytes) {
                 refused += 1;
                 assert!(!errors.errors.is_empty());
-                assert!(errors.errors.iter().all(|error| error.line_column().is_some()), "{errors:?}");
+                assert!(
+                    errors.errors.iter().all(|error| error.line_column().is_some()),
+                    "{errors:?}"
+                );
             }
         }
     }

@@ -48,8 +48,9 @@ type Case<'c> = (&'c str, &'c [Channel], &'c [[f32; 3]]);
 
 /// An EXR file of 2 x 1 texels: each channel's values.
 fn exr(path: &Path, channels: &[Channel]) {
-    let list =
-        channels.iter().map(|(name, values)| AnyChannel::new(*name, FlatSamples::F32(values.to_vec())));
+    let list = channels
+        .iter()
+        .map(|(name, values)| AnyChannel::new(*name, FlatSamples::F32(values.to_vec())));
     Image::from_channels((2, 1), AnyChannels::sort(list.collect())).write().to_file(path).unwrap();
 }
 
@@ -68,7 +69,11 @@ fn channels_of_exr_files() {
         ("layer", &[("diffuse.R", r), ("diffuse.G", g), ("diffuse.B", b), ("Z", z)], &color),
         ("nested", &[("a.b.R", r), ("a.b.G", g), ("a.b.B", b)], &color),
         ("gray layer", &[("mask.Y", y)], &gray),
-        ("main", &[("R", r), ("G", g), ("B", b), ("x.R", g), ("x.G", g), ("x.B", g), ("x.Y", y)], &color),
+        (
+            "main",
+            &[("R", r), ("G", g), ("B", b), ("x.R", g), ("x.G", g), ("x.B", g), ("x.Y", y)],
+            &color,
+        ),
     ];
     for (name, channels, expected) in cases {
         let file = format!("{name}.exr");
@@ -81,19 +86,29 @@ fn channels_of_exr_files() {
     let several = [("a.R", r), ("a.G", g), ("a.B", b), ("b.Y", y)];
     exr(&folder.join("several.exr"), &several);
     let text = refused(&folder, "several.exr");
-    assert!(text.contains("several layers") && text.contains("`a.B`, `a.G`, `a.R`, `b.Y`"), "{text}");
+    assert!(
+        text.contains("several layers") && text.contains("`a.B`, `a.G`, `a.R`, `b.Y`"),
+        "{text}"
+    );
 }
 
 /// An uncompressed EXR file of luminance and chroma, the latter for every second pixel and line
 /// (OpenEXR file layout).
-fn luminance_chroma(width: i32, height: i32, origin: i32, luminance: impl Fn(i32, i32) -> f32) -> Vec<u8> {
+fn luminance_chroma(
+    width: i32,
+    height: i32,
+    origin: i32,
+    luminance: impl Fn(i32, i32) -> f32,
+) -> Vec<u8> {
     let attribute = |name: &str, kind: &str, value: &[u8]| {
         let length = (value.len() as u32).to_le_bytes();
         [name.as_bytes(), b"\0", kind.as_bytes(), b"\0", &length, value].concat()
     };
-    let numbers = |numbers: &[i32]| numbers.iter().flat_map(|n| n.to_le_bytes()).collect::<Vec<_>>();
-    let channel =
-        |name: &str, step: i32| [name.as_bytes(), b"\0", &numbers(&[2, 0, step, step])[..]].concat();
+    let numbers =
+        |numbers: &[i32]| numbers.iter().flat_map(|n| n.to_le_bytes()).collect::<Vec<_>>();
+    let channel = |name: &str, step: i32| {
+        [name.as_bytes(), b"\0", &numbers(&[2, 0, step, step])[..]].concat()
+    };
     let channels = [channel("BY", 2), channel("RY", 2), channel("Y", 1), vec![0]].concat();
     let window = numbers(&[origin, origin, origin + width - 1, origin + height - 1]);
     let mut file = numbers(&[20_000_630, 2]);
@@ -111,7 +126,11 @@ fn luminance_chroma(width: i32, height: i32, origin: i32, luminance: impl Fn(i32
     }
     file.push(0);
     let line = |y: i32| {
-        let chroma = if y % 2 == 0 { 2 * (origin..origin + width).filter(|x| x % 2 == 0).count() } else { 0 };
+        let chroma = if y % 2 == 0 {
+            2 * (origin..origin + width).filter(|x| x % 2 == 0).count()
+        } else {
+            0
+        };
         let values = (0..width).map(|x| luminance(x, y - origin));
         (0..chroma).map(|_| 7.0).chain(values).flat_map(f32::to_le_bytes).collect::<Vec<_>>()
     };
@@ -136,7 +155,8 @@ fn subsampled_exr() {
     let folder = folder("subsampled");
     for (width, height, origin) in [(4, 4, 0), (5, 3, 0), (6, 5, 2), (1, 1, 0)] {
         let luminance = |x: i32, y: i32| (1 + x + 8 * y) as f32 / 64.0;
-        std::fs::write(folder.join("yc.exr"), luminance_chroma(width, height, origin, luminance)).unwrap();
+        std::fs::write(folder.join("yc.exr"), luminance_chroma(width, height, origin, luminance))
+            .unwrap();
         let (found, warnings) = texels(&folder, "yc.exr");
         let places = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
         let expected: Vec<_> = places.map(|(x, y)| [luminance(x, y); 3]).collect();
@@ -167,7 +187,8 @@ fn formats_by_content() {
     image::DynamicImage::ImageRgb32F(floats).save(folder.join("a.hdr")).unwrap();
     exr(&folder.join("a.exr"), &[("R", [0.5; 2]), ("G", [0.25; 2]), ("B", [0.125; 2])]);
     let hdr = std::fs::read(folder.join("a.hdr")).unwrap();
-    let rgbe = [b"#?RGBE\n" as &[u8], &hdr[hdr.iter().position(|&byte| byte == b'\n').unwrap() + 1..]];
+    let rgbe =
+        [b"#?RGBE\n" as &[u8], &hdr[hdr.iter().position(|&byte| byte == b'\n').unwrap() + 1..]];
     std::fs::write(folder.join("a.rgbe"), rgbe.concat()).unwrap();
     for format in ["png", "jpg", "hdr", "exr", "rgbe"] {
         let (expected, _) = texels(&folder, &format!("a.{format}"));
@@ -198,7 +219,12 @@ fn texels_near_the_limits() {
         exr(&file, &[("R", [0.5, first]), ("G", [0.5, second]), ("B", [0.5, 0.5])]);
     };
     for (first, second, expected, part) in [
-        (-1e-7, 0.5, [0.0, 0.5, 0.5], "1 value out of range by rounding, the worst is -1e-7 at texel (1, 0)"),
+        (
+            -1e-7,
+            0.5,
+            [0.0, 0.5, 0.5],
+            "1 value out of range by rounding, the worst is -1e-7 at texel (1, 0)",
+        ),
         (1.000_000_1, 0.5, [1.0, 0.5, 0.5], "1 value out of range by rounding"),
         (1.000_1, -1e-6, [1.0, 0.0, 0.5], "out of range by rounding"),
         (-1e-4, -1e-6, [0.0, 0.0, 0.5], "2 values out of range by rounding, the worst is -0.0001"),
@@ -226,7 +252,10 @@ fn texels_near_the_limits() {
         parse_within(&folder.join("scene.toml"), text.as_bytes(), &Allowance::default())
     };
     assert!(sky(3.0).unwrap().warnings.is_empty());
-    assert_eq!(differs(&sky(-1e-6).unwrap().warnings, &[(7, 8, "1 value out of range by rounding")]), None);
+    assert_eq!(
+        differs(&sky(-1e-6).unwrap().warnings, &[(7, 8, "1 value out of range by rounding")]),
+        None
+    );
     assert!(sky(-0.1).is_err());
 }
 
@@ -241,14 +270,23 @@ fn numbers_near_the_limits() {
     };
     for (number, inside) in [("1.0000001", 1.0), ("-1e-7", 0.0), ("1.00001", 1.0)] {
         let loaded = read(number).unwrap();
-        assert_eq!(differs(&loaded.warnings, &[(8, 15, "out of range by rounding")]), None, "{number}");
-        let caustica::scene::MaterialKind::Mirror { reflectance } = loaded.scene.materials[0].kind else {
+        assert_eq!(
+            differs(&loaded.warnings, &[(8, 15, "out of range by rounding")]),
+            None,
+            "{number}"
+        );
+        let caustica::scene::MaterialKind::Mirror { reflectance } = loaded.scene.materials[0].kind
+        else {
             panic!()
         };
         assert_eq!(reflectance, caustica::scene::Reflectance::Color([inside; 3]), "{number}");
     }
     for number in ["1.01", "3", "-0.01"] {
-        assert_eq!(differs(&read(number).unwrap_err().errors, &[(8, 15, "out of range")]), None, "{number}");
+        assert_eq!(
+            differs(&read(number).unwrap_err().errors, &[(8, 15, "out of range")]),
+            None,
+            "{number}"
+        );
     }
 }
 
@@ -273,12 +311,14 @@ fn missing_textures() {
 #[test]
 fn scans_of_jpeg_files() {
     let folder = folder("scans");
-    let samplings = [Sampling(1, 1), Sampling(2, 2), Sampling(2, 1), Sampling(1, 2), Sampling(4, 1)];
+    let samplings =
+        [Sampling(1, 1), Sampling(2, 2), Sampling(2, 1), Sampling(1, 2), Sampling(4, 1)];
     let together: &[&[usize]] = &[&[0, 1, 2]];
     let split: [&[&[usize]]; 3] = [&[&[0], &[1], &[2]], &[&[0], &[1, 2]], &[&[0, 1], &[2]]];
     let all = || split.into_iter().chain([together]);
     let cases = samplings.iter().flat_map(|&sampling| all().map(move |scans| (sampling, scans)));
-    for (is_progressive, (sampling, scans)) in cases.flat_map(|case| [(false, case), (true, case)]) {
+    for (is_progressive, (sampling, scans)) in cases.flat_map(|case| [(false, case), (true, case)])
+    {
         let (bytes, expected) = jpeg(sampling, scans, is_progressive);
         std::fs::write(folder.join("t.jpg"), bytes).unwrap();
         let name = format!("{sampling:?} {scans:?}, progressive: {is_progressive}");

@@ -18,7 +18,9 @@ use caustica::gpu::recorder::Recorder;
 use caustica::gpu::{AdapterChoice, Gpu, GpuEngine};
 use caustica::kernels::gather::gather;
 use caustica::kernels::grid_build::{SortedRecords, build_grid, record_bucket, record_code};
-use caustica::kernels::records::{Dispatch, FilmPixel, Gathered, PhotonRecord, Statistics, VisiblePoint};
+use caustica::kernels::records::{
+    Dispatch, FilmPixel, Gathered, PhotonRecord, Statistics, VisiblePoint,
+};
 use caustica::kernels::resolve::resolve;
 use caustica::pack::{Packed, pack};
 use caustica::plan::{Kernel, Plan};
@@ -98,8 +100,8 @@ impl Driver {
         let known = self.programs.borrow().get(&shader.source).cloned();
         known.unwrap_or_else(|| {
             let source = shader.source.clone();
-            let program =
-                Program::of_shader(&self.gpu, kernel, features, shader).expect("a kernel that compiles");
+            let program = Program::of_shader(&self.gpu, kernel, features, shader)
+                .expect("a kernel that compiles");
             let program = Rc::new(program);
             self.programs.borrow_mut().insert(source, program.clone());
             program
@@ -139,7 +141,8 @@ impl Bench {
         let mut engine: Box<dyn Engine> = match self.on {
             On::Cpu => Box::new(CpuEngine::new(packed, plan)),
             On::Software => Box::new(
-                GpuEngine::new(&AdapterChoice::Software, &packed, plan).expect("the software driver"),
+                GpuEngine::new(&AdapterChoice::Software, &packed, plan)
+                    .expect("the software driver"),
             ),
         };
         for _ in 0..settings.passes {
@@ -156,8 +159,8 @@ impl Bench {
         }
     }
 
-    /// Folds one pass after another into one pixel with one visible point that gathers the same in all of them: `resolve`
-    /// under the local rule.
+    /// Folds one pass after another into one pixel with one visible point that gathers the same in
+    /// all of them: `resolve` under the local rule.
     pub fn resolve(
         &self,
         point: VisiblePoint,
@@ -176,7 +179,8 @@ impl Bench {
         let gpu = &self.driver().gpu;
         let mut recorder = Recorder::new(gpu).expect("a recorder");
         let features = Features::from(["local"]);
-        let shader = compose(Kernel::Resolve, &features, &SceneTables::default()).expect("composed");
+        let shader =
+            compose(Kernel::Resolve, &features, &SceneTables::default()).expect("composed");
         let program = self.driver().program(Kernel::Resolve, &features, shader);
         let upload = |name, bytes: &[u8]| (name, gpu.upload(name, bytes).expect("a buffer"));
         let buffers = [
@@ -248,7 +252,8 @@ fn gather_on_driver(
 ) -> bool {
     let gpu = &driver.gpu;
     let mut recorder = Recorder::new(gpu).expect("a recorder");
-    let shader = compose(Kernel::Gather, &Features::default(), &SceneTables::default()).expect("composed");
+    let shader =
+        compose(Kernel::Gather, &Features::default(), &SceneTables::default()).expect("composed");
     let program = driver.program(Kernel::Gather, &Features::default(), shader);
     let upload = |name, bytes: &[u8]| (name, gpu.upload(name, bytes).expect("a buffer"));
     let buffers = [
@@ -273,8 +278,13 @@ fn gather_on_driver(
 
 fn trace(scene: &tables::Scene, ray: &Ray) -> Found {
     let hit = intersect_scene(scene, ray);
-    let mut found =
-        Found { t: hit.t, reference: hit.reference, position: Vec3::ZERO, error: 0.0, normal: Vec3::ZERO };
+    let mut found = Found {
+        t: hit.t,
+        reference: hit.reference,
+        position: Vec3::ZERO,
+        error: 0.0,
+        normal: Vec3::ZERO,
+    };
     if found.is_hit() {
         let s = surface_at(scene, ray, &hit);
         found = Found { position: s.position, error: s.error, normal: s.normal, ..found };
@@ -308,7 +318,10 @@ fn trace_on_driver(driver: &Driver, scene: &tables::Scene, rays: &[Ray]) -> Vec<
         let points: Vec<VisiblePoint> = rays.iter().map(given).collect();
         let mut buffers = vec![
             ("scene", gpu.upload("scene", &tables.bytes).expect("a buffer")),
-            ("visible_points", gpu.upload("visible_points", cast_slice(&points)).expect("a buffer")),
+            (
+                "visible_points",
+                gpu.upload("visible_points", cast_slice(&points)).expect("a buffer"),
+            ),
             ("counters", gpu.storage("counters", 32).expect("a buffer")),
         ];
         for (name, _, content) in long_tables(scene) {
@@ -321,7 +334,8 @@ fn trace_on_driver(driver: &Driver, scene: &tables::Scene, rays: &[Ray]) -> Vec<
         let end = rays.len() as u32;
         recorder.dispatch(gpu, &program, &group, &Dispatch { first: 0, end, ..Dispatch::zeroed() });
         recorder.finish(gpu).expect("done");
-        let bytes = gpu.read(&buffers[1].1, (rays.len() * size_of::<VisiblePoint>()) as u64).expect("read");
+        let bytes =
+            gpu.read(&buffers[1].1, (rays.len() * size_of::<VisiblePoint>()) as u64).expect("read");
         let answers: Vec<VisiblePoint> = pod_collect_to_vec(&bytes);
         // the engine, too, traces again what the driver has stopped
         out.extend(rays.iter().zip(&answers).map(|(ray, a)| match a.state {

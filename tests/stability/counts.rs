@@ -1,7 +1,9 @@
 //! Radii, counters and means far from one.
 
 use bytemuck::Zeroable;
-use caustica::kernels::records::{Dispatch, FilmPixel, Gathered, PhotonRecord, Statistics, VisiblePoint};
+use caustica::kernels::records::{
+    Dispatch, FilmPixel, Gathered, PhotonRecord, Statistics, VisiblePoint,
+};
 use caustica::math::oct_encode;
 use caustica::plan::global_scale_sq;
 use caustica::settings::{Direct, Radius, RadiusRule, RenderSettings};
@@ -103,8 +105,10 @@ fn gathered_error(b: &Bench, radius: f64) -> f64 {
         }
     }
     let near = |p: &DVec3, c: &DVec3| p.distance_squared(*c) <= radius * radius;
-    let exact: usize =
-        centers.iter().map(|c| photons.iter().filter(|(p, front)| *front && near(p, c)).count()).sum();
+    let exact: usize = centers
+        .iter()
+        .map(|c| photons.iter().filter(|(p, front)| *front && near(p, c)).count())
+        .sum();
     let inv_cell = (0.5 / radius) as f32;
     let dispatch = Dispatch { inv_cell, mask: 63, scale_sq: 1.0, ..Dispatch::zeroed() };
     let n = normal.as_vec3();
@@ -133,7 +137,8 @@ fn gathered_error(b: &Bench, radius: f64) -> f64 {
 }
 
 fn radii(b: &Bench) -> Figure {
-    let held = if b.long { &[1.0, 0.1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6][..] } else { &[1.0, 1e-3, 1e-6] };
+    let held =
+        if b.long { &[1.0, 0.1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6][..] } else { &[1.0, 1e-3, 1e-6] };
     let worst = held.iter().map(|&r| gathered_error(b, r).abs()).fold(0.0, f64::max);
     let below = 100.0 * gathered_error(b, 1e-7);
     let note = format!("Below, f32 positions are coarse: {below:+.1} % at 1e-7; `check` warns.");
@@ -175,7 +180,13 @@ fn local_rule(b: &Bench) -> (Figure, Figure) {
         let gathered = Gathered { flux: Vec3::ONE, count: m, ..Gathered::zeroed() };
         let point = VisiblePoint { radius: 1.0, ..VisiblePoint::zeroed() };
         let list: Vec<Dispatch> = (0..passes)
-            .map(|i| Dispatch { eye_samples: 1, alpha, photons: 1e6, passes_done: i, ..Dispatch::zeroed() })
+            .map(|i| Dispatch {
+                eye_samples: 1,
+                alpha,
+                photons: 1e6,
+                passes_done: i,
+                ..Dispatch::zeroed()
+            })
             .collect();
         let (found, _) = b.resolve(point, gathered, statistics, FilmPixel::zeroed(), &list);
         let (mut t, mut scale) = (start as f64, if start == 0 { 1.0 } else { f64::from(0.3f32) });
@@ -199,7 +210,8 @@ fn means(b: &Bench) -> Figure {
         let film = FilmPixel { mean: Vec3::ONE, ..FilmPixel::zeroed() };
         // values 1 / (pi photons): the number of photons makes them
         let point = VisiblePoint { radius: 1.0, ..VisiblePoint::zeroed() };
-        let gathered = Gathered { flux: Vec3::splat(std::f32::consts::PI), count: 1, ..Gathered::zeroed() };
+        let gathered =
+            Gathered { flux: Vec3::splat(std::f32::consts::PI), count: 1, ..Gathered::zeroed() };
         let value = |i: u32| 2.0 - f64::from(i % 7) / 7.0;
         let list: Vec<Dispatch> = (0..count)
             .map(|i| Dispatch {
@@ -211,7 +223,8 @@ fn means(b: &Bench) -> Figure {
             })
             .collect();
         let (_, film) = b.resolve(point, gathered, Statistics::zeroed(), film, &list);
-        let exact = (0..count).fold(1.0f64, |mean, i| mean + (value(i) - mean) / f64::from(start + i + 1));
+        let exact =
+            (0..count).fold(1.0f64, |mean, i| mean + (value(i) - mean) / f64::from(start + i + 1));
         let mean = f64::from(film.mean.x) + f64::from(film.carry.x);
         worst = worst.max((mean / exact - 1.0).abs());
     }
@@ -226,8 +239,10 @@ fn photon_counts(b: &Bench) -> Figure {
         [[lights]]\ntype = \"point\"\nposition = [0, 1, 0]\nintensity = 1.0\n";
     let p = 0.5 * (1.0 - 0.5f64.sqrt());
     // rho / pi times the flux that arrives over the area of the shape, which clips the gather disc
-    let truth = 0.5 / std::f64::consts::PI * (4.0 * std::f64::consts::PI * p) / std::f64::consts::PI;
-    let mut counts = vec![(1, b.samples(200, 4000)), (2, b.samples(100, 2000)), (255, 8), (65_537, 1)];
+    let truth =
+        0.5 / std::f64::consts::PI * (4.0 * std::f64::consts::PI * p) / std::f64::consts::PI;
+    let mut counts =
+        vec![(1, b.samples(200, 4000)), (2, b.samples(100, 2000)), (255, 8), (65_537, 1)];
     if b.long {
         counts.push((16_700_000, 1));
     }
@@ -248,7 +263,10 @@ fn photon_counts(b: &Bench) -> Figure {
         worst = worst.max((mean - truth).abs() / sigma);
         all.push(format!("{:+.1e}", mean / truth - 1.0));
     }
-    Figure { value: worst, note: format!("Relative errors, fewest photons first: {}.", all.join(", ")) }
+    Figure {
+        value: worst,
+        note: format!("Relative errors, fewest photons first: {}.", all.join(", ")),
+    }
 }
 
 fn many_equal(b: &Bench) -> Figure {

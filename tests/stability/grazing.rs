@@ -92,7 +92,8 @@ fn bodies() -> Vec<Body> {
     ]
 }
 
-/// Worst distance of points found at grazing incidence, in error bounds, and how many rays meet what they leave.
+/// Worst distance of points found at grazing incidence, in error bounds, and how many rays meet
+/// what they leave.
 fn grazing(b: &Bench) -> (Figure, Figure) {
     let mut rng = Rng(17);
     let (mut worst, mut again, mut met, mut all) = (0.0f64, 0, 0, 0);

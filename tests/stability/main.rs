@@ -1,5 +1,5 @@
-//! Every row of the table of extremes holds, on the CPU and on the software driver, with fewer samples than the table
-//! that `cargo run --release --example stability` prints.
+//! Every row of the table of extremes holds, on the CPU and on the software driver, with fewer
+//! samples than the table that `cargo run --release --example stability` prints.
 
 mod bench;
 mod counts;
@@ -28,8 +28,10 @@ fn hold(section: &str, on: On) {
     for row in rows {
         let start = std::time::Instant::now();
         let figure = (row.measure)(&bench);
-        let report =
-            format!("{}: {} {:e}, bound {:e} {}", row.name, row.unit, figure.value, row.bound, figure.note);
+        let report = format!(
+            "{}: {} {:e}, bound {:e} {}",
+            row.name, row.unit, figure.value, row.bound, figure.note
+        );
         println!("{on:?} {:5.1} s {report}", start.elapsed().as_secs_f64());
         if !row.admits(&figure) {
             failed.push(format!("{report} ({})", row.how));
@@ -65,7 +67,11 @@ held! {
 fn no_number_does_not_pass() {
     for (_, rows) in sections() {
         for row in rows {
-            assert!(!row.admits(&f64::NAN.into()) && !row.admits(&f64::INFINITY.into()), "{}", row.name);
+            assert!(
+                !row.admits(&f64::NAN.into()) && !row.admits(&f64::INFINITY.into()),
+                "{}",
+                row.name
+            );
         }
     }
 }

@@ -70,11 +70,15 @@ pub fn rows() -> Vec<Row> {
     ]
 }
 
-/// Nearest distance above zero at which a ray meets the sphere through `anchor` with outward normal `n` and curvature `k`.
+/// Nearest distance above zero at which a ray meets the sphere through `anchor` with outward normal
+/// `n` and curvature `k`.
 fn sphere_t(o: DVec3, v: DVec3, anchor: DVec3, n: DVec3, k: f64) -> Option<f64> {
     let d = o - anchor;
-    let (a, b, c) =
-        (0.5 * k * v.length_squared(), v.dot(n) + k * d.dot(v), d.dot(n) + 0.5 * k * d.length_squared());
+    let (a, b, c) = (
+        0.5 * k * v.length_squared(),
+        v.dot(n) + k * d.dot(v),
+        d.dot(n) + 0.5 * k * d.length_squared(),
+    );
     let root = b * b - 4.0 * a * c;
     let q = -0.5 * (b + root.max(0.0).sqrt().copysign(b));
     let both = [q / a, c / q];
@@ -83,7 +87,12 @@ fn sphere_t(o: DVec3, v: DVec3, anchor: DVec3, n: DVec3, k: f64) -> Option<f64> 
 }
 
 pub fn ray(origin: DVec3, direction: DVec3) -> Ray {
-    Ray { origin: origin.as_vec3(), t_min: 0.0, direction: direction.normalize().as_vec3(), t_max: 1e30 }
+    Ray {
+        origin: origin.as_vec3(),
+        t_min: 0.0,
+        direction: direction.normalize().as_vec3(),
+        t_max: 1e30,
+    }
 }
 
 fn floors(b: &Bench) -> Figure {
@@ -108,7 +117,8 @@ fn floors(b: &Bench) -> Figure {
         for (ray, found) in rays.iter().zip(b.trace(&packed.scene, &rays)) {
             let (o, v) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
             let k = n.unit / radius;
-            let truth = sphere_t(o, v, n.point(DVec3::ZERO), DVec3::Y, k).expect("the floor lies below");
+            let truth =
+                sphere_t(o, v, n.point(DVec3::ZERO), DVec3::Y, k).expect("the floor lies below");
             // over the horizon of the smallest the ray may just touch
             let at = o + v * truth - n.point(DVec3::ZERO);
             let sin = -v.dot((DVec3::Y + at * k).normalize());
@@ -184,7 +194,9 @@ fn ball_on_giant(b: &Bench) -> Figure {
             Some((t, which)) => {
                 let index = found.reference & ((1 << REFERENCE_BITS) - 1);
                 // toward the horizon t has no bound
-                found.is_hit() && index == which && (t > 100.0 || (f64::from(found.t) / t - 1.0).abs() < 1e-5)
+                found.is_hit()
+                    && index == which
+                    && (t > 100.0 || (f64::from(found.t) / t - 1.0).abs() < 1e-5)
             }
         };
         wrong += u32::from(!same);
@@ -200,8 +212,14 @@ fn of_triangles(mesh: &[[Vec3; 3]]) -> Scene {
     scene.world.bounds_max = tree.bounds.max;
     scene.nodes = tree.nodes;
     scene.refs = tree.refs.iter().map(|&i| reference(KIND_TRIANGLE, i as usize)).collect();
-    let triangle =
-        |p: &[Vec3; 3]| Triangle { p0: p[0], material: 0, p1: p[1], light: NONE, p2: p[2], attributes: NONE };
+    let triangle = |p: &[Vec3; 3]| Triangle {
+        p0: p[0],
+        material: 0,
+        p1: p[1],
+        light: NONE,
+        p2: p[2],
+        attributes: NONE,
+    };
     scene.triangles = mesh.iter().map(triangle).collect();
     scene
 }
@@ -210,8 +228,9 @@ fn of_triangles(mesh: &[[Vec3; 3]]) -> Scene {
 fn sliver_cube() -> Vec<[Vec3; 3]> {
     let mut out = Vec::new();
     for axis in 0..3 {
-        let unit =
-            |k: usize| Vec3::from_array(std::array::from_fn(|i| if i == (axis + k) % 3 { 1.0 } else { 0.0 }));
+        let unit = |k: usize| {
+            Vec3::from_array(std::array::from_fn(|i| if i == (axis + k) % 3 { 1.0 } else { 0.0 }))
+        };
         for side in [0.0, 1.0] {
             let (a, e1, e2) = (unit(0) * side, unit(1), unit(2));
             let p = a + e1 * 0.5 + e2 * 1e-7;
@@ -242,7 +261,8 @@ fn slivers(b: &Bench) -> Figure {
     let found = b.trace(&scene, &rays);
     let bad = found.iter().filter(|f| {
         let p = f.position.as_dvec3();
-        let off = p.to_array().iter().map(|x| x.abs().min((x - 1.0).abs())).fold(f64::MAX, f64::min);
+        let off =
+            p.to_array().iter().map(|x| x.abs().min((x - 1.0).abs())).fold(f64::MAX, f64::min);
         !f.is_hit() || off > f64::from(f.error)
     });
     (bad.count() as f64).into()
@@ -253,7 +273,11 @@ fn leaks(b: &Bench) -> Figure {
     let mut rng = Rng(11);
     let mut sum = 0;
     for torus in [false, true] {
-        let mesh = if torus { meshes::displaced_torus(120, 60) } else { meshes::displaced_sphere(120, 60) };
+        let mesh = if torus {
+            meshes::displaced_torus(120, 60)
+        } else {
+            meshes::displaced_sphere(120, 60)
+        };
         let scene = of_triangles(&mesh);
         let rays: Vec<Ray> = (0..count)
             .map(|_| {
@@ -279,7 +303,9 @@ fn exhaustive(b: &Bench) -> Figure {
     let mut rng = Rng(13);
     let mut differ = 0;
     for (name, prims) in meshes::scenes() {
-        if !["lattice of coplanar grids", "slivers", "every size", "all in a tilted plane"].contains(&name) {
+        if !["lattice of coplanar grids", "slivers", "every size", "all in a tilted plane"]
+            .contains(&name)
+        {
             continue;
         }
         let mesh: Vec<[Vec3; 3]> = prims

@@ -32,7 +32,11 @@ pub fn rows() -> Vec<Row> {
             unit: "relative difference of means",
             bound: 2e-3,
             measure: |b| {
-                let scales = if b.long { &[1e-6, 1e-5, 1e-3, 1e-1, 1e2, 1e4, 1e6][..] } else { &[1e-6, 1e6] };
+                let scales = if b.long {
+                    &[1e-6, 1e-5, 1e-3, 1e-1, 1e2, 1e4, 1e6][..]
+                } else {
+                    &[1e-6, 1e6]
+                };
                 compared(b, scales.iter().map(|&scale| (scale, DVec3::ZERO)))
             },
         },
@@ -43,7 +47,8 @@ pub fn rows() -> Vec<Row> {
             unit: "relative difference of means",
             bound: 2e-3,
             measure: |b| {
-                let shifts = if b.long { &[1e-3, 1e-1, 1e1, 1e3, 1e5, 1e7, 1e8][..] } else { &[1e-3, 1e8] };
+                let shifts =
+                    if b.long { &[1e-3, 1e-1, 1e1, 1e3, 1e5, 1e7, 1e8][..] } else { &[1e-3, 1e8] };
                 compared(b, shifts.iter().map(|&s| (1.0, DVec3::new(0.9, -0.3, 0.4) * (4.0 * s))))
             },
         },
@@ -54,8 +59,11 @@ pub fn rows() -> Vec<Row> {
             unit: "shadowed pixels",
             bound: 0.0,
             measure: |b| {
-                let scales =
-                    if b.long { &[1e-6, 1e-4, 1e-2, 1.0, 1e2, 1e4, 1e6][..] } else { &[1e-6, 1.0, 1e6] };
+                let scales = if b.long {
+                    &[1e-6, 1e-4, 1e-2, 1.0, 1e2, 1e4, 1e6][..]
+                } else {
+                    &[1e-6, 1.0, 1e6]
+                };
                 let places = if b.long { &[0.0, 1.0, 1e3, 1e5, 1e7][..] } else { &[0.0, 1e7] };
                 let at = |&scale: &f64| places.iter().map(|&p| shadowed(b, scale, p)).sum::<u32>();
                 f64::from(scales.iter().map(at).sum::<u32>()).into()
@@ -104,7 +112,10 @@ fn compared(b: &Bench, changes: impl Iterator<Item = (f64, DVec3)>) -> Figure {
         touched = touched.max(pixels.filter(|(p, q)| !p.iter().zip(*q).all(near)).count());
     }
     let share = 100.0 * touched as f64 / base.rgb.len() as f64;
-    Figure { value: worst, note: format!("At most {share:.1} % of the pixels differ by more than 1e-3.") }
+    Figure {
+        value: worst,
+        note: format!("At most {share:.1} % of the pixels differ by more than 1e-3."),
+    }
 }
 
 /// Pixels on the lit side of a ball that are black.
@@ -122,13 +133,15 @@ fn shadowed(b: &Bench, radius: f64, place: f64) -> u32 {
         list(at),
         list(at),
     );
-    let settings = RenderSettings { passes: 1, photons: 1, max_bounces: 0, ..RenderSettings::default() };
+    let settings =
+        RenderSettings { passes: 1, photons: 1, max_bounces: 0, ..RenderSettings::default() };
     let picture = b.render(&text, &settings);
     let to_sun = -DVec3::new(0.1, 0.05, -1.0).normalize();
     let tan = 10f64.to_radians().tan();
     let mut dark = 0;
     for (i, c) in (0u32..).zip(&picture.rgb) {
-        let p = DVec2::new(f64::from(i % n) + 0.5, f64::from(i / n) + 0.5) * (2.0 / f64::from(n)) - 1.0;
+        let p =
+            DVec2::new(f64::from(i % n) + 0.5, f64::from(i / n) + 0.5) * (2.0 / f64::from(n)) - 1.0;
         let d = DVec3::new(p.x * tan, -p.y * tan, -1.0).normalize();
         let o = from / radius;
         let half = o.dot(d);

@@ -49,8 +49,9 @@ pub fn rows() -> Vec<Row> {
             unit: WRONG,
             bound: 10.0,
             measure: |b| {
-                let at =
-                    |scale| tally(b, &profiles(), &CLASSES, &[Placement { scale, ..Placement::default() }]);
+                let at = |scale| {
+                    tally(b, &profiles(), &CLASSES, &[Placement { scale, ..Placement::default() }])
+                };
                 told(&at(1e-6).add(at(1e6)))
             },
         },
@@ -136,11 +137,21 @@ fn extreme_points() -> Vec<Profile> {
         profile("tips at both ends", &[&[[0.0, 0.0], [0.5, 0.5], [0.0, 1.0]]]),
         profile("needle tip", &[&[[0.5, 0.0], [0.0, 0.2], [0.0, 1.0]]]),
         profile("touches the axis in between", &[&[[0.4, 0.0], [-0.4, 0.5], [0.4, 1.0]]]),
-        profile("vertical and horizontal tangents", &[&[[0.2, 0.0], [0.8, 0.0], [0.8, 0.9], [0.3, 0.9]]]),
-        profile("horizontal disc and vertical wall", &[&[[0.0, 0.0], [0.5, 0.0]], &[[0.5, 0.0], [0.5, 0.8]]]),
+        profile(
+            "vertical and horizontal tangents",
+            &[&[[0.2, 0.0], [0.8, 0.0], [0.8, 0.9], [0.3, 0.9]]],
+        ),
+        profile(
+            "horizontal disc and vertical wall",
+            &[&[[0.0, 0.0], [0.5, 0.0]], &[[0.5, 0.0], [0.5, 0.8]]],
+        ),
         profile(
             "a segment of length zero",
-            &[&[[0.5, 0.0], [0.6, 0.5]], &[[0.6, 0.5], [0.6, 0.5], [0.6, 0.5]], &[[0.6, 0.5], [0.2, 1.0]]],
+            &[
+                &[[0.5, 0.0], [0.6, 0.5]],
+                &[[0.6, 0.5], [0.6, 0.5], [0.6, 0.5]],
+                &[[0.6, 0.5], [0.2, 1.0]],
+            ],
         ),
         profile(
             "coinciding control points",
@@ -166,7 +177,8 @@ fn squeezed(factors: &[f64]) -> Vec<Profile> {
     out
 }
 
-/// The surface alone. Its tables are filled up to one length, so that the driver compiles one kernel for all.
+/// The surface alone. Its tables are filled up to one length, so that the driver compiles one
+/// kernel for all.
 fn scene_of(placed: &Placed) -> Scene {
     let mut scene = Scene::empty();
     scene.revolutions = placed.tables.revolutions.clone();
@@ -244,7 +256,8 @@ fn steps(b: &Bench) -> Figure {
         for (o, d) in rays_at(b, &placed, &CLASSES) {
             let mut best = patch_miss();
             for patch in &t.patches {
-                let hit = intersect_patch(&t.profile_points, &t.revolutions[0], patch, o, d, 0.0, best.t);
+                let hit =
+                    intersect_patch(&t.profile_points, &t.revolutions[0], patch, o, d, 0.0, best.t);
                 if hit.t < best.t {
                     best = hit;
                 }

@@ -1,4 +1,5 @@
-//! The rows: an extreme each, with the theory, the way it is measured, and the bound that must hold.
+//! The rows: an extreme each, with the theory, the way it is measured, and the bound that must
+//! hold.
 
 use super::bench::Bench;
 
@@ -42,7 +43,10 @@ impl Row {
 pub fn sections() -> Vec<(&'static str, Vec<Row>)> {
     vec![
         ("Scale and place", super::scale::rows()),
-        ("Shapes and rays", super::rays::rows().into_iter().chain(super::grazing::rows()).collect()),
+        (
+            "Shapes and rays",
+            super::rays::rows().into_iter().chain(super::grazing::rows()).collect(),
+        ),
         ("Surfaces of revolution", super::surfaces::rows()),
         ("Radius, counts and means", super::counts::rows()),
         ("Light, film and camera", super::view::rows()),

@@ -1,6 +1,7 @@
-// Rays against the scene, in place of eye paths. A visible point brings origin (position), t_min (radius), direction
-// (weight) and t_max (alpha) of a ray, and takes the hit back: t (radius), reference (normal), u, v and the error bound
-// (radiance), position, and the surface's normal (weight).
+// Rays against the scene, in place of eye paths. A visible point brings origin (position), t_min
+// (radius), direction (weight) and t_max (alpha) of a ray, and takes the hit back: t (radius),
+// reference (normal), u, v and the error bound (radiance), position, and the surface's normal
+// (weight).
 
 @compute @workgroup_size(64)
 fn eye_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups) groups: vec3u) {

@@ -95,7 +95,8 @@ fn strengths(b: &Bench) -> Figure {
             "[materials.m]\ntype = \"diffuse\"\nreflectance = 0.0\n\
              [[shapes]]\ntype = \"disc\"\ncenter = [0, 0, 0]\nnormal = [0, 1, 0]\nradius = 9\nmaterial = \"m\"\nemission = {strength:?}\n"
         );
-        largest = largest.max(worst(&b.render(&(film(8, 8, 40.0) + &wall), &one_pass()).rgb, strength));
+        largest =
+            largest.max(worst(&b.render(&(film(8, 8, 40.0) + &wall), &one_pass()).rgb, strength));
     }
     largest.into()
 }
@@ -128,11 +129,16 @@ fn lamps(b: &Bench) -> Figure {
     // a camera beside the lamp's axis, looking at a small part of the floor below it
     let look = "version = 1\n[camera]\nposition = [0.3, 0.4, 0]\ntarget = [0, 0, 0]\nfov = 0.5\n[film]\nwidth = 48\nheight = 48\n";
     let small = lamp("type = \"disc\"\ncenter = [0, 1, 0]\nnormal = [0, -1, 0]\nradius = 1e-6");
-    let small = mean(&b.render(&(look.to_owned() + &small), &settings).rgb) / (0.5 * 3.0 * 1e-12) - 1.0;
+    let small =
+        mean(&b.render(&(look.to_owned() + &small), &settings).rgb) / (0.5 * 3.0 * 1e-12) - 1.0;
     let large = lamp("type = \"sphere\"\ncenter = [0, 1000001, 0]\nradius = 1e6");
     let sin_sq = (1e6f64 / 1_000_001.0).powi(2);
-    let large = mean(&b.render(&(look.to_owned() + &large), &settings).rgb) / (0.5 * 3.0 * sin_sq) - 1.0;
-    Figure { value: small.abs().max(large.abs()), note: format!("Small: {small:+.1e}, large: {large:+.1e}.") }
+    let large =
+        mean(&b.render(&(look.to_owned() + &large), &settings).rgb) / (0.5 * 3.0 * sin_sq) - 1.0;
+    Figure {
+        value: small.abs().max(large.abs()),
+        note: format!("Small: {small:+.1e}, large: {large:+.1e}."),
+    }
 }
 
 fn bounces(b: &Bench) -> Figure {
@@ -172,7 +178,8 @@ fn bounces(b: &Bench) -> Figure {
 const COLUMNS: u32 = 32;
 const ROWS: u32 = 32;
 
-/// A picture of a wall at distance 1 that shines left of x = `edge`; the view is along -z. The wall reaches `reach` far.
+/// A picture of a wall at distance 1 that shines left of x = `edge`; the view is along -z. The wall
+/// reaches `reach` far.
 fn edge_picture(b: &Bench, fov: f64, edge: f64, reach: f64, lens: &str, passes: u32) -> Vec<f64> {
     let text = format!(
         "version = 1\n[camera]\nposition = [0, 0, 1]\ntarget = [0, 0, 0]\nfov = {fov:?}\n{lens}\n\
@@ -183,15 +190,17 @@ fn edge_picture(b: &Bench, fov: f64, edge: f64, reach: f64, lens: &str, passes: 
         2.0 * reach
     );
     let picture = b.render(&text, &RenderSettings { passes, ..one_pass() });
-    let column =
-        |x: u32| (0..ROWS).map(|y| f64::from(picture.rgb[(y * COLUMNS + x) as usize][0])).sum::<f64>();
+    let column = |x: u32| {
+        (0..ROWS).map(|y| f64::from(picture.rgb[(y * COLUMNS + x) as usize][0])).sum::<f64>()
+    };
     (0..COLUMNS).map(|x| column(x) / f64::from(ROWS)).collect()
 }
 
 fn fields(b: &Bench) -> Figure {
     let off = [0.01, 179.0].map(|fov: f64| {
         let half = (0.5 * fov).to_radians().tan();
-        let seen: f64 = edge_picture(b, fov, 0.3 * half, 2.0 * half, "", b.samples(32, 256)).iter().sum();
+        let seen: f64 =
+            edge_picture(b, fov, 0.3 * half, 2.0 * half, "", b.samples(32, 256)).iter().sum();
         (seen - 0.65 * f64::from(COLUMNS)).abs()
     });
     off.into_iter().fold(0.0, f64::max).into()
@@ -204,7 +213,8 @@ fn apertures(b: &Bench) -> Figure {
     let mut worst = 0.0f64;
     for (aperture, focus) in [(0.0, 1.0), (0.02, 0.05), (10.0, 0.97), (1e3, 0.9997)] {
         let lens = format!("aperture = {aperture:?}\nfocus = {focus:?}");
-        // a ray from x on the lens through s on the plane at distance one meets the wall at x (1 - 1/focus) + s
+        // a ray from x on the lens through s on the plane at distance one meets the wall at x (1 -
+        // 1/focus) + s
         let blur = aperture * (1.0f64 - 1.0 / focus).abs();
         let seen = edge_picture(b, fov, 0.0, 2.0 * (tan + blur), &lens, passes);
         let share = |s: f64| match s / blur {
@@ -213,7 +223,8 @@ fn apertures(b: &Bench) -> Figure {
         };
         for (x, seen) in (0..COLUMNS).zip(seen) {
             let at = |k: u32| {
-                (2.0 * (f64::from(x) + (f64::from(k) + 0.5) / 64.0) / f64::from(COLUMNS) - 1.0) * tan
+                (2.0 * (f64::from(x) + (f64::from(k) + 0.5) / 64.0) / f64::from(COLUMNS) - 1.0)
+                    * tan
             };
             let truth = (0..64).map(|k| share(at(k))).sum::<f64>() / 64.0;
             let n = f64::from(ROWS * passes);

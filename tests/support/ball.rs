@@ -54,7 +54,8 @@ material = "white"
 emission = [20.0, 20.0, 20.0]
 "#;
 
-/// The scene file, with a picture of so many pixels, the lines of `[render]`, and shapes beside the ball.
+/// The scene file, with a picture of so many pixels, the lines of `[render]`, and shapes beside the
+/// ball.
 pub fn ball((width, height): (u32, u32), render: &str, shapes: &[Shape]) -> String {
     format!(
         r#"version = 1

@@ -1,4 +1,5 @@
-//! What tests have in common: folders of their own, the program as a user calls it, and a scene to call it with.
+//! What tests have in common: folders of their own, the program as a user calls it, and a scene to
+//! call it with.
 
 #![allow(dead_code)] // each test file uses its part
 

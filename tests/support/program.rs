@@ -22,7 +22,11 @@ pub fn text(bytes: &[u8]) -> String {
 
 /// Standard error on one line, as it was before long lines were broken to be printed.
 pub fn error(output: &Output) -> String {
-    text(&output.stderr).split_whitespace().filter(|word| *word != "│").collect::<Vec<_>>().join(" ")
+    text(&output.stderr)
+        .split_whitespace()
+        .filter(|word| *word != "│")
+        .collect::<Vec<_>>()
+        .join(" ")
 }
 
 /// Runs what ends with this code and has these words on standard error.
@@ -52,7 +56,8 @@ pub fn fails(folder: &Path, arguments: &[&str], code: i32, words: &[&str]) {
 
 /// The objects on the lines of `--json`.
 pub fn json_lines(stdout: &[u8]) -> Vec<serde_json::Value> {
-    let read = |line: &str| serde_json::from_str(line).unwrap_or_else(|error| panic!("{line}: {error}"));
+    let read =
+        |line: &str| serde_json::from_str(line).unwrap_or_else(|error| panic!("{line}: {error}"));
     text(stdout).lines().map(read).collect()
 }
 

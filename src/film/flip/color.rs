@@ -4,12 +4,25 @@ use std::sync::LazyLock;
 
 use glam::{DMat3, DVec3};
 
-/// CIE XYZ of linear sRGB, from the primaries' and D65's chromaticities in fractions, as the authors' programs have it.
+/// CIE XYZ of linear sRGB, from the primaries' and D65's chromaticities in fractions, as the
+/// authors' programs have it.
 static XYZ_FROM_RGB: LazyLock<DMat3> = LazyLock::new(|| {
     let columns = [
-        DVec3::new(10_135_552.0 / 24_577_794.0, 2_613_072.0 / 12_288_897.0, 1_425_312.0 / 73_733_382.0),
-        DVec3::new(8_788_810.0 / 24_577_794.0, 8_788_810.0 / 12_288_897.0, 8_788_810.0 / 73_733_382.0),
-        DVec3::new(4_435_075.0 / 24_577_794.0, 887_015.0 / 12_288_897.0, 70_074_185.0 / 73_733_382.0),
+        DVec3::new(
+            10_135_552.0 / 24_577_794.0,
+            2_613_072.0 / 12_288_897.0,
+            1_425_312.0 / 73_733_382.0,
+        ),
+        DVec3::new(
+            8_788_810.0 / 24_577_794.0,
+            8_788_810.0 / 12_288_897.0,
+            8_788_810.0 / 73_733_382.0,
+        ),
+        DVec3::new(
+            4_435_075.0 / 24_577_794.0,
+            887_015.0 / 12_288_897.0,
+            70_074_185.0 / 73_733_382.0,
+        ),
     ];
     DMat3::from_cols_array_2d(&columns.map(|column| column.to_array()))
 });
@@ -38,7 +51,8 @@ pub fn rgb_from_ycxcz(color: DVec3) -> DVec3 {
     *RGB_FROM_RELATIVE * DVec3::new(y + color.y / 500.0, y, y - color.z / 200.0)
 }
 
-/// L*a*b* of linear sRGB in [0, 1], with a* and b* times L* / 100: colors are seen weaker in the dark (Hunt 1952).
+/// L*a*b* of linear sRGB in [0, 1], with a* and b* times L* / 100: colors are seen weaker in the
+/// dark (Hunt 1952).
 pub fn hunt_lab(rgb: DVec3) -> DVec3 {
     const DELTA: f64 = 6.0 / 29.0;
     let root = |t: f64| {
@@ -49,7 +63,8 @@ pub fn hunt_lab(rgb: DVec3) -> DVec3 {
     DVec3::new(lab.x, 0.01 * lab.x * lab.y, 0.01 * lab.x * lab.z)
 }
 
-/// The HyAB distance (Abasi, Tehran & Fairchild 2019): city-block between lightness and color, Euclidean within color.
+/// The HyAB distance (Abasi, Tehran & Fairchild 2019): city-block between lightness and color,
+/// Euclidean within color.
 pub fn hyab(a: DVec3, b: DVec3) -> f64 {
     let d = a - b;
     d.x.abs() + (d.y * d.y + d.z * d.z).sqrt()

@@ -36,7 +36,8 @@ impl Exposures {
         }
         // the upper of two middle values, as in the authors' program
         let median = luminances[luminances.len() / 2].max(DARKEST);
-        let (start, stop) = ((unmapped(BRIGHT) / largest).log2(), (unmapped(BRIGHT) / median).log2());
+        let (start, stop) =
+            ((unmapped(BRIGHT) / largest).log2(), (unmapped(BRIGHT) / median).log2());
         // A largest one below DARKEST would turn the order round.
         let stop = stop.max(start);
         Self { start, stop, count: ((stop - start).ceil() as u32).max(2) }
@@ -58,8 +59,8 @@ pub struct HdrFlip {
     pub exposures: Exposures,
 }
 
-/// HDR-FLIP of `a` against the truth `b`, with the ACES tone mapper; values below zero count as zero. Not symmetric,
-/// since the exposures are the truth's.
+/// HDR-FLIP of `a` against the truth `b`, with the ACES tone mapper; values below zero count as
+/// zero. Not symmetric, since the exposures are the truth's.
 ///
 /// # Errors
 /// For pictures that cannot be compared.
@@ -82,7 +83,8 @@ fn aces(x: f64) -> f64 {
     y.clamp(0.0, 1.0)
 }
 
-/// The exposed radiance that becomes `y`, for `y` below one: the positive root of a quadratic equation.
+/// The exposed radiance that becomes `y`, for `y` below one: the positive root of a quadratic
+/// equation.
 fn unmapped(y: f64) -> f64 {
     let [k0, k1, k2, k3, k4, k5] = ACES;
     let (a, b, c) = (k0 - k3 * y, k1 - k4 * y, k2 - k5 * y);

@@ -1,8 +1,9 @@
 //! ꟻLIP: how different two pictures look when one alternates between them on a screen.
 //!
-//! Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström & Fairchild, "FLIP: A Difference Evaluator for Alternating
-//! Images" (2020), for pictures on a display; Andersson, Nilsson, Shirley & Akenine-Möller, "Visualizing Errors in
-//! Rendered High Dynamic Range Images" (2021), for radiance. Both give a number in [0, 1] for every pixel.
+//! Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström & Fairchild, "FLIP: A Difference Evaluator
+//! for Alternating Images" (2020), for pictures on a display; Andersson, Nilsson, Shirley &
+//! Akenine-Möller, "Visualizing Errors in Rendered High Dynamic Range Images" (2021), for radiance.
+//! Both give a number in [0, 1] for every pixel.
 
 mod color;
 mod eye;
@@ -15,7 +16,8 @@ use eye::Seen;
 
 pub use hdr::{Exposures, HdrFlip, hdr_flip};
 
-/// The papers' viewing distance, in pixels per degree of visual angle: a screen 0.7 m and 3840 pixels wide, 0.7 m away.
+/// The papers' viewing distance, in pixels per degree of visual angle: a screen 0.7 m and 3840
+/// pixels wide, 0.7 m away.
 pub const PIXELS_PER_DEGREE: f64 = 3840.0 / 0.7 * 0.7 * (std::f64::consts::PI / 180.0);
 
 /// LDR-FLIP of linear values, which are clipped to [0, 1]. Symmetric.

@@ -7,7 +7,8 @@ use crate::engine::{EngineError, PassReport, PhotonEnds};
 use crate::kernels::records::Dispatch;
 use crate::plan::{Kernel, Step};
 
-/// Records of each batch, rays and photons' ends of a pass, and invocations that the driver stopped.
+/// Records of each batch, rays and photons' ends of a pass, and invocations that the driver
+/// stopped.
 struct Counted {
     records: Vec<u32>,
     rays: u64,
@@ -74,8 +75,8 @@ impl GpuEngine {
         Ok(())
     }
 
-    /// A pass with so many photons a batch; nothing where that has to be thrown away, since records did not fit or the driver
-    /// stopped long loops.
+    /// A pass with so many photons a batch; nothing where that has to be thrown away, since records
+    /// did not fit or the driver stopped long loops.
     pub(super) fn phases(&mut self, batch: u32) -> Result<Option<PassReport>, EngineError> {
         self.plan.cancel.check()?;
         let pass = self.passes_done;
@@ -85,10 +86,13 @@ impl GpuEngine {
             ..PassReport::default()
         };
         for (number, steps) in self.plan.phases(pass, batch).into_iter().enumerate() {
-            let (resolve, trace): (Vec<_>, Vec<_>) = steps.into_iter().partition(|s| adds_up(s.kernel));
+            let (resolve, trace): (Vec<_>, Vec<_>) =
+                steps.into_iter().partition(|s| adds_up(s.kernel));
             let counted = self.trace(&trace, number == 0)?;
-            let photons = trace.iter().filter(|s| s.kernel == Kernel::PhotonTrace).map(|s| s.dispatch.end);
-            let overflow = |(photons, records): (u32, &u32)| *records > self.plan.capacity && photons > 1;
+            let photons =
+                trace.iter().filter(|s| s.kernel == Kernel::PhotonTrace).map(|s| s.dispatch.end);
+            let overflow =
+                |(photons, records): (u32, &u32)| *records > self.plan.capacity && photons > 1;
             let overflows = photons.zip(&counted.records).any(overflow);
             // tiles before this one have been added to the film
             if counted.stopped > 0 && (batch == 1 || self.scene.is_none() || self.torn) {
@@ -103,7 +107,10 @@ impl GpuEngine {
                 self.mend_aovs(step)?;
             }
             self.flush()?;
-            let eyes = trace.iter().filter(|s| s.kernel == Kernel::EyeTrace).map(|s| s.dispatch.end as u64);
+            let eyes = trace
+                .iter()
+                .filter(|s| s.kernel == Kernel::EyeTrace)
+                .map(|s| s.dispatch.end as u64);
             report.eye_paths += eyes.sum::<u64>();
             report.rays += counted.rays;
             report.eye_rays += counted.eye_rays;
@@ -125,7 +132,8 @@ impl GpuEngine {
             self.readings = self.gpu.storage("readings", bytes)?;
         }
         let shared = self.shared.get("gathered");
-        let own = self.chunks.iter().filter_map(|chunk| chunk.get("gathered").filter(|_| first_phase));
+        let own =
+            self.chunks.iter().filter_map(|chunk| chunk.get("gathered").filter(|_| first_phase));
         for gathered in own.chain(shared) {
             self.recorder.clear(&self.gpu, gathered, None);
         }
@@ -148,7 +156,12 @@ impl GpuEngine {
                 );
             }
             if step.kernel == Kernel::PhotonTrace {
-                self.recorder.copy(&self.gpu, (&self.shared["counters"], 0), (&self.readings, offset), 4);
+                self.recorder.copy(
+                    &self.gpu,
+                    (&self.shared["counters"], 0),
+                    (&self.readings, offset),
+                    4,
+                );
                 offset += 4;
             }
         }
@@ -166,14 +179,16 @@ impl GpuEngine {
         Ok(Counted { records, rays, eye_rays, ends, stopped: words[3] })
     }
 
-    /// Traces again, on the CPU, the paths of a step that a software driver stopped; the number of their rays.
+    /// Traces again, on the CPU, the paths of a step that a software driver stopped; the number of
+    /// their rays.
     fn mend(&mut self, step: &Step) -> Result<u64, EngineError> {
         if self.scene.is_none() || !matches!(step.kernel, Kernel::EyeTrace | Kernel::PhotonTrace) {
             return Ok(0);
         }
         self.flush()?;
         let counters = &self.shared["counters"];
-        let mut words: Vec<u32> = bytemuck::pod_collect_to_vec(&self.gpu.read(counters, COUNTERS_BYTES)?);
+        let mut words: Vec<u32> =
+            bytemuck::pod_collect_to_vec(&self.gpu.read(counters, COUNTERS_BYTES)?);
         let Some(scene) = self.scene.as_ref().filter(|_| words[3] > 0) else {
             return Ok(0);
         };
@@ -183,8 +198,14 @@ impl GpuEngine {
             let buffer = own.unwrap_or_else(|| &self.shared["visible_points"]);
             mend_points(&self.gpu, scene, &step.dispatch, sampled, buffer)?
         } else {
-            let mended =
-                mend_photons(&self.gpu, scene, &step.dispatch, sampled, &self.shared["records"], words[0])?;
+            let mended = mend_photons(
+                &self.gpu,
+                scene,
+                &step.dispatch,
+                sampled,
+                &self.shared["records"],
+                words[0],
+            )?;
             words[0] = mended.records;
             for (word, count) in words[ENDS..].iter_mut().zip(mended.ends) {
                 *word += count;
@@ -197,14 +218,16 @@ impl GpuEngine {
         Ok(rays)
     }
 
-    /// Traces again, on the CPU, the samples of a step that a software driver stopped; fails where there is another driver.
+    /// Traces again, on the CPU, the samples of a step that a software driver stopped; fails where
+    /// there is another driver.
     fn mend_aovs(&mut self, step: &Step) -> Result<(), EngineError> {
         if step.kernel != Kernel::AovTrace {
             return Ok(());
         }
         self.flush()?;
         let counters = &self.shared["counters"];
-        let mut words: Vec<u32> = bytemuck::pod_collect_to_vec(&self.gpu.read(counters, COUNTERS_BYTES)?);
+        let mut words: Vec<u32> =
+            bytemuck::pod_collect_to_vec(&self.gpu.read(counters, COUNTERS_BYTES)?);
         if words[STOPPED_COUNT] == 0 {
             return Ok(());
         }
@@ -212,18 +235,28 @@ impl GpuEngine {
             return Err(self.unfinished());
         };
         let sampled = self.plan.features.has("sampled") && self.plan.features.has("direct_layer");
-        mend_aovs(&self.gpu, scene, &step.dispatch, sampled, &self.chunks[step.chunk as usize]["aovs"])?;
+        mend_aovs(
+            &self.gpu,
+            scene,
+            &step.dispatch,
+            sampled,
+            &self.chunks[step.chunk as usize]["aovs"],
+        )?;
         words[STOPPED_COUNT] = 0;
         self.gpu.write(counters, bytemuck::cast_slice(&words));
         Ok(())
     }
 
     fn unfinished(&self) -> EngineError {
-        EngineError::Unsupported(format!("{} leaves long loops unfinished; take --device cpu", self.device))
+        EngineError::Unsupported(format!(
+            "{} leaves long loops unfinished; take --device cpu",
+            self.device
+        ))
     }
 }
 
-/// Whether a kernel adds to what passes before have found, so that it must not run in a pass that is thrown away.
+/// Whether a kernel adds to what passes before have found, so that it must not run in a pass that
+/// is thrown away.
 fn adds_up(kernel: Kernel) -> bool {
     matches!(kernel, Kernel::ResolveParts | Kernel::Resolve | Kernel::AovTrace)
 }

@@ -19,7 +19,8 @@ use std::collections::BTreeMap;
 use std::time::Instant;
 
 /// Buffers of which each chunk of visible points has its own.
-const CHUNK_BUFFERS: [&str; 6] = ["visible_points", "gathered", "film", "statistics", "aovs", "parts"];
+const CHUNK_BUFFERS: [&str; 6] =
+    ["visible_points", "gathered", "film", "statistics", "aovs", "parts"];
 /// What to change when the device is too small.
 const MEND: &str = "make the picture smaller, or take --device cpu";
 
@@ -52,8 +53,13 @@ impl GpuEngine {
         Self::with(choice, packed, plan, Compiling::Together)
     }
 
-    /// The same, more slowly: the kernels are made ready one after another, so that [`Self::compile_seconds`] can tell.
-    pub fn measured(choice: &AdapterChoice, packed: &Packed, plan: Plan) -> Result<Self, EngineError> {
+    /// The same, more slowly: the kernels are made ready one after another, so that
+    /// [`Self::compile_seconds`] can tell.
+    pub fn measured(
+        choice: &AdapterChoice,
+        packed: &Packed,
+        plan: Plan,
+    ) -> Result<Self, EngineError> {
         Self::with(choice, packed, plan, Compiling::OneByOne)
     }
 
@@ -68,12 +74,13 @@ impl GpuEngine {
                 "path tracing runs on the CPU alone: take --device cpu".into(),
             ));
         }
-        let kept = Kept { gpu: Gpu::open(choice)?, pace: Pace::default(), programs: BTreeMap::new() };
+        let kept =
+            Kept { gpu: Gpu::open(choice)?, pace: Pace::default(), programs: BTreeMap::new() };
         Self::on(kept, packed, plan, compiling)
     }
 
-    /// An engine for another scene, camera or plan on the device of this one, which keeps its programs where the new ones
-    /// would be the same.
+    /// An engine for another scene, camera or plan on the device of this one, which keeps its
+    /// programs where the new ones would be the same.
     pub fn renewed(self, packed: &Packed, plan: Plan) -> Result<Self, EngineError> {
         let tables = SceneTables::new(&packed.scene);
         let same = self.plan.features == plan.features
@@ -87,7 +94,12 @@ impl GpuEngine {
         Kept { gpu: self.gpu, pace: self.pace, programs }
     }
 
-    fn on(kept: Kept, packed: &Packed, plan: Plan, compiling: Compiling) -> Result<Self, EngineError> {
+    fn on(
+        kept: Kept,
+        packed: &Packed,
+        plan: Plan,
+        compiling: Compiling,
+    ) -> Result<Self, EngineError> {
         let Kept { gpu, pace, programs } = kept;
         let scene = SceneTables::new(&packed.scene);
         gpu.check_sizes(&sizes(&plan, &packed.scene), MEND)?;
@@ -134,8 +146,9 @@ impl GpuEngine {
         Ok(engine)
     }
 
-    /// Makes the kernels of the plan ready, some of which are `kept`. Each other one runs once over nothing, since some drivers
-    /// compile at the first run, and do so while the next kernels are checked.
+    /// Makes the kernels of the plan ready, some of which are `kept`. Each other one runs once over
+    /// nothing, since some drivers compile at the first run, and do so while the next kernels are
+    /// checked.
     fn compile(
         &mut self,
         scene: &SceneTables,
@@ -147,14 +160,16 @@ impl GpuEngine {
         let needed = |kernel: &Kernel| steps.iter().any(|step| step.kernel == *kernel);
         let missing: Vec<Kernel> =
             Kernel::ALL.into_iter().filter(|k| needed(k) && !kept.contains_key(k)).collect();
-        let Self { gpu, plan, recorder, programs, groups, shared, chunks, compile_seconds, .. } = self;
+        let Self { gpu, plan, recorder, programs, groups, shared, chunks, compile_seconds, .. } =
+            self;
         let device = gpu.summary.name.clone();
         let first = missing.first().map(|kernel| kernel.stem());
         let mut running = Running::new(&device, first, missing.len());
         let mut take = |program: Program, checking: Option<f64>| {
             let begun = Instant::now();
             for (number, own) in (0..).zip(chunks.iter()) {
-                let Some(step) = steps.iter().find(|s| (s.kernel, s.chunk) == (program.kernel, number))
+                let Some(step) =
+                    steps.iter().find(|s| (s.kernel, s.chunk) == (program.kernel, number))
                 else {
                     continue;
                 };
@@ -185,7 +200,9 @@ impl GpuEngine {
             programs.insert(program.kernel, program);
             Ok(())
         };
-        kept.into_values().filter(|program| needed(&program.kernel)).try_for_each(|kept| take(kept, None))?;
+        kept.into_values()
+            .filter(|program| needed(&program.kernel))
+            .try_for_each(|kept| take(kept, None))?;
         make_programs(gpu, &missing, &plan.features, scene, compiling, |program, checking| {
             take(program, Some(checking))
         })?;

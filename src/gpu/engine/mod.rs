@@ -19,10 +19,11 @@ use std::collections::BTreeMap;
 
 pub use equip::{CompileSeconds, sizes};
 
-/// Bytes of `counters`: records of the batch, the pass's rays in two words, invocations that the driver stopped, photons by
-/// how they ended, and one unused.
+/// Bytes of `counters`: records of the batch, the pass's rays in two words, invocations that the
+/// driver stopped, photons by how they ended, and one unused.
 const COUNTERS_BYTES: u64 = 32;
-/// What is read back of a pass: the counters, their two words of rays before the first photon, and each batch's records.
+/// What is read back of a pass: the counters, their two words of rays before the first photon, and
+/// each batch's records.
 const READINGS_BYTES: u64 = COUNTERS_BYTES + 8;
 /// The word of the invocations that the driver stopped.
 const STOPPED_COUNT: usize = 3;
@@ -97,8 +98,8 @@ impl GpuEngine {
         std::mem::take(&mut self.submissions)
     }
 
-    /// Whether [`Engine::timed_pass`] reads the device's own clock. If not, it waits for each kernel, and the times hold
-    /// the way to the device and back.
+    /// Whether [`Engine::timed_pass`] reads the device's own clock. If not, it waits for each
+    /// kernel, and the times hold the way to the device and back.
     pub fn has_clock(&self) -> bool {
         self.gpu.has_clock()
     }
@@ -117,7 +118,8 @@ impl Engine for GpuEngine {
                     self.passes_done += 1;
                     return Ok(report);
                 }
-                // thrown away and run again with batches half as large, which also shortens the loops over photons
+                // thrown away and run again with batches half as large, which also shortens the
+                // loops over photons
                 None => batch = (batch / 2).max(1),
             }
         }
@@ -163,7 +165,9 @@ impl Engine for GpuEngine {
 
     fn gathered(&mut self) -> Result<u64, EngineError> {
         if self.plan.in_turn().contains(&"gathered") {
-            return Err(EngineError::Unsupported("what tiles have gathered is not kept".to_owned()));
+            return Err(EngineError::Unsupported(
+                "what tiles have gathered is not kept".to_owned(),
+            ));
         }
         Ok(self.gathered_points()?.iter().map(|gathered| u64::from(gathered.count)).sum())
     }

@@ -10,8 +10,11 @@ use crate::plan::Plan;
 impl GpuEngine {
     /// The content of a buffer of the plan (a chunk's, if it is one of those), for tests.
     pub fn content(&self, name: &str, chunk: u32) -> Result<Vec<u8>, EngineError> {
-        let buffer =
-            self.chunks.get(chunk as usize).and_then(|own| own.get(name)).or_else(|| self.shared.get(name));
+        let buffer = self
+            .chunks
+            .get(chunk as usize)
+            .and_then(|own| own.get(name))
+            .or_else(|| self.shared.get(name));
         buffer.map_or(Ok(Vec::new()), |buffer| self.gpu.read(buffer, buffer.size()))
     }
 
@@ -32,8 +35,10 @@ impl GpuEngine {
         self.plan.take_over(state)?;
         self.passes_done = state.passes;
         let LayerState { aovs, parts, counts, .. } = &state.layers;
-        let gathered: Vec<_> =
-            counts.iter().map(|count| Gathered { count: *count, ..bytemuck::Zeroable::zeroed() }).collect();
+        let gathered: Vec<_> = counts
+            .iter()
+            .map(|count| Gathered { count: *count, ..bytemuck::Zeroable::zeroed() })
+            .collect();
         let gathered = bytemuck::cast_slice(&gathered);
         for (name, bytes) in [
             ("film", &state.film[..]),
@@ -43,7 +48,9 @@ impl GpuEngine {
             ("gathered", gathered),
         ] {
             for (number, chunk) in (0..).zip(&self.chunks) {
-                if let (Some(buffer), Some(part)) = (chunk.get(name), bytes.get(self.place(name, number))) {
+                if let (Some(buffer), Some(part)) =
+                    (chunk.get(name), bytes.get(self.place(name, number)))
+                {
                     self.gpu.write(buffer, part);
                 }
             }
@@ -51,8 +58,12 @@ impl GpuEngine {
         self.gpu.check()
     }
 
-    /// What `make` makes of what is found beside radiance, which is read back; its default where nothing is asked for.
-    pub(super) fn with_found<T: Default>(&self, make: impl Fn(&Plan, &Found) -> T) -> Result<T, EngineError> {
+    /// What `make` makes of what is found beside radiance, which is read back; its default where
+    /// nothing is asked for.
+    pub(super) fn with_found<T: Default>(
+        &self,
+        make: impl Fn(&Plan, &Found) -> T,
+    ) -> Result<T, EngineError> {
         if self.plan.aovs.is_empty() {
             return Ok(T::default());
         }
@@ -77,8 +88,8 @@ impl GpuEngine {
         self.chunked("film", self.plan.eye_samples)
     }
 
-    /// What all chunks hold in a buffer of theirs, an item for each `samples` visible points; nothing where there is no such
-    /// buffer.
+    /// What all chunks hold in a buffer of theirs, an item for each `samples` visible points;
+    /// nothing where there is no such buffer.
     fn chunked<T: bytemuck::Pod>(&self, name: &str, samples: u32) -> Result<Vec<T>, EngineError> {
         self.check_whole()?;
         let mut all = Vec::new();
