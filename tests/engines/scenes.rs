@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use caustica::pack::{Packed, pack};
 use caustica::plan::Plan;
-use caustica::scene::{Aovs, parse};
+use caustica::scene::{Aovs, Loaded, parse};
 
 use super::support::folder;
 
@@ -442,8 +442,8 @@ pub fn planned(settings: &str, rest: &str) -> (Packed, Plan) {
     planned_at((48, 36), settings, rest)
 }
 
-/// The same with a picture of another size.
-pub fn planned_at((width, height): (u32, u32), settings: &str, rest: &str) -> (Packed, Plan) {
+/// The scene of these settings and shapes with a picture of this size.
+pub fn loaded_at((width, height): (u32, u32), settings: &str, rest: &str) -> Loaded {
     let film = format!("[film]\nwidth = {width}\nheight = {height}");
     let lens = if settings.contains("ppm") || rest.contains("lake") {
         "aperture = 0.1\nfocus = 4.3\n"
@@ -457,6 +457,12 @@ pub fn planned_at((width, height): (u32, u32), settings: &str, rest: &str) -> (P
     let mut loaded = parse(&path, text.as_bytes())
         .unwrap_or_else(|e| panic!("{:?}\n{text}", miette::Report::new(e)));
     loaded.scene.film.aovs = Aovs::parse("object").unwrap();
+    loaded
+}
+
+/// The same with a picture of another size.
+pub fn planned_at(size: (u32, u32), settings: &str, rest: &str) -> (Packed, Plan) {
+    let loaded = loaded_at(size, settings, rest);
     let packed = pack(&loaded.scene, loaded.scene.film.width, loaded.scene.film.height).unwrap();
     let plan = Plan::new(&packed, &loaded.settings);
     (packed, plan)
