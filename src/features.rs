@@ -1,62 +1,130 @@
-//! What a scene and its settings require; whatever is not named here is neither compiled nor
-//! allocated.
+//! What a scene and its settings require; nothing else is compiled or allocated.
 
 use super::shapes::intersect::has_patch_set;
 use super::tables::*;
 use crate::settings::{Direct, Method, RadiusRule, RenderSettings};
-use std::collections::BTreeSet;
 
-/// Names that fence optional code in shaders (`//#if name`).
-pub const ALL: [&str; 42] = [
-    "triangle",
-    "attributes",
-    "sphere",
-    "rectangle",
-    "disc",
-    "cuboid",
-    "plane",
-    "revolution",
-    "patch_set",
-    "facets",
-    "unbounded",
-    "kdtree",
-    "few",
-    "textures",
-    "checker",
-    "texels",
-    "mirror",
-    "glass",
-    "nested",
-    "astride",
-    "metal",
-    "specular",
-    "absorption",
-    "lights",
-    "cells",
-    "guided",
-    "area_triangle",
-    "area_sphere",
-    "area_rectangle",
-    "area_disc",
-    "area_cuboid",
-    "area_revolution",
-    "point",
-    "spot",
-    "infinite",
-    "far",
-    "environment",
-    "environment_image",
-    "lens",
-    "sampled",
-    "local",
-    "split",
-];
+macro_rules! features {
+    ($($(#[$doc:meta])* $feature:ident = $name:literal,)*) => {
+        /// A part of the renderer that a scene may do without.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub enum Feature {
+            $($(#[$doc])* $feature,)*
+        }
 
-/// A set of names from [`ALL`], and "photons" where photons are traced at all, "first" where such
-/// are stored that no diffuse surface has scattered, and "direct_layer" where direct light is to be
-/// told by itself.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Features(BTreeSet<&'static str>);
+        impl Feature {
+            /// All features.
+            pub const ALL: &[Self] = &[$(Self::$feature),*];
+
+            /// The name that fences optional code in shaders (`//#if name`).
+            pub const fn name(self) -> &'static str {
+                match self {
+                    $(Self::$feature => $name,)*
+                }
+            }
+        }
+    };
+}
+
+features! {
+    /// Triangles.
+    Triangle = "triangle",
+    /// Triangles with corner normals, texture coordinates or an outline.
+    Attributes = "attributes",
+    /// Spheres.
+    Sphere = "sphere",
+    /// Rectangles.
+    Rectangle = "rectangle",
+    /// Flat discs.
+    Disc = "disc",
+    /// Axis-parallel boxes.
+    Cuboid = "cuboid",
+    /// Infinite planes.
+    Plane = "plane",
+    /// Bézier surfaces of revolution.
+    Revolution = "revolution",
+    /// Leaves of the kd-tree defer the patches of revolutions to the end of the walk.
+    PatchSet = "patch_set",
+    /// Outlines of flat shapes, which clip the gather disc.
+    Facets = "facets",
+    /// Shapes that are tested outside of the kd-tree.
+    Unbounded = "unbounded",
+    /// A kd-tree with more than one leaf, or with many shapes in it.
+    KdTree = "kdtree",
+    /// A few shapes, which shaders test one after another by name.
+    Few = "few",
+    /// Textures of any kind.
+    Textures = "textures",
+    /// Checker textures.
+    Checker = "checker",
+    /// Image textures.
+    Texels = "texels",
+    /// Mirrors.
+    Mirror = "mirror",
+    /// Dielectrics.
+    Glass = "glass",
+    /// Glass bodies that may overlap.
+    Nested = "nested",
+    /// A lamp or lens that a glass surface crosses: its medium is found point by point.
+    Astride = "astride",
+    /// Rough conductors.
+    Metal = "metal",
+    /// Mirrors or dielectrics.
+    Specular = "specular",
+    /// Dielectrics that absorb.
+    Absorption = "absorption",
+    /// Any light.
+    Lights = "lights",
+    /// Probabilities of lights that depend on the shading point.
+    Cells = "cells",
+    /// Maps of where photons are worth emitting.
+    Guided = "guided",
+    /// Emitting triangles.
+    AreaTriangle = "area_triangle",
+    /// Emitting spheres.
+    AreaSphere = "area_sphere",
+    /// Emitting rectangles.
+    AreaRectangle = "area_rectangle",
+    /// Emitting discs.
+    AreaDisc = "area_disc",
+    /// Emitting boxes.
+    AreaCuboid = "area_cuboid",
+    /// Emitting surfaces of revolution.
+    AreaRevolution = "area_revolution",
+    /// Point lights.
+    Point = "point",
+    /// Spot lights.
+    Spot = "spot",
+    /// Light from infinity: suns and environments.
+    Infinite = "infinite",
+    /// Emission discs that are aimed at parts of the scene.
+    Far = "far",
+    /// An environment, constant or from an image.
+    Environment = "environment",
+    /// An environment image.
+    EnvironmentImage = "environment_image",
+    /// A thin lens.
+    Lens = "lens",
+    /// Direct light from shadow rays.
+    Sampled = "sampled",
+    /// The local radius rule.
+    Local = "local",
+    /// Separate gather radii for caustic and indirect photons.
+    Split = "split",
+    /// Photon tracing.
+    Photons = "photons",
+    /// Photons that no diffuse surface has scattered are stored.
+    First = "first",
+    /// The layer of direct light.
+    DirectLayer = "direct_layer",
+}
+
+/// A set of [`Feature`]s.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Features(u64);
+
+/// The set holds one bit for each feature.
+const _: () = assert!(Feature::ALL.len() <= u64::BITS as usize);
 
 /// Most shapes that shaders test one after another, without a kd-tree.
 const FEW: usize = 16;
@@ -77,39 +145,39 @@ pub fn few(scene: &Scene) -> &[u32] {
 impl Features {
     /// What `scene` rendered with `settings` requires.
     pub fn of(scene: &Scene, settings: &RenderSettings) -> Self {
-        let mut set = BTreeSet::new();
-        let mut put = |name: &'static str, needed: bool| {
+        let mut set = Self::default();
+        let mut put = |feature, needed| {
             if needed {
-                set.insert(name);
+                set = set.with(feature);
             }
         };
-        put("triangle", !scene.triangles.is_empty());
-        put("attributes", !scene.attributes.is_empty());
-        put("sphere", !scene.spheres.is_empty());
-        put("rectangle", !scene.rectangles.is_empty());
-        put("disc", !scene.discs.is_empty());
-        put("cuboid", !scene.cuboids.is_empty());
-        put("plane", !scene.planes.is_empty());
-        put("facets", !scene.facets.is_empty());
-        put("revolution", !scene.revolutions.is_empty());
-        put("unbounded", !scene.unbounded.is_empty());
+        put(Feature::Triangle, !scene.triangles.is_empty());
+        put(Feature::Attributes, !scene.attributes.is_empty());
+        put(Feature::Sphere, !scene.spheres.is_empty());
+        put(Feature::Rectangle, !scene.rectangles.is_empty());
+        put(Feature::Disc, !scene.discs.is_empty());
+        put(Feature::Cuboid, !scene.cuboids.is_empty());
+        put(Feature::Plane, !scene.planes.is_empty());
+        put(Feature::Facets, !scene.facets.is_empty());
+        put(Feature::Revolution, !scene.revolutions.is_empty());
+        put(Feature::Unbounded, !scene.unbounded.is_empty());
         let few = !few(scene).is_empty();
         let kdtree = !scene.nodes.is_empty() && !few;
-        put("kdtree", kdtree);
-        put("patch_set", kdtree && has_patch_set(scene));
-        put("few", few);
+        put(Feature::KdTree, kdtree);
+        put(Feature::PatchSet, kdtree && has_patch_set(scene));
+        put(Feature::Few, few);
         let material = |kind| scene.materials.iter().any(|m| m.kind == kind);
-        put("mirror", material(MATERIAL_MIRROR));
-        put("glass", material(MATERIAL_GLASS));
-        put("nested", scene.world.nested != 0);
+        put(Feature::Mirror, material(MATERIAL_MIRROR));
+        put(Feature::Glass, material(MATERIAL_GLASS));
+        put(Feature::Nested, scene.world.nested != 0);
         let astride = scene.lights.iter().any(|l| l.medium == ASTRIDE);
-        put("astride", astride || scene.camera.medium == ASTRIDE);
-        put("metal", material(MATERIAL_METAL));
-        put("specular", material(MATERIAL_MIRROR) || material(MATERIAL_GLASS));
-        put("absorption", scene.materials.iter().any(|m| m.absorption.max_element() > 0.0));
-        put("textures", !scene.textures.is_empty());
-        put("checker", scene.textures.iter().any(|t| t.kind == TEXTURE_CHECKER));
-        put("texels", !scene.texels.is_empty());
+        put(Feature::Astride, astride || scene.camera.medium == ASTRIDE);
+        put(Feature::Metal, material(MATERIAL_METAL));
+        put(Feature::Specular, material(MATERIAL_MIRROR) || material(MATERIAL_GLASS));
+        put(Feature::Absorption, scene.materials.iter().any(|m| m.absorption.max_element() > 0.0));
+        put(Feature::Textures, !scene.textures.is_empty());
+        put(Feature::Checker, scene.textures.iter().any(|t| t.kind == TEXTURE_CHECKER));
+        put(Feature::Texels, !scene.texels.is_empty());
         let light = |kind| scene.lights.iter().any(|l| l.kind == kind);
         let area = |kind| {
             scene
@@ -117,53 +185,52 @@ impl Features {
                 .iter()
                 .any(|l| l.kind == LIGHT_AREA && l.reference >> REFERENCE_BITS == kind)
         };
-        put("lights", !scene.lights.is_empty());
-        put("cells", !scene.cells.is_empty());
-        put("area_triangle", area(KIND_TRIANGLE));
-        put("area_sphere", area(KIND_SPHERE));
-        put("area_rectangle", area(KIND_RECTANGLE));
-        put("area_disc", area(KIND_DISC));
-        put("area_cuboid", area(KIND_CUBOID));
-        put("area_revolution", area(KIND_REVOLUTION));
-        put("guided", scene.world.guided != 0);
-        put("point", light(LIGHT_POINT));
-        put("spot", light(LIGHT_SPOT));
-        put("infinite", light(LIGHT_SUN) || light(LIGHT_CONSTANT) || light(LIGHT_IMAGE));
-        put("far", scene.world.far != 0);
-        put("environment", light(LIGHT_CONSTANT) || light(LIGHT_IMAGE));
-        put("environment_image", light(LIGHT_IMAGE));
-        put("lens", scene.camera.aperture > 0.0);
-        put("sampled", settings.direct == Direct::Sampled && !scene.lights.is_empty());
-        put("local", settings.radius_rule == RadiusRule::Local);
+        put(Feature::Lights, !scene.lights.is_empty());
+        put(Feature::Cells, !scene.cells.is_empty());
+        put(Feature::AreaTriangle, area(KIND_TRIANGLE));
+        put(Feature::AreaSphere, area(KIND_SPHERE));
+        put(Feature::AreaRectangle, area(KIND_RECTANGLE));
+        put(Feature::AreaDisc, area(KIND_DISC));
+        put(Feature::AreaCuboid, area(KIND_CUBOID));
+        put(Feature::AreaRevolution, area(KIND_REVOLUTION));
+        put(Feature::Guided, scene.world.guided != 0);
+        put(Feature::Point, light(LIGHT_POINT));
+        put(Feature::Spot, light(LIGHT_SPOT));
+        put(Feature::Infinite, light(LIGHT_SUN) || light(LIGHT_CONSTANT) || light(LIGHT_IMAGE));
+        put(Feature::Far, scene.world.far != 0);
+        put(Feature::Environment, light(LIGHT_CONSTANT) || light(LIGHT_IMAGE));
+        put(Feature::EnvironmentImage, light(LIGHT_IMAGE));
+        put(Feature::Lens, scene.camera.aperture > 0.0);
+        put(Feature::Sampled, settings.direct == Direct::Sampled && !scene.lights.is_empty());
+        put(Feature::Local, settings.radius_rule == RadiusRule::Local);
         let photons = !scene.lights.is_empty() && settings.method != Method::Path;
         // photons that no diffuse surface has scattered are stored
         let rough = scene.materials.iter().all(|m| m.kind == MATERIAL_DIFFUSE);
         let first = settings.direct == Direct::Photons || !rough;
-        put("photons", photons);
-        put("first", photons && first);
-        put("split", photons && first && settings.has_wider());
-        Self(set)
+        put(Feature::Photons, photons);
+        put(Feature::First, photons && first);
+        put(Feature::Split, photons && first && settings.has_wider());
+        set
     }
 
-    /// The same and `name`.
-    pub fn with(mut self, name: &'static str) -> Self {
-        self.0.insert(name);
-        self
+    /// Returns the set with one more feature.
+    pub const fn with(self, feature: Feature) -> Self {
+        Self(self.0 | 1 << feature as u32)
     }
 
-    /// Whether `name` is required.
-    pub fn has(&self, name: &str) -> bool {
-        self.0.contains(name)
+    /// Returns whether a feature is required.
+    pub const fn has(self, feature: Feature) -> bool {
+        self.0 >> feature as u32 & 1 == 1
     }
 
-    /// The names, sorted.
-    pub fn names(&self) -> impl Iterator<Item = &'static str> + '_ {
-        self.0.iter().copied()
+    /// Iterates over the required features in the order of [`Feature::ALL`].
+    pub fn iter(self) -> impl Iterator<Item = Feature> {
+        Feature::ALL.iter().copied().filter(move |feature| self.has(*feature))
     }
 }
 
-impl<const N: usize> From<[&'static str; N]> for Features {
-    fn from(names: [&'static str; N]) -> Self {
-        Self(names.into_iter().collect())
+impl FromIterator<Feature> for Features {
+    fn from_iter<I: IntoIterator<Item = Feature>>(features: I) -> Self {
+        features.into_iter().fold(Self::default(), Self::with)
     }
 }

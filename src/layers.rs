@@ -1,5 +1,6 @@
 //! What a plan's passes have found beside radiance, as channels of a picture file in world units.
 
+use super::features::Feature;
 use super::kernels::aov_trace::AovPixel;
 use super::kernels::bytes::{AOV_BYTES, PARTS_BYTES, aov_bytes, parts_bytes};
 use super::kernels::records::{Gathered, Statistics};
@@ -82,7 +83,7 @@ impl Plan {
         self.aovs.are_traced() && state.aovs.len() != pixels * AOV_BYTES
             || self.parts_photons() && state.parts.len() != pixels * PARTS_BYTES
             || self.aovs.has(Aov::Photons)
-                && self.features.has("photons")
+                && self.features.has(Feature::Photons)
                 && state.counts.is_empty()
     }
 
@@ -93,7 +94,7 @@ impl Plan {
             unit: self.unit,
             radiance_unit: self.radiance_unit,
             glint: self.glint,
-            photons: self.features.has("photons"),
+            photons: self.features.has(Feature::Photons),
         }
     }
 }

@@ -63,13 +63,13 @@
 //! [`camera`] and [`grid`], then [`scene`], [`build`], [`limits`], [`pack`], then [`kernels`],
 //! [`radius`], [`sobol`], [`probe`], [`readout`], [`plan`], then [`cpu`] and [`gpu`], then
 //! [`identity`], [`device`], [`relay`], [`quality`], [`calibration`], [`showing`], [`render`] and
-//! [`checkpoint`], and last [`bench`](mod@bench), [`burden`], [`hold`], [`study`] and, where it is
+//! [`checkpoint`], and last [`bench`](mod@bench), [`ablation`], [`hold`], [`study`] and, where it is
 //! not left out, `preview`. Those from [`real`] to [`cpu`] are compiled twice: [`double`] is the
 //! same in f64.
 
+pub mod ablation;
 pub mod bench;
 pub mod build;
-pub mod burden;
 pub mod calibration;
 pub mod camera;
 pub mod checkpoint;

@@ -3,7 +3,7 @@
 mod software;
 
 use bytemuck::{Zeroable, cast_slice, pod_collect_to_vec};
-use caustica::features::Features;
+use caustica::features::{Feature, Features};
 use caustica::gpu::Gpu;
 use caustica::gpu::compose::compose;
 use caustica::gpu::layout::SceneTables;
@@ -285,7 +285,8 @@ fn the_driver_gathers_the_same() {
         .collect();
     let gpu = Gpu::open(&software::software()).unwrap();
     let mut recorder = Recorder::new(&gpu).unwrap();
-    let features = Features::from(["photons", "facets", "disc"]);
+    let features =
+        [Feature::Photons, Feature::Facets, Feature::Disc].into_iter().collect::<Features>();
     let shader = compose(Kernel::Gather, &features, &SceneTables::default()).unwrap();
     let program = Program::of_shader(&gpu, Kernel::Gather, &features, shader).unwrap();
     let (starts, _) = build_grid(&room.dispatch(), room.records.clone());

@@ -6,7 +6,7 @@
 mod software;
 
 use bytemuck::{Zeroable, cast_slice, pod_collect_to_vec};
-use caustica::features::Features;
+use caustica::features::{Feature, Features};
 use caustica::gpu::Gpu;
 use caustica::gpu::layout::SceneTables;
 use caustica::gpu::program::{Program, workgroup_items};
@@ -45,7 +45,7 @@ impl Grid {
     fn new() -> Self {
         let gpu = Gpu::open(&software::software()).unwrap();
         let recorder = Recorder::new(&gpu).unwrap();
-        let features = Features::from(["photons"]);
+        let features = Features::default().with(Feature::Photons);
         let programs = KERNELS
             .map(|kernel| Program::new(&gpu, kernel, &features, &SceneTables::default()).unwrap())
             .into();

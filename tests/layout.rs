@@ -5,7 +5,7 @@
 mod ingredients;
 
 use bytemuck::Zeroable;
-use caustica::features;
+use caustica::features::Feature;
 use caustica::gpu::compose::compose;
 use caustica::gpu::layout::SceneTables;
 use caustica::kernels::aov_trace::AovPixel;
@@ -199,7 +199,7 @@ fn hosts_of_gather() -> Vec<Layout> {
 }
 
 fn everything_of(kernel: Kernel) -> (Mixture, naga::Module) {
-    let mixture = Mixture::of(&features::ALL);
+    let mixture = Mixture::of(Feature::ALL);
     let shader = compose(kernel, &mixture.features(), &SceneTables::new(&mixture.scene)).unwrap();
     let (module, _) = shader.validate().unwrap();
     (mixture, module)

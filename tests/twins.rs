@@ -1,6 +1,7 @@
 //! Every WGSL file has a Rust twin of the same stem that names it, every kernel an entry point of
 //! its stem.
 
+use caustica::features::Feature;
 use caustica::gpu::compose::compose;
 use caustica::gpu::layout::SceneTables;
 use caustica::plan::Kernel;
@@ -87,7 +88,12 @@ fn entry_points_are_stems() {
         .collect();
     let functions: BTreeSet<&str> =
         rust.split("pub fn ").skip(1).filter_map(|rest| rest.split(['(', '<']).next()).collect();
-    let mixture = ingredients::Mixture::of(&["sphere", "unbounded", "point", "sampled"]);
+    let mixture = ingredients::Mixture::of(&[
+        Feature::Sphere,
+        Feature::Unbounded,
+        Feature::Point,
+        Feature::Sampled,
+    ]);
     for kernel in Kernel::ALL {
         let stem = kernel.stem();
         assert!(root().join(format!("shaders/kernels/{stem}.wgsl")).is_file(), "{stem}");

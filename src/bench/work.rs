@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use crate::engine::PassReport;
+use crate::features::Feature;
 use crate::kernels::records::{FilmPixel, Gathered, PhotonRecord, VisiblePoint};
 use crate::plan::{Kernel, Plan};
 
@@ -28,7 +29,7 @@ pub struct Work {
 impl Work {
     /// Of a pass that reported this and gathered so many photons.
     pub fn of(plan: &Plan, report: &PassReport, gathered: u64) -> Self {
-        let batches = match plan.features.has("photons") {
+        let batches = match plan.features.has(Feature::Photons) {
             true => u64::from(plan.settings.photons.div_ceil(plan.batch_photons.max(1))),
             false => 0,
         };

@@ -4,7 +4,7 @@ use std::fmt;
 use std::path::PathBuf;
 
 use caustica::engine::EngineError;
-use caustica::features;
+use caustica::features::Feature;
 use caustica::memory::{Memory, Part, total};
 use caustica::pack::{Packed, pack};
 use caustica::plan::{Kernel, Place, Plan, scene_bytes, scene_tables};
@@ -153,7 +153,8 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
 }
 
 fn report(packed: &Packed, plan: &Plan) -> InfoReport {
-    let features = features::ALL.iter().map(|name| ((*name).to_owned(), plan.features.has(name)));
+    let features =
+        Feature::ALL.iter().map(|feature| (feature.name().to_owned(), plan.features.has(*feature)));
     let steps = plan.steps(0, plan.batch_photons);
     let used = |kernel| steps.iter().any(|step| step.kernel == kernel);
     // A path tracer is one kernel, of the CPU engine, and keeps nothing but the film.

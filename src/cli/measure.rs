@@ -1,6 +1,6 @@
 //! `caustica info --measure`: what it gains to leave out what a scene does not require.
 
-use caustica::burden::{Costs, burdened, fully_burdened, left_out, on_cpu, on_gpu};
+use caustica::ablation::{Costs, on_cpu, on_gpu, unused, with_all_unused, with_unused};
 use caustica::device::{self, DeviceKind};
 use caustica::features::Features;
 use caustica::gpu::AdapterChoice;
@@ -65,11 +65,11 @@ pub fn on_device(
     }
     let plain = cost(packed.clone())?;
     tell("as it is", &plain, &plain)?;
-    for feature in left_out(&features) {
-        let burdened = cost(with(burdened(&packed.scene, feature)))?;
-        tell(&format!("+ {feature}"), &burdened, &plain)?;
+    for feature in unused(features) {
+        let Some(scene) = with_unused(&packed.scene, feature) else { continue };
+        tell(&format!("+ {}", feature.name()), &cost(with(scene))?, &plain)?;
     }
-    let all = cost(with(fully_burdened(&packed.scene, &features)))?;
+    let all = cost(with(with_all_unused(&packed.scene, features)))?;
     tell("+ all of these", &all, &plain)?;
     Ok(Done::Fully)
 }

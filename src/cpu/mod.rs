@@ -3,6 +3,7 @@
 mod photons;
 mod tasks;
 
+use super::features::Feature;
 use super::kernels::aov_trace::AovPixel;
 use super::kernels::bytes::{
     aovs_of, film_bytes, film_of, parts_of, statistics_bytes, statistics_of,
@@ -64,7 +65,7 @@ impl CpuEngine {
     /// An engine for one scene and plan.
     pub fn new(packed: impl Into<Arc<Packed>>, plan: Plan) -> Self {
         let points = (plan.pixels * plan.eye_samples) as usize;
-        let photons = plan.features.has("photons");
+        let photons = plan.features.has(Feature::Photons);
         let buckets = if photons { plan.buckets as usize } else { 0 };
         let path = plan.settings.method == Method::Path;
         let points_kept = if path { 0 } else { points };
@@ -78,7 +79,7 @@ impl CpuEngine {
             gathered: vec![Gathered::zeroed(); held("gathered")],
             statistics: vec![
                 Statistics::zeroed();
-                if plan.features.has("local") { points_kept } else { 0 }
+                if plan.features.has(Feature::Local) { points_kept } else { 0 }
             ],
             film: vec![FilmPixel::zeroed(); plan.pixels as usize],
             aovs: vec![
@@ -147,8 +148,8 @@ impl CpuEngine {
         cancel: &Cancel,
         report: &mut PassReport,
     ) -> Result<(), Unfinished> {
-        let sampled = self.plan.features.has("sampled");
-        let local = self.plan.features.has("local");
+        let sampled = self.plan.features.has(Feature::Sampled);
+        let local = self.plan.features.has(Feature::Local);
         let scene = &self.packed.scene;
         self.clock.begin(step.kernel.stem());
         let d = &step.dispatch;
@@ -254,7 +255,7 @@ impl CpuEngine {
     fn path_pass(&mut self, report: &mut PassReport) {
         self.clock.begin("path_trace");
         let d = self.plan.dispatch(self.passes_done);
-        let sampled = self.plan.features.has("sampled");
+        let sampled = self.plan.features.has(Feature::Sampled);
         let scene = &self.packed.scene;
         report.eye_paths = self.film.len() as u64;
         report.rays = self

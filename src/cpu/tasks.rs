@@ -1,6 +1,6 @@
 //! Tasks of a pass: what one core does at a time, for the processor's own vectors.
 
-use super::super::features::Features;
+use super::super::features::{Feature, Features};
 use super::super::kernels::aov_trace::{AovPixel, aov_trace};
 use super::super::kernels::eye_trace::eye_trace;
 use super::super::kernels::gather::{gather, scale_sq};
@@ -68,7 +68,7 @@ impl pulp::WithSimd for EyePaths<'_> {
 
 /// One sample of each pixel of a chunk.
 pub fn trace_aovs(scene: &Scene, d: &Dispatch, features: &Features, aovs: &mut [AovPixel]) {
-    let sampled = features.has("sampled") && features.has("direct_layer");
+    let sampled = features.has(Feature::Sampled) && features.has(Feature::DirectLayer);
     let first = (d.chunk_first / d.eye_samples) as usize;
     let pixels = aovs[first..first + d.end as usize].par_iter_mut();
     pixels.enumerate().for_each(|(id, pixel)| aov_trace(scene, d, sampled, id as u32, pixel));

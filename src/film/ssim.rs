@@ -2,8 +2,8 @@
 //!
 //! Wang, Bovik, Sheikh & Simoncelli, "Image Quality Assessment: From Error Visibility to Structural
 //! Similarity" (2004), equation 13 with the paper's window, 11 x 11 pixels of a Gaussian of 1.5
-//! pixels, and constants K1 = 0.01, K2 = 0.03. It is taken of the luma `Y' = 0.2126 R' + 0.7152 G'
-//! + 0.0722 B'` (Rec. 709) of the sRGB-coded picture, clipped to [0, 1].
+//! pixels, and constants K1 = 0.01, K2 = 0.03. It is taken of the luma
+//! `Y' = 0.2126 R' + 0.7152 G' + 0.0722 B'` (Rec. 709) of the sRGB-coded picture, clipped to [0, 1].
 
 use super::metrics::{MetricsError, check_comparable};
 use super::plane::{Plane, gaussian, normalized};

@@ -3,7 +3,7 @@
 
 use super::fragments::{FRAGMENTS, Fragment, Names, preprocess};
 use super::layout::{SceneTables, bindings, declarations};
-use crate::features::{self, Features};
+use crate::features::{Feature, Features};
 use crate::plan::Kernel;
 use std::collections::BTreeSet;
 
@@ -31,19 +31,18 @@ pub struct Shader {
     parts: Vec<(&'static str, u32)>,
 }
 
-/// The names that fences may use for `kernel`: the features, `photons`, `direct_layer`, every
-/// kernel's stem, `scene` (the kernel reads the flattened scene) and `area` (some light is a
-/// shape).
+/// The names that fences may use for `kernel`: the features, every kernel's stem, `scene` (the
+/// kernel reads the flattened scene) and `area` (some light is a shape).
 pub fn names(kernel: Kernel, features: &Features) -> Names {
     let stems = Kernel::ALL.map(Kernel::stem);
     let known =
-        features::ALL.into_iter().chain(stems).chain(["photons", "scene", "area", "direct_layer"]);
-    let mut held: BTreeSet<&'static str> = features.names().collect();
+        Feature::ALL.iter().map(|feature| feature.name()).chain(stems).chain(["scene", "area"]);
+    let mut held: BTreeSet<&'static str> = features.iter().map(Feature::name).collect();
     held.insert(kernel.stem());
     if kernel.reads_scene() {
         held.insert("scene");
     }
-    if features.names().any(|name| name.starts_with("area_")) {
+    if features.iter().any(|feature| feature.name().starts_with("area_")) {
         held.insert("area");
     }
     Names { known: known.collect(), held }

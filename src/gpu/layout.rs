@@ -2,7 +2,7 @@
 //! buffer, each table an array of fixed length at a multiple of 16 bytes, and the bindings of every
 //! kernel.
 
-use crate::features::{Features, few};
+use crate::features::{Feature, Features, few};
 use crate::plan::Kernel;
 use crate::tables::{self, Material};
 use bytemuck::{Pod, Zeroable, bytes_of, cast_slice};
@@ -119,14 +119,14 @@ impl SceneTables {
 }
 
 /// The long tables, each in a buffer of its own: name, the feature that needs it, content.
-pub fn long_tables(scene: &tables::Scene) -> [(&'static str, &'static str, &[u8]); 6] {
+pub fn long_tables(scene: &tables::Scene) -> [(&'static str, Feature, &[u8]); 6] {
     [
-        ("nodes", "kdtree", cast_slice(&scene.nodes)),
-        ("refs", "kdtree", cast_slice(&scene.refs)),
-        ("triangles", "triangle", cast_slice(&scene.triangles)),
-        ("attributes", "attributes", cast_slice(&scene.attributes)),
-        ("facets", "facets", cast_slice(&scene.facets)),
-        ("texels", "texels", cast_slice(&scene.texels)),
+        ("nodes", Feature::KdTree, cast_slice(&scene.nodes)),
+        ("refs", Feature::KdTree, cast_slice(&scene.refs)),
+        ("triangles", Feature::Triangle, cast_slice(&scene.triangles)),
+        ("attributes", Feature::Attributes, cast_slice(&scene.attributes)),
+        ("facets", Feature::Facets, cast_slice(&scene.facets)),
+        ("texels", Feature::Texels, cast_slice(&scene.texels)),
     ]
 }
 
@@ -161,18 +161,18 @@ pub fn bindings(kernel: Kernel, features: &Features) -> Vec<Binding> {
             |name, wgsl_type| list.push(Binding { name, access: Access::Read, wgsl_type });
         read("scene", "Scene");
         for (name, feature, wgsl_type) in [
-            ("nodes", "kdtree", "array<vec2u>"),
-            ("refs", "kdtree", "array<u32>"),
-            ("triangles", "triangle", "array<Triangle>"),
-            ("attributes", "attributes", "array<Attributes>"),
-            ("texels", "texels", "array<u32>"),
+            ("nodes", Feature::KdTree, "array<vec2u>"),
+            ("refs", Feature::KdTree, "array<u32>"),
+            ("triangles", Feature::Triangle, "array<Triangle>"),
+            ("attributes", Feature::Attributes, "array<Attributes>"),
+            ("texels", Feature::Texels, "array<u32>"),
         ] {
             if features.has(feature) {
                 read(name, wgsl_type);
             }
         }
     }
-    if kernel == Kernel::Gather && features.has("facets") {
+    if kernel == Kernel::Gather && features.has(Feature::Facets) {
         list.push(Binding { name: "facets", access: Access::Read, wgsl_type: "array<Facet>" });
     }
     for (name, writes) in kernel.buffers(features) {

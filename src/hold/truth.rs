@@ -95,8 +95,8 @@ pub struct BlockTruth {
 pub enum PixelNoise {
     /// A picture of them.
     Known(Picture),
-    /// Given as relMSE `e` of the whole: a pixel of value `v` is taken to have the variance `e (v^2
-    /// + 0.01)`.
+    /// Given as relMSE `e` of the whole: a pixel of value `v` is taken to have the variance
+    /// `e (v^2 + 0.01)`.
     RelMse(f64),
 }
 

@@ -71,8 +71,8 @@ pub fn pdf_metal(wo: Vec3, wi: Vec3, alpha: Real) -> Real {
     ggx_d(h, alpha) / (4.0 * wo.z * (1.0 + ggx_lambda(wo.z, alpha)))
 }
 
-/// `eval_metal * cos / pdf_metal` in closed form, `F G2 / G1`, for `wi` mirrored at `h`. (From `wo
-/// + wi` a shader compiler could cancel `wo` against the one in `wi`.)
+/// `eval_metal * cos / pdf_metal` in closed form, `F G2 / G1`, for `wi` mirrored at `h`. (From
+/// `wo + wi` a shader compiler could cancel `wo` against the one in `wi`.)
 pub fn weight_metal(wo: Vec3, h: Vec3, wi: Vec3, f0: Vec3, alpha: Real) -> Vec3 {
     if wi.z <= 0.0 {
         return Vec3::ZERO;

@@ -1,5 +1,6 @@
 //! What a pass keeps on the device.
 
+use super::super::features::Feature;
 use super::super::kernels::aov_trace::AovPixel;
 use super::super::kernels::records::{FilmPixel, Gathered, PhotonRecord, Statistics, VisiblePoint};
 use super::super::kernels::resolve_parts::PartsPixel;
@@ -29,7 +30,7 @@ impl Plan {
             ("gathered", points * size_of::<Gathered>() as u64),
             ("counters", 32),
         ];
-        if self.features.has("local") {
+        if self.features.has(Feature::Local) {
             list.push(("statistics", points * size_of::<Statistics>() as u64));
         }
         if self.aovs.are_traced() {
@@ -38,7 +39,7 @@ impl Plan {
         if self.parts_photons() {
             list.push(("parts", pixels * size_of::<PartsPixel>() as u64));
         }
-        if self.features.has("photons") {
+        if self.features.has(Feature::Photons) {
             list.extend([
                 ("records", records * size_of::<PhotonRecord>() as u64),
                 ("sorted", records * size_of::<PhotonRecord>() as u64),

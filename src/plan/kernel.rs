@@ -1,6 +1,6 @@
 //! The kernels of a pass, and one dispatch of one.
 
-use super::super::features::Features;
+use super::super::features::{Feature, Features};
 use super::super::kernels::records::Dispatch;
 
 /// A kernel: the stem of its shader file, of its Rust twin and its entry point.
@@ -121,7 +121,7 @@ impl Kernel {
             }
             Self::Resolve => vec![("visible_points", false), ("gathered", false), ("film", true)],
         };
-        if features.has("local")
+        if features.has(Feature::Local)
             && matches!(self, Self::Gather | Self::ResolveParts | Self::Resolve)
         {
             list.push(("statistics", self == Self::Resolve));

@@ -1,5 +1,6 @@
 //! How much memory a plan takes, and the same plan cut so that it fits.
 
+use super::super::features::Feature;
 use super::super::kernels::bytes::{FILM_BYTES, STATISTICS_BYTES};
 use super::super::kernels::records::PhotonRecord;
 use super::super::real::{Real, Vec4};
@@ -58,8 +59,11 @@ impl Plan {
                     .ceil() as u64,
             };
         let visible = if path { 0 } else { whole("visible_points") + whole("gathered") };
-        let statistics =
-            if self.features.has("local") && !path { points * STATISTICS_BYTES as u64 } else { 0 };
+        let statistics = if self.features.has(Feature::Local) && !path {
+            points * STATISTICS_BYTES as u64
+        } else {
+            0
+        };
         let film = pixels * FILM_BYTES as u64;
         let layers = whole("aovs") + whole("parts");
         let device = matches!(place, Place::Device { .. });
@@ -67,7 +71,7 @@ impl Plan {
         let copies = if place == (Place::Program { saves: false }) { 1 } else { 2 };
         let records = if device {
             ["records", "sorted", "order", "counts", "starts", "block_sums"].map(bytes).iter().sum()
-        } else if self.features.has("photons") && !path {
+        } else if self.features.has(Feature::Photons) && !path {
             let sorted = 6 * size_of::<Real>() + 4 + size_of::<Vec4>();
             let list = size_of::<PhotonRecord>() + 4;
             u64::from(self.capacity) * (sorted + list) as u64 + u64::from(self.buckets) * 4
@@ -113,7 +117,7 @@ impl Plan {
         if fits(&self) {
             return Ok(self);
         }
-        let gathers = self.features.has("photons") && self.settings.method != Method::Path;
+        let gathers = self.features.has(Feature::Photons) && self.settings.method != Method::Path;
         let (planned, whole) = (self.settings.batch, self.batch_photons);
         // first no smaller batches at all, then some in large tiles, since each tile has the
         // photons of smaller ones traced anew
@@ -152,7 +156,7 @@ impl Plan {
 
     /// Number of batches that a pass's photons come in.
     pub fn batches(&self) -> u32 {
-        if self.features.has("photons") {
+        if self.features.has(Feature::Photons) {
             self.settings.photons.div_ceil(self.batch_photons)
         } else {
             0

@@ -12,7 +12,7 @@ mod memory;
 mod scale;
 mod steps;
 
-use super::features::Features;
+use super::features::{Feature, Features};
 use super::kernels::bytes::{FILM_BYTES, STATISTICS_BYTES};
 use super::kernels::records::FilmPixel;
 use super::pack::{Objects, Packed};
@@ -104,8 +104,8 @@ impl Plan {
         let wider = settings.indirect_radius.or(probe.automatic.map(|a| a.indirect)).unwrap_or(1.0);
         let settings =
             &RenderSettings { radius: chosen, indirect_radius: Some(wider), ..settings.clone() };
-        let specular = features.has("specular");
-        let widening = if features.has("first") { 1.0 } else { wider };
+        let specular = features.has(Feature::Specular);
+        let widening = if features.has(Feature::First) { 1.0 } else { wider };
         let camera = &packed.scene.camera;
         let eye_samples = if settings.method == Method::Ppm { settings.eye_samples } else { 1 };
         let (capacity, batch_photons) = batch(settings, &probe);
@@ -157,18 +157,18 @@ impl Plan {
         }
         self.aovs = film.aovs;
         if self.aovs.has(Aov::Direct) && self.settings.method != Method::Path {
-            self.features = self.features.with("direct_layer");
+            self.features = self.features.with(Feature::DirectLayer);
         }
         // what tells caustics from the rest is their family
-        if self.parts_photons() && self.features.has("first") {
-            self.features = self.features.with("split");
+        if self.parts_photons() && self.features.has(Feature::First) {
+            self.features = self.features.with(Feature::Split);
         }
         self
     }
 
     /// Whether what photons bring is parted by the way they came.
     pub fn parts_photons(&self) -> bool {
-        self.features.has("photons")
+        self.features.has(Feature::Photons)
             && (self.aovs.has(Aov::Caustic) || self.aovs.has(Aov::Indirect))
     }
 
@@ -177,7 +177,7 @@ impl Plan {
     /// # Errors
     /// Where the plan has no use for it.
     pub fn take_over(&mut self, state: &State) -> Result<(), EngineError> {
-        let local = self.features.has("local") && self.settings.method != Method::Path;
+        let local = self.features.has(Feature::Local) && self.settings.method != Method::Path;
         if local && state.first_pass > 0 {
             let text = "under the local rule a pass needs the photon counts of all before it: start with pass 0";
             return Err(EngineError::Unsupported(text.into()));
@@ -209,7 +209,7 @@ impl Plan {
     /// Why the radius is what it is, where the settings left it open and photons are gathered at
     /// all.
     pub fn told_radius(&self) -> Option<Automatic> {
-        self.probe.automatic.filter(|_| self.features.has("photons"))
+        self.probe.automatic.filter(|_| self.features.has(Feature::Photons))
     }
 
     /// Number of chunks.

@@ -1,5 +1,6 @@
 //! What is dispatched in a pass, in which order and with which numbers.
 
+use super::super::features::Feature;
 use super::super::kernels::records::Dispatch;
 use super::super::real::Real;
 use super::kernel::{Kernel, SCAN_BLOCK, Step};
@@ -25,7 +26,7 @@ impl Plan {
             Radius::Pixels(p) => (p * self.widening, 0.0),
             Radius::Units(u) => (0.0, u * self.widening / self.unit),
         };
-        let split = self.features.has("split");
+        let split = self.features.has(Feature::Split);
         let wider = if split { self.settings.wider() } else { 1.0 };
         let radius = self.widening * self.probe.radius * scale_sq.sqrt();
         let cell = if split { SPARSE_RADII } else { CELL_RADII } * radius;
@@ -108,7 +109,7 @@ impl Plan {
             }
         }
         let mut batch_first = 0;
-        while self.features.has("photons") && batch_first < self.settings.photons {
+        while self.features.has(Feature::Photons) && batch_first < self.settings.photons {
             let end = (self.settings.photons - batch_first).min(batch_photons);
             if trace {
                 step(Kernel::PhotonTrace, 0, Dispatch { end, batch_first, ..common });

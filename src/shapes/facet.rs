@@ -102,8 +102,8 @@ fn cross_2d(a: Vec2, b: Vec2) -> Real {
     a.x * b.y - a.y * b.x
 }
 
-/// Area that the unit circle about the origin shares with the parallelogram `corner + s (width, 0)
-/// + t v`.
+/// Area that the unit circle about the origin shares with the parallelogram
+/// `corner + s (width, 0) + t v`.
 fn parallelogram_area(corner: Vec2, width: Real, v: Vec2) -> Real {
     let length = v.dot(v).sqrt();
     let along = v * (1.0 / length);

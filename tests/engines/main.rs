@@ -14,7 +14,7 @@ mod scenes;
 use bytemuck::{bytes_of, pod_collect_to_vec};
 use caustica::cpu::CpuEngine;
 use caustica::engine::{Engine, PassReport};
-use caustica::features;
+use caustica::features::Feature;
 use caustica::film::estimate::LEAST_PASSES;
 use caustica::film::exr_file::Channel;
 use caustica::film::{ErrorMap, Picture};
@@ -81,7 +81,7 @@ fn explain(packed: &Packed, plan: &Plan) -> String {
 
 fn explain_pass(packed: &Packed, plan: &Plan, engine: &mut GpuEngine, pass: u32) -> String {
     engine.pass().unwrap();
-    let sampled = plan.features.has("sampled");
+    let sampled = plan.features.has(Feature::Sampled);
     let mut text = String::new();
     for step in plan.steps(pass, plan.batch_photons) {
         let d = &step.dispatch;
@@ -122,7 +122,7 @@ fn engines_agree_to_the_bit() {
         let film =
             Film { width, height, exposure: 0.0, tonemap: ToneMap::Srgb, aovs, window: None };
         let plan = plan.on(&film);
-        used.extend(plan.features.names());
+        used.extend(plan.features.iter());
         let cpu = on_cpu(&packed, &plan);
         assert!(cpu.1.rgb.iter().flatten().all(|x| x.is_finite()), "{name}");
         let light = cpu.1.rgb.iter().flatten().sum::<f32>() / cpu.1.rgb.len() as f32;
@@ -136,7 +136,7 @@ fn engines_agree_to_the_bit() {
         }
     }
     assert!(faults.is_empty(), "{}", faults.join("\n"));
-    let unused: Vec<_> = features::ALL.into_iter().filter(|name| !used.contains(name)).collect();
+    let unused: Vec<_> = Feature::ALL.iter().filter(|feature| !used.contains(*feature)).collect();
     assert!(unused.is_empty(), "no scene uses {unused:?}");
 }
 
@@ -162,7 +162,7 @@ fn engines_agree_on_many_patches() {
     for (count, set) in [(4, true), (9, true), (12, false)] {
         let (packed, plan) = planned_at((24, 16), "", &beads(count));
         let patches = packed.scene.patches.len();
-        assert_eq!(plan.features.has("patch_set"), set, "{patches} patches");
+        assert_eq!(plan.features.has(Feature::PatchSet), set, "{patches} patches");
         let ours = on_cpu(&packed, &plan);
         assert_eq!(difference(&ours, &on_driver(&packed, &plan)), None, "{patches} patches");
     }

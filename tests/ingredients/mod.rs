@@ -2,7 +2,7 @@
 //! composition and layout.
 
 use bytemuck::Zeroable;
-use caustica::features::Features;
+use caustica::features::{Feature, Features};
 use caustica::plan::Kernel;
 use caustica::settings::{Direct, RadiusRule, RenderSettings};
 use caustica::tables::*;
@@ -16,11 +16,11 @@ pub struct Mixture {
 
 #[allow(dead_code)] // each test file uses its part
 impl Mixture {
-    pub fn of(names: &[&str]) -> Self {
+    pub fn of(features: &[Feature]) -> Self {
         let settings = RenderSettings { direct: Direct::Photons, ..RenderSettings::default() };
         let mut mixture = Self { scene: Scene::empty(), settings };
-        for name in names {
-            mixture.add(name);
+        for feature in features {
+            mixture.add(*feature);
         }
         mixture
     }
@@ -31,7 +31,7 @@ impl Mixture {
 
     /// The kernels that a plan of this scene has.
     pub fn kernels(&self) -> Vec<Kernel> {
-        let photons = self.features().has("photons");
+        let photons = self.features().has(Feature::Photons);
         Kernel::ALL
             .into_iter()
             .filter(|k| photons || matches!(k, Kernel::EyeTrace | Kernel::Resolve))
@@ -43,7 +43,7 @@ impl Mixture {
         self.scene.distributions.push(1.0);
     }
 
-    fn area(&mut self, shape: &str, kind: u32) {
+    fn area(&mut self, shape: Feature, kind: u32) {
         self.add(shape);
         self.light(LIGHT_AREA, reference(kind, 0));
     }
@@ -56,93 +56,97 @@ impl Mixture {
         });
     }
 
-    fn add(&mut self, name: &str) {
+    fn add(&mut self, feature: Feature) {
         let s = &mut self.scene;
-        match name {
-            "triangle" => s.triangles.push(Triangle::zeroed()),
-            "attributes" => {
+        match feature {
+            Feature::Triangle => s.triangles.push(Triangle::zeroed()),
+            Feature::Attributes => {
                 s.triangles.push(Triangle::zeroed());
                 s.attributes.push(Attributes::zeroed());
             }
-            "sphere" => s.spheres.push(Sphere::zeroed()),
-            "rectangle" => s.rectangles.push(Rectangle::zeroed()),
-            "disc" => s.discs.push(Disc::zeroed()),
-            "cuboid" => s.cuboids.push(Cuboid::zeroed()),
-            "facets" => s.facets.push(Facet::zeroed()),
-            "plane" => s.planes.push(Plane::zeroed()),
-            "revolution" => {
+            Feature::Sphere => s.spheres.push(Sphere::zeroed()),
+            Feature::Rectangle => s.rectangles.push(Rectangle::zeroed()),
+            Feature::Disc => s.discs.push(Disc::zeroed()),
+            Feature::Cuboid => s.cuboids.push(Cuboid::zeroed()),
+            Feature::Facets => s.facets.push(Facet::zeroed()),
+            Feature::Plane => s.planes.push(Plane::zeroed()),
+            Feature::Revolution => {
                 s.revolutions.push(Revolution::zeroed());
                 s.patches.push(Patch::zeroed());
                 s.profile_points.extend([Vec2::ZERO; 3]);
             }
-            "patch_set" => {
-                self.add("revolution");
-                self.add("kdtree");
+            Feature::PatchSet => {
+                self.add(Feature::Revolution);
+                self.add(Feature::KdTree);
             }
-            "unbounded" => s.unbounded.push(0),
-            "kdtree" => {
+            Feature::Unbounded => s.unbounded.push(0),
+            Feature::KdTree => {
                 s.nodes.push(Node::zeroed());
                 s.refs.push(0);
             }
-            "few" => {
+            Feature::Few => {
                 s.spheres.push(Sphere::zeroed());
                 s.nodes.push(Node::leaf(0, 1));
                 s.refs.push(reference(KIND_SPHERE, 0));
             }
-            "textures" | "texels" => {
+            Feature::Textures | Feature::Texels => {
                 s.textures.push(Texture { kind: TEXTURE_IMAGE, ..Texture::zeroed() });
                 s.texels.push(0);
             }
-            "checker" => s.textures.push(Texture { kind: TEXTURE_CHECKER, ..Texture::zeroed() }),
-            "mirror" | "specular" => self.material(MATERIAL_MIRROR, 0.0),
-            "glass" => self.material(MATERIAL_GLASS, 0.0),
-            "nested" => {
-                self.add("glass");
+            Feature::Checker => {
+                s.textures.push(Texture { kind: TEXTURE_CHECKER, ..Texture::zeroed() })
+            }
+            Feature::Mirror | Feature::Specular => self.material(MATERIAL_MIRROR, 0.0),
+            Feature::Glass => self.material(MATERIAL_GLASS, 0.0),
+            Feature::Nested => {
+                self.add(Feature::Glass);
                 self.scene.world.nested = 1;
             }
-            "astride" => {
-                self.add("glass");
+            Feature::Astride => {
+                self.add(Feature::Glass);
                 self.scene.camera.medium = ASTRIDE;
             }
-            "absorption" => self.material(MATERIAL_GLASS, 1.0),
-            "metal" => self.material(MATERIAL_METAL, 0.0),
-            "area_triangle" => self.area("triangle", KIND_TRIANGLE),
-            "area_sphere" => self.area("sphere", KIND_SPHERE),
-            "area_rectangle" => self.area("rectangle", KIND_RECTANGLE),
-            "area_disc" => self.area("disc", KIND_DISC),
-            "area_cuboid" => self.area("cuboid", KIND_CUBOID),
-            "area_revolution" => self.area("revolution", KIND_REVOLUTION),
-            "lights" | "point" => self.light(LIGHT_POINT, 0),
-            "spot" => self.light(LIGHT_SPOT, 0),
-            "infinite" => self.light(LIGHT_SUN, 0),
-            "far" => {
-                self.add("infinite");
+            Feature::Absorption => self.material(MATERIAL_GLASS, 1.0),
+            Feature::Metal => self.material(MATERIAL_METAL, 0.0),
+            Feature::AreaTriangle => self.area(Feature::Triangle, KIND_TRIANGLE),
+            Feature::AreaSphere => self.area(Feature::Sphere, KIND_SPHERE),
+            Feature::AreaRectangle => self.area(Feature::Rectangle, KIND_RECTANGLE),
+            Feature::AreaDisc => self.area(Feature::Disc, KIND_DISC),
+            Feature::AreaCuboid => self.area(Feature::Cuboid, KIND_CUBOID),
+            Feature::AreaRevolution => self.area(Feature::Revolution, KIND_REVOLUTION),
+            Feature::Lights | Feature::Point | Feature::Photons | Feature::First => {
+                self.light(LIGHT_POINT, 0)
+            }
+            Feature::Spot => self.light(LIGHT_SPOT, 0),
+            Feature::Infinite => self.light(LIGHT_SUN, 0),
+            Feature::Far => {
+                self.add(Feature::Infinite);
                 self.scene.world.far = 1;
             }
-            "environment" => self.light(LIGHT_CONSTANT, 0),
-            "environment_image" => {
-                self.add("texels");
+            Feature::Environment => self.light(LIGHT_CONSTANT, 0),
+            Feature::EnvironmentImage => {
+                self.add(Feature::Texels);
                 self.light(LIGHT_IMAGE, 0);
             }
-            "lens" => s.camera.aperture = 1.0,
-            "sampled" => {
-                self.add("point");
+            Feature::Lens => s.camera.aperture = 1.0,
+            Feature::Sampled => {
+                self.add(Feature::Point);
                 self.settings.direct = Direct::Sampled;
             }
-            "local" => self.settings.radius_rule = RadiusRule::Local,
-            "split" => {
+            Feature::Local => self.settings.radius_rule = RadiusRule::Local,
+            Feature::Split => {
                 self.settings.indirect_radius = Some(2.0);
                 self.light(LIGHT_POINT, 0);
             }
-            "cells" => {
+            Feature::Cells => {
                 self.light(LIGHT_POINT, 0);
                 self.scene.cells.push(Cell::zeroed());
             }
-            "guided" => {
+            Feature::Guided => {
                 self.light(LIGHT_POINT, 0);
                 self.scene.world.guided = 1;
             }
-            _ => panic!("no ingredient brings the feature `{name}`"),
+            Feature::DirectLayer => {}
         }
     }
 }

@@ -63,8 +63,8 @@ fn beer_lambert() {
 }
 
 /// Theory: a slab has reflectance R at each face, and all the light that goes to and fro inside
-/// gets out: with a = exp(-sigma d) it transmits (1 - R)^2 a / (1 - R^2 a^2) and reflects R + R (1
-/// - R)^2 a^2 / (1 - R^2 a^2). Without absorption that is (1 - R) / (1 + R) and 2 R / (1 + R). A
+/// gets out: with a = exp(-sigma d) it transmits (1 - R)^2 a / (1 - R^2 a^2) and reflects
+/// R + R (1 - R)^2 a^2 / (1 - R^2 a^2). Without absorption that is (1 - R) / (1 + R) and 2 R / (1 + R). A
 /// bright wall in front of and behind the slab tells the two apart. The factor 1 / n^2 on the way
 /// in is undone on the way out.
 #[test]

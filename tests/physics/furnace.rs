@@ -8,8 +8,8 @@ use glam::{DVec2, DVec3};
 
 use super::lab::*;
 
-/// Theory: in a closed room whose walls all emit Le and reflect rho, L = Le + rho L, so L = Le / (1
-/// - rho) everywhere, whatever the room's form; cut off after b scatterings, Le (1 - rho^(b+1)) /
+/// Theory: in a closed room whose walls all emit Le and reflect rho, L = Le + rho L, so
+/// L = Le / (1 - rho) everywhere, whatever the room's form; cut off after b scatterings, Le (1 - rho^(b+1)) /
 /// (1 - rho). Every shape that can shine is a wall here: a room inside a box would have its
 /// emission outside, so six rectangles close it and the others stand in it.
 #[test]

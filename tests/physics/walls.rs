@@ -60,7 +60,7 @@ fn prism(polygon: &[[f64; 2]], back: f64) -> String {
 fn slim_meshes_under_an_even_sky() {
     let regular = |n: usize, size: f64| -> Vec<[f64; 2]> {
         let corner = |k: usize| (std::f64::consts::TAU * (k as f64 + 0.2) / n as f64).sin_cos();
-        (0..n).map(|k| corner(k)).map(|(sin, cos)| [cos * size, sin * size]).collect()
+        (0..n).map(corner).map(|(sin, cos)| [cos * size, sin * size]).collect()
     };
     let square = |w: f64, h: f64| vec![[-w, -h], [w, -h], [w, h], [-w, h]];
     let shapes = [

@@ -8,7 +8,7 @@ use std::rc::Rc;
 use bytemuck::{Zeroable, cast_slice, pod_collect_to_vec};
 use caustica::cpu::CpuEngine;
 use caustica::engine::Engine;
-use caustica::features::Features;
+use caustica::features::{Feature, Features};
 use caustica::film::Picture;
 use caustica::gpu::compose::{Shader, compose, compose_from};
 use caustica::gpu::fragments::{FRAGMENTS, Fragment};
@@ -178,7 +178,7 @@ impl Bench {
         }
         let gpu = &self.driver().gpu;
         let mut recorder = Recorder::new(gpu).expect("a recorder");
-        let features = Features::from(["local"]);
+        let features = Features::default().with(Feature::Local);
         let shader =
             compose(Kernel::Resolve, &features, &SceneTables::default()).expect("composed");
         let program = self.driver().program(Kernel::Resolve, &features, shader);

@@ -4,6 +4,7 @@ use super::super::mend::{mend_aovs, mend_photons, mend_points};
 use super::super::program::workgroup_items;
 use super::{COUNTERS_BYTES, ENDS, GpuEngine, READINGS_BYTES, STOPPED_COUNT};
 use crate::engine::{EngineError, PassReport, PhotonEnds};
+use crate::features::Feature;
 use crate::kernels::records::Dispatch;
 use crate::plan::{Kernel, Step};
 
@@ -192,7 +193,7 @@ impl GpuEngine {
         let Some(scene) = self.scene.as_ref().filter(|_| words[3] > 0) else {
             return Ok(0);
         };
-        let sampled = self.plan.features.has("sampled");
+        let sampled = self.plan.features.has(Feature::Sampled);
         let (mended, rays) = if step.kernel == Kernel::EyeTrace {
             let own = self.chunks[step.chunk as usize].get("visible_points");
             let buffer = own.unwrap_or_else(|| &self.shared["visible_points"]);
@@ -234,7 +235,8 @@ impl GpuEngine {
         let Some(scene) = &self.scene else {
             return Err(self.unfinished());
         };
-        let sampled = self.plan.features.has("sampled") && self.plan.features.has("direct_layer");
+        let sampled = self.plan.features.has(Feature::Sampled)
+            && self.plan.features.has(Feature::DirectLayer);
         mend_aovs(
             &self.gpu,
             scene,

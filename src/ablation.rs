@@ -1,6 +1,5 @@
-//! What specialisation leaves out, put back: scenes with one thing more that nothing refers to, so
-//! that its code is compiled and its tables are bound but the picture stays. Holding the two
-//! against each other gives the gain as a figure.
+//! Ablation: the gain of specialisation. Scenes with one more thing that nothing refers to, so that
+//! its code is compiled and its tables are bound but the picture is the same.
 
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -10,7 +9,7 @@ use glam::{Vec2, Vec3};
 
 use crate::cpu::CpuEngine;
 use crate::engine::{Engine, EngineError};
-use crate::features::Features;
+use crate::features::{Feature, Features};
 use crate::film::Picture;
 use crate::gpu::{AdapterChoice, GpuEngine};
 use crate::pack::Packed;
@@ -18,33 +17,9 @@ use crate::plan::Plan;
 use crate::settings::RenderSettings;
 use crate::tables::*;
 
-/// Features that a scene can be given without a change of its picture. The others change what is
-/// rendered (`local`, `sampled`, `far`, `kdtree`, `unbounded`, `lens`, `environment`), or come with
-/// one of these (`specular`, `lights`).
-pub const BURDENS: [&str; 19] = [
-    "sphere",
-    "rectangle",
-    "disc",
-    "cuboid",
-    "plane",
-    "triangle",
-    "attributes",
-    "revolution",
-    "mirror",
-    "glass",
-    "absorption",
-    "metal",
-    "checker",
-    "texels",
-    "area_sphere",
-    "area_rectangle",
-    "area_disc",
-    "point",
-    "spot",
-];
-
-/// The scene with one thing more of a feature of [`BURDENS`], which nothing refers to.
-pub fn burdened(scene: &Scene, feature: &str) -> Scene {
+/// Returns the scene with one more thing of a feature, to which nothing refers. `None` for features
+/// that cannot be added alone or that change the picture.
+pub fn with_unused(scene: &Scene, feature: Feature) -> Option<Scene> {
     let mut scene = scene.clone();
     let material =
         |kind| Material { kind, ior: 1.5, alpha: 0.1, texture: NONE, ..Material::zeroed() };
@@ -55,29 +30,31 @@ pub fn burdened(scene: &Scene, feature: &str) -> Scene {
         ..Light::zeroed()
     };
     match feature {
-        "sphere" => scene.spheres.push(Sphere::zeroed()),
-        "rectangle" => scene.rectangles.push(Rectangle::zeroed()),
-        "disc" => scene.discs.push(Disc::zeroed()),
-        "cuboid" => scene.cuboids.push(Cuboid::zeroed()),
-        "plane" => scene.planes.push(crate::tables::Plane::zeroed()),
-        "triangle" => scene.triangles.push(Triangle::zeroed()),
-        "attributes" => {
+        Feature::Sphere => scene.spheres.push(Sphere::zeroed()),
+        Feature::Rectangle => scene.rectangles.push(Rectangle::zeroed()),
+        Feature::Disc => scene.discs.push(Disc::zeroed()),
+        Feature::Cuboid => scene.cuboids.push(Cuboid::zeroed()),
+        Feature::Plane => scene.planes.push(crate::tables::Plane::zeroed()),
+        Feature::Triangle => scene.triangles.push(Triangle::zeroed()),
+        Feature::Attributes => {
             scene.triangles.push(Triangle::zeroed());
             scene.attributes.push(Attributes::zeroed());
         }
-        "revolution" => {
+        Feature::Revolution => {
             scene.revolutions.push(Revolution::zeroed());
             scene.patches.push(Patch::zeroed());
             scene.profile_points.push(Vec2::ZERO);
         }
-        "mirror" => scene.materials.push(material(MATERIAL_MIRROR)),
-        "glass" => scene.materials.push(material(MATERIAL_GLASS)),
-        "absorption" => {
+        Feature::Mirror => scene.materials.push(material(MATERIAL_MIRROR)),
+        Feature::Glass => scene.materials.push(material(MATERIAL_GLASS)),
+        Feature::Absorption => {
             scene.materials.push(Material { absorption: Vec3::ONE, ..material(MATERIAL_GLASS) });
         }
-        "metal" => scene.materials.push(material(MATERIAL_METAL)),
-        "checker" => scene.textures.push(Texture { kind: TEXTURE_CHECKER, ..Texture::zeroed() }),
-        "texels" => {
+        Feature::Metal => scene.materials.push(material(MATERIAL_METAL)),
+        Feature::Checker => {
+            scene.textures.push(Texture { kind: TEXTURE_CHECKER, ..Texture::zeroed() });
+        }
+        Feature::Texels => {
             scene.textures.push(Texture {
                 kind: TEXTURE_IMAGE,
                 width: 1,
@@ -86,33 +63,61 @@ pub fn burdened(scene: &Scene, feature: &str) -> Scene {
             });
             scene.texels.resize(scene.texels.len() + 257, 0);
         }
-        "area_sphere" => {
+        Feature::AreaSphere => {
             scene.spheres.push(Sphere::zeroed());
             scene.lights.push(area(KIND_SPHERE));
         }
-        "area_rectangle" => {
+        Feature::AreaRectangle => {
             scene.rectangles.push(Rectangle::zeroed());
             scene.lights.push(area(KIND_RECTANGLE));
         }
-        "area_disc" => {
+        Feature::AreaDisc => {
             scene.discs.push(Disc::zeroed());
             scene.lights.push(area(KIND_DISC));
         }
-        "point" => scene.lights.push(light(LIGHT_POINT)),
-        "spot" => scene.lights.push(light(LIGHT_SPOT)),
-        _ => (),
+        Feature::Point => scene.lights.push(light(LIGHT_POINT)),
+        Feature::Spot => scene.lights.push(light(LIGHT_SPOT)),
+        // come with one of the features above
+        Feature::Textures | Feature::Specular | Feature::Lights | Feature::Photons => return None,
+        // choose how the same thing is computed
+        Feature::KdTree
+        | Feature::Few
+        | Feature::PatchSet
+        | Feature::Unbounded
+        | Feature::Facets
+        | Feature::Cells
+        | Feature::Guided
+        | Feature::Nested
+        | Feature::Astride
+        | Feature::Far => return None,
+        // need geometry that a ray can reach
+        Feature::AreaTriangle | Feature::AreaCuboid | Feature::AreaRevolution => return None,
+        // change what is rendered
+        Feature::Infinite
+        | Feature::Environment
+        | Feature::EnvironmentImage
+        | Feature::Lens
+        | Feature::Sampled
+        | Feature::Local
+        | Feature::Split
+        | Feature::First
+        | Feature::DirectLayer => return None,
     }
-    scene
+    Some(scene)
 }
 
-/// The scene with everything of [`BURDENS`] that `features` do without.
-pub fn fully_burdened(scene: &Scene, features: &Features) -> Scene {
-    left_out(features).into_iter().fold(scene.clone(), |scene, feature| burdened(&scene, feature))
+/// Returns the scene with everything that can be added and that `features` lack.
+pub fn with_all_unused(scene: &Scene, features: Features) -> Scene {
+    unused(features)
+        .into_iter()
+        .fold(scene.clone(), |scene, feature| with_unused(&scene, feature).unwrap_or(scene))
 }
 
-/// What of [`BURDENS`] is left out.
-pub fn left_out(features: &Features) -> Vec<&'static str> {
-    BURDENS.into_iter().filter(|feature| !features.has(feature)).collect()
+/// Returns the features that [`with_unused`] can add and that `features` lack.
+pub fn unused(features: Features) -> Vec<Feature> {
+    let empty = Scene::empty();
+    let can_add = |feature: &Feature| with_unused(&empty, *feature).is_some();
+    Feature::ALL.iter().copied().filter(|f| !features.has(*f) && can_add(f)).collect()
 }
 
 /// Seconds of one kernel.
@@ -186,24 +191,24 @@ mod tests {
     use crate::scene;
 
     #[test]
-    fn burdens_are_needed_and_change_no_bit() {
+    fn unused_things_change_no_bit() {
         let mut loaded = scene::load("scenes/soft-shadows.toml".as_ref()).unwrap();
         (loaded.scene.film.width, loaded.scene.film.height) = (24, 16);
         loaded.settings.photons = 500;
         loaded.settings.indirect_radius = Some(1.0);
         let packed = pack(&loaded.scene, 24, 16).unwrap();
         let features = Features::of(&packed.scene, &loaded.settings);
-        let missing = left_out(&features);
+        let missing = unused(features);
         assert!(missing.len() > 5, "{missing:?}");
         for feature in &missing {
-            let with = Features::of(&burdened(&packed.scene, feature), &loaded.settings);
-            assert!(with.has(feature), "{feature}");
+            let scene = with_unused(&packed.scene, *feature).unwrap();
+            assert!(Features::of(&scene, &loaded.settings).has(*feature), "{feature:?}");
         }
         let mut heavy = packed.clone();
-        heavy.scene = fully_burdened(&packed.scene, &features);
+        heavy.scene = with_all_unused(&packed.scene, features);
         let plain = on_cpu(packed.clone(), &loaded.settings, 2).unwrap();
-        let burdened = on_cpu(heavy, &loaded.settings, 2).unwrap();
-        assert!(plain.picture == burdened.picture);
+        let with_all = on_cpu(heavy, &loaded.settings, 2).unwrap();
+        assert!(plain.picture == with_all.picture);
         assert!(plain.picture.rgb.iter().flatten().any(|value| *value > 0.0));
         // A light that the choice does refer to would show.
         let mut brighter = packed.clone();
