@@ -14,7 +14,7 @@ use caustica::kernels::grid_build::{build_grid, record_bucket, record_code};
 use caustica::kernels::records::{Dispatch, Gathered, PhotonRecord, VisiblePoint};
 use caustica::math::rng::{STREAM_PHOTON, rng_new, rng_next};
 use caustica::math::{basis, oct_decode, oct_encode};
-use caustica::plan::Kernel;
+use caustica::plan::{Buffer, Kernel};
 use caustica::shapes::facet::{WALL_BITS, clip_at, facet_share, on_facet};
 use caustica::tables::{Facet, NONE};
 use glam::{DVec2, Vec3, Vec4};
@@ -295,16 +295,16 @@ fn the_driver_gathers_the_same() {
     let mut ordered = room.records.clone();
     ordered.sort_by_key(|record| record_bucket(&d, record));
     let sorted: Vec<PhotonRecord> = ordered.iter().map(coded).collect();
-    let upload = |name, bytes: &[u8]| (name, gpu.upload(name, bytes).unwrap());
+    let upload = |buffer: Buffer, bytes: &[u8]| (buffer, gpu.upload(buffer.name(), bytes).unwrap());
     let buffers = [
-        upload("visible_points", cast_slice(&points)),
-        upload("counters", &[0; 32]),
-        upload("starts", cast_slice(&starts)),
-        upload("sorted", cast_slice(&sorted)),
-        upload("facets", cast_slice(&room.facets)),
-        upload("gathered", cast_slice(&vec![Gathered::zeroed(); points.len()])),
+        upload(Buffer::VisiblePoints, cast_slice(&points)),
+        upload(Buffer::Counters, &[0; 32]),
+        upload(Buffer::Starts, cast_slice(&starts)),
+        upload(Buffer::Sorted, cast_slice(&sorted)),
+        upload(Buffer::Facets, cast_slice(&room.facets)),
+        upload(Buffer::Gathered, cast_slice(&vec![Gathered::zeroed(); points.len()])),
     ];
-    let find = |name: &str| buffers.iter().find(|(n, _)| *n == name).map(|(_, b)| b);
+    let find = |which: Buffer| buffers.iter().find(|(buffer, _)| *buffer == which).map(|(_, b)| b);
     let group = program.bind(&gpu, &recorder.dispatches, find).unwrap();
     recorder.dispatch(&gpu, &program, &group, &d);
     recorder.finish(&gpu).unwrap();

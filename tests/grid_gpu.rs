@@ -9,11 +9,11 @@ use bytemuck::{Zeroable, cast_slice, pod_collect_to_vec};
 use caustica::features::{Feature, Features};
 use caustica::gpu::Gpu;
 use caustica::gpu::layout::SceneTables;
-use caustica::gpu::program::{Program, workgroup_items};
+use caustica::gpu::program::Program;
 use caustica::gpu::recorder::Recorder;
 use caustica::kernels::grid_build::{record_bucket, record_code};
 use caustica::kernels::records::{Dispatch, PhotonRecord};
-use caustica::plan::{Kernel, SCAN_BLOCK};
+use caustica::plan::{Buffer, Kernel, SCAN_BLOCK};
 use glam::Vec3;
 use std::collections::BTreeMap;
 
@@ -58,19 +58,19 @@ impl Grid {
         let capacity = d.capacity as usize;
         let buckets = d.mask as usize + 1;
         let poison = |words: usize| vec![POISON; words];
-        let upload = |name: &'static str, words: &[u32]| {
-            (name, gpu.upload(name, cast_slice(words)).unwrap())
+        let upload = |buffer: Buffer, words: &[u32]| {
+            (buffer, gpu.upload(buffer.name(), cast_slice(words)).unwrap())
         };
         let mut all_records: Vec<u32> = cast_slice(records).to_vec();
         all_records.resize(capacity * 8, POISON);
         let buffers = BTreeMap::from([
-            upload("records", &all_records),
-            upload("counters", &[records.len() as u32, 0, 0, 0, 0, 0, 0, 0]),
-            upload("counts", &vec![0; buckets]),
-            upload("starts", &poison(buckets + 1)),
-            upload("block_sums", &poison(buckets / SCAN_BLOCK as usize + 1)),
-            upload("order", &poison(capacity)),
-            upload("sorted", &poison(capacity * 8)),
+            upload(Buffer::Records, &all_records),
+            upload(Buffer::Counters, &[records.len() as u32, 0, 0, 0, 0, 0, 0, 0]),
+            upload(Buffer::Counts, &vec![0; buckets]),
+            upload(Buffer::Starts, &poison(buckets + 1)),
+            upload(Buffer::BlockSums, &poison(buckets / SCAN_BLOCK as usize + 1)),
+            upload(Buffer::Order, &poison(capacity)),
+            upload(Buffer::Sorted, &poison(capacity * 8)),
         ]);
         for program in &self.programs {
             let end = match program.kernel {
@@ -78,9 +78,10 @@ impl Grid {
                 Kernel::GridScanSums => buckets as u32 / SCAN_BLOCK,
                 _ => buckets as u32,
             };
-            let group =
-                program.bind(gpu, &self.recorder.dispatches, |name| buffers.get(name)).unwrap();
-            let step = piece.next_multiple_of(workgroup_items(program.kernel)).min(end);
+            let group = program
+                .bind(gpu, &self.recorder.dispatches, |buffer| buffers.get(&buffer))
+                .unwrap();
+            let step = piece.next_multiple_of(program.kernel.info().workgroup_items).min(end);
             let mut first = 0;
             while first < end {
                 let last = (first + step).min(end);
@@ -92,11 +93,12 @@ impl Grid {
             }
         }
         self.recorder.finish(gpu).unwrap();
-        let read = |name: &str, bytes: usize| gpu.read(&buffers[name], bytes as u64).unwrap();
+        let read =
+            |buffer: Buffer, bytes: usize| gpu.read(&buffers[&buffer], bytes as u64).unwrap();
         Built {
-            counts: pod_collect_to_vec(&read("counts", buckets * 4)),
-            starts: pod_collect_to_vec(&read("starts", buckets * 4 + 4)),
-            sorted: pod_collect_to_vec(&read("sorted", capacity * size_of::<PhotonRecord>())),
+            counts: pod_collect_to_vec(&read(Buffer::Counts, buckets * 4)),
+            starts: pod_collect_to_vec(&read(Buffer::Starts, buckets * 4 + 4)),
+            sorted: pod_collect_to_vec(&read(Buffer::Sorted, capacity * size_of::<PhotonRecord>())),
         }
     }
 }

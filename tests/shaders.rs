@@ -7,7 +7,7 @@ mod ingredients;
 use caustica::features::{Feature, Features};
 use caustica::gpu::compose::{compose, compose_from};
 use caustica::gpu::fragments::{FRAGMENTS, Fragment};
-use caustica::gpu::layout::{Access, SceneTables, bindings};
+use caustica::gpu::layout::{Bound, SceneTables, bindings};
 use caustica::plan::Kernel;
 use ingredients::Mixture;
 use std::collections::BTreeSet;
@@ -128,8 +128,7 @@ fn only_what_is_required() {
 fn at_most_eight_storage_buffers() {
     let features = Mixture::of(Feature::ALL).features();
     for kernel in Kernel::ALL {
-        let storage =
-            bindings(kernel, &features).iter().filter(|b| b.access != Access::Uniform).count();
+        let storage = bindings(kernel, features).iter().filter(|b| **b != Bound::Dispatch).count();
         assert!(storage <= 8, "{}: {storage}", kernel.stem());
     }
 }

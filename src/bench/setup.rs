@@ -78,14 +78,15 @@ pub fn ready(
     let (width, height) = (scene.film.width, scene.film.height);
     let (packed, pack_seconds) = timed(|| pack(scene, width, height).map_err(EngineError::from))?;
     let (plan, plan_seconds) = timed(|| Ok(Plan::new(&packed, settings)))?;
-    let mut buffers = plan.buffers();
+    let mut buffers: Vec<_> =
+        plan.buffers().into_iter().map(|(b, bytes)| (b.name(), bytes)).collect();
     let choice = AdapterChoice::Named(device.name.clone());
     let (runner, engine) = timed(|| match device.kind {
         DeviceKind::Cpu => Ok(Runner::Cpu(Box::new(CpuEngine::new(packed.clone(), plan.clone())))),
         DeviceKind::CpuDouble => {
             let packed = double::pack::pack(scene, width, height)?;
             let plan = double::plan::Plan::new(&packed, settings);
-            buffers = plan.buffers();
+            buffers = plan.buffers().into_iter().map(|(b, bytes)| (b.name(), bytes)).collect();
             Ok(Runner::Cpu(Box::new(double::cpu::CpuEngine::new(packed, plan))))
         }
         DeviceKind::Gpu | DeviceKind::Software => {

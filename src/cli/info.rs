@@ -7,7 +7,7 @@ use caustica::engine::EngineError;
 use caustica::features::Feature;
 use caustica::memory::{Memory, Part, total};
 use caustica::pack::{Packed, pack};
-use caustica::plan::{Kernel, Place, Plan, scene_bytes, scene_tables};
+use caustica::plan::{Buffer, Kernel, Place, Plan, scene_bytes, scene_tables};
 use caustica::settings::Method;
 use clap::builder::NonEmptyStringValueParser;
 use serde_json::{Value, json};
@@ -155,15 +155,17 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
 fn report(packed: &Packed, plan: &Plan) -> InfoReport {
     let features =
         Feature::ALL.iter().map(|feature| (feature.name().to_owned(), plan.features.has(*feature)));
-    let steps = plan.steps(0, plan.batch_photons);
-    let used = |kernel| steps.iter().any(|step| step.kernel == kernel);
+    let kernels = plan.kernels();
+    let used = |kernel| kernels.iter().any(|(other, _)| *other == kernel);
     // A path tracer is one kernel, of the CPU engine, and keeps nothing but the film.
     let path = plan.settings.method == Method::Path;
     let kernels =
         Kernel::ALL.iter().map(|kernel| (kernel.stem().to_owned(), !path && used(*kernel)));
     let kernels = kernels.chain([("path_trace".to_owned(), path)]);
     let tables = scene_tables(&packed.scene).into_iter().filter(|(_, bytes)| *bytes > 0);
-    let own_buffers = plan.buffers().into_iter().filter(|(name, _)| !path || *name == "film");
+    let own_buffers =
+        plan.buffers().into_iter().filter(|(buffer, _)| !path || *buffer == Buffer::Film);
+    let own_buffers = own_buffers.map(|(buffer, bytes)| (buffer.name(), bytes));
     let buffers = tables.chain(own_buffers).map(|(name, bytes)| (name.to_owned(), bytes));
     InfoReport {
         features: features.collect(),

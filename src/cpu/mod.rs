@@ -1,4 +1,4 @@
-//! The CPU engine: carries out a plan on vectors, with rayon. Needs no adapter.
+//! The CPU engine: executes a plan on vectors, with rayon. Needs no adapter.
 
 mod photons;
 mod tasks;
@@ -18,7 +18,7 @@ use super::kernels::resolve_parts::{PartsPixel, resolve_parts};
 use super::layers::Found as Layers;
 use super::math::is_finite;
 use super::pack::Packed;
-use super::plan::{Kernel, Plan, Step};
+use super::plan::{Buffer, Command, Kernel, Plan, Stage, Step};
 use super::real::{ENGINE, Real};
 use crate::clock::{Clock, KernelSeconds};
 use crate::engine::{Cancel, Engine, EngineError, PassReport, PhotonEnds, State};
@@ -28,6 +28,7 @@ use crate::settings::Method;
 use bytemuck::Zeroable;
 use photons::trace_photons;
 use rayon::prelude::*;
+use std::ops::Range;
 use std::sync::Arc;
 use tasks::{EYE_TASK, EyePaths, GATHER_TASK, Gathers, trace_aovs};
 
@@ -69,14 +70,15 @@ impl CpuEngine {
         let buckets = if photons { plan.buckets as usize } else { 0 };
         let path = plan.settings.method == Method::Path;
         let points_kept = if path { 0 } else { points };
-        let held = |name: &str| {
-            if plan.in_turn().contains(&name) { plan.chunk(0).1 as usize } else { points }
+        let held = |buffer| match (path, plan.is_reused(buffer)) {
+            (true, _) => 0,
+            (false, true) => plan.chunk(0).1 as usize,
+            (false, false) => points,
         };
-        let held = |name: &str| if path { 0 } else { held(name) };
         Self {
             passes_done: 0,
-            visible_points: vec![VisiblePoint::zeroed(); held("visible_points")],
-            gathered: vec![Gathered::zeroed(); held("gathered")],
+            visible_points: vec![VisiblePoint::zeroed(); held(Buffer::VisiblePoints)],
+            gathered: vec![Gathered::zeroed(); held(Buffer::Gathered)],
             statistics: vec![
                 Statistics::zeroed();
                 if plan.features.has(Feature::Local) { points_kept } else { 0 }
@@ -107,7 +109,7 @@ impl CpuEngine {
         loop {
             *report =
                 PassReport { photons: self.plan.settings.photons as u64, ..PassReport::default() };
-            match self.steps(batch, report) {
+            match self.execute(batch, report) {
                 Ok(()) => return Ok(()),
                 // a pass that overflowed is thrown away and run again with batches half as large
                 Err(Unfinished::Overflow) => batch = (batch / 2).max(1),
@@ -116,53 +118,79 @@ impl CpuEngine {
         }
     }
 
-    fn steps(&mut self, batch_photons: u32, report: &mut PassReport) -> Result<(), Unfinished> {
-        let turn = self.plan.in_turn();
-        let mut resolved = false;
-        for (number, steps) in
-            self.plan.phases(self.passes_done, batch_photons).into_iter().enumerate()
-        {
-            if number == 0 || turn.contains(&"gathered") {
-                self.gathered.par_iter_mut().for_each(|g| *g = Gathered::zeroed());
-            }
-            for step in steps {
-                // once a part is resolved, the whole pass is to be in the film
-                resolved |= step.kernel == Kernel::Resolve;
-                let cancel = if resolved { Cancel::default() } else { self.plan.cancel.clone() };
-                let check = || cancel.check().map_err(|_| Unfinished::Cancelled);
-                check()?;
-                self.step(&step, number == 0, &cancel, report)?;
+    fn execute(&mut self, batch: u32, report: &mut PassReport) -> Result<(), Unfinished> {
+        let tiles = self.plan.commands(self.passes_done, batch);
+        let mut cancel = self.plan.cancel.clone();
+        for (number, commands) in tiles.into_iter().enumerate() {
+            let mut tile = PassReport::default();
+            for command in commands {
+                cancel.check().map_err(|_| Unfinished::Cancelled)?;
+                match command {
+                    Command::ClearGathered { chunk } => {
+                        let place = self.place(Buffer::Gathered, chunk);
+                        self.gathered[place].par_iter_mut().for_each(|g| *g = Gathered::zeroed());
+                    }
+                    Command::ClearCounters => tile = PassReport::default(),
+                    Command::ClearRecords => {
+                        self.records.iter_mut().for_each(|list| list.records.clear());
+                    }
+                    Command::Run(step) => self.run(&step, &cancel, &mut tile)?,
+                    Command::ReadEyeRays => tile.eye_rays = tile.rays,
+                    Command::ReadRecords { photons } => {
+                        let records = self.records.iter().map(|list| list.records.len() as u64);
+                        let records = records.sum::<u64>();
+                        tile.records += records;
+                        if records > u64::from(self.plan.capacity) && photons > 1 {
+                            return Err(Unfinished::Overflow);
+                        }
+                    }
+                    Command::Commit => cancel = Cancel::default(),
+                }
                 // the step may have left out its last tasks
-                check()?;
+                cancel.check().map_err(|_| Unfinished::Cancelled)?;
+            }
+            report.eye_paths += tile.eye_paths;
+            report.rays += tile.rays;
+            report.eye_rays += tile.eye_rays;
+            // photons that are traced again for another tile are the same
+            if number == 0 {
+                report.ends = tile.ends;
+                report.records = tile.records;
             }
         }
         Ok(())
     }
 
-    /// One step of the phase that is the first one of its pass or not. Long ones leave out what
-    /// they have not begun once `cancel` is asked for.
-    fn step(
+    /// Where a chunk's visible points are in a buffer.
+    fn place(&self, buffer: Buffer, chunk: u32) -> Range<usize> {
+        let (first, points) = self.plan.chunk(chunk);
+        let first = if self.plan.is_reused(buffer) { 0 } else { first as usize };
+        first..first + points as usize
+    }
+
+    /// Runs a step. Long ones leave out the tasks that they have not begun when `cancel` is asked
+    /// for.
+    fn run(
         &mut self,
         step: &Step,
-        first_phase: bool,
         cancel: &Cancel,
-        report: &mut PassReport,
+        tile: &mut PassReport,
     ) -> Result<(), Unfinished> {
         let sampled = self.plan.features.has(Feature::Sampled);
         let local = self.plan.features.has(Feature::Local);
+        let chunk = self.place(Buffer::Statistics, step.chunk);
+        let (seen, found) = (
+            self.place(Buffer::VisiblePoints, step.chunk),
+            self.place(Buffer::Gathered, step.chunk),
+        );
         let scene = &self.packed.scene;
-        self.clock.begin(step.kernel.stem());
         let d = &step.dispatch;
-        let (first, points) = self.plan.chunk(step.chunk);
-        let chunk = first as usize..(first + points) as usize;
-        let turn = self.plan.in_turn();
-        // where a chunk's part of a buffer is
-        let place =
-            |name: &str| if turn.contains(&name) { 0..points as usize } else { chunk.clone() };
-        let (seen, found) = (place("visible_points"), place("gathered"));
-        match step.kernel {
-            Kernel::EyeTrace => {
-                report.eye_paths += d.end as u64;
+        if let [kernel] = step.stage.kernels() {
+            self.clock.begin(kernel.stem());
+        }
+        match step.stage {
+            Stage::EyeTrace => {
+                tile.eye_paths += d.end as u64;
                 let rays = self.visible_points[seen]
                     .par_chunks_mut(EYE_TASK)
                     .enumerate()
@@ -171,34 +199,26 @@ impl CpuEngine {
                         self.arch.dispatch(EyePaths { scene, dispatch: d, sampled, first, points })
                     })
                     .sum::<u64>();
-                report.rays += rays;
-                report.eye_rays += rays;
+                tile.rays += rays;
             }
-            Kernel::PhotonTrace => {
+            Stage::PhotonTrace => {
                 let (rays, ends) =
                     trace_photons(self.arch, scene, d, sampled, cancel, &mut self.records);
-                report.rays += rays;
-                let records =
-                    self.records.iter().map(|list| list.records.len() as u64).sum::<u64>();
-                // photons that are traced again for another tile are the same
-                if first_phase {
-                    report.ends.add(&PhotonEnds::of(ends));
-                    report.records += records;
-                }
-                if records > d.capacity as u64 && d.end > 1 {
-                    return Err(Unfinished::Overflow);
-                }
+                tile.rays += rays;
+                tile.ends.add(&PhotonEnds::of(ends));
             }
-            Kernel::GridCount => grid_count(d, &mut self.records),
-            Kernel::GridScanReduce | Kernel::GridScanSums => {}
-            Kernel::GridScan => self.part_starts = grid_scan(&self.records),
-            Kernel::GridScatter => grid_scatter(d, &mut self.records),
-            Kernel::GridSortLong => {}
-            Kernel::GridSort => {
+            Stage::BuildGrid => {
+                self.clock.begin(Kernel::GridCount.stem());
+                grid_count(d, &mut self.records);
+                self.clock.begin(Kernel::GridScan.stem());
+                self.part_starts = grid_scan(&self.records);
+                self.clock.begin(Kernel::GridScatter.stem());
+                grid_scatter(d, &mut self.records);
+                self.clock.begin(Kernel::GridSort.stem());
                 let (starts, sorted) = (&mut self.starts, &mut self.sorted);
                 grid_sort(d, &self.records, &self.part_starts, starts, sorted);
             }
-            Kernel::Gather => {
+            Stage::Gather => {
                 let points = self.visible_points[seen].par_chunks(GATHER_TASK);
                 let gathered = self.gathered[found].par_chunks_mut(GATHER_TASK);
                 let mut statistics =
@@ -222,8 +242,8 @@ impl CpuEngine {
                     },
                 );
             }
-            Kernel::AovTrace => trace_aovs(scene, d, &self.plan.features, &mut self.aovs),
-            Kernel::ResolveParts => {
+            Stage::AovTrace => trace_aovs(scene, d, &self.plan.features, &mut self.aovs),
+            Stage::ResolveParts => {
                 let samples = d.eye_samples as usize;
                 let pixels = d.chunk_first as usize / samples..chunk.end / samples;
                 let parts = self.parts[pixels].par_iter_mut().enumerate();
@@ -234,7 +254,7 @@ impl CpuEngine {
                     resolve_parts(d, points, &self.gathered[at(found.start)], statistics, parts);
                 });
             }
-            Kernel::Resolve => {
+            Stage::Resolve => {
                 let samples = d.eye_samples as usize;
                 let pixels = d.chunk_first as usize / samples..chunk.end / samples;
                 let film = self.film[pixels].par_iter_mut();
@@ -271,7 +291,7 @@ impl CpuEngine {
             .sum();
         report.eye_rays = report.rays;
         for step in self.plan.aov_steps(self.passes_done) {
-            self.clock.begin(step.kernel.stem());
+            self.clock.begin(Kernel::AovTrace.stem());
             trace_aovs(scene, &step.dispatch, &self.plan.features, &mut self.aovs);
         }
     }
@@ -362,7 +382,7 @@ impl Engine for CpuEngine {
     }
 
     fn gathered(&mut self) -> Result<u64, EngineError> {
-        if self.plan.in_turn().contains(&"gathered") {
+        if self.plan.is_reused(Buffer::Gathered) {
             return Err(EngineError::Unsupported(
                 "what tiles have gathered is not kept".to_owned(),
             ));

@@ -39,7 +39,7 @@ pub fn names(kernel: Kernel, features: &Features) -> Names {
         Feature::ALL.iter().map(|feature| feature.name()).chain(stems).chain(["scene", "area"]);
     let mut held: BTreeSet<&'static str> = features.iter().map(Feature::name).collect();
     held.insert(kernel.stem());
-    if kernel.reads_scene() {
+    if kernel.info().traces {
         held.insert("scene");
     }
     if features.iter().any(|feature| feature.name().starts_with("area_")) {
@@ -66,8 +66,8 @@ pub fn compose_from(
 ) -> Result<Shader, ShaderError> {
     let names = names(kernel, features);
     let mut shader = Shader { source: String::new(), parts: Vec::new() };
-    let mut declared = declarations(&bindings(kernel, features));
-    if kernel.reads_scene() {
+    let mut declared = declarations(&bindings(kernel, *features));
+    if kernel.info().traces {
         declared.insert_str(0, &scene.declaration());
     }
     shader.push(DECLARATIONS, &declared);

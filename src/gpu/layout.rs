@@ -2,8 +2,8 @@
 //! buffer, each table an array of fixed length at a multiple of 16 bytes, and the bindings of every
 //! kernel.
 
-use crate::features::{Feature, Features, few};
-use crate::plan::Kernel;
+use crate::features::{Features, few};
+use crate::plan::{Access, Buffer, Kernel, Use};
 use crate::tables::{self, Material};
 use bytemuck::{Pod, Zeroable, bytes_of, cast_slice};
 
@@ -118,97 +118,69 @@ impl SceneTables {
     }
 }
 
-/// The long tables, each in a buffer of its own: name, the feature that needs it, content.
-pub fn long_tables(scene: &tables::Scene) -> [(&'static str, Feature, &[u8]); 6] {
+/// The tables that have their own buffers, with their content.
+pub fn long_tables(scene: &tables::Scene) -> [(Buffer, &[u8]); 6] {
     [
-        ("nodes", Feature::KdTree, cast_slice(&scene.nodes)),
-        ("refs", Feature::KdTree, cast_slice(&scene.refs)),
-        ("triangles", Feature::Triangle, cast_slice(&scene.triangles)),
-        ("attributes", Feature::Attributes, cast_slice(&scene.attributes)),
-        ("facets", Feature::Facets, cast_slice(&scene.facets)),
-        ("texels", Feature::Texels, cast_slice(&scene.texels)),
+        (Buffer::Nodes, cast_slice(&scene.nodes)),
+        (Buffer::Refs, cast_slice(&scene.refs)),
+        (Buffer::Triangles, cast_slice(&scene.triangles)),
+        (Buffer::Attributes, cast_slice(&scene.attributes)),
+        (Buffer::Facets, cast_slice(&scene.facets)),
+        (Buffer::Texels, cast_slice(&scene.texels)),
     ]
 }
 
-/// How a kernel uses a buffer.
+/// What a kernel binds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Access {
-    /// Uniform with a dynamic offset.
-    Uniform,
-    /// Storage, read only.
-    Read,
-    /// Storage.
-    Write,
+pub enum Bound {
+    /// The parameters of the dispatch, a uniform with a dynamic offset.
+    Dispatch,
+    /// A storage buffer.
+    Storage(Use),
 }
 
-/// A buffer that a kernel binds; the number of the binding is its place in the list.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Binding {
-    /// Name in the shader and in the plan.
-    pub name: &'static str,
-    /// Use.
-    pub access: Access,
-    /// WGSL type.
-    pub wgsl_type: &'static str,
-}
-
-/// What `kernel` binds, in group 0.
-pub fn bindings(kernel: Kernel, features: &Features) -> Vec<Binding> {
-    let mut list =
-        vec![Binding { name: "dispatch", access: Access::Uniform, wgsl_type: "Dispatch" }];
-    if kernel.reads_scene() {
-        let mut read =
-            |name, wgsl_type| list.push(Binding { name, access: Access::Read, wgsl_type });
-        read("scene", "Scene");
-        for (name, feature, wgsl_type) in [
-            ("nodes", Feature::KdTree, "array<vec2u>"),
-            ("refs", Feature::KdTree, "array<u32>"),
-            ("triangles", Feature::Triangle, "array<Triangle>"),
-            ("attributes", Feature::Attributes, "array<Attributes>"),
-            ("texels", Feature::Texels, "array<u32>"),
-        ] {
-            if features.has(feature) {
-                read(name, wgsl_type);
-            }
+impl Bound {
+    /// Name in the shader.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Dispatch => "dispatch",
+            Self::Storage(used) => used.buffer.name(),
         }
     }
-    if kernel == Kernel::Gather && features.has(Feature::Facets) {
-        list.push(Binding { name: "facets", access: Access::Read, wgsl_type: "array<Facet>" });
+
+    fn wgsl_type(self) -> String {
+        match self {
+            Self::Dispatch => "Dispatch".to_owned(),
+            Self::Storage(used) => match used.access {
+                Access::Read | Access::Write => used.buffer.info().wgsl_type(),
+                Access::ReadVectors => {
+                    format!("array<array<vec4u, {}>>", used.buffer.element_bytes() / 16)
+                }
+                Access::Atomic => "array<atomic<u32>>".to_owned(),
+            },
+        }
     }
-    for (name, writes) in kernel.buffers(features) {
-        let access = if writes { Access::Write } else { Access::Read };
-        list.push(Binding { name, access, wgsl_type: buffer_type(kernel, name) });
+
+    fn address_space(self) -> &'static str {
+        match self {
+            Self::Dispatch => "uniform",
+            Self::Storage(used) if used.is_read_only() => "storage, read",
+            Self::Storage(_) => "storage, read_write",
+        }
     }
-    list
 }
 
-fn buffer_type(kernel: Kernel, name: &str) -> &'static str {
-    match name {
-        "visible_points" => "array<VisiblePoint>",
-        "sorted" if kernel == Kernel::Gather => "array<array<vec4u, 2>>",
-        "records" | "sorted" => "array<PhotonRecord>",
-        "gathered" => "array<Gathered>",
-        "film" => "array<FilmPixel>",
-        "aovs" => "array<AovPixel>",
-        "parts" => "array<PartsPixel>",
-        "statistics" => "array<Statistics>",
-        "counters" => "Counters",
-        "counts" if matches!(kernel, Kernel::GridCount | Kernel::GridScatter) => {
-            "array<atomic<u32>>"
-        }
-        _ => "array<u32>",
-    }
+/// What `kernel` binds in group 0; the place in the list is the number of the binding.
+pub fn bindings(kernel: Kernel, features: Features) -> Vec<Bound> {
+    let buffers = kernel.uses(features).map(Bound::Storage);
+    std::iter::once(Bound::Dispatch).chain(buffers).collect()
 }
 
 /// The WGSL declarations of `bindings`.
-pub fn declarations(bindings: &[Binding]) -> String {
-    let space = |access| match access {
-        Access::Uniform => "uniform",
-        Access::Read => "storage, read",
-        Access::Write => "storage, read_write",
-    };
-    let line = |(i, b): (usize, &Binding)| {
-        format!("@group(0) @binding({i}) var<{}> {}: {};\n", space(b.access), b.name, b.wgsl_type)
+pub fn declarations(bindings: &[Bound]) -> String {
+    let line = |(i, b): (usize, &Bound)| {
+        let (space, name, of) = (b.address_space(), b.name(), b.wgsl_type());
+        format!("@group(0) @binding({i}) var<{space}> {name}: {of};\n")
     };
     bindings.iter().enumerate().map(line).collect()
 }

@@ -6,10 +6,10 @@ mod engine;
 pub mod fragments;
 pub mod layout;
 mod memory;
-mod mend;
 pub mod pace;
 pub mod program;
 pub mod recorder;
+mod retrace;
 mod stamps;
 mod visible;
 

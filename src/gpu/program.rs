@@ -2,11 +2,11 @@
 
 use super::compose::{Shader, causes, compose};
 use super::context::Gpu;
-use super::layout::{Access, Binding, SceneTables, bindings};
+use super::layout::{Bound, SceneTables, bindings};
 use crate::engine::EngineError;
 use crate::features::Features;
 use crate::kernels::records::Dispatch;
-use crate::plan::{Kernel, SCAN_BLOCK, SORT_BUCKETS};
+use crate::plan::{Buffer, Kernel};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc;
 use std::time::Instant;
@@ -17,7 +17,7 @@ pub struct Program {
     pub kernel: Kernel,
     pub(super) pipeline: wgpu::ComputePipeline,
     layout: wgpu::BindGroupLayout,
-    bindings: Vec<Binding>,
+    bindings: Vec<Bound>,
 }
 
 impl Program {
@@ -40,7 +40,7 @@ impl Program {
         features: &Features,
         shader: Shader,
     ) -> Result<Self, EngineError> {
-        let bindings = bindings(kernel, features);
+        let bindings = bindings(kernel, *features);
         let stem = kernel.stem();
         let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
         let entries: Vec<_> = (0..).zip(&bindings).map(|(i, b)| layout_entry(i, b)).collect();
@@ -79,27 +79,26 @@ impl Program {
         }
     }
 
-    /// Binds the buffers that `buffer` finds by name; `dispatches` holds the numbers of the
-    /// dispatches.
+    /// Binds the buffers that `buffer` finds; `dispatches` holds the parameters of the dispatches.
     pub fn bind<'a>(
         &self,
         gpu: &Gpu,
         dispatches: &wgpu::Buffer,
-        buffer: impl Fn(&str) -> Option<&'a wgpu::Buffer>,
+        buffer: impl Fn(Buffer) -> Option<&'a wgpu::Buffer>,
     ) -> Result<wgpu::BindGroup, EngineError> {
         let mut entries = Vec::new();
         for (number, binding) in (0..).zip(&self.bindings) {
-            let resource = match binding.access {
-                Access::Uniform => wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+            let resource = match binding {
+                Bound::Dispatch => wgpu::BindingResource::Buffer(wgpu::BufferBinding {
                     buffer: dispatches,
                     offset: 0,
                     size: wgpu::BufferSize::new(size_of::<Dispatch>() as u64),
                 }),
-                _ => match buffer(binding.name) {
+                Bound::Storage(used) => match buffer(used.buffer) {
                     Some(buffer) => buffer.as_entire_binding(),
                     None => {
                         let text =
-                            format!("{} has no buffer `{}`", self.kernel.stem(), binding.name);
+                            format!("{} has no buffer `{}`", self.kernel.stem(), binding.name());
                         return Err(EngineError::Shader(text));
                     }
                 },
@@ -170,15 +169,6 @@ pub fn make_programs(
     })
 }
 
-/// Items that one workgroup of a kernel covers; dispatches begin at multiples of it.
-pub fn workgroup_items(kernel: Kernel) -> u32 {
-    match kernel {
-        Kernel::GridScanReduce | Kernel::GridScanSums | Kernel::GridScan => SCAN_BLOCK,
-        Kernel::GridSortLong => SORT_BUCKETS,
-        _ => 64,
-    }
-}
-
 /// Rows and columns of `groups` workgroups, at most 65535 in a row; surplus invocations find
 /// nothing to do.
 pub fn arrange(groups: u32) -> (u32, u32) {
@@ -187,17 +177,17 @@ pub fn arrange(groups: u32) -> (u32, u32) {
     (groups.div_ceil(rows).max(1), rows)
 }
 
-fn layout_entry(binding: u32, b: &Binding) -> wgpu::BindGroupLayoutEntry {
-    let uniform = b.access == Access::Uniform;
-    let ty = if uniform {
-        wgpu::BufferBindingType::Uniform
-    } else {
-        wgpu::BufferBindingType::Storage { read_only: b.access == Access::Read }
+fn layout_entry(binding: u32, bound: &Bound) -> wgpu::BindGroupLayoutEntry {
+    let (ty, has_dynamic_offset) = match bound {
+        Bound::Dispatch => (wgpu::BufferBindingType::Uniform, true),
+        Bound::Storage(used) => {
+            (wgpu::BufferBindingType::Storage { read_only: used.is_read_only() }, false)
+        }
     };
     wgpu::BindGroupLayoutEntry {
         binding,
         visibility: wgpu::ShaderStages::COMPUTE,
-        ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset: uniform, min_binding_size: None },
+        ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset, min_binding_size: None },
         count: None,
     }
 }

@@ -2,7 +2,7 @@
 //! be measured.
 
 use super::context::Gpu;
-use super::program::{Program, arrange, workgroup_items};
+use super::program::{Program, arrange};
 use super::stamps::Stamps;
 use crate::engine::EngineError;
 use crate::kernels::records::Dispatch;
@@ -75,7 +75,7 @@ impl Recorder {
         let offset = self.staged.len();
         self.staged.extend_from_slice(bytes_of(dispatch));
         self.staged.resize(offset + self.stride, 0);
-        let items = (dispatch.end - dispatch.first).div_ceil(workgroup_items(program.kernel));
+        let items = (dispatch.end - dispatch.first).div_ceil(program.kernel.info().workgroup_items);
         let (columns, rows) = arrange(items);
         let Self { encoder, stamps, .. } = self;
         let encoder =

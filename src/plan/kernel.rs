@@ -1,14 +1,23 @@
-//! The kernels of a pass, and one dispatch of one.
+//! The kernels: one descriptor each, which shader composition, binding layouts, setup, bench and
+//! ablation read.
 
 use super::super::features::{Feature, Features};
-use super::super::kernels::records::Dispatch;
+use super::buffer::Buffer;
 
-/// A kernel: the stem of its shader file, of its Rust twin and its entry point.
+/// Buckets that one workgroup of the scan kernels covers; the same number of blocks is the most
+/// there may be.
+pub const SCAN_BLOCK: u32 = 4096;
+/// Buckets that one workgroup of [`Kernel::GridSortLong`] looks through.
+pub const SORT_BUCKETS: u32 = 256;
+/// Items that one workgroup of most kernels covers.
+const WORKGROUP: u32 = 64;
+
+/// A kernel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Kernel {
     /// Eye paths to visible points.
     EyeTrace,
-    /// Eye paths to what a picture shows beside radiance.
+    /// Eye paths to the layers of first hits.
     AovTrace,
     /// Photon paths to records.
     PhotonTrace,
@@ -24,21 +33,104 @@ pub enum Kernel {
     GridScatter,
     /// Each short bucket into the order of its keys.
     GridSort,
-    /// Each long one.
+    /// Each long bucket into the order of its keys.
     GridSortLong,
     /// Density estimates.
     Gather,
-    /// What photons bring, by the way they came.
+    /// Photons' light by class.
     ResolveParts,
     /// Estimates into the film.
     Resolve,
 }
 
-/// Buckets that one workgroup of the scan kernels covers; the same number of blocks is the most
-/// there may be.
-pub const SCAN_BLOCK: u32 = 4096;
-/// Buckets that one workgroup of [`Kernel::GridSortLong`] looks through.
-pub const SORT_BUCKETS: u32 = 256;
+/// What a kernel runs over: the range of its dispatch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Over {
+    /// Visible points of a chunk.
+    VisiblePoints,
+    /// Pixels of a chunk.
+    Pixels,
+    /// Photons of a batch.
+    Photons,
+    /// Records; the kernel stops at the count in `counters`.
+    Records,
+    /// Buckets of the grid.
+    Buckets,
+    /// Blocks of [`SCAN_BLOCK`] buckets.
+    Blocks,
+}
+
+/// How a kernel uses a buffer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Access {
+    /// Reads elements.
+    Read,
+    /// Reads elements as vectors of four words.
+    ReadVectors,
+    /// Reads and writes elements.
+    Write,
+    /// Reads and writes words by atomic operations.
+    Atomic,
+}
+
+/// A buffer that a kernel binds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Use {
+    /// The buffer.
+    pub buffer: Buffer,
+    /// How it is used.
+    pub access: Access,
+    /// The feature without which it is not bound.
+    pub feature: Option<Feature>,
+}
+
+impl Use {
+    /// Returns whether the kernel only reads the buffer.
+    pub const fn is_read_only(self) -> bool {
+        matches!(self.access, Access::Read | Access::ReadVectors)
+    }
+}
+
+/// What is declared about a kernel.
+#[derive(Clone, Copy, Debug)]
+pub struct KernelInfo {
+    /// Stem of its shader file and of its Rust twin, entry point and label.
+    pub stem: &'static str,
+    /// What it runs over.
+    pub over: Over,
+    /// Items that one workgroup covers; dispatches begin at multiples of it.
+    pub workgroup_items: u32,
+    /// Whether it traces rays, and hence binds the scene.
+    pub traces: bool,
+    /// The buffers that it binds after the scene's.
+    pub uses: &'static [Use],
+}
+
+const fn read(buffer: Buffer) -> Use {
+    Use { buffer, access: Access::Read, feature: None }
+}
+
+const fn write(buffer: Buffer) -> Use {
+    Use { buffer, access: Access::Write, feature: None }
+}
+
+const fn atomic(buffer: Buffer) -> Use {
+    Use { buffer, access: Access::Atomic, feature: None }
+}
+
+const fn with(feature: Feature, used: Use) -> Use {
+    Use { feature: Some(feature), ..used }
+}
+
+/// The scene's buffers, for kernels that trace rays.
+const SCENE: &[Use] = &[
+    read(Buffer::Scene),
+    with(Feature::KdTree, read(Buffer::Nodes)),
+    with(Feature::KdTree, read(Buffer::Refs)),
+    with(Feature::Triangle, read(Buffer::Triangles)),
+    with(Feature::Attributes, read(Buffer::Attributes)),
+    with(Feature::Texels, read(Buffer::Texels)),
+];
 
 impl Kernel {
     /// All kernels, in the order of a pass.
@@ -58,91 +150,142 @@ impl Kernel {
         Self::Resolve,
     ];
 
-    /// File stem and entry point.
-    pub fn stem(self) -> &'static str {
+    /// The descriptor.
+    pub const fn info(self) -> KernelInfo {
+        use Buffer::*;
         match self {
-            Self::EyeTrace => "eye_trace",
-            Self::AovTrace => "aov_trace",
-            Self::PhotonTrace => "photon_trace",
-            Self::GridCount => "grid_count",
-            Self::GridScanReduce => "grid_scan_reduce",
-            Self::GridScanSums => "grid_scan_sums",
-            Self::GridScan => "grid_scan",
-            Self::GridScatter => "grid_scatter",
-            Self::GridSort => "grid_sort",
-            Self::GridSortLong => "grid_sort_long",
-            Self::Gather => "gather",
-            Self::ResolveParts => "resolve_parts",
-            Self::Resolve => "resolve",
+            Self::EyeTrace => KernelInfo {
+                stem: "eye_trace",
+                over: Over::VisiblePoints,
+                workgroup_items: WORKGROUP,
+                traces: true,
+                uses: const { &[write(VisiblePoints), write(Counters)] },
+            },
+            Self::AovTrace => KernelInfo {
+                stem: "aov_trace",
+                over: Over::Pixels,
+                workgroup_items: WORKGROUP,
+                traces: true,
+                uses: const { &[write(Aovs), write(Counters)] },
+            },
+            Self::PhotonTrace => KernelInfo {
+                stem: "photon_trace",
+                over: Over::Photons,
+                workgroup_items: WORKGROUP,
+                traces: true,
+                uses: const { &[write(Records), write(Counters)] },
+            },
+            Self::GridCount => KernelInfo {
+                stem: "grid_count",
+                over: Over::Records,
+                workgroup_items: WORKGROUP,
+                traces: false,
+                uses: const { &[read(Records), write(Counters), atomic(Counts)] },
+            },
+            Self::GridScanReduce => KernelInfo {
+                stem: "grid_scan_reduce",
+                over: Over::Buckets,
+                workgroup_items: SCAN_BLOCK,
+                traces: false,
+                uses: const { &[write(Counts), write(BlockSums)] },
+            },
+            Self::GridScanSums => KernelInfo {
+                stem: "grid_scan_sums",
+                over: Over::Blocks,
+                workgroup_items: SCAN_BLOCK,
+                traces: false,
+                uses: const { &[write(BlockSums)] },
+            },
+            Self::GridScan => KernelInfo {
+                stem: "grid_scan",
+                over: Over::Buckets,
+                workgroup_items: SCAN_BLOCK,
+                traces: false,
+                uses: const { &[write(Counts), write(BlockSums), write(Starts)] },
+            },
+            Self::GridScatter => KernelInfo {
+                stem: "grid_scatter",
+                over: Over::Records,
+                workgroup_items: WORKGROUP,
+                traces: false,
+                uses: const {
+                    &[read(Records), write(Counters), atomic(Counts), read(Starts), write(Order)]
+                },
+            },
+            Self::GridSort => KernelInfo {
+                stem: "grid_sort",
+                over: Over::Buckets,
+                workgroup_items: WORKGROUP,
+                traces: false,
+                uses: const { &[read(Records), read(Starts), write(Order), write(Sorted)] },
+            },
+            Self::GridSortLong => KernelInfo {
+                stem: "grid_sort_long",
+                over: Over::Buckets,
+                workgroup_items: SORT_BUCKETS,
+                traces: false,
+                uses: const {
+                    &[read(Records), write(Counters), read(Starts), write(Order), write(Sorted)]
+                },
+            },
+            Self::Gather => KernelInfo {
+                stem: "gather",
+                over: Over::VisiblePoints,
+                workgroup_items: WORKGROUP,
+                traces: false,
+                uses: const {
+                    &[
+                        with(Feature::Facets, read(Facets)),
+                        read(VisiblePoints),
+                        write(Counters),
+                        read(Starts),
+                        Use { buffer: Sorted, access: Access::ReadVectors, feature: None },
+                        write(Gathered),
+                        with(Feature::Local, read(Statistics)),
+                    ]
+                },
+            },
+            Self::ResolveParts => KernelInfo {
+                stem: "resolve_parts",
+                over: Over::Pixels,
+                workgroup_items: WORKGROUP,
+                traces: false,
+                uses: const {
+                    &[
+                        read(VisiblePoints),
+                        read(Gathered),
+                        write(Parts),
+                        with(Feature::Local, read(Statistics)),
+                    ]
+                },
+            },
+            Self::Resolve => KernelInfo {
+                stem: "resolve",
+                over: Over::Pixels,
+                workgroup_items: WORKGROUP,
+                traces: false,
+                uses: const {
+                    &[
+                        read(VisiblePoints),
+                        read(Gathered),
+                        write(Film),
+                        with(Feature::Local, write(Statistics)),
+                    ]
+                },
+            },
         }
     }
 
-    /// The buffers it binds beside the scene's (see [`Plan::buffers`](super::Plan::buffers)) and
-    /// whether it writes them.
-    pub fn buffers(self, features: &Features) -> Vec<(&'static str, bool)> {
-        let mut list = match self {
-            Self::EyeTrace => vec![("visible_points", true), ("counters", true)],
-            Self::AovTrace => vec![("aovs", true), ("counters", true)],
-            Self::PhotonTrace => vec![("records", true), ("counters", true)],
-            Self::GridCount => vec![("records", false), ("counters", true), ("counts", true)],
-            Self::GridScanReduce => vec![("counts", true), ("block_sums", true)],
-            Self::GridScanSums => vec![("block_sums", true)],
-            Self::GridScan => vec![("counts", true), ("block_sums", true), ("starts", true)],
-            Self::GridScatter => {
-                vec![
-                    ("records", false),
-                    ("counters", true),
-                    ("counts", true),
-                    ("starts", false),
-                    ("order", true),
-                ]
-            }
-            Self::GridSort => {
-                vec![("records", false), ("starts", false), ("order", true), ("sorted", true)]
-            }
-            Self::GridSortLong => vec![
-                ("records", false),
-                ("counters", true),
-                ("starts", false),
-                ("order", true),
-                ("sorted", true),
-            ],
-            Self::Gather => {
-                vec![
-                    ("visible_points", false),
-                    ("counters", true),
-                    ("starts", false),
-                    ("sorted", false),
-                    ("gathered", true),
-                ]
-            }
-            Self::ResolveParts => {
-                vec![("visible_points", false), ("gathered", false), ("parts", true)]
-            }
-            Self::Resolve => vec![("visible_points", false), ("gathered", false), ("film", true)],
-        };
-        if features.has(Feature::Local)
-            && matches!(self, Self::Gather | Self::ResolveParts | Self::Resolve)
-        {
-            list.push(("statistics", self == Self::Resolve));
-        }
-        list
+    /// File stem and entry point.
+    pub const fn stem(self) -> &'static str {
+        self.info().stem
     }
 
-    /// Whether it reads the flattened scene.
-    pub fn reads_scene(self) -> bool {
-        matches!(self, Self::EyeTrace | Self::AovTrace | Self::PhotonTrace)
+    /// The buffers that it binds with these features, in the order of their bindings.
+    pub fn uses(self, features: Features) -> impl Iterator<Item = Use> {
+        let info = self.info();
+        let scene = if info.traces { SCENE } else { &[] };
+        let needed = move |used: &Use| used.feature.is_none_or(|feature| features.has(feature));
+        scene.iter().chain(info.uses).copied().filter(needed)
     }
-}
-
-/// One dispatch of a kernel over `dispatch.first..dispatch.end`.
-#[derive(Clone, Copy, Debug)]
-pub struct Step {
-    /// What runs.
-    pub kernel: Kernel,
-    /// Which chunk's `visible_points`, `gathered`, `statistics` and `film` it binds.
-    pub chunk: u32,
-    /// Its numbers. Kernels over records run over the whole capacity and stop at the count in
-    /// `counters`.
-    pub dispatch: Dispatch,
 }

@@ -5,6 +5,7 @@ use super::super::kernels::bytes::{FILM_BYTES, STATISTICS_BYTES};
 use super::super::kernels::records::PhotonRecord;
 use super::super::real::{Real, Vec4};
 use super::super::tables::Scene;
+use super::buffer::Buffer;
 use super::kernel::SCAN_BLOCK;
 use super::{CHUNK_POINTS, Plan};
 use crate::engine::EngineError;
@@ -47,30 +48,40 @@ impl Plan {
     pub fn memory(&self, scene: u64, place: Place) -> Vec<Part> {
         let pixels = u64::from(self.pixels);
         let buffers = self.buffers();
-        let bytes =
-            |name: &str| buffers.iter().find(|(n, _)| *n == name).map_or(0, |(_, bytes)| *bytes);
+        let bytes = |buffer: Buffer| {
+            buffers.iter().find(|(other, _)| *other == buffer).map_or(0, |(_, bytes)| *bytes)
+        };
         let path = self.settings.method == Method::Path;
         // buffers of chunks are told for the largest one
         let points = pixels * u64::from(self.eye_samples);
-        let whole =
-            |name: &str| match self.in_turn().contains(&name) {
-                true => bytes(name),
-                false => (bytes(name) as f64 * points as f64 / f64::from(self.chunk(0).1.max(1)))
-                    .ceil() as u64,
-            };
-        let visible = if path { 0 } else { whole("visible_points") + whole("gathered") };
+        let whole = |buffer: Buffer| match self.is_reused(buffer) {
+            true => bytes(buffer),
+            false => (bytes(buffer) as f64 * points as f64 / f64::from(self.chunk(0).1.max(1)))
+                .ceil() as u64,
+        };
+        let visible = if path { 0 } else { whole(Buffer::VisiblePoints) + whole(Buffer::Gathered) };
         let statistics = if self.features.has(Feature::Local) && !path {
             points * STATISTICS_BYTES as u64
         } else {
             0
         };
         let film = pixels * FILM_BYTES as u64;
-        let layers = whole("aovs") + whole("parts");
+        let layers = whole(Buffer::Aovs) + whole(Buffer::Parts);
         let device = matches!(place, Place::Device { .. });
         // what a render goes on from is kept twice, unless it cannot be lost
         let copies = if place == (Place::Program { saves: false }) { 1 } else { 2 };
         let records = if device {
-            ["records", "sorted", "order", "counts", "starts", "block_sums"].map(bytes).iter().sum()
+            [
+                Buffer::Records,
+                Buffer::Sorted,
+                Buffer::Order,
+                Buffer::Counts,
+                Buffer::Starts,
+                Buffer::BlockSums,
+            ]
+            .map(bytes)
+            .iter()
+            .sum()
         } else if self.features.has(Feature::Photons) && !path {
             let sorted = 6 * size_of::<Real>() + 4 + size_of::<Vec4>();
             let list = size_of::<PhotonRecord>() + 4;

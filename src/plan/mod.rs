@@ -1,16 +1,15 @@
-//! A pass as data: which kernels run, over how many items, with which buffers and numbers. Engines
-//! carry it out.
+//! A pass as data: a list of commands over declared buffers and kernels, which engines execute.
 //!
 //! The picture is cut into chunks of visible points and the photons into batches, so that no buffer
 //! passes a device's binding limit. Neither changes a result but for the grouping of the photons'
 //! sum, and batches are the same for every engine. Where memory is scarce chunks become tiles,
 //! which take turns with one set of buffers.
 
-mod buffers;
+mod buffer;
+mod commands;
 mod kernel;
 mod memory;
 mod scale;
-mod steps;
 
 use super::features::{Feature, Features};
 use super::kernels::bytes::{FILM_BYTES, STATISTICS_BYTES};
@@ -27,7 +26,9 @@ use crate::settings::{Method, Radius, RenderSettings};
 use crate::stage::stage;
 use glam::DVec3;
 
-pub use kernel::{Kernel, SCAN_BLOCK, SORT_BUCKETS, Step};
+pub use buffer::{Buffer, BufferInfo, Cleared, Extent};
+pub use commands::{Command, Stage, Step};
+pub use kernel::{Access, Kernel, KernelInfo, Over, SCAN_BLOCK, SORT_BUCKETS, Use};
 pub use memory::{Place, scene_bytes, scene_tables};
 pub use scale::global_scale_sq;
 

@@ -18,7 +18,7 @@ use caustica::film::{Picture, Plane};
 use caustica::gpu::GpuEngine;
 use caustica::layers::NO_DEPTH;
 use caustica::pack::{Packed, pack};
-use caustica::plan::{Kernel, Plan};
+use caustica::plan::{Buffer, Plan, Stage};
 use caustica::scene::{Aovs, Loaded, parse};
 
 /// A camera at (1, 2, 4) that looks along -z at a picture of 24 by 16 pixels.
@@ -324,15 +324,15 @@ fn it_costs_nothing_unless_asked_for() {
     let with = Seen::of("", WALL, 2);
     plain.scene.film.aovs = Aovs::default();
     let (packed, plan) = planned(&plain);
-    assert!(plan.steps(0, plan.batch_photons).iter().all(|step| step.kernel != Kernel::AovTrace));
-    assert!(plan.buffers().iter().all(|(name, _)| *name != "aovs"));
+    assert!(plan.steps(0).iter().all(|step| step.stage != Stage::AovTrace));
+    assert!(plan.buffers().iter().all(|(buffer, _)| *buffer != Buffer::Aovs));
     let without = Seen::by(CpuEngine::new(packed, plan), 2);
     assert!(without.layers.is_empty());
     assert_eq!(without.picture, with.picture);
     // those that need no kernel run none
     plain.scene.film.aovs = Aovs::parse("photons,variance").unwrap();
     let (_, plan) = planned(&plain);
-    assert!(plan.steps(0, plan.batch_photons).iter().all(|step| step.kernel != Kernel::AovTrace));
+    assert!(plan.steps(0).iter().all(|step| step.stage != Stage::AovTrace));
 }
 
 /// In f64 it is the same but for roundings.

@@ -23,7 +23,7 @@ use caustica::kernels::eye_trace::eye_trace;
 use caustica::kernels::photon_trace::photon_trace;
 use caustica::kernels::records::{PhotonRecord, VisiblePoint};
 use caustica::pack::Packed;
-use caustica::plan::{Kernel, Plan};
+use caustica::plan::{Buffer, Plan, Stage};
 use caustica::scene::{Aovs, Film, ToneMap};
 use caustica::settings::RenderSettings;
 use scenes::{SCENES, planned, planned_at};
@@ -83,11 +83,11 @@ fn explain_pass(packed: &Packed, plan: &Plan, engine: &mut GpuEngine, pass: u32)
     engine.pass().unwrap();
     let sampled = plan.features.has(Feature::Sampled);
     let mut text = String::new();
-    for step in plan.steps(pass, plan.batch_photons) {
+    for step in plan.steps(pass) {
         let d = &step.dispatch;
-        if step.kernel == Kernel::EyeTrace {
+        if step.stage == Stage::EyeTrace {
             let theirs: Vec<VisiblePoint> =
-                pod_collect_to_vec(&engine.content("visible_points", step.chunk).unwrap());
+                pod_collect_to_vec(&engine.content(Buffer::VisiblePoints, step.chunk).unwrap());
             let ours: Vec<_> =
                 (0..d.end).map(|id| eye_trace(&packed.scene, d, sampled, id).0).collect();
             let differing = (0..)
@@ -95,13 +95,13 @@ fn explain_pass(packed: &Packed, plan: &Plan, engine: &mut GpuEngine, pass: u32)
                 .find(|(_, (a, b))| bytes_of(*a) != bytes_of(*b));
             text += &format!("\n  pass {pass}, visible point: {differing:?}");
         }
-        if step.kernel == Kernel::PhotonTrace {
+        if step.stage == Stage::PhotonTrace {
             let mut ours = Vec::new();
             for id in 0..d.end {
                 photon_trace(&packed.scene, d, sampled, id, |r| ours.push(r));
             }
             let mut theirs: Vec<PhotonRecord> =
-                pod_collect_to_vec(&engine.content("records", 0).unwrap());
+                pod_collect_to_vec(&engine.content(Buffer::Records, 0).unwrap());
             theirs.truncate(ours.len());
             theirs.sort_by_key(|r| r.key);
             let differing = ours.iter().zip(&theirs).find(|(a, b)| bytes_of(*a) != bytes_of(*b));

@@ -101,7 +101,7 @@ fn a_lost_device_says_so() {
             engine.save().err(),
             engine.restore(&state).err(),
             engine.gathered().err(),
-            engine.content("film", 0).err(),
+            engine.content(caustica::plan::Buffer::Film, 0).err(),
         ];
         for (number, error) in errors.iter().enumerate() {
             assert!(

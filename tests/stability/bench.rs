@@ -23,7 +23,7 @@ use caustica::kernels::records::{
 };
 use caustica::kernels::resolve::resolve;
 use caustica::pack::{Packed, pack};
-use caustica::plan::{Kernel, Plan};
+use caustica::plan::{Buffer, Kernel, Plan};
 use caustica::scene::{self, Scene};
 use caustica::settings::RenderSettings;
 use caustica::shapes::intersect::intersect_scene;
@@ -182,14 +182,17 @@ impl Bench {
         let shader =
             compose(Kernel::Resolve, &features, &SceneTables::default()).expect("composed");
         let program = self.driver().program(Kernel::Resolve, &features, shader);
-        let upload = |name, bytes: &[u8]| (name, gpu.upload(name, bytes).expect("a buffer"));
+        let upload = |buffer: Buffer, bytes: &[u8]| {
+            (buffer, gpu.upload(buffer.name(), bytes).expect("a buffer"))
+        };
         let buffers = [
-            upload("visible_points", bytemuck::bytes_of(&point)),
-            upload("gathered", bytemuck::bytes_of(&gathered)),
-            upload("statistics", bytemuck::bytes_of(&statistics)),
-            upload("film", bytemuck::bytes_of(&film)),
+            upload(Buffer::VisiblePoints, bytemuck::bytes_of(&point)),
+            upload(Buffer::Gathered, bytemuck::bytes_of(&gathered)),
+            upload(Buffer::Statistics, bytemuck::bytes_of(&statistics)),
+            upload(Buffer::Film, bytemuck::bytes_of(&film)),
         ];
-        let find = |name: &str| buffers.iter().find(|(n, _)| *n == name).map(|(_, b)| b);
+        let find =
+            |which: Buffer| buffers.iter().find(|(buffer, _)| *buffer == which).map(|(_, b)| b);
         let group = program.bind(gpu, &recorder.dispatches, find).expect("bound");
         for d in passes {
             if recorder.is_full() {
@@ -255,15 +258,17 @@ fn gather_on_driver(
     let shader =
         compose(Kernel::Gather, &Features::default(), &SceneTables::default()).expect("composed");
     let program = driver.program(Kernel::Gather, &Features::default(), shader);
-    let upload = |name, bytes: &[u8]| (name, gpu.upload(name, bytes).expect("a buffer"));
+    let upload = |buffer: Buffer, bytes: &[u8]| {
+        (buffer, gpu.upload(buffer.name(), bytes).expect("a buffer"))
+    };
     let buffers = [
-        upload("visible_points", cast_slice(points)),
-        upload("counters", &[0; 32]),
-        upload("starts", cast_slice(starts)),
-        upload("sorted", cast_slice(sorted)),
-        upload("gathered", cast_slice(sum)),
+        upload(Buffer::VisiblePoints, cast_slice(points)),
+        upload(Buffer::Counters, &[0; 32]),
+        upload(Buffer::Starts, cast_slice(starts)),
+        upload(Buffer::Sorted, cast_slice(sorted)),
+        upload(Buffer::Gathered, cast_slice(sum)),
     ];
-    let find = |name: &str| buffers.iter().find(|(n, _)| *n == name).map(|(_, b)| b);
+    let find = |which: Buffer| buffers.iter().find(|(buffer, _)| *buffer == which).map(|(_, b)| b);
     let group = program.bind(gpu, &recorder.dispatches, find).expect("bound");
     recorder.dispatch(gpu, &program, &group, d);
     recorder.finish(gpu).expect("done");
@@ -317,19 +322,20 @@ fn trace_on_driver(driver: &Driver, scene: &tables::Scene, rays: &[Ray]) -> Vec<
     for rays in rays.chunks(1 << 20) {
         let points: Vec<VisiblePoint> = rays.iter().map(given).collect();
         let mut buffers = vec![
-            ("scene", gpu.upload("scene", &tables.bytes).expect("a buffer")),
+            (Buffer::Scene, gpu.upload("scene", &tables.bytes).expect("a buffer")),
             (
-                "visible_points",
+                Buffer::VisiblePoints,
                 gpu.upload("visible_points", cast_slice(&points)).expect("a buffer"),
             ),
-            ("counters", gpu.storage("counters", 32).expect("a buffer")),
+            (Buffer::Counters, gpu.storage("counters", 32).expect("a buffer")),
         ];
-        for (name, _, content) in long_tables(scene) {
+        for (buffer, content) in long_tables(scene) {
             if !content.is_empty() {
-                buffers.push((name, gpu.upload(name, content).expect("a buffer")));
+                buffers.push((buffer, gpu.upload(buffer.name(), content).expect("a buffer")));
             }
         }
-        let find = |name: &str| buffers.iter().find(|(n, _)| *n == name).map(|(_, b)| b);
+        let find =
+            |which: Buffer| buffers.iter().find(|(buffer, _)| *buffer == which).map(|(_, b)| b);
         let group = program.bind(gpu, &recorder.dispatches, find).expect("bound");
         let end = rays.len() as u32;
         recorder.dispatch(gpu, &program, &group, &Dispatch { first: 0, end, ..Dispatch::zeroed() });

@@ -1,8 +1,8 @@
 //! An engine on a GPU or a software driver: passes over one scene.
 
-mod carry_out;
-mod equip;
-mod stored;
+mod execute;
+mod setup;
+mod state;
 
 use super::context::{AdapterSummary, Gpu};
 use super::layout::Member;
@@ -13,11 +13,11 @@ use crate::clock::{Clock, KernelSeconds};
 use crate::engine::{Engine, EngineError, PassReport, State};
 use crate::film::exr_file::Channel;
 use crate::film::{ErrorMap, Picture, Rejections};
-use crate::plan::{Kernel, Plan};
+use crate::plan::{Buffer, Kernel, Plan};
 use crate::tables::Scene;
 use std::collections::BTreeMap;
 
-pub use equip::{CompileSeconds, sizes};
+pub use setup::{CompileSeconds, sizes};
 
 /// Bytes of `counters`: records of the batch, the pass's rays in two words, invocations that the
 /// driver stopped, photons by how they ended, and one unused.
@@ -36,7 +36,7 @@ pub struct GpuEngine {
     plan: Plan,
     passes_done: u32,
     /// Whether a pass ended while it was adding to the film.
-    torn: bool,
+    partial: bool,
     recorder: Recorder,
     pace: Pace,
     programs: BTreeMap<Kernel, Program>,
@@ -46,8 +46,8 @@ pub struct GpuEngine {
     few: Vec<u32>,
     /// By kernel and chunk (0 where it has none).
     groups: BTreeMap<(Kernel, u32), wgpu::BindGroup>,
-    shared: BTreeMap<&'static str, wgpu::Buffer>,
-    chunks: Vec<BTreeMap<&'static str, wgpu::Buffer>>,
+    shared: BTreeMap<Buffer, wgpu::Buffer>,
+    chunks: Vec<BTreeMap<Buffer, wgpu::Buffer>>,
     /// Copies of the pass's counters and of each batch's record count.
     readings: wgpu::Buffer,
     /// On a software driver: what to trace stopped paths again with.
@@ -113,7 +113,7 @@ impl Engine for GpuEngine {
     fn pass(&mut self) -> Result<PassReport, EngineError> {
         let mut batch = self.plan.batch_photons;
         loop {
-            match self.phases(batch)? {
+            match self.execute(batch)? {
                 Some(report) => {
                     self.passes_done += 1;
                     return Ok(report);
@@ -152,7 +152,7 @@ impl Engine for GpuEngine {
     }
 
     fn save(&mut self) -> Result<State, EngineError> {
-        self.stored()
+        self.state()
     }
 
     fn restore(&mut self, state: &State) -> Result<(), EngineError> {
@@ -164,7 +164,7 @@ impl Engine for GpuEngine {
     }
 
     fn gathered(&mut self) -> Result<u64, EngineError> {
-        if self.plan.in_turn().contains(&"gathered") {
+        if self.plan.is_reused(Buffer::Gathered) {
             return Err(EngineError::Unsupported(
                 "what tiles have gathered is not kept".to_owned(),
             ));

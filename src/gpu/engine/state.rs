@@ -1,31 +1,30 @@
-//! What an engine holds, read back, handed over and taken over.
+//! The state of an engine: read back, saved and restored.
 
 use super::GpuEngine;
 use crate::engine::{EngineError, LayerState, State};
-use crate::kernels::bytes::{AOV_BYTES, FILM_BYTES, PARTS_BYTES, STATISTICS_BYTES};
 use crate::kernels::records::{FilmPixel, Gathered};
 use crate::layers::Found;
-use crate::plan::Plan;
+use crate::plan::{Buffer, Extent, Plan};
 
 impl GpuEngine {
     /// The content of a buffer of the plan (a chunk's, if it is one of those), for tests.
-    pub fn content(&self, name: &str, chunk: u32) -> Result<Vec<u8>, EngineError> {
-        let buffer = self
+    pub fn content(&self, buffer: Buffer, chunk: u32) -> Result<Vec<u8>, EngineError> {
+        let found = self
             .chunks
             .get(chunk as usize)
-            .and_then(|own| own.get(name))
-            .or_else(|| self.shared.get(name));
-        buffer.map_or(Ok(Vec::new()), |buffer| self.gpu.read(buffer, buffer.size()))
+            .and_then(|own| own.get(&buffer))
+            .or_else(|| self.shared.get(&buffer));
+        found.map_or(Ok(Vec::new()), |buffer| self.gpu.read(buffer, buffer.size()))
     }
 
     /// What the passes so far left behind.
-    pub(super) fn stored(&self) -> Result<State, EngineError> {
+    pub(super) fn state(&self) -> Result<State, EngineError> {
         Ok(State {
             first_pass: self.plan.first_pass,
             passes: self.passes_done,
             bits: 8 * size_of::<f32>() as u32,
-            film: self.read_chunks("film")?,
-            statistics: self.read_chunks("statistics")?,
+            film: self.read_chunks(Buffer::Film)?,
+            statistics: self.read_chunks(Buffer::Statistics)?,
             layers: self.with_found(|plan, found| plan.layer_state(found))?,
         })
     }
@@ -40,16 +39,16 @@ impl GpuEngine {
             .map(|count| Gathered { count: *count, ..bytemuck::Zeroable::zeroed() })
             .collect();
         let gathered = bytemuck::cast_slice(&gathered);
-        for (name, bytes) in [
-            ("film", &state.film[..]),
-            ("statistics", &state.statistics),
-            ("aovs", aovs),
-            ("parts", parts),
-            ("gathered", gathered),
+        for (which, bytes) in [
+            (Buffer::Film, &state.film[..]),
+            (Buffer::Statistics, &state.statistics),
+            (Buffer::Aovs, aovs),
+            (Buffer::Parts, parts),
+            (Buffer::Gathered, gathered),
         ] {
             for (number, chunk) in (0..).zip(&self.chunks) {
                 if let (Some(buffer), Some(part)) =
-                    (chunk.get(name), bytes.get(self.place(name, number)))
+                    (chunk.get(&which), bytes.get(self.place(which, number)))
                 {
                     self.gpu.write(buffer, part);
                 }
@@ -69,10 +68,10 @@ impl GpuEngine {
         }
         let samples = self.plan.eye_samples;
         let found = Found {
-            aovs: &self.chunked("aovs", samples)?,
-            parts: &self.chunked("parts", samples)?,
+            aovs: &self.chunked(Buffer::Aovs, samples)?,
+            parts: &self.chunked(Buffer::Parts, samples)?,
             gathered: &self.gathered_points()?,
-            statistics: &self.chunked("statistics", 1)?,
+            statistics: &self.chunked(Buffer::Statistics, 1)?,
             passes: self.passes_done,
         };
         Ok(make(&self.plan, &found))
@@ -80,23 +79,27 @@ impl GpuEngine {
 
     /// What the visible points gathered in the last pass.
     pub(super) fn gathered_points(&self) -> Result<Vec<Gathered>, EngineError> {
-        self.chunked("gathered", 1)
+        self.chunked(Buffer::Gathered, 1)
     }
 
     /// The film, read back.
     pub(super) fn film(&self) -> Result<Vec<FilmPixel>, EngineError> {
-        self.chunked("film", self.plan.eye_samples)
+        self.chunked(Buffer::Film, self.plan.eye_samples)
     }
 
     /// What all chunks hold in a buffer of theirs, an item for each `samples` visible points;
     /// nothing where there is no such buffer.
-    fn chunked<T: bytemuck::Pod>(&self, name: &str, samples: u32) -> Result<Vec<T>, EngineError> {
+    fn chunked<T: bytemuck::Pod>(
+        &self,
+        buffer: Buffer,
+        samples: u32,
+    ) -> Result<Vec<T>, EngineError> {
         self.check_whole()?;
         let mut all = Vec::new();
         for (number, chunk) in (0..).zip(&self.chunks) {
-            if let Some(buffer) = chunk.get(name) {
+            if let Some(own) = chunk.get(&buffer) {
                 let items = self.plan.chunk(number).1 / samples;
-                let bytes = self.gpu.read(buffer, items as u64 * size_of::<T>() as u64)?;
+                let bytes = self.gpu.read(own, items as u64 * size_of::<T>() as u64)?;
                 all.extend(bytemuck::pod_collect_to_vec::<u8, T>(&bytes));
             }
         }
@@ -104,34 +107,29 @@ impl GpuEngine {
     }
 
     /// All chunks' parts of a buffer, one after another; nothing where the plan has no such buffer.
-    fn read_chunks(&self, name: &str) -> Result<Vec<u8>, EngineError> {
+    fn read_chunks(&self, buffer: Buffer) -> Result<Vec<u8>, EngineError> {
         self.check_whole()?;
         let mut bytes = Vec::new();
         for (number, chunk) in (0..).zip(&self.chunks) {
-            if let Some(buffer) = chunk.get(name) {
-                bytes.extend(self.gpu.read(buffer, self.place(name, number).len() as u64)?);
+            if let Some(own) = chunk.get(&buffer) {
+                bytes.extend(self.gpu.read(own, self.place(buffer, number).len() as u64)?);
             }
         }
         Ok(bytes)
     }
 
     /// Where a chunk's part of a buffer stands among those of all.
-    fn place(&self, name: &str, chunk: u32) -> std::ops::Range<usize> {
+    fn place(&self, buffer: Buffer, chunk: u32) -> std::ops::Range<usize> {
         let (first, points) = self.plan.chunk(chunk);
-        let samples = self.plan.eye_samples;
-        let (first, end, size) = match name {
-            "film" => (first / samples, (first + points) / samples, FILM_BYTES),
-            "aovs" => (first / samples, (first + points) / samples, AOV_BYTES),
-            "parts" => (first / samples, (first + points) / samples, PARTS_BYTES),
-            "gathered" => (first, first + points, size_of::<Gathered>()),
-            _ => (first, first + points, STATISTICS_BYTES),
-        };
-        first as usize * size..end as usize * size
+        let info = buffer.info();
+        let per = if info.extent == Extent::Pixels { self.plan.eye_samples } else { 1 };
+        let at = |point: u32| (point / per) as usize * info.element_bytes;
+        at(first)..at(first + points)
     }
 
     /// Fails where the buffers hold a part of a pass.
     fn check_whole(&self) -> Result<(), EngineError> {
-        if self.torn {
+        if self.partial {
             let text = format!("{} failed in the middle of adding up a pass", self.device);
             return Err(EngineError::DeviceLost(text));
         }

@@ -11,16 +11,13 @@ use crate::compilation::Running;
 use crate::engine::EngineError;
 use crate::kernels::records::Dispatch;
 use crate::pack::Packed;
-use crate::plan::{Kernel, Plan};
+use crate::plan::{Buffer, Kernel, Plan};
 use crate::settings::Method;
 use crate::stage::stage;
 use crate::tables::Scene;
 use std::collections::BTreeMap;
 use std::time::Instant;
 
-/// Buffers of which each chunk of visible points has its own.
-const CHUNK_BUFFERS: [&str; 6] =
-    ["visible_points", "gathered", "film", "statistics", "aovs", "parts"];
 /// What to change when the device is too small.
 const MEND: &str = "make the picture smaller, or take --device cpu";
 
@@ -104,20 +101,21 @@ impl GpuEngine {
         let scene = SceneTables::new(&packed.scene);
         gpu.check_sizes(&sizes(&plan, &packed.scene), MEND)?;
         let recorder = Recorder::new(&gpu)?;
-        let mut shared = BTreeMap::from([("scene", gpu.upload("scene", &scene.bytes)?)]);
-        for (name, _, content) in long_tables(&packed.scene) {
+        let mut shared = BTreeMap::from([(Buffer::Scene, gpu.upload("scene", &scene.bytes)?)]);
+        for (buffer, content) in long_tables(&packed.scene) {
             if !content.is_empty() {
-                shared.insert(name, gpu.upload(name, content)?);
+                shared.insert(buffer, gpu.upload(buffer.name(), content)?);
             }
         }
         let mut chunks = vec![BTreeMap::new(); plan.chunks() as usize];
-        for (name, bytes) in plan.buffers() {
-            if by_chunk(&plan, name) {
+        for (buffer, bytes) in plan.buffers() {
+            let name = buffer.name();
+            if plan.is_per_chunk(buffer) {
                 for (chunk, buffers) in (0..).zip(&mut chunks) {
-                    buffers.insert(name, gpu.storage(name, chunk_bytes(&plan, bytes, chunk))?);
+                    buffers.insert(buffer, gpu.storage(name, chunk_bytes(&plan, bytes, chunk))?);
                 }
             } else {
-                shared.insert(name, gpu.storage(name, bytes)?);
+                shared.insert(buffer, gpu.storage(name, bytes)?);
             }
         }
         let readings = gpu.storage("readings", READINGS_BYTES)?;
@@ -126,7 +124,7 @@ impl GpuEngine {
             device: gpu.summary.name.clone(),
             gpu,
             passes_done: 0,
-            torn: false,
+            partial: false,
             recorder,
             pace,
             programs: BTreeMap::new(),
@@ -156,8 +154,8 @@ impl GpuEngine {
         kept: BTreeMap<Kernel, Program>,
     ) -> Result<(), EngineError> {
         let _stage = stage("compile");
-        let steps = self.plan.steps(0, self.plan.batch_photons);
-        let needed = |kernel: &Kernel| steps.iter().any(|step| step.kernel == *kernel);
+        let used = self.plan.kernels();
+        let needed = |kernel: &Kernel| used.iter().any(|(other, _)| other == kernel);
         let missing: Vec<Kernel> =
             Kernel::ALL.into_iter().filter(|k| needed(k) && !kept.contains_key(k)).collect();
         let Self { gpu, plan, recorder, programs, groups, shared, chunks, compile_seconds, .. } =
@@ -168,15 +166,13 @@ impl GpuEngine {
         let mut take = |program: Program, checking: Option<f64>| {
             let begun = Instant::now();
             for (number, own) in (0..).zip(chunks.iter()) {
-                let Some(step) =
-                    steps.iter().find(|s| (s.kernel, s.chunk) == (program.kernel, number))
-                else {
+                if !used.contains(&(program.kernel, number)) {
                     continue;
-                };
-                let buffer = |name: &str| own.get(name).or_else(|| shared.get(name));
+                }
+                let buffer = |buffer| own.get(&buffer).or_else(|| shared.get(&buffer));
                 let group = program.bind(gpu, &recorder.dispatches, buffer)?;
                 if number == 0 && checking.is_some() {
-                    let nothing = Dispatch { first: 0, end: 0, ..step.dispatch };
+                    let nothing = Dispatch { first: 0, end: 0, ..plan.dispatch(0) };
                     recorder.dispatch(gpu, &program, &group, &nothing);
                     recorder.submit(gpu);
                 }
@@ -210,11 +206,6 @@ impl GpuEngine {
     }
 }
 
-/// Whether each chunk has a buffer of its own.
-fn by_chunk(plan: &Plan, name: &str) -> bool {
-    CHUNK_BUFFERS.contains(&name) && !plan.in_turn().contains(&name)
-}
-
 /// Bytes of a chunk's buffer, from those of the largest one.
 fn chunk_bytes(plan: &Plan, largest: u64, chunk: u32) -> u64 {
     largest * plan.chunk(chunk).1 as u64 / plan.chunk(0).1.max(1) as u64
@@ -223,9 +214,10 @@ fn chunk_bytes(plan: &Plan, largest: u64, chunk: u32) -> u64 {
 /// Name and bytes of everything that will be allocated.
 pub fn sizes(plan: &Plan, scene: &Scene) -> Vec<(&'static str, u64)> {
     let mut list = vec![("scene", SceneTables::new(scene).bytes.len() as u64)];
-    list.extend(long_tables(scene).map(|(name, _, content)| (name, content.len() as u64)));
-    for (name, bytes) in plan.buffers() {
-        if by_chunk(plan, name) {
+    list.extend(long_tables(scene).map(|(buffer, content)| (buffer.name(), content.len() as u64)));
+    for (buffer, bytes) in plan.buffers() {
+        let name = buffer.name();
+        if plan.is_per_chunk(buffer) {
             list.extend((0..plan.chunks()).map(|chunk| (name, chunk_bytes(plan, bytes, chunk))));
         } else {
             list.push((name, bytes));

@@ -17,7 +17,7 @@ use rayon::prelude::*;
 use std::collections::BTreeSet;
 
 /// Finds the marked points of a chunk again; their number and that of the rays.
-pub fn mend_points(
+pub fn retrace_points(
     gpu: &Gpu,
     scene: &Scene,
     dispatch: &Dispatch,
@@ -32,13 +32,13 @@ pub fn mend_points(
         *point = traced;
         (1, rays as u64)
     });
-    let mended = rays.reduce(|| (0, 0), |a, b| (a.0 + b.0, a.1 + b.1));
+    let retraced = rays.reduce(|| (0, 0), |a, b| (a.0 + b.0, a.1 + b.1));
     gpu.write(buffer, cast_slice(&points));
-    Ok(mended)
+    Ok(retraced)
 }
 
 /// Takes the samples of the marked pixels of a chunk.
-pub fn mend_aovs(
+pub fn retrace_aovs(
     gpu: &Gpu,
     scene: &Scene,
     dispatch: &Dispatch,
@@ -56,8 +56,8 @@ pub fn mend_aovs(
     Ok(())
 }
 
-/// What [`mend_photons`] made good.
-pub struct MendedPhotons {
+/// What [`retrace_photons`] found.
+pub struct RetracedPhotons {
     /// Records of the batch now.
     pub records: u32,
     /// Photons that were traced again.
@@ -69,17 +69,17 @@ pub struct MendedPhotons {
 }
 
 /// Replaces the records of the marked photons, of `count` records.
-pub fn mend_photons(
+pub fn retrace_photons(
     gpu: &Gpu,
     scene: &Scene,
     dispatch: &Dispatch,
     sampled: bool,
     buffer: &wgpu::Buffer,
     count: u32,
-) -> Result<MendedPhotons, EngineError> {
+) -> Result<RetracedPhotons, EngineError> {
     if count > dispatch.capacity {
         // the batch has overflowed and will be traced again
-        return Ok(MendedPhotons { records: count, photons: 0, rays: 0, ends: [0; 3] });
+        return Ok(RetracedPhotons { records: count, photons: 0, rays: 0, ends: [0; 3] });
     }
     let bytes = count as u64 * size_of::<PhotonRecord>() as u64;
     let mut records: Vec<PhotonRecord> = pod_collect_to_vec(&gpu.read(buffer, bytes)?);
@@ -104,5 +104,5 @@ pub fn mend_photons(
     let count = records.len() as u32;
     records.truncate(dispatch.capacity as usize);
     gpu.write(buffer, cast_slice(&records));
-    Ok(MendedPhotons { records: count, photons, rays, ends })
+    Ok(RetracedPhotons { records: count, photons, rays, ends })
 }

@@ -1,0 +1,292 @@
+//! Executes the commands of a pass, and traces paths again that a software driver stopped.
+
+use super::super::retrace::{retrace_aovs, retrace_photons, retrace_points};
+use super::{COUNTERS_BYTES, ENDS, GpuEngine, READINGS_BYTES, STOPPED_COUNT};
+use crate::engine::{EngineError, PassReport, PhotonEnds};
+use crate::features::Feature;
+use crate::kernels::records::Dispatch;
+use crate::plan::{Buffer, Command, Kernel, Over, Stage, Step};
+use std::collections::BTreeMap;
+
+/// What a tile's commands count.
+#[derive(Default)]
+struct Tile {
+    /// Number of batches, whose records are read.
+    batches: usize,
+    /// Photons of each batch so far.
+    photons: Vec<u32>,
+    /// Records of each batch.
+    records: Vec<u32>,
+    eye_paths: u64,
+    rays: u64,
+    eye_rays: u64,
+    ends: PhotonEnds,
+    /// Invocations that the driver stopped and that were not traced again.
+    stopped: u32,
+    /// Rays of paths that were traced again.
+    retraced: u64,
+    /// The same of eye paths, once these are done.
+    retraced_eyes: Option<u64>,
+}
+
+impl Tile {
+    fn new(batches: usize) -> Self {
+        Self { batches, ..Self::default() }
+    }
+
+    /// Size of its readings.
+    fn bytes(&self) -> u64 {
+        READINGS_BYTES + 4 * self.batches as u64
+    }
+
+    /// Takes over the counters, their words of rays after the eye paths, and each batch's records.
+    fn read(&mut self, words: &[u32]) {
+        let wide = |at: usize| u64::from(words[at]) | u64::from(words[at + 1]) << 32;
+        self.rays = wide(1) + self.retraced;
+        self.eye_rays = match self.retraced_eyes {
+            Some(retraced) => wide(COUNTERS_BYTES as usize / 4) + retraced,
+            None => 0,
+        };
+        self.stopped = words[STOPPED_COUNT];
+        self.ends = PhotonEnds::of([words[ENDS], words[ENDS + 1], words[ENDS + 2]].map(u64::from));
+        self.records = words[READINGS_BYTES as usize / 4..][..self.batches].to_vec();
+    }
+
+    /// Returns whether a batch of several photons left more records than fit.
+    fn overflows(&self, capacity: u32) -> bool {
+        let mut batches = self.photons.iter().zip(&self.records);
+        batches.any(|(photons, records)| *records > capacity && *photons > 1)
+    }
+}
+
+impl GpuEngine {
+    /// Submits what was recorded.
+    fn flush(&mut self) -> Result<(), EngineError> {
+        let seconds = self.recorder.finish(&self.gpu)?;
+        if self.stamped {
+            for (kernel, seconds) in self.recorder.stamped(&self.gpu)? {
+                self.clock.add(kernel.stem(), seconds);
+            }
+        }
+        if seconds > 0.0 {
+            self.submissions.count += 1;
+        }
+        if seconds > self.submissions.longest_seconds {
+            self.submissions.longest_seconds = seconds;
+            self.submissions.longest = self.pace.kernels().collect();
+        }
+        self.pace.learn(seconds);
+        Ok(())
+    }
+
+    /// Runs a step, kernel by kernel if their times are measured and the device has no clock.
+    fn run(&mut self, step: &Step) -> Result<(), EngineError> {
+        let kernels: Vec<_> = self.plan.lowered(step).collect();
+        for (kernel, dispatch) in kernels {
+            if self.stamped || !self.clock.is_wound() {
+                self.record(kernel, step.chunk, &dispatch)?;
+                continue;
+            }
+            self.flush()?;
+            self.clock.begin(kernel.stem());
+            self.record(kernel, step.chunk, &dispatch)?;
+            self.flush()?;
+            self.clock.end();
+        }
+        Ok(())
+    }
+
+    /// Records a kernel in as many dispatches as the pace asks for.
+    fn record(&mut self, kernel: Kernel, chunk: u32, whole: &Dispatch) -> Result<(), EngineError> {
+        let Dispatch { mut first, end, .. } = *whole;
+        // one workgroup sees all blocks
+        let indivisible = kernel.info().over == Over::Blocks;
+        let granule = kernel.info().workgroup_items;
+        while first < end {
+            let fit = self.pace.fit(kernel, end - first);
+            if fit == 0 || self.recorder.is_full() {
+                self.flush()?;
+                // after a commit the whole pass has to reach the film
+                if !self.partial {
+                    self.plan.cancel.check()?;
+                }
+                continue;
+            }
+            let items =
+                if indivisible { end } else { fit.next_multiple_of(granule).min(end - first) };
+            let dispatch = Dispatch { first, end: first + items, ..*whole };
+            let group = &self.groups[&(kernel, chunk)];
+            self.recorder.dispatch(&self.gpu, &self.programs[&kernel], group, &dispatch);
+            self.pace.record(kernel, items, end - whole.first);
+            first += items;
+        }
+        Ok(())
+    }
+
+    /// Executes a pass with so many photons a batch. Returns `None` if the pass is discarded,
+    /// since records did not fit or the driver stopped long loops.
+    pub(super) fn execute(&mut self, batch: u32) -> Result<Option<PassReport>, EngineError> {
+        self.plan.cancel.check()?;
+        let pass = self.passes_done;
+        let mut report = PassReport {
+            photons: self.plan.settings.photons as u64,
+            radius: self.plan.radius(pass),
+            ..PassReport::default()
+        };
+        for (number, commands) in self.plan.commands(pass, batch).into_iter().enumerate() {
+            let batches = commands.iter().filter(|c| matches!(c, Command::ReadRecords { .. }));
+            let mut tile = Tile::new(batches.count());
+            self.provide_readings(tile.bytes())?;
+            for command in &commands {
+                if !self.command(command, &mut tile, batch)? {
+                    return Ok(None);
+                }
+            }
+            self.flush()?;
+            report.eye_paths += tile.eye_paths;
+            report.rays += tile.rays;
+            report.eye_rays += tile.eye_rays;
+            // photons that are traced again for another tile are the same
+            if number == 0 {
+                report.records = tile.records.iter().map(|records| u64::from(*records)).sum();
+                report.ends = tile.ends;
+            }
+        }
+        self.partial = false;
+        Ok(Some(report))
+    }
+
+    /// Executes one command. Returns false if the pass has to be discarded.
+    fn command(
+        &mut self,
+        command: &Command,
+        tile: &mut Tile,
+        batch: u32,
+    ) -> Result<bool, EngineError> {
+        match command {
+            Command::ClearGathered { chunk } => {
+                let gathered = buffer(&self.shared, &self.chunks, Buffer::Gathered, *chunk);
+                self.recorder.clear(&self.gpu, gathered, None);
+            }
+            Command::ClearCounters => {
+                self.recorder.clear(&self.gpu, &self.shared[&Buffer::Counters], None);
+            }
+            Command::ClearRecords => {
+                self.recorder.clear(&self.gpu, &self.shared[&Buffer::Counters], Some(4));
+            }
+            Command::Run(step) => {
+                self.run(step)?;
+                tile.retraced += self.retrace(step)?;
+                if step.stage == Stage::EyeTrace {
+                    tile.eye_paths += u64::from(step.dispatch.end);
+                }
+            }
+            Command::ReadEyeRays => {
+                self.read_counters(4..12, COUNTERS_BYTES);
+                tile.retraced_eyes = Some(tile.retraced);
+            }
+            Command::ReadRecords { photons } => {
+                self.read_counters(0..4, READINGS_BYTES + 4 * tile.photons.len() as u64);
+                tile.photons.push(*photons);
+            }
+            Command::Commit => {
+                self.read_counters(0..COUNTERS_BYTES, 0);
+                self.flush()?;
+                let bytes = self.gpu.read(&self.readings, tile.bytes())?;
+                tile.read(&bytemuck::pod_collect_to_vec(&bytes));
+                // tiles before this one have been added to the film
+                if tile.stopped > 0 && (batch == 1 || self.scene.is_none() || self.partial) {
+                    return Err(self.unfinished());
+                }
+                if tile.overflows(self.plan.capacity) || tile.stopped > 0 {
+                    return Ok(false);
+                }
+                self.partial = true;
+            }
+        }
+        Ok(true)
+    }
+
+    /// Makes the buffer of readings large enough.
+    fn provide_readings(&mut self, bytes: u64) -> Result<(), EngineError> {
+        if self.readings.size() < bytes {
+            self.readings = self.gpu.storage("readings", bytes)?;
+        }
+        Ok(())
+    }
+
+    /// Records a copy of some bytes of the counters to an offset in the readings.
+    fn read_counters(&mut self, bytes: std::ops::Range<u64>, to: u64) {
+        let source = (&self.shared[&Buffer::Counters], bytes.start);
+        let size = bytes.end - bytes.start;
+        self.recorder.copy(&self.gpu, source, (&self.readings, to), size);
+    }
+
+    /// Traces the paths of a step that a software driver stopped again, on the CPU. Returns the
+    /// number of their rays. Fails for layers if another driver has stopped.
+    fn retrace(&mut self, step: &Step) -> Result<u64, EngineError> {
+        match step.stage {
+            Stage::EyeTrace | Stage::PhotonTrace if self.scene.is_none() => return Ok(0),
+            Stage::EyeTrace | Stage::PhotonTrace | Stage::AovTrace => {}
+            Stage::BuildGrid | Stage::Gather | Stage::ResolveParts | Stage::Resolve => {
+                return Ok(0);
+            }
+        }
+        self.flush()?;
+        let counters = &self.shared[&Buffer::Counters];
+        let bytes = self.gpu.read(counters, COUNTERS_BYTES)?;
+        let mut words: Vec<u32> = bytemuck::pod_collect_to_vec(&bytes);
+        if words[STOPPED_COUNT] == 0 {
+            return Ok(0);
+        }
+        let Some(scene) = &self.scene else {
+            return Err(self.unfinished());
+        };
+        let (gpu, dispatch) = (&self.gpu, &step.dispatch);
+        let own = |which| buffer(&self.shared, &self.chunks, which, step.chunk);
+        let sampled = self.plan.features.has(Feature::Sampled);
+        let rays = match step.stage {
+            Stage::EyeTrace => {
+                let points = own(Buffer::VisiblePoints);
+                let (paths, rays) = retrace_points(gpu, scene, dispatch, sampled, points)?;
+                words[STOPPED_COUNT] -= paths.min(words[STOPPED_COUNT]);
+                rays
+            }
+            Stage::PhotonTrace => {
+                let records = own(Buffer::Records);
+                let found = retrace_photons(gpu, scene, dispatch, sampled, records, words[0])?;
+                words[0] = found.records;
+                words[ENDS..].iter_mut().zip(found.ends).for_each(|(word, count)| *word += count);
+                // the rest are loops of earlier batches, for which the pass is run again
+                words[STOPPED_COUNT] -= found.photons.min(words[STOPPED_COUNT]);
+                found.rays
+            }
+            Stage::AovTrace => {
+                let direct = sampled && self.plan.features.has(Feature::DirectLayer);
+                retrace_aovs(gpu, scene, dispatch, direct, own(Buffer::Aovs))?;
+                words[STOPPED_COUNT] = 0;
+                0
+            }
+            Stage::BuildGrid | Stage::Gather | Stage::ResolveParts | Stage::Resolve => 0,
+        };
+        gpu.write(counters, bytemuck::cast_slice(&words));
+        Ok(rays)
+    }
+
+    fn unfinished(&self) -> EngineError {
+        EngineError::Unsupported(format!(
+            "{} leaves long loops unfinished; take --device cpu",
+            self.device
+        ))
+    }
+}
+
+/// A buffer of a chunk, or the one that chunks share.
+fn buffer<'a>(
+    shared: &'a BTreeMap<Buffer, wgpu::Buffer>,
+    chunks: &'a [BTreeMap<Buffer, wgpu::Buffer>],
+    which: Buffer,
+    chunk: u32,
+) -> &'a wgpu::Buffer {
+    chunks.get(chunk as usize).and_then(|own| own.get(&which)).unwrap_or_else(|| &shared[&which])
+}
