@@ -12,6 +12,7 @@ use crate::engine::{Engine, EngineError};
 use crate::features::{Feature, Features};
 use crate::film::Picture;
 use crate::gpu::{AdapterChoice, GpuEngine};
+use crate::materials::Bsdf;
 use crate::pack::Packed;
 use crate::plan::Plan;
 use crate::settings::RenderSettings;
@@ -21,8 +22,13 @@ use crate::tables::*;
 /// that cannot be added alone or that change the picture.
 pub fn with_unused(scene: &Scene, feature: Feature) -> Option<Scene> {
     let mut scene = scene.clone();
-    let material =
-        |kind| Material { kind, ior: 1.5, alpha: 0.1, texture: NONE, ..Material::zeroed() };
+    let material = |bsdf| Material {
+        kind: bsdf as u32,
+        ior: 1.5,
+        alpha: 0.1,
+        texture: NONE,
+        ..Material::zeroed()
+    };
     let light = |kind| Light { kind, ..Light::zeroed() };
     let area = |shape: u32| Light {
         kind: LIGHT_AREA,
@@ -45,12 +51,13 @@ pub fn with_unused(scene: &Scene, feature: Feature) -> Option<Scene> {
             scene.patches.push(Patch::zeroed());
             scene.profile_points.push(Vec2::ZERO);
         }
-        Feature::Mirror => scene.materials.push(material(MATERIAL_MIRROR)),
-        Feature::Glass => scene.materials.push(material(MATERIAL_GLASS)),
+        Feature::Diffuse => scene.materials.push(material(Bsdf::Diffuse)),
+        Feature::Mirror => scene.materials.push(material(Bsdf::Mirror)),
+        Feature::Glass => scene.materials.push(material(Bsdf::Glass)),
         Feature::Absorption => {
-            scene.materials.push(Material { absorption: Vec3::ONE, ..material(MATERIAL_GLASS) });
+            scene.materials.push(Material { absorption: Vec3::ONE, ..material(Bsdf::Glass) });
         }
-        Feature::Metal => scene.materials.push(material(MATERIAL_METAL)),
+        Feature::Metal => scene.materials.push(material(Bsdf::Metal)),
         Feature::Checker => {
             scene.textures.push(Texture { kind: TEXTURE_CHECKER, ..Texture::zeroed() });
         }
@@ -78,7 +85,11 @@ pub fn with_unused(scene: &Scene, feature: Feature) -> Option<Scene> {
         Feature::Point => scene.lights.push(light(LIGHT_POINT)),
         Feature::Spot => scene.lights.push(light(LIGHT_SPOT)),
         // come with one of the features above
-        Feature::Textures | Feature::Specular | Feature::Lights | Feature::Photons => return None,
+        Feature::Textures
+        | Feature::Specular
+        | Feature::Lobes
+        | Feature::Lights
+        | Feature::Photons => return None,
         // choose how the same thing is computed
         Feature::KdTree
         | Feature::Few

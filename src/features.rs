@@ -1,5 +1,6 @@
 //! What a scene and its settings require; nothing else is compiled or allocated.
 
+use super::materials::Bsdf;
 use super::shapes::intersect::has_patch_set;
 use super::tables::*;
 use crate::settings::{Direct, Method, RadiusRule, RenderSettings};
@@ -59,6 +60,8 @@ features! {
     Checker = "checker",
     /// Image textures.
     Texels = "texels",
+    /// Diffuse surfaces.
+    Diffuse = "diffuse",
     /// Mirrors.
     Mirror = "mirror",
     /// Dielectrics.
@@ -69,7 +72,9 @@ features! {
     Astride = "astride",
     /// Rough conductors.
     Metal = "metal",
-    /// Mirrors or dielectrics.
+    /// Rough materials whose BRDF is not constant.
+    Lobes = "lobes",
+    /// Materials that scatter into single directions.
     Specular = "specular",
     /// Dielectrics that absorb.
     Absorption = "absorption",
@@ -119,6 +124,18 @@ features! {
     DirectLayer = "direct_layer",
 }
 
+impl Feature {
+    /// The feature that a material needs.
+    pub const fn of(bsdf: Bsdf) -> Self {
+        match bsdf {
+            Bsdf::Diffuse => Self::Diffuse,
+            Bsdf::Metal => Self::Metal,
+            Bsdf::Mirror => Self::Mirror,
+            Bsdf::Glass => Self::Glass,
+        }
+    }
+}
+
 /// A set of [`Feature`]s.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Features(u64);
@@ -166,14 +183,13 @@ impl Features {
         put(Feature::KdTree, kdtree);
         put(Feature::PatchSet, kdtree && has_patch_set(scene));
         put(Feature::Few, few);
-        let material = |kind| scene.materials.iter().any(|m| m.kind == kind);
-        put(Feature::Mirror, material(MATERIAL_MIRROR));
-        put(Feature::Glass, material(MATERIAL_GLASS));
+        let bsdfs = || scene.materials.iter().map(|m| Bsdf::of(m.kind));
+        Bsdf::ALL.iter().for_each(|bsdf| put(Feature::of(*bsdf), bsdfs().any(|b| b == *bsdf)));
+        put(Feature::Lobes, bsdfs().any(|b| !b.is_specular() && b != Bsdf::Diffuse));
+        put(Feature::Specular, bsdfs().any(Bsdf::is_specular));
         put(Feature::Nested, scene.world.nested != 0);
         let astride = scene.lights.iter().any(|l| l.medium == ASTRIDE);
         put(Feature::Astride, astride || scene.camera.medium == ASTRIDE);
-        put(Feature::Metal, material(MATERIAL_METAL));
-        put(Feature::Specular, material(MATERIAL_MIRROR) || material(MATERIAL_GLASS));
         put(Feature::Absorption, scene.materials.iter().any(|m| m.absorption.max_element() > 0.0));
         put(Feature::Textures, !scene.textures.is_empty());
         put(Feature::Checker, scene.textures.iter().any(|t| t.kind == TEXTURE_CHECKER));
@@ -204,9 +220,8 @@ impl Features {
         put(Feature::Sampled, settings.direct == Direct::Sampled && !scene.lights.is_empty());
         put(Feature::Local, settings.radius_rule == RadiusRule::Local);
         let photons = !scene.lights.is_empty() && settings.method != Method::Path;
-        // photons that no diffuse surface has scattered are stored
-        let rough = scene.materials.iter().all(|m| m.kind == MATERIAL_DIFFUSE);
-        let first = settings.direct == Direct::Photons || !rough;
+        // photons that no wide surface has scattered are stored
+        let first = settings.direct == Direct::Photons || !bsdfs().all(Bsdf::is_wide);
         put(Feature::Photons, photons);
         put(Feature::First, photons && first);
         put(Feature::Split, photons && first && settings.has_wider());

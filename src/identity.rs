@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use xxhash_rust::xxh3::Xxh3;
 
 use crate::film::provenance::VERSION;
-use crate::gpu::fragments::FRAGMENTS;
+use crate::gpu::fragments::fragments;
 use crate::scene::{ImageData, Mesh, Scene, ShapeKind, Texels};
 
 /// This program: its version, and a digest of its kernels' text, since programs on the way from one
@@ -15,7 +15,7 @@ use crate::scene::{ImageData, Mesh, Scene, ShapeKind, Texels};
 /// follow; line ends do not count.
 pub fn program() -> String {
     let mut digest = Digest::default();
-    for line in FRAGMENTS.iter().flat_map(|fragment| fragment.text.lines()) {
+    for line in fragments().iter().flat_map(|fragment| fragment.text.lines()) {
         digest.bytes(line.as_bytes());
         digest.bytes(b"\n");
     }

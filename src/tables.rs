@@ -268,15 +268,6 @@ pub struct Attributes {
     pub facet_smooth: u32,
 }
 
-/// Lambertian reflection.
-pub const MATERIAL_DIFFUSE: u32 = 0;
-/// Perfect mirror.
-pub const MATERIAL_MIRROR: u32 = 1;
-/// Smooth dielectric.
-pub const MATERIAL_GLASS: u32 = 2;
-/// GGX conductor.
-pub const MATERIAL_METAL: u32 = 3;
-
 /// What a surface does with light.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Plain, Zeroable)]
@@ -284,7 +275,7 @@ pub struct Material {
     /// Reflectance, in [0, 1]; at normal incidence for metal. For an open glass sheet: its unit
     /// mean normal; zero for closed glass.
     pub reflectance: Vec3,
-    /// One of `MATERIAL_*`.
+    /// The number of its [`Bsdf`](super::materials::Bsdf).
     pub kind: u32,
     /// Glass: absorption coefficient, per scene unit.
     pub absorption: Vec3,

@@ -6,7 +6,7 @@ mod ingredients;
 
 use caustica::features::{Feature, Features};
 use caustica::gpu::compose::{compose, compose_from};
-use caustica::gpu::fragments::{FRAGMENTS, Fragment};
+use caustica::gpu::fragments::{Fragment, fragments};
 use caustica::gpu::layout::{Bound, SceneTables, bindings};
 use caustica::plan::Kernel;
 use ingredients::Mixture;
@@ -57,7 +57,7 @@ fn faults(fragments: &[Fragment], count: usize) -> Vec<String> {
 
 #[test]
 fn every_composition_is_valid() {
-    let list = faults(FRAGMENTS, 150);
+    let list = faults(&fragments(), 150);
     assert!(list.is_empty(), "{} faults:\n{}", list.len(), list.join("\n"));
 }
 
@@ -148,7 +148,7 @@ fn a_planted_error_is_found() {
         ("kernels/resolve.wgsl", "var state = 0u;", "var state = 0u"),
         ("materials/scatter.wgsl", "//#if glass", "//#if glas"),
     ] {
-        let mut fragments = FRAGMENTS.to_vec();
+        let mut fragments = fragments();
         let fragment = fragments.iter_mut().find(|f| f.path == path).unwrap();
         let (before, _) =
             fragment.text.split_once(right).unwrap_or_else(|| panic!("{path} has no `{right}`"));

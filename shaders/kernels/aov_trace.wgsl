@@ -40,84 +40,60 @@ fn aov_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
     }
     let k = dispatch.passes_done % dispatch.eye_samples;
     var rng = rng_eye(pixel * dispatch.eye_samples + k, dispatch.pass_number, dispatch.seed);
-    var ray = camera_ray(camera, x, y, stratified(rng_next(&rng), k, pixel));
-    var throughput = vec3f(1.0);
-    var interior = interior_at(camera.medium, ray.origin);
-    var hidden = 0u;
-    var bounce = 0u;
-    var length = 0.0;
+    var path = eye_path(camera_ray(camera, x, y, stratified(rng_next(&rng), k, pixel)));
     var albedo = vec3f(0.0);
     var normal = vec3f(0.0);
-    var emission = vec3f(0.0);
+    var emitted = vec3f(0.0);
     var direct = vec3f(0.0);
-    while bounce <= dispatch.max_bounces && hidden <= HIDDEN_FACES {
-        let hit = intersect_scene(ray);
+    while continues(path) {
+        let hit = intersect_scene(path.ray);
         if hit.reference == NONE {
-            //#if environment
-            if scene.world.environment != NONE {
-                let light = scene.lights[scene.world.environment];
-                emission += throughput * eval_environment(light, ray.direction);
-            }
-            //#end
+            emitted += environment(path);
             break;
         }
-        let s = surface_at(ray, hit);
-        let wo = -ray.direction;
-        length += hit.t;
-        if bounce == 0u && hidden == 0u {
+        let first = path.bounce == 0u && path.hidden == 0u;
+        let s = surface_at(path.ray, hit);
+        arrive(&path, s, hit.t);
+        if first {
             next.hits += 1.0;
             let share = 1.0 / next.hits;
             next.depth += (dot(s.position - camera.position, camera.forward) - next.depth) * share;
             next.position += (s.position - next.position) * share;
         }
-        interior = interior_before(s, wo, interior);
-        throughput *= transmittance(medium_of(interior), hit.t);
-        //#if area
-        if s.light != NONE && dot(wo, s.normal) > 0.0 {
-            emission += throughput * scene.lights[s.light].color;
-        }
-        //#end
+        emitted += emission(path, s);
         //#if nested
-        if passes_hidden(s, &ray, &interior) {
-            hidden += 1u;
+        if passes(&path, s) {
             continue;
         }
         //#end
-        if !is_specular(scene.materials[s.material].kind) {
-            let reflectance = reflectance_at(s.material, s.uv);
-            albedo = throughput * reflectance;
-            normal = shading_normal(s, wo);
-            if max_component(reflectance) > 0.0 {
+        let p = shading_point(s, -path.ray.direction);
+        if !is_specular(p.lobe.bsdf) {
+            albedo = path.throughput * p.lobe.reflectance;
+            normal = p.n;
+            if max_component(p.lobe.reflectance) > 0.0 {
                 next.points += 1.0;
-                next.radius += (start_radius(camera.pixel * length) - next.radius) * (1.0 / next.points);
+                let radius = start_radius(camera.pixel * path.length);
+                next.radius += (radius - next.radius) * (1.0 / next.points);
                 //#if sampled && direct_layer
-                let ng = toward(s.normal, wo);
-                let found = direct_light(s, wo, normal, ng, reflectance, interior, &rng);
-                direct = throughput * found.radiance;
+                let found = direct_light(p, path.interior, &rng);
+                direct = path.throughput * found.radiance;
                 //#end
             }
             break;
         }
         //#if specular
-        if bounce == dispatch.max_bounces {
+        if path.bounce == dispatch.max_bounces {
             break;
         }
         let v = rng_next(&rng);
-        let scattered = scatter_specular(s, wo, interior, v.x, RADIANCE);
-        throughput *= scattered.weight;
-        interior = scattered.interior;
-        let survival = min(4.0 * max_component(throughput), 1.0);
-        if v.y >= survival {
+        let scattered = scatter_specular(p, path.interior, v.x, RADIANCE);
+        if !scatter(&path, s, scattered, v.y) {
             break;
         }
-        throughput *= 1.0 / survival;
-        let origin = offset_origin(s.position, s.error, s.normal, scattered.direction);
-        ray = Ray(origin, 0.0, scattered.direction, FAR);
-        bounce += 1u;
         //#end
     }
-    if !is_finite(emission) {
-        emission = vec3f(0.0);
+    if !is_finite(emitted) {
+        emitted = vec3f(0.0);
     }
     if !is_finite(albedo) {
         albedo = vec3f(0.0);
@@ -132,7 +108,7 @@ fn aov_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
     let share = 1.0 / f32(dispatch.passes_done + 1u);
     next.albedo += (albedo - next.albedo) * share;
     next.normal += (normal - next.normal) * share;
-    next.emission += (emission - next.emission) * share;
+    next.emission += (emitted - next.emission) * share;
     next.direct += (direct - next.direct) * share;
     aovs[id] = next;
 }

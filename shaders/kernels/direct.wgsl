@@ -1,4 +1,4 @@
-// Direct light at a non-specular hit, and absorption on the way: twin of src/kernels/direct.rs.
+// Direct light at a rough surface, and absorption on the way: twin of src/kernels/direct.rs.
 
 fn transmittance(medium: u32, distance: f32) -> vec3f {
     //#if absorption
@@ -26,35 +26,30 @@ struct DirectLight {
     rays: u32,
 }
 
-fn next_event(
-    s: Surface,
-    wo: vec3f,
-    n: vec3f,
-    ng: vec3f,
-    reflectance: vec3f,
-    interior: Interior,
-    mis: bool,
-    u: vec4f,
-) -> DirectLight {
-    let kind = scene.materials[s.material].kind;
-    let alpha = scene.materials[s.material].alpha;
-    let origin = s.position + ng * s.error;
-    let light = sample_light(shares_at(s.position), origin, u);
-    if dot(light.direction, ng) <= 0.0 || max_component(light.radiance) <= 0.0 {
+fn next_event(p: ShadingPoint, interior: Interior, mis: bool, u: vec4f) -> DirectLight {
+    var origin = p.s.position + p.ng * p.s.error;
+    let light = sample_light(shares_at(p.s.position), origin, u);
+    let behind = dot(light.direction, p.ng) <= 0.0;
+    if (behind && !transmits(p.lobe.bsdf)) || max_component(light.radiance) <= 0.0 {
         return DirectLight(vec3f(0.0), 0u);
     }
-    let f = eval_rough(kind, alpha, reflectance, n, wo, light.direction);
+    let f = eval_rough(p.lobe, p.n, p.wo, light.direction);
     if max_component(f) <= 0.0 {
         return DirectLight(vec3f(0.0), 0u);
     }
+    //#if lobes
+    if behind {
+        origin = p.s.position - p.ng * p.s.error;
+    }
+    //#end
     let ray = Ray(origin, 0.0, light.direction, light.distance);
     if occluded(ray) {
         return DirectLight(vec3f(0.0), 1u);
     }
     var weight = 1.0 / light.pdf;
-    //#if metal
+    //#if lobes
     if mis && light.extended {
-        weight *= balance(light.pdf, pdf_rough(kind, alpha, n, wo, light.direction));
+        weight *= balance(light.pdf, pdf_rough(p.lobe, p.n, p.wo, light.direction));
     }
     //#end
     var radiance = f * light.radiance * weight;
@@ -64,30 +59,20 @@ fn next_event(
     return DirectLight(radiance, 1u);
 }
 
-fn direct_light(
-    s: Surface,
-    wo: vec3f,
-    n: vec3f,
-    ng: vec3f,
-    reflectance: vec3f,
-    interior: Interior,
-    rng: ptr<function, Rng>,
-) -> DirectLight {
-    let kind = scene.materials[s.material].kind;
-    let metal = kind == MATERIAL_METAL;
-    var direct = next_event(s, wo, n, ng, reflectance, interior, metal, rng_next(rng));
-    //#if metal
-    if metal {
-        let alpha = scene.materials[s.material].alpha;
+fn direct_light(p: ShadingPoint, interior: Interior, rng: ptr<function, Rng>) -> DirectLight {
+    let narrow = !is_wide(p.lobe.bsdf);
+    var direct = next_event(p, interior, narrow, rng_next(rng));
+    //#if lobes
+    if narrow {
         let u = rng_next(rng);
-        let scattered = scatter_rough(s, wo, interior, vec2f(u.x, u.y), RADIANCE);
+        let scattered = sample_rough(p, vec2f(u.x, u.y), RADIANCE);
         if max_component(scattered.weight) > 0.0 {
             direct.rays += 1u;
-            let pdf = pdf_rough(kind, alpha, n, wo, scattered.direction);
-            let start = offset_origin(s.position, s.error, ng, scattered.direction);
+            let pdf = pdf_rough(p.lobe, p.n, p.wo, scattered.direction);
+            let start = offset_origin(p.s.position, p.s.error, p.ng, scattered.direction);
             let ray = Ray(start, 0.0, scattered.direction, FAR);
             let hit = intersect_scene(ray);
-            let shares = shares_at(s.position);
+            let shares = shares_at(p.s.position);
             if hit.reference == NONE {
                 //#if environment
                 if scene.world.environment != NONE {

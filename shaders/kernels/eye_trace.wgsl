@@ -13,68 +13,48 @@ fn eye_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
     let pixel = window_pixel(camera, place);
     var rng = rng_eye(pixel * dispatch.eye_samples + k, dispatch.pass_number, dispatch.seed);
     let u = stratified(rng_next(&rng), k, pixel);
-    var ray = camera_ray(camera, pixel % camera.width, pixel / camera.width, u);
-    var throughput = vec3f(1.0);
-    var interior = interior_at(camera.medium, ray.origin);
-    var hidden = 0u;
-    var bounce = 0u;
-    var length = 0.0;
-    var rays = 0u;
+    let ray = camera_ray(camera, pixel % camera.width, pixel / camera.width, u);
+    var path = eye_path(ray);
     var point = VisiblePoint();
-    while bounce <= dispatch.max_bounces && hidden <= HIDDEN_FACES {
-        rays += 1u;
-        let hit = intersect_scene(ray);
+    while continues(path) {
+        path.rays += 1u;
+        let hit = intersect_scene(path.ray);
         if hit.reference == NONE {
-            //#if environment
-            if scene.world.environment != NONE {
-                let light = scene.lights[scene.world.environment];
-                point.radiance += throughput * eval_environment(light, ray.direction);
-            }
-            //#end
+            point.radiance += environment(path);
             break;
         }
-        let s = surface_at(ray, hit);
-        let wo = -ray.direction;
-        length += hit.t;
-        interior = interior_before(s, wo, interior);
-        throughput *= transmittance(medium_of(interior), hit.t);
-        //#if area
-        if s.light != NONE && dot(wo, s.normal) > 0.0 {
-            point.radiance += throughput * scene.lights[s.light].color;
-        }
-        //#end
+        let s = surface_at(path.ray, hit);
+        arrive(&path, s, hit.t);
+        point.radiance += emission(path, s);
         //#if nested
-        if passes_hidden(s, &ray, &interior) {
-            hidden += 1u;
+        if passes(&path, s) {
             continue;
         }
         //#end
-        let kind = scene.materials[s.material].kind;
-        if !is_specular(kind) {
-            let reflectance = reflectance_at(s.material, s.uv);
-            if max_component(reflectance) <= 0.0 {
+        let p = shading_point(s, -path.ray.direction);
+        if !is_specular(p.lobe.bsdf) {
+            if max_component(p.lobe.reflectance) <= 0.0 {
                 break;
             }
-            let ng = toward(s.normal, wo);
-            let n = shading_normal(s, wo);
             point.position = s.position;
             point.facet = s.facet;
-            point.radius = start_radius(camera.pixel * length);
-            point.normal = oct_encode(ng);
-            point.shading = oct_encode(n);
-            point.weight = throughput * INV_PI * reflectance;
-            //#if metal
-            if kind == MATERIAL_METAL {
-                point.weight = throughput;
-                point.reflectance = reflectance;
-                point.alpha = scene.materials[s.material].alpha;
-                point.wo = oct_encode(wo);
+            point.radius = start_radius(camera.pixel * path.length);
+            point.normal = oct_encode(p.ng);
+            point.shading = oct_encode(p.n);
+            point.bsdf = p.lobe.bsdf;
+            point.weight = path.throughput * INV_PI * p.lobe.reflectance;
+            //#if lobes
+            if p.lobe.bsdf != MATERIAL_DIFFUSE {
+                point.weight = path.throughput;
+                point.reflectance = p.lobe.reflectance;
+                point.alpha = p.lobe.alpha;
+                point.wo = oct_encode(p.wo);
             }
             //#end
             //#if sampled
-            let found = direct_light(s, wo, n, ng, reflectance, interior, &rng);
-            let direct = throughput * found.radiance;
-            rays += found.rays;
+            let found = direct_light(p, path.interior, &rng);
+            let direct = path.throughput * found.radiance;
+            path.rays += found.rays;
             if is_finite(direct) {
                 point.radiance += direct;
             } else {
@@ -84,21 +64,14 @@ fn eye_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
             break;
         }
         //#if specular
-        if bounce == dispatch.max_bounces {
+        if path.bounce == dispatch.max_bounces {
             break;
         }
         let v = rng_next(&rng);
-        let scattered = scatter_specular(s, wo, interior, v.x, RADIANCE);
-        throughput *= scattered.weight;
-        interior = scattered.interior;
-        let survival = min(4.0 * max_component(throughput), 1.0);
-        if v.y >= survival {
+        let scattered = scatter_specular(p, path.interior, v.x, RADIANCE);
+        if !scatter(&path, s, scattered, v.y) {
             break;
         }
-        throughput *= 1.0 / survival;
-        let origin = offset_origin(s.position, s.error, s.normal, scattered.direction);
-        ray = Ray(origin, 0.0, scattered.direction, FAR);
-        bounce += 1u;
         //#end
     }
     if !is_finite(point.radiance) {
@@ -108,7 +81,7 @@ fn eye_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
     if loops_stopped() {
         point.state |= STOPPED;
     } else {
-        count_rays(rays);
+        count_rays(path.rays);
     }
     visible_points[id] = point;
 }

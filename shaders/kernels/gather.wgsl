@@ -16,8 +16,9 @@ const LIGHT: u32 = 1u;
 struct Frame {
     ng: vec3f,
     n: vec3f,
-    //#if metal
+    //#if lobes
     wo: vec3f,
+    lobe: Lobe,
     //#end
 }
 
@@ -28,8 +29,9 @@ fn frame_at(point: VisiblePoint) -> Frame {
     if point.normal != point.shading {
         frame.n = oct_decode(point.shading);
     }
-    //#if metal
+    //#if lobes
     frame.wo = oct_decode(point.wo);
+    frame.lobe = Lobe(point.bsdf, point.alpha, point.reflectance);
     //#end
     return frame;
 }
@@ -91,8 +93,11 @@ fn gather_family(point: VisiblePoint, frame: Frame, family: u32, radius_sq: f32)
     let radius = sqrt(radius_sq);
     let ng = frame.ng;
     let n = frame.n;
-    //#if metal
+    //#if lobes
     let wo = frame.wo;
+    let lobe = frame.lobe;
+    let folded = lobe.bsdf == MATERIAL_DIFFUSE;
+    let both = transmits(lobe.bsdf);
     //#end
     let flat_normal = point.normal == point.shading;
     //#if facets
@@ -139,7 +144,11 @@ fn gather_family(point: VisiblePoint, frame: Frame, family: u32, radius_sq: f32)
                         // no more is read of a record than tells that it is not near
                         let light = sorted[i][LIGHT];
                         let toward_light = oct_vector(light.w);
+                        //#if lobes
+                        var counts = dot(toward_light, ng) > 0.0 || both;
+                        //#else
                         var counts = dot(toward_light, ng) > 0.0;
+                        //#end
                         //#if facets
                         if counts && clip.crossed {
                             counts = on_facet(facet, position) && before_walls(&clip, point.position, position);
@@ -148,21 +157,24 @@ fn gather_family(point: VisiblePoint, frame: Frame, family: u32, radius_sq: f32)
                         if counts {
                             count += 1u;
                             var flux = bitcast<vec3f>(light.xyz);
-                            //#if attributes || metal
-                            if !flat_normal || point.alpha > 0.0 {
+                            //#if lobes
+                            if !flat_normal || !folded {
                                 let wi = unit(toward_light);
-                                let cos_g = max(dot(wi, ng), COS_MIN);
-                                //#if metal
-                                if point.alpha > 0.0 {
-                                    let f = eval_rough(MATERIAL_METAL, point.alpha, point.reflectance, n, wo, wi);
-                                    flux = f * flux * (1.0 / cos_g);
+                                if folded {
+                                    flux *= max(dot(wi, n), 0.0) / max(dot(wi, ng), COS_MIN);
                                 } else {
-                                    flux *= max(dot(wi, n), 0.0) / cos_g;
+                                    let cos_g = max(abs(dot(wi, ng)), COS_MIN);
+                                    let f = eval_rough(lobe, n, wo, wi);
+                                    flux = f * flux * (1.0 / cos_g);
                                 }
-                                //#else
-                                flux *= max(dot(wi, n), 0.0) / cos_g;
-                                //#end
                             }
+                            //#else
+                            //#if attributes
+                            if !flat_normal {
+                                let wi = unit(toward_light);
+                                flux *= max(dot(wi, n), 0.0) / max(dot(wi, ng), COS_MIN);
+                            }
+                            //#end
                             //#end
                             block += flux;
                             //#if facets

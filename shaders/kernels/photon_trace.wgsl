@@ -47,22 +47,21 @@ fn photon_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgrou
             continue;
         }
         //#end
-        let kind = scene.materials[s.material].kind;
+        let p = shading_point(s, wo);
         let u = rng_next(&rng);
         var scattered: Scatter;
         //#if specular
-        if is_specular(kind) {
-            scattered = scatter_specular(s, wo, interior, u.x, IMPORTANCE);
+        if is_specular(p.lobe.bsdf) {
+            scattered = scatter_specular(p, interior, u.x, IMPORTANCE);
         } else {
-            scattered =
-                stored_and_scattered(id, bounce, hidden, &family, s, wo, interior, flux, u);
+            scattered = stored_and_scattered(id, bounce, hidden, &family, p, interior, flux, u);
         }
         //#else
-        scattered = stored_and_scattered(id, bounce, hidden, &family, s, wo, interior, flux, u);
+        scattered = stored_and_scattered(id, bounce, hidden, &family, p, interior, flux, u);
         //#end
         let weight = max_component(scattered.weight);
         //#if far || guided
-        let kept = select(excess, max(excess, 1.0), is_specular(kind));
+        let kept = select(excess, max(excess, 1.0), is_specular(p.lobe.bsdf));
         let survival = min(weight * kept, 1.0);
         excess *= weight / survival;
         //#else
@@ -92,21 +91,20 @@ fn stored_and_scattered(
     bounce: u32,
     hidden: u32,
     family: ptr<function, u32>,
-    s: Surface,
-    wo: vec3f,
+    p: ShadingPoint,
     interior: Interior,
     flux: vec3f,
     u: vec4f,
 ) -> Scatter {
-    store_record(id, bounce, hidden, *family, s, wo, flux);
-    let scattered = scatter_rough(s, wo, interior, vec2f(u.x, u.y), IMPORTANCE);
+    store_record(id, bounce, hidden, *family, p, flux);
+    let scattered = scatter_rough(p, interior, vec2f(u.x, u.y), IMPORTANCE);
     //#if split
-    if scene.materials[s.material].kind == MATERIAL_DIFFUSE {
+    if is_wide(p.lobe.bsdf) {
         *family = 1u;
     }
     //#end
     //#if far
-    return aimed_scatter(s, wo, u, scattered);
+    return aimed_scatter(p, u, scattered);
     //#else
     return scattered;
     //#end
@@ -117,8 +115,7 @@ fn store_record(
     bounce: u32,
     hidden: u32,
     family: u32,
-    s: Surface,
-    wo: vec3f,
+    p: ShadingPoint,
     flux: vec3f,
 ) {
     //#if sampled
@@ -127,9 +124,9 @@ fn store_record(
     //#else
     let stored = true;
     //#end
-    if stored && max_component(reflectance_at(s.material, s.uv)) > 0.0 {
+    if stored && max_component(p.lobe.reflectance) > 0.0 {
         let key = (id << dispatch.key_bits) | (bounce << 1u) | family;
-        append(PhotonRecord(s.position, key, flux, oct_encode(wo)));
+        append(PhotonRecord(p.s.position, key, flux, oct_encode(p.wo)));
     }
 }
 

@@ -49,7 +49,7 @@ struct VisiblePoint {
     wo: u32,
     facet: u32,
     state: u32,
-    pad: u32,
+    bsdf: u32,
 }
 
 struct PhotonRecord {

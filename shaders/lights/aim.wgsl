@@ -2,12 +2,11 @@
 
 const FAR_OUTSIDE_SQ: f32 = 4.0;
 
-fn aimed_scatter(s: Surface, wo: vec3f, u: vec4f, scattered: Scatter) -> Scatter {
-    let p = s.position - scene.world.near_center;
+fn aimed_scatter(at: ShadingPoint, u: vec4f, scattered: Scatter) -> Scatter {
+    let p = at.s.position - scene.world.near_center;
     let distance_sq = dot(p, p);
     let radius_sq = scene.world.near_radius * scene.world.near_radius;
-    let diffuse = scene.materials[s.material].kind == MATERIAL_DIFFUSE;
-    if !diffuse || distance_sq < FAR_OUTSIDE_SQ * radius_sq {
+    if at.lobe.bsdf != MATERIAL_DIFFUSE || distance_sq < FAR_OUTSIDE_SQ * radius_sq {
         return scattered;
     }
     let axis = -unit(p);
@@ -21,7 +20,7 @@ fn aimed_scatter(s: Surface, wo: vec3f, u: vec4f, scattered: Scatter) -> Scatter
         let across = cross(wi, axis);
         in_cone = dot(wi, axis) > 0.0 && dot(across, across) < sin_sq;
     }
-    let cos = dot(wi, toward(s.normal, wo));
+    let cos = dot(wi, at.ng);
     if cos <= 0.0 {
         return Scatter(wi, scattered.interior, vec3f(0.0));
     }

@@ -21,7 +21,7 @@ fn schlick(f0: vec3f, cos: f32) -> vec3f {
     return f0 + (vec3f(1.0) - f0) * (m2 * m2 * m);
 }
 
-fn eval_metal(wo: vec3f, wi: vec3f, f0: vec3f, alpha: f32) -> vec3f {
+fn ggx_brdf(wo: vec3f, wi: vec3f, f0: vec3f, alpha: f32) -> vec3f {
     if wo.z <= 0.0 || wi.z <= 0.0 {
         return vec3f(0.0);
     }
@@ -30,7 +30,7 @@ fn eval_metal(wo: vec3f, wi: vec3f, f0: vec3f, alpha: f32) -> vec3f {
     return schlick(f0, dot(wo, h)) * (ggx_d(h, alpha) * g / (4.0 * wo.z * wi.z));
 }
 
-fn sample_metal(wo: vec3f, alpha: f32, u: vec2f) -> vec3f {
+fn ggx_visible_normal(wo: vec3f, alpha: f32, u: vec2f) -> vec3f {
     let vh = unit(vec3f(alpha * wo.x, alpha * wo.y, wo.z));
     let len_sq = vh.x * vh.x + vh.y * vh.y;
     var t1 = vec3f(1.0, 0.0, 0.0);
@@ -47,7 +47,7 @@ fn sample_metal(wo: vec3f, alpha: f32, u: vec2f) -> vec3f {
     return unit(vec3f(alpha * nh.x, alpha * nh.y, max(nh.z, 1e-6)));
 }
 
-fn pdf_metal(wo: vec3f, wi: vec3f, alpha: f32) -> f32 {
+fn ggx_pdf(wo: vec3f, wi: vec3f, alpha: f32) -> f32 {
     if wo.z <= 0.0 || wi.z <= 0.0 {
         return 0.0;
     }
@@ -55,10 +55,50 @@ fn pdf_metal(wo: vec3f, wi: vec3f, alpha: f32) -> f32 {
     return ggx_d(h, alpha) / (4.0 * wo.z * (1.0 + ggx_lambda(wo.z, alpha)));
 }
 
-fn weight_metal(wo: vec3f, h: vec3f, wi: vec3f, f0: vec3f, alpha: f32) -> vec3f {
+fn ggx_weight(wo: vec3f, h: vec3f, wi: vec3f, f0: vec3f, alpha: f32) -> vec3f {
     if wi.z <= 0.0 {
         return vec3f(0.0);
     }
     let lo = ggx_lambda(wo.z, alpha);
     return schlick(f0, dot(wo, h)) * ((1.0 + lo) / (1.0 + lo + ggx_lambda(wi.z, alpha)));
 }
+
+fn eval_metal(lobe: Lobe, n: vec3f, wo: vec3f, wi: vec3f) -> vec3f {
+    let cos = dot(wi, n);
+    if cos <= 0.0 {
+        return vec3f(0.0);
+    }
+    let f = basis(n);
+    let local_wo = vec3f(dot(wo, f.t), dot(wo, f.b), dot(wo, n));
+    let local_wi = vec3f(dot(wi, f.t), dot(wi, f.b), cos);
+    return ggx_brdf(local_wo, local_wi, lobe.reflectance, lobe.alpha) * cos;
+}
+
+fn pdf_metal(lobe: Lobe, n: vec3f, wo: vec3f, wi: vec3f) -> f32 {
+    let cos = dot(wi, n);
+    if cos <= 0.0 {
+        return 0.0;
+    }
+    let f = basis(n);
+    let local_wo = vec3f(dot(wo, f.t), dot(wo, f.b), dot(wo, n));
+    return ggx_pdf(local_wo, vec3f(dot(wi, f.t), dot(wi, f.b), cos), lobe.alpha);
+}
+
+//#if scene
+fn sample_metal(p: ShadingPoint, u: vec2f, mode: u32) -> Sample {
+    let f = basis(p.n);
+    let local_wo = vec3f(dot(p.wo, f.t), dot(p.wo, f.b), dot(p.wo, p.n));
+    let h = ggx_visible_normal(local_wo, p.lobe.alpha, u);
+    let local_wi = mirrored(local_wo, h);
+    var weight = ggx_weight(local_wo, h, local_wi, p.lobe.reflectance, p.lobe.alpha);
+    let wi = renormalized(from_frame(p.n, local_wi));
+    if dot(wi, p.ng) <= 0.0 {
+        weight = vec3f(0.0);
+    } else if mode == IMPORTANCE {
+        // from behind the shading normal an eye path would get nothing
+        let seen = dot(p.wo, p.ns) > 0.0;
+        weight *= select(0.0, shading_correction(p, p.n, wi), seen);
+    }
+    return Sample(wi, weight);
+}
+//#end

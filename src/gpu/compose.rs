@@ -1,7 +1,8 @@
 //! A kernel's shader from the files it needs, one after another, with the declarations of what it
 //! binds; and the way back from naga's line numbers to files.
 
-use super::fragments::{FRAGMENTS, Fragment, Names, preprocess};
+use super::bsdf;
+use super::fragments::{Fragment, Names, fragments, preprocess};
 use super::layout::{SceneTables, bindings, declarations};
 use crate::features::{Feature, Features};
 use crate::plan::Kernel;
@@ -54,7 +55,7 @@ pub fn compose(
     features: &Features,
     scene: &SceneTables,
 ) -> Result<Shader, ShaderError> {
-    compose_from(FRAGMENTS, kernel, features, scene)
+    compose_from(&fragments(), kernel, features, scene)
 }
 
 /// [`compose`] from given files.
@@ -70,6 +71,7 @@ pub fn compose_from(
     if kernel.info().traces {
         declared.insert_str(0, &scene.declaration());
     }
+    declared.push_str(&bsdf::dispatch(kernel, *features));
     shader.push(DECLARATIONS, &declared);
     for fragment in fragments {
         let fault = |line, message| ShaderError { file: fragment.path, line, message };

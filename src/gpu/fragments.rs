@@ -4,6 +4,7 @@
 //! made of names, `&&` and, binding less, `||`. Lines that are left out stay as empty lines, so
 //! that line numbers hold.
 
+use crate::materials::SHADERS;
 use std::collections::BTreeSet;
 
 /// A shader file, and the condition under which a kernel needs it (empty: always).
@@ -27,12 +28,19 @@ macro_rules! fragments {
     };
 }
 
-/// All shader files, in the order in which they are put together.
-pub const FRAGMENTS: &[Fragment] = fragments![
-    "tables.wgsl" if "scene || gather && metal || gather && facets",
+/// All shader files.
+pub fn fragments() -> Vec<Fragment> {
+    let materials =
+        SHADERS.iter().map(|&(path, text, condition)| Fragment { path, text, condition });
+    SHARED.iter().copied().chain(materials).collect()
+}
+
+/// The shader files that are not a material's.
+const SHARED: &[Fragment] = fragments![
+    "tables.wgsl" if "scene || gather && lobes || gather && facets",
     "math/vector.wgsl" if "scene || gather || resolve || resolve_parts",
     "math/octahedral.wgsl" if "scene || gather",
-    "math/trig.wgsl" if "scene || gather && metal || gather && facets",
+    "math/trig.wgsl" if "scene || gather && lobes || gather && facets",
     "math/rng.wgsl" if "scene",
     "math/sampling.wgsl" if "scene",
     "shapes/ray.wgsl" if "scene",
@@ -49,11 +57,9 @@ pub const FRAGMENTS: &[Fragment] = fragments![
     "shapes/intersect.wgsl" if "scene",
     "shapes/surface.wgsl" if "scene",
     "materials/texture.wgsl" if "scene && textures",
-    "materials/glass.wgsl" if "scene && glass",
-    "materials/metal.wgsl" if "scene && metal || gather && metal",
     "materials/interior.wgsl" if "scene",
     "materials/enclosing.wgsl" if "scene",
-    "materials/scatter.wgsl" if "scene || gather && metal",
+    "materials/shading.wgsl" if "scene || gather && lobes",
     "lights/shape.wgsl" if "scene && lights",
     "lights/light.wgsl" if "scene && lights",
     "lights/select.wgsl" if "scene && lights",
@@ -65,6 +71,7 @@ pub const FRAGMENTS: &[Fragment] = fragments![
     "kernels/records.wgsl" if "",
     "kernels/direct.wgsl" if "scene",
     "kernels/scan.wgsl" if "grid_scan_reduce || grid_scan_sums || grid_scan",
+    "kernels/eye_path.wgsl" if "eye_trace || aov_trace",
     "kernels/eye_sample.wgsl" if "eye_trace || aov_trace",
     "kernels/eye_trace.wgsl" if "eye_trace",
     "kernels/aov_trace.wgsl" if "aov_trace",

@@ -1,5 +1,6 @@
 //! The GPU engine: carries out a plan on wgpu. The only code that names wgpu or naga.
 
+mod bsdf;
 pub mod compose;
 pub mod context;
 mod engine;

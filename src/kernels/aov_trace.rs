@@ -3,20 +3,16 @@
 //! for one of its samples; reads the scene, updates `aovs`. Twin: `shaders/kernels/aov_trace.wgsl`.
 
 use super::camera::camera_ray;
-use super::direct::{direct_light, transmittance};
+use super::direct::direct_light;
+use super::eye_path::EyePath;
 use super::eye_sample::{start_radius, stratified, window_pixel};
-use super::lights::light::eval_environment;
-use super::materials::enclosing::interior_at;
-use super::materials::interior::{interior_before, medium_of, passes_hidden};
-use super::materials::scatter::{
-    RADIANCE, is_specular, reflectance_at, scatter_specular, shading_normal, toward,
-};
+use super::materials::scatter_specular;
+use super::materials::shading::{RADIANCE, shading_point};
 use super::math::rng::{rng_eye, rng_next};
-use super::math::{FAR, is_finite, max_component, offset_origin};
+use super::math::{is_finite, max_component};
 use super::real::{Plain, Real, Vec3, Vec4};
-use super::records::{Dispatch, HIDDEN_FACES};
+use super::records::Dispatch;
 use super::shapes::intersect::intersect_scene;
-use super::shapes::ray::Ray;
 use super::shapes::surface::surface_at;
 use super::tables::*;
 use bytemuck::Zeroable;
@@ -79,76 +75,54 @@ pub fn aov_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, id: u32, aov
         dispatch.seed,
         dispatch.points,
     );
-    let mut ray = camera_ray(camera, x, y, stratified(rng_next(&mut rng), k, pixel, dispatch));
-    let mut throughput = Vec3::ONE;
-    let mut interior = interior_at(scene, camera.medium, ray.origin);
-    let mut hidden = 0;
-    let mut bounce = 0;
-    let mut length = 0.0;
+    let ray = camera_ray(camera, x, y, stratified(rng_next(&mut rng), k, pixel, dispatch));
+    let mut path = EyePath::new(scene, ray);
     let mut albedo = Vec3::ZERO;
     let mut normal = Vec3::ZERO;
     let mut emission = Vec3::ZERO;
     let mut direct = Vec3::ZERO;
-    while bounce <= dispatch.max_bounces && hidden <= HIDDEN_FACES {
-        let hit = intersect_scene(scene, &ray);
+    while path.continues(dispatch) {
+        let hit = path.trace(scene);
         if hit.reference == NONE {
-            if scene.world.environment != NONE {
-                let light = &scene.lights[scene.world.environment as usize];
-                emission += throughput * eval_environment(scene, light, ray.direction);
-            }
+            emission += path.environment(scene);
             break;
         }
-        let s = surface_at(scene, &ray, &hit);
-        let wo = -ray.direction;
-        length += hit.t;
-        if bounce == 0 && hidden == 0 {
+        let first = path.bounce == 0 && path.hidden == 0;
+        let s = path.arrive(scene, &hit);
+        if first {
             next.hits += 1.0;
             let share = 1.0 / next.hits;
             next.depth += ((s.position - camera.position).dot(camera.forward) - next.depth) * share;
             next.position += (s.position - next.position) * share;
         }
-        interior = interior_before(scene, &s, wo, &interior);
-        throughput *= transmittance(scene, medium_of(&interior), hit.t);
-        if s.light != NONE && wo.dot(s.normal) > 0.0 {
-            emission += throughput * scene.lights[s.light as usize].color;
-        }
-        if passes_hidden(scene, &s, &mut ray, &mut interior) {
-            hidden += 1;
+        emission += path.emission(scene, &s);
+        if path.passes(scene, &s) {
             continue;
         }
-        if !is_specular(scene.materials[s.material as usize].kind) {
-            let reflectance = reflectance_at(scene, s.material, s.uv);
-            albedo = throughput * reflectance;
-            normal = shading_normal(scene, &s, wo);
-            if max_component(reflectance) > 0.0 {
+        let p = shading_point(scene, &s, -path.ray.direction);
+        if !p.lobe.bsdf.is_specular() {
+            albedo = path.throughput * p.lobe.reflectance;
+            normal = p.n;
+            if max_component(p.lobe.reflectance) > 0.0 {
                 next.points += 1.0;
-                next.radius += (start_radius(dispatch, camera.pixel * length) - next.radius)
-                    * (1.0 / next.points);
+                let radius = start_radius(dispatch, camera.pixel * path.length);
+                next.radius += (radius - next.radius) * (1.0 / next.points);
                 if sampled {
-                    let ng = toward(s.normal, wo);
-                    let (radiance, _) =
-                        direct_light(scene, &s, wo, normal, ng, reflectance, &interior, &mut rng);
-                    direct = throughput * radiance;
+                    let (radiance, _) = direct_light(scene, &p, &path.interior, &mut rng);
+                    direct = path.throughput * radiance;
                 }
             }
             break;
         }
-        if bounce == dispatch.max_bounces {
+        if path.bounce == dispatch.max_bounces {
             break;
         }
         // as in `eye_trace`, with the same numbers
         let v = rng_next(&mut rng);
-        let scattered = scatter_specular(scene, &s, wo, &interior, v.x, RADIANCE);
-        throughput *= scattered.weight;
-        interior = scattered.interior;
-        let survival = (4.0 * max_component(throughput)).min(1.0);
-        if v.y >= survival {
+        let scattered = scatter_specular(scene, &p, &path.interior, v.x, RADIANCE);
+        if !path.scatter(&s, &scattered, v.y) {
             break;
         }
-        throughput *= 1.0 / survival;
-        let origin = offset_origin(s.position, s.error, s.normal, scattered.direction);
-        ray = Ray { origin, t_min: 0.0, direction: scattered.direction, t_max: FAR };
-        bounce += 1;
     }
     if !is_finite(emission) {
         emission = Vec3::ZERO;

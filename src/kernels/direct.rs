@@ -1,11 +1,12 @@
-//! Direct light at a non-specular hit: one shadow ray to a sampled light and, on metal, one ray by
-//! the material's density, joined by multiple importance sampling (Veach & Guibas 1995). Twin:
+//! Direct light at a rough surface: one shadow ray to a sampled light and, if the material's lobe is
+//! narrow, one ray by its density, combined by multiple importance sampling (Veach & Guibas 1995). Twin:
 //! `shaders/kernels/direct.wgsl`.
 
 use super::lights::light::{eval_environment, pdf_environment, pdf_light, sample_light};
 use super::lights::select::{share_of, shares_at};
 use super::materials::interior::{Interior, medium_of};
-use super::materials::scatter::{RADIANCE, eval_rough, pdf_rough, scatter_rough};
+use super::materials::shading::{RADIANCE, ShadingPoint};
+use super::materials::{eval_rough, pdf_rough, sample_rough};
 use super::math::rng::{Rng, rng_next};
 use super::math::sampling::balance;
 use super::math::trig::exponential;
@@ -13,7 +14,7 @@ use super::math::{FAR, max_component, offset_origin};
 use super::real::{Real, Vec2, Vec3, Vec4};
 use super::shapes::intersect::{intersect_scene, occluded};
 use super::shapes::ray::Ray;
-use super::shapes::surface::{Surface, surface_at};
+use super::shapes::surface::surface_at;
 use super::tables::*;
 
 /// Beer-Lambert transmittance over `distance` in a medium.
@@ -26,30 +27,28 @@ pub fn transmittance(scene: &Scene, medium: u32, distance: Real) -> Vec3 {
     Vec3::new(exponential(depth.x), exponential(depth.y), exponential(depth.z))
 }
 
-/// Radiance toward `wo` from one sampled light, and the number of shadow rays. `mis`: weighted
+/// Radiance toward the path from one sampled light, and the number of shadow rays. `mis`: weighted
 /// against scattered rays that could meet the same light.
 #[inline(always)]
 pub fn next_event(
     scene: &Scene,
-    s: &Surface,
-    wo: Vec3,
-    n: Vec3,
-    ng: Vec3,
-    reflectance: Vec3,
+    p: &ShadingPoint,
     interior: &Interior,
     mis: bool,
     u: Vec4,
 ) -> (Vec3, u32) {
-    let kind = scene.materials[s.material as usize].kind;
-    let alpha = scene.materials[s.material as usize].alpha;
-    let origin = s.position + ng * s.error;
-    let light = sample_light(scene, shares_at(scene, s.position), origin, u);
-    if light.direction.dot(ng) <= 0.0 || max_component(light.radiance) <= 0.0 {
+    let mut origin = p.s.position + p.ng * p.s.error;
+    let light = sample_light(scene, shares_at(scene, p.s.position), origin, u);
+    let behind = light.direction.dot(p.ng) <= 0.0;
+    if (behind && !p.lobe.bsdf.transmits()) || max_component(light.radiance) <= 0.0 {
         return (Vec3::ZERO, 0);
     }
-    let f = eval_rough(kind, alpha, reflectance, n, wo, light.direction);
+    let f = eval_rough(&p.lobe, p.n, p.wo, light.direction);
     if max_component(f) <= 0.0 {
         return (Vec3::ZERO, 0);
+    }
+    if behind {
+        origin = p.s.position - p.ng * p.s.error;
     }
     let ray = Ray { origin, t_min: 0.0, direction: light.direction, t_max: light.distance };
     if occluded(scene, &ray) {
@@ -57,7 +56,7 @@ pub fn next_event(
     }
     let mut weight = 1.0 / light.pdf;
     if mis && light.extended {
-        weight *= balance(light.pdf, pdf_rough(kind, alpha, n, wo, light.direction));
+        weight *= balance(light.pdf, pdf_rough(&p.lobe, p.n, p.wo, light.direction));
     }
     let mut radiance = f * light.radiance * weight;
     if light.distance < FAR {
@@ -66,33 +65,27 @@ pub fn next_event(
     (radiance, 1)
 }
 
-/// Radiance toward `wo` from the lights, and the number of rays spent.
+/// Radiance toward the path from the lights, and the number of rays spent.
 #[inline(always)]
 pub fn direct_light(
     scene: &Scene,
-    s: &Surface,
-    wo: Vec3,
-    n: Vec3,
-    ng: Vec3,
-    reflectance: Vec3,
+    p: &ShadingPoint,
     interior: &Interior,
     rng: &mut Rng,
 ) -> (Vec3, u32) {
-    let kind = scene.materials[s.material as usize].kind;
-    let alpha = scene.materials[s.material as usize].alpha;
-    let metal = kind == MATERIAL_METAL;
-    let (mut radiance, mut rays) =
-        next_event(scene, s, wo, n, ng, reflectance, interior, metal, rng_next(rng));
-    if metal {
+    // scattered rays find lights that fill a narrow lobe
+    let narrow = !p.lobe.bsdf.is_wide();
+    let (mut radiance, mut rays) = next_event(scene, p, interior, narrow, rng_next(rng));
+    if narrow {
         let u = rng_next(rng);
-        let scattered = scatter_rough(scene, s, wo, interior, Vec2::new(u.x, u.y), RADIANCE);
+        let scattered = sample_rough(p, Vec2::new(u.x, u.y), RADIANCE);
         if max_component(scattered.weight) > 0.0 {
             rays += 1;
-            let pdf = pdf_rough(kind, alpha, n, wo, scattered.direction);
-            let origin = offset_origin(s.position, s.error, ng, scattered.direction);
+            let pdf = pdf_rough(&p.lobe, p.n, p.wo, scattered.direction);
+            let origin = offset_origin(p.s.position, p.s.error, p.ng, scattered.direction);
             let ray = Ray { origin, t_min: 0.0, direction: scattered.direction, t_max: FAR };
             let hit = intersect_scene(scene, &ray);
-            let shares = shares_at(scene, s.position);
+            let shares = shares_at(scene, p.s.position);
             if hit.reference == NONE {
                 if scene.world.environment != NONE {
                     let sky = scene.world.environment;

@@ -3,21 +3,15 @@
 //! `visible_points`. Twin: `shaders/kernels/eye_trace.wgsl`.
 
 use super::camera::camera_ray;
-use super::direct::{direct_light, transmittance};
+use super::direct::direct_light;
+use super::eye_path::EyePath;
 use super::eye_sample::{start_radius, stratified, window_pixel};
-use super::lights::light::eval_environment;
-use super::materials::enclosing::interior_at;
-use super::materials::interior::{interior_before, medium_of, passes_hidden};
-use super::materials::scatter::{
-    RADIANCE, is_specular, reflectance_at, scatter_specular, shading_normal, toward,
-};
+use super::materials::shading::{RADIANCE, shading_point};
+use super::materials::{Bsdf, scatter_specular};
 use super::math::rng::{rng_eye, rng_next};
-use super::math::{FAR, INV_PI, is_finite, max_component, oct_encode, offset_origin};
+use super::math::{INV_PI, is_finite, max_component, oct_encode};
 use super::real::Vec3;
-use super::records::{BAD_DIRECT, BAD_EYE, Dispatch, HIDDEN_FACES, VisiblePoint};
-use super::shapes::intersect::intersect_scene;
-use super::shapes::ray::Ray;
-use super::shapes::surface::surface_at;
+use super::records::{BAD_DIRECT, BAD_EYE, Dispatch, VisiblePoint};
 use super::tables::*;
 use bytemuck::Zeroable;
 
@@ -41,61 +35,42 @@ pub fn eye_trace(
         dispatch.points,
     );
     let u = stratified(rng_next(&mut rng), k, pixel, dispatch);
-    let mut ray = camera_ray(camera, pixel % camera.width, pixel / camera.width, u);
-    let mut throughput = Vec3::ONE;
-    let mut interior = interior_at(scene, camera.medium, ray.origin);
-    let mut hidden = 0;
-    let mut bounce = 0;
-    let mut length = 0.0;
-    let mut rays = 0;
+    let ray = camera_ray(camera, pixel % camera.width, pixel / camera.width, u);
+    let mut path = EyePath::new(scene, ray);
     let mut point = VisiblePoint::zeroed();
-    while bounce <= dispatch.max_bounces && hidden <= HIDDEN_FACES {
-        rays += 1;
-        let hit = intersect_scene(scene, &ray);
+    while path.continues(dispatch) {
+        let hit = path.trace(scene);
         if hit.reference == NONE {
-            if scene.world.environment != NONE {
-                let light = &scene.lights[scene.world.environment as usize];
-                point.radiance += throughput * eval_environment(scene, light, ray.direction);
-            }
+            point.radiance += path.environment(scene);
             break;
         }
-        let s = surface_at(scene, &ray, &hit);
-        let wo = -ray.direction;
-        length += hit.t;
-        interior = interior_before(scene, &s, wo, &interior);
-        throughput *= transmittance(scene, medium_of(&interior), hit.t);
-        if s.light != NONE && wo.dot(s.normal) > 0.0 {
-            point.radiance += throughput * scene.lights[s.light as usize].color;
-        }
-        if passes_hidden(scene, &s, &mut ray, &mut interior) {
-            hidden += 1;
+        let s = path.arrive(scene, &hit);
+        point.radiance += path.emission(scene, &s);
+        if path.passes(scene, &s) {
             continue;
         }
-        let kind = scene.materials[s.material as usize].kind;
-        if !is_specular(kind) {
-            let reflectance = reflectance_at(scene, s.material, s.uv);
-            if max_component(reflectance) <= 0.0 {
+        let p = shading_point(scene, &s, -path.ray.direction);
+        if !p.lobe.bsdf.is_specular() {
+            if max_component(p.lobe.reflectance) <= 0.0 {
                 break;
             }
-            let ng = toward(s.normal, wo);
-            let n = shading_normal(scene, &s, wo);
             point.position = s.position;
             point.facet = s.facet;
-            point.radius = start_radius(dispatch, camera.pixel * length);
-            point.normal = oct_encode(ng);
-            point.shading = oct_encode(n);
-            point.weight = throughput * INV_PI * reflectance;
-            if kind == MATERIAL_METAL {
-                point.weight = throughput;
-                point.reflectance = reflectance;
-                point.alpha = scene.materials[s.material as usize].alpha;
-                point.wo = oct_encode(wo);
+            point.radius = start_radius(dispatch, camera.pixel * path.length);
+            point.normal = oct_encode(p.ng);
+            point.shading = oct_encode(p.n);
+            point.bsdf = p.lobe.bsdf as u32;
+            point.weight = path.throughput * INV_PI * p.lobe.reflectance;
+            if p.lobe.bsdf != Bsdf::Diffuse {
+                point.weight = path.throughput;
+                point.reflectance = p.lobe.reflectance;
+                point.alpha = p.lobe.alpha;
+                point.wo = oct_encode(p.wo);
             }
             if sampled {
-                let (radiance, spent) =
-                    direct_light(scene, &s, wo, n, ng, reflectance, &interior, &mut rng);
-                let direct = throughput * radiance;
-                rays += spent;
+                let (radiance, spent) = direct_light(scene, &p, &path.interior, &mut rng);
+                let direct = path.throughput * radiance;
+                path.rays += spent;
                 if is_finite(direct) {
                     point.radiance += direct;
                 } else {
@@ -104,26 +79,18 @@ pub fn eye_trace(
             }
             break;
         }
-        if bounce == dispatch.max_bounces {
+        if path.bounce == dispatch.max_bounces {
             break;
         }
         let v = rng_next(&mut rng);
-        let scattered = scatter_specular(scene, &s, wo, &interior, v.x, RADIANCE);
-        throughput *= scattered.weight;
-        interior = scattered.interior;
-        // roulette only where little is left to lose
-        let survival = (4.0 * max_component(throughput)).min(1.0);
-        if v.y >= survival {
+        let scattered = scatter_specular(scene, &p, &path.interior, v.x, RADIANCE);
+        if !path.scatter(&s, &scattered, v.y) {
             break;
         }
-        throughput *= 1.0 / survival;
-        let origin = offset_origin(s.position, s.error, s.normal, scattered.direction);
-        ray = Ray { origin, t_min: 0.0, direction: scattered.direction, t_max: FAR };
-        bounce += 1;
     }
     if !is_finite(point.radiance) {
         point.radiance = Vec3::ZERO;
         point.state |= BAD_EYE;
     }
-    (point, rays)
+    (point, path.rays)
 }

@@ -7,12 +7,13 @@
 
 use super::grid::{grid_bucket, grid_cell, grid_code};
 use super::grid_build::SortedRecords;
-use super::materials::scatter::eval_rough;
+use super::materials::shading::Lobe;
+use super::materials::{Bsdf, eval_rough};
 use super::math::{LUMINANCE, oct_decode, unit};
 use super::real::{Real, Vec3, Vec4};
 use super::records::{Dispatch, Gathered, Statistics, VisiblePoint};
 use super::shapes::facet::{before_walls, clip_at, on_facet};
-use super::tables::{Facet, MATERIAL_METAL};
+use super::tables::Facet;
 use bytemuck::Zeroable;
 use glam::IVec3;
 use std::ops::Range;
@@ -39,8 +40,10 @@ struct Frame {
     ng: Vec3,
     /// Shading normal.
     n: Vec3,
-    /// To the eye, where the surface is rough metal.
+    /// To the eye, unless the lobe is diffuse.
     wo: Vec3,
+    /// The lobe.
+    lobe: Lobe,
 }
 
 impl Frame {
@@ -48,7 +51,10 @@ impl Frame {
     fn at(point: &VisiblePoint) -> Self {
         let ng = oct_decode(point.normal);
         let n = if point.normal == point.shading { ng } else { oct_decode(point.shading) };
-        Self { ng, n, wo: if point.alpha > 0.0 { oct_decode(point.wo) } else { Vec3::ZERO } }
+        let bsdf = Bsdf::of(point.bsdf);
+        let wo = if bsdf == Bsdf::Diffuse { Vec3::ZERO } else { oct_decode(point.wo) };
+        let lobe = Lobe { bsdf, alpha: point.alpha, reflectance: point.reflectance };
+        Self { ng, n, wo, lobe }
     }
 }
 
@@ -107,7 +113,9 @@ fn gather_family(
 ) -> Gathered {
     let inv_cell = if family == 1 { dispatch.inv_cell_indirect } else { dispatch.inv_cell };
     let radius = radius_sq.sqrt();
-    let Frame { ng, n, wo } = *frame;
+    let Frame { ng, n, wo, lobe } = *frame;
+    let folded = lobe.bsdf == Bsdf::Diffuse;
+    let both = lobe.bsdf.transmits();
     let flat = point.normal == point.shading;
     let clip = clip_at(facets, point.facet, point.position, ng, radius);
     let depth = clip.depth.min(FLATNESS * radius);
@@ -144,6 +152,7 @@ fn gather_family(
                             ng,
                             radius_sq,
                             depth,
+                            both,
                             &mut outer,
                         );
                         while near != 0 {
@@ -160,19 +169,17 @@ fn gather_family(
                             }
                             count += 1;
                             let mut flux = sorted.fluxes[i];
-                            if !flat || point.alpha > 0.0 {
+                            if !flat || !folded {
                                 let [us, vs, ws] = &sorted.directions;
                                 let wi = unit(Vec3::new(us[i], vs[i], ws[i]));
-                                // flux arrives by the geometric cosine, the BRDF asks for the
+                                // flux arrives by the geometric cosine, the BSDF asks for the
                                 // shading one
-                                let cos_g = wi.dot(ng).max(COS_MIN);
-                                if point.alpha > 0.0 {
-                                    let (alpha, reflectance) = (point.alpha, point.reflectance);
-                                    let f =
-                                        eval_rough(MATERIAL_METAL, alpha, reflectance, n, wo, wi);
-                                    flux = f.extend(0.0) * flux * (1.0 / cos_g);
+                                if folded {
+                                    flux *= wi.dot(n).max(0.0) / wi.dot(ng).max(COS_MIN);
                                 } else {
-                                    flux *= wi.dot(n).max(0.0) / cos_g;
+                                    let cos_g = wi.dot(ng).abs().max(COS_MIN);
+                                    let f = eval_rough(&lobe, n, wo, wi);
+                                    flux = f.extend(0.0) * flux * (1.0 / cos_g);
                                 }
                             }
                             block += flux;
@@ -198,7 +205,8 @@ fn disc_reach(normal: Vec3, radius: Real, depth: Real) -> Vec3 {
 }
 
 /// Which of the first [`LANES`] photons of `range` lie in the disc and in the row, no farther than
-/// `depth` from its plane, and come from the side that is seen: a byte of one for each. `outer`
+/// `depth` from its plane, and come from the side that is seen or, with `both`, from any: a byte of
+/// one for each. `outer`
 /// tells those in the outer half of the disc's area.
 #[inline(always)]
 fn near(
@@ -209,6 +217,7 @@ fn near(
     ng: Vec3,
     radius_sq: Real,
     depth: Real,
+    both: bool,
     outer: &mut [bool; LANES],
 ) -> u128 {
     // `SortedRecords` ends with entries of no cell, so that these lanes are there
@@ -223,7 +232,7 @@ fn near(
         let distance_sq = d.dot(d);
         let inside = (distance_sq <= radius_sq) & (d.dot(ng).abs() <= depth);
         outer[k] = distance_sq > 0.5 * radius_sq;
-        near[k] = (inside & (codes[k] == code) & (toward_light.dot(ng) > 0.0)) as u8;
+        near[k] = (inside & (codes[k] == code) & (both | (toward_light.dot(ng) > 0.0))) as u8;
     }
     let beyond = 8 * (LANES - (last - first).min(LANES)) as u32;
     u128::from_le_bytes(near) & (u128::MAX >> beyond)

@@ -6,6 +6,7 @@ use super::{camera, grid, lights, materials, math, real, shapes, tables};
 pub mod aov_trace;
 pub mod bytes;
 pub mod direct;
+pub mod eye_path;
 pub mod eye_sample;
 pub mod eye_trace;
 pub mod gather;

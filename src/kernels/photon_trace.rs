@@ -6,9 +6,8 @@ use super::direct::transmittance;
 use super::lights::aim::aimed_scatter;
 use super::lights::emission::{Emission, emit_photon};
 use super::materials::interior::{Interior, interior_before, medium_of, passes_hidden};
-use super::materials::scatter::{
-    IMPORTANCE, is_specular, reflectance_at, scatter_rough, scatter_specular,
-};
+use super::materials::shading::{IMPORTANCE, shading_point};
+use super::materials::{scatter_rough, scatter_specular};
 use super::math::rng::{Rng, STREAM_PHOTON, rng_new, rng_next};
 use super::math::{FAR, max_component, oct_encode, offset_origin};
 use super::real::{Real, Vec2, Vec3};
@@ -113,15 +112,16 @@ impl PhotonPath {
             self.hidden += 1;
             return true;
         }
-        let kind = scene.materials[s.material as usize].kind;
+        let p = shading_point(scene, &s, wo);
+        let specular = p.lobe.bsdf.is_specular();
         let u = rng_next(&mut self.rng);
         let mut scattered;
-        if is_specular(kind) {
-            scattered = scatter_specular(scene, &s, wo, &self.interior, u.x, IMPORTANCE);
+        if specular {
+            scattered = scatter_specular(scene, &p, &self.interior, u.x, IMPORTANCE);
         } else {
             // shadow rays end at faces, hidden ones too
             let stored = self.bounce > 0 || self.hidden > 0 || !sampled;
-            if stored && max_component(reflectance_at(scene, s.material, s.uv)) > 0.0 {
+            if stored && max_component(p.lobe.reflectance) > 0.0 {
                 let key = self.id << dispatch.key_bits | self.bounce << 1 | self.family;
                 store(PhotonRecord {
                     position: s.position,
@@ -130,12 +130,11 @@ impl PhotonPath {
                     direction: oct_encode(wo),
                 });
             }
-            scattered =
-                scatter_rough(scene, &s, wo, &self.interior, Vec2::new(u.x, u.y), IMPORTANCE);
+            scattered = scatter_rough(&p, &self.interior, Vec2::new(u.x, u.y), IMPORTANCE);
             if far {
-                scattered = aimed_scatter(scene, &s, wo, u, scattered);
+                scattered = aimed_scatter(scene, &p, u, scattered);
             }
-            if dispatch.families == 2 && kind == MATERIAL_DIFFUSE {
+            if dispatch.families == 2 && p.lobe.bsdf.is_wide() {
                 self.family = 1;
             }
         }
@@ -143,7 +142,7 @@ impl PhotonPath {
         // a faint photon, one of many that a map sends at glass and mirrors, is to get through them
         let mut survival = weight.min(1.0);
         if tracked {
-            let kept = if is_specular(kind) { self.excess.max(1.0) } else { self.excess };
+            let kept = if specular { self.excess.max(1.0) } else { self.excess };
             survival = (weight * kept).min(1.0);
             self.excess *= weight / survival;
         }

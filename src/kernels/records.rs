@@ -85,7 +85,7 @@ pub struct VisiblePoint {
     pub position: Vec3,
     /// Start radius in scene units; 0 where the eye path met nothing.
     pub radius: Real,
-    /// Diffuse: throughput times BRDF. Metal: throughput alone.
+    /// Throughput; for diffuse surfaces times the BRDF.
     pub weight: Vec3,
     /// Geometric normal on the viewer's side.
     pub normal: Direction,
@@ -93,18 +93,18 @@ pub struct VisiblePoint {
     pub radiance: Vec3,
     /// Shading normal on the viewer's side.
     pub shading: Direction,
-    /// Metal: reflectance at normal incidence.
+    /// Reflectance of the lobe, unless it is diffuse.
     pub reflectance: Vec3,
-    /// Metal: GGX width; 0 is diffuse.
+    /// Width of the lobe, unless it is diffuse.
     pub alpha: Real,
-    /// Metal: direction to the viewer.
+    /// Direction to the viewer, unless the lobe is diffuse.
     pub wo: Direction,
     /// The outline that it lies in, among the facets, or `NONE`.
     pub facet: u32,
     /// Sum of [`STOPPED`], [`BAD_EYE`] and [`BAD_DIRECT`].
     pub state: u32,
-    /// Padding.
-    pub pad: u32,
+    /// Number of the lobe's [`Bsdf`](super::materials::Bsdf).
+    pub bsdf: u32,
 }
 
 /// A photon at a non-specular hit.

@@ -7,11 +7,11 @@
 //! the balance heuristic (Veach & Guibas 1995); roulette then measures the flux against what a
 //! photon through the narrowest emission disc carries.
 
-use super::materials::scatter::{Scatter, toward};
+use super::materials::Bsdf;
+use super::materials::shading::{Scatter, ShadingPoint};
 use super::math::sampling::sample_cone;
 use super::math::{INV_PI, TAU, from_frame, unit};
 use super::real::{Real, Vec2, Vec3, Vec4};
-use super::shapes::surface::Surface;
 use super::tables::*;
 
 /// Square of the distance, in near radii, from which on photons are aimed.
@@ -19,12 +19,11 @@ const FAR_OUTSIDE_SQ: Real = 4.0;
 
 /// `scattered`, which a diffuse surface drew by its cosine from `u.xy`, or a direction into the
 /// cone about the scene in its place, `u.z` deciding, with the weight of the mixture of both.
-pub fn aimed_scatter(scene: &Scene, s: &Surface, wo: Vec3, u: Vec4, scattered: Scatter) -> Scatter {
-    let p = s.position - scene.world.near_center;
+pub fn aimed_scatter(scene: &Scene, at: &ShadingPoint, u: Vec4, scattered: Scatter) -> Scatter {
+    let p = at.s.position - scene.world.near_center;
     let distance_sq = p.dot(p);
     let radius_sq = scene.world.near_radius * scene.world.near_radius;
-    let diffuse = scene.materials[s.material as usize].kind == MATERIAL_DIFFUSE;
-    if !diffuse || distance_sq < FAR_OUTSIDE_SQ * radius_sq {
+    if at.lobe.bsdf != Bsdf::Diffuse || distance_sq < FAR_OUTSIDE_SQ * radius_sq {
         return scattered;
     }
     let axis = -unit(p);
@@ -39,7 +38,7 @@ pub fn aimed_scatter(scene: &Scene, s: &Surface, wo: Vec3, u: Vec4, scattered: S
         let across = wi.cross(axis);
         in_cone = wi.dot(axis) > 0.0 && across.dot(across) < sin_sq;
     }
-    let cos = wi.dot(toward(s.normal, wo));
+    let cos = wi.dot(at.ng);
     if cos <= 0.0 {
         return Scatter { direction: wi, interior: scattered.interior, weight: Vec3::ZERO };
     }

@@ -4,6 +4,7 @@
 //! it enters it. An open sheet, such as a water surface, contains a point if a ray along the
 //! sheet's mean normal leaves through it.
 
+use super::Bsdf;
 use super::interior::{Interior, entered, holds, interior_of, left};
 use super::math::{FAR, offset_origin};
 use super::real::Vec3;
@@ -52,7 +53,7 @@ fn looked(scene: &Scene, position: Vec3, direction: Vec3, body: u32, known: &Int
         }
         let s = surface_at(scene, &ray, &hit);
         let m = &scene.materials[s.material as usize];
-        let closed = m.kind == MATERIAL_GLASS && m.reflectance.dot(m.reflectance) == 0.0;
+        let closed = m.kind == Bsdf::Glass as u32 && m.reflectance.dot(m.reflectance) == 0.0;
         if s.material == body || (body == NONE && closed) {
             if direction.dot(s.normal) < 0.0 {
                 ahead = entered(scene, &ahead, s.material);

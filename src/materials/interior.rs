@@ -6,6 +6,7 @@
 //! index in the list. The list is a set: hitting a face twice does not change it. In scenes without
 //! overlapping bodies it holds one entry.
 
+use super::Bsdf;
 use super::math::{FAR, offset_origin};
 use super::real::{Real, Vec3};
 use super::shapes::ray::Ray;
@@ -88,7 +89,7 @@ pub fn ior_of(scene: &Scene, medium: u32) -> Real {
 #[inline(always)]
 pub fn interior_before(scene: &Scene, s: &Surface, wo: Vec3, interior: &Interior) -> Interior {
     let inside =
-        scene.materials[s.material as usize].kind == MATERIAL_GLASS && wo.dot(s.normal) < 0.0;
+        scene.materials[s.material as usize].kind == Bsdf::Glass as u32 && wo.dot(s.normal) < 0.0;
     if inside { entered(scene, interior, s.material) } else { *interior }
 }
 
@@ -123,7 +124,7 @@ pub fn relative_ior(
 /// other face.
 #[inline(always)]
 pub fn passes_hidden(scene: &Scene, s: &Surface, ray: &mut Ray, interior: &mut Interior) -> bool {
-    if scene.world.nested == 0 || scene.materials[s.material as usize].kind != MATERIAL_GLASS {
+    if scene.world.nested == 0 || scene.materials[s.material as usize].kind != Bsdf::Glass as u32 {
         return false;
     }
     let beyond = interior_beyond(scene, s, -ray.direction, interior);
@@ -144,7 +145,7 @@ pub fn interior_from(scene: &Scene, direction: Vec3) -> Interior {
         let reference = scene.unbounded[i as usize];
         if reference >> REFERENCE_BITS == KIND_PLANE {
             let plane = &scene.planes[(reference & ((1 << REFERENCE_BITS) - 1)) as usize];
-            let glass = scene.materials[plane.material as usize].kind == MATERIAL_GLASS;
+            let glass = scene.materials[plane.material as usize].kind == Bsdf::Glass as u32;
             if glass && direction.dot(plane.normal) > 0.0 {
                 interior = entered(scene, &interior, plane.material);
             }

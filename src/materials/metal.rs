@@ -1,11 +1,18 @@
 //! GGX microfacet conductor with Schlick's Fresnel term and the height-correlated Smith shadowing
-//! (Walter et al. 2007; Heitz 2014, 2018). The cosine is not in `eval_metal`. All directions are
-//! unit, point away from the surface and are given in the frame whose z is the shading normal.
-//! Twin: `shaders/materials/metal.wgsl`.
+//! (Walter et al. 2007; Heitz 2014, 2018). Twin: `shaders/materials/metal.wgsl`.
+//!
+//! Functions named `ggx_*` take directions in the frame whose z is the shading normal; `ggx_brdf`
+//! does not include the cosine.
 
 use super::math::trig::sin_cos;
-use super::math::{PI, TAU, unit};
+use super::math::{PI, TAU, basis, from_frame, mirrored, unit};
 use super::real::{Real, Vec2, Vec3, root_roundings};
+use super::shading::{IMPORTANCE, Lobe, Sample, ShadingPoint, renormalized, shading_correction};
+
+/// See [`super::Bsdf::is_wide`].
+pub const WIDE: bool = false;
+/// See [`super::Bsdf::transmits`].
+pub const TRANSMITS: bool = false;
 
 /// Least `alpha`: below it rounding spoils the lobe's peak.
 pub const ALPHA_MIN: Real = root_roundings(1e-3);
@@ -34,7 +41,7 @@ pub fn schlick(f0: Vec3, cos: Real) -> Vec3 {
 }
 
 /// BRDF, sr^-1, without the cosine.
-pub fn eval_metal(wo: Vec3, wi: Vec3, f0: Vec3, alpha: Real) -> Vec3 {
+pub fn ggx_brdf(wo: Vec3, wi: Vec3, f0: Vec3, alpha: Real) -> Vec3 {
     if wo.z <= 0.0 || wi.z <= 0.0 {
         return Vec3::ZERO;
     }
@@ -45,7 +52,7 @@ pub fn eval_metal(wo: Vec3, wi: Vec3, f0: Vec3, alpha: Real) -> Vec3 {
 
 /// A microfacet normal `h` by the distribution of visible normals (Heitz 2018); the direction is
 /// `mirrored(wo, h)`.
-pub fn sample_metal(wo: Vec3, alpha: Real, u: Vec2) -> Vec3 {
+pub fn ggx_visible_normal(wo: Vec3, alpha: Real, u: Vec2) -> Vec3 {
     let vh = unit(Vec3::new(alpha * wo.x, alpha * wo.y, wo.z));
     let len_sq = vh.x * vh.x + vh.y * vh.y;
     let mut t1 = Vec3::new(1.0, 0.0, 0.0);
@@ -62,8 +69,8 @@ pub fn sample_metal(wo: Vec3, alpha: Real, u: Vec2) -> Vec3 {
     unit(Vec3::new(alpha * nh.x, alpha * nh.y, nh.z.max(1e-6)))
 }
 
-/// Solid angle density of the directions of [`sample_metal`], sr^-1.
-pub fn pdf_metal(wo: Vec3, wi: Vec3, alpha: Real) -> Real {
+/// Solid angle density of the directions of [`ggx_visible_normal`], sr^-1.
+pub fn ggx_pdf(wo: Vec3, wi: Vec3, alpha: Real) -> Real {
     if wo.z <= 0.0 || wi.z <= 0.0 {
         return 0.0;
     }
@@ -71,12 +78,56 @@ pub fn pdf_metal(wo: Vec3, wi: Vec3, alpha: Real) -> Real {
     ggx_d(h, alpha) / (4.0 * wo.z * (1.0 + ggx_lambda(wo.z, alpha)))
 }
 
-/// `eval_metal * cos / pdf_metal` in closed form, `F G2 / G1`, for `wi` mirrored at `h`. (From
+/// `ggx_brdf * cos / ggx_pdf` in closed form, `F G2 / G1`, for `wi` mirrored at `h`. (From
 /// `wo + wi` a shader compiler could cancel `wo` against the one in `wi`.)
-pub fn weight_metal(wo: Vec3, h: Vec3, wi: Vec3, f0: Vec3, alpha: Real) -> Vec3 {
+pub fn ggx_weight(wo: Vec3, h: Vec3, wi: Vec3, f0: Vec3, alpha: Real) -> Vec3 {
     if wi.z <= 0.0 {
         return Vec3::ZERO;
     }
     let lo = ggx_lambda(wo.z, alpha);
     schlick(f0, wo.dot(h)) * ((1.0 + lo) / (1.0 + lo + ggx_lambda(wi.z, alpha)))
+}
+
+/// BRDF times the cosine with `n`.
+#[inline(always)]
+pub fn eval_metal(lobe: &Lobe, n: Vec3, wo: Vec3, wi: Vec3) -> Vec3 {
+    let cos = wi.dot(n);
+    if cos <= 0.0 {
+        return Vec3::ZERO;
+    }
+    let (t, b) = basis(n);
+    let local_wo = Vec3::new(wo.dot(t), wo.dot(b), wo.dot(n));
+    let local_wi = Vec3::new(wi.dot(t), wi.dot(b), cos);
+    ggx_brdf(local_wo, local_wi, lobe.reflectance, lobe.alpha) * cos
+}
+
+/// Density of [`sample_metal`], sr^-1.
+#[inline(always)]
+pub fn pdf_metal(lobe: &Lobe, n: Vec3, wo: Vec3, wi: Vec3) -> Real {
+    let cos = wi.dot(n);
+    if cos <= 0.0 {
+        return 0.0;
+    }
+    let (t, b) = basis(n);
+    let local_wo = Vec3::new(wo.dot(t), wo.dot(b), wo.dot(n));
+    ggx_pdf(local_wo, Vec3::new(wi.dot(t), wi.dot(b), cos), lobe.alpha)
+}
+
+/// A direction by the distribution of visible normals.
+#[inline(always)]
+pub fn sample_metal(p: &ShadingPoint, u: Vec2, mode: u32) -> Sample {
+    let (t, b) = basis(p.n);
+    let local_wo = Vec3::new(p.wo.dot(t), p.wo.dot(b), p.wo.dot(p.n));
+    let h = ggx_visible_normal(local_wo, p.lobe.alpha, u);
+    let local_wi = mirrored(local_wo, h);
+    let mut weight = ggx_weight(local_wo, h, local_wi, p.lobe.reflectance, p.lobe.alpha);
+    let wi = renormalized(from_frame(p.n, local_wi));
+    if wi.dot(p.ng) <= 0.0 {
+        weight = Vec3::ZERO;
+    } else if mode == IMPORTANCE {
+        // from behind the shading normal an eye path would get nothing
+        let seen = p.wo.dot(p.ns) > 0.0;
+        weight *= if seen { shading_correction(p, p.n, wi) } else { 0.0 };
+    }
+    Sample { direction: wi, weight }
 }

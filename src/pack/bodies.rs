@@ -1,6 +1,7 @@
 //! Packs glass bodies into the tables and determines the media of lamps and the camera.
 
 use super::lights::shape::sample_shape;
+use super::materials::Bsdf;
 use super::materials::enclosing::enclosing;
 use super::materials::interior::medium_of;
 use super::math::{EPS, FAR};
@@ -73,7 +74,7 @@ pub fn stand_camera(out: &mut Scene) {
 /// Medium of everything in a box around `position`: a material index, [`NONE`], or [`ASTRIDE`] if a
 /// glass face crosses the box or several bodies contain it.
 fn medium_of_box(out: &Scene, position: Vec3, low: Vec3, high: Vec3) -> u32 {
-    if out.materials.iter().all(|m| m.kind != MATERIAL_GLASS) {
+    if out.materials.iter().all(|m| m.kind != Bsdf::Glass as u32) {
         return NONE;
     }
     let interior = enclosing(out, position);
@@ -149,7 +150,7 @@ fn glass_crosses(out: &Scene, low: Vec3, high: Vec3) -> bool {
 /// Returns whether `reference` is a glass shape whose surface may cross a box.
 fn reference_crosses(out: &Scene, reference: u32, low: Vec3, high: Vec3) -> bool {
     let index = (reference & ((1 << REFERENCE_BITS) - 1)) as usize;
-    let glass = |material: u32| out.materials[material as usize].kind == MATERIAL_GLASS;
+    let glass = |material: u32| out.materials[material as usize].kind == Bsdf::Glass as u32;
     let meets = |(a, b): (Vec3, Vec3)| a.cmple(high).all() && b.cmpge(low).all();
     let box_of = |kind| lamp_box(out, kind, index);
     match reference >> REFERENCE_BITS {

@@ -4,7 +4,7 @@
 
 use super::kernels::eye_trace::eye_trace;
 use super::kernels::records::{Dispatch, VisiblePoint};
-use super::materials::scatter::toward;
+use super::materials::shading::toward;
 use super::math::rng::pcg4d;
 use super::math::sampling::sample_cosine;
 use super::math::{FAR, from_frame, oct_decode, offset_origin};

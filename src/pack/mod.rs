@@ -18,6 +18,7 @@ pub use crate::error::PackError;
 pub use objects::Objects;
 
 use super::lights::select::CELL_LEAF;
+use super::materials::Bsdf;
 use super::real::{Real, ToDouble, ToReal, Vec3};
 use super::shapes::fours::{FourRectangles, FourSpheres, LANES};
 use super::tables::*;
@@ -215,10 +216,9 @@ impl Packed {
     /// Light that a picture with these settings may lack, and its stated error with it: of each
     /// such light what a reader of the scene file calls it, and what to do.
     pub fn warnings(&self, scene: &scene::Scene, settings: &RenderSettings) -> Vec<String> {
-        let has = |kinds: &[u32]| self.scene.materials.iter().any(|m| kinds.contains(&m.kind));
+        let bsdfs = || self.scene.materials.iter().map(|m| Bsdf::of(m.kind));
         let path = settings.method == Method::Path;
-        let specular = [MATERIAL_MIRROR, MATERIAL_GLASS];
-        let focusing = has(&specular) || (!path && has(&[MATERIAL_METAL]));
+        let focusing = bsdfs().any(|b| b.is_specular() || (!path && !b.is_wide()));
         let warning = |i: usize| {
             let (light, name) = (&self.scene.lights[i], self.sources[i].describe(scene));
             let photons = f64::from(settings.photons) * f64::from(light.selection);
@@ -358,20 +358,20 @@ fn material(m: &scene::Material, unit: f64) -> Material {
     };
     match &m.kind {
         MaterialKind::Diffuse { reflectance } => {
-            out.kind = MATERIAL_DIFFUSE;
+            out.kind = Bsdf::Diffuse as u32;
             reflect(&mut out, reflectance);
         }
         MaterialKind::Mirror { reflectance } => {
-            out.kind = MATERIAL_MIRROR;
+            out.kind = Bsdf::Mirror as u32;
             reflect(&mut out, reflectance);
         }
         MaterialKind::Glass { ior, absorption, .. } => {
-            out.kind = MATERIAL_GLASS;
+            out.kind = Bsdf::Glass as u32;
             out.ior = *ior as Real;
             out.absorption = rgb(absorption.map(|a| a * unit));
         }
         MaterialKind::Metal { reflectance, roughness } => {
-            out.kind = MATERIAL_METAL;
+            out.kind = Bsdf::Metal as u32;
             out.alpha = ((roughness * roughness) as Real).max(materials::metal::ALPHA_MIN);
             reflect(&mut out, reflectance);
         }

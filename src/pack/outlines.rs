@@ -4,6 +4,7 @@
 //! A region is a maximal set of coplanar triangles that share edges. It gets a facet if all of its
 //! boundary is open or a crease. Triangles of curved surfaces are in no region.
 
+use super::materials::Bsdf;
 use super::real::{Real, ToDouble, ToReal, Vec3};
 use super::shapes::facet::with_margins;
 use super::tables::*;
@@ -107,10 +108,7 @@ impl Surface {
             *ids.entry((*p + DVec3::ZERO).to_array().map(f64::to_bits)).or_insert(count)
         };
         let vertices = corners.iter().map(|[a, b, c]| [id(a), id(b), id(c)]).collect();
-        let specular = |m: u32| {
-            let kind = out.materials[m as usize].kind;
-            kind == MATERIAL_MIRROR || kind == MATERIAL_GLASS
-        };
+        let specular = |m: u32| Bsdf::of(out.materials[m as usize].kind).is_specular();
         Self {
             normals: corners.par_iter().map(normal).collect(),
             rough: out.triangles.iter().map(|t| !specular(t.material)).collect(),

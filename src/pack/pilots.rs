@@ -7,7 +7,7 @@ use super::kernels::photon_trace::PhotonPath;
 use super::kernels::records::Dispatch;
 use super::lights::emission::emit_from;
 use super::lights::guide::{GUIDE_CELLS, GUIDE_SIDE, GUIDED, guided};
-use super::materials::scatter::is_specular;
+use super::materials::Bsdf;
 use super::math::rng::{STREAM_PHOTON, rng_new, rng_next};
 use super::math::{basis, luminance};
 use super::real::{Real, Vec2, Vec3};
@@ -60,7 +60,7 @@ struct Tally {
 /// each light. Returns each light's share of the light that the camera sees, or nothing where one
 /// light brings all.
 pub fn learn_emission(out: &mut Scene, visibility: &Visibility, power: &[f64]) -> Vec<f64> {
-    let specular = out.materials.iter().any(|m| is_specular(m.kind));
+    let specular = out.materials.iter().any(|m| Bsdf::of(m.kind).is_specular());
     for light in &mut out.lights {
         light.guide = 0;
     }

@@ -3,6 +3,7 @@
 
 use bytemuck::Zeroable;
 use caustica::features::{Feature, Features};
+use caustica::materials::Bsdf;
 use caustica::plan::Kernel;
 use caustica::settings::{Direct, RadiusRule, RenderSettings};
 use caustica::tables::*;
@@ -48,9 +49,9 @@ impl Mixture {
         self.light(LIGHT_AREA, reference(kind, 0));
     }
 
-    fn material(&mut self, kind: u32, absorption: f32) {
+    fn material(&mut self, bsdf: Bsdf, absorption: f32) {
         self.scene.materials.push(Material {
-            kind,
+            kind: bsdf as u32,
             absorption: Vec3::splat(absorption),
             ..Material::zeroed()
         });
@@ -96,8 +97,9 @@ impl Mixture {
             Feature::Checker => {
                 s.textures.push(Texture { kind: TEXTURE_CHECKER, ..Texture::zeroed() })
             }
-            Feature::Mirror | Feature::Specular => self.material(MATERIAL_MIRROR, 0.0),
-            Feature::Glass => self.material(MATERIAL_GLASS, 0.0),
+            Feature::Diffuse => self.material(Bsdf::Diffuse, 0.0),
+            Feature::Mirror | Feature::Specular => self.material(Bsdf::Mirror, 0.0),
+            Feature::Glass => self.material(Bsdf::Glass, 0.0),
             Feature::Nested => {
                 self.add(Feature::Glass);
                 self.scene.world.nested = 1;
@@ -106,8 +108,8 @@ impl Mixture {
                 self.add(Feature::Glass);
                 self.scene.camera.medium = ASTRIDE;
             }
-            Feature::Absorption => self.material(MATERIAL_GLASS, 1.0),
-            Feature::Metal => self.material(MATERIAL_METAL, 0.0),
+            Feature::Absorption => self.material(Bsdf::Glass, 1.0),
+            Feature::Metal | Feature::Lobes => self.material(Bsdf::Metal, 0.0),
             Feature::AreaTriangle => self.area(Feature::Triangle, KIND_TRIANGLE),
             Feature::AreaSphere => self.area(Feature::Sphere, KIND_SPHERE),
             Feature::AreaRectangle => self.area(Feature::Rectangle, KIND_RECTANGLE),

@@ -11,7 +11,7 @@ use caustica::lights::light::{
 };
 use caustica::lights::select::{choose_light, share_of, shares_at};
 use caustica::lights::shape::sample_shape;
-use caustica::materials::metal::{eval_metal, pdf_metal, sample_metal, weight_metal};
+use caustica::materials::metal::{ggx_brdf, ggx_pdf, ggx_visible_normal, ggx_weight};
 use caustica::math::mirrored;
 use caustica::math::rng::{Rng, rng_new, rng_next};
 use caustica::math::sampling::*;
@@ -146,7 +146,7 @@ fn basic_maps() {
     }
 }
 
-/// Theory: draws of the visible-normal sampler follow `pdf_metal` (what falls below the surface is
+/// Theory: draws of the visible-normal sampler follow `ggx_pdf` (what falls below the surface is
 /// no direction), and weight = eval cos / pdf for each.
 #[test]
 fn metal() {
@@ -155,18 +155,18 @@ fn metal() {
             let wo = Vec3::new((1.0 - cos * cos).sqrt() * 0.8, (1.0 - cos * cos).sqrt() * 0.6, cos);
             let draw = |r: &mut Rng| {
                 let u = rng_next(r);
-                let h = sample_metal(wo, alpha, Vec2::new(u.x, u.y));
+                let h = ggx_visible_normal(wo, alpha, Vec2::new(u.x, u.y));
                 let wi = mirrored(wo, h);
                 if wi.z <= 0.0 {
                     return None;
                 }
                 let f0 = Vec3::new(0.9, 0.5, 0.2);
-                let weight = weight_metal(wo, h, wi, f0, alpha);
-                let ratio = eval_metal(wo, wi, f0, alpha) * (wi.z / pdf_metal(wo, wi, alpha));
+                let weight = ggx_weight(wo, h, wi, f0, alpha);
+                let ratio = ggx_brdf(wo, wi, f0, alpha) * (wi.z / ggx_pdf(wo, wi, alpha));
                 assert!((weight - ratio).length() < 1e-4, "{weight} {ratio}");
                 Some(wi)
             };
-            check(&format!("metal {alpha} at {cos}"), draw, |w| pdf_metal(wo, w, alpha));
+            check(&format!("metal {alpha} at {cos}"), draw, |w| ggx_pdf(wo, w, alpha));
         }
     }
 }
@@ -349,17 +349,17 @@ fn narrow_lobes_keep_their_digits() {
             if wo.z < 0.05 {
                 continue;
             }
-            let h = sample_metal(wo, alpha, Vec2::new(u.z, u.w));
+            let h = ggx_visible_normal(wo, alpha, Vec2::new(u.z, u.w));
             let wi = mirrored(wo, h);
             if wi.z <= 0.05 {
                 continue;
             }
             let (o, i) = (wo.as_dvec3(), wi.as_dvec3());
             let pairs = [
-                (f64::from(pdf_metal(wo, wi, alpha)), exact::pdf_metal(o, i, f64::from(alpha))),
+                (f64::from(ggx_pdf(wo, wi, alpha)), exact::ggx_pdf(o, i, f64::from(alpha))),
                 (
-                    f64::from(eval_metal(wo, wi, Vec3::ONE, alpha).x),
-                    exact::eval_metal(o, i, DVec3::ONE, f64::from(alpha)).x,
+                    f64::from(ggx_brdf(wo, wi, Vec3::ONE, alpha).x),
+                    exact::ggx_brdf(o, i, DVec3::ONE, f64::from(alpha)).x,
                 ),
             ];
             worst = pairs.iter().fold(worst, |worst, (a, b)| worst.max((a / b - 1.0).abs()));

@@ -4,7 +4,7 @@
 use std::f64::consts::PI;
 
 use caustica::lights::light::eval_environment;
-use caustica::materials::scatter::reflectance_at;
+use caustica::materials::shading::reflectance_at;
 use caustica::pack::{Packed, pack};
 use caustica::settings::{Direct, Method, Radius, RenderSettings};
 use caustica::shapes::intersect::intersect_scene;

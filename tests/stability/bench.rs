@@ -11,7 +11,7 @@ use caustica::engine::Engine;
 use caustica::features::{Feature, Features};
 use caustica::film::Picture;
 use caustica::gpu::compose::{Shader, compose, compose_from};
-use caustica::gpu::fragments::{FRAGMENTS, Fragment};
+use caustica::gpu::fragments::{Fragment, fragments};
 use caustica::gpu::layout::{SceneTables, long_tables};
 use caustica::gpu::program::Program;
 use caustica::gpu::recorder::Recorder;
@@ -307,7 +307,7 @@ fn trace_on_driver(driver: &Driver, scene: &tables::Scene, rays: &[Ray]) -> Vec<
         "kernels/eye_trace.wgsl" => Fragment { text: include_str!("trace.wgsl"), ..*f },
         _ => *f,
     };
-    let fragments: Vec<Fragment> = FRAGMENTS.iter().map(swapped).collect();
+    let fragments: Vec<Fragment> = fragments().iter().map(swapped).collect();
     let shader = compose_from(&fragments, kernel, &features, &tables).expect("composed");
     let program = driver.program(kernel, &features, shader);
     let given = |ray: &Ray| VisiblePoint {

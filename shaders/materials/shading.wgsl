@@ -1,0 +1,88 @@
+// What materials share: twin of src/materials/shading.rs.
+
+const RADIANCE: u32 = 0u;
+const IMPORTANCE: u32 = 1u;
+
+struct Lobe {
+    bsdf: u32,
+    alpha: f32,
+    reflectance: vec3f,
+}
+
+//#if scene
+struct ShadingPoint {
+    s: Surface,
+    wo: vec3f,
+    ng: vec3f,
+    ns: vec3f,
+    n: vec3f,
+    lobe: Lobe,
+}
+
+struct Sample {
+    direction: vec3f,
+    weight: vec3f,
+}
+
+struct Scatter {
+    direction: vec3f,
+    interior: Interior,
+    weight: vec3f,
+}
+
+fn reflectance_at(material: u32, uv: vec2f) -> vec3f {
+    let m = scene.materials[material];
+    //#if textures
+    if m.texture != NONE {
+        return eval_texture(m.texture, uv);
+    }
+    //#end
+    return m.reflectance;
+}
+
+fn toward(v: vec3f, w: vec3f) -> vec3f {
+    return select(-v, v, dot(v, w) >= 0.0);
+}
+
+fn shading_point(s: Surface, wo: vec3f) -> ShadingPoint {
+    let kind = scene.materials[s.material].kind;
+    let alpha = scene.materials[s.material].alpha;
+    let ng = toward(s.normal, wo);
+    let ns = toward(s.shading, ng);
+    let n = select(ng, ns, is_wide(kind) || dot(wo, ns) > 0.0);
+    return ShadingPoint(s, wo, ng, ns, n, Lobe(kind, alpha, reflectance_at(s.material, s.uv)));
+}
+
+fn reflected(p: ShadingPoint, mode: u32) -> Sample {
+    var n = p.n;
+    if dot(mirrored(p.wo, n), p.ng) <= 0.0 {
+        n = p.ng;
+    }
+    let wi = mirrored(p.wo, n);
+    var weight = vec3f(1.0);
+    if mode == IMPORTANCE {
+        weight *= shading_correction(p, n, wi);
+    }
+    return Sample(wi, weight);
+}
+
+fn shading_correction(p: ShadingPoint, n: vec3f, wi: vec3f) -> f32 {
+    if all(p.s.shading == p.s.normal) {
+        return 1.0;
+    }
+    let denominator = abs(dot(p.wo, p.ng) * dot(wi, n));
+    if denominator <= 1e-6 {
+        return 0.0;
+    }
+    return abs(dot(p.wo, n) * dot(wi, p.ng)) / denominator;
+}
+
+fn renormalized(v: vec3f) -> vec3f {
+    return v * (1.0 / sqrt(dot(v, v)));
+}
+
+fn scatter_rough(p: ShadingPoint, interior: Interior, u: vec2f, mode: u32) -> Scatter {
+    let drawn = sample_rough(p, u, mode);
+    return Scatter(drawn.direction, interior, drawn.weight);
+}
+//#end

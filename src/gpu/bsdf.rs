@@ -1,0 +1,78 @@
+//! WGSL of the dispatch over materials, composed from the list in `materials/mod.rs`: functions
+//! with one case for each material that the scene has.
+
+use crate::features::{Feature, Features};
+use crate::materials::Bsdf;
+use crate::plan::Kernel;
+
+/// The declarations that `kernel` needs.
+pub fn dispatch(kernel: Kernel, features: Features) -> String {
+    let gathers = kernel == Kernel::Gather && features.has(Feature::Lobes);
+    let traces = kernel.info().traces;
+    if !traces && !gathers {
+        return String::new();
+    }
+    let held = |bsdf: &&Bsdf| features.has(Feature::of(**bsdf));
+    let (specular, rough): (Vec<Bsdf>, Vec<Bsdf>) =
+        Bsdf::ALL.iter().filter(held).partition(|bsdf| bsdf.is_specular());
+    let mut out: String = Bsdf::ALL
+        .iter()
+        .map(|bsdf| {
+            format!("const MATERIAL_{}: u32 = {}u;\n", bsdf.name().to_uppercase(), *bsdf as u32)
+        })
+        .collect();
+    let is = |name: &str, kinds: &mut dyn Iterator<Item = &Bsdf>| {
+        let tests: Vec<String> = kinds.map(|bsdf| format!("kind == {}u", *bsdf as u32)).collect();
+        let condition = if tests.is_empty() { "false".to_owned() } else { tests.join(" || ") };
+        format!("fn {name}(kind: u32) -> bool {{\n    return {condition};\n}}\n")
+    };
+    out += &is("transmits", &mut rough.iter().filter(|bsdf| bsdf.transmits()));
+    out += &cases(
+        "eval_rough(lobe: Lobe, n: vec3f, wo: vec3f, wi: vec3f) -> vec3f",
+        ("lobe.bsdf", "eval", "(lobe, n, wo, wi)", "vec3f(0.0)"),
+        &rough,
+    );
+    if !traces {
+        return out;
+    }
+    out += &is("is_specular", &mut specular.iter());
+    out += &is("is_wide", &mut rough.iter().filter(|bsdf| bsdf.is_wide()));
+    out += &cases(
+        "pdf_rough(lobe: Lobe, n: vec3f, wo: vec3f, wi: vec3f) -> f32",
+        ("lobe.bsdf", "pdf", "(lobe, n, wo, wi)", "0.0"),
+        &rough,
+    );
+    out += &cases(
+        "sample_rough(p: ShadingPoint, u: vec2f, mode: u32) -> Sample",
+        ("p.lobe.bsdf", "sample", "(p, u, mode)", "Sample(p.wo, vec3f(0.0))"),
+        &rough,
+    );
+    out += &cases(
+        "scatter_specular(p: ShadingPoint, interior: Interior, u: f32, mode: u32) -> Scatter",
+        ("p.lobe.bsdf", "scatter", "(p, interior, u, mode)", "Scatter(p.wo, interior, vec3f(0.0))"),
+        &specular,
+    );
+    out
+}
+
+/// A function that calls `PREFIX_MATERIAL` by the kind, or returns `other`. A single material needs
+/// no test.
+fn cases(
+    signature: &str,
+    (kind, prefix, arguments, other): (&str, &str, &str, &str),
+    materials: &[Bsdf],
+) -> String {
+    let call = |bsdf: &Bsdf| format!("{prefix}_{}{arguments}", bsdf.name());
+    let body = match materials {
+        [] => format!("    return {other};\n"),
+        [only] => format!("    return {};\n", call(only)),
+        several => {
+            let case = |bsdf: &Bsdf| {
+                format!("        case {}u: {{ return {}; }}\n", *bsdf as u32, call(bsdf))
+            };
+            let cases: String = several.iter().map(case).collect();
+            format!("    switch {kind} {{\n{cases}        default: {{ return {other}; }}\n    }}\n")
+        }
+    };
+    format!("fn {signature} {{\n{body}}}\n")
+}

@@ -1,0 +1,53 @@
+//! Lambertian reflection. Twin: `shaders/materials/diffuse.wgsl`.
+
+use super::math::sampling::sample_cosine;
+use super::math::{INV_PI, from_frame};
+use super::real::{Real, Vec2, Vec3};
+use super::shading::{IMPORTANCE, Lobe, Sample, ShadingPoint, renormalized};
+
+/// See [`super::Bsdf::is_wide`].
+pub const WIDE: bool = true;
+/// See [`super::Bsdf::transmits`].
+pub const TRANSMITS: bool = false;
+
+/// Least cosine with the geometric normal for which a shading normal's correction is formed.
+const ADJOINT_COS_MIN: Real = 1e-2;
+
+/// `rho cos / pi`.
+#[inline(always)]
+pub fn eval_diffuse(lobe: &Lobe, n: Vec3, _: Vec3, wi: Vec3) -> Vec3 {
+    let cos = wi.dot(n);
+    if cos <= 0.0 {
+        return Vec3::ZERO;
+    }
+    lobe.reflectance * (INV_PI * cos)
+}
+
+/// `cos / pi`, sr^-1.
+#[inline(always)]
+pub fn pdf_diffuse(_: &Lobe, n: Vec3, _: Vec3, wi: Vec3) -> Real {
+    let cos = wi.dot(n);
+    if cos <= 0.0 {
+        return 0.0;
+    }
+    cos * INV_PI
+}
+
+/// A direction by the cosine with the shading normal. The adjoint of a diffuse surface sends about
+/// the geometric normal what the shading normal receives.
+#[inline(always)]
+pub fn sample_diffuse(p: &ShadingPoint, u: Vec2, mode: u32) -> Sample {
+    let mut axis = p.n;
+    let mut weight = p.lobe.reflectance;
+    if mode == IMPORTANCE {
+        axis = p.ng;
+        if p.s.shading != p.s.normal {
+            weight *= p.wo.dot(p.n).max(0.0) / p.wo.dot(p.ng).max(ADJOINT_COS_MIN);
+        }
+    }
+    let wi = renormalized(from_frame(axis, sample_cosine(u)));
+    if wi.dot(p.ng) <= 0.0 {
+        weight = Vec3::ZERO;
+    }
+    Sample { direction: wi, weight }
+}

@@ -1,0 +1,19 @@
+//! Perfect mirror. Twin: `shaders/materials/mirror.wgsl`.
+
+use super::interior::Interior;
+use super::real::Real;
+use super::shading::{Sample, Scatter, ShadingPoint, reflected};
+use super::tables::Scene;
+
+/// Reflects at the shading normal.
+#[inline(always)]
+pub fn scatter_mirror(
+    _: &Scene,
+    p: &ShadingPoint,
+    interior: &Interior,
+    _: Real,
+    mode: u32,
+) -> Scatter {
+    let Sample { direction, weight } = reflected(p, mode);
+    Scatter { direction, interior: *interior, weight: weight * p.lobe.reflectance }
+}

@@ -1,0 +1,128 @@
+//! What materials share: the shading point, shading normals and their adjoint correction. Twin:
+//! `shaders/materials/shading.wgsl`.
+
+use super::Bsdf;
+use super::interior::Interior;
+use super::math::mirrored;
+use super::real::{Real, Vec2, Vec3};
+use super::shapes::surface::Surface;
+use super::tables::*;
+use super::texture::eval_texture;
+
+/// Transport of radiance: an eye path.
+pub const RADIANCE: u32 = 0;
+/// Transport of importance, that is of flux: a photon path.
+pub const IMPORTANCE: u32 = 1;
+
+/// Parameters of a material at a point. A rough material needs nothing else to be evaluated, so a
+/// visible point stores these.
+#[derive(Clone, Copy, Debug)]
+pub struct Lobe {
+    /// The material's kind.
+    pub bsdf: Bsdf,
+    /// Width of the lobe, if the kind has one.
+    pub alpha: Real,
+    /// Reflectance, in [0, 1]; at normal incidence for metal.
+    pub reflectance: Vec3,
+}
+
+/// A point of a surface seen from `wo`.
+#[derive(Clone, Copy, Debug)]
+pub struct ShadingPoint {
+    /// The surface.
+    pub s: Surface,
+    /// Unit direction to where the path came from.
+    pub wo: Vec3,
+    /// Geometric normal on the side of `wo`.
+    pub ng: Vec3,
+    /// Interpolated normal on the side of `ng`.
+    pub ns: Vec3,
+    /// Shading normal: `ns`, or `ng` if `wo` is behind `ns` and the material is not wide.
+    pub n: Vec3,
+    /// The material's parameters.
+    pub lobe: Lobe,
+}
+
+/// A direction drawn at a rough surface.
+#[derive(Clone, Copy, Debug)]
+pub struct Sample {
+    /// Unit direction.
+    pub direction: Vec3,
+    /// BSDF times cosine over density; zero if the path ends.
+    pub weight: Vec3,
+}
+
+/// Where a path continues.
+#[derive(Clone, Copy, Debug)]
+pub struct Scatter {
+    /// Unit direction.
+    pub direction: Vec3,
+    /// Interior list of the new ray.
+    pub interior: Interior,
+    /// BSDF times cosine over density; zero if the path ends.
+    pub weight: Vec3,
+}
+
+/// Reflectance of a material at `uv`.
+#[inline(always)]
+pub fn reflectance_at(scene: &Scene, material: u32, uv: Vec2) -> Vec3 {
+    let m = &scene.materials[material as usize];
+    if m.texture != NONE {
+        return eval_texture(scene, m.texture, uv);
+    }
+    m.reflectance
+}
+
+/// `v` turned to the side of `w`.
+#[inline(always)]
+pub fn toward(v: Vec3, w: Vec3) -> Vec3 {
+    if v.dot(w) >= 0.0 { v } else { -v }
+}
+
+/// Evaluates normals and material parameters of a surface seen from `wo`.
+#[inline(always)]
+pub fn shading_point(scene: &Scene, s: &Surface, wo: Vec3) -> ShadingPoint {
+    let m = &scene.materials[s.material as usize];
+    let bsdf = Bsdf::of(m.kind);
+    let ng = toward(s.normal, wo);
+    let ns = toward(s.shading, ng);
+    // wide surfaces look the same from everywhere
+    let n = if bsdf.is_wide() || wo.dot(ns) > 0.0 { ns } else { ng };
+    let reflectance = reflectance_at(scene, s.material, s.uv);
+    ShadingPoint { s: *s, wo, ng, ns, n, lobe: Lobe { bsdf, alpha: m.alpha, reflectance } }
+}
+
+/// Mirror direction and, for photons, its weight. A direction below the surface is mirrored at the
+/// geometric normal instead.
+#[inline(always)]
+pub fn reflected(p: &ShadingPoint, mode: u32) -> Sample {
+    let mut n = p.n;
+    if mirrored(p.wo, n).dot(p.ng) <= 0.0 {
+        n = p.ng;
+    }
+    let wi = mirrored(p.wo, n);
+    let mut weight = Vec3::ONE;
+    if mode == IMPORTANCE {
+        weight *= shading_correction(p, n, wi);
+    }
+    Sample { direction: wi, weight }
+}
+
+/// Adjoint correction of shading normals for particles (Veach 1997, eq. 5.19); 1 if both normals
+/// agree.
+pub fn shading_correction(p: &ShadingPoint, n: Vec3, wi: Vec3) -> Real {
+    if p.s.shading == p.s.normal {
+        return 1.0;
+    }
+    let denominator = (p.wo.dot(p.ng) * wi.dot(n)).abs();
+    if denominator <= 1e-6 {
+        return 0.0;
+    }
+    (p.wo.dot(n) * wi.dot(p.ng)).abs() / denominator
+}
+
+/// `v` divided by its length.
+#[inline(always)]
+pub fn renormalized(v: Vec3) -> Vec3 {
+    v * (1.0 / v.dot(v).sqrt())
+}
