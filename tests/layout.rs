@@ -170,7 +170,8 @@ fn hosts() -> Vec<Layout> {
             alpha,
             wo,
             facet,
-            state
+            state,
+            bsdf
         }),
         layout!(PhotonRecord { position, key, flux, direction }),
         layout!(Gathered { flux, count, caustic, ring }),

@@ -262,8 +262,8 @@ pub fn far_scenes() -> Vec<(&'static str, Vec<[Vec3; 3]>)> {
         let moved = mesh[700][1];
         mesh.iter().map(|t| t.map(|p| if p == moved { far } else { p })).collect::<Vec<_>>()
     };
-    let with_ground = |half: f32, slope: f32| {
-        let at = |x: f32, z: f32| Vec3::new(x * half, -0.45 + slope * x * half, z * half);
+    let with_ground = |half: f32, height: f32, slope: f32| {
+        let at = |x: f32, z: f32| Vec3::new(x * half, height + slope * x * half, z * half);
         let (a, b, c, d) = (at(-1.0, -1.0), at(-1.0, 1.0), at(1.0, 1.0), at(1.0, -1.0));
         [mesh.clone(), vec![[a, b, c], [a, c, d]]].concat()
     };
@@ -277,11 +277,13 @@ pub fn far_scenes() -> Vec<(&'static str, Vec<[Vec3; 3]>)> {
     vec![
         ("a vertex at 4e9", with_vertex(Vec3::new(4e9, 3e9, -2e9))),
         ("a vertex at 1e5 along x", with_vertex(Vec3::new(1e5, 0.0, 0.0))),
-        ("a ground of 1e4", with_ground(1e4, 0.0)),
-        ("a ground of 1e6", with_ground(1e6, 0.0)),
-        ("a tilted ground of 1e5", with_ground(1e5, 0.3)),
+        ("a ground of 1e4", with_ground(1e4, -0.45, 0.0)),
+        ("a ground of 1e6", with_ground(1e6, -0.45, 0.0)),
+        ("a tilted ground of 1e5", with_ground(1e5, -0.45, 0.3)),
         ("a mesh at a distance of 2000", mesh.iter().copied().chain(small).collect()),
         ("sizes of 1e-3 to 1e6", mesh.iter().copied().chain(sizes).collect()),
+        // computed hits with it lie off it by more than a cell is wide, before or behind those with the mesh
+        ("a ground of 1e7 through the mesh", with_ground(1e7, 0.1, 0.0)),
     ]
 }
 
