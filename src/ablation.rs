@@ -51,13 +51,10 @@ pub fn with_unused(scene: &Scene, feature: Feature) -> Option<Scene> {
             scene.patches.push(Patch::zeroed());
             scene.profile_points.push(Vec2::ZERO);
         }
-        Feature::Diffuse => scene.materials.push(material(Bsdf::Diffuse)),
-        Feature::Mirror => scene.materials.push(material(Bsdf::Mirror)),
-        Feature::Glass => scene.materials.push(material(Bsdf::Glass)),
+        Feature::Material(bsdf) => scene.materials.push(material(bsdf)),
         Feature::Absorption => {
             scene.materials.push(Material { absorption: Vec3::ONE, ..material(Bsdf::Glass) });
         }
-        Feature::Metal => scene.materials.push(material(Bsdf::Metal)),
         Feature::Checker => {
             scene.textures.push(Texture { kind: TEXTURE_CHECKER, ..Texture::zeroed() });
         }
@@ -128,7 +125,7 @@ pub fn with_all_unused(scene: &Scene, features: Features) -> Scene {
 pub fn unused(features: Features) -> Vec<Feature> {
     let empty = Scene::empty();
     let can_add = |feature: &Feature| with_unused(&empty, *feature).is_some();
-    Feature::ALL.iter().copied().filter(|f| !features.has(*f) && can_add(f)).collect()
+    Feature::all().filter(|f| !features.has(*f) && can_add(f)).collect()
 }
 
 /// Seconds of one kernel.

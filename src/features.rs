@@ -11,16 +11,32 @@ macro_rules! features {
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum Feature {
             $($(#[$doc])* $feature,)*
+            /// A kind of material.
+            Material(Bsdf),
         }
 
-        impl Feature {
-            /// All features.
-            pub const ALL: &[Self] = &[$(Self::$feature),*];
+        /// Places of the features in a set; materials follow.
+        enum Place {
+            $($feature,)*
+            Materials,
+        }
 
+        /// The features that are not a material's.
+        const SHARED: &[Feature] = &[$(Feature::$feature),*];
+
+        impl Feature {
             /// The name that fences optional code in shaders (`//#if name`).
             pub const fn name(self) -> &'static str {
                 match self {
                     $(Self::$feature => $name,)*
+                    Self::Material(bsdf) => bsdf.name(),
+                }
+            }
+
+            const fn place(self) -> u32 {
+                match self {
+                    $(Self::$feature => Place::$feature as u32,)*
+                    Self::Material(bsdf) => Place::Materials as u32 + bsdf as u32,
                 }
             }
         }
@@ -60,18 +76,10 @@ features! {
     Checker = "checker",
     /// Image textures.
     Texels = "texels",
-    /// Diffuse surfaces.
-    Diffuse = "diffuse",
-    /// Mirrors.
-    Mirror = "mirror",
-    /// Dielectrics.
-    Glass = "glass",
     /// Glass bodies that may overlap.
     Nested = "nested",
     /// A lamp or lens that a glass surface crosses: its medium is found point by point.
     Astride = "astride",
-    /// Rough conductors.
-    Metal = "metal",
     /// Rough materials whose BRDF is not constant.
     Lobes = "lobes",
     /// Materials that scatter into single directions.
@@ -125,14 +133,9 @@ features! {
 }
 
 impl Feature {
-    /// The feature that a material needs.
-    pub const fn of(bsdf: Bsdf) -> Self {
-        match bsdf {
-            Bsdf::Diffuse => Self::Diffuse,
-            Bsdf::Metal => Self::Metal,
-            Bsdf::Mirror => Self::Mirror,
-            Bsdf::Glass => Self::Glass,
-        }
+    /// All features.
+    pub fn all() -> impl Iterator<Item = Self> {
+        SHARED.iter().copied().chain(Bsdf::ALL.iter().copied().map(Self::Material))
     }
 }
 
@@ -141,7 +144,7 @@ impl Feature {
 pub struct Features(u64);
 
 /// The set holds one bit for each feature.
-const _: () = assert!(Feature::ALL.len() <= u64::BITS as usize);
+const _: () = assert!(SHARED.len() + Bsdf::ALL.len() <= u64::BITS as usize);
 
 /// Most shapes that shaders test one after another, without a kd-tree.
 const FEW: usize = 16;
@@ -184,7 +187,9 @@ impl Features {
         put(Feature::PatchSet, kdtree && has_patch_set(scene));
         put(Feature::Few, few);
         let bsdfs = || scene.materials.iter().map(|m| Bsdf::of(m.kind));
-        Bsdf::ALL.iter().for_each(|bsdf| put(Feature::of(*bsdf), bsdfs().any(|b| b == *bsdf)));
+        Bsdf::ALL
+            .iter()
+            .for_each(|bsdf| put(Feature::Material(*bsdf), bsdfs().any(|b| b == *bsdf)));
         put(Feature::Lobes, bsdfs().any(|b| !b.is_specular() && b != Bsdf::Diffuse));
         put(Feature::Specular, bsdfs().any(Bsdf::is_specular));
         put(Feature::Nested, scene.world.nested != 0);
@@ -230,17 +235,17 @@ impl Features {
 
     /// Returns the set with one more feature.
     pub const fn with(self, feature: Feature) -> Self {
-        Self(self.0 | 1 << feature as u32)
+        Self(self.0 | 1 << feature.place())
     }
 
     /// Returns whether a feature is required.
     pub const fn has(self, feature: Feature) -> bool {
-        self.0 >> feature as u32 & 1 == 1
+        self.0 >> feature.place() & 1 == 1
     }
 
-    /// Iterates over the required features in the order of [`Feature::ALL`].
+    /// Iterates over the required features in the order of [`Feature::all`].
     pub fn iter(self) -> impl Iterator<Item = Feature> {
-        Feature::ALL.iter().copied().filter(move |feature| self.has(*feature))
+        Feature::all().filter(move |feature| self.has(*feature))
     }
 }
 

@@ -199,7 +199,7 @@ mod tests {
         shows(|s| s.materials.iter_mut().for_each(|m| m.name += "x"), &[]);
         shows(
             |s| {
-                let MaterialKind::Diffuse { reflectance } = &mut s.materials[0].kind else {
+                let MaterialKind::Diffuse { reflectance, .. } = &mut s.materials[0].kind else {
                     panic!()
                 };
                 *reflectance = Reflectance::Color([0.123, 0.0, 0.0]);

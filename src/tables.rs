@@ -283,10 +283,23 @@ pub struct Material {
     pub ior: Real,
     /// Texture that replaces `reflectance`, or [`NONE`].
     pub texture: u32,
-    /// Metal: GGX width, `roughness^2`.
+    /// Metal: GGX width, `roughness^2`. Rough diffuse: roughness. Translucent: share transmitted.
     pub alpha: Real,
     /// World (x, z) of the origin, where planar uv starts, reduced by the texture's period.
     pub planar_origin: Vec2,
+}
+
+impl Material {
+    /// A black material without a texture.
+    pub const EMPTY: Self = Self {
+        reflectance: Vec3::ZERO,
+        kind: 0,
+        absorption: Vec3::ZERO,
+        ior: 1.0,
+        texture: NONE,
+        alpha: 0.0,
+        planar_origin: Vec2::ZERO,
+    };
 }
 
 /// Two colours in unit cells.

@@ -200,7 +200,7 @@ fn hosts_of_gather() -> Vec<Layout> {
 }
 
 fn everything_of(kernel: Kernel) -> (Mixture, naga::Module) {
-    let mixture = Mixture::of(Feature::ALL);
+    let mixture = Mixture::of(&Feature::all().collect::<Vec<_>>());
     let shader = compose(kernel, &mixture.features(), &SceneTables::new(&mixture.scene)).unwrap();
     let (module, _) = shader.validate().unwrap();
     (mixture, module)

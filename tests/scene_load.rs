@@ -52,7 +52,7 @@ fn reference_scenes() {
         .collect();
     assert_eq!(segments, [vec![5], vec![3, 4]]);
     let floor = &drop.scene.materials[drop.scene.shapes[0].material];
-    let MaterialKind::Diffuse { reflectance: Reflectance::Texture(tiles) } = floor.kind else {
+    let MaterialKind::Diffuse { reflectance: Reflectance::Texture(tiles), .. } = floor.kind else {
         panic!("{floor:?}")
     };
     assert!(matches!(
@@ -131,7 +131,8 @@ fn materials_of_an_obj() {
         names,
         ["parts.obj:red paint", "parts.obj:lamp", "parts.obj:glass", "parts.obj:chrome"]
     );
-    let MaterialKind::Diffuse { reflectance: Reflectance::Texture(texture) } = kinds[0].kind else {
+    let MaterialKind::Diffuse { reflectance: Reflectance::Texture(texture), .. } = kinds[0].kind
+    else {
         panic!()
     };
     assert!(matches!(scene.textures[texture].kind, TextureKind::Image { image: 0, .. }));

@@ -154,7 +154,7 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
 
 fn report(packed: &Packed, plan: &Plan) -> InfoReport {
     let features =
-        Feature::ALL.iter().map(|feature| (feature.name().to_owned(), plan.features.has(*feature)));
+        Feature::all().map(|feature| (feature.name().to_owned(), plan.features.has(feature)));
     let kernels = plan.kernels();
     let used = |kernel| kernels.iter().any(|(other, _)| *other == kernel);
     // A path tracer is one kernel, of the CPU engine, and keeps nothing but the film.

@@ -12,7 +12,7 @@ pub fn dispatch(kernel: Kernel, features: Features) -> String {
     if !traces && !gathers {
         return String::new();
     }
-    let held = |bsdf: &&Bsdf| features.has(Feature::of(**bsdf));
+    let held = |bsdf: &&Bsdf| features.has(Feature::Material(**bsdf));
     let (specular, rough): (Vec<Bsdf>, Vec<Bsdf>) =
         Bsdf::ALL.iter().filter(held).partition(|bsdf| bsdf.is_specular());
     let mut out: String = Bsdf::ALL

@@ -36,8 +36,7 @@ pub struct Shader {
 /// kernel reads the flattened scene) and `area` (some light is a shape).
 pub fn names(kernel: Kernel, features: &Features) -> Names {
     let stems = Kernel::ALL.map(Kernel::stem);
-    let known =
-        Feature::ALL.iter().map(|feature| feature.name()).chain(stems).chain(["scene", "area"]);
+    let known = Feature::all().map(Feature::name).chain(stems).chain(["scene", "area"]);
     let mut held: BTreeSet<&'static str> = features.iter().map(Feature::name).collect();
     held.insert(kernel.stem());
     if kernel.info().traces {

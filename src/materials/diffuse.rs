@@ -4,6 +4,11 @@ use super::math::sampling::sample_cosine;
 use super::math::{INV_PI, from_frame};
 use super::real::{Real, Vec2, Vec3};
 use super::shading::{IMPORTANCE, Lobe, Sample, ShadingPoint, renormalized};
+use super::tables::Material;
+
+/// See [`super::Bsdf::examples`].
+pub const EXAMPLES: &[Material] =
+    &[Material { reflectance: Vec3::new(0.9, 0.5, 0.2), ..Material::EMPTY }];
 
 /// See [`super::Bsdf::is_wide`].
 pub const WIDE: bool = true;

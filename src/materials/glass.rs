@@ -4,7 +4,13 @@
 use super::interior::{Interior, interior_beyond, relative_ior};
 use super::real::{Real, Vec3};
 use super::shading::{IMPORTANCE, Sample, Scatter, ShadingPoint, reflected, shading_correction};
-use super::tables::Scene;
+use super::tables::{Material, Scene};
+
+/// See [`super::Bsdf::examples`].
+pub const EXAMPLES: &[Material] = &[
+    Material { ior: 1.5, ..Material::EMPTY },
+    Material { ior: 0.75, absorption: Vec3::new(0.5, 0.2, 0.1), ..Material::EMPTY },
+];
 
 /// What a dielectric interface does with a ray.
 #[derive(Clone, Copy, Debug)]

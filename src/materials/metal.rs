@@ -8,6 +8,13 @@ use super::math::trig::sin_cos;
 use super::math::{PI, TAU, basis, from_frame, mirrored, unit};
 use super::real::{Real, Vec2, Vec3, root_roundings};
 use super::shading::{IMPORTANCE, Lobe, Sample, ShadingPoint, renormalized, shading_correction};
+use super::tables::Material;
+
+/// See [`super::Bsdf::examples`].
+pub const EXAMPLES: &[Material] = &[
+    Material { reflectance: Vec3::new(0.9, 0.7, 0.3), alpha: 0.09, ..Material::EMPTY },
+    Material { reflectance: Vec3::new(0.5, 0.5, 0.5), alpha: 0.64, ..Material::EMPTY },
+];
 
 /// See [`super::Bsdf::is_wide`].
 pub const WIDE: bool = false;

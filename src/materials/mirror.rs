@@ -1,9 +1,13 @@
 //! Perfect mirror. Twin: `shaders/materials/mirror.wgsl`.
 
 use super::interior::Interior;
-use super::real::Real;
+use super::real::{Real, Vec3};
 use super::shading::{Sample, Scatter, ShadingPoint, reflected};
-use super::tables::Scene;
+use super::tables::{Material, Scene};
+
+/// See [`super::Bsdf::examples`].
+pub const EXAMPLES: &[Material] =
+    &[Material { reflectance: Vec3::new(0.9, 0.8, 0.7), ..Material::EMPTY }];
 
 /// Reflects at the shading normal.
 #[inline(always)]

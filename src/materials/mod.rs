@@ -4,16 +4,17 @@
 //! from the list: the enum [`Bsdf`] with its exhaustive matches here, and the WGSL of
 //! `gpu/bsdf.rs`.
 //!
-//! A *specular* material scatters into single directions; its file has `sample_X`. A *rough* one
+//! A *specular* material scatters into single directions; its file has `scatter_X`. A *rough* one
 //! has `eval_X`, `sample_X`, `pdf_X` and the constants `WIDE` and `TRANSMITS`. `eval_X` includes
 //! the cosine between `wi` and the shading normal. Directions are unit vectors that point away
-//! from the surface.
+//! from the surface. Tests of densities, energy, reciprocity and of the two engines run over the
+//! `EXAMPLES` of every file.
 
 use super::{math, real, shapes, tables};
 use interior::Interior;
 use real::{Real, Vec2, Vec3};
 use shading::{Lobe, Sample, Scatter, ShadingPoint};
-use tables::Scene;
+use tables::{Material, Scene};
 
 pub mod enclosing;
 pub mod interior;
@@ -31,7 +32,7 @@ macro_rules! materials {
         $(pub mod $specular_name;)*
 
         /// The kind of a material.
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         #[repr(u32)]
         pub enum Bsdf {
             $($(#[$rough_doc])* $rough,)*
@@ -60,6 +61,15 @@ macro_rules! materials {
                     return Self::$rough;
                 })*
                 Self::Diffuse
+            }
+
+            /// Examples of the material, which tests run over.
+            pub fn examples(self) -> impl Iterator<Item = Material> {
+                let examples = match self {
+                    $(Self::$rough => $rough_name::EXAMPLES,)*
+                    $(Self::$specular => $specular_name::EXAMPLES,)*
+                };
+                examples.iter().map(move |m| Material { kind: self as u32, ..*m })
             }
 
             /// Returns whether the material scatters into single directions only.
@@ -169,6 +179,10 @@ materials! {
     rough {
         /// Lambertian reflection.
         Diffuse = diffuse, eval_diffuse, sample_diffuse, pdf_diffuse;
+        /// Diffuse reflection by facets (Oren & Nayar).
+        RoughDiffuse = rough_diffuse, eval_rough_diffuse, sample_rough_diffuse, pdf_rough_diffuse;
+        /// Diffuse reflection and transmission.
+        Translucent = translucent, eval_translucent, sample_translucent, pdf_translucent;
         /// GGX conductor.
         Metal = metal, eval_metal, sample_metal, pdf_metal;
     }

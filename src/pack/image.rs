@@ -2,7 +2,7 @@
 
 use super::real::{Bits, Real, ToReal, Vec2};
 use super::tables::*;
-use crate::scene::{self, Filter, ImageData, MaterialKind, Reflectance, Texels, TextureKind, Wrap};
+use crate::scene::{self, Filter, ImageData, Reflectance, Texels, TextureKind, Wrap};
 use crate::srgb::linear_from_srgb;
 use bytemuck::Zeroable;
 use glam::{DVec2, DVec3};
@@ -52,13 +52,9 @@ pub fn pack_textures(scene: &scene::Scene, out: &mut Scene) {
 
 /// After which differences of u and of v a material looks the same; infinite where it never does.
 pub fn period(scene: &scene::Scene, material: &scene::Material) -> DVec2 {
-    let texture = match &material.kind {
-        MaterialKind::Diffuse { reflectance: Reflectance::Texture(texture) }
-        | MaterialKind::Mirror { reflectance: Reflectance::Texture(texture) }
-        | MaterialKind::Metal { reflectance: Reflectance::Texture(texture), .. } => {
-            scene.textures.get(*texture)
-        }
-        _ => None,
+    let texture = match material.kind.reflectance() {
+        Some(Reflectance::Texture(texture)) => scene.textures.get(*texture),
+        Some(Reflectance::Color(_)) | None => None,
     };
     let of = |scale: [f64; 2], cells: [f64; 2]| {
         let period = DVec2::from(cells) / DVec2::from(scale).abs();

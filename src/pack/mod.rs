@@ -351,32 +351,34 @@ fn camera(scene: &scene::Scene, n: &Normalization, width: u32, height: u32) -> C
 }
 
 fn material(m: &scene::Material, unit: f64) -> Material {
-    let mut out = Material { texture: NONE, ior: 1.0, ..Material::zeroed() };
-    let reflect = |out: &mut Material, r: &Reflectance| match r {
-        Reflectance::Color(c) => out.reflectance = rgb(*c),
-        Reflectance::Texture(t) => out.texture = *t as u32,
-    };
-    match &m.kind {
-        MaterialKind::Diffuse { reflectance } => {
-            out.kind = Bsdf::Diffuse as u32;
-            reflect(&mut out, reflectance);
+    let mut out = Material::EMPTY;
+    match m.kind.reflectance() {
+        Some(Reflectance::Color(c)) => out.reflectance = rgb(*c),
+        Some(Reflectance::Texture(t)) => out.texture = *t as u32,
+        None => {}
+    }
+    let bsdf = match &m.kind {
+        MaterialKind::Diffuse { roughness, .. } if *roughness > 0.0 => {
+            out.alpha = *roughness as Real;
+            Bsdf::RoughDiffuse
         }
-        MaterialKind::Mirror { reflectance } => {
-            out.kind = Bsdf::Mirror as u32;
-            reflect(&mut out, reflectance);
+        MaterialKind::Diffuse { .. } => Bsdf::Diffuse,
+        MaterialKind::Translucent { transmission, .. } => {
+            out.alpha = *transmission as Real;
+            Bsdf::Translucent
         }
+        MaterialKind::Mirror { .. } => Bsdf::Mirror,
         MaterialKind::Glass { ior, absorption, .. } => {
-            out.kind = Bsdf::Glass as u32;
             out.ior = *ior as Real;
             out.absorption = rgb(absorption.map(|a| a * unit));
+            Bsdf::Glass
         }
-        MaterialKind::Metal { reflectance, roughness } => {
-            out.kind = Bsdf::Metal as u32;
+        MaterialKind::Metal { roughness, .. } => {
             out.alpha = ((roughness * roughness) as Real).max(materials::metal::ALPHA_MIN);
-            reflect(&mut out, reflectance);
+            Bsdf::Metal
         }
-    }
-    out
+    };
+    Material { kind: bsdf as u32, ..out }
 }
 
 fn rgb(c: [f64; 3]) -> Vec3 {

@@ -300,7 +300,7 @@ mod tests {
     fn declarations_are_complete() {
         let names: BTreeSet<_> = Buffer::ALL.iter().map(|buffer| buffer.name()).collect();
         assert_eq!(names.len(), Buffer::ALL.len());
-        let all = Feature::ALL.iter().copied().collect();
+        let all = Feature::all().collect();
         let bound: BTreeSet<Buffer> = Kernel::ALL
             .iter()
             .flat_map(|kernel| kernel.uses(all))

@@ -108,10 +108,19 @@ pub struct Material {
 /// What a material does with light. All reflectances lie in [0, 1].
 #[derive(Clone, Debug, PartialEq)]
 pub enum MaterialKind {
-    /// Lambertian, two-sided.
+    /// Diffuse reflection, two-sided.
     Diffuse {
         /// Albedo.
         reflectance: Reflectance,
+        /// In [0, 1]; 0 is Lambertian, otherwise Oren-Nayar's model in Fujii's form.
+        roughness: f64,
+    },
+    /// Diffuse reflection and transmission by a thin surface.
+    Translucent {
+        /// Share of light that is scattered to both sides.
+        reflectance: Reflectance,
+        /// Share of that which is transmitted, in [0, 1].
+        transmission: f64,
     },
     /// Perfect mirror, two-sided.
     Mirror {
@@ -135,6 +144,19 @@ pub enum MaterialKind {
         /// In [0, 1]; GGX `alpha = roughness^2`.
         roughness: f64,
     },
+}
+
+impl MaterialKind {
+    /// The reflectance, which may be a texture.
+    pub fn reflectance(&self) -> Option<&Reflectance> {
+        match self {
+            Self::Diffuse { reflectance, .. }
+            | Self::Translucent { reflectance, .. }
+            | Self::Mirror { reflectance }
+            | Self::Metal { reflectance, .. } => Some(reflectance),
+            Self::Glass { .. } => None,
+        }
+    }
 }
 
 /// A share of light per channel, in [0, 1].

@@ -157,10 +157,20 @@ pub enum TextureFile {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(tag = "type", rename_all = "snake_case", deny_unknown_fields)]
 pub enum MaterialFile {
-    /// Lambertian, two-sided.
+    /// Diffuse reflection, two-sided.
     Diffuse {
         /// Albedo.
         reflectance: Paint,
+        /// From 0 (Lambertian) to 1 (Oren-Nayar).
+        #[serde(default)]
+        roughness: Share,
+    },
+    /// Diffuse reflection and transmission by a thin surface such as paper.
+    Translucent {
+        /// Share of light that is scattered to both sides.
+        reflectance: Paint,
+        /// Share of the scattered light that is transmitted.
+        transmission: Share,
     },
     /// A perfect mirror, two-sided.
     Mirror {

@@ -199,7 +199,7 @@ impl Libraries {
         if loader.allowance.missing == Missing::Warn {
             scan.warnings.push(at, message, "rendered in gray");
             let reflectance = Reflectance::Color([Missing::STAND_IN; 3]);
-            let kind = MaterialKind::Diffuse { reflectance };
+            let kind = MaterialKind::Diffuse { reflectance, roughness: 0.0 };
             materials.push(Material { name: format!("{file}:{shown}"), kind });
             return Some(Own { material: materials.len() - 1, emission: [0.0; 3] });
         }

@@ -34,9 +34,13 @@ pub(super) fn material(loader: &Loader, item: &Item, file: MaterialFile) -> Mate
         Paint::Texture(name) => Reflectance::Texture(loader.index("textures", name)),
     };
     let kind = match file {
-        MaterialFile::Diffuse { reflectance } => {
-            MaterialKind::Diffuse { reflectance: paint(&reflectance) }
+        MaterialFile::Diffuse { reflectance, roughness } => {
+            MaterialKind::Diffuse { reflectance: paint(&reflectance), roughness: roughness.0 }
         }
+        MaterialFile::Translucent { reflectance, transmission } => MaterialKind::Translucent {
+            reflectance: paint(&reflectance),
+            transmission: transmission.0,
+        },
         MaterialFile::Mirror { reflectance } => {
             MaterialKind::Mirror { reflectance: paint(&reflectance) }
         }

@@ -209,7 +209,7 @@ impl<'t> Reader<'_, 't> {
                     Some(map) => self.map(&map, path, text, target),
                     None => Reflectance::Color(self.color("Kd", 1.0).unwrap_or(DEFAULT_DIFFUSE)),
                 };
-                MaterialKind::Diffuse { reflectance }
+                MaterialKind::Diffuse { reflectance, roughness: 0.0 }
             }
         };
         (kind, emission.unwrap_or([0.0; 3]))

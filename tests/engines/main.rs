@@ -22,6 +22,7 @@ use caustica::gpu::GpuEngine;
 use caustica::kernels::eye_trace::eye_trace;
 use caustica::kernels::photon_trace::photon_trace;
 use caustica::kernels::records::{PhotonRecord, VisiblePoint};
+use caustica::materials::Bsdf;
 use caustica::pack::Packed;
 use caustica::plan::{Buffer, Plan, Stage};
 use caustica::scene::{Aovs, Film, ToneMap};
@@ -136,8 +137,31 @@ fn engines_agree_to_the_bit() {
         }
     }
     assert!(faults.is_empty(), "{}", faults.join("\n"));
-    let unused: Vec<_> = Feature::ALL.iter().filter(|feature| !used.contains(*feature)).collect();
+    // materials have a test of their own
+    let needed = Feature::all().filter(|feature| !matches!(feature, Feature::Material(_)));
+    let unused: Vec<_> = needed.filter(|feature| !used.contains(feature)).collect();
     assert!(unused.is_empty(), "no scene uses {unused:?}");
+}
+
+/// The same of every example of every material: the table's material replaces the floor's and a
+/// body's.
+#[test]
+fn engines_agree_on_every_material() {
+    let (_, settings, rest) =
+        SCENES.iter().find(|(name, ..)| name.contains("smooth mesh")).unwrap();
+    let (packed, plan) = planned(settings, rest);
+    for bsdf in Bsdf::ALL {
+        for (k, example) in bsdf.examples().enumerate() {
+            let mut packed = packed.clone();
+            for material in packed.scene.materials.iter_mut().filter(|m| m.kind != 0) {
+                *material = example;
+            }
+            packed.scene.materials[0] = example;
+            let plan = Plan::new(&packed, &plan.settings);
+            let difference = difference(&on_cpu(&packed, &plan), &on_driver(&packed, &plan));
+            assert!(difference.is_none(), "{} {k}: {difference:?}", bsdf.name());
+        }
+    }
 }
 
 /// Theory: patches are put off where a set has a bit for each, and else searched leaf by leaf;

@@ -97,19 +97,18 @@ impl Mixture {
             Feature::Checker => {
                 s.textures.push(Texture { kind: TEXTURE_CHECKER, ..Texture::zeroed() })
             }
-            Feature::Diffuse => self.material(Bsdf::Diffuse, 0.0),
-            Feature::Mirror | Feature::Specular => self.material(Bsdf::Mirror, 0.0),
-            Feature::Glass => self.material(Bsdf::Glass, 0.0),
+            Feature::Material(bsdf) => self.material(bsdf, 0.0),
+            Feature::Specular => self.material(Bsdf::Mirror, 0.0),
             Feature::Nested => {
-                self.add(Feature::Glass);
+                self.add(Feature::Material(Bsdf::Glass));
                 self.scene.world.nested = 1;
             }
             Feature::Astride => {
-                self.add(Feature::Glass);
+                self.add(Feature::Material(Bsdf::Glass));
                 self.scene.camera.medium = ASTRIDE;
             }
             Feature::Absorption => self.material(Bsdf::Glass, 1.0),
-            Feature::Metal | Feature::Lobes => self.material(Bsdf::Metal, 0.0),
+            Feature::Lobes => self.material(Bsdf::Metal, 0.0),
             Feature::AreaTriangle => self.area(Feature::Triangle, KIND_TRIANGLE),
             Feature::AreaSphere => self.area(Feature::Sphere, KIND_SPHERE),
             Feature::AreaRectangle => self.area(Feature::Rectangle, KIND_RECTANGLE),

@@ -27,7 +27,7 @@ const DRAWS: u32 = 400_000;
 const ROWS: usize = 16;
 const COLUMNS: usize = 24;
 
-fn rng() -> Rng {
+pub fn rng() -> Rng {
     rng_new(5, 6, 7, 8)
 }
 
@@ -85,7 +85,7 @@ fn excess(counts: &[u32], shares: &[f64], slack: f64) -> f64 {
 
 /// Draws with `draw` follow `pdf`; a density of which half the sphere is scaled by 1.05 must be
 /// told from it.
-fn check(name: &str, draw: impl Fn(&mut Rng) -> Option<Vec3>, pdf: impl Fn(Vec3) -> f32) {
+pub fn check(name: &str, draw: impl Fn(&mut Rng) -> Option<Vec3>, pdf: impl Fn(Vec3) -> f32) {
     let mut rng = rng();
     let mut counts = vec![0; ROWS * COLUMNS];
     for _ in 0..DRAWS {

@@ -21,6 +21,7 @@ mod integrating_sphere;
 mod invariance;
 mod irradiance;
 mod lab;
+mod materials;
 mod media;
 mod meshes;
 mod walls;

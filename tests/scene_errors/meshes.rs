@@ -45,7 +45,7 @@ fn parts(folder: &Path, missing: Missing) -> (Vec<(Rgb, usize)>, Vec<String>) {
     let scene = &loaded.scene;
     let part = |shape: &caustica::scene::Shape| {
         let ShapeKind::Mesh(mesh) = &shape.kind else { panic!() };
-        let MaterialKind::Diffuse { reflectance: Reflectance::Color(color) } =
+        let MaterialKind::Diffuse { reflectance: Reflectance::Color(color), .. } =
             scene.materials[shape.material].kind
         else {
             panic!("{:?}", scene.materials[shape.material])

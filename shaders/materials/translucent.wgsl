@@ -1,0 +1,43 @@
+// Diffuse reflection and transmission: twin of src/materials/translucent.rs.
+
+const TRANSLUCENT_ADJOINT_COS_MIN: f32 = 1e-2;
+
+fn side_share(alpha: f32, cos: f32) -> f32 {
+    return select(alpha, 1.0 - alpha, cos > 0.0);
+}
+
+fn eval_translucent(lobe: Lobe, n: vec3f, wo: vec3f, wi: vec3f) -> vec3f {
+    let cos = dot(wi, n);
+    return lobe.reflectance * (INV_PI * abs(cos) * side_share(lobe.alpha, cos));
+}
+
+fn pdf_translucent(lobe: Lobe, n: vec3f, wo: vec3f, wi: vec3f) -> f32 {
+    let cos = dot(wi, n);
+    return INV_PI * abs(cos) * side_share(lobe.alpha, cos);
+}
+
+//#if scene
+fn sample_translucent(p: ShadingPoint, u: vec2f, mode: u32) -> Sample {
+    let alpha = p.lobe.alpha;
+    var axis = p.n;
+    var weight = p.lobe.reflectance;
+    if mode == IMPORTANCE {
+        axis = p.ng;
+        if any(p.s.shading != p.s.normal) {
+            weight *= max(dot(p.wo, p.n), 0.0) / max(dot(p.wo, p.ng), TRANSLUCENT_ADJOINT_COS_MIN);
+        }
+    }
+    var x = (u.x - alpha) / max(1.0 - alpha, 1e-6);
+    var side = 1.0;
+    if u.x < alpha {
+        x = u.x / alpha;
+        side = -1.0;
+    }
+    let local = sample_cosine(vec2f(clamp(x, 0.0, 1.0), u.y));
+    let wi = renormalized(from_frame(axis, vec3f(local.x, local.y, local.z * side)));
+    if dot(wi, p.ng) * side <= 0.0 {
+        weight = vec3f(0.0);
+    }
+    return Sample(wi, weight);
+}
+//#end

@@ -1,0 +1,69 @@
+//! Diffuse reflection and transmission: of the reflectance `rho` the share `alpha` leaves on the
+//! other side. A thin surface: paper, leaves, lampshades. Twin:
+//! `shaders/materials/translucent.wgsl`.
+
+use super::math::sampling::sample_cosine;
+use super::math::{INV_PI, from_frame};
+use super::real::{Real, Vec2, Vec3};
+use super::shading::{IMPORTANCE, Lobe, Sample, ShadingPoint, renormalized};
+use super::tables::Material;
+
+/// See [`super::Bsdf::examples`].
+pub const EXAMPLES: &[Material] = &[
+    Material { reflectance: Vec3::new(0.9, 0.8, 0.4), alpha: 0.5, ..Material::EMPTY },
+    Material { reflectance: Vec3::new(0.6, 0.6, 0.9), alpha: 1.0, ..Material::EMPTY },
+];
+/// See [`super::Bsdf::is_wide`].
+pub const WIDE: bool = true;
+/// See [`super::Bsdf::transmits`].
+pub const TRANSMITS: bool = true;
+
+/// Least cosine with the geometric normal for which a shading normal's correction is formed.
+const ADJOINT_COS_MIN: Real = 1e-2;
+
+/// Share of the light that goes to the side of `n` that a direction with cosine `cos` is on.
+#[inline(always)]
+fn side_share(alpha: Real, cos: Real) -> Real {
+    if cos > 0.0 { 1.0 - alpha } else { alpha }
+}
+
+/// `rho |cos| / pi` times the side's share.
+#[inline(always)]
+pub fn eval_translucent(lobe: &Lobe, n: Vec3, _: Vec3, wi: Vec3) -> Vec3 {
+    let cos = wi.dot(n);
+    lobe.reflectance * (INV_PI * cos.abs() * side_share(lobe.alpha, cos))
+}
+
+/// `|cos| / pi` times the side's share, sr^-1.
+#[inline(always)]
+pub fn pdf_translucent(lobe: &Lobe, n: Vec3, _: Vec3, wi: Vec3) -> Real {
+    let cos = wi.dot(n);
+    INV_PI * cos.abs() * side_share(lobe.alpha, cos)
+}
+
+/// A side by its share and a direction by the cosine; photons take that with the geometric normal,
+/// as on diffuse surfaces.
+#[inline(always)]
+pub fn sample_translucent(p: &ShadingPoint, u: Vec2, mode: u32) -> Sample {
+    let alpha = p.lobe.alpha;
+    let mut axis = p.n;
+    let mut weight = p.lobe.reflectance;
+    if mode == IMPORTANCE {
+        axis = p.ng;
+        if p.s.shading != p.s.normal {
+            weight *= p.wo.dot(p.n).max(0.0) / p.wo.dot(p.ng).max(ADJOINT_COS_MIN);
+        }
+    }
+    let mut x = (u.x - alpha) / (1.0 - alpha).max(1e-6);
+    let mut side = 1.0;
+    if u.x < alpha {
+        x = u.x / alpha;
+        side = -1.0;
+    }
+    let local = sample_cosine(Vec2::new(x.clamp(0.0, 1.0), u.y));
+    let wi = renormalized(from_frame(axis, Vec3::new(local.x, local.y, local.z * side)));
+    if wi.dot(p.ng) * side <= 0.0 {
+        weight = Vec3::ZERO;
+    }
+    Sample { direction: wi, weight }
+}
