@@ -30,6 +30,8 @@ mod made;
 mod man;
 mod measure;
 mod merge;
+#[cfg(not(feature = "preview"))]
+mod no_preview;
 mod output;
 mod overrides;
 #[cfg(feature = "preview")]
@@ -75,6 +77,8 @@ enum Command {
     Render(Box<render::Arguments>),
     #[cfg(feature = "preview")]
     Preview(Box<preview::Arguments>),
+    #[cfg(not(feature = "preview"))]
+    Preview(no_preview::Arguments),
     Merge(merge::Arguments),
     Compare(compare::Arguments),
     Diff(Box<diff::Arguments>),
@@ -94,8 +98,7 @@ impl Command {
         let any = |devices: &[String]| devices.iter().any(|device| loader::is_driver(device));
         match self {
             Self::Render(arguments) => arguments.device().is_none_or(loader::is_driver),
-            #[cfg(feature = "preview")]
-            Self::Preview(_) => true,
+            Self::Preview(_) => cfg!(feature = "preview"),
             Self::Compare(arguments) => any(arguments.devices()),
             Self::Info(arguments) => arguments.measured().is_some_and(any),
             Self::Bench(_) | Self::Devices(_) | Self::Study(_) => true,
@@ -167,6 +170,8 @@ fn carry_out(command: Command) -> Result<Done, Failure> {
         Command::Render(arguments) => render::run(*arguments),
         #[cfg(feature = "preview")]
         Command::Preview(arguments) => preview::run(*arguments),
+        #[cfg(not(feature = "preview"))]
+        Command::Preview(arguments) => no_preview::run(arguments),
         Command::Merge(arguments) => merge::run(arguments),
         Command::Compare(arguments) => compare::run(arguments),
         Command::Diff(arguments) => diff::run(*arguments),
