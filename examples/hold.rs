@@ -12,11 +12,11 @@ use std::time::Instant;
 
 use caustica::device;
 use caustica::film::{Development, Picture, Provenance, file};
-use caustica::hold::agreement::{CHANCE, LIMIT, LIMIT_FAR, MEAN_ERRORS, MEAN_LIMIT, REGION};
-use caustica::hold::truth::{BLOCK, PixelNoise};
-use caustica::hold::{Agreement, BlockTruth, hold, render_parts};
 use caustica::scene;
 use caustica::settings::{Direct, Method, Radius, RadiusRule, RenderSettings};
+use caustica::validation::agreement::{CHANCE, LIMIT, LIMIT_FAR, MEAN_ERRORS, MEAN_LIMIT, REGION};
+use caustica::validation::reference::{BLOCK, PixelNoise};
+use caustica::validation::{Agreement, BlockTruth, hold, render_parts};
 use clap::Parser;
 
 /// Hold renders of the reference scenes against their truths

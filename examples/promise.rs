@@ -13,9 +13,9 @@ use std::process::ExitCode;
 
 use caustica::device::{self, Wanted};
 use caustica::film::{self, Development, Picture, Provenance};
-use caustica::hold::{BlockTruth, NoisyTruth, Promise, promises};
 use caustica::scene::{self, Scene};
 use caustica::settings::{Direct, Method, Radius, RadiusRule, RenderSettings};
+use caustica::validation::{BlockTruth, NoisyTruth, Promise, promises};
 use clap::Parser;
 
 /// Hold stated errors against true ones

@@ -7,7 +7,7 @@
 mod workload;
 
 use caustica::shapes::intersect::{intersect_scene, intersect_scene_many};
-use caustica::shapes::kdtree_many::FLIGHT;
+use caustica::shapes::kdtree_stream::STREAM;
 use std::io::{self, BufRead, Write};
 use std::path::Path;
 use std::time::Instant;
@@ -34,7 +34,7 @@ fn main() -> io::Result<()> {
             *distance = intersect_scene(&packed.scene, ray).t;
         }
         let middle = Instant::now();
-        let mut places = [0; FLIGHT];
+        let mut places = [0; STREAM];
         let mut waiting = rays.iter().enumerate();
         intersect_scene_many(&packed.scene, |lane, last| {
             if let Some(hit) = last {

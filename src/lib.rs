@@ -61,9 +61,9 @@
 //! Modules depend on one another one way: [`stage`], [`compilation`], [`storage`], [`srgb`],
 //! [`memory`], [`real`] and [`math`], then [`tables`], [`shapes`], [`materials`], [`lights`],
 //! [`camera`] and [`grid`], then [`scene`], [`build`], [`limits`], [`pack`], then [`kernels`],
-//! [`radius`], [`sobol`], [`probe`], [`readout`], [`plan`], then [`cpu`] and [`gpu`], then
-//! [`identity`], [`device`], [`relay`], [`quality`], [`calibration`], [`showing`], [`render`] and
-//! [`checkpoint`], and last [`bench`](mod@bench), [`ablation`], [`hold`], [`study`] and, where it is
+//! [`radius`], [`sobol`], [`probe`], [`film_readback`], [`plan`], then [`cpu`] and [`gpu`], then
+//! [`identity`], [`device`], [`failover`], [`quality`], [`calibration`], [`observers`], [`render`] and
+//! [`checkpoint`], and last [`bench`](mod@bench), [`ablation`], [`validation`], [`study`] and, where it is
 //! not left out, `preview`. Those from [`real`] to [`cpu`] are compiled twice: [`double`] is the
 //! same in f64.
 
@@ -80,11 +80,12 @@ pub mod device;
 pub mod double;
 pub mod engine;
 pub mod error;
+pub mod failover;
 pub mod features;
 pub mod film;
+pub mod film_readback;
 pub mod gpu;
 pub mod grid;
-pub mod hold;
 pub mod identity;
 pub mod kernels;
 pub mod layers;
@@ -93,6 +94,7 @@ pub mod limits;
 pub mod materials;
 pub mod math;
 pub mod memory;
+pub mod observers;
 pub mod pack;
 pub mod plan;
 #[cfg(feature = "preview")]
@@ -100,20 +102,18 @@ pub mod preview;
 pub mod probe;
 pub mod quality;
 pub mod radius;
-pub mod readout;
 pub mod real;
-pub mod relay;
 pub mod render;
 pub mod scene;
 pub mod settings;
 pub mod shapes;
-pub mod showing;
 pub mod sobol;
 pub mod srgb;
 pub mod stage;
 pub mod storage;
 pub mod study;
 pub mod tables;
+pub mod validation;
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -6,7 +6,7 @@
 //! ones have their own.
 
 use super::real::{Bits, Plain, Real, Vec2, Vec3};
-use super::shapes::fours::{FourRectangles, FourSpheres};
+use super::shapes::simd4::{FourRectangles, FourSpheres};
 use bytemuck::Zeroable;
 
 pub use super::shapes::facet::Facet;

@@ -11,9 +11,9 @@ use std::path::{Path, PathBuf};
 use caustica::device::{self, Wanted};
 use caustica::film::metrics::{Comparison, compare};
 use caustica::film::{Picture, luminance};
-use caustica::hold::{BlockTruth, hold, render_parts};
 use caustica::scene::{self, Scene};
 use caustica::settings::{Direct, Method, Radius, RenderSettings};
+use caustica::validation::{BlockTruth, hold, render_parts};
 
 /// Most that the pictures may differ by in the median over pixels.
 const MEDIAN: f64 = 5e-5;

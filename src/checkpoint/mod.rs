@@ -4,7 +4,7 @@
 //! ranges of passes merge into one. docs/checkpoints.md tells what is in the file and what is
 //! promised.
 
-mod belongs;
+mod compat;
 mod error;
 mod file;
 mod layers;

@@ -7,7 +7,7 @@ use caustica::film::file::Format;
 use caustica::scene::{Aovs, Film};
 
 use super::Failure;
-use super::made::Made;
+use super::rendered::Made;
 
 /// Prepares the denoiser before the work, and adds the layers that it needs to the film's.
 ///

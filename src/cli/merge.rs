@@ -9,9 +9,9 @@ use caustica::film::{self, FileError, RelativeError};
 use caustica::storage;
 use serde_json::{Value, json};
 
-use super::made::{left_out, write_all};
 use super::output::{message, result};
 use super::progress::{count, percent};
+use super::rendered::{left_out, write_all};
 use super::{Done, Failure};
 
 /// Merge checkpoints of ranges of passes into the picture of all

@@ -4,7 +4,7 @@ use super::super::kernels::grid_build::RecordList;
 use super::super::kernels::photon_trace::{PhotonPath, photon_trace};
 use super::super::kernels::records::*;
 use super::super::shapes::intersect::intersect_scene_many;
-use super::super::shapes::kdtree_many::FLIGHT;
+use super::super::shapes::kdtree_stream::STREAM;
 use super::super::tables::Scene;
 use crate::engine::Cancel;
 use bytemuck::Zeroable;
@@ -76,7 +76,7 @@ impl Photons<'_> {
             records.push(record);
         };
         let mut emitted = ids.map(|id| PhotonPath::new(scene, dispatch, id));
-        let mut paths: [Option<PhotonPath>; FLIGHT] = [None; FLIGHT];
+        let mut paths: [Option<PhotonPath>; STREAM] = [None; STREAM];
         intersect_scene_many(scene, |lane, hit| {
             if let (Some(path), Some(hit)) = (&mut paths[lane], hit) {
                 if path.meet(scene, dispatch, sampled, hit, &mut store) && path.goes_on(dispatch) {

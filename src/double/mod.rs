@@ -45,6 +45,8 @@ pub mod camera;
 pub mod cpu;
 #[path = "../features.rs"]
 pub mod features;
+#[path = "../film_readback.rs"]
+pub mod film_readback;
 #[path = "../grid.rs"]
 pub mod grid;
 #[path = "../kernels/mod.rs"]
@@ -61,8 +63,6 @@ pub mod pack;
 pub mod plan;
 #[path = "../probe.rs"]
 pub mod probe;
-#[path = "../readout.rs"]
-pub mod readout;
 #[path = "../shapes/mod.rs"]
 pub mod shapes;
 #[path = "../tables.rs"]

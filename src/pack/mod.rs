@@ -20,7 +20,7 @@ pub use objects::Objects;
 use super::lights::select::CELL_LEAF;
 use super::materials::Bsdf;
 use super::real::{Real, ToDouble, ToReal, Vec3};
-use super::shapes::fours::{FourRectangles, FourSpheres, LANES};
+use super::shapes::simd4::{FourRectangles, FourSpheres, LANES};
 use super::tables::*;
 use super::{build, kernels, lights, materials, math, real, shapes, tables};
 use crate::build::bodies::{Bodies, joined};

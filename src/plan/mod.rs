@@ -12,11 +12,11 @@ mod memory;
 mod scale;
 
 use super::features::{Feature, Features};
+use super::film_readback::Readout;
 use super::kernels::bytes::{FILM_BYTES, STATISTICS_BYTES};
 use super::kernels::records::FilmPixel;
 use super::pack::{Objects, Packed};
 use super::probe::{Probe, probe};
-use super::readout::Readout;
 use super::real::Real;
 use crate::engine::{Cancel, EngineError, State};
 use crate::film::{ErrorMap, Picture, Rejections};

@@ -7,7 +7,7 @@ use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
 use super::frame::{Board, Passes, Setup, Wish};
-use super::ground::Ground;
+use super::packed_cache::Ground;
 use crate::cpu::CpuEngine;
 use crate::device::{self, DeviceError, DeviceKind, Wanted};
 use crate::double;

@@ -6,13 +6,13 @@
 //! picture is shown), [`beside`] (what it is held against), [`document`] and [`reload`] (the scene
 //! file), and [`session`], which is all of it. [`keys`], `panels` and [`window`] lay hands on that.
 
-pub mod beside;
+pub mod comparison;
 pub mod document;
 pub mod frame;
 pub mod full;
-pub mod ground;
 pub mod keys;
 pub mod orbit;
+pub mod packed_cache;
 mod panels;
 pub mod quick;
 pub mod reload;

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use super::frame::{Board, Passes, Setup, Wish};
 use super::full::bytes;
-use super::ground::Ground;
+use super::packed_cache::Ground;
 use crate::cpu::CpuEngine;
 use crate::engine::{Cancel, EngineError};
 use crate::plan::Plan;

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::beside::Beside;
+use super::comparison::Beside;
 use super::document::{Edits, edited, save};
 use super::frame::{Frame, Wish};
 use super::orbit;

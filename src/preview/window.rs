@@ -10,7 +10,7 @@ use eframe::egui::{
 };
 use thiserror::Error;
 
-use super::beside::Beside;
+use super::comparison::Beside;
 use super::frame::Frame;
 use super::keys::{Command, pressed};
 use super::panels;

@@ -12,8 +12,8 @@ use std::time::{Duration, Instant};
 
 use super::frame::{Board, Frame, Wish};
 use super::full::Full;
-use super::ground::Ground;
 use super::orbit::depth_at;
+use super::packed_cache::Ground;
 use super::quick::{Divisor, Quick};
 use crate::engine::Cancel;
 use crate::gpu::GpuEngine;

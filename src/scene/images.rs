@@ -9,11 +9,11 @@ use exr::meta::MetaData;
 use image::codecs::hdr::HdrDecoder;
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
 
-use super::allowance::{Allowance, Missing, Refusal, within};
 use super::appearance::{ImageData, Texels};
 use super::exr_image;
 use super::file::ColorSpace;
 use super::image_bytes::{Format, HEAD, jpeg_fault, with_radiance_line};
+use super::limits::{Allowance, Missing, Refusal, within};
 use crate::srgb::linear_from_srgb;
 
 /// Why an image cannot be used; `key` is the key in the scene file to blame.

@@ -4,8 +4,8 @@ use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use super::allowance::{Missing, Refusal};
 use super::appearance::{Material, MaterialKind, Reflectance, Rgb, Texture};
+use super::limits::{Missing, Refusal};
 use super::lines::{Text, Word, before_comment, parts, readings};
 use super::load::Loader;
 use super::mtl::{self, Library, Target};

@@ -5,8 +5,8 @@ use std::borrow::Cow;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use super::allowance::Allowance;
 use super::encoding::{Foreign, unmarked};
+use super::limits::Allowance;
 use super::report::SourceFile;
 
 /// A word of a file with the bytes that hold it.

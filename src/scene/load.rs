@@ -7,14 +7,14 @@ use std::sync::LazyLock;
 
 use serde_json::Value as Json;
 
-use super::allowance::{Allowance, within};
-use super::check::{Document, document};
 use super::file::{EnvironmentFile, LightFile, MaterialFile, SceneFile, ShapeFile, TextureFile};
 use super::images::ImageStore;
 use super::libraries::{Own, OwnKey};
-use super::places::Places;
+use super::limits::{Allowance, within};
 use super::report::{Finding, Report, SceneErrors, list};
-use super::{Scene, looks, mesh, schema, surfaces, text, view};
+use super::spans::Places;
+use super::validate::{Document, document};
+use super::{Scene, camera, material, mesh, schema, surfaces, text};
 use crate::settings::RenderSettings;
 use crate::stage::stage;
 
@@ -128,19 +128,19 @@ impl<'l, 'a> Loader<'l, 'a> {
         for section in ["camera", "render", "materials", "shapes", "lights"] {
             document.items(section).for_each(|item| places.add(item));
         }
-        let camera = view::camera(&mut self);
-        let film = view::film(&mut self);
-        let settings = view::settings(&mut self);
+        let camera = camera::camera(&mut self);
+        let film = camera::film(&mut self);
+        let settings = camera::settings(&mut self);
         let mut textures = Vec::new();
         for item in document.items("textures") {
             if let Some(file) = item.read::<TextureFile>(self.report) {
-                textures.extend(looks::texture(&mut self, item, file));
+                textures.extend(material::texture(&mut self, item, file));
             }
         }
         let mut materials = Vec::new();
         for item in document.items("materials") {
             if let Some(file) = item.read::<MaterialFile>(self.report) {
-                materials.push(looks::material(&self, item, file));
+                materials.push(material::material(&self, item, file));
                 places.materials.push(item.path.clone());
             }
         }
@@ -155,12 +155,12 @@ impl<'l, 'a> Loader<'l, 'a> {
         let mut lights = Vec::new();
         for item in document.items("lights") {
             if let Some(file) = item.read::<LightFile>(self.report) {
-                lights.extend(view::light(&mut self, item, file));
+                lights.extend(camera::light(&mut self, item, file));
             }
         }
         let environment = document.item("environment").and_then(|item| {
             let file = item.read::<EnvironmentFile>(self.report)?;
-            view::environment(&mut self, item, &file)
+            camera::environment(&mut self, item, &file)
         });
         self.report.files.append(&mut self.images.files);
         let scene = Scene {

@@ -5,16 +5,16 @@ use std::io::Cursor;
 use std::ops::Range;
 use std::path::Path;
 
-use super::allowance::{Refusal, within};
 use super::appearance::{Material, Rgb, Texture};
-use super::check::Item;
 use super::geometry::{Mesh, Transform};
 use super::libraries::{Libraries, Own};
+use super::limits::{Refusal, within};
 use super::lines::Text;
 use super::load::Loader;
 use super::obj;
 use super::text::nearest_file;
 use super::triangles::{Builder, Polygon, Steps, vertex_normals};
+use super::validate::Item;
 
 /// A mesh as the scene file asks for it.
 pub(super) struct Request<'r> {

@@ -6,49 +6,49 @@
 //! Conventions: right-handed, y up; linear Rec. 709 RGB; one scene unit is one metre; angles in
 //! degrees.
 
-mod allowance;
 mod aov;
 mod appearance;
-mod check;
+mod camera;
+mod diagnostics;
 mod encoding;
 mod exr_image;
 mod exr_subsampled;
 pub mod file;
-mod findings;
 mod geometry;
 mod image_bytes;
 mod images;
 mod libraries;
+mod limits;
 mod lines;
 mod load;
-mod looks;
+mod material;
 mod mesh;
 mod mtl;
 pub mod numbers;
 mod obj;
-mod places;
 mod profile;
 mod profile_file;
 mod report;
 mod schema;
+mod spans;
 mod surfaces;
 mod text;
 mod tree;
 mod triangles;
-mod view;
+mod validate;
 
 use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-pub use allowance::{Allowance, Missing};
+pub use limits::{Allowance, Missing};
 pub use aov::{Aov, Aovs};
 pub use appearance::{
     Filter, ImageData, Material, MaterialKind, Reflectance, Rgb, Texels, Texture, TextureKind, Wrap,
 };
 pub use geometry::{Mesh, Shape, ShapeKind, Transform, Triangle};
 pub use load::{Loaded, load, load_within, parse, parse_within};
-pub use places::Places;
+pub use spans::Places;
 pub use profile_file::{LoadedProfile, ProfileFile, load_profile, load_profile_within};
 pub use report::{Finding, SceneErrors};
 pub use schema::schema_json;

@@ -4,9 +4,9 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use super::allowance::{Allowance, Missing};
 use super::appearance::{Material, MaterialKind, Reflectance, Rgb, Texture, TextureKind};
 use super::images::{ImageFault, ImageStore};
+use super::limits::{Allowance, Missing};
 use super::lines::{Statement, Text, Word, finite, readings, statements};
 use super::numbers::{BRIGHTEST, LARGEST, Rounded, rounded_into};
 use super::report::{Faults, nearest};

@@ -2,10 +2,10 @@
 
 use glam::DVec2;
 
-use super::check::Item;
 use super::file::Segments;
 use super::report::Report;
 use super::tree::Node;
+use super::validate::Item;
 
 /// Largest gap between two segments that counts as joined, over the extent of the profile.
 const JOIN_TOLERANCE: f64 = 1e-9;

@@ -8,13 +8,13 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use serde_json::Value as Json;
 
-use super::allowance::Allowance;
-use super::check::whole;
 use super::file::{Segments, TransformFile};
 use super::geometry::Transform;
+use super::limits::Allowance;
 use super::profile::segments;
 use super::report::{Finding, SceneErrors};
 use super::surfaces::placed;
+use super::validate::whole;
 use super::{schema, text};
 
 /// A Bezier profile turned about the y axis; keys as on a revolution in a scene file.

@@ -10,7 +10,7 @@ use miette::{
     SpanContents,
 };
 
-use super::findings::Findings;
+use super::diagnostics::Findings;
 
 /// A text file that findings point into; cheap to clone.
 #[derive(Clone, Debug)]

@@ -3,13 +3,13 @@
 use glam::{DMat3, DVec3};
 
 use super::appearance::{Material, Texture};
-use super::check::Item;
+use super::camera::unit;
 use super::file::{ShapeFile, SurfaceFile, TransformFile};
 use super::geometry::{Shape, ShapeKind, Transform};
 use super::load::Loader;
 use super::numbers::{LARGEST, SMALLEST};
 use super::report::Report;
-use super::view::unit;
+use super::validate::Item;
 use super::{mesh, profile};
 
 /// Least sine between the edges of a rectangle that has an area.

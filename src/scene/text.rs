@@ -7,8 +7,8 @@ use std::path::Path;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::allowance::Allowance;
 use super::encoding::unmarked;
+use super::limits::Allowance;
 use super::report::{Finding, Report, SceneErrors, SourceFile, nearest};
 use super::tree::Node;
 

@@ -3,12 +3,12 @@
 
 use super::cuboid::intersect_cuboid;
 use super::disc::{intersect_disc, intersect_plane};
-use super::fours::LANES;
 use super::kdtree::{Primitives, Tree, traverse_any, traverse_closest};
-use super::kdtree_many::{Rays, fetch, traverse_closest_many};
+use super::kdtree_stream::{Rays, fetch, traverse_closest_many};
 use super::ray::{Hit, Ray};
 use super::rectangle::intersect_rectangle;
 use super::revolution::intersect_patch;
+use super::simd4::LANES;
 use super::sphere::intersect_sphere;
 use super::tables::*;
 use super::triangle::{RayShear, intersect_triangle};
@@ -185,7 +185,7 @@ pub fn intersect_scene(scene: &Scene, ray: &Ray) -> Hit {
 }
 
 /// [`intersect_scene`] for many rays: asks `next` for a ray in one of
-/// [`FLIGHT`](super::kdtree_many::FLIGHT) lanes and tells it what the ray before has hit in this
+/// [`STREAM`](super::kdtree_stream::STREAM) lanes and tells it what the ray before has hit in this
 /// lane, until no lane gets one. Which lane is asked when is not said.
 #[inline(always)]
 pub fn intersect_scene_many(

@@ -15,10 +15,10 @@ use std::time::Duration;
 
 use caustica::device::{Candidates, Wanted, open};
 use caustica::engine::{Engine, EngineError, State};
+use caustica::failover::Relay;
 use caustica::film::Picture;
 use caustica::kernels::bytes::FILM_BYTES;
 use caustica::memory::Memory;
-use caustica::relay::Relay;
 use caustica::render::{Broken, Kept, Outcome, Progress, Saving, Stop, resume};
 use caustica::scene::{self, Aovs, Loaded};
 use caustica::settings::{Method, Radius, RadiusRule, RenderSettings};

@@ -3,7 +3,7 @@
 use caustica::build::kdtree::Primitive;
 use caustica::shapes::aabb::Aabb;
 use caustica::shapes::kdtree::{Tree, traverse_any, traverse_closest};
-use caustica::shapes::kdtree_many::{FLIGHT, Rays, traverse_closest_many};
+use caustica::shapes::kdtree_stream::{Rays, STREAM, traverse_closest_many};
 use caustica::shapes::ray::{Hit, Ray};
 use caustica::shapes::triangle::{RayShear, Triangle, intersect_triangle};
 use glam::Vec3;
@@ -91,7 +91,7 @@ pub fn closest_many(prims: &[Primitive], tree: &Tree, rays: &[Ray]) -> Vec<Hit> 
         rays: &'a [Ray],
         hits: Vec<Hit>,
         /// The ray in each lane.
-        places: [usize; FLIGHT],
+        places: [usize; STREAM],
         taken: usize,
     }
     impl Rays for Source<'_> {
@@ -106,7 +106,7 @@ pub fn closest_many(prims: &[Primitive], tree: &Tree, rays: &[Ray]) -> Vec<Hit> 
         }
     }
     let hits = vec![Hit { t: -1.0, reference: 0, u: 0.0, v: 0.0 }; rays.len()];
-    let mut source = Source { rays, hits, places: [0; FLIGHT], taken: 0 };
+    let mut source = Source { rays, hits, places: [0; STREAM], taken: 0 };
     traverse_closest_many(tree, &mut source, |ray: &Ray| {
         let shear = RayShear::new(ray);
         move |leaf: &[u32], ray: &Ray, hit: &mut Hit| {

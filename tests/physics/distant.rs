@@ -2,10 +2,10 @@
 //! objects far away, nor the place of the camera, its target and its focus.
 
 use caustica::cpu::CpuEngine;
-use caustica::hold::{NoisyTruth, Promise, promises};
 use caustica::pack::pack;
 use caustica::plan::Plan;
 use caustica::settings::{Method, Radius, RenderSettings};
+use caustica::validation::{NoisyTruth, Promise, promises};
 
 use super::lab::*;
 

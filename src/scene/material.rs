@@ -2,14 +2,14 @@
 
 use std::path::Path;
 
-use super::allowance::Missing;
 use super::appearance::{Material, MaterialKind, Reflectance, Texture, TextureKind};
-use super::check::Item;
 use super::file::{ColorSpace, MaterialFile, TextureFile};
 use super::images::ImageFault;
+use super::limits::Missing;
 use super::load::Loader;
 use super::numbers::Paint;
 use super::text::nearest_file;
+use super::validate::Item;
 
 pub(super) fn texture(loader: &mut Loader, item: &Item, file: TextureFile) -> Option<Texture> {
     let kind = match file {

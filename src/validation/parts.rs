@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use super::truth::Blocks;
+use super::reference::Blocks;
 use crate::device::{self, DeviceError, Wanted};
 use crate::engine::EngineError;
 use crate::film::Picture;

@@ -1,6 +1,6 @@
 //! Stated errors against true ones: how often a render keeps what it promises.
 
-use super::truth::BlockTruth;
+use super::reference::BlockTruth;
 use crate::engine::{Engine, EngineError};
 use crate::film::{Picture, RelativeError, luminance};
 

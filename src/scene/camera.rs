@@ -2,11 +2,11 @@
 
 use glam::DVec3;
 
-use super::allowance::within;
-use super::check::Item;
 use super::file::{CameraFile, EnvironmentFile, FilmFile, LightFile};
+use super::limits::within;
 use super::load::Loader;
 use super::numbers::{LARGEST, SMALLEST};
+use super::validate::Item;
 use super::{Camera, Environment, Film, Light};
 use crate::settings::RenderSettings;
 

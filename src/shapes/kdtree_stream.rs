@@ -1,4 +1,4 @@
-//! Many rays through the kd-tree, [`FLIGHT`] of them at a time: while one waits for memory, the
+//! Many rays through the kd-tree, [`STREAM`] of them at a time: while one waits for memory, the
 //! others go on, four of them with each instruction. A ray tests the leaves that
 //! [`traverse_closest`](super::kdtree::traverse_closest) tests, in that order, so that its hit is
 //! the same to the bit. Only the CPU engine has this; on a GPU the lanes are rays anyway.
@@ -13,10 +13,10 @@ use super::real::{Bits, Real, Reals, Words};
 use wide::{CmpGe, CmpLe, CmpLt};
 
 /// Rays in flight: as many as a set has bits, and their stacks fit the first-level cache.
-pub const FLIGHT: usize = 64;
+pub const STREAM: usize = 64;
 /// Numbers that one instruction takes.
 const LANES: usize = 4;
-const GROUPS: usize = FLIGHT / LANES;
+const GROUPS: usize = STREAM / LANES;
 /// A number of each ray.
 #[derive(Clone, Copy)]
 struct Each([Reals; GROUPS]);
@@ -30,7 +30,7 @@ impl Each {
 
     #[inline(always)]
     fn of(&mut self, lane: usize) -> &mut Real {
-        let all: &mut [Real; FLIGHT] = bytemuck::cast_mut(&mut self.0);
+        let all: &mut [Real; STREAM] = bytemuck::cast_mut(&mut self.0);
         &mut all[lane]
     }
 }
@@ -38,7 +38,7 @@ impl Each {
 impl EachIndex {
     #[inline(always)]
     fn of(&mut self, lane: usize) -> &mut Bits {
-        let all: &mut [Bits; FLIGHT] = bytemuck::cast_mut(&mut self.0);
+        let all: &mut [Bits; STREAM] = bytemuck::cast_mut(&mut self.0);
         &mut all[lane]
     }
 }
@@ -67,7 +67,7 @@ fn each(mut set: u64) -> impl Iterator<Item = usize> {
         (set != 0).then(|| {
             let lane = set.trailing_zeros() as usize;
             set &= set - 1;
-            lane % FLIGHT
+            lane % STREAM
         })
     })
 }
@@ -192,8 +192,8 @@ struct Flight<'a, R, P, F> {
     /// Lanes without a ray.
     idle: u64,
     steps: Steps,
-    stacks: [Stack; FLIGHT],
-    walks: [Option<Walk<P>>; FLIGHT],
+    stacks: [Stack; STREAM],
+    walks: [Option<Walk<P>>; STREAM],
 }
 
 /// Finds the nearest hits of all `rays` with the primitives of the tree.
@@ -217,7 +217,7 @@ pub fn traverse_closest_many<P: Primitives>(
         far_begin: Each::ZERO,
         far_end: Each::ZERO,
     };
-    let stacks = [Stack { count: 0, children: [Waiting::default(); MAX_DEPTH as usize] }; FLIGHT];
+    let stacks = [Stack { count: 0, children: [Waiting::default(); MAX_DEPTH as usize] }; STREAM];
     let walks = std::array::from_fn(|_| None);
     Flight { tree, rays, primitives, idle: 0, steps, stacks, walks }.fly();
 }
@@ -241,7 +241,7 @@ impl<R: Rays, P: Primitives, F: Fn(&Ray) -> P> Flight<'_, R, P, F> {
                 self.expect_primitives(lane);
             }
             late = early;
-            for lane in 0..FLIGHT {
+            for lane in 0..STREAM {
                 let node = self.tree.nodes[*self.steps.node.of(lane) as usize];
                 *self.steps.word0.of(lane) = Real::from_bits(node.word0);
                 *self.steps.word1.of(lane) = Bits::from(node.word1);
@@ -258,7 +258,7 @@ impl<R: Rays, P: Primitives, F: Fn(&Ray) -> P> Flight<'_, R, P, F> {
                 self.expect_references(lane);
             }
             held |= early;
-            for lane in 0..FLIGHT {
+            for lane in 0..STREAM {
                 fetch(self.tree.nodes.get(*self.steps.node.of(lane) as usize));
             }
         }

@@ -4,8 +4,8 @@ use std::collections::HashMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use super::check::Item;
 use super::report::{Finding, Report, SourceFile};
+use super::validate::Item;
 
 /// Places in a scene file, by path and key.
 #[derive(Clone, Debug)]

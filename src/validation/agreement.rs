@@ -13,8 +13,8 @@
 //! narrower. A block is outside when one of its channels is. The same is done for regions of 4 x 4
 //! blocks, whose means have less noise: smaller errors show there, if they are wider.
 
+use super::reference::{BlockTruth, Blocks};
 use super::student::{poisson_limit, two_sided_tail};
-use super::truth::{BlockTruth, Blocks};
 use crate::film::metrics::compare;
 
 /// Deviation, in sigma, from which on a block is outside.

@@ -6,12 +6,12 @@
 //! [`Promise`] holds a render's own word against a truth.
 
 pub mod agreement;
+pub mod coverage;
 pub mod parts;
-pub mod promise;
+pub mod reference;
 pub mod student;
-pub mod truth;
 
 pub use agreement::{Agreement, Deviations, hold};
 pub use parts::{HoldError, Rendered, render_parts};
-pub use promise::{NoisyTruth, Promise, promises};
-pub use truth::{BlockTruth, Blocks};
+pub use coverage::{NoisyTruth, Promise, promises};
+pub use reference::{BlockTruth, Blocks};
