@@ -50,7 +50,7 @@ fn photons_in_a_disc(bencher: Bencher, photons: u32) {
             position: on_the_wall(),
             radius,
             weight: Vec3::ONE,
-            facet: NONE,
+            outline: NONE,
             normal: up,
             shading: up,
             ..VisiblePoint::zeroed()

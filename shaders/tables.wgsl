@@ -87,7 +87,7 @@ struct Rectangle {
     v: vec3f,
     area: f32,
     dual_u: vec3f,
-    facet: u32,
+    outline: u32,
     dual_v: vec3f,
     pad: u32,
 }
@@ -99,7 +99,7 @@ struct Disc {
     material: u32,
     light: u32,
     uv: u32,
-    facet: u32,
+    outline: u32,
     pad: u32,
 }
 
@@ -109,7 +109,7 @@ struct Cuboid {
     upper: vec3f,
     light: u32,
     uv: u32,
-    facet: u32,
+    outline: u32,
     pad0: u32,
     pad1: u32,
 }
@@ -123,7 +123,7 @@ struct Plane {
     u0: f32,
     bitangent: vec3f,
     v0: f32,
-    facet: u32,
+    outline: u32,
     pad0: u32,
     pad1: u32,
     pad2: u32,
@@ -139,7 +139,7 @@ struct Attributes {
     v1: f32,
     u2: f32,
     v2: f32,
-    facet_smooth: u32,
+    outline_smooth: u32,
 }
 
 struct Material {

@@ -92,7 +92,7 @@ pub fn with_unused(scene: &Scene, feature: Feature) -> Option<Scene> {
         | Feature::Few
         | Feature::PatchSet
         | Feature::Unbounded
-        | Feature::Facets
+        | Feature::Outlines
         | Feature::Cells
         | Feature::Guided
         | Feature::Nested

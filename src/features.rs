@@ -63,7 +63,7 @@ features! {
     /// Leaves of the kd-tree defer the patches of revolutions to the end of the walk.
     PatchSet = "patch_set",
     /// Outlines of flat shapes, which clip the gather disc.
-    Facets = "facets",
+    Outlines = "outlines",
     /// Shapes that are tested outside of the kd-tree.
     Unbounded = "unbounded",
     /// A kd-tree with more than one leaf, or with many shapes in it.
@@ -178,7 +178,7 @@ impl Features {
         put(Feature::Disc, !scene.discs.is_empty());
         put(Feature::Cuboid, !scene.cuboids.is_empty());
         put(Feature::Plane, !scene.planes.is_empty());
-        put(Feature::Facets, !scene.facets.is_empty());
+        put(Feature::Outlines, !scene.outlines.is_empty());
         put(Feature::Revolution, !scene.revolutions.is_empty());
         put(Feature::Unbounded, !scene.unbounded.is_empty());
         let few = !few(scene).is_empty();

@@ -9,8 +9,8 @@ use super::real::{Bits, Plain, Real, Vec2, Vec3};
 use super::shapes::simd4::{FourRectangles, FourSpheres};
 use bytemuck::Zeroable;
 
-pub use super::shapes::facet::Facet;
 pub use super::shapes::kdtree::Node;
+pub use super::shapes::outline::Outline;
 pub use super::shapes::revolution::{Patch, Revolution};
 pub use super::shapes::triangle::Triangle;
 
@@ -165,8 +165,8 @@ pub struct Rectangle {
     pub area: Real,
     /// In-plane vector with `dual_u . u = 1` and `dual_u . v = 0`.
     pub dual_u: Vec3,
-    /// Its outline among the facets.
-    pub facet: u32,
+    /// Its outline among the outlines.
+    pub outline: u32,
     /// In-plane vector with `dual_v . v = 1` and `dual_v . u = 0`.
     pub dual_v: Vec3,
     /// Padding.
@@ -189,8 +189,8 @@ pub struct Disc {
     pub light: u32,
     /// [`UV_NATURAL`] or [`UV_PLANAR`].
     pub uv: u32,
-    /// Its outline among the facets.
-    pub facet: u32,
+    /// Its outline among the outlines.
+    pub outline: u32,
     /// Padding.
     pub pad: u32,
 }
@@ -209,8 +209,8 @@ pub struct Cuboid {
     pub light: u32,
     /// [`UV_NATURAL`] (each face is the unit square) or [`UV_PLANAR`].
     pub uv: u32,
-    /// The outline of the faces across x among the facets; those across y and z follow.
-    pub facet: u32,
+    /// The outline of the faces across x among the outlines; those across y and z follow.
+    pub outline: u32,
     /// Padding.
     pub pad: [u32; 2],
 }
@@ -235,8 +235,8 @@ pub struct Plane {
     pub bitangent: Vec3,
     /// v at `point`.
     pub v0: Real,
-    /// Its outline among the facets where walls stand on it, or [`NONE`].
-    pub facet: u32,
+    /// Its outline among the outlines where walls stand on it, or [`NONE`].
+    pub outline: u32,
     /// Padding.
     pub pad: [u32; 3],
 }
@@ -263,9 +263,9 @@ pub struct Attributes {
     pub u2: Real,
     /// v at `p2`.
     pub v2: Real,
-    /// Bit 0: whether corner normals are interpolated. The rest: one plus the facet of the flat
+    /// Bit 0: whether corner normals are interpolated. The rest: one plus the outline of the flat
     /// region that the triangle is part of, or 0.
-    pub facet_smooth: u32,
+    pub outline_smooth: u32,
 }
 
 /// What a surface does with light.
@@ -462,7 +462,7 @@ pub struct Scene {
     /// Corners of the triangles that have any.
     pub attributes: Vec<Attributes>,
     /// Outlines of flat shapes.
-    pub facets: Vec<Facet>,
+    pub outlines: Vec<Outline>,
     /// The rectangles, four at a time: for the CPU alone, as are the spheres. Where they are
     /// missing, one at a time is taken.
     pub four_rectangles: Vec<FourRectangles>,

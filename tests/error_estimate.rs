@@ -169,7 +169,7 @@ fn ring(radius: f32, light: impl Fn(f64, f64) -> f64) -> f64 {
     let up = oct_encode(Vec3::Y);
     let point = VisiblePoint {
         radius,
-        facet: NONE,
+        outline: NONE,
         weight: Vec3::ONE,
         normal: up,
         shading: up,

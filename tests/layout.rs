@@ -72,12 +72,12 @@ fn hosts() -> Vec<Layout> {
             v,
             area,
             dual_u,
-            facet,
+            outline,
             dual_v
         }),
-        layout!(Disc { center, radius, normal, material, light, uv, facet }),
-        layout!(Cuboid { lower, material, upper, light, uv, facet }),
-        layout!(Plane { point, material, normal, uv, tangent, u0, bitangent, v0, facet }),
+        layout!(Disc { center, radius, normal, material, light, uv, outline }),
+        layout!(Cuboid { lower, material, upper, light, uv, outline }),
+        layout!(Plane { point, material, normal, uv, tangent, u0, bitangent, v0, outline }),
         layout!(Revolution {
             x_axis,
             scale,
@@ -111,7 +111,7 @@ fn hosts() -> Vec<Layout> {
             step_tolerance
         }),
         layout!(Triangle { p0, material, p1, light, p2, attributes }),
-        layout!(Attributes { n0, u0, n1, v0, n2, u1, v1, u2, v2, facet_smooth }),
+        layout!(Attributes { n0, u0, n1, v0, n2, u1, v1, u2, v2, outline_smooth }),
         layout!(Material { reflectance, kind, absorption, ior, texture, alpha, planar_origin }),
         layout!(Texture { scale, kind, flags, first, width, height, format, color0, color1 }),
         layout!(Cell { split, axis, first }),
@@ -169,7 +169,7 @@ fn hosts() -> Vec<Layout> {
             reflectance,
             alpha,
             wo,
-            facet,
+            outline,
             state,
             bsdf
         }),
@@ -196,7 +196,18 @@ fn everything() -> (Mixture, naga::Module) {
 
 /// What the gather reads beside it.
 fn hosts_of_gather() -> Vec<Layout> {
-    vec![layout!(Facet { origin, radius, u, error, v, walls, dual_u, margin_s, dual_v, margin_t })]
+    vec![layout!(Outline {
+        origin,
+        radius,
+        u,
+        error,
+        v,
+        walls,
+        dual_u,
+        margin_s,
+        dual_v,
+        margin_t
+    })]
 }
 
 fn everything_of(kernel: Kernel) -> (Mixture, naga::Module) {

@@ -37,7 +37,7 @@ fn eye_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
                 break;
             }
             point.position = s.position;
-            point.facet = s.facet;
+            point.outline = s.outline;
             point.radius = start_radius(camera.pixel * path.length);
             point.normal = oct_encode(p.ng);
             point.shading = oct_encode(p.n);

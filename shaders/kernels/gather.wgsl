@@ -100,8 +100,8 @@ fn gather_family(point: VisiblePoint, frame: Frame, family: u32, radius_sq: f32)
     let both = transmits(lobe.bsdf);
     //#end
     let flat_normal = point.normal == point.shading;
-    //#if facets
-    var clip = clip_at(point.facet, point.position, ng, radius);
+    //#if outlines
+    var clip = clip_at(point.outline, point.position, ng, radius);
     let depth = min(clip.depth, FLATNESS * radius);
     let inner = clip.whole - 2.0 * clip.inner;
     //#else
@@ -110,9 +110,9 @@ fn gather_family(point: VisiblePoint, frame: Frame, family: u32, radius_sq: f32)
     let reach = disc_reach(ng, radius, depth);
     let low = grid_cell(point.position - reach, inv_cell);
     let high = grid_cell(point.position + reach, inv_cell);
-    //#if facets
+    //#if outlines
     // once, since a driver would read it for every photon
-    let facet = facets[select(point.facet, 0u, point.facet == NONE)];
+    let outline = outlines[select(point.outline, 0u, point.outline == NONE)];
     //#end
     var count = 0u;
     var sum = vec3f(0.0);
@@ -149,9 +149,9 @@ fn gather_family(point: VisiblePoint, frame: Frame, family: u32, radius_sq: f32)
                         //#else
                         var counts = dot(toward_light, ng) > 0.0;
                         //#end
-                        //#if facets
+                        //#if outlines
                         if counts && clip.crossed {
-                            counts = on_facet(facet, position) && before_walls(&clip, point.position, position);
+                            counts = in_outline(outline, position) && before_walls(&clip, point.position, position);
                         }
                         //#end
                         if counts {
@@ -177,7 +177,7 @@ fn gather_family(point: VisiblePoint, frame: Frame, family: u32, radius_sq: f32)
                             //#end
                             //#end
                             block += flux;
-                            //#if facets
+                            //#if outlines
                             ring += flux * select(inner, clip.whole, distance_sq > 0.5 * radius_sq);
                             //#else
                             ring += flux * select(-1.0, 1.0, distance_sq > 0.5 * radius_sq);
@@ -204,7 +204,7 @@ fn gather_family(point: VisiblePoint, frame: Frame, family: u32, radius_sq: f32)
             break if row.y > high.z;
         }
     }
-    //#if facets
+    //#if outlines
     sum *= clip.whole;
     //#end
     return Gathered(sum, count, vec3f(0.0), dot(point.weight * LUMINANCE, ring));

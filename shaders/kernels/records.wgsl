@@ -47,7 +47,7 @@ struct VisiblePoint {
     reflectance: vec3f,
     alpha: f32,
     wo: u32,
-    facet: u32,
+    outline: u32,
     state: u32,
     bsdf: u32,
 }

@@ -9,7 +9,7 @@ struct Surface {
     light: u32,
     uv: vec2f,
     v: f32,
-    facet: u32,
+    outline: u32,
 }
 
 fn surface_at(ray: Ray, hit: Hit) -> Surface {
@@ -41,8 +41,8 @@ fn surface_at(ray: Ray, hit: Hit) -> Surface {
                     a.u0 * w + a.u1 * hit.u + a.u2 * hit.v,
                     a.v0 * w + a.v1 * hit.u + a.v2 * hit.v,
                 );
-                s.facet = (a.facet_smooth >> 1u) - 1u;
-                if (a.facet_smooth & 1u) == 1u {
+                s.outline = (a.outline_smooth >> 1u) - 1u;
+                if (a.outline_smooth & 1u) == 1u {
                     let m = a.n0 * w + a.n1 * hit.u + a.n2 * hit.v;
                     if dot(m, m) > 0.0 {
                         let um = unit(m);
@@ -82,7 +82,7 @@ fn surface_at(ray: Ray, hit: Hit) -> Surface {
                 rectangle.light,
                 vec2f(hit.u, hit.v),
                 0.0,
-                rectangle.facet,
+                rectangle.outline,
             );
             planar = rectangle.uv;
         }
@@ -100,7 +100,7 @@ fn surface_at(ray: Ray, hit: Hit) -> Surface {
                 disc.light,
                 disc_uv(disc, q),
                 0.0,
-                disc.facet,
+                disc.outline,
             );
             planar = disc.uv;
         }
@@ -119,7 +119,7 @@ fn surface_at(ray: Ray, hit: Hit) -> Surface {
                 cuboid.light,
                 cuboid_uv(cuboid, q, hit.u),
                 0.0,
-                cuboid.facet + cuboid_axis(hit.u),
+                cuboid.outline + cuboid_axis(hit.u),
             );
             planar = cuboid.uv;
         }
@@ -162,7 +162,7 @@ fn surface_at(ray: Ray, hit: Hit) -> Surface {
                 NONE,
                 vec2f(plane.u0 + dot(d, plane.tangent), plane.v0 + dot(d, plane.bitangent)),
                 0.0,
-                plane.facet,
+                plane.outline,
             );
             planar = plane.uv;
         }

@@ -16,9 +16,9 @@ use rayon::prelude::*;
 
 use super::compat::told;
 use super::{Checkpoint, CheckpointError, Origin, Totals, layers};
+use crate::double::film_readback::{Readout, counted, early_parts};
 use crate::double::kernels::records::FilmPixel;
 use crate::double::math::luminance;
-use crate::double::film_readback::{Readout, counted, early_parts};
 use crate::double::{self, real::Vec3};
 use crate::engine::{Space, State};
 use crate::kernels;

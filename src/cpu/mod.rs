@@ -231,7 +231,7 @@ impl CpuEngine {
                             return;
                         }
                         self.arch.dispatch(Gathers {
-                            facets: &scene.facets,
+                            outlines: &scene.outlines,
                             dispatch: d,
                             points,
                             statistics,

@@ -6,7 +6,7 @@ use super::super::kernels::eye_trace::eye_trace;
 use super::super::kernels::gather::{gather, scale_sq};
 use super::super::kernels::grid_build::SortedRecords;
 use super::super::kernels::records::*;
-use super::super::tables::{Facet, Scene};
+use super::super::tables::{Outline, Scene};
 use rayon::prelude::*;
 
 /// Visible points that one task gathers for.
@@ -16,7 +16,7 @@ pub const EYE_TASK: usize = 512;
 
 /// Gathers of one task.
 pub struct Gathers<'a> {
-    pub facets: &'a [Facet],
+    pub outlines: &'a [Outline],
     pub dispatch: &'a Dispatch,
     pub points: &'a [VisiblePoint],
     /// Under the local rule.
@@ -36,7 +36,7 @@ impl pulp::WithSimd for Gathers<'_> {
                 Some(statistics) => scale_sq(self.dispatch, true, &statistics[i]),
                 None => self.dispatch.scale_sq,
             };
-            gather(self.facets, self.dispatch, point, scale, self.starts, self.sorted, gathered);
+            gather(self.outlines, self.dispatch, point, scale, self.starts, self.sorted, gathered);
         }
     }
 }

@@ -37,10 +37,10 @@ pub fn fragments() -> Vec<Fragment> {
 
 /// The shader files that are not a material's.
 const SHARED: &[Fragment] = fragments![
-    "tables.wgsl" if "scene || gather && lobes || gather && facets",
+    "tables.wgsl" if "scene || gather && lobes || gather && outlines",
     "math/vector.wgsl" if "scene || gather || resolve || resolve_parts",
     "math/octahedral.wgsl" if "scene || gather",
-    "math/trig.wgsl" if "scene || gather && lobes || gather && facets",
+    "math/trig.wgsl" if "scene || gather && lobes || gather && outlines",
     "math/rng.wgsl" if "scene",
     "math/sampling.wgsl" if "scene",
     "shapes/ray.wgsl" if "scene",
@@ -48,7 +48,7 @@ const SHARED: &[Fragment] = fragments![
     "shapes/rectangle.wgsl" if "scene && rectangle",
     "shapes/disc.wgsl" if "scene && disc || scene && plane",
     "shapes/cuboid.wgsl" if "scene && cuboid",
-    "shapes/facet.wgsl" if "gather && facets",
+    "shapes/outline.wgsl" if "gather && outlines",
     "shapes/triangle.wgsl" if "scene && triangle",
     "shapes/revolution_profile.wgsl" if "scene && revolution",
     "shapes/revolution_roots.wgsl" if "scene && revolution",

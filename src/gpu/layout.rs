@@ -125,7 +125,7 @@ pub fn long_tables(scene: &tables::Scene) -> [(Buffer, &[u8]); 6] {
         (Buffer::Refs, cast_slice(&scene.refs)),
         (Buffer::Triangles, cast_slice(&scene.triangles)),
         (Buffer::Attributes, cast_slice(&scene.attributes)),
-        (Buffer::Facets, cast_slice(&scene.facets)),
+        (Buffer::Outlines, cast_slice(&scene.outlines)),
         (Buffer::Texels, cast_slice(&scene.texels)),
     ]
 }

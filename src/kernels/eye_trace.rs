@@ -55,7 +55,7 @@ pub fn eye_trace(
                 break;
             }
             point.position = s.position;
-            point.facet = s.facet;
+            point.outline = s.outline;
             point.radius = start_radius(dispatch, camera.pixel * path.length);
             point.normal = oct_encode(p.ng);
             point.shading = oct_encode(p.n);

@@ -12,8 +12,8 @@ use super::materials::{Bsdf, eval_rough};
 use super::math::{LUMINANCE, oct_decode, unit};
 use super::real::{Real, Vec3, Vec4};
 use super::records::{Dispatch, Gathered, Statistics, VisiblePoint};
-use super::shapes::facet::{before_walls, clip_at, on_facet};
-use super::tables::Facet;
+use super::shapes::outline::{before_walls, clip_at, in_outline};
+use super::tables::Outline;
 use bytemuck::Zeroable;
 use glam::IVec3;
 use std::ops::Range;
@@ -70,7 +70,7 @@ pub fn scale_sq(dispatch: &Dispatch, local: bool, statistics: &Statistics) -> Re
 /// code for the processor's widest vectors inside of [`pulp::Arch::dispatch`].
 #[inline(always)]
 pub fn gather(
-    facets: &[Facet],
+    outlines: &[Outline],
     dispatch: &Dispatch,
     point: &VisiblePoint,
     scale_sq: Real,
@@ -83,12 +83,20 @@ pub fn gather(
     }
     let radius_sq = point.radius * point.radius * scale_sq;
     let frame = Frame::at(point);
-    let mut found = gather_family(facets, dispatch, point, &frame, 0, radius_sq, starts, sorted);
+    let mut found = gather_family(outlines, dispatch, point, &frame, 0, radius_sq, starts, sorted);
     if dispatch.families == 2 {
         gathered.caustic += point.weight * found.flux;
         let wider_sq = dispatch.indirect_radius * dispatch.indirect_radius;
-        let wide =
-            gather_family(facets, dispatch, point, &frame, 1, radius_sq * wider_sq, starts, sorted);
+        let wide = gather_family(
+            outlines,
+            dispatch,
+            point,
+            &frame,
+            1,
+            radius_sq * wider_sq,
+            starts,
+            sorted,
+        );
         found.flux += wide.flux * (1.0 / wider_sq);
         found.count += wide.count;
         found.ring += wide.ring * (1.0 / wider_sq);
@@ -102,7 +110,7 @@ pub fn gather(
 /// their ring.
 #[inline(always)]
 fn gather_family(
-    facets: &[Facet],
+    outlines: &[Outline],
     dispatch: &Dispatch,
     point: &VisiblePoint,
     frame: &Frame,
@@ -117,7 +125,7 @@ fn gather_family(
     let folded = lobe.bsdf == Bsdf::Diffuse;
     let both = lobe.bsdf.transmits();
     let flat = point.normal == point.shading;
-    let clip = clip_at(facets, point.facet, point.position, ng, radius);
+    let clip = clip_at(outlines, point.outline, point.position, ng, radius);
     let depth = clip.depth.min(FLATNESS * radius);
     let inner = clip.whole - 2.0 * clip.inner;
     let reach = disc_reach(ng, radius, depth);
@@ -163,7 +171,8 @@ fn gather_family(
                                 let [xs, ys, zs] = &sorted.positions;
                                 let position = Vec3::new(xs[i], ys[i], zs[i]);
                                 let here = before_walls(&clip, point.position, position);
-                                if !here || !on_facet(&facets[point.facet as usize], position) {
+                                if !here || !in_outline(&outlines[point.outline as usize], position)
+                                {
                                     continue;
                                 }
                             }

@@ -99,8 +99,8 @@ pub struct VisiblePoint {
     pub alpha: Real,
     /// Direction to the viewer, unless the lobe is diffuse.
     pub wo: Direction,
-    /// The outline that it lies in, among the facets, or `NONE`.
-    pub facet: u32,
+    /// The outline that it lies in, among the outlines, or `NONE`.
+    pub outline: u32,
     /// Sum of [`STOPPED`], [`BAD_EYE`] and [`BAD_DIRECT`].
     pub state: u32,
     /// Number of the lobe's [`Bsdf`](super::materials::Bsdf).

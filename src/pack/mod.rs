@@ -3,12 +3,12 @@
 mod bodies;
 mod cells;
 mod discs;
+mod flat_regions;
 mod image;
 mod light;
 mod look;
 mod objects;
 mod order;
-mod outlines;
 mod pilots;
 mod shape;
 mod visibility;
@@ -320,7 +320,7 @@ impl Scene {
             refs: Vec::new(),
             triangles: Vec::new(),
             attributes: Vec::new(),
-            facets: Vec::new(),
+            outlines: Vec::new(),
             texels: Vec::new(),
             four_rectangles: Vec::new(),
             four_spheres: Vec::new(),

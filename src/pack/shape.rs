@@ -7,7 +7,7 @@ use super::real::{Real, ToDouble, ToReal, Vec3};
 use super::shapes::aabb::Aabb;
 use super::shapes::cuboid::cuboid_error;
 use super::shapes::disc::disc_error;
-use super::shapes::facet::with_margins;
+use super::shapes::outline::with_margins;
 use super::shapes::rectangle::rectangle_error;
 use super::tables::*;
 use super::{Objects, PackError, image};
@@ -211,7 +211,7 @@ impl Pack<'_> {
         let area_sq = normal.length_squared();
         let id = reference(KIND_RECTANGLE, self.out.rectangles.len());
         let light = self.light(emission, id, area_sq.sqrt());
-        let facet = self.outline(o, u, v);
+        let outline = self.outline(o, u, v);
         self.out.rectangles.push(Rectangle {
             origin: o.to_real(),
             material,
@@ -222,14 +222,14 @@ impl Pack<'_> {
             v: v.to_real(),
             area: area_sq.sqrt() as Real,
             dual_u: (v.cross(normal) / area_sq).to_real(),
-            facet,
+            outline,
             dual_v: (normal.cross(u) / area_sq).to_real(),
             pad: 0,
         });
         let rectangle = &self.out.rectangles[self.out.rectangles.len() - 1];
         let error = rectangle_error(rectangle);
-        let outline = &mut self.out.facets[facet as usize];
-        *outline = with_margins(Facet { error, ..*outline });
+        let outline = &mut self.out.outlines[outline as usize];
+        *outline = with_margins(Outline { error, ..*outline });
         let corners = [o, o + u, o + v, o + u + v].map(DVec3::to_real);
         let length =
             |edge: DVec3, dual: Vec3| edge.abs() * dual.to_double().abs().dot(u.abs() + v.abs());
@@ -238,19 +238,19 @@ impl Pack<'_> {
         self.boxed(id, &corners, grow.to_real() + largest(&corners));
     }
 
-    /// A facet's number; its error is left open.
+    /// A outline's number; its error is left open.
     fn outline(&mut self, origin: DVec3, u: DVec3, v: DVec3) -> u32 {
         let normal = u.cross(v);
         let area_sq = normal.length_squared();
-        self.out.facets.push(Facet {
+        self.out.outlines.push(Outline {
             origin: origin.to_real(),
             u: u.to_real(),
             v: v.to_real(),
             dual_u: (v.cross(normal) / area_sq).to_real(),
             dual_v: (normal.cross(u) / area_sq).to_real(),
-            ..Facet::zeroed()
+            ..Outline::zeroed()
         });
-        self.out.facets.len() as u32 - 1
+        self.out.outlines.len() as u32 - 1
     }
 
     fn disc(
@@ -274,12 +274,12 @@ impl Pack<'_> {
             material,
             light,
             uv,
-            facet: self.out.facets.len() as u32,
+            outline: self.out.outlines.len() as u32,
             pad: 0,
         });
         let disc = &self.out.discs[self.out.discs.len() - 1];
-        let facet = Facet { origin: disc.center, radius: disc.radius, ..Facet::zeroed() };
-        self.out.facets.push(Facet { error: disc_error(disc), ..facet });
+        let outline = Outline { origin: disc.center, radius: disc.radius, ..Outline::zeroed() };
+        self.out.outlines.push(Outline { error: disc_error(disc), ..outline });
         let half = (DVec3::ONE - n * n).max(DVec3::ZERO).map(f64::sqrt) * r;
         let corners = [(c - half).to_real(), (c + half).to_real()];
         self.boxed(id, &corners, (off_plane(n, half) + half).to_real() + largest(&corners));
@@ -303,7 +303,7 @@ impl Pack<'_> {
             u0: start.x as Real,
             bitangent: (b * self.n.unit).to_real(),
             v0: start.y as Real,
-            facet: NONE,
+            outline: NONE,
             pad: [0; 3],
         });
     }
@@ -314,16 +314,16 @@ impl Pack<'_> {
         let id = reference(KIND_CUBOID, self.out.cuboids.len());
         let light = self.light(emission, id, 2.0 * (e.x * e.y + e.y * e.z + e.z * e.x));
         let [x, y, z] = [DVec3::X * e, DVec3::Y * e, DVec3::Z * e];
-        let facet = self.outline(lower, y, z);
+        let outline = self.outline(lower, y, z);
         self.outline(lower, z, x);
         self.outline(lower, x, y);
         let (lower, upper) = (lower.to_real(), upper.to_real());
-        let cuboid = Cuboid { lower, material, upper, light, uv, facet, pad: [0; 2] };
+        let cuboid = Cuboid { lower, material, upper, light, uv, outline, pad: [0; 2] };
         self.out.cuboids.push(cuboid);
         let error = cuboid_error(&cuboid);
-        self.out.facets[facet as usize..]
+        self.out.outlines[outline as usize..]
             .iter_mut()
-            .for_each(|f| *f = with_margins(Facet { error, ..*f }));
+            .for_each(|f| *f = with_margins(Outline { error, ..*f }));
         self.boxed(id, &[lower, upper], largest(&[lower, upper]));
     }
 
@@ -375,7 +375,7 @@ impl Pack<'_> {
             v1: t[1].y,
             u2: t[2].x,
             v2: t[2].y,
-            facet_smooth: normals.is_some() as u32,
+            outline_smooth: normals.is_some() as u32,
         });
         self.out.attributes.len() as u32 - 1
     }

@@ -1,9 +1,9 @@
-//! Walls: flat shapes that stand on facets and planes, where they part what lies on one side from
+//! Walls: flat shapes that stand on outlines and planes, where they part what lies on one side from
 //! the other.
 
-use super::outlines::{self, Region};
+use super::flat_regions::{self, Region};
 use super::real::{ToDouble, ToReal, Vec3};
-use super::shapes::facet::WALL_BITS;
+use super::shapes::outline::WALL_BITS;
 use super::shapes::rectangle::rectangle_error;
 use super::tables::*;
 use bytemuck::Zeroable;
@@ -17,9 +17,9 @@ const STEEP: f64 = 0.5;
 const GAP: f64 = 1e-3;
 /// Feet this close to an edge, in edge lengths, are the outline's business.
 const EDGE: f64 = 1e-4;
-/// Walls of one facet, the longest ones.
+/// Walls of one outline, the longest ones.
 const WALLS: usize = (1 << WALL_BITS) - 1;
-/// Pairs of facet and polygon that are looked at; where there are more, triangles are no walls, or
+/// Pairs of outline and polygon that are looked at; where there are more, triangles are no walls, or
 /// nothing is.
 const PAIRS: usize = 1 << 26;
 /// Edge of the outline of an infinite plane, in scene units.
@@ -29,8 +29,8 @@ const ENDLESS: f64 = (1u64 << 30) as f64;
 struct Floor {
     point: DVec3,
     normal: DVec3,
-    facet: Facet,
-    /// Place of the facet, or the plane's.
+    outline: Outline,
+    /// Place of the outline, or the plane's.
     place: Place,
     /// Edges of a mesh's region that are not on the outline.
     edges: Vec<[DVec3; 2]>,
@@ -39,14 +39,14 @@ struct Floor {
 }
 
 impl Floor {
-    fn new(point: DVec3, normal: DVec3, facet: Facet, place: Place) -> Self {
-        Self { point, normal, facet, place, edges: Vec::new(), walls: true }
+    fn new(point: DVec3, normal: DVec3, outline: Outline, place: Place) -> Self {
+        Self { point, normal, outline, place, edges: Vec::new(), walls: true }
     }
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Place {
-    Facet(u32),
+    Outline(u32),
     Plane(usize),
 }
 
@@ -88,18 +88,18 @@ struct Foot {
     both: bool,
 }
 
-/// Adds facets for the flat regions of meshes, to all facets the walls that stand on them, and
-/// facets for the planes that have any.
+/// Adds outlines for the flat regions of meshes, to all outlines the walls that stand on them, and
+/// outlines for the planes that have any.
 pub fn find_walls(out: &mut Scene) {
-    let regions = outlines::regions(out);
-    outlines::add_facets(out, &regions);
+    let regions = flat_regions::regions(out);
+    flat_regions::add_outlines(out, &regions);
     let mut floors = floors(out);
-    let first = out.facets.len() - regions.len();
+    let first = out.outlines.len() - regions.len();
     let floor = |(k, region): (usize, Region)| Floor {
         point: region.point,
         normal: region.normal,
-        facet: region.facet,
-        place: Place::Facet((first + k) as u32),
+        outline: region.outline,
+        place: Place::Outline((first + k) as u32),
         edges: region.edges,
         walls: true,
     };
@@ -116,9 +116,9 @@ pub fn find_walls(out: &mut Scene) {
     if floors.len() * polygons.len() > PAIRS {
         return;
     }
-    let mut found: Vec<(Place, Facet, Vec<Foot>)> = floors
+    let mut found: Vec<(Place, Outline, Vec<Foot>)> = floors
         .par_iter()
-        .map(|f| (f.place, f.facet, feet(f, &polygons)))
+        .map(|f| (f.place, f.outline, feet(f, &polygons)))
         .filter(|(_, _, feet)| !feet.is_empty())
         .collect();
     // opposite faces of a cuboid have one outline
@@ -129,20 +129,20 @@ pub fn find_walls(out: &mut Scene) {
         feet.sort_by(|a, b| length(b).total_cmp(&length(a)));
         feet.truncate(WALLS);
         let index = match same[0].0 {
-            Place::Facet(index) => index as usize,
+            Place::Outline(index) => index as usize,
             Place::Plane(plane) => {
-                out.planes[plane].facet = out.facets.len() as u32;
-                out.facets.push(same[0].1);
-                out.facets.len() - 1
+                out.planes[plane].outline = out.outlines.len() as u32;
+                out.outlines.push(same[0].1);
+                out.outlines.len() - 1
             }
         };
-        out.facets[index].walls = (out.facets.len() as u32) << WALL_BITS | feet.len() as u32;
-        out.facets.extend(feet.iter().map(|f| Facet {
+        out.outlines[index].walls = (out.outlines.len() as u32) << WALL_BITS | feet.len() as u32;
+        out.outlines.extend(feet.iter().map(|f| Outline {
             origin: f.from.to_real(),
             u: (f.to - f.from).to_real(),
             v: f.up.to_real(),
             radius: if f.both { 1.0 } else { 0.0 },
-            ..Facet::zeroed()
+            ..Outline::zeroed()
         }));
     }
 }
@@ -150,26 +150,26 @@ pub fn find_walls(out: &mut Scene) {
 fn floors(out: &Scene) -> Vec<Floor> {
     let mut floors = Vec::new();
     for r in &out.rectangles {
-        let facet = out.facets[r.facet as usize];
+        let outline = out.outlines[r.outline as usize];
         let (point, normal) = (r.origin.to_double(), r.normal.to_double());
-        floors.push(Floor::new(point, normal, facet, Place::Facet(r.facet)));
+        floors.push(Floor::new(point, normal, outline, Place::Outline(r.outline)));
     }
     for c in &out.cuboids {
         for face in 0..6 {
             let axis = face % 3;
             let (corner, sign) = if face < 3 { (c.lower, -1.0) } else { (c.upper, 1.0) };
-            let index = c.facet + axis as u32;
-            let facet = out.facets[index as usize];
+            let index = c.outline + axis as u32;
+            let outline = out.outlines[index as usize];
             let normal =
                 DVec3::from_array(std::array::from_fn(|i| if i == axis { sign } else { 0.0 }));
-            floors.push(Floor::new(corner.to_double(), normal, facet, Place::Facet(index)));
+            floors.push(Floor::new(corner.to_double(), normal, outline, Place::Outline(index)));
         }
     }
     for (i, plane) in out.planes.iter().enumerate() {
         let (point, normal) = (plane.point.to_double(), plane.normal.to_double());
         let u = plane.tangent.to_double().normalize();
         let v = normal.cross(u);
-        let facet = Facet {
+        let outline = Outline {
             origin: (point - (u + v) * (0.5 * ENDLESS)).to_real(),
             u: (u * ENDLESS).to_real(),
             v: (v * ENDLESS).to_real(),
@@ -181,9 +181,9 @@ fn floors(out: &Scene) -> Vec<Floor> {
                 v: Vec3::Y,
                 ..Rectangle::zeroed()
             }),
-            ..Facet::zeroed()
+            ..Outline::zeroed()
         };
-        floors.push(Floor::new(point, normal, facet, Place::Plane(i)));
+        floors.push(Floor::new(point, normal, outline, Place::Plane(i)));
     }
     floors
 }
@@ -235,7 +235,7 @@ fn along([a, b]: &[DVec3; 2], foot: &Foot) -> bool {
 
 /// The feet of a polygon on the two sides of a floor.
 fn feet_of(floor: &Floor, polygon: &Polygon) -> impl Iterator<Item = Foot> {
-    let error = 8.0 * f64::from(floor.facet.error);
+    let error = 8.0 * f64::from(floor.outline.error);
     // the plane misses most boxes
     let (center, half) = (0.5 * (polygon.low + polygon.high), 0.5 * (polygon.high - polygon.low));
     let reach = (1.0 + 2.0 * GAP) * half.dot(floor.normal.abs()) + error;
@@ -251,7 +251,7 @@ fn foot(floor: &Floor, up: DVec3, polygon: &Polygon) -> Option<Foot> {
     let heights = || polygon.iter().map(|p| (*p - floor.point).dot(up));
     let top = heights().fold(f64::NEG_INFINITY, f64::max);
     let bottom = heights().fold(f64::INFINITY, f64::min);
-    let error = 4.0 * f64::from(floor.facet.error);
+    let error = 4.0 * f64::from(floor.outline.error);
     let level = GAP * (top - bottom) + error;
     if bottom > level || top < 4.0 * level {
         return None;
@@ -271,16 +271,16 @@ fn foot(floor: &Floor, up: DVec3, polygon: &Polygon) -> Option<Foot> {
         }
     }
     let (from, to) = (*ends.first()?, *ends.get(1)?);
-    if from.distance(to) <= error || !within(&floor.facet, from, to) {
+    if from.distance(to) <= error || !within(&floor.outline, from, to) {
         return None;
     }
     Some(Foot { from, to, up, both: false })
 }
 
 /// Whether a foot passes the inside of an outline.
-fn within(facet: &Facet, from: DVec3, to: DVec3) -> bool {
-    [facet.dual_u, facet.dual_v].iter().all(|dual| {
-        let place = |p: DVec3| (p - facet.origin.to_double()).dot(dual.to_double());
+fn within(outline: &Outline, from: DVec3, to: DVec3) -> bool {
+    [outline.dual_u, outline.dual_v].iter().all(|dual| {
+        let place = |p: DVec3| (p - outline.origin.to_double()).dot(dual.to_double());
         place(from).max(place(to)) > EDGE && place(from).min(place(to)) < 1.0 - EDGE
     })
 }

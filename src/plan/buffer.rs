@@ -5,7 +5,7 @@ use super::super::features::Feature;
 use super::super::kernels::aov_trace::AovPixel;
 use super::super::kernels::records::{FilmPixel, Gathered, PhotonRecord, Statistics, VisiblePoint};
 use super::super::kernels::resolve_parts::PartsPixel;
-use super::super::tables::{Attributes, Facet, Node, Triangle};
+use super::super::tables::{Attributes, Node, Outline, Triangle};
 use super::Plan;
 use super::kernel::SCAN_BLOCK;
 use crate::scene::Aov;
@@ -24,7 +24,7 @@ pub enum Buffer {
     /// Normals, texture coordinates and outlines of triangles.
     Attributes,
     /// Outlines of flat shapes.
-    Facets,
+    Outlines,
     /// Texels of images.
     Texels,
     /// Ends of the eye paths.
@@ -112,7 +112,7 @@ impl Buffer {
         Self::Refs,
         Self::Triangles,
         Self::Attributes,
-        Self::Facets,
+        Self::Outlines,
         Self::Texels,
         Self::VisiblePoints,
         Self::Film,
@@ -140,7 +140,7 @@ impl Buffer {
             Self::Attributes => {
                 BufferInfo::new::<Attributes>("attributes", "Attributes", Extent::Scene)
             }
-            Self::Facets => BufferInfo::new::<Facet>("facets", "Facet", Extent::Scene),
+            Self::Outlines => BufferInfo::new::<Outline>("outlines", "Outline", Extent::Scene),
             Self::Texels => BufferInfo::new::<u32>("texels", "u32", Extent::Scene),
             Self::VisiblePoints => {
                 BufferInfo::new::<VisiblePoint>("visible_points", "VisiblePoint", VisiblePoints)
@@ -232,7 +232,7 @@ impl Plan {
             Buffer::Nodes | Buffer::Refs => has(Feature::KdTree),
             Buffer::Triangles => has(Feature::Triangle),
             Buffer::Attributes => has(Feature::Attributes),
-            Buffer::Facets => has(Feature::Facets),
+            Buffer::Outlines => has(Feature::Outlines),
             Buffer::Texels => has(Feature::Texels),
             Buffer::Statistics => has(Feature::Local),
             Buffer::Aovs => self.aovs.are_traced(),

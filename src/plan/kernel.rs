@@ -235,7 +235,7 @@ impl Kernel {
                 traces: false,
                 uses: const {
                     &[
-                        with(Feature::Facets, read(Facets)),
+                        with(Feature::Outlines, read(Outlines)),
                         read(VisiblePoints),
                         write(Counters),
                         read(Starts),

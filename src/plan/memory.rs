@@ -199,7 +199,7 @@ pub fn scene_tables(scene: &Scene) -> Vec<(&'static str, u64)> {
         ("refs", bytes(&scene.refs)),
         ("triangles", bytes(&scene.triangles)),
         ("attributes", bytes(&scene.attributes)),
-        ("facets", bytes(&scene.facets)),
+        ("outlines", bytes(&scene.outlines)),
         ("texels", bytes(&scene.texels)),
     ]
 }

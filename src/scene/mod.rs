@@ -41,17 +41,17 @@ use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-pub use limits::{Allowance, Missing};
 pub use aov::{Aov, Aovs};
 pub use appearance::{
     Filter, ImageData, Material, MaterialKind, Reflectance, Rgb, Texels, Texture, TextureKind, Wrap,
 };
 pub use geometry::{Mesh, Shape, ShapeKind, Transform, Triangle};
+pub use limits::{Allowance, Missing};
 pub use load::{Loaded, load, load_within, parse, parse_within};
-pub use spans::Places;
 pub use profile_file::{LoadedProfile, ProfileFile, load_profile, load_profile_within};
 pub use report::{Finding, SceneErrors};
 pub use schema::schema_json;
+pub use spans::Places;
 
 /// A validated scene: finite numbers, unit normals, no dangling index.
 #[derive(Clone, Debug, PartialEq)]

@@ -31,8 +31,8 @@ pub struct Surface {
     pub uv: Vec2,
     /// Second coordinate of the shape's own (u, v): on revolutions the profile parameter.
     pub v: Real,
-    /// The outline that it lies in, among the facets, or [`NONE`].
-    pub facet: u32,
+    /// The outline that it lies in, among the outlines, or [`NONE`].
+    pub outline: u32,
 }
 
 /// The surface at `hit` of `ray`.
@@ -55,7 +55,7 @@ pub fn surface_at(scene: &Scene, ray: &Ray, hit: &Hit) -> Surface {
                 light: triangle.light,
                 uv: Vec2::ZERO,
                 v: 0.0,
-                facet: NONE,
+                outline: NONE,
             };
             if triangle.attributes != NONE {
                 let a = &scene.attributes[triangle.attributes as usize];
@@ -64,8 +64,8 @@ pub fn surface_at(scene: &Scene, ray: &Ray, hit: &Hit) -> Surface {
                     a.u0 * w + a.u1 * hit.u + a.u2 * hit.v,
                     a.v0 * w + a.v1 * hit.u + a.v2 * hit.v,
                 );
-                s.facet = (a.facet_smooth >> 1).wrapping_sub(1);
-                if a.facet_smooth & 1 == 1 {
+                s.outline = (a.outline_smooth >> 1).wrapping_sub(1);
+                if a.outline_smooth & 1 == 1 {
                     let m = a.n0 * w + a.n1 * hit.u + a.n2 * hit.v;
                     if m.dot(m) > 0.0 {
                         let m = unit(m);
@@ -87,7 +87,7 @@ pub fn surface_at(scene: &Scene, ray: &Ray, hit: &Hit) -> Surface {
                 light: sphere.light,
                 uv: Vec2::ZERO,
                 v: 0.0,
-                facet: NONE,
+                outline: NONE,
             };
             planar = sphere.uv;
             // two arctangents, which most spheres have no use for
@@ -107,7 +107,7 @@ pub fn surface_at(scene: &Scene, ray: &Ray, hit: &Hit) -> Surface {
                 light: rectangle.light,
                 uv: Vec2::new(hit.u, hit.v),
                 v: 0.0,
-                facet: rectangle.facet,
+                outline: rectangle.outline,
             };
             planar = rectangle.uv;
         }
@@ -123,7 +123,7 @@ pub fn surface_at(scene: &Scene, ray: &Ray, hit: &Hit) -> Surface {
                 light: disc.light,
                 uv: disc_uv(disc, q),
                 v: 0.0,
-                facet: disc.facet,
+                outline: disc.outline,
             };
             planar = disc.uv;
         }
@@ -140,7 +140,7 @@ pub fn surface_at(scene: &Scene, ray: &Ray, hit: &Hit) -> Surface {
                 light: cuboid.light,
                 uv: cuboid_uv(cuboid, q, hit.u),
                 v: 0.0,
-                facet: cuboid.facet + cuboid_axis(hit.u),
+                outline: cuboid.outline + cuboid_axis(hit.u),
             };
             planar = cuboid.uv;
         }
@@ -157,7 +157,7 @@ pub fn surface_at(scene: &Scene, ray: &Ray, hit: &Hit) -> Surface {
                 light: revolution.light,
                 uv: r.uv,
                 v: r.uv.y,
-                facet: NONE,
+                outline: NONE,
             };
             planar = revolution.uv;
             if planar == UV_NATURAL {
@@ -177,7 +177,7 @@ pub fn surface_at(scene: &Scene, ray: &Ray, hit: &Hit) -> Surface {
                 light: NONE,
                 uv: Vec2::new(plane.u0 + d.dot(plane.tangent), plane.v0 + d.dot(plane.bitangent)),
                 v: 0.0,
-                facet: plane.facet,
+                outline: plane.outline,
             };
             planar = plane.uv;
         }

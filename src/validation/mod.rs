@@ -12,6 +12,6 @@ pub mod reference;
 pub mod student;
 
 pub use agreement::{Agreement, Deviations, hold};
-pub use parts::{HoldError, Rendered, render_parts};
 pub use coverage::{NoisyTruth, Promise, promises};
+pub use parts::{HoldError, Rendered, render_parts};
 pub use reference::{BlockTruth, Blocks};

@@ -69,7 +69,7 @@ impl Mixture {
             Feature::Rectangle => s.rectangles.push(Rectangle::zeroed()),
             Feature::Disc => s.discs.push(Disc::zeroed()),
             Feature::Cuboid => s.cuboids.push(Cuboid::zeroed()),
-            Feature::Facets => s.facets.push(Facet::zeroed()),
+            Feature::Outlines => s.outlines.push(Outline::zeroed()),
             Feature::Plane => s.planes.push(Plane::zeroed()),
             Feature::Revolution => {
                 s.revolutions.push(Revolution::zeroed());

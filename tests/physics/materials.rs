@@ -37,7 +37,7 @@ fn point(lobe: Lobe, wo: Vec3) -> ShadingPoint {
         light: NONE,
         uv: Vec2::ZERO,
         v: 0.0,
-        facet: NONE,
+        outline: NONE,
     };
     ShadingPoint { s, wo, ng: Vec3::Z, ns: Vec3::Z, n: Vec3::Z, lobe }
 }

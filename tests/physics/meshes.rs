@@ -70,7 +70,7 @@ emission = 6.0
 
 /// Theory: both methods estimate one integral with one BSDF, so their pictures agree region by
 /// region, photons' bias aside (radius a hundredth of the torus). Without the correction for
-/// shading normals, diffuse light scattered from such coarse facets is off by several percent.
+/// shading normals, diffuse light scattered from such coarse outlines is off by several percent.
 fn agree(name: &str, material: &str, modes: &[Direct], power: f64) {
     let text = scene(name, material);
     let run = |method, direct, passes, photons| {

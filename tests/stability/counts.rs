@@ -125,7 +125,7 @@ fn gathered_error(b: &Bench, radius: f64) -> f64 {
             position: c.as_vec3(),
             radius: radius as f32,
             weight: Vec3::ONE,
-            facet: NONE,
+            outline: NONE,
             normal: oct_encode(n),
             shading: oct_encode(n),
             ..VisiblePoint::zeroed()
@@ -278,7 +278,7 @@ fn many_equal(b: &Bench) -> Figure {
     let point = VisiblePoint {
         position,
         radius: 1.0,
-        facet: NONE,
+        outline: NONE,
         weight: Vec3::ONE,
         normal: up,
         shading: up,

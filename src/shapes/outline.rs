@@ -1,6 +1,6 @@
-//! Facets: flat outlines. A disc about a point near the outline reaches beyond it, where no photon
-//! can lie; what is found in it belongs to the part that the facet covers. Where a wall stands on
-//! the facet, it belongs to the part on this side of the wall. Twin: `shaders/shapes/facet.wgsl`.
+//! Outlines: flat outlines. A disc about a point near the outline reaches beyond it, where no photon
+//! can lie; what is found in it belongs to the part that the outline covers. Where a wall stands on
+//! the outline, it belongs to the part on this side of the wall. Twin: `shaders/shapes/outline.wgsl`.
 
 use super::math::trig::{arctan2, kept};
 use super::math::{EPS, PI, max_abs, unit};
@@ -8,9 +8,9 @@ use super::real::{Plain, Real, Vec2, Vec3, Vec4};
 use super::tables::NONE;
 use bytemuck::Zeroable;
 
-/// Least share: a facet of less area within the disc counts as one of this.
+/// Least share: a outline of less area within the disc counts as one of this.
 const SHARE_MIN: Real = 1e-6;
-/// Photons of a facet lie within this many radii of its plane, and the rounding of their positions.
+/// Photons of a outline lie within this many radii of its plane, and the rounding of their positions.
 const DEPTH: Real = 0.02;
 /// Beyond this ratio of radii a circle's segment within the smaller circle counts as a parabola's.
 const SLIM: Real = 30.0;
@@ -23,7 +23,7 @@ const PLANE_ERROR: Real = 16.0 * EPS;
 const RIM: Real = 1e-5;
 /// Walls that cut a disc at the most; it is left to others.
 pub const CUTS: usize = 4;
-/// Low bits of [`Facet::walls`] that hold the number of walls.
+/// Low bits of [`Outline::walls`] that hold the number of walls.
 pub const WALL_BITS: u32 = 6;
 /// Corners of a square cut by the four edges of an outline and by walls, at the most.
 const CORNERS: usize = 8 + CUTS;
@@ -31,11 +31,11 @@ const CORNERS: usize = 8 + CUTS;
 /// The outline of a flat shape: a parallelogram `origin + s u + t v`, s and t in [0, 1], or a
 /// circle.
 ///
-/// A wall on a facet is one too: it stands on the segment `origin + s u`, on the side that `v`, a
+/// A wall on a outline is one too: it stands on the segment `origin + s u`, on the side that `v`, a
 /// unit vector, points to. An edge of a mesh's flat region is a wall on both sides, of `radius` 1.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Plain, Zeroable)]
-pub struct Facet {
+pub struct Outline {
     /// Corner, or centre. Its place across the plane does not matter.
     pub origin: Vec3,
     /// Radius of the circle; 0 for a parallelogram.
@@ -46,7 +46,7 @@ pub struct Facet {
     pub error: Real,
     /// Second edge.
     pub v: Vec3,
-    /// Index of its first wall among the facets << [`WALL_BITS`], | their number.
+    /// Index of its first wall among the outlines << [`WALL_BITS`], | their number.
     pub walls: u32,
     /// In-plane vector with `dual_u . u = 1` and `dual_u . v = 0`.
     pub dual_u: Vec3,
@@ -58,17 +58,17 @@ pub struct Facet {
     pub margin_t: Real,
 }
 
-/// What a facet is to a disc about one of its points.
+/// What a outline is to a disc about one of its points.
 #[derive(Clone, Copy, Debug)]
 pub struct Clip {
     /// Whether the outline passes through the disc.
     pub crossed: bool,
-    /// One over the share of the disc that the facet covers.
+    /// One over the share of the disc that the outline covers.
     pub whole: Real,
     /// The same of the disc of half the area about the same point.
     pub inner: Real,
-    /// Farthest that photons of the facet may lie from its plane; the disc's radius where there is
-    /// no facet.
+    /// Farthest that photons of the outline may lie from its plane; the disc's radius where there is
+    /// no outline.
     pub depth: Real,
     /// In-plane unit vectors toward walls within the disc, and the distance of their lines from its
     /// centre; (0, 0, 0, 1), which cuts nothing, beyond `count`.
@@ -137,18 +137,18 @@ fn discs_area(distance: Real, radius: Real) -> Real {
     near + 0.666_666_7 * (y * y) * (y / radius)
 }
 
-/// Share of the disc of `radius` about `position`, a point of `facet`, that the facet covers.
-pub fn facet_share(facet: &Facet, position: Vec3, normal: Vec3, radius: Real) -> Real {
+/// Share of the disc of `radius` about `position`, a point of `outline`, that the outline covers.
+pub fn outline_share(outline: &Outline, position: Vec3, normal: Vec3, radius: Real) -> Real {
     let scale = 1.0 / radius;
-    let d = (facet.origin - position) * scale;
-    let area = if facet.radius > 0.0 {
-        discs_area(d.dot(d).sqrt(), facet.radius * scale)
+    let d = (outline.origin - position) * scale;
+    let area = if outline.radius > 0.0 {
+        discs_area(d.dot(d).sqrt(), outline.radius * scale)
     } else {
-        let first = unit(facet.u);
+        let first = unit(outline.u);
         let second = normal.cross(first);
         let corner = Vec2::new(d.dot(first), d.dot(second));
-        let v = Vec2::new(facet.v.dot(first), facet.v.dot(second)) * scale;
-        parallelogram_area(corner, facet.u.dot(first) * scale, v)
+        let v = Vec2::new(outline.v.dot(first), outline.v.dot(second)) * scale;
+        parallelogram_area(corner, outline.u.dot(first) * scale, v)
     };
     (area / PI).clamp(SHARE_MIN, 1.0)
 }
@@ -179,10 +179,10 @@ fn cut_polygon(polygon: &mut [Vec2; CORNERS], count: u32, normal: Vec2, distance
 
 /// Share of the disc of `radius` about `position`, a point of a parallelogram, that it covers on
 /// this side of the cuts.
-fn cut_share(facet: &Facet, clip: &Clip, position: Vec3, normal: Vec3, radius: Real) -> Real {
-    let first = unit(facet.u);
+fn cut_share(outline: &Outline, clip: &Clip, position: Vec3, normal: Vec3, radius: Real) -> Real {
+    let first = unit(outline.u);
     let second = normal.cross(first);
-    let d = position - facet.origin;
+    let d = position - outline.origin;
     let scale = 1.0 / radius;
     // a square about the unit disc, so that all corners are of its size
     let mut polygon = [Vec2::ZERO; CORNERS];
@@ -192,7 +192,7 @@ fn cut_share(facet: &Facet, clip: &Clip, position: Vec3, normal: Vec3, radius: R
     polygon[3] = Vec2::new(-2.0, 2.0);
     let mut count = 4;
     for k in 0..4 + clip.count {
-        let mut toward = facet.dual_u;
+        let mut toward = outline.dual_u;
         let mut distance;
         if k >= 4 {
             let cut = clip.cuts[(k - 4) as usize];
@@ -200,7 +200,7 @@ fn cut_share(facet: &Facet, clip: &Clip, position: Vec3, normal: Vec3, radius: R
             distance = cut.w;
         } else {
             if k >= 2 {
-                toward = facet.dual_v;
+                toward = outline.dual_v;
             }
             let place = d.dot(toward);
             let inverse = 1.0 / toward.dot(toward).sqrt();
@@ -229,19 +229,19 @@ fn cut_share(facet: &Facet, clip: &Clip, position: Vec3, normal: Vec3, radius: R
     (area.abs() / PI).clamp(SHARE_MIN, 1.0)
 }
 
-/// Finds the walls on `facet` that stand in the disc.
+/// Finds the walls on `outline` that stand in the disc.
 fn find_cuts(
-    facets: &[Facet],
-    facet: &Facet,
+    outlines: &[Outline],
+    outline: &Outline,
     position: Vec3,
     normal: Vec3,
     clip: &mut Clip,
     radius: Real,
 ) {
-    let first = facet.walls >> WALL_BITS;
-    let last = first + (facet.walls & ((1 << WALL_BITS) - 1));
+    let first = outline.walls >> WALL_BITS;
+    let last = first + (outline.walls & ((1 << WALL_BITS) - 1));
     for i in first..last {
-        let wall = &facets[i as usize];
+        let wall = &outlines[i as usize];
         let d = wall.origin - position;
         let rise = d.dot(wall.v);
         // what stands on the other side or on the opposite face of a box is no wall here
@@ -253,14 +253,14 @@ fn find_cuts(
                 let distance = d.dot(across);
                 let toward = across * if distance < 0.0 { -1.0 } else { 1.0 };
                 clip.cuts[clip.count as usize] =
-                    toward.extend(distance.abs() - MARGIN * facet.error);
+                    toward.extend(distance.abs() - MARGIN * outline.error);
                 clip.count += 1;
             }
         }
     }
 }
 
-/// Whether a point of the facet's plane lies on this side of all cuts of a disc about `center`.
+/// Whether a point of the outline's plane lies on this side of all cuts of a disc about `center`.
 pub fn before_walls(clip: &Clip, center: Vec3, position: Vec3) -> bool {
     let d = position - center;
     // without a loop, of which Mesa's software driver makes no more than 65535 rounds
@@ -271,57 +271,63 @@ pub fn before_walls(clip: &Clip, center: Vec3, position: Vec3) -> bool {
         && d.dot(e.truncate()) < e.w
 }
 
-/// How facet `number`, if there is one, clips the disc of `radius` about its point `position`.
-pub fn clip_at(facets: &[Facet], number: u32, position: Vec3, normal: Vec3, radius: Real) -> Clip {
+/// How outline `number`, if there is one, clips the disc of `radius` about its point `position`.
+pub fn clip_at(
+    outlines: &[Outline],
+    number: u32,
+    position: Vec3,
+    normal: Vec3,
+    radius: Real,
+) -> Clip {
     let cuts = [Vec4::W; CUTS];
     let mut clip = Clip { crossed: false, whole: 1.0, inner: 1.0, depth: radius, cuts, count: 0 };
     if number == NONE {
         return clip;
     }
-    let facet = &facets[number as usize];
-    let d = position - facet.origin;
-    if facet.radius > 0.0 {
-        let within = facet.radius - radius;
+    let outline = &outlines[number as usize];
+    let d = position - outline.origin;
+    if outline.radius > 0.0 {
+        let within = outline.radius - radius;
         clip.crossed = within <= 0.0 || d.dot(d) > within * within;
     } else {
-        let s = d.dot(facet.dual_u);
-        let t = d.dot(facet.dual_v);
+        let s = d.dot(outline.dual_u);
+        let t = d.dot(outline.dual_v);
         let margin_s = s.min(1.0 - s).max(0.0);
         let margin_t = t.min(1.0 - t).max(0.0);
         let radius_sq = radius * radius;
-        clip.crossed = margin_s * margin_s < radius_sq * facet.dual_u.dot(facet.dual_u)
-            || margin_t * margin_t < radius_sq * facet.dual_v.dot(facet.dual_v);
+        clip.crossed = margin_s * margin_s < radius_sq * outline.dual_u.dot(outline.dual_u)
+            || margin_t * margin_t < radius_sq * outline.dual_v.dot(outline.dual_v);
     }
-    clip.depth = DEPTH * radius + 2.0 * (facet.error + PLANE_ERROR * max_abs(position));
-    find_cuts(facets, facet, position, normal, &mut clip, radius);
+    clip.depth = DEPTH * radius + 2.0 * (outline.error + PLANE_ERROR * max_abs(position));
+    find_cuts(outlines, outline, position, normal, &mut clip, radius);
     if clip.count > 0 {
         clip.crossed = true;
-        clip.whole = 1.0 / cut_share(facet, &clip, position, normal, radius);
-        clip.inner = 1.0 / cut_share(facet, &clip, position, normal, 0.707_106_77 * radius);
+        clip.whole = 1.0 / cut_share(outline, &clip, position, normal, radius);
+        clip.inner = 1.0 / cut_share(outline, &clip, position, normal, 0.707_106_77 * radius);
         return clip;
     }
     if clip.crossed {
-        clip.whole = 1.0 / facet_share(facet, position, normal, radius);
-        clip.inner = 1.0 / facet_share(facet, position, normal, 0.707_106_77 * radius);
+        clip.whole = 1.0 / outline_share(outline, position, normal, radius);
+        clip.inner = 1.0 / outline_share(outline, position, normal, 0.707_106_77 * radius);
     }
     clip
 }
 
-/// Whether a point of the facet's plane lies within its outline, and not on the edge that it has in
+/// Whether a point of the outline's plane lies within its outline, and not on the edge that it has in
 /// common with an adjacent face.
-pub fn on_facet(facet: &Facet, position: Vec3) -> bool {
-    let d = position - facet.origin;
-    if facet.radius > 0.0 {
-        return d.dot(d) < facet.radius * facet.radius * (1.0 - RIM);
+pub fn in_outline(outline: &Outline, position: Vec3) -> bool {
+    let d = position - outline.origin;
+    if outline.radius > 0.0 {
+        return d.dot(d) < outline.radius * outline.radius * (1.0 - RIM);
     }
-    let s = d.dot(facet.dual_u);
-    let t = d.dot(facet.dual_v);
-    let (low_s, low_t) = (facet.margin_s, facet.margin_t);
+    let s = d.dot(outline.dual_u);
+    let t = d.dot(outline.dual_v);
+    let (low_s, low_t) = (outline.margin_s, outline.margin_t);
     s > low_s && s < 1.0 - low_s && t > low_t && t < 1.0 - low_t
 }
 
 /// The margins of an outline whose error is known.
-pub fn with_margins(facet: Facet) -> Facet {
-    let margin = |dual: Vec3| (MARGIN * facet.error * dual.dot(dual).sqrt()).min(0.25);
-    Facet { margin_s: margin(facet.dual_u), margin_t: margin(facet.dual_v), ..facet }
+pub fn with_margins(outline: Outline) -> Outline {
+    let margin = |dual: Vec3| (MARGIN * outline.error * dual.dot(dual).sqrt()).min(0.25);
+    Outline { margin_s: margin(outline.dual_u), margin_t: margin(outline.dual_v), ..outline }
 }

@@ -15,8 +15,8 @@ use caustica::kernels::records::{Dispatch, Gathered, PhotonRecord, VisiblePoint}
 use caustica::math::rng::{STREAM_PHOTON, rng_new, rng_next};
 use caustica::math::{basis, oct_decode, oct_encode};
 use caustica::plan::{Buffer, Kernel};
-use caustica::shapes::facet::{WALL_BITS, clip_at, facet_share, on_facet};
-use caustica::tables::{Facet, NONE};
+use caustica::shapes::outline::{WALL_BITS, clip_at, in_outline, outline_share};
+use caustica::tables::{NONE, Outline};
 use glam::{DVec2, Vec3, Vec4};
 use std::f64::consts::PI;
 
@@ -25,38 +25,38 @@ fn random(i: u32) -> Vec4 {
     rng_next(&mut rng_new(i, 0, STREAM_PHOTON, 9))
 }
 
-fn parallelogram(origin: Vec3, u: Vec3, v: Vec3) -> Facet {
+fn parallelogram(origin: Vec3, u: Vec3, v: Vec3) -> Outline {
     let normal = u.cross(v);
     let area_sq = normal.length_squared();
     let (dual_u, dual_v) = (v.cross(normal) / area_sq, normal.cross(u) / area_sq);
-    Facet { origin, u, v, dual_u, dual_v, error: 1e-6, ..Facet::zeroed() }
+    Outline { origin, u, v, dual_u, dual_v, error: 1e-6, ..Outline::zeroed() }
 }
 
-/// Share of a disc that lies in a facet, by a sunflower of points.
-fn counted(facet: &Facet, position: Vec3, normal: Vec3, radius: f32) -> f64 {
+/// Share of a disc that lies in a outline, by a sunflower of points.
+fn counted(outline: &Outline, position: Vec3, normal: Vec3, radius: f32) -> f64 {
     const POINTS: u32 = 100_000;
     let (t, b) = basis(normal);
     let inside = (0..POINTS).filter(|i| {
         let r = ((f64::from(*i) + 0.5) / f64::from(POINTS)).sqrt();
         let turn = f64::from(*i) * PI * (3.0 - 5f64.sqrt());
         let p = DVec2::from_angle(turn) * r;
-        on_facet(facet, position + (t * p.x as f32 + b * p.y as f32) * radius)
+        in_outline(outline, position + (t * p.x as f32 + b * p.y as f32) * radius)
     });
     inside.count() as f64 / f64::from(POINTS)
 }
 
-/// A facet in some plane, a point of it, its normal and a radius.
-fn case(i: u32) -> (Facet, Vec3, Vec3, f32) {
+/// A outline in some plane, a point of it, its normal and a radius.
+fn case(i: u32) -> (Outline, Vec3, Vec3, f32) {
     let (a, b, c) = (random(3 * i), random(3 * i + 1), random(3 * i + 2));
     let normal = Vec3::new(a.x - 0.5, a.y - 0.5, a.z - 0.5).normalize();
     let (t, s) = basis(normal);
     let radius = 2f32.powf(6.0 * a.w - 4.0);
     if i.is_multiple_of(3) {
-        let facet =
-            Facet { origin: Vec3::new(b.x, b.y, b.z), radius: 0.5 + b.w, ..Facet::zeroed() };
+        let outline =
+            Outline { origin: Vec3::new(b.x, b.y, b.z), radius: 0.5 + b.w, ..Outline::zeroed() };
         let turn = c.x * 6.0;
-        let place = (t * turn.cos() + s * turn.sin()) * (0.999 * c.y.sqrt() * facet.radius);
-        return (facet, facet.origin + place, normal, radius);
+        let place = (t * turn.cos() + s * turn.sin()) * (0.999 * c.y.sqrt() * outline.radius);
+        return (outline, outline.origin + place, normal, radius);
     }
     // skewed, some of them slim
     let (u, v) = (t * (0.05 + 2.0 * b.x) + s * b.y, s * (0.3 + b.z) + t * (b.w - 0.5));
@@ -66,42 +66,43 @@ fn case(i: u32) -> (Facet, Vec3, Vec3, f32) {
 
 /// Theory: the share is the area that disc and outline have in common over the disc's: counting
 /// points that are spread evenly over the disc gives it to a few times their spacing times the
-/// outline's length, below 0.004 here. A facet with an edge five hundredths longer is noticed.
+/// outline's length, below 0.004 here. A outline with an edge five hundredths longer is noticed.
 #[test]
 fn shares_are_areas() {
     let mut noticed = 0;
     for i in 0..300 {
-        let (facet, position, normal, radius) = case(i);
-        let exact = counted(&facet, position, normal, radius);
+        let (outline, position, normal, radius) = case(i);
+        let exact = counted(&outline, position, normal, radius);
         for side in [normal, -normal] {
-            let share = f64::from(facet_share(&facet, position, side, radius));
+            let share = f64::from(outline_share(&outline, position, side, radius));
             assert!(
                 (share - exact).abs() < 0.004,
-                "{i}: {share} and {exact} of {facet:?}, radius {radius}"
+                "{i}: {share} and {exact} of {outline:?}, radius {radius}"
             );
         }
-        let u = facet.u * 1.05;
-        let longer = parallelogram(facet.origin, u, facet.v);
-        let longer = if facet.radius > 0.0 {
-            Facet { radius: 1.05 * facet.radius, ..facet }
+        let u = outline.u * 1.05;
+        let longer = parallelogram(outline.origin, u, outline.v);
+        let longer = if outline.radius > 0.0 {
+            Outline { radius: 1.05 * outline.radius, ..outline }
         } else {
             longer
         };
-        let wrong = f64::from(facet_share(&longer, position, normal, radius));
+        let wrong = f64::from(outline_share(&longer, position, normal, radius));
         noticed += u32::from((wrong - exact).abs() >= 0.004);
     }
     assert!(noticed > 100, "{noticed}");
 }
 
 /// Theory: at a corner of a rectangle a quarter of the disc is covered, at an edge a half, at a
-/// distance of x radii from an edge 1 - (acos x - x sqrt(1 - x^2)) / pi; of a facet within the disc
+/// distance of x radii from an edge 1 - (acos x - x sqrt(1 - x^2)) / pi; of a outline within the disc
 /// all of it. For a circle far larger than the disc the edge is a parabola, which takes 1 / (3 pi
 /// R) from the half.
 #[test]
 fn shares_in_closed_form() {
     let square = parallelogram(Vec3::ZERO, 2.0 * Vec3::X, 2.0 * Vec3::Y);
-    let share =
-        |x: f32, y: f32, r: f32| f64::from(facet_share(&square, Vec3::new(x, y, 0.0), Vec3::Z, r));
+    let share = |x: f32, y: f32, r: f32| {
+        f64::from(outline_share(&square, Vec3::new(x, y, 0.0), Vec3::Z, r))
+    };
     for r in [1e-5, 1e-3, 0.5] {
         assert!((share(0.0, 0.0, r) - 0.25).abs() < 1e-6);
         assert!((share(1.0, 2.0, r) - 0.5).abs() < 1e-6);
@@ -113,8 +114,8 @@ fn shares_in_closed_form() {
     }
     assert!((share(0.2, 1.7, 50.0) / (4.0 / (PI * 2500.0)) - 1.0).abs() < 1e-4);
     for size in [20f32, 29.0, 31.0, 1e3, 1e5] {
-        let circle = Facet { radius: size, ..Facet::zeroed() };
-        let at = f64::from(facet_share(&circle, Vec3::X * size, Vec3::Z, 1.0));
+        let circle = Outline { radius: size, ..Outline::zeroed() };
+        let at = f64::from(outline_share(&circle, Vec3::X * size, Vec3::Z, 1.0));
         let exact = 0.5 - 1.0 / (3.0 * PI * f64::from(size));
         assert!((at - exact).abs() < 0.01 / f64::from(size) + 2e-6, "{size}: {at} and {exact}");
     }
@@ -122,7 +123,7 @@ fn shares_in_closed_form() {
 
 /// Floor and wall of a room, and what reaches a point of the floor.
 struct Room {
-    facets: Vec<Facet>,
+    outlines: Vec<Outline>,
     records: Vec<PhotonRecord>,
     radius: f32,
 }
@@ -144,14 +145,14 @@ impl Room {
             PhotonRecord { position, key, flux: Vec3::splat(flux), direction: towards }
         });
         let skewed = parallelogram(Vec3::ZERO, Vec3::new(0.3, 0.0, 0.9), Vec3::new(0.8, 0.0, 0.1));
-        let circles = [0.5, 0.05, 4.0].map(|radius| Facet {
+        let circles = [0.5, 0.05, 4.0].map(|radius| Outline {
             origin: Vec3::new(0.4, 0.0, 0.5),
             radius,
             error: 1e-6,
-            ..Facet::zeroed()
+            ..Outline::zeroed()
         });
-        let facets = [floor, skewed].into_iter().chain(circles).collect();
-        Self { facets, records: records.collect(), radius }
+        let outlines = [floor, skewed].into_iter().chain(circles).collect();
+        Self { outlines, records: records.collect(), radius }
     }
 
     fn dispatch(&self) -> Dispatch {
@@ -159,14 +160,14 @@ impl Room {
         Dispatch { mask: 4095, inv_cell, scale_sq: 1.0, eye_samples: 1, ..Dispatch::zeroed() }
     }
 
-    fn point(&self, x: f32, z: f32, facet: u32) -> VisiblePoint {
+    fn point(&self, x: f32, z: f32, outline: u32) -> VisiblePoint {
         let up = oct_encode(Vec3::Y);
         let position = Vec3::new(x, 0.0, z);
         let weight = Vec3::ONE;
         VisiblePoint {
             position,
             weight,
-            facet,
+            outline,
             radius: self.radius,
             normal: up,
             shading: up,
@@ -178,21 +179,21 @@ impl Room {
         let (starts, sorted) = build_grid(&self.dispatch(), self.records.clone());
         let one = |point: &VisiblePoint| {
             let mut gathered = Gathered::zeroed();
-            gather(&self.facets, &self.dispatch(), point, 1.0, &starts, &sorted, &mut gathered);
+            gather(&self.outlines, &self.dispatch(), point, 1.0, &starts, &sorted, &mut gathered);
             gathered
         };
         points.iter().map(one).collect()
     }
 }
 
-/// Theory: with the photons of its facet alone, over the covered area, a point anywhere on the
+/// Theory: with the photons of its outline alone, over the covered area, a point anywhere on the
 /// floor sees irradiance one, to 3 deviations of the count; nor does its ring find a bias. Without
-/// the facet the corner sees a quarter of it, and what lies beyond.
+/// the outline the corner sees a quarter of it, and what lies beyond.
 #[test]
 fn edges_see_even_light() {
     let room = Room::new(0.1, 400_000);
     let places = [(0.0, 0.0), (0.0, 1.0), (0.001, 0.5), (0.03, 0.97), (0.5, 0.5), (1.0, 0.3)];
-    let points = |facet| places.map(|(x, z)| room.point(x, z, facet));
+    let points = |outline| places.map(|(x, z)| room.point(x, z, outline));
     let area = PI * 0.01;
     for (gathered, (x, z)) in room.gather(&points(0)).iter().zip(places) {
         let irradiance = f64::from(gathered.flux.x) / area;
@@ -234,12 +235,12 @@ fn walls_part_the_light() {
         PhotonRecord { position, key, flux, direction: towards }
     };
     room.records = (0..photons).map(record).collect();
-    let wall = |origin, u, v| Facet { origin, u, v, ..Facet::zeroed() };
-    let walls = room.facets.len() as u32;
-    room.facets.push(wall(Vec3::new(0.5, 0.0, 0.0), Vec3::Z, Vec3::Y));
-    room.facets.push(wall(Vec3::new(0.5, 0.0, 0.5), Vec3::X * 0.5, Vec3::Y));
-    room.facets.push(wall(Vec3::new(0.0, 0.0, 0.25), Vec3::X, -Vec3::Y));
-    room.facets[0].walls = walls << WALL_BITS | 3;
+    let wall = |origin, u, v| Outline { origin, u, v, ..Outline::zeroed() };
+    let walls = room.outlines.len() as u32;
+    room.outlines.push(wall(Vec3::new(0.5, 0.0, 0.0), Vec3::Z, Vec3::Y));
+    room.outlines.push(wall(Vec3::new(0.5, 0.0, 0.5), Vec3::X * 0.5, Vec3::Y));
+    room.outlines.push(wall(Vec3::new(0.0, 0.0, 0.25), Vec3::X, -Vec3::Y));
+    room.outlines[0].walls = walls << WALL_BITS | 3;
     let places = [
         ((0.49, 0.3), 1.0),
         ((0.51, 0.3), 2.0),
@@ -261,7 +262,7 @@ fn walls_part_the_light() {
         let ring = f64::from(gathered.ring) / area / expected;
         assert!(ring.abs() < 4.0 * deviation, "({x}, {z}): ring {ring}, deviation {deviation}");
     }
-    room.facets[0].walls = 0;
+    room.outlines[0].walls = 0;
     let open = f64::from(room.gather(&points)[0].flux.x) / area;
     assert!(open > 1.3, "without walls: {open}");
 }
@@ -272,11 +273,11 @@ fn walls_part_the_light() {
 fn the_driver_gathers_the_same() {
     // few enough that the driver stops no loop
     let mut room = Room::new(0.1, 40_000);
-    let wall = |origin, u| Facet { origin, u, v: Vec3::Y, ..Facet::zeroed() };
-    let walls = room.facets.len() as u32 + 1;
-    room.facets.push(Facet { walls: walls << WALL_BITS | 2, ..room.facets[0] });
-    room.facets.push(wall(Vec3::new(0.05, 0.0, 0.0), Vec3::new(0.1, 0.0, 0.9)));
-    room.facets.push(wall(Vec3::new(0.0, 0.0, 0.3), Vec3::new(0.7, 0.0, 0.1)));
+    let wall = |origin, u| Outline { origin, u, v: Vec3::Y, ..Outline::zeroed() };
+    let walls = room.outlines.len() as u32 + 1;
+    room.outlines.push(Outline { walls: walls << WALL_BITS | 2, ..room.outlines[0] });
+    room.outlines.push(wall(Vec3::new(0.05, 0.0, 0.0), Vec3::new(0.1, 0.0, 0.9)));
+    room.outlines.push(wall(Vec3::new(0.0, 0.0, 0.3), Vec3::new(0.7, 0.0, 0.1)));
     let points: Vec<VisiblePoint> = (0..4096)
         .map(|i| {
             let u = random(i);
@@ -286,7 +287,7 @@ fn the_driver_gathers_the_same() {
     let gpu = Gpu::open(&software::software()).unwrap();
     let mut recorder = Recorder::new(&gpu).unwrap();
     let features =
-        [Feature::Photons, Feature::Facets, Feature::Disc].into_iter().collect::<Features>();
+        [Feature::Photons, Feature::Outlines, Feature::Disc].into_iter().collect::<Features>();
     let shader = compose(Kernel::Gather, &features, &SceneTables::default()).unwrap();
     let program = Program::of_shader(&gpu, Kernel::Gather, &features, shader).unwrap();
     let (starts, _) = build_grid(&room.dispatch(), room.records.clone());
@@ -301,7 +302,7 @@ fn the_driver_gathers_the_same() {
         upload(Buffer::Counters, &[0; 32]),
         upload(Buffer::Starts, cast_slice(&starts)),
         upload(Buffer::Sorted, cast_slice(&sorted)),
-        upload(Buffer::Facets, cast_slice(&room.facets)),
+        upload(Buffer::Outlines, cast_slice(&room.outlines)),
         upload(Buffer::Gathered, cast_slice(&vec![Gathered::zeroed(); points.len()])),
     ];
     let find = |which: Buffer| buffers.iter().find(|(buffer, _)| *buffer == which).map(|(_, b)| b);
@@ -313,8 +314,8 @@ fn the_driver_gathers_the_same() {
     let (mut crossed, mut cut) = (0, 0);
     for ((point, ours), theirs) in points.iter().zip(room.gather(&points)).zip(found) {
         let clip = clip_at(
-            &room.facets,
-            point.facet,
+            &room.outlines,
+            point.outline,
             point.position,
             oct_decode(point.normal),
             point.radius,

@@ -1,4 +1,4 @@
-// Facets, flat outlines: twin of src/shapes/facet.rs, where each field is explained.
+// Outlines, flat outlines: twin of src/shapes/outline.rs, where each field is explained.
 
 const SHARE_MIN: f32 = 1e-6;
 const DEPTH: f32 = 0.02;
@@ -10,7 +10,7 @@ const CUTS: u32 = 4u;
 const WALL_BITS: u32 = 6u;
 const CORNERS: u32 = 12u;
 
-struct Facet {
+struct Outline {
     origin: vec3f,
     radius: f32,
     u: vec3f,
@@ -83,18 +83,18 @@ fn discs_area(distance: f32, radius: f32) -> f32 {
     return near + 0.6666667 * (y * y) * (y / radius);
 }
 
-fn facet_share(facet: Facet, position: vec3f, normal: vec3f, radius: f32) -> f32 {
+fn outline_share(outline: Outline, position: vec3f, normal: vec3f, radius: f32) -> f32 {
     let scale = 1.0 / radius;
-    let d = (facet.origin - position) * scale;
+    let d = (outline.origin - position) * scale;
     var area: f32;
-    if facet.radius > 0.0 {
-        area = discs_area(sqrt(dot(d, d)), facet.radius * scale);
+    if outline.radius > 0.0 {
+        area = discs_area(sqrt(dot(d, d)), outline.radius * scale);
     } else {
-        let first = unit(facet.u);
+        let first = unit(outline.u);
         let second = cross(normal, first);
         let corner = vec2f(dot(d, first), dot(d, second));
-        let v = vec2f(dot(facet.v, first), dot(facet.v, second)) * scale;
-        area = parallelogram_area(corner, dot(facet.u, first) * scale, v);
+        let v = vec2f(dot(outline.v, first), dot(outline.v, second)) * scale;
+        area = parallelogram_area(corner, dot(outline.u, first) * scale, v);
     }
     return clamp(area / PI, SHARE_MIN, 1.0);
 }
@@ -121,10 +121,10 @@ fn cut_polygon(polygon: ptr<function, array<vec2f, CORNERS>>, count: u32, normal
     return kept;
 }
 
-fn cut_share(facet: Facet, clip: Clip, position: vec3f, normal: vec3f, radius: f32) -> f32 {
-    let first = unit(facet.u);
+fn cut_share(outline: Outline, clip: Clip, position: vec3f, normal: vec3f, radius: f32) -> f32 {
+    let first = unit(outline.u);
     let second = cross(normal, first);
-    let d = position - facet.origin;
+    let d = position - outline.origin;
     let scale = 1.0 / radius;
     var cuts = clip.cuts;
     var polygon: array<vec2f, CORNERS>;
@@ -134,7 +134,7 @@ fn cut_share(facet: Facet, clip: Clip, position: vec3f, normal: vec3f, radius: f
     polygon[3] = vec2f(-2.0, 2.0);
     var count = 4u;
     for (var k = 0u; k < 4u + clip.count; k++) {
-        var toward = facet.dual_u;
+        var toward = outline.dual_u;
         var distance = 0.0;
         if k >= 4u {
             let cut = cuts[k - 4u];
@@ -142,7 +142,7 @@ fn cut_share(facet: Facet, clip: Clip, position: vec3f, normal: vec3f, radius: f
             distance = cut.w;
         } else {
             if k >= 2u {
-                toward = facet.dual_v;
+                toward = outline.dual_v;
             }
             let place = dot(d, toward);
             let inverse = 1.0 / sqrt(dot(toward, toward));
@@ -171,11 +171,11 @@ fn cut_share(facet: Facet, clip: Clip, position: vec3f, normal: vec3f, radius: f
     return clamp(abs(area) / PI, SHARE_MIN, 1.0);
 }
 
-fn find_cuts(facet: Facet, position: vec3f, normal: vec3f, clip: ptr<function, Clip>, radius: f32) {
-    let first = facet.walls >> WALL_BITS;
-    let last = first + (facet.walls & ((1u << WALL_BITS) - 1u));
+fn find_cuts(outline: Outline, position: vec3f, normal: vec3f, clip: ptr<function, Clip>, radius: f32) {
+    let first = outline.walls >> WALL_BITS;
+    let last = first + (outline.walls & ((1u << WALL_BITS) - 1u));
     for (var i = first; i < last; i++) {
-        let wall = facets[i];
+        let wall = outlines[i];
         let d = wall.origin - position;
         let rise = dot(d, wall.v);
         if (dot(wall.v, normal) > 0.5 || wall.radius > 0.0) && abs(rise) <= (*clip).depth {
@@ -185,7 +185,7 @@ fn find_cuts(facet: Facet, position: vec3f, normal: vec3f, clip: ptr<function, C
                 let across = unit(cross(wall.v, wall.u));
                 let distance = dot(d, across);
                 let toward = across * select(1.0, -1.0, distance < 0.0);
-                (*clip).cuts[(*clip).count] = vec4f(toward, abs(distance) - MARGIN * facet.error);
+                (*clip).cuts[(*clip).count] = vec4f(toward, abs(distance) - MARGIN * outline.error);
                 (*clip).count += 1u;
             }
         }
@@ -207,31 +207,31 @@ fn clip_at(number: u32, position: vec3f, normal: vec3f, radius: f32) -> Clip {
     if number == NONE {
         return clip;
     }
-    let facet = facets[number];
-    let d = position - facet.origin;
+    let outline = outlines[number];
+    let d = position - outline.origin;
     //#if disc
-    let round = facet.radius > 0.0;
+    let round = outline.radius > 0.0;
     //#else
     let round = false;
     //#end
     if round {
-        let within = facet.radius - radius;
+        let within = outline.radius - radius;
         clip.crossed = within <= 0.0 || dot(d, d) > within * within;
     } else {
-        let s = dot(d, facet.dual_u);
-        let t = dot(d, facet.dual_v);
+        let s = dot(d, outline.dual_u);
+        let t = dot(d, outline.dual_v);
         let margin_s = max(min(s, 1.0 - s), 0.0);
         let margin_t = max(min(t, 1.0 - t), 0.0);
         let radius_sq = radius * radius;
-        clip.crossed = margin_s * margin_s < radius_sq * dot(facet.dual_u, facet.dual_u)
-            || margin_t * margin_t < radius_sq * dot(facet.dual_v, facet.dual_v);
+        clip.crossed = margin_s * margin_s < radius_sq * dot(outline.dual_u, outline.dual_u)
+            || margin_t * margin_t < radius_sq * dot(outline.dual_v, outline.dual_v);
     }
-    clip.depth = DEPTH * radius + 2.0 * (facet.error + PLANE_ERROR * max_abs(position));
-    find_cuts(facet, position, normal, &clip, radius);
+    clip.depth = DEPTH * radius + 2.0 * (outline.error + PLANE_ERROR * max_abs(position));
+    find_cuts(outline, position, normal, &clip, radius);
     if clip.count > 0u {
         clip.crossed = true;
         for (var k = 0u; k < 2u; k++) {
-            let share = cut_share(facet, clip, position, normal, select(radius, 0.70710677 * radius, k == 1u));
+            let share = cut_share(outline, clip, position, normal, select(radius, 0.70710677 * radius, k == 1u));
             clip.whole = select(clip.whole, 1.0 / share, k == 0u);
             clip.inner = select(clip.inner, 1.0 / share, k == 1u);
         }
@@ -240,7 +240,7 @@ fn clip_at(number: u32, position: vec3f, normal: vec3f, radius: f32) -> Clip {
     if clip.crossed {
         // a loop, so that the function is there once
         for (var k = 0u; k < 2u; k++) {
-            let share = facet_share(facet, position, normal, select(radius, 0.70710677 * radius, k == 1u));
+            let share = outline_share(outline, position, normal, select(radius, 0.70710677 * radius, k == 1u));
             clip.whole = select(clip.whole, 1.0 / share, k == 0u);
             clip.inner = select(clip.inner, 1.0 / share, k == 1u);
         }
@@ -248,16 +248,16 @@ fn clip_at(number: u32, position: vec3f, normal: vec3f, radius: f32) -> Clip {
     return clip;
 }
 
-fn on_facet(facet: Facet, position: vec3f) -> bool {
-    let d = position - facet.origin;
+fn in_outline(outline: Outline, position: vec3f) -> bool {
+    let d = position - outline.origin;
     //#if disc
-    if facet.radius > 0.0 {
-        return dot(d, d) < facet.radius * facet.radius * (1.0 - RIM);
+    if outline.radius > 0.0 {
+        return dot(d, d) < outline.radius * outline.radius * (1.0 - RIM);
     }
     //#end
-    let s = dot(d, facet.dual_u);
-    let t = dot(d, facet.dual_v);
-    let low_s = facet.margin_s;
-    let low_t = facet.margin_t;
+    let s = dot(d, outline.dual_u);
+    let t = dot(d, outline.dual_v);
+    let low_s = outline.margin_s;
+    let low_t = outline.margin_t;
     return s > low_s && s < 1.0 - low_s && t > low_t && t < 1.0 - low_t;
 }

@@ -1,12 +1,12 @@
 //! Outlines of the flat regions of meshes: a box or a room that was modelled as triangles gets the
-//! facets that a `box` has.
+//! outlines that a `box` has.
 //!
-//! A region is a maximal set of coplanar triangles that share edges. It gets a facet if all of its
+//! A region is a maximal set of coplanar triangles that share edges. It gets a outline if all of its
 //! boundary is open or a crease. Triangles of curved surfaces are in no region.
 
 use super::materials::Bsdf;
 use super::real::{Real, ToDouble, ToReal, Vec3};
-use super::shapes::facet::with_margins;
+use super::shapes::outline::with_margins;
 use super::tables::*;
 use bytemuck::Zeroable;
 use glam::DVec3;
@@ -15,7 +15,7 @@ use std::collections::HashMap;
 
 /// Scenes with more triangles get no outlines.
 const TRIANGLES: usize = 1 << 20;
-/// Maximum number of regions that get a facet, the largest ones.
+/// Maximum number of regions that get a outline, the largest ones.
 const REGIONS: usize = 256;
 /// Maximum number of edges of a region beside its bounding rectangle, the longest ones.
 const EDGES: usize = 31;
@@ -32,7 +32,7 @@ pub struct Region {
     /// Its triangles.
     pub triangles: Vec<u32>,
     /// Its bounding rectangle.
-    pub facet: Facet,
+    pub outline: Outline,
     /// A point of its plane.
     pub point: DVec3,
     /// Unit normal of its plane.
@@ -243,16 +243,16 @@ fn region(surface: &Surface, triangles: Vec<u32>, sides: &[(u32, u8)]) -> Option
     {
         return None;
     }
-    let facet = with_margins(Facet {
+    let outline = with_margins(Outline {
         origin: (point + u * low[0] + v * low[1]).to_real(),
         u: (u * width).to_real(),
         v: (v * height).to_real(),
         dual_u: (u / width).to_real(),
         dual_v: (v / height).to_real(),
         error: (4.0 * error) as Real,
-        ..Facet::zeroed()
+        ..Outline::zeroed()
     });
-    Some(Region { triangles, facet, point, normal, edges })
+    Some(Region { triangles, outline, point, normal, edges })
 }
 
 /// The boundary, with chains of collinear edges joined.
@@ -312,11 +312,11 @@ fn extremes(points: &[DVec3]) -> (DVec3, DVec3) {
     (from, farthest(from))
 }
 
-/// Adds a facet for each region and names it in the attributes of the region's triangles.
-pub fn add_facets(out: &mut Scene, regions: &[Region]) {
+/// Adds a outline for each region and names it in the attributes of the region's triangles.
+pub fn add_outlines(out: &mut Scene, regions: &[Region]) {
     for region in regions {
-        let facet = out.facets.len() as u32;
-        out.facets.push(region.facet);
+        let outline = out.outlines.len() as u32;
+        out.outlines.push(region.outline);
         for t in &region.triangles {
             let triangle = &mut out.triangles[*t as usize];
             if triangle.attributes == NONE {
@@ -324,7 +324,7 @@ pub fn add_facets(out: &mut Scene, regions: &[Region]) {
                 out.attributes.push(Attributes { n0: Vec3::ZERO, ..Attributes::zeroed() });
             }
             let attributes = &mut out.attributes[triangle.attributes as usize];
-            attributes.facet_smooth = (facet + 1) << 1 | (attributes.facet_smooth & 1);
+            attributes.outline_smooth = (outline + 1) << 1 | (attributes.outline_smooth & 1);
         }
     }
 }
