@@ -37,7 +37,7 @@ fn photons_in_a_disc(bencher: Bencher, photons: u32) {
         mask,
         inv_cell: 0.5 / radius,
         scale_sq: 1.0,
-        families: 1,
+        classes: 1,
         ..Dispatch::zeroed()
     };
     let mut on_the_wall = || Vec3::new(random(), 0.0, random());

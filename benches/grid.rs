@@ -41,7 +41,7 @@ fn lists(count: u32) -> (Dispatch, Vec<RecordList>) {
         capacity: count,
         mask: count - 1,
         inv_cell: 1.0,
-        families: 1,
+        classes: 1,
         ..Dispatch::zeroed()
     };
     (d, records.chunks(LIST).map(list).collect())

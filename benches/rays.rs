@@ -3,7 +3,7 @@
 
 mod workload;
 
-use caustica::build::kdtree::{self, Primitive};
+use caustica::accel::kdtree::{self, Primitive};
 use caustica::real::Real;
 use caustica::shapes::intersect::{
     intersect_primitive, intersect_scene, intersect_scene_many, occluded,

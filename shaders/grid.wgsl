@@ -17,8 +17,8 @@ fn grid_bucket(cell: vec3i, mask: u32) -> u32 {
     return (h + u32(cell.x)) & mask;
 }
 
-fn grid_code(cell: vec3i, family: u32) -> u32 {
-    return (u32(cell.y) & 0x3ffu) | ((u32(cell.z) & 0x3ffu) << 10u) | (family << 20u);
+fn grid_code(cell: vec3i, photon_class: u32) -> u32 {
+    return (u32(cell.y) & 0x3ffu) | ((u32(cell.z) & 0x3ffu) << 10u) | (photon_class << 20u);
 }
 
 //#if grid_count || grid_scatter || grid_sort || grid_sort_long

@@ -1,6 +1,6 @@
 //! Errors of what is compiled for f32 and for f64.
 
-use crate::build::profile::ProfileError;
+use crate::accel::profile::ProfileError;
 
 /// Why a valid scene cannot be flattened.
 #[derive(Debug, thiserror::Error)]

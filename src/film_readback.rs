@@ -35,7 +35,7 @@ impl Readout {
         ErrorMap { width: self.width, pixels: pixels.collect(), glint }
     }
 
-    /// The same where `early` and `earlier` are the means over the first `parts` passes.
+    /// The same where `mean_at_pow2` and `mean_at_half_pow2` are the means over the first `parts` passes.
     pub fn errors_by_parts(&self, film: &[FilmPixel], passes: u32, parts: &[[u32; 2]]) -> ErrorMap {
         let pixels =
             film.iter().zip(parts).map(|(p, parts)| self.error(p, counted(p, passes), *parts));
@@ -49,7 +49,7 @@ impl Readout {
             return PixelError::UNKNOWN;
         }
         let luminance = unit * luminance_of(mean(p));
-        let [early, earlier] = [p.early, p.earlier].map(|x| unit * f64::from(x));
+        let [early, earlier] = [p.mean_at_pow2, p.mean_at_half_pow2].map(|x| unit * f64::from(x));
         let variance = unit * unit * f64::from(p.spread.max(0.0)) / f64::from(n - 1);
         PixelError {
             luminance,
@@ -59,8 +59,8 @@ impl Readout {
                 partition(luminance, earlier, parts[1], n),
             ],
             halves: unit * f64::from(p.halves),
-            ring: unit * f64::from(p.ring),
-            ring_swing: unit * f64::from(p.ring_swing),
+            bias_probe: unit * f64::from(p.bias_probe),
+            bias_probe_alternating: unit * f64::from(p.bias_probe_alternating),
         }
     }
 
@@ -84,7 +84,7 @@ pub fn counted(pixel: &FilmPixel, passes: u32) -> u32 {
     pixel.rejected.iter().fold(passes, |left, rejected| left.saturating_sub(*rejected))
 }
 
-/// Passes in `early` and `earlier` after `n` passes of one render.
+/// Passes in `mean_at_pow2` and `mean_at_half_pow2` after `n` passes of one render.
 pub fn early_parts(n: u32) -> [u32; 2] {
     let part = early_passes(n);
     [part, part / 2]

@@ -30,8 +30,8 @@ pub fn grid_bucket(cell: IVec3, mask: u32) -> u32 {
     h.wrapping_add(cell.x as u32) & mask
 }
 
-/// A row along x and a family in one word. Rows less than 1024 apart have different codes, so that
+/// A row along x and a class in one word. Rows less than 1024 apart have different codes, so that
 /// two that share a bucket are told apart by whoever visits fewer in a line.
-pub fn grid_code(cell: IVec3, family: u32) -> u32 {
-    (cell.y as u32 & 0x3ff) | (cell.z as u32 & 0x3ff) << 10 | family << 20
+pub fn grid_code(cell: IVec3, photon_class: u32) -> u32 {
+    (cell.y as u32 & 0x3ff) | (cell.z as u32 & 0x3ff) << 10 | photon_class << 20
 }

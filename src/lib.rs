@@ -60,7 +60,7 @@
 //!
 //! Modules depend on one another one way: [`stage`], [`compilation`], [`storage`], [`srgb`],
 //! [`memory`], [`real`] and [`math`], then [`tables`], [`shapes`], [`materials`], [`lights`],
-//! [`camera`] and [`grid`], then [`scene`], [`build`], [`limits`], [`pack`], then [`kernels`],
+//! [`camera`] and [`grid`], then [`scene`], [`accel`], [`prepare`], [`limits`], [`pack`], then [`kernels`],
 //! [`radius`], [`sobol`], [`probe`], [`film_readback`], [`plan`], then [`cpu`] and [`gpu`], then
 //! [`identity`], [`device`], [`failover`], [`quality`], [`calibration`], [`observers`], [`render`] and
 //! [`checkpoint`], and last [`bench`](mod@bench), [`ablation`], [`validation`], [`study`] and, where it is
@@ -68,8 +68,8 @@
 //! same in f64.
 
 pub mod ablation;
+pub mod accel;
 pub mod bench;
-pub mod build;
 pub mod calibration;
 pub mod camera;
 pub mod checkpoint;
@@ -97,6 +97,7 @@ pub mod memory;
 pub mod observers;
 pub mod pack;
 pub mod plan;
+pub mod prepare;
 #[cfg(feature = "preview")]
 pub mod preview;
 pub mod probe;

@@ -4,8 +4,8 @@
 //! coordinate by 6e-8 of that. The thresholds are those up to which the rows of docs/stability.md
 //! hold.
 
-use crate::build::normalize::{Normalization, extent};
-use crate::build::orientation::faces_inward;
+use crate::prepare::normalize::{Normalization, extent};
+use crate::prepare::orientation::faces_inward;
 use crate::scene::{Finding, Light, MaterialKind, Places, Scene, ShapeKind};
 use crate::settings::{Radius, RenderSettings};
 use glam::DVec3;

@@ -1,5 +1,5 @@
 //! The flattened scene: plain data that the kernels of both engines read, in scene space (the host
-//! has moved the scene to its own centre and scaled it near one; see [`crate::build::normalize`]).
+//! has moved the scene to its own centre and scaled it near one; see [`crate::prepare::normalize`]).
 //!
 //! Each struct is the twin of the WGSL struct of the same name in `shaders/tables.wgsl`; a test
 //! compares the layouts by name. The short tables travel in one storage buffer, `scene`; the long

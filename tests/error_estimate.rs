@@ -178,7 +178,7 @@ fn ring(radius: f32, light: impl Fn(f64, f64) -> f64) -> f64 {
     let mut gathered = Gathered::zeroed();
     gather(&[], &d, &point, d.scale_sq, &starts, &sorted, &mut gathered);
     assert!(gathered.count > 100_000);
-    f64::from(gathered.ring) / (PI * f64::from(radius).powi(2))
+    f64::from(gathered.bias_probe) / (PI * f64::from(radius).powi(2))
 }
 
 /// Theory: of light E + c rho^2 the disc of radius r sees E + c r^2 / 2 and the inner half c r^2 /
@@ -252,7 +252,7 @@ fn promises_are_kept() {
         ..RenderSettings::default()
     };
     let quarter = |p: &mut PixelError| p.deviations = p.deviations.map(|d| 0.5 * d);
-    let no_bias = |p: &mut PixelError| p.ring = 0.0;
+    let no_bias = |p: &mut PixelError| p.bias_probe = 0.0;
     for (name, settings, spoil) in
         [("mesh", &noisy, quarter as fn(&mut PixelError)), ("cornell", &biased, no_bias)]
     {

@@ -152,7 +152,7 @@ fn hosts() -> Vec<Layout> {
             radius_max,
             strata,
             passes_done,
-            families,
+            classes,
             indirect_radius,
             inv_cell_indirect,
             window_first,
@@ -174,18 +174,18 @@ fn hosts() -> Vec<Layout> {
             bsdf
         }),
         layout!(PhotonRecord { position, key, flux, direction }),
-        layout!(Gathered { flux, count, caustic, ring }),
+        layout!(Gathered { flux, count, caustic, bias_probe }),
         layout!(Statistics { scale_sq, drop, count_low, count_high }),
         layout!(FilmPixel {
             mean,
             spread,
             carry,
-            early,
+            mean_at_pow2,
             rejected,
-            ring,
-            ring_swing,
+            bias_probe,
+            bias_probe_alternating,
             halves,
-            earlier
+            mean_at_half_pow2
         }),
     ]
 }

@@ -202,13 +202,17 @@ fn edges_see_even_light() {
             (irradiance - 1.0).abs() < 3.0 * deviation,
             "({x}, {z}): {irradiance} +- {deviation}"
         );
-        let ring = f64::from(gathered.ring) / area;
+        let ring = f64::from(gathered.bias_probe) / area;
         assert!(ring.abs() < 4.0 * deviation, "({x}, {z}): ring {ring}, deviation {deviation}");
     }
     let unclipped = room.gather(&points(NONE));
     assert!((f64::from(unclipped[0].flux.x) / area - 1.0).abs() > 0.3);
     let deviation = 1.0 / f64::from(unclipped[3].count).sqrt();
-    assert!((f64::from(unclipped[3].ring) / area).abs() > 8.0 * deviation, "{:?}", unclipped[3]);
+    assert!(
+        (f64::from(unclipped[3].bias_probe) / area).abs() > 8.0 * deviation,
+        "{:?}",
+        unclipped[3]
+    );
 }
 
 /// Theory: where a wall stands on the floor, a point sees the even light of its own side, whatever
@@ -259,7 +263,7 @@ fn walls_part_the_light() {
             (irradiance - 1.0).abs() < 3.5 * deviation,
             "({x}, {z}): {irradiance} +- {deviation}"
         );
-        let ring = f64::from(gathered.ring) / area / expected;
+        let ring = f64::from(gathered.bias_probe) / area / expected;
         assert!(ring.abs() < 4.0 * deviation, "({x}, {z}): ring {ring}, deviation {deviation}");
     }
     room.outlines[0].walls = 0;

@@ -154,8 +154,8 @@ macro_rules! problems {
     ($name:ident, $core:path) => {
         mod $name {
             use bytemuck::Zeroable;
-            use caustica::build::profile::Placement;
-            use core::build::revolution::{Attributes, RevolutionTables};
+            use caustica::accel::profile::Placement;
+            use core::accel::revolution::{Attributes, RevolutionTables};
             use core::real::{Real, Vec3};
             use core::shapes::ray::{Hit, Ray};
             use core::shapes::revolution::intersect_patch;

@@ -2,7 +2,7 @@
 
 mod revolution;
 
-use caustica::build::revolution::Placement;
+use caustica::accel::revolution::Placement;
 use caustica::math::FAR;
 use caustica::shapes::revolution::{BRACKETED, PatchHit, intersect_patch, patch_miss};
 use glam::Vec3;

@@ -3,7 +3,7 @@
 
 mod revolution;
 
-use caustica::build::revolution::{Attributes, Placement, ProfileError, RevolutionTables};
+use caustica::accel::revolution::{Attributes, Placement, ProfileError, RevolutionTables};
 use caustica::math::FAR;
 use caustica::shapes::revolution::{intersect_patch, revolution_surface, ring_point};
 use caustica::shapes::revolution_roots::newton_step;

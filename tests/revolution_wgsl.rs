@@ -6,7 +6,7 @@ mod device;
 mod revolution;
 
 use bytemuck::{Pod, Zeroable};
-use caustica::build::revolution::Placement;
+use caustica::accel::revolution::Placement;
 use caustica::math::FAR;
 use caustica::math::trig::{arctan2, exponential, logarithm, power, sin_cos};
 use caustica::shapes::revolution::{

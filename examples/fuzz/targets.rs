@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use caustica::build::tessellate::{Fineness, tessellate};
+use caustica::accel::tessellate::{Fineness, tessellate};
 use caustica::checkpoint::Checkpoint;
 use caustica::scene::{self, Allowance, Loaded, SceneErrors};
 use caustica::{checkpoint, limits, pack, plan};

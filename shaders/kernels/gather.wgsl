@@ -56,26 +56,26 @@ fn gather(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups) gr
     var found = Gathered();
     let wider_sq = dispatch.indirect_radius * dispatch.indirect_radius;
     // a loop, so that the function is there once: software drivers write out every call
-    var family = 0u;
+    var photon_class = 0u;
     loop {
-        let one = gather_family(point, frame, family, select(radius_sq, radius_sq * wider_sq, family == 1u));
-        if family == 0u {
+        let one = gather_class(point, frame, photon_class, select(radius_sq, radius_sq * wider_sq, photon_class == 1u));
+        if photon_class == 0u {
             gathered[id].caustic += point.weight * one.flux;
         }
-        found.flux += select(one.flux, one.flux * (1.0 / wider_sq), family == 1u);
+        found.flux += select(one.flux, one.flux * (1.0 / wider_sq), photon_class == 1u);
         found.count += one.count;
-        found.ring += select(one.ring, one.ring * (1.0 / wider_sq), family == 1u);
-        family += 1u;
+        found.bias_probe += select(one.bias_probe, one.bias_probe * (1.0 / wider_sq), photon_class == 1u);
+        photon_class += 1u;
         continuing {
-            break if family == 2u;
+            break if photon_class == 2u;
         }
     }
     //#else
-    let found = gather_family(point, frame, 0u, radius_sq);
+    let found = gather_class(point, frame, 0u, radius_sq);
     //#end
     gathered[id].flux += point.weight * found.flux;
     gathered[id].count += found.count;
-    gathered[id].ring += found.ring;
+    gathered[id].bias_probe += found.bias_probe;
     loops_stopped();
 }
 
@@ -84,9 +84,9 @@ fn disc_reach(normal: vec3f, radius: f32, depth: f32) -> vec3f {
     return sqrt(sine_sq) * radius + abs(normal) * depth;
 }
 
-fn gather_family(point: VisiblePoint, frame: Frame, family: u32, radius_sq: f32) -> Gathered {
+fn gather_class(point: VisiblePoint, frame: Frame, photon_class: u32, radius_sq: f32) -> Gathered {
     //#if split
-    let inv_cell = select(dispatch.inv_cell, dispatch.inv_cell_indirect, family == 1u);
+    let inv_cell = select(dispatch.inv_cell, dispatch.inv_cell_indirect, photon_class == 1u);
     //#else
     let inv_cell = dispatch.inv_cell;
     //#end
@@ -125,7 +125,7 @@ fn gather_family(point: VisiblePoint, frame: Frame, family: u32, radius_sq: f32)
     // where that is asked first
     loop {
         let cell = vec3i(low.x + i32(done), row);
-        let code = grid_code(cell, family);
+        let code = grid_code(cell, photon_class);
         let bucket = grid_bucket(cell, dispatch.mask);
         // a row that passes the table's end goes on at its beginning
         let cells = min(wide - done, dispatch.mask - bucket) + 1u;

@@ -18,12 +18,12 @@ fn photon_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgrou
     var ray = emission.ray;
     var flux = emission.flux;
     //#if far || guided
-    var excess = emission.excess;
+    var relative_flux = emission.relative_flux;
     //#end
     var interior = emission.interior;
     var hidden = 0u;
     var bounce = 0u;
-    var family = 0u;
+    var photon_class = 0u;
     var rays = 0u;
     var end = CUT;
     while bounce <= dispatch.max_bounces && hidden <= HIDDEN_FACES {
@@ -54,16 +54,16 @@ fn photon_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgrou
         if is_specular(p.lobe.bsdf) {
             scattered = scatter_specular(p, interior, u.x, IMPORTANCE);
         } else {
-            scattered = stored_and_scattered(id, bounce, hidden, &family, p, interior, flux, u);
+            scattered = stored_and_scattered(id, bounce, hidden, &photon_class, p, interior, flux, u);
         }
         //#else
-        scattered = stored_and_scattered(id, bounce, hidden, &family, p, interior, flux, u);
+        scattered = stored_and_scattered(id, bounce, hidden, &photon_class, p, interior, flux, u);
         //#end
         let weight = max_component(scattered.weight);
         //#if far || guided
-        let kept = select(excess, max(excess, 1.0), is_specular(p.lobe.bsdf));
+        let kept = select(relative_flux, max(relative_flux, 1.0), is_specular(p.lobe.bsdf));
         let survival = min(weight * kept, 1.0);
-        excess *= weight / survival;
+        relative_flux *= weight / survival;
         //#else
         let survival = min(weight, 1.0);
         //#end
@@ -90,17 +90,17 @@ fn stored_and_scattered(
     id: u32,
     bounce: u32,
     hidden: u32,
-    family: ptr<function, u32>,
+    photon_class: ptr<function, u32>,
     p: ShadingPoint,
     interior: Interior,
     flux: vec3f,
     u: vec4f,
 ) -> Scatter {
-    store_record(id, bounce, hidden, *family, p, flux);
+    store_record(id, bounce, hidden, *photon_class, p, flux);
     let scattered = scatter_rough(p, interior, vec2f(u.x, u.y), IMPORTANCE);
     //#if split
     if is_wide(p.lobe.bsdf) {
-        *family = 1u;
+        *photon_class = 1u;
     }
     //#end
     //#if far
@@ -114,7 +114,7 @@ fn store_record(
     id: u32,
     bounce: u32,
     hidden: u32,
-    family: u32,
+    photon_class: u32,
     p: ShadingPoint,
     flux: vec3f,
 ) {
@@ -125,7 +125,7 @@ fn store_record(
     let stored = true;
     //#end
     if stored && max_component(p.lobe.reflectance) > 0.0 {
-        let key = (id << dispatch.key_bits) | (bounce << 1u) | family;
+        let key = (id << dispatch.key_bits) | (bounce << 1u) | photon_class;
         append(PhotonRecord(p.s.position, key, flux, oct_encode(p.wo)));
     }
 }

@@ -21,7 +21,7 @@ struct Dispatch {
     radius_max: f32,
     strata: u32,
     passes_done: u32,
-    families: u32,
+    classes: u32,
     indirect_radius: f32,
     inv_cell_indirect: f32,
     window_first: u32,
@@ -63,7 +63,7 @@ struct Gathered {
     flux: vec3f,
     count: u32,
     caustic: vec3f,
-    ring: f32,
+    bias_probe: f32,
 }
 
 struct Statistics {
@@ -83,12 +83,12 @@ struct FilmPixel {
     mean: vec3f,
     spread: f32,
     carry: vec3f,
-    early: f32,
+    mean_at_pow2: f32,
     rejected: vec4u,
-    ring: f32,
-    ring_swing: f32,
+    bias_probe: f32,
+    bias_probe_alternating: f32,
     halves: f32,
-    earlier: f32,
+    mean_at_half_pow2: f32,
 }
 
 // Records appended to the batch (also those beyond the capacity, which are not stored), the pass's

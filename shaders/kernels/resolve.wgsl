@@ -26,11 +26,11 @@ fn resolve(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups) g
         //#end
         let found = pass_found(at, scale);
         sum.radiance += found.radiance;
-        sum.ring += found.ring;
+        sum.bias_probe += found.bias_probe;
         sum.halves += half_weight(k) * luminance(found.radiance);
     }
     let share = 1.0 / f32(dispatch.eye_samples);
-    fold(id, cause(state, photons_finite), Found(sum.radiance * share, sum.ring * share, sum.halves));
+    fold(id, cause(state, photons_finite), Found(sum.radiance * share, sum.bias_probe * share, sum.halves));
 }
 
 fn cause(state: u32, photons_finite: bool) -> u32 {
@@ -54,8 +54,8 @@ fn fold(id: u32, cause: u32, found: Found) {
     let before = dispatch.passes_done - (r.x + r.y + r.z + r.w);
     var pixel = film[id];
     if (before & (before - 1u)) == 0u {
-        pixel.earlier = pixel.early;
-        pixel.early = luminance(pixel.mean + pixel.carry);
+        pixel.mean_at_half_pow2 = pixel.mean_at_pow2;
+        pixel.mean_at_pow2 = luminance(pixel.mean + pixel.carry);
     }
     let n = f32(before + 1u);
     let share = 1.0 / n;
@@ -63,8 +63,8 @@ fn fold(id: u32, cause: u32, found: Found) {
     let deviation = luminance(delta) * sqrt((n - 1.0) * share);
     let sign = select(-1.0, 1.0, (dispatch.passes_done & 1u) == 0u);
     pixel.spread += (deviation * deviation - pixel.spread) * share;
-    pixel.ring += (found.ring - pixel.ring) * share;
-    pixel.ring_swing += (sign * found.ring - pixel.ring_swing) * share;
+    pixel.bias_probe += (found.bias_probe - pixel.bias_probe) * share;
+    pixel.bias_probe_alternating += (sign * found.bias_probe - pixel.bias_probe_alternating) * share;
     pixel.halves += (found.halves - pixel.halves) * share;
     pixel.carry += delta * share;
     if max_abs(pixel.carry) > CARRY_SHARE * max_abs(pixel.mean) {
@@ -76,7 +76,7 @@ fn fold(id: u32, cause: u32, found: Found) {
 
 struct Found {
     radiance: vec3f,
-    ring: f32,
+    bias_probe: f32,
     halves: f32,
 }
 
@@ -88,7 +88,7 @@ fn pass_found(at: u32, scale_sq: f32) -> Found {
     let radius = visible_points[at].radius;
     let radius_sq = radius * radius * scale_sq;
     let share = 1.0 / (dispatch.photons * (PI * radius_sq));
-    return Found(radiance + gathered[at].flux * share, gathered[at].ring * share, 0.0);
+    return Found(radiance + gathered[at].flux * share, gathered[at].bias_probe * share, 0.0);
 }
 
 fn half_weight(k: u32) -> f32 {

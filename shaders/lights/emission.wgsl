@@ -3,7 +3,7 @@
 struct Emission {
     ray: Ray,
     flux: vec3f,
-    excess: f32,
+    relative_flux: f32,
     interior: Interior,
 }
 
@@ -24,7 +24,7 @@ fn emit_from(light: Light, u: vec4f, v: vec4f) -> Emission {
     let sent = guided(light, vec2f(v.x, v.y), v.w);
     var emission = emit_nearby(light, u, sent.across);
     emission.flux *= sent.scale;
-    emission.excess *= sent.scale;
+    emission.relative_flux *= sent.scale;
     //#else
     var emission = emit_nearby(light, u, vec2f(v.x, v.y));
     //#end

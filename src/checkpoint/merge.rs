@@ -2,10 +2,10 @@
 //!
 //! Means are weighted by the passes that count in a pixel, and the spread is joined by the parallel
 //! form of Welford's method (Chan, Golub & LeVeque 1979): `n S = n_a S_a + n_b S_b + delta^2 n_a
-//! n_b / n`, delta the difference of both means. So mean, spread, `ring`, `ring_swing` and `halves`
+//! n_b / n`, delta the difference of both means. So mean, spread, `bias_probe`, `bias_probe_alternating` and `halves`
 //! are those of one render but for rounding.
 //!
-//! `early` and `earlier` are not: those means over the first passes that a render of all would have
+//! `mean_at_pow2` and `mean_at_half_pow2` are not: those means over the first passes that a render of all would have
 //! kept are in no file. Any other two cuts into first and later passes serve the estimate alike, so
 //! of the five that the files know, where one ends and where either was cut itself, those are taken
 //! that are nearest to the middle and to a quarter of the passes from either end.
@@ -147,7 +147,7 @@ struct Part {
     film: FilmPixel,
     /// All of them, also those that do not count.
     passes: u32,
-    /// Passes that `early` and `earlier` are means of.
+    /// Passes that `mean_at_pow2` and `mean_at_half_pow2` are means of.
     cuts: [u32; 2],
 }
 
@@ -160,19 +160,22 @@ impl Part {
         let [mean_a, mean_b] = [a, b].map(|part| part.film.mean + part.film.carry);
         let delta = luminance(mean_b - mean_a);
         let between = if na + nb == 0 { 0.0 } else { delta * delta * (wa / n) * (wb / n) };
-        // a pass of odd number, counted from the first of its range, is turned over in `ring_swing`
+        // a pass of odd number, counted from the first of its range, is turned over in `bias_probe_alternating`
         let sign = if a.passes.is_multiple_of(2) { 1.0 } else { -1.0 };
         let cuts = joined_cuts((a, na, luminance(mean_a)), (b, nb, luminance(mean_b)));
         let film = FilmPixel {
             mean: Vec3::from_array([0, 1, 2].map(|c| mixed(mean_a[c], mean_b[c]))),
             carry: Vec3::ZERO,
             spread: mixed(a.film.spread, b.film.spread) + between,
-            ring: mixed(a.film.ring, b.film.ring),
-            ring_swing: mixed(a.film.ring_swing, sign * b.film.ring_swing),
+            bias_probe: mixed(a.film.bias_probe, b.film.bias_probe),
+            bias_probe_alternating: mixed(
+                a.film.bias_probe_alternating,
+                sign * b.film.bias_probe_alternating,
+            ),
             halves: mixed(a.film.halves, b.film.halves),
             rejected: [0, 1, 2, 3].map(|k| a.film.rejected[k].saturating_add(b.film.rejected[k])),
-            early: cuts[0].1,
-            earlier: cuts[1].1,
+            mean_at_pow2: cuts[0].1,
+            mean_at_half_pow2: cuts[1].1,
         };
         Self { film, passes: a.passes + b.passes, cuts: cuts.map(|(passes, _)| passes) }
     }
@@ -193,11 +196,11 @@ fn joined_cuts(
     // the cut of a single pass has nothing before it
     let before_a = |cut: u32, mean: f64| if cut < na { (cut, mean) } else { (0, 0.0) };
     let known = [
-        before_a(a.cuts[0], a.film.early),
-        before_a(a.cuts[1], a.film.earlier),
+        before_a(a.cuts[0], a.film.mean_at_pow2),
+        before_a(a.cuts[1], a.film.mean_at_half_pow2),
         after_a(0, mean_b),
-        after_a(b.cuts[0].min(nb), b.film.early),
-        after_a(b.cuts[1].min(nb), b.film.earlier),
+        after_a(b.cuts[0].min(nb), b.film.mean_at_pow2),
+        after_a(b.cuts[1].min(nb), b.film.mean_at_half_pow2),
     ];
     let inside = known.into_iter().filter(|(cut, _)| (1..n).contains(cut));
     let shorter = |cut: u32| u64::from(cut.min(n - cut));
@@ -226,12 +229,12 @@ pub(super) fn wide_film(state: &State) -> Vec<FilmPixel> {
         mean: p.mean.as_dvec3(),
         spread: p.spread.into(),
         carry: p.carry.as_dvec3(),
-        early: p.early.into(),
+        mean_at_pow2: p.mean_at_pow2.into(),
         rejected: p.rejected,
-        ring: p.ring.into(),
-        ring_swing: p.ring_swing.into(),
+        bias_probe: p.bias_probe.into(),
+        bias_probe_alternating: p.bias_probe_alternating.into(),
         halves: p.halves.into(),
-        earlier: p.earlier.into(),
+        mean_at_half_pow2: p.mean_at_half_pow2.into(),
     };
     kernels::bytes::film_of(&state.film).iter().map(wide).collect()
 }
@@ -252,7 +255,7 @@ mod tests {
         };
         let found = Found {
             radiance: Vec3::new(x(1), 2.0 * x(2), 0.5 + x(3)),
-            ring: x(4) - 0.3,
+            bias_probe: x(4) - 0.3,
             halves: x(5) - 0.5,
         };
         (if number % 11 == 5 { REJECTED_PHOTONS } else { ACCEPTED }, found)
@@ -281,7 +284,7 @@ mod tests {
         assert_eq!((a.passes, a.film.rejected), (b.passes, b.film.rejected));
         let numbers = |p: &FilmPixel| {
             let mean = p.mean + p.carry;
-            [mean.x, mean.y, mean.z, p.spread, p.ring, p.ring_swing, p.halves]
+            [mean.x, mean.y, mean.z, p.spread, p.bias_probe, p.bias_probe_alternating, p.halves]
         };
         let pairs = numbers(&a.film).into_iter().zip(numbers(&b.film));
         pairs.map(|(x, y)| (x - y).abs()).fold(0.0, f64::max)
@@ -295,8 +298,10 @@ mod tests {
         {
             let joined = Part::joined(&range(0, cut), &range(cut, end));
             worst = worst.max(distance(&joined, &range(0, end)));
-            for (passes, mean) in
-                joined.cuts.into_iter().zip([joined.film.early, joined.film.earlier])
+            for (passes, mean) in joined
+                .cuts
+                .into_iter()
+                .zip([joined.film.mean_at_pow2, joined.film.mean_at_half_pow2])
             {
                 let n = counted(&joined.film, end);
                 assert!(passes < n && (passes > 0 || n < 4), "{passes} of {n}");
@@ -313,7 +318,7 @@ mod tests {
         let shorter = Part { passes: 99, ..range(101, 199) };
         assert!(distance(&Part::joined(&a, &shorter), &whole) > 1e-6);
         let mut unturned = b;
-        unturned.film.ring_swing = -b.film.ring_swing;
+        unturned.film.bias_probe_alternating = -b.film.bias_probe_alternating;
         assert!(distance(&Part::joined(&a, &unturned), &whole) > 1e-6);
     }
 

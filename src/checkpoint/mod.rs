@@ -34,7 +34,7 @@ pub struct Checkpoint {
     pub totals: Totals,
     /// What the engine held.
     pub state: State,
-    /// Merged: of each pixel, how many passes the film's `early` and `earlier` are means of; else
+    /// Merged: of each pixel, how many passes the film's `mean_at_pow2` and `mean_at_half_pow2` are means of; else
     /// empty.
     pub cuts: Vec<[u32; 2]>,
 }

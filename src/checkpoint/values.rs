@@ -114,7 +114,14 @@ macro_rules! precision {
                         let at = number * TOGETHER + i;
                         let means = [p.mean.x, p.mean.y, p.mean.z, p.carry.x, p.carry.y, p.carry.z];
                         // squares of bright passes may go beyond what a number holds
-                        let rest = [p.spread, p.early, p.earlier, p.ring, p.ring_swing, p.halves];
+                        let rest = [
+                            p.spread,
+                            p.mean_at_pow2,
+                            p.mean_at_half_pow2,
+                            p.bias_probe,
+                            p.bias_probe_alternating,
+                            p.halves,
+                        ];
                         let numbers =
                             means.iter().all(|x| x.is_finite()) && rest.iter().all(|x| !x.is_nan());
                         if !numbers || p.spread < 0.0 {

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use caustica::build::tessellate::{Fineness, tessellate};
+use caustica::accel::tessellate::{Fineness, tessellate};
 use caustica::film::FileError;
 use caustica::film::file::{check_place, write_whole};
 use caustica::scene;

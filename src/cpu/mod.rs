@@ -285,7 +285,7 @@ impl CpuEngine {
             .map(|(pixel, film)| {
                 let (radiance, rays) = path_trace(scene, &d, sampled, pixel as u32);
                 let cause = if is_finite(radiance) { ACCEPTED } else { REJECTED_EYE };
-                fold(&d, cause, Found { radiance, ring: 0.0, halves: 0.0 }, film);
+                fold(&d, cause, Found { radiance, bias_probe: 0.0, halves: 0.0 }, film);
                 rays as u64
             })
             .sum();

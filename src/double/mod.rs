@@ -25,9 +25,9 @@ pub mod math {
     pub use vector::*;
 }
 
-#[path = "../build"]
-pub mod build {
-    //! The twin of [`crate::build`] in f64: what depends on the kernels' numbers.
+#[path = "../accel"]
+pub mod accel {
+    //! The twin of [`crate::accel`] in f64: what depends on the kernels' numbers.
 
     use super::{math, real, shapes};
 

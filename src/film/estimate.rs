@@ -45,9 +45,9 @@ pub struct PixelError {
     /// its own.
     pub halves: f64,
     /// Estimate in the disc less that in the inner half of its area, mean over the passes.
-    pub ring: f64,
+    pub bias_probe: f64,
     /// The same mean with odd passes turned over: the same noise and no signal.
-    pub ring_swing: f64,
+    pub bias_probe_alternating: f64,
 }
 
 impl PixelError {
@@ -57,14 +57,16 @@ impl PixelError {
         variance: f64::INFINITY,
         deviations: [f64::INFINITY; 2],
         halves: 0.0,
-        ring: 0.0,
-        ring_swing: 0.0,
+        bias_probe: 0.0,
+        bias_probe_alternating: 0.0,
     };
 
     /// Unbiased estimate of the squared bias, from the product of the means over even and over odd
     /// passes; it may be negative.
     pub fn bias_sq(&self) -> f64 {
-        BIAS_OVER_RING.powi(2) * (self.ring + self.ring_swing) * (self.ring - self.ring_swing)
+        BIAS_OVER_RING.powi(2)
+            * (self.bias_probe + self.bias_probe_alternating)
+            * (self.bias_probe - self.bias_probe_alternating)
     }
 }
 
@@ -119,7 +121,7 @@ impl ErrorMap {
     /// single pixel's estimate has more than twice the noise of the pixel itself.
     pub fn bias(&self) -> Plane {
         let weights = normalized(&gaussian(SMOOTHING, 3 * SMOOTHING as usize));
-        self.plane(|p| BIAS_OVER_RING * p.ring).along_x(&weights).along_y(&weights)
+        self.plane(|p| BIAS_OVER_RING * p.bias_probe).along_x(&weights).along_y(&weights)
     }
 
     /// Both maps as layers of a picture file.
@@ -204,7 +206,7 @@ impl Term {
         let share = share_of((p.luminance - p.variance.sqrt()).max(0.0));
         let [first, second] = p.deviations.map(|deviation| deviation * deviation);
         let halves = p.halves * p.halves * share_of(around);
-        let bias_off = BIAS_OVER_RING.powi(2) * 2.0 * p.ring * p.ring_swing;
+        let bias_off = BIAS_OVER_RING.powi(2) * 2.0 * p.bias_probe * p.bias_probe_alternating;
         Self {
             rank: p.variance * share,
             noise: 0.5 * (first + second) * share + halves,

@@ -23,9 +23,11 @@ pub fn film_bytes(film: &[FilmPixel]) -> Vec<u8> {
         out.vector(p.mean);
         out.real(p.spread);
         out.vector(p.carry);
-        out.real(p.early);
+        out.real(p.mean_at_pow2);
         p.rejected.iter().for_each(|count| out.word(*count));
-        [p.ring, p.ring_swing, p.halves, p.earlier].into_iter().for_each(|x| out.real(x));
+        [p.bias_probe, p.bias_probe_alternating, p.halves, p.mean_at_half_pow2]
+            .into_iter()
+            .for_each(|x| out.real(x));
     }
     out.0
 }
@@ -38,12 +40,12 @@ pub fn film_of(bytes: &[u8]) -> Vec<FilmPixel> {
             mean: from.vector(),
             spread: from.real(),
             carry: from.vector(),
-            early: from.real(),
+            mean_at_pow2: from.real(),
             rejected: [from.word(), from.word(), from.word(), from.word()],
-            ring: from.real(),
-            ring_swing: from.real(),
+            bias_probe: from.real(),
+            bias_probe_alternating: from.real(),
             halves: from.real(),
-            earlier: from.real(),
+            mean_at_half_pow2: from.real(),
         }
     };
     bytes.chunks_exact(FILM_BYTES).map(pixel).collect()
@@ -190,12 +192,12 @@ mod tests {
             mean: vector(0),
             spread: x(3),
             carry: vector(4),
-            early: x(7),
+            mean_at_pow2: x(7),
             rejected: [8, 9, 10, 0x0102_0304],
-            ring: x(12),
-            ring_swing: -x(13),
+            bias_probe: x(12),
+            bias_probe_alternating: -x(13),
             halves: Real::MIN_POSITIVE,
-            earlier: Real::NAN,
+            mean_at_half_pow2: Real::NAN,
         };
         let bytes = film_bytes(&[pixel, FilmPixel { spread: x(20), ..pixel }]);
         assert_eq!(bytes.len(), 2 * FILM_BYTES);

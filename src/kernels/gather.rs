@@ -83,11 +83,11 @@ pub fn gather(
     }
     let radius_sq = point.radius * point.radius * scale_sq;
     let frame = Frame::at(point);
-    let mut found = gather_family(outlines, dispatch, point, &frame, 0, radius_sq, starts, sorted);
-    if dispatch.families == 2 {
+    let mut found = gather_class(outlines, dispatch, point, &frame, 0, radius_sq, starts, sorted);
+    if dispatch.classes == 2 {
         gathered.caustic += point.weight * found.flux;
         let wider_sq = dispatch.indirect_radius * dispatch.indirect_radius;
-        let wide = gather_family(
+        let wide = gather_class(
             outlines,
             dispatch,
             point,
@@ -99,27 +99,27 @@ pub fn gather(
         );
         found.flux += wide.flux * (1.0 / wider_sq);
         found.count += wide.count;
-        found.ring += wide.ring * (1.0 / wider_sq);
+        found.bias_probe += wide.bias_probe * (1.0 / wider_sq);
     }
     gathered.flux += point.weight * found.flux;
     gathered.count += found.count;
-    gathered.ring += found.ring;
+    gathered.bias_probe += found.bias_probe;
 }
 
-/// The photons of one family: their BRDF times flux, but for the point's weight, their number, and
+/// The photons of one class: their BRDF times flux, but for the point's weight, their number, and
 /// their ring.
 #[inline(always)]
-fn gather_family(
+fn gather_class(
     outlines: &[Outline],
     dispatch: &Dispatch,
     point: &VisiblePoint,
     frame: &Frame,
-    family: u32,
+    photon_class: u32,
     radius_sq: Real,
     starts: &[u32],
     sorted: &SortedRecords,
 ) -> Gathered {
-    let inv_cell = if family == 1 { dispatch.inv_cell_indirect } else { dispatch.inv_cell };
+    let inv_cell = if photon_class == 1 { dispatch.inv_cell_indirect } else { dispatch.inv_cell };
     let radius = radius_sq.sqrt();
     let Frame { ng, n, wo, lobe } = *frame;
     let folded = lobe.bsdf == Bsdf::Diffuse;
@@ -138,7 +138,7 @@ fn gather_family(
     for z in low.z..=high.z {
         for y in low.y..=high.y {
             let cell = IVec3::new(low.x, y, z);
-            let code = grid_code(cell, family);
+            let code = grid_code(cell, photon_class);
             let bucket = grid_bucket(cell, dispatch.mask);
             let last = bucket + ((high.x - low.x) as u32).min(dispatch.mask);
             // a row that passes the table's end goes on at its beginning
@@ -202,8 +202,8 @@ fn gather_family(
             }
         }
     }
-    let ring = (point.weight * LUMINANCE).dot(ring.truncate());
-    Gathered { flux: sum.truncate() * clip.whole, count, ring, ..Gathered::zeroed() }
+    let bias_probe = (point.weight * LUMINANCE).dot(ring.truncate());
+    Gathered { flux: sum.truncate() * clip.whole, count, bias_probe, ..Gathered::zeroed() }
 }
 
 /// How far along each axis the points of a disc about the origin reach that are no farther than

@@ -45,7 +45,7 @@ pub struct SortedRecords {
     pub positions: [Vec<Real>; 3],
     /// Directions to where photons came from, at any length: x, y, z.
     pub directions: [Vec<Real>; 3],
-    /// Rows of cells and families, as [`grid_code`] gives them.
+    /// Rows of cells and classes, as [`grid_code`] gives them.
     pub codes: Vec<u32>,
     /// See [`PhotonRecord::flux`]; the fourth is 0.
     pub fluxes: Vec<Vec4>,
@@ -54,12 +54,12 @@ pub struct SortedRecords {
 /// Entries after the last record, for those who read some at once.
 const TAIL: usize = 16;
 
-/// A record's family: 1 for photons with a disc of their own (see [`Dispatch::indirect_radius`]).
+/// A record's class: 1 for photons with a disc of their own (see [`Dispatch::indirect_radius`]).
 fn record_family(dispatch: &Dispatch, record: &PhotonRecord) -> u32 {
-    if dispatch.families == 2 { record.key & 1 } else { 0 }
+    if dispatch.classes == 2 { record.key & 1 } else { 0 }
 }
 
-/// Cell of a record in the grid of its family.
+/// Cell of a record in the grid of its class.
 fn record_cell(dispatch: &Dispatch, record: &PhotonRecord) -> IVec3 {
     let indirect = record_family(dispatch, record) == 1;
     grid_cell(
@@ -73,7 +73,7 @@ pub fn record_bucket(dispatch: &Dispatch, record: &PhotonRecord) -> u32 {
     grid_bucket(record_cell(dispatch, record), dispatch.mask)
 }
 
-/// Row and family of a record in one word: what stands for its key once it is sorted.
+/// Row and class of a record in one word: what stands for its key once it is sorted.
 pub fn record_code(dispatch: &Dispatch, record: &PhotonRecord) -> u32 {
     grid_code(record_cell(dispatch, record), record_family(dispatch, record))
 }
@@ -312,8 +312,7 @@ mod tests {
         for (count, buckets, list) in
             [(70_000, 1 << 16, 1000), (5000, 1 << 12, 5000), (900, 64, 7), (3, 1, 1)]
         {
-            let d =
-                Dispatch { mask: buckets - 1, inv_cell: 1.0, families: 2, ..Dispatch::zeroed() };
+            let d = Dispatch { mask: buckets - 1, inv_cell: 1.0, classes: 2, ..Dispatch::zeroed() };
             let d = Dispatch { inv_cell_indirect: 0.3, ..d };
             let records = random_records(count, (count as Real).sqrt());
             let mut lists: Vec<_> =

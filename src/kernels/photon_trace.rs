@@ -36,9 +36,9 @@ pub struct PhotonPath {
     id: u32,
     rng: Rng,
     flux: Vec3,
-    excess: Real,
+    relative_flux: Real,
     interior: Interior,
-    family: u32,
+    photon_class: u32,
     bounce: u32,
     hidden: u32,
 }
@@ -63,9 +63,9 @@ impl PhotonPath {
             id,
             rng,
             flux: emission.flux,
-            excess: emission.excess,
+            relative_flux: emission.relative_flux,
             interior: emission.interior,
-            family: 0,
+            photon_class: 0,
             bounce: 0,
             hidden: 0,
         }
@@ -122,7 +122,7 @@ impl PhotonPath {
             // shadow rays end at faces, hidden ones too
             let stored = self.bounce > 0 || self.hidden > 0 || !sampled;
             if stored && max_component(p.lobe.reflectance) > 0.0 {
-                let key = self.id << dispatch.key_bits | self.bounce << 1 | self.family;
+                let key = self.id << dispatch.key_bits | self.bounce << 1 | self.photon_class;
                 store(PhotonRecord {
                     position: s.position,
                     key,
@@ -134,17 +134,17 @@ impl PhotonPath {
             if far {
                 scattered = aimed_scatter(scene, &p, u, scattered);
             }
-            if dispatch.families == 2 && p.lobe.bsdf.is_wide() {
-                self.family = 1;
+            if dispatch.classes == 2 && p.lobe.bsdf.is_wide() {
+                self.photon_class = 1;
             }
         }
         let weight = max_component(scattered.weight);
         // a faint photon, one of many that a map sends at glass and mirrors, is to get through them
         let mut survival = weight.min(1.0);
         if tracked {
-            let kept = if specular { self.excess.max(1.0) } else { self.excess };
+            let kept = if specular { self.relative_flux.max(1.0) } else { self.relative_flux };
             survival = (weight * kept).min(1.0);
-            self.excess *= weight / survival;
+            self.relative_flux *= weight / survival;
         }
         if u.w >= survival {
             self.end = ABSORBED;

@@ -21,7 +21,7 @@ pub struct Dispatch {
     pub chunk_first: u32,
     /// First photon of the batch within the pass's.
     pub batch_first: u32,
-    /// Low bits of a record's key that hold the bounce and the family.
+    /// Low bits of a record's key that hold the bounce and the class.
     pub key_bits: u32,
     /// Records that the buffers hold.
     pub capacity: u32,
@@ -51,10 +51,10 @@ pub struct Dispatch {
     pub passes_done: u32,
     /// Classes of photons with a disc and a grid of their own: 1, or 2 where those that a diffuse
     /// surface has scattered have a wider disc.
-    pub families: u32,
-    /// Radius of the second family over that of the first.
+    pub classes: u32,
+    /// Radius of the second class over that of the first.
     pub indirect_radius: Real,
-    /// One over the side length of the second family's cells.
+    /// One over the side length of the second class's cells.
     pub inv_cell_indirect: Real,
     /// First pixel of the window that is rendered, counted in the whole picture.
     pub window_first: u32,
@@ -113,7 +113,7 @@ pub struct VisiblePoint {
 pub struct PhotonRecord {
     /// In scene space.
     pub position: Vec3,
-    /// (photon within the batch, bounce, family): the order of summation. On the GPU the cell's
+    /// (photon within the batch, bounce, class): the order of summation. On the GPU the cell's
     /// code stands here once the record is sorted.
     pub key: u32,
     /// Flux in W times the number of photons in the pass.
@@ -130,11 +130,11 @@ pub struct Gathered {
     pub flux: Vec3,
     /// Photons inside the disc, on the right side of the surface.
     pub count: u32,
-    /// The part of `flux` of the first of two families.
+    /// The part of `flux` of the first of two classes.
     pub caustic: Vec3,
     /// Luminance of what the outer half of the disc's area holds of `flux`, less that of the inner
     /// half.
-    pub ring: Real,
+    pub bias_probe: Real,
 }
 
 /// Local rule: statistics of a pixel (SPPM) or visible point (PPM), with radii over the start
@@ -178,17 +178,17 @@ pub struct FilmPixel {
     pub carry: Vec3,
     /// Luminance of the mean over the first 2^k passes, 2^k the greatest power of two below the
     /// number of passes.
-    pub early: Real,
+    pub mean_at_pow2: Real,
     /// Passes whose value was not finite and was left out, by cause: see `REJECTED_*`.
     pub rejected: [u32; 4],
     /// Luminance: mean over the passes of the estimate in the whole disc less that in the inner
     /// half of its area.
-    pub ring: Real,
+    pub bias_probe: Real,
     /// The same mean with odd passes turned over.
-    pub ring_swing: Real,
+    pub bias_probe_alternating: Real,
     /// Luminance: mean over the passes of what two halves of the eye samples differ by, scaled so
     /// that its square is the variance of the mean over all.
     pub halves: Real,
     /// Luminance of the mean over the first 2^(k-1) passes.
-    pub earlier: Real,
+    pub mean_at_half_pow2: Real,
 }

@@ -23,7 +23,7 @@ pub struct Found {
     /// Radiance.
     pub radiance: Vec3,
     /// Luminance of the estimate in the whole disc less that in the inner half of its area.
-    pub ring: Real,
+    pub bias_probe: Real,
     /// Luminance by which two halves of the points differ, as [`FilmPixel::halves`].
     pub halves: Real,
 }
@@ -36,13 +36,13 @@ pub fn pass_found(
     photons: Real,
 ) -> Found {
     if gathered.count == 0 {
-        return Found { radiance: point.radiance, ring: 0.0, halves: 0.0 };
+        return Found { radiance: point.radiance, bias_probe: 0.0, halves: 0.0 };
     }
     let area = PI * point.radius * point.radius * scale_sq;
     let share = 1.0 / (photons * area);
     Found {
         radiance: point.radiance + gathered.flux * share,
-        ring: gathered.ring * share,
+        bias_probe: gathered.bias_probe * share,
         halves: 0.0,
     }
 }
@@ -98,7 +98,7 @@ pub fn resolve(
     mut statistics: Option<&mut [Statistics]>,
     film: &mut FilmPixel,
 ) {
-    let mut sum = Found { radiance: Vec3::ZERO, ring: 0.0, halves: 0.0 };
+    let mut sum = Found { radiance: Vec3::ZERO, bias_probe: 0.0, halves: 0.0 };
     let mut state = 0;
     let mut photons_finite = true;
     for k in 0..dispatch.eye_samples as usize {
@@ -111,12 +111,16 @@ pub fn resolve(
         photons_finite &= is_finite(gathered[k].flux);
         let found = pass_found(&points[k], &gathered[k], scale, dispatch.photons);
         sum.radiance += found.radiance;
-        sum.ring += found.ring;
+        sum.bias_probe += found.bias_probe;
         sum.halves += half_weight(k as u32, dispatch.eye_samples, dispatch.strata)
             * luminance(found.radiance);
     }
     let share = 1.0 / dispatch.eye_samples as Real;
-    let mean = Found { radiance: sum.radiance * share, ring: sum.ring * share, halves: sum.halves };
+    let mean = Found {
+        radiance: sum.radiance * share,
+        bias_probe: sum.bias_probe * share,
+        halves: sum.halves,
+    };
     fold(dispatch, cause(state, photons_finite), mean, film);
 }
 
@@ -146,8 +150,8 @@ pub fn fold(dispatch: &Dispatch, cause: u32, found: Found, film: &mut FilmPixel)
     let r = film.rejected;
     let before = dispatch.passes_done - (r[0] + r[1] + r[2] + r[3]);
     if before & before.wrapping_sub(1) == 0 {
-        film.earlier = film.early;
-        film.early = luminance(film.mean + film.carry);
+        film.mean_at_half_pow2 = film.mean_at_pow2;
+        film.mean_at_pow2 = luminance(film.mean + film.carry);
     }
     let n = (before + 1) as Real;
     let share = 1.0 / n;
@@ -155,8 +159,8 @@ pub fn fold(dispatch: &Dispatch, cause: u32, found: Found, film: &mut FilmPixel)
     let deviation = luminance(delta) * ((n - 1.0) * share).sqrt();
     let sign = if dispatch.passes_done & 1 == 0 { 1.0 } else { -1.0 };
     film.spread += (deviation * deviation - film.spread) * share;
-    film.ring += (found.ring - film.ring) * share;
-    film.ring_swing += (sign * found.ring - film.ring_swing) * share;
+    film.bias_probe += (found.bias_probe - film.bias_probe) * share;
+    film.bias_probe_alternating += (sign * found.bias_probe - film.bias_probe_alternating) * share;
     film.halves += (found.halves - film.halves) * share;
     film.carry += delta * share;
     if max_abs(film.carry) > CARRY_SHARE * max_abs(film.mean) {

@@ -24,7 +24,7 @@ pub struct Emission {
     pub flux: Vec3,
     /// Flux over that of the same photon if no map had sent it and it passed the center of what the
     /// camera sees at half the near radius.
-    pub excess: Real,
+    pub relative_flux: Real,
     /// Interior list at its origin.
     pub interior: Interior,
 }
@@ -46,7 +46,7 @@ pub fn emit_from(scene: &Scene, light: &Light, u: Vec4, v: Vec4) -> Emission {
     let (across, scale) = guided(scene, light, Vec2::new(v.x, v.y), v.w);
     let mut emission = emit_nearby(scene, light, u, across);
     emission.flux *= scale;
-    emission.excess *= scale;
+    emission.relative_flux *= scale;
     emission.interior = interior_at(scene, light.medium, emission.ray.origin);
     emission
 }
@@ -62,14 +62,14 @@ fn emit_nearby(scene: &Scene, light: &Light, u: Vec4, across: Vec2) -> Emission 
         let p = sample_sphere_facing(scene, light, Vec2::new(u.y, u.z), ray.direction);
         ray.origin = p.position + p.normal * p.error;
         let flux = light.color * (PI / (p.pdf * light.selection));
-        return Emission { ray, flux, excess: 1.0, interior: interior_of(NONE) };
+        return Emission { ray, flux, relative_flux: 1.0, interior: interior_of(NONE) };
     }
     if light.kind == LIGHT_AREA {
         let p = sample_shape(scene, light, Vec2::new(u.y, u.z), u.w);
         ray.direction = unit(from_frame(p.normal, sample_cosine(across)));
         ray.origin = p.position + p.normal * p.error;
         let flux = light.color * (PI / (p.pdf * light.selection));
-        return Emission { ray, flux, excess: 1.0, interior: interior_of(NONE) };
+        return Emission { ray, flux, relative_flux: 1.0, interior: interior_of(NONE) };
     }
     if light.kind == LIGHT_SPOT {
         let local = sample_cone(across, light.outer);
@@ -77,11 +77,11 @@ fn emit_nearby(scene: &Scene, light: &Light, u: Vec4, across: Vec2) -> Emission 
         let solid_angle = TAU * light.outer;
         let flux = light.color
             * (spot_falloff(light, across.x * light.outer) * solid_angle / light.selection);
-        return Emission { ray, flux, excess: 1.0, interior: interior_of(NONE) };
+        return Emission { ray, flux, relative_flux: 1.0, interior: interior_of(NONE) };
     }
     ray.direction = unit(sample_sphere(across));
     let flux = light.color * (2.0 * TAU / light.selection);
-    Emission { ray, flux, excess: 1.0, interior: interior_of(NONE) }
+    Emission { ray, flux, relative_flux: 1.0, interior: interior_of(NONE) }
 }
 
 /// A photon of light from infinity. It enters through one of the emission discs about what the
@@ -116,7 +116,12 @@ fn emit_from_infinity(scene: &Scene, light: &Light, u: Vec4, v: Vec4) -> Emissio
     ray.t_min = -4.0 * disc_radius(scene, scene.world.disc_levels - 1);
     let flux = radiance * (1.0 / (pdf * light.selection));
     let usual = pdf_discs(scene, 0.25 * near * near);
-    Emission { ray, flux, excess: usual / pdf, interior: interior_from(scene, ray.direction) }
+    Emission {
+        ray,
+        flux,
+        relative_flux: usual / pdf,
+        interior: interior_from(scene, ray.direction),
+    }
 }
 
 /// Radius of emission disc `level`, at most 31.

@@ -7,7 +7,7 @@ use super::materials::interior::medium_of;
 use super::math::{EPS, FAR};
 use super::real::{Real, ToReal, Vec2, Vec3};
 use super::tables::*;
-use crate::build::bodies::Bodies;
+use crate::prepare::bodies::Bodies;
 use crate::scene;
 
 /// Appends a material for each body to `out`, in the order of rank, if the scene needs them.

@@ -22,11 +22,11 @@ use super::materials::Bsdf;
 use super::real::{Real, ToDouble, ToReal, Vec3};
 use super::shapes::simd4::{FourRectangles, FourSpheres, LANES};
 use super::tables::*;
-use super::{build, kernels, lights, materials, math, real, shapes, tables};
-use crate::build::bodies::{Bodies, joined};
-use crate::build::contact::grown;
-use crate::build::learned::{Learned, LightSource};
-use crate::build::normalize::{Normalization, reach};
+use super::{accel, kernels, lights, materials, math, real, shapes, tables};
+use crate::prepare::bodies::{Bodies, joined};
+use crate::prepare::contact::grown;
+use crate::prepare::learned::{Learned, LightSource};
+use crate::prepare::normalize::{Normalization, reach};
 use crate::scene::{self, MaterialKind, Reflectance};
 use crate::settings::{Method, RenderSettings};
 use crate::stage::stage;
@@ -55,7 +55,7 @@ pub struct Packed {
     /// Luminance of the brightest extended light, world units.
     pub brightest: f64,
     /// Facts about the kd-tree.
-    pub tree: build::kdtree::Stats,
+    pub tree: accel::kdtree::Stats,
     /// Which shape each reference belongs to; empty unless the film asks for it.
     pub objects: Objects,
     normalization: Normalization,
@@ -125,9 +125,9 @@ fn flatten(
     if references.len() >= limit {
         return Err(PackError::TooMany { what: "primitives", count: references.len(), limit });
     }
-    let mut stats = build::kdtree::Stats::default();
+    let mut stats = accel::kdtree::Stats::default();
     if !primitives.is_empty() {
-        let tree = build::kdtree::build(&primitives);
+        let tree = accel::kdtree::build(&primitives);
         stats = tree.stats;
         out.world.bounds_min = tree.bounds.min;
         out.world.bounds_max = tree.bounds.max;

@@ -39,7 +39,7 @@ const UNSEEN: f64 = 0.1;
 const PRIOR: f64 = 4.0;
 /// A pass number that no render reaches.
 const PASS: u32 = u32::MAX;
-/// Low bits of a record's key that hold bounce and family.
+/// Low bits of a record's key that hold bounce and class.
 const KEY_BITS: u32 = 16;
 /// Scattering events of a pilot.
 const BOUNCES: u32 = 32;
@@ -224,7 +224,7 @@ fn pilot(
         guided(scene, light, Vec2::new(v.x, v.y), v.w).0
     };
     let dispatch =
-        Dispatch { max_bounces: BOUNCES, families: 2, key_bits: KEY_BITS, ..Dispatch::zeroed() };
+        Dispatch { max_bounces: BOUNCES, classes: 2, key_bits: KEY_BITS, ..Dispatch::zeroed() };
     let mut path = PhotonPath::emitted(emission, rng, 0);
     let (mut contribution, mut share, mut scattered) = (0.0, 0.0, false);
     while path.goes_on(&dispatch) {

@@ -1,7 +1,7 @@
 //! Shapes: into tables, into the kd-tree's input, and which of them shine.
 
-use super::build::kdtree::Primitive;
-use super::build::revolution::{Attributes as RevolutionAttributes, Placement, RevolutionTables};
+use super::accel::kdtree::Primitive;
+use super::accel::revolution::{Attributes as RevolutionAttributes, Placement, RevolutionTables};
 use super::math::EPS;
 use super::real::{Real, ToDouble, ToReal, Vec3};
 use super::shapes::aabb::Aabb;
@@ -11,7 +11,7 @@ use super::shapes::outline::with_margins;
 use super::shapes::rectangle::rectangle_error;
 use super::tables::*;
 use super::{Objects, PackError, image};
-use crate::build::normalize::Normalization;
+use crate::prepare::normalize::Normalization;
 use crate::scene::{self, Aov, Mesh, ShapeKind, Transform};
 use bytemuck::Zeroable;
 use glam::{DQuat, DVec2, DVec3};

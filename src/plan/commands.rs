@@ -131,7 +131,7 @@ impl Plan {
             radius_units: units as Real,
             radius_max: (self.widening * self.probe.radius_max) as Real,
             passes_done: pass,
-            families: 1 + split as u32,
+            classes: 1 + split as u32,
             indirect_radius: wider as Real,
             inv_cell_indirect: (1.0 / cell_indirect) as Real,
             window_first: self.window_first,

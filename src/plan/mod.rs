@@ -72,7 +72,7 @@ pub struct Plan {
     pub buckets: u32,
     /// What was found by looking at the scene before planning.
     pub probe: Probe,
-    /// Radius of the first family of photons over [`RenderSettings::radius`]: one, or where diffuse
+    /// Radius of the first class of photons over [`RenderSettings::radius`]: one, or where diffuse
     /// surfaces have scattered all that are stored [`RenderSettings::indirect_radius`].
     pub widening: f64,
     /// The world point at the scene's origin.
@@ -160,7 +160,7 @@ impl Plan {
         if self.aovs.has(Aov::Direct) && self.settings.method != Method::Path {
             self.features = self.features.with(Feature::DirectLayer);
         }
-        // what tells caustics from the rest is their family
+        // what tells caustics from the rest is their class
         if self.parts_photons() && self.features.has(Feature::First) {
             self.features = self.features.with(Feature::Split);
         }
@@ -247,12 +247,12 @@ fn batch(settings: &RenderSettings, probe: &Probe) -> (u32, u32) {
     let wanted = (most as f64 * probe.records_per_photon * 1.25).max(1024.0);
     let capacity = (wanted.min(CAPACITY_MAX as f64) as u32).next_power_of_two().max(SCAN_BLOCK);
     let fit = (capacity as f64 * 0.8 / probe.records_per_photon.max(1e-3)) as u64;
-    // a key has 32 bits for (photon of the batch, bounce, family)
+    // a key has 32 bits for (photon of the batch, bounce, class)
     let key_room = 1u64 << (32 - key_bits(settings.max_bounces));
     (capacity, fit.min(key_room).clamp(1, most as u64) as u32)
 }
 
-/// Bits that hold a bounce number and a family.
+/// Bits that hold a bounce number and a class.
 fn key_bits(max_bounces: u32) -> u32 {
     33 - max_bounces.leading_zeros()
 }

@@ -13,7 +13,7 @@ impl Plan {
         }
     }
 
-    /// Typical gather radius of pass `pass` in world units; of the first family, where there are
+    /// Typical gather radius of pass `pass` in world units; of the first class, where there are
     /// two.
     pub fn radius(&self, pass: u32) -> f64 {
         self.widening * self.probe.radius * self.scale_sq(pass).sqrt() * self.unit

@@ -6,7 +6,7 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
-use crate::build::tessellate::{Fineness, RevolutionMesh, tessellate};
+use crate::accel::tessellate::{Fineness, RevolutionMesh, tessellate};
 use crate::scene::{Mesh, Scene, ShapeKind, Triangle};
 
 /// What surfaces of revolution are made of.

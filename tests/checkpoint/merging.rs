@@ -86,7 +86,7 @@ fn ranges_give_the_picture_of_all() {
             // what passes of odd numbers say is turned over from the start of all, not of each
             // range
             let bias = |c: &Checkpoint| {
-                c.develop().1.pixels.iter().map(|p| p.ring_swing).collect::<Vec<_>>()
+                c.develop().1.pixels.iter().map(|p| p.bias_probe_alternating).collect::<Vec<_>>()
             };
             let (a, b) = (bias(&all), bias(&whole));
             let scale = whole.develop().0.rgb.iter().flatten().fold(0f32, |m, x| m.max(*x));

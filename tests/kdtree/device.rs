@@ -2,7 +2,7 @@
 
 use crate::scenes::*;
 use bytemuck::{Pod, Zeroable};
-use caustica::build::kdtree::build;
+use caustica::accel::kdtree::build;
 use caustica::shapes::kdtree::MAX_DEPTH;
 use caustica::shapes::ray::{Hit, NONE, Ray};
 use caustica::shapes::triangle::Triangle;
@@ -160,8 +160,8 @@ fn device_gives_the_same_bits() {
         scenes().into_iter().filter(|s| s.0.starts_with("lattice") || s.0.starts_with("every"))
     {
         mesh.extend(prims.iter().filter_map(|p| match p {
-            caustica::build::kdtree::Primitive::Triangle(t) => Some(*t),
-            caustica::build::kdtree::Primitive::Box(_) => None,
+            caustica::accel::kdtree::Primitive::Triangle(t) => Some(*t),
+            caustica::accel::kdtree::Primitive::Box(_) => None,
         }));
     }
     let prims = prims(&mesh);

@@ -2,7 +2,7 @@
 
 use crate::scenes::*;
 use crate::{differ, mismatches};
-use caustica::build::kdtree::{KdTree, build};
+use caustica::accel::kdtree::{KdTree, build};
 use caustica::shapes::aabb::Aabb;
 use caustica::shapes::kdtree::traverse_closest;
 use caustica::shapes::ray::{Hit, NONE, Ray};

@@ -6,7 +6,7 @@ mod scenes;
 mod structure;
 mod triangles;
 
-use caustica::build::kdtree::{KdTree, Primitive, build};
+use caustica::accel::kdtree::{KdTree, Primitive, build};
 use caustica::shapes::ray::{Hit, NONE, Ray};
 use caustica::shapes::triangle::RayShear;
 use glam::Vec3;

@@ -1,6 +1,6 @@
 //! Primitives, rays and the exhaustive search that the kd-tree is held against.
 
-use caustica::build::kdtree::Primitive;
+use caustica::accel::kdtree::Primitive;
 use caustica::shapes::aabb::Aabb;
 use caustica::shapes::kdtree::{Tree, traverse_any, traverse_closest};
 use caustica::shapes::kdtree_stream::{Rays, STREAM, traverse_closest_many};

@@ -2,7 +2,7 @@
 //! threads.
 
 use crate::scenes::*;
-use caustica::build::kdtree::{INTERSECTION_COST, KdTree, Primitive, build};
+use caustica::accel::kdtree::{INTERSECTION_COST, KdTree, Primitive, build};
 use caustica::shapes::aabb::Aabb;
 use caustica::shapes::kdtree::{MAX_DEPTH, traverse_closest};
 use caustica::shapes::ray::{Hit, Ray};

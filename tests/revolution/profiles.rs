@@ -1,6 +1,6 @@
 //! Profiles of every kind that a scene may hold.
 
-use caustica::build::revolution::{Attributes, PatchBox, Placement, RevolutionTables};
+use caustica::accel::revolution::{Attributes, PatchBox, Placement, RevolutionTables};
 use glam::{DQuat, DVec2, DVec3};
 
 /// A named profile: segments of (radius, height).

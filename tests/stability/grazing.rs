@@ -1,7 +1,7 @@
 //! Rays that meet and leave convex shapes at grazing angles.
 
-use caustica::build::normalize::Normalization;
 use caustica::math::offset_origin;
+use caustica::prepare::normalize::Normalization;
 use caustica::shapes::ray::Ray;
 use glam::DVec3;
 

@@ -1,7 +1,7 @@
 //! Rays against shapes of extreme size, slimness and angle.
 
-use caustica::build::kdtree::build;
-use caustica::build::normalize::Normalization;
+use caustica::accel::kdtree::build;
+use caustica::prepare::normalize::Normalization;
 use caustica::shapes::ray::Ray;
 use caustica::tables::{KIND_TRIANGLE, NONE, REFERENCE_BITS, Scene, Triangle, reference};
 use glam::{DVec3, Vec3};
@@ -311,8 +311,8 @@ fn exhaustive(b: &Bench) -> Figure {
         let mesh: Vec<[Vec3; 3]> = prims
             .iter()
             .filter_map(|p| match p {
-                caustica::build::kdtree::Primitive::Triangle(t) => Some(*t),
-                caustica::build::kdtree::Primitive::Box(_) => None,
+                caustica::accel::kdtree::Primitive::Triangle(t) => Some(*t),
+                caustica::accel::kdtree::Primitive::Box(_) => None,
             })
             .collect();
         let scene = of_triangles(&mesh);

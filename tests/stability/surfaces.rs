@@ -1,8 +1,8 @@
 //! Surfaces of revolution of every kind against the f64 oracle.
 
 use bytemuck::Zeroable;
-use caustica::build::kdtree::{Primitive, build};
-use caustica::build::revolution::Placement;
+use caustica::accel::kdtree::{Primitive, build};
+use caustica::accel::revolution::Placement;
 use caustica::math::FAR;
 use caustica::shapes::aabb::Aabb;
 use caustica::shapes::ray::Ray;
@@ -202,7 +202,7 @@ fn rays_at(b: &Bench, placed: &Placed, classes: &[Class]) -> Vec<(Vec3, Vec3)> {
     let count = b.samples(500, 2_000);
     classes
         .iter()
-        .flat_map(|&class| (0..count).map(move |_| class))
+        .flat_map(|&photon_class| (0..count).map(move |_| photon_class))
         .map(|c| ray(placed, c, &mut random))
         .collect()
 }

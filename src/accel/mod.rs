@@ -1,19 +1,14 @@
-//! Host-only construction of what the kernels read, in f64.
+//! Acceleration structures, built on the host: the kd-tree and the patches of surfaces of
+//! revolution.
 
 use super::{math, real, shapes};
 
 pub mod bezier;
-pub mod bodies;
-pub mod contact;
 pub mod kdtree;
 mod kdtree_bins;
 mod kdtree_clip;
 mod kdtree_layout;
 mod kdtree_sweep;
-pub mod learned;
-pub mod normalize;
-pub mod orientation;
-pub mod parts;
 pub mod profile;
 pub mod revolution;
 pub mod tessellate;

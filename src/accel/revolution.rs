@@ -4,11 +4,11 @@
 use super::real::{Real, ToDouble, ToReal, Vec2, Vec3};
 use glam::{DMat3, DVec2, DVec3};
 
-pub use crate::build::profile::{Placement, ProfileError};
+pub use crate::accel::profile::{Placement, ProfileError};
 
 use super::shapes::revolution::{Patch, Revolution};
 use super::shapes::revolution_roots::STEP_TOLERANCE;
-use crate::build::profile::{Piece, check, pieces};
+use crate::accel::profile::{Piece, check, pieces};
 
 /// Bounds are widened by this, in local units: more than the intersection's rounding errors.
 const BOUNDS_PAD: f64 = 2e-6;

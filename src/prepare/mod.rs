@@ -1,0 +1,11 @@
+//! Preparation of a scene in f64 before it is packed: its centre and unit, glass bodies, coincident
+//! surfaces, orientation.
+
+use super::math;
+
+pub mod bodies;
+pub mod contact;
+pub mod learned;
+pub mod normalize;
+pub mod orientation;
+pub mod parts;
