@@ -4,11 +4,11 @@
 //! hundred where it is tuned, and a thousand in a caustic or at the start of a render.
 
 use bytemuck::Zeroable;
-use caustica::kernels::gather::gather;
-use caustica::kernels::grid_build::build_grid;
-use caustica::kernels::records::{Dispatch, Gathered, PhotonRecord, VisiblePoint};
-use caustica::math::oct_encode;
-use caustica::tables::NONE;
+use caustica::low_level::kernels::gather::gather;
+use caustica::low_level::kernels::grid_build::build_grid;
+use caustica::low_level::kernels::records::{Dispatch, Gathered, PhotonRecord, VisiblePoint};
+use caustica::low_level::math::oct_encode;
+use caustica::low_level::tables::NONE;
 use divan::{Bencher, counter::ItemsCount};
 use glam::Vec3;
 

@@ -5,10 +5,10 @@
 //! many buckets as records, as in a plan, and lists as long as those of a task of photons.
 
 use bytemuck::Zeroable;
-use caustica::kernels::grid_build::{
+use caustica::low_level::kernels::grid_build::{
     RecordList, SortedRecords, grid_count, grid_scan, grid_scatter, grid_sort,
 };
-use caustica::kernels::records::{Dispatch, PhotonRecord};
+use caustica::low_level::kernels::records::{Dispatch, PhotonRecord};
 use divan::{Bencher, counter::ItemsCount};
 use glam::Vec3;
 

@@ -3,14 +3,14 @@
 
 mod workload;
 
-use caustica::accel::kdtree::{self, Primitive};
-use caustica::real::Real;
-use caustica::shapes::intersect::{
+use caustica::low_level::accel::kdtree::{self, Primitive};
+use caustica::low_level::real::Real;
+use caustica::low_level::shapes::intersect::{
     intersect_primitive, intersect_scene, intersect_scene_many, occluded,
 };
-use caustica::shapes::ray::{Hit, Ray};
-use caustica::shapes::triangle::RayShear;
-use caustica::tables::*;
+use caustica::low_level::shapes::ray::{Hit, Ray};
+use caustica::low_level::shapes::triangle::RayShear;
+use caustica::low_level::tables::*;
 use divan::{Bencher, black_box, counter::ItemsCount};
 
 fn main() {

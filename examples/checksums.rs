@@ -11,8 +11,8 @@
 use std::error::Error;
 use std::path::PathBuf;
 
-use caustica::device::{self, Wanted};
-use caustica::scene::{self, Loaded};
+use caustica::low_level::device::{self, Wanted};
+use caustica::low_level::scene::{self, Loaded};
 use xxhash_rust::xxh3::Xxh3;
 
 #[path = "../tests/engines/scenes.rs"]
@@ -52,7 +52,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         loaded.settings.photons = PHOTONS;
         let name = file.file_name().unwrap_or_default().to_string_lossy();
         print(&name, &loaded)?;
-        loaded.settings.method = caustica::settings::Method::Path;
+        loaded.settings.method = caustica::low_level::settings::Method::Path;
         print(&format!("{name} by path tracing"), &loaded)?;
     }
     Ok(())
@@ -61,7 +61,9 @@ fn main() -> Result<(), Box<dyn Error>> {
 /// Renders on each device that has the method, and prints the checksums.
 fn print(name: &str, loaded: &Loaded) -> Result<(), Box<dyn Error>> {
     for (device, wanted) in &DEVICES {
-        if *device == "software" && loaded.settings.method == caustica::settings::Method::Path {
+        if *device == "software"
+            && loaded.settings.method == caustica::low_level::settings::Method::Path
+        {
             continue;
         }
         let mut engine = device::open(wanted, &loaded.scene, &loaded.settings)?.engine;

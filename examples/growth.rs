@@ -13,12 +13,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use caustica::bench::setup;
-use caustica::device;
-use caustica::gpu::program::Compiling;
-use caustica::scene::{self, Allowance};
-use caustica::settings::{Radius, RenderSettings};
-use caustica::study::statistics::fit;
+use caustica::low_level::bench::setup;
+use caustica::low_level::device;
+use caustica::low_level::gpu::program::Compiling;
+use caustica::low_level::scene::{self, Allowance};
+use caustica::low_level::settings::{Radius, RenderSettings};
+use caustica::low_level::study::statistics::fit;
 
 /// Seconds over which passes are timed at least: the system counts in steps of some milliseconds.
 const WINDOW: f64 = 0.5;
@@ -202,8 +202,11 @@ fn measure(
     let devices = device::list();
     let (device, _) = device::pick(&device::parse(device), &devices)?;
     let before = spent(begun);
-    let packed =
-        caustica::pack::pack(&loaded.scene, loaded.scene.film.width, loaded.scene.film.height)?;
+    let packed = caustica::low_level::pack::pack(
+        &loaded.scene,
+        loaded.scene.film.width,
+        loaded.scene.film.height,
+    )?;
     seconds.insert("(build)".to_owned(), spent(begun) - before);
     drop(packed);
     let mut ready = setup::ready(device, &loaded.scene, &loaded.settings, Compiling::Together)?;

@@ -10,13 +10,15 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
-use caustica::device;
-use caustica::film::{Development, Picture, Provenance, file};
-use caustica::scene;
-use caustica::settings::{Direct, Method, Radius, RadiusRule, RenderSettings};
-use caustica::validation::agreement::{CHANCE, LIMIT, LIMIT_FAR, MEAN_ERRORS, MEAN_LIMIT, REGION};
-use caustica::validation::reference::{BLOCK, PixelNoise};
-use caustica::validation::{Agreement, BlockTruth, hold, render_parts};
+use caustica::low_level::device;
+use caustica::low_level::film::{Development, Picture, Provenance, file};
+use caustica::low_level::scene;
+use caustica::low_level::settings::{Direct, Method, Radius, RadiusRule, RenderSettings};
+use caustica::low_level::validation::agreement::{
+    CHANCE, LIMIT, LIMIT_FAR, MEAN_ERRORS, MEAN_LIMIT, REGION,
+};
+use caustica::low_level::validation::reference::{BLOCK, PixelNoise};
+use caustica::low_level::validation::{Agreement, BlockTruth, hold, render_parts};
 use clap::Parser;
 
 /// Hold renders of the reference scenes against their truths

@@ -6,11 +6,11 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use caustica::device::{self, Wanted};
-use caustica::film::metrics::compare;
-use caustica::film::{Picture, luminance};
-use caustica::scene::{self, Scene};
-use caustica::settings::RenderSettings;
+use caustica::low_level::device::{self, Wanted};
+use caustica::low_level::film::metrics::compare;
+use caustica::low_level::film::{Picture, luminance};
+use caustica::low_level::scene::{self, Scene};
+use caustica::low_level::settings::RenderSettings;
 
 /// Pixels across.
 const WIDTH: u32 = 160;

@@ -7,14 +7,14 @@ use std::error::Error;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use caustica::device::Wanted;
-use caustica::gpu::{AdapterChoice, GpuEngine};
-use caustica::pack::pack;
-use caustica::plan::Plan;
-use caustica::preview::frame::Wish;
-use caustica::preview::orbit::orbit;
-use caustica::preview::worker::Worker;
-use caustica::scene;
+use caustica::low_level::device::Wanted;
+use caustica::low_level::gpu::{AdapterChoice, GpuEngine};
+use caustica::low_level::pack::pack;
+use caustica::low_level::plan::Plan;
+use caustica::low_level::preview::frame::Wish;
+use caustica::low_level::preview::orbit::orbit;
+use caustica::low_level::preview::worker::Worker;
+use caustica::low_level::scene;
 
 const ROUNDS: usize = 3;
 

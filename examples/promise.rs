@@ -11,11 +11,11 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use caustica::device::{self, Wanted};
-use caustica::film::{self, Development, Picture, Provenance};
-use caustica::scene::{self, Scene};
-use caustica::settings::{Direct, Method, Radius, RadiusRule, RenderSettings};
-use caustica::validation::{BlockTruth, NoisyTruth, Promise, promises};
+use caustica::low_level::device::{self, Wanted};
+use caustica::low_level::film::{self, Development, Picture, Provenance};
+use caustica::low_level::scene::{self, Scene};
+use caustica::low_level::settings::{Direct, Method, Radius, RadiusRule, RenderSettings};
+use caustica::low_level::validation::{BlockTruth, NoisyTruth, Promise, promises};
 use clap::Parser;
 
 /// Hold stated errors against true ones

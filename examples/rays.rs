@@ -6,8 +6,8 @@
 #[path = "../benches/workload/mod.rs"]
 mod workload;
 
-use caustica::shapes::intersect::{intersect_scene, intersect_scene_many};
-use caustica::shapes::kdtree_stream::STREAM;
+use caustica::low_level::shapes::intersect::{intersect_scene, intersect_scene_many};
+use caustica::low_level::shapes::kdtree_stream::STREAM;
 use std::io::{self, BufRead, Write};
 use std::path::Path;
 use std::time::Instant;

@@ -2,5 +2,5 @@
 //! scenes/schema.json`.
 
 fn main() {
-    print!("{}", caustica::scene::schema_json());
+    print!("{}", caustica::low_level::scene::schema_json());
 }

@@ -9,8 +9,8 @@ use std::fmt::Write;
 use std::path::Path;
 use std::{env, fs};
 
-use caustica::quality::Quality;
-use caustica::study::words::short;
+use caustica::low_level::quality::Quality;
+use caustica::low_level::study::words::short;
 use serde_json::Value;
 
 const SCENES: [&str; 6] =

@@ -1,45 +1,68 @@
-//! caustica: a photon mapper for caustics, soft shadows and depth of field, on GPU, lavapipe and
-//! CPU.
+//! caustica renders scenes by photon mapping: caustics, soft shadows, depth of field, on a GPU, on
+//! Mesa's software driver or on the CPU.
 //!
-//! A scene file becomes a [`scene::Scene`] (f64, as written), [`pack::pack`] flattens it into the
-//! tables that the kernels read (f32, moved to its own centre), [`plan::Plan`] says what a pass
-//! does, and an [`engine::Engine`] carries it out: [`cpu::CpuEngine`] in Rust, [`gpu::GpuEngine`]
-//! in WGSL.
-//!
-//! A render from Rust, in 20 lines:
+//! # Render a scene file
 //!
 //! ```
-//! use caustica::film::{self, Development, Provenance, tonemap::Bits};
-//! use caustica::{device, scene};
+//! use caustica::{Development, Device, Provenance, Stop, open, render, scene, write_image};
+//! use std::sync::atomic::AtomicBool;
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! let mut loaded = scene::load("scenes/cornell.toml".as_ref())?;
 //! (loaded.scene.film.width, loaded.scene.film.height) = (32, 32);
 //! loaded.settings.photons = 1000;
-//! let mut engine = device::open(&device::Wanted::Cpu, &loaded.scene, &loaded.settings)?.engine;
-//! for _ in 0..4 {
-//!     engine.pass()?;
-//! }
-//! let picture = engine.picture()?;
-//! assert!(picture.rgb.iter().flatten().any(|radiance| *radiance > 0.0));
+//! let mut engine = open(&Device::Cpu, &loaded.scene, &loaded.settings)?.engine;
+//! // stops after 8 passes, or once the stated error is below 2 %
+//! let stop = Stop { passes: 8, time: None, target_error: Some(0.02) };
+//! let cancel = AtomicBool::new(false);
+//! let outcome = render(engine.as_mut(), stop, &cancel, &mut |progress| {
+//!     println!("{} passes", progress.passes);
+//! })?;
+//! assert!(outcome.picture.rgb.iter().flatten().any(|radiance| *radiance > 0.0));
 //! println!("error {:.1} %", 100.0 * engine.errors()?.relative().stated);
 //!
-//! let scene::Film { exposure, tonemap, .. } = loaded.scene.film;
-//! let development = Development { exposure, tonemap, bits: Bits::Eight };
 //! let file = std::env::temp_dir().join("cornell.png");
-//! film::write(&file, &picture, &[], &development, &Provenance::default())?;
+//! let development = Development::of(&loaded.scene.film);
+//! write_image(&file, &outcome.picture, &[], &development, &Provenance::default())?;
 //! # Ok(())
 //! # }
 //! ```
 //!
-//! A test of one's own that holds a GPU, or any driver, against the CPU. The bits are the same on
-//! the software driver lavapipe; GPUs may round otherwise, so that a share of relMSE is what to ask
-//! of them:
+//! # Build a scene in Rust
 //!
 //! ```
-//! use caustica::film::metrics::compare;
-//! use caustica::render::{Stop, render};
-//! use caustica::{device, scene};
+//! use caustica::scene::{Camera, Light, Material, MaterialKind, Reflectance, Scene, Shape, ShapeKind};
+//! use caustica::{Device, RenderSettings, open};
+//! use glam::DVec3;
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let mut scene = Scene::new(Camera::look_at(DVec3::new(0.0, 1.5, 4.0), DVec3::Y * 0.5, 40.0));
+//! (scene.film.width, scene.film.height) = (24, 16);
+//! let material = |name: &str, kind| Material { name: name.to_owned(), kind };
+//! let white = MaterialKind::Diffuse { reflectance: Reflectance::Color([0.7; 3]), roughness: 0.0 };
+//! let glass = MaterialKind::Glass { ior: 1.5, absorption: [0.0; 3], priority: 0 };
+//! scene.materials = vec![material("white", white), material("glass", glass)];
+//! let floor = ShapeKind::Plane { point: DVec3::ZERO, normal: DVec3::Y };
+//! let ball = ShapeKind::Sphere { center: DVec3::Y * 0.5, radius: 0.5 };
+//! scene.shapes = vec![Shape::new(floor, 0), Shape::new(ball, 1)];
+//! scene.lights =
+//!     vec![Light::Point { position: DVec3::new(1.0, 3.0, 1.0), intensity: [20.0; 3] }];
+//!
+//! let settings = RenderSettings { photons: 1000, ..RenderSettings::default() };
+//! let mut engine = open(&Device::Cpu, &scene, &settings)?.engine;
+//! engine.pass()?;
+//! assert!(engine.picture()?.rgb.iter().flatten().any(|radiance| *radiance > 0.0));
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! # Compare two devices
+//!
+//! Mesa's lavapipe gives the same bits as the CPU. GPUs may round differently, so compare their
+//! relMSE with a threshold instead.
+//!
+//! ```
+//! use caustica::{Device, Stop, compare, open, render, scene};
 //! use std::sync::atomic::AtomicBool;
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -47,74 +70,40 @@
 //! (loaded.scene.film.width, loaded.scene.film.height) = (16, 16);
 //! loaded.settings.photons = 1000;
 //! let stop = Stop { passes: 2, time: None, target_error: None };
-//! let picture = |wanted| -> Result<_, Box<dyn std::error::Error>> {
-//!     let mut engine = device::open(&wanted, &loaded.scene, &loaded.settings)?.engine;
+//! let picture = |device| -> Result<_, Box<dyn std::error::Error>> {
+//!     let mut engine = open(&device, &loaded.scene, &loaded.settings)?.engine;
 //!     Ok(render(engine.as_mut(), stop, &AtomicBool::new(false), &mut |_| ())?.picture)
 //! };
-//! let (gpu, cpu) = (picture(device::Wanted::Software)?, picture(device::Wanted::Cpu)?);
+//! let (gpu, cpu) = (picture(Device::Software)?, picture(Device::Cpu)?);
 //! let difference = compare(&gpu, &cpu)?;
 //! assert_eq!(difference.pixels_differing, 0, "relMSE {:.1e}", difference.rel_mse);
 //! # Ok(())
 //! # }
 //! ```
 //!
-//! Modules depend on one another one way: [`stage`], [`compilation`], [`storage`], [`srgb`],
-//! [`memory`], [`real`] and [`math`], then [`tables`], [`shapes`], [`materials`], [`lights`],
-//! [`camera`] and [`grid`], then [`scene`], [`accel`], [`prepare`], [`limits`], [`pack`], then [`kernels`],
-//! [`radius`], [`sobol`], [`probe`], [`film_readback`], [`plan`], then [`cpu`] and [`gpu`], then
-//! [`identity`], [`device`], [`failover`], [`quality`], [`calibration`], [`observers`], [`render`] and
-//! [`checkpoint`], and last [`bench`](mod@bench), [`ablation`], [`validation`], [`study`] and, where it is
-//! not left out, `preview`. Those from [`real`] to [`cpu`] are compiled twice: [`double`] is the
-//! same in f64.
+//! Everything else, from the kernels to the file formats, is in [`low_level`].
 
-pub mod ablation;
-pub mod accel;
-pub mod bench;
-pub mod calibration;
-pub mod camera;
-pub mod checkpoint;
-pub mod clock;
-pub mod compilation;
-pub mod cpu;
-pub mod device;
-pub mod double;
-pub mod engine;
-pub mod error;
-pub mod failover;
-pub mod features;
-pub mod film;
-pub mod film_readback;
-pub mod gpu;
-pub mod grid;
-pub mod identity;
-pub mod kernels;
-pub mod layers;
-pub mod lights;
-pub mod limits;
-pub mod materials;
-pub mod math;
-pub mod memory;
-pub mod observers;
-pub mod pack;
-pub mod plan;
-pub mod prepare;
-#[cfg(feature = "preview")]
-pub mod preview;
-pub mod probe;
-pub mod quality;
-pub mod radius;
-pub mod real;
-pub mod render;
-pub mod scene;
-pub mod settings;
-pub mod shapes;
-pub mod sobol;
-pub mod srgb;
-pub mod stage;
-pub mod storage;
-pub mod study;
-pub mod tables;
-pub mod validation;
+pub mod low_level;
+
+// the modules name one another from the root
+#[allow(unused_imports)]
+use low_level::{
+    ablation, accel, bench, calibration, camera, checkpoint, clock, compilation, cpu, device,
+    double, engine, error, failover, features, film, film_readback, gpu, grid, identity, kernels,
+    layers, lights, limits, materials, math, memory, observers, pack, plan, prepare, probe,
+    quality, radius, real, render, settings, shapes, sobol, srgb, stage, storage, study, tables,
+    validation,
+};
+
+pub use device::{DeviceError, DeviceInfo, Opened, Wanted as Device, list as devices, open};
+pub use engine::{Cancel, Engine, EngineError, PassReport};
+pub use film::metrics::compare;
+pub use film::{
+    Development, ErrorMap, FileError, Picture, Provenance, read as read_image, write as write_image,
+};
+pub use low_level::scene;
+pub use render::{Ending, Outcome, Progress, Stop, render};
+pub use settings::{Direct, Method, Radius, RadiusRule, RenderSettings};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

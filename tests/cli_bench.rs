@@ -12,7 +12,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Output;
 
-use caustica::film::{Picture, pfm};
+use caustica::low_level::film::{Picture, pfm};
 use serde_json::Value;
 use support::{caustica, folder_with, good, json_lines, text};
 

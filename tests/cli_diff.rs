@@ -11,7 +11,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Output;
 
-use caustica::film::{Coding, Picture, exr_file, pfm, read_any};
+use caustica::low_level::film::{Coding, Picture, exr_file, pfm, read_any};
 use exr::prelude::{Image, SpecificChannels, WritableImage};
 use serde_json::Value;
 use support::text;

@@ -12,9 +12,9 @@ use std::net::TcpListener;
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
-use caustica::film::exr_file::{self, ExrFile, Frame};
-use caustica::film::tev::Tev;
-use caustica::film::{Development, Picture, file, read};
+use caustica::low_level::film::exr_file::{self, ExrFile, Frame};
+use caustica::low_level::film::tev::Tev;
+use caustica::low_level::film::{Development, Picture, file, read};
 use support::{FLOOR, LAMP, MESH, ball, ends, error, folder_with};
 
 static SCENE: LazyLock<String> =

@@ -11,7 +11,7 @@ use std::process::{Command, Output, Stdio};
 use std::sync::LazyLock;
 use std::time::Duration;
 
-use caustica::film::{file, read};
+use caustica::low_level::film::{file, read};
 use support::{DISC, LAMP, ball, caustica, command, folder_with, json_lines, text};
 
 static SCENE: LazyLock<String> =

@@ -13,7 +13,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Output;
 
-use caustica::scene::{self, Mesh, ShapeKind};
+use caustica::low_level::scene::{self, Mesh, ShapeKind};
 use glam::DVec3;
 use support::{caustica, folder, text};
 

@@ -13,10 +13,10 @@ mod support;
 
 use std::path::Path;
 
-use caustica::film::denoise::Denoiser;
-use caustica::film::exr_file::{Channel, ExrFile, Frame};
-use caustica::film::metrics::compare;
-use caustica::film::{Development, Picture, Plane, file, read};
+use caustica::low_level::film::denoise::Denoiser;
+use caustica::low_level::film::exr_file::{Channel, ExrFile, Frame};
+use caustica::low_level::film::metrics::compare;
+use caustica::low_level::film::{Development, Picture, Plane, file, read};
 use support::{ends, folder, json_lines};
 
 const NAMES: [&str; 6] = ["albedo.R", "albedo.G", "albedo.B", "normal.X", "normal.Y", "normal.Z"];

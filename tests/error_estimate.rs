@@ -5,22 +5,24 @@
 //! distance; and nine of ten renders are to be no farther from the truth than they state.
 
 use bytemuck::Zeroable;
-use caustica::cpu::CpuEngine;
-use caustica::engine::Engine;
-use caustica::film::ErrorMap;
-use caustica::film::estimate::{LEAST_PASSES, PixelError, early_passes, partition};
-use caustica::kernels::gather::gather;
-use caustica::kernels::grid_build::build_grid;
-use caustica::kernels::records::{Dispatch, FilmPixel, Gathered, PhotonRecord, VisiblePoint};
-use caustica::kernels::resolve::{half_weight, resolve};
-use caustica::math::oct_encode;
-use caustica::pack::pack;
-use caustica::plan::Plan;
-use caustica::render::{Ending, Stop, render};
-use caustica::scene;
-use caustica::settings::{Direct, Radius, RenderSettings};
-use caustica::tables::NONE;
-use caustica::validation::{BlockTruth, NoisyTruth, Promise};
+use caustica::low_level::cpu::CpuEngine;
+use caustica::low_level::engine::Engine;
+use caustica::low_level::film::ErrorMap;
+use caustica::low_level::film::estimate::{LEAST_PASSES, PixelError, early_passes, partition};
+use caustica::low_level::kernels::gather::gather;
+use caustica::low_level::kernels::grid_build::build_grid;
+use caustica::low_level::kernels::records::{
+    Dispatch, FilmPixel, Gathered, PhotonRecord, VisiblePoint,
+};
+use caustica::low_level::kernels::resolve::{half_weight, resolve};
+use caustica::low_level::math::oct_encode;
+use caustica::low_level::pack::pack;
+use caustica::low_level::plan::Plan;
+use caustica::low_level::render::{Ending, Stop, render};
+use caustica::low_level::scene;
+use caustica::low_level::settings::{Direct, Radius, RenderSettings};
+use caustica::low_level::tables::NONE;
+use caustica::low_level::validation::{BlockTruth, NoisyTruth, Promise};
 use glam::Vec3;
 use std::f64::consts::PI;
 use std::path::Path;

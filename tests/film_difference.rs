@@ -5,11 +5,11 @@
 //! authors' own program, which works in f32 (hence a tolerance of 5e-6), and scikit-image 0.26.0 in
 //! f64.
 
-use caustica::film::colors::magma;
-use caustica::film::flip::{Exposures, PIXELS_PER_DEGREE, hdr_flip, ldr_flip};
-use caustica::film::metrics::MetricsError;
-use caustica::film::ssim::Similarity;
-use caustica::film::{Coding, Difference, Measures, Picture, Region, luminance};
+use caustica::low_level::film::colors::magma;
+use caustica::low_level::film::flip::{Exposures, PIXELS_PER_DEGREE, hdr_flip, ldr_flip};
+use caustica::low_level::film::metrics::MetricsError;
+use caustica::low_level::film::ssim::Similarity;
+use caustica::low_level::film::{Coding, Difference, Measures, Picture, Region, luminance};
 
 const WIDTH: u32 = 96;
 const HEIGHT: u32 = 64;

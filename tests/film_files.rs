@@ -9,10 +9,10 @@ mod support;
 use std::fs;
 use std::path::Path;
 
-use caustica::film::{
+use caustica::low_level::film::{
     Development, FileError, Picture, Provenance, check_outputs, exr_file, file, pfm, read, write,
 };
-use caustica::settings::RenderSettings;
+use caustica::low_level::settings::RenderSettings;
 use support::folder;
 
 /// Not square and unlike its mirror images, over many magnitudes; with denormal, negative zero and

@@ -3,10 +3,10 @@
 //! Theory: each figure of a constructed pair of pictures is known in closed form, and each must
 //! move when an error is planted.
 
-use caustica::film::blocks::{block_deviations, share_outside};
-use caustica::film::heat::heat_map;
-use caustica::film::metrics::{MetricsError, compare};
-use caustica::film::{Picture, luminance};
+use caustica::low_level::film::blocks::{block_deviations, share_outside};
+use caustica::low_level::film::heat::heat_map;
+use caustica::low_level::film::metrics::{MetricsError, compare};
+use caustica::low_level::film::{Picture, luminance};
 
 fn grey(width: u32, height: u32, value: f32) -> Picture {
     Picture::from_fn(width, height, |_, _| [value; 3])

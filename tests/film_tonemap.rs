@@ -4,10 +4,10 @@
 //! in. AgX spans 16.5 stops and its base curve turns about middle grey, 0.18, which becomes one
 //! half on a display of exponent 2.2; the sRGB curve is that of IEC 61966-2-1.
 
-use caustica::film::Development;
-use caustica::film::tonemap::Bits;
-use caustica::scene::ToneMap;
-use caustica::srgb::srgb_from_linear;
+use caustica::low_level::film::Development;
+use caustica::low_level::film::tonemap::Bits;
+use caustica::low_level::scene::ToneMap;
+use caustica::low_level::srgb::srgb_from_linear;
 
 const BOTH: [ToneMap; 2] = [ToneMap::Agx, ToneMap::Srgb];
 

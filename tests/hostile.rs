@@ -10,7 +10,9 @@ mod support;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use caustica::scene::{Allowance, SceneErrors, load_profile_within, load_within, parse_within};
+use caustica::low_level::scene::{
+    Allowance, SceneErrors, load_profile_within, load_within, parse_within,
+};
 use support::HEAD;
 
 /// A scene with a light, a material and the rest.

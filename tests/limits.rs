@@ -4,8 +4,8 @@
 //! just beyond there is one warning, with the number that is out of range, at the value that makes
 //! it so.
 
-use caustica::limits::warnings;
-use caustica::scene::{Finding, load, parse};
+use caustica::low_level::limits::warnings;
+use caustica::low_level::scene::{Finding, load, parse};
 
 /// The scene's radius is half the diagonal of what holds camera, target and floor: sqrt(4 + 1 + 4)
 /// = 3.

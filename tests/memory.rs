@@ -7,16 +7,16 @@
 
 mod software;
 
-use caustica::cpu::CpuEngine;
-use caustica::engine::{Engine, EngineError, State};
-use caustica::film::exr_file::Channel;
-use caustica::film::{ErrorMap, Picture};
-use caustica::gpu::{self, GpuEngine};
-use caustica::memory::{Memory, Part, total};
-use caustica::pack::{Packed, pack};
-use caustica::plan::{Place, Plan, scene_bytes};
-use caustica::scene::{self, Aovs};
-use caustica::settings::{Method, RadiusRule, RenderSettings};
+use caustica::low_level::cpu::CpuEngine;
+use caustica::low_level::engine::{Engine, EngineError, State};
+use caustica::low_level::film::exr_file::Channel;
+use caustica::low_level::film::{ErrorMap, Picture};
+use caustica::low_level::gpu::{self, GpuEngine};
+use caustica::low_level::memory::{Memory, Part, total};
+use caustica::low_level::pack::{Packed, pack};
+use caustica::low_level::plan::{Place, Plan, scene_bytes};
+use caustica::low_level::scene::{self, Aovs};
+use caustica::low_level::settings::{Method, RadiusRule, RenderSettings};
 
 const SIZE: (u32, u32) = (40, 30);
 const PASSES: u32 = 5;

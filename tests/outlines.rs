@@ -3,20 +3,20 @@
 mod software;
 
 use bytemuck::{Zeroable, cast_slice, pod_collect_to_vec};
-use caustica::features::{Feature, Features};
-use caustica::gpu::Gpu;
-use caustica::gpu::compose::compose;
-use caustica::gpu::layout::SceneTables;
-use caustica::gpu::program::Program;
-use caustica::gpu::recorder::Recorder;
-use caustica::kernels::gather::gather;
-use caustica::kernels::grid_build::{build_grid, record_bucket, record_code};
-use caustica::kernels::records::{Dispatch, Gathered, PhotonRecord, VisiblePoint};
-use caustica::math::rng::{STREAM_PHOTON, rng_new, rng_next};
-use caustica::math::{basis, oct_decode, oct_encode};
-use caustica::plan::{Buffer, Kernel};
-use caustica::shapes::outline::{WALL_BITS, clip_at, in_outline, outline_share};
-use caustica::tables::{NONE, Outline};
+use caustica::low_level::features::{Feature, Features};
+use caustica::low_level::gpu::Gpu;
+use caustica::low_level::gpu::compose::compose;
+use caustica::low_level::gpu::layout::SceneTables;
+use caustica::low_level::gpu::program::Program;
+use caustica::low_level::gpu::recorder::Recorder;
+use caustica::low_level::kernels::gather::gather;
+use caustica::low_level::kernels::grid_build::{build_grid, record_bucket, record_code};
+use caustica::low_level::kernels::records::{Dispatch, Gathered, PhotonRecord, VisiblePoint};
+use caustica::low_level::math::rng::{STREAM_PHOTON, rng_new, rng_next};
+use caustica::low_level::math::{basis, oct_decode, oct_encode};
+use caustica::low_level::plan::{Buffer, Kernel};
+use caustica::low_level::shapes::outline::{WALL_BITS, clip_at, in_outline, outline_share};
+use caustica::low_level::tables::{NONE, Outline};
 use glam::{DVec2, Vec3, Vec4};
 use std::f64::consts::PI;
 

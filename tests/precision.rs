@@ -8,12 +8,12 @@
 
 use std::path::{Path, PathBuf};
 
-use caustica::device::{self, Wanted};
-use caustica::film::metrics::{Comparison, compare};
-use caustica::film::{Picture, luminance};
-use caustica::scene::{self, Scene};
-use caustica::settings::{Direct, Method, Radius, RenderSettings};
-use caustica::validation::{BlockTruth, hold, render_parts};
+use caustica::low_level::device::{self, Wanted};
+use caustica::low_level::film::metrics::{Comparison, compare};
+use caustica::low_level::film::{Picture, luminance};
+use caustica::low_level::scene::{self, Scene};
+use caustica::low_level::settings::{Direct, Method, Radius, RenderSettings};
+use caustica::low_level::validation::{BlockTruth, hold, render_parts};
 
 /// Most that the pictures may differ by in the median over pixels.
 const MEDIAN: f64 = 5e-5;
@@ -154,7 +154,7 @@ macro_rules! problems {
     ($name:ident, $core:path) => {
         mod $name {
             use bytemuck::Zeroable;
-            use caustica::accel::profile::Placement;
+            use caustica::low_level::accel::profile::Placement;
             use core::accel::revolution::{Attributes, RevolutionTables};
             use core::real::{Real, Vec3};
             use core::shapes::ray::{Hit, Ray};
@@ -217,8 +217,8 @@ macro_rules! problems {
         }
     };
 }
-problems!(single, caustica);
-problems!(double, caustica::double);
+problems!(single, caustica::low_level);
+problems!(double, caustica::low_level::double);
 
 /// Theory: at 1 - e from the axis half the chord is sqrt(2 e - e^2), and an error x in the distance
 /// from the axis becomes x / sqrt(2 e) in the chord: 724 roundings. The sphere's legs are 3, 4, 5.

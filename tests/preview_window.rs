@@ -16,8 +16,8 @@ use std::sync::LazyLock;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use caustica::film::{file::read_exr, read};
-use caustica::scene;
+use caustica::low_level::film::{file::read_exr, read};
+use caustica::low_level::scene;
 use support::{LAMP, PLANE, ball, command, folder_with, good};
 
 /// With comments, which no saving takes away.

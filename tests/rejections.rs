@@ -2,16 +2,16 @@
 //! alike on both engines.
 
 use bytemuck::Zeroable;
-use caustica::cpu::CpuEngine;
-use caustica::engine::Engine;
-use caustica::film::{Picture, Rejections};
-use caustica::gpu::GpuEngine;
-use caustica::kernels::records::*;
-use caustica::kernels::resolve::resolve;
-use caustica::pack::{Packed, pack};
-use caustica::plan::Plan;
-use caustica::scene;
-use caustica::settings::{Direct, Method, Radius, RenderSettings};
+use caustica::low_level::cpu::CpuEngine;
+use caustica::low_level::engine::Engine;
+use caustica::low_level::film::{Picture, Rejections};
+use caustica::low_level::gpu::GpuEngine;
+use caustica::low_level::kernels::records::*;
+use caustica::low_level::kernels::resolve::resolve;
+use caustica::low_level::pack::{Packed, pack};
+use caustica::low_level::plan::Plan;
+use caustica::low_level::scene;
+use caustica::low_level::settings::{Direct, Method, Radius, RenderSettings};
 use glam::Vec3;
 
 mod software;
@@ -87,7 +87,7 @@ fn on_both(packed: &Packed, settings: &RenderSettings) -> (Picture, Rejections) 
 }
 
 /// The light of a kind in a scene.
-fn light(packed: &mut Packed, kind: u32) -> &mut caustica::tables::Light {
+fn light(packed: &mut Packed, kind: u32) -> &mut caustica::low_level::tables::Light {
     packed.scene.lights.iter_mut().find(|l| l.kind == kind).expect("such a light")
 }
 
@@ -107,7 +107,7 @@ fn nothing_is_left_out_of_a_sound_scene() {
 /// each pixel is counted once, under the first cause.
 #[test]
 fn causes_are_told_apart() {
-    use caustica::tables::{LIGHT_AREA, LIGHT_POINT};
+    use caustica::low_level::tables::{LIGHT_AREA, LIGHT_POINT};
     for poison in [f32::INFINITY, f32::NAN] {
         let mut scene = packed(SCENE);
         light(&mut scene, LIGHT_AREA).color = Vec3::new(1.0, poison, 1.0);
@@ -154,7 +154,7 @@ fn an_estimate_that_overflows_is_left_out() {
 #[test]
 fn paths_are_counted() {
     let mut scene = packed(SCENE);
-    light(&mut scene, caustica::tables::LIGHT_POINT).color = Vec3::splat(f32::NAN);
+    light(&mut scene, caustica::low_level::tables::LIGHT_POINT).color = Vec3::splat(f32::NAN);
     let settings = RenderSettings { method: Method::Path, ..settings(Direct::Sampled) };
     let plan = Plan::new(&scene, &settings);
     let (picture, r) = rendered(CpuEngine::new(scene, plan), 3);

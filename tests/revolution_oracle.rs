@@ -2,9 +2,9 @@
 
 mod revolution;
 
-use caustica::accel::revolution::Placement;
-use caustica::math::FAR;
-use caustica::shapes::revolution::{BRACKETED, PatchHit, intersect_patch, patch_miss};
+use caustica::low_level::accel::revolution::Placement;
+use caustica::low_level::math::FAR;
+use caustica::low_level::shapes::revolution::{BRACKETED, PatchHit, intersect_patch, patch_miss};
 use glam::Vec3;
 use rayon::prelude::*;
 use revolution::judge::{Tally, judge};

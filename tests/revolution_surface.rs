@@ -3,10 +3,12 @@
 
 mod revolution;
 
-use caustica::accel::revolution::{Attributes, Placement, ProfileError, RevolutionTables};
-use caustica::math::FAR;
-use caustica::shapes::revolution::{intersect_patch, revolution_surface, ring_point};
-use caustica::shapes::revolution_roots::newton_step;
+use caustica::low_level::accel::revolution::{
+    Attributes, Placement, ProfileError, RevolutionTables,
+};
+use caustica::low_level::math::FAR;
+use caustica::low_level::shapes::revolution::{intersect_patch, revolution_surface, ring_point};
+use caustica::low_level::shapes::revolution_roots::newton_step;
 use glam::{DMat3, DVec2, DVec3, Vec3, Vec4};
 use revolution::oracle;
 use revolution::profiles::{Placed, place, profiles, skew};

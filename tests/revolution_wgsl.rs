@@ -6,10 +6,10 @@ mod device;
 mod revolution;
 
 use bytemuck::{Pod, Zeroable};
-use caustica::accel::revolution::Placement;
-use caustica::math::FAR;
-use caustica::math::trig::{arctan2, exponential, logarithm, power, sin_cos};
-use caustica::shapes::revolution::{
+use caustica::low_level::accel::revolution::Placement;
+use caustica::low_level::math::FAR;
+use caustica::low_level::math::trig::{arctan2, exponential, logarithm, power, sin_cos};
+use caustica::low_level::shapes::revolution::{
     Patch, Revolution, intersect_patch, patch_miss, revolution_surface,
 };
 use device::{Device, module};

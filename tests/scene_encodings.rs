@@ -10,8 +10,8 @@ mod support;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use caustica::identity::Identity;
-use caustica::scene::{Finding, load, load_profile};
+use caustica::low_level::identity::Identity;
+use caustica::low_level::scene::{Finding, load, load_profile};
 
 const SCENE: &str = r#"version = 1 # a drop on a mesh
 [camera]

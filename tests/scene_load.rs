@@ -4,7 +4,7 @@ mod support;
 
 use std::path::Path;
 
-use caustica::scene::{
+use caustica::low_level::scene::{
     Environment, Loaded, MaterialKind, Reflectance, Scene, SceneErrors, ShapeKind, Texels,
     TextureKind, load, parse,
 };
@@ -209,7 +209,7 @@ fn windows_text() {
 /// The keys of `[render]` reach the settings; absent ones keep their defaults.
 #[test]
 fn render_settings() {
-    use caustica::settings::{Method, Radius, RenderSettings};
+    use caustica::low_level::settings::{Method, Radius, RenderSettings};
     let loaded = parse_text(&format!(
         "{HEAD}[environment]\nradiance = 1\n[render]\nmethod = \"ppm\"\nphotons = 1_000\nradius = {{ units = 0.01 }}\nseed = 0xff\n"
     )).unwrap();
@@ -236,7 +236,7 @@ fn schema_is_current() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/schema.json");
     let kept = std::fs::read_to_string(path).unwrap().replace("\r\n", "\n");
     assert!(
-        kept == caustica::scene::schema_json(),
+        kept == caustica::low_level::scene::schema_json(),
         "renew it: cargo run --release --example schema > scenes/schema.json"
     );
 }

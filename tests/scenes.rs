@@ -5,10 +5,10 @@
 //! does and the twins use nothing else, so the CPU engine and lavapipe give the same bits as each
 //! other, too.
 
-use caustica::device::{self, Wanted};
-use caustica::film::Picture;
-use caustica::scene;
-use caustica::settings::{Direct, Method, RadiusRule, RenderSettings};
+use caustica::low_level::device::{self, Wanted};
+use caustica::low_level::film::Picture;
+use caustica::low_level::scene;
+use caustica::low_level::settings::{Direct, Method, RadiusRule, RenderSettings};
 use std::path::{Path, PathBuf};
 
 fn shipped() -> Vec<PathBuf> {

@@ -3,7 +3,7 @@
 //!
 //! Theory: a box-filtered picture of any size has the same expected means over the same squares, so
 //! small films with 2 x 2 pixels to a block are held against the block means of large pictures.
-//! Differences are measured in standard errors of both (see `caustica::validation`); density estimation
+//! Differences are measured in standard errors of both (see `caustica::low_level::validation`); density estimation
 //! is biased, for which 1 % of a block is allowed, and path tracing is not. Films, seeds and passes
 //! are fixed: on one device these tests always say the same. What they can see is shown by planted
 //! errors.
@@ -12,13 +12,15 @@ mod support;
 
 use std::path::Path;
 
-use caustica::device::Wanted;
-use caustica::film::Picture;
-use caustica::scene::{self, Scene};
-use caustica::settings::{Direct, Method, Radius, RadiusRule, RenderSettings};
-use caustica::validation::agreement::LIMIT_FAR;
-use caustica::validation::reference::{BLOCK, PixelNoise};
-use caustica::validation::{Agreement, BlockTruth, Blocks, Rendered, hold, render_parts};
+use caustica::low_level::device::Wanted;
+use caustica::low_level::film::Picture;
+use caustica::low_level::scene::{self, Scene};
+use caustica::low_level::settings::{Direct, Method, Radius, RadiusRule, RenderSettings};
+use caustica::low_level::validation::agreement::LIMIT_FAR;
+use caustica::low_level::validation::reference::{BLOCK, PixelNoise};
+use caustica::low_level::validation::{
+    Agreement, BlockTruth, Blocks, Rendered, hold, render_parts,
+};
 
 /// Edge of a block in pixels of the small films.
 const EDGE: u32 = 2;

@@ -4,10 +4,10 @@
 
 #![allow(dead_code)] // each program uses its part
 
-use caustica::pack::{Packed, pack};
-use caustica::real::{ToDouble, ToReal};
-use caustica::scene::{self, Mesh, ShapeKind, Triangle};
-use caustica::shapes::ray::Ray;
+use caustica::low_level::pack::{Packed, pack};
+use caustica::low_level::real::{ToDouble, ToReal};
+use caustica::low_level::scene::{self, Mesh, ShapeKind, Triangle};
+use caustica::low_level::shapes::ray::Ray;
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 

@@ -107,7 +107,8 @@ pub struct Mutator {
 impl Mutator {
     /// One of its own for each seed.
     pub fn new(seed: u64) -> Self {
-        let schema: Json = serde_json::from_str(&caustica::scene::schema_json()).expect("a schema");
+        let schema: Json =
+            serde_json::from_str(&caustica::low_level::scene::schema_json()).expect("a schema");
         let mut words = BTreeSet::new();
         collect(&schema, &mut words);
         Self { state: seed, words: words.into_iter().collect() }

@@ -4,10 +4,10 @@ use std::fs;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
-use caustica::checkpoint::{self, Checkpoint, Origin, Totals};
-use caustica::device::{self, Opened, Wanted};
-use caustica::scene::{self, Loaded};
-use caustica::settings::RadiusRule;
+use caustica::low_level::checkpoint::{self, Checkpoint, Origin, Totals};
+use caustica::low_level::device::{self, Opened, Wanted};
+use caustica::low_level::scene::{self, Loaded};
+use caustica::low_level::settings::RadiusRule;
 use image::{DynamicImage, ImageFormat};
 
 use crate::targets::Target;

@@ -3,10 +3,10 @@
 use std::fs;
 use std::path::Path;
 
-use caustica::accel::tessellate::{Fineness, tessellate};
-use caustica::checkpoint::Checkpoint;
-use caustica::scene::{self, Allowance, Loaded, SceneErrors};
-use caustica::{checkpoint, limits, pack, plan};
+use caustica::low_level::accel::tessellate::{Fineness, tessellate};
+use caustica::low_level::checkpoint::Checkpoint;
+use caustica::low_level::scene::{self, Allowance, Loaded, SceneErrors};
+use caustica::low_level::{checkpoint, limits, pack, plan};
 use xxhash_rust::xxh3::xxh3_128;
 
 use crate::mutate::Mutator;

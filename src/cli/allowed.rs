@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use caustica::memory;
-use caustica::scene::{self, Allowance, Loaded, Missing};
+use caustica::low_level::memory;
+use caustica::low_level::scene::{self, Allowance, Loaded, Missing};
 use clap::{Args, ValueEnum};
 
 use super::Failure;

@@ -4,14 +4,16 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 
-use caustica::bench::to_error::{Approach, Goal, Limit, ToErrorError, approach};
-use caustica::bench::{Conduct, DeviceReport, can_run, device_report, machine::Machine, setup};
-use caustica::device::{self, DeviceInfo, DeviceKind};
-use caustica::film::metrics::MetricsError;
-use caustica::film::{Coding, Picture, Region, read_any};
-use caustica::gpu::program::Compiling;
-use caustica::scene::{self, Loaded, Scene};
-use caustica::settings::RenderSettings;
+use caustica::low_level::bench::to_error::{Approach, Goal, Limit, ToErrorError, approach};
+use caustica::low_level::bench::{
+    Conduct, DeviceReport, can_run, device_report, machine::Machine, setup,
+};
+use caustica::low_level::device::{self, DeviceInfo, DeviceKind};
+use caustica::low_level::film::metrics::MetricsError;
+use caustica::low_level::film::{Coding, Picture, Region, read_any};
+use caustica::low_level::gpu::program::Compiling;
+use caustica::low_level::scene::{self, Loaded, Scene};
+use caustica::low_level::settings::RenderSettings;
 use clap::builder::NonEmptyStringValueParser;
 use miette::miette;
 use serde_json::json;

@@ -1,12 +1,12 @@
 //! A bench's figures as tables for people.
 
-use caustica::bench::machine::Machine;
-use caustica::bench::spread::Spread;
-use caustica::bench::to_error::Approach;
-use caustica::bench::{DeviceReport, KernelReport, SliceReport};
-use caustica::plan::Kernel;
-use caustica::scene::Scene;
-use caustica::settings::RenderSettings;
+use caustica::low_level::bench::machine::Machine;
+use caustica::low_level::bench::spread::Spread;
+use caustica::low_level::bench::to_error::Approach;
+use caustica::low_level::bench::{DeviceReport, KernelReport, SliceReport};
+use caustica::low_level::plan::Kernel;
+use caustica::low_level::scene::Scene;
+use caustica::low_level::settings::RenderSettings;
 
 use super::progress::count;
 
@@ -95,8 +95,9 @@ fn kernel_table(report: &DeviceReport) -> Vec<String> {
     }));
     let sum: f64 = report.kernels.values().map(|kernel| kernel.seconds.median).sum();
     let blank = if compiled {
-        let all =
-            |part: fn(&caustica::bench::Compile) -> f64| report.compile.values().map(part).sum();
+        let all = |part: fn(&caustica::low_level::bench::Compile) -> f64| {
+            report.compile.values().map(part).sum()
+        };
         format!("{:>10}{:>10}", time(all(|c| c.checking)), time(all(|c| c.driver)))
     } else {
         String::new()

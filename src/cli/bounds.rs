@@ -1,6 +1,6 @@
 //! Thresholds for measures, each for the whole picture or for a named region.
 
-use caustica::film::Measures;
+use caustica::low_level::film::Measures;
 use serde_json::{Value, json};
 
 use super::Failure;

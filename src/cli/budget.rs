@@ -1,6 +1,6 @@
 //! How much memory may be taken.
 
-use caustica::memory::{self, Memory};
+use caustica::low_level::memory::{self, Memory};
 use clap::Args;
 
 use super::checkpoint::Files;

@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use caustica::scene::{Finding, SceneErrors};
-use caustica::{limits, scene};
+use caustica::low_level::scene::{Finding, SceneErrors};
+use caustica::low_level::{limits, scene};
 use miette::miette;
 use serde_json::{Value, json};
 

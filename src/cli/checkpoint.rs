@@ -3,13 +3,13 @@
 
 use std::path::{Path, PathBuf};
 
-use caustica::checkpoint::{
+use caustica::low_level::checkpoint::{
     self, Checkpoint, CheckpointError, EXTENSION, Origin, Totals, check_place, read, write,
 };
-use caustica::engine::State;
-use caustica::render::Progress;
-use caustica::settings::RenderSettings;
-use caustica::storage::{self, Lock};
+use caustica::low_level::engine::State;
+use caustica::low_level::render::Progress;
+use caustica::low_level::settings::RenderSettings;
+use caustica::low_level::storage::{self, Lock};
 use serde_json::json;
 
 use super::Failure;

@@ -3,12 +3,12 @@
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
-use caustica::device;
-use caustica::film::metrics::{Comparison, compare};
-use caustica::film::{Picture, blocks, file, heat};
-use caustica::render::{Stop, render};
-use caustica::scene::Scene;
-use caustica::settings::RenderSettings;
+use caustica::low_level::device;
+use caustica::low_level::film::metrics::{Comparison, compare};
+use caustica::low_level::film::{Picture, blocks, file, heat};
+use caustica::low_level::render::{Stop, render};
+use caustica::low_level::scene::Scene;
+use caustica::low_level::settings::RenderSettings;
 use clap::builder::NonEmptyStringValueParser;
 use serde_json::{Value, json};
 

@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use caustica::film::denoise::{DenoiseError, Denoiser, guides};
-use caustica::film::file::Format;
-use caustica::scene::{Aovs, Film};
+use caustica::low_level::film::denoise::{DenoiseError, Denoiser, guides};
+use caustica::low_level::film::file::Format;
+use caustica::low_level::scene::{Aovs, Film};
 
 use super::Failure;
 use super::rendered::Made;

@@ -1,10 +1,10 @@
 //! One device after another, and what is told where one fails.
 
-use caustica::device::{Candidates, Opened};
-use caustica::engine::{Engine, EngineError, State};
-use caustica::memory::Memory;
-use caustica::scene::Scene;
-use caustica::settings::RenderSettings;
+use caustica::low_level::device::{Candidates, Opened};
+use caustica::low_level::engine::{Engine, EngineError, State};
+use caustica::low_level::memory::Memory;
+use caustica::low_level::scene::Scene;
+use caustica::low_level::settings::RenderSettings;
 use serde_json::json;
 
 use super::output::{message, paragraph, result};

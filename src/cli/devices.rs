@@ -1,7 +1,7 @@
 //! `caustica devices`: what there is to render on.
 
-use caustica::device::{self, DeviceInfo};
-use caustica::gpu::{self, Hidden};
+use caustica::low_level::device::{self, DeviceInfo};
+use caustica::low_level::gpu::{self, Hidden};
 use serde_json::{Value, json};
 
 use super::output::result;

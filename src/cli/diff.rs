@@ -2,12 +2,12 @@
 
 use std::path::PathBuf;
 
-use caustica::film::difference::flip_colors;
-use caustica::film::flip::Exposures;
-use caustica::film::metrics::MetricsError;
-use caustica::film::plane::Plane;
-use caustica::film::{Coding, Difference, FileError, Picture, Region, file, read_any};
-use caustica::storage;
+use caustica::low_level::film::difference::flip_colors;
+use caustica::low_level::film::flip::Exposures;
+use caustica::low_level::film::metrics::MetricsError;
+use caustica::low_level::film::plane::Plane;
+use caustica::low_level::film::{Coding, Difference, FileError, Picture, Region, file, read_any};
+use caustica::low_level::storage;
 use miette::miette;
 use serde_json::{Value, json};
 

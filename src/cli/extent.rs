@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use caustica::film::file::Format;
-use caustica::film::tonemap::Bits;
-use caustica::scene::{Aovs, Film};
+use caustica::low_level::film::file::Format;
+use caustica::low_level::film::tonemap::Bits;
+use caustica::low_level::scene::{Aovs, Film};
 use clap::Args;
 
 use super::Failure;

@@ -2,16 +2,16 @@
 
 use std::process::ExitCode;
 
-use caustica::checkpoint::CheckpointError;
-use caustica::device::DeviceError;
-use caustica::engine::EngineError;
-use caustica::film::FileError;
-use caustica::film::denoise::DenoiseError;
-use caustica::film::metrics::MetricsError;
-use caustica::gpu;
-use caustica::render::Broken;
-use caustica::scene::SceneErrors;
-use caustica::study::StudyError;
+use caustica::low_level::checkpoint::CheckpointError;
+use caustica::low_level::device::DeviceError;
+use caustica::low_level::engine::EngineError;
+use caustica::low_level::film::FileError;
+use caustica::low_level::film::denoise::DenoiseError;
+use caustica::low_level::film::metrics::MetricsError;
+use caustica::low_level::gpu;
+use caustica::low_level::render::Broken;
+use caustica::low_level::scene::SceneErrors;
+use caustica::low_level::study::StudyError;
 use miette::{Report, miette};
 
 use super::output::{paragraph, report};

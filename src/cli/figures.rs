@@ -1,7 +1,7 @@
 //! Figures of pictures as JSON and as a table.
 
-use caustica::film::Measures;
-use caustica::film::metrics::Comparison;
+use caustica::low_level::film::Measures;
+use caustica::low_level::film::metrics::Comparison;
 use serde_json::{Value, json};
 
 use super::bounds::Measured;

@@ -1,7 +1,7 @@
 //! Warnings about environment variables that hide devices.
 
-use caustica::device::{self, DeviceKind, Wanted};
-use caustica::gpu::{self, Hidden};
+use caustica::low_level::device::{self, DeviceKind, Wanted};
+use caustica::low_level::gpu::{self, Hidden};
 
 use super::output::message;
 

@@ -3,12 +3,12 @@
 use std::fmt;
 use std::path::PathBuf;
 
-use caustica::engine::EngineError;
-use caustica::features::Feature;
-use caustica::memory::{Memory, Part, total};
-use caustica::pack::{Packed, pack};
-use caustica::plan::{Buffer, Kernel, Place, Plan, scene_bytes, scene_tables};
-use caustica::settings::Method;
+use caustica::low_level::engine::EngineError;
+use caustica::low_level::features::Feature;
+use caustica::low_level::memory::{Memory, Part, total};
+use caustica::low_level::pack::{Packed, pack};
+use caustica::low_level::plan::{Buffer, Kernel, Place, Plan, scene_bytes, scene_tables};
+use caustica::low_level::settings::Method;
 use clap::builder::NonEmptyStringValueParser;
 use serde_json::{Value, json};
 

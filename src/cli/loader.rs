@@ -5,7 +5,7 @@
 //! desktop. The layer stays away if `NODEVICE_SELECT` is set when the loader starts. A program
 //! cannot safely change its own environment, so it starts itself once more with the variable.
 
-use caustica::device::{self, Wanted};
+use caustica::low_level::device::{self, Wanted};
 
 /// The variable that keeps the layer away.
 #[cfg(target_os = "linux")]

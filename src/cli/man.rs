@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use caustica::film::FileError;
-use caustica::film::file::write_whole;
+use caustica::low_level::film::FileError;
+use caustica::low_level::film::file::write_whole;
 use clap_mangen::Man;
 
 use super::output::{bytes, result};

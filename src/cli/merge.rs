@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use caustica::checkpoint::{self, Checkpoint, EXTENSION, merge};
-use caustica::film::estimate::LEAST_PASSES;
-use caustica::film::file::Format;
-use caustica::film::{self, FileError, RelativeError};
-use caustica::storage;
+use caustica::low_level::checkpoint::{self, Checkpoint, EXTENSION, merge};
+use caustica::low_level::film::estimate::LEAST_PASSES;
+use caustica::low_level::film::file::Format;
+use caustica::low_level::film::{self, FileError, RelativeError};
+use caustica::low_level::storage;
 use serde_json::{Value, json};
 
 use super::output::{message, result};

@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 
-use caustica::device;
-use caustica::film::check_outputs;
-use caustica::preview::session::Start;
-use caustica::preview::window::{Against, WindowError, open};
-use caustica::scene::{self, Loaded};
+use caustica::low_level::device;
+use caustica::low_level::film::check_outputs;
+use caustica::low_level::preview::session::Start;
+use caustica::low_level::preview::window::{Against, WindowError, open};
+use caustica::low_level::scene::{self, Loaded};
 use clap::builder::NonEmptyStringValueParser;
 use miette::miette;
 

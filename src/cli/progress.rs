@@ -3,7 +3,7 @@
 use std::io::IsTerminal;
 use std::time::Duration;
 
-use caustica::render::Progress;
+use caustica::low_level::render::Progress;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::json;
 
@@ -186,8 +186,8 @@ pub fn time(duration: Duration) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use caustica::film::RelativeError;
-    use caustica::render::Stop;
+    use caustica::low_level::film::RelativeError;
+    use caustica::low_level::render::Stop;
 
     fn at(passes: u32, of: u32, seconds: f64) -> Progress {
         Progress {

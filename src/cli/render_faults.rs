@@ -7,8 +7,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use caustica::device::Candidates;
-use caustica::film::read;
+use caustica::low_level::device::Candidates;
+use caustica::low_level::film::read;
 use clap::{Args, Command, FromArgMatches};
 
 use super::engine::{FAULTS, Fault, Shared, Step, candidate, script, successor};

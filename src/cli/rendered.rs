@@ -3,13 +3,15 @@
 use std::cell::Cell;
 use std::path::{Path, PathBuf};
 
-use caustica::checkpoint::Checkpoint;
-use caustica::film::denoise;
-use caustica::film::estimate::LEAST_PASSES;
-use caustica::film::exr_file::Channel;
-use caustica::film::file::Format;
-use caustica::film::{self, Development, ErrorMap, FileError, Picture, Provenance, Rejections};
-use caustica::render::{Ending, Outcome, Progress};
+use caustica::low_level::checkpoint::Checkpoint;
+use caustica::low_level::film::denoise;
+use caustica::low_level::film::estimate::LEAST_PASSES;
+use caustica::low_level::film::exr_file::Channel;
+use caustica::low_level::film::file::Format;
+use caustica::low_level::film::{
+    self, Development, ErrorMap, FileError, Picture, Provenance, Rejections,
+};
+use caustica::low_level::render::{Ending, Outcome, Progress};
 use serde_json::json;
 
 use super::Failure;

@@ -2,10 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use caustica::film::provenance::VERSION;
-use caustica::film::{FileError, Provenance, file};
-use caustica::identity::Identity;
-use caustica::scene::{self, Loaded, Scene};
+use caustica::low_level::film::provenance::VERSION;
+use caustica::low_level::film::{FileError, Provenance, file};
+use caustica::low_level::identity::Identity;
+use caustica::low_level::scene::{self, Loaded, Scene};
 
 use super::Failure;
 use super::allowed::Allowed;

@@ -2,10 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use caustica::accel::tessellate::{Fineness, tessellate};
-use caustica::film::FileError;
-use caustica::film::file::{check_place, write_whole};
-use caustica::scene;
+use caustica::low_level::accel::tessellate::{Fineness, tessellate};
+use caustica::low_level::film::FileError;
+use caustica::low_level::film::file::{check_place, write_whole};
+use caustica::low_level::scene;
 use miette::miette;
 
 use super::allowed::Allowed;

@@ -2,10 +2,10 @@
 
 use std::net::TcpStream;
 
-use caustica::film::Picture;
-use caustica::film::exr_file::Frame;
-use caustica::film::tev::Tev;
-use caustica::scene::Scene;
+use caustica::low_level::film::Picture;
+use caustica::low_level::film::exr_file::Frame;
+use caustica::low_level::film::tev::Tev;
+use caustica::low_level::scene::Scene;
 use miette::miette;
 
 use super::Failure;

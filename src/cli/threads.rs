@@ -7,7 +7,7 @@ use std::num::NonZero;
 use std::sync::{Arc, Mutex, mpsc};
 use std::thread;
 
-use caustica::memory::address_space;
+use caustica::low_level::memory::address_space;
 use miette::miette;
 
 use super::Failure;

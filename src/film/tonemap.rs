@@ -4,7 +4,7 @@ use std::sync::LazyLock;
 
 use glam::{DMat3, DVec3};
 
-use crate::scene::ToneMap;
+use crate::scene::{Film, ToneMap};
 use crate::srgb::srgb_from_linear;
 
 /// How radiance is developed into a picture for a display.
@@ -16,6 +16,13 @@ pub struct Development {
     pub tonemap: ToneMap,
     /// Bits of each channel in a file.
     pub bits: Bits,
+}
+
+impl Development {
+    /// The development that a film asks for, with eight bits for each channel.
+    pub fn of(film: &Film) -> Self {
+        Self { exposure: film.exposure, tonemap: film.tonemap, bits: Bits::Eight }
+    }
 }
 
 /// Bits of each channel of a picture for a display.

@@ -1,7 +1,7 @@
 //! Diffuse reflection by facets: the reciprocal form of Oren & Nayar's model by Fujii (2012, "A tiny
 //! improvement of Oren-Nayar reflectance model"),
 //!
-//!     f = rho (1 + sigma s / t) / (pi + (pi / 2 - 2 / 3) sigma)
+//! `f = rho (1 + sigma s / t) / (pi + (pi / 2 - 2 / 3) sigma)`
 //!
 //! with `s = wi . wo - (wi . n) (wo . n)` and `t = max(wi . n, wo . n)` if `s > 0`, else 1; `sigma`
 //! is the roughness in [0, 1]. At most `rho` of the light is reflected. Twin:

@@ -1,10 +1,11 @@
 //! A window on a scene: the picture as it converges, under the hand.
 //!
-//! What can do without a window comes first: [`orbit`] (the camera), [`ground`] (a flattened scene,
-//! kept while the camera moves), [`frame`] (what there is to see), [`quick`] and [`full`] (a small
-//! picture at once, the whole one after it), [`worker`] (which of them, when), [`view`] (how a
-//! picture is shown), [`beside`] (what it is held against), [`document`] and [`reload`] (the scene
-//! file), and [`session`], which is all of it. [`keys`], `panels` and [`window`] lay hands on that.
+//! What can do without a window comes first: [`orbit`] (the camera), [`packed_cache`] (a flattened
+//! scene, kept while the camera moves), [`frame`] (what there is to see), [`quick`] and [`full`] (a
+//! small picture at once, the whole one after it), [`worker`] (which of them, when), [`view`] (how
+//! a picture is shown), [`comparison`] (what it is held against), [`document`] and [`reload`] (the
+//! scene file), and [`session`], which is all of it. [`keys`], `panels` and [`window`] lay hands on
+//! that.
 
 pub mod comparison;
 pub mod document;

@@ -19,6 +19,11 @@ pub struct Shape {
 }
 
 impl Shape {
+    /// A shape that does not emit, with its own texture coordinates.
+    pub fn new(kind: ShapeKind, material: usize) -> Self {
+        Self { kind, material, emission: [0.0; 3], planar_uv: false }
+    }
+
     /// Whether it shines.
     pub fn is_emitter(&self) -> bool {
         self.emission.iter().any(|&channel| channel > 0.0)

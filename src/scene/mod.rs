@@ -76,6 +76,23 @@ pub struct Scene {
     pub environment: Option<Environment>,
 }
 
+impl Scene {
+    /// An empty scene with a film of 512 x 512 pixels.
+    pub fn new(camera: Camera) -> Self {
+        Self {
+            name: String::new(),
+            camera,
+            film: Film::default(),
+            images: Vec::new(),
+            textures: Vec::new(),
+            materials: Vec::new(),
+            shapes: Vec::new(),
+            lights: Vec::new(),
+            environment: None,
+        }
+    }
+}
+
 /// A thin-lens camera; a pinhole when `aperture` is zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
@@ -93,6 +110,28 @@ pub struct Camera {
     /// Distance of the plane in focus along the view axis, > 0; `|target - position|` when the file
     /// gives none.
     pub focus: f64,
+}
+
+impl Camera {
+    /// A pinhole camera at `position` that looks at `target`, +y on top, with a vertical field of
+    /// view in degrees.
+    pub fn look_at(position: DVec3, target: DVec3, fov_degrees: f64) -> Self {
+        let focus = position.distance(target);
+        Self { position, target, up: DVec3::Y, fov_degrees, aperture: 0.0, focus }
+    }
+}
+
+impl Default for Film {
+    fn default() -> Self {
+        Self {
+            width: 512,
+            height: 512,
+            exposure: 0.0,
+            tonemap: ToneMap::default(),
+            aovs: Aovs::default(),
+            window: None,
+        }
+    }
 }
 
 /// Size and development of the picture.

@@ -10,16 +10,16 @@ mod parts;
 #[path = "../software/mod.rs"]
 mod software;
 
-use caustica::cpu::CpuEngine;
-use caustica::double;
-use caustica::engine::Engine;
-use caustica::film::exr_file::{Channel, Numbers};
-use caustica::film::{Picture, Plane};
-use caustica::gpu::GpuEngine;
-use caustica::layers::NO_DEPTH;
-use caustica::pack::{Packed, pack};
-use caustica::plan::{Buffer, Plan, Stage};
-use caustica::scene::{Aovs, Loaded, parse};
+use caustica::low_level::cpu::CpuEngine;
+use caustica::low_level::double;
+use caustica::low_level::engine::Engine;
+use caustica::low_level::film::exr_file::{Channel, Numbers};
+use caustica::low_level::film::{Picture, Plane};
+use caustica::low_level::gpu::GpuEngine;
+use caustica::low_level::layers::NO_DEPTH;
+use caustica::low_level::pack::{Packed, pack};
+use caustica::low_level::plan::{Buffer, Plan, Stage};
+use caustica::low_level::scene::{Aovs, Loaded, parse};
 
 /// A camera at (1, 2, 4) that looks along -z at a picture of 24 by 16 pixels.
 const HEAD: &str = r#"

@@ -1,11 +1,11 @@
 //! Engines that go on from what another one held.
 
-use caustica::checkpoint::{read, write};
-use caustica::device::Wanted;
-use caustica::engine::{Engine, EngineError, LayerState, State};
-use caustica::kernels::bytes::{AOV_BYTES, PARTS_BYTES};
-use caustica::scene::{Aovs, Film};
-use caustica::settings::{Direct, Method, Radius, RadiusRule, RenderSettings};
+use caustica::low_level::checkpoint::{read, write};
+use caustica::low_level::device::Wanted;
+use caustica::low_level::engine::{Engine, EngineError, LayerState, State};
+use caustica::low_level::kernels::bytes::{AOV_BYTES, PARTS_BYTES};
+use caustica::low_level::scene::{Aovs, Film};
+use caustica::low_level::settings::{Direct, Method, Radius, RadiusRule, RenderSettings};
 
 use super::{checkpoint, folder, open, open_on};
 

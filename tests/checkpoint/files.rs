@@ -3,11 +3,11 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use caustica::checkpoint::{Checkpoint, CheckpointError, decode, merge, read, write};
-use caustica::device::{Opened, Wanted};
-use caustica::render::Stop;
-use caustica::scene::{Aovs, Film};
-use caustica::settings::{RadiusRule, RenderSettings};
+use caustica::low_level::checkpoint::{Checkpoint, CheckpointError, decode, merge, read, write};
+use caustica::low_level::device::{Opened, Wanted};
+use caustica::low_level::render::Stop;
+use caustica::low_level::scene::{Aovs, Film};
+use caustica::low_level::settings::{RadiusRule, RenderSettings};
 use xxhash_rust::xxh3::xxh3_128;
 
 use super::{checkpoint_on, folder, open_on};

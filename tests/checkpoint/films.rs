@@ -4,12 +4,12 @@
 //! the picture; so with both a render that goes on has the bits of one that never stopped, and
 //! ranges merge into all but for rounding.
 
-use caustica::checkpoint::{Checkpoint, merge, read, write};
-use caustica::device::Wanted;
-use caustica::engine::{Engine, State};
-use caustica::film::file::read_exr;
-use caustica::scene::{Aovs, Film};
-use caustica::settings::{Direct, Method, RadiusRule, RenderSettings};
+use caustica::low_level::checkpoint::{Checkpoint, merge, read, write};
+use caustica::low_level::device::Wanted;
+use caustica::low_level::engine::{Engine, State};
+use caustica::low_level::film::file::read_exr;
+use caustica::low_level::scene::{Aovs, Film};
+use caustica::low_level::settings::{Direct, Method, RadiusRule, RenderSettings};
 
 use super::{checkpoint_on, fails, folder, good, open_on};
 

@@ -9,8 +9,8 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
-use caustica::checkpoint::{read, write};
-use caustica::film::file::read_exr;
+use caustica::low_level::checkpoint::{read, write};
+use caustica::low_level::film::file::read_exr;
 
 use super::{command, folder, good};
 

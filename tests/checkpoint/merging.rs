@@ -5,10 +5,10 @@
 //! happens while a pass changes the mean by a 256th, and with growing gaps later. The bound below,
 //! 32 roundings of the greatest of a pixel's values, is what docs/checkpoints.md states.
 
-use caustica::checkpoint::{Checkpoint, CheckpointError, merge};
-use caustica::device::Wanted;
-use caustica::engine::State;
-use caustica::settings::{Method, RadiusRule, RenderSettings};
+use caustica::low_level::checkpoint::{Checkpoint, CheckpointError, merge};
+use caustica::low_level::device::Wanted;
+use caustica::low_level::engine::State;
+use caustica::low_level::settings::{Method, RadiusRule, RenderSettings};
 
 use super::{checkpoint, open};
 

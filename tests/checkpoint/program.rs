@@ -2,8 +2,8 @@
 
 use std::fs;
 
-use caustica::checkpoint::{read, write};
-use caustica::film::file::read_exr;
+use caustica::low_level::checkpoint::{read, write};
+use caustica::low_level::film::file::read_exr;
 
 use super::{MESH, SCENE, fails, folder, good};
 

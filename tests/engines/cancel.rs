@@ -3,12 +3,12 @@
 use std::thread;
 use std::time::{Duration, Instant};
 
-use caustica::cpu::CpuEngine;
-use caustica::engine::{Cancel, Engine, EngineError, State};
-use caustica::film::Picture;
-use caustica::gpu::GpuEngine;
-use caustica::pack::Packed;
-use caustica::plan::Plan;
+use caustica::low_level::cpu::CpuEngine;
+use caustica::low_level::engine::{Cancel, Engine, EngineError, State};
+use caustica::low_level::film::Picture;
+use caustica::low_level::gpu::GpuEngine;
+use caustica::low_level::pack::Packed;
+use caustica::low_level::plan::Plan;
 
 use super::scenes::{SCENES, planned};
 use super::{photons, software};

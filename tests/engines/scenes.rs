@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use caustica::pack::{Packed, pack};
-use caustica::plan::Plan;
-use caustica::scene::{Aovs, Loaded, parse};
+use caustica::low_level::pack::{Packed, pack};
+use caustica::low_level::plan::Plan;
+use caustica::low_level::scene::{Aovs, Loaded, parse};
 
 use super::support::folder;
 

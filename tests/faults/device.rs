@@ -1,15 +1,15 @@
 //! A real device that the driver takes away in the middle of a render.
 
-use caustica::device::{Candidate, Candidates, Opened};
-use caustica::engine::{Engine, EngineError, PassReport, State};
-use caustica::film::exr_file::Channel;
-use caustica::film::{ErrorMap, Picture, Rejections};
-use caustica::gpu::GpuEngine;
-use caustica::memory::Memory;
-use caustica::pack::pack;
-use caustica::plan::Plan;
-use caustica::scene::{Loaded, Scene};
-use caustica::settings::RenderSettings;
+use caustica::low_level::device::{Candidate, Candidates, Opened};
+use caustica::low_level::engine::{Engine, EngineError, PassReport, State};
+use caustica::low_level::film::exr_file::Channel;
+use caustica::low_level::film::{ErrorMap, Picture, Rejections};
+use caustica::low_level::gpu::GpuEngine;
+use caustica::low_level::memory::Memory;
+use caustica::low_level::pack::pack;
+use caustica::low_level::plan::Plan;
+use caustica::low_level::scene::{Loaded, Scene};
+use caustica::low_level::settings::RenderSettings;
 
 use super::engine::{sound, successor};
 use super::{Copies, begin, difference, loaded, software, steps};
@@ -101,7 +101,7 @@ fn a_lost_device_says_so() {
             engine.save().err(),
             engine.restore(&state).err(),
             engine.gathered().err(),
-            engine.content(caustica::plan::Buffer::Film, 0).err(),
+            engine.content(caustica::low_level::plan::Buffer::Film, 0).err(),
         ];
         for (number, error) in errors.iter().enumerate() {
             assert!(

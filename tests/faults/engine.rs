@@ -3,13 +3,13 @@
 use std::cell::RefCell;
 use std::rc::Rc;
 
-use caustica::device::{self, Candidate, Opened, Wanted};
-use caustica::engine::{Engine, EngineError, PassReport, State};
-use caustica::film::exr_file::Channel;
-use caustica::film::{ErrorMap, Picture, Rejections};
-use caustica::memory::Memory;
-use caustica::scene::Scene;
-use caustica::settings::RenderSettings;
+use caustica::low_level::device::{self, Candidate, Opened, Wanted};
+use caustica::low_level::engine::{Engine, EngineError, PassReport, State};
+use caustica::low_level::film::exr_file::Channel;
+use caustica::low_level::film::{ErrorMap, Picture, Rejections};
+use caustica::low_level::memory::Memory;
+use caustica::low_level::scene::Scene;
+use caustica::low_level::settings::RenderSettings;
 
 /// What an engine is asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,11 +2,11 @@
 //! composition and layout.
 
 use bytemuck::Zeroable;
-use caustica::features::{Feature, Features};
-use caustica::materials::Bsdf;
-use caustica::plan::Kernel;
-use caustica::settings::{Direct, RadiusRule, RenderSettings};
-use caustica::tables::*;
+use caustica::low_level::features::{Feature, Features};
+use caustica::low_level::materials::Bsdf;
+use caustica::low_level::plan::Kernel;
+use caustica::low_level::settings::{Direct, RadiusRule, RenderSettings};
+use caustica::low_level::tables::*;
 use glam::{Vec2, Vec3};
 
 /// A scene, never rendered, and settings.

@@ -2,10 +2,10 @@
 
 use crate::scenes::*;
 use bytemuck::{Pod, Zeroable};
-use caustica::accel::kdtree::build;
-use caustica::shapes::kdtree::MAX_DEPTH;
-use caustica::shapes::ray::{Hit, NONE, Ray};
-use caustica::shapes::triangle::Triangle;
+use caustica::low_level::accel::kdtree::build;
+use caustica::low_level::shapes::kdtree::MAX_DEPTH;
+use caustica::low_level::shapes::ray::{Hit, NONE, Ray};
+use caustica::low_level::shapes::triangle::Triangle;
 use glam::Vec3;
 use wgpu::util::DeviceExt;
 
@@ -160,8 +160,8 @@ fn device_gives_the_same_bits() {
         scenes().into_iter().filter(|s| s.0.starts_with("lattice") || s.0.starts_with("every"))
     {
         mesh.extend(prims.iter().filter_map(|p| match p {
-            caustica::accel::kdtree::Primitive::Triangle(t) => Some(*t),
-            caustica::accel::kdtree::Primitive::Box(_) => None,
+            caustica::low_level::accel::kdtree::Primitive::Triangle(t) => Some(*t),
+            caustica::low_level::accel::kdtree::Primitive::Box(_) => None,
         }));
     }
     let prims = prims(&mesh);

@@ -2,11 +2,11 @@
 
 use crate::scenes::*;
 use crate::{differ, mismatches};
-use caustica::accel::kdtree::{KdTree, build};
-use caustica::shapes::aabb::Aabb;
-use caustica::shapes::kdtree::traverse_closest;
-use caustica::shapes::ray::{Hit, NONE, Ray};
-use caustica::shapes::triangle::RayShear;
+use caustica::low_level::accel::kdtree::{KdTree, build};
+use caustica::low_level::shapes::aabb::Aabb;
+use caustica::low_level::shapes::kdtree::traverse_closest;
+use caustica::low_level::shapes::ray::{Hit, NONE, Ray};
+use caustica::low_level::shapes::triangle::RayShear;
 use glam::Vec3;
 use std::cell::Cell;
 

@@ -6,9 +6,9 @@ mod scenes;
 mod structure;
 mod triangles;
 
-use caustica::accel::kdtree::{KdTree, Primitive, build};
-use caustica::shapes::ray::{Hit, NONE, Ray};
-use caustica::shapes::triangle::RayShear;
+use caustica::low_level::accel::kdtree::{KdTree, Primitive, build};
+use caustica::low_level::shapes::ray::{Hit, NONE, Ray};
+use caustica::low_level::shapes::triangle::RayShear;
 use glam::Vec3;
 use scenes::*;
 use std::time::Instant;
@@ -172,12 +172,12 @@ fn rates() {
         .filter(|ray| {
             let shear = RayShear::new(ray);
             let mut hit = Hit::none(ray);
-            caustica::shapes::kdtree::traverse_closest(
+            caustica::low_level::shapes::kdtree::traverse_closest(
                 &tree.view(),
                 ray,
                 &mut hit,
                 |leaf: &[u32], ray: &Ray, hit: &mut Hit| {
-                    caustica::shapes::triangles::intersect_triangles(
+                    caustica::low_level::shapes::triangles::intersect_triangles(
                         &triangles, leaf, &shear, ray, hit,
                     )
                 },

@@ -1,11 +1,11 @@
 //! Primitives, rays and the exhaustive search that the kd-tree is held against.
 
-use caustica::accel::kdtree::Primitive;
-use caustica::shapes::aabb::Aabb;
-use caustica::shapes::kdtree::{Tree, traverse_any, traverse_closest};
-use caustica::shapes::kdtree_stream::{Rays, STREAM, traverse_closest_many};
-use caustica::shapes::ray::{Hit, Ray};
-use caustica::shapes::triangle::{RayShear, Triangle, intersect_triangle};
+use caustica::low_level::accel::kdtree::Primitive;
+use caustica::low_level::shapes::aabb::Aabb;
+use caustica::low_level::shapes::kdtree::{Tree, traverse_any, traverse_closest};
+use caustica::low_level::shapes::kdtree_stream::{Rays, STREAM, traverse_closest_many};
+use caustica::low_level::shapes::ray::{Hit, Ray};
+use caustica::low_level::shapes::triangle::{RayShear, Triangle, intersect_triangle};
 use glam::Vec3;
 
 /// SplitMix64.

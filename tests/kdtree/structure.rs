@@ -2,10 +2,10 @@
 //! threads.
 
 use crate::scenes::*;
-use caustica::accel::kdtree::{INTERSECTION_COST, KdTree, Primitive, build};
-use caustica::shapes::aabb::Aabb;
-use caustica::shapes::kdtree::{MAX_DEPTH, traverse_closest};
-use caustica::shapes::ray::{Hit, Ray};
+use caustica::low_level::accel::kdtree::{INTERSECTION_COST, KdTree, Primitive, build};
+use caustica::low_level::shapes::aabb::Aabb;
+use caustica::low_level::shapes::kdtree::{MAX_DEPTH, traverse_closest};
+use caustica::low_level::shapes::ray::{Hit, Ray};
 use glam::{DVec3, Vec3};
 use std::cell::Cell;
 

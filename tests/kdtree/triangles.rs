@@ -1,10 +1,10 @@
 //! The triangle test on its own: accuracy, error bounds, no hit of the triangle that a ray leaves.
 
 use crate::scenes::*;
-use caustica::math::unit;
-use caustica::shapes::ray::{Hit, NONE, Ray};
-use caustica::shapes::triangle::*;
-use caustica::shapes::triangles::intersect_triangles;
+use caustica::low_level::math::unit;
+use caustica::low_level::shapes::ray::{Hit, NONE, Ray};
+use caustica::low_level::shapes::triangle::*;
+use caustica::low_level::shapes::triangles::intersect_triangles;
 use glam::{DVec3, Vec3};
 
 fn trace(t: &[Vec3; 3], ray: &Ray) -> Hit {

@@ -6,19 +6,19 @@
 
 use std::f64::consts::PI;
 
-use caustica::lights::light::{
+use caustica::low_level::lights::light::{
     eval_environment, pdf_environment, pdf_light, sample_environment, sample_light,
 };
-use caustica::lights::select::{choose_light, share_of, shares_at};
-use caustica::lights::shape::sample_shape;
-use caustica::materials::metal::{ggx_brdf, ggx_pdf, ggx_visible_normal, ggx_weight};
-use caustica::math::mirrored;
-use caustica::math::rng::{Rng, rng_new, rng_next};
-use caustica::math::sampling::*;
-use caustica::pack::{Packed, pack};
-use caustica::shapes::intersect::intersect_scene;
-use caustica::shapes::ray::{NONE, Ray};
-use caustica::shapes::surface::surface_at;
+use caustica::low_level::lights::select::{choose_light, share_of, shares_at};
+use caustica::low_level::lights::shape::sample_shape;
+use caustica::low_level::materials::metal::{ggx_brdf, ggx_pdf, ggx_visible_normal, ggx_weight};
+use caustica::low_level::math::mirrored;
+use caustica::low_level::math::rng::{Rng, rng_new, rng_next};
+use caustica::low_level::math::sampling::*;
+use caustica::low_level::pack::{Packed, pack};
+use caustica::low_level::shapes::intersect::intersect_scene;
+use caustica::low_level::shapes::ray::{NONE, Ray};
+use caustica::low_level::shapes::surface::surface_at;
 use glam::{DVec3, Vec2, Vec3};
 
 use super::lab::*;
@@ -339,7 +339,7 @@ fn a_lamp_from_its_own_surface() {
 /// directions.
 #[test]
 fn narrow_lobes_keep_their_digits() {
-    use caustica::double::materials::metal as exact;
+    use caustica::low_level::double::materials::metal as exact;
     let mut rng = rng();
     for alpha in [1e-3f32, 2.5e-3, 1e-2, 0.1] {
         let mut worst = 0.0f64;

@@ -1,6 +1,6 @@
 //! Glass: Fresnel, absorption, and where cameras, lights and other things are inside of it.
 
-use caustica::settings::{Direct, Method, RenderSettings};
+use caustica::low_level::settings::{Direct, Method, RenderSettings};
 use glam::DVec3;
 
 use super::lab::*;
@@ -342,7 +342,7 @@ fn glass_on_glass() {
 /// Brewster's angle in dense glass, where `1 - cos^2` would have no digits left.
 #[test]
 fn critical_angle() {
-    use caustica::materials::glass::{fresnel, refracted};
+    use caustica::low_level::materials::glass::{fresnel, refracted};
     use glam::Vec3;
     const ROUNDINGS: f64 = 6.0 * 6e-8;
     let exact = |cos: f64, n: f64, off: f64| {

@@ -3,14 +3,14 @@
 
 use std::f64::consts::PI;
 
-use caustica::lights::light::eval_environment;
-use caustica::materials::shading::reflectance_at;
-use caustica::pack::{Packed, pack};
-use caustica::settings::{Direct, Method, Radius, RenderSettings};
-use caustica::shapes::intersect::intersect_scene;
-use caustica::shapes::ray::Ray;
-use caustica::shapes::surface::{Surface, surface_at};
-use caustica::tables::Scene;
+use caustica::low_level::lights::light::eval_environment;
+use caustica::low_level::materials::shading::reflectance_at;
+use caustica::low_level::pack::{Packed, pack};
+use caustica::low_level::settings::{Direct, Method, Radius, RenderSettings};
+use caustica::low_level::shapes::intersect::intersect_scene;
+use caustica::low_level::shapes::ray::Ray;
+use caustica::low_level::shapes::surface::{Surface, surface_at};
+use caustica::low_level::tables::Scene;
 use glam::{DVec3, Vec3};
 
 use super::lab::*;

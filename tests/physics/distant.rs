@@ -1,11 +1,11 @@
 //! What lies far from what the camera sees does not matter to the picture: neither wide floors, nor
 //! objects far away, nor the place of the camera, its target and its focus.
 
-use caustica::cpu::CpuEngine;
-use caustica::pack::pack;
-use caustica::plan::Plan;
-use caustica::settings::{Method, Radius, RenderSettings};
-use caustica::validation::{NoisyTruth, Promise, promises};
+use caustica::low_level::cpu::CpuEngine;
+use caustica::low_level::pack::pack;
+use caustica::low_level::plan::Plan;
+use caustica::low_level::settings::{Method, Radius, RenderSettings};
+use caustica::low_level::validation::{NoisyTruth, Promise, promises};
 
 use super::lab::*;
 

@@ -2,12 +2,12 @@
 
 use std::f64::consts::PI;
 
-use caustica::device;
-use caustica::engine::PhotonEnds;
-use caustica::kernels::photon_trace::photon_trace;
-use caustica::pack::pack;
-use caustica::plan::Plan;
-use caustica::settings::{Direct, RenderSettings};
+use caustica::low_level::device;
+use caustica::low_level::engine::PhotonEnds;
+use caustica::low_level::kernels::photon_trace::photon_trace;
+use caustica::low_level::pack::pack;
+use caustica::low_level::plan::Plan;
+use caustica::low_level::settings::{Direct, RenderSettings};
 use glam::DVec3;
 
 use super::lab::*;

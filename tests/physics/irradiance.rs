@@ -3,7 +3,7 @@
 
 use std::f64::consts::PI;
 
-use caustica::settings::{Direct, RenderSettings};
+use caustica::low_level::settings::{Direct, RenderSettings};
 use glam::{DVec2, DVec3};
 
 use super::closed_forms as form;
@@ -127,9 +127,10 @@ fn sky_radiance(texels: &[f64], d: DVec3, degrees: f64) -> f64 {
 #[test]
 fn image_environment() {
     let texels = sky();
-    let picture = caustica::film::Picture::from_fn(WIDTH as u32, HEIGHT as u32, |x, y| {
-        [texels[y as usize * WIDTH + x as usize] as f32; 3]
-    });
+    let picture =
+        caustica::low_level::film::Picture::from_fn(WIDTH as u32, HEIGHT as u32, |x, y| {
+            [texels[y as usize * WIDTH + x as usize] as f32; 3]
+        });
     write_exr("physics-sky.exr", &picture);
     for degrees in [75.0] {
         let mut irradiance = 0.0;
@@ -153,9 +154,10 @@ fn image_environment() {
 #[test]
 fn image_environment_seen() {
     let texels = sky();
-    let picture = caustica::film::Picture::from_fn(WIDTH as u32, HEIGHT as u32, |x, y| {
-        [texels[y as usize * WIDTH + x as usize] as f32; 3]
-    });
+    let picture =
+        caustica::low_level::film::Picture::from_fn(WIDTH as u32, HEIGHT as u32, |x, y| {
+            [texels[y as usize * WIDTH + x as usize] as f32; 3]
+        });
     write_exr("physics-sky-seen.exr", &picture);
     for degrees in [0.0, 75.0, -140.0] {
         let d = DVec3::new(0.5, 0.9, 0.3);
@@ -189,7 +191,7 @@ fn image_environment_seen() {
     }
 }
 
-fn write_exr(name: &str, picture: &caustica::film::Picture) {
+fn write_exr(name: &str, picture: &caustica::low_level::film::Picture) {
     let at = |x: usize, y: usize| {
         let c = picture.rgb[y * picture.width as usize + x];
         (c[0], c[1], c[2])

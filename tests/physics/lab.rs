@@ -8,14 +8,14 @@
 
 use std::path::PathBuf;
 
-use caustica::cpu::CpuEngine;
-use caustica::device;
-use caustica::engine::Engine;
-use caustica::film::Picture;
-use caustica::pack::pack;
-use caustica::plan::Plan;
-use caustica::scene::{self, Scene};
-use caustica::settings::{Direct, Method, Radius, RadiusRule, RenderSettings};
+use caustica::low_level::cpu::CpuEngine;
+use caustica::low_level::device;
+use caustica::low_level::engine::Engine;
+use caustica::low_level::film::Picture;
+use caustica::low_level::pack::pack;
+use caustica::low_level::plan::Plan;
+use caustica::low_level::scene::{self, Scene};
+use caustica::low_level::settings::{Direct, Method, Radius, RadiusRule, RenderSettings};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 

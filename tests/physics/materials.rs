@@ -3,12 +3,12 @@
 
 use std::f64::consts::PI;
 
-use caustica::materials::shading::{Lobe, RADIANCE, ShadingPoint};
-use caustica::materials::{Bsdf, eval_rough, pdf_rough, sample_rough};
-use caustica::math::rng::rng_next;
-use caustica::settings::{Direct, Method, RenderSettings};
-use caustica::shapes::ray::NONE;
-use caustica::shapes::surface::Surface;
+use caustica::low_level::materials::shading::{Lobe, RADIANCE, ShadingPoint};
+use caustica::low_level::materials::{Bsdf, eval_rough, pdf_rough, sample_rough};
+use caustica::low_level::math::rng::rng_next;
+use caustica::low_level::settings::{Direct, Method, RenderSettings};
+use caustica::low_level::shapes::ray::NONE;
+use caustica::low_level::shapes::surface::Surface;
 use glam::{DVec3, Vec2, Vec3};
 
 use super::densities::{check, rng};

@@ -15,14 +15,14 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, LazyLock};
 use std::time::{Duration, Instant};
 
-use caustica::device::{self, Wanted};
-use caustica::film::Picture;
-use caustica::preview::frame::{Frame, Wish};
-use caustica::preview::orbit;
-use caustica::preview::view::{Scale, View, show};
-use caustica::preview::worker::Worker;
-use caustica::scene::{self, Aov, Loaded};
-use caustica::settings::{Direct, Method, Radius, RadiusRule};
+use caustica::low_level::device::{self, Wanted};
+use caustica::low_level::film::Picture;
+use caustica::low_level::preview::frame::{Frame, Wish};
+use caustica::low_level::preview::orbit;
+use caustica::low_level::preview::view::{Scale, View, show};
+use caustica::low_level::preview::worker::Worker;
+use caustica::low_level::scene::{self, Aov, Loaded};
+use caustica::low_level::settings::{Direct, Method, Radius, RadiusRule};
 use support::{FLOOR, LAMP, MESH, ball, folder_with};
 
 /// With comments, which no saving takes away.

@@ -6,12 +6,12 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
-use caustica::device::Wanted;
-use caustica::film::read;
-use caustica::preview::frame::Frame;
-use caustica::preview::session::{Action, Session, Start};
-use caustica::preview::view::{View, show};
-use caustica::scene::Allowance;
+use caustica::low_level::device::Wanted;
+use caustica::low_level::film::read;
+use caustica::low_level::preview::frame::Frame;
+use caustica::low_level::preview::session::{Action, Session, Start};
+use caustica::low_level::preview::view::{View, show};
+use caustica::low_level::scene::Allowance;
 use glam::DVec3;
 
 use super::support::{FLOOR, caustica, error};

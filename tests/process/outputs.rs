@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use std::process::Output;
 use std::thread;
 
-use caustica::checkpoint::read;
-use caustica::storage::{self, Purpose};
+use caustica::low_level::checkpoint::read;
+use caustica::low_level::storage::{self, Purpose};
 
 use super::support::{error, text};
 use super::{ended, fifo, folder, render, spawn, until};
@@ -221,7 +221,7 @@ fn one_failed_output_keeps_no_other() {
         let rest = error.rsplit_once(start).unwrap_or_else(|| panic!("{start}: {error}")).1;
         folder.join(rest.split_whitespace().next().unwrap())
     };
-    let picture = caustica::film::read(&said("the picture is saved in ")).unwrap();
+    let picture = caustica::low_level::film::read(&said("the picture is saved in ")).unwrap();
     assert_eq!((picture.width, picture.height), (12, 8));
     let kept = said("the checkpoint is saved in ");
     assert_eq!(read(&kept).unwrap().state.passes, 40, "{error}");

@@ -5,7 +5,7 @@ use std::fs;
 use std::os::unix::fs::symlink;
 use std::path::Path;
 
-use caustica::film::{Picture, exr_file};
+use caustica::low_level::film::{Picture, exr_file};
 
 use super::support::{command, error, words};
 use super::{ended, fifo, folder, spawn};

@@ -3,7 +3,7 @@
 use std::fs;
 use std::os::unix::fs::symlink;
 
-use caustica::checkpoint::read;
+use caustica::low_level::checkpoint::read;
 
 use super::support::{error, fails, good, words};
 use super::{ended, folder, render, signal, spawn, until};

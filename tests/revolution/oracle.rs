@@ -4,7 +4,7 @@
 //! isolated by subdivision (it lies in the hull of its coefficients, and has at most as many roots
 //! as they have sign changes). A horizontal ray instead meets the circles where y(t) = o_y.
 
-use caustica::shapes::revolution::Revolution;
+use caustica::low_level::shapes::revolution::Revolution;
 use glam::{DVec2, DVec3, Vec3};
 
 /// A hit: distance in the units of the ray's direction, segment, curve parameter.

@@ -1,6 +1,6 @@
 //! Profiles of every kind that a scene may hold.
 
-use caustica::accel::revolution::{Attributes, PatchBox, Placement, RevolutionTables};
+use caustica::low_level::accel::revolution::{Attributes, PatchBox, Placement, RevolutionTables};
 use glam::{DQuat, DVec2, DVec3};
 
 /// A named profile: segments of (radius, height).

@@ -9,7 +9,7 @@ mod support;
 
 use std::path::{Path, PathBuf};
 
-use caustica::scene::{Finding, SceneErrors, load, parse};
+use caustica::low_level::scene::{Finding, SceneErrors, load, parse};
 use support::{HEAD, folder};
 
 fn data(name: &str) -> PathBuf {

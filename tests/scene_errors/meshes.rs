@@ -7,7 +7,7 @@
 
 use std::path::Path;
 
-use caustica::scene::{
+use caustica::low_level::scene::{
     Allowance, Loaded, MaterialKind, Missing, Reflectance, Rgb, SceneErrors, ShapeKind,
     parse_within,
 };
@@ -43,7 +43,7 @@ fn read(folder: &Path, missing: Missing) -> Result<Loaded, SceneErrors> {
 fn parts(folder: &Path, missing: Missing) -> (Vec<(Rgb, usize)>, Vec<String>) {
     let loaded = read(folder, missing).unwrap_or_else(|e| panic!("{:?}", miette::Report::new(e)));
     let scene = &loaded.scene;
-    let part = |shape: &caustica::scene::Shape| {
+    let part = |shape: &caustica::low_level::scene::Shape| {
         let ShapeKind::Mesh(mesh) = &shape.kind else { panic!() };
         let MaterialKind::Diffuse { reflectance: Reflectance::Color(color), .. } =
             scene.materials[shape.material].kind
@@ -378,6 +378,8 @@ fn missing_files_of_commands() {
 #[test]
 fn carriage_returns_of_a_scene() {
     let text = HEAD.replace('\n', "\r");
-    let errors = caustica::scene::parse("scene.toml".as_ref(), text.as_bytes()).unwrap_err().errors;
+    let errors = caustica::low_level::scene::parse("scene.toml".as_ref(), text.as_bytes())
+        .unwrap_err()
+        .errors;
     assert_eq!(differs(&errors, &[(1, 12, "carriage returns alone")]), None);
 }

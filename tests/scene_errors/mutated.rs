@@ -1,6 +1,6 @@
 //! Files of any bytes.
 
-use caustica::scene::parse;
+use caustica::low_level::scene::parse;
 
 use super::data;
 use super::support::{HEAD, folder};

@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use caustica::scene::{Allowance, Loaded, Missing, SceneErrors, Texels, parse_within};
+use caustica::low_level::scene::{Allowance, Loaded, Missing, SceneErrors, Texels, parse_within};
 use exr::prelude::{AnyChannel, AnyChannels, FlatSamples, Image, WritableImage};
 
 use super::jpeg::{Sampling, jpeg};
@@ -275,11 +275,16 @@ fn numbers_near_the_limits() {
             None,
             "{number}"
         );
-        let caustica::scene::MaterialKind::Mirror { reflectance } = loaded.scene.materials[0].kind
+        let caustica::low_level::scene::MaterialKind::Mirror { reflectance } =
+            loaded.scene.materials[0].kind
         else {
             panic!()
         };
-        assert_eq!(reflectance, caustica::scene::Reflectance::Color([inside; 3]), "{number}");
+        assert_eq!(
+            reflectance,
+            caustica::low_level::scene::Reflectance::Color([inside; 3]),
+            "{number}"
+        );
     }
     for number in ["1.01", "3", "-0.01"] {
         assert_eq!(

@@ -1,6 +1,6 @@
 //! The software Vulkan driver that tests on a device run on.
 
-use caustica::gpu::{AdapterChoice, AdapterKind, list};
+use caustica::low_level::gpu::{AdapterChoice, AdapterKind, list};
 
 /// Asks for the software driver; fails loudly where there is none.
 pub fn software() -> AdapterChoice {

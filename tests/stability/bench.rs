@@ -6,30 +6,32 @@ use std::path::PathBuf;
 use std::rc::Rc;
 
 use bytemuck::{Zeroable, cast_slice, pod_collect_to_vec};
-use caustica::cpu::CpuEngine;
-use caustica::engine::Engine;
-use caustica::features::{Feature, Features};
-use caustica::film::Picture;
-use caustica::gpu::compose::{Shader, compose, compose_from};
-use caustica::gpu::fragments::{Fragment, fragments};
-use caustica::gpu::layout::{SceneTables, long_tables};
-use caustica::gpu::program::Program;
-use caustica::gpu::recorder::Recorder;
-use caustica::gpu::{AdapterChoice, Gpu, GpuEngine};
-use caustica::kernels::gather::gather;
-use caustica::kernels::grid_build::{SortedRecords, build_grid, record_bucket, record_code};
-use caustica::kernels::records::{
+use caustica::low_level::cpu::CpuEngine;
+use caustica::low_level::engine::Engine;
+use caustica::low_level::features::{Feature, Features};
+use caustica::low_level::film::Picture;
+use caustica::low_level::gpu::compose::{Shader, compose, compose_from};
+use caustica::low_level::gpu::fragments::{Fragment, fragments};
+use caustica::low_level::gpu::layout::{SceneTables, long_tables};
+use caustica::low_level::gpu::program::Program;
+use caustica::low_level::gpu::recorder::Recorder;
+use caustica::low_level::gpu::{AdapterChoice, Gpu, GpuEngine};
+use caustica::low_level::kernels::gather::gather;
+use caustica::low_level::kernels::grid_build::{
+    SortedRecords, build_grid, record_bucket, record_code,
+};
+use caustica::low_level::kernels::records::{
     Dispatch, FilmPixel, Gathered, PhotonRecord, Statistics, VisiblePoint,
 };
-use caustica::kernels::resolve::resolve;
-use caustica::pack::{Packed, pack};
-use caustica::plan::{Buffer, Kernel, Plan};
-use caustica::scene::{self, Scene};
-use caustica::settings::RenderSettings;
-use caustica::shapes::intersect::intersect_scene;
-use caustica::shapes::ray::{NONE, Ray};
-use caustica::shapes::surface::surface_at;
-use caustica::tables;
+use caustica::low_level::kernels::resolve::resolve;
+use caustica::low_level::pack::{Packed, pack};
+use caustica::low_level::plan::{Buffer, Kernel, Plan};
+use caustica::low_level::scene::{self, Scene};
+use caustica::low_level::settings::RenderSettings;
+use caustica::low_level::shapes::intersect::intersect_scene;
+use caustica::low_level::shapes::ray::{NONE, Ray};
+use caustica::low_level::shapes::surface::surface_at;
+use caustica::low_level::tables;
 use glam::Vec3;
 use rayon::prelude::*;
 

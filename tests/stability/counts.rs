@@ -1,13 +1,13 @@
 //! Radii, counters and means far from one.
 
 use bytemuck::Zeroable;
-use caustica::kernels::records::{
+use caustica::low_level::kernels::records::{
     Dispatch, FilmPixel, Gathered, PhotonRecord, Statistics, VisiblePoint,
 };
-use caustica::math::oct_encode;
-use caustica::plan::global_scale_sq;
-use caustica::settings::{Direct, Radius, RadiusRule, RenderSettings};
-use caustica::tables::NONE;
+use caustica::low_level::math::oct_encode;
+use caustica::low_level::plan::global_scale_sq;
+use caustica::low_level::settings::{Direct, Radius, RadiusRule, RenderSettings};
+use caustica::low_level::tables::NONE;
 use glam::{DVec3, Vec3};
 
 use super::bench::Bench;

@@ -1,8 +1,8 @@
 //! Rays that meet and leave convex shapes at grazing angles.
 
-use caustica::math::offset_origin;
-use caustica::prepare::normalize::Normalization;
-use caustica::shapes::ray::Ray;
+use caustica::low_level::math::offset_origin;
+use caustica::low_level::prepare::normalize::Normalization;
+use caustica::low_level::shapes::ray::Ray;
 use glam::DVec3;
 
 use super::bench::{Bench, parse};

@@ -1,9 +1,11 @@
 //! Rays against shapes of extreme size, slimness and angle.
 
-use caustica::accel::kdtree::build;
-use caustica::prepare::normalize::Normalization;
-use caustica::shapes::ray::Ray;
-use caustica::tables::{KIND_TRIANGLE, NONE, REFERENCE_BITS, Scene, Triangle, reference};
+use caustica::low_level::accel::kdtree::build;
+use caustica::low_level::prepare::normalize::Normalization;
+use caustica::low_level::shapes::ray::Ray;
+use caustica::low_level::tables::{
+    KIND_TRIANGLE, NONE, REFERENCE_BITS, Scene, Triangle, reference,
+};
 use glam::{DVec3, Vec3};
 
 use super::bench::{Bench, parse};
@@ -311,8 +313,8 @@ fn exhaustive(b: &Bench) -> Figure {
         let mesh: Vec<[Vec3; 3]> = prims
             .iter()
             .filter_map(|p| match p {
-                caustica::accel::kdtree::Primitive::Triangle(t) => Some(*t),
-                caustica::accel::kdtree::Primitive::Box(_) => None,
+                caustica::low_level::accel::kdtree::Primitive::Triangle(t) => Some(*t),
+                caustica::low_level::accel::kdtree::Primitive::Box(_) => None,
             })
             .collect();
         let scene = of_triangles(&mesh);

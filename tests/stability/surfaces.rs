@@ -1,13 +1,13 @@
 //! Surfaces of revolution of every kind against the f64 oracle.
 
 use bytemuck::Zeroable;
-use caustica::accel::kdtree::{Primitive, build};
-use caustica::accel::revolution::Placement;
-use caustica::math::FAR;
-use caustica::shapes::aabb::Aabb;
-use caustica::shapes::ray::Ray;
-use caustica::shapes::revolution::{BRACKETED, Patch, intersect_patch, patch_miss};
-use caustica::tables::{KIND_REVOLUTION, Scene, reference};
+use caustica::low_level::accel::kdtree::{Primitive, build};
+use caustica::low_level::accel::revolution::Placement;
+use caustica::low_level::math::FAR;
+use caustica::low_level::shapes::aabb::Aabb;
+use caustica::low_level::shapes::ray::Ray;
+use caustica::low_level::shapes::revolution::{BRACKETED, Patch, intersect_patch, patch_miss};
+use caustica::low_level::tables::{KIND_REVOLUTION, Scene, reference};
 use glam::{DVec2, Vec2, Vec3};
 use rayon::prelude::*;
 use revolution::judge::{Tally, judge};
