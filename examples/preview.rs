@@ -11,7 +11,7 @@ use caustica::low_level::device::Wanted;
 use caustica::low_level::gpu::{AdapterChoice, GpuEngine};
 use caustica::low_level::pack::pack;
 use caustica::low_level::plan::Plan;
-use caustica::low_level::preview::frame::Wish;
+use caustica::low_level::preview::frame::RenderRequest;
 use caustica::low_level::preview::orbit::orbit;
 use caustica::low_level::preview::worker::Worker;
 use caustica::low_level::scene;
@@ -34,7 +34,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             let begun = Instant::now();
             let loaded = scene::load(file.as_ref())?;
             let reading = begun.elapsed();
-            let mut wish = Wish {
+            let mut wish = RenderRequest {
                 camera: loaded.scene.camera,
                 film: loaded.scene.film,
                 settings: loaded.settings,

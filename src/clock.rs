@@ -15,18 +15,18 @@ pub struct Clock {
 
 impl Clock {
     /// Begins to count, from zero.
-    pub fn wind(&mut self) {
+    pub fn enable(&mut self) {
         *self = Self { seconds: Some(KernelSeconds::new()), running: None };
     }
 
     /// Whether it counts.
-    pub fn is_wound(&self) -> bool {
+    pub fn is_enabled(&self) -> bool {
         self.seconds.is_some()
     }
 
     /// A kernel begins, and the one before ends.
     pub fn begin(&mut self, kernel: &'static str) {
-        if self.is_wound() {
+        if self.is_enabled() {
             let now = Instant::now();
             self.end_at(now);
             self.running = Some((kernel, now));
@@ -35,7 +35,7 @@ impl Clock {
 
     /// The last kernel ends.
     pub fn end(&mut self) {
-        if self.is_wound() {
+        if self.is_enabled() {
             self.end_at(Instant::now());
         }
     }
@@ -75,7 +75,7 @@ mod tests {
         clock.end();
         assert!(clock.take().is_empty());
         let begun = Instant::now();
-        clock.wind();
+        clock.enable();
         for kernel in ["eye_trace", "gather", "eye_trace"] {
             clock.begin(kernel);
             sleep(Duration::from_millis(2));
@@ -87,6 +87,6 @@ mod tests {
         assert_eq!(seconds.keys().copied().collect::<Vec<_>>(), ["eye_trace", "gather"]);
         assert!(seconds["eye_trace"] >= 0.004 && seconds["gather"] >= 1.002, "{seconds:?}");
         assert!(seconds.values().sum::<f64>() - 1.0 <= whole, "{seconds:?} in {whole}");
-        assert!(!clock.is_wound());
+        assert!(!clock.is_enabled());
     }
 }

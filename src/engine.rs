@@ -73,7 +73,7 @@ pub struct State {
     pub film: Vec<u8>,
     /// Local radius rule: statistics of the visible points; else empty.
     pub statistics: Vec<u8>,
-    /// What the film asks for beside radiance.
+    /// What the film asks for in addition to radiance.
     pub layers: LayerState,
 }
 
@@ -246,7 +246,7 @@ pub trait Engine {
             self.device()
         )))
     }
-    /// What the film asks for beside radiance, in world units.
+    /// What the film asks for in addition to radiance, in world units.
     fn layers(&mut self) -> Result<Vec<Channel>, EngineError> {
         Ok(Vec::new())
     }

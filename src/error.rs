@@ -6,7 +6,7 @@ use crate::accel::profile::ProfileError;
 #[derive(Debug, thiserror::Error)]
 pub enum PackError {
     /// More items than an index holds.
-    #[error("the scene has {count} {what}, but at most {limit} can be told apart")]
+    #[error("the scene has {count} {what}, more than the limit of {limit}")]
     TooMany {
         /// What there are too many of.
         what: &'static str,

@@ -1,4 +1,5 @@
-//! What a plan's passes have found beside radiance, as channels of a picture file in world units.
+//! What a plan's passes have found in addition to radiance, as channels of a picture file in world
+//! units.
 
 use super::features::Feature;
 use super::kernels::aov_trace::AovPixel;
@@ -17,7 +18,7 @@ use crate::settings::{Method, RadiusRule};
 pub const NO_DEPTH: f64 = 1e10;
 
 /// What engines keep of a window's pixels and visible points.
-pub struct Found<'a> {
+pub struct LayerInputs<'a> {
     /// By pixel; empty where no [`Aov`] takes it.
     pub aovs: &'a [AovPixel],
     /// By pixel; empty where photons are not parted.
@@ -32,7 +33,7 @@ pub struct Found<'a> {
 
 impl Plan {
     /// The channels of the [`Aov`]s that are asked for.
-    pub fn layers(&self, found: &Found) -> Vec<Channel> {
+    pub fn layers(&self, found: &LayerInputs) -> Vec<Channel> {
         let layering = Layering {
             aovs: self.aovs,
             width: self.width,
@@ -44,13 +45,13 @@ impl Plan {
             scale_sq: self.scale_sq(found.passes.max(1) - 1),
         };
         let LayerState { counts, objects, .. } = &self.numbers(found);
-        let Found { parts, statistics, .. } = *found;
+        let LayerInputs { parts, statistics, .. } = *found;
         let aovs = &self.named(found.aovs);
-        layering.channels(&Kept { aovs, parts, counts, objects, statistics })
+        layering.channels(&SavedLayers { aovs, parts, counts, objects, statistics })
     }
 
     /// What is kept for them between two passes.
-    pub fn layer_state(&self, found: &Found) -> LayerState {
+    pub fn layer_state(&self, found: &LayerInputs) -> LayerState {
         LayerState {
             aovs: aov_bytes(&self.named(found.aovs)),
             parts: parts_bytes(found.parts),
@@ -65,7 +66,7 @@ impl Plan {
     }
 
     /// The part of it that is the same for all engines.
-    fn numbers(&self, found: &Found) -> LayerState {
+    fn numbers(&self, found: &LayerInputs) -> LayerState {
         let mut state = LayerState::default();
         if self.aovs.has(Aov::Photons) {
             state.counts = found.gathered.iter().map(|gathered| gathered.count).collect();
@@ -100,7 +101,7 @@ impl Plan {
 }
 
 /// What is kept of a window's pixels and visible points, whoever keeps it.
-pub struct Kept<'a> {
+pub struct SavedLayers<'a> {
     /// By pixel; empty where no [`Aov`] takes it.
     pub aovs: &'a [AovPixel],
     /// By pixel; empty where photons are not parted.
@@ -137,11 +138,11 @@ pub struct Layering {
 
 impl Layering {
     /// The channels of the [`Aov`]s that are asked for.
-    pub fn channels(&self, kept: &Kept) -> Vec<Channel> {
+    pub fn channels(&self, kept: &SavedLayers) -> Vec<Channel> {
         self.aovs.iter().flat_map(|aov| self.channels_of(aov, kept)).collect()
     }
 
-    fn channels_of(&self, aov: Aov, kept: &Kept) -> Vec<Channel> {
+    fn channels_of(&self, aov: Aov, kept: &SavedLayers) -> Vec<Channel> {
         let vector = |names: [&'static str; 3], of: &dyn Fn(&AovPixel) -> [f64; 3]| {
             let plane = |c: usize| self.plane(kept.aovs.iter().map(|p| of(p)[c]));
             (0..3).map(|c| Channel::float(names[c], plane(c))).collect()
@@ -196,7 +197,7 @@ impl Layering {
     fn part(
         &self,
         names: [&'static str; 3],
-        kept: &Kept,
+        kept: &SavedLayers,
         of: fn(&PartsPixel) -> Vec3,
     ) -> Vec<Channel> {
         if self.method == Method::Path {
@@ -217,7 +218,7 @@ impl Layering {
 
     /// Each pixel's gather radius in the last pass; under the local rule, where it is after that
     /// pass.
-    fn radii(&self, kept: &Kept) -> Vec<f64> {
+    fn radii(&self, kept: &SavedLayers) -> Vec<f64> {
         let scale = self.scale_sq.sqrt();
         let Space { unit, photons, .. } = self.space;
         let mut own = kept.statistics.chunks(self.eye_samples.max(1) as usize).map(|points| {
@@ -234,7 +235,7 @@ impl Layering {
     }
 
     /// How many photons each pixel's visible points found in the last pass.
-    fn photons(&self, kept: &Kept) -> Vec<f64> {
+    fn photons(&self, kept: &SavedLayers) -> Vec<f64> {
         let points = kept.counts.chunks(self.eye_samples.max(1) as usize);
         let mut counts: Vec<f64> =
             points.map(|counts| counts.iter().copied().map(f64::from).sum()).collect();

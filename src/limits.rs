@@ -6,7 +6,7 @@
 
 use crate::prepare::normalize::{Normalization, extent};
 use crate::prepare::orientation::faces_inward;
-use crate::scene::{Finding, Light, MaterialKind, Places, Scene, ShapeKind};
+use crate::scene::{Finding, Light, MaterialKind, Scene, ShapeKind, Spans};
 use crate::settings::{Radius, RenderSettings};
 use glam::DVec3;
 
@@ -29,7 +29,7 @@ const GREATEST_LAMP: f64 = 100.0;
 const LEAST_SHARE: f64 = 6e-8;
 
 /// Everything of a scene and its settings that is out of range.
-pub fn warnings(scene: &Scene, settings: &RenderSettings, places: &Places) -> Vec<Finding> {
+pub fn warnings(scene: &Scene, settings: &RenderSettings, places: &Spans) -> Vec<Finding> {
     let n = Normalization::of(scene);
     let limits = Limits { scene, places, size: n.radius, center: n.center };
     let mut found = Vec::new();
@@ -46,7 +46,7 @@ pub fn warnings(scene: &Scene, settings: &RenderSettings, places: &Places) -> Ve
 
 struct Limits<'a> {
     scene: &'a Scene,
-    places: &'a Places,
+    places: &'a Spans,
     /// Radius of the sphere that holds the scene and its camera.
     size: f64,
     center: DVec3,

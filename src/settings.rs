@@ -55,7 +55,7 @@ pub enum Radius {
     Units(f64),
 }
 
-/// Everything that decides the bits of a picture beside the scene and the device.
+/// Everything except the scene and the device that decides the bits of a picture.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct RenderSettings {
@@ -74,8 +74,8 @@ pub struct RenderSettings {
     pub radius: Radius,
     /// Start radius of photons that a diffuse surface has scattered before, over `radius`. Their
     /// light changes more slowly from place to place than that of the others. Under the local rule
-    /// one count shrinks both. Where it is not given it goes with `radius`: 1 beside a number,
-    /// chosen beside "auto".
+    /// one count shrinks both. If it is not given, it is 1 with a number for `radius`, and
+    /// chosen automatically with "auto".
     #[schemars(range(min = 1.0, max = 16.0))]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub indirect_radius: Option<f64>,

@@ -20,7 +20,7 @@ const OUTPUT: [&str; 3] = ["/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"];
 const PREFIX: &str = ".caustica-";
 
 /// What stands, or may stand, at the place of an output.
-enum Place {
+enum Target {
     /// Nothing yet.
     Free(PathBuf),
     /// A regular file.
@@ -46,9 +46,9 @@ pub enum Purpose {
 /// Why it cannot.
 pub fn check(file: &Path, purpose: Purpose) -> io::Result<()> {
     match place(file)? {
-        Place::Special(_) | Place::Output if purpose == Purpose::Keepsake => Err(not_regular()),
-        Place::Special(_) | Place::Output => Ok(()),
-        Place::Free(target) | Place::Taken(target, _) => {
+        Target::Special(_) | Target::Output if purpose == Purpose::Keepsake => Err(not_regular()),
+        Target::Special(_) | Target::Output => Ok(()),
+        Target::Free(target) | Target::Taken(target, _) => {
             let (unfinished, _) = unfinished(&target)?;
             fs::remove_file(&unfinished)
         }
@@ -65,16 +65,16 @@ pub fn write(
     fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> io::Result<()> {
     let (target, before) = match place(file)? {
-        Place::Special(_) | Place::Output if purpose == Purpose::Keepsake => {
+        Target::Special(_) | Target::Output if purpose == Purpose::Keepsake => {
             return Err(not_regular());
         }
-        Place::Output => {
+        Target::Output => {
             let mut out = io::stdout().lock();
             return fill(&mut out).and_then(|()| out.flush());
         }
-        Place::Special(target) => return fill(&mut OpenOptions::new().write(true).open(target)?),
-        Place::Free(target) => (target, None),
-        Place::Taken(target, found) => (target, Some(found)),
+        Target::Special(target) => return fill(&mut OpenOptions::new().write(true).open(target)?),
+        Target::Free(target) => (target, None),
+        Target::Taken(target, found) => (target, Some(found)),
     };
     let (unfinished, mut out) = unfinished(&target)?;
     // first the mode: what is private must not be readable by others while it is written
@@ -269,14 +269,14 @@ fn remove_leftovers(target: &Path) {
     }
 }
 
-fn place(file: &Path) -> io::Result<Place> {
+fn place(file: &Path) -> io::Result<Target> {
     if is_output(file) {
-        return Ok(Place::Output);
+        return Ok(Target::Output);
     }
     let found = match fs::metadata(file) {
         Ok(found) => found,
         Err(error) if error.kind() == io::ErrorKind::NotFound => {
-            return Ok(Place::Free(target(file)?));
+            return Ok(Target::Free(target(file)?));
         }
         Err(error) => return Err(error),
     };
@@ -287,16 +287,16 @@ fn place(file: &Path) -> io::Result<Place> {
         return Err(io::Error::new(io::ErrorKind::PermissionDenied, "the file is read-only"));
     }
     if !found.is_file() {
-        return Ok(Place::Special(file.to_owned()));
+        return Ok(Target::Special(file.to_owned()));
     }
     // whether this user may, the system knows best
     OpenOptions::new().write(true).open(file)?;
     let target = target(file)?;
     // the links of /proc/self/fd also lead to pipes and to files that have no name any more
     if is_same(&found, &fs::metadata(&target).ok()) {
-        Ok(Place::Taken(target, found))
+        Ok(Target::Taken(target, found))
     } else {
-        Ok(Place::Special(file.to_owned()))
+        Ok(Target::Special(file.to_owned()))
     }
 }
 

@@ -148,9 +148,8 @@ fn logs() {
     assert_eq!(none, "");
     let (_, stages) = run(&["-v"]);
     for stage in ["parse", "pack", "kd-tree", "maps", "plan", "passes"] {
-        let line = stages
-            .lines()
-            .find(|line| line.contains(&format!("caustica::low_level::stage: {stage}: ")));
+        let line =
+            stages.lines().find(|line| line.contains(&format!("caustica::stage: {stage}: ")));
         assert!(line.is_some_and(|line| line.ends_with(" s")), "{stage}: {stages}");
     }
     assert!(stages.contains("cpu [cpu]") && stages.contains("(asked for)"), "{stages}");

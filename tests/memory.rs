@@ -14,13 +14,13 @@ use caustica::low_level::film::{ErrorMap, Picture};
 use caustica::low_level::gpu::{self, GpuEngine};
 use caustica::low_level::memory::{Memory, Part, total};
 use caustica::low_level::pack::{Packed, pack};
-use caustica::low_level::plan::{Place, Plan, scene_bytes};
+use caustica::low_level::plan::{BufferPlace, Plan, scene_bytes};
 use caustica::low_level::scene::{self, Aovs};
 use caustica::low_level::settings::{Method, RadiusRule, RenderSettings};
 
 const SIZE: (u32, u32) = (40, 30);
 const PASSES: u32 = 5;
-const ON_DEVICE: Place = Place::Device { in_main_memory: false };
+const ON_DEVICE: BufferPlace = BufferPlace::Device { in_main_memory: false };
 
 type Change = fn(&mut RenderSettings);
 
@@ -174,7 +174,9 @@ fn budgets_are_kept() {
     let packed = pack(&loaded.scene, 256, 192).unwrap();
     let plan = Plan::new(&packed, &loaded.settings).on(&loaded.scene.film);
     let scene = scene_bytes(&packed.scene);
-    for place in [Place::Program { saves: false }, Place::Program { saves: true }, ON_DEVICE] {
+    for place in
+        [BufferPlace::Program { saves: false }, BufferPlace::Program { saves: true }, ON_DEVICE]
+    {
         let bytes = |plan: &Plan| total(&plan.memory(scene, place));
         let within = |budget, same_batches| {
             plan.clone().within(

@@ -191,7 +191,7 @@ fn plan(loaded: &Loaded) -> String {
     match pack::pack(&loaded.scene, film.width, film.height) {
         Ok(packed) if u64::from(film.width) * u64::from(film.height) < 1 << 24 => {
             let plan = plan::Plan::new(&packed, &loaded.settings);
-            let _ = (plan.buffers(), plan.told_radius());
+            let _ = (plan.buffers(), plan.automatic_radius());
             String::new()
         }
         Ok(_) => String::new(),

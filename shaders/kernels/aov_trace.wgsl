@@ -1,5 +1,6 @@
-// What a pixel shows beside radiance: twin of src/kernels/aov_trace.rs. Run by one invocation per
-// pixel of a chunk for one of its samples; reads the scene, updates `aovs`, adds to `counters`.
+// What a pixel shows in addition to radiance: twin of src/kernels/aov_trace.rs. Run by one
+// invocation per pixel of a chunk for one of its samples; reads the scene, updates `aovs`, adds to
+// `counters`.
 
 struct AovPixel {
     albedo: vec3f,

@@ -11,7 +11,7 @@ fn resolve(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups) g
     if id >= dispatch.end {
         return;
     }
-    var sum = Found(vec3f(0.0), 0.0, 0.0);
+    var sum = Estimate(vec3f(0.0), 0.0, 0.0);
     var state = 0u;
     var photons_finite = true;
     for (var k = 0u; k < dispatch.eye_samples; k++) {
@@ -30,7 +30,7 @@ fn resolve(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups) g
         sum.halves += half_weight(k) * luminance(found.radiance);
     }
     let share = 1.0 / f32(dispatch.eye_samples);
-    fold(id, cause(state, photons_finite), Found(sum.radiance * share, sum.bias_probe * share, sum.halves));
+    fold(id, cause(state, photons_finite), Estimate(sum.radiance * share, sum.bias_probe * share, sum.halves));
 }
 
 fn cause(state: u32, photons_finite: bool) -> u32 {
@@ -43,7 +43,7 @@ fn cause(state: u32, photons_finite: bool) -> u32 {
     return select(REJECTED_PHOTONS, ACCEPTED, photons_finite);
 }
 
-fn fold(id: u32, cause: u32, found: Found) {
+fn fold(id: u32, cause: u32, found: Estimate) {
     let value = found.radiance;
     let counted = select(cause, REJECTED_ESTIMATE, cause == ACCEPTED && !is_finite(value));
     if counted != ACCEPTED {
@@ -74,21 +74,21 @@ fn fold(id: u32, cause: u32, found: Found) {
     film[id] = pixel;
 }
 
-struct Found {
+struct Estimate {
     radiance: vec3f,
     bias_probe: f32,
     halves: f32,
 }
 
-fn pass_found(at: u32, scale_sq: f32) -> Found {
+fn pass_found(at: u32, scale_sq: f32) -> Estimate {
     let radiance = visible_points[at].radiance;
     if gathered[at].count == 0u {
-        return Found(radiance, 0.0, 0.0);
+        return Estimate(radiance, 0.0, 0.0);
     }
     let radius = visible_points[at].radius;
     let radius_sq = radius * radius * scale_sq;
     let share = 1.0 / (dispatch.photons * (PI * radius_sq));
-    return Found(radiance + gathered[at].flux * share, gathered[at].bias_probe * share, 0.0);
+    return Estimate(radiance + gathered[at].flux * share, gathered[at].bias_probe * share, 0.0);
 }
 
 fn half_weight(k: u32) -> f32 {

@@ -188,7 +188,7 @@ pub fn decode(file: &Path, bytes: &[u8]) -> Result<Checkpoint, CheckpointError> 
         return Err(not_one("it does not begin as one"));
     }
     let Some((prefix, _)) = bytes.split_first_chunk::<PREFIX>() else {
-        return Err(not_one("it ends before its length is told"));
+        return Err(not_one("it ends before its length is given"));
     };
     let word = |at: usize| u32::from_le_bytes([0, 1, 2, 3].map(|k| prefix[at + k]));
     let format = word(8);
@@ -230,7 +230,7 @@ pub fn decode(file: &Path, bytes: &[u8]) -> Result<Checkpoint, CheckpointError> 
     }
     let [film, statistics, cuts, aovs, parts, counts, objects] = sections;
     if !rest.is_empty() {
-        return Err(damaged("there is more in it than its header tells".to_owned()));
+        return Err(damaged("it is longer than its header says".to_owned()));
     }
     check_header(&header).map_err(damaged)?;
     values::check_space(&header.origin.space).map_err(damaged)?;

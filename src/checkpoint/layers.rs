@@ -1,4 +1,4 @@
-//! What checkpoints hold beside radiance: as channels, and of two ranges as of one. In f64.
+//! What checkpoints hold in addition to radiance: as channels, and of two ranges as of one. In f64.
 //!
 //! Means are weighted by what they are means of: passes, samples that hit anything, or samples that
 //! end at a visible point. Numbers of surfaces and materials are those of the first pass, photons
@@ -9,7 +9,7 @@ use crate::double::kernels::aov_trace::AovPixel;
 use crate::double::kernels::bytes::{aov_bytes, aovs_of, parts_bytes, parts_of, statistics_of};
 use crate::double::kernels::records::Statistics;
 use crate::double::kernels::resolve_parts::PartsPixel;
-use crate::double::layers::{Kept, Layering};
+use crate::double::layers::{Layering, SavedLayers};
 use crate::double::real::Vec3;
 use crate::engine::{LayerState, State};
 use crate::film::exr_file::Channel;
@@ -18,7 +18,8 @@ use crate::plan::global_scale_sq;
 use crate::settings::{Method, RadiusRule};
 
 impl Checkpoint {
-    /// What the film asks for beside radiance; the same bits that the render would have given.
+    /// What the film asks for in addition to radiance; the same bits that the render would have
+    /// given.
     pub fn layers(&self) -> Vec<Channel> {
         let Origin { settings, aovs, space, .. } = &self.origin;
         let [width, height] = self.origin.window_size();
@@ -36,7 +37,7 @@ impl Checkpoint {
             },
         };
         let LayerState { counts, objects, .. } = &self.state.layers;
-        layering.channels(&Kept {
+        layering.channels(&SavedLayers {
             aovs: &wide_aovs(&self.state),
             parts: &wide_parts(&self.state),
             counts,

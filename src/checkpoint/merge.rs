@@ -245,15 +245,15 @@ pub(super) fn wide_film(state: &State) -> Vec<FilmPixel> {
 mod tests {
     use super::*;
     use crate::double::kernels::records::{ACCEPTED, Dispatch, REJECTED_PHOTONS};
-    use crate::double::kernels::resolve::{Found, fold};
+    use crate::double::kernels::resolve::{Estimate, fold};
     use bytemuck::Zeroable;
 
     /// What pass `number` finds; one in eleven does not count.
-    fn found(number: u32) -> (u32, Found) {
+    fn found(number: u32) -> (u32, Estimate) {
         let x = |k: u32| {
             f64::from((number * 2_654_435_761u32.wrapping_mul(k + 1)) >> 8) / f64::from(1 << 24)
         };
-        let found = Found {
+        let found = Estimate {
             radiance: Vec3::new(x(1), 2.0 * x(2), 0.5 + x(3)),
             bias_probe: x(4) - 0.3,
             halves: x(5) - 0.5,

@@ -28,7 +28,7 @@ pub struct Origin {
     /// The part of it that is rendered: columns x0 to x1 and rows y0 to y1, x1 and y1 left out;
     /// `None` is all.
     pub window: Option<[u32; 4]>,
-    /// What is found beside radiance.
+    /// What is found in addition to radiance.
     pub aovs: Aovs,
     /// What tells its numbers in those of the world.
     pub space: Space,

@@ -8,9 +8,9 @@ use super::checkpoint::Files;
 /// The option of commands that can do with less.
 #[derive(Args, Debug, Default)]
 pub struct Budget {
-    /// Most memory for buffers, on the device and beside it together, as in 512MB or 2GiB; what
-    /// does not fit is rendered in tiles, and photons in smaller batches [default: what the system
-    /// has left, or the device gives]
+    /// Most memory for buffers, on the device and in main memory together, as in 512MB or 2GiB;
+    /// what does not fit is rendered in tiles, and photons in smaller batches [default: what the
+    /// system has left, or the device gives]
     #[arg(long, value_name = "BYTES", value_parser = memory::parse)]
     memory_budget: Option<u64>,
 }

@@ -116,7 +116,7 @@ impl Keeper {
     }
 
     /// What is left of a render whose device failed. Where no checkpoint was asked for, it is
-    /// written beside the first picture, unless something is there.
+    /// written next to the first picture, unless a file is there.
     pub fn rest(&mut self, state: State, progress: &Progress, pictures: &[PathBuf]) -> Checkpoint {
         let rest = self.checkpoint(state, progress);
         let beside = pictures.first().map(|picture| picture.with_extension(EXTENSION));

@@ -15,7 +15,7 @@ use serde_json::{Value, json};
 use super::figures::comparison_json;
 use super::output::{message, result};
 use super::overrides::Overrides;
-use super::render::{Voice, begin, load};
+use super::render::{OutputArgs, begin, load};
 use super::{Done, Failure, compiling, hidden};
 
 /// Render a scene on two devices and compare the pictures
@@ -39,7 +39,7 @@ pub struct Arguments {
     #[arg(long)]
     bits: bool,
     #[command(flatten)]
-    voice: Voice,
+    voice: OutputArgs,
     #[command(flatten)]
     overrides: Overrides,
 }
@@ -111,7 +111,7 @@ fn render_on(
     wanted: &str,
     scene: &Scene,
     settings: &RenderSettings,
-    voice: &Voice,
+    voice: &OutputArgs,
 ) -> Result<Rendered, Failure> {
     let opened = device::open(&device::parse(wanted), scene, settings)?;
     let mut reporter = begin(voice, scene, &opened)?;

@@ -1,4 +1,4 @@
-//! Which part of the picture is rendered, and what is kept of it beside radiance.
+//! Which part of the picture is rendered, and what is kept of it in addition to radiance.
 
 use std::path::PathBuf;
 
@@ -12,7 +12,7 @@ use super::Failure;
 /// Options about what a picture file holds.
 #[derive(Args, Debug)]
 pub struct Extent {
-    /// Channels of .exr files beside radiance, names divided by commas, or all
+    /// Channels of .exr files in addition to radiance, names divided by commas, or all
     #[arg(long, value_name = "NAME,...", value_parser = Aovs::parse)]
     pub aov: Option<Aovs>,
     /// Render a window alone: columns x0 to x1 and rows y0 to y1 from the top left, x1 and y1 left

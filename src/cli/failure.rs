@@ -132,7 +132,10 @@ impl From<DeviceError> for Failure {
                 let help = match available.as_slice() {
                     [] => "no device was found at all".to_owned(),
                     names => {
-                        format!("there is: {}; `caustica devices` tells more", names.join(", "))
+                        format!(
+                            "there is: {}; run `caustica devices` for details",
+                            names.join(", ")
+                        )
                     }
                 };
                 let hidden = gpu::hidden().iter().map(|hidden| format!("note: {hidden}"));

@@ -7,7 +7,7 @@ use caustica::low_level::engine::EngineError;
 use caustica::low_level::features::Feature;
 use caustica::low_level::memory::{Memory, Part, total};
 use caustica::low_level::pack::{Packed, pack};
-use caustica::low_level::plan::{Buffer, Kernel, Place, Plan, scene_bytes, scene_tables};
+use caustica::low_level::plan::{Buffer, BufferPlace, Kernel, Plan, scene_bytes, scene_tables};
 use caustica::low_level::settings::Method;
 use clap::builder::NonEmptyStringValueParser;
 use serde_json::{Value, json};
@@ -53,7 +53,7 @@ Examples:
   caustica info scenes/caustics.toml --method ppm --size 1920x1080
   MESA_SHADER_CACHE_DISABLE=true caustica info scenes/cornell.toml --measure --device software --device cpu";
 
-const ON_GPU: Place = Place::Device { in_main_memory: false };
+const ON_GPU: BufferPlace = BufferPlace::Device { in_main_memory: false };
 
 /// What a render takes, cut as a budget has it.
 struct Need {
@@ -62,7 +62,7 @@ struct Need {
 }
 
 impl Need {
-    fn of(plan: &Plan, packed: &Packed, place: Place, budget: &Budget) -> Self {
+    fn of(plan: &Plan, packed: &Packed, place: BufferPlace, budget: &Budget) -> Self {
         let scene = scene_bytes(&packed.scene);
         let memory = budget.alone();
         let given = Memory { budget: memory.budget.or(Some(u64::MAX)), ..memory };
@@ -118,7 +118,7 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     let film = scene.film;
     let packed = pack(&scene, film.width, film.height).map_err(EngineError::from)?;
     let plan = Plan::new(&packed, &settings);
-    let memory = [("on a GPU", ON_GPU), ("on the CPU", Place::Program { saves: false })]
+    let memory = [("on a GPU", ON_GPU), ("on the CPU", BufferPlace::Program { saves: false })]
         .map(|(name, place)| (name, Need::of(&plan, &packed, place, &arguments.budget)));
     if arguments.json {
         let mut figures = report(&packed, &plan).as_json();
@@ -128,14 +128,14 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
         figures["memory"] =
             Value::from_iter(memory.iter().map(|(name, need)| (*name, need.as_json())));
         figures["settings"] = json!(plan.settings);
-        figures["radius_why"] = json!(plan.told_radius().map(|radius| radius.to_string()));
+        figures["radius_why"] = json!(plan.automatic_radius().map(|radius| radius.to_string()));
         result(figures)?;
     } else {
         result(format_args!(
             "{}: {} x {} pixels, {} passes",
             scene.name, film.width, film.height, settings.passes
         ))?;
-        if let Some(radius) = plan.told_radius() {
+        if let Some(radius) = plan.automatic_radius() {
             result(format_args!("start radius: {radius}"))?;
         }
         result(report(&packed, &plan))?;

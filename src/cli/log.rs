@@ -57,7 +57,7 @@ impl Log for Writer {
             let level = record.level().as_str().to_ascii_lowercase();
             paragraph(format_args!(
                 "{seconds:9.3} s {level:<5} {}: {}",
-                record.target(),
+                record.target().replace("::low_level::", "::"),
                 record.args()
             ));
         }
@@ -75,10 +75,10 @@ mod tests {
     fn libraries_are_quieter() {
         let (v, vv) = (LevelFilter::Info, LevelFilter::Debug);
         assert!(
-            wanted(Level::Info, "caustica::low_level::stage", v)
-                && !wanted(Level::Debug, "caustica::low_level::device", v)
+            wanted(Level::Info, "caustica::stage", v)
+                && !wanted(Level::Debug, "caustica::device", v)
         );
-        assert!(wanted(Level::Debug, "caustica::low_level::device", vv));
+        assert!(wanted(Level::Debug, "caustica::device", vv));
         assert!(wanted(Level::Warn, "wgpu_hal::vulkan", v) && !wanted(Level::Info, "wgpu_core", v));
         assert!(wanted(Level::Info, "wgpu_core", vv) && !wanted(Level::Debug, "wgpu_core", vv));
         assert!(!wanted(Level::Info, "caustically", v), "a name that begins alike is another's");

@@ -72,7 +72,7 @@ impl Reporter {
         }
     }
 
-    /// Tells something beside the progress to a person who watches.
+    /// Prints a line above the progress if the user watches it.
     pub fn note(&self, text: &str) {
         if let Self::Bar(_) | Self::Lines(_) = self {
             message(text);

@@ -77,8 +77,8 @@ pub struct Arguments {
     /// Go on from this checkpoint, to the picture of a render that never stopped
     #[arg(long, value_name = "FILE")]
     resume: Option<PathBuf>,
-    /// Show in .png files a denoised picture, which .exr files hold beside the render as the layer
-    /// denoised; no measure sees it (takes a build with the cargo feature denoise)
+    /// Show in .png files a denoised picture, which .exr files store next to the render as the
+    /// layer denoised; no measure sees it (takes a build with the cargo feature denoise)
     #[arg(long)]
     denoise: bool,
     /// Fail, with the pictures written, if a sample had to be left out because it was not finite
@@ -89,7 +89,7 @@ pub struct Arguments {
     #[command(flatten)]
     extent: Extent,
     #[command(flatten)]
-    voice: Voice,
+    voice: OutputArgs,
     #[command(flatten)]
     overrides: Overrides,
 }
@@ -121,7 +121,7 @@ A checkpoint is gone on from with the same scene and settings, on any device; mo
 
 /// How much is told, and in which form.
 #[derive(clap::Args)]
-pub struct Voice {
+pub struct OutputArgs {
     /// Show no progress
     #[arg(long)]
     pub quiet: bool,
@@ -285,7 +285,7 @@ fn broken_off(error: EngineError, passes: u32, keeper: &Keeper) -> Result<Done, 
     paragraph(format_args!("the picture holds the first {passes} passes only: {error}"));
     match keeper.place() {
         Some(file) => message(format_args!(
-            "they are kept in {}: the same command with --resume {} goes on from there, on any --device",
+            "they are saved in {}; to continue, run the same command with --resume {}, on any --device",
             file.display(),
             file.display()
         )),
@@ -325,12 +325,12 @@ fn check_target(settings: &RenderSettings) -> Result<(), Failure> {
         &format!(
             "{what}, and what the picture is off by that stays: it may never state the error aimed at"
         ),
-        &format!("give --passes or --time beside --target-error, or take {instead}"),
+        &format!("add --passes or --time to --target-error, or use {instead}"),
     ))
 }
 
 /// Says what is rendered where, before it is.
-pub fn begin(voice: &Voice, scene: &Scene, opened: &Opened) -> Result<Reporter, Failure> {
+pub fn begin(voice: &OutputArgs, scene: &Scene, opened: &Opened) -> Result<Reporter, Failure> {
     let reporter = Reporter::new(voice.quiet, voice.json);
     reporter.note(&format!("{}: {} ({})", scene.name, opened.name, opened.why));
     if let Some(radius) = &opened.radius {
@@ -409,7 +409,7 @@ pub fn load(file: &Path, overrides: &Overrides) -> Result<(Scene, RenderSettings
 }
 
 /// Puts the options in force and prints the warnings, for commands that begin with the first pass.
-/// What the film asks for beside radiance is left out.
+/// What the film asks for in addition to radiance is left out.
 pub fn in_force(loaded: Loaded, overrides: &Overrides) -> Result<(Scene, RenderSettings), Failure> {
     if overrides.begins_later() {
         return Err(Failure::wrong_use(

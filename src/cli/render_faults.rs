@@ -122,7 +122,7 @@ fn the_program_ends_in_the_same_bits() {
     fs::remove_dir_all(&folder).unwrap();
 }
 
-/// Where no checkpoint was asked for, it is beside the picture; where something is there, it stays.
+/// Without --checkpoint it is next to the picture; a file that is there already stays.
 #[test]
 fn work_is_kept_unasked() {
     let folder = folder("unasked");

@@ -23,7 +23,7 @@ use serde_json::json;
 use super::output::{message, result};
 use super::overrides::{Overrides, duration, word};
 use super::progress::time;
-use super::render::{Voice, load};
+use super::render::{OutputArgs, load};
 use super::{Done, Failure, compiling, hidden, interrupt};
 
 /// Measure speed against accuracy over a grid of settings, and write curves and a report
@@ -73,7 +73,7 @@ pub struct Arguments {
     #[arg(long, value_name = "x0,y0,x1,y1", value_parser = region)]
     crop: Option<Region>,
     #[command(flatten)]
-    voice: Voice,
+    voice: OutputArgs,
     #[command(flatten)]
     overrides: Overrides,
 }

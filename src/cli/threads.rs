@@ -17,7 +17,7 @@ use super::output::message;
 const MOST_PER_CORE: usize = 4;
 /// Address space for each thread: its stack, and what the allocator reserves for it.
 const SPACE: u64 = 160 << 20;
-/// Threads that the program needs beside the pool: signals, and those of a driver.
+/// Threads that the program needs in addition to the pool: signals, and those of a driver.
 const OTHERS: usize = 2;
 
 /// Builds the pool: as many threads as the process may use cores, which on Linux follows the

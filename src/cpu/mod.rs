@@ -13,9 +13,9 @@ use super::kernels::grid_build::{
 };
 use super::kernels::path_trace::path_trace;
 use super::kernels::records::*;
-use super::kernels::resolve::{Found, fold, resolve};
+use super::kernels::resolve::{Estimate, fold, resolve};
 use super::kernels::resolve_parts::{PartsPixel, resolve_parts};
-use super::layers::Found as Layers;
+use super::layers::LayerInputs as Layers;
 use super::math::is_finite;
 use super::pack::Packed;
 use super::plan::{Buffer, Command, Kernel, Plan, Stage, Step};
@@ -285,7 +285,7 @@ impl CpuEngine {
             .map(|(pixel, film)| {
                 let (radiance, rays) = path_trace(scene, &d, sampled, pixel as u32);
                 let cause = if is_finite(radiance) { ACCEPTED } else { REJECTED_EYE };
-                fold(&d, cause, Found { radiance, bias_probe: 0.0, halves: 0.0 }, film);
+                fold(&d, cause, Estimate { radiance, bias_probe: 0.0, halves: 0.0 }, film);
                 rays as u64
             })
             .sum();
@@ -325,7 +325,7 @@ impl Engine for CpuEngine {
     }
 
     fn timed_pass(&mut self) -> Result<(PassReport, KernelSeconds), EngineError> {
-        self.clock.wind();
+        self.clock.enable();
         let report = self.pass();
         let seconds = self.clock.take();
         Ok((report?, seconds))

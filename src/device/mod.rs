@@ -11,7 +11,7 @@ use crate::gpu::{self, AdapterChoice, AdapterKind, AdapterSummary, GpuEngine};
 use crate::kernels::records::VisiblePoint;
 use crate::memory::{self, Memory, can_be_had, total};
 use crate::pack::{Packed, pack};
-use crate::plan::{self, Place, Plan};
+use crate::plan::{self, BufferPlace, Plan};
 use crate::radius::Automatic;
 use crate::scene::Scene;
 use crate::settings::{Method, Radius, RenderSettings};
@@ -264,11 +264,11 @@ fn start(
     if device.kind == DeviceKind::CpuDouble {
         let (wide, plan) = in_double(scene, &packed, settings)?;
         let tables = plan::scene_bytes(&packed.scene) + double::plan::scene_bytes(&wide.scene);
-        let place = double::plan::Place::Program { saves: memory.saves };
+        let place = double::plan::BufferPlace::Program { saves: memory.saves };
         let plan = plan.within(tables, place, memory)?;
         let cut = cut(plan.tiled, plan.chunks(), plan.settings.batch, settings.batch);
         let (settings, automatic, space) =
-            (plan.settings.clone(), plan.told_radius(), plan.space());
+            (plan.settings.clone(), plan.automatic_radius(), plan.space());
         return Ok(opened(
             Box::new(double::cpu::CpuEngine::new(wide, plan)),
             settings,
@@ -283,7 +283,8 @@ fn start(
         memory,
     )?;
     let cut = cut(plan.tiled, plan.chunks(), plan.settings.batch, settings.batch);
-    let (settings, automatic, space) = (plan.settings.clone(), plan.told_radius(), plan.space());
+    let (settings, automatic, space) =
+        (plan.settings.clone(), plan.automatic_radius(), plan.space());
     hold(&plan, &packed.scene, place(device.kind, memory))?;
     let engine: Box<dyn Engine> = match device.kind {
         DeviceKind::Cpu => Box::new(CpuEngine::new(packed, plan)),
@@ -294,10 +295,10 @@ fn start(
 
 /// Fails where the processor's engine would find no memory for its buffers in the middle of a
 /// render.
-fn hold(plan: &Plan, scene: &crate::tables::Scene, place: Place) -> Result<(), EngineError> {
+fn hold(plan: &Plan, scene: &crate::tables::Scene, place: BufferPlace) -> Result<(), EngineError> {
     let parts = plan.memory(plan::scene_bytes(scene), place);
     match place {
-        Place::Program { .. } if !can_be_had(total(&parts)) => {
+        BufferPlace::Program { .. } if !can_be_had(total(&parts)) => {
             let largest =
                 parts.iter().max_by_key(|part| part.bytes).map_or("nothing", |part| part.what);
             let needed = memory::words(total(&parts));
@@ -310,11 +311,11 @@ fn hold(plan: &Plan, scene: &crate::tables::Scene, place: Place) -> Result<(), E
 }
 
 /// Where a device of this kind has its buffers.
-fn place(kind: DeviceKind, memory: &Memory) -> Place {
+fn place(kind: DeviceKind, memory: &Memory) -> BufferPlace {
     match kind {
-        DeviceKind::Cpu | DeviceKind::CpuDouble => Place::Program { saves: memory.saves },
-        DeviceKind::Software => Place::Device { in_main_memory: true },
-        DeviceKind::Gpu => Place::Device { in_main_memory: false },
+        DeviceKind::Cpu | DeviceKind::CpuDouble => BufferPlace::Program { saves: memory.saves },
+        DeviceKind::Software => BufferPlace::Device { in_main_memory: true },
+        DeviceKind::Gpu => BufferPlace::Device { in_main_memory: false },
     }
 }
 

@@ -93,20 +93,20 @@ impl Filter {
 }
 
 /// What was found: adapters that may be used, and those whose names do not fit.
-struct Found {
+struct Filtered {
     visible: Vec<(wgpu::Adapter, AdapterSummary)>,
     misnamed: Vec<AdapterSummary>,
 }
 
 /// Adapters are looked for once, since drivers take a while to answer.
-fn found() -> &'static Found {
-    static FOUND: OnceLock<Found> = OnceLock::new();
+fn found() -> &'static Filtered {
+    static FOUND: OnceLock<Filtered> = OnceLock::new();
     FOUND.get_or_init(|| {
         let filter = Filter::from_env();
         let (visible, misnamed): (Vec<_>, Vec<_>) = of_backends(filter.backends().0)
             .into_iter()
             .partition(|(_, summary)| filter.takes(summary));
-        Found { visible, misnamed: misnamed.into_iter().map(|(_, summary)| summary).collect() }
+        Filtered { visible, misnamed: misnamed.into_iter().map(|(_, summary)| summary).collect() }
     })
 }
 
@@ -141,7 +141,7 @@ pub(super) fn adapters() -> &'static [(wgpu::Adapter, AdapterSummary)] {
 pub fn hidden() -> &'static [Hidden] {
     static HIDDEN: OnceLock<Vec<Hidden>> = OnceLock::new();
     HIDDEN.get_or_init(|| {
-        let Found { visible, misnamed } = found();
+        let Filtered { visible, misnamed } = found();
         let filter = Filter::from_env();
         let hardware = |summary: &AdapterSummary| summary.kind != AdapterKind::Software;
         let left = visible.iter().map(|(_, summary)| summary).chain(misnamed).any(hardware);

@@ -1,6 +1,7 @@
-//! What a pixel shows beside radiance, from the same eye path as a visible point: at the first hit,
-//! and beyond mirrors and glass at the first hit that is neither. Run by one invocation per pixel
-//! for one of its samples; reads the scene, updates `aovs`. Twin: `shaders/kernels/aov_trace.wgsl`.
+//! What a pixel shows in addition to radiance, from the same eye path as a visible point: at the
+//! first hit, and beyond mirrors and glass at the first hit that is neither. Run by one invocation
+//! per pixel for one of its samples; reads the scene, updates `aovs`. Twin:
+//! `shaders/kernels/aov_trace.wgsl`.
 
 use super::camera::camera_ray;
 use super::direct::direct_light;

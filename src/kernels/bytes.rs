@@ -11,7 +11,7 @@ const REAL: usize = size_of::<Real>();
 pub const FILM_BYTES: usize = 12 * REAL + 4 * 4;
 /// Bytes of a visible point's statistics.
 pub const STATISTICS_BYTES: usize = 2 * REAL + 2 * 4;
-/// Bytes of what a pixel shows beside radiance.
+/// Bytes of what a pixel shows in addition to radiance.
 pub const AOV_BYTES: usize = 19 * REAL + 5 * 4;
 /// Bytes of a pixel's photons by their way.
 pub const PARTS_BYTES: usize = 7 * REAL + 4;
@@ -77,7 +77,7 @@ pub fn statistics_of(bytes: &[u8]) -> Vec<Statistics> {
     bytes.chunks_exact(STATISTICS_BYTES).map(point).collect()
 }
 
-/// The bytes of what pixels show beside radiance.
+/// The bytes of what pixels show in addition to radiance.
 pub fn aov_bytes(aovs: &[AovPixel]) -> Vec<u8> {
     let mut out = Writer(Vec::with_capacity(aovs.len() * AOV_BYTES));
     for a in aovs {
@@ -95,7 +95,7 @@ pub fn aov_bytes(aovs: &[AovPixel]) -> Vec<u8> {
     out.0
 }
 
-/// What pixels of these bytes show beside radiance.
+/// What pixels of these bytes show in addition to radiance.
 pub fn aovs_of(bytes: &[u8]) -> Vec<AovPixel> {
     let pixel = |bytes| {
         let mut from = Reader(bytes);

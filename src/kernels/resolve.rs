@@ -19,7 +19,7 @@ const CARRY_SHARE: Real = 1.0 / 256.0;
 
 /// What visible points found in one pass.
 #[derive(Clone, Copy)]
-pub struct Found {
+pub struct Estimate {
     /// Radiance.
     pub radiance: Vec3,
     /// Luminance of the estimate in the whole disc less that in the inner half of its area.
@@ -34,20 +34,20 @@ pub fn pass_found(
     gathered: &Gathered,
     scale_sq: Real,
     photons: Real,
-) -> Found {
+) -> Estimate {
     if gathered.count == 0 {
-        return Found { radiance: point.radiance, bias_probe: 0.0, halves: 0.0 };
+        return Estimate { radiance: point.radiance, bias_probe: 0.0, halves: 0.0 };
     }
     let area = PI * point.radius * point.radius * scale_sq;
     let share = 1.0 / (photons * area);
-    Found {
+    Estimate {
         radiance: point.radiance + gathered.flux * share,
         bias_probe: gathered.bias_probe * share,
         halves: 0.0,
     }
 }
 
-/// What sample `k` of a pixel weighs in [`Found::halves`]. The halves are the strata's fields of
+/// What sample `k` of a pixel weighs in [`Estimate::halves`]. The halves are the strata's fields of
 /// either colour of a chessboard, so that a slope across the pixel is in both alike. With a and b
 /// samples in them the difference of their means times `sqrt(a b) / (a + b)` has the variance of
 /// the mean over all.
@@ -98,7 +98,7 @@ pub fn resolve(
     mut statistics: Option<&mut [Statistics]>,
     film: &mut FilmPixel,
 ) {
-    let mut sum = Found { radiance: Vec3::ZERO, bias_probe: 0.0, halves: 0.0 };
+    let mut sum = Estimate { radiance: Vec3::ZERO, bias_probe: 0.0, halves: 0.0 };
     let mut state = 0;
     let mut photons_finite = true;
     for k in 0..dispatch.eye_samples as usize {
@@ -116,7 +116,7 @@ pub fn resolve(
             * luminance(found.radiance);
     }
     let share = 1.0 / dispatch.eye_samples as Real;
-    let mean = Found {
+    let mean = Estimate {
         radiance: sum.radiance * share,
         bias_probe: sum.bias_probe * share,
         halves: sum.halves,
@@ -140,7 +140,7 @@ pub fn cause(state: u32, photons_finite: bool) -> u32 {
 /// The n-th pass deviates from the mean of those before by delta. `sqrt((n - 1) / n) delta` has
 /// mean zero and the variance of a pass, and does not correlate with its predecessors (Helmert
 /// 1876).
-pub fn fold(dispatch: &Dispatch, cause: u32, found: Found, film: &mut FilmPixel) {
+pub fn fold(dispatch: &Dispatch, cause: u32, found: Estimate, film: &mut FilmPixel) {
     let value = found.radiance;
     let counted = if cause == ACCEPTED && !is_finite(value) { REJECTED_ESTIMATE } else { cause };
     if counted != ACCEPTED {

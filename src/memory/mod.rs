@@ -7,8 +7,8 @@ pub use system::{address_space, limited};
 /// How much memory a render may take.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Memory {
-    /// At most so many bytes, on the device and beside it together. None: on the processor what the
-    /// system and the limits of the process leave, else what the device gives.
+    /// At most so many bytes, on the device and in main memory together. None: on the processor
+    /// what the system and the limits of the process leave, else what the device gives.
     pub budget: Option<u64>,
     /// Whether the film is copied on the way, for checkpoints; that of a device that may be lost is
     /// anyway.

@@ -30,8 +30,8 @@ struct Floor {
     point: DVec3,
     normal: DVec3,
     outline: Outline,
-    /// Place of the outline, or the plane's.
-    place: Place,
+    /// FloorId of the outline, or the plane's.
+    place: FloorId,
     /// Edges of a mesh's region that are not on the outline.
     edges: Vec<[DVec3; 2]>,
     /// Whether walls are searched for.
@@ -39,13 +39,13 @@ struct Floor {
 }
 
 impl Floor {
-    fn new(point: DVec3, normal: DVec3, outline: Outline, place: Place) -> Self {
+    fn new(point: DVec3, normal: DVec3, outline: Outline, place: FloorId) -> Self {
         Self { point, normal, outline, place, edges: Vec::new(), walls: true }
     }
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Place {
+enum FloorId {
     Outline(u32),
     Plane(usize),
 }
@@ -99,7 +99,7 @@ pub fn find_walls(out: &mut Scene) {
         point: region.point,
         normal: region.normal,
         outline: region.outline,
-        place: Place::Outline((first + k) as u32),
+        place: FloorId::Outline((first + k) as u32),
         edges: region.edges,
         walls: true,
     };
@@ -116,7 +116,7 @@ pub fn find_walls(out: &mut Scene) {
     if floors.len() * polygons.len() > PAIRS {
         return;
     }
-    let mut found: Vec<(Place, Outline, Vec<Foot>)> = floors
+    let mut found: Vec<(FloorId, Outline, Vec<Foot>)> = floors
         .par_iter()
         .map(|f| (f.place, f.outline, feet(f, &polygons)))
         .filter(|(_, _, feet)| !feet.is_empty())
@@ -129,8 +129,8 @@ pub fn find_walls(out: &mut Scene) {
         feet.sort_by(|a, b| length(b).total_cmp(&length(a)));
         feet.truncate(WALLS);
         let index = match same[0].0 {
-            Place::Outline(index) => index as usize,
-            Place::Plane(plane) => {
+            FloorId::Outline(index) => index as usize,
+            FloorId::Plane(plane) => {
                 out.planes[plane].outline = out.outlines.len() as u32;
                 out.outlines.push(same[0].1);
                 out.outlines.len() - 1
@@ -152,7 +152,7 @@ fn floors(out: &Scene) -> Vec<Floor> {
     for r in &out.rectangles {
         let outline = out.outlines[r.outline as usize];
         let (point, normal) = (r.origin.to_double(), r.normal.to_double());
-        floors.push(Floor::new(point, normal, outline, Place::Outline(r.outline)));
+        floors.push(Floor::new(point, normal, outline, FloorId::Outline(r.outline)));
     }
     for c in &out.cuboids {
         for face in 0..6 {
@@ -162,7 +162,7 @@ fn floors(out: &Scene) -> Vec<Floor> {
             let outline = out.outlines[index as usize];
             let normal =
                 DVec3::from_array(std::array::from_fn(|i| if i == axis { sign } else { 0.0 }));
-            floors.push(Floor::new(corner.to_double(), normal, outline, Place::Outline(index)));
+            floors.push(Floor::new(corner.to_double(), normal, outline, FloorId::Outline(index)));
         }
     }
     for (i, plane) in out.planes.iter().enumerate() {
@@ -183,7 +183,7 @@ fn floors(out: &Scene) -> Vec<Floor> {
             }),
             ..Outline::zeroed()
         };
-        floors.push(Floor::new(point, normal, outline, Place::Plane(i)));
+        floors.push(Floor::new(point, normal, outline, FloorId::Plane(i)));
     }
     floors
 }

@@ -30,7 +30,7 @@ const PHOTONS: &str = "lower --photons, or trace them in smaller batches by --ba
 
 /// Where a plan's buffers are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
+pub enum BufferPlace {
     /// In the program's own memory: the CPU engine.
     Program {
         /// Whether there is a copy of the film for checkpoints.
@@ -45,7 +45,7 @@ pub enum Place {
 
 impl Plan {
     /// Bytes by purpose, on the device and beside it, for a scene whose tables take `scene` bytes.
-    pub fn memory(&self, scene: u64, place: Place) -> Vec<Part> {
+    pub fn memory(&self, scene: u64, place: BufferPlace) -> Vec<Part> {
         let pixels = u64::from(self.pixels);
         let buffers = self.buffers();
         let bytes = |buffer: Buffer| {
@@ -67,9 +67,9 @@ impl Plan {
         };
         let film = pixels * FILM_BYTES as u64;
         let layers = whole(Buffer::Aovs) + whole(Buffer::Parts);
-        let device = matches!(place, Place::Device { .. });
+        let device = matches!(place, BufferPlace::Device { .. });
         // what a render goes on from is kept twice, unless it cannot be lost
-        let copies = if place == (Place::Program { saves: false }) { 1 } else { 2 };
+        let copies = if place == (BufferPlace::Program { saves: false }) { 1 } else { 2 };
         let records = if device {
             [
                 Buffer::Records,
@@ -117,10 +117,11 @@ impl Plan {
     pub fn within(
         mut self,
         scene: u64,
-        place: Place,
+        place: BufferPlace,
         memory: &Memory,
     ) -> Result<Self, EngineError> {
-        let Some((limit, of)) = memory.limit(place != Place::Device { in_main_memory: false })
+        let Some((limit, of)) =
+            memory.limit(place != BufferPlace::Device { in_main_memory: false })
         else {
             return Ok(self);
         };

@@ -29,7 +29,7 @@ use glam::DVec3;
 pub use buffer::{Buffer, BufferInfo, Cleared, Extent};
 pub use commands::{Command, Stage, Step};
 pub use kernel::{Access, Kernel, KernelInfo, Over, SCAN_BLOCK, SORT_BUCKETS, Use};
-pub use memory::{Place, scene_bytes, scene_tables};
+pub use memory::{BufferPlace, scene_bytes, scene_tables};
 pub use scale::global_scale_sq;
 
 /// Bytes that one storage binding may have on every device (WebGPU's default limit).
@@ -55,7 +55,7 @@ pub struct Plan {
     pub pixels: u32,
     /// The window's first pixel, counted in the whole picture.
     pub window_first: u32,
-    /// What is found beside radiance.
+    /// What is found in addition to radiance.
     pub aovs: Aovs,
     /// Visible points per pixel.
     pub eye_samples: u32,
@@ -149,7 +149,8 @@ impl Plan {
         self
     }
 
-    /// The same for a film: for its window alone, and with what it asks for beside radiance.
+    /// The same for a film: for its window alone, and with what it asks for in addition to
+    /// radiance.
     pub fn on(mut self, film: &Film) -> Self {
         if let Some([x0, y0, x1, y1]) = film.window {
             self.window_first = y0 * film.width + x0;
@@ -190,12 +191,11 @@ impl Plan {
             points * STATISTICS_BYTES,
         );
         if state.passes > 0 && (state.bits, state.film.len(), state.statistics.len()) != wanted {
-            let text =
-                "what is to be gone on from is of another picture size, radius rule or precision";
+            let text = "the checkpoint has a different image size, radius rule or precision";
             return Err(EngineError::Unsupported(text.into()));
         }
         if state.passes > 0 && self.lacks_layers(&state.layers) {
-            let text = "what is to be gone on from lacks the layers that are asked for";
+            let text = "the checkpoint lacks layers that this render needs";
             return Err(EngineError::Unsupported(text.into()));
         }
         (self.first_pass, self.taken_over) = (state.first_pass, state.passes);
@@ -209,7 +209,7 @@ impl Plan {
 
     /// Why the radius is what it is, where the settings left it open and photons are gathered at
     /// all.
-    pub fn told_radius(&self) -> Option<Automatic> {
+    pub fn automatic_radius(&self) -> Option<Automatic> {
         self.probe.automatic.filter(|_| self.features.has(Feature::Photons))
     }
 

@@ -18,10 +18,10 @@ const SHARE: u32 = 10;
 
 /// What is to be seen of a scene.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Wish {
+pub struct RenderRequest {
     /// From where.
     pub camera: Camera,
-    /// Size, and what is wanted beside radiance.
+    /// Size, and what is wanted in addition to radiance.
     pub film: Film,
     /// How; `settings.passes` may change while it is rendered.
     pub settings: RenderSettings,
@@ -29,7 +29,7 @@ pub struct Wish {
     pub device: Wanted,
 }
 
-impl Wish {
+impl RenderRequest {
     /// Whether the same passes serve both; only their number may differ.
     pub fn same_passes(&self, other: &Self) -> bool {
         let passes = self.settings.passes;
@@ -54,7 +54,7 @@ pub struct Setup {
 /// A picture on its way.
 #[derive(Clone, Debug)]
 pub struct Frame {
-    /// Number of the [`Wish`] that it is for.
+    /// Number of the [`RenderRequest`] that it is for.
     pub number: u64,
     /// Whether it is a small one, made to be there soon.
     pub quick: bool,
@@ -90,7 +90,7 @@ impl Frame {
 }
 
 /// Where render threads put what there is to see; the newest of each.
-pub struct Board {
+pub struct FrameSlot {
     state: Mutex<State>,
     wake: Box<dyn Fn() + Send + Sync>,
 }
@@ -103,7 +103,7 @@ struct State {
     depth: Option<f64>,
 }
 
-impl Board {
+impl FrameSlot {
     /// An empty one; `wake` is called after each change.
     pub fn new(wake: impl Fn() + Send + Sync + 'static) -> Self {
         Self { state: Mutex::default(), wake: Box::new(wake) }
@@ -214,7 +214,7 @@ impl Passes {
         &mut self,
         engine: &mut dyn Engine,
         last: u32,
-        board: &Board,
+        board: &FrameSlot,
     ) -> Result<(), EngineError> {
         let begun = Instant::now();
         let report = engine.pass()?;

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
-use super::frame::{Board, Passes, Setup, Wish};
+use super::frame::{FrameSlot, Passes, RenderRequest, Setup};
 use super::packed_cache::Ground;
 use crate::cpu::CpuEngine;
 use crate::device::{self, DeviceError, DeviceKind, Wanted};
@@ -42,9 +42,9 @@ impl Full {
     pub fn start(
         number: u64,
         ground: Ground,
-        wish: Wish,
+        wish: RenderRequest,
         spare: Option<Box<GpuEngine>>,
-        board: Arc<Board>,
+        board: Arc<FrameSlot>,
     ) -> Self {
         let control = Arc::new(Control::default());
         control.passes.store(wish.settings.passes, Ordering::Relaxed);
@@ -109,7 +109,7 @@ fn rendered(
     mut passes: Passes,
     control: &Control,
     number: u64,
-    board: &Board,
+    board: &FrameSlot,
 ) -> Option<Box<GpuEngine>> {
     let engine: &mut dyn Engine = match &mut running {
         Running::Cpu(engine) => engine.as_mut(),
@@ -139,7 +139,7 @@ fn rendered(
 
 fn make(
     ground: &Ground,
-    wish: &Wish,
+    wish: &RenderRequest,
     cancel: &Cancel,
     spare: Option<Box<GpuEngine>>,
 ) -> Result<(Running, Setup), DeviceError> {

@@ -250,7 +250,7 @@ mod tests {
         let packed = pack(&scene, 64, 32).unwrap();
         let depth = depth_at(&packed, 0.5, 0.5).unwrap();
         assert!((depth - 3.0).abs() < 1e-5, "{depth}");
-        assert_eq!(depth_at(&packed, 0.01, 0.5), None, "beside it is nothing");
+        assert_eq!(depth_at(&packed, 0.01, 0.5), None, "there is no other picture");
         // off the axis the depth is that along the view direction, not along the ray: 20 degrees up
         // meet the sphere at t = 5 cos a - sqrt(4 - 25 sin^2 a)
         let up = (0.5f64 * (40f64).to_radians()).tan();

@@ -3,7 +3,7 @@
 
 use std::time::{Duration, Instant};
 
-use super::frame::{Board, Passes, Setup, Wish};
+use super::frame::{FrameSlot, Passes, RenderRequest, Setup};
 use super::full::bytes;
 use super::packed_cache::Ground;
 use crate::cpu::CpuEngine;
@@ -69,10 +69,10 @@ impl Quick {
     pub fn first(
         number: u64,
         ground: &mut Ground,
-        wish: &Wish,
+        wish: &RenderRequest,
         divisor: &mut Divisor,
         cancel: &Cancel,
-        board: &Board,
+        board: &FrameSlot,
     ) -> Result<Self, EngineError> {
         let begun = Instant::now();
         let film = divisor.film(&wish.film);
@@ -94,7 +94,7 @@ impl Quick {
     }
 
     /// Makes another pass.
-    pub fn step(&mut self, board: &Board) -> Result<(), EngineError> {
+    pub fn step(&mut self, board: &FrameSlot) -> Result<(), EngineError> {
         self.passes.step(&mut self.engine, PASSES, board)
     }
 

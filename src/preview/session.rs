@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::comparison::Beside;
 use super::document::{Edits, edited, save};
-use super::frame::{Frame, Wish};
+use super::frame::{Frame, RenderRequest};
 use super::orbit;
 use super::reload::{Adjust, Reloaded, Reloader};
 use super::view::View;
@@ -103,7 +103,7 @@ pub struct Session {
     /// What is wrong with the scene file, while the picture shows the last scene without fault.
     pub trouble: Option<String>,
     worker: Worker,
-    sent: Wish,
+    sent: RenderRequest,
     number: u64,
     reloader: Reloader,
 }
@@ -182,7 +182,10 @@ impl Session {
     pub fn beside_device(&mut self, name: &str, wake: impl Fn() + Send + Sync + 'static) {
         let mut worker = Worker::start(wake);
         let wanted = device::parse(name);
-        worker.scene(self.scene.clone(), Wish { device: wanted.clone(), ..self.sent.clone() });
+        worker.scene(
+            self.scene.clone(),
+            RenderRequest { device: wanted.clone(), ..self.sent.clone() },
+        );
         self.hold(Beside::device(name, worker, wanted));
     }
 
@@ -277,7 +280,7 @@ impl Session {
 
     /// What is to be rendered now. Where nothing else has changed, layers that were asked for
     /// before stay, so that to look at them again begins nothing anew.
-    fn wish(&self) -> Wish {
+    fn wish(&self) -> RenderRequest {
         let mut wish = wish(&self.now, self.view, &self.device);
         let own = std::mem::replace(&mut wish.film.aovs, self.sent.film.aovs);
         wish.film.aovs =
@@ -287,7 +290,7 @@ impl Session {
 
     fn tell_beside(&mut self, scene: Option<&Arc<Scene>>) {
         if let Some((worker, device)) = self.beside.as_mut().and_then(Beside::worker) {
-            let wish = Wish { device: device.clone(), ..self.sent.clone() };
+            let wish = RenderRequest { device: device.clone(), ..self.sent.clone() };
             match scene {
                 Some(scene) => worker.scene(scene.clone(), wish),
                 None => worker.change(wish),
@@ -381,10 +384,15 @@ fn edits(loaded: &Loaded) -> Edits {
     Edits { camera: loaded.scene.camera, film, settings: loaded.settings.clone() }
 }
 
-fn wish(now: &Edits, view: View, device: &Wanted) -> Wish {
+fn wish(now: &Edits, view: View, device: &Wanted) -> RenderRequest {
     // what a picture is developed with is not rendered
     let film = Film { aovs: view.aovs(), exposure: 0.0, tonemap: ToneMap::default(), ..now.film };
-    Wish { camera: now.camera, film, settings: now.settings.clone(), device: device.clone() }
+    RenderRequest {
+        camera: now.camera,
+        film,
+        settings: now.settings.clone(),
+        device: device.clone(),
+    }
 }
 
 fn times(radius: Radius, factor: f64) -> Radius {

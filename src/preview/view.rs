@@ -59,7 +59,7 @@ impl View {
         self.aov().map_or("picture", Aov::word)
     }
 
-    /// What it takes beside radiance.
+    /// What it takes in addition to radiance.
     pub fn aov(self) -> Option<Aov> {
         Some(match self {
             Self::Picture => return None,

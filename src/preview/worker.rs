@@ -10,7 +10,7 @@ use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-use super::frame::{Board, Frame, Wish};
+use super::frame::{Frame, FrameSlot, RenderRequest};
 use super::full::Full;
 use super::orbit::depth_at;
 use super::packed_cache::Ground;
@@ -27,8 +27,8 @@ const SOON: Duration = Duration::from_millis(10);
 const LONG: Duration = Duration::from_secs(3600);
 
 enum Command {
-    Scene(u64, Arc<Scene>, Wish),
-    Change(u64, Wish),
+    Scene(u64, Arc<Scene>, RenderRequest),
+    Change(u64, RenderRequest),
     Passes(u32),
     Pause(bool),
     Look(f64, f64),
@@ -37,9 +37,9 @@ enum Command {
 /// A render thread; ends with its handle.
 pub struct Worker {
     commands: Option<Sender<Command>>,
-    board: Arc<Board>,
+    board: Arc<FrameSlot>,
     number: u64,
-    last: Option<Wish>,
+    last: Option<RenderRequest>,
     /// Ends the small picture that is under way.
     closing: Cancel,
     thread: Option<JoinHandle<()>>,
@@ -49,7 +49,7 @@ impl Worker {
     /// Starts one; `wake` is called, on some thread, whenever there is something new to see.
     pub fn start(wake: impl Fn() + Send + Sync + 'static) -> Self {
         let (sender, receiver) = mpsc::channel();
-        let board = Arc::new(Board::new(wake));
+        let board = Arc::new(FrameSlot::new(wake));
         let own = board.clone();
         let closing = Cancel::default();
         let closes = closing.clone();
@@ -67,7 +67,7 @@ impl Worker {
     }
 
     /// Renders another scene; the wish's number.
-    pub fn scene(&mut self, scene: Arc<Scene>, wish: Wish) -> u64 {
+    pub fn scene(&mut self, scene: Arc<Scene>, wish: RenderRequest) -> u64 {
         self.number += 1;
         self.board.begin(self.number);
         self.last = Some(wish.clone());
@@ -77,7 +77,7 @@ impl Worker {
 
     /// Renders the scene in another way; the wish's number, which is that of the last one where
     /// only the number of passes differs.
-    pub fn change(&mut self, wish: Wish) -> u64 {
+    pub fn change(&mut self, wish: RenderRequest) -> u64 {
         let passes = wish.settings.passes;
         let command = match self.last.replace(wish.clone()) {
             Some(last) if last.same_passes(&wish) => Command::Passes(passes),
@@ -97,13 +97,13 @@ impl Worker {
     }
 
     /// Looks how deep a place in the picture is, from 0, 0 at the top left to 1, 1;
-    /// [`Board::take_depth`] tells.
+    /// [`FrameSlot::take_depth`] tells.
     pub fn look(&self, x: f64, y: f64) {
         self.send(Command::Look(x, y));
     }
 
     /// What there is to see.
-    pub fn board(&self) -> &Board {
+    pub fn board(&self) -> &FrameSlot {
         &self.board
     }
 
@@ -131,9 +131,9 @@ impl Drop for Worker {
 
 /// The thread's state.
 struct Hand {
-    board: Arc<Board>,
+    board: Arc<FrameSlot>,
     ground: Option<Ground>,
-    wish: Option<Wish>,
+    wish: Option<RenderRequest>,
     number: u64,
     divisor: Divisor,
     quick: Option<Quick>,
@@ -148,7 +148,7 @@ struct Hand {
 }
 
 impl Hand {
-    fn new(board: Arc<Board>, closing: Cancel) -> Self {
+    fn new(board: Arc<FrameSlot>, closing: Cancel) -> Self {
         Self {
             board,
             ground: None,
@@ -217,7 +217,7 @@ impl Hand {
         }
     }
 
-    fn take_scene(&mut self, number: u64, scene: Arc<Scene>, wish: Wish) {
+    fn take_scene(&mut self, number: u64, scene: Arc<Scene>, wish: RenderRequest) {
         self.halt(number);
         let mut scene = scene;
         let own = Arc::make_mut(&mut scene);
@@ -234,7 +234,7 @@ impl Hand {
         }
     }
 
-    fn take_change(&mut self, number: u64, wish: Wish) {
+    fn take_change(&mut self, number: u64, wish: RenderRequest) {
         self.halt(number);
         self.begin(wish, STILL);
     }
@@ -255,7 +255,7 @@ impl Hand {
         }
     }
 
-    fn begin(&mut self, wish: Wish, after: Duration) {
+    fn begin(&mut self, wish: RenderRequest, after: Duration) {
         let Some(ground) = &mut self.ground else {
             return;
         };

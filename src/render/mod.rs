@@ -39,7 +39,7 @@ pub struct Outcome {
     pub picture: Picture,
     /// What it says of its own error; none for fewer passes than an estimate needs.
     pub errors: Option<ErrorMap>,
-    /// What the film asks for beside radiance.
+    /// What the film asks for in addition to radiance.
     pub layers: Vec<Channel>,
     /// What was left out of it.
     pub rejections: Rejections,

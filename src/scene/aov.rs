@@ -1,4 +1,4 @@
-//! What a picture may hold beside radiance: arbitrary output variables, for denoisers and
+//! What a picture may hold in addition to radiance: arbitrary output variables, for denoisers and
 //! compositing.
 
 use schemars::JsonSchema;

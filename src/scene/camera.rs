@@ -35,7 +35,7 @@ pub(super) fn camera(loader: &mut Loader) -> Option<Camera> {
     if aperture > 0.0 && file.focus.is_none() {
         let message = "`focus` is missing: a lens with an aperture needs it";
         let help = format!("the target's distance is focus = {:.6}", view.length());
-        let label = "expected `focus` beside this";
+        let label = "expected a `focus` as well";
         loader.report.error(item.node.span_of("aperture"), message, label, Some(help));
     }
     let focus = file.focus.map_or(view.length(), f64::from);
@@ -139,7 +139,7 @@ pub(super) fn environment(
             loader.report.error(
                 item.node.span_of("rotate"),
                 message,
-                "expected a `file` beside this",
+                "expected a `file` as well",
                 None,
             );
         }

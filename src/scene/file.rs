@@ -85,7 +85,7 @@ pub struct FilmFile {
     pub exposure: f64,
     /// Curve of tone-mapped outputs.
     pub tonemap: ToneMap,
-    /// What EXR files hold beside radiance.
+    /// What EXR files hold in addition to radiance.
     pub aov: Vec<Aov>,
 }
 

@@ -12,7 +12,7 @@ use super::images::ImageStore;
 use super::libraries::{Own, OwnKey};
 use super::limits::{Allowance, within};
 use super::report::{Finding, Report, SceneErrors, list};
-use super::spans::Places;
+use super::spans::Spans;
 use super::validate::{Document, document};
 use super::{Scene, camera, material, mesh, schema, surfaces, text};
 use crate::settings::RenderSettings;
@@ -28,7 +28,7 @@ pub struct Loaded {
     /// What is odd but no error.
     pub warnings: Vec<Finding>,
     /// Where the parts stand in the file.
-    pub places: Places,
+    pub places: Spans,
     /// The files that were read beside the scene file.
     pub files: Vec<PathBuf>,
 }
@@ -113,7 +113,7 @@ impl<'l, 'a> Loader<'l, 'a> {
         Self { document, report, images, allowance, spent, own_materials, path }
     }
 
-    fn load(mut self) -> Option<(Scene, RenderSettings, Places, Vec<PathBuf>)> {
+    fn load(mut self) -> Option<(Scene, RenderSettings, Spans, Vec<PathBuf>)> {
         let document = self.document;
         if let Some(item) = document.item("version")
             && let Some(version) = item.read::<u32>(self.report)
@@ -124,7 +124,7 @@ impl<'l, 'a> Loader<'l, 'a> {
         }
         self.undefined("materials", "shapes", "material");
         self.undefined("textures", "materials", "reflectance");
-        let mut places = Places::new(self.path, self.report.source.clone());
+        let mut places = Spans::new(self.path, self.report.source.clone());
         for section in ["camera", "render", "materials", "shapes", "lights"] {
             document.items(section).for_each(|item| places.add(item));
         }

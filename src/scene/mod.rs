@@ -51,7 +51,7 @@ pub use load::{Loaded, load, load_within, parse, parse_within};
 pub use profile_file::{LoadedProfile, ProfileFile, load_profile, load_profile_within};
 pub use report::{Finding, SceneErrors};
 pub use schema::schema_json;
-pub use spans::Places;
+pub use spans::Spans;
 
 /// A validated scene: finite numbers, unit normals, no dangling index.
 #[derive(Clone, Debug, PartialEq)]
@@ -145,7 +145,7 @@ pub struct Film {
     pub exposure: f64,
     /// Curve of tone-mapped outputs.
     pub tonemap: ToneMap,
-    /// What EXR files hold beside radiance.
+    /// What EXR files hold in addition to radiance.
     pub aovs: Aovs,
     /// The window that is rendered, columns x0 to x1 and rows y0 to y1 as `[x0, y0, x1, y1]`, x1
     /// and y1 left out; inside of the picture and not empty. None is all of it.

@@ -101,14 +101,14 @@ pub struct Finding {
     help: Option<String>,
     severity: miette::Severity,
     file: String,
-    place: Option<Place>,
+    place: Option<Span>,
     /// An error in a value of the scene file, as opposed to a key that is missing or an error in
     /// another file.
     about_value: bool,
 }
 
 #[derive(Clone, Debug)]
-struct Place {
+struct Span {
     source: SourceFile,
     span: Range<usize>,
     label: String,
@@ -331,7 +331,7 @@ impl Report {
                 help: Some(help),
                 severity,
                 file: file.clone(),
-                place: Some(Place {
+                place: Some(Span {
                     source: source.clone(),
                     span: fault.span,
                     label: fault.expected,
@@ -387,7 +387,7 @@ impl Report {
             help,
             severity,
             file: self.path.clone(),
-            place: Some(Place { source: self.source.clone(), span: self.drawable(span), label }),
+            place: Some(Span { source: self.source.clone(), span: self.drawable(span), label }),
             about_value: false,
         }
     }

@@ -7,9 +7,9 @@ use std::path::{Path, PathBuf};
 use super::report::{Finding, Report, SourceFile};
 use super::validate::Item;
 
-/// Places in a scene file, by path and key.
+/// Spans in a scene file, by path and key.
 #[derive(Clone, Debug)]
-pub struct Places {
+pub struct Spans {
     path: PathBuf,
     source: SourceFile,
     /// `shapes[3]` and `shapes[3].radius`.
@@ -20,7 +20,7 @@ pub struct Places {
     pub materials: Vec<String>,
 }
 
-impl Places {
+impl Spans {
     pub(crate) fn new(path: &Path, source: SourceFile) -> Self {
         Self {
             path: path.to_owned(),

@@ -313,7 +313,7 @@ fn labels_beside(labels: &[&Series], plot: &Plot, out: &mut String) {
     }
 }
 
-/// Places near the wanted ones, which are in order, at least `gap` apart and inside the bounds if
+/// Spans near the wanted ones, which are in order, at least `gap` apart and inside the bounds if
 /// they fit.
 fn spaced(wanted: &[f64], gap: f64, low: f64, high: f64) -> Vec<f64> {
     let mut places = Vec::with_capacity(wanted.len());

@@ -59,7 +59,7 @@ pub struct Study<'a> {
 
 /// A configuration and what its renders are made of and held against.
 #[derive(Clone, Copy)]
-struct Place<'a> {
+struct GridCell<'a> {
     number: usize,
     config: &'a Config,
     scene: &'a Scene,
@@ -127,7 +127,7 @@ impl Study<'_> {
                 let lamp = lamps.iter().position(|lamp| *lamp == config.variant.lamp).unwrap_or(0);
                 let scene = variants.iter().position(|v| *v == config.variant).unwrap_or(0);
                 let place =
-                    Place { number, config, scene: &scenes[scene], truth: &truths[lamp], crop };
+                    GridCell { number, config, scene: &scenes[scene], truth: &truths[lamp], crop };
                 if !self.is_done(&results, number, seed) {
                     results.runs.retain(|run| (run.config, run.seed) != (number, seed));
                     let passes = passes_of(&results, number);
@@ -218,11 +218,11 @@ impl Study<'_> {
     /// One render, measured; none where it was interrupted.
     fn run(
         &self,
-        place: &Place,
+        place: &GridCell,
         seed: u32,
         passes: Option<u32>,
     ) -> Result<Option<RunRecord>, StudyError> {
-        let Place { number, config, scene, truth, crop } = *place;
+        let GridCell { number, config, scene, truth, crop } = *place;
         let mut settings = config.settings.clone();
         settings.seed = settings.seed.wrapping_add(u64::from(seed));
         let start = Instant::now();

@@ -1,4 +1,4 @@
-//! What pictures hold beside radiance.
+//! What pictures hold in addition to radiance.
 //!
 //! Theory: in scenes of planes the first hit, and the first one behind a mirror or a pane, are
 //! known in closed form. A mirror multiplies the albedo by its reflectance; a pane of index n seen

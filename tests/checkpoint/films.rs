@@ -1,4 +1,4 @@
-//! A part of the picture, and what pictures hold beside radiance.
+//! A part of the picture, and what pictures hold in addition to radiance.
 //!
 //! Theory: a window's pixels need nothing of those around it, and layers are means over passes like
 //! the picture; so with both a render that goes on has the bits of one that never stopped, and

@@ -34,7 +34,7 @@ fn photons(photons: u32, plan: &Plan) -> RenderSettings {
     RenderSettings { photons, ..plan.settings.clone() }
 }
 
-/// Reports, picture, the picture's errors, and what is found beside radiance.
+/// Reports, picture, the picture's errors, and what is found in addition to radiance.
 type Rendered = (Vec<PassReport>, Picture, ErrorMap, Vec<Channel>);
 
 /// Four passes, the fewest that have an estimate of their error.
@@ -279,7 +279,7 @@ fn planted_differences_are_found() {
     assert_eq!(
         difference(&right, &with_layers),
         None,
-        "what is found beside radiance changes no bit of it"
+        "what is found in addition to radiance changes no bit of it"
     );
     let mut wrong = with_layers.clone();
     wrong.3[2].plane.values[777] += 1e-9;

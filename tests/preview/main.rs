@@ -17,7 +17,7 @@ use std::time::{Duration, Instant};
 
 use caustica::low_level::device::{self, Wanted};
 use caustica::low_level::film::Picture;
-use caustica::low_level::preview::frame::{Frame, Wish};
+use caustica::low_level::preview::frame::{Frame, RenderRequest};
 use caustica::low_level::preview::orbit;
 use caustica::low_level::preview::view::{Scale, View, show};
 use caustica::low_level::preview::worker::Worker;
@@ -70,7 +70,7 @@ fn whole(worker: &Worker, number: u64, passes: u32) -> Arc<Frame> {
     })
 }
 
-fn rendered(wish: &Wish, scene: &scene::Scene) -> Picture {
+fn rendered(wish: &RenderRequest, scene: &scene::Scene) -> Picture {
     let mut scene = scene.clone();
     (scene.camera, scene.film) = (wish.camera, wish.film);
     let mut engine = device::open(&wish.device, &scene, &wish.settings).unwrap().engine;
@@ -86,7 +86,7 @@ fn bits(picture: &Picture) -> (u32, Vec<[u32; 3]>) {
 
 fn converges(folder: &Path, device: Wanted) {
     let Loaded { scene, settings, .. } = loaded(folder);
-    let mut wish = Wish { camera: scene.camera, film: scene.film, settings, device };
+    let mut wish = RenderRequest { camera: scene.camera, film: scene.film, settings, device };
     let mut worker = Worker::start(|| ());
     let mut number = worker.scene(Arc::new(scene.clone()), wish.clone());
     let mut before = None;
@@ -139,7 +139,7 @@ fn a_small_picture_comes_first() {
     let Loaded { scene, settings, .. } = loaded(&folder("small"));
     let mut film = scene.film;
     (film.width, film.height) = (256, 192);
-    let mut wish = Wish { camera: scene.camera, film, settings, device: Wanted::Cpu };
+    let mut wish = RenderRequest { camera: scene.camera, film, settings, device: Wanted::Cpu };
     let mut worker = Worker::start(|| ());
     let number = worker.scene(Arc::new(scene), wish.clone());
     whole(&worker, number, 4);
@@ -167,7 +167,8 @@ fn a_small_picture_comes_first() {
 #[test]
 fn what_cannot_be_rendered_takes_no_picture_away() {
     let Loaded { scene, settings, .. } = loaded(&folder("failing"));
-    let mut wish = Wish { camera: scene.camera, film: scene.film, settings, device: Wanted::Cpu };
+    let mut wish =
+        RenderRequest { camera: scene.camera, film: scene.film, settings, device: Wanted::Cpu };
     let mut worker = Worker::start(|| ());
     let number = worker.scene(Arc::new(scene), wish.clone());
     whole(&worker, number, 4);
@@ -191,7 +192,8 @@ fn what_cannot_be_rendered_takes_no_picture_away() {
 fn every_view_shows_something() {
     let Loaded { scene, settings, .. } = loaded(&folder("views"));
     let mut worker = Worker::start(|| ());
-    let mut wish = Wish { camera: scene.camera, film: scene.film, settings, device: Wanted::Cpu };
+    let mut wish =
+        RenderRequest { camera: scene.camera, film: scene.film, settings, device: Wanted::Cpu };
     worker.scene(Arc::new(scene), wish.clone());
     let mut seen = Vec::new();
     for view in View::ALL {

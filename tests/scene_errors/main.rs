@@ -203,8 +203,8 @@ fn one_report_for_a_value() {
     let [once, twice] = [once.clone(), format!("{once}{mesh}")]
         .map(|text| parse(&folder.join("scene.toml"), text.as_bytes()).unwrap_err().errors);
     assert!(!once.is_empty());
-    let told_all = |errors: &[Finding]| errors.iter().map(told).collect::<Vec<_>>();
-    assert_eq!(told_all(&once), told_all(&twice));
+    let all_reported = |errors: &[Finding]| errors.iter().map(told).collect::<Vec<_>>();
+    assert_eq!(all_reported(&once), all_reported(&twice));
 }
 
 /// As above, in a shape that starts at line 9.

@@ -83,7 +83,7 @@ impl GpuEngine {
     fn run(&mut self, step: &Step) -> Result<(), EngineError> {
         let kernels: Vec<_> = self.plan.lowered(step).collect();
         for (kernel, dispatch) in kernels {
-            if self.stamped || !self.clock.is_wound() {
+            if self.stamped || !self.clock.is_enabled() {
                 self.record(kernel, step.chunk, &dispatch)?;
                 continue;
             }

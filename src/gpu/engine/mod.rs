@@ -127,7 +127,7 @@ impl Engine for GpuEngine {
 
     fn timed_pass(&mut self) -> Result<(PassReport, KernelSeconds), EngineError> {
         self.stamped = self.recorder.stamp(&self.gpu, true)?;
-        self.clock.wind();
+        self.clock.enable();
         let report = self.pass();
         let seconds = self.clock.take();
         self.stamped = self.recorder.stamp(&self.gpu, false)?;

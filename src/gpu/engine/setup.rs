@@ -22,7 +22,7 @@ use std::time::Instant;
 const MEND: &str = "make the picture smaller, or take --device cpu";
 
 /// What an engine is made of that another may have had before.
-struct Kept {
+struct Reusable {
     gpu: Gpu,
     pace: Pace,
     programs: BTreeMap<Kernel, Program>,
@@ -72,7 +72,7 @@ impl GpuEngine {
             ));
         }
         let kept =
-            Kept { gpu: Gpu::open(choice)?, pace: Pace::default(), programs: BTreeMap::new() };
+            Reusable { gpu: Gpu::open(choice)?, pace: Pace::default(), programs: BTreeMap::new() };
         Self::on(kept, packed, plan, compiling)
     }
 
@@ -86,18 +86,18 @@ impl GpuEngine {
     }
 
     /// What another engine can have of this one, whose buffers are given back first.
-    fn kept(self, programs_too: bool) -> Kept {
+    fn kept(self, programs_too: bool) -> Reusable {
         let programs = if programs_too { self.programs } else { BTreeMap::new() };
-        Kept { gpu: self.gpu, pace: self.pace, programs }
+        Reusable { gpu: self.gpu, pace: self.pace, programs }
     }
 
     fn on(
-        kept: Kept,
+        kept: Reusable,
         packed: &Packed,
         plan: Plan,
         compiling: Compiling,
     ) -> Result<Self, EngineError> {
-        let Kept { gpu, pace, programs } = kept;
+        let Reusable { gpu, pace, programs } = kept;
         let scene = SceneTables::new(&packed.scene);
         gpu.check_sizes(&sizes(&plan, &packed.scene), MEND)?;
         let recorder = Recorder::new(&gpu)?;

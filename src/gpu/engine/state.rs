@@ -3,7 +3,7 @@
 use super::GpuEngine;
 use crate::engine::{EngineError, LayerState, State};
 use crate::kernels::records::{FilmPixel, Gathered};
-use crate::layers::Found;
+use crate::layers::LayerInputs;
 use crate::plan::{Buffer, Extent, Plan};
 
 impl GpuEngine {
@@ -57,17 +57,17 @@ impl GpuEngine {
         self.gpu.check()
     }
 
-    /// What `make` makes of what is found beside radiance, which is read back; its default where
-    /// nothing is asked for.
+    /// What `make` makes of what is found in addition to radiance, which is read back; its default
+    /// where nothing is asked for.
     pub(super) fn with_found<T: Default>(
         &self,
-        make: impl Fn(&Plan, &Found) -> T,
+        make: impl Fn(&Plan, &LayerInputs) -> T,
     ) -> Result<T, EngineError> {
         if self.plan.aovs.is_empty() {
             return Ok(T::default());
         }
         let samples = self.plan.eye_samples;
-        let found = Found {
+        let found = LayerInputs {
             aovs: &self.chunked(Buffer::Aovs, samples)?,
             parts: &self.chunked(Buffer::Parts, samples)?,
             gathered: &self.gathered_points()?,
