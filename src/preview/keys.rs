@@ -175,17 +175,17 @@ pub const TABLE: &[Line] = &[
     },
     Line {
         keys: "Space",
-        what: "halt, go on",
+        what: "pause, continue",
         bindings: &[(plain(Key::Space), Command::Act(Action::Pause))],
     },
     Line {
         keys: "K",
-        what: "keep this picture to hold the next ones against, or put it away",
+        what: "keep this image to compare the next ones with it, or drop it",
         bindings: &[(plain(Key::K), Command::Act(Action::Keep))],
     },
     Line {
         keys: "B",
-        what: "show the other picture beside, or not",
+        what: "show the other image side by side, or hide it",
         bindings: &[(plain(Key::B), Command::Act(Action::Split))],
     },
     Line {
