@@ -144,7 +144,8 @@ fn a_planted_error_is_found() {
             "fn choose_light(shares: u32, u: f33)",
         ),
         ("kernels/resolve.wgsl", "var state = 0u;", "var state = 0u"),
-        ("materials/scatter.wgsl", "//#if glass", "//#if glas"),
+        ("materials/shading.wgsl", "//#if textures", "//#if texturs"),
+        ("materials/glass.wgsl", "let eta = relative_ior(", "let eta = relative_ier("),
     ] {
         let mut fragments = fragments();
         let fragment = fragments.iter_mut().find(|f| f.path == path).unwrap();

@@ -29,7 +29,8 @@ fn sample_diffuse(p: ShadingPoint, u: vec2f, mode: u32) -> Sample {
         }
     }
     let wi = renormalized(from_frame(axis, sample_cosine(u)));
-    if dot(wi, p.ng) <= 0.0 {
+    // a cosine about `ng` itself is above 2^-13
+    if mode == RADIANCE && dot(wi, p.ng) <= 0.0 {
         weight = vec3f(0.0);
     }
     return Sample(wi, weight);

@@ -3,7 +3,7 @@
 use super::math::sampling::sample_cosine;
 use super::math::{INV_PI, from_frame};
 use super::real::{Real, Vec2, Vec3};
-use super::shading::{IMPORTANCE, Lobe, Sample, ShadingPoint, renormalized};
+use super::shading::{IMPORTANCE, Lobe, RADIANCE, Sample, ShadingPoint, renormalized};
 use super::tables::Material;
 
 /// See [`super::Bsdf::examples`].
@@ -51,7 +51,9 @@ pub fn sample_diffuse(p: &ShadingPoint, u: Vec2, mode: u32) -> Sample {
         }
     }
     let wi = renormalized(from_frame(axis, sample_cosine(u)));
-    if wi.dot(p.ng) <= 0.0 {
+    // a cosine about `ng` itself is above 2^-13; without the test the weight does not depend on the
+    // direction, so roulette need not wait for it
+    if mode == RADIANCE && wi.dot(p.ng) <= 0.0 {
         weight = Vec3::ZERO;
     }
     Sample { direction: wi, weight }

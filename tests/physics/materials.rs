@@ -3,9 +3,10 @@
 
 use std::f64::consts::PI;
 
-use caustica::low_level::materials::shading::{Lobe, RADIANCE, ShadingPoint};
+use caustica::low_level::materials::shading::{IMPORTANCE, Lobe, RADIANCE, ShadingPoint};
 use caustica::low_level::materials::{Bsdf, eval_rough, pdf_rough, sample_rough};
 use caustica::low_level::math::rng::rng_next;
+use caustica::low_level::math::sampling::sample_sphere;
 use caustica::low_level::settings::{Direct, Method, RenderSettings};
 use caustica::low_level::shapes::ray::NONE;
 use caustica::low_level::shapes::surface::Surface;
@@ -48,6 +49,28 @@ fn direction(cos: f32, turn: f32) -> Vec3 {
 }
 
 const COSINES: [f32; 3] = [0.95, 0.5, 0.15];
+
+/// Theory: random numbers are multiples of 2^-24 below 1, so a diffuse surface sends photons at
+/// cosines of at least 2^-12 with the geometric normal, and none to its back. `sample_diffuse` does
+/// not test that.
+#[test]
+fn photons_leave_on_the_side_they_came_from() {
+    let mut rng = rng();
+    let lobe = Lobe { bsdf: Bsdf::Diffuse, alpha: 0.0, reflectance: Vec3::ONE };
+    let mut least = 1f32;
+    for _ in 0..100_000 {
+        let u = rng_next(&mut rng);
+        let n = sample_sphere(Vec2::new(u.x, u.y));
+        let at = point(lobe, n);
+        let p =
+            ShadingPoint { ng: n, ns: n, n, s: Surface { normal: n, shading: n, ..at.s }, ..at };
+        let grazing = Vec2::new(1.0 - 2f32.powi(-24), u.z);
+        let drawn = sample_rough(&p, grazing, IMPORTANCE);
+        assert_eq!(drawn.weight, Vec3::ONE, "{n:?}");
+        least = least.min(drawn.direction.dot(n));
+    }
+    assert!((2f32.powi(-13)..2f32.powi(-11)).contains(&least), "{least}");
+}
 
 /// Theory: drawn directions follow the density (chi-square; a density off by 5 % is found), and the
 /// weight of each is BSDF times cosine over density.
