@@ -14,6 +14,8 @@ use xxhash_rust::xxh3::xxh3_64;
 
 /// Links that are followed at most.
 const LINKS: u32 = 40;
+/// Times that a file is compared with the one that its name leads to.
+const LOOKS: u32 = 16;
 /// Names of standard output.
 const OUTPUT: [&str; 3] = ["/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"];
 /// What unfinished files and locks begin with; the rest is short, whatever the name of the file.
@@ -273,7 +275,7 @@ fn place(file: &Path) -> io::Result<Target> {
     if is_output(file) {
         return Ok(Target::Output);
     }
-    let found = match fs::metadata(file) {
+    let mut found = match fs::metadata(file) {
         Ok(found) => found,
         Err(error) if error.kind() == io::ErrorKind::NotFound => {
             return Ok(Target::Free(target(file)?));
@@ -292,12 +294,15 @@ fn place(file: &Path) -> io::Result<Target> {
     // whether this user may, the system knows best
     OpenOptions::new().write(true).open(file)?;
     let target = target(file)?;
-    // the links of /proc/self/fd also lead to pipes and to files that have no name any more
-    if is_same(&found, &fs::metadata(&target).ok()) {
-        Ok(Target::Taken(target, found))
-    } else {
-        Ok(Target::Special(file.to_owned()))
+    // the links of /proc/self/fd also lead to pipes and to files that have no name any more; another
+    // program may replace the file between the two looks
+    for _ in 0..LOOKS {
+        if is_same(&found, &fs::metadata(&target).ok()) {
+            return Ok(Target::Taken(target, found));
+        }
+        found = fs::metadata(file)?;
     }
+    Ok(Target::Special(file.to_owned()))
 }
 
 /// Whether a name leads by links to standard output. That may be a file which a shell has opened
