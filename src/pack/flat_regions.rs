@@ -1,8 +1,8 @@
 //! Outlines of the flat regions of meshes: a box or a room that was modelled as triangles gets the
 //! outlines that a `box` has.
 //!
-//! A region is a maximal set of coplanar triangles that share edges. It gets a outline if all of its
-//! boundary is open or a crease. Triangles of curved surfaces are in no region.
+//! A region is a maximal set of coplanar triangles that share edges. It gets a outline if all of
+//! its boundary is open or a crease. Triangles of curved surfaces are in no region.
 
 use super::materials::Bsdf;
 use super::real::{Real, ToDouble, ToReal, Vec3};
@@ -17,7 +17,7 @@ use std::collections::HashMap;
 const TRIANGLES: usize = 1 << 20;
 /// Maximum number of regions that get a outline, the largest ones.
 const REGIONS: usize = 256;
-/// Maximum number of edges of a region beside its bounding rectangle, the longest ones.
+/// Maximum number of edges off the bounding rectangle of a region; the longest ones are kept.
 const EDGES: usize = 31;
 /// Minimum share of the boundary that these edges must have.
 const COVERED: f64 = 0.9;
