@@ -32,7 +32,7 @@ fn parallelogram(origin: Vec3, u: Vec3, v: Vec3) -> Outline {
     Outline { origin, u, v, dual_u, dual_v, error: 1e-6, ..Outline::zeroed() }
 }
 
-/// Share of a disc that lies in a outline, by a sunflower of points.
+/// Share of a disc that lies in an outline, by a sunflower of points.
 fn counted(outline: &Outline, position: Vec3, normal: Vec3, radius: f32) -> f64 {
     const POINTS: u32 = 100_000;
     let (t, b) = basis(normal);
@@ -45,7 +45,7 @@ fn counted(outline: &Outline, position: Vec3, normal: Vec3, radius: f32) -> f64 
     inside.count() as f64 / f64::from(POINTS)
 }
 
-/// A outline in some plane, a point of it, its normal and a radius.
+/// An outline in some plane, a point of it, its normal and a radius.
 fn case(i: u32) -> (Outline, Vec3, Vec3, f32) {
     let (a, b, c) = (random(3 * i), random(3 * i + 1), random(3 * i + 2));
     let normal = Vec3::new(a.x - 0.5, a.y - 0.5, a.z - 0.5).normalize();
@@ -66,7 +66,7 @@ fn case(i: u32) -> (Outline, Vec3, Vec3, f32) {
 
 /// Theory: the share is the area that disc and outline have in common over the disc's: counting
 /// points that are spread evenly over the disc gives it to a few times their spacing times the
-/// outline's length, below 0.004 here. A outline with an edge five hundredths longer is noticed.
+/// outline's length, below 0.004 here. An outline with an edge five hundredths longer is noticed.
 #[test]
 fn shares_are_areas() {
     let mut noticed = 0;
@@ -94,9 +94,9 @@ fn shares_are_areas() {
 }
 
 /// Theory: at a corner of a rectangle a quarter of the disc is covered, at an edge a half, at a
-/// distance of x radii from an edge 1 - (acos x - x sqrt(1 - x^2)) / pi; of a outline within the disc
-/// all of it. For a circle far larger than the disc the edge is a parabola, which takes 1 / (3 pi
-/// R) from the half.
+/// distance of x radii from an edge 1 - (acos x - x sqrt(1 - x^2)) / pi; of an outline within the
+/// disc all of it. For a circle far larger than the disc the edge is a parabola, which takes 1 / (3
+/// pi R) from the half.
 #[test]
 fn shares_in_closed_form() {
     let square = parallelogram(Vec3::ZERO, 2.0 * Vec3::X, 2.0 * Vec3::Y);

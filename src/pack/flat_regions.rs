@@ -1,7 +1,7 @@
 //! Outlines of the flat regions of meshes: a box or a room that was modelled as triangles gets the
 //! outlines that a `box` has.
 //!
-//! A region is a maximal set of coplanar triangles that share edges. It gets a outline if all of
+//! A region is a maximal set of coplanar triangles that share edges. It gets an outline if all of
 //! its boundary is open or a crease. Triangles of curved surfaces are in no region.
 
 use super::materials::Bsdf;
@@ -15,7 +15,7 @@ use std::collections::HashMap;
 
 /// Scenes with more triangles get no outlines.
 const TRIANGLES: usize = 1 << 20;
-/// Maximum number of regions that get a outline, the largest ones.
+/// Maximum number of regions that get an outline, the largest ones.
 const REGIONS: usize = 256;
 /// Maximum number of edges off the bounding rectangle of a region; the longest ones are kept.
 const EDGES: usize = 31;
@@ -312,7 +312,7 @@ fn extremes(points: &[DVec3]) -> (DVec3, DVec3) {
     (from, farthest(from))
 }
 
-/// Adds a outline for each region and names it in the attributes of the region's triangles.
+/// Adds an outline for each region and names it in the attributes of the region's triangles.
 pub fn add_outlines(out: &mut Scene, regions: &[Region]) {
     for region in regions {
         let outline = out.outlines.len() as u32;

@@ -238,7 +238,7 @@ impl Pack<'_> {
         self.boxed(id, &corners, grow.to_real() + largest(&corners));
     }
 
-    /// A outline's number; its error is left open.
+    /// An outline's number; its error is left open.
     fn outline(&mut self, origin: DVec3, u: DVec3, v: DVec3) -> u32 {
         let normal = u.cross(v);
         let area_sq = normal.length_squared();

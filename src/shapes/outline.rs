@@ -1,6 +1,7 @@
-//! Outlines: flat outlines. A disc about a point near the outline reaches beyond it, where no photon
-//! can lie; what is found in it belongs to the part that the outline covers. Where a wall stands on
-//! the outline, it belongs to the part on this side of the wall. Twin: `shaders/shapes/outline.wgsl`.
+//! Outlines: flat outlines. A disc about a point near the outline reaches beyond it, where no
+//! photon can lie; what is found in it belongs to the part that the outline covers. Where a wall
+//! stands on the outline, it belongs to the part on this side of the wall. Twin:
+//! `shaders/shapes/outline.wgsl`.
 
 use super::math::trig::{arctan2, kept};
 use super::math::{EPS, PI, max_abs, unit};
@@ -8,9 +9,10 @@ use super::real::{Plain, Real, Vec2, Vec3, Vec4};
 use super::tables::NONE;
 use bytemuck::Zeroable;
 
-/// Least share: a outline of less area within the disc counts as one of this.
+/// Least share: an outline of less area within the disc counts as one of this.
 const SHARE_MIN: Real = 1e-6;
-/// Photons of a outline lie within this many radii of its plane, and the rounding of their positions.
+/// Photons of an outline lie within this many radii of its plane, and the rounding of their
+/// positions.
 const DEPTH: Real = 0.02;
 /// Beyond this ratio of radii a circle's segment within the smaller circle counts as a parabola's.
 const SLIM: Real = 30.0;
@@ -31,8 +33,9 @@ const CORNERS: usize = 8 + CUTS;
 /// The outline of a flat shape: a parallelogram `origin + s u + t v`, s and t in [0, 1], or a
 /// circle.
 ///
-/// A wall on a outline is one too: it stands on the segment `origin + s u`, on the side that `v`, a
-/// unit vector, points to. An edge of a mesh's flat region is a wall on both sides, of `radius` 1.
+/// A wall on an outline is one too: it stands on the segment `origin + s u`, on the side that `v`,
+/// a unit vector, points to. An edge of a mesh's flat region is a wall on both sides, of `radius`
+/// 1.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Plain, Zeroable)]
 pub struct Outline {
@@ -58,7 +61,7 @@ pub struct Outline {
     pub margin_t: Real,
 }
 
-/// What a outline is to a disc about one of its points.
+/// What an outline is to a disc about one of its points.
 #[derive(Clone, Copy, Debug)]
 pub struct Clip {
     /// Whether the outline passes through the disc.
@@ -67,8 +70,8 @@ pub struct Clip {
     pub whole: Real,
     /// The same of the disc of half the area about the same point.
     pub inner: Real,
-    /// Farthest that photons of the outline may lie from its plane; the disc's radius where there is
-    /// no outline.
+    /// Farthest that photons of the outline may lie from its plane; the disc's radius where there
+    /// is no outline.
     pub depth: Real,
     /// In-plane unit vectors toward walls within the disc, and the distance of their lines from its
     /// centre; (0, 0, 0, 1), which cuts nothing, beyond `count`.
@@ -313,8 +316,8 @@ pub fn clip_at(
     clip
 }
 
-/// Whether a point of the outline's plane lies within its outline, and not on the edge that it has in
-/// common with an adjacent face.
+/// Whether a point of the outline's plane lies within its outline, and not on the edge that it has
+/// in common with an adjacent face.
 pub fn in_outline(outline: &Outline, position: Vec3) -> bool {
     let d = position - outline.origin;
     if outline.radius > 0.0 {
