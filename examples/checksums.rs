@@ -52,7 +52,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         loaded.settings.photons = PHOTONS;
         let name = file.file_name().unwrap_or_default().to_string_lossy();
         print(&name, &loaded)?;
-        loaded.settings.method = caustica::low_level::settings::Method::Path;
+        loaded.settings.method = caustica::low_level::scene::settings::Method::Path;
         print(&format!("{name} by path tracing"), &loaded)?;
     }
     Ok(())
@@ -62,7 +62,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 fn print(name: &str, loaded: &Loaded) -> Result<(), Box<dyn Error>> {
     for (device, wanted) in &DEVICES {
         if *device == "software"
-            && loaded.settings.method == caustica::low_level::settings::Method::Path
+            && loaded.settings.method == caustica::low_level::scene::settings::Method::Path
         {
             continue;
         }

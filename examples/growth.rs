@@ -16,8 +16,8 @@ use std::time::Instant;
 use caustica::low_level::bench::setup;
 use caustica::low_level::device;
 use caustica::low_level::gpu::program::Compiling;
+use caustica::low_level::scene::settings::{Radius, RenderSettings};
 use caustica::low_level::scene::{self, Allowance};
-use caustica::low_level::settings::{Radius, RenderSettings};
 use caustica::low_level::study::statistics::fit;
 
 /// Seconds over which passes are timed at least: the system counts in steps of some milliseconds.

@@ -13,7 +13,7 @@ use std::time::Instant;
 use caustica::low_level::device;
 use caustica::low_level::film::{Development, Picture, Provenance, file};
 use caustica::low_level::scene;
-use caustica::low_level::settings::{Direct, Method, Radius, RadiusRule, RenderSettings};
+use caustica::low_level::scene::settings::{Direct, Method, Radius, RadiusRule, RenderSettings};
 use caustica::low_level::validation::agreement::{
     CHANCE, LIMIT, LIMIT_FAR, MEAN_ERRORS, MEAN_LIMIT, REGION,
 };

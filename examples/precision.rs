@@ -9,8 +9,8 @@ use std::time::{Duration, Instant};
 use caustica::low_level::device::{self, Wanted};
 use caustica::low_level::film::metrics::compare;
 use caustica::low_level::film::{Picture, luminance};
+use caustica::low_level::scene::settings::RenderSettings;
 use caustica::low_level::scene::{self, Scene};
-use caustica::low_level::settings::RenderSettings;
 
 /// Pixels across.
 const WIDTH: u32 = 160;

@@ -13,8 +13,8 @@ use std::process::ExitCode;
 
 use caustica::low_level::device::{self, Wanted};
 use caustica::low_level::film::{self, Development, Picture, Provenance};
+use caustica::low_level::scene::settings::{Direct, Method, Radius, RadiusRule, RenderSettings};
 use caustica::low_level::scene::{self, Scene};
-use caustica::low_level::settings::{Direct, Method, Radius, RadiusRule, RenderSettings};
 use caustica::low_level::validation::{BlockTruth, NoisyTruth, Promise, promises};
 use clap::Parser;
 

@@ -9,7 +9,7 @@ use std::fmt::Write;
 use std::path::Path;
 use std::{env, fs};
 
-use caustica::low_level::quality::Quality;
+use caustica::low_level::render::quality::Quality;
 use caustica::low_level::study::words::short;
 use serde_json::Value;
 
@@ -235,14 +235,14 @@ pictures: a tenth is noise.
 ";
 
 const RADIUS: &str = "\
-Chosen before the first pass from how many photons fall on a pixel and whether they are caustics (`src/radius.rs`): a start radius,
+Chosen before the first pass from how many photons fall on a pixel and whether they are caustics (`src/prepare/radius.rs`): a start radius,
 and a wider one for photons that a diffuse surface has scattered. Beside it, the best single disc of those tried.
 ";
 
 const PRESETS: &str = "\
 `--quality` takes these settings, and this many passes. Errors are roots of relMSE over the scenes. The exponent is that with
 which relMSE falls from that of one pass, as the first two passes tell it without a truth, to that at the end; it is what
-`caustica render --quality` promises by (`src/quality.rs`). Errors of passes that the studies have no time for are drawn out
+`caustica render --quality` promises by (`src/render/quality.rs`). Errors of passes that the studies have no time for are drawn out
 along the last octaves.
 ";
 

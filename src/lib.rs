@@ -88,11 +88,9 @@ pub mod low_level;
 // the modules name one another from the root
 #[allow(unused_imports)]
 use low_level::{
-    ablation, accel, bench, calibration, camera, checkpoint, clock, compilation, cpu, device,
-    double, engine, error, failover, features, film, film_readback, gpu, grid, identity, kernels,
-    layers, lights, limits, materials, math, memory, observers, pack, plan, prepare, probe,
-    quality, radius, real, render, settings, shapes, sobol, srgb, stage, storage, study, tables,
-    validation,
+    accel, bench, camera, checkpoint, cpu, device, double, engine, film, gpu, kernels, lights,
+    materials, math, memory, pack, plan, prepare, probe, real, render, shapes, storage, study,
+    tables, telemetry, validation,
 };
 
 pub use device::{DeviceError, DeviceInfo, Opened, Wanted as Device, list as devices, open};
@@ -103,7 +101,7 @@ pub use film::{
 };
 pub use low_level::scene;
 pub use render::{Ending, Outcome, Progress, Stop, render};
-pub use settings::{Direct, Method, Radius, RadiusRule, RenderSettings};
+pub use scene::settings::{Direct, Method, Radius, RadiusRule, RenderSettings};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

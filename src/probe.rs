@@ -8,8 +8,8 @@ use super::math::oct_decode;
 use super::pack::Packed;
 use super::real::{Real, Vec3, consts};
 use super::tables::Scene;
-use crate::radius::{Automatic, automatic};
-use crate::settings::{Direct, Radius, RenderSettings};
+use crate::prepare::radius::{Automatic, automatic};
+use crate::scene::settings::{Direct, Radius, RenderSettings};
 use bytemuck::Zeroable;
 use rayon::prelude::*;
 

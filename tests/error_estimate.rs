@@ -20,7 +20,7 @@ use caustica::low_level::pack::pack;
 use caustica::low_level::plan::Plan;
 use caustica::low_level::render::{Ending, Stop, render};
 use caustica::low_level::scene;
-use caustica::low_level::settings::{Direct, Radius, RenderSettings};
+use caustica::low_level::scene::settings::{Direct, Radius, RenderSettings};
 use caustica::low_level::tables::NONE;
 use caustica::low_level::validation::{BlockTruth, NoisyTruth, Promise};
 use glam::Vec3;

@@ -12,7 +12,7 @@ use std::path::Path;
 use caustica::low_level::film::{
     Development, FileError, Picture, Provenance, check_outputs, exr_file, file, pfm, read, write,
 };
-use caustica::low_level::settings::RenderSettings;
+use caustica::low_level::scene::settings::RenderSettings;
 use support::folder;
 
 /// Not square and unlike its mirror images, over many magnitudes; with denormal, negative zero and

@@ -6,8 +6,8 @@
 
 use caustica::low_level::film::Development;
 use caustica::low_level::film::tonemap::Bits;
+use caustica::low_level::math::srgb::srgb_from_linear;
 use caustica::low_level::scene::ToneMap;
-use caustica::low_level::srgb::srgb_from_linear;
 
 const BOTH: [ToneMap; 2] = [ToneMap::Agx, ToneMap::Srgb];
 

@@ -6,13 +6,13 @@
 mod software;
 
 use bytemuck::{Zeroable, cast_slice, pod_collect_to_vec};
-use caustica::low_level::features::{Feature, Features};
 use caustica::low_level::gpu::Gpu;
 use caustica::low_level::gpu::layout::SceneTables;
 use caustica::low_level::gpu::program::Program;
 use caustica::low_level::gpu::recorder::Recorder;
 use caustica::low_level::kernels::grid_build::{record_bucket, record_code};
 use caustica::low_level::kernels::records::{Dispatch, PhotonRecord};
+use caustica::low_level::plan::features::{Feature, Features};
 use caustica::low_level::plan::{Buffer, Kernel, SCAN_BLOCK};
 use glam::Vec3;
 use std::collections::BTreeMap;

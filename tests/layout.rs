@@ -5,13 +5,13 @@
 mod ingredients;
 
 use bytemuck::Zeroable;
-use caustica::low_level::features::Feature;
 use caustica::low_level::gpu::compose::compose;
 use caustica::low_level::gpu::layout::SceneTables;
 use caustica::low_level::kernels::aov_trace::AovPixel;
 use caustica::low_level::kernels::records::*;
 use caustica::low_level::kernels::resolve_parts::PartsPixel;
 use caustica::low_level::plan::Kernel;
+use caustica::low_level::plan::features::Feature;
 use caustica::low_level::tables::*;
 use ingredients::Mixture;
 use std::mem::{offset_of, size_of};

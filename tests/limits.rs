@@ -4,7 +4,7 @@
 //! just beyond there is one warning, with the number that is out of range, at the value that makes
 //! it so.
 
-use caustica::low_level::limits::warnings;
+use caustica::low_level::prepare::limits::warnings;
 use caustica::low_level::scene::{Finding, load, parse};
 
 /// The scene's radius is half the diagonal of what holds camera, target and floor: sqrt(4 + 1 + 4)

@@ -11,7 +11,7 @@ use std::path::Path;
 use caustica::low_level::device::{self, Wanted};
 use caustica::low_level::film::Picture;
 use caustica::low_level::scene;
-use caustica::low_level::settings::{Direct, Method, RenderSettings};
+use caustica::low_level::scene::settings::{Direct, Method, RenderSettings};
 
 /// The camera sees a patch of 1/100 about the point below the light; `looks_at` is the material
 /// there.

@@ -15,8 +15,8 @@ use caustica::low_level::gpu::{self, GpuEngine};
 use caustica::low_level::memory::{Memory, Part, total};
 use caustica::low_level::pack::{Packed, pack};
 use caustica::low_level::plan::{BufferPlace, Plan, scene_bytes};
+use caustica::low_level::scene::settings::{Method, RadiusRule, RenderSettings};
 use caustica::low_level::scene::{self, Aovs};
-use caustica::low_level::settings::{Method, RadiusRule, RenderSettings};
 
 const SIZE: (u32, u32) = (40, 30);
 const PASSES: u32 = 5;

@@ -3,7 +3,6 @@
 mod software;
 
 use bytemuck::{Zeroable, cast_slice, pod_collect_to_vec};
-use caustica::low_level::features::{Feature, Features};
 use caustica::low_level::gpu::Gpu;
 use caustica::low_level::gpu::compose::compose;
 use caustica::low_level::gpu::layout::SceneTables;
@@ -14,6 +13,7 @@ use caustica::low_level::kernels::grid_build::{build_grid, record_bucket, record
 use caustica::low_level::kernels::records::{Dispatch, Gathered, PhotonRecord, VisiblePoint};
 use caustica::low_level::math::rng::{STREAM_PHOTON, rng_new, rng_next};
 use caustica::low_level::math::{basis, oct_decode, oct_encode};
+use caustica::low_level::plan::features::{Feature, Features};
 use caustica::low_level::plan::{Buffer, Kernel};
 use caustica::low_level::shapes::outline::{WALL_BITS, clip_at, in_outline, outline_share};
 use caustica::low_level::tables::{NONE, Outline};

@@ -11,8 +11,8 @@ use std::path::{Path, PathBuf};
 use caustica::low_level::device::{self, Wanted};
 use caustica::low_level::film::metrics::{Comparison, compare};
 use caustica::low_level::film::{Picture, luminance};
+use caustica::low_level::scene::settings::{Direct, Method, Radius, RenderSettings};
 use caustica::low_level::scene::{self, Scene};
-use caustica::low_level::settings::{Direct, Method, Radius, RenderSettings};
 use caustica::low_level::validation::{BlockTruth, hold, render_parts};
 
 /// Most that the pictures may differ by in the median over pixels.

@@ -11,7 +11,7 @@ use caustica::low_level::kernels::resolve::resolve;
 use caustica::low_level::pack::{Packed, pack};
 use caustica::low_level::plan::Plan;
 use caustica::low_level::scene;
-use caustica::low_level::settings::{Direct, Method, Radius, RenderSettings};
+use caustica::low_level::scene::settings::{Direct, Method, Radius, RenderSettings};
 use glam::Vec3;
 
 mod software;

@@ -10,7 +10,7 @@ mod support;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use caustica::low_level::identity::Identity;
+use caustica::low_level::render::identity::Identity;
 use caustica::low_level::scene::{Finding, load, load_profile};
 
 const SCENE: &str = r#"version = 1 # a drop on a mesh

@@ -209,7 +209,7 @@ fn windows_text() {
 /// The keys of `[render]` reach the settings; absent ones keep their defaults.
 #[test]
 fn render_settings() {
-    use caustica::low_level::settings::{Method, Radius, RenderSettings};
+    use caustica::low_level::scene::settings::{Method, Radius, RenderSettings};
     let loaded = parse_text(&format!(
         "{HEAD}[environment]\nradiance = 1\n[render]\nmethod = \"ppm\"\nphotons = 1_000\nradius = {{ units = 0.01 }}\nseed = 0xff\n"
     )).unwrap();

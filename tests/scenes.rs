@@ -8,7 +8,7 @@
 use caustica::low_level::device::{self, Wanted};
 use caustica::low_level::film::Picture;
 use caustica::low_level::scene;
-use caustica::low_level::settings::{Direct, Method, RadiusRule, RenderSettings};
+use caustica::low_level::scene::settings::{Direct, Method, RadiusRule, RenderSettings};
 use std::path::{Path, PathBuf};
 
 fn shipped() -> Vec<PathBuf> {

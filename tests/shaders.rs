@@ -4,11 +4,11 @@
 
 mod ingredients;
 
-use caustica::low_level::features::{Feature, Features};
 use caustica::low_level::gpu::compose::{compose, compose_from};
 use caustica::low_level::gpu::fragments::{Fragment, fragments};
 use caustica::low_level::gpu::layout::{Bound, SceneTables, bindings};
 use caustica::low_level::plan::Kernel;
+use caustica::low_level::plan::features::{Feature, Features};
 use ingredients::Mixture;
 use std::collections::BTreeSet;
 

@@ -14,8 +14,8 @@ use std::path::Path;
 
 use caustica::low_level::device::Wanted;
 use caustica::low_level::film::Picture;
+use caustica::low_level::scene::settings::{Direct, Method, Radius, RadiusRule, RenderSettings};
 use caustica::low_level::scene::{self, Scene};
-use caustica::low_level::settings::{Direct, Method, Radius, RadiusRule, RenderSettings};
 use caustica::low_level::validation::agreement::LIMIT_FAR;
 use caustica::low_level::validation::reference::{BLOCK, PixelNoise};
 use caustica::low_level::validation::{

@@ -1,10 +1,10 @@
 //! Every WGSL file has a Rust twin of the same stem that names it, every kernel an entry point of
 //! its stem.
 
-use caustica::low_level::features::Feature;
 use caustica::low_level::gpu::compose::compose;
 use caustica::low_level::gpu::layout::SceneTables;
 use caustica::low_level::plan::Kernel;
+use caustica::low_level::plan::features::Feature;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 
 use caustica::low_level::checkpoint::{self, Checkpoint, Origin, Totals};
 use caustica::low_level::device::{self, Opened, Wanted};
+use caustica::low_level::scene::settings::RadiusRule;
 use caustica::low_level::scene::{self, Loaded};
-use caustica::low_level::settings::RadiusRule;
 use image::{DynamicImage, ImageFormat};
 
 use crate::targets::Target;

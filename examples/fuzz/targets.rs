@@ -5,8 +5,9 @@ use std::path::Path;
 
 use caustica::low_level::accel::tessellate::{Fineness, tessellate};
 use caustica::low_level::checkpoint::Checkpoint;
+use caustica::low_level::prepare::limits;
 use caustica::low_level::scene::{self, Allowance, Loaded, SceneErrors};
-use caustica::low_level::{checkpoint, limits, pack, plan};
+use caustica::low_level::{checkpoint, pack, plan};
 use xxhash_rust::xxh3::xxh3_128;
 
 use crate::mutate::Mutator;

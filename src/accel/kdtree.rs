@@ -13,7 +13,7 @@ use super::kdtree_sweep::Sweep;
 use super::real::{Real, ToDouble, Vec3};
 use super::shapes::aabb::Aabb;
 use super::shapes::kdtree::{MAX_DEPTH, Node, Tree};
-use crate::stage::stage;
+use crate::telemetry::stage::stage;
 use rayon::prelude::*;
 
 /// What the tree is built over: f32 geometry as the kernels see it.

@@ -5,6 +5,7 @@
 //! [`setup`] makes an engine, [`device_report`] runs passes on it, [`work`] counts what they do,
 //! [`to_error`] holds a render against a truth, [`spread`] and [`machine`] are what they say.
 
+pub mod ablation;
 pub mod machine;
 pub mod setup;
 pub mod spread;
@@ -21,7 +22,7 @@ use crate::engine::{EngineError, PassReport};
 use crate::gpu::program::Compiling;
 use crate::plan::Plan;
 use crate::scene::Scene;
-use crate::settings::{Method, RenderSettings};
+use crate::scene::settings::{Method, RenderSettings};
 use setup::{Ready, SetupSeconds};
 use spread::Spread;
 use to_error::Approach;

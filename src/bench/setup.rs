@@ -13,7 +13,7 @@ use crate::gpu::{AdapterChoice, GpuEngine};
 use crate::pack::{Packed, pack};
 use crate::plan::Plan;
 use crate::scene::Scene;
-use crate::settings::RenderSettings;
+use crate::scene::settings::RenderSettings;
 
 /// Seconds of the steps from a scene to an engine.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]

@@ -3,8 +3,8 @@
 use serde::Serialize;
 
 use crate::engine::PassReport;
-use crate::features::Feature;
 use crate::kernels::records::{FilmPixel, Gathered, PhotonRecord, VisiblePoint};
+use crate::plan::features::Feature;
 use crate::plan::{Kernel, Plan};
 
 /// What a pass did.

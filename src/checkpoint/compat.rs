@@ -8,7 +8,7 @@ use serde_json::Value;
 
 use super::{Checkpoint, CheckpointError, Origin};
 use crate::scene::Aovs;
-use crate::settings::RenderSettings;
+use crate::scene::settings::RenderSettings;
 
 impl Checkpoint {
     /// Fails unless a render of `expected`, whose numbers have `bits` bits and whose passes are
@@ -156,7 +156,7 @@ fn setting_differences(expected: &RenderSettings, found: &RenderSettings) -> Vec
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::settings::{Method, Radius};
+    use crate::scene::settings::{Method, Radius};
 
     #[test]
     fn each_setting_is_told_but_passes() {

@@ -9,13 +9,13 @@ use crate::double::kernels::aov_trace::AovPixel;
 use crate::double::kernels::bytes::{aov_bytes, aovs_of, parts_bytes, parts_of, statistics_of};
 use crate::double::kernels::records::Statistics;
 use crate::double::kernels::resolve_parts::PartsPixel;
-use crate::double::layers::{Layering, SavedLayers};
+use crate::double::plan::layers::{Layering, SavedLayers};
 use crate::double::real::Vec3;
 use crate::engine::{LayerState, State};
 use crate::film::exr_file::Channel;
 use crate::kernels;
 use crate::plan::global_scale_sq;
-use crate::settings::{Method, RadiusRule};
+use crate::scene::settings::{Method, RadiusRule};
 
 impl Checkpoint {
     /// What the film asks for in addition to radiance; the same bits that the render would have

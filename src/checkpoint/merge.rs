@@ -16,13 +16,13 @@ use rayon::prelude::*;
 
 use super::compat::told;
 use super::{Checkpoint, CheckpointError, Origin, Totals, layers};
-use crate::double::film_readback::{Readout, counted, early_parts};
 use crate::double::kernels::records::FilmPixel;
 use crate::double::math::luminance;
+use crate::double::plan::film_readback::{Readout, counted, early_parts};
 use crate::double::{self, real::Vec3};
 use crate::engine::{Space, State};
 use crate::kernels;
-use crate::settings::{Method, RadiusRule};
+use crate::scene::settings::{Method, RadiusRule};
 
 /// Makes one checkpoint of those of ranges that follow one another, given in any order with their
 /// files.

@@ -4,14 +4,14 @@ use serde::{Deserialize, Serialize};
 
 use crate::device::Opened;
 use crate::engine::Space;
-use crate::identity::{Identity, program};
+use crate::render::identity::{Identity, program};
+use crate::scene::settings::RenderSettings;
 use crate::scene::{Aovs, Film, Scene, ToneMap};
-use crate::settings::RenderSettings;
 
 /// What a picture is made from.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Origin {
-    /// The program; see [`crate::identity::program`].
+    /// The program; see [`crate::render::identity::program`].
     pub version: String,
     /// The scene's name.
     pub scene: String,

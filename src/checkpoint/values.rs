@@ -3,7 +3,7 @@
 
 use super::Origin;
 use crate::engine::{Space, State};
-use crate::settings::{Method, RadiusRule};
+use crate::scene::settings::{Method, RadiusRule};
 
 /// Items that are looked at together, so that a large film is not copied as a whole.
 const TOGETHER: usize = 4096;

@@ -6,7 +6,7 @@ use caustica::low_level::bench::to_error::Approach;
 use caustica::low_level::bench::{DeviceReport, KernelReport, SliceReport};
 use caustica::low_level::plan::Kernel;
 use caustica::low_level::scene::Scene;
-use caustica::low_level::settings::RenderSettings;
+use caustica::low_level::scene::settings::RenderSettings;
 
 use super::progress::count;
 

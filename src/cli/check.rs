@@ -2,8 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+use caustica::low_level::prepare::limits;
+use caustica::low_level::scene;
 use caustica::low_level::scene::{Finding, SceneErrors};
-use caustica::low_level::{limits, scene};
 use miette::miette;
 use serde_json::{Value, json};
 

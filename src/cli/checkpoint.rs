@@ -8,7 +8,7 @@ use caustica::low_level::checkpoint::{
 };
 use caustica::low_level::engine::State;
 use caustica::low_level::render::Progress;
-use caustica::low_level::settings::RenderSettings;
+use caustica::low_level::scene::settings::RenderSettings;
 use caustica::low_level::storage::{self, Lock};
 use serde_json::json;
 

@@ -8,7 +8,7 @@ use caustica::low_level::film::metrics::{Comparison, compare};
 use caustica::low_level::film::{Picture, blocks, file, heat};
 use caustica::low_level::render::{Stop, render};
 use caustica::low_level::scene::Scene;
-use caustica::low_level::settings::RenderSettings;
+use caustica::low_level::scene::settings::RenderSettings;
 use clap::builder::NonEmptyStringValueParser;
 use serde_json::{Value, json};
 

@@ -4,7 +4,7 @@ use caustica::low_level::device::{Candidates, Opened};
 use caustica::low_level::engine::{Engine, EngineError, State};
 use caustica::low_level::memory::Memory;
 use caustica::low_level::scene::Scene;
-use caustica::low_level::settings::RenderSettings;
+use caustica::low_level::scene::settings::RenderSettings;
 use serde_json::json;
 
 use super::output::{message, paragraph, result};

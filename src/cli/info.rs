@@ -4,11 +4,11 @@ use std::fmt;
 use std::path::PathBuf;
 
 use caustica::low_level::engine::EngineError;
-use caustica::low_level::features::Feature;
 use caustica::low_level::memory::{Memory, Part, total};
 use caustica::low_level::pack::{Packed, pack};
+use caustica::low_level::plan::features::Feature;
 use caustica::low_level::plan::{Buffer, BufferPlace, Kernel, Plan, scene_bytes, scene_tables};
-use caustica::low_level::settings::Method;
+use caustica::low_level::scene::settings::Method;
 use clap::builder::NonEmptyStringValueParser;
 use serde_json::{Value, json};
 

@@ -1,12 +1,14 @@
 //! `caustica info --measure`: what it gains to leave out what a scene does not require.
 
-use caustica::low_level::ablation::{Costs, on_cpu, on_gpu, unused, with_all_unused, with_unused};
+use caustica::low_level::bench::ablation::{
+    Costs, on_cpu, on_gpu, unused, with_all_unused, with_unused,
+};
 use caustica::low_level::device::{self, DeviceKind};
-use caustica::low_level::features::Features;
 use caustica::low_level::gpu::AdapterChoice;
 use caustica::low_level::pack::Packed;
 use caustica::low_level::plan::Kernel;
-use caustica::low_level::settings::{Method, RenderSettings};
+use caustica::low_level::plan::features::Features;
+use caustica::low_level::scene::settings::{Method, RenderSettings};
 use serde_json::{Map, Value, json};
 
 use super::output::{message, result};

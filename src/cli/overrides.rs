@@ -2,10 +2,10 @@
 
 use std::time::Duration;
 
-use caustica::low_level::quality::Quality;
+use caustica::low_level::render::quality::Quality;
 use caustica::low_level::scene::Scene;
 use caustica::low_level::scene::numbers::{LARGEST, SMALLEST};
-use caustica::low_level::settings::{Direct, Method, Radius, RadiusRule, RenderSettings};
+use caustica::low_level::scene::settings::{Direct, Method, Radius, RadiusRule, RenderSettings};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use serde::de::DeserializeOwned;

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use caustica::low_level::film::provenance::VERSION;
 use caustica::low_level::film::{FileError, Provenance, file};
-use caustica::low_level::identity::Identity;
+use caustica::low_level::render::identity::Identity;
 use caustica::low_level::scene::{self, Loaded, Scene};
 
 use super::Failure;

@@ -8,7 +8,7 @@ use caustica::low_level::film::provenance::VERSION;
 use caustica::low_level::film::{Region, read};
 use caustica::low_level::memory;
 use caustica::low_level::scene::Scene;
-use caustica::low_level::settings::{Method, RenderSettings};
+use caustica::low_level::scene::settings::{Method, RenderSettings};
 use caustica::low_level::storage;
 use caustica::low_level::study::StudyError;
 use caustica::low_level::study::conduct::{Event, Study};

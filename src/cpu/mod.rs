@@ -3,7 +3,6 @@
 mod photons;
 mod tasks;
 
-use super::features::Feature;
 use super::kernels::aov_trace::AovPixel;
 use super::kernels::bytes::{
     aovs_of, film_bytes, film_of, parts_of, statistics_bytes, statistics_of,
@@ -15,16 +14,17 @@ use super::kernels::path_trace::path_trace;
 use super::kernels::records::*;
 use super::kernels::resolve::{Estimate, fold, resolve};
 use super::kernels::resolve_parts::{PartsPixel, resolve_parts};
-use super::layers::LayerInputs as Layers;
 use super::math::is_finite;
 use super::pack::Packed;
+use super::plan::features::Feature;
+use super::plan::layers::LayerInputs as Layers;
 use super::plan::{Buffer, Command, Kernel, Plan, Stage, Step};
 use super::real::{ENGINE, Real};
-use crate::clock::{Clock, KernelSeconds};
 use crate::engine::{Cancel, Engine, EngineError, PassReport, PhotonEnds, State};
 use crate::film::exr_file::Channel;
 use crate::film::{ErrorMap, Picture, Rejections};
-use crate::settings::Method;
+use crate::scene::settings::Method;
+use crate::telemetry::clock::{Clock, KernelSeconds};
 use bytemuck::Zeroable;
 use photons::trace_photons;
 use rayon::prelude::*;

@@ -1,11 +1,11 @@
 //! Tasks of a pass: what one core does at a time, for the processor's own vectors.
 
-use super::super::features::{Feature, Features};
 use super::super::kernels::aov_trace::{AovPixel, aov_trace};
 use super::super::kernels::eye_trace::eye_trace;
 use super::super::kernels::gather::{gather, scale_sq};
 use super::super::kernels::grid_build::SortedRecords;
 use super::super::kernels::records::*;
+use super::super::plan::features::{Feature, Features};
 use super::super::tables::{Outline, Scene};
 use rayon::prelude::*;
 

@@ -6,7 +6,7 @@ use super::{DeviceError, DeviceInfo, DeviceKind, Opened, Wanted, cpu, list, pick
 use crate::engine::EngineError;
 use crate::memory::Memory;
 use crate::scene::Scene;
-use crate::settings::{Method, RenderSettings};
+use crate::scene::settings::{Method, RenderSettings};
 
 /// Makes an engine for a scene.
 type Open = Box<dyn FnOnce(&Scene, &RenderSettings, &Memory) -> Result<Opened, EngineError>>;

@@ -1,6 +1,7 @@
 //! Devices by name: which there are, which one a wish means, and an engine on it.
 
 mod candidates;
+pub mod failover;
 
 use thiserror::Error;
 
@@ -12,9 +13,9 @@ use crate::kernels::records::VisiblePoint;
 use crate::memory::{self, Memory, can_be_had, total};
 use crate::pack::{Packed, pack};
 use crate::plan::{self, BufferPlace, Plan};
-use crate::radius::Automatic;
+use crate::prepare::radius::Automatic;
 use crate::scene::Scene;
-use crate::settings::{Method, Radius, RenderSettings};
+use crate::scene::settings::{Method, Radius, RenderSettings};
 
 pub use candidates::{Candidate, Candidates};
 

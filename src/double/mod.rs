@@ -43,16 +43,8 @@ pub mod accel {
 pub mod camera;
 #[path = "../cpu/mod.rs"]
 pub mod cpu;
-#[path = "../features.rs"]
-pub mod features;
-#[path = "../film_readback.rs"]
-pub mod film_readback;
-#[path = "../grid.rs"]
-pub mod grid;
 #[path = "../kernels/mod.rs"]
 pub mod kernels;
-#[path = "../layers.rs"]
-pub mod layers;
 #[path = "../lights/mod.rs"]
 pub mod lights;
 #[path = "../materials/mod.rs"]

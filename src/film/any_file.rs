@@ -6,7 +6,7 @@ use image::{DynamicImage, ImageFormat};
 
 use super::file::{Format, decode_common, read, read_bytes, read_exr};
 use super::{FileError, Picture};
-use crate::srgb::linear_from_srgb;
+use crate::math::srgb::linear_from_srgb;
 
 /// What the numbers of a file say.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

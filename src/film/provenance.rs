@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use super::Picture;
 use super::exr_file::Frame;
+use crate::scene::settings::RenderSettings;
 use crate::scene::{Aov, Aovs, Film, ToneMap};
-use crate::settings::RenderSettings;
 
 /// How a picture came about; written into EXR files as text attributes named `caustica.*`.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -16,7 +16,7 @@ pub struct Provenance {
     pub scene_file: String,
     /// The scene file's text.
     pub scene_text: String,
-    /// [`crate::identity::Identity::digest`] of the scene; none where nobody is to make it again.
+    /// [`crate::render::identity::Identity::digest`] of the scene; none where nobody is to make it again.
     pub digest: Option<String>,
     /// What it was taken on; none for a whole picture with nothing but radiance.
     pub film: Option<Film>,

@@ -8,7 +8,7 @@
 use super::metrics::{MetricsError, check_comparable};
 use super::plane::{Plane, gaussian, normalized};
 use super::{Picture, Region};
-use crate::srgb::srgb_from_linear;
+use crate::math::srgb::srgb_from_linear;
 
 /// Pixels from a window's middle to its edge.
 pub const WINDOW_RADIUS: u32 = 5;

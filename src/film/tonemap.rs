@@ -4,8 +4,8 @@ use std::sync::LazyLock;
 
 use glam::{DMat3, DVec3};
 
+use crate::math::srgb::srgb_from_linear;
 use crate::scene::{Film, ToneMap};
-use crate::srgb::srgb_from_linear;
 
 /// How radiance is developed into a picture for a display.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

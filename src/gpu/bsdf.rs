@@ -1,9 +1,9 @@
 //! WGSL of the dispatch over materials, composed from the list in `materials/mod.rs`: functions
 //! with one case for each material that the scene has.
 
-use crate::features::{Feature, Features};
 use crate::materials::Bsdf;
 use crate::plan::Kernel;
+use crate::plan::features::{Feature, Features};
 
 /// The declarations that `kernel` needs.
 pub fn dispatch(kernel: Kernel, features: Features) -> String {

@@ -4,8 +4,8 @@
 use super::bsdf;
 use super::fragments::{Fragment, Names, fragments, preprocess};
 use super::layout::{SceneTables, bindings, declarations};
-use crate::features::{Feature, Features};
 use crate::plan::Kernel;
+use crate::plan::features::{Feature, Features};
 use std::collections::BTreeSet;
 
 /// Path under which errors in the generated declarations are reported.

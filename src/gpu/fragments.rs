@@ -67,7 +67,7 @@ const SHARED: &[Fragment] = fragments![
     "lights/emission.wgsl" if "photon_trace",
     "lights/aim.wgsl" if "photon_trace && far",
     "camera.wgsl" if "eye_trace || aov_trace",
-    "grid.wgsl" if "grid_count || grid_scatter || grid_sort || grid_sort_long || gather",
+    "kernels/grid.wgsl" if "grid_count || grid_scatter || grid_sort || grid_sort_long || gather",
     "kernels/records.wgsl" if "",
     "kernels/direct.wgsl" if "scene",
     "kernels/scan.wgsl" if "grid_scan_reduce || grid_scan_sums || grid_scan",

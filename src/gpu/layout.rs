@@ -2,7 +2,7 @@
 //! buffer, each table an array of fixed length at a multiple of 16 bytes, and the bindings of every
 //! kernel.
 
-use crate::features::{Features, few};
+use crate::plan::features::{Features, few};
 use crate::plan::{Access, Buffer, Kernel, Use};
 use crate::tables::{self, Material};
 use bytemuck::{Pod, Zeroable, bytes_of, cast_slice};

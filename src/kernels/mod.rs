@@ -1,7 +1,7 @@
 //! The kernels of a pass, each the twin of `shaders/kernels/` file of the same stem: a function of
 //! the invocation's number and of what the kernel reads, returning what it writes.
 
-use super::{camera, grid, lights, materials, math, real, shapes, tables};
+use super::{camera, lights, materials, math, real, shapes, tables};
 
 pub mod aov_trace;
 pub mod bytes;
@@ -10,6 +10,7 @@ pub mod eye_path;
 pub mod eye_sample;
 pub mod eye_trace;
 pub mod gather;
+pub mod grid;
 pub mod grid_build;
 pub mod path_trace;
 pub mod photon_trace;

@@ -20,6 +20,8 @@ use super::real;
 pub mod octahedral;
 pub mod rng;
 pub mod sampling;
+pub mod sobol;
+pub mod srgb;
 pub mod trig;
 pub mod vector;
 

@@ -21,7 +21,7 @@ pub struct Rng {
     pub dimension: u32,
     /// Seed.
     pub seed: u32,
-    /// The pass's point for the first dimensions of eye paths (see [`crate::sobol`]).
+    /// The pass's point for the first dimensions of eye paths (see [`crate::math::sobol`]).
     pub points: Points,
 }
 

@@ -2,8 +2,8 @@
 
 use super::real::{Bits, Real, ToReal, Vec2};
 use super::tables::*;
+use crate::math::srgb::linear_from_srgb;
 use crate::scene::{self, Filter, ImageData, Reflectance, Texels, TextureKind, Wrap};
-use crate::srgb::linear_from_srgb;
 use bytemuck::Zeroable;
 use glam::{DVec2, DVec3};
 

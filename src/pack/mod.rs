@@ -14,7 +14,7 @@ mod shape;
 mod visibility;
 mod walls;
 
-pub use crate::error::PackError;
+pub use crate::engine::error::PackError;
 pub use objects::Objects;
 
 use super::lights::select::CELL_LEAF;
@@ -27,9 +27,9 @@ use crate::prepare::bodies::{Bodies, joined};
 use crate::prepare::contact::grown;
 use crate::prepare::learned::{Learned, LightSource};
 use crate::prepare::normalize::{Normalization, reach};
+use crate::scene::settings::{Method, RenderSettings};
 use crate::scene::{self, MaterialKind, Reflectance};
-use crate::settings::{Method, RenderSettings};
-use crate::stage::stage;
+use crate::telemetry::stage::stage;
 use bytemuck::Zeroable;
 use glam::{DVec2, DVec3};
 use look::{Look, Region, look};

@@ -14,7 +14,7 @@ use super::real::{Real, Vec2, Vec3};
 use super::shapes::intersect::intersect_scene;
 use super::tables::*;
 use super::visibility::Visibility;
-use crate::stage::stage;
+use crate::telemetry::stage::stage;
 use bytemuck::Zeroable;
 use rayon::prelude::*;
 

@@ -1,12 +1,12 @@
 //! The buffers of the kernels: the one table that plan, engines, memory accounting and checkpoints
 //! read.
 
-use super::super::features::Feature;
 use super::super::kernels::aov_trace::AovPixel;
 use super::super::kernels::records::{FilmPixel, Gathered, PhotonRecord, Statistics, VisiblePoint};
 use super::super::kernels::resolve_parts::PartsPixel;
 use super::super::tables::{Attributes, Node, Outline, Triangle};
 use super::Plan;
+use super::features::Feature;
 use super::kernel::SCAN_BLOCK;
 use crate::scene::Aov;
 
@@ -290,7 +290,7 @@ impl Plan {
 
 #[cfg(test)]
 mod tests {
-    use crate::features::Feature;
+    use crate::plan::features::Feature;
     use crate::plan::{Buffer, Cleared, Command, Kernel, Plan};
     use std::collections::BTreeSet;
 

@@ -1,12 +1,12 @@
 //! A pass as a list of commands, which engines execute.
 
-use super::super::features::Feature;
 use super::super::kernels::records::Dispatch;
 use super::super::real::Real;
 use super::buffer::Buffer;
+use super::features::Feature;
 use super::kernel::{Kernel, Over, SCAN_BLOCK};
 use super::{Plan, key_bits};
-use crate::settings::{Method, Radius};
+use crate::scene::settings::{Method, Radius};
 use bytemuck::Zeroable;
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -136,7 +136,7 @@ impl Plan {
             inv_cell_indirect: (1.0 / cell_indirect) as Real,
             window_first: self.window_first,
             window_width: self.width,
-            points: crate::sobol::points(self.first_pass + pass),
+            points: crate::math::sobol::points(self.first_pass + pass),
             ..Dispatch::zeroed()
         }
     }
@@ -147,7 +147,7 @@ impl Plan {
         if self.settings.method != Method::Ppm {
             return common;
         }
-        Dispatch { pass_number: 0, points: crate::sobol::points(0), ..common }
+        Dispatch { pass_number: 0, points: crate::math::sobol::points(0), ..common }
     }
 
     /// The commands of pass `pass` of this render, from 0: one list for each tile, or a single

@@ -1,8 +1,8 @@
 //! The kernels: one descriptor each, which shader composition, binding layouts, setup, bench and
 //! ablation read.
 
-use super::super::features::{Feature, Features};
 use super::buffer::Buffer;
+use super::features::{Feature, Features};
 
 /// Buckets that one workgroup of the scan kernels covers; the same number of blocks is the most
 /// there may be.

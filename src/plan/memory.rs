@@ -1,17 +1,17 @@
 //! How much memory a plan takes, and the same plan cut so that it fits.
 
-use super::super::features::Feature;
 use super::super::kernels::bytes::{FILM_BYTES, STATISTICS_BYTES};
 use super::super::kernels::records::PhotonRecord;
 use super::super::real::{Real, Vec4};
 use super::super::tables::Scene;
 use super::buffer::Buffer;
+use super::features::Feature;
 use super::kernel::SCAN_BLOCK;
 use super::{CHUNK_POINTS, Plan};
 use crate::engine::EngineError;
 use crate::film::estimate::PixelError;
 use crate::memory::{Memory, OverBudget, Part, total};
-use crate::settings::Method;
+use crate::scene::settings::Method;
 
 /// Least visible points of a tile: with fewer a device has nothing to do between two steps.
 const LEAST_TILE: u32 = 1 << 14;

@@ -7,12 +7,13 @@
 
 mod buffer;
 mod commands;
+pub mod features;
+pub mod film_readback;
 mod kernel;
+pub mod layers;
 mod memory;
 mod scale;
 
-use super::features::{Feature, Features};
-use super::film_readback::Readout;
 use super::kernels::bytes::{FILM_BYTES, STATISTICS_BYTES};
 use super::kernels::records::FilmPixel;
 use super::pack::{Objects, Packed};
@@ -20,10 +21,12 @@ use super::probe::{Probe, probe};
 use super::real::Real;
 use crate::engine::{Cancel, EngineError, State};
 use crate::film::{ErrorMap, Picture, Rejections};
-use crate::radius::Automatic;
+use crate::prepare::radius::Automatic;
+use crate::scene::settings::{Method, Radius, RenderSettings};
 use crate::scene::{Aov, Aovs, Film};
-use crate::settings::{Method, Radius, RenderSettings};
-use crate::stage::stage;
+use crate::telemetry::stage::stage;
+use features::{Feature, Features};
+use film_readback::Readout;
 use glam::DVec3;
 
 pub use buffer::{Buffer, BufferInfo, Cleared, Extent};

@@ -1,7 +1,7 @@
 //! How the gather radius shrinks from pass to pass.
 
 use super::Plan;
-use crate::settings::RadiusRule;
+use crate::scene::settings::RadiusRule;
 
 impl Plan {
     /// Squared radius in pass `pass` of this render over the squared start radius; the local rule's

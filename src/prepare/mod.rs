@@ -6,6 +6,8 @@ use super::math;
 pub mod bodies;
 pub mod contact;
 pub mod learned;
+pub mod limits;
 pub mod normalize;
 pub mod orientation;
 pub mod parts;
+pub mod radius;

@@ -9,7 +9,7 @@ use super::view::{Scale, Shown, View, developed, show};
 use super::worker::Worker;
 use crate::device::Wanted;
 use crate::film::{Coding, Development, FileError, Picture, read_any};
-use crate::srgb::srgb_from_linear;
+use crate::math::srgb::srgb_from_linear;
 
 /// A picture to hold another against.
 pub struct Beside {

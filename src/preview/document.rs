@@ -12,8 +12,8 @@ use toml_edit::{Array, DocumentMut, InlineTable, Item, Table, TableLike, Value, 
 use crate::film::FileError;
 use crate::film::file::write_whole;
 use crate::memory;
+use crate::scene::settings::RenderSettings;
 use crate::scene::{Allowance, Camera, Film, SceneErrors, parse_within};
-use crate::settings::RenderSettings;
 use crate::storage;
 
 /// What a window can change of a scene.
@@ -208,7 +208,7 @@ fn stamp(file: &Path) -> Stamp {
 mod tests {
     use super::*;
     use crate::scene::ToneMap;
-    use crate::settings::{Direct, Radius, RadiusRule};
+    use crate::scene::settings::{Direct, Radius, RadiusRule};
 
     const TEXT: &str = "\
 # A scene.
@@ -269,7 +269,8 @@ photons = 1000 # few
         (after.camera.aperture, after.camera.focus) = (0.02, 3.75);
         (after.film.exposure, after.film.tonemap) = (-1.5, ToneMap::Srgb);
         let settings = &mut after.settings;
-        (settings.method, settings.passes, settings.alpha) = (crate::settings::Method::Ppm, 7, 0.5);
+        (settings.method, settings.passes, settings.alpha) =
+            (crate::scene::settings::Method::Ppm, 7, 0.5);
         (settings.radius_rule, settings.direct) = (RadiusRule::Local, Direct::Photons);
         for radius in [Radius::Pixels(2.5), Radius::Units(0.01), Radius::Auto] {
             after.settings.radius = radius;

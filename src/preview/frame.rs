@@ -8,8 +8,8 @@ use crate::engine::{Engine, EngineError};
 use crate::film::estimate::LEAST_PASSES;
 use crate::film::exr_file::Channel;
 use crate::film::{ErrorMap, Picture, RelativeError};
+use crate::scene::settings::RenderSettings;
 use crate::scene::{Camera, Film};
-use crate::settings::RenderSettings;
 
 /// Least time between two pictures of one render.
 const EVERY: Duration = Duration::from_millis(100);

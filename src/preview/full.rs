@@ -14,7 +14,7 @@ use crate::double;
 use crate::engine::{Cancel, Engine, EngineError};
 use crate::gpu::{AdapterChoice, GpuEngine};
 use crate::plan::Plan;
-use crate::settings::Method;
+use crate::scene::settings::Method;
 use crate::tables::Scene;
 
 /// How long a thread that has nothing to do sleeps before it looks again.

@@ -11,7 +11,7 @@ use super::view::{Scale, View};
 use crate::device::{self, Wanted};
 use crate::film::Picture;
 use crate::scene::ToneMap;
-use crate::settings::{Direct, Method, Radius, RadiusRule};
+use crate::scene::settings::{Direct, Method, Radius, RadiusRule};
 
 /// Bounds of numbers that a hand can set.
 const LENGTHS: std::ops::RangeInclusive<f64> = 1e-6..=1e6;

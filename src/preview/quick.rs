@@ -10,7 +10,7 @@ use crate::cpu::CpuEngine;
 use crate::engine::{Cancel, EngineError};
 use crate::plan::Plan;
 use crate::scene::Film;
-use crate::settings::RenderSettings;
+use crate::scene::settings::RenderSettings;
 
 /// Passes after which a small picture is good enough to wait with.
 const PASSES: u32 = 32;

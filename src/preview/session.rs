@@ -12,10 +12,10 @@ use super::view::View;
 use super::worker::Worker;
 use crate::device::{self, Wanted};
 use crate::film::{self, Development, ErrorMap, Provenance};
-use crate::identity::Identity;
 use crate::memory;
+use crate::render::identity::Identity;
+use crate::scene::settings::{Direct, Radius, RadiusRule};
 use crate::scene::{Allowance, Aov, Film, Loaded, Scene, SceneErrors, ToneMap};
-use crate::settings::{Direct, Radius, RadiusRule};
 use crate::storage;
 
 /// What a key or a hand asks for.

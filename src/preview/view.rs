@@ -9,9 +9,9 @@ use super::frame::Frame;
 use crate::film::exr_file::Channel;
 use crate::film::heat::heat;
 use crate::film::{Development, Picture};
-use crate::layers::NO_DEPTH;
+use crate::math::srgb::srgb_from_linear;
+use crate::plan::layers::NO_DEPTH;
 use crate::scene::{Aov, Aovs};
-use crate::srgb::srgb_from_linear;
 
 /// A way to look at a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

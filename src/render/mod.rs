@@ -1,9 +1,13 @@
 //! The loop over passes: stop conditions, progress, and what is kept of a render for the case that
 //! its device fails.
 
+pub mod calibration;
 mod estimates;
+pub mod identity;
 mod keep;
+pub mod observers;
 mod progress;
+pub mod quality;
 mod run;
 #[cfg(test)]
 mod tests;

@@ -10,7 +10,7 @@ use super::{Broken, Ending, Outcome, Saving};
 use crate::engine::{Engine, EngineError, State};
 use crate::film::ErrorMap;
 use crate::film::estimate::LEAST_PASSES;
-use crate::stage::stage;
+use crate::telemetry::stage::stage;
 
 /// Who is told of passes, and who ends them.
 pub struct Watch<'a> {

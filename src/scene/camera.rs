@@ -8,7 +8,7 @@ use super::load::Loader;
 use super::numbers::{LARGEST, SMALLEST};
 use super::validate::Item;
 use super::{Camera, Environment, Film, Light};
-use crate::settings::RenderSettings;
+use crate::scene::settings::RenderSettings;
 
 /// Least sine of the angle between two directions that count as different.
 const LEAST_SINE: f64 = 1e-9;

@@ -13,7 +13,7 @@ use super::appearance::{Filter, Wrap};
 use super::numbers::{NonNegative, Paint, Positive, Share, Spectrum, Strength};
 use super::schema::close_variants;
 use super::{Aov, ToneMap};
-use crate::settings::RenderSettings;
+use crate::scene::settings::RenderSettings;
 
 /// Three coordinates.
 pub type Vec3 = [f64; 3];

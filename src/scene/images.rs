@@ -14,7 +14,7 @@ use super::exr_image;
 use super::file::ColorSpace;
 use super::image_bytes::{Format, HEAD, jpeg_fault, with_radiance_line};
 use super::limits::{Allowance, Missing, Refusal, within};
-use crate::srgb::linear_from_srgb;
+use crate::math::srgb::linear_from_srgb;
 
 /// Why an image cannot be used; `key` is the key in the scene file to blame.
 pub(crate) struct ImageFault {

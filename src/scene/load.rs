@@ -15,8 +15,8 @@ use super::report::{Finding, Report, SceneErrors, list};
 use super::spans::Spans;
 use super::validate::{Document, document};
 use super::{Scene, camera, material, mesh, schema, surfaces, text};
-use crate::settings::RenderSettings;
-use crate::stage::stage;
+use crate::scene::settings::RenderSettings;
+use crate::telemetry::stage::stage;
 
 /// What a scene file holds.
 #[derive(Clone, Debug)]

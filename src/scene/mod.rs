@@ -30,6 +30,7 @@ mod profile;
 mod profile_file;
 mod report;
 mod schema;
+pub mod settings;
 mod spans;
 mod surfaces;
 mod text;

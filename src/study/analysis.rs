@@ -6,7 +6,7 @@ use super::folder::{Point, Results, TruthRecord};
 use super::grid::Config;
 use super::lamps::Lamp;
 use super::statistics::{PowerLaw, Split, Spread, fit, spread};
-use crate::settings::{Method, RadiusRule};
+use crate::scene::settings::{Method, RadiusRule};
 
 /// A configuration at a number of passes, over its seeds.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

@@ -18,7 +18,7 @@ use crate::film::file::write_rgb8;
 use crate::film::flip::ldr_flip;
 use crate::film::metrics::compare;
 use crate::film::{Development, FileError, Picture, Region};
-use crate::quality::one_pass_error;
+use crate::render::quality::one_pass_error;
 use crate::scene::Scene;
 
 /// What a watcher is told.

@@ -8,7 +8,7 @@ use thiserror::Error;
 
 use super::variant::Variant;
 use crate::scene::numbers::{LARGEST, SMALLEST};
-use crate::settings::{Radius, RenderSettings};
+use crate::scene::settings::{Radius, RenderSettings};
 
 /// Settings that a grid may vary, with examples of their values.
 pub const NAMES: [(&str, &str); 13] = [
@@ -333,7 +333,7 @@ fn with_setting(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::settings::{Method, RadiusRule};
+    use crate::scene::settings::{Method, RadiusRule};
 
     fn axes(texts: &[&str]) -> Vec<Axis> {
         texts.iter().map(|text| text.parse().unwrap()).collect()

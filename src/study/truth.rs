@@ -14,7 +14,7 @@ use crate::device;
 use crate::film::metrics::{MetricsError, compare};
 use crate::film::{Picture, luminance, read};
 use crate::scene::Scene;
-use crate::settings::{Direct, Method, Radius, RadiusRule, RenderSettings};
+use crate::scene::settings::{Direct, Method, Radius, RadiusRule, RenderSettings};
 
 /// Where the truth comes from.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

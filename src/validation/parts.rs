@@ -7,7 +7,7 @@ use crate::device::{self, DeviceError, Wanted};
 use crate::engine::EngineError;
 use crate::film::Picture;
 use crate::scene::Scene;
-use crate::settings::RenderSettings;
+use crate::scene::settings::RenderSettings;
 
 /// No render to hold.
 #[derive(Debug, Error)]

@@ -16,8 +16,8 @@ use caustica::low_level::engine::Engine;
 use caustica::low_level::film::exr_file::{Channel, Numbers};
 use caustica::low_level::film::{Picture, Plane};
 use caustica::low_level::gpu::GpuEngine;
-use caustica::low_level::layers::NO_DEPTH;
 use caustica::low_level::pack::{Packed, pack};
+use caustica::low_level::plan::layers::NO_DEPTH;
 use caustica::low_level::plan::{Buffer, Plan, Stage};
 use caustica::low_level::scene::{Aovs, Loaded, parse};
 

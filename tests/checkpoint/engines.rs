@@ -4,8 +4,8 @@ use caustica::low_level::checkpoint::{read, write};
 use caustica::low_level::device::Wanted;
 use caustica::low_level::engine::{Engine, EngineError, LayerState, State};
 use caustica::low_level::kernels::bytes::{AOV_BYTES, PARTS_BYTES};
+use caustica::low_level::scene::settings::{Direct, Method, Radius, RadiusRule, RenderSettings};
 use caustica::low_level::scene::{Aovs, Film};
-use caustica::low_level::settings::{Direct, Method, Radius, RadiusRule, RenderSettings};
 
 use super::{checkpoint, folder, open, open_on};
 

@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use caustica::low_level::checkpoint::{Checkpoint, CheckpointError, decode, merge, read, write};
 use caustica::low_level::device::{Opened, Wanted};
 use caustica::low_level::render::Stop;
+use caustica::low_level::scene::settings::{RadiusRule, RenderSettings};
 use caustica::low_level::scene::{Aovs, Film};
-use caustica::low_level::settings::{RadiusRule, RenderSettings};
 use xxhash_rust::xxh3::xxh3_128;
 
 use super::{checkpoint_on, folder, open_on};

@@ -8,8 +8,8 @@ use caustica::low_level::checkpoint::{Checkpoint, merge, read, write};
 use caustica::low_level::device::Wanted;
 use caustica::low_level::engine::{Engine, State};
 use caustica::low_level::film::file::read_exr;
+use caustica::low_level::scene::settings::{Direct, Method, RadiusRule, RenderSettings};
 use caustica::low_level::scene::{Aovs, Film};
-use caustica::low_level::settings::{Direct, Method, RadiusRule, RenderSettings};
 
 use super::{checkpoint_on, fails, folder, good, open_on};
 

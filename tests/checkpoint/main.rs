@@ -23,8 +23,8 @@ use std::sync::LazyLock;
 use caustica::low_level::checkpoint::{Checkpoint, Origin, Totals};
 use caustica::low_level::device::{self, Opened, Wanted};
 use caustica::low_level::engine::State;
+use caustica::low_level::scene::settings::RenderSettings;
 use caustica::low_level::scene::{self, Film, ToneMap};
-use caustica::low_level::settings::RenderSettings;
 use support::{DISC, LAMP, Shape, ball, folder_with, words};
 
 /// With a mesh and a lens: two discs, maps of the lamp.

@@ -8,7 +8,7 @@
 use caustica::low_level::checkpoint::{Checkpoint, CheckpointError, merge};
 use caustica::low_level::device::Wanted;
 use caustica::low_level::engine::State;
-use caustica::low_level::settings::{Method, RadiusRule, RenderSettings};
+use caustica::low_level::scene::settings::{Method, RadiusRule, RenderSettings};
 
 use super::{checkpoint, open};
 

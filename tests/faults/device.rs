@@ -8,8 +8,8 @@ use caustica::low_level::gpu::GpuEngine;
 use caustica::low_level::memory::Memory;
 use caustica::low_level::pack::pack;
 use caustica::low_level::plan::Plan;
+use caustica::low_level::scene::settings::RenderSettings;
 use caustica::low_level::scene::{Loaded, Scene};
-use caustica::low_level::settings::RenderSettings;
 
 use super::engine::{sound, successor};
 use super::{Copies, begin, difference, loaded, software, steps};

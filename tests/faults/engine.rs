@@ -9,7 +9,7 @@ use caustica::low_level::film::exr_file::Channel;
 use caustica::low_level::film::{ErrorMap, Picture, Rejections};
 use caustica::low_level::memory::Memory;
 use caustica::low_level::scene::Scene;
-use caustica::low_level::settings::RenderSettings;
+use caustica::low_level::scene::settings::RenderSettings;
 
 /// What an engine is asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

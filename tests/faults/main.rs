@@ -13,15 +13,15 @@ mod software;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
+use caustica::low_level::device::failover::Relay;
 use caustica::low_level::device::{Candidates, Wanted, open};
 use caustica::low_level::engine::{Engine, EngineError, State};
-use caustica::low_level::failover::Relay;
 use caustica::low_level::film::Picture;
 use caustica::low_level::kernels::bytes::FILM_BYTES;
 use caustica::low_level::memory::Memory;
 use caustica::low_level::render::{Broken, Kept, Outcome, Progress, Saving, Stop, resume};
+use caustica::low_level::scene::settings::{Method, Radius, RadiusRule, RenderSettings};
 use caustica::low_level::scene::{self, Aovs, Loaded};
-use caustica::low_level::settings::{Method, Radius, RadiusRule, RenderSettings};
 use engine::{FAULTS, Fault, Step, candidate, script, successor};
 
 /// Enough passes for an estimate of the error on the way.

@@ -2,10 +2,10 @@
 //! composition and layout.
 
 use bytemuck::Zeroable;
-use caustica::low_level::features::{Feature, Features};
 use caustica::low_level::materials::Bsdf;
 use caustica::low_level::plan::Kernel;
-use caustica::low_level::settings::{Direct, RadiusRule, RenderSettings};
+use caustica::low_level::plan::features::{Feature, Features};
+use caustica::low_level::scene::settings::{Direct, RadiusRule, RenderSettings};
 use caustica::low_level::tables::*;
 use glam::{Vec2, Vec3};
 

@@ -1,6 +1,6 @@
 //! All methods on one scene with everything in it.
 
-use caustica::low_level::settings::{Direct, Method, RadiusRule, RenderSettings};
+use caustica::low_level::scene::settings::{Direct, Method, RadiusRule, RenderSettings};
 use glam::DVec3;
 
 use super::invariance::everything;

@@ -7,7 +7,7 @@
 
 use std::f64::consts::PI;
 
-use caustica::low_level::settings::RenderSettings;
+use caustica::low_level::scene::settings::RenderSettings;
 use glam::DVec3;
 
 use super::closed_forms as form;

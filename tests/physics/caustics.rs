@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use caustica::low_level::settings::{Direct, RadiusRule, RenderSettings};
+use caustica::low_level::scene::settings::{Direct, RadiusRule, RenderSettings};
 use glam::DVec3;
 
 use super::lab::*;

@@ -4,7 +4,7 @@
 use std::f64::consts::PI;
 
 use caustica::low_level::plan::global_scale_sq;
-use caustica::low_level::settings::{Direct, Method, RadiusRule, RenderSettings};
+use caustica::low_level::scene::settings::{Direct, Method, RadiusRule, RenderSettings};
 use glam::DVec3;
 
 use super::lab::*;

@@ -1,6 +1,6 @@
 //! Glass: Fresnel, absorption, and where cameras, lights and other things are inside of it.
 
-use caustica::low_level::settings::{Direct, Method, RenderSettings};
+use caustica::low_level::scene::settings::{Direct, Method, RenderSettings};
 use glam::DVec3;
 
 use super::lab::*;

@@ -4,7 +4,7 @@
 use caustica::low_level::cpu::CpuEngine;
 use caustica::low_level::pack::pack;
 use caustica::low_level::plan::Plan;
-use caustica::low_level::settings::{Method, Radius, RenderSettings};
+use caustica::low_level::scene::settings::{Method, Radius, RenderSettings};
 use caustica::low_level::validation::{NoisyTruth, Promise, promises};
 
 use super::lab::*;

@@ -7,7 +7,7 @@ use caustica::low_level::engine::PhotonEnds;
 use caustica::low_level::kernels::photon_trace::photon_trace;
 use caustica::low_level::pack::pack;
 use caustica::low_level::plan::Plan;
-use caustica::low_level::settings::{Direct, RenderSettings};
+use caustica::low_level::scene::settings::{Direct, RenderSettings};
 use glam::DVec3;
 
 use super::lab::*;

@@ -3,7 +3,7 @@
 
 use std::f64::consts::PI;
 
-use caustica::low_level::settings::{Method, RenderSettings};
+use caustica::low_level::scene::settings::{Method, RenderSettings};
 use glam::DVec3;
 
 use super::lab::*;

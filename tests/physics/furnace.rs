@@ -3,7 +3,7 @@
 
 use std::f64::consts::PI;
 
-use caustica::low_level::settings::{Direct, Method, RenderSettings};
+use caustica::low_level::scene::settings::{Direct, Method, RenderSettings};
 use glam::{DVec2, DVec3};
 
 use super::lab::*;

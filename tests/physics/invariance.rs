@@ -1,6 +1,6 @@
 //! The same scene at another scale and place is the same picture.
 
-use caustica::low_level::settings::{Direct, Method, Radius, RenderSettings};
+use caustica::low_level::scene::settings::{Direct, Method, Radius, RenderSettings};
 use glam::DVec3;
 
 use super::everything::{MESH, everything_with};

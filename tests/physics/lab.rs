@@ -14,8 +14,8 @@ use caustica::low_level::engine::Engine;
 use caustica::low_level::film::Picture;
 use caustica::low_level::pack::pack;
 use caustica::low_level::plan::Plan;
+use caustica::low_level::scene::settings::{Direct, Method, Radius, RadiusRule, RenderSettings};
 use caustica::low_level::scene::{self, Scene};
-use caustica::low_level::settings::{Direct, Method, Radius, RadiusRule, RenderSettings};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 

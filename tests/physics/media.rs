@@ -1,6 +1,6 @@
 //! Bodies of glass within, across and next to each other, and what stands exactly on something.
 
-use caustica::low_level::settings::{Direct, Method, RenderSettings};
+use caustica::low_level::scene::settings::{Direct, Method, RenderSettings};
 
 use super::lab::*;
 

@@ -3,7 +3,7 @@
 
 use std::f64::consts::TAU;
 
-use caustica::low_level::settings::{Direct, Method, RadiusRule, RenderSettings};
+use caustica::low_level::scene::settings::{Direct, Method, RadiusRule, RenderSettings};
 use glam::DVec3;
 
 use super::lab::*;

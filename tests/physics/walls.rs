@@ -4,7 +4,7 @@
 use std::f64::consts::PI;
 use std::fmt::Write;
 
-use caustica::low_level::settings::{Direct, Method, RenderSettings};
+use caustica::low_level::scene::settings::{Direct, Method, RenderSettings};
 use glam::DVec3;
 
 use super::lab::*;

@@ -21,8 +21,8 @@ use caustica::low_level::preview::frame::{Frame, RenderRequest};
 use caustica::low_level::preview::orbit;
 use caustica::low_level::preview::view::{Scale, View, show};
 use caustica::low_level::preview::worker::Worker;
+use caustica::low_level::scene::settings::{Direct, Method, Radius, RadiusRule};
 use caustica::low_level::scene::{self, Aov, Loaded};
-use caustica::low_level::settings::{Direct, Method, Radius, RadiusRule};
 use support::{FLOOR, LAMP, MESH, ball, folder_with};
 
 /// With comments, which no saving takes away.

@@ -6,7 +6,7 @@ use caustica::low_level::kernels::records::{
 };
 use caustica::low_level::math::oct_encode;
 use caustica::low_level::plan::global_scale_sq;
-use caustica::low_level::settings::{Direct, Radius, RadiusRule, RenderSettings};
+use caustica::low_level::scene::settings::{Direct, Radius, RadiusRule, RenderSettings};
 use caustica::low_level::tables::NONE;
 use glam::{DVec3, Vec3};
 

@@ -1,7 +1,7 @@
 //! The same scene at other scales and places.
 
 use caustica::low_level::film::Picture;
-use caustica::low_level::settings::{Direct, Radius, RadiusRule, RenderSettings};
+use caustica::low_level::scene::settings::{Direct, Radius, RadiusRule, RenderSettings};
 use glam::{DVec2, DVec3};
 
 use super::bench::{Bench, folder};

@@ -1,6 +1,6 @@
 //! Lights, films and cameras far from what is usual.
 
-use caustica::low_level::settings::{Direct, Radius, RadiusRule, RenderSettings};
+use caustica::low_level::scene::settings::{Direct, Radius, RadiusRule, RenderSettings};
 
 use super::bench::Bench;
 use super::table::{Figure, Row};

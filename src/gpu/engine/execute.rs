@@ -3,8 +3,8 @@
 use super::super::retrace::{retrace_aovs, retrace_photons, retrace_points};
 use super::{COUNTERS_BYTES, ENDS, GpuEngine, READINGS_BYTES, STOPPED_COUNT};
 use crate::engine::{EngineError, PassReport, PhotonEnds};
-use crate::features::Feature;
 use crate::kernels::records::Dispatch;
+use crate::plan::features::Feature;
 use crate::plan::{Buffer, Command, Kernel, Over, Stage, Step};
 use std::collections::BTreeMap;
 

@@ -9,12 +9,12 @@ use super::layout::Member;
 use super::pace::Pace;
 use super::program::Program;
 use super::recorder::Recorder;
-use crate::clock::{Clock, KernelSeconds};
 use crate::engine::{Engine, EngineError, PassReport, State};
 use crate::film::exr_file::Channel;
 use crate::film::{ErrorMap, Picture, Rejections};
 use crate::plan::{Buffer, Kernel, Plan};
 use crate::tables::Scene;
+use crate::telemetry::clock::{Clock, KernelSeconds};
 use std::collections::BTreeMap;
 
 pub use setup::{CompileSeconds, sizes};

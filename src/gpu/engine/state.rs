@@ -3,7 +3,7 @@
 use super::GpuEngine;
 use crate::engine::{EngineError, LayerState, State};
 use crate::kernels::records::{FilmPixel, Gathered};
-use crate::layers::LayerInputs;
+use crate::plan::layers::LayerInputs;
 use crate::plan::{Buffer, Extent, Plan};
 
 impl GpuEngine {

@@ -6,8 +6,8 @@
 
 use crate::prepare::normalize::{Normalization, extent};
 use crate::prepare::orientation::faces_inward;
+use crate::scene::settings::{Radius, RenderSettings};
 use crate::scene::{Finding, Light, MaterialKind, Scene, ShapeKind, Spans};
-use crate::settings::{Radius, RenderSettings};
 use glam::DVec3;
 
 /// Least gather radius, over the scene's radius.

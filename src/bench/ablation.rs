@@ -9,13 +9,13 @@ use glam::{Vec2, Vec3};
 
 use crate::cpu::CpuEngine;
 use crate::engine::{Engine, EngineError};
-use crate::features::{Feature, Features};
 use crate::film::Picture;
 use crate::gpu::{AdapterChoice, GpuEngine};
 use crate::materials::Bsdf;
 use crate::pack::Packed;
 use crate::plan::Plan;
-use crate::settings::RenderSettings;
+use crate::plan::features::{Feature, Features};
+use crate::scene::settings::RenderSettings;
 use crate::tables::*;
 
 /// Returns the scene with one more thing of a feature, to which nothing refers. `None` for features

@@ -6,7 +6,7 @@ use std::time::Instant;
 use crate::engine::{Engine, EngineError, PassReport, State};
 use crate::film::exr_file::Channel;
 use crate::film::{ErrorMap, Picture, Rejections};
-use crate::quality::one_pass_error;
+use crate::render::quality::one_pass_error;
 
 /// What two passes told.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,9 +1,9 @@
 //! An engine that goes on with the next one where one fails.
 
-use crate::clock::KernelSeconds;
 use crate::engine::{Engine, EngineError, PassReport, State};
 use crate::film::exr_file::Channel;
 use crate::film::{ErrorMap, Picture, Rejections};
+use crate::telemetry::clock::KernelSeconds;
 
 /// Gives the next engine, or says why one could not be had; nothing where there is none left. It is
 /// told why the last one failed, and what the next one is to go on from.

@@ -1,4 +1,4 @@
-// The hash grid over photon records: twin of src/grid.rs, and of what src/kernels/grid_build.rs
+// The hash grid over photon records: twin of src/kernels/grid.rs, and of what src/kernels/grid_build.rs
 // says of a record.
 
 const CELL_MAX: f32 = 1e9;

@@ -1,12 +1,14 @@
 //! What every engine (GPU or CPU) does for the render loop.
 
+pub mod error;
+
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use crate::clock::KernelSeconds;
 use crate::film::exr_file::Channel;
 use crate::film::{ErrorMap, Picture, Rejections};
 use crate::memory::OverBudget;
+use crate::telemetry::clock::KernelSeconds;
 use serde::{Deserialize, Serialize};
 
 /// Photon paths by how they ended; together those that were emitted.
@@ -147,7 +149,7 @@ pub enum EngineError {
     Shader(String),
     /// The scene cannot be flattened.
     #[error(transparent)]
-    Pack(#[from] crate::error::PackError),
+    Pack(#[from] crate::engine::error::PackError),
     /// The engine cannot carry out this method.
     #[error("{0}")]
     Unsupported(String),

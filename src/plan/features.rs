@@ -1,9 +1,9 @@
 //! What a scene and its settings require; nothing else is compiled or allocated.
 
-use super::materials::Bsdf;
-use super::shapes::intersect::has_patch_set;
-use super::tables::*;
-use crate::settings::{Direct, Method, RadiusRule, RenderSettings};
+use super::super::materials::Bsdf;
+use super::super::shapes::intersect::has_patch_set;
+use super::super::tables::*;
+use crate::scene::settings::{Direct, Method, RadiusRule, RenderSettings};
 
 macro_rules! features {
     ($($(#[$doc:meta])* $feature:ident = $name:literal,)*) => {

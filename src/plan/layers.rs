@@ -1,18 +1,18 @@
 //! What a plan's passes have found in addition to radiance, as channels of a picture file in world
 //! units.
 
+use super::super::kernels::aov_trace::AovPixel;
+use super::super::kernels::bytes::{AOV_BYTES, PARTS_BYTES, aov_bytes, parts_bytes};
+use super::super::kernels::records::{Gathered, Statistics};
+use super::super::kernels::resolve_parts::PartsPixel;
+use super::super::real::{Real, Vec3};
+use super::Plan;
 use super::features::Feature;
-use super::kernels::aov_trace::AovPixel;
-use super::kernels::bytes::{AOV_BYTES, PARTS_BYTES, aov_bytes, parts_bytes};
-use super::kernels::records::{Gathered, Statistics};
-use super::kernels::resolve_parts::PartsPixel;
-use super::plan::Plan;
-use super::real::{Real, Vec3};
 use crate::engine::{LayerState, Space};
 use crate::film::Plane;
 use crate::film::exr_file::{Channel, Numbers};
+use crate::scene::settings::{Method, RadiusRule};
 use crate::scene::{Aov, Aovs};
-use crate::settings::{Method, RadiusRule};
 
 /// Depth where a pixel's samples hit nothing, as Blender writes it.
 pub const NO_DEPTH: f64 = 1e10;

@@ -1,6 +1,6 @@
 //! The hash grid over photon records: cells in rows along x, hashed into a table of buckets row by
 //! row. Two rows may share a bucket, so a reader compares the row's code. Twin:
-//! `shaders/grid.wgsl`.
+//! `shaders/kernels/grid.wgsl`.
 
 use super::real::{Real, Vec3};
 use glam::IVec3;

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::film::Picture;
 use crate::film::metrics::{MetricsError, compare};
-use crate::settings::{Direct, Method, Radius, RadiusRule, RenderSettings};
+use crate::scene::settings::{Direct, Method, Radius, RadiusRule, RenderSettings};
 
 /// What a picture is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

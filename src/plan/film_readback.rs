@@ -1,6 +1,6 @@
 //! What a film says: the picture, its errors and what was left out, in world units.
 
-use super::kernels::records::*;
+use super::super::kernels::records::*;
 use crate::film::estimate::{LEAST_PASSES, PixelError, early_passes, partition};
 use crate::film::{ErrorMap, Picture, Rejections, luminance_of};
 
