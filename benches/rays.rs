@@ -4,10 +4,10 @@
 mod workload;
 
 use caustica::low_level::accel::kdtree::{self, Primitive};
-use caustica::low_level::real::Real;
-use caustica::low_level::shapes::intersect::{
+use caustica::low_level::geometry::intersect::{
     intersect_primitive, intersect_scene, intersect_scene_many, occluded,
 };
+use caustica::low_level::real::Real;
 use caustica::low_level::shapes::ray::{Hit, Ray};
 use caustica::low_level::shapes::triangle::RayShear;
 use caustica::low_level::tables::*;

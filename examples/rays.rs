@@ -6,7 +6,7 @@
 #[path = "../benches/workload/mod.rs"]
 mod workload;
 
-use caustica::low_level::shapes::intersect::{intersect_scene, intersect_scene_many};
+use caustica::low_level::geometry::intersect::{intersect_scene, intersect_scene_many};
 use caustica::low_level::shapes::kdtree_stream::STREAM;
 use std::io::{self, BufRead, Write};
 use std::path::Path;

@@ -2,18 +2,7 @@
 // storage struct `Scene` itself is composed per scene, since the length of its arrays is part of
 // its type.
 
-const NONE: u32 = 0xffffffffu;
 const ASTRIDE: u32 = 0xfffffffeu;
-const REFERENCE_BITS: u32 = 28u;
-const KIND_TRIANGLE: u32 = 0u;
-const KIND_SPHERE: u32 = 1u;
-const KIND_RECTANGLE: u32 = 2u;
-const KIND_DISC: u32 = 3u;
-const KIND_CUBOID: u32 = 4u;
-const KIND_REVOLUTION: u32 = 5u;
-const KIND_PLANE: u32 = 6u;
-const UV_NATURAL: u32 = 0u;
-const UV_PLANAR: u32 = 1u;
 const TEXTURE_CHECKER: u32 = 0u;
 const TEXTURE_IMAGE: u32 = 1u;
 const TEXTURE_PLANKS: u32 = 2u;
@@ -64,82 +53,6 @@ struct Camera {
     height: u32,
     lens_up: vec3f,
     medium: u32,
-}
-
-struct Sphere {
-    anchor: vec3f,
-    curvature: f32,
-    normal: vec3f,
-    radius: f32,
-    material: u32,
-    light: u32,
-    uv: u32,
-    pad: u32,
-}
-
-struct Rectangle {
-    origin: vec3f,
-    material: u32,
-    normal: vec3f,
-    light: u32,
-    u: vec3f,
-    uv: u32,
-    v: vec3f,
-    area: f32,
-    dual_u: vec3f,
-    outline: u32,
-    dual_v: vec3f,
-    pad: u32,
-}
-
-struct Disc {
-    center: vec3f,
-    radius: f32,
-    normal: vec3f,
-    material: u32,
-    light: u32,
-    uv: u32,
-    outline: u32,
-    pad: u32,
-}
-
-struct Cuboid {
-    lower: vec3f,
-    material: u32,
-    upper: vec3f,
-    light: u32,
-    uv: u32,
-    outline: u32,
-    pad0: u32,
-    pad1: u32,
-}
-
-struct Plane {
-    point: vec3f,
-    material: u32,
-    normal: vec3f,
-    uv: u32,
-    tangent: vec3f,
-    u0: f32,
-    bitangent: vec3f,
-    v0: f32,
-    outline: u32,
-    pad0: u32,
-    pad1: u32,
-    pad2: u32,
-}
-
-struct Attributes {
-    n0: vec3f,
-    u0: f32,
-    n1: vec3f,
-    v0: f32,
-    n2: vec3f,
-    u1: f32,
-    v1: f32,
-    u2: f32,
-    v2: f32,
-    outline_smooth: u32,
 }
 
 struct Material {

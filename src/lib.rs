@@ -88,9 +88,9 @@ pub mod low_level;
 // the modules name one another from the root
 #[allow(unused_imports)]
 use low_level::{
-    accel, bench, camera, checkpoint, cpu, device, double, engine, film, gpu, kernels, lights,
-    materials, math, memory, pack, plan, prepare, probe, real, render, shapes, storage, study,
-    tables, telemetry, validation,
+    accel, bench, camera, checkpoint, cpu, device, double, engine, film, geometry, gpu, kernels,
+    lights, materials, math, memory, pack, plan, prepare, probe, real, render, shapes, storage,
+    study, tables, telemetry, validation,
 };
 
 pub use device::{DeviceError, DeviceInfo, Opened, Wanted as Device, list as devices, open};

@@ -22,6 +22,8 @@ pub mod double;
 pub mod engine;
 #[path = "film/mod.rs"]
 pub mod film;
+#[path = "geometry/mod.rs"]
+pub mod geometry;
 #[path = "gpu/mod.rs"]
 pub mod gpu;
 #[path = "kernels/mod.rs"]

@@ -40,7 +40,7 @@ fn emit_from(light: Light, u: vec4f, v: vec4f) -> Emission {
 fn emit_nearby(light: Light, u: vec4f, across: vec2f) -> Emission {
     var ray = Ray(light.position, 0.0, vec3f(0.0, 0.0, 1.0), FAR);
     //#if area_sphere
-    if light.kind == LIGHT_AREA && light.reference >> REFERENCE_BITS == KIND_SPHERE {
+    if light.kind == LIGHT_AREA && kind_of(light.reference) == KIND_SPHERE {
         ray.direction = sample_sphere(across);
         let p = sample_sphere_facing(light, vec2f(u.y, u.z), ray.direction);
         ray.origin = p.position + p.normal * p.error;

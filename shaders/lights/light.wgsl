@@ -31,8 +31,8 @@ fn sample_one_light(light: Light, share: f32, position: vec3f, u: vec4f) -> Ligh
     //#if area
     if light.kind == LIGHT_AREA {
         //#if area_sphere
-        if light.reference >> REFERENCE_BITS == KIND_SPHERE {
-            let sphere = scene.spheres[light.reference & ((1u << REFERENCE_BITS) - 1u)];
+        if kind_of(light.reference) == KIND_SPHERE {
+            let sphere = scene.spheres[index_of(light.reference)];
             if pdf_sphere_cone(sphere, position) > 0.0 {
                 let p = sample_sphere_cone(sphere, position, vec2f(u.y, u.z));
                 let to = p.position + p.normal * p.error - position;
@@ -128,8 +128,8 @@ fn pdf_light(shares: u32, index: u32, origin: vec3f, direction: vec3f, t: f32, n
     let light = scene.lights[index];
     let share = share_of(shares, index);
     //#if area_sphere
-    if light.reference >> REFERENCE_BITS == KIND_SPHERE {
-        let sphere = scene.spheres[light.reference & ((1u << REFERENCE_BITS) - 1u)];
+    if kind_of(light.reference) == KIND_SPHERE {
+        let sphere = scene.spheres[index_of(light.reference)];
         let pdf = pdf_sphere_cone(sphere, origin);
         if pdf > 0.0 {
             return pdf * share;

@@ -9,7 +9,7 @@ struct ShapePoint {
 
 //#if area_sphere && photon_trace
 fn sample_sphere_facing(light: Light, u: vec2f, direction: vec3f) -> ShapePoint {
-    let sphere = scene.spheres[light.reference & ((1u << REFERENCE_BITS) - 1u)];
+    let sphere = scene.spheres[index_of(light.reference)];
     let d = sample_disc(u);
     let n = unit(from_frame(direction, vec3f(d.x, d.y, sqrt(1.0 - u.x))));
     let center = sphere.anchor - sphere.normal * sphere.radius;
@@ -20,9 +20,9 @@ fn sample_sphere_facing(light: Light, u: vec2f, direction: vec3f) -> ShapePoint 
 
 //#if area
 fn sample_shape(light: Light, u: vec2f, w: f32) -> ShapePoint {
-    let index = light.reference & ((1u << REFERENCE_BITS) - 1u);
+    let index = index_of(light.reference);
     let pdf = 1.0 / light.area;
-    switch light.reference >> REFERENCE_BITS {
+    switch kind_of(light.reference) {
         //#if area_triangle
         case KIND_TRIANGLE: {
             let triangle = triangles[index];
@@ -156,7 +156,7 @@ fn pdf_bin(first: u32, bin: u32, count: u32) -> f32 {
 
 fn pdf_shape(light: Light, v: f32) -> f32 {
     //#if area_revolution
-    if light.reference >> REFERENCE_BITS == KIND_REVOLUTION {
+    if kind_of(light.reference) == KIND_REVOLUTION {
         var k = find_interval(light.first, light.patch_count, v);
         if k > 0u && scene.distributions[light.first + k] > v {
             k -= 1u;

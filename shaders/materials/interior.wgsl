@@ -130,8 +130,8 @@ fn interior_from(direction: vec3f) -> Interior {
     //#if glass && plane && unbounded
     for (var i = 0u; i < scene.world.unbounded_count; i++) {
         let reference = scene.unbounded[i];
-        if reference >> REFERENCE_BITS == KIND_PLANE {
-            let index = reference & ((1u << REFERENCE_BITS) - 1u);
+        if kind_of(reference) == KIND_PLANE {
+            let index = index_of(reference);
             let material = scene.planes[index].material;
             let glass = scene.materials[material].kind == MATERIAL_GLASS;
             if glass && dot(direction, scene.planes[index].normal) > 0.0 {

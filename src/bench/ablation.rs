@@ -30,11 +30,8 @@ pub fn with_unused(scene: &Scene, feature: Feature) -> Option<Scene> {
         ..Material::zeroed()
     };
     let light = |kind| Light { kind, ..Light::zeroed() };
-    let area = |shape: u32| Light {
-        kind: LIGHT_AREA,
-        reference: shape << REFERENCE_BITS,
-        ..Light::zeroed()
-    };
+    let area =
+        |shape: u32| Light { kind: LIGHT_AREA, reference: reference(shape, 0), ..Light::zeroed() };
     match feature {
         Feature::Sphere => scene.spheres.push(Sphere::zeroed()),
         Feature::Rectangle => scene.rectangles.push(Rectangle::zeroed()),

@@ -1,9 +1,9 @@
 //! Photons of a batch, in tasks of one core each.
 
+use super::super::geometry::intersect::intersect_scene_many;
 use super::super::kernels::grid_build::RecordList;
 use super::super::kernels::photon_trace::{PhotonPath, photon_trace};
 use super::super::kernels::records::*;
-use super::super::shapes::intersect::intersect_scene_many;
 use super::super::shapes::kdtree_stream::STREAM;
 use super::super::tables::Scene;
 use crate::engine::Cancel;

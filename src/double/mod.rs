@@ -43,6 +43,8 @@ pub mod accel {
 pub mod camera;
 #[path = "../cpu/mod.rs"]
 pub mod cpu;
+#[path = "../geometry/mod.rs"]
+pub mod geometry;
 #[path = "../kernels/mod.rs"]
 pub mod kernels;
 #[path = "../lights/mod.rs"]

@@ -37,6 +37,7 @@ pub fn fragments() -> Vec<Fragment> {
 
 /// The shader files that are not a material's.
 const SHARED: &[Fragment] = fragments![
+    "shapes/table.wgsl" if "scene || gather && lobes || gather && outlines",
     "tables.wgsl" if "scene || gather && lobes || gather && outlines",
     "math/vector.wgsl" if "scene || gather || resolve || resolve_parts",
     "math/octahedral.wgsl" if "scene || gather",
@@ -54,8 +55,8 @@ const SHARED: &[Fragment] = fragments![
     "shapes/revolution_roots.wgsl" if "scene && revolution",
     "shapes/revolution.wgsl" if "scene && revolution",
     "shapes/kdtree.wgsl" if "scene && kdtree",
-    "shapes/intersect.wgsl" if "scene",
-    "shapes/surface.wgsl" if "scene",
+    "geometry/intersect.wgsl" if "scene",
+    "geometry/surface.wgsl" if "scene",
     "materials/texture.wgsl" if "scene && textures",
     "materials/interior.wgsl" if "scene",
     "materials/enclosing.wgsl" if "scene",

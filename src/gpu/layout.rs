@@ -92,8 +92,8 @@ impl SceneTables {
             return String::new();
         }
         let test = |reference: &u32| {
-            let index = reference & ((1 << tables::REFERENCE_BITS) - 1);
-            let (function, shape) = match reference >> tables::REFERENCE_BITS {
+            let index = tables::index_of(*reference);
+            let (function, shape) = match tables::kind_of(*reference) {
                 tables::KIND_TRIANGLE => ("triangle", "triangles"),
                 tables::KIND_SPHERE => ("sphere", "scene.spheres"),
                 tables::KIND_RECTANGLE => ("rectangle", "scene.rectangles"),
@@ -107,10 +107,8 @@ impl SceneTables {
             )
         };
         let tests: String = self.few.iter().map(test).collect();
-        let triangles = self
-            .few
-            .iter()
-            .any(|reference| reference >> tables::REFERENCE_BITS == tables::KIND_TRIANGLE);
+        let triangles =
+            self.few.iter().any(|reference| tables::kind_of(*reference) == tables::KIND_TRIANGLE);
         let shear = if triangles { "    ray_shear = shear_of(ray);\n" } else { "" };
         format!(
             "fn intersect_few(ray: Ray, any_hit: bool, hit: ptr<function, Hit>) {{\n{shear}{tests}}}\n"

@@ -7,14 +7,14 @@ use super::camera::camera_ray;
 use super::direct::direct_light;
 use super::eye_path::EyePath;
 use super::eye_sample::{start_radius, stratified, window_pixel};
+use super::geometry::intersect::intersect_scene;
+use super::geometry::surface::surface_at;
 use super::materials::scatter_specular;
 use super::materials::shading::{RADIANCE, shading_point};
 use super::math::rng::{rng_eye, rng_next};
 use super::math::{is_finite, max_component};
 use super::real::{Plain, Real, Vec3, Vec4};
 use super::records::Dispatch;
-use super::shapes::intersect::intersect_scene;
-use super::shapes::surface::surface_at;
 use super::tables::*;
 use bytemuck::Zeroable;
 

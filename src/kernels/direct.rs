@@ -2,6 +2,8 @@
 //! narrow, one ray by its density, combined by multiple importance sampling (Veach & Guibas 1995). Twin:
 //! `shaders/kernels/direct.wgsl`.
 
+use super::geometry::intersect::{intersect_scene, occluded};
+use super::geometry::surface::surface_at;
 use super::lights::light::{eval_environment, pdf_environment, pdf_light, sample_light};
 use super::lights::select::{share_of, shares_at};
 use super::materials::interior::{Interior, medium_of};
@@ -12,9 +14,7 @@ use super::math::sampling::balance;
 use super::math::trig::exponential;
 use super::math::{FAR, max_component, offset_origin};
 use super::real::{Real, Vec2, Vec3, Vec4};
-use super::shapes::intersect::{intersect_scene, occluded};
 use super::shapes::ray::Ray;
-use super::shapes::surface::surface_at;
 use super::tables::*;
 
 /// Beer-Lambert transmittance over `distance` in a medium.

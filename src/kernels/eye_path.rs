@@ -2,6 +2,8 @@
 //! `shaders/kernels/eye_path.wgsl`.
 
 use super::direct::transmittance;
+use super::geometry::intersect::intersect_scene;
+use super::geometry::surface::{Surface, surface_at};
 use super::lights::light::eval_environment;
 use super::materials::enclosing::interior_at;
 use super::materials::interior::{Interior, interior_before, medium_of, passes_hidden};
@@ -9,9 +11,7 @@ use super::materials::shading::Scatter;
 use super::math::{FAR, max_component, offset_origin};
 use super::real::{Real, Vec3};
 use super::records::{Dispatch, HIDDEN_FACES};
-use super::shapes::intersect::intersect_scene;
 use super::shapes::ray::{Hit, Ray};
-use super::shapes::surface::{Surface, surface_at};
 use super::tables::*;
 
 /// An eye path.

@@ -1,7 +1,7 @@
 //! The kernels of a pass, each the twin of `shaders/kernels/` file of the same stem: a function of
 //! the invocation's number and of what the kernel reads, returning what it writes.
 
-use super::{camera, lights, materials, math, real, shapes, tables};
+use super::{camera, geometry, lights, materials, math, real, shapes, tables};
 
 pub mod aov_trace;
 pub mod bytes;

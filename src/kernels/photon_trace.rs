@@ -3,6 +3,8 @@
 //! `shaders/kernels/photon_trace.wgsl`.
 
 use super::direct::transmittance;
+use super::geometry::intersect::intersect_scene;
+use super::geometry::surface::surface_at;
 use super::lights::aim::aimed_scatter;
 use super::lights::emission::{Emission, emit_photon};
 use super::materials::interior::{Interior, interior_before, medium_of, passes_hidden};
@@ -12,9 +14,7 @@ use super::math::rng::{Rng, STREAM_PHOTON, rng_new, rng_next};
 use super::math::{FAR, max_component, oct_encode, offset_origin};
 use super::real::{Real, Vec2, Vec3};
 use super::records::{Dispatch, HIDDEN_FACES, PhotonRecord};
-use super::shapes::intersect::intersect_scene;
 use super::shapes::ray::{Hit, Ray};
-use super::shapes::surface::surface_at;
 use super::tables::*;
 
 /// How a photon's path ended: in [`PhotonPath::end`], and the place of its count.

@@ -55,7 +55,7 @@ pub fn emit_from(scene: &Scene, light: &Light, u: Vec4, v: Vec4) -> Emission {
 #[inline(always)]
 fn emit_nearby(scene: &Scene, light: &Light, u: Vec4, across: Vec2) -> Emission {
     let mut ray = Ray { origin: light.position, t_min: 0.0, direction: Vec3::Z, t_max: FAR };
-    if light.kind == LIGHT_AREA && light.reference >> REFERENCE_BITS == KIND_SPHERE {
+    if light.kind == LIGHT_AREA && kind_of(light.reference) == KIND_SPHERE {
         // first the direction, then the point on the disc that is seen from there: the same
         // density, and `across` says where in the scene the photon goes
         ray.direction = sample_sphere(across);

@@ -66,8 +66,8 @@ pub fn sample_one_light(
         extended: true,
     };
     if light.kind == LIGHT_AREA {
-        if light.reference >> REFERENCE_BITS == KIND_SPHERE {
-            let sphere = &scene.spheres[(light.reference & ((1 << REFERENCE_BITS) - 1)) as usize];
+        if kind_of(light.reference) == KIND_SPHERE {
+            let sphere = &scene.spheres[index_of(light.reference) as usize];
             if pdf_sphere_cone(sphere, position) > 0.0 {
                 let p = sample_sphere_cone(sphere, position, Vec2::new(u.y, u.z));
                 let to = p.position + p.normal * p.error - position;
@@ -175,8 +175,8 @@ pub fn pdf_light(
 ) -> Real {
     let light = &scene.lights[index as usize];
     let share = share_of(scene, shares, index);
-    if light.reference >> REFERENCE_BITS == KIND_SPHERE {
-        let sphere = &scene.spheres[(light.reference & ((1 << REFERENCE_BITS) - 1)) as usize];
+    if kind_of(light.reference) == KIND_SPHERE {
+        let sphere = &scene.spheres[index_of(light.reference) as usize];
         let pdf = pdf_sphere_cone(sphere, from);
         if pdf > 0.0 {
             return pdf * share;

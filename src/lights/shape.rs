@@ -27,9 +27,9 @@ pub struct ShapePoint {
 
 /// A point on the shape of an area light, by area. `w` is one more uniform number.
 pub fn sample_shape(scene: &Scene, light: &Light, u: Vec2, w: Real) -> ShapePoint {
-    let index = (light.reference & ((1 << REFERENCE_BITS) - 1)) as usize;
+    let index = index_of(light.reference) as usize;
     let pdf = 1.0 / light.area;
-    match light.reference >> REFERENCE_BITS {
+    match kind_of(light.reference) {
         KIND_TRIANGLE => {
             let triangle = &scene.triangles[index];
             let b = sample_triangle(u);
@@ -120,7 +120,7 @@ pub fn sample_shape(scene: &Scene, light: &Light, u: Vec2, w: Real) -> ShapePoin
 /// A point on the hemisphere of a spherical light that faces `direction`, even on the disc that is
 /// seen from there.
 pub fn sample_sphere_facing(scene: &Scene, light: &Light, u: Vec2, direction: Vec3) -> ShapePoint {
-    let sphere = &scene.spheres[(light.reference & ((1 << REFERENCE_BITS) - 1)) as usize];
+    let sphere = &scene.spheres[index_of(light.reference) as usize];
     let d = sample_disc(u);
     let n = unit(from_frame(direction, Vec3::new(d.x, d.y, (1.0 - u.x).sqrt())));
     let center = sphere.anchor - sphere.normal * sphere.radius;
@@ -170,7 +170,7 @@ pub fn pdf_bin(scene: &Scene, first: u32, bin: u32, count: u32) -> Real {
 
 /// Density per area of [`sample_shape`] at a point with profile parameter `v` (revolutions only).
 pub fn pdf_shape(scene: &Scene, light: &Light, v: Real) -> Real {
-    if light.reference >> REFERENCE_BITS == KIND_REVOLUTION {
+    if kind_of(light.reference) == KIND_REVOLUTION {
         // the last patch whose part starts at or before v
         let k = find_interval(scene, light.first, light.patch_count, v);
         let k =

@@ -5,12 +5,12 @@
 //! sheet's mean normal leaves through it.
 
 use super::Bsdf;
+use super::geometry::intersect::intersect_scene;
+use super::geometry::surface::surface_at;
 use super::interior::{Interior, entered, holds, interior_of, left};
 use super::math::{FAR, offset_origin};
 use super::real::Vec3;
-use super::shapes::intersect::intersect_scene;
 use super::shapes::ray::Ray;
-use super::shapes::surface::surface_at;
 use super::tables::*;
 
 /// Maximum number of surfaces that one ray passes.

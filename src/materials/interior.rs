@@ -7,10 +7,10 @@
 //! overlapping bodies it holds one entry.
 
 use super::Bsdf;
+use super::geometry::surface::Surface;
 use super::math::{FAR, offset_origin};
 use super::real::{Real, Vec3};
 use super::shapes::ray::Ray;
-use super::shapes::surface::Surface;
 use super::tables::*;
 
 /// Maximum length of an interior list; the lowest-ranked bodies are dropped beyond it.
@@ -143,8 +143,8 @@ pub fn interior_from(scene: &Scene, direction: Vec3) -> Interior {
     let mut interior = interior_of(NONE);
     for i in 0..scene.world.unbounded_count {
         let reference = scene.unbounded[i as usize];
-        if reference >> REFERENCE_BITS == KIND_PLANE {
-            let plane = &scene.planes[(reference & ((1 << REFERENCE_BITS) - 1)) as usize];
+        if kind_of(reference) == KIND_PLANE {
+            let plane = &scene.planes[index_of(reference) as usize];
             let glass = scene.materials[plane.material as usize].kind == Bsdf::Glass as u32;
             if glass && direction.dot(plane.normal) > 0.0 {
                 interior = entered(scene, &interior, plane.material);

@@ -10,7 +10,7 @@
 //! from the surface. Tests of densities, energy, reciprocity and of the two engines run over the
 //! `EXAMPLES` of every file.
 
-use super::{math, real, shapes, tables};
+use super::{geometry, math, real, shapes, tables};
 use interior::Interior;
 use real::{Real, Vec2, Vec3};
 use shading::{Lobe, Sample, Scatter, ShadingPoint};

@@ -2,10 +2,10 @@
 //! `shaders/materials/shading.wgsl`.
 
 use super::Bsdf;
+use super::geometry::surface::Surface;
 use super::interior::Interior;
 use super::math::mirrored;
 use super::real::{Real, Vec2, Vec3};
-use super::shapes::surface::Surface;
 use super::tables::*;
 use super::texture::eval_texture;
 

@@ -50,9 +50,9 @@ pub fn stand_lights(out: &mut Scene) {
         let light = &out.lights[i];
         out.lights[i].medium = match light.kind {
             LIGHT_AREA => {
-                let index = (light.reference & ((1 << REFERENCE_BITS) - 1)) as usize;
+                let index = index_of(light.reference) as usize;
                 let p = sample_shape(out, light, Vec2::splat(0.5), 0.5);
-                let (low, high) = lamp_box(out, light.reference >> REFERENCE_BITS, index);
+                let (low, high) = lamp_box(out, kind_of(light.reference), index);
                 medium_of_box(out, p.position + p.normal * p.error, low, high)
             }
             LIGHT_POINT | LIGHT_SPOT => {
@@ -149,11 +149,11 @@ fn glass_crosses(out: &Scene, low: Vec3, high: Vec3) -> bool {
 
 /// Returns whether `reference` is a glass shape whose surface may cross a box.
 fn reference_crosses(out: &Scene, reference: u32, low: Vec3, high: Vec3) -> bool {
-    let index = (reference & ((1 << REFERENCE_BITS) - 1)) as usize;
+    let index = index_of(reference) as usize;
     let glass = |material: u32| out.materials[material as usize].kind == Bsdf::Glass as u32;
     let meets = |(a, b): (Vec3, Vec3)| a.cmple(high).all() && b.cmpge(low).all();
     let box_of = |kind| lamp_box(out, kind, index);
-    match reference >> REFERENCE_BITS {
+    match kind_of(reference) {
         KIND_TRIANGLE => glass(out.triangles[index].material) && meets(box_of(KIND_TRIANGLE)),
         KIND_RECTANGLE => glass(out.rectangles[index].material) && meets(box_of(KIND_RECTANGLE)),
         KIND_DISC => glass(out.discs[index].material) && meets(box_of(KIND_DISC)),

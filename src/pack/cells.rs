@@ -2,13 +2,13 @@
 //! look each, and in each leaf the lights' probabilities by what they contribute there.
 
 use super::discs::cumulative;
+use super::geometry::intersect::occluded;
 use super::lights::light::sample_one_light;
 use super::lights::select::{CELL_DEPTH, CELL_LEAF};
 use super::look::{Look, Seen};
 use super::math::luminance;
 use super::math::rng::pcg4d;
 use super::real::{Real, Vec3, Vec4};
-use super::shapes::intersect::occluded;
 use super::shapes::ray::Ray;
 use super::tables::*;
 use bytemuck::Zeroable;

@@ -46,7 +46,7 @@ pub fn pack_lights(
     for e in emitters {
         let mut light = Light { kind: LIGHT_AREA, reference: e.reference, ..Light::zeroed() };
         let mut area = e.area;
-        if e.reference >> REFERENCE_BITS == KIND_REVOLUTION {
+        if kind_of(e.reference) == KIND_REVOLUTION {
             area = revolution_distribution(out, &mut light, &mut distributions);
         }
         light.area = area as Real;
@@ -140,7 +140,7 @@ pub fn pack_lights(
 /// The parts of v by patch and the cumulative shares of area; returns the area. A patch overlaps
 /// its neighbour, so that its part ends where the next one starts.
 fn revolution_distribution(out: &Scene, light: &mut Light, distributions: &mut Vec<Real>) -> f64 {
-    let index = light.reference & ((1 << REFERENCE_BITS) - 1);
+    let index = index_of(light.reference);
     let patches: Vec<&Patch> = out.patches.iter().filter(|p| p.revolution == index).collect();
     let revolution = &out.revolutions[index as usize];
     light.patch_first = out.patches.iter().position(|p| p.revolution == index).unwrap_or(0) as u32;

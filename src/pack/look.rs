@@ -2,6 +2,8 @@
 //! toward them comes from. Emission and the choice of lights follow from it. The camera's own place
 //! does not count.
 
+use super::geometry::intersect::intersect_scene;
+use super::geometry::surface::surface_at;
 use super::kernels::eye_trace::eye_trace;
 use super::kernels::records::{Dispatch, VisiblePoint};
 use super::materials::shading::toward;
@@ -9,9 +11,7 @@ use super::math::rng::pcg4d;
 use super::math::sampling::sample_cosine;
 use super::math::{FAR, from_frame, oct_decode, offset_origin};
 use super::real::{Real, Vec2, Vec3};
-use super::shapes::intersect::intersect_scene;
 use super::shapes::ray::Ray;
-use super::shapes::surface::surface_at;
 use super::tables::{NONE, Scene};
 use bytemuck::Zeroable;
 use rayon::prelude::*;

@@ -22,7 +22,7 @@ use super::materials::Bsdf;
 use super::real::{Real, ToDouble, ToReal, Vec3};
 use super::shapes::simd4::{FourRectangles, FourSpheres, LANES};
 use super::tables::*;
-use super::{accel, kernels, lights, materials, math, real, shapes, tables};
+use super::{accel, geometry, kernels, lights, materials, math, real, shapes, tables};
 use crate::prepare::bodies::{Bodies, joined};
 use crate::prepare::contact::grown;
 use crate::prepare::learned::{Learned, LightSource};
@@ -121,7 +121,7 @@ fn flatten(
     let (primitives, references, mut emitters) =
         shape::pack_shapes(scene, &kinds, &materials, &n, &mut out, &mut objects)?;
     walls::find_walls(&mut out);
-    let limit = 1 << REFERENCE_BITS;
+    let limit: usize = 1 << REFERENCE_BITS;
     if references.len() >= limit {
         return Err(PackError::TooMany { what: "primitives", count: references.len(), limit });
     }

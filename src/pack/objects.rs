@@ -44,8 +44,8 @@ impl Objects {
 
     /// The shape that a hit's reference belongs to; none for [`NONE`].
     pub fn of(&self, reference: u32) -> Option<u32> {
-        let index = (reference & ((1 << REFERENCE_BITS) - 1)) as usize;
-        self.shapes.get((reference >> REFERENCE_BITS) as usize)?.get(index).copied()
+        let index = index_of(reference) as usize;
+        self.shapes.get(kind_of(reference) as usize)?.get(index).copied()
     }
 
     /// Scene material index of a table material; [`NONE`] for [`NONE`].

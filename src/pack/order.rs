@@ -7,7 +7,7 @@ use super::tables::*;
 /// Puts the triangles in the order in which the leaves name them first, and renames them
 /// everywhere. Where each went.
 pub fn triangles_as_met(out: &mut Scene, emitters: &mut [Emitter]) -> Vec<u32> {
-    let is_triangle = |reference: u32| reference >> REFERENCE_BITS == KIND_TRIANGLE;
+    let is_triangle = |reference: u32| kind_of(reference) == KIND_TRIANGLE;
     let mut places = vec![NONE; out.triangles.len()];
     let mut ordered = Vec::with_capacity(out.triangles.len());
     for reference in out.refs.iter_mut().filter(|r| is_triangle(**r)) {

@@ -3,6 +3,7 @@
 //! starts at a light, and the lights' maps (`lights::guide`).
 
 use super::discs::cumulative;
+use super::geometry::intersect::intersect_scene;
 use super::kernels::photon_trace::PhotonPath;
 use super::kernels::records::Dispatch;
 use super::lights::emission::emit_from;
@@ -11,7 +12,6 @@ use super::materials::Bsdf;
 use super::math::rng::{STREAM_PHOTON, rng_new, rng_next};
 use super::math::{basis, luminance};
 use super::real::{Real, Vec2, Vec3};
-use super::shapes::intersect::intersect_scene;
 use super::tables::*;
 use super::visibility::Visibility;
 use crate::telemetry::stage::stage;

@@ -1,7 +1,7 @@
 //! What a scene and its settings require; nothing else is compiled or allocated.
 
+use super::super::geometry::intersect::has_patch_set;
 use super::super::materials::Bsdf;
-use super::super::shapes::intersect::has_patch_set;
 use super::super::tables::*;
 use crate::scene::settings::{Direct, Method, RadiusRule, RenderSettings};
 
@@ -155,7 +155,7 @@ pub fn few(scene: &Scene) -> &[u32] {
     match scene.nodes.first() {
         Some(root) if root.is_leaf() => {
             let refs = scene.refs.get(root.range()).unwrap_or_default();
-            let short = refs.iter().all(|reference| reference >> REFERENCE_BITS != KIND_REVOLUTION);
+            let short = refs.iter().all(|reference| kind_of(*reference) != KIND_REVOLUTION);
             if short && refs.len() <= FEW { refs } else { &[] }
         }
         _ => &[],
@@ -201,10 +201,7 @@ impl Features {
         put(Feature::Texels, !scene.texels.is_empty());
         let light = |kind| scene.lights.iter().any(|l| l.kind == kind);
         let area = |kind| {
-            scene
-                .lights
-                .iter()
-                .any(|l| l.kind == LIGHT_AREA && l.reference >> REFERENCE_BITS == kind)
+            scene.lights.iter().any(|l| l.kind == LIGHT_AREA && kind_of(l.reference) == kind)
         };
         put(Feature::Lights, !scene.lights.is_empty());
         put(Feature::Cells, !scene.cells.is_empty());

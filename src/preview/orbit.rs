@@ -6,11 +6,11 @@
 
 use glam::{DQuat, DVec3};
 
+use crate::geometry::intersect::intersect_scene;
 use crate::math::FAR;
 use crate::pack::Packed;
 use crate::real::Vec4;
 use crate::scene::Camera;
-use crate::shapes::intersect::intersect_scene;
 use crate::tables::NONE;
 
 /// Least angle between the view direction and the up vector, radians.

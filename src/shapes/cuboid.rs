@@ -3,7 +3,7 @@
 use super::math::{EPS, FAR, max_abs};
 use super::ray::{Hit, Ray};
 use super::real::{Real, Vec2, Vec3};
-use super::tables::Cuboid;
+use super::table::Cuboid;
 
 /// Nearest crossing in `(t_min, hit.t)`; `hit.u` is the face: axis, plus 3 on the upper side.
 pub fn intersect_cuboid(cuboid: &Cuboid, reference: u32, ray: &Ray, hit: &mut Hit) {

@@ -3,7 +3,7 @@
 use super::math::{EPS, basis, max_abs};
 use super::ray::{Hit, Ray};
 use super::real::{Real, Vec2, Vec3};
-use super::tables::{Disc, Plane};
+use super::table::{Disc, Plane};
 
 /// The crossing in `(t_min, hit.t)`.
 pub fn intersect_disc(disc: &Disc, reference: u32, ray: &Ray, hit: &mut Hit) {

@@ -14,8 +14,9 @@
 //! primitives that are larger than `primitive_size`.
 
 use super::math::EPS;
-use super::ray::{Hit, NONE, Ray};
+use super::ray::{Hit, Ray};
 use super::real::{Bits, Plain, Real, Vec3};
+use super::table::NONE;
 use bytemuck::Zeroable;
 
 /// Greatest number of interior nodes above a leaf, and so of children that wait.

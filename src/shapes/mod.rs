@@ -1,11 +1,10 @@
 //! Shapes: what a ray meets, each the twin of a file in `shaders/shapes/`.
 
-use super::{math, real, tables};
+use super::{math, real};
 
 pub mod aabb;
 pub mod cuboid;
 pub mod disc;
-pub mod intersect;
 pub mod kdtree;
 pub mod kdtree_stream;
 pub mod outline;
@@ -16,6 +15,6 @@ pub mod revolution_profile;
 pub mod revolution_roots;
 pub mod simd4;
 pub mod sphere;
-pub mod surface;
+pub mod table;
 pub mod triangle;
 pub mod triangles;

@@ -6,7 +6,7 @@
 use super::math::trig::{arctan2, kept};
 use super::math::{EPS, PI, max_abs, unit};
 use super::real::{Plain, Real, Vec2, Vec3, Vec4};
-use super::tables::NONE;
+use super::table::NONE;
 use bytemuck::Zeroable;
 
 /// Least share: an outline of less area within the disc counts as one of this.

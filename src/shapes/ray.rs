@@ -1,10 +1,8 @@
 //! Rays and hits. Twin: `shaders/shapes/ray.wgsl`.
 
 use super::real::{Plain, Real, Vec3};
+use super::table::NONE;
 use bytemuck::Zeroable;
-
-/// Stands in a hit's `reference` when nothing was hit.
-pub const NONE: u32 = 0xffff_ffff;
 
 /// A segment of a line: the points `origin + t * direction` with `t_min < t < t_max`.
 #[repr(C)]

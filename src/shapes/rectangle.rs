@@ -3,7 +3,7 @@
 use super::math::{EPS, max_abs};
 use super::ray::{Hit, Ray};
 use super::real::{Real, Vec3};
-use super::tables::Rectangle;
+use super::table::Rectangle;
 
 /// How far beyond its edges, in edge lengths, a parallelogram still counts: neighbours that share
 /// an edge have no gap.

@@ -4,7 +4,7 @@
 use super::ray::{Hit, Ray};
 use super::real::{Real, Vec3, Vec4};
 use super::rectangle::EDGE;
-use super::tables::{Rectangle, Sphere};
+use super::table::{Rectangle, Sphere};
 
 /// Shapes of one kind that are tested at once.
 pub const LANES: usize = 4;
@@ -240,7 +240,7 @@ mod tests {
             }
             let bits = hits.map(|h| (h.t.to_bits(), h.reference, h.u.to_bits(), h.v.to_bits()));
             differ += u32::from(bits[0] != bits[1]);
-            met += u32::from(hits[1].reference != super::super::ray::NONE);
+            met += u32::from(hits[1].reference != super::super::table::NONE);
         }
         (differ, met)
     }

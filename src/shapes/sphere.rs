@@ -5,7 +5,7 @@
 use super::math::{EPS, PI, TAU, max_abs, trig::arctan2, unit};
 use super::ray::{Hit, Ray};
 use super::real::{Real, Vec2, Vec3};
-use super::tables::Sphere;
+use super::table::Sphere;
 
 /// Nearest crossing in `(t_min, hit.t)`.
 pub fn intersect_sphere(sphere: &Sphere, reference: u32, ray: &Ray, hit: &mut Hit) {

@@ -23,11 +23,11 @@ pub struct Triangle {
     pub material: u32,
     /// Second vertex.
     pub p1: Vec3,
-    /// Light index or [`NONE`](super::ray::NONE).
+    /// Light index or [`NONE`](super::table::NONE).
     pub light: u32,
     /// Third vertex; counter-clockwise seen from the side that the normal points to.
     pub p2: Vec3,
-    /// Index of its normals and texture coordinates, or [`NONE`](super::ray::NONE).
+    /// Index of its normals and texture coordinates, or [`NONE`](super::table::NONE).
     pub attributes: u32,
 }
 

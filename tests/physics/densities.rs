@@ -6,6 +6,8 @@
 
 use std::f64::consts::PI;
 
+use caustica::low_level::geometry::intersect::intersect_scene;
+use caustica::low_level::geometry::surface::surface_at;
 use caustica::low_level::lights::light::{
     eval_environment, pdf_environment, pdf_light, sample_environment, sample_light,
 };
@@ -16,9 +18,7 @@ use caustica::low_level::math::mirrored;
 use caustica::low_level::math::rng::{Rng, rng_new, rng_next};
 use caustica::low_level::math::sampling::*;
 use caustica::low_level::pack::{Packed, pack};
-use caustica::low_level::shapes::intersect::intersect_scene;
 use caustica::low_level::shapes::ray::{NONE, Ray};
-use caustica::low_level::shapes::surface::surface_at;
 use glam::{DVec3, Vec2, Vec3};
 
 use super::lab::*;

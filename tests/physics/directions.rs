@@ -3,13 +3,13 @@
 
 use std::f64::consts::PI;
 
+use caustica::low_level::geometry::intersect::intersect_scene;
+use caustica::low_level::geometry::surface::{Surface, surface_at};
 use caustica::low_level::lights::light::eval_environment;
 use caustica::low_level::materials::shading::reflectance_at;
 use caustica::low_level::pack::{Packed, pack};
 use caustica::low_level::scene::settings::{Direct, Method, Radius, RenderSettings};
-use caustica::low_level::shapes::intersect::intersect_scene;
 use caustica::low_level::shapes::ray::Ray;
-use caustica::low_level::shapes::surface::{Surface, surface_at};
 use caustica::low_level::tables::Scene;
 use glam::{DVec3, Vec3};
 

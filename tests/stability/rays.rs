@@ -3,9 +3,7 @@
 use caustica::low_level::accel::kdtree::build;
 use caustica::low_level::prepare::normalize::Normalization;
 use caustica::low_level::shapes::ray::Ray;
-use caustica::low_level::tables::{
-    KIND_TRIANGLE, NONE, REFERENCE_BITS, Scene, Triangle, reference,
-};
+use caustica::low_level::tables::{KIND_TRIANGLE, NONE, Scene, Triangle, index_of, reference};
 use glam::{DVec3, Vec3};
 
 use super::bench::{Bench, parse};
@@ -194,7 +192,7 @@ fn ball_on_giant(b: &Bench) -> Figure {
         let same = match truth {
             None => !found.is_hit(),
             Some((t, which)) => {
-                let index = found.reference & ((1 << REFERENCE_BITS) - 1);
+                let index = index_of(found.reference);
                 // toward the horizon t has no bound
                 found.is_hit()
                     && index == which

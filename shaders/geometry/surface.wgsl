@@ -1,4 +1,4 @@
-// What a hit means: twin of src/shapes/surface.rs.
+// What a hit means: twin of src/geometry/surface.rs.
 
 struct Surface {
     position: vec3f,
@@ -13,11 +13,11 @@ struct Surface {
 }
 
 fn surface_at(ray: Ray, hit: Hit) -> Surface {
-    let index = hit.reference & ((1u << REFERENCE_BITS) - 1u);
+    let index = index_of(hit.reference);
     let p = ray.origin + ray.direction * hit.t;
     var planar = UV_NATURAL;
     var s: Surface;
-    switch hit.reference >> REFERENCE_BITS {
+    switch kind_of(hit.reference) {
         //#if triangle
         case KIND_TRIANGLE: {
             let triangle = triangles[index];

@@ -1,16 +1,16 @@
 //! What a hit means: position, normals, texture coordinates, material. Twin:
-//! `shaders/shapes/surface.wgsl`.
+//! `shaders/geometry/surface.wgsl`.
 
-use super::cuboid::{cuboid_axis, cuboid_error, cuboid_normal, cuboid_project, cuboid_uv};
-use super::disc::{disc_error, disc_uv, plane_error, plane_project};
 use super::math::unit;
-use super::ray::{Hit, Ray};
 use super::real::{Real, Vec2, Vec3};
-use super::rectangle::{rectangle_error, rectangle_point};
-use super::revolution::revolution_surface;
-use super::sphere::{sphere_error, sphere_normal, sphere_project, sphere_uv};
+use super::shapes::cuboid::{cuboid_axis, cuboid_error, cuboid_normal, cuboid_project, cuboid_uv};
+use super::shapes::disc::{disc_error, disc_uv, plane_error, plane_project};
+use super::shapes::ray::{Hit, Ray};
+use super::shapes::rectangle::{rectangle_error, rectangle_point};
+use super::shapes::revolution::revolution_surface;
+use super::shapes::sphere::{sphere_error, sphere_normal, sphere_project, sphere_uv};
+use super::shapes::triangle::{triangle_error, triangle_normal, triangle_point};
 use super::tables::*;
-use super::triangle::{triangle_error, triangle_normal, triangle_point};
 
 /// The surface at a hit.
 #[derive(Clone, Copy, Debug)]
@@ -38,11 +38,11 @@ pub struct Surface {
 /// The surface at `hit` of `ray`.
 #[inline(always)]
 pub fn surface_at(scene: &Scene, ray: &Ray, hit: &Hit) -> Surface {
-    let index = (hit.reference & ((1 << REFERENCE_BITS) - 1)) as usize;
+    let index = index_of(hit.reference) as usize;
     let p = ray.origin + ray.direction * hit.t;
     let mut planar = UV_NATURAL;
     let mut s: Surface;
-    match hit.reference >> REFERENCE_BITS {
+    match kind_of(hit.reference) {
         KIND_TRIANGLE => {
             let triangle = &scene.triangles[index];
             let n = triangle_normal(triangle);

@@ -1,12 +1,8 @@
-// A ray against the whole scene: twin of src/shapes/intersect.rs.
-
-fn index_of(reference: u32) -> u32 {
-    return reference & ((1u << REFERENCE_BITS) - 1u);
-}
+// A ray against the whole scene: twin of src/geometry/intersect.rs.
 
 //#if unbounded
 fn intersect_unbounded(reference: u32, ray: Ray, hit: ptr<function, Hit>) {
-    switch reference >> REFERENCE_BITS {
+    switch kind_of(reference) {
         //#if sphere
         case KIND_SPHERE: {
             intersect_sphere(scene.spheres[index_of(reference)], reference, ray, hit);
@@ -36,7 +32,7 @@ fn intersect_revolution(reference: u32, ray: Ray, hit: ptr<function, Hit>) {
 //#if kdtree
 // Whether a leaf's references, up to `last`, go on with a shape of this kind.
 fn names(kind: u32, i: u32, last: u32) -> bool {
-    return i < last && refs[i] >> REFERENCE_BITS == kind;
+    return i < last && kind_of(refs[i]) == kind;
 }
 
 // The references stand in the order of their kinds. Each kind has a loop of its own, since a

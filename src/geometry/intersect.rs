@@ -1,18 +1,18 @@
 //! A ray against the whole scene: shapes outside the kd-tree one by one, then the kd-tree.
-//! Twin: `shaders/shapes/intersect.wgsl`.
+//! Twin: `shaders/geometry/intersect.wgsl`.
 
-use super::cuboid::intersect_cuboid;
-use super::disc::{intersect_disc, intersect_plane};
-use super::kdtree::{Primitives, Tree, traverse_any, traverse_closest};
-use super::kdtree_stream::{Rays, fetch, traverse_closest_many};
-use super::ray::{Hit, Ray};
-use super::rectangle::intersect_rectangle;
-use super::revolution::intersect_patch;
-use super::simd4::LANES;
-use super::sphere::intersect_sphere;
+use super::shapes::cuboid::intersect_cuboid;
+use super::shapes::disc::{intersect_disc, intersect_plane};
+use super::shapes::kdtree::{Primitives, Tree, traverse_any, traverse_closest};
+use super::shapes::kdtree_stream::{Rays, fetch, traverse_closest_many};
+use super::shapes::ray::{Hit, Ray};
+use super::shapes::rectangle::intersect_rectangle;
+use super::shapes::revolution::intersect_patch;
+use super::shapes::simd4::LANES;
+use super::shapes::sphere::intersect_sphere;
+use super::shapes::triangle::{RayShear, intersect_triangle};
+use super::shapes::triangles::intersect_triangles;
 use super::tables::*;
-use super::triangle::{RayShear, intersect_triangle};
-use super::triangles::intersect_triangles;
 
 /// A ray against the shape that `reference` names.
 #[inline]
@@ -23,8 +23,8 @@ pub fn intersect_primitive(
     ray: &Ray,
     hit: &mut Hit,
 ) {
-    let index = (reference & ((1 << REFERENCE_BITS) - 1)) as usize;
-    match reference >> REFERENCE_BITS {
+    let index = index_of(reference) as usize;
+    match kind_of(reference) {
         KIND_TRIANGLE => intersect_triangle(&scene.triangles[index], reference, shear, ray, hit),
         KIND_SPHERE => intersect_sphere(&scene.spheres[index], reference, ray, hit),
         KIND_RECTANGLE => intersect_rectangle(&scene.rectangles[index], reference, ray, hit),
@@ -83,9 +83,8 @@ impl Primitives for Shapes<'_> {
     /// Of the triangles both ends: some lie in two cache lines.
     #[inline(always)]
     fn expect(&self, references: &[u32]) {
-        for reference in references.iter().take_while(|&r| r >> REFERENCE_BITS == KIND_TRIANGLE) {
-            let triangle =
-                self.scene.triangles.get((reference & ((1 << REFERENCE_BITS) - 1)) as usize);
+        for reference in references.iter().take_while(|r| kind_of(**r) == KIND_TRIANGLE) {
+            let triangle = self.scene.triangles.get(index_of(*reference) as usize);
             fetch(triangle);
             fetch(triangle.map(|triangle| &triangle.attributes));
         }
@@ -96,7 +95,7 @@ impl Primitives for Shapes<'_> {
     fn intersect(&mut self, references: &[u32], ray: &Ray, hit: &mut Hit) {
         let Shapes { scene, shear, any, .. } = *self;
         let shear = &shear;
-        let count = references.iter().take_while(|&r| r >> REFERENCE_BITS == KIND_TRIANGLE).count();
+        let count = references.iter().take_while(|r| kind_of(**r) == KIND_TRIANGLE).count();
         let (triangles, others) = references.split_at(count);
         if !triangles.is_empty() {
             intersect_triangles(&scene.triangles, triangles, shear, ray, hit);
@@ -106,7 +105,7 @@ impl Primitives for Shapes<'_> {
             if any && hit.reference != NONE {
                 return;
             }
-            rest = match first >> REFERENCE_BITS {
+            rest = match kind_of(first) {
                 KIND_SPHERE | KIND_RECTANGLE => intersect_fours(scene, shear, rest, ray, hit),
                 KIND_REVOLUTION if has_patch_set(scene) => {
                     self.put_off |= 1 << (first & (PATCH_SET as u32 - 1));
@@ -146,7 +145,7 @@ fn intersect_fours<'a>(
 ) -> &'a [u32] {
     let lane = LANES as u32 - 1;
     let base = references[0] & !lane;
-    let four = (base & ((1 << REFERENCE_BITS) - 1)) as usize / LANES;
+    let four = index_of(base) as usize / LANES;
     let mut mask = 0;
     let mut count = 0;
     while count < references.len() && references[count] & !lane == base {
@@ -154,11 +153,11 @@ fn intersect_fours<'a>(
         count += 1;
     }
     let (these, others) = references.split_at(count);
-    if base >> REFERENCE_BITS == KIND_RECTANGLE
+    if kind_of(base) == KIND_RECTANGLE
         && let Some(rectangles) = scene.four_rectangles.get(four)
     {
         rectangles.intersect(base, mask, ray, hit);
-    } else if base >> REFERENCE_BITS == KIND_SPHERE
+    } else if kind_of(base) == KIND_SPHERE
         && let Some(spheres) = scene.four_spheres.get(four)
     {
         spheres.intersect(base, mask, ray, hit);

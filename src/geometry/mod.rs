@@ -1,0 +1,7 @@
+//! The shapes of a scene together: the nearest hit of a ray, and the surface there. Each file is the
+//! twin of a file in `shaders/geometry/`.
+
+use super::{math, real, shapes, tables};
+
+pub mod intersect;
+pub mod surface;
