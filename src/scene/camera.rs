@@ -1,4 +1,4 @@
-//! Meaning of the camera, the film, the render settings, the lights and the environment.
+//! Conversion and checks of the camera, film, render settings, lights and environment.
 
 use glam::DVec3;
 
@@ -10,7 +10,7 @@ use super::validate::Item;
 use super::{Camera, Environment, Film, Light};
 use crate::settings::RenderSettings;
 
-/// Least sine of the angle between two directions that count as different.
+/// Sine of the angle below which two directions count as parallel.
 const LEAST_SINE: f64 = 1e-9;
 
 pub(super) fn camera(loader: &mut Loader) -> Option<Camera> {
@@ -74,7 +74,7 @@ pub(super) fn settings(loader: &mut Loader) -> Option<RenderSettings> {
         let entries =
             value.into_iter().flat_map(|value| value.entries().map(|(.., number)| number));
         for node in value.into_iter().chain(entries) {
-            // A number below 0 that has to be whole is reported by the schema.
+            // The schema check reports negative counts.
             if node.number().is_some_and(|number| number.is_finite() && !holds(number)) {
                 let message = format!("`render.{key}` is out of range");
                 let label = format!("expected {expected}");
@@ -157,7 +157,7 @@ pub(super) fn environment(
     })
 }
 
-/// A direction as a unit vector; reports a length of 0.
+/// Normalizes a direction; reports an error if its length is 0 or not finite.
 pub(super) fn unit(
     loader: &mut Loader,
     item: &Item,
