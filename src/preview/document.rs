@@ -34,7 +34,7 @@ pub enum SaveError {
     #[error(transparent)]
     File(#[from] FileError),
     /// The file on disk is not TOML.
-    #[error("{} is not TOML any more: {what}; mend it first", file.display())]
+    #[error("{} is not valid TOML: {what}; fix it first", file.display())]
     Toml {
         /// The scene file.
         file: PathBuf,
@@ -42,7 +42,11 @@ pub enum SaveError {
         what: String,
     },
     /// The edited file would not be a valid scene.
-    #[error("{} would not be a scene: {}", file.display(), errors.errors.first().map_or("", |e| e.message()))]
+    #[error(
+        "{} would not be a valid scene: {}",
+        file.display(),
+        errors.errors.first().map_or("", |e| e.message())
+    )]
     Scene {
         /// The scene file.
         file: PathBuf,
@@ -322,9 +326,10 @@ photons = 1000 # few
         let before = of(TEXT);
         let mut after = before.clone();
         after.settings.photons = 20_000;
-        for (text, word) in
-            [("version = ", "not TOML"), (&TEXT.replace("0.5", "1.5"), "would not be a scene")]
-        {
+        for (text, word) in [
+            ("version = ", "not valid TOML"),
+            (&TEXT.replace("0.5", "1.5"), "not be a valid scene"),
+        ] {
             std::fs::write(&file, text).unwrap();
             let error =
                 save(&file, &Allowance::default(), &before, &after).unwrap_err().to_string();

@@ -179,7 +179,7 @@ pub(super) fn bytes(scene: &Scene, plan: &Plan) -> u64 {
 fn told(error: &DeviceError) -> String {
     match error {
         DeviceError::NoSuchDevice { available, .. } => {
-            format!("{error}; there is: {}", available.join(", "))
+            format!("{error}; available: {}", available.join(", "))
         }
         DeviceError::Engine(_) => error.to_string(),
     }

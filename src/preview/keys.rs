@@ -66,14 +66,14 @@ const SHIFT: f64 = 0.02;
 
 /// All key bindings and mouse actions.
 pub const TABLE: &[Line] = &[
-    mouse("drag", "turn the camera about its target"),
-    mouse("right drag, Shift drag", "move the camera across the view"),
+    mouse("drag", "orbit the camera about its target"),
+    mouse("right drag, Shift drag", "pan the camera"),
     mouse("wheel", "move the camera nearer or farther"),
     mouse("click", "focus there"),
-    mouse("drag the line", "move the line between two pictures"),
+    mouse("drag the line", "move the line between two images"),
     Line {
         keys: "arrows",
-        what: "turn the camera",
+        what: "orbit the camera",
         bindings: &[
             (plain(Key::ArrowLeft), Command::Act(Action::Orbit(-STEP, 0.0))),
             (plain(Key::ArrowRight), Command::Act(Action::Orbit(STEP, 0.0))),
@@ -83,7 +83,7 @@ pub const TABLE: &[Line] = &[
     },
     Line {
         keys: "Shift arrows",
-        what: "move the camera across the view",
+        what: "pan the camera",
         bindings: &[
             (shift(Key::ArrowLeft), Command::Act(Action::Pan(SHIFT, 0.0))),
             (shift(Key::ArrowRight), Command::Act(Action::Pan(-SHIFT, 0.0))),
@@ -101,7 +101,7 @@ pub const TABLE: &[Line] = &[
     },
     Line {
         keys: "Home",
-        what: "the camera of the scene file",
+        what: "reset the camera to the scene file",
         bindings: &[(plain(Key::Home), Command::Act(Action::Home))],
     },
     Line {
@@ -152,7 +152,7 @@ pub const TABLE: &[Line] = &[
     },
     Line {
         keys: "A",
-        what: "start radius chosen by the program",
+        what: "automatic start radius",
         bindings: &[(plain(Key::A), Command::Act(Action::AutoRadius))],
     },
     Line {
@@ -162,7 +162,7 @@ pub const TABLE: &[Line] = &[
     },
     Line {
         keys: ", .",
-        what: "half, twice the photons of a pass",
+        what: "halve, double the photons per pass",
         bindings: &[
             (sign(Key::Comma), Command::Act(Action::Photons(0.5))),
             (sign(Key::Period), Command::Act(Action::Photons(2.0))),
@@ -190,7 +190,7 @@ pub const TABLE: &[Line] = &[
     },
     Line {
         keys: "S",
-        what: "save the picture",
+        what: "save the image",
         bindings: &[(plain(Key::S), Command::Act(Action::SavePicture))],
     },
     Line {

@@ -21,7 +21,7 @@ pub fn settings(ui: &mut Ui, session: &mut Session) -> Vec<Command> {
     let mut asked = Vec::new();
     ScrollArea::vertical().show(ui, |ui| {
         ui.add_space(4.0);
-        section(ui, "Picture", |ui| picture(ui, session));
+        section(ui, "Image", |ui| picture(ui, session));
         section(ui, "Render", |ui| render(ui, session));
         section(ui, "Camera", |ui| camera(ui, session));
         ui.separator();
@@ -31,14 +31,14 @@ pub fn settings(ui: &mut Ui, session: &mut Session) -> Vec<Command> {
                     asked.push(command);
                 }
             };
-            button("Save picture", Command::Act(Action::SavePicture));
+            button("Save image", Command::Act(Action::SavePicture));
             button("Save scene", Command::Act(Action::SaveScene));
-            button(if session.paused { "Go on" } else { "Halt" }, Command::Act(Action::Pause));
-            button("Camera of the file", Command::Act(Action::Home));
+            button(if session.paused { "Continue" } else { "Pause" }, Command::Act(Action::Pause));
+            button("Reset camera", Command::Act(Action::Home));
             button("Help", Command::Help);
         });
         if session.is_edited() {
-            ui.weak("Not all of this is in the scene file.");
+            ui.weak("Some changes are not in the scene file.");
         }
     });
     asked
@@ -87,7 +87,7 @@ fn picture(ui: &mut Ui, session: &mut Session) {
         );
     });
     if let Some(beside) = &session.beside {
-        row(ui, "beside", |ui| {
+        row(ui, "compare with", |ui| {
             ui.label(&beside.name);
         });
     }
@@ -201,18 +201,18 @@ fn camera(ui: &mut Ui, session: &mut Session) {
 pub fn figures(frame: &Frame, passes: u32, paused: bool) -> [String; 2] {
     let per_second = f64::from(frame.passes) / frame.elapsed.as_secs_f64().max(1e-9);
     let made = if frame.quick {
-        let halted = if paused { "halted" } else { "the whole one follows" };
+        let halted = if paused { "paused" } else { "the full-size image follows" };
         let Picture { width, height, .. } = frame.picture;
-        format!("small picture, {width} × {height}, pass {}; {halted}", frame.passes)
+        format!("small image, {width} × {height}, pass {}; {halted}", frame.passes)
     } else {
         let rest = match frame.passes >= passes {
             true => ", done",
-            false if paused => ", halted",
+            false if paused => ", paused",
             false => "",
         };
         format!("pass {} of {passes}{rest}", frame.passes)
     };
-    let error = frame.error.map_or("error not known before pass 4".to_owned(), |error| {
+    let error = frame.error.map_or("error available from pass 4".to_owned(), |error| {
         let [stated, noise, bias] =
             [error.stated, error.noise, error.bias].map(|share| 100.0 * share);
         format!("error {stated:.1} % (noise {noise:.1} %, bias {bias:.1} %)")

@@ -83,7 +83,7 @@ impl Quick {
         let plan = Plan { cancel: cancel.clone(), ..plan };
         let setup = Setup {
             device: "cpu".to_owned(),
-            why: "a small picture".to_owned(),
+            why: "a small image".to_owned(),
             settings: plan.settings.clone(),
             bytes: bytes(&packed.scene, &plan),
         };

@@ -328,12 +328,12 @@ impl Session {
             self.number = self.worker.scene(self.scene.clone(), self.sent.clone());
             let scene = self.scene.clone();
             self.tell_beside(Some(&scene));
-            self.notice = "the scene was read anew".to_owned();
+            self.notice = "the scene was reloaded".to_owned();
         }
     }
 
     fn save_picture(&mut self) -> Result<String, String> {
-        let frame = self.whole().ok_or("not saved: the whole picture is still to come")?;
+        let frame = self.whole().ok_or("not saved: the full-size image is not ready yet")?;
         film::check_outputs(&self.outputs).map_err(|error| error.to_string())?;
         let scene = Arc::make_mut(&mut self.scene);
         (scene.camera, scene.film) = (self.sent.camera, self.sent.film);

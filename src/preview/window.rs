@@ -33,7 +33,7 @@ pub enum WindowError {
     #[error("no window can be opened: {0}")]
     NoDisplay(String),
     /// No graphics device can draw the window.
-    #[error("no device draws windows: {0}")]
+    #[error("no graphics device can draw the window: {0}")]
     NoDevice(String),
     /// The comparison image cannot be read.
     #[error(transparent)]
@@ -181,7 +181,7 @@ impl Window {
         let session = &self.session;
         let figures = match session.frame() {
             Some(frame) => panels::figures(&frame, session.now.settings.passes, session.paused),
-            None => ["the first picture is on its way".to_owned(), String::new()],
+            None => ["rendering the first image".to_owned(), String::new()],
         };
         for line in figures {
             ui.add(egui::Label::new(line).truncate());
@@ -198,8 +198,8 @@ impl Window {
             return;
         };
         let title = match self.session.trouble {
-            Some(_) => "Error in the scene; the last picture stays",
-            None => "There are no more pictures",
+            Some(_) => "Error in the scene; the last image stays",
+            None => "Rendering has stopped",
         };
         egui::Window::new(title)
             .id(egui::Id::unique("trouble"))
@@ -240,7 +240,7 @@ impl Window {
                 painter.image(texture.id(), rect, all, Color32::WHITE);
             }
             None => {
-                let text = format!("{} is on its way", view.word());
+                let text = format!("rendering the {} view", view.word());
                 painter.text(
                     rect.center(),
                     Align2::CENTER_CENTER,

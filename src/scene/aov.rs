@@ -125,8 +125,10 @@ impl Aovs {
                 .find(|aov| aov.word() == word)
                 .map(|aov| Self(1 << aov as u32))
                 .ok_or_else(|| match nearest(word) {
-                    Some(near) => format!("there is no `{word}`; did you mean `{near}`?"),
-                    None => format!("there is no `{word}`; there is: {}, all", words().join(", ")),
+                    Some(near) => format!("unknown channel `{word}`; did you mean `{near}`?"),
+                    None => {
+                        format!("unknown channel `{word}`; expected {} or all", words().join(", "))
+                    }
                 }),
         };
         text.split(',')
@@ -196,10 +198,10 @@ mod tests {
     fn slips_are_named() {
         assert_eq!(
             Aovs::parse("albedo,nornal").unwrap_err(),
-            "there is no `nornal`; did you mean `normal`?"
+            "unknown channel `nornal`; did you mean `normal`?"
         );
         for far in ["", "albedo,", "cryptomatte"] {
-            assert!(Aovs::parse(far).unwrap_err().contains("there is: albedo, normal"), "{far}");
+            assert!(Aovs::parse(far).unwrap_err().contains("expected albedo, normal"), "{far}");
         }
     }
 

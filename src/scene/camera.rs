@@ -34,7 +34,7 @@ pub(super) fn camera(loader: &mut Loader) -> Option<Camera> {
     let aperture = file.aperture.0;
     if aperture > 0.0 && file.focus.is_none() {
         let message = "`focus` is missing: a lens with an aperture needs it";
-        let help = format!("the target's distance is focus = {:.6}", view.length());
+        let help = format!("to focus on the target, write focus = {:.6}", view.length());
         let label = "expected a `focus` as well";
         loader.report.error(item.node.span_of("aperture"), message, label, Some(help));
     }
@@ -52,7 +52,7 @@ pub(super) fn film(loader: &mut Loader) -> Option<Film> {
         within("picture-pixels", "pixels", pixels, loader.allowance.picture_pixels)
     {
         let span = loader.document.item("film").map_or(0..0, |item| item.node.span_of("width"));
-        let message = format!("the picture is too large: {refusal}");
+        let message = format!("the image is too large: {refusal}");
         loader.report.error(span, message, "expected fewer pixels", refusal.help());
     }
     Some(Film {
@@ -121,7 +121,7 @@ pub(super) fn light(loader: &mut Loader, item: &Item, file: LightFile) -> Option
         }
     };
     if power.iter().all(|&channel| channel == 0.0) {
-        let message = format!("{} gives no light", item.path);
+        let message = format!("{} emits no light", item.path);
         loader.report.warn(item.node.span_of(power_key), message, "zero in every channel");
     }
     Some(light)

@@ -28,7 +28,7 @@ impl Format {
             [0x76, 0x2f, 0x31, 0x01, ..] => Ok(Self::Exr),
             _ => match image::guess_format(head) {
                 Ok(other) => Err(format!("it is a {} file", other.extensions_str()[0])),
-                Err(_) => Err("its content is not that of a picture that can be read".to_owned()),
+                Err(_) => Err("it is not a supported image".to_owned()),
             },
         }
     }
@@ -73,7 +73,7 @@ pub(super) fn jpeg_fault(mut file: impl Read) -> Option<&'static str> {
             0xda => {
                 let is_split = *segment.first()? < components;
                 return is_split.then_some(
-                    "it is a JPEG file of several sequential scans, which would be garbled",
+                    "it is a JPEG file with several sequential scans, which is not supported",
                 );
             }
             _ => {}

@@ -209,7 +209,7 @@ impl ImageStore {
         if space == Some(ColorSpace::Srgb) && format.is_linear() {
             return Err(ImageFault {
                 key: "color_space",
-                message: format!("{} holds linear numbers", path.display()),
+                message: format!("{} contains linear values", path.display()),
                 expected: "expected \"linear\", or nothing",
                 help: None,
                 missing: false,

@@ -236,7 +236,7 @@ impl Refusal {
     pub fn help(&self) -> Option<String> {
         match self {
             Self::Outside { .. } => {
-                Some("put it into that folder, or allow another one (--root)".to_owned())
+                Some("move it into that folder, or allow another one: --root DIR".to_owned())
             }
             Self::TooMuch { limit, .. } => {
                 Some(format!("make it smaller, or raise the limit: --limit {limit}=N"))
@@ -255,11 +255,11 @@ impl fmt::Display for Refusal {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Outside { root } => {
-                write!(f, "it lies outside of {}, which holds all that may be read", root.display())
+                write!(f, "it lies outside of {}, the only folder that may be read", root.display())
             }
             Self::NoFile => f.write_str("it is not a regular file"),
             Self::TooMuch { limit, what, found, most } => {
-                write!(f, "{found} {what}, and the limit `{limit}` leaves {most}")
+                write!(f, "{found} {what}, but the limit `{limit}` leaves {most}")
             }
             Self::Io(error) => error.fmt(f),
         }

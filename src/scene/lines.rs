@@ -221,7 +221,7 @@ pub(super) fn finite(word: &str) -> Result<f64, String> {
         return Ok(number);
     }
     let why = if word.contains(".#") {
-        ", but how a program writes what it could not compute"
+        ", but the result of an undefined computation"
     } else if word.contains(',') {
         "; decimals take a point, not a comma"
     } else {

@@ -76,7 +76,7 @@ pub fn parse_within(
             if let Err(refusal) = within("shapes", "shapes", count, allowance.shapes) {
                 report.error(
                     root.span_of("shapes"),
-                    format!("too much: {refusal}"),
+                    format!("the scene is too large: {refusal}"),
                     "here",
                     refusal.help(),
                 );
@@ -119,7 +119,7 @@ impl<'l, 'a> Loader<'l, 'a> {
             && let Some(version) = item.read::<u32>(self.report)
             && version != 1
         {
-            let message = format!("version {version} of the scene format is not known");
+            let message = format!("scene format version {version} is not supported");
             self.report.error(item.node.span(), message, "expected 1", None);
         }
         self.undefined("materials", "shapes", "material");
@@ -181,7 +181,7 @@ impl<'l, 'a> Loader<'l, 'a> {
             self.unused("materials", "shapes", "material");
             self.unused("textures", "materials", "reflectance");
             if !scene.is_lit() {
-                let message = "the scene has no light; the picture will be black";
+                let message = "the scene has no light; the image will be black";
                 let label = "expected an emission above 0, [[lights]] or [environment]";
                 self.report.warn(0..0, message, label);
             }

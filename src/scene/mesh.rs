@@ -76,7 +76,7 @@ pub(super) fn load(
     let allowed = within("mesh-triangles", "triangles", scan.triangles, each)
         .and_then(|()| within("triangles", "triangles", scan.triangles, all));
     if let Err(refusal) = allowed {
-        let message = format!("too much in {}: {refusal}", request.file);
+        let message = format!("{} is too large: {refusal}", request.file);
         loader.report.error(named_at, message, "expected a mesh with fewer", refusal.help());
         return None;
     }
@@ -102,7 +102,7 @@ pub(super) fn load(
     if loader.spent.steps.are_used_up() {
         let message =
             format!("the faces of {} are too intricate to cut into triangles", request.file);
-        let help = "triangulate the mesh where it comes from";
+        let help = "triangulate the mesh in the program that exports it";
         loader.report.error(
             named_at,
             message,

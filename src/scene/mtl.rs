@@ -90,7 +90,7 @@ impl Library {
                 last.body.end = lines[..begin].rfind('\n').map_or(0, |end| end + 1);
             }
             if name.is_empty() {
-                warnings.push(statement.at, "`newmtl` names nothing", "expected a name");
+                warnings.push(statement.at, "`newmtl` has no name", "expected a name");
             }
             entries.push(Entry { name: span, body: line_end(lines, begin)..lines.len() });
         }
@@ -240,8 +240,10 @@ impl<'t> Reader<'_, 't> {
             return None;
         }
         if let Some((_, at)) = words.get(count) {
-            let message =
-                format!("`{key}` has {} values, of which the first {count} count", words.len());
+            let message = format!(
+                "`{key}` has {} values, of which only the first {count} count",
+                words.len()
+            );
             self.warnings.push(at.clone(), message, expected(count));
         }
         let mut numbers = Vec::new();
@@ -305,7 +307,7 @@ impl<'t> Reader<'_, 't> {
         self.used.push("map_Kd");
         let (name, at) = map.name();
         if name.is_empty() {
-            self.faults.push(map.at.clone(), "`map_Kd` names nothing", "expected a name");
+            self.faults.push(map.at.clone(), "`map_Kd` names no file", "expected a file name");
             return grey;
         }
         if name.starts_with('-') {

@@ -45,7 +45,7 @@ pub(super) fn shapes(
         }
         ShapeFile::Plane { point, normal, material, surface } => {
             if surface.emission.rgb() != [0.0; 3] {
-                let message = "an infinite plane cannot shine: its power would be infinite";
+                let message = "an infinite plane cannot emit: its power would be infinite";
                 let help = Some("use a rectangle or an [environment]".to_owned());
                 let label = "expected no emission here";
                 loader.report.error(item.node.span_of("emission"), message, label, help);

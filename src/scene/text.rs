@@ -54,7 +54,7 @@ pub(super) fn parse<T>(
     }
     if text.contains('\r') && !text.contains('\n') {
         let end = text.find('\r').unwrap_or(0);
-        let help = Some("save it with line ends of Unix or Windows".to_owned());
+        let help = Some("save it with Unix or Windows line endings".to_owned());
         report.error(
             end..end,
             "the lines end in carriage returns alone",
@@ -66,7 +66,7 @@ pub(super) fn parse<T>(
     let (table, faults) = DeTable::parse_recoverable(&text);
     for fault in &faults {
         let span = fault.span().unwrap_or(0..0);
-        let help = Some("the file is not TOML here; other checks follow once it is".to_owned());
+        let help = Some("the file is not TOML here; other checks run once it is".to_owned());
         report.error(span, fault.message(), "here", help);
     }
     if !report.errors.is_empty() {
