@@ -94,7 +94,7 @@ struct Surface {
     /// Unit normals; zero for a triangle without area.
     normals: Vec<DVec3>,
     vertices: Vec<[u32; 3]>,
-    /// Whether photons are stored on a triangle.
+    /// True for each triangle on which photons are stored.
     rough: Vec<bool>,
 }
 

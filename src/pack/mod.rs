@@ -225,16 +225,16 @@ impl Packed {
             let brought = self.brought.get(i).copied().unwrap_or(0.0);
             if path && matches!(light.kind, LIGHT_POINT | LIGHT_SPOT | LIGHT_SUN) {
                 return Some(format!(
-                    "path tracing cannot meet {name}, which has no size: the light that it casts by \
-                     mirrors or through glass is missing from the picture and from its stated error; \
-                     use --method sppm"
+                    "path tracing cannot meet {name}, which has no size: the light that it casts \
+                     by mirrors or through glass is missing from the picture and from its stated \
+                     error; use --method sppm"
                 ));
             }
             (!path && photons < FEW_PHOTONS && brought > LEAST_SHARE).then(|| {
                 format!(
-                    "{name} sends {photons:.0} photons a pass but brings {:.1} % of the light: what it \
-                     casts by mirrors or through glass may be missing from the picture and from its \
-                     stated error; raise --photons",
+                    "{name} sends {photons:.0} photons a pass but brings {:.1} % of the light: \
+                     what it casts by mirrors or through glass may be missing from the picture and \
+                     from its stated error; raise --photons",
                     100.0 * brought
                 )
             })

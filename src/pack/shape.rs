@@ -123,7 +123,7 @@ pub fn pack_shapes(
     Ok((primitives, references, emitters))
 }
 
-/// Whether a profile ends where it begins, off the axis.
+/// Returns whether a profile ends where it begins, off the axis.
 fn is_loop(segments: &[Vec<DVec2>]) -> bool {
     let ends = segments.first().and_then(|s| s.first()).zip(segments.last().and_then(|s| s.last()));
     ends.is_some_and(|(first, last)| first == last && first.x != 0.0)

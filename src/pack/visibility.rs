@@ -60,7 +60,7 @@ impl Visibility {
         0.0
     }
 
-    /// Whether the camera sees a point close to `position`.
+    /// Returns whether the camera sees a point close to `position`.
     pub fn is_seen(&self, position: Vec3) -> bool {
         (0..NEAR_GRIDS).any(|grid| self.counts.contains_key(&self.cell(position, grid).0))
     }

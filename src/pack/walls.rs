@@ -32,7 +32,7 @@ struct Floor {
     place: FloorId,
     /// Edges of a mesh region that are not on the outline.
     edges: Vec<[DVec3; 2]>,
-    /// Whether to search for walls.
+    /// True if walls are searched for on it.
     walls: bool,
 }
 
@@ -82,7 +82,7 @@ struct Foot {
     from: DVec3,
     to: DVec3,
     up: DVec3,
-    /// Whether it counts on both sides of the floor.
+    /// True if it counts on both sides of the floor.
     both: bool,
 }
 
@@ -275,7 +275,7 @@ fn foot(floor: &Floor, up: DVec3, polygon: &Polygon) -> Option<Foot> {
     Some(Foot { from, to, up, both: false })
 }
 
-/// Whether a foot crosses the inside of an outline.
+/// Returns whether a foot crosses the inside of an outline.
 fn within(outline: &Outline, from: DVec3, to: DVec3) -> bool {
     [outline.dual_u, outline.dual_v].iter().all(|dual| {
         let place = |p: DVec3| (p - outline.origin.to_double()).dot(dual.to_double());

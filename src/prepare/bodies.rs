@@ -52,7 +52,7 @@ pub struct Bodies {
     pub all: Vec<Body>,
     /// Body indices of each shape: none, one, or one per triangle.
     pub of: Vec<Vec<u32>>,
-    /// Whether bodies may overlap.
+    /// True if bodies may overlap.
     pub nested: bool,
 }
 

@@ -49,8 +49,8 @@ impl Normalization {
         Self { center, unit: radius.log2().ceil().exp2(), radius }
     }
 
-    /// Whether f32 has enough precision, in scene space, for a sphere with this world center and
-    /// radius.
+    /// Returns whether f32 has enough precision, in scene space, for a sphere with this world
+    /// center and radius.
     pub fn suits(&self, center: DVec3, radius: f64) -> bool {
         const SLACK: f64 = 16.0;
         let off = center.distance(self.center);

@@ -13,7 +13,7 @@ const LEAST_FACING: f64 = 1e-3;
 /// Number of steps along a profile segment.
 const STEPS: u32 = 64;
 
-/// Whether a shape is, or contains, a closed body that faces inward and lies in no other.
+/// Returns whether a shape is, or contains, a closed body that faces inward and lies in no other.
 pub fn faces_inward(kind: &ShapeKind) -> bool {
     match kind {
         ShapeKind::Mesh(mesh) => mesh_faces_inward(mesh),

@@ -20,7 +20,7 @@ pub struct Part {
     pub low: DVec3,
     /// Maximum corner of the bounding box.
     pub high: DVec3,
-    /// Whether every edge is used once in each direction.
+    /// True if every edge is used once in each direction.
     pub closed: bool,
 }
 

@@ -142,7 +142,7 @@ fn replace(old: &mut Value, mut new: Value) {
     *old = new;
 }
 
-/// Whether two numbers are equal, so that the old notation can stay.
+/// Returns whether two numbers are equal, so that the old notation can stay.
 fn same(old: &Value, new: &Value) -> bool {
     number(old).zip(number(new)).is_some_and(|(old, new)| old == new)
 }
@@ -196,7 +196,7 @@ impl Watch {
         }
     }
 
-    /// Whether any file has changed since the last call.
+    /// Returns whether any file has changed since the last call.
     pub fn changed(&mut self) -> bool {
         self.0.iter_mut().fold(false, |changed, (file, before)| {
             let now = stamp(file);

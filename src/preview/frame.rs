@@ -31,7 +31,7 @@ pub struct RenderRequest {
 }
 
 impl RenderRequest {
-    /// Whether both requests need the same passes; only the number of passes may differ.
+    /// Returns whether both requests need the same passes; only the number of passes may differ.
     pub fn same_passes(&self, other: &Self) -> bool {
         let passes = self.settings.passes;
         let settings = RenderSettings { passes, ..other.settings.clone() };
@@ -57,7 +57,7 @@ pub struct Setup {
 pub struct Frame {
     /// Number of the [`RenderRequest`] that it belongs to.
     pub number: u64,
-    /// Whether it is a small preview image.
+    /// True if it is a small preview image.
     pub quick: bool,
     /// Linear radiance.
     pub picture: Picture,

@@ -81,12 +81,12 @@ impl Full {
         self.thread.thread().unpark();
     }
 
-    /// Whether the engine is ready, so that the small preview can stop.
+    /// Returns whether the engine is ready, so that the small preview can stop.
     pub fn is_made(&self) -> bool {
         self.control.made.load(Ordering::Relaxed)
     }
 
-    /// Whether [`Self::join`] returns at once.
+    /// Returns whether [`Self::join`] returns at once.
     pub fn is_finished(&self) -> bool {
         self.thread.is_finished()
     }

@@ -25,7 +25,7 @@ pub enum Command {
 pub struct Chord {
     /// The key.
     pub key: Key,
-    /// Whether Ctrl (Command on a Mac) is held.
+    /// True if Ctrl (Command on a Mac) is held.
     pub control: bool,
     /// Required state of Shift; `None` accepts both, for keys whose sign may need Shift.
     pub shift: Option<bool>,
@@ -128,7 +128,8 @@ pub const TABLE: &[Line] = &[
     },
     Line {
         keys: "1 to 9, 0",
-        what: "views: picture, direct, caustic, indirect, albedo, normal, depth, radius, photons, variance",
+        what: "views: picture, direct, caustic, indirect, albedo, normal, depth, radius, photons, \
+               variance",
         bindings: &[
             (plain(Key::Num1), Command::Act(Action::View(View::Picture))),
             (plain(Key::Num2), Command::Act(Action::View(View::Direct))),

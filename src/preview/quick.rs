@@ -99,7 +99,7 @@ impl Quick {
         self.passes.step(&mut self.engine, PASSES, board)
     }
 
-    /// Whether all passes are done.
+    /// Returns whether all passes are done.
     pub fn is_done(&self) -> bool {
         self.passes.done >= PASSES
     }

@@ -92,7 +92,7 @@ pub struct Session {
     pub device: Wanted,
     /// View of the image.
     pub view: View,
-    /// Whether the full-size render is paused.
+    /// True if the full-size render is paused.
     pub paused: bool,
     /// Image to compare with.
     pub beside: Option<Beside>,
@@ -151,7 +151,7 @@ impl Session {
         &self.scene.name
     }
 
-    /// Whether camera, film or settings differ from the scene file.
+    /// Returns whether camera, film or settings differ from the scene file.
     pub fn is_edited(&self) -> bool {
         self.now != self.saved
     }

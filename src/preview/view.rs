@@ -101,7 +101,7 @@ pub struct Scale {
     pub low: f64,
     /// Value at the bright end.
     pub high: f64,
-    /// Whether equal steps are equal ratios.
+    /// True if equal steps are equal ratios.
     pub logarithmic: bool,
     /// Unit of the values.
     pub unit: &'static str,

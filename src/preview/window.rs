@@ -157,7 +157,7 @@ struct Window {
     other: Painted,
     help: bool,
     panel: bool,
-    /// Whether the mouse drags the dividing line.
+    /// True if the mouse drags the dividing line.
     gripped: bool,
 }
 

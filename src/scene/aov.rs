@@ -76,7 +76,7 @@ impl Aov {
         }
     }
 
-    /// Whether it requires the kernel `aov_trace`.
+    /// Returns whether it requires the kernel `aov_trace`.
     pub fn is_traced(self) -> bool {
         !matches!(self, Self::Caustic | Self::Indirect | Self::Photons | Self::Variance)
     }
@@ -88,12 +88,12 @@ impl Aov {
 pub struct Aovs(u32);
 
 impl Aovs {
-    /// Whether the set contains `aov`.
+    /// Returns whether the set contains `aov`.
     pub fn has(self, aov: Aov) -> bool {
         self.0 >> aov as u32 & 1 == 1
     }
 
-    /// Whether the set is empty.
+    /// Returns whether the set is empty.
     pub fn is_empty(self) -> bool {
         self.0 == 0
     }
@@ -108,7 +108,7 @@ impl Aovs {
         Aov::ALL.into_iter().filter(move |aov| self.has(*aov))
     }
 
-    /// Whether any member requires the kernel `aov_trace`.
+    /// Returns whether any member requires the kernel `aov_trace`.
     pub fn are_traced(self) -> bool {
         self.iter().any(Aov::is_traced)
     }

@@ -24,7 +24,7 @@ pub struct ImageData {
 pub enum Texels {
     /// 8 bits per channel.
     Rgba8 {
-        /// Whether the color channels are sRGB-encoded; else linear in [0, 1].
+        /// True if the color channels are sRGB-encoded; else linear in [0, 1].
         srgb: bool,
         /// Red, green, blue, alpha; renderers ignore alpha.
         data: Vec<[u8; 4]>,

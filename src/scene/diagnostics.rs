@@ -42,7 +42,7 @@ impl Findings {
         self.listed.is_empty()
     }
 
-    /// Whether the list is full, so that callers can skip the search for suggestions.
+    /// Returns whether the list is full, so that callers can skip the search for suggestions.
     pub fn is_full(&self) -> bool {
         self.listed.len() >= self.most
     }

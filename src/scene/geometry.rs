@@ -14,7 +14,7 @@ pub struct Shape {
     /// Radiance in W sr^-1 m^-2 emitted on the side that the normal points to; zero for a surface
     /// that does not emit, and for planes.
     pub emission: Rgb,
-    /// Whether (u, v) is world (x, z) instead of the shape's own.
+    /// True if (u, v) is world (x, z) instead of the shape's own.
     pub planar_uv: bool,
 }
 
@@ -24,7 +24,7 @@ impl Shape {
         Self { kind, material, emission: [0.0; 3], planar_uv: false }
     }
 
-    /// Whether it emits in any channel.
+    /// Returns whether it emits in any channel.
     pub fn is_emitter(&self) -> bool {
         self.emission.iter().any(|&channel| channel > 0.0)
     }

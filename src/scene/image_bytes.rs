@@ -33,7 +33,7 @@ impl Format {
         }
     }
 
-    /// Whether the format stores linear values.
+    /// Returns whether the format stores linear values.
     pub fn is_linear(self) -> bool {
         match self {
             Self::Png | Self::Jpeg => false,

@@ -22,7 +22,7 @@ pub(crate) struct ImageFault {
     pub message: String,
     pub expected: &'static str,
     pub help: Option<String>,
-    /// Whether the file does not exist.
+    /// True if the file does not exist.
     pub missing: bool,
 }
 
@@ -114,7 +114,7 @@ impl ImageStore {
         })
     }
 
-    /// Whether an image has alpha below 1 anywhere.
+    /// Returns whether an image has alpha below 1 anywhere.
     pub fn is_transparent(&self, index: usize) -> bool {
         self.transparent.contains(&index)
     }

@@ -30,7 +30,7 @@ pub(super) struct Libraries {
     by_text: HashMap<String, Id>,
     /// Materials by their names without a trailing comment; `None` if that is ambiguous.
     before_comment: HashMap<Vec<u8>, Option<Id>>,
-    /// Whether a file could not be read, so that it may define an unknown name.
+    /// True if a file could not be read, so that it may define an unknown name.
     incomplete: bool,
 }
 

@@ -146,7 +146,7 @@ impl Allowance {
         bytes(self.open(path, most)?, most)
     }
 
-    /// Whether `path` leads to an existing file that may be read.
+    /// Returns whether `path` leads to an existing file that may be read.
     pub(super) fn has(&self, path: &Path) -> bool {
         self.place(path).is_ok_and(|place| place.is_file())
     }
@@ -245,7 +245,7 @@ impl Refusal {
         }
     }
 
-    /// Whether the file does not exist.
+    /// Returns whether the file does not exist.
     pub fn is_missing(&self) -> bool {
         matches!(self, Self::Io(error) if error.kind() == io::ErrorKind::NotFound)
     }

@@ -18,7 +18,7 @@ pub(super) struct Text {
     pub source: SourceFile,
     /// The text with continued lines joined, if it has any.
     joined: Option<String>,
-    /// Whether each character stands for one byte, because the file is not UTF-8.
+    /// True if each character stands for one byte, because the file is not UTF-8.
     single_byte: bool,
 }
 
@@ -137,16 +137,16 @@ fn joined(text: &str) -> Cow<'_, str> {
     Cow::Owned(made)
 }
 
-/// Whether a line continues on the next; `before` is the part before its last backslash, and
-/// `numbers` says that its statement is numeric.
+/// Returns whether a line continues on the next; `before` is the part before its last backslash,
+/// and `numbers` says that its statement is numeric.
 fn goes_on(before: &str, numbers: bool) -> bool {
     let comment = |(at, _)| numbers || before[..at].ends_with(blank) || at == 0;
     (numbers || before.is_empty() || before.ends_with(blank))
         && !before.match_indices('#').any(comment)
 }
 
-/// Whether a character separates words. Other Unicode blanks do not, because they may be parts of
-/// names that are not UTF-8.
+/// Returns whether a character separates words. Other Unicode blanks do not, because they may be
+/// parts of names that are not UTF-8.
 fn blank(c: char) -> bool {
     matches!(c, ' ' | '\t' | '\r' | '\x0b' | '\x0c')
 }

@@ -237,7 +237,7 @@ impl<'l, 'a> Loader<'l, 'a> {
 }
 
 impl Scene {
-    /// Whether the scene contains any light source.
+    /// Returns whether the scene contains any light source.
     pub fn is_lit(&self) -> bool {
         !self.lights.is_empty()
             || self.environment.is_some()

@@ -22,7 +22,7 @@ pub(super) struct Request<'r> {
     pub smooth: bool,
     pub material: Option<usize>,
     pub transform: Transform,
-    /// Whether the emission of its MTL materials counts.
+    /// True if the emission of its MTL materials counts.
     pub emits: bool,
 }
 

@@ -137,7 +137,7 @@ pub(super) struct Target<'r> {
     pub allowance: &'r Allowance,
     pub images: &'r mut ImageStore,
     pub textures: &'r mut Vec<Texture>,
-    /// Whether the materials' `Ke` counts.
+    /// True if the materials' `Ke` counts.
     pub emits: bool,
 }
 
@@ -435,7 +435,7 @@ fn wrong(statement: &Statement) -> Option<(Range<usize>, String)> {
     words.into_iter().take(count).find_map(|(word, at)| Some((at, in_range(word, most).err()?)))
 }
 
-/// Whether an unsupported key has a value without effect.
+/// Returns whether an unsupported key has a value without effect.
 fn is_neutral(statement: &Statement) -> bool {
     let neutral = match statement.keyword {
         "Tr" | "Pm" | "Ps" | "Pc" | "Pcr" | "aniso" | "anisor" => 0.0,

@@ -43,8 +43,8 @@ fn followed(text: &str) -> impl Iterator<Item = (char, Option<char>)> {
     text.chars().zip(text.chars().skip(1).map(Some).chain([None]))
 }
 
-/// Whether a terminal would act on a character: control characters except tabs and line ends, and
-/// characters that change the direction of writing.
+/// Returns whether a terminal would act on a character: control characters except tabs and line
+/// ends, and characters that change the direction of writing.
 fn is_control((c, next): (char, Option<char>)) -> bool {
     let turns = matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
     let ends_line = c == '\r' && next == Some('\n');
@@ -102,7 +102,7 @@ pub struct Finding {
     severity: miette::Severity,
     file: String,
     place: Option<Span>,
-    /// Whether this is an error in a value of the scene file, not a missing key or an error in
+    /// True if this is an error in a value of the scene file, not a missing key or an error in
     /// another file.
     about_value: bool,
 }
@@ -444,7 +444,7 @@ impl Faults {
         }
     }
 
-    /// Whether no further fault will be listed.
+    /// Returns whether no further fault will be listed.
     pub fn is_full(&self) -> bool {
         self.listed.len() == self.most
     }

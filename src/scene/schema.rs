@@ -40,7 +40,7 @@ pub(crate) fn alternatives<'s>(root: &'s Json, schema: &'s Json) -> Vec<&'s Json
     }
 }
 
-/// Whether a schema without alternatives has this JSON type.
+/// Returns whether a schema without alternatives has this JSON type.
 pub(crate) fn has_type(schema: &Json, name: &str) -> bool {
     match &schema["type"] {
         Json::String(own) => own == name,
@@ -131,7 +131,7 @@ fn range(schema: &Json) -> String {
     }
 }
 
-/// Whether a number is within the range of its schema.
+/// Returns whether a number is within the range of its schema.
 pub(crate) fn in_range(schema: &Json, number: f64) -> bool {
     let holds = |name: &str, test: fn(f64, f64) -> bool| {
         schema[name].as_f64().is_none_or(|bound| test(number, bound))
