@@ -1,5 +1,5 @@
-//! A short look at the scene before planning: how wide a pixel is where the picture is, and how
-//! many records a photon leaves. Always on the CPU, so that every engine plans alike.
+//! Scene probe before planning: measures the width of a pixel at the visible surfaces and the
+//! number of records per photon. It always runs on the CPU, so that every engine plans alike.
 
 use super::kernels::eye_trace::eye_trace;
 use super::kernels::photon_trace::photon_trace;
@@ -13,35 +13,35 @@ use crate::scene::settings::{Direct, Radius, RenderSettings};
 use bytemuck::Zeroable;
 use rayon::prelude::*;
 
-/// Eye paths looked at.
+/// Number of eye paths.
 const EYE_PATHS: u32 = 1024;
-/// Photons looked at.
+/// Number of photons.
 const PHOTONS: u32 = 8192;
-/// Visible points at which the photons' density is looked at.
+/// Maximum number of visible points at which the photon density is measured.
 const DENSITIES: usize = 256;
-/// The density is that of the disc out to this many photons.
+/// Number of nearest photons in the disc of a density estimate.
 const NEAREST: usize = 8;
-/// Bits of a record's key that hold the bounce.
+/// Number of low bits of a record's key that hold the bounce.
 const KEY_BITS: u32 = 16;
 /// A pass number that no render reaches.
 const PASS: u32 = u32::MAX;
-/// The start radius, in pixels, is at most this many times the median one.
+/// Maximum start radius, for radii in pixels, relative to the median one.
 const RADIUS_SPREAD: f64 = 4.0;
 
-/// What the look found.
+/// Results of the probe.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Probe {
-    /// Median start radius over the picture, scene units.
+    /// Median start radius over the image, in scene units.
     pub radius: f64,
-    /// Greatest start radius allowed, scene units.
+    /// Maximum start radius, in scene units.
     pub radius_max: f64,
-    /// Mean number of records a photon leaves.
+    /// Mean number of records per photon.
     pub records_per_photon: f64,
-    /// The start radius in pixels, where the settings leave it open.
+    /// The automatic start radius, if the settings request it.
     pub automatic: Option<Automatic>,
 }
 
-/// Looks at the scene.
+/// Probes the scene with a few eye paths and photons.
 pub fn probe(packed: &Packed, settings: &RenderSettings) -> Probe {
     let scene = &packed.scene;
     let dispatch = Dispatch {
@@ -100,7 +100,8 @@ pub fn probe(packed: &Packed, settings: &RenderSettings) -> Probe {
     }
 }
 
-/// Share of the light not straight from lights that met nothing but mirrors and glass before.
+/// Fraction of the photon flux, without light straight from lights, that has met only mirrors and
+/// glass before.
 fn caustic_share(scene: &Scene, dispatch: &Dispatch, photons: u32) -> f64 {
     let dispatch = Dispatch { key_bits: KEY_BITS, ..*dispatch };
     let photon = |id| {
@@ -114,18 +115,19 @@ fn caustic_share(scene: &Scene, dispatch: &Dispatch, photons: u32) -> f64 {
         });
         [caustic, all]
     };
-    // In order, so that the sum is always the same.
+    // Collect in order, so that the sum is always the same.
     let sums: Vec<[f64; 2]> = (0..photons).into_par_iter().map(photon).collect();
     let [caustic, all] = sums.iter().fold([0.0, 0.0], |[a, b], [c, d]| [a + c, b + d]);
     if all > 0.0 { caustic / all } else { 0.0 }
 }
 
-/// Photons on a pixel's footprint, median over the points: each counts as far as its [`NEAREST`]th.
+/// Number of photons on a pixel's footprint, as the median over the points; each point uses the
+/// disc out to its [`NEAREST`]th photon.
 fn density(points: &[VisiblePoint], records: &[Vec3]) -> f64 {
     let every = points.len().div_ceil(DENSITIES).max(1);
     let at = |point: &VisiblePoint| {
         let normal = oct_decode(point.normal);
-        // As in `gather`, what is off the tangent plane lies on another surface.
+        // As in `gather`, photons off the tangent plane lie on another surface.
         let near = |d: &Vec3| (4.0 * d.dot(normal)).powi(2) <= d.dot(*d);
         let differences = records.iter().map(|position| *position - point.position);
         let mut distances: Vec<Real> = differences.filter(near).map(|d| d.dot(d)).collect();

@@ -1,5 +1,5 @@
-//! Which light a shadow ray goes to, by place: a tree whose leaves hold about as many points of the
-//! look each, and in each leaf the lights' probabilities by what they contribute there.
+//! Selection of lights for shadow rays by position: a tree whose leaves contain about equal numbers
+//! of pilot points, and for each leaf the probabilities of the lights by their contribution there.
 
 use super::discs::cumulative;
 use super::geometry::intersect::occluded;
@@ -14,26 +14,29 @@ use super::tables::*;
 use bytemuck::Zeroable;
 use rayon::prelude::*;
 
-/// Least points of a leaf.
+/// Minimum number of points per leaf.
 const LEAST_POINTS: usize = 32;
-/// Most probabilities of all leaves together.
+/// Maximum number of probabilities in all leaves together.
 const ENTRIES: usize = 1 << 19;
-/// Light samples of all leaves together.
+/// Number of light samples in all leaves together.
 const SAMPLES: usize = 1 << 18;
-/// Most points of a leaf at which each light is sampled.
+/// Maximum number of points per leaf at which each light is sampled.
 const POINTS: usize = 16;
-/// Part of a light's unoccluded contribution that counts where all samples were occluded.
+/// Weight of a light's mean unoccluded contribution, which keeps a light whose samples were all
+/// occluded.
 const OCCLUDED: f64 = 0.1;
-/// Probability kept for lights by their power alone, so that nothing is left out.
+/// Probability reserved for selection by power, so that no light is left out.
 const KEPT: f64 = 0.1;
-/// Most that a probability changes where its interval is moved to multiples of a power of 1/2.
+/// Maximum factor by which a probability changes when its interval is rounded to multiples of a
+/// power of 1/2.
 const MOVED: f64 = 1.5;
-/// Least power of 1/2 for such intervals.
+/// Exponent of the smallest such power.
 const FINEST: u32 = 8;
-/// A stream of random numbers that no kernel has.
+/// A stream of random numbers that no kernel uses.
 const STREAM: u32 = 0x2000_0001;
 
-/// Gives `out` its cells, if it has several lights. `power` is that of each light.
+/// Builds the light selection tree of `out` if it has several lights. `power` is the power of each
+/// light.
 pub fn learn_cells(out: &mut Scene, look: &Look, power: &[f64]) {
     out.cells.clear();
     if out.lights.len() < 2 {
@@ -56,8 +59,8 @@ pub fn learn_cells(out: &mut Scene, look: &Look, power: &[f64]) {
     out.cells = cells;
 }
 
-/// Makes the tree below cell `index`, at most `depth` levels deep, by halving points along their
-/// widest extent.
+/// Builds the tree below cell `index`, at most `depth` levels deep, by splitting the points at the
+/// median of their widest extent.
 fn divide(
     cells: &mut Vec<Cell>,
     index: usize,
@@ -91,7 +94,7 @@ fn divide(
     }
 }
 
-/// Moves the points that `first` holds of to the front, and returns how many there are.
+/// Moves the points for which `first` is true to the front, and returns their number.
 fn move_to_front(points: &mut [Seen], first: impl Fn(&Seen) -> bool) -> usize {
     let mut count = 0;
     for i in 0..points.len() {
@@ -103,8 +106,8 @@ fn move_to_front(points: &mut [Seen], first: impl Fn(&Seen) -> bool) -> usize {
     count
 }
 
-/// Cumulative probabilities of the lights at `points`: in proportion to the root mean square of
-/// what a sample contributes, which has the least variance.
+/// Cumulative probabilities of the lights at `points`: proportional to the root mean square of a
+/// sample's contribution, which minimizes the variance, and mixed with the power.
 fn probabilities(scene: &Scene, points: &[Seen], each: usize, power: &[f64]) -> Vec<Real> {
     let total: f64 = power.iter().sum();
     let step = (points.len() / each).max(1);
@@ -121,9 +124,9 @@ fn probabilities(scene: &Scene, points: &[Seen], each: usize, power: &[f64]) -> 
     dyadic(&cumulative(&mixed.collect::<Vec<_>>()).collect::<Vec<_>>())
 }
 
-/// Cumulative probabilities moved to multiples of large powers of 1/2, as far as no probability
-/// changes by more than a factor of [`MOVED`]: Sobol's points are even in such intervals, and
-/// chosen by others they are as good as random.
+/// Rounds cumulative probabilities to multiples of large powers of 1/2, as long as no probability
+/// changes by more than a factor of [`MOVED`]. Sobol points are evenly distributed over such
+/// intervals; over other intervals they are no better than random ones.
 fn dyadic(ends: &[f64]) -> Vec<Real> {
     let (mut before, mut moved_before) = (0.0, 0.0);
     let moved = ends.iter().enumerate().map(|(index, end)| {
@@ -143,7 +146,8 @@ fn dyadic(ends: &[f64]) -> Vec<Real> {
     moved.collect()
 }
 
-/// Root mean square of the irradiance that samples of a light bring to `points`.
+/// Root mean square of the irradiance from samples of a light at `points`, plus [`OCCLUDED`] times
+/// the mean unoccluded irradiance.
 fn contribution(scene: &Scene, points: &[&Seen], index: usize) -> f64 {
     let (mut seen_sq, mut all) = (0.0, 0.0);
     for (k, point) in points.iter().enumerate() {

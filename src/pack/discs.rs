@@ -1,22 +1,23 @@
-//! Emission discs: through which distances from what the camera sees light from infinity enters.
+//! Emission discs: the distribution of distances from the visible region at which light from
+//! infinity enters.
 
 use super::look::{Look, Region, Seen};
 use super::real::Real;
 use super::tables::*;
 
-/// Most discs: radii are multiplied by a power of two that a word holds.
+/// Maximum number of discs. Radii are multiplied by powers of two that fit into a word.
 const LEVELS: u32 = 32;
-/// The narrowest disc has the near radius over this.
+/// Ratio of the near radius to the radius of the narrowest disc.
 const NARROWEST: f64 = 8.0;
-/// Probability kept for discs by their width alone, so that nothing is left out.
+/// Probability reserved for the distribution by width, so that no disc is left out.
 const KEPT: f64 = 0.1;
-/// A pixel's gather disc is at most this many times as wide as the median one.
+/// Maximum width of a pixel's gather disc, relative to the median.
 const FOOTPRINTS: f64 = 4.0;
-/// Rounds of the search.
+/// Number of iterations of the optimization.
 const ROUNDS: u32 = 40;
 
-/// Sets the near sphere, and the discs and their probabilities if light comes from infinity. `far`:
-/// how far surfaces lie from the center of `region`, scene units.
+/// Sets the near sphere and, if light comes from infinity, the discs and their probabilities. `far`
+/// is the largest distance of a surface from the center of `region`, in scene units.
 pub fn learn_discs(out: &mut Scene, look: &Look, region: Region, far: f64) {
     let near = f64::from(region.radius);
     out.world.near_center = region.center;
@@ -41,8 +42,8 @@ pub fn learn_discs(out: &mut Scene, look: &Look, region: Region, far: f64) {
     out.distributions.extend(cumulative(&mixed.collect::<Vec<_>>()).map(|x| x as Real));
 }
 
-/// Squared distance from the center and weight, one over the area that gathers there, of each
-/// point.
+/// Squared distance from the center, and weight of each point: one over the area that gathers
+/// there.
 fn points(look: &Look, region: Region) -> Vec<[f64; 2]> {
     let median = f64::from(look.footprint());
     let at = |point: &Seen| {
@@ -59,8 +60,8 @@ fn density(radii: &[f64], p: &[f64], r_sq: f64) -> f64 {
     inside.map(|(radius, p)| p / (radius * radius)).sum()
 }
 
-/// Probabilities with the least sum of `weight / density`, the variance of the photons gathered: a
-/// convex problem, at whose solution the derivatives by all used probabilities are equal.
+/// Probabilities that minimize the sum of `weight / density`, the variance of the gathered photons.
+/// The problem is convex; at its solution the derivatives by all nonzero probabilities are equal.
 fn probabilities(points: &[[f64; 2]], radii: &[f64]) -> Vec<f64> {
     let mut p = vec![1.0 / radii.len() as f64; radii.len()];
     for _ in 0..ROUNDS {
@@ -86,8 +87,8 @@ fn probabilities(points: &[[f64; 2]], radii: &[f64]) -> Vec<f64> {
     p
 }
 
-/// Half of the photons through the narrowest disc that holds the near sphere, half of the others
-/// through the next one, and so on.
+/// Distribution by width: half of the photons pass through the narrowest disc that contains the
+/// near sphere, half of the others through the next one, and so on.
 fn by_width(radii: &[f64], near: f64) -> Vec<f64> {
     let first = radii.iter().position(|radius| *radius >= near).unwrap_or(radii.len() - 1);
     let last = radii.len() - 1;
@@ -99,13 +100,14 @@ fn by_width(radii: &[f64], near: f64) -> Vec<f64> {
     (0..radii.len()).map(share).collect()
 }
 
-/// Cumulative shares of `weights` in steps of the random numbers', 2^-24, so that a probability is
-/// exactly the difference of two of them; each weight above zero has one step at least.
+/// Cumulative fractions of `weights` in steps of 2^-24, the resolution of the random numbers, so
+/// that a probability is exactly the difference of two of them. Each weight above zero gets at
+/// least one step.
 pub fn cumulative(weights: &[f64]) -> impl Iterator<Item = f64> {
     const STEPS: f64 = 16777216.0;
     let total: f64 = weights.iter().sum();
     let used = weights.iter().filter(|w| **w > 0.0).count() as f64;
-    // one step is set aside for each
+    // reserve one step for each
     let free = (STEPS - used).max(0.0);
     let mut ends: Vec<f64> = Vec::with_capacity(weights.len());
     let (mut sum, mut count) = (0.0, 0.0);
@@ -120,9 +122,9 @@ pub fn cumulative(weights: &[f64]) -> impl Iterator<Item = f64> {
     ends.into_iter()
 }
 
-/// Theory: the discs' probabilities are those of least variance. Points on one circle need the
-/// narrowest disc that holds it and no other; points spread evenly over a disc want photons spread
-/// evenly.
+/// Theory: the discs' probabilities minimize the variance. Points on one circle need only the
+/// narrowest disc that contains it; points distributed evenly over a disc need evenly distributed
+/// photons.
 #[cfg(test)]
 mod tests {
     use super::*;

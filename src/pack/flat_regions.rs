@@ -1,5 +1,5 @@
-//! Outlines of the flat regions of meshes: a box or a room that was modelled as triangles gets the
-//! outlines that a `box` has.
+//! Outlines of the flat regions of meshes, so that a box or a room that was modelled as triangles
+//! gets the same outlines as a `box` shape.
 //!
 //! A region is a maximal set of coplanar triangles that share edges. It gets an outline if all of
 //! its boundary is open or a crease. Triangles of curved surfaces are in no region.
@@ -19,29 +19,30 @@ const TRIANGLES: usize = 1 << 20;
 const REGIONS: usize = 256;
 /// Maximum number of edges off the bounding rectangle of a region; the longest ones are kept.
 const EDGES: usize = 31;
-/// Minimum share of the boundary that these edges must have.
+/// Minimum fraction of the length of all edges off the bounding rectangle that these edges must
+/// cover.
 const COVERED: f64 = 0.9;
-/// Cosine of the angle between the normals of two triangles above which they are one curved
-/// surface.
+/// Cosine of the angle between the normals of two adjacent triangles above which they belong to one
+/// curved surface.
 const SOFT: f64 = 0.866;
 /// Error of a vertex relative to the largest coordinate, in both precisions.
 const VERTEX_ERROR: f64 = 4.0 * f32::EPSILON as f64;
 
-/// A flat region.
+/// A flat region of a mesh with its outline.
 pub struct Region {
-    /// Its triangles.
+    /// Indices of its triangles.
     pub triangles: Vec<u32>,
-    /// Its bounding rectangle.
+    /// Bounding rectangle.
     pub outline: Outline,
-    /// A point of its plane.
+    /// A point in its plane.
     pub point: DVec3,
     /// Unit normal of its plane.
     pub normal: DVec3,
-    /// The edges that are not on the bounding rectangle.
+    /// Boundary edges that are not on the bounding rectangle.
     pub edges: Vec<[DVec3; 2]>,
 }
 
-/// A union-find structure.
+/// Union-find structure over indices.
 struct Sets(Vec<u32>);
 
 impl Sets {
@@ -63,7 +64,7 @@ impl Sets {
         self.0[a.max(b) as usize] = a.min(b);
     }
 
-    /// The sets, each with its members in ascending order.
+    /// All sets, each with its members in ascending order.
     fn all(&mut self, members: impl Iterator<Item = u32>) -> Vec<Vec<u32>> {
         let mut number: HashMap<u32, usize> = HashMap::new();
         let mut sets: Vec<Vec<u32>> = Vec::new();
@@ -79,7 +80,7 @@ impl Sets {
     }
 }
 
-/// How two triangles meet at an edge.
+/// Relation of two triangles that share an edge.
 #[derive(PartialEq)]
 enum Meeting {
     Flat,
@@ -87,13 +88,13 @@ enum Meeting {
     Crease,
 }
 
-/// The triangles on which photons are stored, with merged vertices.
+/// All triangles, with merged vertices.
 struct Surface {
     corners: Vec<[DVec3; 3]>,
     /// Unit normals; zero for a triangle without area.
     normals: Vec<DVec3>,
     vertices: Vec<[u32; 3]>,
-    /// Whether photons are stored there.
+    /// True for each triangle on which photons are stored.
     rough: Vec<bool>,
 }
 
@@ -117,13 +118,13 @@ impl Surface {
         }
     }
 
-    /// Error bound of a triangle's vertices.
+    /// Error bound of a triangle's vertices, in scene units.
     fn error(&self, t: u32) -> f64 {
         let largest = self.corners[t as usize].iter().fold(DVec3::ZERO, |a, p| a.max(p.abs()));
         VERTEX_ERROR * largest.max_element()
     }
 
-    /// Triangle and corner of each edge, those of one edge together.
+    /// Key, triangle and corner of each edge; entries of the same edge are adjacent.
     fn edges(&self) -> Vec<(u64, u32, u8)> {
         let mut edges: Vec<(u64, u32, u8)> = (0..self.corners.len() as u32)
             .into_par_iter()
@@ -255,7 +256,7 @@ fn region(surface: &Surface, triangles: Vec<u32>, sides: &[(u32, u8)]) -> Option
     Some(Region { triangles, outline, point, normal, edges })
 }
 
-/// The boundary, with chains of collinear edges joined.
+/// The boundary, with chains of collinear edges merged.
 fn joined(surface: &Surface, sides: &[(u32, u8)], error: f64) -> Vec<[DVec3; 2]> {
     let end = |(t, k): (u32, u8), i: usize| {
         let corner = (k as usize + i) % 3;
@@ -279,7 +280,7 @@ fn joined(surface: &Surface, sides: &[(u32, u8)], error: f64) -> Vec<[DVec3; 2]>
     for meeting in at.values() {
         if let [(i, j), (k, l)] = meeting[..] {
             let (a, b) = (ends[i as usize], ends[k as usize]);
-            // beyond one another, not folded back
+            // the edges continue each other and do not fold back
             let apart = (a[1 - j].1 - a[j].1).dot(b[1 - l].1 - b[l].1) < 0.0;
             if apart && straight(&points(&[i, k])) {
                 sets.join(i, k);
@@ -299,8 +300,8 @@ fn joined(surface: &Surface, sides: &[(u32, u8)], error: f64) -> Vec<[DVec3; 2]>
     chains
 }
 
-/// The two points that are farthest apart along the line through the first point and the one
-/// farthest from it.
+/// Endpoints of a chain: the point farthest from the first point, and the point farthest from that
+/// one.
 fn extremes(points: &[DVec3]) -> (DVec3, DVec3) {
     let farthest = |from: DVec3| {
         let far = points
@@ -312,7 +313,8 @@ fn extremes(points: &[DVec3]) -> (DVec3, DVec3) {
     (from, farthest(from))
 }
 
-/// Adds an outline for each region and names it in the attributes of the region's triangles.
+/// Adds an outline for each region, and stores its index in the attributes of the region's
+/// triangles.
 pub fn add_outlines(out: &mut Scene, regions: &[Region]) {
     for region in regions {
         let outline = out.outlines.len() as u32;

@@ -1,4 +1,4 @@
-//! Textures and their pictures.
+//! Textures and their images.
 
 use super::real::{Bits, Real, ToReal, Vec2};
 use super::tables::*;
@@ -7,7 +7,7 @@ use crate::scene::{self, Filter, ImageData, Reflectance, Texels, TextureKind, Wr
 use bytemuck::Zeroable;
 use glam::{DVec2, DVec3};
 
-/// Fills `textures` and `texels`; an environment's picture becomes one more texture behind the
+/// Fills `textures` and `texels`. An environment image becomes an additional texture after the
 /// scene's own.
 pub fn pack_textures(scene: &scene::Scene, out: &mut Scene) {
     if scene.images.iter().any(|i| matches!(i.texels, Texels::Rgba8 { srgb: true, .. })) {
@@ -43,14 +43,14 @@ pub fn pack_textures(scene: &scene::Scene, out: &mut Scene) {
         out.textures.push(Texture {
             kind: TEXTURE_IMAGE,
             scale: Vec2::ONE,
-            // a sky goes on around, and ends at its poles
+            // a sky wraps around horizontally and ends at its poles
             flags: TEXTURE_CLAMP_V,
             ..images[*image]
         });
     }
 }
 
-/// After which differences of u and of v a material looks the same; infinite where it never does.
+/// Period of a material's appearance in u and v; infinite if it does not repeat.
 pub fn period(scene: &scene::Scene, material: &scene::Material) -> DVec2 {
     let texture = match material.kind.reflectance() {
         Some(Reflectance::Texture(texture)) => scene.textures.get(*texture),
@@ -61,7 +61,7 @@ pub fn period(scene: &scene::Scene, material: &scene::Material) -> DVec2 {
         DVec2::select(period.cmpgt(DVec2::ZERO), period, DVec2::INFINITY)
     };
     match texture.map(|texture| &texture.kind) {
-        // two cells; a colour depends on the sum of both
+        // two cells: the color depends on the sum of both indices
         Some(TextureKind::Checker { scale, .. }) => of(*scale, [2.0, 2.0]),
         Some(TextureKind::Image { scale, wrap: Wrap::Repeat, .. }) => of(*scale, [1.0, 1.0]),
         Some(TextureKind::Image { wrap: Wrap::Clamp, .. }) | None => DVec2::INFINITY,
@@ -70,7 +70,8 @@ pub fn period(scene: &scene::Scene, material: &scene::Material) -> DVec2 {
     }
 }
 
-/// `uv` less whole periods where it lies many of them from 0, so that it keeps its digits in f32.
+/// Subtracts whole periods from `uv` if it lies many of them from 0, so that it keeps its precision
+/// in f32.
 pub fn reduced(uv: DVec2, period: DVec2) -> DVec2 {
     const MANY: f64 = 64.0;
     let one = |x: f64, period: f64| {

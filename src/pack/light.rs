@@ -1,4 +1,4 @@
-//! Lights: strengths in scene units and the distributions that they are sampled by.
+//! Lights: strengths in scene units, and sampling distributions.
 
 use super::discs::cumulative;
 use super::real::{Real, ToReal, Vec2, Vec3};
@@ -12,18 +12,18 @@ use bytemuck::Zeroable;
 use glam::DVec3;
 use std::f64::consts::PI;
 
-/// Steps of the midpoint rule that measures a patch's area.
+/// Number of steps of the midpoint rule for a patch's area.
 const AREA_STEPS: u32 = 32;
 
-/// What is known of the lights beside their tables.
+/// Properties of the lights that the tables do not contain.
 pub struct PackedLights {
     /// World radiance of one unit of scene radiance.
     pub radiance_unit: f64,
-    /// Luminance of the brightest extended light, world units.
+    /// Luminance of the brightest extended light, in world units.
     pub brightest: f64,
-    /// Power of each light; of light from infinity per area that faces it.
+    /// Power of each light; for light from infinity, per area that faces it.
     pub power: Vec<f64>,
-    /// Where each light comes from.
+    /// Scene element that each light comes from.
     pub sources: Vec<LightSource>,
 }
 
@@ -34,8 +34,8 @@ pub fn pack_lights(
     emitters: &[Emitter],
     out: &mut Scene,
 ) -> PackedLights {
-    // strengths in world radiance first: areas and distances are in scene units already, so that
-    // irradiance is radiance times steradian in either
+    // Strengths are in world radiance at first. Areas and distances are already in scene units, so
+    // irradiance is radiance times solid angle in both.
     let mut lights: Vec<(Light, DVec3, f64)> = Vec::new();
     let mut sources: Vec<LightSource> =
         emitters.iter().map(|e| LightSource::Shape(e.shape)).collect();
@@ -137,8 +137,8 @@ pub fn pack_lights(
     PackedLights { radiance_unit, brightest: luminance_max, power, sources }
 }
 
-/// The parts of v by patch and the cumulative shares of area; returns the area. A patch overlaps
-/// its neighbour, so that its part ends where the next one starts.
+/// Appends the start of each patch in v and the cumulative fractions of area; returns the area.
+/// Patches overlap their neighbours, so the part of a patch ends where the next one starts.
 fn revolution_distribution(out: &Scene, light: &mut Light, distributions: &mut Vec<Real>) -> f64 {
     let index = index_of(light.reference);
     let patches: Vec<&Patch> = out.patches.iter().filter(|p| p.revolution == index).collect();
@@ -167,10 +167,11 @@ fn revolution_distribution(out: &Scene, light: &mut Light, distributions: &mut V
     areas.iter().sum()
 }
 
-/// The cumulative shares of rows and of columns within each row, by luminance times solid angle;
-/// returns the mean and the greatest luminance, or nothing for a black picture. A texel counts with
-/// the root mean square of the filtered picture inside it, the share with the least variance; its
-/// neighbours shine into it, so that it is dark only where they are, too.
+/// Appends the cumulative fractions of rows, and of columns within each row, by channel mean times
+/// solid angle. Returns the average and the largest channel mean, or `None` for a black image. A
+/// texel has the weight of the root mean square of the filtered image inside it, which minimizes
+/// the variance. Filtering blends in its neighbours, so the weight is zero only if they are black
+/// as well.
 fn image_distribution(
     out: &Scene,
     light: &mut Light,
@@ -184,7 +185,7 @@ fn image_distribution(
         let c: Vec3 = super::materials::texture::eval_texture(out, light.reference, uv);
         ((c.x + c.y + c.z) / 3.0).max(0.0) as f64
     };
-    // (mean, root mean square) of the middles of the texel's quarters
+    // (mean, root mean square) at the centers of the texel's quarters
     let texel = |i: u32, j: u32| {
         let quarters = [(0.25, 0.25), (0.75, 0.25), (0.25, 0.75), (0.75, 0.75)];
         let values = quarters.map(|(x, y)| value(i as Real + x, j as Real + y));
@@ -211,8 +212,8 @@ fn image_distribution(
     Some([mean, most])
 }
 
-/// Appends cumulative shares in the steps of random numbers; no value above zero is without a step,
-/// however bright the others are.
+/// Appends cumulative fractions in steps of the random numbers. Each value above zero gets at least
+/// one step, however bright the others are; if all are zero, the fractions are even.
 fn push_cumulative(values: &[f64], target: &mut Vec<Real>) {
     let even = vec![1.0; values.len()];
     let dark = values.iter().sum::<f64>() <= 0.0;

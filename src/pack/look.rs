@@ -1,6 +1,6 @@
-//! What the camera sees: visible points of pilot eye paths, and where the light that scatters
-//! toward them comes from. Emission and the choice of lights follow from it. The camera's own place
-//! does not count.
+//! Pilot eye paths: the points that the camera sees, and the points that those face, where indirect
+//! light comes from. The emission of photons and the selection of lights depend on them. The
+//! camera's own position is not among them.
 
 use super::geometry::intersect::intersect_scene;
 use super::geometry::surface::surface_at;
@@ -16,47 +16,47 @@ use super::tables::{NONE, Scene};
 use bytemuck::Zeroable;
 use rayon::prelude::*;
 
-/// Pilot eye paths.
+/// Number of pilot eye paths.
 const EYE_PATHS: u64 = 8192;
-/// Scattering events of a pilot eye path.
+/// Maximum number of scattering events of a pilot eye path.
 const BOUNCES: u32 = 32;
-/// Share of the points that the near sphere holds.
+/// Fraction of the visible points that the near sphere contains before [`MARGIN`] enlarges it.
 const NEAR: f64 = 0.9;
-/// The near sphere is this many times as wide as that: discs gather beyond what is seen.
+/// Factor on the radius of the near sphere, because gather discs extend beyond the visible points.
 const MARGIN: Real = 2.0;
-/// A stream of random numbers that no kernel has.
+/// A stream of random numbers that no kernel uses.
 const STREAM: u32 = 0x2000_0000;
 
-/// A surface point that a pilot found.
+/// A surface point that a pilot path found.
 #[derive(Clone, Copy, Debug)]
 pub struct Seen {
-    /// In scene space.
+    /// Position in scene space.
     pub position: Vec3,
-    /// Geometric normal on the side that the pilot came from.
+    /// Geometric normal, on the side that the path came from.
     pub normal: Vec3,
-    /// Width of the pixel's footprint, scene units.
+    /// Width of the pixel's footprint, in scene units.
     pub footprint: Real,
 }
 
-/// What pilots found.
+/// Results of the pilot eye paths.
 #[derive(Clone, Debug, Default)]
 pub struct Look {
     /// First non-specular hits.
     pub seen: Vec<Seen>,
-    /// What surfaces at `seen` face: where indirect light comes from.
+    /// Points that the surfaces at `seen` face, where indirect light comes from.
     pub faced: Vec<Seen>,
 }
 
-/// A sphere that holds most of what matters for the picture.
+/// A sphere that contains most of the surfaces that matter for the image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Region {
-    /// Center, scene space.
+    /// Center, in scene space.
     pub center: Vec3,
-    /// Radius, scene units.
+    /// Radius, in scene units.
     pub radius: Real,
 }
 
-/// Traces the pilots.
+/// Traces the pilot eye paths.
 pub fn look(scene: &Scene) -> Look {
     let dispatch = Dispatch {
         pass_number: u32::MAX,
@@ -91,7 +91,7 @@ fn seen(point: &VisiblePoint) -> Option<Seen> {
     (footprint > 0.0).then_some(Seen { position, normal, footprint })
 }
 
-/// A point that the surface at `seen` faces.
+/// A random point that the surface at `seen` faces; `None` if the ray leaves the scene.
 fn faced(scene: &Scene, seen: &Seen, id: u32) -> Option<Seen> {
     let number = |word: u32| (word >> 8) as Real * (1.0 / 16777216.0);
     let u = pcg4d([id, 0, STREAM, 0]);
@@ -107,8 +107,8 @@ fn faced(scene: &Scene, seen: &Seen, id: u32) -> Option<Seen> {
 }
 
 impl Look {
-    /// A sphere about the median of the visible points, twice as wide as holds nine of ten of them;
-    /// nothing where the camera sees no surface.
+    /// A sphere about the median of the visible points, with twice the radius that contains nine
+    /// tenths of them; `None` if the camera sees no surface.
     pub fn region(&self) -> Option<Region> {
         let median = |axis: usize| {
             let values: Vec<Real> = self.seen.iter().map(|seen| seen.position[axis]).collect();
@@ -120,12 +120,12 @@ impl Look {
         (radius > 0.0).then_some(Region { center, radius })
     }
 
-    /// All points.
+    /// All points of both kinds.
     pub fn points(&self) -> impl Iterator<Item = &Seen> {
         self.seen.iter().chain(&self.faced)
     }
 
-    /// Median footprint of a pixel; 0 where nothing is seen.
+    /// Median footprint of a pixel, in scene units; 0 if nothing is seen.
     pub fn footprint(&self) -> Real {
         quantile(self.seen.iter().map(|seen| seen.footprint).collect(), 0.5).unwrap_or(0.0)
     }

@@ -1,4 +1,4 @@
-//! A validated scene flattened into the tables that the kernels read.
+//! Conversion of a validated scene to the tables that the kernels read.
 
 mod bodies;
 mod cells;
@@ -36,42 +36,42 @@ use look::{Look, Region, look};
 use std::f64::consts::PI;
 use visibility::Visibility;
 
-/// Photons of a light in a pass below which its caustics may be missed.
+/// Photons of a light per pass below which its caustics may be missed.
 const FEW_PHOTONS: f64 = 64.0;
-/// Least share of the light that the camera sees of a light that counts.
+/// Fraction of the light seen by the camera above which a light can cause a warning.
 const LEAST_SHARE: f64 = 0.002;
 
-/// A flattened scene and what undoes its normalisation.
+/// A packed scene, and the factors that convert results to world units.
 #[derive(Clone, Debug)]
 pub struct Packed {
-    /// The tables.
+    /// Tables for the kernels.
     pub scene: Scene,
-    /// The world point at the scene's origin.
+    /// World point at the origin of scene space.
     pub center: DVec3,
-    /// World units in one scene unit.
+    /// World units per scene unit.
     pub unit: f64,
-    /// Scene radiance times this is world radiance: brings the brightest light near one.
+    /// Factor from scene radiance to world radiance; it brings the brightest light near one.
     pub radiance_unit: f64,
-    /// Luminance of the brightest extended light, world units.
+    /// Luminance of the brightest extended light, in world units.
     pub brightest: f64,
-    /// Facts about the kd-tree.
+    /// Statistics of the kd-tree.
     pub tree: accel::kdtree::Stats,
-    /// Which shape each reference belongs to; empty unless the film asks for it.
+    /// Shapes and materials of table entries; without shapes unless the film requests them.
     pub objects: Objects,
     normalization: Normalization,
-    /// Power of each light; of light from infinity per area.
+    /// Power of each light; for light from infinity, per area.
     power: Vec<f64>,
-    /// Where each light comes from.
+    /// Scene element that each light comes from.
     sources: Vec<LightSource>,
-    /// Each light's share of the light that the camera sees, as far as pilots found; empty where
-    /// they did not look.
+    /// Fraction of the light seen by the camera that each light contributes, as far as pilots found
+    /// it; empty if there were no pilots.
     brought: Vec<f64>,
-    /// Entries of the distributions before those that were learned.
+    /// Number of entries of the distributions before the learned ones.
     flattened: usize,
 }
 
-/// Flattens `scene` for a picture of `width` by `height` pixels, and learns from pilots how to
-/// light it.
+/// Packs `scene` for an image of `width` by `height` pixels, and learns from pilot paths how to
+/// sample its lights.
 pub fn pack(scene: &scene::Scene, width: u32, height: u32) -> Result<Packed, PackError> {
     let mut packed = flatten(scene, Normalization::of(scene), width, height)?;
     let mut look = look(&packed.scene);
@@ -83,7 +83,7 @@ pub fn pack(scene: &scene::Scene, width: u32, height: u32) -> Result<Packed, Pac
     Ok(packed)
 }
 
-/// The same, with what another precision has learned.
+/// Like [`pack`], with the results that another precision has learned.
 pub fn pack_like(
     scene: &scene::Scene,
     width: u32,
@@ -95,7 +95,7 @@ pub fn pack_like(
     Ok(packed)
 }
 
-/// Flattens `scene`; nothing is learned.
+/// Packs `scene` without learning.
 fn flatten(
     scene: &scene::Scene,
     n: Normalization,
@@ -163,15 +163,15 @@ fn flatten(
 }
 
 impl Packed {
-    /// Takes the picture from where `scene`'s camera is now, everything else staying as it is, what
-    /// was learned for the camera before included.
+    /// Moves the camera to that of `scene`. Everything else stays the same, including the results
+    /// learned for the previous camera.
     pub fn move_camera(&mut self, scene: &scene::Scene, width: u32, height: u32) {
         self.scene.camera = camera(scene, &self.normalization, width, height);
         bodies::stand_camera(&mut self.scene);
     }
 
-    /// Learns anew for the camera as it is now; then the tables are those of [`pack`]. False, and
-    /// nothing learned, where `pack` may choose another place for scene space.
+    /// Learns again for the current camera, so that the tables equal those of [`pack`]. Returns
+    /// false, without learning, if `pack` might choose a different normalization.
     pub fn learn_again(&mut self, scene: &scene::Scene) -> bool {
         if self.normalization != Normalization::of(scene) {
             return false;
@@ -184,7 +184,7 @@ impl Packed {
         true
     }
 
-    /// The place of scene space that what the camera sees asks for, if this one does not do.
+    /// A normalization that suits the region seen by the camera, if the current one does not.
     fn better_place(&self, look: &Look) -> Option<Normalization> {
         let region = look.region()?;
         let center = self.normalization.world(region.center.to_double());
@@ -192,13 +192,13 @@ impl Packed {
         (!self.normalization.suits(center, radius)).then(|| Normalization::about(center, radius))
     }
 
-    /// Learns emission discs, probabilities of lights, and maps.
+    /// Learns emission discs, probabilities of lights, and guide maps.
     fn learn(&mut self, scene: &scene::Scene, look: &Look) {
         let _stage = stage("pilots");
         let n = &self.normalization;
         let out = &mut self.scene;
         out.distributions.truncate(self.flattened);
-        // where nothing is seen, everything counts alike
+        // if nothing is seen, use the whole scene
         let all = Region { center: Vec3::ZERO, radius: (n.radius / n.unit) as Real };
         let region = look.region().unwrap_or(all);
         let (center, radius) =
@@ -213,8 +213,8 @@ impl Packed {
         cells::learn_cells(out, look, &power);
     }
 
-    /// Light that a picture with these settings may lack, and its stated error with it: of each
-    /// such light what a reader of the scene file calls it, and what to do.
+    /// Warnings about light that may be missing from an image with these settings and from its
+    /// error estimate. Each one describes the light in terms of the scene file, and gives a remedy.
     pub fn warnings(&self, scene: &scene::Scene, settings: &RenderSettings) -> Vec<String> {
         let bsdfs = || self.scene.materials.iter().map(|m| Bsdf::of(m.kind));
         let path = settings.method == Method::Path;
@@ -225,16 +225,16 @@ impl Packed {
             let brought = self.brought.get(i).copied().unwrap_or(0.0);
             if path && matches!(light.kind, LIGHT_POINT | LIGHT_SPOT | LIGHT_SUN) {
                 return Some(format!(
-                    "path tracing cannot meet {name}, which has no size: the light that it casts by \
-                     mirrors or through glass is missing from the picture and from its stated error; \
-                     use --method sppm"
+                    "path tracing cannot meet {name}, which has no size: the light that it casts \
+                     by mirrors or through glass is missing from the picture and from its stated \
+                     error; use --method sppm"
                 ));
             }
             (!path && photons < FEW_PHOTONS && brought > LEAST_SHARE).then(|| {
                 format!(
-                    "{name} sends {photons:.0} photons a pass but brings {:.1} % of the light: what it \
-                     casts by mirrors or through glass may be missing from the picture and from its \
-                     stated error; raise --photons",
+                    "{name} sends {photons:.0} photons a pass but brings {:.1} % of the light: \
+                     what it casts by mirrors or through glass may be missing from the picture and \
+                     from its stated error; raise --photons",
                     100.0 * brought
                 )
             })
@@ -242,7 +242,7 @@ impl Packed {
         if focusing { (0..self.sources.len()).filter_map(warning).collect() } else { Vec::new() }
     }
 
-    /// What was learned.
+    /// The learned results.
     pub fn learned(&self) -> Learned {
         let (world, distributions) = (&self.scene.world, &self.scene.distributions);
         let base = self.flattened as u32;
@@ -267,7 +267,7 @@ impl Packed {
         }
     }
 
-    /// Takes what was learned in another precision.
+    /// Applies results that were learned in another precision.
     fn take(&mut self, learned: &Learned) {
         let base = self.flattened as u32;
         let out = &mut self.scene;
@@ -297,7 +297,7 @@ impl Packed {
 }
 
 impl Scene {
-    /// A scene with nothing in it.
+    /// An empty scene.
     pub fn empty() -> Self {
         Self {
             world: World { environment: NONE, ..World::zeroed() },

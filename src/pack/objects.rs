@@ -8,15 +8,15 @@ const KINDS: usize = KIND_PLANE as usize + 1;
 /// Scene indices of table entries.
 #[derive(Clone, Debug, Default)]
 pub struct Objects {
-    /// Shape index for each kind of reference and index.
+    /// Shape index by kind and index of a reference.
     shapes: [Vec<u32>; KINDS],
     /// Scene material index of each table material; empty if they are equal.
     pub materials: Vec<u32>,
 }
 
 impl Objects {
-    /// Tells that what was put into the tables since the last call, and the first `patches`
-    /// patches, is of shape `shape`.
+    /// Assigns the table entries added since the last call, including patches up to `patches`, to
+    /// shape `shape`.
     pub fn mark(&mut self, scene: &Scene, patches: usize, shape: u32) {
         let lengths = [
             (KIND_TRIANGLE, scene.triangles.len()),
@@ -32,7 +32,7 @@ impl Objects {
         }
     }
 
-    /// Follows triangles to their new places.
+    /// Moves triangles to their new indices, `places`.
     pub fn move_triangles(&mut self, places: &[u32]) {
         let old = std::mem::take(&mut self.shapes[KIND_TRIANGLE as usize]);
         let new = &mut self.shapes[KIND_TRIANGLE as usize];
@@ -42,7 +42,7 @@ impl Objects {
         }
     }
 
-    /// The shape that a hit's reference belongs to; none for [`NONE`].
+    /// Shape of a hit's reference; `None` for [`NONE`].
     pub fn of(&self, reference: u32) -> Option<u32> {
         let index = index_of(reference) as usize;
         self.shapes.get(kind_of(reference) as usize)?.get(index).copied()

@@ -1,11 +1,11 @@
-//! The order of the triangles in memory: as the leaves of the kd-tree name them, so that those of a
-//! leaf lie together.
+//! Order of the triangles in memory: by first use in the leaves of the kd-tree, so that those of a
+//! leaf are adjacent.
 
 use super::shape::Emitter;
 use super::tables::*;
 
-/// Puts the triangles in the order in which the leaves name them first, and renames them
-/// everywhere. Where each went.
+/// Reorders the triangles by their first use in the leaves, and updates all references. Returns the
+/// new index of each triangle.
 pub fn triangles_as_met(out: &mut Scene, emitters: &mut [Emitter]) -> Vec<u32> {
     let is_triangle = |reference: u32| kind_of(reference) == KIND_TRIANGLE;
     let mut places = vec![NONE; out.triangles.len()];

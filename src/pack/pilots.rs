@@ -1,6 +1,6 @@
-//! Pilot photons: how much each light contributes to what the camera sees, and where its photons
-//! pass mirrors and glass on the way there. From them come the probability with which a photon
-//! starts at a light, and the lights' maps (`lights::guide`).
+//! Pilot photons estimate the contribution of each light to the light that the camera sees, and the
+//! start positions of the photons that reach it through mirrors and glass. From these follow the
+//! probability that a photon starts at a light, and the lights' maps (`lights::guide`).
 
 use super::discs::cumulative;
 use super::geometry::intersect::intersect_scene;
@@ -18,47 +18,48 @@ use crate::telemetry::stage::stage;
 use bytemuck::Zeroable;
 use rayon::prelude::*;
 
-/// Pilots of all lights together in each of two rounds, as far as a light has neither more nor
-/// fewer than the numbers below.
+/// Pilots of all lights together in each of two rounds, subject to the limits per light below.
 const PILOTS: usize = 1 << 16;
-/// Most pilots of a light in a round.
+/// Maximum number of pilots of a light in a round.
 const MOST: usize = 1 << 14;
-/// Least pilots of a light in a round.
+/// Minimum number of pilots of a light in a round.
 const LEAST: usize = 32;
-/// Most lights that get a map.
+/// Maximum number of lights with a map.
 const MAPS: usize = 64;
-/// Probability kept for lights by their power alone, so that nothing is left out.
+/// Probability reserved for selection by power, so that no light is left out.
 const KEPT: f64 = 0.1;
-/// Probability kept for all cells of a lamp's map alike. Light from infinity keeps its discs.
+/// Probability reserved for an even distribution over the cells of a lamp's map. Light from
+/// infinity keeps its discs instead.
 const EVEN: f64 = 0.5;
-/// Weight of photons that come straight from the light: shadow rays bring that light by default.
+/// Weight of photons that arrive straight from the light, which shadow rays sample by default.
 const STRAIGHT: f64 = 0.25;
-/// Weight, in maps, of what arrives where the camera sees nothing.
+/// Weight, in maps, of photons that arrive outside the camera's view.
 const UNSEEN: f64 = 0.1;
-/// Pilots by which the estimate of a light is drawn to that of its power.
+/// Weight, in pilots, of the prior that a light contributes in proportion to its power.
 const PRIOR: f64 = 4.0;
 /// A pass number that no render reaches.
 const PASS: u32 = u32::MAX;
-/// Low bits of a record's key that hold bounce and class.
+/// Number of low bits of a record's key that hold bounce and class.
 const KEY_BITS: u32 = 16;
-/// Scattering events of a pilot.
+/// Maximum number of scattering events of a pilot.
 const BOUNCES: u32 = 32;
 
-/// What a light's pilots found.
+/// Results of a light's pilots.
 #[derive(Clone, Debug, Default)]
 struct Tally {
     count: f64,
-    /// Sum of contributions to what the camera sees.
+    /// Sum of contributions to the light that the camera sees.
     sum: f64,
-    /// Sum of squared contributions to what the camera sees.
+    /// Sum of squared contributions to the light that the camera sees.
     sum_sq: f64,
-    /// Pilots, and sum of squared shares of flux that passed mirrors or glass, by cell of the map.
+    /// Number of pilots, and sum of squared fractions of flux that passed mirrors or glass, for
+    /// each cell of the map.
     cells: Vec<[f64; 2]>,
 }
 
-/// Sets the probabilities of the lights of photons and gives lights their maps. `power` is that of
-/// each light. Returns each light's share of the light that the camera sees, or nothing where one
-/// light brings all.
+/// Sets the emission probabilities of the lights, and their maps. `power` is the power of each
+/// light. Returns the fraction of the light seen by the camera that each light contributes; empty
+/// if a single light brings all of it and no surface is specular.
 pub fn learn_emission(out: &mut Scene, visibility: &Visibility, power: &[f64]) -> Vec<f64> {
     let specular = out.materials.iter().any(|m| Bsdf::of(m.kind).is_specular());
     for light in &mut out.lights {
@@ -81,7 +82,8 @@ pub fn learn_emission(out: &mut Scene, visibility: &Visibility, power: &[f64]) -
     for round in 0..2 {
         for (index, tally) in tallies.iter_mut().enumerate() {
             let mut found = explore(out, visibility, index, round, count);
-            // what the second round's map has found says more of the passes to come
+            // the second round's map resembles that of the passes to come, so its sums replace
+            // those of the first
             (tally.count, tally.sum, tally.sum_sq) = (found.count, found.sum, found.sum_sq);
             if !mapped.contains(&index) {
                 continue;
@@ -107,7 +109,7 @@ pub fn learn_emission(out: &mut Scene, visibility: &Visibility, power: &[f64]) -
         .collect()
 }
 
-/// Chooses the lights of photons in proportion to `shares`.
+/// Sets the emission probabilities of the lights in proportion to `shares`.
 fn choose_by(out: &mut Scene, shares: &[f64]) {
     let mut before = 0.0;
     for (index, end) in cumulative(shares).enumerate() {
@@ -117,8 +119,8 @@ fn choose_by(out: &mut Scene, shares: &[f64]) {
     }
 }
 
-/// The lights that may get a map: all, or those whose first pilots brought most through mirrors and
-/// glass.
+/// Lights that may get a map: all, or the [`MAPS`] lights whose first pilots brought most through
+/// mirrors and glass.
 fn candidates(scene: &Scene, visibility: &Visibility, count: usize) -> Vec<usize> {
     let mut lights: Vec<usize> = (0..scene.lights.len()).collect();
     if lights.len() > MAPS {
@@ -137,8 +139,8 @@ fn candidates(scene: &Scene, visibility: &Visibility, count: usize) -> Vec<usize
     lights
 }
 
-/// Probabilities of the lights: in proportion to the root mean square of what a photon contributes,
-/// which has the least variance.
+/// Probabilities of the lights: proportional to the root mean square of a photon's contribution,
+/// which minimizes the variance, and mixed with the power.
 fn shares(tallies: &[Tally], power: &[f64]) -> Vec<f64> {
     let total: f64 = power.iter().sum();
     let by_power: f64 =
@@ -157,17 +159,17 @@ fn shares(tallies: &[Tally], power: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// What one pilot found.
+/// Result of one pilot.
 struct Pilot {
-    /// Its contribution to what the camera sees.
+    /// Contribution to the light that the camera sees.
     contribution: f64,
-    /// Share of its flux that passed mirrors or glass, by what it is worth for the map.
+    /// Fraction of its flux that passed mirrors or glass, weighted by the visibility of its hits.
     share: f64,
-    /// Where it started, in the coordinates of a map.
+    /// Start position in the coordinates of a map.
     across: Vec2,
 }
 
-/// Sends `count` pilots of a round from a light.
+/// Sends `count` pilots of one round from a light.
 fn explore(
     scene: &Scene,
     visibility: &Visibility,
@@ -196,8 +198,8 @@ fn explore(
     tally
 }
 
-/// Sends pilot `id` from a light; in the first round those that its map sends go cell after cell.
-/// Only if `whole` is its path followed beyond the first surface that scatters.
+/// Sends pilot `id` from a light. In the first round (`even`), guided pilots visit the cells of the
+/// map in turn. The path continues beyond the first non-specular surface only if `whole`.
 fn pilot(
     scene: &Scene,
     visibility: &Visibility,
@@ -244,21 +246,21 @@ fn pilot(
             break;
         }
     }
-    // as if all photons started here
+    // as if all photons started at this light
     Pilot { contribution: contribution * f64::from(light.selection), share, across }
 }
 
-/// The coordinates in the map of light from infinity of a point on an emission disc.
+/// Map coordinates of a point on an emission disc, for light from infinity.
 fn on_square(scene: &Scene, origin: Vec3, direction: Vec3) -> Vec2 {
     let (t, b) = basis(direction);
     let d = origin - scene.world.near_center;
     (Vec2::new(d.dot(t), d.dot(b)) * (1.0 / scene.world.near_radius) + Vec2::ONE) * 0.5
 }
 
-/// A map's cumulative probabilities; none where no pilot came through. A cell is chosen in
-/// proportion to the root mean square of the shares, which has the least variance, and a little by
-/// its neighbours', since pilots are few. `even` is the probability of all cells alike. The map of
-/// a lamp wraps in y.
+/// Cumulative probabilities of a map; `None` if no pilot passed mirrors or glass. The probability
+/// of a cell is proportional to the root mean square of the fractions, which minimizes the
+/// variance, and smoothed over its neighbours, because pilots are few. `even` is the total
+/// probability of the even distribution. The map of a lamp wraps in y.
 fn map(cells: &[[f64; 2]], even: f64, wraps: bool) -> Option<Vec<Real>> {
     let side = GUIDE_SIDE as i32;
     let mean_sq = |x: i32, y: i32| {

@@ -1,4 +1,4 @@
-//! Shapes: into tables, into the kd-tree's input, and which of them shine.
+//! Conversion of shapes to tables, to the input of the kd-tree, and to emitters.
 
 use super::accel::kdtree::Primitive;
 use super::accel::revolution::{Attributes as RevolutionAttributes, Placement, RevolutionTables};
@@ -17,38 +17,38 @@ use bytemuck::Zeroable;
 use glam::{DQuat, DVec2, DVec3};
 use std::borrow::Cow;
 
-/// Spheres of a larger radius, in scene units, are tested outside of the kd-tree.
+/// Spheres of a larger radius, in scene units, are tested outside the kd-tree.
 const UNBOUNDED_RADIUS: f64 = 64.0;
 
 /// An emitting shape.
 pub struct Emitter {
-    /// Its reference; for a revolution with the index of the revolution.
+    /// Its reference; for a revolution, with the index of the revolution instead of a patch.
     pub reference: u32,
-    /// Radiance, world units.
+    /// Radiance, in world units.
     pub radiance: DVec3,
-    /// Area, scene units.
+    /// Area, in scene units.
     pub area: f64,
-    /// Index of the scene's shape.
+    /// Index of the shape in the scene.
     pub shape: usize,
 }
 
-/// Largest absolute coordinate of some points along each axis.
+/// Largest absolute coordinate of the points along each axis.
 fn largest(points: &[Vec3]) -> Vec3 {
     points.iter().fold(Vec3::ZERO, |a, p| a.max(p.abs()))
 }
 
-/// What one rounding moves the hits with a flat shape of this `extent` off its plane, along each
-/// axis: nothing along the others where the plane stands square to one.
+/// Length whose rounding moves hits with a flat shape of this `extent` off its plane, along each
+/// axis; zero along axes that lie in the plane.
 fn off_plane(normal: DVec3, extent: DVec3) -> DVec3 {
     normal.abs() * normal.abs().dot(extent)
 }
 
 type Flattened = (Vec<Primitive>, Vec<u32>, Vec<Emitter>);
 
-/// Fills the shape tables; returns the kd-tree's primitives, the reference of each, and the
-/// emitters. An emitter's number is its light's. `kinds` are the shapes to pack, `materials` of
-/// each the material or those of its triangles. Where the film asks for shapes' numbers, `objects`
-/// tells them.
+/// Fills the shape tables. Returns the primitives of the kd-tree, the reference of each, and the
+/// emitters, whose indices are those of their lights. `kinds` are the shapes to pack, and
+/// `materials` contains for each shape its material or those of its triangles. `objects` receives
+/// shape indices if the film requests them.
 pub fn pack_shapes(
     scene: &scene::Scene,
     kinds: &[Cow<ShapeKind>],
@@ -113,7 +113,7 @@ pub fn pack_shapes(
         }
     }
     let Pack { primitives, references, emitters, .. } = pack;
-    // By kind, so that each leaf names its triangles first.
+    // Sort by kind, so that each leaf lists its triangles first.
     let mut items: Vec<_> = references.into_iter().zip(primitives).collect();
     items.sort_unstable_by_key(|item| item.0);
     let (references, primitives) = items.into_iter().unzip();
@@ -123,7 +123,7 @@ pub fn pack_shapes(
     Ok((primitives, references, emitters))
 }
 
-/// Whether a profile ends where it begins, away from the axis.
+/// Returns whether a profile ends where it begins, off the axis.
 fn is_loop(segments: &[Vec<DVec2>]) -> bool {
     let ends = segments.first().and_then(|s| s.first()).zip(segments.last().and_then(|s| s.last()));
     ends.is_some_and(|(first, last)| first == last && first.x != 0.0)
@@ -143,9 +143,9 @@ struct Pack<'a> {
     primitives: Vec<Primitive>,
     references: Vec<u32>,
     emitters: Vec<Emitter>,
-    /// Index of the shape that is packed.
+    /// Index of the current shape.
     shape: usize,
-    /// The period of its material's texture in (u, v).
+    /// Period of its material's texture in (u, v).
     period: DVec2,
 }
 
@@ -156,8 +156,8 @@ impl Pack<'_> {
         self.emitters.len() as u32 - 1
     }
 
-    /// A primitive whose computed hits lie in the box of `points`, grown by the rounding of those
-    /// hits. `grow` is in roundings of a length.
+    /// Adds a primitive whose computed hits lie in the box of `points`, grown by the rounding
+    /// errors of those hits. `grow` contains the lengths that are rounded.
     fn boxed(&mut self, reference: u32, points: &[Vec3], grow: Vec3) {
         let b = Aabb::of_points(points);
         let grow = (grow * (64.0 * EPS)).max(Vec3::splat(Real::MIN_POSITIVE));
@@ -175,7 +175,7 @@ impl Pack<'_> {
     ) {
         let c = self.n.point(center);
         let r = radius / self.n.unit;
-        // the anchor faces the scene's middle, which is the origin
+        // the anchor faces the origin, which is the middle of the scene
         let normal = if c.length() > 1e-3 * r { -c.normalize() } else { DVec3::Y };
         let id = reference(KIND_SPHERE, self.out.spheres.len());
         let light = self.light(emission, id, 4.0 * std::f64::consts::PI * r * r);
@@ -238,7 +238,7 @@ impl Pack<'_> {
         self.boxed(id, &corners, grow.to_real() + largest(&corners));
     }
 
-    /// An outline's number; its error is left open.
+    /// Adds an outline and returns its index; its error is not set yet.
     fn outline(&mut self, origin: DVec3, u: DVec3, v: DVec3) -> u32 {
         let normal = u.cross(v);
         let area_sq = normal.length_squared();
@@ -338,7 +338,7 @@ impl Pack<'_> {
             let planar = corners.map(|c| DVec2::new(c.x, c.z));
             let uvs = triangle.uv.map(|t| t.map(|i| mesh.uvs[i as usize]));
             let uvs = if uv == UV_PLANAR { Some(planar) } else { uvs };
-            // all corners by the same periods
+            // shift all corners by the same periods
             let uvs = uvs.map(|uvs| {
                 let shift = image::reduced(uvs[0], self.period) - uvs[0];
                 uvs.map(|uv| uv + shift)

@@ -1,18 +1,18 @@
-//! How densely the points that the camera sees lie around a place.
+//! Density of the points that the camera sees around a position.
 
 use super::look::{Look, Region};
 use super::real::{Real, Vec3};
 use std::collections::HashMap;
 
-/// Cells across the near sphere, of the finest grid.
+/// Number of cells across the near sphere in the finest grid.
 const ACROSS: Real = 64.0;
-/// Grids, each with cells this many times as wide as the one before.
+/// Ratio of the cell widths of consecutive grids.
 const WIDER: Real = 4.0;
 /// Number of grids.
 const GRIDS: i32 = 5;
-/// Grids in which a point that is seen has neighbours.
+/// Number of grids, from the finest, that [`Visibility::is_seen`] searches.
 const NEAR_GRIDS: i32 = 2;
-/// Points that make a cell's density.
+/// Minimum number of points in a cell that gives a density.
 const LEAST: u32 = 2;
 
 /// Counts of visible points in cells of several widths.
@@ -24,7 +24,7 @@ pub struct Visibility {
 }
 
 impl Visibility {
-    /// Of the points of a look.
+    /// Counts the visible points of `look`.
     pub fn new(look: &Look, region: Region) -> Self {
         let width = 2.0 * region.radius / ACROSS;
         let total = look.seen.len().max(1) as f64;
@@ -37,15 +37,15 @@ impl Visibility {
         out
     }
 
-    /// The cell of a grid and its width.
+    /// Cell of a grid at `position`, and its width.
     fn cell(&self, position: Vec3, grid: i32) -> ([i32; 4], Real) {
         let width = self.width * WIDER.powi(grid);
         let d = ((position - self.center) / width).floor();
         ([grid, d.x as i32, d.y as i32, d.z as i32], width)
     }
 
-    /// Visible points per area around `position`, as a share of all: from the finest grid that has
-    /// some.
+    /// Fraction of the visible points per area around `position`, from the finest grid that has
+    /// enough points there.
     pub fn density(&self, position: Vec3) -> f64 {
         for grid in 0..GRIDS {
             let (cell, width) = self.cell(position, grid);
@@ -60,7 +60,7 @@ impl Visibility {
         0.0
     }
 
-    /// Whether the camera sees something close to `position`.
+    /// Returns whether the camera sees a point close to `position`.
     pub fn is_seen(&self, position: Vec3) -> bool {
         (0..NEAR_GRIDS).any(|grid| self.counts.contains_key(&self.cell(position, grid).0))
     }

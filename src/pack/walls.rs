@@ -1,5 +1,4 @@
-//! Walls: flat shapes that stand on outlines and planes, where they part what lies on one side from
-//! the other.
+//! Walls: flat shapes that stand on outlines and planes, and separate what lies on their two sides.
 
 use super::flat_regions::{self, Region};
 use super::real::{ToDouble, ToReal, Vec3};
@@ -10,31 +9,30 @@ use bytemuck::Zeroable;
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// Least sine of the angle between a wall and what it stands on, as the greatest cosine of their
-/// normals.
+/// Maximum cosine of the angle between the normals of a wall and of the floor below it.
 const STEEP: f64 = 0.5;
-/// A wall stands on what is nearer to its foot than this share of its height.
+/// Maximum gap between a wall and the floor below it, relative to the wall's height.
 const GAP: f64 = 1e-3;
-/// Feet this close to an edge, in edge lengths, are the outline's business.
+/// Distance from an edge, in edge lengths, within which a foot belongs to the outline itself.
 const EDGE: f64 = 1e-4;
-/// Walls of one outline, the longest ones.
+/// Maximum number of walls of one outline; the longest ones are kept.
 const WALLS: usize = (1 << WALL_BITS) - 1;
-/// Pairs of outline and polygon that are looked at; where there are more, triangles are no walls, or
-/// nothing is.
+/// Maximum number of pairs of outline and polygon that are tested. If there are more, triangles are
+/// not tested as walls, or there are no walls at all.
 const PAIRS: usize = 1 << 26;
-/// Edge of the outline of an infinite plane, in scene units.
+/// Edge length of the outline of an infinite plane, in scene units.
 const ENDLESS: f64 = (1u64 << 30) as f64;
 
-/// A side of a flat shape on which something may stand.
+/// A flat shape on which walls may stand.
 struct Floor {
     point: DVec3,
     normal: DVec3,
     outline: Outline,
-    /// FloorId of the outline, or the plane's.
+    /// The outline or plane that it belongs to.
     place: FloorId,
-    /// Edges of a mesh's region that are not on the outline.
+    /// Edges of a mesh region that are not on the outline.
     edges: Vec<[DVec3; 2]>,
-    /// Whether walls are searched for.
+    /// True if walls are searched for on it.
     walls: bool,
 }
 
@@ -78,18 +76,18 @@ impl Polygon {
     }
 }
 
-/// A foot of a wall, or an edge of a mesh's region.
+/// Foot of a wall, or an edge of a mesh region.
 #[derive(Clone, Copy)]
 struct Foot {
     from: DVec3,
     to: DVec3,
     up: DVec3,
-    /// Whether it counts on both sides of the floor.
+    /// True if it counts on both sides of the floor.
     both: bool,
 }
 
-/// Adds outlines for the flat regions of meshes, to all outlines the walls that stand on them, and
-/// outlines for the planes that have any.
+/// Adds outlines for the flat regions of meshes, the walls that stand on outlines, and outlines for
+/// planes with walls.
 pub fn find_walls(out: &mut Scene) {
     let regions = flat_regions::regions(out);
     flat_regions::add_outlines(out, &regions);
@@ -121,7 +119,7 @@ pub fn find_walls(out: &mut Scene) {
         .map(|f| (f.place, f.outline, feet(f, &polygons)))
         .filter(|(_, _, feet)| !feet.is_empty())
         .collect();
-    // opposite faces of a cuboid have one outline
+    // opposite faces of a cuboid share an outline
     found.sort_by_key(|(place, ..)| *place);
     for same in found.chunk_by(|a, b| a.0 == b.0) {
         let mut feet: Vec<Foot> = same.iter().flat_map(|(_, _, feet)| feet).copied().collect();
@@ -188,7 +186,7 @@ fn floors(out: &Scene) -> Vec<Floor> {
     floors
 }
 
-/// The flat shapes that may be walls.
+/// Rectangles and faces of cuboids, which may be walls.
 fn polygons(out: &Scene) -> Vec<Polygon> {
     let mut polygons = Vec::new();
     for r in &out.rectangles {
@@ -212,7 +210,7 @@ fn polygons(out: &Scene) -> Vec<Polygon> {
     polygons
 }
 
-/// The edges of a floor, and the feet of the walls that stand on it elsewhere.
+/// Edges of a floor, and feet of the walls that stand elsewhere on it.
 fn feet(floor: &Floor, polygons: &[Polygon]) -> Vec<Foot> {
     let edge =
         |[from, to]: &[DVec3; 2]| Foot { from: *from, to: *to, up: floor.normal, both: true };
@@ -233,10 +231,10 @@ fn along([a, b]: &[DVec3; 2], foot: &Foot) -> bool {
     })
 }
 
-/// The feet of a polygon on the two sides of a floor.
+/// Feet of a polygon on the two sides of a floor.
 fn feet_of(floor: &Floor, polygon: &Polygon) -> impl Iterator<Item = Foot> {
     let error = 8.0 * f64::from(floor.outline.error);
-    // the plane misses most boxes
+    // most boxes lie off the plane
     let (center, half) = (0.5 * (polygon.low + polygon.high), 0.5 * (polygon.high - polygon.low));
     let reach = (1.0 + 2.0 * GAP) * half.dot(floor.normal.abs()) + error;
     let near = (center - floor.point).dot(floor.normal).abs() <= reach;
@@ -245,7 +243,7 @@ fn feet_of(floor: &Floor, polygon: &Polygon) -> impl Iterator<Item = Foot> {
     sides.into_iter().flatten().flatten()
 }
 
-/// The foot of a polygon that stands on the side of a floor that `up` points to.
+/// Foot of a polygon that stands on the side of a floor that `up` points to.
 fn foot(floor: &Floor, up: DVec3, polygon: &Polygon) -> Option<Foot> {
     let polygon = polygon.corners();
     let heights = || polygon.iter().map(|p| (*p - floor.point).dot(up));
@@ -260,7 +258,7 @@ fn foot(floor: &Floor, up: DVec3, polygon: &Polygon) -> Option<Foot> {
     if across.dot(floor.normal).abs() > STEEP * across.length() {
         return None;
     }
-    // where its edges pass a level just above the floor
+    // intersect its edges with a level just above the floor
     let mut ends = Vec::new();
     for (i, a) in polygon.iter().enumerate() {
         let b = polygon[(i + 1) % polygon.len()];
@@ -277,7 +275,7 @@ fn foot(floor: &Floor, up: DVec3, polygon: &Polygon) -> Option<Foot> {
     Some(Foot { from, to, up, both: false })
 }
 
-/// Whether a foot passes the inside of an outline.
+/// Returns whether a foot crosses the inside of an outline.
 fn within(outline: &Outline, from: DVec3, to: DVec3) -> bool {
     [outline.dual_u, outline.dual_v].iter().all(|dual| {
         let place = |p: DVec3| (p - outline.origin.to_double()).dot(dual.to_double());

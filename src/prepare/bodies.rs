@@ -9,7 +9,7 @@ use std::cmp::{Ordering, Reverse};
 
 /// Maximum number of parts of a mesh that become separate bodies.
 const PARTS: usize = 256;
-/// A mesh whose summed area vector is shorter than this share of its area counts as closed.
+/// A mesh whose summed area vector is shorter than this fraction of its area counts as closed.
 const LEAST_FACING: f64 = 0.05;
 
 /// Minimum and maximum corner.
@@ -22,7 +22,7 @@ pub struct Body {
     pub shape: usize,
     /// Index of the scene's material.
     pub material: usize,
-    /// See [`MaterialKind::Glass`].
+    /// Priority, as in [`MaterialKind::Glass`].
     priority: i32,
     /// Bounding box; `None` for a plane.
     pub bounds: Option<Bounds>,
@@ -38,7 +38,7 @@ impl Body {
         }
     }
 
-    /// Compares ranks: the lesser body is the medium where both overlap.
+    /// Compares ranks: where two bodies overlap, the lesser one is the medium.
     pub fn order(&self, other: &Self) -> Ordering {
         let priority = |body: &Self| Reverse(body.priority);
         priority(self).cmp(&priority(other)).then(self.volume().total_cmp(&other.volume()))
@@ -48,16 +48,16 @@ impl Body {
 /// The bodies of a scene, in the order of its shapes.
 #[derive(Clone, Debug, Default)]
 pub struct Bodies {
-    /// The bodies.
+    /// All bodies.
     pub all: Vec<Body>,
-    /// For each shape its bodies' numbers: none, one, or one for each triangle.
+    /// Body indices of each shape: none, one, or one per triangle.
     pub of: Vec<Vec<u32>>,
-    /// Whether bodies may overlap.
+    /// True if bodies may overlap.
     pub nested: bool,
 }
 
 impl Bodies {
-    /// The bodies of `scene`, whose shapes are `kinds`.
+    /// Finds the bodies of `scene`, whose shapes are `kinds`.
     pub fn of(scene: &Scene, kinds: &[Cow<ShapeKind>]) -> Self {
         let mut bodies = Self::default();
         for (index, (shape, kind)) in scene.shapes.iter().zip(kinds).enumerate() {
@@ -91,7 +91,7 @@ impl Bodies {
         bodies
     }
 
-    /// Indices of the bodies in the order of rank, the highest rank first.
+    /// Indices of the bodies by rank, the highest rank first.
     pub fn ranking(&self) -> Vec<usize> {
         let mut order: Vec<usize> = (0..self.all.len()).collect();
         order.sort_by(|a, b| self.all[*a].order(&self.all[*b]).then(a.cmp(b)));

@@ -40,8 +40,8 @@ struct Item {
     times: u32,
 }
 
-/// Grows the shapes that touch others. Both precisions use the rounding error of f32 and hence the
-/// same scene.
+/// Grows the shapes that touch others. Both precisions use the rounding error of f32 and hence get
+/// the same scene.
 pub fn grown<'a>(
     scene: &Scene,
     kinds: Vec<Cow<'a, ShapeKind>>,
@@ -233,7 +233,7 @@ fn larger_profile(segments: &[Vec<DVec2>], by: f64) -> Vec<Vec<DVec2>> {
     let (Some(first), Some(last)) = (points.first(), points.last()) else { return Vec::new() };
     let is_loop = first == last && first.x != 0.0;
     let count = points.len();
-    // the normal of the edge to the next other point, forward or backward
+    // normal of the edge to the nearest distinct point, forward or backward
     let edge = |i: usize, forward: bool| {
         let steps = if is_loop {
             count

@@ -1,22 +1,22 @@
-//! What was learned from pilots before a render, in f64: for an engine of another precision that is
-//! to render the same.
+//! Results of the pilot paths before a render, in f64, so that an engine of another precision can
+//! render the same.
 
 use super::normalize::{Normalization, extent};
 use crate::scene::{Light, Scene, ShapeKind};
 
-/// Where a light comes from.
+/// Scene element that a light comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LightSource {
-    /// The scene's shape of this index emits.
+    /// The emitting shape with this index.
     Shape(usize),
-    /// The scene's light of this index.
+    /// The light with this index.
     Light(usize),
-    /// The scene's environment.
+    /// The environment.
     Environment,
 }
 
 impl LightSource {
-    /// What a reader of the scene file calls it.
+    /// Describes the light in terms of the scene file.
     pub fn describe(self, scene: &Scene) -> String {
         match self {
             Self::Environment => "the environment".to_owned(),
@@ -50,31 +50,32 @@ impl LightSource {
     }
 }
 
-/// Everything that pilots decide.
+/// All results of the pilot paths.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Learned {
-    /// Place and unit of scene space.
+    /// Normalization of scene space.
     pub normalization: Normalization,
-    /// Center of what the camera sees, scene space.
+    /// Center of the near sphere, in scene space.
     pub near_center: [f64; 3],
-    /// Radius of what the camera sees, scene units.
+    /// Radius of the near sphere, in scene units.
     pub near_radius: f64,
-    /// Radius of the narrowest emission disc, scene units.
+    /// Radius of the narrowest emission disc, in scene units.
     pub disc_radius: f64,
     /// Number of emission discs.
     pub disc_levels: u32,
-    /// Whether surfaces lie far outside of the near sphere.
+    /// 1 if surfaces lie far outside the near sphere, else 0.
     pub far: u32,
-    /// Whether any light has a map.
+    /// 1 if any light has a map, else 0.
     pub guided: u32,
-    /// Cumulative probabilities of the lights of photons.
+    /// Cumulative emission probabilities of the lights.
     pub lights: Vec<f64>,
-    /// What is appended to the distributions.
+    /// Entries to append to the distributions.
     pub distributions: Vec<f64>,
-    /// Where the discs' probabilities begin in `distributions`.
+    /// Index of the discs' first probability in `distributions`.
     pub disc_first: u32,
-    /// Where each light's map begins in `distributions`.
+    /// Index of each light's map in `distributions`.
     pub guides: Vec<Option<u32>>,
-    /// Plane, axis and first entry of each cell; of a leaf the entry in `distributions`.
+    /// Split position, axis and first child of each cell; for a leaf, its first entry in
+    /// `distributions` in place of the child.
     pub cells: Vec<(f64, u32, u32)>,
 }

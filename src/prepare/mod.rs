@@ -1,4 +1,4 @@
-//! Preparation of a scene in f64 before it is packed: its centre and unit, glass bodies, coincident
+//! Preparation of a scene in f64 before it is packed: normalization, glass bodies, coincident
 //! surfaces, orientation.
 
 use super::math;

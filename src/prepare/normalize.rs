@@ -1,30 +1,32 @@
-//! The move of a scene to its own center and to a scale near one before anything is rounded to f32,
-//! undone on output.
+//! Normalization: moves a scene to its own center and to a scale near one before rounding to f32.
+//! Outputs undo it.
 
 use crate::scene::{Scene, ShapeKind};
 use glam::DVec3;
 
-/// Shapes more than this many times wider than what is smaller than they and the camera's
-/// surroundings do not decide the scene's size.
+/// Size ratio of giant shapes to the camera's surroundings and all smaller shapes. Giant shapes do
+/// not affect the scene's size.
 const GIANT: f64 = 64.0;
-/// Distance that counts as far where a plane is infinite, over the radius of what the camera sees.
+/// Distance of the horizon of infinite planes, relative to the radius of the region seen by the
+/// camera.
 const HORIZON: f64 = 1e4;
 
-/// World point p lies at `(p - center) / unit` in scene space.
+/// Maps a world point p to `(p - center) / unit` in scene space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Normalization {
-    /// The world point that becomes the origin.
+    /// World point at the origin of scene space.
     pub center: DVec3,
-    /// World units in one scene unit, a power of two: scaling a scene by two changes no bit.
+    /// World units per scene unit, a power of two: scaling a scene by two changes no bit.
     pub unit: f64,
-    /// Radius, in world units, of the sphere about `center` that the numbers above are made for.
+    /// Radius, in world units, of the sphere about `center` for which this normalization was
+    /// chosen.
     pub radius: f64,
 }
 
 impl Normalization {
-    /// Of the camera's surroundings and all shapes but giant ones: a first guess that decides no
-    /// more than how numbers are rounded. A scene may hold objects far from what its camera sees;
-    /// [`Self::suits`] tells whether the guess does.
+    /// Normalization for the camera's surroundings and all shapes except giant ones. This first
+    /// guess affects only the rounding of numbers. A scene may contain objects far from the region
+    /// seen by the camera; [`Self::suits`] checks the guess.
     pub fn of(scene: &Scene) -> Self {
         let mut boxes: Vec<(DVec3, DVec3)> =
             scene.shapes.iter().filter_map(|s| extent(&s.kind)).collect();
@@ -42,31 +44,31 @@ impl Normalization {
         Self::about(0.5 * (low + high), 0.5 * low.distance(high))
     }
 
-    /// Of a sphere.
+    /// Normalization for a sphere, in world space.
     pub fn about(center: DVec3, radius: f64) -> Self {
         Self { center, unit: radius.log2().ceil().exp2(), radius }
     }
 
-    /// Whether f32 has enough digits left, in scene space, for a sphere of the given world center
-    /// and radius.
+    /// Returns whether f32 has enough precision, in scene space, for a sphere with this world
+    /// center and radius.
     pub fn suits(&self, center: DVec3, radius: f64) -> bool {
         const SLACK: f64 = 16.0;
         let off = center.distance(self.center);
         off <= SLACK * radius && radius >= self.unit / (2.0 * SLACK) && radius <= self.unit * SLACK
     }
 
-    /// A world point in scene space.
+    /// Converts a world point to scene space.
     pub fn point(&self, p: DVec3) -> DVec3 {
         (p - self.center) / self.unit
     }
 
-    /// The world point of a point in scene space.
+    /// Converts a point in scene space to world space.
     pub fn world(&self, p: DVec3) -> DVec3 {
         p * self.unit + self.center
     }
 }
 
-/// Distance from `center` to the farthest point of any shape; planes end at 10^4 times `radius`.
+/// Distance from `center` to the farthest point of any shape; planes count as 10^4 times `radius`.
 pub fn reach(scene: &Scene, center: DVec3, radius: f64) -> f64 {
     let planes = scene.shapes.iter().any(|s| matches!(s.kind, ShapeKind::Plane { .. }));
     let boxes = scene.shapes.iter().filter_map(|s| extent(&s.kind));
@@ -74,7 +76,7 @@ pub fn reach(scene: &Scene, center: DVec3, radius: f64) -> f64 {
     boxes.map(corner).fold(if planes { HORIZON * radius } else { 0.0 }, f64::max)
 }
 
-/// Bounding box of a finite shape, world space.
+/// Bounding box of a finite shape in world space; `None` for planes and empty meshes.
 pub fn extent(kind: &ShapeKind) -> Option<(DVec3, DVec3)> {
     let hull = |points: &[DVec3]| {
         let low = points.iter().copied().fold(DVec3::INFINITY, DVec3::min);

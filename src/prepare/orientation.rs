@@ -1,18 +1,19 @@
-//! Which side of a closed body its surface faces.
+//! Orientation of closed bodies.
 //!
-//! The winding of a mesh's faces, and the direction of a profile, say where outside is. Of a closed
-//! body the signed volume tells whether that is so.
+//! The winding of a mesh's faces, or the direction of a profile, defines the outside. The sign of a
+//! closed body's volume shows whether that definition is right.
 
 use super::parts::{TRIANGLES, parts};
 use crate::scene::{Mesh, ShapeKind};
 use glam::{DVec2, DVec3};
 
-/// A large mesh whose summed area vector is shorter than this share of its area counts as closed.
+/// A large mesh whose summed area vector is shorter than this fraction of its area counts as
+/// closed.
 const LEAST_FACING: f64 = 1e-3;
-/// Points of a profile's segment.
+/// Number of steps along a profile segment.
 const STEPS: u32 = 64;
 
-/// Whether a shape is a closed body, or has one, that faces inward and lies in no other.
+/// Returns whether a shape is, or contains, a closed body that faces inward and lies in no other.
 pub fn faces_inward(kind: &ShapeKind) -> bool {
     match kind {
         ShapeKind::Mesh(mesh) => mesh_faces_inward(mesh),
@@ -25,8 +26,8 @@ pub fn faces_inward(kind: &ShapeKind) -> bool {
     }
 }
 
-/// A profile that begins and ends on the axis, or where it began, encloses `pi` times the integral
-/// of `r^2 dy`: above zero where it is drawn upward on its outer side.
+/// A profile that begins and ends on the axis, or ends where it began, encloses `pi` times the
+/// integral of `r^2 dy`, which is positive if its outer side is drawn upward.
 fn profile_faces_inward(segments: &[Vec<DVec2>]) -> bool {
     let ends = segments.first().and_then(|s| s.first()).zip(segments.last().and_then(|s| s.last()));
     let closed = ends.is_some_and(|(a, b)| (a.x == 0.0 && b.x == 0.0) || a == b);
@@ -55,7 +56,7 @@ fn mesh_faces_inward(mesh: &Mesh) -> bool {
         return large_mesh_faces_inward(mesh);
     }
     let (parts, _) = parts(mesh);
-    // a shell within another one may face inward: the wall of a hollow body
+    // a shell inside another one may face inward: it is the wall of a hollow body
     parts.iter().any(|part| {
         part.closed
             && part.volume < 0.0
@@ -63,7 +64,8 @@ fn mesh_faces_inward(mesh: &Mesh) -> bool {
     })
 }
 
-/// The same of a mesh that is too large to be split: one body if its area vectors cancel.
+/// Like [`mesh_faces_inward`], for a mesh that is too large to split: treats it as one body, which
+/// is closed if its area vectors cancel.
 fn large_mesh_faces_inward(mesh: &Mesh) -> bool {
     let origin = mesh.positions.first().copied().unwrap_or_default();
     let (mut volume, mut facing, mut area) = (0.0, DVec3::ZERO, 0.0);
@@ -82,8 +84,8 @@ mod tests {
     use super::*;
     use crate::scene::Triangle;
 
-    /// Theory: a closed body whose triangles are listed clockwise faces inward, however many they
-    /// are; an open sheet does not face anywhere.
+    /// Theory: a closed body whose triangles are listed clockwise faces inward, whatever their
+    /// number; an open sheet has no orientation.
     #[test]
     fn large_meshes() {
         let n = 400;

@@ -20,7 +20,7 @@ pub struct Part {
     pub low: DVec3,
     /// Maximum corner of the bounding box.
     pub high: DVec3,
-    /// Whether every edge is used once in each direction.
+    /// True if every edge is used once in each direction.
     pub closed: bool,
 }
 
@@ -74,8 +74,8 @@ pub fn parts(mesh: &Mesh) -> (Vec<Part>, Vec<u32>) {
         });
         of.push(number);
         let [a, b, c] = triangle.position.map(|i| mesh.positions[i as usize]);
-        // about a corner of the mesh: far from the origin products of coordinates have no digits
-        // left
+        // relative to a corner of the mesh: far from the origin, products of coordinates lose all
+        // their digits
         let [p, q, r] = [a, b, c].map(|corner| corner - origin);
         let across = (b - a).cross(c - a);
         let part = &mut parts[number as usize];
@@ -100,7 +100,7 @@ pub fn parts(mesh: &Mesh) -> (Vec<Part>, Vec<u32>) {
 pub fn places(mesh: &Mesh) -> Vec<usize> {
     let mut first: HashMap<[u64; 3], usize> = HashMap::new();
     let place = |(i, position): (usize, &DVec3)| {
-        // -0 and 0 are one place
+        // -0 and 0 are the same position
         let key = (*position + DVec3::ZERO).to_array().map(f64::to_bits);
         *first.entry(key).or_insert(i)
     };

@@ -1,5 +1,4 @@
-//! What the picture is held against: one from a file, one kept from before, or the same scene on
-//! another device.
+//! Comparison images: an image from a file, a kept image, or the same scene on another device.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -11,9 +10,9 @@ use crate::device::Wanted;
 use crate::film::{Coding, Development, FileError, Picture, read_any};
 use crate::math::srgb::srgb_from_linear;
 
-/// A picture to hold another against.
+/// An image that the window compares with the current one.
 pub struct Beside {
-    /// What it is, for the label.
+    /// Label in the window.
     pub name: String,
     what: What,
 }
@@ -25,7 +24,7 @@ enum What {
 }
 
 impl Beside {
-    /// Reads a picture file.
+    /// Reads an image file.
     pub fn file(path: &Path) -> Result<Self, FileError> {
         let (picture, coding) = read_any(path)?;
         let name =
@@ -33,18 +32,18 @@ impl Beside {
         Ok(Self { name, what: What::File(picture, coding) })
     }
 
-    /// Keeps a picture as it is.
+    /// Keeps the current image.
     pub fn kept(frame: Arc<Frame>) -> Self {
         let name = format!("kept, {} passes", frame.passes);
         Self { name, what: What::Kept(frame) }
     }
 
-    /// Another device, which is to be told of wishes.
+    /// Compares with another device, whose worker receives the same render requests.
     pub fn device(name: &str, worker: Worker, wanted: Wanted) -> Self {
         Self { name: name.to_owned(), what: What::Device(Box::new(worker), wanted) }
     }
 
-    /// The worker of another device, and which that is.
+    /// The worker of another device, and the device that it uses.
     pub fn worker(&mut self) -> Option<(&mut Worker, &Wanted)> {
         match &mut self.what {
             What::Device(worker, wanted) => Some((worker, wanted)),
@@ -52,7 +51,7 @@ impl Beside {
         }
     }
 
-    /// Why there is nothing to see.
+    /// Reason why there is no image, if rendering failed.
     pub fn failure(&self) -> Option<String> {
         match &self.what {
             What::Device(worker, _) => worker.board().failure(),
@@ -60,7 +59,8 @@ impl Beside {
         }
     }
 
-    /// What it was made of, to tell whether there is something new.
+    /// The frame that it shows; `None` for a file. A different frame means that there is a new
+    /// image.
     pub fn frame(&self) -> Option<Arc<Frame>> {
         match &self.what {
             What::File(..) => None,
@@ -69,8 +69,8 @@ impl Beside {
         }
     }
 
-    /// What there is to see of it, by the scale of the picture that it is held against. A file has
-    /// radiance, or display values that are shown as they are, and nothing else.
+    /// Converts it for display, in the color scale of the current image. A file contains only
+    /// radiance, or display values that are shown unchanged, so it has no other views.
     pub fn show(
         &self,
         view: View,

@@ -1,4 +1,4 @@
-//! The scene file under the window: saved with comments and order kept, and looked at for changes.
+//! The scene file of a session: saved with its comments and order, and watched for changes.
 
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
@@ -16,43 +16,48 @@ use crate::scene::settings::RenderSettings;
 use crate::scene::{Allowance, Camera, Film, SceneErrors, parse_within};
 use crate::storage;
 
-/// What a window can change of a scene.
+/// The parts of a scene that the window can change.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Edits {
-    /// Where the picture is taken from.
+    /// Viewpoint and lens.
     pub camera: Camera,
-    /// What it is taken on; exposure and tone map count.
+    /// Film, of which exposure and tone map are saved.
     pub film: Film,
-    /// How it is rendered.
+    /// Render settings.
     pub settings: RenderSettings,
 }
 
-/// Why a scene is not saved.
+/// Reason why a scene is not saved.
 #[derive(Debug, Error)]
 pub enum SaveError {
     /// The file cannot be read or written.
     #[error(transparent)]
     File(#[from] FileError),
-    /// What lies on the disk is not TOML.
-    #[error("{} is not TOML any more: {what}; mend it first", file.display())]
+    /// The file on disk is not TOML.
+    #[error("{} is not valid TOML: {what}; fix it first", file.display())]
     Toml {
         /// The scene file.
         file: PathBuf,
-        /// What is wrong.
+        /// The parse error.
         what: String,
     },
-    /// The file would not be a scene.
-    #[error("{} would not be a scene: {}", file.display(), errors.errors.first().map_or("", |e| e.message()))]
+    /// The edited file would not be a valid scene.
+    #[error(
+        "{} would not be a valid scene: {}",
+        file.display(),
+        errors.errors.first().map_or("", |e| e.message())
+    )]
     Scene {
         /// The scene file.
         file: PathBuf,
-        /// What is wrong.
+        /// Errors in the edited file.
         errors: Box<SceneErrors>,
     },
 }
 
-/// Writes what differs between `before` and `after` into a scene file, as it lies on the disk now;
-/// nothing else in it changes. That the result is a scene is found out with what may be read.
+/// Writes the differences between `before` and `after` into a scene file, in its current state on
+/// disk; the rest of it does not change. Checks first, within `allowance`, that the result is a
+/// valid scene.
 pub fn save(
     file: &Path,
     allowance: &Allowance,
@@ -71,7 +76,10 @@ pub fn save(
     Ok(write_whole(file, edited.as_bytes())?)
 }
 
-/// The text with what differs between `before` and `after`; an error says why it is no TOML.
+/// The text with the differences between `before` and `after`.
+///
+/// # Errors
+/// The parse error of a text that is not TOML.
 pub fn edited(text: &str, before: &Edits, after: &Edits) -> Result<String, String> {
     let mut document: DocumentMut =
         text.parse().map_err(|error: toml_edit::TomlError| error.to_string())?;
@@ -91,7 +99,7 @@ pub fn edited(text: &str, before: &Edits, after: &Edits) -> Result<String, Strin
     put("camera", "up", a.up != b.up, point(b.up));
     put("camera", "fov", a.fov_degrees != b.fov_degrees, b.fov_degrees.into());
     put("camera", "aperture", a.aperture != b.aperture, b.aperture.into());
-    // without a focus that of the target is read, and a lens with an aperture needs one
+    // without a focus, scene files use the target's distance, but a lens with an aperture needs one
     let without = (b.target - b.position).length();
     let needed = b.aperture > 0.0 && focus.is_none() || b.focus != focus.unwrap_or(without);
     put("camera", "focus", needed, b.focus.into());
@@ -109,7 +117,7 @@ pub fn edited(text: &str, before: &Edits, after: &Edits) -> Result<String, Strin
     Ok(document.to_string())
 }
 
-/// Puts a value in the place of another, with the space and the comments about it.
+/// Replaces a value, and keeps the white space and comments around it.
 fn put(table: &mut dyn TableLike, key: &str, new: Value) {
     match table.get_mut(key).and_then(Item::as_value_mut) {
         Some(old) => replace(old, new),
@@ -123,7 +131,7 @@ fn replace(old: &mut Value, mut new: Value) {
     if let (Value::Array(old), Value::Array(new)) = (&mut *old, &new)
         && old.len() == new.len()
     {
-        // number by number, so that what stands between them stays
+        // number by number, so that the text between them stays
         old.iter_mut().zip(new.iter()).for_each(|(old, new)| replace(old, new.clone()));
         return;
     }
@@ -134,7 +142,7 @@ fn replace(old: &mut Value, mut new: Value) {
     *old = new;
 }
 
-/// Whether two numbers are equal, so that the way one is written can stay.
+/// Returns whether two numbers are equal, so that the old notation can stay.
 fn same(old: &Value, new: &Value) -> bool {
     number(old).zip(number(new)).is_some_and(|(old, new)| old == new)
 }
@@ -147,7 +155,7 @@ fn point(p: DVec3) -> Value {
     Value::Array(Array::from_iter(p.to_array()))
 }
 
-/// A setting as scene files spell it.
+/// A setting in the notation of scene files.
 fn written(setting: &impl Serialize) -> Value {
     match json!(setting) {
         Json::String(word) => word.into(),
@@ -163,14 +171,14 @@ fn written(setting: &impl Serialize) -> Value {
     }
 }
 
-/// Files that are looked at for changes.
+/// Watches files for changes.
 pub struct Watch(Vec<(PathBuf, Stamp)>);
 
-/// When a file was written last and its bytes; none where it is not there.
+/// Modification time and length in bytes of a file; `None` if it does not exist.
 type Stamp = Option<(SystemTime, u64)>;
 
 impl Watch {
-    /// Looks at these files as they are now.
+    /// Watches files, starting from their current state.
     pub fn new(files: impl IntoIterator<Item = PathBuf>) -> Self {
         let mut files: Vec<_> = files.into_iter().collect();
         files.sort();
@@ -178,7 +186,7 @@ impl Watch {
         Self(files.into_iter().map(|file| (file.clone(), stamp(&file))).collect())
     }
 
-    /// Looks at these files from now on; those that were looked at before count as they were then.
+    /// Changes the set of files; those that were watched before keep their known state.
     pub fn follow(&mut self, files: impl IntoIterator<Item = PathBuf>) {
         let before = std::mem::replace(self, Self::new(files)).0;
         for (file, stamp) in &mut self.0 {
@@ -188,7 +196,7 @@ impl Watch {
         }
     }
 
-    /// Whether any has changed since the last look.
+    /// Returns whether any file has changed since the last call.
     pub fn changed(&mut self) -> bool {
         self.0.iter_mut().fold(false, |changed, (file, before)| {
             let now = stamp(file);
@@ -202,8 +210,8 @@ fn stamp(file: &Path) -> Stamp {
     Some((data.modified().ok()?, data.len()))
 }
 
-/// Theory: of an edited file only the lines of edited keys differ, comments stay on all lines, and
-/// what is read again is what was edited.
+/// Theory: in an edited file, only the lines of edited keys differ, all comments stay, and the file
+/// reads back as the edited values.
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -300,7 +308,7 @@ photons = 1000 # few
         );
     }
 
-    /// An aperture needs its focus, also where that is what it was without being written.
+    /// Theory: an aperture needs a focus in the file, even if the focus equals the default.
     #[test]
     fn a_lens_that_opens_is_saved_with_its_focus() {
         let before = of(TEXT);
@@ -319,9 +327,10 @@ photons = 1000 # few
         let before = of(TEXT);
         let mut after = before.clone();
         after.settings.photons = 20_000;
-        for (text, word) in
-            [("version = ", "not TOML"), (&TEXT.replace("0.5", "1.5"), "would not be a scene")]
-        {
+        for (text, word) in [
+            ("version = ", "not valid TOML"),
+            (&TEXT.replace("0.5", "1.5"), "not be a valid scene"),
+        ] {
             std::fs::write(&file, text).unwrap();
             let error =
                 save(&file, &Allowance::default(), &before, &after).unwrap_err().to_string();

@@ -1,4 +1,4 @@
-//! What a render thread shows, and where it puts it.
+//! Frames: images in progress, and the slot through which render threads publish them.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
@@ -11,26 +11,27 @@ use crate::film::{ErrorMap, Picture, RelativeError};
 use crate::scene::settings::RenderSettings;
 use crate::scene::{Camera, Film};
 
-/// Least time between two pictures of one render.
+/// Minimum time between two frames of one render.
 const EVERY: Duration = Duration::from_millis(100);
-/// Showing takes at most one part in so many of the time, and so does estimating the error.
+/// Reciprocal of the largest fraction of the time that publishing frames takes, and of that for
+/// error estimates.
 const SHARE: u32 = 10;
 
-/// What is to be seen of a scene.
+/// A scene view to render.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RenderRequest {
-    /// From where.
+    /// Viewpoint and lens.
     pub camera: Camera,
-    /// Size, and what is wanted in addition to radiance.
+    /// Image size, and channels in addition to radiance.
     pub film: Film,
-    /// How; `settings.passes` may change while it is rendered.
+    /// Render settings; `settings.passes` may change during the render.
     pub settings: RenderSettings,
-    /// On which device.
+    /// Device to render on.
     pub device: Wanted,
 }
 
 impl RenderRequest {
-    /// Whether the same passes serve both; only their number may differ.
+    /// Returns whether both requests need the same passes; only the number of passes may differ.
     pub fn same_passes(&self, other: &Self) -> bool {
         let passes = self.settings.passes;
         let settings = RenderSettings { passes, ..other.settings.clone() };
@@ -38,47 +39,47 @@ impl RenderRequest {
     }
 }
 
-/// What a render runs on and with.
+/// Device, settings and memory of a render.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Setup {
-    /// The device's name.
+    /// Name of the device.
     pub device: String,
-    /// Why that one.
+    /// Reason for the choice of the device.
     pub why: String,
-    /// The settings in force, a radius in the place of "auto".
+    /// Effective settings, with a number in place of an automatic radius.
     pub settings: RenderSettings,
-    /// Bytes of the flattened scene and of the buffers.
+    /// Bytes of the packed scene and the buffers.
     pub bytes: u64,
 }
 
-/// A picture on its way.
+/// An image in progress.
 #[derive(Clone, Debug)]
 pub struct Frame {
-    /// Number of the [`RenderRequest`] that it is for.
+    /// Number of the [`RenderRequest`] that it belongs to.
     pub number: u64,
-    /// Whether it is a small one, made to be there soon.
+    /// True if it is a small preview image.
     pub quick: bool,
     /// Linear radiance.
     pub picture: Picture,
-    /// What is wanted beside it.
+    /// Channels in addition to radiance.
     pub layers: Vec<Channel>,
-    /// What the passes say of its error; from the fourth pass on, and not always the newest.
+    /// Error estimate of the passes; available from pass 4, and not always of the newest pass.
     pub errors: Option<Arc<ErrorMap>>,
-    /// The pass after which it was found.
+    /// Number of passes at the time of the error estimate.
     pub estimated: u32,
-    /// The same of the whole picture.
+    /// Relative error of the whole image, from the same estimate.
     pub error: Option<RelativeError>,
-    /// What it was made with.
+    /// Device, settings and memory of the render.
     pub setup: Arc<Setup>,
-    /// Passes made.
+    /// Number of passes done.
     pub passes: u32,
-    /// Photons emitted.
+    /// Number of photons emitted.
     pub photons: u64,
-    /// Rays traced.
+    /// Number of rays traced.
     pub rays: u64,
-    /// Gather radius of the last pass, scene units.
+    /// Gather radius of the last pass, in scene units.
     pub radius: f64,
-    /// Spent in passes.
+    /// Time spent in passes.
     pub elapsed: Duration,
 }
 
@@ -89,7 +90,7 @@ impl Frame {
     }
 }
 
-/// Where render threads put what there is to see; the newest of each.
+/// Slot for the newest frame, failure and depth from the render threads.
 pub struct FrameSlot {
     state: Mutex<State>,
     wake: Box<dyn Fn() + Send + Sync>,
@@ -104,7 +105,7 @@ struct State {
 }
 
 impl FrameSlot {
-    /// An empty one; `wake` is called after each change.
+    /// An empty slot; `wake` is called after each change.
     pub fn new(wake: impl Fn() + Send + Sync + 'static) -> Self {
         Self { state: Mutex::default(), wake: Box::new(wake) }
     }
@@ -124,15 +125,17 @@ impl FrameSlot {
         current
     }
 
-    /// From now on only what wish `number` brings counts. The last picture stays until then.
+    /// Makes `number` the current request and clears the failure. The previous frame stays until
+    /// there is a newer one.
     pub fn begin(&self, number: u64) {
         let mut state = self.state();
         state.number = number;
         state.failure = None;
     }
 
-    /// Shows a picture, unless a newer one is shown already: while wishes come faster than
-    /// pictures, as in a drag, the last one that there is. Whether it is of the newest wish.
+    /// Publishes a frame, unless a newer one is shown already. While requests arrive faster than
+    /// frames, as in a drag, frames of older requests are shown. Returns whether the frame belongs
+    /// to the newest request.
     pub fn show(&self, frame: Frame) -> bool {
         let mut state = self.state();
         let current = state.number == frame.number;
@@ -144,39 +147,39 @@ impl FrameSlot {
         current
     }
 
-    /// Tells why there are no more pictures.
+    /// Reports a failure of request `number`; returns whether that is still the current request.
     pub fn fail(&self, number: u64, why: String) -> bool {
         self.change(number, |state| state.failure = Some(why))
     }
 
-    /// Tells the depth that was looked for.
+    /// Reports a measured depth, in units of the scene file.
     pub fn tell_depth(&self, depth: f64) {
         self.state().depth = Some(depth);
         (self.wake)();
     }
 
-    /// The newest picture.
+    /// The newest frame.
     pub fn frame(&self) -> Option<Arc<Frame>> {
         self.state().frame.clone()
     }
 
-    /// Why there are no more.
+    /// Reason why rendering failed, if it did.
     pub fn failure(&self) -> Option<String> {
         self.state().failure.clone()
     }
 
-    /// The depth that was looked for, once.
+    /// The measured depth; returned once.
     pub fn take_depth(&self) -> Option<f64> {
         self.state().depth.take()
     }
 }
 
-/// The passes of one engine and what is shown of them.
+/// Runs the passes of one engine and publishes their frames.
 pub(super) struct Passes {
     number: u64,
     quick: bool,
     setup: Arc<Setup>,
-    /// Passes made.
+    /// Number of passes done.
     pub done: u32,
     photons: u64,
     rays: u64,
@@ -208,8 +211,8 @@ impl Passes {
         }
     }
 
-    /// Makes the next pass and shows the picture if it is time, after the first pass and after the
-    /// last one always.
+    /// Runs the next pass. Publishes a frame if enough time has passed, and always after the first
+    /// and the last pass.
     pub fn step(
         &mut self,
         engine: &mut dyn Engine,

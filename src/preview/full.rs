@@ -1,5 +1,5 @@
-//! The whole picture, by the device asked for, on a thread of its own: until it is done, or no
-//! longer wanted.
+//! The full-size render on the requested device, in a separate thread, until it is done or
+//! cancelled.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
@@ -17,10 +17,10 @@ use crate::plan::Plan;
 use crate::scene::settings::Method;
 use crate::tables::Scene;
 
-/// How long a thread that has nothing to do sleeps before it looks again.
+/// Time that an idle thread sleeps before it checks for changes.
 const NAP: Duration = Duration::from_millis(50);
 
-/// How the thread is told what to do.
+/// Controls of the render thread.
 #[derive(Default)]
 struct Control {
     ended: AtomicBool,
@@ -30,15 +30,14 @@ struct Control {
     passes: AtomicU32,
 }
 
-/// A render under way.
+/// A full-size render in progress.
 pub struct Full {
     control: Arc<Control>,
     thread: JoinHandle<Option<Box<GpuEngine>>>,
 }
 
 impl Full {
-    /// Starts to render `wish` over a copy of `ground`; `spare` is a GPU engine that nobody needs
-    /// any more.
+    /// Starts to render `wish` with a copy of `ground`; `spare` is a GPU engine that can be reused.
     pub fn start(
         number: u64,
         ground: Ground,
@@ -63,36 +62,36 @@ impl Full {
         Self { control, thread }
     }
 
-    /// Sets how many passes there are to be.
+    /// Sets the number of passes.
     pub fn set_passes(&self, passes: u32) {
         self.control.passes.store(passes, Ordering::Relaxed);
         self.thread.thread().unpark();
     }
 
-    /// Halts it after the pass in hand, or lets it go on.
+    /// Pauses after the current pass, or continues.
     pub fn pause(&self, paused: bool) {
         self.control.paused.store(paused, Ordering::Relaxed);
         self.thread.thread().unpark();
     }
 
-    /// Ends it; the pass in hand is given up.
+    /// Ends the render and cancels the current pass.
     pub fn end(&self) {
         self.control.ended.store(true, Ordering::Relaxed);
         self.control.cancel.ask();
         self.thread.thread().unpark();
     }
 
-    /// Whether its engine is ready, so that the cores are its own.
+    /// Returns whether the engine is ready, so that the small preview can stop.
     pub fn is_made(&self) -> bool {
         self.control.made.load(Ordering::Relaxed)
     }
 
-    /// Whether [`Self::join`] would not wait.
+    /// Returns whether [`Self::join`] returns at once.
     pub fn is_finished(&self) -> bool {
         self.thread.is_finished()
     }
 
-    /// Waits for its end; what a next one can use.
+    /// Waits for the end; returns an engine that the next render can reuse.
     pub fn join(self) -> Option<Box<GpuEngine>> {
         self.thread.join().unwrap_or_default()
     }
@@ -124,7 +123,7 @@ fn rendered(
             match passes.step(engine, last, board) {
                 Ok(()) | Err(EngineError::Cancelled) => {}
                 Err(error) => {
-                    // a lost device is not kept
+                    // do not reuse a lost device
                     board.fail(number, error.to_string());
                     return None;
                 }
@@ -180,7 +179,7 @@ pub(super) fn bytes(scene: &Scene, plan: &Plan) -> u64 {
 fn told(error: &DeviceError) -> String {
     match error {
         DeviceError::NoSuchDevice { available, .. } => {
-            format!("{error}; there is: {}", available.join(", "))
+            format!("{error}; available: {}", available.join(", "))
         }
         DeviceError::Engine(_) => error.to_string(),
     }

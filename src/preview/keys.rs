@@ -1,4 +1,4 @@
-//! What keys and the mouse do: one table for the window, its help and docs/preview.md.
+//! Actions of keys and mouse: one table for the window, its help and docs/preview.md.
 
 use std::f64::consts::PI;
 
@@ -7,37 +7,37 @@ use eframe::egui::{self, Key};
 use super::session::Action;
 use super::view::View;
 
-/// What a key does.
+/// Effect of a key.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Command {
-    /// Something about the scene or the picture.
+    /// An action on the scene or the image.
     Act(Action),
     /// Shows or hides the help.
     Help,
     /// Shows or hides the settings.
     Panel,
-    /// Ends.
+    /// Closes the window.
     Close,
 }
 
-/// A key with what is held down beside it.
+/// A key with its modifiers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Chord {
     /// The key.
     pub key: Key,
-    /// Whether Ctrl (Command on a Mac) is held.
+    /// True if Ctrl (Command on a Mac) is held.
     pub control: bool,
-    /// Whether Shift is held; of no account for signs.
+    /// Required state of Shift; `None` accepts both, for keys whose sign may need Shift.
     pub shift: Option<bool>,
 }
 
-/// A line of the table.
+/// A row of the table.
 pub struct Line {
-    /// Keys or mouse, as people call them.
+    /// Names of the keys or mouse actions.
     pub keys: &'static str,
-    /// What they do.
+    /// Description of their effect.
     pub what: &'static str,
-    /// The same for the program; none for the mouse.
+    /// Key bindings; empty for the mouse.
     pub bindings: &'static [(Chord, Command)],
 }
 
@@ -64,16 +64,16 @@ const fn mouse(keys: &'static str, what: &'static str) -> Line {
 const STEP: f64 = PI / 36.0;
 const SHIFT: f64 = 0.02;
 
-/// All of it.
+/// All key bindings and mouse actions.
 pub const TABLE: &[Line] = &[
-    mouse("drag", "turn the camera about its target"),
-    mouse("right drag, Shift drag", "move the camera across the view"),
+    mouse("drag", "orbit the camera about its target"),
+    mouse("right drag, Shift drag", "pan the camera"),
     mouse("wheel", "move the camera nearer or farther"),
     mouse("click", "focus there"),
-    mouse("drag the line", "move the line between two pictures"),
+    mouse("drag the line", "move the line between two images"),
     Line {
         keys: "arrows",
-        what: "turn the camera",
+        what: "orbit the camera",
         bindings: &[
             (plain(Key::ArrowLeft), Command::Act(Action::Orbit(-STEP, 0.0))),
             (plain(Key::ArrowRight), Command::Act(Action::Orbit(STEP, 0.0))),
@@ -83,7 +83,7 @@ pub const TABLE: &[Line] = &[
     },
     Line {
         keys: "Shift arrows",
-        what: "move the camera across the view",
+        what: "pan the camera",
         bindings: &[
             (shift(Key::ArrowLeft), Command::Act(Action::Pan(SHIFT, 0.0))),
             (shift(Key::ArrowRight), Command::Act(Action::Pan(-SHIFT, 0.0))),
@@ -101,7 +101,7 @@ pub const TABLE: &[Line] = &[
     },
     Line {
         keys: "Home",
-        what: "the camera of the scene file",
+        what: "reset the camera to the scene file",
         bindings: &[(plain(Key::Home), Command::Act(Action::Home))],
     },
     Line {
@@ -128,7 +128,8 @@ pub const TABLE: &[Line] = &[
     },
     Line {
         keys: "1 to 9, 0",
-        what: "views: picture, direct, caustic, indirect, albedo, normal, depth, radius, photons, variance",
+        what: "views: picture, direct, caustic, indirect, albedo, normal, depth, radius, photons, \
+               variance",
         bindings: &[
             (plain(Key::Num1), Command::Act(Action::View(View::Picture))),
             (plain(Key::Num2), Command::Act(Action::View(View::Direct))),
@@ -152,7 +153,7 @@ pub const TABLE: &[Line] = &[
     },
     Line {
         keys: "A",
-        what: "start radius chosen by the program",
+        what: "automatic start radius",
         bindings: &[(plain(Key::A), Command::Act(Action::AutoRadius))],
     },
     Line {
@@ -162,7 +163,7 @@ pub const TABLE: &[Line] = &[
     },
     Line {
         keys: ", .",
-        what: "half, twice the photons of a pass",
+        what: "halve, double the photons per pass",
         bindings: &[
             (sign(Key::Comma), Command::Act(Action::Photons(0.5))),
             (sign(Key::Period), Command::Act(Action::Photons(2.0))),
@@ -190,7 +191,7 @@ pub const TABLE: &[Line] = &[
     },
     Line {
         keys: "S",
-        what: "save the picture",
+        what: "save the image",
         bindings: &[(plain(Key::S), Command::Act(Action::SavePicture))],
     },
     Line {
@@ -215,7 +216,7 @@ pub const TABLE: &[Line] = &[
     Line { keys: "Ctrl Q", what: "close", bindings: &[(control(Key::Q), Command::Close)] },
 ];
 
-/// The commands of the keys pressed now.
+/// Commands of the keys pressed in this frame.
 pub fn pressed(input: &egui::InputState) -> Vec<Command> {
     let down = |event: &egui::Event| match event {
         egui::Event::Key { key, pressed: true, modifiers, .. } => command(*key, *modifiers),
@@ -234,13 +235,13 @@ fn command(key: Key, modifiers: egui::Modifiers) -> Option<Command> {
     all.find(|(chord, _)| meant(chord)).map(|(_, command)| *command)
 }
 
-/// The table in Markdown, as docs/preview.md has it.
+/// The table in Markdown, as it appears in docs/preview.md.
 pub fn markdown() -> String {
     let line = |line: &Line| format!("| {} | {} |\n", line.keys, line.what);
     format!("| keys, mouse | what |\n|---|---|\n{}", TABLE.iter().map(line).collect::<String>())
 }
 
-/// Theory: no chord means two things, and documentation has the table as it is.
+/// Theory: no chord has two meanings, and the documentation contains the current table.
 #[cfg(test)]
 mod tests {
     use super::*;

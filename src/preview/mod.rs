@@ -1,11 +1,10 @@
-//! A window on a scene: the picture as it converges, under the hand.
+//! Preview window: shows a scene as it converges, and changes its camera and settings.
 //!
-//! What can do without a window comes first: [`orbit`] (the camera), [`packed_cache`] (a flattened
-//! scene, kept while the camera moves), [`frame`] (what there is to see), [`quick`] and [`full`] (a
-//! small picture at once, the whole one after it), [`worker`] (which of them, when), [`view`] (how
-//! a picture is shown), [`comparison`] (what it is held against), [`document`] and [`reload`] (the
-//! scene file), and [`session`], which is all of it. [`keys`], `panels` and [`window`] lay hands on
-//! that.
+//! These modules do not need a window: [`orbit`] (camera), [`packed_cache`] (a packed scene that is
+//! kept while the camera moves), [`frame`] (images in progress), [`quick`] and [`full`] (a small
+//! image at once, then the full-size one), [`worker`] (scheduling of both), [`view`] (conversion
+//! for display), [`comparison`] (comparison images), [`document`] and [`reload`] (the scene file),
+//! and [`session`], which combines them. [`keys`], `panels` and [`window`] are the user interface.
 
 pub mod comparison;
 pub mod document;

@@ -1,8 +1,7 @@
-//! The camera in a person's hand: orbit, pan, dolly, focus and aperture, as functions from camera
-//! to camera.
+//! Interactive camera: orbit, pan, dolly, focus and aperture, as functions from camera to camera.
 //!
-//! What comes out is [`tidy`]: its numbers have few digits, so that a scene file that holds them
-//! has the same camera.
+//! Their results are [`tidy`]: the numbers have few digits, so that a scene file that contains them
+//! reproduces the camera exactly.
 
 use glam::{DQuat, DVec3};
 
@@ -13,14 +12,14 @@ use crate::real::Vec4;
 use crate::scene::Camera;
 use crate::tables::NONE;
 
-/// Least angle between the view direction and the up vector, radians.
+/// Minimum angle between the view direction and the up vector, in radians.
 const LEAST_ANGLE: f64 = 0.01;
-/// Digits that numbers of a camera keep, counted from that of its distance.
+/// Significant digits of a camera's numbers, counted from the first digit of its distance.
 const DIGITS: i32 = 6;
-/// The first aperture beyond a pinhole's, over the distance of the focus.
+/// First aperture beyond a pinhole, relative to the focus distance.
 const FIRST_APERTURE: f64 = 0.002;
 
-/// Unit vectors to the right, to the top of the picture, and along the view.
+/// Unit vectors to the right, to the top of the image, and along the view direction.
 pub fn axes(camera: &Camera) -> [DVec3; 3] {
     let forward = (camera.target - camera.position).normalize();
     let right = forward.cross(camera.up).normalize();
@@ -32,8 +31,9 @@ pub fn distance(camera: &Camera) -> f64 {
     camera.target.distance(camera.position)
 }
 
-/// Turns the camera about its target: `across` radians about the up vector, to the right where
-/// positive, and `over` radians toward it, short of the pole. Its distance and focus stay.
+/// Orbits the camera about its target: by `across` radians about the up vector, to the right if
+/// positive, and by `over` radians toward the up vector, short of the pole. Keeps the distance and
+/// the focus.
 pub fn orbit(camera: &Camera, across: f64, over: f64) -> Camera {
     let pole = camera.up.normalize();
     let offset = camera.position - camera.target;
@@ -41,14 +41,14 @@ pub fn orbit(camera: &Camera, across: f64, over: f64) -> Camera {
     let limits = LEAST_ANGLE..=std::f64::consts::PI - LEAST_ANGLE;
     let wanted = (from_pole - over).clamp(*limits.start(), *limits.end());
     let [right, ..] = axes(camera);
-    // about the axis to the right a positive angle leads down, away from the pole
+    // about the axis to the right, a positive angle leads down, away from the pole
     let risen = DQuat::from_axis_angle(right, wanted - from_pole) * offset;
     let turned = DQuat::from_axis_angle(pole, across) * risen;
     tidy(&Camera { position: camera.target + turned, ..*camera })
 }
 
-/// Moves camera and target across the view, so that what is at the target's distance moves by
-/// `right` and `down`, in heights of the picture.
+/// Moves camera and target across the view, so that points at the target's distance move by `right`
+/// and `down`, in image heights.
 pub fn pan(camera: &Camera, right: f64, down: f64) -> Camera {
     let [x, y, _] = axes(camera);
     let height = 2.0 * distance(camera) * (0.5 * camera.fov_degrees.to_radians()).tan();
@@ -56,8 +56,8 @@ pub fn pan(camera: &Camera, right: f64, down: f64) -> Camera {
     tidy(&Camera { position: camera.position + shift, target: camera.target + shift, ..*camera })
 }
 
-/// Moves the camera to `factor` times its distance from the target. The plane in focus stays where
-/// it is in the world, or just before the lens where that has passed it.
+/// Multiplies the camera's distance from the target by `factor`. The plane of focus stays in place
+/// in the world, or just in front of the lens if the lens has passed it.
 pub fn dolly(camera: &Camera, factor: f64) -> Camera {
     let before = distance(camera);
     let position = camera.target + (camera.position - camera.target) * factor;
@@ -65,13 +65,13 @@ pub fn dolly(camera: &Camera, factor: f64) -> Camera {
     tidy(&Camera { position, focus, ..*camera })
 }
 
-/// Brings what is at `depth` along the view direction into focus.
+/// Focuses on the distance `depth` along the view direction.
 pub fn focus(camera: &Camera, depth: f64) -> Camera {
     tidy(&Camera { focus: depth, ..*camera })
 }
 
-/// Opens (`factor` above 1) or closes the lens. From a pinhole it opens to a small one, and a
-/// smaller one closes to a pinhole.
+/// Opens (`factor` above 1) or closes the lens. A pinhole opens to a small aperture, and a smaller
+/// aperture than that closes to a pinhole.
 pub fn aperture(camera: &Camera, factor: f64) -> Camera {
     let first = FIRST_APERTURE * camera.focus;
     let wanted = camera.aperture * factor;
@@ -83,9 +83,9 @@ pub fn aperture(camera: &Camera, factor: f64) -> Camera {
     tidy(&Camera { aperture, ..*camera })
 }
 
-/// The same camera in numbers of six digits, counted from the first one of its distance; lens and
-/// focus have six of their own. The focus of a pinhole that is about at the target is just there,
-/// where scene files without a focus have it.
+/// Rounds the camera to six significant digits, counted from the first digit of its distance;
+/// aperture and focus are rounded separately. If the focus of a pinhole is close to the target, it
+/// becomes the target's distance, which is the default in scene files.
 pub fn tidy(camera: &Camera) -> Camera {
     let places = DIGITS - 1 - distance(camera).log10().floor() as i32;
     let point = |p: DVec3| DVec3::from(p.to_array().map(|x| rounded(x, places)));
@@ -97,8 +97,8 @@ pub fn tidy(camera: &Camera) -> Camera {
     Camera { position, target, aperture: own(camera.aperture), focus, ..*camera }
 }
 
-/// The number nearest to `x` that is written with so many places after the point, or with so many
-/// zeros before it.
+/// Rounds `x` to this number of decimal places; a negative number rounds to tens, hundreds and so
+/// on.
 fn rounded(x: f64, places: i32) -> f64 {
     let text = match usize::try_from(places) {
         Ok(places) => format!("{x:.places$}"),
@@ -107,13 +107,13 @@ fn rounded(x: f64, places: i32) -> f64 {
             return (x / step).round() * step;
         }
     };
-    // What was printed from a finite number reads back; -0 is no place on its own.
+    // A finite number always parses back. Adding 0 turns -0 into 0.
     text.parse::<f64>().unwrap_or(x) + 0.0
 }
 
-/// Depth along the view direction, in the scene's units, of what is seen at a place in the picture
-/// (0, 0 at the top left and 1, 1 at the bottom right) through the middle of the lens; none where
-/// nothing is met.
+/// Depth along the view direction, in units of the scene file, at a position in the image ((0, 0)
+/// at the top left, (1, 1) at the bottom right), through the centre of the lens; `None` if the ray
+/// hits nothing.
 pub fn depth_at(packed: &Packed, x: f64, y: f64) -> Option<f64> {
     let mut camera = packed.scene.camera;
     camera.aperture = 0.0;
@@ -125,10 +125,10 @@ pub fn depth_at(packed: &Packed, x: f64, y: f64) -> Option<f64> {
     (hit.reference != NONE && hit.t < FAR && depth > 0.0).then_some(depth)
 }
 
-/// Theory: turning about a target keeps the distance; a full turn is none; what lies at the
-/// target's distance follows the hand when the camera is panned, by the pinhole's projection; the
-/// plane in focus stays in the world when the camera moves along its axis; a sphere's nearest point
-/// lies at the distance of its centre less its radius.
+/// Theory: an orbit keeps the distance; a full turn is the identity; points at the target's
+/// distance follow a pan by the pinhole's projection; the plane of focus stays in the world when
+/// the camera moves along its axis; the nearest point of a sphere lies at the distance of its
+/// centre minus its radius.
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -151,8 +151,7 @@ mod tests {
         a.distance(b) < 1e-4
     }
 
-    /// Where the picture has a world point, in heights of the picture from its middle, right and
-    /// down.
+    /// Position of a world point in the image, in image heights from its centre, right and down.
     fn projected(camera: &Camera, p: DVec3) -> [f64; 2] {
         let [x, y, z] = axes(camera);
         let d = p - camera.position;
@@ -175,7 +174,7 @@ mod tests {
         );
         assert!(!near(orbit(&at, PI, 0.0).position, at.position), "half a turn is another place");
         assert!(orbit(&at, 0.0, 0.2).position.y > at.position.y, "over leads up");
-        // to the right of who looks from +z to -z is +x
+        // to a viewer who looks from +z to -z, the right is +x
         assert!(
             orbit(&Camera { position: DVec3::Z, target: DVec3::ZERO, ..at }, 0.1, 0.0).position.x
                 > 0.0
@@ -251,8 +250,8 @@ mod tests {
         let depth = depth_at(&packed, 0.5, 0.5).unwrap();
         assert!((depth - 3.0).abs() < 1e-5, "{depth}");
         assert_eq!(depth_at(&packed, 0.01, 0.5), None, "there is no other picture");
-        // off the axis the depth is that along the view direction, not along the ray: 20 degrees up
-        // meet the sphere at t = 5 cos a - sqrt(4 - 25 sin^2 a)
+        // off the axis, depth is along the view direction, not along the ray: a ray at angle a
+        // meets the sphere at t = 5 cos a - sqrt(4 - 25 sin^2 a)
         let up = (0.5f64 * (40f64).to_radians()).tan();
         let angle = (0.5 * up).atan();
         let t = 5.0 * angle.cos() - (4.0 - 25.0 * angle.sin().powi(2)).sqrt();

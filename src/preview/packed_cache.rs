@@ -1,4 +1,4 @@
-//! A flattened scene, kept while the camera moves over it.
+//! A packed scene that is kept while the camera moves.
 
 use std::sync::Arc;
 
@@ -6,21 +6,21 @@ use crate::engine::EngineError;
 use crate::pack::{Packed, pack};
 use crate::scene::{Camera, Film, Scene};
 
-/// A scene and its tables. The kd-tree does not depend on the camera, but what pilots learn does.
-/// It is kept while the camera moves, and learned again when it is still.
+/// A scene and its tables. The kd-tree does not depend on the camera, but the results of the pilot
+/// paths do. They are kept while the camera moves, and learned again when it stops.
 pub struct Ground {
     scene: Arc<Scene>,
     packed: Arc<Packed>,
 }
 
 impl Ground {
-    /// Flattens a scene.
+    /// Packs a scene.
     pub fn new(scene: Arc<Scene>) -> Result<Self, EngineError> {
         let packed = pack(&scene, scene.film.width, scene.film.height)?;
         Ok(Self { packed: Arc::new(packed), scene })
     }
 
-    /// Puts camera and film in their place, and leaves everything else as it is.
+    /// Sets camera and film, and keeps everything else.
     pub fn stand(&mut self, camera: &Camera, film: &Film) {
         let scene = Arc::make_mut(&mut self.scene);
         (scene.camera, scene.film) = (*camera, *film);
@@ -28,23 +28,23 @@ impl Ground {
         packed.move_camera(scene, film.width, film.height);
     }
 
-    /// The same, to be changed by itself.
+    /// A copy that can change independently; it shares data until then.
     pub fn copy(&self) -> Self {
         let Self { scene, packed } = self;
         Self { scene: scene.clone(), packed: packed.clone() }
     }
 
-    /// The scene.
+    /// The scene, with the current camera and film.
     pub fn scene(&self) -> &Arc<Scene> {
         &self.scene
     }
 
-    /// Its tables.
+    /// Tables of the scene.
     pub fn packed(&self) -> &Arc<Packed> {
         &self.packed
     }
 
-    /// The tables that a scene read anew with this camera and film would have; with the same bits.
+    /// The tables of a freshly packed scene with this camera and film, bit for bit.
     pub fn settled(&self, camera: &Camera, film: &Film) -> Result<Self, EngineError> {
         let mut scene = self.scene.clone();
         let own = Arc::make_mut(&mut scene);
@@ -58,8 +58,8 @@ impl Ground {
     }
 }
 
-/// Theory: what flattens anew only where it must has the tables of one that always does, wherever
-/// the camera stands.
+/// Theory: packing again only when necessary gives the same tables as always packing again, for
+/// every camera.
 #[cfg(test)]
 mod tests {
     use super::*;

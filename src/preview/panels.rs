@@ -1,4 +1,4 @@
-//! The panel of settings, the line of figures and the help.
+//! The settings panel, the status lines and the help.
 
 use std::fmt::Debug;
 
@@ -13,15 +13,15 @@ use crate::film::Picture;
 use crate::scene::ToneMap;
 use crate::scene::settings::{Direct, Method, Radius, RadiusRule};
 
-/// Bounds of numbers that a hand can set.
+/// Range of the lengths that the panel can set.
 const LENGTHS: std::ops::RangeInclusive<f64> = 1e-6..=1e6;
 
-/// Shows the settings; what was asked for by buttons.
+/// Shows the settings; returns the commands of the buttons that were pressed.
 pub fn settings(ui: &mut Ui, session: &mut Session) -> Vec<Command> {
     let mut asked = Vec::new();
     ScrollArea::vertical().show(ui, |ui| {
         ui.add_space(4.0);
-        section(ui, "Picture", |ui| picture(ui, session));
+        section(ui, "Image", |ui| picture(ui, session));
         section(ui, "Render", |ui| render(ui, session));
         section(ui, "Camera", |ui| camera(ui, session));
         ui.separator();
@@ -31,14 +31,14 @@ pub fn settings(ui: &mut Ui, session: &mut Session) -> Vec<Command> {
                     asked.push(command);
                 }
             };
-            button("Save picture", Command::Act(Action::SavePicture));
+            button("Save image", Command::Act(Action::SavePicture));
             button("Save scene", Command::Act(Action::SaveScene));
-            button(if session.paused { "Go on" } else { "Halt" }, Command::Act(Action::Pause));
-            button("Camera of the file", Command::Act(Action::Home));
+            button(if session.paused { "Continue" } else { "Pause" }, Command::Act(Action::Pause));
+            button("Reset camera", Command::Act(Action::Home));
             button("Help", Command::Help);
         });
         if session.is_edited() {
-            ui.weak("Not all of this is in the scene file.");
+            ui.weak("Some changes are not in the scene file.");
         }
     });
     asked
@@ -87,7 +87,7 @@ fn picture(ui: &mut Ui, session: &mut Session) {
         );
     });
     if let Some(beside) = &session.beside {
-        row(ui, "beside", |ui| {
+        row(ui, "compare with", |ui| {
             ui.label(&beside.name);
         });
     }
@@ -156,7 +156,7 @@ fn radius(ui: &mut Ui, radius: &mut Radius) {
             ui.selectable_value(&mut kind, word, word);
         }
     });
-    // a number of pixels says nothing about units, so a change of kind begins with a usual one
+    // a number of pixels is meaningless in units, so a change of kind starts from a usual value
     *radius = match (kind, kind == before) {
         ("pixels", same) => Radius::Pixels(if same { number } else { 2.0 }),
         ("units", same) => Radius::Units(if same { number } else { 0.01 }),
@@ -197,22 +197,22 @@ fn camera(ui: &mut Ui, session: &mut Session) {
     });
 }
 
-/// The lines of figures below the picture: how far it is and how fast, and how good with what.
+/// The status lines below the image: progress and speed, then error, radius and memory.
 pub fn figures(frame: &Frame, passes: u32, paused: bool) -> [String; 2] {
     let per_second = f64::from(frame.passes) / frame.elapsed.as_secs_f64().max(1e-9);
     let made = if frame.quick {
-        let halted = if paused { "halted" } else { "the whole one follows" };
+        let halted = if paused { "paused" } else { "the full-size image follows" };
         let Picture { width, height, .. } = frame.picture;
-        format!("small picture, {width} × {height}, pass {}; {halted}", frame.passes)
+        format!("small image, {width} × {height}, pass {}; {halted}", frame.passes)
     } else {
         let rest = match frame.passes >= passes {
             true => ", done",
-            false if paused => ", halted",
+            false if paused => ", paused",
             false => "",
         };
         format!("pass {} of {passes}{rest}", frame.passes)
     };
-    let error = frame.error.map_or("error not known before pass 4".to_owned(), |error| {
+    let error = frame.error.map_or("error available from pass 4".to_owned(), |error| {
         let [stated, noise, bias] =
             [error.stated, error.noise, error.bias].map(|share| 100.0 * share);
         format!("error {stated:.1} % (noise {noise:.1} %, bias {bias:.1} %)")
@@ -228,7 +228,7 @@ pub fn figures(frame: &Frame, passes: u32, paused: bool) -> [String; 2] {
     ]
 }
 
-/// What a view's colors stand for, drawn where there is room.
+/// Draws the color scale of a view.
 pub fn scale(ui: &mut Ui, scale: &Scale) {
     const STEPS: usize = 48;
     ui.horizontal(|ui| {
@@ -262,7 +262,7 @@ fn number(x: f64) -> String {
     }
 }
 
-/// The help.
+/// Shows the table of keys and mouse actions.
 pub fn help(ui: &mut Ui) {
     let room = ui.ctx().content_rect().height() - 80.0;
     ScrollArea::vertical().max_height(room).min_scrolled_height(room).show(ui, |ui| {

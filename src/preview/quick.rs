@@ -1,5 +1,5 @@
-//! The small picture that is there soon: fewer pixels, fewer photons, by the CPU engine, whose
-//! tables need no way to a device and no compiler.
+//! The small preview image: fewer pixels and photons, rendered by the CPU engine, which needs no
+//! upload to a device and no shader compiler.
 
 use std::time::{Duration, Instant};
 
@@ -12,17 +12,18 @@ use crate::plan::Plan;
 use crate::scene::Film;
 use crate::scene::settings::RenderSettings;
 
-/// Passes after which a small picture is good enough to wait with.
+/// Number of passes of a small image.
 const PASSES: u32 = 32;
-/// A first picture that takes longer is made of fewer pixels the next time; one that takes less
-/// than a quarter, of more.
+/// Target time of the first small image. If it takes longer, the next one has fewer pixels; if it
+/// takes less than a quarter, more.
 const SLOW: Duration = Duration::from_millis(200);
-/// Sides of the picture over those of a small one, at the least and at the most.
+/// Minimum and maximum ratio of the full image's side lengths to those of the small one.
 const DIVISORS: (u32, u32) = (2, 8);
-/// Fewest photons of a pass.
+/// Minimum number of photons per pass.
 const FEWEST: u32 = 2048;
 
-/// Sides of the picture over those of the small one, as fast as this machine is.
+/// Ratio of the full image's side lengths to those of the small one, adapted to the speed of this
+/// machine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Divisor(u32);
 
@@ -33,7 +34,7 @@ impl Default for Divisor {
 }
 
 impl Divisor {
-    /// Learns from the time that a first picture took.
+    /// Adapts to the time that the first pass of a small image took.
     pub fn learn(&mut self, took: Duration) {
         let (least, most) = DIVISORS;
         if took > SLOW {
@@ -43,29 +44,29 @@ impl Divisor {
         }
     }
 
-    /// The small film.
+    /// Film of the small image.
     pub fn film(self, film: &Film) -> Film {
         let side = |pixels: u32| (pixels / self.0).max(pixels.min(16));
         Film { width: side(film.width), height: side(film.height), window: None, ..*film }
     }
 
-    /// Settings for it: as many photons for a pixel. Radii in pixels grow with the pixels, so that
-    /// as many photons fall in a disc.
+    /// Settings of the small image, with the same number of photons per pixel. Radii in pixels grow
+    /// with the pixels, so that a disc gathers the same number of photons.
     pub fn settings(self, settings: &RenderSettings) -> RenderSettings {
         let photons = (settings.photons / (self.0 * self.0)).max(settings.photons.min(FEWEST));
         RenderSettings { photons, eye_samples: 1, ..settings.clone() }
     }
 }
 
-/// A small picture under way.
+/// A small image in progress.
 pub(super) struct Quick {
     engine: CpuEngine,
     passes: Passes,
 }
 
 impl Quick {
-    /// Makes the first pass of a small picture and shows it; learns from the time that it took.
-    /// `cancel` ends this pass and later ones.
+    /// Renders the first pass of a small image, publishes it, and adapts `divisor` to the time that
+    /// it took. `cancel` cancels this pass and later ones.
     pub fn first(
         number: u64,
         ground: &mut Ground,
@@ -82,7 +83,7 @@ impl Quick {
         let plan = Plan { cancel: cancel.clone(), ..plan };
         let setup = Setup {
             device: "cpu".to_owned(),
-            why: "a small picture".to_owned(),
+            why: "a small image".to_owned(),
             settings: plan.settings.clone(),
             bytes: bytes(&packed.scene, &plan),
         };
@@ -93,19 +94,19 @@ impl Quick {
         Ok(quick)
     }
 
-    /// Makes another pass.
+    /// Renders another pass.
     pub fn step(&mut self, board: &FrameSlot) -> Result<(), EngineError> {
         self.passes.step(&mut self.engine, PASSES, board)
     }
 
-    /// Whether it is good enough.
+    /// Returns whether all passes are done.
     pub fn is_done(&self) -> bool {
         self.passes.done >= PASSES
     }
 }
 
-/// Theory: a slow machine gets fewer pixels and a fast one more, within bounds, and photons go with
-/// the pixels.
+/// Theory: a slow machine gets fewer pixels and a fast one more, within bounds, and the number of
+/// photons follows the number of pixels.
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,4 +1,4 @@
-//! A thread that reads the scene anew whenever one of its files changes.
+//! Watcher thread that loads the scene again when one of its files changes.
 
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
@@ -8,24 +8,23 @@ use std::time::Duration;
 use super::document::Watch;
 use crate::scene::{Allowance, Loaded, SceneErrors, load_within};
 
-/// Time between looks.
+/// Time between checks.
 const EVERY: Duration = Duration::from_millis(250);
 
-/// What a file that changed has become.
+/// Result of loading a changed scene.
 pub type Reloaded = Result<Loaded, SceneErrors>;
 
-/// What is done to a scene when it has been read, such as to put the command line's options in
-/// force.
+/// Adjusts a scene after each load, for example by applying command-line options.
 pub type Adjust = Box<dyn Fn(&mut Loaded) + Send>;
 
-/// Looks at a scene's files; ends when dropped.
+/// Watches a scene's files; the thread ends when this is dropped.
 pub struct Reloader {
     found: Receiver<Reloaded>,
     _alive: Sender<()>,
 }
 
 impl Reloader {
-    /// Looks at `file` and at the `files` that it names; reads no more than is allowed.
+    /// Watches `file` and the `files` that it names; loads them within `allowance`.
     pub fn start(
         file: PathBuf,
         files: Vec<PathBuf>,
@@ -46,7 +45,8 @@ impl Reloader {
                     adjust(&mut loaded);
                     loaded
                 });
-                // a file that a faulty scene does not name any more may be the one that mends it
+                // a file that a faulty scene does not name may be the one that repairs it, so keep
+                // watching it
                 match &loaded {
                     Ok(loaded) => known.clone_from(&loaded.files),
                     Err(errors) => known.extend_from_slice(&errors.files),
@@ -61,7 +61,7 @@ impl Reloader {
         Self { found, _alive: alive }
     }
 
-    /// The scene as it was read last, if it was since this was last asked for.
+    /// The scene as it was last loaded, if it was loaded since the last call.
     pub fn take(&self) -> Option<Reloaded> {
         self.found.try_iter().last()
     }

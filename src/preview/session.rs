@@ -1,4 +1,4 @@
-//! Everything that the window shows and changes, without a window.
+//! State and actions of the preview, independent of the window.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -18,89 +18,89 @@ use crate::scene::settings::{Direct, Radius, RadiusRule};
 use crate::scene::{Allowance, Aov, Film, Loaded, Scene, SceneErrors, ToneMap};
 use crate::storage;
 
-/// What a key or a hand asks for.
+/// A change that the user requests.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Action {
-    /// Turns the camera about its target, radians.
+    /// Orbits the camera about its target, in radians: across and over.
     Orbit(f64, f64),
-    /// Moves it across the view, heights of the picture.
+    /// Moves the camera across the view, in image heights: right and down.
     Pan(f64, f64),
-    /// Moves it to so many times its distance.
+    /// Multiplies the camera's distance from the target.
     Dolly(f64),
-    /// Focuses on what is seen at a place in the picture, from 0, 0 to 1, 1.
+    /// Focuses on the surface at an image position from (0, 0) to (1, 1).
     Focus(f64, f64),
     /// Opens or closes the lens by a factor.
     Aperture(f64),
-    /// The camera of the file.
+    /// Restores the camera of the scene file.
     Home,
-    /// Changes the exposure by so many stops.
+    /// Changes the exposure by a number of stops.
     Expose(f64),
-    /// The next tone map.
+    /// Selects the next tone map.
     ToneMap,
     /// Shows another view.
     View(View),
-    /// Start radius times so much; from "auto", what was chosen.
+    /// Multiplies the start radius; an automatic one is replaced by its value first.
     Radius(f64),
-    /// The radius of "auto".
+    /// Selects the automatic start radius.
     AutoRadius,
-    /// The next radius rule.
+    /// Selects the next radius rule.
     Rule,
-    /// Photons of a pass times so much.
+    /// Multiplies the photons per pass.
     Photons(f64),
-    /// The other way to find direct light.
+    /// Switches between shadow rays and photons for direct light.
     Direct,
-    /// Halts, or goes on.
+    /// Pauses or continues the render.
     Pause,
-    /// Keeps the picture beside, or puts it away.
+    /// Keeps the image for comparison, or drops the comparison.
     Keep,
-    /// Shows what is beside, or not.
+    /// Shows or hides the comparison.
     Split,
-    /// Writes the picture.
+    /// Writes the image files.
     SavePicture,
-    /// Writes the scene.
+    /// Writes camera and settings into the scene file.
     SaveScene,
 }
 
-/// What a session starts with.
+/// Initial state of a session.
 pub struct Start {
     /// The scene file.
     pub file: PathBuf,
-    /// What it holds, with the command line's options in force.
+    /// Contents of the scene file, with command-line options applied.
     pub loaded: Loaded,
-    /// What may be read when the scene is read anew.
+    /// Allowance for loading the scene again.
     pub allowance: Allowance,
-    /// How to put the options in force again.
+    /// Applies the command-line options to a scene that was loaded again.
     pub adjust: Adjust,
-    /// Picture files to write.
+    /// Image files to write.
     pub outputs: Vec<PathBuf>,
-    /// The device.
+    /// Device to render on.
     pub device: Wanted,
 }
 
-/// A scene under the hand.
+/// An interactive preview of a scene.
 pub struct Session {
     file: PathBuf,
     allowance: Allowance,
-    /// Where pictures go.
+    /// Image files to write.
     pub outputs: Vec<PathBuf>,
     scene: Arc<Scene>,
-    /// As in the file.
+    /// Camera, film and settings in the scene file.
     saved: Edits,
-    /// As rendered.
+    /// Camera, film and settings in the window.
     pub now: Edits,
-    /// On which device.
+    /// Device to render on.
     pub device: Wanted,
-    /// What is shown.
+    /// View of the image.
     pub view: View,
-    /// Whether the whole picture is halted.
+    /// True if the full-size render is paused.
     pub paused: bool,
-    /// What the picture is held against.
+    /// Image to compare with.
     pub beside: Option<Beside>,
-    /// Where the line between both is, from 0 to 1; none where only the picture is shown.
+    /// Position of the dividing line, from 0 to 1; `None` shows only the current image.
     pub split: Option<f32>,
-    /// What was done last.
+    /// Message about the last action.
     pub notice: String,
-    /// What is wrong with the scene file, while the picture shows the last scene without fault.
+    /// Errors in the scene file; the last valid scene stays on screen.
     pub trouble: Option<String>,
     worker: Worker,
     sent: RenderRequest,
@@ -109,7 +109,7 @@ pub struct Session {
 }
 
 impl Session {
-    /// Begins to render. `wake` is called on some thread when there is something new.
+    /// Starts to render. `wake` is called on any thread when there is something new.
     pub fn start(start: Start, wake: impl Fn() + Send + Sync + Clone + 'static) -> Self {
         let Start { file, loaded, allowance, adjust, outputs, device } = start;
         let reloader = Reloader::start(
@@ -146,39 +146,39 @@ impl Session {
         }
     }
 
-    /// The scene's name.
+    /// Name of the scene.
     pub fn name(&self) -> &str {
         &self.scene.name
     }
 
-    /// Whether the scene file has another camera, film or other settings.
+    /// Returns whether camera, film or settings differ from the scene file.
     pub fn is_edited(&self) -> bool {
         self.now != self.saved
     }
 
-    /// The newest picture.
+    /// The newest frame.
     pub fn frame(&self) -> Option<Arc<Frame>> {
         self.worker.frame()
     }
 
-    /// The whole picture of what is asked for now.
+    /// The newest full-size frame of the current request.
     pub fn whole(&self) -> Option<Arc<Frame>> {
         self.frame().filter(|frame| !frame.quick && frame.number == self.number)
     }
 
-    /// Why there are no more pictures.
+    /// Reason why rendering failed, if it did.
     pub fn failure(&self) -> Option<String> {
         let beside = self.beside.as_ref().and_then(Beside::failure);
         self.worker.board().failure().or(beside)
     }
 
-    /// How radiance becomes what is shown.
+    /// Conversion of radiance to display values.
     pub fn development(&self) -> Development {
         let Film { exposure, tonemap, .. } = self.now.film;
         Development { exposure, tonemap, ..Development::default() }
     }
 
-    /// Holds the picture against the same scene on another device.
+    /// Compares with the same scene on another device.
     pub fn beside_device(&mut self, name: &str, wake: impl Fn() + Send + Sync + 'static) {
         let mut worker = Worker::start(wake);
         let wanted = device::parse(name);
@@ -189,13 +189,13 @@ impl Session {
         self.hold(Beside::device(name, worker, wanted));
     }
 
-    /// Holds the picture against another.
+    /// Compares with another image.
     pub fn hold(&mut self, beside: Beside) {
         self.beside = Some(beside);
         self.split = Some(0.5);
     }
 
-    /// Does what is asked for.
+    /// Performs an action.
     pub fn act(&mut self, action: Action) {
         let Edits { camera, film, settings } = &mut self.now;
         match action {
@@ -261,7 +261,7 @@ impl Session {
         }
     }
 
-    /// Takes what has come from other threads, and tells the render thread of what has changed.
+    /// Takes results from other threads, and sends changes to the render thread.
     pub fn tick(&mut self) {
         if let Some(reloaded) = self.reloader.take() {
             self.take(reloaded);
@@ -278,8 +278,8 @@ impl Session {
         }
     }
 
-    /// What is to be rendered now. Where nothing else has changed, layers that were asked for
-    /// before stay, so that to look at them again begins nothing anew.
+    /// The render request for the current state. If nothing else has changed, it keeps the layers
+    /// requested before, so that returning to their view does not restart the render.
     fn wish(&self) -> RenderRequest {
         let mut wish = wish(&self.now, self.view, &self.device);
         let own = std::mem::replace(&mut wish.film.aovs, self.sent.film.aovs);
@@ -298,8 +298,8 @@ impl Session {
         }
     }
 
-    /// Takes a scene that was read anew. What the file has changed of camera, film and settings
-    /// counts; the rest stays as it is in the window. A fault leaves everything as it is.
+    /// Takes a scene that was loaded again. Camera, film and settings that changed in the file
+    /// replace those of the window; the others stay. Errors leave everything unchanged.
     fn take(&mut self, reloaded: Reloaded) {
         let loaded = match reloaded {
             Ok(loaded) => loaded,
@@ -328,12 +328,12 @@ impl Session {
             self.number = self.worker.scene(self.scene.clone(), self.sent.clone());
             let scene = self.scene.clone();
             self.tell_beside(Some(&scene));
-            self.notice = "the scene was read anew".to_owned();
+            self.notice = "the scene was reloaded".to_owned();
         }
     }
 
     fn save_picture(&mut self) -> Result<String, String> {
-        let frame = self.whole().ok_or("not saved: the whole picture is still to come")?;
+        let frame = self.whole().ok_or("not saved: the full-size image is not ready yet")?;
         film::check_outputs(&self.outputs).map_err(|error| error.to_string())?;
         let scene = Arc::make_mut(&mut self.scene);
         (scene.camera, scene.film) = (self.sent.camera, self.sent.film);
@@ -385,7 +385,7 @@ fn edits(loaded: &Loaded) -> Edits {
 }
 
 fn wish(now: &Edits, view: View, device: &Wanted) -> RenderRequest {
-    // what a picture is developed with is not rendered
+    // exposure and tone map do not affect the render
     let film = Film { aovs: view.aovs(), exposure: 0.0, tonemap: ToneMap::default(), ..now.film };
     RenderRequest {
         camera: now.camera,
@@ -396,7 +396,7 @@ fn wish(now: &Edits, view: View, device: &Wanted) -> RenderRequest {
 }
 
 fn times(radius: Radius, factor: f64) -> Radius {
-    // three digits are enough, and what is doubled and halved is what it was
+    // three digits are enough, and halving undoes doubling
     let short = |x: f64| format!("{:.2e}", x * factor).parse().unwrap_or(x);
     match radius {
         Radius::Auto => Radius::Auto,
@@ -405,7 +405,7 @@ fn times(radius: Radius, factor: f64) -> Radius {
     }
 }
 
-/// What is wrong with a scene, an error a line.
+/// The errors of a scene, one per line.
 fn told(errors: &SceneErrors) -> String {
     let line = |finding: &crate::scene::Finding| {
         let place = finding

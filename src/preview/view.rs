@@ -1,5 +1,5 @@
-//! What is shown of a picture: radiance developed for a display, one of its parts, or what a
-//! picture file holds beside it, in colors with a scale.
+//! Conversion of a frame for display: tone-mapped radiance, one of its components, or another
+//! channel in false colors with a scale.
 
 use std::num::NonZero;
 use std::sync::{Mutex, PoisonError};
@@ -13,25 +13,25 @@ use crate::math::srgb::srgb_from_linear;
 use crate::plan::layers::NO_DEPTH;
 use crate::scene::{Aov, Aovs};
 
-/// A way to look at a picture.
+/// A view of an image.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum View {
-    /// All light.
+    /// All light, tone-mapped.
     #[default]
     Picture,
-    /// Light straight from lamps, found by shadow rays.
+    /// Direct lighting, from shadow rays.
     Direct,
-    /// Light by photons that no diffuse surface has scattered.
+    /// Light from photons that no diffuse surface has scattered.
     Caustic,
-    /// Light by photons that diffuse surfaces have scattered.
+    /// Light from photons that a diffuse surface has scattered.
     Indirect,
-    /// Reflectance.
+    /// Reflectance of the first hit that is neither mirror nor glass.
     Albedo,
-    /// Shading normals, from -1 to 1 as from black to white.
+    /// Shading normals; components from -1 to 1 map to black to white.
     Normal,
-    /// Distance along the view direction.
+    /// Distance along the view direction, in scene units.
     Depth,
-    /// Gather radius.
+    /// Gather radius, in scene units.
     Radius,
     /// Photons gathered in the last pass.
     Photons,
@@ -40,7 +40,7 @@ pub enum View {
 }
 
 impl View {
-    /// All, in the order of their keys.
+    /// All views, in the order of their keys.
     pub const ALL: [Self; 10] = [
         Self::Picture,
         Self::Direct,
@@ -54,12 +54,12 @@ impl View {
         Self::Variance,
     ];
 
-    /// Its name.
+    /// Name of the view.
     pub fn word(self) -> &'static str {
         self.aov().map_or("picture", Aov::word)
     }
 
-    /// What it takes in addition to radiance.
+    /// Channel that it needs in addition to radiance.
     pub fn aov(self) -> Option<Aov> {
         Some(match self {
             Self::Picture => return None,
@@ -75,40 +75,40 @@ impl View {
         })
     }
 
-    /// What a render has to be asked for; variance is there anyway.
+    /// Channels that the render must provide; variance is always available.
     pub fn aovs(self) -> Aovs {
         self.aov().filter(|aov| *aov != Aov::Variance).into_iter().collect()
     }
 }
 
-/// A picture for a display.
+/// An image for display.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shown {
-    /// Pixels per row.
+    /// Image width in pixels.
     pub width: u32,
-    /// Rows.
+    /// Image height in pixels.
     pub height: u32,
     /// sRGB values, row by row.
     pub rgb: Vec<[u8; 3]>,
-    /// What the ends of the colors stand for, where there is a scale.
+    /// Color scale, for a view in false colors.
     pub scale: Option<Scale>,
 }
 
-/// What colors stand for.
+/// Color scale of a view.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scale {
-    /// The number at the dark end.
+    /// Value at the dark end.
     pub low: f64,
-    /// The number at the bright end.
+    /// Value at the bright end.
     pub high: f64,
-    /// Whether equal steps are equal ratios.
+    /// True if equal steps are equal ratios.
     pub logarithmic: bool,
-    /// In what it is counted.
+    /// Unit of the values.
     pub unit: &'static str,
 }
 
 impl Scale {
-    /// The color of a number.
+    /// Color of a value.
     pub fn color(&self, value: f64) -> [u8; 3] {
         let Self { low, high, logarithmic, .. } = *self;
         let at = |x: f64| if logarithmic { x.max(low).ln() } else { x };
@@ -116,8 +116,8 @@ impl Scale {
     }
 }
 
-/// Shows a frame, in the colors of `scale` where another has one; nothing where it does not have
-/// what the view needs, as before the fourth pass for the variance.
+/// Converts a frame for display, in the given color scale or its own. Returns `None` if the frame
+/// lacks the channel, such as the variance before pass 4.
 pub fn show(
     frame: &Frame,
     view: View,
@@ -151,7 +151,7 @@ pub fn show(
             of(triple(["normal.X", "normal.Y", "normal.Z"], &color)?, None)
         }
         View::Depth => {
-            // what is met nowhere lies at the far end
+            // pixels without a hit count as infinitely far
             let values = plane("depth.Z")?;
             let far = values.iter().filter(|z| **z < NO_DEPTH).fold(0.0f64, |far, z| far.max(*z));
             let near = values.iter().fold(far, |near, z| near.min(*z));
@@ -177,13 +177,13 @@ pub fn show(
     }
 }
 
-/// A picture's radiance as display values.
+/// Tone-mapped display values of an image.
 pub fn developed(picture: &Picture, development: &Development) -> Vec<[u8; 3]> {
     mapped(picture.rgb.len(), |i| development.bytes(picture.rgb[i]))
 }
 
-/// Colors by number, on threads of their own: those that render may be busy for as long as a pass
-/// takes, and a window must not wait for them.
+/// Computes colors by index on separate threads: the render threads may be busy for a whole pass,
+/// and the window must not wait for them.
 fn mapped(count: usize, color: impl Fn(usize) -> [u8; 3] + Sync) -> Vec<[u8; 3]> {
     const LEAST: usize = 1 << 14;
     let threads = thread::available_parallelism().map_or(1, NonZero::get);
@@ -197,7 +197,7 @@ fn mapped(count: usize, color: impl Fn(usize) -> [u8; 3] + Sync) -> Vec<[u8; 3]>
         }
     };
     thread::scope(|scope| {
-        // a thread that the system refuses leaves its part to the others, this one among them
+        // if the system refuses a thread, the other threads do its part, including this one
         let started =
             (1..count.div_ceil(chunk)).map(|_| thread::Builder::new().spawn_scoped(scope, work));
         let _started: Vec<_> = started.flatten().collect();
@@ -210,7 +210,7 @@ fn colors(values: &[f64], scale: &Scale) -> Vec<[u8; 3]> {
     mapped(values.len(), |i| scale.color(values[i]))
 }
 
-/// All but one in two hundred are below it; above zero.
+/// The 99.5th percentile of the finite values; above zero.
 fn high(values: &[f64]) -> f64 {
     let mut sorted: Vec<f64> = values.iter().copied().filter(|x| x.is_finite()).collect();
     if sorted.is_empty() {

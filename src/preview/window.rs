@@ -1,4 +1,4 @@
-//! The window: the picture, what is laid over it, and the hand on it.
+//! The preview window: image, overlays and mouse input.
 
 use std::f32::consts::PI;
 use std::sync::Arc;
@@ -18,37 +18,37 @@ use super::session::{Action, Session, Start};
 use super::view::{Scale, Shown, View, show};
 use crate::film::{Development, FileError};
 
-/// Width of the settings, points.
+/// Width of the settings panel, in points.
 const PANEL: f32 = 250.0;
-/// Making pictures for the display takes at most one part in so many of the window's time, or the
-/// hand would wait.
+/// Limits the conversion of frames for display to one part in about this many of the window's time,
+/// so that input stays responsive.
 const SHARE: u32 = 4;
-/// How near the hand must be to the line between two pictures, points.
+/// Distance from the dividing line at which the mouse grips it, in points.
 const GRIP: f32 = 8.0;
 
-/// Why there is no window.
+/// Reason why no window opens.
 #[derive(Debug, Error)]
 pub enum WindowError {
-    /// There is no desktop.
+    /// There is no display.
     #[error("no window can be opened: {0}")]
     NoDisplay(String),
-    /// Nothing can draw in it.
-    #[error("no device draws windows: {0}")]
+    /// No graphics device can draw the window.
+    #[error("no graphics device can draw the window: {0}")]
     NoDevice(String),
-    /// The picture to hold against cannot be read.
+    /// The comparison image cannot be read.
     #[error(transparent)]
     File(#[from] FileError),
 }
 
-/// What the picture is held against from the start.
+/// Initial comparison.
 pub enum Against {
-    /// A picture file.
+    /// An image file.
     File(std::path::PathBuf),
     /// Another device.
     Device(String),
 }
 
-/// Opens a window on a scene, until it is closed.
+/// Opens a preview window, and returns when it is closed.
 pub fn open(start: Start, against: Option<Against>) -> Result<(), WindowError> {
     let beside = match &against {
         Some(Against::File(file)) => Some(Beside::file(file)?),
@@ -84,30 +84,30 @@ pub fn open(start: Start, against: Option<Against>) -> Result<(), WindowError> {
     })
 }
 
-/// What a texture was made of.
+/// Inputs from which a texture was made.
 #[derive(Clone, PartialEq)]
 struct Source {
     frame: Option<*const Frame>,
     view: View,
     development: Development,
-    /// The scale of another picture.
+    /// Color scale of the other image.
     scale: Option<Scale>,
 }
 
-/// A picture on the graphics device.
+/// An image on the graphics device.
 #[derive(Default)]
 struct Painted {
     source: Option<Source>,
     texture: Option<TextureHandle>,
     scale: Option<Scale>,
-    /// Keeps the address in `source` from being used again.
+    /// Keeps the address in `source` from being reused.
     frame: Option<Arc<Frame>>,
-    /// Before this a newer picture alone is no reason to make the texture anew.
+    /// Time before which a newer frame alone does not update the texture.
     next: Option<Instant>,
 }
 
 impl Painted {
-    /// Makes the texture anew if there is something else to show.
+    /// Updates the texture if its inputs have changed.
     fn update(
         &mut self,
         context: &Context,
@@ -131,7 +131,7 @@ impl Painted {
         let smooth = frame.as_ref().is_some_and(|frame| frame.quick);
         (self.source, self.frame) = (Some(source), frame);
         let Some(shown) = shown() else {
-            // while a layer is on its way the last picture of the same view stays
+            // while a layer is pending, the last image of the same view stays
             if !same_view {
                 (self.texture, self.scale) = (None, None);
             }
@@ -157,7 +157,7 @@ struct Window {
     other: Painted,
     help: bool,
     panel: bool,
-    /// Whether the hand has the line between two pictures.
+    /// True if the mouse drags the dividing line.
     gripped: bool,
 }
 
@@ -181,7 +181,7 @@ impl Window {
         let session = &self.session;
         let figures = match session.frame() {
             Some(frame) => panels::figures(&frame, session.now.settings.passes, session.paused),
-            None => ["the first picture is on its way".to_owned(), String::new()],
+            None => ["rendering the first image".to_owned(), String::new()],
         };
         for line in figures {
             ui.add(egui::Label::new(line).truncate());
@@ -191,15 +191,15 @@ impl Window {
         ui.add_space(2.0);
     }
 
-    /// What is wrong, over the picture, which stays.
+    /// Shows errors over the image, which stays.
     fn trouble(&self, context: &Context) {
         let trouble = self.session.trouble.clone().or(self.session.failure());
         let Some(text) = trouble else {
             return;
         };
         let title = match self.session.trouble {
-            Some(_) => "Error in the scene; the last picture stays",
-            None => "There are no more pictures",
+            Some(_) => "Error in the scene; the last image stays",
+            None => "Rendering has stopped",
         };
         egui::Window::new(title)
             .id(egui::Id::unique("trouble"))
@@ -240,7 +240,7 @@ impl Window {
                 painter.image(texture.id(), rect, all, Color32::WHITE);
             }
             None => {
-                let text = format!("{} is on its way", view.word());
+                let text = format!("rendering the {} view", view.word());
                 painter.text(
                     rect.center(),
                     Align2::CENTER_CENTER,
@@ -299,7 +299,7 @@ impl Window {
         } else if moved != egui::Vec2::ZERO && across {
             self.session.act(Action::Pan(moved.x.into(), moved.y.into()));
         } else if moved != egui::Vec2::ZERO && response.dragged_by(PointerButton::Primary) {
-            // what is before the target follows the hand
+            // the side of the scene in front of the target follows the mouse
             self.session.act(Action::Orbit((-PI * moved.x).into(), (PI * moved.y).into()));
         }
         if let Some(at) = response.interact_pointer_pos().filter(|_| response.clicked()) {

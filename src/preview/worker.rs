@@ -1,9 +1,9 @@
-//! The render thread: takes wishes, shows a small picture at once and the whole one when nothing
-//! has changed for a while.
+//! The render thread: takes render requests, and shows a small image at once and the full-size one
+//! after a short time without changes.
 //!
-//! It makes the small picture itself, by the CPU engine, and leaves the whole one to [`Full`], so
-//! that no wish waits for a pass over all pixels, for a compiler, or for a kd-tree that is built
-//! anew.
+//! It renders the small image itself with the CPU engine, and leaves the full-size one to [`Full`],
+//! so that no request waits for a full-size pass, a shader compiler, or the construction of a
+//! kd-tree.
 
 use std::sync::Arc;
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
@@ -19,11 +19,11 @@ use crate::engine::Cancel;
 use crate::gpu::GpuEngine;
 use crate::scene::Scene;
 
-/// How long nothing must change before the whole picture is begun.
+/// Time without changes before the full-size render starts.
 const STILL: Duration = Duration::from_millis(250);
-/// How long to wait for a render that is to end before looking again.
+/// Polling interval while an old render ends.
 const SOON: Duration = Duration::from_millis(10);
-/// How long to wait where nothing is going on.
+/// Polling interval while idle.
 const LONG: Duration = Duration::from_secs(3600);
 
 enum Command {
@@ -34,19 +34,19 @@ enum Command {
     Look(f64, f64),
 }
 
-/// A render thread; ends with its handle.
+/// A render thread; ends when this handle is dropped.
 pub struct Worker {
     commands: Option<Sender<Command>>,
     board: Arc<FrameSlot>,
     number: u64,
     last: Option<RenderRequest>,
-    /// Ends the small picture that is under way.
+    /// Cancels the current small image.
     closing: Cancel,
     thread: Option<JoinHandle<()>>,
 }
 
 impl Worker {
-    /// Starts one; `wake` is called, on some thread, whenever there is something new to see.
+    /// Starts the thread; `wake` is called, on any thread, whenever there is something new to show.
     pub fn start(wake: impl Fn() + Send + Sync + 'static) -> Self {
         let (sender, receiver) = mpsc::channel();
         let board = Arc::new(FrameSlot::new(wake));
@@ -54,8 +54,8 @@ impl Worker {
         let closing = Cancel::default();
         let closes = closing.clone();
         let thread = thread::spawn(move || {
-            // threads of its own, since the others may be busy with the whole picture for as long
-            // as a pass takes
+            // use a separate pool, because the threads of the global one may be busy with a
+            // full-size pass
             let work = move || Hand::new(own, closes).work(&receiver);
             let threads = rayon::current_num_threads();
             match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
@@ -66,7 +66,7 @@ impl Worker {
         Self { commands: Some(sender), board, number: 0, last: None, closing, thread: Some(thread) }
     }
 
-    /// Renders another scene; the wish's number.
+    /// Renders another scene; returns the number of the request.
     pub fn scene(&mut self, scene: Arc<Scene>, wish: RenderRequest) -> u64 {
         self.number += 1;
         self.board.begin(self.number);
@@ -75,8 +75,8 @@ impl Worker {
         self.number
     }
 
-    /// Renders the scene in another way; the wish's number, which is that of the last one where
-    /// only the number of passes differs.
+    /// Changes the request; returns its number, which stays the same if only the number of passes
+    /// differs.
     pub fn change(&mut self, wish: RenderRequest) -> u64 {
         let passes = wish.settings.passes;
         let command = match self.last.replace(wish.clone()) {
@@ -91,30 +91,31 @@ impl Worker {
         self.number
     }
 
-    /// Halts the whole picture, or lets it go on. Small ones are made all the same.
+    /// Pauses or continues the full-size render. Small images are not affected.
     pub fn pause(&self, paused: bool) {
         self.send(Command::Pause(paused));
     }
 
-    /// Looks how deep a place in the picture is, from 0, 0 at the top left to 1, 1;
-    /// [`FrameSlot::take_depth`] tells.
+    /// Measures the depth at an image position, from (0, 0) at the top left to (1, 1);
+    /// [`FrameSlot::take_depth`] returns it.
     pub fn look(&self, x: f64, y: f64) {
         self.send(Command::Look(x, y));
     }
 
-    /// What there is to see.
+    /// Slot with the newest results.
     pub fn board(&self) -> &FrameSlot {
         &self.board
     }
 
-    /// The newest picture.
+    /// The newest frame.
     pub fn frame(&self) -> Option<Arc<Frame>> {
         self.board.frame()
     }
 
     fn send(&self, command: Command) {
         if let Some(commands) = &self.commands {
-            // The thread ends after its commands do, so there is someone to take it.
+            // The thread outlives its command channel, so this cannot fail unless the thread
+            // panicked.
             let _ = commands.send(command);
         }
     }
@@ -124,12 +125,12 @@ impl Drop for Worker {
     fn drop(&mut self) {
         self.commands = None;
         self.closing.ask();
-        // A thread that has panicked has said so.
+        // A panic has been reported already.
         let _ = self.thread.take().map(JoinHandle::join);
     }
 }
 
-/// The thread's state.
+/// State of the render thread.
 struct Hand {
     board: Arc<FrameSlot>,
     ground: Option<Ground>,
@@ -138,10 +139,10 @@ struct Hand {
     divisor: Divisor,
     quick: Option<Quick>,
     full: Option<Full>,
-    /// Renders that are to end.
+    /// A cancelled render that has not ended yet.
     ending: Option<Full>,
     spare: Option<Box<GpuEngine>>,
-    /// When the whole picture is to be begun.
+    /// Start time of the full-size render.
     settle: Option<Instant>,
     paused: bool,
     closing: Cancel,
@@ -172,7 +173,7 @@ impl Hand {
                 Err(RecvTimeoutError::Timeout) => None,
                 Err(RecvTimeoutError::Disconnected) => break,
             };
-            // of changes that came meanwhile only the last counts
+            // of the changes that arrived meanwhile, only the last counts
             let mut change = None;
             while let Some(taken) = command {
                 match taken {
@@ -205,7 +206,7 @@ impl Hand {
         }
     }
 
-    /// How long it can wait for the next command.
+    /// Time to wait for the next command.
     fn leisure(&self) -> Duration {
         if self.quick.is_some() {
             return Duration::ZERO;
@@ -244,7 +245,7 @@ impl Hand {
         self.full.iter().for_each(|full| full.set_passes(passes));
     }
 
-    /// Ends what is rendered; what comes is for `number`.
+    /// Ends the current renders; results now belong to request `number`.
     fn halt(&mut self, number: u64) {
         self.number = number;
         self.quick = None;
@@ -283,7 +284,7 @@ impl Hand {
         self.full.iter().for_each(|full| full.pause(paused));
     }
 
-    /// Does what there is to do beside commands.
+    /// Advances the renders between commands.
     fn go_on(&mut self) {
         if self.ending.as_ref().is_some_and(Full::is_finished) {
             self.spare = self.ending.take().and_then(Full::join);

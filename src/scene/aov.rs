@@ -1,48 +1,46 @@
-//! What a picture may hold in addition to radiance: arbitrary output variables, for denoisers and
+//! Arbitrary output variables (AOVs): image channels in addition to radiance, for denoising and
 //! compositing.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A group of channels beside R, G and B.
+/// A group of output channels in addition to R, G and B.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Aov {
-    /// Reflectance of the first hit that is neither mirror nor glass, times what mirrors and glass
-    /// before it let through.
+    /// Reflectance at the first hit that is neither mirror nor glass, times the throughput of the
+    /// mirrors and glass before it.
     Albedo,
-    /// Shading normal of that hit, world space, toward the viewer.
+    /// World-space shading normal at that hit, facing the viewer.
     Normal,
-    /// Distance of the first hit along the view direction, scene units.
+    /// Distance of the first hit along the view direction, in scene units.
     Depth,
-    /// Place of the first hit, world space.
+    /// World-space position of the first hit.
     Position,
-    /// Number of the surface seen through the pixel's centre, counted from 1 in the order of the
-    /// file.
+    /// Index of the surface at the pixel centre, counted from 1 in file order.
     Object,
-    /// Number of its material, counted from 1 in the order of names; the file's attribute
-    /// `caustica.materials` has these.
+    /// Index of that surface's material, counted from 1 in name order; the file attribute
+    /// `caustica.materials` lists the names.
     Material,
-    /// Light that comes to the eye straight or by mirrors and glass alone.
+    /// Light that reaches the eye directly or through mirrors and glass only.
     Emission,
-    /// Light straight from lamps to the first hit that is neither mirror nor glass, found by shadow
-    /// rays.
+    /// Direct lighting at the first hit that is neither mirror nor glass, from shadow rays.
     Direct,
-    /// Light that photons bring which no diffuse surface has scattered: caustics, and where there
-    /// are no shadow rays also light straight from lamps.
+    /// Light from photons that no diffuse surface has scattered: caustics, and also direct lighting
+    /// where there are no shadow rays.
     Caustic,
-    /// Light that photons bring which diffuse surfaces have scattered.
+    /// Light from photons that a diffuse surface has scattered.
     Indirect,
-    /// Gather radius, scene units.
+    /// Gather radius, in scene units.
     Radius,
     /// Photons gathered in the last pass.
     Photons,
-    /// Variance and bias of the luminance, which files hold anyway from the fourth pass on.
+    /// Variance and bias of the luminance, which files include anyway from pass 4 on.
     Variance,
 }
 
 impl Aov {
-    /// All of them.
+    /// All variants, in declaration order.
     pub const ALL: [Self; 13] = [
         Self::Albedo,
         Self::Normal,
@@ -59,7 +57,7 @@ impl Aov {
         Self::Variance,
     ];
 
-    /// The name in scene files and on the command line.
+    /// Name in scene files and on the command line.
     pub fn word(self) -> &'static str {
         match self {
             Self::Albedo => "albedo",
@@ -78,7 +76,7 @@ impl Aov {
         }
     }
 
-    /// Whether it takes the kernel `aov_trace`.
+    /// Returns whether it requires the kernel `aov_trace`.
     pub fn is_traced(self) -> bool {
         !matches!(self, Self::Caustic | Self::Indirect | Self::Photons | Self::Variance)
     }
@@ -90,32 +88,35 @@ impl Aov {
 pub struct Aovs(u32);
 
 impl Aovs {
-    /// Whether it is in the set.
+    /// Returns whether the set contains `aov`.
     pub fn has(self, aov: Aov) -> bool {
         self.0 >> aov as u32 & 1 == 1
     }
 
-    /// Whether there is none.
+    /// Returns whether the set is empty.
     pub fn is_empty(self) -> bool {
         self.0 == 0
     }
 
-    /// Those of either set.
+    /// Union of two sets.
     pub fn union(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
 
-    /// Those in the set, in the order of [`Aov::ALL`].
+    /// Members, in the order of [`Aov::ALL`].
     pub fn iter(self) -> impl Iterator<Item = Aov> {
         Aov::ALL.into_iter().filter(move |aov| self.has(*aov))
     }
 
-    /// Whether any takes the kernel `aov_trace`.
+    /// Returns whether any member requires the kernel `aov_trace`.
     pub fn are_traced(self) -> bool {
         self.iter().any(Aov::is_traced)
     }
 
-    /// Reads names divided by commas, or `all`; an error names what is not known and what is.
+    /// Parses comma-separated names, or `all`.
+    ///
+    /// # Errors
+    /// An unknown name; the message suggests the nearest name or lists all of them.
     pub fn parse(text: &str) -> Result<Self, String> {
         let of_word = |word: &str| match word {
             "all" => Ok(Aov::ALL.into_iter().collect()),
@@ -124,8 +125,10 @@ impl Aovs {
                 .find(|aov| aov.word() == word)
                 .map(|aov| Self(1 << aov as u32))
                 .ok_or_else(|| match nearest(word) {
-                    Some(near) => format!("there is no `{word}`; did you mean `{near}`?"),
-                    None => format!("there is no `{word}`; there is: {}, all", words().join(", ")),
+                    Some(near) => format!("unknown channel `{word}`; did you mean `{near}`?"),
+                    None => {
+                        format!("unknown channel `{word}`; expected {} or all", words().join(", "))
+                    }
                 }),
         };
         text.split(',')
@@ -140,7 +143,7 @@ impl FromIterator<Aov> for Aovs {
     }
 }
 
-/// The names divided by commas, as [`Aovs::parse`] reads them.
+/// Comma-separated names, in the format that [`Aovs::parse`] reads.
 impl std::fmt::Display for Aovs {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
         f.write_str(&self.iter().map(Aov::word).collect::<Vec<_>>().join(","))
@@ -165,7 +168,7 @@ fn words() -> [&'static str; 13] {
     Aov::ALL.map(Aov::word)
 }
 
-/// The known name nearest to `word`, if it is near enough for a slip.
+/// The known name nearest to `word`, if the edit distance is small enough for a typo.
 fn nearest(word: &str) -> Option<&'static str> {
     let distance = |known: &&str| strsim::damerau_levenshtein(word, known);
     words()
@@ -175,7 +178,7 @@ fn nearest(word: &str) -> Option<&'static str> {
         .filter(|near| distance(near) <= 1 + word.len() / 4)
 }
 
-/// Theory: a set reads back as it is printed, whatever it holds.
+/// Theory: parsing a printed set returns the same set.
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -195,14 +198,14 @@ mod tests {
     fn slips_are_named() {
         assert_eq!(
             Aovs::parse("albedo,nornal").unwrap_err(),
-            "there is no `nornal`; did you mean `normal`?"
+            "unknown channel `nornal`; did you mean `normal`?"
         );
         for far in ["", "albedo,", "cryptomatte"] {
-            assert!(Aovs::parse(far).unwrap_err().contains("there is: albedo, normal"), "{far}");
+            assert!(Aovs::parse(far).unwrap_err().contains("expected albedo, normal"), "{far}");
         }
     }
 
-    /// Files know them by the same words.
+    /// Theory: scene files and [`Aov::word`] use the same names.
     #[test]
     fn words_are_those_of_scene_files() {
         for aov in Aov::ALL {

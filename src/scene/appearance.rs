@@ -1,153 +1,153 @@
-//! What surfaces look like: images, textures and materials.
+//! Appearance of surfaces: images, textures and materials.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Linear Rec. 709.
+/// Linear Rec. 709 color.
 pub type Rgb = [f64; 3];
 
-/// The pixels of an image file, row 0 on top.
+/// Pixels of an image file; row 0 is the top.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ImageData {
-    /// The file's path, for messages.
+    /// Path of the file, for messages.
     pub path: String,
     /// Texels per row, >= 1.
     pub width: u32,
-    /// Rows, >= 1.
+    /// Number of rows, >= 1.
     pub height: u32,
     /// `width * height` texels, row by row.
     pub texels: Texels,
 }
 
-/// Texels as the file stores them.
+/// Texels with 8 bits per channel or as linear f32.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Texels {
-    /// Eight bits a channel.
+    /// 8 bits per channel.
     Rgba8 {
-        /// Whether the color channels carry the sRGB curve; else linear in [0, 1].
+        /// True if the color channels are sRGB-encoded; else linear in [0, 1].
         srgb: bool,
-        /// Red, green, blue, alpha; renderers do not use alpha.
+        /// Red, green, blue, alpha; renderers ignore alpha.
         data: Vec<[u8; 4]>,
     },
-    /// Linear; finite and not negative.
+    /// Linear RGB, finite and >= 0.
     Float(Vec<[f32; 3]>),
 }
 
-/// A named color over the surface's (u, v).
+/// A named color as a function of the surface's (u, v).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Texture {
-    /// Its name in the file.
+    /// Name in the scene file; for an MTL map, the name of its material.
     pub name: String,
-    /// What it shows.
+    /// Pattern and its parameters.
     pub kind: TextureKind,
 }
 
-/// What a texture shows.
+/// Pattern of a texture.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TextureKind {
-    /// One image per uv unit after scaling; v = 0 is the bottom row.
+    /// An image that covers one uv unit after scaling; v = 0 is the bottom row.
     Image {
         /// Index into [`super::Scene::images`].
         image: usize,
-        /// Between texels.
+        /// Interpolation between texels.
         filter: Filter,
-        /// Outside [0, 1].
+        /// Addressing outside [0, 1].
         wrap: Wrap,
-        /// (u, v) is multiplied by it.
+        /// Factor on (u, v).
         scale: [f64; 2],
     },
-    /// Squares of one uv unit after scaling; square (0, 0) has the first color.
+    /// A checkerboard of squares one uv unit wide after scaling; square (0, 0) has the first color.
     Checker {
         /// Reflectances in [0, 1].
         colors: [Rgb; 2],
-        /// (u, v) is multiplied by it.
+        /// Factor on (u, v).
         scale: [f64; 2],
     },
-    /// The image laid as staggered floor boards: every second row is shifted by half a board.
+    /// An image laid as staggered floor boards: every second row is shifted by half a board.
     Planks {
         /// Index into [`super::Scene::images`].
         image: usize,
         /// Width (u) and length (v) of one board in uv units, > 0.
         size: [f64; 2],
-        /// Between texels.
+        /// Interpolation between texels.
         filter: Filter,
     },
 }
 
-/// How a texture is read between texel centres.
+/// Texture interpolation between texel centres.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Filter {
-    /// Linear in u and v between the four nearest texels, after decoding to linear.
+    /// Bilinear between the four nearest texels, after decoding to linear.
     #[default]
     Bilinear,
     /// The nearest texel.
     Nearest,
 }
 
-/// How a texture is read outside [0, 1].
+/// Texture addressing outside [0, 1].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Wrap {
-    /// Tiled.
+    /// Repeats the image.
     #[default]
     Repeat,
-    /// The border texels go on.
+    /// Extends the border texels.
     Clamp,
 }
 
-/// A named way of scattering light.
+/// A named scattering model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
-    /// Its name in the file; `file.obj:name` when it comes from a mesh's own MTL.
+    /// Name in the scene file; `file.obj:name` for a material from a mesh's MTL file.
     pub name: String,
-    /// What it does.
+    /// Scattering model and its parameters.
     pub kind: MaterialKind,
 }
 
-/// What a material does with light. All reflectances lie in [0, 1].
+/// Scattering model of a material. All reflectances lie in [0, 1].
 #[derive(Clone, Debug, PartialEq)]
 pub enum MaterialKind {
-    /// Diffuse reflection, two-sided.
+    /// Two-sided diffuse reflection.
     Diffuse {
         /// Albedo.
         reflectance: Reflectance,
-        /// In [0, 1]; 0 is Lambertian, otherwise Oren-Nayar's model in Fujii's form.
+        /// Roughness in [0, 1]: 0 is Lambertian, otherwise Fujii's form of the Oren-Nayar model.
         roughness: f64,
     },
     /// Diffuse reflection and transmission by a thin surface.
     Translucent {
-        /// Share of light that is scattered to both sides.
+        /// Fraction of light that is scattered, to both sides together.
         reflectance: Reflectance,
-        /// Share of that which is transmitted, in [0, 1].
+        /// Fraction of the scattered light that is transmitted, in [0, 1].
         transmission: f64,
     },
-    /// Perfect mirror, two-sided.
+    /// Perfect two-sided mirror.
     Mirror {
-        /// Share reflected at every angle.
+        /// Fraction of light reflected, at every angle.
         reflectance: Reflectance,
     },
-    /// Smooth dielectric with air outside; outside is where the normal points.
+    /// Smooth dielectric with air outside; the normal points to the outside.
     Glass {
         /// Index of refraction inside, > 0.
         ior: f64,
         /// Absorption coefficient inside, per scene unit (Beer-Lambert), >= 0.
         absorption: Rgb,
-        /// Where glass bodies overlap, the medium is the one with the highest priority, or the
-        /// smaller one if priorities are equal.
+        /// Rank where glass bodies overlap: the medium is the glass with the highest priority, or
+        /// that of the smaller body if priorities are equal.
         priority: i32,
     },
-    /// GGX microfacet conductor with Schlick's Fresnel term, two-sided.
+    /// Two-sided GGX microfacet conductor with Schlick's Fresnel term.
     Metal {
         /// Reflectance at normal incidence, `F_0`.
         reflectance: Reflectance,
-        /// In [0, 1]; GGX `alpha = roughness^2`.
+        /// Roughness in [0, 1]; GGX `alpha = roughness^2`.
         roughness: f64,
     },
 }
 
 impl MaterialKind {
-    /// The reflectance, which may be a texture.
+    /// The reflectance, which may be a texture; `None` for glass.
     pub fn reflectance(&self) -> Option<&Reflectance> {
         match self {
             Self::Diffuse { reflectance, .. }
@@ -159,10 +159,10 @@ impl MaterialKind {
     }
 }
 
-/// A share of light per channel, in [0, 1].
+/// Reflectance per channel, in [0, 1].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Reflectance {
-    /// The same everywhere.
+    /// A constant color.
     Color(Rgb),
     /// Index into [`super::Scene::textures`].
     Texture(usize),

@@ -1,4 +1,4 @@
-//! Meaning of the camera, the film, the render settings, the lights and the environment.
+//! Conversion and checks of the camera, film, render settings, lights and environment.
 
 use glam::DVec3;
 
@@ -10,7 +10,7 @@ use super::validate::Item;
 use super::{Camera, Environment, Film, Light};
 use crate::scene::settings::RenderSettings;
 
-/// Least sine of the angle between two directions that count as different.
+/// Sine of the angle below which two directions count as parallel.
 const LEAST_SINE: f64 = 1e-9;
 
 pub(super) fn camera(loader: &mut Loader) -> Option<Camera> {
@@ -34,7 +34,7 @@ pub(super) fn camera(loader: &mut Loader) -> Option<Camera> {
     let aperture = file.aperture.0;
     if aperture > 0.0 && file.focus.is_none() {
         let message = "`focus` is missing: a lens with an aperture needs it";
-        let help = format!("the target's distance is focus = {:.6}", view.length());
+        let help = format!("to focus on the target, write focus = {:.6}", view.length());
         let label = "expected a `focus` as well";
         loader.report.error(item.node.span_of("aperture"), message, label, Some(help));
     }
@@ -52,7 +52,7 @@ pub(super) fn film(loader: &mut Loader) -> Option<Film> {
         within("picture-pixels", "pixels", pixels, loader.allowance.picture_pixels)
     {
         let span = loader.document.item("film").map_or(0..0, |item| item.node.span_of("width"));
-        let message = format!("the picture is too large: {refusal}");
+        let message = format!("the image is too large: {refusal}");
         loader.report.error(span, message, "expected fewer pixels", refusal.help());
     }
     Some(Film {
@@ -74,7 +74,7 @@ pub(super) fn settings(loader: &mut Loader) -> Option<RenderSettings> {
         let entries =
             value.into_iter().flat_map(|value| value.entries().map(|(.., number)| number));
         for node in value.into_iter().chain(entries) {
-            // A number below 0 that has to be whole is reported by the schema.
+            // The schema check reports negative counts.
             if node.number().is_some_and(|number| number.is_finite() && !holds(number)) {
                 let message = format!("`render.{key}` is out of range");
                 let label = format!("expected {expected}");
@@ -121,7 +121,7 @@ pub(super) fn light(loader: &mut Loader, item: &Item, file: LightFile) -> Option
         }
     };
     if power.iter().all(|&channel| channel == 0.0) {
-        let message = format!("{} gives no light", item.path);
+        let message = format!("{} emits no light", item.path);
         loader.report.warn(item.node.span_of(power_key), message, "zero in every channel");
     }
     Some(light)
@@ -157,7 +157,7 @@ pub(super) fn environment(
     })
 }
 
-/// A direction as a unit vector; reports a length of 0.
+/// Normalizes a direction; reports an error if its length is 0 or not finite.
 pub(super) fn unit(
     loader: &mut Loader,
     item: &Item,

@@ -1,29 +1,29 @@
-//! Findings as they come: the first of each subject, listed up to a number and counted beyond.
+//! Ordered list of findings: one per subject up to a limit; further ones are only counted.
 
 use std::collections::HashSet;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
 use super::report::{Finding, Report};
 
-/// What was found, in order.
+/// Findings in the order of discovery.
 #[derive(Debug)]
 pub(crate) struct Findings {
     listed: Vec<Finding>,
     most: usize,
     more: usize,
     found: usize,
-    /// Hashes of the subjects.
+    /// Hashes of the subjects so far.
     known: HashSet<u64>,
 }
 
 impl Findings {
-    /// Lists at least one.
+    /// Creates an empty list of at most `most` findings, but at least one.
     pub fn new(most: u64) -> Self {
         let most = usize::try_from(most).unwrap_or(usize::MAX).max(1);
         Self { listed: Vec::new(), most, more: 0, found: 0, known: HashSet::new() }
     }
 
-    /// Adds a finding, unless there is one about the same.
+    /// Adds a finding unless there is one with the same subject.
     pub fn push(&mut self, finding: Finding) {
         self.found += 1;
         let mut hasher = DefaultHasher::new();
@@ -42,27 +42,27 @@ impl Findings {
         self.listed.is_empty()
     }
 
-    /// Whether no other will be listed, so that the search for advice can be spared.
+    /// Returns whether the list is full, so that callers can skip the search for suggestions.
     pub fn is_full(&self) -> bool {
         self.listed.len() >= self.most
     }
 
-    /// How often something was found, the same several times too.
+    /// Number of findings pushed, duplicates included.
     pub fn found(&self) -> usize {
         self.found
     }
 
-    /// Number of those that are not listed.
+    /// Number of findings beyond the list, duplicates excluded.
     pub fn more(&self) -> usize {
         self.more
     }
 
-    /// Those listed.
+    /// The listed findings.
     pub fn listed(self) -> Vec<Finding> {
         self.listed
     }
 
-    /// Those listed, and one that tells the number of the others.
+    /// The listed findings, and one that states the number of the others.
     pub fn told(self) -> Vec<Finding> {
         let unlisted = (self.more > 0).then(|| Report::unlisted(self.more));
         self.listed.into_iter().chain(unlisted).collect()

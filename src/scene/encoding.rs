@@ -1,24 +1,25 @@
-//! Encodings of text files: UTF-8 with or without a byte order mark, and what is told of others.
+//! Text encoding of input files: UTF-8 with or without a byte order mark, and detection of UTF-16
+//! and UTF-32.
 
 use thiserror::Error;
 
-/// A file's text is not in UTF-8.
+/// The file is in UTF-16 or UTF-32 instead of UTF-8.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error("the file is in {0}, expected UTF-8")]
 pub(super) struct Foreign(&'static str);
 
 impl Foreign {
-    /// How to mend it.
+    /// Remedy, for the message.
     pub fn help(&self) -> String {
         "save it as UTF-8, with or without a byte order mark".to_owned()
     }
 }
 
-/// The bytes behind the byte order mark of UTF-8, if there is one.
+/// Strips the UTF-8 byte order mark, if there is one.
 ///
 /// # Errors
-/// Text in UTF-16 or UTF-32, by its byte order mark or, since every text here begins with ASCII, by
-/// its zeros.
+/// Text in UTF-16 or UTF-32, detected by its byte order mark or, because every input text begins
+/// with ASCII, by its zero bytes.
 pub(super) fn unmarked(bytes: &[u8]) -> Result<&[u8], Foreign> {
     match bytes {
         [0xef, 0xbb, 0xbf, text @ ..] => Ok(text),
@@ -30,7 +31,7 @@ pub(super) fn unmarked(bytes: &[u8]) -> Result<&[u8], Foreign> {
     }
 }
 
-/// Theory: an encoding is known by its first four bytes.
+/// Theory: the first four bytes identify the encoding.
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,5 +1,5 @@
-//! The channels of an EXR file that are read as a picture: R, G, B; or Y, in gray; or the one layer
-//! that has either.
+//! Channel selection in EXR files: R, G, B; or Y as gray. They come from the only layer that has
+//! them, or from the unnamed layer.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::{BufRead, Seek};
@@ -11,7 +11,7 @@ use exr::prelude::{ReadChannels, ReadLayers, ReadSpecificChannel, Text};
 
 use super::exr_subsampled;
 
-/// A picture: width, height, texels, and whether alpha is below 1 somewhere.
+/// A decoded image: size in pixels, texels row by row, and whether alpha is below 1 anywhere.
 pub(super) struct Picture {
     pub width: usize,
     pub height: usize,
@@ -19,14 +19,14 @@ pub(super) struct Picture {
     pub transparent: bool,
 }
 
-/// The names of the channels that are read.
+/// Names of the channels to read.
 #[derive(Debug)]
 pub(super) struct Chosen {
     colors: Colors,
     alpha: Text,
-    /// The part of the file, where other channels of it have a lower resolution.
+    /// Part of the file that contains the channel, if other channels in it have a lower resolution.
     subsampled: Option<usize>,
-    /// Chroma that is not read: its names.
+    /// Names of chroma channels that are ignored.
     pub unread: Vec<String>,
 }
 
@@ -36,13 +36,14 @@ enum Colors {
     Gray(Text),
 }
 
-/// Most channels that are listed.
+/// Most channel names in an error message.
 const MOST_LISTED: usize = 40;
 
-/// Chooses the channels of a file.
+/// Chooses the channels to read.
 ///
 /// # Errors
-/// When there are none, or several layers that have some; lists the channels.
+/// No usable channels, several layers with colors but no unnamed one, or colors of reduced
+/// resolution. The message lists the channels.
 pub(super) fn choose(meta: &MetaData) -> Result<Chosen, String> {
     let mut found = BTreeMap::new();
     for (part, header) in meta.headers.iter().enumerate().filter(|(_, header)| !header.deep) {
@@ -50,8 +51,7 @@ pub(super) fn choose(meta: &MetaData) -> Result<Chosen, String> {
         let layers: BTreeSet<_> = channels.keys().map(|name| layer_of(name)).collect();
         for layer in layers {
             let Some(chosen) = chosen(&channels, layer) else { continue };
-            // The first part of a file that has a layer is the one that is read; colors come before
-            // gray.
+            // The first part that has the layer wins, but colors take precedence over gray.
             let is_gray = |known: &(Chosen, usize)| matches!(known.0.colors, Colors::Gray(_));
             let has_colors = matches!(chosen.colors, Colors::Rgb(_));
             if found.get(layer).is_none_or(|known| has_colors && is_gray(known)) {
@@ -104,7 +104,7 @@ fn listed(meta: &MetaData) -> String {
     }
 }
 
-/// The colors of a layer.
+/// The color channels of a layer, if it has any.
 fn chosen(channels: &BTreeMap<String, &Text>, layer: &str) -> Option<Chosen> {
     let find = |channel: &str| {
         let name = if layer.is_empty() { channel.to_owned() } else { format!("{layer}.{channel}") };
@@ -117,16 +117,15 @@ fn chosen(channels: &BTreeMap<String, &Text>, layer: &str) -> Option<Chosen> {
     let is_gray = matches!(colors, Colors::Gray(_));
     let chroma = ["BY", "RY"].into_iter().filter(|_| is_gray).filter_map(find);
     let unread = chroma.map(|name| name.to_string()).collect();
-    // A channel that is not there is 1 everywhere; this one has a name that no channel of the layer
-    // has.
+    // A missing alpha channel reads as 1; no channel of the layer has the name used here.
     let alpha = find("A").or_else(|| Text::new_or_none("no alpha"))?;
     Some(Chosen { colors, alpha, subsampled: None, unread })
 }
 
-/// Reads the chosen channels of a file that has been read up to the end of its headers, `meta`.
+/// Reads the chosen channels. `file` has been read up to the end of its headers, `meta`.
 ///
 /// # Errors
-/// When the file is damaged.
+/// A damaged file, or chroma of lower resolution with tiles or an unsupported compression.
 pub(super) fn read(
     mut file: impl BufRead + Seek + Send,
     meta: &MetaData,

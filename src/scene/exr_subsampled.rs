@@ -1,6 +1,6 @@
-//! Luminance of EXR files whose chroma has a lower resolution. The exr crate reads the headers and
-//! blocks of such files, but takes all channels for equally large; here each block gets its true
-//! size, and is taken apart.
+//! Luminance of EXR files with subsampled chroma. The exr crate reads the headers and blocks of
+//! such files, but assumes that all channels have full resolution. This module computes the true
+//! size of each block and splits the block into its channels.
 
 use std::io::{BufRead, Seek};
 
@@ -15,14 +15,14 @@ use exr::prelude::{Text, f16};
 
 use super::exr_image::Picture;
 
-/// Largest coordinate that is taken for one.
+/// Largest absolute data window offset that is accepted.
 const FARTHEST: i32 = 1 << 30;
 
-/// Reads a channel of full resolution as gray. The file has been read up to the end of its headers,
-/// `meta`; `part` is the one of them that has the channel.
+/// Reads a channel of full resolution as gray. `file` has been read up to the end of its headers,
+/// `meta`; `part` is the index of the header that contains the channel.
 ///
 /// # Errors
-/// When the file is damaged, or compressed by a method that does not work at this size.
+/// A damaged file, tiles, or a compression that does not work at this size.
 pub(super) fn read(
     mut file: impl BufRead + Seek,
     meta: &MetaData,
@@ -38,7 +38,7 @@ pub(super) fn read(
         return Err(damaged());
     }
     let chunks = meta.headers.iter().map(|header| header.chunk_count as u64).sum::<u64>();
-    // The places of the blocks, which follow each other anyway.
+    // Skip the table of block offsets: the blocks follow each other anyway.
     let table = i64::try_from(chunks.saturating_mul(8)).map_err(|_| damaged())?;
     file.seek_relative(table)?;
     let mut texels = vec![[0.0; 3]; width * height];
@@ -80,7 +80,7 @@ fn damaged() -> Error {
     Error::Invalid("header or block".into())
 }
 
-/// How many coordinates from `start` on are multiples of a step.
+/// Number of multiples of `step` among the `length` coordinates from `start` on.
 fn multiples(start: i32, length: usize, step: usize) -> usize {
     let (start, step) = (i64::from(start), step as i64);
     let last = start + length as i64 - 1;
@@ -101,8 +101,8 @@ fn values(kind: SampleType, bytes: &[u8]) -> impl Iterator<Item = f32> {
     })
 }
 
-/// The bytes of a block. The crate computes their number from the size of a pixel, so this gives it
-/// one that fits.
+/// Decompresses a block. The crate computes the block's size from the bytes per pixel, so this
+/// passes a value that yields the true size.
 fn decompress(header: &Header, compressed: Vec<u8>, section: IntegerBounds) -> Result<Vec<u8>> {
     let Vec2(width, lines) = section.size;
     let of_channel = |channel: &ChannelDescription| {
@@ -114,13 +114,13 @@ fn decompress(header: &Header, compressed: Vec<u8>, section: IntegerBounds) -> R
     });
     let mut header = header.clone();
     let (section, bytes_per_pixel) = match header.compression {
-        // These treat a block as so many bytes.
+        // These treat a block as a plain sequence of bytes.
         Compression::Uncompressed | Compression::RLE | Compression::ZIP1 | Compression::ZIP16
             if cfg!(target_endian = "little") =>
         {
             (IntegerBounds::new(Vec2(0, 0), Vec2(1, 1)), size)
         }
-        // The crate's B44 takes channels for equally large, and panics.
+        // The crate's B44 assumes that all channels have full resolution, and panics.
         Compression::PIZ | Compression::PXR24 if even && size.is_multiple_of(width * lines) => {
             (section, size / (width * lines))
         }

@@ -1,8 +1,8 @@
-//! The scene format: what a person may write in a scene file, as types.
+//! The scene file format as types.
 //!
-//! Parser, checks and the JSON Schema for editors all come from these types: their names are the
-//! keys, their doc comments the descriptions. What a key means in full is said at the validated
-//! [`Scene`](super::Scene).
+//! The parser, the checks and the JSON Schema for editors all derive from these types: field names
+//! are the keys, and doc comments are the descriptions. The validated [`Scene`](super::Scene)
+//! documents the meaning of each key in full.
 
 use std::collections::BTreeMap;
 
@@ -15,34 +15,34 @@ use super::schema::close_variants;
 use super::{Aov, ToneMap};
 use crate::scene::settings::RenderSettings;
 
-/// Three coordinates.
+/// Three coordinates: x, y, z.
 pub type Vec3 = [f64; 3];
 
-/// A caustica scene. Right-handed, y up; linear Rec. 709 colors; one scene unit is a metre; paths
+/// A caustica scene. Right-handed, y up; linear Rec. 709 colors; one scene unit is one metre; paths
 /// are relative to the file.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SceneFile {
     /// Version of the format: 1.
     pub version: u32,
-    /// Where the picture is taken from.
+    /// Viewpoint and lens.
     pub camera: CameraFile,
-    /// Size and development of the picture.
+    /// Image size, tone mapping and extra channels.
     #[serde(default)]
     pub film: FilmFile,
-    /// How it is rendered; the command line overrides.
+    /// Render settings; command-line options override them.
     #[serde(default)]
     pub render: RenderSettings,
-    /// Named colors over a surface's (u, v).
+    /// Named textures: colors as a function of a surface's (u, v).
     #[serde(default)]
     pub textures: BTreeMap<String, TextureFile>,
-    /// Named ways of scattering light.
+    /// Named materials: how surfaces scatter light.
     #[serde(default)]
     pub materials: BTreeMap<String, MaterialFile>,
-    /// Surfaces.
+    /// Surfaces, including area lights.
     #[serde(default)]
     pub shapes: Vec<ShapeFile>,
-    /// Lights without a surface.
+    /// Point, spot and sun lights.
     #[serde(default)]
     pub lights: Vec<LightFile>,
     /// Light from infinitely far away.
@@ -57,35 +57,35 @@ pub struct CameraFile {
     pub position: Vec3,
     /// A point on the view axis.
     pub target: Vec3,
-    /// Points to the top of the picture.
+    /// Up direction of the image.
     #[serde(default = "y_axis")]
     pub up: Vec3,
     /// Vertical field of view in degrees, between 0 and 180.
     #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 180))]
     pub fov: f64,
-    /// Radius of the lens in scene units; 0 is a pinhole.
+    /// Lens radius in scene units; 0 is a pinhole.
     #[serde(default)]
     pub aperture: NonNegative,
-    /// Distance of the plane in focus from the lens along the view direction, in scene units;
-    /// needed when the aperture is not 0.
+    /// Distance from the lens to the plane of focus along the view direction, in scene units;
+    /// required if the aperture is not 0.
     pub focus: Option<Positive>,
 }
 
-/// Size and development of the picture.
+/// Image size, tone mapping and extra channels.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct FilmFile {
-    /// Pixels per row.
+    /// Image width in pixels.
     #[schemars(range(min = 1, max = 65536))]
     pub width: u32,
-    /// Rows.
+    /// Image height in pixels.
     #[schemars(range(min = 1, max = 65536))]
     pub height: u32,
-    /// Exposure in stops; tone-mapped outputs only.
+    /// Exposure in stops, for tone-mapped outputs only.
     pub exposure: f64,
     /// Curve of tone-mapped outputs.
     pub tonemap: ToneMap,
-    /// What EXR files hold in addition to radiance.
+    /// Channels of EXR files in addition to radiance.
     pub aov: Vec<Aov>,
 }
 
@@ -101,104 +101,104 @@ impl Default for FilmFile {
     }
 }
 
-/// What the numbers in an image file mean.
+/// Encoding of the values in an image file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ColorSpace {
-    /// The sRGB curve; the default for png and jpg.
+    /// sRGB-encoded; the default for png and jpg.
     Srgb,
     /// Proportional to light; the default for hdr and exr.
     Linear,
 }
 
-/// A color over a surface's (u, v).
+/// A color as a function of a surface's (u, v).
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(tag = "type", rename_all = "snake_case", deny_unknown_fields)]
 pub enum TextureFile {
-    /// A picture; v = 0 is its bottom row.
+    /// An image; v = 0 is its bottom row.
     Image {
         /// A png, jpg, hdr or exr file.
         file: String,
-        /// What its numbers mean.
+        /// Encoding of its values; the file type gives the default.
         color_space: Option<ColorSpace>,
-        /// How it is read between texels.
+        /// Interpolation between texels.
         #[serde(default)]
         filter: Filter,
-        /// How it is read outside [0, 1].
+        /// Addressing outside [0, 1].
         #[serde(default)]
         wrap: Wrap,
-        /// (u, v) is multiplied by it.
+        /// Factor on (u, v).
         #[serde(default = "ones")]
         scale: [f64; 2],
     },
-    /// Squares of two colors, one uv unit wide after scaling.
+    /// A checkerboard of squares one uv unit wide after scaling.
     Checker {
         /// Colors of square (0, 0) and of its neighbours.
         colors: [Spectrum<Share>; 2],
-        /// (u, v) is multiplied by it.
+        /// Factor on (u, v).
         #[serde(default = "ones")]
         scale: [f64; 2],
     },
-    /// A picture laid as floor boards; every second row is shifted by half a board.
+    /// An image laid as floor boards; every second row is shifted by half a board.
     Planks {
         /// A png, jpg, hdr or exr file.
         file: String,
         /// Width (u) and length (v) of a board in uv units.
         size: [Positive; 2],
-        /// What its numbers mean.
+        /// Encoding of its values; the file type gives the default.
         color_space: Option<ColorSpace>,
-        /// How it is read between texels.
+        /// Interpolation between texels.
         #[serde(default)]
         filter: Filter,
     },
 }
 
-/// A way of scattering light.
+/// A material: how a surface scatters light.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(tag = "type", rename_all = "snake_case", deny_unknown_fields)]
 pub enum MaterialFile {
-    /// Diffuse reflection, two-sided.
+    /// Two-sided diffuse reflection.
     Diffuse {
         /// Albedo.
         reflectance: Paint,
-        /// From 0 (Lambertian) to 1 (Oren-Nayar).
+        /// Roughness, from 0 (Lambertian) to 1 (Oren-Nayar).
         #[serde(default)]
         roughness: Share,
     },
     /// Diffuse reflection and transmission by a thin surface such as paper.
     Translucent {
-        /// Share of light that is scattered to both sides.
+        /// Fraction of light that is scattered, to both sides together.
         reflectance: Paint,
-        /// Share of the scattered light that is transmitted.
+        /// Fraction of the scattered light that is transmitted.
         transmission: Share,
     },
-    /// A perfect mirror, two-sided.
+    /// A perfect two-sided mirror.
     Mirror {
-        /// Share of light reflected.
+        /// Fraction of light reflected.
         reflectance: Paint,
     },
-    /// A smooth dielectric. Outside is air, or the other glass where bodies overlap.
+    /// A smooth dielectric. Outside is air or, where bodies overlap, the other glass.
     Glass {
         /// Index of refraction.
         ior: Positive,
-        /// Absorption per scene unit inside (Beer-Lambert).
+        /// Absorption coefficient inside, per scene unit (Beer-Lambert).
         #[serde(default)]
         absorption: Spectrum<NonNegative>,
-        /// Where glass bodies overlap, the medium is the one with the highest priority, or the
-        /// smaller one if priorities are equal.
+        /// Rank where glass bodies overlap: the medium is the glass with the highest priority, or
+        /// that of the smaller body if priorities are equal.
         #[serde(default)]
         priority: i32,
     },
-    /// A GGX microfacet conductor, two-sided.
+    /// A two-sided GGX microfacet conductor.
     Metal {
-        /// Share of light reflected at normal incidence.
+        /// Fraction of light reflected at normal incidence.
         reflectance: Paint,
-        /// From 0 (mirror) to 1; GGX alpha is its square.
+        /// Roughness, from 0 (mirror) to 1; GGX alpha is its square.
         roughness: Share,
     },
 }
 
-/// What a shape's (u, v) are.
+/// Source of a shape's texture coordinates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Uv {
@@ -206,24 +206,25 @@ pub enum Uv {
     Planar,
 }
 
-/// A surface.
+/// A shape with its material and emission.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(tag = "type", rename_all = "snake_case")]
 #[schemars(transform = close_variants)]
 pub enum ShapeFile {
-    /// All points at one distance from the centre.
+    /// A sphere; the normal points outward.
     Sphere {
-        /// Centre.
+        /// Centre in world space.
         center: Vec3,
         /// Radius in scene units.
         radius: Positive,
         /// Name of a material.
         material: String,
-        /// Light and texture coordinates.
+        /// Emission and texture coordinates.
         #[serde(flatten)]
         surface: SurfaceFile,
     },
-    /// origin + s u + t v with s and t from 0 to 1; normal along u x v, uv = (s, t).
+    /// A rectangle or parallelogram, origin + s u + t v with s and t from 0 to 1; normal along
+    /// u x v, uv = (s, t).
     Rectangle {
         /// A corner.
         origin: Vec3,
@@ -233,46 +234,46 @@ pub enum ShapeFile {
         v: Vec3,
         /// Name of a material.
         material: String,
-        /// Light and texture coordinates.
+        /// Emission and texture coordinates.
         #[serde(flatten)]
         surface: SurfaceFile,
     },
     /// A flat disc.
     Disc {
-        /// Centre.
+        /// Centre in world space.
         center: Vec3,
-        /// Points to the lit side; any length but 0.
+        /// Normal, on the side that emits; any length but 0.
         normal: Vec3,
         /// Radius in scene units.
         radius: Positive,
         /// Name of a material.
         material: String,
-        /// Light and texture coordinates.
+        /// Emission and texture coordinates.
         #[serde(flatten)]
         surface: SurfaceFile,
     },
-    /// An infinite plane; uv = world units along two tangents. It cannot shine.
+    /// An infinite plane; uv = world units along two tangents. It cannot emit.
     Plane {
-        /// A point on it.
+        /// A point on the plane.
         point: Vec3,
-        /// Any length but 0.
+        /// Normal; any length but 0.
         normal: Vec3,
         /// Name of a material.
         material: String,
-        /// Light and texture coordinates.
+        /// Emission and texture coordinates.
         #[serde(flatten)]
         surface: SurfaceFile,
     },
-    /// An axis-aligned box; each face is the unit square in uv, upright and unmirrored from outside
-    /// (on top v increases along -z, below along z).
+    /// An axis-aligned box. Each face covers the unit square in uv, upright and unmirrored from
+    /// outside (on top v increases along -z, below along z).
     Box {
-        /// Least corner.
+        /// Corner with the least coordinates.
         min: Vec3,
-        /// Greatest corner.
+        /// Corner with the greatest coordinates.
         max: Vec3,
         /// Name of a material.
         material: String,
-        /// Light and texture coordinates.
+        /// Emission and texture coordinates.
         #[serde(flatten)]
         surface: SurfaceFile,
     },
@@ -280,34 +281,34 @@ pub enum ShapeFile {
     Mesh {
         /// A Wavefront OBJ file.
         file: String,
-        /// Use the file's normals, or make them where it has none, and turn faces to the side that
-        /// they point to; false: flat, and the order of a face's corners (counterclockwise from
-        /// outside) says which side is outside.
+        /// If true, shading uses the file's normals, or computes them where it has none, and faces
+        /// are turned to the side that the file's normals point to. If false, faces are flat, and
+        /// their corners are counterclockwise seen from outside.
         #[serde(default = "yes")]
         smooth: bool,
-        /// Name of a material; without it, the OBJ's own MTL is used.
+        /// Name of a material; by default, the materials of the OBJ's own MTL.
         material: Option<String>,
-        /// World from object.
+        /// Transform from object to world space.
         #[serde(default)]
         transform: TransformFile,
-        /// Light and texture coordinates.
+        /// Emission and texture coordinates.
         #[serde(flatten)]
         surface: SurfaceFile,
     },
-    /// A Bezier profile turned about the local y axis. Outside is where the profile, drawn upward,
-    /// has its greater radii; a closed body that faces inward is warned of.
+    /// A Bezier profile revolved about the local y axis. Outside is the side of greater radii if
+    /// the profile is drawn upward; a closed body that faces inward causes a warning.
     Revolution {
         /// Control points (radius, height) of one Bezier curve.
         #[schemars(length(min = 2, max = 16))]
         profile: Option<Vec<[f64; 2]>>,
-        /// Several Bezier curves, joined end to end.
+        /// Control points of several Bezier curves, joined end to end.
         segments: Option<Segments>,
         /// Name of a material.
         material: String,
-        /// World from object.
+        /// Transform from object to world space.
         #[serde(default)]
         transform: TransformFile,
-        /// Light and texture coordinates.
+        /// Emission and texture coordinates.
         #[serde(flatten)]
         surface: SurfaceFile,
     },
@@ -321,13 +322,13 @@ pub struct Segments(
     #[schemars(length(min = 1), inner(length(min = 2, max = 16)))] pub Vec<Vec<[f64; 2]>>,
 );
 
-/// What every shape may have.
+/// Keys that every shape accepts.
 #[derive(Debug, Deserialize, JsonSchema)]
 pub struct SurfaceFile {
-    /// Radiance in W sr^-1 m^-2 that leaves the side that the normal points to.
+    /// Emitted radiance in W sr^-1 m^-2, on the side that the normal points to.
     #[serde(default)]
     pub emission: Spectrum<Strength>,
-    /// Texture coordinates in place of the shape's own.
+    /// Texture coordinates that replace the shape's own.
     pub uv: Option<Uv>,
 }
 
@@ -335,11 +336,11 @@ pub struct SurfaceFile {
 #[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct TransformFile {
-    /// Uniform scale; 1 without it.
+    /// Uniform scale; 1 by default.
     pub scale: Option<Positive>,
-    /// Rotation.
+    /// Rotation about an axis through the origin.
     pub rotate: Option<RotateFile>,
-    /// In scene units.
+    /// Translation in scene units.
     pub translate: Vec3,
 }
 
@@ -347,9 +348,9 @@ pub struct TransformFile {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RotateFile {
-    /// Any length but 0.
+    /// Rotation axis; any length but 0.
     pub axis: Vec3,
-    /// Angle.
+    /// Angle in degrees.
     pub degrees: f64,
 }
 
@@ -357,46 +358,47 @@ pub struct RotateFile {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(tag = "type", rename_all = "snake_case", deny_unknown_fields)]
 pub enum LightFile {
-    /// Shines alike in all directions.
+    /// A point light with the same intensity in all directions.
     Point {
-        /// Where it is.
+        /// Position in world space.
         position: Vec3,
         /// Radiant intensity in W/sr.
         intensity: Spectrum<Strength>,
     },
-    /// Shines into a cone.
+    /// A spot light that shines into a cone.
     Spot {
         /// Apex of the cone.
         position: Vec3,
-        /// A point on its axis.
+        /// A point on the cone's axis.
         target: Vec3,
         /// Radiant intensity on the axis in W/sr.
         intensity: Spectrum<Strength>,
-        /// Degrees from the axis to where it is dark; at most 180.
+        /// Angle in degrees from the axis to the edge of the cone, where the light is zero; at most
+        /// 180.
         #[schemars(extend("exclusiveMinimum" = 0), range(max = 180))]
         angle: f64,
-        /// Share of the angle over which it fades.
+        /// Fraction of the angle over which the light fades.
         #[serde(default)]
         blend: Share,
     },
-    /// Parallel light.
+    /// Parallel light from infinitely far away.
     Sun {
-        /// In which the light travels; any length but 0.
+        /// Direction in which the light travels; any length but 0.
         direction: Vec3,
-        /// On a surface facing the sun, in W/m^2.
+        /// Irradiance on a surface facing the sun, in W/m^2.
         irradiance: Spectrum<Strength>,
     },
 }
 
-/// Either one radiance from everywhere, or a picture.
+/// A constant radiance from all directions, or an image.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct EnvironmentFile {
-    /// In W sr^-1 m^-2; with a file, what its values are multiplied by.
+    /// Radiance in W sr^-1 m^-2; with a file, a factor on its values.
     pub radiance: Option<Spectrum<Strength>>,
-    /// An equirectangular picture: exr, hdr, png or jpg.
+    /// An equirectangular image: exr, hdr, png or jpg.
     pub file: Option<String>,
-    /// Turn of the picture about y in degrees, by the right-hand rule.
+    /// Rotation of the image about +y in degrees, by the right-hand rule.
     pub rotate: Option<f64>,
 }
 

@@ -1,41 +1,41 @@
-//! Where surfaces are.
+//! Geometry of surfaces.
 
 use glam::{DMat3, DVec2, DVec3};
 
 use super::appearance::Rgb;
 
-/// A surface with its material and its light.
+/// A surface with its material and emission.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shape {
-    /// What and where it is.
+    /// Geometric primitive.
     pub kind: ShapeKind,
     /// Index into [`super::Scene::materials`].
     pub material: usize,
-    /// Radiance in W sr^-1 m^-2 that leaves the side that the normal points to; zero for no light,
-    /// and for planes.
+    /// Radiance in W sr^-1 m^-2 emitted on the side that the normal points to; zero for a surface
+    /// that does not emit, and for planes.
     pub emission: Rgb,
-    /// Whether (u, v) is world (x, z) in place of the shape's own.
+    /// True if (u, v) is world (x, z) instead of the shape's own.
     pub planar_uv: bool,
 }
 
 impl Shape {
-    /// A shape that does not emit, with its own texture coordinates.
+    /// A shape without emission, with its own texture coordinates.
     pub fn new(kind: ShapeKind, material: usize) -> Self {
         Self { kind, material, emission: [0.0; 3], planar_uv: false }
     }
 
-    /// Whether it shines.
+    /// Returns whether it emits in any channel.
     pub fn is_emitter(&self) -> bool {
         self.emission.iter().any(|&channel| channel > 0.0)
     }
 }
 
-/// Kinds of surfaces. Normals are unit; lengths are in scene units.
+/// Geometric primitives. Normals are unit; lengths are in scene units.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ShapeKind {
-    /// Normal outward; u = 0.5 - atan2(z, x)/2pi, v = 0 at the south pole.
+    /// Normal outward; u = 0.5 - atan2(z, x) / 2pi, v = 0 at the south pole.
     Sphere {
-        /// Centre.
+        /// Centre in world space.
         center: DVec3,
         /// Radius, > 0.
         radius: f64,
@@ -52,7 +52,7 @@ pub enum ShapeKind {
     },
     /// A flat disc.
     Disc {
-        /// Centre.
+        /// Centre in world space.
         center: DVec3,
         /// Unit normal.
         normal: DVec3,
@@ -61,30 +61,30 @@ pub enum ShapeKind {
     },
     /// An infinite plane; uv = world units along two tangents.
     Plane {
-        /// A point on it.
+        /// A point on the plane.
         point: DVec3,
         /// Unit normal.
         normal: DVec3,
     },
-    /// Axis-aligned, closed, normals outward.
+    /// Axis-aligned box, closed, normals outward.
     Cuboid {
-        /// Least corner.
+        /// Corner with the least coordinates.
         min: DVec3,
-        /// Greatest corner, greater than `min` in every coordinate.
+        /// Corner with the greatest coordinates, each greater than in `min`.
         max: DVec3,
     },
-    /// Triangles.
+    /// A triangle mesh.
     Mesh(Mesh),
-    /// Bezier profiles turned about the local y axis:
+    /// Bezier profiles revolved about the local y axis:
     /// `S(theta, t) = (r(t) cos theta, y(t), r(t) sin theta)`.
     Revolution {
-        /// Control points (radius, height) of each Bezier segment, degree 1 to 15; each segment
-        /// starts where the one before ends. The curve's radius is nowhere negative.
+        /// Control points (radius, height) of each Bezier segment, degree 1 to 15. Each segment
+        /// starts where the previous one ends. The curve's radius is nowhere negative.
         segments: Vec<Vec<DVec2>>,
-        /// World from object.
+        /// Transform from object to world space.
         transform: Transform,
-        /// Newton steps shorter than this, in sizes of the profile, end the search of a ray's hit;
-        /// 0, which scene files mean, goes on as far as the precision allows.
+        /// Step length, relative to the size of the profile, below which the Newton search for a
+        /// ray's hit ends; 0, which scene files imply, iterates to the limit of the precision.
         newton_tolerance: f64,
     },
 }
@@ -92,7 +92,7 @@ pub enum ShapeKind {
 /// Triangles in world space with separate indices for positions, normals and texture coordinates.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
-    /// Vertices in scene units.
+    /// Vertex positions in scene units.
     pub positions: Vec<DVec3>,
     /// Unit shading normals.
     pub normals: Vec<DVec3>,
@@ -105,36 +105,36 @@ pub struct Mesh {
 /// Indices of a triangle's corners.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Triangle {
-    /// Into [`Mesh::positions`].
+    /// Indices into [`Mesh::positions`].
     pub position: [u32; 3],
-    /// Into [`Mesh::normals`]; `None` is flat.
+    /// Indices into [`Mesh::normals`]; `None` for a flat triangle.
     pub normal: Option<[u32; 3]>,
-    /// Into [`Mesh::uvs`]; `None` reads textures at (0, 0).
+    /// Indices into [`Mesh::uvs`]; `None` reads textures at (0, 0).
     pub uv: Option<[u32; 3]>,
 }
 
-/// World from object: scale, then rotate, then translate.
+/// Transform from object to world space: scale, then rotation, then translation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Transform {
     /// Uniform scale, > 0.
     pub scale: f64,
-    /// A rotation (orthonormal, determinant one).
+    /// Rotation matrix (orthonormal, determinant one).
     pub rotation: DMat3,
-    /// In scene units.
+    /// Translation in scene units.
     pub translation: DVec3,
 }
 
 impl Transform {
-    /// Changes nothing.
+    /// The identity transform.
     pub const IDENTITY: Self =
         Self { scale: 1.0, rotation: DMat3::IDENTITY, translation: DVec3::ZERO };
 
-    /// A point of the object, in the world.
+    /// Transforms a point from object to world space.
     pub fn point(&self, point: DVec3) -> DVec3 {
         self.rotation * (point * self.scale) + self.translation
     }
 
-    /// A direction or unit normal of the object, in the world; keeps lengths.
+    /// Transforms a direction or unit normal from object to world space; preserves its length.
     pub fn direction(&self, direction: DVec3) -> DVec3 {
         self.rotation * direction
     }

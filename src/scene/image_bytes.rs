@@ -1,8 +1,8 @@
-//! Formats of picture files by their first bytes, and the headers of JPEG and Radiance files.
+//! Image format detection by the first bytes, and the headers of JPEG and Radiance files.
 
 use std::io::{self, BufRead, Read};
 
-/// Formats that are read.
+/// Supported image formats.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Format {
     Png,
@@ -11,14 +11,14 @@ pub(super) enum Format {
     Exr,
 }
 
-/// Most bytes that a format is known by.
+/// Number of bytes that [`Format::of`] needs, at most.
 pub(super) const HEAD: usize = 16;
 
 impl Format {
-    /// The format of a file that begins with these bytes, or what they are in place of it.
+    /// Format of a file that begins with these bytes.
     ///
     /// # Errors
-    /// Other formats.
+    /// Any other content; the message names the format if it is known.
     pub fn of(head: &[u8]) -> Result<Self, String> {
         match head {
             [] => Err("it is empty".to_owned()),
@@ -28,12 +28,12 @@ impl Format {
             [0x76, 0x2f, 0x31, 0x01, ..] => Ok(Self::Exr),
             _ => match image::guess_format(head) {
                 Ok(other) => Err(format!("it is a {} file", other.extensions_str()[0])),
-                Err(_) => Err("its content is not that of a picture that can be read".to_owned()),
+                Err(_) => Err("it is not a supported image".to_owned()),
             },
         }
     }
 
-    /// Whether it holds linear light.
+    /// Returns whether the format stores linear values.
     pub fn is_linear(self) -> bool {
         match self {
             Self::Png | Self::Jpeg => false,
@@ -42,17 +42,18 @@ impl Format {
     }
 }
 
-/// A Radiance file with the first line that the decoder knows; programs other than Radiance write
-/// their own.
+/// Replaces the first line of a Radiance file by the one that the decoder accepts; programs other
+/// than Radiance write their own.
 pub(super) fn with_radiance_line(mut file: impl BufRead) -> io::Result<impl Read> {
     let mut line = Vec::new();
     file.by_ref().take(1024).read_until(b'\n', &mut line)?;
     Ok(io::Cursor::new(b"#?RADIANCE\n").chain(file))
 }
 
-/// Why a JPEG file would not be decoded as it is meant, if so. Where a sequential file divides its
-/// components into several scans, zune-jpeg 0.5 loses the blocks at the end of a scan, and
-/// misplaces those of components of a higher resolution. A broken file is left to the decoder.
+/// Reason why the decoder would garble a JPEG file, if it would. If a sequential file divides its
+/// components into several scans, zune-jpeg 0.5 loses the blocks at the end of a scan and misplaces
+/// those of components with a higher resolution. A broken file gives `None`, so that the decoder
+/// reports it.
 pub(super) fn jpeg_fault(mut file: impl Read) -> Option<&'static str> {
     let mut components = 0;
     let mut marker = [0; 2];
@@ -67,12 +68,12 @@ pub(super) fn jpeg_fault(mut file: impl Read) -> Option<&'static str> {
         let mut segment = vec![0; usize::from(u16::from_be_bytes(length)).checked_sub(2)?];
         file.read_exact(&mut segment).ok()?;
         match kind {
-            // Baseline and extended sequential. Progressive files are decoded right.
+            // Baseline and extended sequential. Progressive files decode correctly.
             0xc0 | 0xc1 => components = *segment.get(5)?,
             0xda => {
                 let is_split = *segment.first()? < components;
                 return is_split.then_some(
-                    "it is a JPEG file of several sequential scans, which would be garbled",
+                    "it is a JPEG file with several sequential scans, which is not supported",
                 );
             }
             _ => {}
@@ -80,7 +81,7 @@ pub(super) fn jpeg_fault(mut file: impl Read) -> Option<&'static str> {
     }
 }
 
-/// The next marker of a JPEG file: 0xff, as often as one likes, and its kind.
+/// Kind of the next JPEG marker: any number of 0xff bytes, then the kind.
 fn next_marker(file: &mut impl Read) -> Option<u8> {
     let mut byte = [0];
     let mut read = || file.read_exact(&mut byte).ok().map(|()| byte[0]);

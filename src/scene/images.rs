@@ -1,4 +1,4 @@
-//! Image files: png and jpg (8 or 16 bits), hdr and exr, told by their content.
+//! Image files: png and jpg (8 or 16 bits), hdr and exr, identified by content.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
@@ -16,37 +16,37 @@ use super::image_bytes::{Format, HEAD, jpeg_fault, with_radiance_line};
 use super::limits::{Allowance, Missing, Refusal, within};
 use crate::math::srgb::linear_from_srgb;
 
-/// Why an image cannot be used; `key` is the key in the scene file to blame.
+/// Reason why an image cannot be used; `key` is the scene file key that the error points to.
 pub(crate) struct ImageFault {
     pub key: &'static str,
     pub message: String,
     pub expected: &'static str,
     pub help: Option<String>,
-    /// Whether there is no such file.
+    /// True if the file does not exist.
     pub missing: bool,
 }
 
-/// A warning about an image, and what it becomes.
+/// A warning about an image, and the interpretation of the affected values.
 pub(crate) type Note = (String, &'static str);
 
-/// Texels, whether alpha is below 1 somewhere, and the names of channels that are not read.
+/// Image data, whether alpha is below 1 anywhere, and the names of ignored channels.
 type Loaded = (ImageData, bool, Vec<String>);
 
-/// Images read so far, each (file, color space) once.
+/// Images read so far, one for each (file, color space).
 #[derive(Debug, Default)]
 pub(crate) struct ImageStore {
     pub images: Vec<ImageData>,
-    /// Every file asked for.
+    /// Every file requested.
     pub files: Vec<PathBuf>,
     known: BTreeMap<(PathBuf, Option<ColorSpace>), usize>,
     transparent: BTreeSet<usize>,
-    /// Texels that were moved into their range, by image.
+    /// Texels clamped into their range, by image.
     moved: BTreeMap<usize, Moved>,
-    /// What to say of channels that are not read.
+    /// Warnings about ignored channels, by image.
     unread: BTreeMap<usize, String>,
     stand_ins: BTreeMap<PathBuf, usize>,
     allowance: Allowance,
-    /// Bytes of texels of all images, those too that could not be used.
+    /// Bytes of texels of all images, including those that could not be used.
     spent: u64,
 }
 
@@ -55,7 +55,7 @@ impl ImageStore {
         Self { allowance: allowance.clone(), ..Self::default() }
     }
 
-    /// Index of the image in a file, read when it is new.
+    /// Index of the image in a file; reads the file on first use.
     pub fn load(&mut self, path: &Path, space: Option<ColorSpace>) -> Result<usize, ImageFault> {
         let canonical = path.canonicalize().unwrap_or_else(|_| path.to_owned());
         if let Some(&index) = self.known.get(&(canonical.clone(), space)) {
@@ -79,16 +79,16 @@ impl ImageStore {
         Ok(index)
     }
 
-    /// Moves texels that rounding has carried above 1 to 1.
+    /// Clamps texels that exceed 1 by a rounding error.
     ///
     /// # Errors
-    /// A texel that is larger.
+    /// A texel that exceeds 1 by more.
     pub fn bound_by_one(&mut self, path: &Path, index: usize) -> Result<(), ImageFault> {
         let moved = self.moved.entry(index).or_default();
         bound(&mut self.images[index], 1.0, moved).map_err(|bad| fault(path, bad))
     }
 
-    /// What to say of an image that is not used as it is; once.
+    /// Warnings about an image that is not used as it is; returns each once.
     pub fn take_notes(&mut self, index: usize) -> Vec<Note> {
         let moved = self.moved.remove(&index).and_then(|moved| moved.said());
         let moved = moved.map(|message| (message, "read as the limit"));
@@ -99,7 +99,7 @@ impl ImageStore {
             .collect()
     }
 
-    /// An image of one gray texel in place of a file that does not exist.
+    /// An image of one gray texel that replaces a file that does not exist.
     pub fn stand_in(&mut self, path: &Path) -> usize {
         let images = &mut self.images;
         *self.stand_ins.entry(path.to_owned()).or_insert_with(|| {
@@ -114,13 +114,13 @@ impl ImageStore {
         })
     }
 
-    /// Whether an image has an alpha channel that is not 1 everywhere.
+    /// Returns whether an image has alpha below 1 anywhere.
     pub fn is_transparent(&self, index: usize) -> bool {
         self.transparent.contains(&index)
     }
 }
 
-/// Bytes that a decoder may take beside the pixels.
+/// Bytes that a decoder may allocate in addition to the pixels.
 const DECODER_BYTES: u64 = 64 << 20;
 
 const EXPECTED: &str = "expected a png, jpg, hdr or exr file";
@@ -139,15 +139,16 @@ fn refused(path: &Path, refusal: Refusal) -> ImageFault {
     ImageFault { help: refusal.help(), missing: refusal.is_missing(), ..fault(path, refusal) }
 }
 
-/// How far rounding may carry a texel beyond its range: one step of 16-bit floats above 1.
+/// Largest excess of a texel over its range that counts as rounding: one step of 16-bit floats
+/// above 1.
 const ROUNDING: f32 = 1.0 / 1024.0;
 
-/// Texels of an image that were moved into their range.
+/// Texels of an image that were clamped into their range.
 #[derive(Clone, Debug, Default)]
 struct Moved {
     count: usize,
     worst: f32,
-    /// The value that was worst, and its place.
+    /// The worst value and its position.
     what: String,
 }
 
@@ -160,10 +161,10 @@ impl Moved {
     }
 }
 
-/// Moves texels that rounding has carried below 0 or above `most` into that range.
+/// Clamps texels that are below 0 or above `most` by a rounding error.
 ///
 /// # Errors
-/// A texel that is further out, or not finite.
+/// A texel that is further out of range, or not finite.
 fn bound(image: &mut ImageData, most: f32, moved: &mut Moved) -> Result<(), String> {
     let Texels::Float(texels) = &mut image.texels else { return Ok(()) };
     for (index, texel) in texels.iter_mut().enumerate() {
@@ -208,7 +209,7 @@ impl ImageStore {
         if space == Some(ColorSpace::Srgb) && format.is_linear() {
             return Err(ImageFault {
                 key: "color_space",
-                message: format!("{} holds linear numbers", path.display()),
+                message: format!("{} contains linear values", path.display()),
                 expected: "expected \"linear\", or nothing",
                 help: None,
                 missing: false,
@@ -239,7 +240,7 @@ impl ImageStore {
         Ok(BufReader::new(file))
     }
 
-    /// Takes what an image needs from what is left, before its pixels are read.
+    /// Charges an image to the limits before its pixels are decoded.
     fn spend(&mut self, path: &Path, pixels: u64, bytes_each: u64) -> Result<(), ImageFault> {
         let Allowance { texture_pixels, texture_bytes, .. } = self.allowance;
         let bytes = pixels.saturating_mul(bytes_each);
@@ -261,7 +262,7 @@ impl ImageStore {
     ) -> Result<Loaded, ImageFault> {
         let mut reader = ImageReader::with_format(file, format);
         let mut limits = Limits::no_limits();
-        // For what decoders need beside the pixels, which are counted here.
+        // Memory of the decoder in addition to the pixels, which `spend` counts.
         limits.max_alloc = Some(self.allowance.texture_bytes.saturating_add(DECODER_BYTES));
         reader.limits(limits);
         let decoder = reader.into_decoder().map_err(|error| fault(path, error))?;

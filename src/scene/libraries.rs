@@ -1,4 +1,4 @@
-//! The MTL files of an OBJ file, and the materials that its names stand for.
+//! MTL files of an OBJ file, and the lookup of its material names.
 
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
@@ -13,28 +13,28 @@ use super::obj::Scan;
 use super::report::did_you_mean;
 use super::text::nearest_file;
 
-/// A material of a file: the file's index, and the material's in it.
+/// Identifies a material by the index of its file and its index in that file.
 type Id = (usize, usize);
 
-/// What makes a material of a mesh one of its own: the mesh's file as the scene names it, the
-/// material's file and its index in it, and whether it emits.
+/// Key of a material from an MTL file: the mesh's file as the scene names it, the MTL file, the
+/// index in it, and whether its emission counts.
 pub(crate) type OwnKey = (String, PathBuf, usize, bool);
 
-/// The material files of an OBJ file, in their order.
+/// MTL files of an OBJ file, in order.
 #[derive(Debug, Default)]
 pub(super) struct Libraries {
     files: Vec<Library>,
-    /// Materials by the bytes of their names; the first of a name counts.
+    /// Materials by the bytes of their names; the first of each name counts.
     by_bytes: HashMap<Vec<u8>, Id>,
-    /// The same by characters, where the files differ in encoding.
+    /// Materials by the characters of their names, for files that differ in encoding.
     by_text: HashMap<String, Id>,
-    /// The same without a comment behind the name; none where that leaves several.
+    /// Materials by their names without a trailing comment; `None` if that is ambiguous.
     before_comment: HashMap<Vec<u8>, Option<Id>>,
-    /// Whether a file could not be read, so that a name may be in it.
+    /// True if a file could not be read, so that it may define an unknown name.
     incomplete: bool,
 }
 
-/// A material as an OBJ file calls it.
+/// A material that an OBJ file refers to.
 #[derive(Clone, Debug)]
 pub(crate) struct Own {
     /// Index into the scene's materials.
@@ -42,13 +42,13 @@ pub(crate) struct Own {
     pub emission: Rgb,
 }
 
-/// Most files.
+/// Most MTL files of one OBJ file.
 const MOST_FILES: usize = 1000;
 /// Most words that are tried as one file name with blanks.
 const LONGEST_NAME: usize = 16;
 
 impl Libraries {
-    /// Reads the files that an OBJ file at `path` names.
+    /// Reads the MTL files that the OBJ file at `path` names.
     pub fn read(loader: &mut Loader, path: &Path, text: &Text, scan: &mut Scan) -> Self {
         let mut libraries = Self::default();
         let folder = path.parent().unwrap_or(Path::new(""));
@@ -117,7 +117,7 @@ impl Libraries {
         self.files.push(library);
     }
 
-    /// The material of a name in an OBJ file, and what of the name it is called by.
+    /// The material with this name, and the part of the name that matched.
     fn find<'n>(&self, text: &Text, name: &'n str) -> Option<(Id, &'n str)> {
         let in_bytes = |name: &'n str| self.by_bytes.get(&text.bytes(name)).map(|&id| (id, name));
         let in_text = |name: &'n str| self.by_text.get(name).map(|&id| (id, name));
@@ -130,8 +130,8 @@ impl Libraries {
             .or_else(|| readings(name).find_map(commented))
     }
 
-    /// The materials that faces of an OBJ file use, in the order of [`Scan::uses`]. Reports those
-    /// that no file defines.
+    /// Materials of the faces of an OBJ file, in the order of [`Scan::uses`]; `None` for a name
+    /// that is unused or undefined. Reports undefined names.
     pub fn materials(
         &mut self,
         loader: &mut Loader,
@@ -177,7 +177,7 @@ impl Libraries {
         made
     }
 
-    /// Reports what was found in the files.
+    /// Reports the findings in the MTL files.
     pub fn report(&mut self, loader: &mut Loader, named_at: &Range<usize>) {
         for library in &mut self.files {
             let (faults, warnings) = library.take_findings();
@@ -203,7 +203,7 @@ impl Libraries {
             materials.push(Material { name: format!("{file}:{shown}"), kind });
             return Some(Own { material: materials.len() - 1, emission: [0.0; 3] });
         }
-        // A file that could not be read has been reported, and may define it.
+        // An unreadable file has been reported already, and may define the name.
         if !self.incomplete {
             let other = format!("expected a material of the file's MTL, {}", Missing::ADVICE);
             let all =
@@ -216,7 +216,7 @@ impl Libraries {
     }
 }
 
-/// Reports a file that cannot be read.
+/// Reports an MTL file that cannot be read.
 fn unread(loader: &Loader, scan: &mut Scan, file: &Path, at: Range<usize>, error: &Refusal) {
     let message = format!("cannot read {}: {error}", file.display());
     if !error.is_missing() {
@@ -232,8 +232,8 @@ fn unread(loader: &Loader, scan: &mut Scan, file: &Path, at: Range<usize>, error
     scan.faults.push(at, message, format!("{mend}, {}", Missing::ADVICE));
 }
 
-/// The files that the names behind one `mtllib` stand for. A name may hold blanks, several names
-/// are separated by blanks, and a comment may follow: what is there decides.
+/// The files that the argument of one `mtllib` names. Names may contain blanks, blanks separate
+/// names, and a comment may follow; the files that exist decide.
 fn files_of(
     (name, at): Word,
     text: &Text,

@@ -1,17 +1,17 @@
-//! What a scene may read, and how much of everything: for those who render scenes of strangers.
+//! File access and resource limits, for untrusted scenes.
 
 use std::fmt;
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
-/// What becomes of a scene that names an MTL or texture file that does not exist.
+/// Treatment of MTL and texture files that do not exist.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Missing {
-    /// Refuse the scene.
+    /// Reject the scene.
     #[default]
     Error,
-    /// Warn, and render what the file would have colored in mid-gray ([`Missing::STAND_IN`]).
+    /// Warn, and render the affected surfaces in mid-gray ([`Missing::STAND_IN`]).
     Warn,
 }
 
@@ -19,49 +19,49 @@ impl Missing {
     /// Reflectance of surfaces whose material or texture is missing.
     pub const STAND_IN: f64 = 0.5;
 
-    /// How to go on without a file, for errors about it.
+    /// Advice on missing files, for error messages.
     pub(super) const ADVICE: &str = "or render it in gray: --missing warn";
 }
 
-/// Where the files of a scene may lie, and limits that are checked before memory is taken.
-/// docs/hostile-input.md tells what they promise.
+/// Folder and resource limits of a scene's files, checked before memory is allocated. See
+/// docs/hostile-input.md.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Allowance {
-    /// The folder that holds every file that may be read, the scene's own among them, links
-    /// resolved; `None` is everywhere.
+    /// Folder that must contain every file that is read, including the scene file, after links are
+    /// resolved; `None` allows all files.
     pub root: Option<PathBuf>,
-    /// What becomes of MTL and texture files that do not exist.
+    /// Treatment of MTL and texture files that do not exist.
     pub missing: Missing,
-    /// Bytes of a scene or profile file.
+    /// Most bytes of a scene or profile file.
     pub scene_bytes: u64,
-    /// `[[shapes]]` of a scene.
+    /// Most `[[shapes]]` of a scene.
     pub shapes: u64,
-    /// Bytes of all OBJ and MTL files; a file that several shapes name counts for each.
+    /// Most bytes of all OBJ and MTL files; a file that several shapes name counts for each.
     pub mesh_bytes: u64,
-    /// Triangles of one OBJ file.
+    /// Most triangles of one OBJ file.
     pub mesh_triangles: u64,
-    /// Triangles of all meshes.
+    /// Most triangles of all meshes.
     pub triangles: u64,
-    /// Pixels of one texture or environment picture.
+    /// Most pixels of one texture or environment image.
     pub texture_pixels: u64,
-    /// Bytes of the texels of all textures and environment pictures, and of each file that holds
+    /// Most bytes of texels of all textures and environment images, and of each file that contains
     /// one.
     pub texture_bytes: u64,
-    /// Pixels of the picture that the scene asks for.
+    /// Most pixels of the image size that the scene requests.
     pub picture_pixels: u64,
-    /// Errors, and warnings, that are listed; those beyond are counted.
+    /// Most errors, and most warnings, that are listed; the others are counted.
     pub errors: u64,
 }
 
-/// Bytes that every process has for small scenes.
+/// Least memory that [`Allowance::within_memory`] assumes, in bytes, so that small scenes load.
 const LEAST: u64 = 16 << 20;
-/// Bytes of memory for a byte of a scene file, at most (docs/hostile-input.md).
+/// Most memory per byte of a scene file, in bytes (docs/hostile-input.md).
 const SCENE_BYTE: u64 = 140;
-/// The same for a triangle of a mesh, with its kd-tree.
+/// Most memory per triangle of a mesh, with its kd-tree, in bytes.
 const TRIANGLE: u64 = 600;
-/// For a texel of 8 bits a channel while it is decoded.
+/// Most memory per texel of 8 bits per channel during decoding, in bytes.
 const TEXEL: u64 = 8;
-/// For a byte of texels.
+/// Most memory per byte of texels, in bytes.
 const TEXEL_BYTE: u64 = 3;
 
 impl Default for Allowance {
@@ -83,7 +83,7 @@ impl Default for Allowance {
 }
 
 impl Allowance {
-    /// Names of the limits.
+    /// Names of the limits on the command line.
     pub const LIMITS: [&'static str; 9] = [
         "scene-bytes",
         "shapes",
@@ -96,9 +96,9 @@ impl Allowance {
         "errors",
     ];
 
-    /// The same for a process that has `left` bytes of memory: no more of anything than that holds.
-    /// Of other scenes a process without limits is not kept either; one with limits is ended by
-    /// them without a word.
+    /// Lowers the limits to fit into `left` bytes of memory. Larger scenes would fail anyway:
+    /// without an OS limit they exhaust the memory, and with one the system ends the process
+    /// without a message.
     pub fn within_memory(self, left: u64) -> Self {
         let left = left.max(LEAST);
         Self {
@@ -112,7 +112,7 @@ impl Allowance {
         }
     }
 
-    /// The limit of a name; `None` where it is none of [`Self::LIMITS`].
+    /// The limit with this name; `None` if it is not in [`Self::LIMITS`].
     pub fn limit(&mut self, name: &str) -> Option<&mut u64> {
         Some(match name {
             "scene-bytes" => &mut self.scene_bytes,
@@ -128,8 +128,8 @@ impl Allowance {
         })
     }
 
-    /// Opens a file that a scene names, of at most so many bytes; `most` tells the limit's name and
-    /// what is left of it.
+    /// Opens a file that a scene names. `most` is the name of the limit and the number of bytes
+    /// that it leaves.
     pub(super) fn open(&self, path: &Path, most: (&'static str, u64)) -> Result<File, Refusal> {
         let place = self.place(path)?;
         // Opening a pipe would wait for its writer.
@@ -141,17 +141,18 @@ impl Allowance {
         File::open(&place).map_err(Refusal::Io)
     }
 
-    /// As [`Self::open`], and its bytes.
+    /// Like [`Self::open`], but returns the bytes.
     pub(super) fn read(&self, path: &Path, most: (&'static str, u64)) -> Result<Vec<u8>, Refusal> {
         bytes(self.open(path, most)?, most)
     }
 
-    /// Whether a path leads to a file that may be read.
+    /// Returns whether `path` leads to an existing file that may be read.
     pub(super) fn has(&self, path: &Path) -> bool {
         self.place(path).is_ok_and(|place| place.is_file())
     }
 
-    /// The file of a name in a folder. Names written on Windows separate folders by backslashes.
+    /// Path of a file in a folder. Tries slashes for backslashes, which separate folders on
+    /// Windows.
     pub(super) fn find(&self, folder: &Path, name: &str) -> PathBuf {
         let path = folder.join(name);
         if !name.contains('\\') || self.has(&path) {
@@ -161,7 +162,7 @@ impl Allowance {
         if self.has(&slashed) { slashed } else { path }
     }
 
-    /// The bytes of a scene or profile file. Where nothing is confined it may be a pipe.
+    /// Reads a scene or profile file. Without a root it may be a pipe.
     pub(super) fn read_scene(&self, path: &Path) -> Result<Vec<u8>, Refusal> {
         let most = ("scene-bytes", self.scene_bytes);
         if self.root.is_some() {
@@ -173,8 +174,8 @@ impl Allowance {
         bytes(file, most)
     }
 
-    /// The place of a file, links resolved where a root confines it. What is outside is refused
-    /// whether it is there or not.
+    /// Path of a file; with a root, links are resolved. Rejects a path outside the root whether or
+    /// not the file exists.
     fn place(&self, path: &Path) -> Result<PathBuf, Refusal> {
         let Some(root) = &self.root else { return Ok(path.to_owned()) };
         let inside = root
@@ -186,7 +187,7 @@ impl Allowance {
     }
 }
 
-/// An absolute path without links; of a file that is not there, its nearest folder that is, and the
+/// Absolute path without links; for a file that does not exist, the nearest existing folder and the
 /// rest.
 fn resolved(path: &Path) -> Option<PathBuf> {
     let mut known = std::path::absolute(path).ok()?;
@@ -207,7 +208,7 @@ fn bytes(file: File, (limit, most): (&'static str, u64)) -> Result<Vec<u8>, Refu
     Ok(bytes)
 }
 
-/// Whether so many of something are within what is left of a limit.
+/// Checks a quantity against the amount that a limit leaves.
 pub(super) fn within(
     limit: &'static str,
     what: &'static str,
@@ -217,25 +218,25 @@ pub(super) fn within(
     if found <= most { Ok(()) } else { Err(Refusal::TooMuch { limit, what, found, most }) }
 }
 
-/// Why a file is not read.
+/// Reason why a file is not read.
 #[derive(Debug)]
 pub(super) enum Refusal {
-    /// It lies outside of the root.
+    /// The file lies outside the root.
     Outside { root: PathBuf },
-    /// It is a folder, a pipe or a device.
+    /// The path is a folder, a pipe or a device.
     NoFile,
-    /// More than a limit leaves.
+    /// A quantity exceeds the amount that a limit leaves.
     TooMuch { limit: &'static str, what: &'static str, found: u64, most: u64 },
-    /// The system's word.
+    /// Error from the operating system.
     Io(io::Error),
 }
 
 impl Refusal {
-    /// How to mend it.
+    /// Remedy, if there is one.
     pub fn help(&self) -> Option<String> {
         match self {
             Self::Outside { .. } => {
-                Some("put it into that folder, or allow another one (--root)".to_owned())
+                Some("move it into that folder, or allow another one: --root DIR".to_owned())
             }
             Self::TooMuch { limit, .. } => {
                 Some(format!("make it smaller, or raise the limit: --limit {limit}=N"))
@@ -244,7 +245,7 @@ impl Refusal {
         }
     }
 
-    /// Whether there is no such file.
+    /// Returns whether the file does not exist.
     pub fn is_missing(&self) -> bool {
         matches!(self, Self::Io(error) if error.kind() == io::ErrorKind::NotFound)
     }
@@ -254,11 +255,11 @@ impl fmt::Display for Refusal {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Outside { root } => {
-                write!(f, "it lies outside of {}, which holds all that may be read", root.display())
+                write!(f, "it lies outside of {}, the only folder that may be read", root.display())
             }
             Self::NoFile => f.write_str("it is not a regular file"),
             Self::TooMuch { limit, what, found, most } => {
-                write!(f, "{found} {what}, and the limit `{limit}` leaves {most}")
+                write!(f, "{found} {what}, but the limit `{limit}` leaves {most}")
             }
             Self::Io(error) => error.fmt(f),
         }

@@ -1,4 +1,4 @@
-//! Statements of OBJ and MTL files: encoding, line ends, lines that go on, comments, words and
+//! Statements of OBJ and MTL files: encoding, line ends, continued lines, comments, words and
 //! names.
 
 use std::borrow::Cow;
@@ -9,22 +9,22 @@ use super::encoding::{Foreign, unmarked};
 use super::limits::Allowance;
 use super::report::SourceFile;
 
-/// A word of a file with the bytes that hold it.
+/// A word and its byte range in the file.
 pub(super) type Word<'t> = (&'t str, Range<usize>);
 
 /// The text of an OBJ or MTL file.
 #[derive(Debug)]
 pub(super) struct Text {
     pub source: SourceFile,
-    /// The text with continued lines joined, where it has any.
+    /// The text with continued lines joined, if it has any.
     joined: Option<String>,
-    /// Whether each character stands for one byte of the file, which is not UTF-8.
+    /// True if each character stands for one byte, because the file is not UTF-8.
     single_byte: bool,
 }
 
 impl Text {
-    /// Decodes a file: UTF-8, or else one character for each byte (Latin-1), which keeps different
-    /// names different.
+    /// Decodes a file as UTF-8 or, failing that, as one character per byte (Latin-1), which keeps
+    /// different names distinct.
     ///
     /// # Errors
     /// UTF-16 and UTF-32.
@@ -42,12 +42,12 @@ impl Text {
         Ok(Self { source, joined, single_byte })
     }
 
-    /// The text with continued lines joined; every byte keeps its place.
+    /// The text with continued lines joined; byte offsets are unchanged.
     pub fn lines(&self) -> &str {
         self.joined.as_deref().unwrap_or(self.source.text())
     }
 
-    /// The bytes of a name as the file holds them.
+    /// Bytes of a name in the file.
     pub fn bytes(&self, name: &str) -> Vec<u8> {
         if self.single_byte {
             name.chars().map(|c| c as u8).collect()
@@ -56,12 +56,12 @@ impl Text {
         }
     }
 
-    /// A name for people: a file with a single byte that is not UTF-8 may hold names that are.
+    /// A name for display: a file that is not UTF-8 as a whole may contain names that are.
     pub fn shown(&self, name: &str) -> String {
         String::from_utf8(self.bytes(name)).unwrap_or_else(|_| name.to_owned())
     }
 
-    /// The file of a name in a folder: as its bytes say, as its characters say, and with slashes
+    /// Path of a file in a folder. Tries the bytes of the name, then its characters, then slashes
     /// for backslashes.
     pub fn find(&self, allowance: &Allowance, folder: &Path, name: &str) -> PathBuf {
         let as_bytes = self.single_byte.then(|| path_of(self.bytes(name))).flatten();
@@ -81,7 +81,7 @@ fn path_of(bytes: Vec<u8>) -> Option<PathBuf> {
     String::from_utf8(bytes).ok().map(PathBuf::from)
 }
 
-/// Text with a line feed for each carriage return that none follows; every byte keeps its place.
+/// Replaces carriage returns that no line feed follows by line feeds; byte offsets are unchanged.
 fn with_line_feeds(text: String) -> String {
     if !text.contains('\r') {
         return text;
@@ -102,15 +102,15 @@ fn with_line_feeds(text: String) -> String {
     made + rest
 }
 
-/// Keywords of statements that consist of numbers, where a backslash can be no part of a name.
+/// Keywords of numeric statements, in which a backslash cannot belong to a name.
 const NUMERIC: [&str; 30] = [
     "v", "vt", "vn", "vp", "f", "l", "p", "curv", "curv2", "surf", "parm", "trim", "hole", "scrv",
     "sp", "bmat", "deg", "step", "con", "s", "Ka", "Kd", "Ks", "Ke", "Ni", "Ns", "d", "Tr", "Tf",
     "illum",
 ];
 
-/// Joins lines that end in a backslash, by blanks in the place of it and of the line's end.
-/// Comments do not go on, and a backslash at the end of a name belongs to the name.
+/// Joins lines that end in a backslash, with blanks in place of the backslash and the line end.
+/// Comments do not continue, and a backslash at the end of a name belongs to the name.
 fn joined(text: &str) -> Cow<'_, str> {
     if !text.contains("\\\n") && !text.contains("\\\r") {
         return Cow::Borrowed(text);
@@ -137,20 +137,21 @@ fn joined(text: &str) -> Cow<'_, str> {
     Cow::Owned(made)
 }
 
-/// Whether a line that is this before its last backslash goes on in the next.
+/// Returns whether a line continues on the next; `before` is the part before its last backslash,
+/// and `numbers` says that its statement is numeric.
 fn goes_on(before: &str, numbers: bool) -> bool {
     let comment = |(at, _)| numbers || before[..at].ends_with(blank) || at == 0;
     (numbers || before.is_empty() || before.ends_with(blank))
         && !before.match_indices('#').any(comment)
 }
 
-/// What separates words. Not all that Unicode holds blank: its characters may be parts of names
-/// that are not UTF-8.
+/// Returns whether a character separates words. Other Unicode blanks do not, because they may be
+/// parts of names that are not UTF-8.
 fn blank(c: char) -> bool {
     matches!(c, ' ' | '\t' | '\r' | '\x0b' | '\x0c')
 }
 
-/// A keyword and what stands behind it.
+/// A keyword and its arguments.
 #[derive(Clone, Debug)]
 pub(super) struct Statement<'t> {
     pub keyword: &'t str,
@@ -158,7 +159,7 @@ pub(super) struct Statement<'t> {
     rest: &'t str,
 }
 
-/// The statements of a part of a text, which begins with a line.
+/// Statements in a part of a text that begins at the start of a line.
 pub(super) fn statements(text: &str, part: Range<usize>) -> impl Iterator<Item = Statement<'_>> {
     let mut start = part.start;
     text[part].split_inclusive('\n').filter_map(move |line| {
@@ -175,14 +176,14 @@ pub(super) fn statements(text: &str, part: Range<usize>) -> impl Iterator<Item =
 }
 
 impl<'t> Statement<'t> {
-    /// Everything behind the keyword: names may hold blanks and `#`.
+    /// The arguments as one name, which may contain blanks and `#`.
     pub fn name(&self) -> Word<'t> {
         let indent = self.rest.len() - self.rest.trim_start_matches(blank).len();
         let name = self.rest.trim_matches(blank);
         (name, self.at.end + indent..self.at.end + indent + name.len())
     }
 
-    /// The words behind the keyword up to a comment, where they are numbers.
+    /// The arguments up to a comment, for numeric statements.
     pub fn words(&self) -> impl Iterator<Item = Word<'t>> + use<'t> {
         let (mut rest, mut at) = (self.rest, self.at.end);
         std::iter::from_fn(move || {
@@ -201,7 +202,7 @@ impl<'t> Statement<'t> {
     }
 }
 
-/// A word up to the comment that begins in it. The `#` of `1.#IND` begins none.
+/// The part of a word before a comment. The `#` of `1.#IND` does not start a comment.
 fn without_comment(word: &str) -> &str {
     let not_a_number =
         |rest: &str| ["INF", "IND", "QNAN", "SNAN"].iter().any(|name| rest[1..].starts_with(name));
@@ -211,13 +212,16 @@ fn without_comment(word: &str) -> &str {
     }
 }
 
-/// A number, or what is wrong with it.
+/// Parses a finite number.
+///
+/// # Errors
+/// A message that explains why the word is not a finite number.
 pub(super) fn finite(word: &str) -> Result<f64, String> {
     if let Some(number) = word.parse().ok().filter(|number: &f64| number.is_finite()) {
         return Ok(number);
     }
     let why = if word.contains(".#") {
-        ", but how a program writes what it could not compute"
+        ", but the result of an undefined computation"
     } else if word.contains(',') {
         "; decimals take a point, not a comma"
     } else {
@@ -226,10 +230,10 @@ pub(super) fn finite(word: &str) -> Result<f64, String> {
     Err(format!("`{word}` is not a finite number{why}"))
 }
 
-/// Most readings of a name with a comment that are tried.
+/// Most readings of a name with comments that are tried.
 const MOST_READINGS: usize = 16;
 
-/// What a name may mean: all of it, or what stands before a comment, the longest first.
+/// Possible meanings of a name: all of it, or the part before a comment, longest first.
 pub(super) fn readings(name: &str) -> impl Iterator<Item = &str> {
     let comments = name.match_indices('#').filter(|&(at, _)| name[..at].ends_with(blank));
     let cuts: Vec<_> =
@@ -237,7 +241,7 @@ pub(super) fn readings(name: &str) -> impl Iterator<Item = &str> {
     std::iter::once(name).chain(cuts.into_iter().rev())
 }
 
-/// What stands before a comment that begins with a `#` of its own, if there is one.
+/// The part of a name before a comment whose `#` stands alone, if there is one.
 pub(super) fn before_comment(name: &str) -> Option<&str> {
     let mut hashes = name.match_indices('#').filter(|&(at, _)| name[..at].ends_with(blank));
     let (at, _) =
@@ -272,8 +276,8 @@ mod tests {
         statements.iter().map(|(keyword, rest)| ((*keyword).to_owned(), owned(rest))).collect()
     }
 
-    /// Theory: a backslash at the end of a line continues statements, not comments and not names.
-    /// Whatever the line ends, blanks and comments, the statements are the same.
+    /// Theory: a backslash at the end of a line continues statements, but not comments or names.
+    /// Line ends, blanks and comments do not change the statements.
     #[test]
     fn lines_go_on() {
         let plain = list(&[("v", &["0", "1", "2"]), ("f", &["1", "2", "3"])]);
@@ -295,8 +299,8 @@ mod tests {
         assert_eq!(words("v -1.#IND 1.#QNAN 1.#x"), list(&[("v", &["-1.#IND", "1.#QNAN", "1."])]));
     }
 
-    /// Theory: different bytes are different names, whatever they mean. 0x85 and 0xA0 are blanks in
-    /// Unicode.
+    /// Theory: names with different bytes are different, in any encoding. 0x85 and 0xA0 are blanks
+    /// in Unicode.
     #[test]
     fn bytes_are_kept() {
         let names: [&[u8]; 6] = [b"\xe9", b"\xe8", b"\xc3\xa9", b"a\x85", b"a\xa0", b"a"];

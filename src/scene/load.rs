@@ -1,5 +1,5 @@
-//! From a scene file to a [`Scene`]: parse, hold against the schema, resolve names, then check what
-//! the parts mean.
+//! Loads a scene file as a [`Scene`]: parses it, validates it against the schema, resolves names,
+//! and checks the meaning of the parts.
 
 use std::collections::{BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
@@ -18,41 +18,41 @@ use super::{Scene, camera, material, mesh, schema, surfaces, text};
 use crate::scene::settings::RenderSettings;
 use crate::telemetry::stage::stage;
 
-/// What a scene file holds.
+/// Contents of a scene file.
 #[derive(Clone, Debug)]
 pub struct Loaded {
-    /// The scene.
+    /// The validated scene.
     pub scene: Scene,
-    /// The file's `[render]`, defaults filled in.
+    /// The file's `[render]` section, with defaults filled in.
     pub settings: RenderSettings,
-    /// What is odd but no error.
+    /// Warnings about the scene.
     pub warnings: Vec<Finding>,
-    /// Where the parts stand in the file.
+    /// Positions of the parts in the file.
     pub places: Spans,
-    /// The files that were read beside the scene file.
+    /// Files that were read in addition to the scene file.
     pub files: Vec<PathBuf>,
 }
 
 static SCHEMA: LazyLock<Json> = LazyLock::new(schema::of::<SceneFile>);
 
-/// Reads a scene file with all the files it names.
+/// Reads a scene file and all files that it names.
 ///
 /// # Errors
-/// Everything that is wrong with them, at once.
+/// All errors in these files together.
 pub fn load(path: &Path) -> Result<Loaded, SceneErrors> {
     load_within(path, &Allowance::default())
 }
 
-/// As [`load`], where not everything is allowed.
+/// Like [`load`], within an allowance.
 ///
 /// # Errors
-/// As [`load`], and where something is not allowed.
+/// As [`load`], and everything that the allowance forbids.
 pub fn load_within(path: &Path, allowance: &Allowance) -> Result<Loaded, SceneErrors> {
     parse_within(path, &text::read(path, allowance)?, allowance)
 }
 
-/// Reads a scene from a file's bytes; `path` names it in messages, and the files it names are
-/// relative to it.
+/// Reads a scene from a file's bytes. `path` names the scene in messages, and file names in the
+/// scene are relative to it.
 ///
 /// # Errors
 /// As [`load`].
@@ -60,7 +60,7 @@ pub fn parse(path: &Path, bytes: &[u8]) -> Result<Loaded, SceneErrors> {
     parse_within(path, bytes, &Allowance::default())
 }
 
-/// As [`parse`], where not everything is allowed. The bytes themselves may be as many as they are.
+/// Like [`parse`], within an allowance. `bytes` may have any length.
 ///
 /// # Errors
 /// As [`load_within`].
@@ -76,7 +76,7 @@ pub fn parse_within(
             if let Err(refusal) = within("shapes", "shapes", count, allowance.shapes) {
                 report.error(
                     root.span_of("shapes"),
-                    format!("too much: {refusal}"),
+                    format!("the scene is too large: {refusal}"),
                     "here",
                     refusal.help(),
                 );
@@ -88,15 +88,15 @@ pub fn parse_within(
     Ok(Loaded { scene, settings, warnings, places, files })
 }
 
-/// What the parts of a scene share while they are read.
+/// State that the parts of a scene share during loading.
 pub(crate) struct Loader<'l, 'a> {
     pub document: &'l Document<'a>,
     pub report: &'l mut Report,
     pub images: ImageStore,
     pub allowance: &'l Allowance,
-    /// What meshes have used up of it.
+    /// Amounts of the allowance that meshes have used.
     pub spent: mesh::Spent,
-    /// Materials that meshes have brought along.
+    /// Materials from MTL files so far.
     pub own_materials: HashMap<OwnKey, Own>,
     path: &'l Path,
 }
@@ -119,7 +119,7 @@ impl<'l, 'a> Loader<'l, 'a> {
             && let Some(version) = item.read::<u32>(self.report)
             && version != 1
         {
-            let message = format!("version {version} of the scene format is not known");
+            let message = format!("scene format version {version} is not supported");
             self.report.error(item.node.span(), message, "expected 1", None);
         }
         self.undefined("materials", "shapes", "material");
@@ -181,7 +181,7 @@ impl<'l, 'a> Loader<'l, 'a> {
             self.unused("materials", "shapes", "material");
             self.unused("textures", "materials", "reflectance");
             if !scene.is_lit() {
-                let message = "the scene has no light; the picture will be black";
+                let message = "the scene has no light; the image will be black";
                 let label = "expected an emission above 0, [[lights]] or [environment]";
                 self.report.warn(0..0, message, label);
             }
@@ -194,12 +194,12 @@ impl<'l, 'a> Loader<'l, 'a> {
         self.document.index(section, name).unwrap_or(0)
     }
 
-    /// A path that the scene file names, relative to it.
+    /// Resolves a path relative to the scene file.
     pub fn resolve(&self, file: &str) -> PathBuf {
         self.allowance.find(self.path.parent().unwrap_or(Path::new("")), file)
     }
 
-    /// Reports names of a section that another section calls under `key` and that are not defined.
+    /// Reports names that parts of `user` reference under `key` and that `section` does not define.
     fn undefined(&mut self, section: &str, user: &str, key: &str) {
         let singular = section.trim_end_matches('s');
         let known: Vec<_> = self.document.items(section).map(|item| item.name).collect();
@@ -225,7 +225,7 @@ impl<'l, 'a> Loader<'l, 'a> {
         }
     }
 
-    /// Warns of parts of a section that no other section calls under `key`.
+    /// Warns about parts of `section` that no part of `user` references under `key`.
     fn unused(&mut self, section: &str, user: &str, key: &str) {
         let users = self.document.items(user).filter_map(|item| item.node.get(key)?.str());
         let used: BTreeSet<_> = users.collect();
@@ -237,7 +237,7 @@ impl<'l, 'a> Loader<'l, 'a> {
 }
 
 impl Scene {
-    /// Whether anything in the scene gives light.
+    /// Returns whether the scene contains any light source.
     pub fn is_lit(&self) -> bool {
         !self.lights.is_empty()
             || self.environment.is_some()

@@ -1,4 +1,4 @@
-//! Meaning of textures and materials.
+//! Conversion and checks of textures and materials.
 
 use std::path::Path;
 
@@ -55,7 +55,7 @@ pub(super) fn material(loader: &Loader, item: &Item, file: MaterialFile) -> Mate
 }
 
 impl Loader<'_, '_> {
-    /// The image under `item.file`.
+    /// Loads the image under `item.file`.
     pub fn image(
         &mut self,
         item: &Item,
@@ -75,8 +75,8 @@ impl Loader<'_, '_> {
         }
     }
 
-    /// As [`Self::image`], for shares of light: no texel above 1. A file that does not exist may be
-    /// gray.
+    /// Like [`Self::image`], for reflectances: no texel may exceed 1. A gray image may replace a
+    /// file that does not exist.
     fn reflectance_image(
         &mut self,
         item: &Item,
@@ -105,7 +105,7 @@ impl Loader<'_, '_> {
         }
     }
 
-    /// Warns of an image that is not used as it is.
+    /// Warns about image data that is clamped or ignored.
     fn odd(&mut self, item: &Item, file: &str, image: usize) {
         let at = item.node.span_of("file");
         if self.images.is_transparent(image) {

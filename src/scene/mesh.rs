@@ -1,4 +1,4 @@
-//! Meshes from Wavefront OBJ files, read by tobj.
+//! Meshes from Wavefront OBJ files, parsed by tobj.
 
 use std::collections::HashMap;
 use std::io::Cursor;
@@ -16,17 +16,17 @@ use super::text::nearest_file;
 use super::triangles::{Builder, Polygon, Steps, vertex_normals};
 use super::validate::Item;
 
-/// A mesh as the scene file asks for it.
+/// A mesh with its options from the scene file.
 pub(super) struct Request<'r> {
     pub file: &'r str,
     pub smooth: bool,
     pub material: Option<usize>,
     pub transform: Transform,
-    /// Whether the materials' own emission counts.
+    /// True if the emission of its MTL materials counts.
     pub emits: bool,
 }
 
-/// What all meshes so far have used up of what is allowed.
+/// Amounts of the allowance that all meshes so far have used.
 #[derive(Debug, Default)]
 pub(crate) struct Spent {
     bytes: u64,
@@ -34,14 +34,14 @@ pub(crate) struct Spent {
     steps: Steps,
 }
 
-/// The triangles of one material.
+/// Triangles of one material.
 pub(super) struct Part {
     pub mesh: Mesh,
     pub material: usize,
     pub emission: Rgb,
 }
 
-/// Reads a mesh; one part for each material.
+/// Reads a mesh, as one part per material.
 pub(super) fn load(
     loader: &mut Loader,
     item: &Item,
@@ -76,7 +76,7 @@ pub(super) fn load(
     let allowed = within("mesh-triangles", "triangles", scan.triangles, each)
         .and_then(|()| within("triangles", "triangles", scan.triangles, all));
     if let Err(refusal) = allowed {
-        let message = format!("too much in {}: {refusal}", request.file);
+        let message = format!("{} is too large: {refusal}", request.file);
         loader.report.error(named_at, message, "expected a mesh with fewer", refusal.help());
         return None;
     }
@@ -102,7 +102,7 @@ pub(super) fn load(
     if loader.spent.steps.are_used_up() {
         let message =
             format!("the faces of {} are too intricate to cut into triangles", request.file);
-        let help = "triangulate the mesh where it comes from";
+        let help = "triangulate the mesh in the program that exports it";
         loader.report.error(
             named_at,
             message,
@@ -125,7 +125,7 @@ pub(super) fn load(
     Some(built.parts)
 }
 
-/// Most keywords that are warned of.
+/// Most keywords that are listed in warnings.
 const MOST_KEYWORDS: usize = 20;
 
 fn read(loader: &mut Loader, item: &Item, path: &Path) -> Option<Text> {
@@ -161,7 +161,7 @@ fn read(loader: &mut Loader, item: &Item, path: &Path) -> Option<Text> {
 }
 
 impl Loader<'_, '_> {
-    /// The bytes of an OBJ or MTL file.
+    /// Reads an OBJ or MTL file within the limits.
     pub fn mesh_bytes(&mut self, path: &Path) -> Result<Vec<u8>, Refusal> {
         let left = self.allowance.mesh_bytes - self.spent.bytes;
         let bytes = self.allowance.read(path, ("mesh-bytes", left))?;
@@ -174,11 +174,11 @@ struct Built {
     parts: Vec<Part>,
     degenerate: usize,
     unusable_normals: usize,
-    /// Faces that have become part of a mesh: all, or something is wrong here.
+    /// Number of faces that became part of a mesh; the caller checks that none is lost.
     faces: u64,
 }
 
-/// Triangles in the world, grouped by material.
+/// Builds world-space triangles, grouped by material.
 fn build(
     models: &[tobj::Model],
     request: &Request,

@@ -1,7 +1,7 @@
-//! Scene files in, validated scenes out.
+//! Scene files and validated scenes.
 //!
-//! A [`Scene`] is what a person wrote, in f64 and in the units of the file, with every name
-//! resolved to an index and every number checked. Nothing in it depends on a device.
+//! A [`Scene`] holds the contents of a scene file in f64 and in the units of the file, with every
+//! name resolved to an index and every number checked. It does not depend on a device.
 //!
 //! Conventions: right-handed, y up; linear Rec. 709 RGB; one scene unit is one metre; angles in
 //! degrees.
@@ -57,21 +57,21 @@ pub use spans::Spans;
 /// A validated scene: finite numbers, unit normals, no dangling index.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
-    /// The file's stem.
+    /// File name without extension.
     pub name: String,
-    /// Where the picture is taken from.
+    /// Viewpoint and lens.
     pub camera: Camera,
-    /// What it is taken on.
+    /// Image size, tone mapping and extra channels.
     pub film: Film,
-    /// Pixels of image files, each (file, color space) once.
+    /// Image files, each (file, color space) once.
     pub images: Vec<ImageData>,
     /// Textures; [`Reflectance::Texture`] indexes them.
     pub textures: Vec<Texture>,
     /// Materials; [`Shape::material`] indexes them.
     pub materials: Vec<Material>,
-    /// Surfaces, area lights among them.
+    /// Surfaces, including area lights.
     pub shapes: Vec<Shape>,
-    /// Lights without a surface.
+    /// Point, spot and sun lights.
     pub lights: Vec<Light>,
     /// Light from infinitely far away.
     pub environment: Option<Environment>,
@@ -99,22 +99,22 @@ impl Scene {
 pub struct Camera {
     /// Centre of the lens.
     pub position: DVec3,
-    /// A point on the view axis; differs from `position`.
+    /// A point on the view axis, different from `position`.
     pub target: DVec3,
-    /// Points to the top of the picture; not parallel to the view axis, not necessarily
-    /// perpendicular or unit.
+    /// Up direction of the image; not parallel to the view axis, not necessarily perpendicular or
+    /// unit.
     pub up: DVec3,
     /// Vertical field of view in degrees, in (0, 180).
     pub fov_degrees: f64,
-    /// Radius of the lens in scene units, >= 0.
+    /// Lens radius in scene units, >= 0.
     pub aperture: f64,
-    /// Distance of the plane in focus along the view axis, > 0; `|target - position|` when the file
-    /// gives none.
+    /// Distance of the plane of focus along the view axis in scene units, > 0; scene files default
+    /// to `|target - position|`.
     pub focus: f64,
 }
 
 impl Camera {
-    /// A pinhole camera at `position` that looks at `target`, +y on top, with a vertical field of
+    /// A pinhole camera at `position` that looks at `target`, with +y up and a vertical field of
     /// view in degrees.
     pub fn look_at(position: DVec3, target: DVec3, fov_degrees: f64) -> Self {
         let focus = position.distance(target);
@@ -135,58 +135,57 @@ impl Default for Film {
     }
 }
 
-/// Size and development of the picture.
+/// Image size, tone mapping and extra channels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Film {
-    /// Pixels per row, >= 1.
+    /// Image width in pixels, >= 1.
     pub width: u32,
-    /// Rows, >= 1.
+    /// Image height in pixels, >= 1.
     pub height: u32,
     /// Exposure of tone-mapped outputs in stops (powers of two).
     pub exposure: f64,
     /// Curve of tone-mapped outputs.
     pub tonemap: ToneMap,
-    /// What EXR files hold in addition to radiance.
+    /// Channels of EXR files in addition to radiance.
     pub aovs: Aovs,
-    /// The window that is rendered, columns x0 to x1 and rows y0 to y1 as `[x0, y0, x1, y1]`, x1
-    /// and y1 left out; inside of the picture and not empty. None is all of it.
+    /// Crop window `[x0, y0, x1, y1]`: columns x0 to x1 and rows y0 to y1, with x1 and y1
+    /// exclusive; inside the image and not empty. `None` renders the whole image.
     pub window: Option<[u32; 4]>,
 }
 
-/// How radiance becomes display values in 8-bit files.
+/// Conversion of radiance to display values in 8-bit files.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ToneMap {
-    /// AgX: a filmic curve that keeps hues of bright lights.
+    /// AgX: a filmic curve that preserves the hues of bright lights.
     #[default]
     Agx,
-    /// Clipped to [0, 1], then the sRGB curve.
+    /// Clipped to [0, 1], then sRGB-encoded.
     Srgb,
 }
 
 /// A light without a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Light {
-    /// Shines alike in all directions.
+    /// A point light with the same intensity in all directions.
     Point {
-        /// Where it is.
+        /// Position in world space.
         position: DVec3,
         /// Radiant intensity in W/sr.
         intensity: Rgb,
     },
-    /// Shines into a cone.
+    /// A spot light that shines into a cone.
     Spot {
         /// Apex of the cone.
         position: DVec3,
-        /// A point on the cone's axis; differs from `position`.
+        /// A point on the cone's axis, different from `position`.
         target: DVec3,
         /// Radiant intensity on the axis in W/sr.
         intensity: Rgb,
-        /// Angle in degrees between the axis and the directions from which on it is dark, in (0,
-        /// 180].
+        /// Angle in degrees between the axis and the edge of the cone, in (0, 180].
         angle_degrees: f64,
-        /// Share of `angle_degrees` over which the light fades, in [0, 1]: full up to `(1 - blend)
-        /// angle`, then a smoothstep in the angle's cosine down to zero at `angle`.
+        /// Fraction of `angle_degrees` over which the light fades, in [0, 1]: full up to
+        /// `(1 - blend) angle`, then a smoothstep in the angle's cosine down to zero at `angle`.
         blend: f64,
     },
     /// Parallel light from infinitely far away.
@@ -198,22 +197,22 @@ pub enum Light {
     },
 }
 
-/// Radiance that arrives from infinitely far away.
+/// Radiance from infinitely far away.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Environment {
-    /// The same from everywhere.
+    /// The same radiance from all directions.
     Constant {
-        /// In W sr^-1 m^-2.
+        /// Radiance in W sr^-1 m^-2.
         radiance: Rgb,
     },
-    /// An equirectangular picture: row 0 is the zenith (+y). A direction `d` reads it at `u = 0.5 -
-    /// atan2(d.z, d.x) / 2pi`, `v = 1 - acos(d.y) / pi`, after `d` is turned back about y.
+    /// An equirectangular image; row 0 is the zenith (+y). A direction `d`, turned back about y,
+    /// reads it at `u = 0.5 - atan2(d.z, d.x) / 2pi`, `v = 1 - acos(d.y) / pi`.
     Image {
         /// Index into [`Scene::images`].
         image: usize,
-        /// Turn of the picture about +y in degrees, by the right-hand rule.
+        /// Rotation of the image about +y in degrees, by the right-hand rule.
         rotate_degrees: f64,
-        /// Radiance in W sr^-1 m^-2 of a texel of value one, per channel.
+        /// Radiance in W sr^-1 m^-2 of a texel value of one, per channel.
         scale: Rgb,
     },
 }

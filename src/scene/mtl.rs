@@ -1,5 +1,5 @@
-//! Materials that an OBJ file brings along in its MTL file. Only those that faces use are read, and
-//! of them only what their kind uses; the rest gives warnings at most.
+//! Materials from MTL files. Only materials that faces use are read, and only the keys that their
+//! kind uses; the rest causes warnings at most.
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -11,16 +11,17 @@ use super::lines::{Statement, Text, Word, finite, readings, statements};
 use super::numbers::{BRIGHTEST, LARGEST, Rounded, rounded_into};
 use super::report::{Faults, nearest};
 
-/// Index of refraction of a transparent MTL material that gives none.
+/// Index of refraction of a transparent MTL material without `Ni`.
 const DEFAULT_IOR: f64 = 1.5;
-/// Diffuse reflectance of an MTL material that gives none.
+/// Diffuse reflectance of an MTL material without `Kd`.
 const DEFAULT_DIFFUSE: [f64; 3] = [0.8; 3];
 
 /// Keys that are read.
 const READ: [&str; 7] = ["Kd", "Ks", "Ke", "Ni", "d", "illum", "map_Kd"];
-/// Keys of what has no counterpart in a renderer that follows light: ambient and highlights.
+/// Keys without a counterpart in a physically based renderer: ambient light, highlights, texture
+/// antialiasing.
 const IDLE: [&str; 4] = ["Ka", "map_Ka", "Ns", "map_aat"];
-/// Keys that other programs read and that change how a surface looks.
+/// Keys that other programs read and that change the appearance of a surface.
 const UNREAD: [&str; 28] = [
     "Tr",
     "Tf",
@@ -52,7 +53,7 @@ const UNREAD: [&str; 28] = [
     "sharpness",
 ];
 
-/// A material file.
+/// An MTL file.
 #[derive(Debug)]
 pub(super) struct Library {
     pub path: PathBuf,
@@ -63,7 +64,7 @@ pub(super) struct Library {
     rounded: Rounded,
 }
 
-/// A material as bytes of its file.
+/// Byte ranges of a material in its file.
 #[derive(Clone, Debug)]
 pub(super) struct Entry {
     pub name: Range<usize>,
@@ -89,7 +90,7 @@ impl Library {
                 last.body.end = lines[..begin].rfind('\n').map_or(0, |end| end + 1);
             }
             if name.is_empty() {
-                warnings.push(statement.at, "`newmtl` names nothing", "expected a name");
+                warnings.push(statement.at, "`newmtl` has no name", "expected a name");
             }
             entries.push(Entry { name: span, body: line_end(lines, begin)..lines.len() });
         }
@@ -110,12 +111,12 @@ impl Library {
         }
     }
 
-    /// The name of a material.
+    /// Name of a material.
     pub fn name(&self, entry: usize) -> &str {
         &self.text.lines()[self.entries[entry].name.clone()]
     }
 
-    /// Errors and warnings, each once.
+    /// Takes the errors and warnings, and leaves none.
     pub fn take_findings(&mut self) -> (Faults, Faults) {
         if let Some((at, message)) = std::mem::take(&mut self.rounded).take() {
             self.warnings.push(at, message, "read as the limit");
@@ -131,18 +132,18 @@ fn line_end(text: &str, at: usize) -> usize {
     text[at..].find('\n').map_or(text.len(), |length| at + length + 1)
 }
 
-/// What materials of MTL files become parts of.
+/// Destination of materials from MTL files.
 pub(super) struct Target<'r> {
     pub allowance: &'r Allowance,
     pub images: &'r mut ImageStore,
     pub textures: &'r mut Vec<Texture>,
-    /// Whether the materials' `Ke` counts.
+    /// True if the materials' `Ke` counts.
     pub emits: bool,
 }
 
-/// An MTL material as a scene's, called `name` there, and its emission: glass when `illum` is 4, 6,
-/// 7 or 9, or `d` is below 1 with an `Ni` other than 1; a mirror of `Ks` when `illum` is 3 or 5;
-/// else diffuse of `map_Kd`, which replaces `Kd`.
+/// Converts an MTL material to a scene material called `name`, and returns its emission. The
+/// material is glass if `illum` is 4, 6, 7 or 9, or if `d` is below 1 and `Ni` is given and not 1;
+/// a mirror of `Ks` if `illum` is 3 or 5; else diffuse with `map_Kd` or, without one, `Kd`.
 pub(super) fn material(
     library: &mut Library,
     entry: usize,
@@ -153,8 +154,8 @@ pub(super) fn material(
     let lines = text.lines();
     let mut given: Vec<Statement> = Vec::new();
     for statement in statements(lines, entries[entry].body.clone()) {
-        // The last of several counts. Only known keys are compared, so that their number bounds the
-        // work.
+        // The last of several statements of a key counts. Only known keys are compared, so that
+        // their number bounds the work.
         let known = READ.contains(&statement.keyword) || IDLE.contains(&statement.keyword);
         if known && let Some(last) = given.iter_mut().find(|last| last.keyword == statement.keyword)
         {
@@ -170,13 +171,13 @@ pub(super) fn material(
     (Material { name, kind }, emission)
 }
 
-/// Most statements of a material that are looked at.
+/// Most statements of a material that are examined.
 const MOST_KEYS: usize = 1000;
 
 struct Reader<'l, 't> {
     name: &'l str,
     given: &'l [Statement<'t>],
-    /// Keys whose values counted.
+    /// Keys whose values are used.
     used: Vec<&'static str>,
     faults: &'l mut Faults,
     warnings: &'l mut Faults,
@@ -228,7 +229,7 @@ impl<'t> Reader<'_, 't> {
         self.numbers(key, 1, most)?.first().copied()
     }
 
-    /// The values of a key that counts, from 0 to `most`; reports those that are wrong.
+    /// Reads `count` values of a key, each from 0 to `most`; reports invalid ones.
     fn numbers(&mut self, key: &'static str, count: usize, most: f64) -> Option<Vec<f64>> {
         let statement = self.find(key)?;
         self.used.push(key);
@@ -239,8 +240,10 @@ impl<'t> Reader<'_, 't> {
             return None;
         }
         if let Some((_, at)) = words.get(count) {
-            let message =
-                format!("`{key}` has {} values, of which the first {count} count", words.len());
+            let message = format!(
+                "`{key}` has {} values, of which only the first {count} count",
+                words.len()
+            );
             self.warnings.push(at.clone(), message, expected(count));
         }
         let mut numbers = Vec::new();
@@ -261,7 +264,7 @@ impl<'t> Reader<'_, 't> {
         (numbers.len() == count).then_some(numbers)
     }
 
-    /// The illumination model: a whole number, however it is written.
+    /// The illumination model: an integer in any notation.
     fn illum(&mut self) -> Option<i64> {
         let statement = self.find("illum")?;
         self.used.push("illum");
@@ -292,7 +295,7 @@ impl<'t> Reader<'_, 't> {
         }
     }
 
-    /// The picture of `map_Kd`.
+    /// Reflectance from the image of `map_Kd`.
     fn map(
         &mut self,
         map: &Statement,
@@ -304,7 +307,7 @@ impl<'t> Reader<'_, 't> {
         self.used.push("map_Kd");
         let (name, at) = map.name();
         if name.is_empty() {
-            self.faults.push(map.at.clone(), "`map_Kd` names nothing", "expected a name");
+            self.faults.push(map.at.clone(), "`map_Kd` names no file", "expected a file name");
             return grey;
         }
         if name.starts_with('-') {
@@ -363,7 +366,8 @@ impl<'t> Reader<'_, 't> {
         }
     }
 
-    /// Warns of what is given and not used: of what other programs show, and of wrong values.
+    /// Warns about unused statements that other programs show, that have invalid values, or whose
+    /// key is unknown.
     fn unused(&mut self, is_glass: bool) {
         for statement in self.given {
             let (key, at) = (statement.keyword, statement.at.clone());
@@ -395,7 +399,7 @@ impl<'t> Reader<'_, 't> {
     }
 }
 
-/// The words that should be numbers.
+/// Arguments that should be numbers.
 fn values<'t>(statement: &Statement<'t>) -> Vec<Word<'t>> {
     let is_option = |word: &str| statement.keyword == "d" && word == "-halo";
     statement.words().filter(|(word, _)| !is_option(word)).collect()
@@ -405,13 +409,13 @@ fn expected(count: usize) -> String {
     format!("expected {count} number{}", if count == 1 { "" } else { "s" })
 }
 
-/// A number from 0 to `most`, which it may exceed by rounding.
+/// Parses a number from 0 to `most`, which it may exceed by rounding.
 fn in_range(word: &str, most: f64) -> Result<f64, String> {
     let number = finite(word)?;
     rounded_into(number, 0.0, most).ok_or_else(|| format!("`{word}` is out of range"))
 }
 
-/// What is wrong with the values of a known key.
+/// The error in the values of a known key, if there is one.
 fn wrong(statement: &Statement) -> Option<(Range<usize>, String)> {
     let (count, most) = match statement.keyword {
         "Kd" | "Ks" => (3, 1.0),
@@ -431,7 +435,7 @@ fn wrong(statement: &Statement) -> Option<(Range<usize>, String)> {
     words.into_iter().take(count).find_map(|(word, at)| Some((at, in_range(word, most).err()?)))
 }
 
-/// Whether a key that is not read has the value that changes nothing.
+/// Returns whether an unsupported key has a value without effect.
 fn is_neutral(statement: &Statement) -> bool {
     let neutral = match statement.keyword {
         "Tr" | "Pm" | "Ps" | "Pc" | "Pcr" | "aniso" | "anisor" => 0.0,

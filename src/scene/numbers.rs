@@ -1,5 +1,5 @@
-//! Numbers with a range, and colors made of them. Ranges stand in the JSON Schema, and are checked
-//! from there.
+//! Numbers with a range, and colors made of them. The ranges are part of the JSON Schema, which the
+//! checks read.
 
 use std::ops::Range;
 
@@ -8,27 +8,27 @@ use serde::Deserialize;
 
 use super::appearance::Rgb;
 
-/// Largest magnitude of a length, a coordinate or any other number that is not the strength of a
-/// light, in the units of the file. Renderers work in f32, in units of about the scene's size;
-/// squares of lengths must stay below the 1e30 that stands for infinity there.
+/// Largest magnitude of a length, a coordinate or any other number except the strength of a light,
+/// in the units of the file. Renderers work in f32, in units of about the scene's size; squares of
+/// lengths must stay below 1e30, which stands for infinity there.
 pub const LARGEST: f64 = 1e15;
-/// Smallest number where 0 is none: a radius, a size, a scale, an angle. Its square is above f32's
-/// least normal number.
+/// Smallest value of a number that must be positive: a radius, a size, a scale, an angle. Its
+/// square is above the smallest normal f32.
 pub const SMALLEST: f64 = 1e-15;
-/// Greatest strength of a light. Pictures hold radiance in f32, up to 3e38, and light adds up.
+/// Largest strength of a light. Images store radiance in f32, up to 3e38, and light adds up.
 pub const BRIGHTEST: f64 = 1e30;
 
-/// How far rounding may carry a number in a text beyond the range that it has to lie in: programs
-/// write four digits and more.
+/// Largest excess of a number over its range that counts as rounding; programs write at least four
+/// digits.
 const ROUNDING: f64 = 1e-4;
 
-/// A number that lies in a range, or would without a rounding error: then the nearest in the range.
+/// The nearest number in a range, if `number` is inside or out of it by a rounding error.
 pub(super) fn rounded_into(number: f64, least: f64, most: f64) -> Option<f64> {
     let inside = number.clamp(least, most);
     ((number - inside).abs() <= ROUNDING).then_some(inside)
 }
 
-/// Numbers of a file that were moved into their range.
+/// Numbers of a file that were clamped into their range.
 #[derive(Debug, Default)]
 pub(super) struct Rounded {
     count: usize,
@@ -38,7 +38,7 @@ pub(super) struct Rounded {
 }
 
 impl Rounded {
-    /// Notes a word that was read as `number`.
+    /// Records a word that was read as `number`.
     pub fn add(&mut self, at: Range<usize>, word: &str, number: f64) {
         self.count += 1;
         let excess = word.parse().map_or(0.0, |written: f64| (written - number).abs());
@@ -47,7 +47,7 @@ impl Rounded {
         }
     }
 
-    /// The place of the worst, and a message about all.
+    /// Position of the worst number, and a message about all.
     pub fn take(self) -> Option<(Range<usize>, String)> {
         let message = match self.count {
             0 => return None,
@@ -67,13 +67,13 @@ impl Rounded {
 #[schemars(inline, extend("exclusiveMinimum" = 0))]
 pub struct Positive(pub f64);
 
-/// A number that is not negative.
+/// A non-negative number.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
 #[serde(transparent)]
 #[schemars(inline, extend("minimum" = 0))]
 pub struct NonNegative(pub f64);
 
-/// Strength of light: not negative, and up to [`BRIGHTEST`].
+/// Strength of a light, from 0 to 1e30.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
 #[serde(transparent)]
 #[schemars(inline, extend("minimum" = 0, "x-largest" = BRIGHTEST))]
@@ -109,14 +109,14 @@ impl From<Share> for f64 {
     }
 }
 
-/// A number for all channels, or [r, g, b] linear.
+/// One number for all channels, or linear [r, g, b].
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(untagged)]
 #[schemars(inline)]
 pub enum Spectrum<T> {
-    /// The same for red, green and blue.
+    /// The same value for red, green and blue.
     Gray(T),
-    /// Linear Rec. 709.
+    /// Linear Rec. 709 channels.
     Rgb([T; 3]),
 }
 
@@ -127,7 +127,7 @@ impl<T: Default> Default for Spectrum<T> {
 }
 
 impl<T: Copy + Into<f64>> Spectrum<T> {
-    /// Its three channels.
+    /// The three channels.
     pub fn rgb(&self) -> Rgb {
         match *self {
             Self::Gray(value) => [value.into(); 3],
@@ -136,12 +136,12 @@ impl<T: Copy + Into<f64>> Spectrum<T> {
     }
 }
 
-/// A number from 0 to 1, [r, g, b] linear, or the name of a texture.
+/// A number from 0 to 1, linear [r, g, b], or the name of a texture.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(untagged)]
 #[schemars(inline)]
 pub enum Paint {
-    /// The same everywhere.
+    /// A constant color.
     Color(Spectrum<Share>),
     /// Name of a texture.
     Texture(String),

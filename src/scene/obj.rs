@@ -1,6 +1,6 @@
-//! Looks through the text of a Wavefront OBJ file before tobj reads it: tobj names no lines in its
-//! errors, takes an index of 0 and numbers that are not finite, reads polylines as faces, and mixes
-//! up faces with and without normals.
+//! Scan of a Wavefront OBJ file before tobj reads it. tobj reports no lines in its errors, accepts
+//! an index of 0 and numbers that are not finite, reads polylines as faces, and confuses faces with
+//! and without normals.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::ops::Range;
@@ -9,42 +9,42 @@ use super::lines::{Statement, Word, finite, statements};
 use super::numbers::LARGEST;
 use super::report::Faults;
 
-/// What a first look at an OBJ file finds.
+/// Result of the scan of an OBJ file.
 #[derive(Debug)]
 pub(super) struct Scan<'t> {
-    /// Statements for tobj to read. Its materials are called by their index in `uses`.
+    /// Statements for tobj, in which materials are named by their index in `uses`.
     pub cleaned: String,
     pub faults: Faults,
     pub warnings: Faults,
-    /// Triangles that the faces will be cut into.
+    /// Number of triangles after triangulation.
     pub triangles: u64,
     pub faces: u64,
-    /// What stands behind each `mtllib`, once.
+    /// Arguments of each `mtllib`, without duplicates.
     pub libraries: Vec<Word<'t>>,
     known_libraries: HashSet<&'t str>,
-    /// Names of materials, each where it is first called, and whether a face has it.
+    /// Names of materials, each with its first position and whether a face uses it.
     pub uses: Vec<(&'t str, Range<usize>, bool)>,
     known_uses: HashMap<&'t str, usize>,
-    /// The material of the next face, and the one that tobj was last told of.
+    /// Material of the next face, and the last one that was written to `cleaned`.
     current: Option<usize>,
     written: Option<usize>,
     /// The first face before any `usemtl`.
     pub bare_face: Option<Range<usize>>,
-    /// Keywords of statements that are not used, with their number.
+    /// Keywords of ignored statements, with their number.
     pub unread: BTreeMap<&'t str, usize>,
     counts: [i64; 3],
     group: Option<[bool; 2]>,
-    /// Largest index of each kind that was above what stood before it.
+    /// Largest index of each kind.
     ahead: [i64; 3],
-    /// Vertices, texture coordinates and normals that cannot be used: the place of a number in
-    /// each.
+    /// Unusable vertices, texture coordinates and normals by their index, each with the position of
+    /// an unusable number.
     bad: [HashMap<i64, Range<usize>>; 3],
 }
 
-/// What indices count.
+/// Names of the kinds of indices.
 const KINDS: [&str; 3] = ["vertices", "texture coordinates", "normals"];
 
-/// Looks through an OBJ file; `own_materials` keeps its `usemtl` and `mtllib`.
+/// Scans an OBJ file; `own_materials` keeps its `usemtl` and `mtllib`.
 pub(super) fn scan(text: &str, own_materials: bool) -> Scan<'_> {
     let mut scan = Scan {
         cleaned: if own_materials { format!("mtllib {LIBRARY}\n") } else { String::new() },
@@ -75,7 +75,7 @@ pub(super) fn scan(text: &str, own_materials: bool) -> Scan<'_> {
     scan
 }
 
-/// The one material file that tobj reads.
+/// Name of the only material file that tobj reads.
 const LIBRARY: &str = "own";
 
 impl<'t> Scan<'t> {
@@ -88,8 +88,8 @@ impl<'t> Scan<'t> {
         self.faults.push(span, message, expected);
     }
 
-    /// Finds the indices that point behind the end, and those to what cannot be used. What cannot
-    /// be used and no face uses gives a warning.
+    /// Reports indices beyond the end, and indices of unusable elements. Unusable elements that no
+    /// face uses cause a warning.
     fn indices(&mut self, text: &str) {
         let mut counts = [0; 3];
         for statement in statements(text, 0..text.len()) {
@@ -177,7 +177,7 @@ impl<'t> Scan<'t> {
         }
     }
 
-    /// Reads the numbers of a `v`, `vt` or `vn`, of which so many are needed.
+    /// Reads the numbers of a `v`, `vt` or `vn`, which needs `least` of them.
     fn vertex(&mut self, kind: usize, least: usize, statement: &Statement<'t>) {
         self.counts[kind] += 1;
         let words: Vec<_> = statement.words().collect();
@@ -188,7 +188,8 @@ impl<'t> Scan<'t> {
                 format!("expected {}", if kind == 1 { "2 numbers" } else { "3 numbers" });
             return self.fault(statement.at.clone(), message, expected);
         }
-        // The fourth number of a vertex divides the others, unless they are colors.
+        // A fourth number of a vertex is its weight w, which divides the others; with 6 or 7
+        // numbers the last ones are colors.
         let used = if kind == 1 {
             2
         } else if kind == 0 && words.len() == 4 {
@@ -207,7 +208,7 @@ impl<'t> Scan<'t> {
         };
         let bad = words.iter().take(used).enumerate().find(is_bad).map(|(_, (_, at))| at.clone());
         self.cleaned.push_str(["v", "vt", "vn"][kind]);
-        // tobj wants two numbers in a `vt`.
+        // tobj requires two numbers in a `vt`.
         for (word, _) in
             words.iter().map(|(word, at)| (*word, at)).chain([("0", &(0..0))]).take(used)
         {
@@ -295,13 +296,14 @@ impl<'t> Scan<'t> {
                     format!("expected at least -{}: so many stand above", self.counts[kind]);
                 self.fault(at.clone(), message, expected);
             }
-            // An index may point to what follows; whether it is there shows at the end.
+            // An index may point ahead in the file; `scan` checks at the end whether the element
+            // exists.
             Ok(index) => self.ahead[kind] = self.ahead[kind].max(index),
         }
     }
 }
 
-/// What is wrong with a number of a vertex that a face uses.
+/// Message and label for an unusable number that a face refers to.
 fn unusable(word: &str) -> (String, String) {
     match finite(word) {
         Err(message) => (message, "expected a number".to_owned()),

@@ -1,4 +1,4 @@
-//! Meaning of the Bezier profiles of surfaces of revolution.
+//! Checks of the Bezier profiles of surfaces of revolution.
 
 use glam::DVec2;
 
@@ -7,14 +7,15 @@ use super::report::Report;
 use super::tree::Node;
 use super::validate::Item;
 
-/// Largest gap between two segments that counts as joined, over the extent of the profile.
+/// Largest gap between two joined segments, relative to the extent of the profile.
 const JOIN_TOLERANCE: f64 = 1e-9;
-/// Largest negative radius that counts as rounding, over the largest control radius.
+/// Largest negative radius that counts as rounding, relative to the largest control radius.
 const RADIUS_TOLERANCE: f64 = 1e-12;
-/// Halvings of the parameter while the sign of the radius is in doubt.
+/// Most bisections of the parameter interval while the sign of the radius is undecided.
 const MOST_HALVINGS: u32 = 40;
 
-/// The profile's segments, checked: joined, off the axis somewhere, and with no negative radius.
+/// Segments of the profile after the checks: joined, not entirely on the axis, and without a
+/// negative radius.
 pub(super) fn segments(
     report: &mut Report,
     item: &Item,
@@ -70,8 +71,8 @@ fn check_curve(report: &mut Report, curve: &[DVec2], node: Node) {
     }
 }
 
-/// A negative value of a polynomial in Bernstein form on [0, 1], if it has one below `-tolerance`:
-/// halves the interval until the hull of the coefficients decides.
+/// A value below `-tolerance` of a polynomial in Bernstein form on [0, 1], if there is one. Bisects
+/// the interval until the hull of the coefficients decides.
 fn negative(coefficients: &[f64], tolerance: f64, halvings: u32) -> Option<f64> {
     let (first, last) = (coefficients[0], coefficients[coefficients.len() - 1]);
     if let Some(value) = [first, last].into_iter().find(|&value| value < -tolerance) {
@@ -92,7 +93,7 @@ fn negative(coefficients: &[f64], tolerance: f64, halvings: u32) -> Option<f64> 
     negative(&left, tolerance, halvings - 1).or_else(|| negative(&right, tolerance, halvings - 1))
 }
 
-/// Makes each segment start exactly where the one before ends, or reports the gap.
+/// Makes each segment start exactly where the previous one ends, or reports the gap.
 fn join(report: &mut Report, curves: &mut [Vec<DVec2>], nodes: &[Node]) {
     let extent =
         curves.iter().flatten().fold(0.0f64, |most, point| most.max(point.abs().max_element()));
@@ -115,8 +116,8 @@ fn join(report: &mut Report, curves: &mut [Vec<DVec2>], nodes: &[Node]) {
 mod tests {
     use super::negative;
 
-    /// A quadratic with coefficients (a, b, a) has its least value (a + b) / 2 in the middle: it is
-    /// negative exactly when b < -a.
+    /// Theory: a quadratic with coefficients (a, b, a) has its minimum (a + b) / 2 in the middle,
+    /// so it is negative exactly when b < -a.
     #[test]
     fn sign_of_a_quadratic() {
         for (b, expected) in
@@ -126,7 +127,7 @@ mod tests {
         }
     }
 
-    /// The degree-15 curve through one negative control value among ones: B_7,15 is at most
+    /// Theory: the degree-15 curve has one control value c, the others are one. B_7,15 is at most
     /// 0.203042 (at t = 7/15), so 1 + (c - 1) 0.203042 is negative exactly when c < 1 - 1/0.203042
     /// = -3.92509.
     #[test]

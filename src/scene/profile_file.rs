@@ -1,4 +1,4 @@
-//! Profile files: the Bezier profile of one surface of revolution, on its own.
+//! Profile files: the Bezier profile of a single surface of revolution.
 
 use std::path::Path;
 use std::sync::LazyLock;
@@ -17,44 +17,44 @@ use super::surfaces::placed;
 use super::validate::whole;
 use super::{schema, text};
 
-/// A Bezier profile turned about the y axis; keys as on a revolution in a scene file.
+/// A Bezier profile revolved about the y axis; the keys are those of a revolution in a scene file.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ProfileFile {
     /// Control points (radius, height) of one Bezier curve.
     #[schemars(length(min = 2, max = 16))]
     pub profile: Option<Vec<[f64; 2]>>,
-    /// Several Bezier curves, joined end to end.
+    /// Control points of several Bezier curves, joined end to end.
     pub segments: Option<Segments>,
-    /// World from object.
+    /// Transform from object to world space.
     #[serde(default)]
     pub transform: TransformFile,
 }
 
-/// What a profile file holds.
+/// Contents of a profile file.
 #[derive(Clone, Debug)]
 pub struct LoadedProfile {
     /// Control points (radius, height) of each Bezier segment, as in
     /// [`super::ShapeKind::Revolution`].
     pub segments: Vec<Vec<DVec2>>,
-    /// World from object.
+    /// Transform from object to world space.
     pub transform: Transform,
-    /// What is odd but no error.
+    /// Warnings about the profile.
     pub warnings: Vec<Finding>,
 }
 
-/// Reads a profile file: `profile` or `segments`, and `transform` or not.
+/// Reads a profile file: `profile` or `segments`, and an optional `transform`.
 ///
 /// # Errors
-/// Everything that is wrong with it, at once.
+/// All errors in the file together.
 pub fn load_profile(path: &Path) -> Result<LoadedProfile, SceneErrors> {
     load_profile_within(path, &Allowance::default())
 }
 
-/// As [`load_profile`], where not everything is allowed.
+/// Like [`load_profile`], within an allowance.
 ///
 /// # Errors
-/// As [`load_profile`], and where something is not allowed.
+/// As [`load_profile`], and everything that the allowance forbids.
 pub fn load_profile_within(
     path: &Path,
     allowance: &Allowance,

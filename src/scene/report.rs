@@ -1,4 +1,4 @@
-//! Errors and warnings that point into the files they are about.
+//! Errors and warnings with their positions in the files.
 
 use std::fmt;
 use std::ops::Range;
@@ -16,7 +16,7 @@ use super::diagnostics::Findings;
 #[derive(Clone, Debug)]
 pub(crate) struct SourceFile {
     file: Arc<NamedSource<String>>,
-    /// The same as reports show it, where it has control characters.
+    /// Copy for display, if the text has control characters.
     shown: Option<Arc<NamedSource<String>>>,
 }
 
@@ -38,21 +38,21 @@ impl SourceFile {
     }
 }
 
-/// Each character with the one after it.
+/// Each character with the next one.
 fn followed(text: &str) -> impl Iterator<Item = (char, Option<char>)> {
     text.chars().zip(text.chars().skip(1).map(Some).chain([None]))
 }
 
-/// Whether a terminal would act on a character: all control characters but those between words and
-/// lines, and those that turn the direction of writing.
+/// Returns whether a terminal would act on a character: control characters except tabs and line
+/// ends, and characters that change the direction of writing.
 fn is_control((c, next): (char, Option<char>)) -> bool {
     let turns = matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
     let ends_line = c == '\r' && next == Some('\n');
     turns || c.is_control() && !matches!(c, '\n' | '\t') && !ends_line
 }
 
-/// `text` with other characters for control characters, each as long as the one it stands for,
-/// since spans count bytes.
+/// `text` with each control character replaced by a character of the same UTF-8 length, since spans
+/// count bytes.
 fn without_control(text: &str) -> String {
     let shown = |followed: (char, Option<char>)| match followed.0.len_utf8() {
         _ if !is_control(followed) => followed.0,
@@ -63,11 +63,11 @@ fn without_control(text: &str) -> String {
     followed(text).map(shown).collect()
 }
 
-/// Most bytes of a line that are shown around a place.
+/// Most bytes of a line that are shown around a position.
 const MOST_SHOWN: usize = 400;
 
 impl SourceCode for SourceFile {
-    /// The lines around a span, and of a very long line a part.
+    /// The lines around a span, or part of a very long line.
     fn read_span<'a>(
         &'a self,
         span: &SourceSpan,
@@ -93,8 +93,8 @@ impl SourceCode for SourceFile {
     }
 }
 
-/// An error or a warning about a scene, with the place it is about. Prints through [`miette`] with
-/// the offending line and a caret.
+/// An error or a warning about a scene, with its position. [`miette`] prints it with the offending
+/// line and a caret.
 #[derive(Clone, Debug)]
 pub struct Finding {
     message: String,
@@ -102,7 +102,7 @@ pub struct Finding {
     severity: miette::Severity,
     file: String,
     place: Option<Span>,
-    /// An error in a value of the scene file, as opposed to a key that is missing or an error in
+    /// True if this is an error in a value of the scene file, not a missing key or an error in
     /// another file.
     about_value: bool,
 }
@@ -115,35 +115,34 @@ struct Span {
 }
 
 impl Finding {
-    /// What is wrong, in one line.
+    /// The problem, in one line.
     pub fn message(&self) -> &str {
         &self.message
     }
 
-    /// What was expected; stands at the caret.
+    /// The expected content, printed at the caret.
     pub fn label(&self) -> &str {
         self.place.as_ref().map_or("", |place| &place.label)
     }
 
-    /// How to mend it.
+    /// Remedy, if there is one.
     pub fn help(&self) -> Option<&str> {
         self.help.as_deref()
     }
 
-    /// Path of the file it is about.
+    /// Path of the file that contains the problem.
     pub fn file(&self) -> &str {
         &self.file
     }
 
-    /// What it is about. Two errors in one value are about the same: they say it in other words, or
-    /// the later follows from the earlier.
+    /// Key for removing duplicates. Two errors in one value have the same key: they state the same
+    /// problem, or the later one follows from the earlier.
     pub(super) fn subject(&self) -> (String, Option<Range<usize>>, Option<String>) {
         let span = self.place.as_ref().map(|place| place.span.clone());
         (self.file.clone(), span, (!self.about_value).then(|| self.message.clone()))
     }
 
-    /// Line and column, from 1, the column in characters; `None` when the file itself cannot be
-    /// read.
+    /// Line and column, from 1, the column in characters; `None` if the file itself cannot be read.
     pub fn line_column(&self) -> Option<(usize, usize)> {
         let place = self.place.as_ref()?;
         let before = place.source.text().get(..place.span.start)?;
@@ -182,19 +181,20 @@ impl Diagnostic for Finding {
     }
 }
 
-/// Everything that is wrong with a scene file and the files it names.
+/// All errors in a scene file and the files that it names.
 #[derive(Debug, thiserror::Error)]
 #[error("{file}: {}", self.count())]
 pub struct SceneErrors {
-    /// The scene file.
+    /// Path of the scene file.
     pub file: String,
-    /// At least one, in the order of the file; the first that were found.
+    /// At least one error, in file order; the first ones that were found.
     pub errors: Vec<Finding>,
-    /// Number of the errors beyond these.
+    /// Number of further errors.
     pub more: usize,
-    /// What is odd but no error.
+    /// Warnings about the scene.
     pub warnings: Vec<Finding>,
-    /// The files that were asked for before, beside the scene file, whether they are there or not.
+    /// Files that were requested before the failure, whether or not they exist, without the scene
+    /// file.
     pub files: Vec<PathBuf>,
 }
 
@@ -216,9 +216,9 @@ impl Diagnostic for SceneErrors {
     }
 }
 
-/// Most errors of one mesh or material file that are listed one by one.
+/// Most errors of one mesh or material file that are listed.
 const MOST_PER_ASSET: usize = 10;
-/// As many warnings.
+/// Most warnings of one mesh or material file that are listed.
 const MOST_WARNINGS_PER_ASSET: usize = 100;
 
 /// Collects the findings of one load.
@@ -229,18 +229,18 @@ pub(crate) struct Report {
     path: String,
     pub errors: Findings,
     pub warnings: Findings,
-    /// The files that the scene file names, and those that they name.
+    /// Files that the scene file names, and files that those name.
     pub files: Vec<PathBuf>,
 }
 
 impl Report {
-    /// An empty one that lists so many errors, and as many warnings.
+    /// An empty report that lists at most `most` errors and `most` warnings.
     pub fn new(path: &Path, source: SourceFile, most: u64) -> Self {
         let [errors, warnings] = [Findings::new(most), Findings::new(most)];
         Self { source, path: path.display().to_string(), errors, warnings, files: Vec::new() }
     }
 
-    /// An error in the scene file; `label` says what was expected, `help` how to mend it.
+    /// Adds an error in the scene file; `label` states the expected content, `help` the remedy.
     pub fn error(
         &mut self,
         span: Range<usize>,
@@ -254,7 +254,7 @@ impl Report {
         self.errors.push(finding);
     }
 
-    /// A key that a table of the scene file lacks; a table may lack several.
+    /// Adds an error about a key that a table of the scene file lacks; a table may lack several.
     pub fn missing(
         &mut self,
         span: Range<usize>,
@@ -266,12 +266,12 @@ impl Report {
         self.errors.push(finding);
     }
 
-    /// A warning about the scene file, handed back.
+    /// Creates a warning about the scene file without adding it.
     pub fn warning(&self, span: Range<usize>, message: String, label: String) -> Finding {
         self.finding(miette::Severity::Warning, span, message, label, None)
     }
 
-    /// A warning about the scene file.
+    /// Adds a warning about the scene file.
     pub fn warn(
         &mut self,
         span: Range<usize>,
@@ -282,7 +282,7 @@ impl Report {
         self.warnings.push(finding);
     }
 
-    /// The scene file cannot be read at all.
+    /// Adds an error about a scene file that cannot be read at all.
     pub fn unreadable(&mut self, message: String, help: Option<String>) {
         self.errors.push(Finding {
             message,
@@ -294,14 +294,14 @@ impl Report {
         });
     }
 
-    /// Errors in a file that the scene file names at `named_at`.
+    /// Adds errors in a file that the scene file names at `named_at`.
     pub fn asset_errors(&mut self, named_at: Range<usize>, source: &SourceFile, faults: Faults) {
         for error in self.asset_findings(miette::Severity::Error, named_at, source, faults) {
             self.errors.push(error);
         }
     }
 
-    /// Warnings about a file that the scene file names at `named_at`.
+    /// Adds warnings about a file that the scene file names at `named_at`.
     pub fn asset_warnings(&mut self, named_at: Range<usize>, source: &SourceFile, faults: Faults) {
         for warning in self.asset_findings(miette::Severity::Warning, named_at, source, faults) {
             self.warnings.push(warning);
@@ -342,7 +342,7 @@ impl Report {
         findings.collect()
     }
 
-    /// As the function of this name, while errors are listed.
+    /// Like [`did_you_mean`], but returns `otherwise` when the list of errors is full.
     pub fn did_you_mean<'a>(
         &self,
         name: &str,
@@ -356,7 +356,7 @@ impl Report {
         }
     }
 
-    /// Says of those that are not listed how many they are.
+    /// A warning that states the number of unlisted warnings.
     pub(super) fn unlisted(count: usize) -> Finding {
         Finding {
             message: format!("{count} more warnings are not shown"),
@@ -392,7 +392,7 @@ impl Report {
         }
     }
 
-    /// Cuts a span that covers several lines down to its first, where a caret can show it.
+    /// Cuts a span down to its first line, which a caret can mark.
     fn drawable(&self, span: Range<usize>) -> Range<usize> {
         let text = self.source.text();
         let start = span.start.min(text.len());
@@ -403,7 +403,7 @@ impl Report {
     }
 }
 
-/// Something wrong in a file that a scene names.
+/// An error or a warning in a file that a scene names.
 #[derive(Debug)]
 struct Fault {
     span: Range<usize>,
@@ -411,7 +411,7 @@ struct Fault {
     expected: String,
 }
 
-/// What is wrong in a file that a scene names: the first faults, and the number of those beyond.
+/// Faults in a file that a scene names: the first ones, and the number of the others.
 #[derive(Debug)]
 pub(crate) struct Faults {
     listed: Vec<Fault>,
@@ -426,7 +426,7 @@ impl Default for Faults {
 }
 
 impl Faults {
-    /// For warnings: of those one may be about each key of a material.
+    /// An empty list for warnings, which may concern each key of a material.
     pub fn warnings() -> Self {
         Self { most: MOST_WARNINGS_PER_ASSET, ..Self::default() }
     }
@@ -444,18 +444,18 @@ impl Faults {
         }
     }
 
-    /// Whether no other will be listed.
+    /// Returns whether no further fault will be listed.
     pub fn is_full(&self) -> bool {
         self.listed.len() == self.most
     }
 }
 
-/// Longest name, in bytes, that is compared with known ones, and most of those: what it takes grows
-/// with their product.
+/// Limits of the search for similar names, whose cost grows with their product: the longest name in
+/// bytes, and the number of known names.
 const LONGEST_COMPARED: usize = 80;
 const MOST_COMPARED: usize = 1000;
 
-/// The known name nearest to a misspelt one, if any is near.
+/// The known name nearest to a misspelt one, if any is close.
 pub(crate) fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     if name.len() > LONGEST_COMPARED {
         return None;
@@ -473,7 +473,7 @@ pub(crate) fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) 
         .map(|(_, candidate)| candidate)
 }
 
-/// "did you mean `x`?", or `otherwise`.
+/// Formats "did you mean `x`?", or returns `otherwise`.
 pub(crate) fn did_you_mean<'a>(
     name: &str,
     known: impl IntoIterator<Item = &'a str>,
@@ -483,10 +483,10 @@ pub(crate) fn did_you_mean<'a>(
         .map_or_else(|| otherwise.to_owned(), |candidate| format!("did you mean `{candidate}`?"))
 }
 
-/// Most names of a list.
+/// Most names in a list.
 const MOST_LISTED: usize = 40;
 
-/// "`a`, `b`, `c`".
+/// Formats names as "`a`, `b`, `c`".
 pub(crate) fn list<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     let mut names = names.into_iter();
     let mut quoted: Vec<_> =

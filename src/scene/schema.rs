@@ -1,22 +1,22 @@
-//! The JSON Schema of scene files, and what it says about a value.
+//! JSON Schema of scene files, and queries on it.
 
 use serde_json::Value as Json;
 
 use super::file::SceneFile;
 
-/// The JSON Schema of scene files, as kept in `scenes/schema.json`.
+/// JSON Schema of scene files, as stored in `scenes/schema.json`.
 pub fn schema_json() -> String {
     let mut text = format!("{:#}", of::<SceneFile>());
     text.push('\n');
     text
 }
 
-/// The schema of a type as a value.
+/// Schema of a type as JSON.
 pub(crate) fn of<T: schemars::JsonSchema>() -> Json {
     schemars::schema_for!(T).to_value()
 }
 
-/// Forbids keys beyond those listed in each variant; serde cannot say so where it flattens.
+/// Forbids unknown keys in each variant; serde cannot do so together with `flatten`.
 pub(crate) fn close_variants(schema: &mut schemars::Schema) {
     if let Some(Json::Array(variants)) = schema.get_mut("oneOf") {
         for variant in variants {
@@ -25,8 +25,8 @@ pub(crate) fn close_variants(schema: &mut schemars::Schema) {
     }
 }
 
-/// The schemas that a value may match: references followed, nested alternatives flattened, `null`
-/// left out.
+/// Schemas that a value may match: references resolved, nested alternatives flattened, `null` left
+/// out.
 pub(crate) fn alternatives<'s>(root: &'s Json, schema: &'s Json) -> Vec<&'s Json> {
     if let Some(reference) = schema["$ref"].as_str() {
         let target = reference.strip_prefix('#').and_then(|path| root.pointer(path));
@@ -40,7 +40,7 @@ pub(crate) fn alternatives<'s>(root: &'s Json, schema: &'s Json) -> Vec<&'s Json
     }
 }
 
-/// Whether a schema without alternatives has this JSON type.
+/// Returns whether a schema without alternatives has this JSON type.
 pub(crate) fn has_type(schema: &Json, name: &str) -> bool {
     match &schema["type"] {
         Json::String(own) => own == name,
@@ -49,7 +49,7 @@ pub(crate) fn has_type(schema: &Json, name: &str) -> bool {
     }
 }
 
-/// The strings that a schema without alternatives lists, if it does.
+/// The strings that a schema without alternatives allows, if it lists them.
 pub(crate) fn listed_strings(schema: &Json) -> Option<Vec<&str>> {
     if let Some(one) = schema["const"].as_str() {
         return Some(vec![one]);
@@ -57,12 +57,12 @@ pub(crate) fn listed_strings(schema: &Json) -> Option<Vec<&str>> {
     schema["enum"].as_array().map(|all| all.iter().filter_map(Json::as_str).collect())
 }
 
-/// The value of `type` that a table of this schema has.
+/// Value of the key `type` in a table of this schema.
 pub(crate) fn tag(schema: &Json) -> Option<&str> {
     schema["properties"]["type"]["const"].as_str()
 }
 
-/// What a person should write, in words.
+/// Describes the expected value in words.
 pub(crate) fn describe(root: &Json, schema: &Json) -> String {
     let all = alternatives(root, schema);
     if let Some(tags) = all.iter().map(|one| tag(one)).collect::<Option<Vec<_>>>() {
@@ -131,7 +131,7 @@ fn range(schema: &Json) -> String {
     }
 }
 
-/// Whether a number is within the range of its schema.
+/// Returns whether a number is within the range of its schema.
 pub(crate) fn in_range(schema: &Json, number: f64) -> bool {
     let holds = |name: &str, test: fn(f64, f64) -> bool| {
         schema[name].as_f64().is_none_or(|bound| test(number, bound))

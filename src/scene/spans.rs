@@ -1,4 +1,4 @@
-//! Where the parts of a scene stand in its file, for warnings about what they mean together.
+//! Positions of a scene's parts in its file, for warnings about their combination.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -7,16 +7,17 @@ use std::path::{Path, PathBuf};
 use super::report::{Finding, Report, SourceFile};
 use super::validate::Item;
 
-/// Spans in a scene file, by path and key.
+/// Byte ranges in a scene file, by path and key.
 #[derive(Clone, Debug)]
 pub struct Spans {
     path: PathBuf,
     source: SourceFile,
-    /// `shapes[3]` and `shapes[3].radius`.
+    /// Keys such as `shapes[3]` and `shapes[3].radius`.
     spans: HashMap<String, Range<usize>>,
-    /// The path of each of the scene's shapes; a mesh may stand for several.
+    /// Path of each shape of the scene; several shapes may come from one mesh.
     pub shapes: Vec<String>,
-    /// The path of each of the scene's materials; those of an OBJ file have none in the scene file.
+    /// Path of each material of the scene, up to those from MTL files, which come last and have
+    /// none.
     pub materials: Vec<String>,
 }
 
@@ -38,8 +39,8 @@ impl Spans {
         }
     }
 
-    /// A warning at the first of these paths that the file has, or at its head; `label` stands at
-    /// the caret.
+    /// Creates a warning at the first of `paths` that the file has, or else at its start; `label`
+    /// is printed at the caret.
     pub fn warning(&self, paths: &[&str], message: String, label: String) -> Finding {
         let span = paths.iter().find_map(|path| self.spans.get(*path)).cloned().unwrap_or(0..0);
         Report::new(&self.path, self.source.clone(), 1).warning(span, message, label)

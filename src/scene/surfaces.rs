@@ -1,4 +1,4 @@
-//! Meaning of shapes and transforms.
+//! Conversion and checks of shapes and transforms.
 
 use glam::{DMat3, DVec3};
 
@@ -12,10 +12,10 @@ use super::report::Report;
 use super::validate::Item;
 use super::{mesh, profile};
 
-/// Least sine between the edges of a rectangle that has an area.
+/// Smallest sine of the angle between the edges of a rectangle.
 const LEAST_SINE: f64 = 1e-12;
 
-/// The shapes that an item stands for: one, or one for each material of a mesh that brings its own.
+/// Shapes of an item: one, or one per material of a mesh with its own materials.
 pub(super) fn shapes(
     loader: &mut Loader,
     item: &Item,
@@ -45,7 +45,7 @@ pub(super) fn shapes(
         }
         ShapeFile::Plane { point, normal, material, surface } => {
             if surface.emission.rgb() != [0.0; 3] {
-                let message = "an infinite plane cannot shine: its power would be infinite";
+                let message = "an infinite plane cannot emit: its power would be infinite";
                 let help = Some("use a rectangle or an [environment]".to_owned());
                 let label = "expected no emission here";
                 loader.report.error(item.node.span_of("emission"), message, label, help);
@@ -103,7 +103,7 @@ fn shape(kind: ShapeKind, material: usize, emission: [f64; 3], surface: &Surface
     Shape { kind, material, emission, planar_uv: surface.uv.is_some() }
 }
 
-/// Reports a shape that its transform blows up beyond what renderers can hold.
+/// Reports a shape whose transform enlarges it beyond the range of renderers.
 fn within_reach(report: &mut Report, item: &Item, reach: f64) {
     if reach > LARGEST {
         let message =
@@ -113,7 +113,7 @@ fn within_reach(report: &mut Report, item: &Item, reach: f64) {
     }
 }
 
-/// The transform, its axis a direction.
+/// Converts a transform; reports a rotation axis without a direction.
 pub(super) fn placed(report: &mut Report, item: &Item, file: &TransformFile) -> Option<Transform> {
     let rotation = match &file.rotate {
         None => DMat3::IDENTITY,

@@ -1,6 +1,5 @@
-//! TOML files on the way in: from bytes to a tree whose values know their place, or to findings.
-//! Every stage goes on after an error, so that one run shows them all; only a file that is not TOML
-//! stops early.
+//! TOML input: converts bytes to a tree with positions, or to findings. Every stage continues after
+//! an error, so that one run shows all errors; only a file that is not TOML stops early.
 
 use std::path::Path;
 
@@ -12,10 +11,10 @@ use super::limits::Allowance;
 use super::report::{Finding, Report, SceneErrors, SourceFile, nearest};
 use super::tree::Node;
 
-/// The bytes of a file.
+/// Reads a file.
 ///
 /// # Errors
-/// When it cannot be read; names the nearest file then.
+/// A file that cannot be read; if it does not exist, the message suggests the nearest name.
 pub(super) fn read(path: &Path, allowance: &Allowance) -> Result<Vec<u8>, SceneErrors> {
     allowance.read_scene(path).map_err(|error| {
         let mut report = Report::new(path, SourceFile::new(path, String::new()), allowance.errors);
@@ -26,10 +25,11 @@ pub(super) fn read(path: &Path, allowance: &Allowance) -> Result<Vec<u8>, SceneE
     })
 }
 
-/// What `meaning` makes of the file's tree, and the warnings; `path` names the file in messages.
+/// Parses a file, and returns the result of `meaning` for its tree together with the warnings.
+/// `path` names the file in messages.
 ///
 /// # Errors
-/// When the bytes are not TOML, and when `meaning` reports an error or makes nothing.
+/// Bytes that are not TOML, an error that `meaning` reports, or no result from `meaning`.
 pub(super) fn parse<T>(
     path: &Path,
     bytes: &[u8],
@@ -54,7 +54,7 @@ pub(super) fn parse<T>(
     }
     if text.contains('\r') && !text.contains('\n') {
         let end = text.find('\r').unwrap_or(0);
-        let help = Some("save it with line ends of Unix or Windows".to_owned());
+        let help = Some("save it with Unix or Windows line endings".to_owned());
         report.error(
             end..end,
             "the lines end in carriage returns alone",
@@ -66,7 +66,7 @@ pub(super) fn parse<T>(
     let (table, faults) = DeTable::parse_recoverable(&text);
     for fault in &faults {
         let span = fault.span().unwrap_or(0..0);
-        let help = Some("the file is not TOML here; other checks follow once it is".to_owned());
+        let help = Some("the file is not TOML here; other checks run once it is".to_owned());
         report.error(span, fault.message(), "here", help);
     }
     if !report.errors.is_empty() {
@@ -87,7 +87,7 @@ fn errors(path: &Path, report: Report) -> SceneErrors {
     SceneErrors { file, errors, more, warnings: report.warnings.told(), files: report.files }
 }
 
-/// The file in the same folder whose name is nearest.
+/// The file in the same folder with the nearest name, if any is close.
 pub(super) fn nearest_file(path: &Path) -> Option<String> {
     let wanted = path.file_name()?.to_string_lossy().into_owned();
     let folder =

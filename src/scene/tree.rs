@@ -1,4 +1,4 @@
-//! The parsed TOML tree: values that know where they stand in the file.
+//! Parsed TOML tree with the position of each value.
 
 use std::ops::Range;
 
@@ -6,7 +6,7 @@ use serde_json::Value as Json;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// A value in the file.
+/// A TOML value with its position.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Node<'a>(&'a Spanned<DeValue<'a>>);
 
@@ -15,12 +15,12 @@ impl<'a> Node<'a> {
         Self(value)
     }
 
-    /// Bytes of the file that hold it; of a `[table]`, its header.
+    /// Byte range of the value; for a `[table]`, of its header.
     pub fn span(&self) -> Range<usize> {
         self.0.span()
     }
 
-    /// Bytes of the value under a key; the node's own without such a key.
+    /// Byte range of the value under a key; the node's own if there is no such key.
     pub fn span_of(&self, key: &str) -> Range<usize> {
         self.get(key).map_or(self.span(), |value| value.span())
     }
@@ -43,18 +43,18 @@ impl<'a> Node<'a> {
         self.0.get_ref().as_str()
     }
 
-    /// Elements of an array; none when it is something else.
+    /// Elements of an array; empty for other types.
     pub fn elements(&self) -> impl Iterator<Item = Node<'a>> + use<'a> {
         self.0.get_ref().as_array().into_iter().flat_map(|array| array.iter().map(Node))
     }
 
-    /// Keys with their spans, and values, of a table; none when it is something else.
+    /// Keys with their byte ranges, and values, of a table; empty for other types.
     pub fn entries(&self) -> impl Iterator<Item = (&'a str, Range<usize>, Node<'a>)> + use<'a> {
         let pairs = self.table().into_iter().flat_map(|table| table.iter());
         pairs.map(|(key, value)| (key.get_ref().as_ref(), key.span(), Node(value)))
     }
 
-    /// A number as f64; an integer too large or a text that is none gives NaN.
+    /// A number as f64; NaN if it cannot be parsed or is an integer beyond i128.
     pub fn number(&self) -> Option<f64> {
         match self.0.get_ref() {
             DeValue::Float(float) => Some(float.as_str().parse().unwrap_or(f64::NAN)),
@@ -63,13 +63,13 @@ impl<'a> Node<'a> {
         }
     }
 
-    /// An integer; none when it is something else or has more than 127 bits.
+    /// An integer; `None` for other types and for integers beyond i128.
     pub fn integer(&self) -> Option<i128> {
         let integer = self.0.get_ref().as_integer()?;
         i128::from_str_radix(integer.as_str(), integer.radix()).ok()
     }
 
-    /// The JSON type that fits it.
+    /// The matching JSON type.
     pub fn json_type(&self) -> &'static str {
         match self.0.get_ref() {
             DeValue::String(_) => "string",
@@ -82,7 +82,7 @@ impl<'a> Node<'a> {
         }
     }
 
-    /// Its type in a person's words.
+    /// Name of its type, for messages.
     pub fn type_name(&self) -> &'static str {
         match self.0.get_ref() {
             DeValue::String(_) => "a string",
@@ -95,7 +95,7 @@ impl<'a> Node<'a> {
         }
     }
 
-    /// A string or a boolean as JSON.
+    /// A string or a boolean as JSON; `None` for other types.
     pub fn plain_json(&self) -> Option<Json> {
         match self.0.get_ref() {
             DeValue::String(text) => Some(Json::String(text.to_string())),

@@ -1,4 +1,4 @@
-//! From polygons to triangles: ear clipping, vertex normals, shared vertices.
+//! Conversion of polygons to triangles: ear clipping, vertex normals, shared vertices.
 
 use std::collections::HashMap;
 
@@ -6,11 +6,10 @@ use glam::{DVec2, DVec3};
 
 use super::geometry::{Mesh, Transform, Triangle};
 
-/// A triangle is degenerate when its doubled area is at most this share of its longest edge
-/// squared.
+/// A triangle is degenerate if twice its area is at most this fraction of its longest edge squared.
 const DEGENERATE: f64 = 1e-12;
 
-/// A corner of a polygon in the file's own space.
+/// A corner of a polygon in object space.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Corner {
     pub position: DVec3,
@@ -18,16 +17,16 @@ pub(super) struct Corner {
     pub uv: Option<DVec2>,
 }
 
-/// Steps of ear clipping that are left. It takes a polygon of n corners n^2 of them as a rule and
-/// n^3 at worst, which would be no end with some thousand corners.
+/// Remaining steps of ear clipping. A polygon of n corners usually takes n^2 steps, and n^3 at
+/// worst, which would not end with thousands of corners.
 #[derive(Debug)]
 pub(super) struct Steps(u64);
 
 impl Steps {
-    /// As many as take some ten seconds.
+    /// Number of steps that takes about ten seconds.
     pub const MOST: u64 = 1_000_000_000;
 
-    /// Whether so many were left. None are from then on where not.
+    /// Takes `count` steps. If fewer are left, returns false and leaves none.
     fn take(&mut self, count: usize) -> bool {
         let left = self.0.checked_sub(count as u64);
         self.0 = left.unwrap_or(0);
@@ -50,7 +49,7 @@ impl Default for Steps {
 pub(super) struct Polygon(pub Vec<Corner>);
 
 impl Polygon {
-    /// The faces of a mesh that tobj has read with one index for all attributes.
+    /// The faces of a mesh that tobj has read with a single index for all attributes.
     pub fn of(mesh: &tobj::Mesh) -> Vec<Self> {
         let vec3 = |values: &[f64], index: usize| {
             values.get(3 * index..3 * index + 3).map(DVec3::from_slice)
@@ -75,17 +74,17 @@ impl Polygon {
         polygons
     }
 
-    /// Twice the area times the normal (Newell); of a plane polygon exact, of a warped one the best
-    /// plane.
+    /// Twice the area times the unit normal (Newell); exact for a planar polygon, and the best
+    /// plane for a warped one.
     fn area_vector(&self) -> DVec3 {
         let base = self.0[0].position;
         let edges = self.0.windows(2);
         edges.map(|pair| (pair[0].position - base).cross(pair[1].position - base)).sum()
     }
 
-    /// Corners of the triangles that tile it, by ear clipping in the plane of
-    /// [`Self::area_vector`]. A polygon that cuts itself has no such tiling: what is left then
-    /// becomes a fan.
+    /// Triangulates by ear clipping in the plane of [`Self::area_vector`]; returns indices of
+    /// corners. A self-intersecting polygon has no such triangulation, so its remainder becomes a
+    /// fan.
     fn triangulate(&self, steps: &mut Steps) -> Vec<[usize; 3]> {
         let axis = self.area_vector();
         let mut left: Vec<usize> = (0..self.0.len()).collect();
@@ -124,7 +123,7 @@ fn around(left: &[usize], at: usize) -> [usize; 3] {
     [left[(at + count - 1) % count], left[at], left[(at + 1) % count]]
 }
 
-/// Bits that tell positions apart; -0 is 0.
+/// Bits that distinguish positions; -0 equals 0.
 type Key<const N: usize> = [u64; N];
 
 fn key<const N: usize>(values: [f64; N]) -> Key<N> {
@@ -132,7 +131,7 @@ fn key<const N: usize>(values: [f64; N]) -> Key<N> {
 }
 
 /// Sums of face normals at each position, weighted by the corner's angle (Thuermer & Wuethrich
-/// 1998): not unit.
+/// 1998); not normalized.
 pub(super) fn vertex_normals<'p>(
     polygons: impl Iterator<Item = &'p Polygon>,
     steps: &mut Steps,
@@ -155,12 +154,12 @@ pub(super) fn vertex_normals<'p>(
     normals
 }
 
-/// Makes a mesh in the world out of polygons.
+/// Builds a world-space mesh from polygons.
 pub(super) struct Builder {
     pub mesh: Mesh,
-    /// Triangles dropped because they have no area.
+    /// Number of triangles dropped because they have no area.
     pub degenerate: usize,
-    /// Triangles made flat because the file gives them a normal of length 0.
+    /// Number of triangles made flat because the file gives them a normal of length 0.
     pub unusable_normals: usize,
     transform: Transform,
     positions: HashMap<Key<3>, u32>,
@@ -181,7 +180,8 @@ impl Builder {
         }
     }
 
-    /// Adds a face. `smooth` holds normals for faces without their own; `None` makes all flat.
+    /// Adds a face. `smooth` provides normals for faces without their own; `None` makes all faces
+    /// flat.
     pub fn add(
         &mut self,
         polygon: &Polygon,
@@ -198,7 +198,7 @@ impl Builder {
         let area = (b - a).cross(c - a);
         let longest =
             (b - a).length_squared().max((c - b).length_squared()).max((a - c).length_squared());
-        // Coordinates too large to square give no finite area.
+        // Coordinates that are too large to square give no finite area.
         if area.length() <= DEGENERATE * longest || !area.is_finite() {
             self.degenerate += 1;
             return;
@@ -206,8 +206,7 @@ impl Builder {
         let normals = smooth.and_then(|smooth| self.corner_normals(&corners, smooth));
         let mut normals = normals.map(|normals| normals.map(|normal| self.normal(normal)));
         if let Some(own) = corners[0].normal.and(normals) {
-            // The file's normals say which side is outside; some exporters wind the corners the
-            // other way.
+            // The file's normals define the outside; some exporters wind the corners the other way.
             let side: DVec3 = own.iter().map(|&index| self.mesh.normals[index as usize]).sum();
             if self.transform.direction(area).dot(side) < 0.0 {
                 corners.swap(1, 2);

@@ -1,5 +1,5 @@
-//! Holds a parsed file against the schema and reports every difference: unknown and missing keys,
-//! wrong types, numbers out of range, words that are not listed.
+//! Validates a parsed file against the schema and reports every difference: unknown and missing
+//! keys, wrong types, numbers out of range, words that are not listed.
 
 use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;
@@ -12,30 +12,30 @@ use super::report::{Report, list};
 use super::schema::{alternatives, describe, has_type, in_range, listed_strings, tag};
 use super::tree::Node;
 
-/// A part of the file that is checked and read on its own.
+/// A part of the file that is checked and read separately.
 #[derive(Debug)]
 pub(crate) struct Item<'a> {
-    /// As in messages: `shapes[3]`, `materials.glass`; empty for the whole file.
+    /// Path as in messages: `shapes[3]`, `materials.glass`; empty for the whole file.
     pub path: String,
-    /// The last key, of a named part.
+    /// Last key of the path of a named part.
     pub name: &'a str,
     pub node: Node<'a>,
-    /// The part as JSON without unknown keys; `None` if it cannot be read as its type.
+    /// The part as JSON without unknown keys; `None` if it does not match its type.
     json: Option<Json>,
 }
 
 impl Item<'_> {
-    /// What it is called in messages.
+    /// Name of the part in messages.
     pub fn place(&self) -> &str {
         place(&self.path)
     }
 
-    /// What a key in it is called in messages.
+    /// Name of a key of the part in messages.
     pub fn key(&self, key: &str) -> String {
         join(&self.path, key)
     }
 
-    /// The part as its type; `None` if its check has found it unreadable.
+    /// Deserializes the part; `None` if its check found an error that prevents this.
     pub fn read<T: DeserializeOwned>(&self, report: &mut Report) -> Option<T> {
         let json = self.json.clone()?;
         match serde_json::from_value(json) {
@@ -49,39 +49,39 @@ impl Item<'_> {
     }
 }
 
-/// The parts of a file, each checked.
+/// The parts of a file after the check.
 #[derive(Debug)]
 pub(crate) struct Document<'a> {
     sections: BTreeMap<&'a str, Vec<Item<'a>>>,
-    /// Where in its section a named part is.
+    /// Index of each named part in its section.
     names: HashMap<(&'a str, &'a str), usize>,
 }
 
 impl<'a> Document<'a> {
     /// Parts under a top-level key: the elements of an array, the entries of a table of named
-    /// things, or the one value.
+    /// parts, or the single value.
     pub fn items(&self, section: &str) -> impl Iterator<Item = &Item<'a>> {
         self.sections.get(section).into_iter().flatten()
     }
 
-    /// Where in its section a named part is.
+    /// Index of a named part in its section.
     pub fn index(&self, section: &str, name: &str) -> Option<usize> {
         self.names.get(&(section, name)).copied()
     }
 
-    /// The one value under a top-level key.
+    /// The single value under a top-level key.
     pub fn item(&self, section: &str) -> Option<&Item<'a>> {
         self.items(section).next()
     }
 }
 
-/// Checks a file that is one part.
+/// Checks a file that consists of a single part.
 pub(crate) fn whole<'a>(root: &Json, file: Node<'a>, report: &mut Report) -> Item<'a> {
     let json = Checker { root, report }.value(root, file, "");
     Item { path: String::new(), name: "", node: file, json }
 }
 
-/// Checks a file of many parts.
+/// Checks a file of several parts.
 pub(crate) fn document<'a>(root: &Json, file: Node<'a>, report: &mut Report) -> Document<'a> {
     let mut checker = Checker { root, report };
     checker.missing_keys(root, file, THE_FILE);
@@ -132,9 +132,9 @@ struct Checker<'c> {
 }
 
 impl<'c> Checker<'c> {
-    /// Checks a value and gives it as JSON, without unknown keys; `None` if its type does not fit.
-    /// A number out of range is reported and passed on, so that later checks find what else is
-    /// wrong.
+    /// Checks a value and converts it to JSON without unknown keys; `None` if its type does not
+    /// match. A number out of range is reported and still returned, so that later checks can find
+    /// other errors.
     fn value(&mut self, schema: &'c Json, node: Node, path: &str) -> Option<Json> {
         let all = alternatives(self.root, schema);
         let fits = |one: &&&Json| {
@@ -280,7 +280,7 @@ impl<'c> Checker<'c> {
         complete.then_some(Json::Object(table))
     }
 
-    /// Which of several table schemas is meant: by `type`, or else by a key that only it has.
+    /// Selects one of several table schemas by `type`, or else by a key that only one of them has.
     fn variant(
         &mut self,
         whole: &Json,
@@ -331,7 +331,7 @@ impl<'c> Checker<'c> {
         found
     }
 
-    /// The schema under a key, or a report that there is none.
+    /// The schema of a key; reports an unknown key.
     fn property(
         &mut self,
         schema: &'c Json,
@@ -351,7 +351,7 @@ impl<'c> Checker<'c> {
         found
     }
 
-    /// Reports required keys that are not there; true if there are none.
+    /// Reports missing required keys; returns true if there are none.
     fn missing_keys(&mut self, schema: &Json, node: Node, place: &str) -> bool {
         let required = schema["required"].as_array().into_iter().flatten();
         let missing: Vec<_> =
@@ -370,7 +370,7 @@ fn description(schema: &Json) -> Option<String> {
     schema["description"].as_str().map(|text| text.replace('\n', " "))
 }
 
-/// The nearest number of a range that one lies beyond by a rounding error.
+/// The nearest number in a schema's range, if `number` is out of it by a rounding error.
 fn rounded(schema: &Json, number: f64) -> Option<f64> {
     if in_range(schema, number) || has_type(schema, "integer") {
         return None;

@@ -173,7 +173,7 @@ fn what_cannot_be_rendered_takes_no_picture_away() {
     let number = worker.scene(Arc::new(scene), wish.clone());
     whole(&worker, number, 4);
     for (device, words) in
-        [(Wanted::Named("nonesuch".into()), "there is: "), (Wanted::Software, "--device cpu")]
+        [(Wanted::Named("nonesuch".into()), "available: "), (Wanted::Software, "--device cpu")]
     {
         wish.device = device;
         // which the GPU engine does not have

@@ -134,7 +134,7 @@ fn files_that_change_keep_to_the_root_and_the_limits() {
     let mut session = session_within(&root, Allowance::default());
     ticked(&mut session, "the picture", done);
     fs::write(&file, textured("../grid.png")).unwrap();
-    ticked(&mut session, "the scene", |s| (s.notice == "the scene was read anew").then_some(()));
+    ticked(&mut session, "the scene", |s| (s.notice == "the scene was reloaded").then_some(()));
     assert_eq!(session.trouble, None);
 }
 
@@ -143,7 +143,7 @@ fn pictures_and_scenes_are_saved() {
     let folder = folder("saving");
     let mut session = session(&folder);
     session.act(Action::SavePicture);
-    assert!(session.notice.contains("still to come") && !folder.join("picture.exr").exists());
+    assert!(session.notice.contains("not ready yet") && !folder.join("picture.exr").exists());
     ticked(&mut session, "the picture", done);
     session.act(Action::Orbit(0.3, 0.1));
     session.act(Action::Photons(0.5));

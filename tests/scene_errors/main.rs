@@ -246,7 +246,7 @@ fn one_fault_in_a_shape() {
         ),
         (
             "type = \"plane\"\npoint = [0, 0, 0]\nnormal = [0, 1, 0]\nmaterial = \"grey\"\nemission = 1",
-            (14, 12, "cannot shine"),
+            (14, 12, "cannot emit"),
         ),
         (
             "type = \"box\"\nmin = [0, 0, 0]\nmax = [1, 0, 1]\nmaterial = \"grey\"",
@@ -397,7 +397,7 @@ fn warnings() {
     let found = warnings(&format!(
         "{HEAD}[[lights]]\ntype = \"point\"\nposition = [0, 0, 0]\nintensity = 0\n"
     ));
-    assert_eq!(differs(&found, &[(9, 13, "gives no light")]), None);
+    assert_eq!(differs(&found, &[(9, 13, "emits no light")]), None);
 }
 
 /// An alpha channel is not used, and a warning says so where it would matter: not where it is 1

@@ -199,9 +199,11 @@ fn formats_by_content() {
         }
     }
     assert_eq!(texels(&folder, "a.rgbe").0, vec![[0.5, 0.25, 0.125]; 256]);
-    for (bytes, part) in
-        [(b"" as &[u8], "it is empty"), (b"GIF89a", "it is a gif file"), (b"hello", "its content")]
-    {
+    for (bytes, part) in [
+        (b"" as &[u8], "it is empty"),
+        (b"GIF89a", "it is a gif file"),
+        (b"hello", "not a supported image"),
+    ] {
         std::fs::write(folder.join("b.png"), bytes).unwrap();
         let text = refused(&folder, "b.png");
         assert!(text.contains(part) && text.contains("png, jpg, hdr or exr"), "{text}");
