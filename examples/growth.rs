@@ -202,7 +202,7 @@ fn measure(
     let devices = device::list();
     let (device, _) = device::pick(&device::parse(device), &devices)?;
     let before = spent(begun);
-    let packed = caustica::low_level::pack::pack(
+    let packed = caustica::low_level::pilots::prepare(
         &loaded.scene,
         loaded.scene.film.width,
         loaded.scene.film.height,

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use caustica::low_level::device::Wanted;
 use caustica::low_level::gpu::{AdapterChoice, GpuEngine};
-use caustica::low_level::pack::pack;
+use caustica::low_level::pilots::prepare;
 use caustica::low_level::plan::Plan;
 use caustica::low_level::preview::frame::RenderRequest;
 use caustica::low_level::preview::orbit::orbit;
@@ -78,9 +78,9 @@ fn renewal(file: &str) -> Result<String, Box<dyn Error>> {
     let loaded = scene::load(file.as_ref())?;
     let film = loaded.scene.film;
     let begun = Instant::now();
-    let packed = pack(&loaded.scene, film.width, film.height)?;
+    let packed = prepare(&loaded.scene, film.width, film.height)?;
     let mut times = vec![begun.elapsed()];
-    let plan = Plan::new(&packed, &loaded.settings).on(&film);
+    let plan = Plan::probed(&packed, &loaded.settings).on(&film);
     let begun = Instant::now();
     let engine = GpuEngine::new(&AdapterChoice::Software, &packed, plan.clone())?;
     times.push(begun.elapsed());

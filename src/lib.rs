@@ -89,7 +89,7 @@ pub mod low_level;
 #[allow(unused_imports)]
 use low_level::{
     accel, bench, camera, checkpoint, cpu, device, double, engine, film, geometry, gpu, kernels,
-    lights, materials, math, memory, pack, plan, prepare, probe, real, render, shapes, storage,
+    lights, materials, math, memory, pack, pilots, plan, prepare, real, render, shapes, storage,
     study, tables, telemetry, validation,
 };
 

@@ -38,6 +38,8 @@ pub mod math;
 pub mod memory;
 #[path = "pack/mod.rs"]
 pub mod pack;
+#[path = "pilots/mod.rs"]
+pub mod pilots;
 #[path = "plan/mod.rs"]
 pub mod plan;
 #[path = "prepare/mod.rs"]
@@ -45,8 +47,6 @@ pub mod prepare;
 #[cfg(feature = "preview")]
 #[path = "preview/mod.rs"]
 pub mod preview;
-#[path = "probe.rs"]
-pub mod probe;
 #[path = "real.rs"]
 pub mod real;
 #[path = "render/mod.rs"]

@@ -16,7 +16,7 @@ use caustica::low_level::kernels::records::{
 };
 use caustica::low_level::kernels::resolve::{half_weight, resolve};
 use caustica::low_level::math::oct_encode;
-use caustica::low_level::pack::pack;
+use caustica::low_level::pilots::prepare;
 use caustica::low_level::plan::Plan;
 use caustica::low_level::render::{Ending, Stop, render};
 use caustica::low_level::scene;
@@ -43,8 +43,8 @@ impl Random {
 fn one_pixel() -> Plan {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/cornell.toml");
     let scene = scene::load(&path).unwrap().scene;
-    Plan::new(
-        &pack(&scene, 1, 1).unwrap(),
+    Plan::probed(
+        &prepare(&scene, 1, 1).unwrap(),
         &RenderSettings { photons: 1, ..RenderSettings::default() },
     )
 }
@@ -219,10 +219,10 @@ fn promised(
     spoil: fn(&mut PixelError),
 ) -> [Vec<Promise>; 2] {
     let (scene, truth) = reference(name);
-    let packed = pack(&scene, scene.film.width, scene.film.height).unwrap();
+    let packed = prepare(&scene, scene.film.width, scene.film.height).unwrap();
     let mut found = [Vec::new(), Vec::new()];
     for seed in 0..20 {
-        let plan = Plan::new(&packed, &RenderSettings { seed, ..settings.clone() });
+        let plan = Plan::probed(&packed, &RenderSettings { seed, ..settings.clone() });
         let mut engine = CpuEngine::new(packed.clone(), plan);
         (0..settings.passes).for_each(|_| {
             engine.pass().unwrap();
@@ -326,8 +326,8 @@ fn glints_seen_once_speak_for_those_unseen() {
 fn a_render_reaches_its_target() {
     let (scene, truth) = reference("mesh");
     let settings = RenderSettings { photons: 8192, ..RenderSettings::default() };
-    let packed = pack(&scene, scene.film.width, scene.film.height).unwrap();
-    let plan = Plan::new(&packed, &settings);
+    let packed = prepare(&scene, scene.film.width, scene.film.height).unwrap();
+    let plan = Plan::probed(&packed, &settings);
     let stop = Stop { passes: u32::MAX, time: None, target_error: Some(0.3) };
     let never = AtomicBool::new(false);
     let outcome = render(&mut CpuEngine::new(packed, plan), stop, &never, &mut |_| ()).unwrap();

@@ -13,7 +13,8 @@ use caustica::low_level::film::exr_file::Channel;
 use caustica::low_level::film::{ErrorMap, Picture};
 use caustica::low_level::gpu::{self, GpuEngine};
 use caustica::low_level::memory::{Memory, Part, total};
-use caustica::low_level::pack::{Packed, pack};
+use caustica::low_level::pack::Packed;
+use caustica::low_level::pilots::prepare;
 use caustica::low_level::plan::{BufferPlace, Plan, scene_bytes};
 use caustica::low_level::scene::settings::{Method, RadiusRule, RenderSettings};
 use caustica::low_level::scene::{self, Aovs};
@@ -45,8 +46,8 @@ fn planned((name, _, change, aovs): (&str, &str, Change, &str)) -> (Packed, Plan
     film.aovs = if aovs.is_empty() { Aovs::default() } else { Aovs::parse(aovs).unwrap() };
     loaded.settings.photons = 4000;
     change(&mut loaded.settings);
-    let packed = pack(&loaded.scene, SIZE.0, SIZE.1).unwrap();
-    let plan = Plan::new(&packed, &loaded.settings).on(&loaded.scene.film);
+    let packed = prepare(&loaded.scene, SIZE.0, SIZE.1).unwrap();
+    let plan = Plan::probed(&packed, &loaded.settings).on(&loaded.scene.film);
     (packed, plan)
 }
 
@@ -171,8 +172,8 @@ fn batches_are_the_same_in_tiles() {
 fn budgets_are_kept() {
     let mut loaded = scene::load("scenes/cornell.toml".as_ref()).unwrap();
     (loaded.scene.film.width, loaded.scene.film.height) = (256, 192);
-    let packed = pack(&loaded.scene, 256, 192).unwrap();
-    let plan = Plan::new(&packed, &loaded.settings).on(&loaded.scene.film);
+    let packed = prepare(&loaded.scene, 256, 192).unwrap();
+    let plan = Plan::probed(&packed, &loaded.settings).on(&loaded.scene.film);
     let scene = scene_bytes(&packed.scene);
     for place in
         [BufferPlace::Program { saves: false }, BufferPlace::Program { saves: true }, ON_DEVICE]
@@ -229,8 +230,8 @@ fn the_setting_to_change_is_named() {
         (film.width, film.height) = (width, height);
         film.aovs = if aovs.is_empty() { Aovs::default() } else { Aovs::parse(aovs).unwrap() };
         change(&mut loaded.settings);
-        let packed = pack(&loaded.scene, width, height).unwrap();
-        let plan = Plan::new(&packed, &loaded.settings).on(&loaded.scene.film);
+        let packed = prepare(&loaded.scene, width, height).unwrap();
+        let plan = Plan::probed(&packed, &loaded.settings).on(&loaded.scene.film);
         let memory = Memory { budget: Some(1_000_000), same_batches: true, ..Memory::default() };
         plan.within(scene_bytes(&packed.scene), ON_DEVICE, &memory).unwrap_err().to_string()
     };

@@ -8,7 +8,8 @@ use caustica::low_level::film::{Picture, Rejections};
 use caustica::low_level::gpu::GpuEngine;
 use caustica::low_level::kernels::records::*;
 use caustica::low_level::kernels::resolve::resolve;
-use caustica::low_level::pack::{Packed, pack};
+use caustica::low_level::pack::Packed;
+use caustica::low_level::pilots::prepare;
 use caustica::low_level::plan::Plan;
 use caustica::low_level::scene;
 use caustica::low_level::scene::settings::{Direct, Method, Radius, RenderSettings};
@@ -52,7 +53,7 @@ intensity = 1.0
 
 fn packed(text: &str) -> Packed {
     let scene = scene::parse("scene.toml".as_ref(), text.as_bytes()).expect("a scene").scene;
-    pack(&scene, scene.film.width, scene.film.height).expect("packed")
+    prepare(&scene, scene.film.width, scene.film.height).expect("packed")
 }
 
 fn settings(direct: Direct) -> RenderSettings {
@@ -74,7 +75,7 @@ fn rendered(mut engine: impl Engine, passes: u32) -> (Picture, Rejections) {
 
 /// Renders on both engines, which must give the same bits and counts; the picture must be finite.
 fn on_both(packed: &Packed, settings: &RenderSettings) -> (Picture, Rejections) {
-    let plan = Plan::new(packed, settings);
+    let plan = Plan::probed(packed, settings);
     let choice = software::software();
     let cpu = rendered(CpuEngine::new(packed.clone(), plan.clone()), settings.passes);
     let driver =
@@ -156,7 +157,7 @@ fn paths_are_counted() {
     let mut scene = packed(SCENE);
     light(&mut scene, caustica::low_level::tables::LIGHT_POINT).color = Vec3::splat(f32::NAN);
     let settings = RenderSettings { method: Method::Path, ..settings(Direct::Sampled) };
-    let plan = Plan::new(&scene, &settings);
+    let plan = Plan::probed(&scene, &settings);
     let (picture, r) = rendered(CpuEngine::new(scene, plan), 3);
     assert_eq!(picture.not_finite(), 0);
     assert!(r.eye_path > 0 && r.total() == r.eye_path, "{r:?}");

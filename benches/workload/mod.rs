@@ -4,7 +4,8 @@
 
 #![allow(dead_code)] // each program uses its part
 
-use caustica::low_level::pack::{Packed, pack};
+use caustica::low_level::pack::Packed;
+use caustica::low_level::pilots::prepare;
 use caustica::low_level::real::{ToDouble, ToReal};
 use caustica::low_level::scene::{self, Mesh, ShapeKind, Triangle};
 use caustica::low_level::shapes::ray::Ray;
@@ -27,14 +28,14 @@ pub fn parsed(shape: &str) -> scene::Scene {
 
 /// The tables of a scene with one shape.
 pub fn packed(shape: &str) -> Packed {
-    pack(&parsed(shape), 16, 16).unwrap_or_else(|e| panic!("{e}"))
+    prepare(&parsed(shape), 16, 16).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// The tables of the displaced sphere with 2 (`nu`) (`nv` - 1) triangles.
 pub fn displaced_sphere(nu: u32, nv: u32) -> Packed {
     let mut scene = parsed("type = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1");
     scene.shapes[0].kind = ShapeKind::Mesh(mesh(nu, nv));
-    pack(&scene, 16, 16).unwrap_or_else(|e| panic!("{e}"))
+    prepare(&scene, 16, 16).unwrap_or_else(|e| panic!("{e}"))
 }
 
 fn mesh(nu: u32, nv: u32) -> Mesh {

@@ -7,7 +7,7 @@ use caustica::low_level::accel::tessellate::{Fineness, tessellate};
 use caustica::low_level::checkpoint::Checkpoint;
 use caustica::low_level::prepare::limits;
 use caustica::low_level::scene::{self, Allowance, Loaded, SceneErrors};
-use caustica::low_level::{checkpoint, pack, plan};
+use caustica::low_level::{checkpoint, pilots, plan};
 use xxhash_rust::xxh3::xxh3_128;
 
 use crate::mutate::Mutator;
@@ -189,9 +189,9 @@ fn warnings(loaded: Loaded) -> String {
 
 fn plan(loaded: &Loaded) -> String {
     let film = loaded.scene.film;
-    match pack::pack(&loaded.scene, film.width, film.height) {
+    match pilots::prepare(&loaded.scene, film.width, film.height) {
         Ok(packed) if u64::from(film.width) * u64::from(film.height) < 1 << 24 => {
-            let plan = plan::Plan::new(&packed, &loaded.settings);
+            let plan = plan::Plan::probed(&packed, &loaded.settings);
             let _ = (plan.buffers(), plan.automatic_radius());
             String::new()
         }

@@ -151,7 +151,7 @@ pub fn on_gpu(
     settings: &RenderSettings,
     passes: u32,
 ) -> Result<Costs, EngineError> {
-    let mut engine = GpuEngine::measured(choice, packed, Plan::new(packed, settings))?;
+    let mut engine = GpuEngine::measured(choice, packed, Plan::probed(packed, settings))?;
     let compiled = engine.compile_seconds().clone();
     let mut kernels: BTreeMap<&'static str, KernelCost> = compiled
         .iter()
@@ -177,7 +177,7 @@ pub fn on_cpu(
     settings: &RenderSettings,
     passes: u32,
 ) -> Result<Costs, EngineError> {
-    let plan = Plan::new(&packed, settings);
+    let plan = Plan::probed(&packed, settings);
     let mut engine = CpuEngine::new(packed, plan);
     let mut pass = f64::INFINITY;
     for _ in 0..passes.max(1) {
@@ -192,7 +192,7 @@ pub fn on_cpu(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pack::pack;
+    use crate::pilots::prepare;
     use crate::scene;
 
     #[test]
@@ -201,7 +201,7 @@ mod tests {
         (loaded.scene.film.width, loaded.scene.film.height) = (24, 16);
         loaded.settings.photons = 500;
         loaded.settings.indirect_radius = Some(1.0);
-        let packed = pack(&loaded.scene, 24, 16).unwrap();
+        let packed = prepare(&loaded.scene, 24, 16).unwrap();
         let features = Features::of(&packed.scene, &loaded.settings);
         let missing = unused(features);
         assert!(missing.len() > 5, "{missing:?}");

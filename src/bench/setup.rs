@@ -10,7 +10,8 @@ use crate::double;
 use crate::engine::{Engine, EngineError};
 use crate::gpu::program::Compiling;
 use crate::gpu::{AdapterChoice, GpuEngine};
-use crate::pack::{Packed, pack};
+use crate::pack::Packed;
+use crate::pilots::prepare;
 use crate::plan::Plan;
 use crate::scene::Scene;
 use crate::scene::settings::RenderSettings;
@@ -76,16 +77,17 @@ pub fn ready(
 ) -> Result<Ready, DeviceError> {
     device::check_points(device, scene, settings)?;
     let (width, height) = (scene.film.width, scene.film.height);
-    let (packed, pack_seconds) = timed(|| pack(scene, width, height).map_err(EngineError::from))?;
-    let (plan, plan_seconds) = timed(|| Ok(Plan::new(&packed, settings)))?;
+    let (packed, pack_seconds) =
+        timed(|| prepare(scene, width, height).map_err(EngineError::from))?;
+    let (plan, plan_seconds) = timed(|| Ok(Plan::probed(&packed, settings)))?;
     let mut buffers: Vec<_> =
         plan.buffers().into_iter().map(|(b, bytes)| (b.name(), bytes)).collect();
     let choice = AdapterChoice::Named(device.name.clone());
     let (runner, engine) = timed(|| match device.kind {
         DeviceKind::Cpu => Ok(Runner::Cpu(Box::new(CpuEngine::new(packed.clone(), plan.clone())))),
         DeviceKind::CpuDouble => {
-            let packed = double::pack::pack(scene, width, height)?;
-            let plan = double::plan::Plan::new(&packed, settings);
+            let packed = double::pilots::prepare(scene, width, height)?;
+            let plan = double::plan::Plan::probed(&packed, settings);
             buffers = plan.buffers().into_iter().map(|(b, bytes)| (b.name(), bytes)).collect();
             Ok(Runner::Cpu(Box::new(double::cpu::CpuEngine::new(packed, plan))))
         }

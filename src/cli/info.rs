@@ -5,7 +5,8 @@ use std::path::PathBuf;
 
 use caustica::low_level::engine::EngineError;
 use caustica::low_level::memory::{Memory, Part, total};
-use caustica::low_level::pack::{Packed, pack};
+use caustica::low_level::pack::Packed;
+use caustica::low_level::pilots::prepare;
 use caustica::low_level::plan::features::Feature;
 use caustica::low_level::plan::{Buffer, BufferPlace, Kernel, Plan, scene_bytes, scene_tables};
 use caustica::low_level::scene::settings::Method;
@@ -116,8 +117,8 @@ pub struct InfoReport {
 pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     let (scene, settings) = load(&arguments.scene, &arguments.overrides)?;
     let film = scene.film;
-    let packed = pack(&scene, film.width, film.height).map_err(EngineError::from)?;
-    let plan = Plan::new(&packed, &settings);
+    let packed = prepare(&scene, film.width, film.height).map_err(EngineError::from)?;
+    let plan = Plan::probed(&packed, &settings);
     let memory = [("on a GPU", ON_GPU), ("on the CPU", BufferPlace::Program { saves: false })]
         .map(|(name, place)| (name, Need::of(&plan, &packed, place, &arguments.budget)));
     if arguments.json {

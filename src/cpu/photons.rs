@@ -149,7 +149,7 @@ pub fn trace_photons(
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::pack::pack;
+    use super::super::super::pilots::prepare;
     use super::super::super::plan::Plan;
     use super::*;
     use crate::scene;
@@ -163,9 +163,9 @@ mod tests {
             let path = format!("{}/scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
             let loaded = scene::load(path.as_ref()).unwrap_or_else(|errors| panic!("{errors:?}"));
             let scene = &loaded.scene;
-            let packed =
-                pack(scene, scene.film.width, scene.film.height).unwrap_or_else(|e| panic!("{e}"));
-            let plan = Plan::new(&packed, &loaded.settings);
+            let packed = prepare(scene, scene.film.width, scene.film.height)
+                .unwrap_or_else(|e| panic!("{e}"));
+            let plan = Plan::probed(&packed, &loaded.settings);
             let dispatch = plan.dispatch(0);
             let trace = |dispatch: &Dispatch, side_by_side| {
                 let (scene, list) = (&packed.scene, &mut RecordList::default());

@@ -11,7 +11,8 @@ use crate::engine::{Engine, EngineError, Space};
 use crate::gpu::{self, AdapterChoice, AdapterKind, AdapterSummary, GpuEngine};
 use crate::kernels::records::VisiblePoint;
 use crate::memory::{self, Memory, can_be_had, total};
-use crate::pack::{Packed, pack};
+use crate::pack::Packed;
+use crate::pilots::{self, prepare, probe};
 use crate::plan::{self, BufferPlace, Plan};
 use crate::prepare::radius::Automatic;
 use crate::scene::Scene;
@@ -249,7 +250,7 @@ fn start(
 ) -> Result<Opened, EngineError> {
     check_points(device, scene, settings)?;
     let film = &scene.film;
-    let packed = pack(scene, film.width, film.height)?;
+    let packed = prepare(scene, film.width, film.height)?;
     let warnings = packed.warnings(scene, settings);
     let opened = |engine, settings, radius, space, cut| Opened {
         warnings: warnings.clone(),
@@ -278,7 +279,7 @@ fn start(
             cut,
         ));
     }
-    let plan = Plan::new(&packed, settings).on(film).within(
+    let plan = Plan::new(&packed, settings, probe(&packed, settings)).on(film).within(
         plan::scene_bytes(&packed.scene),
         place(device.kind, memory),
         memory,
@@ -353,12 +354,13 @@ pub fn in_double(
 ) -> Result<(double::pack::Packed, double::plan::Plan), EngineError> {
     let film = &scene.film;
     // what is learned or left open follows the f32 engine, since both are to render the same
-    let packed = double::pack::pack_like(scene, film.width, film.height, &single.learned())?;
+    let packed =
+        double::pilots::prepare_like(scene, film.width, film.height, &pilots::learned(single))?;
     let settings = &match settings.radius {
-        Radius::Auto => Plan::new(single, settings).settings,
+        Radius::Auto => Plan::probed(single, settings).settings,
         _ => settings.clone(),
     };
-    let plan = double::plan::Plan::new(&packed, settings).on(film);
+    let plan = double::plan::Plan::probed(&packed, settings).on(film);
     Ok((packed, plan))
 }
 

@@ -53,10 +53,10 @@ pub mod lights;
 pub mod materials;
 #[path = "../pack/mod.rs"]
 pub mod pack;
+#[path = "../pilots/mod.rs"]
+pub mod pilots;
 #[path = "../plan/mod.rs"]
 pub mod plan;
-#[path = "../probe.rs"]
-pub mod probe;
 #[path = "../shapes/mod.rs"]
 pub mod shapes;
 #[path = "../tables.rs"]

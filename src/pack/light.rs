@@ -1,10 +1,10 @@
 //! Lights: strengths in scene units, and sampling distributions.
 
-use super::discs::cumulative;
 use super::real::{Real, ToReal, Vec2, Vec3};
 use super::shape::Emitter;
 use super::shapes::revolution::ring_point;
 use super::tables::*;
+use crate::prepare::distribution::cumulative;
 use crate::prepare::learned::LightSource;
 use crate::prepare::normalize::Normalization;
 use crate::scene::{self, Environment};

@@ -310,8 +310,8 @@ mod tests {
         let mut loaded = crate::scene::load("scenes/cornell.toml".as_ref()).unwrap();
         (loaded.scene.film.width, loaded.scene.film.height) = (8, 8);
         loaded.settings.photons = 100;
-        let packed = crate::pack::pack(&loaded.scene, 8, 8).unwrap();
-        let plan = Plan::new(&packed, &loaded.settings);
+        let packed = crate::pilots::prepare(&loaded.scene, 8, 8).unwrap();
+        let plan = Plan::probed(&packed, &loaded.settings);
         for commands in plan.commands(0, plan.batch_photons) {
             let cleared = commands.iter().filter_map(|command| match command {
                 Command::ClearGathered { .. } => Some(Buffer::Gathered),

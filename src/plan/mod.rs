@@ -17,14 +17,13 @@ mod scale;
 use super::kernels::bytes::{FILM_BYTES, STATISTICS_BYTES};
 use super::kernels::records::FilmPixel;
 use super::pack::{Objects, Packed};
-use super::probe::{Probe, probe};
+use super::pilots::{Probe, probe};
 use super::real::Real;
 use crate::engine::{Cancel, EngineError, State};
 use crate::film::{ErrorMap, Picture, Rejections};
 use crate::prepare::radius::Automatic;
 use crate::scene::settings::{Method, Radius, RenderSettings};
 use crate::scene::{Aov, Aovs, Film};
-use crate::telemetry::stage::stage;
 use features::{Feature, Features};
 use film_readback::Readout;
 use glam::DVec3;
@@ -98,11 +97,14 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// Plans a render.
-    pub fn new(packed: &Packed, settings: &RenderSettings) -> Self {
-        let _stage = stage("plan");
+    /// Probes the scene and plans a render.
+    pub fn probed(packed: &Packed, settings: &RenderSettings) -> Self {
+        Self::new(packed, settings, probe(packed, settings))
+    }
+
+    /// Plans a render. `probe` holds the measurements of the scene with these settings.
+    pub fn new(packed: &Packed, settings: &RenderSettings, probe: Probe) -> Self {
         let features = Features::of(&packed.scene, settings);
-        let probe = probe(packed, settings);
         let chosen =
             probe.automatic.map_or(settings.radius, |automatic| Radius::Pixels(automatic.pixels));
         let wider = settings.indirect_radius.or(probe.automatic.map(|a| a.indirect)).unwrap_or(1.0);

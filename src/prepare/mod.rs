@@ -5,6 +5,7 @@ use super::math;
 
 pub mod bodies;
 pub mod contact;
+pub mod distribution;
 pub mod learned;
 pub mod limits;
 pub mod normalize;

@@ -149,7 +149,8 @@ fn make(
     let ground = ground.settled(&wish.camera, &wish.film)?;
     device::check_points(device, ground.scene(), &wish.settings)?;
     let packed = ground.packed();
-    let plan = Plan { cancel: cancel.clone(), ..Plan::new(packed, &wish.settings).on(&wish.film) };
+    let plan =
+        Plan { cancel: cancel.clone(), ..Plan::probed(packed, &wish.settings).on(&wish.film) };
     let setup = Setup {
         device: device.name.clone(),
         why,

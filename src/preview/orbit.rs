@@ -132,7 +132,7 @@ pub fn depth_at(packed: &Packed, x: f64, y: f64) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pack::pack;
+    use crate::pilots::prepare;
     use crate::scene;
     use std::f64::consts::{PI, TAU};
 
@@ -246,7 +246,7 @@ mod tests {
             shapes = [{ type = "sphere", center = [7.0, 1.0, 995.0], radius = 2.0, material = "white" }]
         "#;
         let scene = scene::parse("ball.toml".as_ref(), text.as_bytes()).unwrap().scene;
-        let packed = pack(&scene, 64, 32).unwrap();
+        let packed = prepare(&scene, 64, 32).unwrap();
         let depth = depth_at(&packed, 0.5, 0.5).unwrap();
         assert!((depth - 3.0).abs() < 1e-5, "{depth}");
         assert_eq!(depth_at(&packed, 0.01, 0.5), None, "there is no other picture");

@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use crate::engine::EngineError;
-use crate::pack::{Packed, pack};
+use crate::pack::Packed;
+use crate::pilots::{prepare, relearn};
 use crate::scene::{Camera, Film, Scene};
 
 /// A scene and its tables. The kd-tree does not depend on the camera, but the results of the pilot
@@ -16,7 +17,7 @@ pub struct Ground {
 impl Ground {
     /// Packs a scene.
     pub fn new(scene: Arc<Scene>) -> Result<Self, EngineError> {
-        let packed = pack(&scene, scene.film.width, scene.film.height)?;
+        let packed = prepare(&scene, scene.film.width, scene.film.height)?;
         Ok(Self { packed: Arc::new(packed), scene })
     }
 
@@ -51,7 +52,7 @@ impl Ground {
         (own.camera, own.film) = (*camera, *film);
         let mut ground = Self { scene, ..self.copy() };
         ground.stand(camera, film);
-        if Arc::make_mut(&mut ground.packed).learn_again(&ground.scene) {
+        if relearn(Arc::make_mut(&mut ground.packed), &ground.scene) {
             return Ok(ground);
         }
         Self::new(ground.scene)

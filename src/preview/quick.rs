@@ -79,7 +79,7 @@ impl Quick {
         let film = divisor.film(&wish.film);
         ground.stand(&wish.camera, &film);
         let packed = ground.packed();
-        let plan = Plan::new(packed, &divisor.settings(&wish.settings)).on(&film);
+        let plan = Plan::probed(packed, &divisor.settings(&wish.settings)).on(&film);
         let plan = Plan { cancel: cancel.clone(), ..plan };
         let setup = Setup {
             device: "cpu".to_owned(),

@@ -16,7 +16,8 @@ use caustica::low_level::engine::Engine;
 use caustica::low_level::film::exr_file::{Channel, Numbers};
 use caustica::low_level::film::{Picture, Plane};
 use caustica::low_level::gpu::GpuEngine;
-use caustica::low_level::pack::{Packed, pack};
+use caustica::low_level::pack::Packed;
+use caustica::low_level::pilots::prepare;
 use caustica::low_level::plan::layers::NO_DEPTH;
 use caustica::low_level::plan::{Buffer, Plan, Stage};
 use caustica::low_level::scene::{Aovs, Loaded, parse};
@@ -59,8 +60,8 @@ fn loaded(settings: &str, rest: &str) -> Loaded {
 
 fn planned(loaded: &Loaded) -> (Packed, Plan) {
     let film = &loaded.scene.film;
-    let packed = pack(&loaded.scene, film.width, film.height).unwrap();
-    let plan = Plan::new(&packed, &loaded.settings).on(film);
+    let packed = prepare(&loaded.scene, film.width, film.height).unwrap();
+    let plan = Plan::probed(&packed, &loaded.settings).on(film);
     (packed, plan)
 }
 
@@ -344,8 +345,8 @@ fn both_precisions_agree() {
     );
     let loaded = loaded("", &rest);
     let single = Seen::of("", &rest, 2);
-    let packed = double::pack::pack(&loaded.scene, 24, 16).unwrap();
-    let plan = double::plan::Plan::new(&packed, &loaded.settings).on(&loaded.scene.film);
+    let packed = double::pilots::prepare(&loaded.scene, 24, 16).unwrap();
+    let plan = double::plan::Plan::probed(&packed, &loaded.settings).on(&loaded.scene.film);
     let double = Seen::by(double::cpu::CpuEngine::new(packed, plan), 2);
     for (a, b) in single.layers.iter().zip(&double.layers).filter(|(a, _)| a.name != "photons.Y") {
         let unlike =

@@ -70,7 +70,7 @@ fn what_was_done_before_stays() {
 fn a_long_pass_ends_soon() {
     let (_, settings, rest) = SCENES[0];
     let (packed, plan) = planned(settings, rest);
-    let long = Plan::new(&packed, &photons(100_000_000, &plan));
+    let long = Plan::probed(&packed, &photons(100_000_000, &plan));
     for (name, make) in ENGINES {
         let cancel = Cancel::default();
         let mut engine = make(&packed, Plan { cancel: cancel.clone(), ..long.clone() });

@@ -157,7 +157,7 @@ fn engines_agree_on_every_material() {
                 *material = example;
             }
             packed.scene.materials[0] = example;
-            let plan = Plan::new(&packed, &plan.settings);
+            let plan = Plan::probed(&packed, &plan.settings);
             let difference = difference(&on_cpu(&packed, &plan), &on_driver(&packed, &plan));
             assert!(difference.is_none(), "{} {k}: {difference:?}", bsdf.name());
         }

@@ -2,7 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use caustica::low_level::pack::{Packed, pack};
+use caustica::low_level::pack::Packed;
+use caustica::low_level::pilots::prepare;
 use caustica::low_level::plan::Plan;
 use caustica::low_level::scene::{Aovs, Loaded, parse};
 
@@ -463,7 +464,7 @@ pub fn loaded_at((width, height): (u32, u32), settings: &str, rest: &str) -> Loa
 /// The same with a picture of another size.
 pub fn planned_at(size: (u32, u32), settings: &str, rest: &str) -> (Packed, Plan) {
     let loaded = loaded_at(size, settings, rest);
-    let packed = pack(&loaded.scene, loaded.scene.film.width, loaded.scene.film.height).unwrap();
-    let plan = Plan::new(&packed, &loaded.settings);
+    let packed = prepare(&loaded.scene, loaded.scene.film.width, loaded.scene.film.height).unwrap();
+    let plan = Plan::probed(&packed, &loaded.settings);
     (packed, plan)
 }

@@ -6,7 +6,7 @@ use caustica::low_level::film::exr_file::Channel;
 use caustica::low_level::film::{ErrorMap, Picture, Rejections};
 use caustica::low_level::gpu::GpuEngine;
 use caustica::low_level::memory::Memory;
-use caustica::low_level::pack::pack;
+use caustica::low_level::pilots::prepare;
 use caustica::low_level::plan::Plan;
 use caustica::low_level::scene::settings::RenderSettings;
 use caustica::low_level::scene::{Loaded, Scene};
@@ -15,8 +15,8 @@ use super::engine::{sound, successor};
 use super::{Copies, begin, difference, loaded, software, steps};
 
 fn on_driver(scene: &Scene, settings: &RenderSettings) -> GpuEngine {
-    let packed = pack(scene, scene.film.width, scene.film.height).unwrap();
-    let plan = Plan::new(&packed, settings).on(&scene.film);
+    let packed = prepare(scene, scene.film.width, scene.film.height).unwrap();
+    let plan = Plan::probed(&packed, settings).on(&scene.film);
     GpuEngine::new(&software::software(), &packed, plan).unwrap()
 }
 

@@ -17,8 +17,10 @@ use caustica::low_level::materials::metal::{ggx_brdf, ggx_pdf, ggx_visible_norma
 use caustica::low_level::math::mirrored;
 use caustica::low_level::math::rng::{Rng, rng_new, rng_next};
 use caustica::low_level::math::sampling::*;
-use caustica::low_level::pack::{Packed, pack};
-use caustica::low_level::shapes::ray::{NONE, Ray};
+use caustica::low_level::pack::Packed;
+use caustica::low_level::pilots::prepare;
+use caustica::low_level::shapes::ray::Ray;
+use caustica::low_level::shapes::table::NONE;
 use glam::{DVec3, Vec2, Vec3};
 
 use super::lab::*;
@@ -174,7 +176,7 @@ fn metal() {
 fn packed(light: &str) -> Packed {
     let head = "version = 1\n[camera]\nposition = [0, -2, 0]\ntarget = [0, 0, 0]\nup = [1, 0, 0]\nfov = 40.0\n\
                 [materials.m]\ntype = \"diffuse\"\nreflectance = 0.0\n";
-    pack(&parse(&format!("{head}{light}")), 8, 8).unwrap()
+    prepare(&parse(&format!("{head}{light}")), 8, 8).unwrap()
 }
 
 /// The scene-space point of a world point.
@@ -288,7 +290,7 @@ fn choice_of_lights() {
                 [[shapes]]\ntype = \"rectangle\"\norigin = [-20, 0, 3]\nu = [40, 0, 0]\nv = [0, 0, -6]\n\
                 material = \"m\"\n";
     let text = format!("{text}{}", (0..10).map(lamp).collect::<String>());
-    let packed = pack(&parse(&text), 64, 64).unwrap();
+    let packed = prepare(&parse(&text), 64, 64).unwrap();
     let scene = &packed.scene;
     assert!(scene.cells.len() > 1);
     for index in 0..10u32 {

@@ -7,7 +7,8 @@ use caustica::low_level::geometry::intersect::intersect_scene;
 use caustica::low_level::geometry::surface::{Surface, surface_at};
 use caustica::low_level::lights::light::eval_environment;
 use caustica::low_level::materials::shading::reflectance_at;
-use caustica::low_level::pack::{Packed, pack};
+use caustica::low_level::pack::Packed;
+use caustica::low_level::pilots::prepare;
 use caustica::low_level::scene::settings::{Direct, Method, Radius, RenderSettings};
 use caustica::low_level::shapes::ray::Ray;
 use caustica::low_level::tables::Scene;
@@ -89,7 +90,7 @@ fn light_at_the_pole() {
 
 fn packed(text: &str) -> Packed {
     let head = "version = 1\n[camera]\nposition = [0, 0, 9]\ntarget = [0, 0, 0]\nfov = 40.0\n";
-    pack(&parse(&format!("{head}{text}")), 8, 8).unwrap()
+    prepare(&parse(&format!("{head}{text}")), 8, 8).unwrap()
 }
 
 /// Theory: a sky goes on around: at the picture's left and right edge it is the mean of the columns
@@ -151,7 +152,7 @@ fn poles_do_not_mix() {
     let reflectance = |shape: &str, from: DVec3, direction: DVec3| {
         let text = format!("{material}[[shapes]]\n{shape}\nmaterial = \"m\"\n");
         let head = "version = 1\n[camera]\nposition = [0, 0, 9]\ntarget = [0, 0, 0]\nfov = 40.0\n";
-        let packed = pack(&parse(&format!("{head}{text}")), 8, 8).unwrap();
+        let packed = prepare(&parse(&format!("{head}{text}")), 8, 8).unwrap();
         let s = hit(&packed.scene, (from - packed.center) / packed.unit, direction);
         reflectance_at(&packed.scene, s.material, s.uv).x
     };
@@ -262,7 +263,7 @@ fn a_dim_sky_beside_a_bright_sun() {
     );
     let path = RenderSettings { method: Method::Path, passes: 64, ..settings(1.0) };
     assert_agrees("path", runs(&text, &path).region(|_, _| true), 0.5, 0.05);
-    let scene = pack(&parse(&text), 8, 8).unwrap().scene;
+    let scene = prepare(&parse(&text), 8, 8).unwrap().scene;
     let light = &scene.lights[0];
     let bins = |first: u32, count: u32| {
         let at = |i: u32| f64::from(scene.distributions[(light.first + first + i) as usize]);

@@ -2,7 +2,7 @@
 //! objects far away, nor the place of the camera, its target and its focus.
 
 use caustica::low_level::cpu::CpuEngine;
-use caustica::low_level::pack::pack;
+use caustica::low_level::pilots::prepare;
 use caustica::low_level::plan::Plan;
 use caustica::low_level::scene::settings::{Method, Radius, RenderSettings};
 use caustica::low_level::validation::{NoisyTruth, Promise, promises};
@@ -158,7 +158,7 @@ fn promises_with_distant_objects() {
         let halves =
             [900, 901].map(|seed| render(&loaded, &RenderSettings { seed, ..exact.clone() }));
         let truth = NoisyTruth::Halves(halves);
-        let packed = pack(&loaded, SIZE, SIZE).unwrap();
+        let packed = prepare(&loaded, SIZE, SIZE).unwrap();
         let promise = |seed| {
             let settings = RenderSettings {
                 seed,
@@ -166,7 +166,7 @@ fn promises_with_distant_objects() {
                 radius: Radius::Pixels(2.0),
                 ..RenderSettings::default()
             };
-            let mut engine = CpuEngine::new(packed.clone(), Plan::new(&packed, &settings));
+            let mut engine = CpuEngine::new(packed.clone(), Plan::probed(&packed, &settings));
             promises(&mut engine, &truth, &[16]).unwrap().remove(0)
         };
         let found: Vec<Promise> = (0..10).map(promise).collect();

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use caustica::low_level::device;
 use caustica::low_level::engine::PhotonEnds;
 use caustica::low_level::kernels::photon_trace::photon_trace;
-use caustica::low_level::pack::pack;
+use caustica::low_level::pilots::prepare;
 use caustica::low_level::plan::Plan;
 use caustica::low_level::scene::settings::{Direct, RenderSettings};
 use glam::DVec3;
@@ -86,8 +86,8 @@ fn photons_are_counted() {
 fn stored_flux_is_emitted_flux() {
     let (text, settings) = (scene(true, 0.7), settings(true));
     let scene = parse(&text);
-    let packed = pack(&scene, 4, 4).unwrap();
-    let dispatch = Plan::new(&packed, &settings).dispatch(0);
+    let packed = prepare(&scene, 4, 4).unwrap();
+    let dispatch = Plan::probed(&packed, &settings).dispatch(0);
     let phi = 4.0 * PI * 2.0;
     let unit = packed.unit * packed.unit * packed.radiance_unit;
     let parts: Vec<f64> = (0..20u32)

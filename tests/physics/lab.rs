@@ -12,7 +12,7 @@ use caustica::low_level::cpu::CpuEngine;
 use caustica::low_level::device;
 use caustica::low_level::engine::Engine;
 use caustica::low_level::film::Picture;
-use caustica::low_level::pack::pack;
+use caustica::low_level::pilots::prepare;
 use caustica::low_level::plan::Plan;
 use caustica::low_level::scene::settings::{Direct, Method, Radius, RadiusRule, RenderSettings};
 use caustica::low_level::scene::{self, Scene};
@@ -140,8 +140,8 @@ pub fn snapshots(scene: &Scene, settings: &RenderSettings, passes: &[u32]) -> Ve
     let device = std::env::var("CAUSTICA_DEVICE").unwrap_or_else(|_| "cpu".into());
     let mut engine: Box<dyn Engine> = if settings.method == Method::Path || device == "cpu" {
         let packed =
-            pack(scene, scene.film.width, scene.film.height).unwrap_or_else(|e| panic!("{e}"));
-        let plan = Plan::new(&packed, settings);
+            prepare(scene, scene.film.width, scene.film.height).unwrap_or_else(|e| panic!("{e}"));
+        let plan = Plan::probed(&packed, settings);
         Box::new(CpuEngine::new(packed, plan))
     } else {
         device::open(&device::parse(&device), scene, settings)

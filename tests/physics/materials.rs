@@ -9,7 +9,7 @@ use caustica::low_level::materials::{Bsdf, eval_rough, pdf_rough, sample_rough};
 use caustica::low_level::math::rng::rng_next;
 use caustica::low_level::math::sampling::sample_sphere;
 use caustica::low_level::scene::settings::{Direct, Method, RenderSettings};
-use caustica::low_level::shapes::ray::NONE;
+use caustica::low_level::shapes::table::NONE;
 use glam::{DVec3, Vec2, Vec3};
 
 use super::densities::{check, rng};

@@ -25,7 +25,8 @@ use caustica::low_level::kernels::records::{
     Dispatch, FilmPixel, Gathered, PhotonRecord, Statistics, VisiblePoint,
 };
 use caustica::low_level::kernels::resolve::resolve;
-use caustica::low_level::pack::{Packed, pack};
+use caustica::low_level::pack::Packed;
+use caustica::low_level::pilots::prepare;
 use caustica::low_level::plan::features::{Feature, Features};
 use caustica::low_level::plan::{Buffer, Kernel, Plan};
 use caustica::low_level::scene::settings::RenderSettings;
@@ -131,7 +132,7 @@ impl Bench {
 
     pub fn packed(&self, text: &str) -> Packed {
         let scene = parse(text);
-        pack(&scene, scene.film.width, scene.film.height).expect("a scene that packs")
+        prepare(&scene, scene.film.width, scene.film.height).expect("a scene that packs")
     }
 
     /// The picture after `settings.passes` passes.
@@ -140,7 +141,7 @@ impl Bench {
     }
 
     pub fn render_packed(&self, packed: Packed, settings: &RenderSettings) -> Picture {
-        let plan = Plan::new(&packed, settings);
+        let plan = Plan::probed(&packed, settings);
         let mut engine: Box<dyn Engine> = match self.on {
             On::Cpu => Box::new(CpuEngine::new(packed, plan)),
             On::Software => Box::new(

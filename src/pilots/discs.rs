@@ -1,9 +1,10 @@
 //! Emission discs: the distribution of distances from the visible region at which light from
 //! infinity enters.
 
-use super::look::{Look, Region, Seen};
+use super::eye_pilots::{EyePilots, Region, Seen};
 use super::real::Real;
 use super::tables::*;
+use crate::prepare::distribution::cumulative;
 
 /// Maximum number of discs. Radii are multiplied by powers of two that fit into a word.
 const LEVELS: u32 = 32;
@@ -18,7 +19,7 @@ const ROUNDS: u32 = 40;
 
 /// Sets the near sphere and, if light comes from infinity, the discs and their probabilities. `far`
 /// is the largest distance of a surface from the center of `region`, in scene units.
-pub fn learn_discs(out: &mut Scene, look: &Look, region: Region, far: f64) {
+pub fn learn_discs(out: &mut Scene, eyes: &EyePilots, region: Region, far: f64) {
     let near = f64::from(region.radius);
     out.world.near_center = region.center;
     out.world.near_radius = region.radius;
@@ -36,7 +37,7 @@ pub fn learn_discs(out: &mut Scene, look: &Look, region: Region, far: f64) {
     out.world.disc_levels = levels as u32;
     out.world.disc_first = out.distributions.len() as u32;
     let radii: Vec<f64> = (0..levels).map(|k| narrowest * (k as f64).exp2()).collect();
-    let learned = probabilities(&points(look, region), &radii);
+    let learned = probabilities(&points(eyes, region), &radii);
     let kept = by_width(&radii, near);
     let mixed = learned.iter().zip(&kept).map(|(a, b)| (1.0 - KEPT) * a + KEPT * b);
     out.distributions.extend(cumulative(&mixed.collect::<Vec<_>>()).map(|x| x as Real));
@@ -44,14 +45,14 @@ pub fn learn_discs(out: &mut Scene, look: &Look, region: Region, far: f64) {
 
 /// Squared distance from the center, and weight of each point: one over the area that gathers
 /// there.
-fn points(look: &Look, region: Region) -> Vec<[f64; 2]> {
-    let median = f64::from(look.footprint());
+fn points(eyes: &EyePilots, region: Region) -> Vec<[f64; 2]> {
+    let median = f64::from(eyes.footprint());
     let at = |point: &Seen| {
         let d = point.position - region.center;
         let width = f64::from(point.footprint).min(FOOTPRINTS * median);
         [f64::from(d.dot(d)), 1.0 / (width * width)]
     };
-    look.points().map(at).filter(|point| point[1].is_finite()).collect()
+    eyes.points().map(at).filter(|point| point[1].is_finite()).collect()
 }
 
 /// Density per area at squared distance `r_sq`.
@@ -100,28 +101,6 @@ fn by_width(radii: &[f64], near: f64) -> Vec<f64> {
     (0..radii.len()).map(share).collect()
 }
 
-/// Cumulative fractions of `weights` in steps of 2^-24, the resolution of the random numbers, so
-/// that a probability is exactly the difference of two of them. Each weight above zero gets at
-/// least one step.
-pub fn cumulative(weights: &[f64]) -> impl Iterator<Item = f64> {
-    const STEPS: f64 = 16777216.0;
-    let total: f64 = weights.iter().sum();
-    let used = weights.iter().filter(|w| **w > 0.0).count() as f64;
-    // reserve one step for each
-    let free = (STEPS - used).max(0.0);
-    let mut ends: Vec<f64> = Vec::with_capacity(weights.len());
-    let (mut sum, mut count) = (0.0, 0.0);
-    for weight in weights {
-        sum += weight;
-        count += if *weight > 0.0 { 1.0 } else { 0.0 };
-        ends.push((count + (sum / total * free).floor()).min(STEPS) / STEPS);
-    }
-    if let Some(last) = ends.last_mut() {
-        *last = 1.0;
-    }
-    ends.into_iter()
-}
-
 /// Theory: the discs' probabilities minimize the variance. Points on one circle need only the
 /// narrowest disc that contains it; points distributed evenly over a disc need evenly distributed
 /// photons.
@@ -152,17 +131,5 @@ mod tests {
                 cost(&other)
             );
         }
-    }
-
-    #[test]
-    fn every_weight_has_a_step() {
-        let ends: Vec<f64> = cumulative(&[1.0, 0.0, 1e-30, 5.0, 0.0]).collect();
-        let steps: Vec<f64> =
-            (0..5).map(|i| ends[i] - if i > 0 { ends[i - 1] } else { 0.0 }).collect();
-        assert!(
-            steps[0] > 0.16 && steps[1] == 0.0 && steps[2] > 0.0 && steps[3] > 0.83,
-            "{steps:?}"
-        );
-        assert!(ends.iter().all(|x| (x * 16777216.0).fract() == 0.0) && ends[4] == 1.0);
     }
 }

@@ -1,15 +1,16 @@
 //! Scene probe before planning: measures the width of a pixel at the visible surfaces and the
 //! number of records per photon. It always runs on the CPU, so that every engine plans alike.
 
+use super::super::pack::Packed;
 use super::kernels::eye_trace::eye_trace;
 use super::kernels::photon_trace::photon_trace;
 use super::kernels::records::{Dispatch, VisiblePoint};
 use super::math::oct_decode;
-use super::pack::Packed;
 use super::real::{Real, Vec3, consts};
 use super::tables::Scene;
 use crate::prepare::radius::{Automatic, automatic};
 use crate::scene::settings::{Direct, Radius, RenderSettings};
+use crate::telemetry::stage::stage;
 use bytemuck::Zeroable;
 use rayon::prelude::*;
 
@@ -43,6 +44,7 @@ pub struct Probe {
 
 /// Probes the scene with a few eye paths and photons.
 pub fn probe(packed: &Packed, settings: &RenderSettings) -> Probe {
+    let _stage = stage("probe");
     let scene = &packed.scene;
     let dispatch = Dispatch {
         pass_number: PASS,

@@ -1,16 +1,16 @@
 //! Selection of lights for shadow rays by position: a tree whose leaves contain about equal numbers
 //! of pilot points, and for each leaf the probabilities of the lights by their contribution there.
 
-use super::discs::cumulative;
+use super::eye_pilots::{EyePilots, Seen};
 use super::geometry::intersect::occluded;
 use super::lights::light::sample_one_light;
 use super::lights::select::{CELL_DEPTH, CELL_LEAF};
-use super::look::{Look, Seen};
 use super::math::luminance;
 use super::math::rng::pcg4d;
 use super::real::{Real, Vec3, Vec4};
 use super::shapes::ray::Ray;
 use super::tables::*;
+use crate::prepare::distribution::cumulative;
 use bytemuck::Zeroable;
 use rayon::prelude::*;
 
@@ -37,12 +37,12 @@ const STREAM: u32 = 0x2000_0001;
 
 /// Builds the light selection tree of `out` if it has several lights. `power` is the power of each
 /// light.
-pub fn learn_cells(out: &mut Scene, look: &Look, power: &[f64]) {
+pub fn learn_cells(out: &mut Scene, eyes: &EyePilots, power: &[f64]) {
     out.cells.clear();
     if out.lights.len() < 2 {
         return;
     }
-    let mut points: Vec<Seen> = look.points().copied().collect();
+    let mut points: Vec<Seen> = eyes.points().copied().collect();
     let most = (ENTRIES / out.lights.len()).max(1);
     let depth = CELL_DEPTH.min(most.ilog2());
     let mut leaves: Vec<(usize, Vec<Seen>)> = Vec::new();

@@ -2,7 +2,6 @@
 //! start positions of the photons that reach it through mirrors and glass. From these follow the
 //! probability that a photon starts at a light, and the lights' maps (`lights::guide`).
 
-use super::discs::cumulative;
 use super::geometry::intersect::intersect_scene;
 use super::kernels::photon_trace::PhotonPath;
 use super::kernels::records::Dispatch;
@@ -14,6 +13,7 @@ use super::math::{basis, luminance};
 use super::real::{Real, Vec2, Vec3};
 use super::tables::*;
 use super::visibility::Visibility;
+use crate::prepare::distribution::cumulative;
 use crate::telemetry::stage::stage;
 use bytemuck::Zeroable;
 use rayon::prelude::*;

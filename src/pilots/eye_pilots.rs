@@ -40,7 +40,7 @@ pub struct Seen {
 
 /// Results of the pilot eye paths.
 #[derive(Clone, Debug, Default)]
-pub struct Look {
+pub struct EyePilots {
     /// First non-specular hits.
     pub seen: Vec<Seen>,
     /// Points that the surfaces at `seen` face, where indirect light comes from.
@@ -57,7 +57,7 @@ pub struct Region {
 }
 
 /// Traces the pilot eye paths.
-pub fn look(scene: &Scene) -> Look {
+pub fn trace_eye_pilots(scene: &Scene) -> EyePilots {
     let dispatch = Dispatch {
         pass_number: u32::MAX,
         max_bounces: BOUNCES,
@@ -79,7 +79,7 @@ pub fn look(scene: &Scene) -> Look {
             Some((seen, faced(scene, &seen, i as u32)))
         })
         .collect();
-    Look {
+    EyePilots {
         seen: found.iter().map(|(seen, _)| *seen).collect(),
         faced: found.iter().filter_map(|(_, faced)| *faced).collect(),
     }
@@ -106,7 +106,7 @@ fn faced(scene: &Scene, seen: &Seen, id: u32) -> Option<Seen> {
     Some(Seen { position: s.position, normal: toward(s.normal, -direction), ..*seen })
 }
 
-impl Look {
+impl EyePilots {
     /// A sphere about the median of the visible points, with twice the radius that contains nine
     /// tenths of them; `None` if the camera sees no surface.
     pub fn region(&self) -> Option<Region> {

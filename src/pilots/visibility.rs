@@ -1,6 +1,6 @@
 //! Density of the points that the camera sees around a position.
 
-use super::look::{Look, Region};
+use super::eye_pilots::{EyePilots, Region};
 use super::real::{Real, Vec3};
 use std::collections::HashMap;
 
@@ -24,12 +24,12 @@ pub struct Visibility {
 }
 
 impl Visibility {
-    /// Counts the visible points of `look`.
-    pub fn new(look: &Look, region: Region) -> Self {
+    /// Counts the visible points of `eyes`.
+    pub fn new(eyes: &EyePilots, region: Region) -> Self {
         let width = 2.0 * region.radius / ACROSS;
-        let total = look.seen.len().max(1) as f64;
+        let total = eyes.seen.len().max(1) as f64;
         let mut out = Self { counts: HashMap::new(), center: region.center, width, total };
-        for seen in &look.seen {
+        for seen in &eyes.seen {
             for grid in 0..GRIDS {
                 *out.counts.entry(out.cell(seen.position, grid).0).or_default() += 1;
             }
