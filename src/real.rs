@@ -35,11 +35,11 @@ pub const fn root_roundings(single: Real) -> Real {
     single
 }
 
-/// Rounds what the host computed to the numbers of the kernels.
+/// Converts host vectors to the kernels' precision.
 pub trait ToReal {
-    /// The kernels' vector.
+    /// Vector type of the kernels.
     type Vector;
-    /// Nearest vector.
+    /// Rounds to the nearest vector.
     fn to_real(self) -> Self::Vector;
 }
 
@@ -57,11 +57,11 @@ impl ToReal for DVec3 {
     }
 }
 
-/// The kernels' numbers as the host computes.
+/// Converts the kernels' vectors to the host's f64.
 pub trait ToDouble {
-    /// The host's vector.
+    /// Vector type of the host.
     type Vector;
-    /// The same vector.
+    /// Converts exactly.
     fn to_double(self) -> Self::Vector;
 }
 

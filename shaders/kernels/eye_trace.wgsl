@@ -66,8 +66,8 @@ fn eye_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
             //#end
             break;
         }
-        // scatter at mirrors and glass
         //#if specular
+        // scatter at mirrors and glass
         if path.bounce == dispatch.max_bounces {
             break;
         }

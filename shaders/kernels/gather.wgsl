@@ -100,8 +100,8 @@ fn gather_class(point: VisiblePoint, frame: Frame, photon_class: u32, radius_sq:
     let both = transmits(lobe.bsdf);
     //#end
     let flat_normal = point.normal == point.shading;
-    // clip the disc to the outline
     //#if outlines
+    // clip the disc to the outline
     var clip = clip_at(point.outline, point.position, ng, radius);
     let depth = min(clip.depth, FLATNESS * radius);
     let inner = clip.whole - 2.0 * clip.inner;

@@ -176,8 +176,8 @@ fn surface_at(ray: Ray, hit: Hit) -> Surface {
     return s;
 }
 
-// Clamps v to half a texel row from its ends, so that filtering does not mix in the opposite end.
 //#if texels
+// Clamps v to half a texel row from its ends, so that filtering does not mix in the opposite end.
 fn within_ends(material: u32, v: f32) -> f32 {
     let index = scene.materials[material].texture;
     if index == NONE || scene.textures[index].kind != TEXTURE_IMAGE {

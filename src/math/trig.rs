@@ -4,9 +4,9 @@
 
 use std::f32::consts::{FRAC_2_PI, FRAC_PI_2, FRAC_PI_4, LOG2_E, PI};
 
-/// Returns `x` (a number below 1e30) in a way that compilers cannot see through. Mesa rewrites a b
-/// + a c to a (b + c), and (a + b) + constant to (a + constant) + b, which would destroy the parts
-/// of an argument reduction or the order of a sum.
+/// Returns `x` (a number below 1e30) in a way that compilers cannot see through. Mesa rewrites
+/// `a * b + a * c` to `a * (b + c)`, and `(a + b) + constant` to `(a + constant) + b`, which would
+/// destroy the parts of an argument reduction or the order of a sum.
 pub fn kept(x: f32) -> f32 {
     x.min(1e30)
 }

@@ -295,7 +295,7 @@ mod tests {
     use std::collections::BTreeSet;
 
     /// Theory: the tables are complete if every buffer is listed once, has a unique name, is bound
-    /// by a kernel, and is cleared by a command if the table says so.
+    /// by a kernel, and is cleared by a command if the table requires it.
     #[test]
     fn declarations_are_complete() {
         let names: BTreeSet<_> = Buffer::ALL.iter().map(|buffer| buffer.name()).collect();

@@ -42,7 +42,8 @@ const RESIDUAL_NOISE: Real = roundings(1e-6);
 /// Hit of a ray with a patch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PatchHit {
-    /// Distance along the ray, scene units; [`FAR`] when there is no hit.
+    /// Distance along the ray, scene units ([`first_root`] returns local units); [`FAR`] if there
+    /// is no hit.
     pub t: Real,
     /// Angle about the axis, radians.
     pub theta: Real,
