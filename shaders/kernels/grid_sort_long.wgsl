@@ -1,9 +1,9 @@
 // Sorts each long bucket by key with a whole workgroup (radix sort, four bits at a time),
 // completing `grid_sort`. Run by one workgroup per 256 buckets; reads `records` and `starts`, sorts
-// slices of `order`, writes `sorted`. One workgroup covers many buckets because most are short and
-// barriers are expensive on a software driver, but not more, because that driver counts the rounds
-// of a loop over all buckets of a workgroup and stops after 65535. Twin of `grid_sort` in
-// src/kernels/grid_build.rs.
+// slices of `order`, writes `sorted` and, if the driver stopped its loops, adds to `counters`. One
+// workgroup covers many buckets because most are short and barriers are expensive on a software
+// driver, but not more, because that driver counts the rounds of a loop over all buckets of a
+// workgroup and stops after 65535. Twin of `grid_sort` in src/kernels/grid_build.rs.
 
 const RADIX: u32 = 16u;
 const SORT_BUCKETS: u32 = 256u;
