@@ -1,4 +1,4 @@
-// Pinhole and thin-lens camera: twin of src/camera.rs.
+// Pinhole and thin-lens camera. Twin: src/camera.rs.
 
 fn camera_ray(camera: Camera, x: u32, y: u32, u: vec4f) -> Ray {
     let px = 2.0 * (f32(x) + u.x) / f32(camera.width) - 1.0;

@@ -6,8 +6,8 @@ use super::real::{Real, Vec2, Vec4};
 use super::shapes::ray::Ray;
 use super::tables::Camera;
 
-/// A ray through pixel (x, y), row 0 on top: (u.x, u.y) is the place in the pixel, (u.z, u.w) that
-/// on the lens.
+/// Ray through pixel (x, y), row 0 at the top; (u.x, u.y) in [0, 1)^2 is the position in the pixel,
+/// (u.z, u.w) the sample of the lens.
 #[inline(always)]
 pub fn camera_ray(camera: &Camera, x: u32, y: u32, u: Vec4) -> Ray {
     let px = 2.0 * (x as Real + u.x) / camera.width as Real - 1.0;

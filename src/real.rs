@@ -1,8 +1,8 @@
-//! The numbers that kernels count in: here f32, as on a GPU.
+//! Number types of the kernels: here f32, as on a GPU.
 //!
-//! The modules that name [`Real`] by `super::real` are compiled a second time below
-//! [`crate::double`], where `super::real` is `double/real.rs`: the same kernels in f64, which
-//! measure what f32 costs.
+//! The modules that refer to [`Real`] by `super::real` are compiled a second time below
+//! [`crate::double`], where `super::real` is `double/real.rs`: the same kernels in f64, to measure
+//! the error of f32.
 
 use glam::{DVec2, DVec3};
 
@@ -11,36 +11,35 @@ pub use glam::{Vec2, Vec3, Vec4};
 pub use std::f32::consts;
 pub use wide::{f32x4 as Reals, u32x4 as Words};
 
-/// A number of the kernels.
+/// Floating-point type of the kernels.
 pub type Real = f32;
-/// As many bits as a [`Real`] has.
+/// Unsigned integer as wide as a [`Real`].
 pub type Bits = u32;
-/// Twice as many bits.
+/// Unsigned integer twice as wide as a [`Real`].
 pub type WideBits = u64;
 
-/// The engine's name.
+/// Name of the engine.
 pub const ENGINE: &str = "CPU";
-/// The exponent's bits.
+/// Mask of the exponent bits.
 pub const EXPONENT: Bits = 0x7f80_0000;
-/// The bits of the leading half of the mantissa and all above: products of two such numbers are
-/// exact.
+/// Mask that clears the low half of the mantissa: products of two such numbers are exact.
 pub const LEADING: Bits = 0xffff_f000;
 
-/// A tolerance of some roundings, written as it is in f32 and in WGSL, for this precision.
+/// Converts a tolerance of a few roundings, given for f32 as in WGSL, to this precision.
 pub const fn roundings(single: Real) -> Real {
     single
 }
 
-/// The same for a tolerance that goes with the square root of a rounding.
+/// Converts a tolerance that scales with the square root of a rounding, likewise.
 pub const fn root_roundings(single: Real) -> Real {
     single
 }
 
-/// Rounds what the host computed to the numbers of the kernels.
+/// Converts host vectors to the kernels' precision.
 pub trait ToReal {
-    /// The kernels' vector.
+    /// Vector type of the kernels.
     type Vector;
-    /// Nearest vector.
+    /// Rounds to the nearest vector.
     fn to_real(self) -> Self::Vector;
 }
 
@@ -58,11 +57,11 @@ impl ToReal for DVec3 {
     }
 }
 
-/// The kernels' numbers as the host computes.
+/// Converts the kernels' vectors to the host's f64.
 pub trait ToDouble {
-    /// The host's vector.
+    /// Vector type of the host.
     type Vector;
-    /// The same vector.
+    /// Converts exactly.
     fn to_double(self) -> Self::Vector;
 }
 

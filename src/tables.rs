@@ -1,9 +1,10 @@
-//! The flattened scene: plain data that the kernels of both engines read, in scene space (the host
-//! has moved the scene to its own centre and scaled it near one; see [`crate::prepare::normalize`]).
+//! Packed scene: plain data that the kernels of both engines read, in scene space (the host moves
+//! the scene's centre to the origin and scales its size to about one; see
+//! [`crate::prepare::normalize`]).
 //!
 //! Each struct is the twin of the WGSL struct of the same name in `shaders/tables.wgsl`; a test
-//! compares the layouts by name. The short tables travel in one storage buffer, `scene`; the long
-//! ones have their own.
+//! compares the layouts by name. The short tables share one storage buffer, `scene`; each long
+//! table has a separate buffer.
 
 use super::real::{Bits, Plain, Real, Vec2, Vec3};
 use super::shapes::simd4::{FourRectangles, FourSpheres};
@@ -15,49 +16,51 @@ pub use super::shapes::revolution::{Patch, Revolution};
 pub use super::shapes::table::*;
 pub use super::shapes::triangle::Triangle;
 
-/// Medium that the kernels determine for each point.
+/// Medium of a lens or lamp that lies partly in glass: kernels determine it for each point.
 pub const ASTRIDE: u32 = 0xffff_fffe;
 
-/// Facts about the scene as a whole.
+/// Properties of the whole scene.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Plain, Zeroable)]
 pub struct World {
-    /// Least corner of the kd-tree's box.
+    /// Least corner of the kd-tree's bounding box.
     pub bounds_min: Vec3,
-    /// World units in one scene unit.
+    /// World units per scene unit.
     pub unit: Real,
-    /// Greatest corner of the kd-tree's box.
+    /// Greatest corner of the kd-tree's bounding box.
     pub bounds_max: Vec3,
-    /// Radius of the sphere about `near_center` that holds most of what the camera sees.
+    /// Radius of the sphere about `near_center` that contains most of what the camera sees, scene
+    /// units.
     pub near_radius: Real,
-    /// Center of what the camera sees, and of the emission discs.
+    /// Centre of what the camera sees, and of the emission discs.
     pub near_center: Vec3,
-    /// Radius of the narrowest emission disc.
+    /// Radius of the narrowest emission disc, scene units.
     pub disc_radius: Real,
     /// Number of lights.
     pub light_count: u32,
-    /// The light that rays which leave the scene meet, or [`NONE`].
+    /// Index of the light that rays hit when they leave the scene, or [`NONE`].
     pub environment: u32,
-    /// Shapes tested against every ray (planes and huge spheres).
+    /// Number of shapes outside the kd-tree (planes and huge spheres), which are tested against
+    /// every ray.
     pub unbounded_count: u32,
-    /// Emission discs for light from infinity: radius `disc_radius * 2^k`, k below this; 0 without
-    /// such light.
+    /// Number of emission discs for light from infinity, with radii `disc_radius * 2^k` for k below
+    /// this; 0 without such light.
     pub disc_levels: u32,
     /// First entry in `distributions` of the cumulative probabilities of the emission discs.
     pub disc_first: u32,
-    /// 1 where light from infinity meets surfaces beyond twice `near_radius`, else 0.
+    /// 1 if light from infinity reaches surfaces farther than twice `near_radius`, else 0.
     pub far: u32,
-    /// 1 where bodies of glass may touch or hold one another, else 0.
+    /// 1 if bodies of glass may touch or contain one another, else 0.
     pub nested: u32,
-    /// 1 where some light has a map of where its photons meet glass and mirrors, else 0.
+    /// 1 if some light has a guide map (see `lights::guide`), else 0.
     pub guided: u32,
     /// See [`Tree::primitive_size`](super::shapes::kdtree::Tree::primitive_size).
     pub primitive_size: Real,
     /// Index of the first material that belongs to a glass body.
     pub body_first: u32,
-    /// Number of such materials.
+    /// Number of materials that belong to glass bodies.
     pub body_count: u32,
-    /// Padding.
+    /// Padding to 16 bytes.
     pub pad: u32,
 }
 
@@ -65,55 +68,56 @@ pub struct World {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Plain, Zeroable)]
 pub struct Camera {
-    /// Centre of the lens.
+    /// Centre of the lens, scene space.
     pub position: Vec3,
-    /// Lens radius; 0 is a pinhole.
+    /// Lens radius, scene units; 0 for a pinhole.
     pub aperture: Real,
-    /// Half the picture's width at distance one, to the right.
+    /// Vector to the right, half the image's width at distance one.
     pub right: Vec3,
-    /// Distance in focus along `forward`.
+    /// Focus distance along `forward`, scene units.
     pub focus: Real,
-    /// Half the picture's height at distance one, upward.
+    /// Vector upward, half the image's height at distance one.
     pub up: Vec3,
-    /// A pixel's height at distance one.
+    /// Height of a pixel at distance one.
     pub pixel: Real,
     /// Unit view direction.
     pub forward: Vec3,
-    /// Pixels per row.
+    /// Image width in pixels.
     pub width: u32,
-    /// Unit vector to the right.
+    /// Unit vector to the right, in the lens.
     pub lens_right: Vec3,
-    /// Rows.
+    /// Image height in pixels.
     pub height: u32,
-    /// Unit vector upward.
+    /// Unit vector upward, in the lens.
     pub lens_up: Vec3,
     /// Medium of the lens: a glass material index, [`NONE`] or [`ASTRIDE`].
     pub medium: u32,
 }
 
-/// What a surface does with light.
+/// Material parameters.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Plain, Zeroable)]
 pub struct Material {
-    /// Reflectance, in [0, 1]; at normal incidence for metal. For an open glass sheet: its unit
-    /// mean normal; zero for closed glass.
+    /// Reflectance, in [0, 1]; at normal incidence for metal. For an open glass sheet its unit mean
+    /// normal; zero for closed glass.
     pub reflectance: Vec3,
-    /// The number of its [`Bsdf`](super::materials::Bsdf).
+    /// Number of its [`Bsdf`](super::materials::Bsdf).
     pub kind: u32,
     /// Glass: absorption coefficient, per scene unit.
     pub absorption: Vec3,
-    /// Glass: index of refraction against the outside.
+    /// Glass: index of refraction relative to the outside.
     pub ior: Real,
-    /// Texture that replaces `reflectance`, or [`NONE`].
+    /// Index of the texture that replaces `reflectance`, or [`NONE`].
     pub texture: u32,
-    /// Metal: GGX width, `roughness^2`. Rough diffuse: roughness. Translucent: share transmitted.
+    /// Metal: GGX alpha, `roughness^2`. Rough diffuse: roughness. Translucent: fraction
+    /// transmitted.
     pub alpha: Real,
-    /// World (x, z) of the origin, where planar uv starts, reduced by the texture's period.
+    /// World (x, z) of the scene's origin, where planar uv starts, modulo the texture's period.
     pub planar_origin: Vec2,
 }
 
 impl Material {
-    /// A black material without a texture.
+    /// Black material without a texture.
     pub const EMPTY: Self = Self {
         reflectance: Vec3::ZERO,
         kind: 0,
@@ -125,67 +129,67 @@ impl Material {
     };
 }
 
-/// Two colours in unit cells.
+/// Texture kind: checkerboard of unit cells in two colours.
 pub const TEXTURE_CHECKER: u32 = 0;
-/// A picture.
+/// Texture kind: image.
 pub const TEXTURE_IMAGE: u32 = 1;
-/// A picture laid as staggered floor boards.
+/// Texture kind: image laid as staggered floor boards.
 pub const TEXTURE_PLANKS: u32 = 2;
-/// Nearest texel instead of bilinear.
+/// Texture flag: nearest texel instead of bilinear filtering.
 pub const TEXTURE_NEAREST: u32 = 1;
-/// Clamp to the edge instead of repeat.
+/// Texture flag: clamp u to the edge instead of repeating.
 pub const TEXTURE_CLAMP_U: u32 = 2;
-/// The same of v: rows of the picture.
+/// Texture flag: clamp v to the edge instead of repeating.
 pub const TEXTURE_CLAMP_V: u32 = 4;
-/// Texels are one word, RGBA8 coded through the sRGB table at the head of `texels`.
+/// Texel format: one word, RGBA8 decoded by the sRGB table at the start of `texels`.
 pub const TEXELS_SRGB8: u32 = 0;
-/// Texels are one word, RGBA8 linear.
+/// Texel format: one word, linear RGBA8.
 pub const TEXELS_LINEAR8: u32 = 1;
-/// Texels are three words, f32.
+/// Texel format: three words, f32.
 pub const TEXELS_FLOAT: u32 = 2;
 
-/// A texture, read at `scale * (u, v)`.
+/// Texture, evaluated at `scale * (u, v)`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Plain, Zeroable)]
 pub struct Texture {
-    /// Factor on (u, v); for planks one over the board's size.
+    /// Factor on (u, v); for planks the reciprocal size of a board.
     pub scale: Vec2,
     /// One of `TEXTURE_CHECKER`, `TEXTURE_IMAGE`, `TEXTURE_PLANKS`.
     pub kind: u32,
     /// Sum of `TEXTURE_NEAREST`, `TEXTURE_CLAMP_U` and `TEXTURE_CLAMP_V`.
     pub flags: u32,
-    /// First word of the picture in `texels`.
+    /// Index of the image's first word in `texels`.
     pub first: u32,
-    /// Texels per row.
+    /// Image width in texels.
     pub width: u32,
-    /// Rows, the top one first.
+    /// Image height in texels; the top row is first.
     pub height: u32,
     /// One of `TEXELS_*`.
     pub format: u32,
     /// Checker: colour of cell (0, 0).
     pub color0: Vec3,
-    /// Padding.
+    /// Padding to 16 bytes.
     pub pad0: u32,
     /// Checker: the other colour.
     pub color1: Vec3,
-    /// Padding.
+    /// Padding to 16 bytes.
     pub pad1: u32,
 }
 
-/// Emitting shape, Lambertian on the side of its normal.
+/// Light kind: emitting shape, Lambertian on the side of its normal.
 pub const LIGHT_AREA: u32 = 0;
-/// Isotropic point.
+/// Light kind: isotropic point light.
 pub const LIGHT_POINT: u32 = 1;
-/// Point with a cone.
+/// Light kind: spot light, a point light with a cone.
 pub const LIGHT_SPOT: u32 = 2;
-/// Parallel light.
+/// Light kind: parallel light from infinity.
 pub const LIGHT_SUN: u32 = 3;
-/// The same radiance from everywhere.
+/// Light kind: environment of constant radiance.
 pub const LIGHT_CONSTANT: u32 = 4;
-/// Radiance from an equirectangular picture.
+/// Light kind: environment with radiance from an equirectangular image.
 pub const LIGHT_IMAGE: u32 = 5;
 
-/// A source of light.
+/// Light source.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Plain, Zeroable)]
 pub struct Light {
@@ -194,38 +198,38 @@ pub struct Light {
     pub color: Vec3,
     /// One of `LIGHT_*`.
     pub kind: u32,
-    /// Point and spot.
+    /// Point and spot: position in scene space.
     pub position: Vec3,
-    /// Probability that a photon starts here.
+    /// Probability that a photon starts at this light.
     pub selection: Real,
     /// Spot and sun: unit direction in which light travels.
     pub direction: Vec3,
-    /// Area of the shape.
+    /// Area: area of the shape, square scene units.
     pub area: Real,
-    /// Area: the shape's reference; image: texture index.
+    /// Area: reference of the shape. Image: index of the texture.
     pub reference: u32,
-    /// First entry in `distributions`: revolution: where each patch's part of v starts, then the
-    /// cumulative share of the area by patch; image: cumulative rows, then each row's cumulative
-    /// columns.
+    /// First entry in `distributions`. Revolution: start of each patch's part of v, then the
+    /// cumulative area fraction by patch. Image: cumulative probabilities of the rows, then those
+    /// of the columns of each row.
     pub first: u32,
-    /// Spot: 1 - cos of the angle where it is dark, which f32 holds for narrow ones, too; image:
-    /// cosine of the rotation about y.
+    /// Spot: 1 - cos of the outer cone's half-angle, which f32 represents accurately even for
+    /// narrow cones. Image: cosine of the rotation about y.
     pub outer: Real,
-    /// Spot: 1 - cos of the angle up to which it is full; image: sine of the rotation.
+    /// Spot: 1 - cos of the inner cone's half-angle, up to which the intensity is full. Image: sine
+    /// of the rotation.
     pub inner: Real,
-    /// Revolution: its first patch.
+    /// Revolution: index of its first patch.
     pub patch_first: u32,
     /// Revolution: number of its patches.
     pub patch_count: u32,
     /// Medium of a lamp: a glass material index, [`NONE`] or [`ASTRIDE`].
     pub medium: u32,
-    /// First entry in `distributions` of the map of where its photons meet glass and mirrors (see
-    /// `lights::guide`), or 0.
+    /// First entry in `distributions` of its guide map (see `lights::guide`), or 0.
     pub guide: u32,
 }
 
-/// A node of the tree over space in which each leaf has its own probabilities of the lights for
-/// shadow rays.
+/// Node of the tree over space whose leaves have separate probabilities of the lights for shadow
+/// rays.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Plain, Zeroable)]
 pub struct Cell {
@@ -233,17 +237,17 @@ pub struct Cell {
     pub split: Real,
     /// Axis of the splitting plane, 0 to 2; 3 marks a leaf.
     pub axis: u32,
-    /// The child below the plane, the one above follows; in a leaf the first entry in
-    /// `distributions` of the cumulative probabilities of the lights.
+    /// Index of the child below the plane, which the child above follows; in a leaf the first entry
+    /// in `distributions` of the cumulative probabilities of the lights.
     pub first: u32,
-    /// Padding.
+    /// Padding to 16 bytes.
     pub pad: u32,
 }
 
-/// The flattened scene.
+/// Packed scene.
 #[derive(Clone, Debug)]
 pub struct Scene {
-    /// Facts about the whole.
+    /// Properties of the whole scene.
     pub world: World,
     /// The camera.
     pub camera: Camera,
@@ -259,9 +263,9 @@ pub struct Scene {
     pub planes: Vec<Plane>,
     /// Surfaces of revolution.
     pub revolutions: Vec<Revolution>,
-    /// Their patches, which the kd-tree points at.
+    /// Patches of the surfaces of revolution, which kd-tree leaves refer to.
     pub patches: Vec<Patch>,
-    /// Their control points.
+    /// Control points of the patches.
     pub profile_points: Vec<Vec2>,
     /// References of the shapes outside the kd-tree.
     pub unbounded: Vec<u32>,
@@ -271,26 +275,27 @@ pub struct Scene {
     pub textures: Vec<Texture>,
     /// Lights.
     pub lights: Vec<Light>,
-    /// Cumulative distributions: first the light of a photon, then what `Light::first` points at,
-    /// then what was learned from pilots.
+    /// Cumulative distributions: first the choice of a photon's light, then those of
+    /// [`Light::first`], then those learned from pilot photons.
     pub distributions: Vec<Real>,
-    /// Where which light is chosen for shadow rays; empty where there is one light at most.
+    /// Tree of the light probabilities for shadow rays; empty if there is at most one light.
     pub cells: Vec<Cell>,
-    /// kd-tree.
+    /// Nodes of the kd-tree.
     pub nodes: Vec<Node>,
     /// References in the order of the kd-tree's leaves.
     pub refs: Vec<u32>,
     /// Triangles.
     pub triangles: Vec<Triangle>,
-    /// Corners of the triangles that have any.
+    /// Vertex attributes of the triangles that have any.
     pub attributes: Vec<Attributes>,
     /// Outlines of flat shapes.
     pub outlines: Vec<Outline>,
-    /// The rectangles, four at a time: for the CPU alone, as are the spheres. Where they are
-    /// missing, one at a time is taken.
+    /// Rectangles packed in fours, for the CPU engine only; if absent, they are tested one at a
+    /// time.
     pub four_rectangles: Vec<FourRectangles>,
-    /// The spheres, four at a time.
+    /// Spheres packed in fours, likewise.
     pub four_spheres: Vec<FourSpheres>,
-    /// Pictures; the first 256 words are the sRGB decoding table when any is stored so.
+    /// Texels of the images. If any image is stored as sRGB, the first 256 words are the sRGB
+    /// decoding table.
     pub texels: Vec<Bits>,
 }

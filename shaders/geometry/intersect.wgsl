@@ -1,5 +1,5 @@
-// A ray against the whole scene: twin of src/geometry/intersect.rs.
-
+// Intersection of a ray with the whole scene: shapes outside the kd-tree one by one, then the
+// kd-tree. Twin: src/geometry/intersect.rs.
 //#if unbounded
 fn intersect_unbounded(reference: u32, ray: Ray, hit: ptr<function, Hit>) {
     switch kind_of(reference) {
@@ -30,13 +30,13 @@ fn intersect_revolution(reference: u32, ray: Ray, hit: ptr<function, Hit>) {
 //#end
 
 //#if kdtree
-// Whether a leaf's references, up to `last`, go on with a shape of this kind.
+// Returns true if reference `i` of a leaf, which ends before `last`, has this kind.
 fn names(kind: u32, i: u32, last: u32) -> bool {
     return i < last && kind_of(refs[i]) == kind;
 }
 
-// The references stand in the order of their kinds. Each kind has a loop of its own, since a
-// software driver runs through whatever a loop may test.
+// References are ordered by kind. Each kind has a separate loop, because a software driver executes
+// every test that a loop may contain.
 fn intersect_leaf(first: u32, last: u32, ray: Ray, any_hit: bool, hit: ptr<function, Hit>) {
     var i = first;
     //#if triangle
@@ -104,13 +104,14 @@ fn intersect_leaf(first: u32, last: u32, ray: Ray, any_hit: bool, hit: ptr<funct
 //#end
 
 //#if patch_set
-// The patches of the leaves that the ray has met, by index: a bit each.
+// Set of the patches, by index, in the leaves visited so far.
 var<private> put_off: vec4u;
 
 fn bit_of(index: u32) -> vec4u {
     return select(vec4u(0u), vec4u(1u << (index & 31u)), vec4u(index >> 5u) == vec4u(0u, 1u, 2u, 3u));
 }
 
+// Searches the deferred patches in the order of their indices.
 fn search_put_off(ray: Ray, any_hit: bool, hit: ptr<function, Hit>) {
     if any(put_off != vec4u(0u)) {
         loop {

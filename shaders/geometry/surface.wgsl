@@ -1,4 +1,5 @@
-// What a hit means: twin of src/geometry/surface.rs.
+// Surface data at a hit: position, normals, texture coordinates, material. Twin:
+// src/geometry/surface.rs, which documents the fields.
 
 struct Surface {
     position: vec3f,
@@ -60,7 +61,7 @@ fn surface_at(ray: Ray, hit: Hit) -> Surface {
             let n = sphere_normal(sphere, q);
             s = Surface(q, sphere_error(sphere, q), n, sphere.material, n, sphere.light, vec2f(0.0), 0.0, NONE);
             planar = sphere.uv;
-            // two arctangents, which most spheres have no use for
+            // skip the two arctangents for the many spheres without a texture
             if planar == UV_NATURAL && scene.materials[sphere.material].texture != NONE {
                 let uv = sphere_uv(n);
                 s.uv = uv;
@@ -176,6 +177,7 @@ fn surface_at(ray: Ray, hit: Hit) -> Surface {
 }
 
 //#if texels
+// Clamps v to half a texel row from its ends, so that filtering does not mix in the opposite end.
 fn within_ends(material: u32, v: f32) -> f32 {
     let index = scene.materials[material].texture;
     if index == NONE || scene.textures[index].kind != TEXTURE_IMAGE {

@@ -1,6 +1,6 @@
-// What a pixel shows in addition to radiance: twin of src/kernels/aov_trace.rs. Run by one
-// invocation per pixel of a chunk for one of its samples; reads the scene, updates `aovs`, adds to
-// `counters`.
+// AOVs of a pixel, from the same eye path as a visible point: values at the first hit, and at the
+// first hit beyond mirrors and glass. Run by one invocation per pixel of a chunk for one of its
+// samples; reads the scene, updates `aovs`, adds to `counters`. Twin: src/kernels/aov_trace.rs.
 
 struct AovPixel {
     albedo: vec3f,
@@ -30,6 +30,7 @@ fn aov_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
     let x = pixel % camera.width;
     let y = pixel / camera.width;
     var next = aovs[id];
+    // shape and material at the pixel's centre, once
     if dispatch.passes_done == 0u {
         let ray = camera_ray(camera, x, y, vec4f(0.5));
         let hit = intersect_scene(ray);
@@ -39,6 +40,7 @@ fn aov_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
             next.material = surface_at(ray, hit).material;
         }
     }
+    // follow the same path as `eye_trace`
     let k = dispatch.passes_done % dispatch.eye_samples;
     var rng = rng_eye(pixel * dispatch.eye_samples + k, dispatch.pass_number, dispatch.seed);
     var path = eye_path(camera_ray(camera, x, y, stratified(rng_next(&rng), k, pixel)));
@@ -86,6 +88,7 @@ fn aov_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
         if path.bounce == dispatch.max_bounces {
             break;
         }
+        // as in `eye_trace`, with the same random numbers
         let v = rng_next(&rng);
         let scattered = scatter_specular(p, path.interior, v.x, RADIANCE);
         if !scatter(&path, s, scattered, v.y) {
@@ -106,6 +109,7 @@ fn aov_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
         aovs[id].state |= STOPPED;
         return;
     }
+    // add to the running means
     let share = 1.0 / f32(dispatch.passes_done + 1u);
     next.albedo += (albedo - next.albedo) * share;
     next.normal += (normal - next.normal) * share;

@@ -1,4 +1,5 @@
-// Direct light at a rough surface, and absorption on the way: twin of src/kernels/direct.rs.
+// Direct light at a rough surface, and absorption along a ray. Twin: src/kernels/direct.rs, which
+// explains the method.
 
 fn transmittance(medium: u32, distance: f32) -> vec3f {
     //#if absorption
@@ -12,7 +13,7 @@ fn transmittance(medium: u32, distance: f32) -> vec3f {
     //#end
 }
 
-// Adds to the pass's rays; the low word may wrap.
+// Adds to the ray count of the pass, carrying from the low to the high word.
 fn count_rays(rays: u32) {
     let low = atomicAdd(&counters.rays_low, rays);
     if low + rays < low {
@@ -60,6 +61,7 @@ fn next_event(p: ShadingPoint, interior: Interior, mis: bool, u: vec4f) -> Direc
 }
 
 fn direct_light(p: ShadingPoint, interior: Interior, rng: ptr<function, Rng>) -> DirectLight {
+    // for narrow lobes, scattered rays find large lights with less noise
     let narrow = !is_wide(p.lobe.bsdf);
     var direct = next_event(p, interior, narrow, rng_next(rng));
     //#if lobes

@@ -1,4 +1,4 @@
-// The walk of an eye path: twin of src/kernels/eye_path.rs.
+// Steps of an eye path, shared by eye tracing and AOVs. Twin: src/kernels/eye_path.rs.
 
 struct EyePath {
     ray: Ray,

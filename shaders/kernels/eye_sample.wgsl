@@ -1,4 +1,5 @@
-// Which ray an eye path begins with: twin of src/kernels/eye_sample.rs.
+// Samples for the start of an eye path: its pixel, the position in the pixel and on the lens. Twin:
+// src/kernels/eye_sample.rs.
 
 fn window_pixel(camera: Camera, place: u32) -> u32 {
     let row = place / dispatch.window_width;
@@ -11,6 +12,8 @@ fn stratified(u: vec4f, k: u32, pixel: u32) -> vec4f {
     }
     let columns = dispatch.strata;
     let rows = dispatch.eye_samples / columns;
+    // random per pixel and seed, so that no pixel pairs the same parts of pixel and lens in every
+    // render
     let shift = pcg4d(vec4u(pixel, 0u, STREAM_STRATA, dispatch.seed)).x % dispatch.eye_samples;
     let lens = (k + shift) % dispatch.eye_samples;
     return vec4f(

@@ -1,5 +1,6 @@
-// Eye path of one visible point: twin of src/kernels/eye_trace.rs. Run by one invocation per
-// visible point of a chunk; reads the scene, writes `visible_points`, adds to `counters`.
+// Eye path of one visible point: samples pixel and lens, follows mirrors and glass to the first
+// non-specular hit. Run by one invocation per visible point of a chunk; reads the scene, writes
+// `visible_points`, adds to `counters`. Twin: src/kernels/eye_trace.rs.
 
 @compute @workgroup_size(64)
 fn eye_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups) groups: vec3u) {
@@ -7,6 +8,7 @@ fn eye_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
     if id >= dispatch.end {
         return;
     }
+    // sample the pixel and the lens
     let camera = scene.camera;
     let place = (dispatch.chunk_first + id) / dispatch.eye_samples;
     let k = dispatch.chunk_first + id - place * dispatch.eye_samples;
@@ -32,6 +34,7 @@ fn eye_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
         }
         //#end
         let p = shading_point(s, -path.ray.direction);
+        // store the visible point at the first non-specular hit
         if !is_specular(p.lobe.bsdf) {
             if max_component(p.lobe.reflectance) <= 0.0 {
                 break;
@@ -64,6 +67,7 @@ fn eye_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
             break;
         }
         //#if specular
+        // scatter at mirrors and glass
         if path.bounce == dispatch.max_bounces {
             break;
         }

@@ -1,15 +1,15 @@
-// Density estimate at one visible point: twin of src/kernels/gather.rs. Run by one invocation per
-// visible point of a chunk and photon batch; reads `visible_points`, `starts`, `sorted` (and
-// `statistics` under the local rule), adds to `gathered` and, where the driver stopped it, to
-// `counters`.
+// Density estimate at one visible point: the sum over the photons in its disc, or in two discs if
+// indirect photons use a wider one. Run by one invocation per visible point of a chunk and photon
+// batch; reads `visible_points`, `starts`, `sorted` (and `statistics` under the local rule), adds
+// to `gathered` and, if the driver stopped its loops, to `counters`. Twin: src/kernels/gather.rs.
 
 const FLATNESS: f32 = 0.25;
 const COS_MIN: f32 = 1e-2;
 const BOX_SLACK: f32 = 1e-4;
 const BLOCK: u32 = 1024u;
 
-// A photon record as four words twice, since a driver reads four as quickly as one: position and
-// key, flux and direction.
+// A sorted record is read as two groups of four words, since drivers read four words as fast as
+// one: position and code, flux and direction.
 const PLACE: u32 = 0u;
 const LIGHT: u32 = 1u;
 
@@ -55,7 +55,7 @@ fn gather(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups) gr
     //#if split
     var found = Gathered();
     let wider_sq = dispatch.indirect_radius * dispatch.indirect_radius;
-    // a loop, so that the function is there once: software drivers write out every call
+    // one call in a loop, because software drivers inline every call
     var photon_class = 0u;
     loop {
         let one = gather_class(point, frame, photon_class, select(radius_sq, radius_sq * wider_sq, photon_class == 1u));
@@ -101,36 +101,40 @@ fn gather_class(point: VisiblePoint, frame: Frame, photon_class: u32, radius_sq:
     //#end
     let flat_normal = point.normal == point.shading;
     //#if outlines
+    // clip the disc to the outline
     var clip = clip_at(point.outline, point.position, ng, radius);
     let depth = min(clip.depth, FLATNESS * radius);
     let inner = clip.whole - 2.0 * clip.inner;
     //#else
     let depth = FLATNESS * radius;
     //#end
+    // range of cells that the disc overlaps
     let reach = disc_reach(ng, radius, depth);
     let low = grid_cell(point.position - reach, inv_cell);
     let high = grid_cell(point.position + reach, inv_cell);
     //#if outlines
-    // once, since a driver would read it for every photon
+    // read once here; in the loop a driver would read it for every photon
     let outline = outlines[select(point.outline, 0u, point.outline == NONE)];
     //#end
     var count = 0u;
     var sum = vec3f(0.0);
     var ring = vec3f(0.0);
-    // no further cell of a row than the table has, each once
+    // cells of a row, at most as many as the table has buckets, so that none is visited twice
     let wide = min(u32(high.x - low.x), dispatch.mask);
     var row = low.yz;
     var done = 0u;
-    // each loop asks at its end whether to go on: a software driver runs through a body once more
-    // where that is asked first
+    // loops test their condition at the end: software drivers run a body once more if it is tested
+    // first
     loop {
+        // walk the rows of cells
         let cell = vec3i(low.x + i32(done), row);
         let code = grid_code(cell, photon_class);
         let bucket = grid_bucket(cell, dispatch.mask);
-        // a row that passes the table's end goes on at its beginning
+        // a row that passes the end of the table continues at its start
         let cells = min(wide - done, dispatch.mask - bucket) + 1u;
         let end = starts[bucket + cells];
         var i = starts[bucket];
+        // walk the row's photons block by block
         loop {
             let stop = min(i + BLOCK, end);
             var block = vec3f(0.0);
@@ -141,7 +145,7 @@ fn gather_class(point: VisiblePoint, frame: Frame, photon_class: u32, radius_sq:
                     let d = position - point.position;
                     let distance_sq = dot(d, d);
                     if distance_sq <= radius_sq && abs(dot(d, ng)) <= depth && place.w == code {
-                        // no more is read of a record than tells that it is not near
+                        // read the rest of a record only if the photon is inside
                         let light = sorted[i][LIGHT];
                         let toward_light = oct_vector(light.w);
                         //#if lobes
@@ -150,6 +154,7 @@ fn gather_class(point: VisiblePoint, frame: Frame, photon_class: u32, radius_sq:
                         var counts = dot(toward_light, ng) > 0.0;
                         //#end
                         //#if outlines
+                        // reject photons outside the outline or behind a wall
                         if counts && clip.crossed {
                             counts = in_outline(outline, position) && before_walls(&clip, point.position, position);
                         }
@@ -158,6 +163,7 @@ fn gather_class(point: VisiblePoint, frame: Frame, photon_class: u32, radius_sq:
                             count += 1u;
                             var flux = bitcast<vec3f>(light.xyz);
                             //#if lobes
+                            // flux arrives with the geometric cosine, the BSDF uses the shading one
                             if !flat_normal || !folded {
                                 let wi = unit(toward_light);
                                 if folded {

@@ -1,5 +1,5 @@
-// The hash grid over photon records: twin of src/kernels/grid.rs, and of what src/kernels/grid_build.rs
-// says of a record.
+// Hash grid over photon records. Twin: src/kernels/grid.rs, which explains it, and the `record_*` functions
+// of src/kernels/grid_build.rs.
 
 const CELL_MAX: f32 = 1e9;
 const ALONG: f32 = 4.0;

@@ -1,6 +1,6 @@
-// Records per bucket: twin of `grid_count` in src/kernels/grid_build.rs. Run by one invocation per
-// record of the capacity, of which those beyond `counters.records` do nothing; reads `records`,
-// adds to `counts`.
+// Counts the records per bucket. Run by one invocation per record of the capacity, of which those
+// past `counters.records` do nothing; reads `records`, adds to `counts`. Twin of `grid_count` in
+// src/kernels/grid_build.rs.
 
 @compute @workgroup_size(64)
 fn grid_count(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups) groups: vec3u) {

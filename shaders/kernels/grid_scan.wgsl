@@ -1,4 +1,4 @@
-// Exclusive prefix sums of the buckets, the last of three steps of `grid_scan` in
+// Exclusive prefix sums of the buckets' record counts, the last of three steps of `grid_scan` in
 // src/kernels/grid_build.rs. Run by one workgroup per block of 4096 buckets; reads `counts` and
 // `block_sums`, writes `starts`, whose entry past the buckets becomes the total.
 

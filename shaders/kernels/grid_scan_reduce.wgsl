@@ -1,4 +1,4 @@
-// Sums of blocks of 4096 buckets, the first of three steps of `grid_scan` in
+// Sums of the record counts in blocks of 4096 buckets, the first of three steps of `grid_scan` in
 // src/kernels/grid_build.rs. Run by one workgroup per block; reads `counts`, writes `block_sums`.
 
 @compute @workgroup_size(256)
@@ -16,6 +16,7 @@ fn grid_scan_reduce(
     for (var i = 0u; i < SCAN_ITEMS; i++) {
         sum += counts[first + i];
     }
+    // tree reduction in workgroup memory
     sums[local] = sum;
     for (var width = 128u; width > 0u; width >>= 1u) {
         workgroupBarrier();

@@ -1,6 +1,6 @@
-// Exclusive prefix sums of at most 4096 blocks' sums, the second of three steps of `grid_scan` in
-// src/kernels/grid_build.rs. Run by one workgroup; updates `block_sums`, whose entry past the
-// blocks becomes the total.
+// Exclusive prefix sums of the sums of at most 4096 blocks, the second of three steps of
+// `grid_scan` in src/kernels/grid_build.rs. Run by one workgroup; updates `block_sums`, whose entry
+// past the blocks becomes the total.
 
 @compute @workgroup_size(256)
 fn grid_scan_sums(@builtin(local_invocation_index) local: u32) {
@@ -19,7 +19,7 @@ fn grid_scan_sums(@builtin(local_invocation_index) local: u32) {
             before += count;
         }
     }
-    // the last invocation has summed up all of them
+    // the last invocation ends with the sum of all blocks
     if local == 255u {
         block_sums[dispatch.end] = before;
     }

@@ -1,7 +1,7 @@
-// Records into bucket order: twin of `grid_scatter` in src/kernels/grid_build.rs. Run by one
-// invocation per record of the capacity, of which those beyond `counters.records` do nothing; reads
-// `records` and `starts`, uses up `counts`, writes `order`. Within a bucket the order is that of
-// the invocations' arrival.
+// Puts record indices into bucket order. Run by one invocation per record of the capacity, of which
+// those past `counters.records` do nothing; reads `records` and `starts`, counts `counts` down,
+// writes `order`. Within a bucket the order is that of the invocations' arrival. Twin of
+// `grid_scatter` in src/kernels/grid_build.rs.
 
 @compute @workgroup_size(64)
 fn grid_scatter(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups) groups: vec3u) {

@@ -1,6 +1,5 @@
-// Each short bucket into the order of its keys: twin of `grid_sort` in src/kernels/grid_build.rs.
-// Run by one invocation per bucket; reads `records` and `starts`, sorts slices of `order`, writes
-// `sorted`.
+// Sorts each short bucket by key. Run by one invocation per bucket; reads `records` and `starts`,
+// sorts slices of `order`, writes `sorted`. Twin of `grid_sort` in src/kernels/grid_build.rs.
 
 @compute @workgroup_size(64)
 fn grid_sort(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups) groups: vec3u) {
@@ -15,7 +14,7 @@ fn grid_sort(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
     }
 }
 
-// Insertion sort.
+// Insertion sort of one bucket, then the copy of its records.
 fn sort_short(begin: u32, end: u32) {
     for (var i = begin; i < end; i++) {
         let item = order[i];

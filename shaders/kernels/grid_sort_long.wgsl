@@ -1,16 +1,17 @@
-// Each long bucket into the order of its keys, by a whole workgroup (radix sort, four bits at a
-// time): the rest of the twin of `grid_sort` in src/kernels/grid_build.rs. Run by one workgroup per
-// 256 buckets: most have no long one and barriers are dear on a software driver, but that driver
-// counts a loop's rounds over all buckets of a workgroup and ends it after 65535; reads `records`
-// and `starts`, sorts slices of `order`, writes `sorted`.
+// Sorts each long bucket by key with a whole workgroup (radix sort, four bits at a time),
+// completing `grid_sort`. Run by one workgroup per 256 buckets; reads `records` and `starts`, sorts
+// slices of `order`, writes `sorted` and, if the driver stopped its loops, adds to `counters`. One
+// workgroup covers many buckets because most are short and barriers are expensive on a software
+// driver, but not more, because that driver counts the rounds of a loop over all buckets of a
+// workgroup and stops after 65535. Twin of `grid_sort` in src/kernels/grid_build.rs.
 
 const RADIX: u32 = 16u;
 const SORT_BUCKETS: u32 = 256u;
 
 var<workgroup> found: atomic<u32>;
-// in any order, which the result does not show
+// long buckets in arbitrary order, which does not affect the result
 var<workgroup> long_buckets: array<u32, SORT_BUCKETS>;
-// how many items each invocation has of each digit, then where they go
+// number of items per digit and invocation, then their destinations
 var<workgroup> tallies: array<u32, 1024>;
 var<workgroup> totals: array<u32, 16>;
 
@@ -24,6 +25,7 @@ fn grid_sort_long(
         atomicStore(&found, 0u);
     }
     workgroupBarrier();
+    // collect the long buckets
     let first = dispatch.first + (group.y * groups.x + group.x) * SORT_BUCKETS;
     for (var i = local; i < SORT_BUCKETS; i += 64u) {
         let bucket = first + i;
@@ -43,13 +45,15 @@ fn grid_sort_long(
     loops_stopped();
 }
 
-// Items go to and fro between `order` and the keys of `sorted`, which are not needed yet.
+// Radix sort of one bucket. The items alternate between `order` and the `key` fields of `sorted`,
+// which are still unused.
 fn sort_long(begin: u32, end: u32, local: u32) {
     let share = (end - begin + 63u) / 64u;
     let first = min(begin + local * share, end);
     let last = min(first + share, end);
     for (var shift = 0u; shift < 32u; shift += 4u) {
         let odd = (shift & 4u) != 0u;
+        // count the digits of this invocation's items
         for (var digit = 0u; digit < RADIX; digit++) {
             tallies[digit * 64u + local] = 0u;
         }
@@ -57,6 +61,7 @@ fn sort_long(begin: u32, end: u32, local: u32) {
             tallies[digit_of(item_at(i, odd), shift) * 64u + local] += 1u;
         }
         workgroupBarrier();
+        // prefix sums over the invocations, per digit
         if local < RADIX {
             var sum = 0u;
             for (var at = local * 64u; at < local * 64u + 64u; at += 4u) {
@@ -70,11 +75,13 @@ fn sort_long(begin: u32, end: u32, local: u32) {
             totals[local] = sum;
         }
         workgroupBarrier();
+        // add the start of each digit
         var base = begin;
         for (var digit = 0u; digit < RADIX; digit++) {
             tallies[digit * 64u + local] += base;
             base += totals[digit];
         }
+        // move the items
         for (var i = first; i < last; i++) {
             let item = item_at(i, odd);
             let slot = digit_of(item, shift) * 64u + local;

@@ -1,7 +1,8 @@
-// Path of one photon: twin of src/kernels/photon_trace.rs. Run by one invocation per photon of a
-// batch; reads the scene, appends to `records` (in any order) and adds to `counters`. Beyond the
-// capacity it counts on but stores nothing. A record with direction 0, which no vector has, says
-// that the driver stopped the loops of photon `key`, which is to be traced again.
+// Path of one photon: emission, then a record at every non-specular hit, until roulette ends the
+// path. Run by one invocation per photon of a batch; reads the scene, appends to `records` (in any
+// order) and adds to `counters`. Past the capacity it counts records but does not store them. A
+// record with direction 0, which encodes no vector, marks that the driver stopped the loops of
+// photon `key`, which must be traced again. Twin: src/kernels/photon_trace.rs.
 
 const ESCAPED: u32 = 0u;
 const ABSORBED: u32 = 1u;
@@ -38,6 +39,7 @@ fn photon_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgrou
             break;
         }
         let s = surface_at(ray, hit);
+        // absorption on the way, and hidden faces
         let wo = -ray.direction;
         interior = interior_before(s, wo, interior);
         flux *= transmittance(medium_of(interior), max(hit.t, 0.0));
@@ -47,6 +49,7 @@ fn photon_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgrou
             continue;
         }
         //#end
+        // store a record at non-specular hits and scatter
         let p = shading_point(s, wo);
         let u = rng_next(&rng);
         var scattered: Scatter;
@@ -59,6 +62,7 @@ fn photon_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgrou
         //#else
         scattered = stored_and_scattered(id, bounce, hidden, &photon_class, p, interior, flux, u);
         //#end
+        // Russian roulette
         let weight = max_component(scattered.weight);
         //#if far || guided
         let kept = select(relative_flux, max(relative_flux, 1.0), is_specular(p.lobe.bsdf));
@@ -71,6 +75,7 @@ fn photon_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgrou
             end = ABSORBED;
             break;
         }
+        // next ray
         scattered.weight *= 1.0 / survival;
         flux *= scattered.weight;
         interior = scattered.interior;
@@ -110,6 +115,7 @@ fn stored_and_scattered(
     //#end
 }
 
+// Stores a record, unless shadow rays account for the light that the photon carries.
 fn store_record(
     id: u32,
     bounce: u32,
@@ -119,7 +125,7 @@ fn store_record(
     flux: vec3f,
 ) {
     //#if sampled
-    // shadow rays stop at every face, hidden ones too
+    // shadow rays end at faces, hidden ones included
     let stored = bounce > 0u || hidden > 0u;
     //#else
     let stored = true;

@@ -1,4 +1,4 @@
-// What kernels hand to one another: twin of src/kernels/records.rs, where each field is explained.
+// Data that kernels pass to one another. Twin: src/kernels/records.rs, which documents the fields.
 
 struct Dispatch {
     first: u32,
@@ -91,9 +91,9 @@ struct FilmPixel {
     mean_at_half_pow2: f32,
 }
 
-// Records appended to the batch (also those beyond the capacity, which are not stored), the pass's
-// rays in two words, the invocations whose loops the driver stopped, and the pass's photons by how
-// they ended (the last is unused).
+// Counters of a pass: records appended in the batch (including those past the capacity, which are
+// not stored), rays in two words, invocations whose loops the driver stopped, and photons by how
+// their path ended (the last entry is unused).
 struct Counters {
     records: atomic<u32>,
     rays_low: atomic<u32>,
@@ -102,16 +102,16 @@ struct Counters {
     ends: array<atomic<u32>, 4>,
 }
 
-// Number of the invocation among those of a dispatch of workgroups of 64 laid out in rows.
+// Index of the invocation in a dispatch of workgroups of 64 laid out in rows.
 fn invocation(gid: vec3u, groups: vec3u) -> u32 {
     return gid.y * groups.x * 64u + gid.x + dispatch.first;
 }
 
 //#if eye_trace || aov_trace || photon_trace || grid_sort_long || gather
-// Whether the driver has stopped running loops; counts it. Mesa's software driver leaves every
-// loop, without a word, once all loops of an invocation together have made 65535 rounds; from then
-// on each is left after its first round, and so is this one. (`end` is below 2^31, which no
-// compiler knows.)
+// Returns true, and counts it, if the driver has stopped running loops. Mesa's software driver
+// silently leaves every loop once all loops of an invocation together have run 65535 rounds; from
+// then on each loop, including this one, is left after its first round. (`end` is below 2^31, which
+// no compiler can know.)
 fn loops_stopped() -> bool {
     let wanted = 2u + (dispatch.end >> 31u);
     var rounds = 0u;

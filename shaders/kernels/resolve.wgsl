@@ -1,6 +1,6 @@
-// One pixel's estimate of the pass into the film: twin of src/kernels/resolve.rs. Run by one
-// invocation per pixel of a chunk; reads `visible_points` and `gathered`, updates `film` (and
-// `statistics` under the local rule).
+// Adds one pass's estimate of a pixel to the film and updates the local rule's statistics. Run by
+// one invocation per pixel of a chunk; reads `visible_points` and `gathered`, updates `film` (and
+// `statistics` under the local rule). Twin: src/kernels/resolve.rs.
 
 const DROP_SHARE: f32 = 1.0 / 256.0;
 const CARRY_SHARE: f32 = 1.0 / 256.0;
@@ -11,6 +11,7 @@ fn resolve(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups) g
     if id >= dispatch.end {
         return;
     }
+    // sum the estimates of the pixel's samples
     var sum = Estimate(vec3f(0.0), 0.0, 0.0);
     var state = 0u;
     var photons_finite = true;
@@ -50,6 +51,7 @@ fn fold(id: u32, cause: u32, found: Estimate) {
         film[id].rejected[counted] += 1u;
         return;
     }
+    // number of accepted passes; record the mean when it is a power of two
     let r = film[id].rejected;
     let before = dispatch.passes_done - (r.x + r.y + r.z + r.w);
     var pixel = film[id];
@@ -57,6 +59,8 @@ fn fold(id: u32, cause: u32, found: Estimate) {
         pixel.mean_at_half_pow2 = pixel.mean_at_pow2;
         pixel.mean_at_pow2 = luminance(pixel.mean + pixel.carry);
     }
+    // running means; the mean itself is updated through `carry`, so that rounding does not lose
+    // small changes
     let n = f32(before + 1u);
     let share = 1.0 / n;
     let delta = value - (pixel.mean + pixel.carry);
@@ -95,6 +99,8 @@ fn half_weight(k: u32) -> f32 {
     if dispatch.eye_samples == 1u {
         return 0.0;
     }
+    // with an odd number of strata the first colour has one more; with an even number of columns
+    // both have the same number
     let first = f32((dispatch.eye_samples + 1u) / 2u);
     let second = f32(dispatch.eye_samples / 2u);
     let row = k / dispatch.strata;
@@ -115,11 +121,13 @@ fn updated_statistics(before: Statistics, m: u32) -> Statistics {
     }
     let t = f32(s.count_high) * 4294967296.0 + f32(s.count_low);
     let scale_sq = s.scale_sq - s.drop;
+    // accumulate the small decreases in `drop`, so that rounding does not lose them
     s.drop += scale_sq * ((1.0 - dispatch.alpha) * f32(m) / (dispatch.alpha * t + f32(m)));
     if s.drop > DROP_SHARE * s.scale_sq {
         s.scale_sq -= s.drop;
         s.drop = 0.0;
     }
+    // 64-bit count in two words
     let low = s.count_low + m;
     if low < m {
         s.count_high += 1u;

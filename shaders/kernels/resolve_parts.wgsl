@@ -1,6 +1,7 @@
-// What photons bring to a pixel in a pass, by the way they came: twin of
-// src/kernels/resolve_parts.rs. Run by one invocation per pixel of a chunk; reads `visible_points`
-// and `gathered` (and `statistics` under the local rule), updates `parts`.
+// Adds one pass's photon estimate of a pixel, split into its caustic and indirect parts, to the
+// layer. Run by one invocation per pixel of a chunk, before `resolve`; reads `visible_points` and
+// `gathered` (and `statistics` under the local rule), updates `parts`. Twin:
+// src/kernels/resolve_parts.rs.
 
 struct PartsPixel {
     caustic: vec3f,
@@ -33,6 +34,7 @@ fn resolve_parts(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgro
             indirect += (gathered[at].flux - gathered[at].caustic) * share;
         }
     }
+    // as in `resolve`, a pass that is not finite is rejected
     if (state & (BAD_EYE | BAD_DIRECT)) != 0u || !is_finite(caustic) || !is_finite(indirect) {
         return;
     }

@@ -1,9 +1,11 @@
-// What the two kernels that sort buckets share.
+// Shared by the two kernels that sort buckets.
 
-// Records of a bucket up to which one invocation sorts it.
+// Greatest number of records in a bucket that one invocation sorts; longer buckets go to
+// `grid_sort_long`.
 const SORT_SHORT: u32 = 32u;
 
-// What readers need to know of the key is the cell.
+// Copies a record to its sorted place and replaces the key by the cell's code, which is what
+// readers need.
 fn copy_record(i: u32) {
     let record = records[order[i]];
     sorted[i] = PhotonRecord(record.position, record_code(record), record.flux, record.direction);

@@ -1,4 +1,5 @@
-// Photons that scatter far outside, aimed back at the scene: twin of src/lights/aim.rs.
+// Redirection of photons that scatter far from the scene back towards it. Twin: src/lights/aim.rs,
+// which explains the method.
 
 const FAR_OUTSIDE_SQ: f32 = 4.0;
 
@@ -17,6 +18,7 @@ fn aimed_scatter(at: ShadingPoint, u: vec4f, scattered: Scatter) -> Scatter {
     if u.z < 0.5 {
         wi = unit(from_frame(axis, sample_cone(u.xy, one_minus_cos)));
     } else {
+        // test by the sine: the cosine of a narrow cone loses all digits
         let across = cross(wi, axis);
         in_cone = dot(wi, axis) > 0.0 && dot(across, across) < sin_sq;
     }

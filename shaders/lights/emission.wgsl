@@ -1,4 +1,5 @@
-// Photon emission from every kind of light: twin of src/lights/emission.rs.
+// Photon emission from all kinds of lights. Twin: src/lights/emission.rs, which documents the
+// fields and functions.
 
 struct Emission {
     ray: Ray,
@@ -84,6 +85,7 @@ fn emit_from_infinity(light: Light, u: vec4f, v: vec4f) -> Emission {
         radiance = eval_environment(light, w) * (1.0 / pdf_environment(light, w));
     }
     //#end
+    // choose a point on a disc or in the map's square
     let across = vec2f(v.x, v.y);
     let level = find_interval(scene.world.disc_first, scene.world.disc_levels, v.z);
     var d = sample_disc(across) * disc_radius(level);
@@ -93,6 +95,7 @@ fn emit_from_infinity(light: Light, u: vec4f, v: vec4f) -> Emission {
         d = (d * 2.0 - vec2f(1.0)) * near;
     }
     //#end
+    // density per area of that point
     var pdf = pdf_discs(dot(d, d));
     //#if guided
     if light.guide != 0u {
@@ -100,6 +103,7 @@ fn emit_from_infinity(light: Light, u: vec4f, v: vec4f) -> Emission {
         pdf = GUIDED * by_map + (1.0 - GUIDED) * pdf;
     }
     //#end
+    // start far behind the plane of the discs
     let f = basis(ray.direction);
     ray.origin = scene.world.near_center + f.t * d.x + f.b * d.y;
     ray.t_min = -4.0 * disc_radius(scene.world.disc_levels - 1u);

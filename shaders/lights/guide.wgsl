@@ -1,5 +1,4 @@
-// Where a light's photons pass mirrors and glass on their way to what the camera sees: twin of
-// src/lights/guide.rs. The host learns the maps.
+// Guide maps of photon emission, learned by the host. Twin: src/lights/guide.rs.
 
 const GUIDE_SIDE: u32 = 32u;
 const GUIDE_CELLS: u32 = GUIDE_SIDE * GUIDE_SIDE;

@@ -1,4 +1,5 @@
-// Choosing a light and sampling it from a surface point: twin of src/lights/light.rs.
+// Choice of a light and sampling of its direction from a surface point, with densities per solid
+// angle. Twin: src/lights/light.rs.
 
 struct LightSample {
     direction: vec3f,
@@ -9,7 +10,7 @@ struct LightSample {
 }
 
 fn find_interval(first: u32, count: u32, u: f32) -> u32 {
-    // without a branch on what is found, which no processor foresees
+    // binary search without branches on the compared values, which are unpredictable
     var low = 0u;
     var length = count;
     while length > 1u {
@@ -84,6 +85,7 @@ fn sample_one_light(light: Light, share: f32, position: vec3f, u: vec4f) -> Ligh
         var radiance = light.color * (1.0 / dist_sq);
         //#if spot
         if light.kind == LIGHT_SPOT {
+            // half the squared chord: near the axis 1 - cos loses all digits
             let chord = direction + light.direction;
             radiance *= spot_falloff(light, 0.5 * dot(chord, chord));
         }
@@ -170,6 +172,8 @@ fn sample_environment(light: Light, u: vec4f) -> vec3f {
     let texture = scene.textures[light.reference];
     let row = find_interval(light.first, texture.height, u.y);
     let column = find_interval(light.first + texture.height + row * texture.width, texture.width, u.z);
+    // offset in the row from the lower bits of u.w: what is left of u.y gives few distinct offsets
+    // in rows of low probability
     let fine = u.w * 4096.0;
     let across = (f32(column) + u.w) / f32(texture.width);
     let down = (f32(row) + (fine - floor(fine))) / f32(texture.height);
@@ -198,6 +202,7 @@ fn pdf_environment(light: Light, direction: vec3f) -> f32 {
     let column = min(u32(floor(uv.x * f32(texture.width))), texture.width - 1u);
     let p = pdf_bin(light.first, row, texture.height)
         * pdf_bin(light.first + texture.height + row * texture.width, column, texture.width);
+    // from x and z: near a pole 1 - y^2 loses all digits
     let sin = sqrt(max(direction.x * direction.x + direction.z * direction.z, 1e-12));
     return p / (2.0 * PI * PI * sin);
     //#else

@@ -1,4 +1,5 @@
-// Which light a shadow ray goes to: twin of src/lights/select.rs. The host learns the tree.
+// Choice of the light for a shadow ray, by probabilities that the host learns for cells of space.
+// Twin: src/lights/select.rs.
 
 const CELL_DEPTH: u32 = 8u;
 const CELL_LEAF: u32 = 3u;

@@ -1,4 +1,4 @@
-// Points on emitting shapes: twin of src/lights/shape.rs.
+// Sampling of points on emitting shapes. Twin: src/lights/shape.rs.
 
 struct ShapePoint {
     position: vec3f,
@@ -74,6 +74,7 @@ fn sample_shape(light: Light, u: vec2f, w: f32) -> ShapePoint {
             let e = cuboid.upper - cuboid.lower;
             let x = e.y * e.z;
             let y = e.z * e.x;
+            // choose a pair of opposite faces by area, then one of the two
             let pick = w * light.area;
             let upper = select(0.0, 3.0, u.x < 0.5);
             let s = select(2.0 * u.x - 1.0, 2.0 * u.x, u.x < 0.5);
@@ -157,6 +158,7 @@ fn pdf_bin(first: u32, bin: u32, count: u32) -> f32 {
 fn pdf_shape(light: Light, v: f32) -> f32 {
     //#if area_revolution
     if kind_of(light.reference) == KIND_REVOLUTION {
+        // last patch whose part starts at or before v
         var k = find_interval(light.first, light.patch_count, v);
         if k > 0u && scene.distributions[light.first + k] > v {
             k -= 1u;
@@ -179,6 +181,9 @@ fn sample_sphere_cone(sphere: Sphere, origin: vec3f, u: vec2f) -> ShapePoint {
     let one_minus_cos = cone_one_minus_cos(sin_sq);
     let local = sample_cone(u, one_minus_cos);
     let w = from_frame(unit(d), local);
+    // nearest crossing of the ray with the sphere, clamped at the tangent; computed from the sine,
+    // since the distances to the centre and the rim of a small sphere differ by less than a
+    // rounding
     let along = sqrt(dist_sq) * local.z;
     let off_sq = (local.x * local.x + local.y * local.y) / sin_sq;
     let half = sphere.radius * sqrt(max(1.0 - off_sq, 0.0));

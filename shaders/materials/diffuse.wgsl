@@ -1,4 +1,4 @@
-// Lambertian reflection: twin of src/materials/diffuse.rs.
+// Lambertian reflection. Twin: src/materials/diffuse.rs.
 
 const DIFFUSE_ADJOINT_COS_MIN: f32 = 1e-2;
 
@@ -29,7 +29,7 @@ fn sample_diffuse(p: ShadingPoint, u: vec2f, mode: u32) -> Sample {
         }
     }
     let wi = renormalized(from_frame(axis, sample_cosine(u)));
-    // a cosine about `ng` itself is above 2^-13
+    // a cosine about `ng` itself is above 2^-13, so photons need no test
     if mode == RADIANCE && dot(wi, p.ng) <= 0.0 {
         weight = vec3f(0.0);
     }

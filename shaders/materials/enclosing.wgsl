@@ -1,4 +1,4 @@
-// Point-in-body test by ray casting: twin of src/materials/enclosing.rs.
+// Point-in-body test by ray casting. Twin: src/materials/enclosing.rs, which explains the method.
 
 const FACES: u32 = 256u;
 const LOOK: vec3f = vec3f(0.3104505, 0.8912933, 0.3304795);
@@ -14,6 +14,7 @@ fn interior_at(known: u32, position: vec3f) -> Interior {
 
 //#if astride
 fn enclosing(position: vec3f) -> Interior {
+    // closed bodies first, then each open sheet along its mean normal
     var interior = looked(position, LOOK, NONE, interior_of(NONE));
     for (var k = 0u; k < scene.world.body_count; k++) {
         let body = scene.world.body_first + k;

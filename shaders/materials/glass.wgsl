@@ -1,4 +1,5 @@
-// Smooth dielectric: twin of src/materials/glass.rs.
+// Smooth dielectric: Fresnel reflection and refraction, total internal reflection. Twin:
+// src/materials/glass.rs.
 
 struct Interface {
     reflectance: f32,
@@ -6,6 +7,8 @@ struct Interface {
 }
 
 fn fresnel(cos_i: f32, eta: f32) -> Interface {
+    // as a product: 1 - cos^2 loses all digits near the normal, where dense glass has its critical
+    // angle
     let sin_t_sq = eta * eta * max((1.0 - cos_i) * (1.0 + cos_i), 0.0);
     if sin_t_sq >= 1.0 {
         return Interface(1.0, 0.0);
@@ -31,12 +34,15 @@ fn scatter_glass(p: ShadingPoint, interior: Interior, u: f32, mode: u32) -> Scat
     }
     var n = p.n;
     var wi = refracted(p.wo, n, cos_i, interface_n.cos_t, eta);
+    // a direction on the wrong side of the surface is replaced by refraction at the geometric
+    // normal
     if dot(wi, p.ng) >= 0.0 {
         n = p.ng;
         let cos_g = dot(p.wo, p.ng);
         let flat_ng = fresnel(cos_g, eta);
         wi = refracted(p.wo, p.ng, cos_g, flat_ng.cos_t, eta);
     }
+    // radiance is compressed into a smaller solid angle inside (Veach 1997, section 5.2)
     var weight = eta * eta;
     if mode == IMPORTANCE {
         weight = shading_correction(p, n, wi);

@@ -1,4 +1,5 @@
-// Interior list, the glass bodies that contain a point: twin of src/materials/interior.rs.
+// Interior list: the glass bodies that contain a point. Twin: src/materials/interior.rs, which
+// explains it.
 
 //#if nested
 const BODIES: u32 = 8u;

@@ -1,4 +1,4 @@
-// GGX microfacet conductor: twin of src/materials/metal.rs.
+// GGX microfacet conductor. Twin: src/materials/metal.rs, which names the sources.
 
 const ALPHA_MIN: f32 = 1e-3;
 
@@ -95,7 +95,7 @@ fn sample_metal(p: ShadingPoint, u: vec2f, mode: u32) -> Sample {
     if dot(wi, p.ng) <= 0.0 {
         weight = vec3f(0.0);
     } else if mode == IMPORTANCE {
-        // from behind the shading normal an eye path would get nothing
+        // an eye path from behind the shading normal would receive nothing
         let seen = dot(p.wo, p.ns) > 0.0;
         weight *= select(0.0, shading_correction(p, p.n, wi), seen);
     }

@@ -1,4 +1,4 @@
-// Perfect mirror: twin of src/materials/mirror.rs.
+// Perfect mirror. Twin: src/materials/mirror.rs.
 
 fn scatter_mirror(p: ShadingPoint, interior: Interior, u: f32, mode: u32) -> Scatter {
     let mirror = reflected(p, mode);

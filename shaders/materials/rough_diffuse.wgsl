@@ -1,4 +1,5 @@
-// Diffuse reflection by facets: twin of src/materials/rough_diffuse.rs.
+// Rough diffuse reflection (Oren & Nayar's model in Fujii's form). Twin:
+// src/materials/rough_diffuse.rs, which gives the equation.
 
 const ROUGH_ADJOINT_COS_MIN: f32 = 1e-2;
 

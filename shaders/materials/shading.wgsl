@@ -1,4 +1,5 @@
-// What materials share: twin of src/materials/shading.rs.
+// Shading point, shading normals and their adjoint correction, shared by all materials. Twin:
+// src/materials/shading.rs.
 
 const RADIANCE: u32 = 0u;
 const IMPORTANCE: u32 = 1u;
@@ -49,6 +50,7 @@ fn shading_point(s: Surface, wo: vec3f) -> ShadingPoint {
     let alpha = scene.materials[s.material].alpha;
     let ng = toward(s.normal, wo);
     let ns = toward(s.shading, ng);
+    // wide lobes do not depend on the viewing direction
     let n = select(ng, ns, is_wide(kind) || dot(wo, ns) > 0.0);
     return ShadingPoint(s, wo, ng, ns, n, Lobe(kind, alpha, reflectance_at(s.material, s.uv)));
 }

@@ -1,4 +1,5 @@
-// Textures: twin of src/materials/texture.rs.
+// Textures. Images are stored in a buffer and filtered here, so that every engine filters alike.
+// Twin: src/materials/texture.rs.
 
 fn eval_texture(index: u32, uv: vec2f) -> vec3f {
     let texture = scene.textures[index];
@@ -16,6 +17,7 @@ fn eval_texture(index: u32, uv: vec2f) -> vec3f {
         let odd = row - 2.0 * floor(row * 0.5);
         st.y += 0.5 * odd;
     }
+    // position in texels, repeated or clamped
     let clamp_u = (texture.flags & TEXTURE_CLAMP_U) != 0u;
     let clamp_v = (texture.flags & TEXTURE_CLAMP_V) != 0u;
     let x = select(st.x - floor(st.x), clamp(st.x, 0.0, 1.0), clamp_u) * f32(texture.width);
@@ -23,6 +25,7 @@ fn eval_texture(index: u32, uv: vec2f) -> vec3f {
     if (texture.flags & TEXTURE_NEAREST) != 0u {
         return eval_texel(texture, i32(floor(x)), i32(floor(y)));
     }
+    // bilinear filter
     let x0 = floor(x - 0.5);
     let y0 = floor(y - 0.5);
     let fx = x - 0.5 - x0;

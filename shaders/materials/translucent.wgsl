@@ -1,4 +1,4 @@
-// Diffuse reflection and transmission: twin of src/materials/translucent.rs.
+// Diffuse reflection and transmission by a thin surface. Twin: src/materials/translucent.rs.
 
 const TRANSLUCENT_ADJOINT_COS_MIN: f32 = 1e-2;
 
@@ -27,6 +27,7 @@ fn sample_translucent(p: ShadingPoint, u: vec2f, mode: u32) -> Sample {
             weight *= max(dot(p.wo, p.n), 0.0) / max(dot(p.wo, p.ng), TRANSLUCENT_ADJOINT_COS_MIN);
         }
     }
+    // choose the side and stretch the number that chose it to [0, 1]
     var x = (u.x - alpha) / max(1.0 - alpha, 1e-6);
     var side = 1.0;
     if u.x < alpha {

@@ -1,4 +1,4 @@
-// Directions in records, packed: twin of src/math/octahedral.rs.
+// Packed directions in records. Twin: src/math/octahedral.rs.
 
 fn oct_encode(v: vec3f) -> u32 {
     let s = 1.0 / (abs(v.x) + abs(v.y) + abs(v.z));

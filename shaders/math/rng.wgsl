@@ -1,4 +1,5 @@
-// Counter-based random numbers: twin of src/math/rng.rs.
+// Counter-based random numbers: an integer hash of (index, pass, dimension, seed), the same in
+// every engine. Twin: src/math/rng.rs.
 
 const STREAM_EYE: u32 = 0x80000000u;
 const STREAM_PHOTON: u32 = 0u;
@@ -15,12 +16,12 @@ fn rng_new(index: u32, pass_number: u32, stream: u32, seed: u32) -> Rng {
     return Rng(index, pass_number, stream, seed);
 }
 
-// The pass's points come from `dispatch`.
+// Sequence of an eye path; its Sobol points are in `dispatch`.
 fn rng_eye(index: u32, pass_number: u32, seed: u32) -> Rng {
     return Rng(index, pass_number, STREAM_EYE, seed);
 }
 
-// pcg4d (Jarzynski & Olano 2020).
+// Hash pcg4d (Jarzynski & Olano 2020).
 fn pcg4d(p: vec4u) -> vec4u {
     var v = p * 1664525u + 1013904223u;
     v.x += v.y * v.w;
@@ -35,6 +36,7 @@ fn pcg4d(p: vec4u) -> vec4u {
     return v;
 }
 
+// Owen scrambling of a digital net.
 fn scrambled(reversed: vec4u, seeds: vec4u) -> vec4u {
     var x = reversed;
     x ^= x * 0x3d20adeau;

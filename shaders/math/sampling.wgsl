@@ -1,4 +1,4 @@
-// Maps from uniform numbers to discs, spheres, hemispheres and triangles: twin of
+// Maps from uniform numbers to discs, spheres, hemispheres and triangles. Twin:
 // src/math/sampling.rs.
 
 fn sample_disc(u: vec2f) -> vec2f {

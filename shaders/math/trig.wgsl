@@ -1,12 +1,12 @@
-// Elementary functions as fixed polynomials; twin: src/math/trig.rs, which states errors and
-// sources.
+// Elementary functions as fixed polynomials, so that every device rounds them alike. Twin:
+// src/math/trig.rs, which states errors and sources.
 
-// `x` itself, hidden from compilers that would rewrite a sum.
+// Returns `x` in a way that compilers cannot see through, so that they do not rewrite a sum.
 fn kept(x: f32) -> f32 {
     return min(x, 1e30);
 }
 
-// (sin x, cos x).
+// Returns (sin x, cos x).
 fn sin_cos(x: f32) -> vec2f {
     let k = floor(x * 0.63661975 + 0.5);
     let r = ((x - kept(k * 1.5703125)) - kept(k * 4.837513e-4)) - kept(k * 7.54979e-8);

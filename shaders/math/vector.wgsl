@@ -1,4 +1,4 @@
-// Small vector functions: twin of src/math/vector.rs.
+// Vector functions and constants. Twin: src/math/vector.rs.
 
 const PI: f32 = 3.14159265358979;
 const TAU: f32 = 6.28318530717959;
@@ -51,6 +51,7 @@ fn offset_origin(position: vec3f, error: f32, normal: vec3f, direction: vec3f) -
     return position - normal * error;
 }
 
+// tested on the bits, since shader compilers may assume finite numbers
 fn is_finite(v: vec3f) -> bool {
     let mask = vec3u(0x7f800000u);
     return all((bitcast<vec3u>(v) & mask) != mask);

@@ -1,4 +1,4 @@
-// Axis-parallel box by slabs: twin of src/shapes/cuboid.rs.
+// Axis-parallel box, intersected by slabs. Twin: src/shapes/cuboid.rs.
 
 fn intersect_cuboid(cuboid: Cuboid, reference: u32, ray: Ray, hit: ptr<function, Hit>) {
     var near = -FAR;

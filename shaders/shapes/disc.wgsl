@@ -1,4 +1,4 @@
-// Flat disc and infinite plane: twin of src/shapes/disc.rs.
+// Flat disc and infinite plane. Twin: src/shapes/disc.rs.
 
 //#if disc
 fn intersect_disc(disc: Disc, reference: u32, ray: Ray, hit: ptr<function, Hit>) {

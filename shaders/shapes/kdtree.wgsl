@@ -1,5 +1,5 @@
-// Rays through the kd-tree: twin of src/shapes/kdtree.rs, which explains the method. Reads `nodes:
-// array<vec2u>` and `scene.world.bounds_min`, `bounds_max`, `primitive_size`; calls
+// Ray traversal of the kd-tree. Twin: src/shapes/kdtree.rs, which explains the method. Reads
+// `nodes: array<vec2u>` and `scene.world.bounds_min`, `bounds_max`, `primitive_size`; calls
 // `intersect_leaf(first, last, ray, any_hit, hit)` for the references of a leaf.
 
 const MAX_DEPTH: u32 = 32u;
@@ -38,6 +38,7 @@ fn traverse(ray: Ray, any_hit: bool, hit: ptr<function, Hit>) {
     //#if triangle
     ray_shear = shear_of(ray);
     //#end
+    // clip the ray to the tree's box, widened by the slab at its far end
     let inverse = vec3f(reciprocal(ray.direction.x), reciprocal(ray.direction.y), reciprocal(ray.direction.z));
     let to_min = scene.world.bounds_min - ray.origin;
     let to_max = scene.world.bounds_max - ray.origin;
@@ -62,6 +63,7 @@ fn traverse(ray: Ray, any_hit: bool, hit: ptr<function, Hit>) {
     var begin = root_begin;
     var end = root_end;
     loop {
+        // descend to a leaf: near child first, the far one deferred if the ray enters it too
         var node = nodes[index];
         while (node.y & 3u) != 3u {
             let axis = node.y & 3u;
@@ -95,6 +97,7 @@ fn traverse(ray: Ray, any_hit: bool, hit: ptr<function, Hit>) {
             return;
         }
 
+        // resume at the nearest deferred child that starts before the hit
         loop {
             if waiting == 0u {
                 return;

@@ -1,4 +1,5 @@
-// Outlines, flat outlines: twin of src/shapes/outline.rs, where each field is explained.
+// Outlines of flat shapes, and clipping of gather discs against them. Twin: src/shapes/outline.rs,
+// which documents the fields and functions.
 
 const SHARE_MIN: f32 = 1e-6;
 const DEPTH: f32 = 0.02;
@@ -127,12 +128,14 @@ fn cut_share(outline: Outline, clip: Clip, position: vec3f, normal: vec3f, radiu
     let d = position - outline.origin;
     let scale = 1.0 / radius;
     var cuts = clip.cuts;
+    // start from a square about the unit disc, so that all corners have its scale
     var polygon: array<vec2f, CORNERS>;
     polygon[0] = vec2f(-2.0, -2.0);
     polygon[1] = vec2f(2.0, -2.0);
     polygon[2] = vec2f(2.0, 2.0);
     polygon[3] = vec2f(-2.0, 2.0);
     var count = 4u;
+    // clip the square by the four edges of the parallelogram, then by the walls
     for (var k = 0u; k < 4u + clip.count; k++) {
         var toward = outline.dual_u;
         var distance = 0.0;
@@ -155,6 +158,7 @@ fn cut_share(outline: Outline, clip: Clip, position: vec3f, normal: vec3f, radiu
             count = cut_polygon(&polygon, count, across, distance);
         }
     }
+    // add up the area of the unit disc inside the polygon, edge by edge
     var area = 0.0;
     var a = polygon[max(count, 1u) - 1u];
     for (var i = 0u; i < count; i++) {
@@ -178,6 +182,7 @@ fn find_cuts(outline: Outline, position: vec3f, normal: vec3f, clip: ptr<functio
         let wall = outlines[i];
         let d = wall.origin - position;
         let rise = dot(d, wall.v);
+        // walls on the other side, or on the opposite face of a box, do not count
         if (dot(wall.v, normal) > 0.5 || wall.radius > 0.0) && abs(rise) <= (*clip).depth {
             let place = clamp(-dot(d, wall.u) / dot(wall.u, wall.u), 0.0, 1.0);
             let nearest = d + wall.u * place;
@@ -214,6 +219,7 @@ fn clip_at(number: u32, position: vec3f, normal: vec3f, radius: f32) -> Clip {
     //#else
     let round = false;
     //#end
+    // does the outline cross the disc?
     if round {
         let within = outline.radius - radius;
         clip.crossed = within <= 0.0 || dot(d, d) > within * within;
@@ -227,6 +233,7 @@ fn clip_at(number: u32, position: vec3f, normal: vec3f, radius: f32) -> Clip {
             || margin_t * margin_t < radius_sq * dot(outline.dual_v, outline.dual_v);
     }
     clip.depth = DEPTH * radius + 2.0 * (outline.error + PLANE_ERROR * max_abs(position));
+    // share of the disc inside the outline and before the walls
     find_cuts(outline, position, normal, &clip, radius);
     if clip.count > 0u {
         clip.crossed = true;
@@ -238,7 +245,7 @@ fn clip_at(number: u32, position: vec3f, normal: vec3f, radius: f32) -> Clip {
         return clip;
     }
     if clip.crossed {
-        // a loop, so that the function is there once
+        // in a loop, so that the function is inlined only once
         for (var k = 0u; k < 2u; k++) {
             let share = outline_share(outline, position, normal, select(radius, 0.70710677 * radius, k == 1u));
             clip.whole = select(clip.whole, 1.0 / share, k == 0u);

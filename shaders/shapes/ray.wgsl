@@ -1,4 +1,4 @@
-// Rays and hits: twin of src/shapes/ray.rs, where each field is explained.
+// Rays and hits. Twin: src/shapes/ray.rs, which documents the fields.
 
 struct Ray {
     origin: vec3f,

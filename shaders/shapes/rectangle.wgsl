@@ -1,4 +1,4 @@
-// Parallelogram: twin of src/shapes/rectangle.rs.
+// Parallelogram. Twin: src/shapes/rectangle.rs.
 
 const EDGE: f32 = 8.0 * EPS;
 

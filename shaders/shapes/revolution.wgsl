@@ -1,5 +1,5 @@
-// Bezier surfaces of revolution: frame, ray intersection and surface data. Twin:
-// src/shapes/revolution.rs, which explains the fields. Needs math/vector.wgsl, math/trig.wgsl,
+// Bezier surfaces of revolution: local frame, ray intersection and surface data. Twin:
+// src/shapes/revolution.rs, which documents the fields. Needs math/vector.wgsl, math/trig.wgsl,
 // revolution_profile.wgsl, revolution_roots.wgsl.
 
 const REVOLUTION_ERROR: f32 = 9.6e-7;
@@ -59,7 +59,7 @@ fn intersect_patch(
     let d = ray.direction;
     var begin = (t_min - ray.start) * revolution.inv_scale;
     var end = (t_max - ray.start) * revolution.inv_scale;
-    // The slab of the ring's heights.
+    // clip the interval to the slab of the ring's heights
     if abs(d.y) > 1e-30 {
         let l0 = (piece.y_min - o.y) / d.y;
         let l1 = (piece.y_max - o.y) / d.y;
@@ -68,7 +68,7 @@ fn intersect_patch(
     } else if o.y < piece.y_min || o.y > piece.y_max {
         return patch_miss();
     }
-    // Its outer cylinder, and its inner one, which holds nothing.
+    // clip to the outer cylinder and cut out the inner one, which contains no surface
     let a = max(d.x * d.x + d.z * d.z, 1e-20);
     let l_axis = -(o.x * d.x + o.z * d.z) / a;
     let x = o.x + d.x * l_axis;
@@ -82,6 +82,7 @@ fn intersect_patch(
     let inner = sqrt(max(piece.r_min * piece.r_min - axis_sq, 0.0) / a);
     begin = max(begin, l_axis - outer);
     end = min(end, l_axis + outer);
+    // search the part before the closest approach to the axis, then the part after it
     var hit = patch_miss();
     for (var i = 0u; i < 2u; i++) {
         ray.side = select(1.0, -1.0, i == 0u);
@@ -103,8 +104,7 @@ fn revolution_surface(revolution: Revolution, piece: Patch, theta: f32, tau: f32
     load_control_points(piece);
     var at = ring_point(piece, theta, tau);
     let p = at.point * revolution.scale;
-    // The tangent alone gives the normal, on the axis too; at a cusp the tangent next to it stands
-    // in.
+    // the tangent alone gives the normal, even on the axis; at a cusp, use the tangent next to it
     if dot(at.d_tau, at.d_tau) <= 1e-8 * piece.length * piece.length {
         at = ring_point(piece, theta, tau + (0.5 - tau) * 0.001);
     }

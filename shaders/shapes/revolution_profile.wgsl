@@ -1,6 +1,5 @@
-// The profile of a surface of revolution, piece by piece, and a ray seen in the profile's
-// half-plane. Twin: src/shapes/revolution_profile.rs, which explains the fields. Reads
-// `scene.profile_points`.
+// Profile of a surface of revolution, cut into patches, and rays in the profile's half-plane. Twin:
+// src/shapes/revolution_profile.rs, which documents the fields. Reads `scene.profile_points`.
 
 const MAX_DEGREE: u32 = 15u;
 
@@ -46,8 +45,8 @@ struct RingPoint {
     d_tau: vec3f,
 }
 
-// The first four control points of the patch at hand: some devices read buffers slowly, and a patch
-// is evaluated often.
+// First four control points of the current patch, cached because some devices read buffers slowly
+// and a patch is evaluated often.
 struct ControlPoints {
     b0: vec2f,
     b1: vec2f,
@@ -57,7 +56,7 @@ struct ControlPoints {
 
 var<private> control_points: ControlPoints;
 
-// To be called before the functions below are called with another patch.
+// Loads the cache; must be called before the functions below are called with another patch.
 fn load_control_points(piece: Patch) {
     let first = piece.first_point;
     let last = first + piece.degree;
@@ -69,8 +68,8 @@ fn load_control_points(piece: Patch) {
     );
 }
 
-// (s, h, ds/dtau, dh/dtau), by de Casteljau. The usual degrees need no array and no loop, which are
-// dear, too.
+// Returns (s, h, ds/dtau, dh/dtau), by de Casteljau. The common degrees 1 to 3 avoid the array and
+// the loop, which are expensive.
 fn profile_point(piece: Patch, tau: f32) -> vec4f {
     let n = piece.degree;
     if n > 3u {
@@ -105,7 +104,7 @@ fn profile_point_high(piece: Patch, tau: f32) -> vec4f {
     return profile_end(b[0], b[1], n, tau);
 }
 
-// The last step, between the last two points.
+// Last de Casteljau step, between the last two points.
 fn profile_end(b0: vec2f, b1: vec2f, n: u32, tau: f32) -> vec4f {
     let leg = b1 - b0;
     let point = b0 + leg * tau;
@@ -119,7 +118,7 @@ fn ray_point(piece: Patch, ray: LocalRay, l: f32) -> RayPoint {
     let x = o.x + d.x * l;
     let z = o.z + d.z * l;
     let radius = sqrt(x * x + z * z);
-    // On the axis the radius has a kink: its slope there is the one-sided one.
+    // the radius has a kink on the axis: use the one-sided slope there
     var outward = ray.side * sqrt(d.x * d.x + d.z * d.z);
     if radius > 0.0 {
         outward = (x * d.x + z * d.z) / radius;
@@ -165,7 +164,7 @@ fn tau_at(piece: Patch, s: f32) -> f32 {
     return tau;
 }
 
-// (F, phi'(s), tau).
+// Returns (F, phi'(s), tau).
 fn profile_offset(piece: Patch, at: RayPoint, exact: bool) -> vec3f {
     let past = max(max(-at.s, at.s - piece.length), 0.0) * piece.slope;
     if !exact && at.h > piece.phi_max + past {
@@ -190,6 +189,7 @@ fn ring_point(piece: Patch, theta: f32, tau: f32) -> RingPoint {
     let sc = sin_cos(theta);
     let sin = sc.x;
     let cos = sc.y;
+    // one addition at a time: Mesa rewrites e + (a b + c d)
     let r = (piece.origin.x + piece.axis.x * p.x) + piece.axis.y * p.y;
     let y = (piece.origin.y + piece.axis.y * p.x) - piece.axis.x * p.y;
     let dr = piece.axis.x * p.z + piece.axis.y * p.w;

@@ -1,5 +1,5 @@
-// Where a ray meets one patch of a surface of revolution: twin of src/shapes/revolution_roots.rs,
-// which explains the method.
+// Intersection of a ray with one patch of a surface of revolution. Twin:
+// src/shapes/revolution_roots.rs, which explains the method.
 
 const NEWTON_STEPS: u32 = 15u;
 const NEWTON_HALVINGS: u32 = 10u;
@@ -20,7 +20,7 @@ fn patch_miss() -> PatchHit {
     return PatchHit(FAR, 0.0, 0.0, 0u);
 }
 
-// (dl, dtheta, dtau, D), or zero.
+// Returns (dl, dtheta, dtau, D), or zero if D is negligible.
 fn newton_step(direction: vec3f, f: vec3f, at: RingPoint) -> vec4f {
     let det = dot(direction, cross(at.d_theta, at.d_tau));
     if det * det <= (1e-8 * dot(at.d_theta, at.d_theta)) * dot(at.d_tau, at.d_tau) {
@@ -46,7 +46,8 @@ fn newton(piece: Patch, ray: LocalRay, start: PatchHit) -> PatchHit {
         let at = ring_point(piece, theta, tau);
         let f = (ray.origin + ray.direction * l) - at.point;
         let f_sq = dot(f, f);
-        // Far outside the patch the curve is of no use.
+        // accept the step if it reduces the residual; the curve is meaningless far outside the
+        // patch
         if f_sq < error_sq && tau > -1.0 && tau < 2.0 {
             x = PatchHit(l, theta, tau, x.steps);
             error_sq = f_sq;
@@ -63,6 +64,7 @@ fn newton(piece: Patch, ray: LocalRay, start: PatchHit) -> PatchHit {
             part = 1.0;
             halvings = 0u;
         } else {
+            // otherwise halve the step, unless the residual is already down to rounding
             if error_sq <= RESIDUAL_NOISE * RESIDUAL_NOISE {
                 return x;
             }
@@ -123,7 +125,7 @@ fn bracketed_root(piece: Patch, ray: LocalRay, a: RayPoint, b: RayPoint) -> Patc
 }
 
 fn find_root(piece: Patch, ray: LocalRay, a: RayPoint, b: RayPoint, slack: f32) -> PatchHit {
-    // h = 0 is the cone over the chord.
+    // initial guess: h = 0 is the cone over the chord; two Newton steps refine it
     let rise = b.h - a.h;
     var part = 0.5;
     if abs(rise) > 1e-12 {
@@ -144,6 +146,7 @@ fn find_root(piece: Patch, ray: LocalRay, a: RayPoint, b: RayPoint, slack: f32) 
     let x = ray.origin.x + ray.direction.x * l;
     let z = ray.origin.z + ray.direction.z * l;
     let tau = clamp(at.s / piece.length, 0.0, 1.0);
+    // solve the 3x3 system; if that fails, solve F by bracketing
     var root = newton(piece, ray, PatchHit(l, arctan2(z, x), tau, 0u));
     let over = END_TOLERANCE / piece.length;
     if root.t >= a.l && root.t <= b.l && root.tau >= -over && root.tau <= 1.0 + over {
@@ -178,6 +181,8 @@ fn first_root(piece: Patch, ray: LocalRay, begin: f32, end: f32) -> PatchHit {
         }
         let next = min(l + width, end);
         let b = ray_point(piece, ray, next);
+        // a function whose slope lies in an interval deviates from its chord by at most a quarter
+        // of that interval's width times the distance
         let quarter = 0.25 * (next - l);
         let bow_s = abs(b.ds - a.ds) * quarter + END_TOLERANCE;
         let bow_h = abs(b.dh - a.dh) * quarter;
@@ -189,6 +194,8 @@ fn first_root(piece: Patch, ray: LocalRay, begin: f32, end: f32) -> PatchHit {
             || min(a.h, b.h) - bow_h > piece.phi_max + past
             || max(a.h, b.h) + bow_h < piece.phi_min - past;
         if !outside {
+            // bound F' by the slope limit of the patch; unless F' may change sign, the sign of F
+            // suffices
             var range = slope_range(a, b, -piece.slope, piece.slope);
             let exact = range.x <= 0.0 && range.y >= 0.0;
             var f_a = vec3f(0.0);
@@ -199,16 +206,18 @@ fn first_root(piece: Patch, ray: LocalRay, begin: f32, end: f32) -> PatchHit {
                 f_b = profile_offset(piece, at, exact);
                 at = b;
             }
-            // While s runs one way, phi' is known from its ends.
+            // if s is monotone, its ends bound phi'
             if exact && (a.ds > 0.0) == (b.ds > 0.0) {
                 range = slope_range(a, b, min(f_a.y, f_b.y) - piece.wobble, max(f_a.y, f_b.y) + piece.wobble);
             }
+            // halve the interval if it may contain more than one root
             let bow = (range.y - range.x) * quarter;
             let touches = !exact || (min(f_a.x, f_b.x) - bow <= 0.0 && max(f_a.x, f_b.x) + bow >= 0.0);
             if touches && range.x <= 0.0 && range.y >= 0.0 && width > least {
                 width *= 0.5;
                 continue;
             }
+            // at most one root is left: find it if F changes sign
             let crosses = touches && ((f_a.x >= 0.0) != (f_b.x >= 0.0));
             if crosses {
                 let most_ds = max(abs(a.ds), abs(b.ds));

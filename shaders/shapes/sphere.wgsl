@@ -1,19 +1,22 @@
-// Sphere of any radius about an anchor on its surface: twin of src/shapes/sphere.rs.
+// Sphere of any radius, described relative to an anchor on its surface. Twin: src/shapes/sphere.rs,
+// which gives the equation.
 
 fn intersect_sphere(sphere: Sphere, reference: u32, ray: Ray, hit: ptr<function, Hit>) {
     let k = sphere.curvature;
     let d0 = ray.origin - sphere.anchor;
     let side = dot(d0, sphere.normal) + 0.5 * k * dot(d0, d0);
-    // light from infinity starts behind its origin, so that the origin's side says nothing
+    // rays from infinity start behind their origin, so the side of the origin is irrelevant
     let backward = ray.t_min < 0.0;
     if !backward && side >= 0.0 && dot(ray.direction, sphere.normal) + k * dot(d0, ray.direction) >= 0.0 {
         return;
     }
-    // from the point of the ray nearest to the anchor: small numbers however far the origin is
+    // solve from the point of the ray nearest to the anchor: small numbers however distant the
+    // origin
     let t0 = -dot(d0, ray.direction);
     let d = d0 + ray.direction * t0;
     let b = dot(ray.direction, sphere.normal) + k * dot(d, ray.direction);
     let c = dot(d, sphere.normal) + 0.5 * k * dot(d, d);
+    // roots of the quadratic without cancellation
     let discriminant = b * b - 2.0 * k * c;
     if discriminant < 0.0 {
         return;

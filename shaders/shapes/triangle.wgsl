@@ -1,4 +1,5 @@
-// Triangles: twin of src/shapes/triangle.rs, which explains the method.
+// Triangles: watertight ray-triangle test of Woop, Benthin & Wald (JCGT 2013). Twin:
+// src/shapes/triangle.rs, which explains the method.
 
 struct Triangle {
     p0: vec3f,
@@ -14,7 +15,7 @@ struct RayShear {
     axis: u32,
 }
 
-// The shear of the ray under way, set at the start of each traversal.
+// Shear of the current ray, set at the start of each tree walk.
 var<private> ray_shear: RayShear;
 
 fn shear_of(ray: Ray) -> RayShear {
@@ -33,14 +34,15 @@ fn sheared(p: vec3f, ray: Ray) -> vec3f {
     return vec3f(q.x - ray_shear.shear.x * q.z, q.y - ray_shear.shear.y * q.z, ray_shear.shear.z * q.z);
 }
 
-// The value itself. A compiler cannot know that, so it cannot fuse the product that made `p` with a
-// later sum.
+// Returns p unchanged. The compiler cannot know that, so it cannot fuse the product that gave `p`
+// with a later sum.
 fn rounded(p: f32) -> f32 {
     return bitcast<f32>(bitcast<u32>(p) | (ray_shear.axis >> 2u));
 }
 
-// p - q for two products. Where a compiler fuses one of them into the difference, the sign stays
-// right, since a fused difference can only go astray where the rounded products are equal.
+// Returns p - q for two products. If a compiler fuses one of them into the difference, the sign
+// stays correct: a fused difference can only be wrong where the rounded products are equal, and
+// there the result is 0.
 fn edge(p: f32, q: f32) -> f32 {
     return select(p - q, 0.0, p == q);
 }
@@ -60,9 +62,11 @@ fn exact_cross(a: f32, b: f32, c: f32, d: f32) -> f32 {
 }
 
 fn intersect_triangle(triangle: Triangle, reference: u32, ray: Ray, hit: ptr<function, Hit>) {
+    // shear the vertices into the ray's space
     let a = sheared(triangle.p0, ray);
     let b = sheared(triangle.p1, ray);
     let c = sheared(triangle.p2, ray);
+    // edge functions; the ray misses if their signs differ
     let cb0 = c.x * b.y;
     let cb1 = c.y * b.x;
     let ac0 = a.x * c.y;
@@ -76,6 +80,7 @@ fn intersect_triangle(triangle: Triangle, reference: u32, ray: Ray, hit: ptr<fun
         return;
     }
     var det = u + v + w;
+    // thin in projection: recompute the edge functions with the rounding errors of their products
     let products = max(max(max(max(max(abs(cb0), abs(cb1)), abs(ac0)), abs(ac1)), abs(ba0)), abs(ba1));
     if abs(det) < 0.5 * products {
         u = exact_cross(c.x, c.y, b.x, b.y);

@@ -3,8 +3,8 @@
 use glam::DVec2;
 use std::ops::{Add, Mul};
 
-/// The control points of the part of a Bezier curve (or Bernstein polynomial) over [a, b], by two
-/// de Casteljau subdivisions.
+/// Control points of the part of a Bezier curve (or Bernstein polynomial) over [a, b], by two de
+/// Casteljau subdivisions.
 pub fn restrict<T>(points: &[T], a: f64, b: f64) -> Vec<T>
 where
     T: Copy + Add<Output = T> + Mul<f64, Output = T>,
@@ -16,7 +16,7 @@ where
     split(&upper, (b - a) / (1.0 - a)).0
 }
 
-/// The control points over [0, t] and over [t, 1].
+/// Control points over [0, t] and over [t, 1].
 pub fn split<T>(points: &[T], t: f64) -> (Vec<T>, Vec<T>)
 where
     T: Copy + Add<Output = T> + Mul<f64, Output = T>,
@@ -33,32 +33,32 @@ where
     (lower, b)
 }
 
-/// The curve's point at `t`.
+/// Point of the curve at `t`.
 pub fn point(points: &[DVec2], t: f64) -> DVec2 {
     split(points, t).1.first().copied().unwrap_or_default()
 }
 
-/// The control points of the derivative curve; empty for a point.
+/// Control points of the derivative curve; empty for a single point.
 pub fn derivative(points: &[DVec2]) -> Vec<DVec2> {
     let n = points.len().saturating_sub(1) as f64;
     points.windows(2).map(|w| (w[1] - w[0]) * n).collect()
 }
 
-/// Places in (0, 1) where the Bernstein polynomial changes its sign or touches zero, sorted; to
-/// about 1e-13. None for a polynomial within `noise` of zero everywhere.
+/// Positions in (0, 1) at which the Bernstein polynomial changes its sign or touches zero, sorted,
+/// accurate to about 1e-13. Empty for a polynomial within `noise` of zero everywhere.
 pub fn roots(coefficients: &[f64], noise: f64) -> Vec<f64> {
     let mut found = Vec::new();
     if coefficients.iter().any(|c| c.abs() > noise) {
         isolate(coefficients, 0.0, 1.0, &mut found);
     }
-    // A touching root is known to half the digits: its two sides are one.
+    // a double root is accurate to half the digits: merge its two sides
     found.retain(|&t| t > 1e-6 && t < 1.0 - 1e-6);
     found.dedup_by(|b, a| *b - *a < 1e-6);
     found
 }
 
 fn isolate(c: &[f64], a: f64, b: f64, found: &mut Vec<f64>) {
-    // The polynomial lies in the hull of its coefficients.
+    // the polynomial lies in the convex hull of its coefficients
     if c.iter().all(|&x| x > 0.0) || c.iter().all(|&x| x < 0.0) {
         return;
     }
@@ -78,8 +78,8 @@ fn isolate(c: &[f64], a: f64, b: f64, found: &mut Vec<f64>) {
 mod tests {
     use super::*;
 
-    // Theory: de Casteljau subdivision describes the same curve; roots of (t - 1/4)(t - 3/4)^2 are
-    // 1/4 and, touching, 3/4.
+    // Theory: de Casteljau subdivision describes the same curve; the roots of (t - 1/4)(t - 3/4)^2
+    // are 1/4 and the double root 3/4.
     #[test]
     fn restriction_is_the_same_curve() {
         let p = [

@@ -1,10 +1,10 @@
-//! The kd-tree over everything finite, by the surface area heuristic (Wald & Havran 2006, "On
+//! kd-tree over all bounded shapes, built by the surface area heuristic (Wald & Havran 2006, "On
 //! building fast kd-trees for ray tracing, and on doing that in O(N log N)").
 //!
-//! Large nodes are split at one of some evenly spaced planes (`kdtree_bins`); below a few thousand
-//! primitives all planes that bound a primitive are tried, from sorted lists that are kept sorted
-//! (`kdtree_sweep`). Both clip the primitives to the cells that they fall in ("perfect splits",
-//! `kdtree_clip`). Last, the nodes are put in the order that rays like (`kdtree_layout`).
+//! Large nodes are split at one of several evenly spaced planes (`kdtree_bins`); below a few
+//! thousand primitives, all planes that bound a primitive are candidates, taken from lists that
+//! stay sorted (`kdtree_sweep`). Both clip primitives to the cells that they overlap ("perfect
+//! splits", `kdtree_clip`). Finally, the nodes are ordered for traversal (`kdtree_layout`).
 
 use super::kdtree_bins::{best_plane, partition};
 use super::kdtree_clip::Geometry;
@@ -16,48 +16,48 @@ use super::shapes::kdtree::{MAX_DEPTH, Node, Tree};
 use crate::telemetry::stage::stage;
 use rayon::prelude::*;
 
-/// What the tree is built over: f32 geometry as the kernels see it.
+/// Primitive of the tree: geometry in the kernels' precision.
 #[derive(Clone, Copy, Debug)]
 pub enum Primitive {
     /// A triangle by its vertices.
     Triangle([Vec3; 3]),
-    /// Anything else by a box that surely holds all of its computed hits.
+    /// Any other shape, as a box that is guaranteed to contain all of its computed hits.
     Box(Aabb),
 }
 
-/// Facts about a tree.
+/// Statistics of a tree.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Stats {
-    /// Expected cost of a ray that crosses the root's box, in node visits: the surface area
+    /// Expected cost, in node visits, of a ray that crosses the root's box: the surface area
     /// heuristic summed over the tree with [`INTERSECTION_COST`].
     pub cost: f64,
     /// Number of leaves.
     pub leaves: usize,
-    /// Leaves without a primitive.
+    /// Number of leaves without a primitive.
     pub empty_leaves: usize,
-    /// Most primitives in one leaf.
+    /// Greatest number of primitives in one leaf.
     pub largest_leaf: usize,
-    /// Interior nodes on the longest path.
+    /// Number of interior nodes on the longest path.
     pub depth: u32,
 }
 
-/// A kd-tree in the form that the kernels read.
+/// kd-tree in the format that the kernels read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct KdTree {
-    /// Nodes, the root first and an empty leaf beside it, then pairs of siblings.
+    /// Nodes: the root, an empty leaf as its sibling, then pairs of siblings.
     pub nodes: Vec<Node>,
-    /// Indices into the primitives, in the order of the leaves.
+    /// Indices of primitives, in leaf order.
     pub refs: Vec<u32>,
-    /// The box about all primitives; zero when there are none.
+    /// Bounding box of all primitives; zero if there are none.
     pub bounds: Aabb,
     /// See [`Tree::primitive_size`].
     pub primitive_size: Real,
-    /// Facts about the tree.
+    /// Statistics of the tree.
     pub stats: Stats,
 }
 
 impl KdTree {
-    /// The tree as [`crate::shapes::kdtree::traverse_closest`] takes it.
+    /// View of the tree for [`crate::shapes::kdtree::traverse_closest`].
     pub fn view(&self) -> Tree<'_> {
         Tree {
             nodes: &self.nodes,
@@ -71,22 +71,22 @@ impl KdTree {
 
 /// Cost of a primitive's test relative to a node visit (`K_I / K_T` in the paper).
 pub const INTERSECTION_COST: f64 = 0.3;
-/// Factor on the cost of a plane that cuts off empty space (`lambda`).
+/// Factor on the cost of a plane that cuts off empty space (`lambda` in the paper).
 const EMPTY_BONUS: f64 = 0.8;
-/// Nodes with more primitives are split at evenly spaced planes.
+/// Number of primitives above which a node is split at evenly spaced planes.
 const SWEEP_LIMIT: usize = 1 << 13;
 
-/// A primitive and the box about its part in the cell.
+/// Primitive and the bounding box of its part in the cell.
 #[derive(Clone, Copy)]
 pub(super) struct Item {
     pub prim: u32,
     pub bounds: Aabb,
 }
 
-/// A node before it has its place.
+/// Node before its placement in memory.
 #[derive(Clone, Copy)]
 pub(super) enum Part {
-    /// The lower child follows; the upper one is named.
+    /// The lower child follows; `upper` is the index of the upper one.
     Split {
         axis: u8,
         position: Real,
@@ -98,25 +98,25 @@ pub(super) enum Part {
     },
 }
 
-/// A subtree on its own, depth first. Upper children and first references count from its own start.
+/// Subtree in depth-first order. Upper children and first references are relative to its start.
 #[derive(Default)]
 pub(super) struct Subtree {
     pub nodes: Vec<Part>,
     pub refs: Vec<u32>,
 }
 
-/// The surface area heuristic in one cell along one axis.
+/// Surface area heuristic in one cell along one axis.
 pub(super) struct Heuristic {
-    /// Half the area of a cut across the axis, over half the area of the cell.
+    /// Half-area of a cut across the axis over the half-area of the cell.
     cut: f64,
-    /// Growth of the (half) area ratio per unit along the axis.
+    /// Growth of the half-area ratio per unit along the axis.
     growth: f64,
     low: f64,
     high: f64,
 }
 
 impl Heuristic {
-    /// None when the cell has no area.
+    /// `None` if the cell has no area.
     pub fn new(cell: Aabb, axis: usize) -> Option<Heuristic> {
         let d = cell.max.to_double() - cell.min.to_double();
         let (b, c) = (d[(axis + 1) % 3], d[(axis + 2) % 3]);
@@ -129,7 +129,7 @@ impl Heuristic {
         })
     }
 
-    /// Expected cost of a split at `position` with so many primitives on either side.
+    /// Expected cost of a split at `position` with `left` and `right` primitives on the two sides.
     #[inline]
     pub fn cost(&self, position: Real, left: usize, right: usize) -> f64 {
         let p_left = self.cut + (f64::from(position) - self.low) * self.growth;
@@ -139,7 +139,7 @@ impl Heuristic {
     }
 }
 
-/// Builds the tree. The same input gives the same tree, whatever the number of threads.
+/// Builds the tree. The result does not depend on the number of threads.
 pub fn build(prims: &[Primitive]) -> KdTree {
     let _stage = stage("kd-tree");
     let geometry = Geometry::new(prims);

@@ -1,28 +1,28 @@
-//! Splits of large nodes: the surface area heuristic at evenly spaced planes.
+//! Splits of large nodes by the surface area heuristic at evenly spaced planes.
 
 use super::kdtree::{Heuristic, INTERSECTION_COST, Item};
 use super::kdtree_clip::Geometry;
 use super::real::Real;
 use super::shapes::aabb::Aabb;
 
-/// Planes tried per axis, plus one.
+/// Number of bins per axis; the candidate planes lie between them.
 const BINS: usize = 256;
 
-/// A splitting plane.
+/// Splitting plane.
 #[derive(Clone, Copy)]
 pub(super) struct Plane {
     pub axis: usize,
     pub position: Real,
 }
 
-/// Items that are looked at to find where most of them lie.
+/// Number of items sampled to find where most of them lie.
 const SAMPLE: usize = 1024;
-/// Planes are spaced over the middle of the items where it is narrower than the cell by this
-/// factor.
+/// Planes are spaced over the middle of the items if it is narrower than the cell by this factor.
 const NARROW: Real = 1.0 / 16.0;
 
-/// What the planes are spaced over: along each axis the cell, or, where few items far away make the
-/// cell much wider than the rest of them need, the middle 98 % of the items and a margin as wide.
+/// Range over which the planes are spaced. Along each axis this is the cell or, if a few distant
+/// items make the cell much wider than the other items, the middle 98 % of the items plus a margin
+/// of the same width.
 fn bin_range(items: &[Item], cell: Aabb) -> Aabb {
     let mut range = cell;
     let sample = || items.iter().step_by(items.len() / SAMPLE + 1);
@@ -45,11 +45,12 @@ fn bin_range(items: &[Item], cell: Aabb) -> Aabb {
     range
 }
 
-/// The best of the evenly spaced planes, or none if no split is expected to pay.
+/// Best of the evenly spaced planes, or `None` if no split is expected to reduce the cost.
 pub(super) fn best_plane(items: &[Item], cell: Aabb) -> Option<Plane> {
     let range = bin_range(items, cell);
     let size = range.max - range.min;
     let scale = size.map(|s| if s > 0.0 { BINS as Real / s } else { 0.0 });
+    // count the items that start and end in each bin
     let mut starts = [[0usize; BINS]; 3];
     let mut ends = [[0usize; BINS]; 3];
     for item in items {
@@ -62,6 +63,7 @@ pub(super) fn best_plane(items: &[Item], cell: Aabb) -> Option<Plane> {
     }
     let mut best = None;
     let mut best_cost = INTERSECTION_COST * items.len() as f64;
+    // sweep the planes
     for axis in 0..3 {
         let Some(heuristic) = Heuristic::new(cell, axis) else { continue };
         let mut left = 0;
@@ -80,8 +82,7 @@ pub(super) fn best_plane(items: &[Item], cell: Aabb) -> Option<Plane> {
     best
 }
 
-/// The items of the two cells `low` and `high` beside `plane`; what lies in the plane goes to the
-/// first.
+/// Distributes the items to the cells `low` and `high` of a split; items in the plane go to `low`.
 pub(super) fn partition(
     geometry: &Geometry,
     items: &[Item],
@@ -105,7 +106,7 @@ pub(super) fn partition(
     (left, right)
 }
 
-/// The boxes of a primitive in two cells. Should rounding take it from both, it stays in both.
+/// Boxes of a primitive clipped to two cells. If rounding removes it from both, it is kept in both.
 pub(super) fn parts(
     geometry: &Geometry,
     prim: u32,

@@ -1,4 +1,4 @@
-//! The box about the part of a primitive that lies in a cell (perfect splits).
+//! Bounding box of the part of a primitive that lies in a cell (perfect splits).
 
 use super::kdtree::Primitive;
 use super::math::EPS;
@@ -9,10 +9,10 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 /// Triangles this many times wider than the lower quartile are padded; for all others the
-/// traversal's slabs are wide enough, and still thin against most triangles.
+/// traversal's slabs are wide enough, yet thin relative to most triangles.
 const OUTLIER: Real = 64.0;
 
-/// The primitives of a tree, and which of them need padding.
+/// Primitives of a tree, and the size above which they need padding.
 pub(super) struct Geometry<'a> {
     prims: &'a [Primitive],
     /// Largest extent of a triangle that needs no padding.
@@ -31,14 +31,14 @@ impl<'a> Geometry<'a> {
         Geometry { prims, size: largest.min(OUTLIER * typical) }
     }
 
-    /// Whether a primitive is so large that its hits may lie farther off it than the slabs about
-    /// planes allow for.
+    /// Returns true if a primitive is so large that its computed hits may lie farther from it than
+    /// the slabs about the splitting planes allow for.
     pub fn is_padded(&self, prim: u32) -> bool {
         self.prims[prim as usize].size().is_some_and(|size| size > self.size)
     }
 
-    /// The box about what `cell` holds of a primitive, rounded outward but not out of the cell, or
-    /// none.
+    /// Bounding box of the part of a primitive in `cell`, rounded outward but not beyond the cell,
+    /// or `None` if there is none.
     pub fn clipped(&self, prim: u32, cell: Aabb) -> Option<Aabb> {
         match &self.prims[prim as usize] {
             Primitive::Triangle(points) if self.is_padded(prim) => clipped_large(points, cell),
@@ -49,7 +49,7 @@ impl<'a> Geometry<'a> {
 }
 
 impl Primitive {
-    /// The box about the whole.
+    /// Bounding box of the whole primitive.
     pub(super) fn bounds(&self) -> Aabb {
         match self {
             Primitive::Triangle(points) => Aabb::of_points(points),
@@ -57,7 +57,8 @@ impl Primitive {
         }
     }
 
-    /// Largest extent of a triangle along an axis. Boxes hold all of their hits already.
+    /// Largest extent of a triangle along an axis; `None` for boxes, which contain all of their
+    /// hits already.
     fn size(&self) -> Option<Real> {
         match self {
             Primitive::Triangle(points) => {
@@ -69,32 +70,32 @@ impl Primitive {
     }
 }
 
-/// A triangle cut by the six planes of a cell has at most nine corners.
+/// Greatest number of corners of a triangle clipped by the six planes of a cell.
 const CORNERS: usize = 9;
 
-/// A triangle's part in a cell: a convex polygon.
+/// Part of a triangle in a cell: a convex polygon.
 struct Polygon {
     corners: [DVec3; CORNERS],
     count: usize,
 }
 
-/// The box about what `cell` holds of a triangle.
+/// Bounding box of the part of a triangle in `cell`.
 fn clipped_triangle(points: &[Vec3; 3], cell: Aabb) -> Option<Aabb> {
     let part = polygon(points, cell).bounds(0.0)?;
-    // In f64 the corners are rounded like the kernels' numbers, but never beyond the triangle.
+    // in f64 the corners are rounded like the kernels' numbers, but never beyond the triangle
     let slop = if f64::from(EPS) < f64::EPSILON { Real::EPSILON * magnitude(points) } else { 0.0 };
     let whole = Aabb::of_points(points);
     let (min, max) = ((part.min - slop).max(whole.min), (part.max + slop).min(whole.max));
     Some(Aabb { min: min.clamp(cell.min, cell.max), max: max.clamp(cell.min, cell.max) })
 }
 
-/// The box about the computed hits in `cell` of a triangle that is larger than the slabs about
-/// planes allow for.
+/// Bounding box of the computed hits in `cell` of a triangle that is too large for the slabs about
+/// the splitting planes.
 ///
-/// A hit near a point q with weights w lies off the triangle by at most `SLACK sum w_i |p_i - q|`,
-/// and what goes with its distance from the ray's origin. Where one vertex is far, that is little
-/// near the other two; so the padding is found for the part in the cell, which the padding before
-/// has grown.
+/// A hit near a point q with weights w deviates from the triangle by at most
+/// `SLACK sum w_i |p_i - q|`, plus an error in proportion to its distance from the ray's origin. If
+/// one vertex is distant, this is small near the other two; the padding is therefore computed for
+/// the part in the cell enlarged by the previous padding, as long as that at least halves it.
 fn clipped_large(points: &[Vec3; 3], cell: Aabb) -> Option<Aabb> {
     let whole = Aabb::of_points(points);
     let slop = f64::EPSILON * f64::from(4.0 * magnitude(points));
@@ -117,12 +118,12 @@ fn clipped_large(points: &[Vec3; 3], cell: Aabb) -> Option<Aabb> {
     }
 }
 
-/// Greatest absolute coordinate.
+/// Largest absolute coordinate.
 fn magnitude(points: &[Vec3; 3]) -> Real {
     points.iter().map(|p| p.abs().max_element()).fold(0.0, Real::max)
 }
 
-/// Cuts the triangle by each plane of the cell in turn (Sutherland & Hodgman 1974), in f64.
+/// Clips the triangle by each plane of the cell in turn (Sutherland & Hodgman 1974), in f64.
 fn polygon(points: &[Vec3; 3], cell: Aabb) -> Polygon {
     let mut corners = [DVec3::ZERO; CORNERS];
     for (corner, point) in corners.iter_mut().zip(points) {
@@ -142,7 +143,7 @@ fn polygon(points: &[Vec3; 3], cell: Aabb) -> Polygon {
 }
 
 impl Polygon {
-    /// The box about it, widened by `pad` and rounded outward, or none.
+    /// Bounding box, widened by `pad` and rounded outward, or `None` for an empty polygon.
     fn bounds(&self, pad: f64) -> Option<Aabb> {
         let corners = &self.corners[..self.count];
         let low = corners.iter().copied().reduce(DVec3::min)? - pad;
@@ -153,8 +154,8 @@ impl Polygon {
         })
     }
 
-    /// Bound of `sum w_i |p_i - q|` over its points q with weights w in the triangle `points`:
-    /// linear in q but for the distances, which grow by no more than its extent.
+    /// Bound on `sum w_i |p_i - q|` over the polygon's points q with weights w in the triangle
+    /// `points`: linear in q except for the distances, which grow by at most the polygon's extent.
     fn reach(&self, points: &[Vec3; 3]) -> f64 {
         let [a, b, c] = points.map(Vec3::to_double);
         let normal = (b - a).cross(c - a);
@@ -169,19 +170,19 @@ impl Polygon {
                 distances(*q).iter().zip(weights).map(|(d, w)| d * w.clamp(0.0, 1.0)).sum::<f64>();
             let extent =
                 corners.iter().map(|other| (*other - *q).abs().max_element()).fold(0.0, f64::max);
-            // without area no weight is known
+            // a triangle without area has no weights
             if area_sq > 0.0 { sum + extent } else { f64::MAX }
         };
         corners.iter().map(bound).fold(0.0, f64::max)
     }
 }
 
-/// Keeps the corners with `side * (x - plane) >= 0` and adds those where an edge crosses.
+/// Keeps the corners with `side * (x - plane) >= 0` and adds one where an edge crosses the plane.
 fn cut(polygon: &mut [DVec3; CORNERS], count: usize, axis: usize, plane: f64, side: f64) -> usize {
     let old = *polygon;
     let mut kept = 0;
     let mut push = |p: DVec3| {
-        // Rounding cannot make a corner more: a convex polygon crosses a plane at most twice.
+        // rounding cannot add a corner: a convex polygon crosses a plane at most twice
         if kept < CORNERS {
             polygon[kept] = p;
             kept += 1;

@@ -1,26 +1,26 @@
-//! The order of the nodes in memory: a walk down the tree should touch few cache lines.
+//! Order of the nodes in memory, chosen so that a descent touches few cache lines.
 
 use super::kdtree::Part;
 use super::shapes::aabb::Aabb;
 use super::shapes::kdtree::Node;
 
-/// Pairs of siblings in a cache line of 64 bytes.
+/// Number of sibling pairs in a cache line of 64 bytes.
 const LINE: usize = 4;
 
-/// An interior node whose children have no place yet.
+/// Interior node whose children are not placed yet.
 struct Open {
-    /// Where it lies in the new order.
+    /// Index in the new order.
     place: usize,
-    /// Where it lay in the old one.
+    /// Index in the old order.
     old: usize,
     cell: Aabb,
 }
 
-/// Puts the nodes of a tree in the order that rays walk them in: siblings side by side, and with
-/// them in the cache line, one after the other, those children of the nodes in it that most rays
-/// visit, by the area of their cells.
+/// Arranges the nodes of a tree for traversal: siblings are adjacent, and a cache line is filled,
+/// one pair after another, with the children of those of its nodes that most rays visit, by the
+/// area of their cells.
 pub(super) fn laid_out(nodes: &[Part], bounds: Aabb) -> Vec<Node> {
-    // Beside the root lies an empty leaf, so that pairs begin at even indices.
+    // the root's sibling is an empty leaf, so that pairs start at even indices
     let mut out = vec![Node::leaf(0, 0); 2];
     let mut heads = Vec::new();
     let put = |out: &mut Vec<Node>, open: &mut Vec<Open>, place: usize, old: usize, cell| {
@@ -33,6 +33,7 @@ pub(super) fn laid_out(nodes: &[Part], bounds: Aabb) -> Vec<Node> {
     let mut line = Vec::new();
     while let Some(head) = heads.pop() {
         line.push(head);
+        // place the children of the widest open nodes until the line is full
         for _ in 0..LINE {
             let area = |open: &Open| open.cell.half_area();
             let Some(widest) =

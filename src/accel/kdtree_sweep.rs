@@ -1,8 +1,9 @@
-//! Exact splits: every plane that bounds a primitive is tried (Wald & Havran 2006, section 4.3).
+//! Exact splits: every plane that bounds a primitive is a candidate (Wald & Havran 2006, section
+//! 4.3).
 //!
-//! Per axis a sorted list of events says where primitives end, lie flat or start. A split filters
-//! the lists, which keeps them sorted, and merges in the events of the primitives that straddle the
-//! plane.
+//! Per axis, a sorted list of events records the positions at which primitives end, lie in a plane
+//! or start. A split filters the lists, which keeps them sorted, and merges in the events of the
+//! primitives that straddle the plane.
 
 use super::kdtree::{Heuristic, INTERSECTION_COST, Item, Part, Subtree};
 use super::kdtree_bins::parts;
@@ -10,12 +11,12 @@ use super::kdtree_clip::Geometry;
 use super::real::{Bits, Real, WideBits};
 use super::shapes::aabb::Aabb;
 
-/// Order at equal positions: as the sweep meets them.
+/// Kinds of events, in their order at equal positions: the order in which the sweep processes them.
 const END: Event = 0;
 const PLANAR: Event = 1;
 const START: Event = 2;
 
-/// Position (in an order-preserving code), kind and item in one word, so that events sort as
+/// Position (in an order-preserving encoding), kind and item in one word, so that events sort as
 /// integers.
 type Event = WideBits;
 /// Sorted events along each axis.
@@ -25,7 +26,7 @@ const ITEM_BITS: u32 = 30;
 const SIGN: Bits = 1 << (Bits::BITS - 1);
 
 fn event(position: Real, kind: Event, item: usize) -> Event {
-    // Plus zero makes -0 into 0.
+    // adding plus zero turns -0 into 0
     let bits = (position + 0.0).to_bits();
     let code = if bits & SIGN != 0 { !bits } else { bits | SIGN };
     Event::from(code) << 32 | kind << ITEM_BITS | item as Event
@@ -63,7 +64,7 @@ enum Side {
     Both,
 }
 
-/// A plane and the side that takes the primitives which lie in it.
+/// Splitting plane, and the side that receives the primitives that lie in it.
 #[derive(Clone, Copy)]
 struct Split {
     axis: usize,
@@ -71,19 +72,19 @@ struct Split {
     planar_left: bool,
 }
 
-/// Builds one subtree.
+/// Builder of one subtree.
 pub(super) struct Sweep<'a> {
     geometry: &'a Geometry<'a>,
-    /// Item -> primitive.
+    /// Primitive of each item.
     ids: Vec<u32>,
-    /// Item -> where it goes in the split under way.
+    /// Side of each item in the current split.
     sides: Vec<Side>,
     levels: u32,
     tree: Subtree,
 }
 
 impl<'a> Sweep<'a> {
-    /// For a subtree over `items`, at most `levels` deep.
+    /// Builder for a subtree over `items`, at most `levels` deep.
     pub fn new(geometry: &'a Geometry<'a>, items: &[Item], levels: u32) -> Sweep<'a> {
         Sweep {
             geometry,
@@ -94,7 +95,7 @@ impl<'a> Sweep<'a> {
         }
     }
 
-    /// The subtree of `cell`.
+    /// Builds the subtree of `cell`.
     pub fn build(mut self, items: &[Item], cell: Aabb) -> Subtree {
         let mut events = Events::default();
         for (i, item) in items.iter().enumerate() {
@@ -132,7 +133,7 @@ impl<'a> Sweep<'a> {
         self.tree.nodes.push(Part::Leaf { first: first as u32, count });
     }
 
-    /// The events and numbers of items in the two cells beside the plane.
+    /// Returns the events and the numbers of items in the two cells of a split.
     fn divide(
         &mut self,
         events: Events,
@@ -140,6 +141,7 @@ impl<'a> Sweep<'a> {
         low: Aabb,
         high: Aabb,
     ) -> ([Events; 2], [usize; 2]) {
+        // classify the items
         let mut counts = [0; 2];
         for &e in &events[split.axis] {
             let p = position(e);
@@ -153,6 +155,7 @@ impl<'a> Sweep<'a> {
             };
             self.sides[item(e)] = side;
         }
+        // clip the items that straddle the plane to both cells
         let mut new = [Events::default(), Events::default()];
         for &e in events[split.axis].iter().filter(|&&e| kind(e) != END) {
             match self.sides[item(e)] {
@@ -169,6 +172,7 @@ impl<'a> Sweep<'a> {
                 }
             }
         }
+        // filter the lists and merge in the new events
         let mut divided = [Events::default(), Events::default()];
         for (axis, events) in events.into_iter().enumerate() {
             for (side, wanted) in [Side::Left, Side::Right].into_iter().enumerate() {
@@ -181,7 +185,7 @@ impl<'a> Sweep<'a> {
     }
 }
 
-/// The events that are `kept`, merged with those `added`.
+/// Merges the events for which `kept` holds with those in `added`.
 fn merged(events: &[Event], added: &[Event], kept: impl Fn(Event) -> bool) -> Vec<Event> {
     let mut out = Vec::with_capacity(events.len() + added.len());
     let mut next = 0;
@@ -196,7 +200,7 @@ fn merged(events: &[Event], added: &[Event], kept: impl Fn(Event) -> bool) -> Ve
     out
 }
 
-/// The plane of least expected cost strictly inside the cell, or none if a leaf is cheaper.
+/// Plane of least expected cost strictly inside the cell, or `None` if a leaf is cheaper.
 fn best_split(events: &Events, count: usize, cell: Aabb) -> Option<Split> {
     let mut best = None;
     let mut best_cost = INTERSECTION_COST * count as f64;
@@ -205,6 +209,7 @@ fn best_split(events: &Events, count: usize, cell: Aabb) -> Option<Split> {
         let mut left = 0;
         let mut right = count;
         let mut i = 0;
+        // gather the events at one position
         while i < events.len() {
             let here = events[i] >> 32;
             let mut numbers = [0; 3];
@@ -214,6 +219,7 @@ fn best_split(events: &Events, count: usize, cell: Aabb) -> Option<Split> {
             }
             let [ends, planar, starts] = numbers;
             right -= ends + planar;
+            // cost of a split here, with the primitives in the plane on either side
             let p = position(here << 32);
             if p > cell.min[axis] && p < cell.max[axis] {
                 let choices: &[bool] = if planar > 0 { &[true, false] } else { &[true] };

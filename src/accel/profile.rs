@@ -1,19 +1,19 @@
-//! Bezier profiles of surfaces of revolution, checked and cut into flat pieces.
+//! Bezier profiles of surfaces of revolution: validation, and cutting into flat pieces.
 
 use super::bezier::{derivative, point, restrict, roots};
 use crate::shapes::revolution::MAX_DEGREE;
 use glam::{DQuat, DVec2, DVec3};
 
-/// Slope over the chord at which a piece of profile counts as flat: a bend of about 11 degrees to
-/// each side.
+/// Slope over the chord up to which a piece of profile counts as flat: a bend of about 11 degrees
+/// to either side.
 const FLAT_SLOPE: f64 = 0.2;
-/// Halvings of a segment at most; what bends below that becomes a straight sliver.
+/// Greatest number of halvings of a segment; a piece that still bends becomes a straight sliver.
 const MAX_DEPTH: u32 = 24;
-/// Part of its length by which a patch reaches over its neighbour on the same segment, so that no
+/// Fraction of its length by which a patch overlaps its neighbour on the same segment, so that no
 /// hit is lost between them: both are the same polynomial there.
 const OVERLAP: f64 = 1.0 / 64.0;
 
-/// Why a profile cannot be turned into a surface.
+/// Reason why a profile does not define a surface.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ProfileError {
     /// A segment has too few or too many control points.
@@ -29,19 +29,19 @@ pub enum ProfileError {
         "the profile or its transform holds a number that is not finite, or a scale that is not positive"
     )]
     NotFinite,
-    /// Nothing is left of the surface: all points coincide or lie on the axis.
+    /// The surface is empty: all points coincide or lie on the axis.
     #[error("the profile encloses no surface: it is a point, or lies on the axis")]
     Empty,
 }
 
-/// Rotation, uniform scale and translation from a profile's own coordinates to the scene.
+/// Rotation, uniform scale and translation from the profile's coordinates to the scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placement {
-    /// Applied first.
+    /// Rotation, applied first.
     pub rotation: DQuat,
-    /// Positive.
+    /// Scale, positive.
     pub scale: f64,
-    /// Applied last, scene units.
+    /// Translation, applied last, scene units.
     pub translation: DVec3,
 }
 
@@ -51,7 +51,7 @@ impl Default for Placement {
     }
 }
 
-/// A piece [t0, t1] of a segment that is a graph over its chord.
+/// Piece [t0, t1] of a segment that is a graph over its chord.
 pub struct Piece {
     /// Curve parameter of the segment at its start.
     pub t0: f64,
@@ -61,14 +61,14 @@ pub struct Piece {
     pub points: Vec<DVec2>,
     /// Bound on |phi'|, the slope over the chord.
     pub slope: f64,
-    /// Bound on how far phi' leaves the range between its ends.
+    /// Bound on how far phi' leaves the range of its values at the ends.
     pub wobble: f64,
 }
 
-/// Whether a profile and where it is placed make sense.
+/// Checks that a profile and its placement are valid.
 ///
 /// # Errors
-/// When they do not.
+/// The number of control points of a segment is out of range, or a number is not finite.
 pub fn check(segments: &[Vec<DVec2>], placement: &Placement) -> Result<(), ProfileError> {
     for (segment, points) in segments.iter().enumerate() {
         if !(2..=MAX_DEGREE + 1).contains(&points.len()) {
@@ -83,9 +83,9 @@ pub fn check(segments: &[Vec<DVec2>], placement: &Placement) -> Result<(), Profi
     if finite { Ok(()) } else { Err(ProfileError::NotFinite) }
 }
 
-/// Cuts a segment (local units) where it has a cusp or crosses the axis, and then in halves until
-/// every piece is a flat graph over its chord. Pieces on the far side of the axis are mirrored to
-/// radius >= 0.
+/// Cuts a segment (local units) at its cusps and where it crosses the axis, then halves the parts
+/// until every piece is a flat graph over its chord. Pieces on the negative side of the axis are
+/// mirrored to radius >= 0.
 pub fn pieces(segment: &[DVec2]) -> Vec<Piece> {
     let mut out = Vec::new();
     let extent = segment.iter().fold(0.0_f64, |a, p| a.max(p.distance(segment[0])));
@@ -94,6 +94,7 @@ pub fn pieces(segment: &[DVec2]) -> Vec<Piece> {
     }
     let velocity = derivative(segment);
     let speed = velocity.iter().fold(0.0_f64, |a, v| a.max(v.length()));
+    // cut at the axis and at cusps
     let component =
         |points: &[DVec2], of: fn(&DVec2) -> f64| points.iter().map(of).collect::<Vec<f64>>();
     let mut cuts = roots(&component(segment, |p| p.x), 1e-12);
@@ -131,9 +132,9 @@ fn halve(segment: &[DVec2], limits: [f64; 2], t0: f64, t1: f64, depth: u32, out:
     }
 }
 
-/// Bounds on |dh/ds| of a curve over its chord and on how far it leaves the range between its ends,
-/// from the legs of its control polygon (variation diminishing: dh/ds is a rational Bezier function
-/// with their slopes as coefficients). None when it is no flat graph.
+/// Bounds on |dh/ds| of a curve over its chord and on how far dh/ds leaves the range of its values
+/// at the ends, from the legs of the control polygon (variation diminishing: dh/ds is a rational
+/// Bezier function with their slopes as coefficients). `None` if the curve is not a flat graph.
 fn slopes(points: &[DVec2]) -> Option<(f64, f64)> {
     let chord = points[points.len() - 1] - points[0];
     let length = chord.length();
@@ -141,7 +142,7 @@ fn slopes(points: &[DVec2]) -> Option<(f64, f64)> {
         return None;
     }
     let e = chord / length;
-    // A leg of no length (at a cusp) turns no tangent.
+    // skip legs of zero length (at a cusp), which do not affect the tangent
     let legs = points.windows(2).map(|w| w[1] - w[0]).filter(|leg| leg.length() > 1e-7 * length);
     let slope =
         |leg: DVec2| if e.dot(leg) > 0.0 { leg.perp_dot(e) / e.dot(leg) } else { f64::INFINITY };

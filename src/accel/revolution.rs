@@ -1,5 +1,5 @@
-//! Cuts Bezier profiles into the patches that `shapes::revolution` intersects, and boxes them for
-//! the kd-tree. All in f64; rounded to f32 at the end.
+//! Cuts Bezier profiles into the patches that `shapes::revolution` intersects, and computes their
+//! boxes for the kd-tree. Computes in f64 and rounds to the kernels' precision at the end.
 
 use super::real::{Real, ToDouble, ToReal, Vec2, Vec3};
 use glam::{DMat3, DVec2, DVec3};
@@ -10,26 +10,26 @@ use super::shapes::revolution::{Patch, Revolution};
 use super::shapes::revolution_roots::STEP_TOLERANCE;
 use crate::accel::profile::{Piece, check, pieces};
 
-/// Bounds are widened by this, in local units: more than the intersection's rounding errors.
+/// Padding of bounds, in local units: more than the rounding errors of the intersection.
 const BOUNDS_PAD: f64 = 2e-6;
-/// Sectors of a ring that is thin against its radius; others get one box.
+/// Number of sectors of a ring that is thin relative to its radius; other rings get one box.
 const SECTORS: u32 = 8;
 
-/// What the caller attaches to a surface; kept as it is.
+/// Attributes that the caller attaches to a surface, stored unchanged.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Attributes {
     /// Index of the material.
     pub material: u32,
-    /// Index of the light, or the caller's mark for none.
+    /// Index of the light, or the caller's value for none.
     pub light: u32,
-    /// The caller's uv mode.
+    /// Source of the texture coordinates, one of the `UV_*` constants.
     pub uv: u32,
-    /// Newton steps shorter than this, in sizes of the profile, end the search of a hit; 0 leaves
-    /// it to the precision.
+    /// Newton steps shorter than this fraction of the profile's size end the root search; 0 selects
+    /// the limit of the precision.
     pub step_tolerance: f64,
 }
 
-/// An axis-aligned box that encloses an angular sector of a patch, scene units.
+/// Axis-aligned box that encloses an angular sector of a patch, scene units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PatchBox {
     /// Index of the patch.
@@ -40,12 +40,12 @@ pub struct PatchBox {
     pub max: Vec3,
 }
 
-/// All surfaces of revolution of a scene, as the kernels read them.
+/// Tables of all surfaces of revolution of a scene, as the kernels read them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RevolutionTables {
-    /// One for each surface.
+    /// Frame and attributes of each surface.
     pub revolutions: Vec<Revolution>,
-    /// The patches of all surfaces.
+    /// Patches of all surfaces.
     pub patches: Vec<Patch>,
     /// Control points of all patches, in chord coordinates.
     pub profile_points: Vec<Vec2>,
@@ -53,10 +53,10 @@ pub struct RevolutionTables {
 
 impl RevolutionTables {
     /// Adds the surface that `segments` (control points (radius, height), any degree from 1 to 15)
-    /// make about the y axis, placed in the scene, and returns the boxes of its patches.
+    /// sweep about the y axis, placed in the scene, and returns the boxes of its patches.
     ///
     /// # Errors
-    /// When the profile is no surface; nothing is added then.
+    /// The profile does not define a surface; nothing is added then.
     pub fn push(
         &mut self,
         segments: &[Vec<DVec2>],
@@ -72,7 +72,7 @@ impl RevolutionTables {
         if !(size > 0.0 && size.is_finite()) {
             return Err(ProfileError::Empty);
         }
-        // The kernels' frame is what Real leaves of this one.
+        // the frame in the kernels' precision
         let revolution = frame(placement, middle, size, segments.len(), attributes);
         let to_local = |p: &DVec2| DVec2::new(p.x, p.y - middle) / size;
         let step_tolerance = STEP_TOLERANCE.max(attributes.step_tolerance as Real);
@@ -107,7 +107,8 @@ impl RevolutionTables {
         if !(length > 1e-9 && reach > 1e-9) {
             return;
         }
-        // The origin and frame that Real holds; the control points make up for their rounding.
+        // origin and axis rounded as the kernels read them; the control points compensate for the
+        // rounding
         let origin = first.to_real();
         let axis = ((last - first) / length).to_real();
         let (o, e) = (origin.to_double(), axis.to_double());
@@ -178,7 +179,7 @@ fn frame(
     }
 }
 
-/// Box of sector `k` of `sectors` of the ring that the hull of `points` (local r, y) sweeps.
+/// Bounding box of sector `k` of `sectors` of the ring swept by the hull of `points` (local r, y).
 fn sector_box(
     revolution: &Revolution,
     patch: u32,
@@ -190,8 +191,7 @@ fn sector_box(
     let scale = f64::from(revolution.scale);
     let center = revolution.center.to_double();
     let axes = [revolution.x_axis, revolution.y_axis, revolution.z_axis].map(Vec3::to_double);
-    // Largest value over the sector of the scene direction's component; linear in the hull's
-    // points.
+    // largest component along a scene direction over the sector; linear in the hull's points
     let support = |direction: DVec3| {
         let [x, y, z] = axes.map(|a| a.dot(direction));
         let (g_min, g_max) = cosine_range(x, z, from, to);
@@ -209,7 +209,7 @@ fn sector_box(
     }
 }
 
-/// Range of x cos a + z sin a for a in [from, to], within one turn.
+/// Range of x cos a + z sin a for a in [from, to], an interval within one turn.
 fn cosine_range(x: f64, z: f64, from: f64, to: f64) -> (f64, f64) {
     let at = |a: f64| x * a.cos() + z * a.sin();
     let (mut low, mut high) = (at(from).min(at(to)), at(from).max(at(to)));

@@ -1,5 +1,5 @@
-//! A Bezier profile turned about the y axis as a triangle mesh with smooth normals and (u, v), as
-//! Wavefront OBJ text; all in f64.
+//! Tessellation of a Bezier profile revolved about the y axis into a triangle mesh with smooth
+//! normals and (u, v), written as Wavefront OBJ text. Computes in f64.
 
 use std::collections::HashMap;
 use std::fmt::Write as _;
@@ -11,12 +11,13 @@ use super::profile::ProfileError;
 use crate::scene::Transform;
 use crate::shapes::revolution::MAX_DEGREE;
 
-/// How fine the mesh is.
+/// Resolution of the mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fineness {
-    /// Sectors around the axis, at least 3.
+    /// Number of sectors around the axis, at least 3.
     pub sectors: u32,
-    /// Largest distance of a profile curve from its polyline, as a part of the profile's size.
+    /// Largest distance between a profile curve and its polyline, as a fraction of the profile's
+    /// size.
     pub flatness: f64,
 }
 
@@ -27,8 +28,8 @@ impl Default for Fineness {
 }
 
 impl Fineness {
-    /// So many sectors, and along the profile as fine as around the axis: a circle leaves its
-    /// chords by the square of their number.
+    /// Resolution with `sectors` sectors, equally fine along the profile: the deviation of a circle
+    /// from its chords falls with the square of their number.
     pub fn of_sectors(sectors: u32) -> Self {
         let Self { sectors: own, flatness } = Self::default();
         let coarser = f64::from(own) / f64::from(sectors.max(3));
@@ -36,37 +37,36 @@ impl Fineness {
     }
 }
 
-/// A corner of a triangle: indices into positions, uvs and normals.
+/// Vertex of a triangle: indices into positions, uvs and normals.
 pub type Corner = [u32; 3];
 
-/// A mesh whose positions are shared wherever they coincide: on the seam, on the axis, between
-/// segments.
+/// Mesh that shares positions wherever they coincide: on the seam, on the axis, between segments.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RevolutionMesh {
     /// Vertex positions.
     pub positions: Vec<DVec3>,
-    /// Texture coordinates: u around, v along the profile over all segments.
+    /// Texture coordinates: u around the axis, v along the profile over all segments.
     pub uvs: Vec<DVec2>,
-    /// Unit normals of the exact surface; outward where the profile is drawn upward.
+    /// Unit normals of the exact surface; outward if the profile runs upward.
     pub normals: Vec<DVec3>,
     /// Triangles, counter-clockwise seen from the side that the normals point to.
     pub triangles: Vec<[Corner; 3]>,
 }
 
-/// A sample of the profile.
+/// Sample of the profile.
 struct Sample {
-    /// (radius, height).
+    /// Radius and height.
     point: DVec2,
-    /// (radial, vertical) part of the unit normal.
+    /// Radial and vertical part of the unit normal.
     normal: DVec2,
     v: f64,
 }
 
-/// The mesh of the surface that `segments` (control points (radius, height)) make about the y axis,
-/// in the profile's own coordinates.
+/// Tessellates the surface that `segments` (control points (radius, height)) sweep about the y
+/// axis, in the profile's coordinates.
 ///
 /// # Errors
-/// When the profile is no surface; see [`ProfileError`].
+/// The profile does not define a surface; see [`ProfileError`].
 pub fn tessellate(
     segments: &[Vec<DVec2>],
     fineness: &Fineness,
@@ -107,8 +107,8 @@ pub fn tessellate(
     if builder.mesh.triangles.is_empty() { Err(ProfileError::Empty) } else { Ok(builder.mesh) }
 }
 
-/// Parameters at which to cut a segment: halved until it lies within `tolerance` of its chord and
-/// bends little.
+/// Parameters at which to cut a segment: it is halved until each part lies within `tolerance` of
+/// its chord and bends little.
 fn parameters(segment: &[DVec2], tolerance: f64) -> Vec<f64> {
     fn halve(points: &[DVec2], a: f64, b: f64, tolerance: f64, out: &mut Vec<f64>) {
         let chord = points[points.len() - 1] - points[0];
@@ -137,7 +137,7 @@ fn parameters(segment: &[DVec2], tolerance: f64) -> Vec<f64> {
 fn sample(segment: &[DVec2], t: f64, v: f64) -> Sample {
     let velocity = derivative(segment);
     let fastest = velocity.iter().fold(0.0_f64, |a, d| a.max(d.length()));
-    // At a cusp the tangent next to it stands in.
+    // at a cusp, use the tangent next to it
     let exact = point(&velocity, t);
     let tangent = if exact.length() > 1e-6 * fastest {
         exact
@@ -145,7 +145,7 @@ fn sample(segment: &[DVec2], t: f64, v: f64) -> Sample {
         point(&velocity, t + (0.5 - t) * 1e-3)
     };
     let p = point(segment, t);
-    // A profile on the far side of the axis draws the same circles.
+    // a profile on the negative side of the axis sweeps the same circles
     let side = if p.x < 0.0 { -1.0 } else { 1.0 };
     let normal = DVec2::new(tangent.y, -tangent.x * side).normalize_or(DVec2::X);
     Sample { point: DVec2::new(p.x * side, p.y), normal, v }
@@ -154,19 +154,20 @@ fn sample(segment: &[DVec2], t: f64, v: f64) -> Sample {
 struct Builder {
     mesh: RevolutionMesh,
     sectors: u32,
-    /// Points nearer than this are one.
+    /// Distance below which points are merged.
     weld: f64,
     known: HashMap<[i64; 3], u32>,
 }
 
 impl Builder {
-    /// The corners around the axis at a sample, the first one repeated at the end with u = 0.
+    /// Adds the vertices around the axis at a sample; the first one is repeated at the end with u =
+    /// 0.
     fn ring(&mut self, sample: &Sample) -> Vec<Corner> {
         let n = self.sectors;
-        // Radii within the welding distance of zero lie on the axis.
+        // radii within the merging distance of zero lie on the axis
         let r = if sample.point.x <= self.weld { 0.0 } else { sample.point.x };
         let mut corner = |k: u32| {
-            // theta from -pi to pi, u = 1/2 - theta / 2 pi from 1 to 0.
+            // theta runs from -pi to pi, u = 1/2 - theta / 2 pi from 1 to 0
             let theta =
                 std::f64::consts::TAU * f64::from(k % n) / f64::from(n) - std::f64::consts::PI;
             let (sin, cos) = theta.sin_cos();
@@ -189,7 +190,7 @@ impl Builder {
         (0..=n).map(&mut corner).collect()
     }
 
-    /// The triangles between two rings, less those that the axis makes empty.
+    /// Adds the triangles between two rings, except those that degenerate on the axis.
     fn band(&mut self, below: &[Corner], above: &[Corner]) {
         for k in 0..below.len() - 1 {
             let quad = [below[k], above[k], above[k + 1], below[k + 1]];
@@ -203,7 +204,7 @@ impl Builder {
 }
 
 impl RevolutionMesh {
-    /// The mesh in the world.
+    /// Transforms the mesh to world space.
     #[must_use]
     pub fn transformed(mut self, world_from_object: &Transform) -> Self {
         self.positions.iter_mut().for_each(|p| *p = world_from_object.point(*p));
@@ -214,7 +215,7 @@ impl RevolutionMesh {
     /// Wavefront OBJ text: `v`, `vt`, `vn` and `f v/vt/vn` lines, with `header` lines as comments.
     pub fn to_obj(&self, header: &str) -> String {
         let mut out = String::new();
-        // Writing to a String cannot fail.
+        // writing to a String cannot fail
         for line in header.lines() {
             let _ = writeln!(out, "# {line}");
         }
@@ -247,7 +248,7 @@ mod tests {
         ]
     }
 
-    /// Directed edges that have no partner in the other direction.
+    /// Number of edges without a partner in the other direction.
     fn open_edges(mesh: &RevolutionMesh) -> usize {
         let mut count: HashMap<(u32, u32), i32> = HashMap::new();
         for t in &mesh.triangles {
@@ -259,9 +260,9 @@ mod tests {
         count.values().filter(|&&c| c != 0).count()
     }
 
-    // Theory: a profile with both ends on the axis closes: every edge is met once in each
-    // direction, the enclosed volume is positive (outward) and tends to pi times the integral of
-    // r^2 dy.
+    // Theory: a profile with both ends on the axis gives a closed mesh: every edge occurs once in
+    // each direction, and the enclosed volume is positive (outward normals) and tends to pi times
+    // the integral of r^2 dy.
     #[test]
     fn a_closed_profile_makes_a_closed_mesh() {
         let profile = drop_profile();
@@ -288,7 +289,7 @@ mod tests {
             let face = (b - a).cross(c - a);
             assert!(t.iter().all(|c| face.normalize().dot(mesh.normals[c[2] as usize]) > 0.5));
         }
-        // A mesh with one triangle gone is not closed.
+        // a mesh with one triangle removed is not closed
         let mut open = mesh.clone();
         open.triangles.pop();
         assert_eq!(open_edges(&open), 3);

@@ -1,5 +1,5 @@
-//! Ablation: the gain of specialisation. Scenes with one more thing that nothing refers to, so that
-//! its code is compiled and its tables are bound but the picture is the same.
+//! Ablation: measures the gain of specialisation. Adds unused items to a scene, so that their code
+//! is compiled and their tables are bound, but the image stays the same.
 
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -18,8 +18,8 @@ use crate::plan::features::{Feature, Features};
 use crate::scene::settings::RenderSettings;
 use crate::tables::*;
 
-/// Returns the scene with one more thing of a feature, to which nothing refers. `None` for features
-/// that cannot be added alone or that change the picture.
+/// Returns the scene with one unused item that requires `feature`. `None` for features that cannot
+/// be added alone or that change the image.
 pub fn with_unused(scene: &Scene, feature: Feature) -> Option<Scene> {
     let mut scene = scene.clone();
     let material = |bsdf| Material {
@@ -78,13 +78,13 @@ pub fn with_unused(scene: &Scene, feature: Feature) -> Option<Scene> {
         }
         Feature::Point => scene.lights.push(light(LIGHT_POINT)),
         Feature::Spot => scene.lights.push(light(LIGHT_SPOT)),
-        // come with one of the features above
+        // implied by one of the features above
         Feature::Textures
         | Feature::Specular
         | Feature::Lobes
         | Feature::Lights
         | Feature::Photons => return None,
-        // choose how the same thing is computed
+        // select how the same thing is computed
         Feature::KdTree
         | Feature::Few
         | Feature::PatchSet
@@ -111,7 +111,7 @@ pub fn with_unused(scene: &Scene, feature: Feature) -> Option<Scene> {
     Some(scene)
 }
 
-/// Returns the scene with everything that can be added and that `features` lack.
+/// Returns the scene with one unused item for every addable feature that `features` lack.
 pub fn with_all_unused(scene: &Scene, features: Features) -> Scene {
     unused(features)
         .into_iter()
@@ -125,22 +125,22 @@ pub fn unused(features: Features) -> Vec<Feature> {
     Feature::all().filter(|f| !features.has(*f) && can_add(f)).collect()
 }
 
-/// Seconds of one kernel.
+/// Times of one kernel, seconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct KernelCost {
-    /// To compose, check and compile it, until it has run over nothing.
+    /// Time to compose, validate and compile it, including a first run over nothing.
     pub compile: f64,
-    /// In one pass, the least of several.
+    /// Time in one pass, the minimum of several passes.
     pub run: f64,
 }
 
-/// A scene on a device: what each kernel takes, and the picture.
+/// Times of a scene on a device, and its image.
 pub struct Costs {
-    /// By the kernels' stems; on the CPU, whose code is compiled once for all scenes, by none.
+    /// Times by kernel stem; empty on the CPU, whose code is compiled once for all scenes.
     pub kernels: BTreeMap<&'static str, KernelCost>,
-    /// Seconds of a pass, the least of several.
+    /// Time of a pass in seconds, the minimum of several passes.
     pub pass: f64,
-    /// The estimate after these passes.
+    /// Image after these passes.
     pub picture: Picture,
 }
 
@@ -188,7 +188,7 @@ pub fn on_cpu(
     Ok(Costs { kernels: BTreeMap::new(), pass, picture: engine.picture()? })
 }
 
-/// Theory: what nothing refers to changes no bit, but is compiled.
+/// Theory: items without references change no bit of the image, but are compiled.
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -215,7 +215,7 @@ mod tests {
         let with_all = on_cpu(heavy, &loaded.settings, 2).unwrap();
         assert!(plain.picture == with_all.picture);
         assert!(plain.picture.rgb.iter().flatten().any(|value| *value > 0.0));
-        // A light that the choice does refer to would show.
+        // a change to a light that is referenced is detected
         let mut brighter = packed.clone();
         brighter.scene.lights[0].color *= 2.0;
         assert!(on_cpu(brighter, &loaded.settings, 2).unwrap().picture != plain.picture);

@@ -1,4 +1,4 @@
-//! The CPU engine: executes a plan on vectors, with rayon. Needs no adapter.
+//! CPU engine: executes a plan on vectors in memory, with rayon. Needs no adapter.
 
 mod photons;
 mod tasks;
@@ -32,7 +32,7 @@ use std::ops::Range;
 use std::sync::Arc;
 use tasks::{EYE_TASK, EyePaths, GATHER_TASK, Gathers, trace_aovs};
 
-/// Passes over one scene on the processor's cores.
+/// Engine that renders one scene on the processor's cores.
 pub struct CpuEngine {
     packed: Arc<Packed>,
     plan: Plan,
@@ -44,26 +44,26 @@ pub struct CpuEngine {
     aovs: Vec<AovPixel>,
     parts: Vec<PartsPixel>,
     records: Vec<RecordList>,
-    /// Records before each part of the buckets.
+    /// Number of records before each part of the buckets.
     part_starts: Vec<u32>,
     starts: Vec<u32>,
     sorted: SortedRecords,
     device: String,
     clock: Clock,
-    /// What vectors the processor has.
+    /// Vector instructions of the processor.
     arch: pulp::Arch,
 }
 
-/// Why a pass is not in the film.
+/// Reason why a pass did not reach the film.
 enum Unfinished {
-    /// A batch left more records than the buffers hold.
+    /// A batch left more records than the capacity.
     Overflow,
-    /// It was given up on request.
+    /// The pass was cancelled.
     Cancelled,
 }
 
 impl CpuEngine {
-    /// An engine for one scene and plan.
+    /// Creates an engine for one scene and plan.
     pub fn new(packed: impl Into<Arc<Packed>>, plan: Plan) -> Self {
         let points = (plan.pixels * plan.eye_samples) as usize;
         let photons = plan.features.has(Feature::Photons);
@@ -111,7 +111,7 @@ impl CpuEngine {
                 PassReport { photons: self.plan.settings.photons as u64, ..PassReport::default() };
             match self.execute(batch, report) {
                 Ok(()) => return Ok(()),
-                // a pass that overflowed is thrown away and run again with batches half as large
+                // discard a pass that overflowed and run it again with batches half as large
                 Err(Unfinished::Overflow) => batch = (batch / 2).max(1),
                 Err(Unfinished::Cancelled) => return Err(EngineError::Cancelled),
             }
@@ -146,13 +146,13 @@ impl CpuEngine {
                     }
                     Command::Commit => cancel = Cancel::default(),
                 }
-                // the step may have left out its last tasks
+                // a cancelled step may have skipped its last tasks
                 cancel.check().map_err(|_| Unfinished::Cancelled)?;
             }
             report.eye_paths += tile.eye_paths;
             report.rays += tile.rays;
             report.eye_rays += tile.eye_rays;
-            // photons that are traced again for another tile are the same
+            // tiles trace the same photons, so count them once
             if number == 0 {
                 report.ends = tile.ends;
                 report.records = tile.records;
@@ -161,15 +161,14 @@ impl CpuEngine {
         Ok(())
     }
 
-    /// Where a chunk's visible points are in a buffer.
+    /// Range of a chunk's visible points in a buffer.
     fn place(&self, buffer: Buffer, chunk: u32) -> Range<usize> {
         let (first, points) = self.plan.chunk(chunk);
         let first = if self.plan.is_reused(buffer) { 0 } else { first as usize };
         first..first + points as usize
     }
 
-    /// Runs a step. Long ones leave out the tasks that they have not begun when `cancel` is asked
-    /// for.
+    /// Runs a step. Long steps skip the tasks that have not started when `cancel` is requested.
     fn run(
         &mut self,
         step: &Step,
@@ -298,7 +297,7 @@ impl CpuEngine {
 }
 
 impl CpuEngine {
-    /// What layers are made of.
+    /// Inputs of the layers.
     fn found(&self) -> Layers<'_> {
         let Self { aovs, parts, gathered, statistics, passes_done, .. } = self;
         Layers { aovs, parts, gathered, statistics, passes: *passes_done }

@@ -1,4 +1,4 @@
-//! Photons of a batch, in tasks of one core each.
+//! Tracing of a batch's photons in tasks of one core each.
 
 use super::super::geometry::intersect::intersect_scene_many;
 use super::super::kernels::grid_build::RecordList;
@@ -12,14 +12,14 @@ use rayon::prelude::*;
 use std::mem::size_of_val;
 use std::ops::Range;
 
-/// Photons that one task traces, at the least and at the most, and tasks between.
+/// Least and greatest number of photons per task; [`PHOTON_TASKS`] tasks in between.
 const PHOTON_TASK: (u32, u32) = (1024, 8192);
 const PHOTON_TASKS: u32 = 256;
-/// Bytes of the tree and its triangles above which it pays to trace photons side by side: below,
-/// they stay in a core's own cache.
+/// Bytes of the kd-tree and its triangles above which it pays to trace photons interleaved: a
+/// smaller scene fits in a core's cache.
 const LARGE: usize = 1 << 20;
 
-/// Whether rays wait for memory.
+/// Returns true if the scene exceeds a core's cache, so that rays wait for memory.
 fn is_large(scene: &Scene) -> bool {
     let Scene { nodes, refs, triangles, .. } = scene;
     size_of_val(&nodes[..]) + size_of_val(&refs[..]) + size_of_val(&triangles[..]) > LARGE
@@ -31,12 +31,12 @@ struct Photons<'a> {
     dispatch: &'a Dispatch,
     sampled: bool,
     ids: Range<u32>,
-    /// Several at a time, or one after the other. Nothing but the time depends on it.
+    /// Traces several photons at a time if true, else one after another. Affects only the speed.
     side_by_side: bool,
     list: &'a mut RecordList,
 }
 
-/// Rays, and photons by how they ended.
+/// Number of rays, and numbers of photons by how their paths ended.
 type Ends = (u64, [u64; 3]);
 
 impl pulp::WithSimd for Photons<'_> {
@@ -68,7 +68,8 @@ impl Photons<'_> {
         let first = ids.start;
         let number = |record: &PhotonRecord| ((record.key >> dispatch.key_bits) - first) as usize;
         let mut all = (0, [0; 3]);
-        // number of records of each photon, one place up, and the records of each in their order
+        // number of records of each photon, shifted by one; records in the order in which they
+        // arise
         let mut counts = vec![0; ids.len() + 1];
         let mut records = Vec::new();
         let mut store = |record: PhotonRecord| {
@@ -93,6 +94,7 @@ impl Photons<'_> {
             }
             None
         });
+        // sort the records by photon, keeping each photon's order
         let mut place = 0;
         for count in &mut counts {
             place += *count;
@@ -114,8 +116,9 @@ fn add_path((rays, ends): &mut Ends, path: &PhotonPath) {
     ends[path.end] += 1;
 }
 
-/// Photons of one batch; the lists come in the order of their keys. The number of rays, and of
-/// photons by how they ended. Tasks that begin after `cancel` was asked are empty.
+/// Traces the photons of one batch; the lists come in the order of their keys. Returns the number
+/// of rays, and the numbers of photons by how their paths ended. Tasks that start after `cancel`
+/// was requested do nothing.
 pub fn trace_photons(
     arch: pulp::Arch,
     scene: &Scene,
@@ -155,8 +158,8 @@ mod tests {
     use crate::scene;
     use pulp::WithSimd;
 
-    // Theory: a photon's path depends on its number alone, and lists are in the order of keys. So
-    // both ways leave the same records in the same order, whatever the shapes and the lights.
+    // Theory: a photon's path depends only on its index, and lists are in key order. So both
+    // methods give the same records in the same order, for all shapes and lights.
     #[test]
     fn side_by_side_is_one_by_one() {
         for name in ["still-life", "caustics", "water-drop", "cornell"] {

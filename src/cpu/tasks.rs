@@ -1,4 +1,5 @@
-//! Tasks of a pass: what one core does at a time, for the processor's own vectors.
+//! Tasks of a pass, the work that one core does at a time, compiled for the processor's vector
+//! instructions.
 
 use super::super::kernels::aov_trace::{AovPixel, aov_trace};
 use super::super::kernels::eye_trace::eye_trace;
@@ -9,17 +10,17 @@ use super::super::plan::features::{Feature, Features};
 use super::super::tables::{Outline, Scene};
 use rayon::prelude::*;
 
-/// Visible points that one task gathers for.
+/// Number of visible points that one task gathers for.
 pub const GATHER_TASK: usize = 1024;
-/// Visible points that one task finds.
+/// Number of visible points that one task traces.
 pub const EYE_TASK: usize = 512;
 
-/// Gathers of one task.
+/// Gathers photons for the visible points of one task.
 pub struct Gathers<'a> {
     pub outlines: &'a [Outline],
     pub dispatch: &'a Dispatch,
     pub points: &'a [VisiblePoint],
-    /// Under the local rule.
+    /// Statistics of the points, under the local rule only.
     pub statistics: Option<&'a [Statistics]>,
     pub starts: &'a [u32],
     pub sorted: &'a SortedRecords,
@@ -41,7 +42,7 @@ impl pulp::WithSimd for Gathers<'_> {
     }
 }
 
-/// Eye paths of one task.
+/// Traces the eye paths of one task.
 pub struct EyePaths<'a> {
     pub scene: &'a Scene,
     pub dispatch: &'a Dispatch,
@@ -51,7 +52,7 @@ pub struct EyePaths<'a> {
 }
 
 impl pulp::WithSimd for EyePaths<'_> {
-    /// Rays.
+    /// Number of rays.
     type Output = u64;
 
     #[inline(always)]
@@ -66,7 +67,7 @@ impl pulp::WithSimd for EyePaths<'_> {
     }
 }
 
-/// One sample of each pixel of a chunk.
+/// Traces one sample of each pixel of a chunk for the AOVs.
 pub fn trace_aovs(scene: &Scene, d: &Dispatch, features: &Features, aovs: &mut [AovPixel]) {
     let sampled = features.has(Feature::Sampled) && features.has(Feature::DirectLayer);
     let first = (d.chunk_first / d.eye_samples) as usize;

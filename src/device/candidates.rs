@@ -1,4 +1,4 @@
-//! The devices that a wish means, one after another: where one fails, the next may go on.
+//! Devices that match a request, in the order of trial: if one fails, the next may continue.
 
 use std::collections::VecDeque;
 
@@ -8,17 +8,18 @@ use crate::memory::Memory;
 use crate::scene::Scene;
 use crate::scene::settings::{Method, RenderSettings};
 
-/// Makes an engine for a scene.
+/// Creates an engine for a scene.
 type Open = Box<dyn FnOnce(&Scene, &RenderSettings, &Memory) -> Result<Opened, EngineError>>;
 
-/// A device that may be tried.
+/// Device that may be tried.
 pub struct Candidate {
     name: String,
     open: Open,
 }
 
 impl Candidate {
-    /// One of the caller's own, such as an engine that is made to fail.
+    /// Creates a candidate from the caller's function, such as one for an engine that fails
+    /// deliberately.
     pub fn new(
         name: impl Into<String>,
         open: impl FnOnce(&Scene, &RenderSettings, &Memory) -> Result<Opened, EngineError> + 'static,
@@ -26,7 +27,7 @@ impl Candidate {
         Self { name: name.into(), open: Box::new(open) }
     }
 
-    /// The device's name.
+    /// Name of the device.
     pub fn name(&self) -> &str {
         &self.name
     }
@@ -40,17 +41,17 @@ impl Candidate {
     }
 }
 
-/// Devices that have not been tried yet, in the order in which they will be.
+/// Devices that have not been tried yet, in the order of trial.
 pub struct Candidates(VecDeque<Candidate>);
 
 impl Candidates {
-    /// The devices that a wish means: one, or with `auto` all hardware GPUs and then the CPU, in
-    /// f32, which is faster than a software driver.
+    /// Devices that match a request: one, or for `auto` all hardware GPUs and then the CPU in f32,
+    /// which is faster than a software driver.
     pub fn of(wanted: &Wanted, settings: &RenderSettings) -> Result<Self, DeviceError> {
         let path = Self::is_path_on_cpu(wanted, settings);
         let wanted = if path { &Wanted::Cpu } else { wanted };
-        // drivers take a while to answer and may write to standard error, so they are not asked for
-        // nothing
+        // do not list devices unnecessarily: drivers take a while to respond and may write to
+        // standard error
         let devices = match wanted {
             Wanted::Cpu => vec![cpu(DeviceKind::Cpu)],
             Wanted::CpuDouble => vec![cpu(DeviceKind::CpuDouble)],
@@ -70,17 +71,19 @@ impl Candidates {
         Ok(Self(candidates.into()))
     }
 
-    /// Whether `auto` takes the CPU whatever else there is, since path tracing runs there alone.
+    /// Returns true if `auto` takes the CPU regardless of other devices, since path tracing runs
+    /// only there.
     pub fn is_path_on_cpu(wanted: &Wanted, settings: &RenderSettings) -> bool {
         settings.method == Method::Path && *wanted == Wanted::Auto
     }
 
-    /// These, in their order.
+    /// Creates the list from the given candidates, in their order.
     pub fn from_list(candidates: impl IntoIterator<Item = Candidate>) -> Self {
         Self(candidates.into_iter().collect())
     }
 
-    /// An engine on the next one, and its name; nothing where none is left.
+    /// Opens an engine on the next candidate and returns it with the candidate's name; `None` if
+    /// none is left.
     pub fn next(
         &mut self,
         scene: &Scene,
@@ -91,10 +94,12 @@ impl Candidates {
         Some((name, open(scene, settings, memory)))
     }
 
-    /// An engine on the first one that can render this; `refused` is told of those before.
+    /// Opens an engine on the first candidate that can render the scene; `refused` receives the
+    /// errors of those before it.
     ///
     /// # Errors
-    /// What the last one said, or what none would say otherwise.
+    /// The error of the last candidate, or an error in the scene, which would occur on every
+    /// device.
     pub fn open(
         &mut self,
         scene: &Scene,
@@ -117,8 +122,8 @@ impl Candidates {
     }
 }
 
-/// The devices that `auto` goes on with after the first: other hardware GPUs, then the CPU. After
-/// the CPU there is none.
+/// Devices that `auto` tries after the first: other hardware GPUs, then the CPU. There is none
+/// after the CPU.
 fn successors<'a>(first: &DeviceInfo, devices: &'a [DeviceInfo]) -> Vec<&'a DeviceInfo> {
     let of_kind = |kind| {
         devices.iter().filter(move |device| device.kind == kind && first.kind == DeviceKind::Gpu)
@@ -127,7 +132,7 @@ fn successors<'a>(first: &DeviceInfo, devices: &'a [DeviceInfo]) -> Vec<&'a Devi
     others.chain(of_kind(DeviceKind::Cpu)).collect()
 }
 
-/// Theory: after a GPU come the others and the CPU, once each; after the CPU comes nothing.
+/// Theory: after a GPU come the other GPUs and the CPU, once each; after the CPU comes nothing.
 #[cfg(test)]
 mod tests {
     use super::*;

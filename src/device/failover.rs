@@ -1,24 +1,24 @@
-//! An engine that goes on with the next one where one fails.
+//! An engine that continues on the next device if one fails.
 
 use crate::engine::{Engine, EngineError, PassReport, State};
 use crate::film::exr_file::Channel;
 use crate::film::{ErrorMap, Picture, Rejections};
 use crate::telemetry::clock::KernelSeconds;
 
-/// Gives the next engine, or says why one could not be had; nothing where there is none left. It is
-/// told why the last one failed, and what the next one is to go on from.
+/// Supplies the next engine, or the error that prevented one; `None` if no device is left. Receives
+/// the error of the last engine and the state from which the next one continues.
 pub type Next<'a> =
     dyn FnMut(&EngineError, &State) -> Option<Result<Box<dyn Engine>, EngineError>> + 'a;
 
-/// One engine at a time. What it holds is lost where it fails; [`Engine::go_on`] gives it to the
-/// next one.
+/// Runs one engine at a time. Its state is lost if it fails; [`Engine::go_on`] hands a saved state
+/// to the next one.
 pub struct Relay<'a> {
     engine: Option<Box<dyn Engine>>,
     next: &'a mut Next<'a>,
 }
 
 impl<'a> Relay<'a> {
-    /// Begins with an engine.
+    /// Starts with `engine`.
     pub fn new(engine: Box<dyn Engine>, next: &'a mut Next<'a>) -> Self {
         Self { engine: Some(engine), next }
     }
@@ -82,7 +82,7 @@ impl Engine for Relay<'_> {
 
     fn go_on(&mut self, state: &State, mut error: EngineError) -> Result<(), EngineError> {
         loop {
-            // its memory may be what the next one needs
+            // free its memory first: the next engine may need it
             self.engine = None;
             match (self.next)(&error, state) {
                 None => return Err(error),

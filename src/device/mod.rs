@@ -1,4 +1,4 @@
-//! Devices by name: which there are, which one a wish means, and an engine on it.
+//! Device selection: lists the devices, resolves a request, and creates an engine on a device.
 
 mod candidates;
 pub mod failover;
@@ -20,12 +20,12 @@ use crate::scene::settings::{Method, Radius, RenderSettings};
 
 pub use candidates::{Candidate, Candidates};
 
-/// Visible points of a tile where a GPU has turned out to have less memory than was hoped for.
+/// Number of visible points per tile if a GPU runs out of memory with the whole image.
 const SMALL_TILE: u32 = 1 << 16;
-/// Most visible points of a picture: their numbers are 32 bits wide.
+/// Greatest number of visible points of an image, whose indices are 32 bits wide.
 const POINTS_MAX: u64 = 1 << 31;
 
-/// What a user asks for.
+/// Requested device.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Wanted {
     /// A hardware GPU, else the CPU, which is several times faster than a software driver.
@@ -38,11 +38,11 @@ pub enum Wanted {
     Cpu,
     /// The Rust engine in f64.
     CpuDouble,
-    /// The first device whose name holds this, in any case.
+    /// First device whose name contains this text, ignoring case.
     Named(String),
 }
 
-/// Reads a `--device` value; what is none of its words is taken as a name.
+/// Parses a `--device` value; an unknown word is taken as a name.
 pub fn parse(text: &str) -> Wanted {
     match text.to_ascii_lowercase().as_str() {
         "auto" => Wanted::Auto,
@@ -54,7 +54,7 @@ pub fn parse(text: &str) -> Wanted {
     }
 }
 
-/// What a device is made of.
+/// Type of a device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DeviceKind {
     /// A hardware GPU.
@@ -63,13 +63,13 @@ pub enum DeviceKind {
     Software,
     /// The Rust engine.
     Cpu,
-    /// The Rust engine in f64: the same passes with the same random numbers, to measure what f32
-    /// costs.
+    /// The Rust engine in f64: the same passes with the same random numbers, to measure the error
+    /// of f32.
     CpuDouble,
 }
 
 impl DeviceKind {
-    /// The kind's `--device` word.
+    /// `--device` word of the kind.
     pub fn word(self) -> &'static str {
         match self {
             Self::Gpu => "gpu",
@@ -79,64 +79,65 @@ impl DeviceKind {
         }
     }
 
-    /// Bits of the numbers that its kernels count in.
+    /// Width of the kernels' floating-point numbers, bits.
     pub fn bits(self) -> u32 {
         if self == Self::CpuDouble { 64 } else { 32 }
     }
 }
 
-/// A device that can render.
+/// Device that can render.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DeviceInfo {
-    /// Its name, as printed and as `--device` takes it.
+    /// Name, as printed and as accepted by `--device`.
     pub name: String,
-    /// What it is made of.
+    /// Type of the device.
     pub kind: DeviceKind,
-    /// Driver and its version; for the CPU, how many threads.
+    /// Driver and its version; for the CPU, the number of threads.
     pub driver: String,
-    /// Limits that renders depend on: what, and how many or how many bytes.
+    /// Limits that renders depend on: description, and a number or size in bytes.
     pub limits: Vec<(String, u64)>,
 }
 
-/// An engine, ready for passes.
+/// Engine that is ready to run passes.
 pub struct Opened {
     /// The engine.
     pub engine: Box<dyn Engine>,
-    /// Its device's name.
+    /// Name of its device.
     pub name: String,
-    /// What that is made of.
+    /// Type of its device.
     pub kind: DeviceKind,
-    /// Why this device.
+    /// Reason for choosing this device.
     pub why: String,
-    /// The settings in force: as asked for, with a radius in the place of "auto".
+    /// Settings in force: as requested, with a chosen radius in place of "auto".
     pub settings: RenderSettings,
-    /// What was done so that it fits into memory, where anything was.
+    /// Measures taken to fit into memory, if any.
     pub cut: Option<String>,
-    /// Why that radius, where the settings left it open and it counts.
+    /// Explanation of the automatically chosen radius; `None` if the settings fix it or it is
+    /// unused.
     pub radius: Option<Automatic>,
-    /// What tells its numbers in those of the world.
+    /// Converts scene units to world units.
     pub space: Space,
-    /// Light that the picture and its stated error may lack, if any.
+    /// Kinds of light that the image and its error estimate may lack, if any.
     pub warnings: Vec<String>,
 }
 
-/// No engine.
+/// Failure to create an engine.
 #[derive(Debug, Error)]
 pub enum DeviceError {
-    /// The wish fits no device.
+    /// No device matches the request.
     #[error("there is no device `{wanted}`")]
     NoSuchDevice {
-        /// The wish, as written.
+        /// The request, as written.
         wanted: String,
-        /// Names of the devices that there are.
+        /// Names of the available devices.
         available: Vec<String>,
     },
-    /// The device cannot render this.
+    /// The device cannot render the scene.
     #[error(transparent)]
     Engine(#[from] EngineError),
 }
 
-/// All devices, the CPU last, in f32 and in f64.
+/// All devices; the CPU comes last, in f32 and in f64.
 pub fn list() -> Vec<DeviceInfo> {
     let adapters = gpu::list().into_iter().filter(AdapterSummary::fits).map(|a| DeviceInfo {
         name: a.name.clone(),
@@ -161,7 +162,7 @@ fn cpu(kind: DeviceKind) -> DeviceInfo {
     }
 }
 
-/// The device that a wish means, and why.
+/// Device that matches a request, and the reason for the choice.
 pub fn pick<'a>(
     wanted: &Wanted,
     devices: &'a [DeviceInfo],
@@ -203,8 +204,8 @@ pub fn pick<'a>(
     }
 }
 
-/// Makes an engine for a scene on the device that is wanted; with `auto`, on the first that can.
-/// Path tracing runs on the CPU alone, so `auto` takes it.
+/// Creates an engine for a scene on the requested device; for `auto`, on the first that can render
+/// it. Path tracing runs only on the CPU, so `auto` then takes it.
 pub fn open(
     wanted: &Wanted,
     scene: &Scene,
@@ -216,7 +217,7 @@ pub fn open(
     })?)
 }
 
-/// Fails where a picture has more visible points than can be numbered.
+/// Fails if an image has more visible points than can be indexed.
 pub fn check_points(
     device: &DeviceInfo,
     scene: &Scene,
@@ -295,8 +296,7 @@ fn start(
     Ok(opened(engine, settings, automatic, space, cut))
 }
 
-/// Fails where the processor's engine would find no memory for its buffers in the middle of a
-/// render.
+/// Fails if the CPU engine could run out of memory for its buffers during a render.
 fn hold(plan: &Plan, scene: &crate::tables::Scene, place: BufferPlace) -> Result<(), EngineError> {
     let parts = plan.memory(plan::scene_bytes(scene), place);
     match place {
@@ -312,7 +312,7 @@ fn hold(plan: &Plan, scene: &crate::tables::Scene, place: BufferPlace) -> Result
     }
 }
 
-/// Where a device of this kind has its buffers.
+/// Location of the buffers of a device of this kind.
 fn place(kind: DeviceKind, memory: &Memory) -> BufferPlace {
     match kind {
         DeviceKind::Cpu | DeviceKind::CpuDouble => BufferPlace::Program { saves: memory.saves },
@@ -321,7 +321,7 @@ fn place(kind: DeviceKind, memory: &Memory) -> BufferPlace {
     }
 }
 
-/// An engine on a GPU; in tiles, where its memory does not suffice otherwise.
+/// Creates an engine on a GPU; if its memory does not suffice, in tiles.
 fn on_gpu(choice: &AdapterChoice, packed: &Packed, plan: Plan) -> Result<GpuEngine, EngineError> {
     let tiled = (!plan.tiled).then(|| plan.clone().in_tiles(SMALL_TILE));
     match (GpuEngine::new(choice, packed, plan), tiled) {
@@ -333,7 +333,7 @@ fn on_gpu(choice: &AdapterChoice, packed: &Packed, plan: Plan) -> Result<GpuEngi
     }
 }
 
-/// What was done so that a plan fits, where anything was.
+/// Describes the measures taken so that a plan fits, if any.
 fn cut(tiled: bool, tiles: u32, batch: Option<u32>, asked: Option<u32>) -> Option<String> {
     let smaller = batch.filter(|_| batch != asked);
     let batches = smaller.map_or(String::new(), |photons| {
@@ -346,14 +346,14 @@ fn cut(tiled: bool, tiles: u32, batch: Option<u32>, asked: Option<u32>) -> Optio
     cut
 }
 
-/// What the engine in f64 takes; `single` is the scene flattened in f32.
+/// Scene and plan of the f64 engine; `single` is the scene packed in f32.
 pub fn in_double(
     scene: &Scene,
     single: &Packed,
     settings: &RenderSettings,
 ) -> Result<(double::pack::Packed, double::plan::Plan), EngineError> {
     let film = &scene.film;
-    // what is learned or left open follows the f32 engine, since both are to render the same
+    // take learned and automatic values from the f32 engine, so that both render the same
     let packed =
         double::pilots::prepare_like(scene, film.width, film.height, &pilots::learned(single))?;
     let settings = &match settings.radius {
@@ -364,7 +364,7 @@ pub fn in_double(
     Ok((packed, plan))
 }
 
-/// Theory: the order of preference is hardware, then the CPU, whatever the order of the list.
+/// Theory: the order of preference is hardware, then the CPU, regardless of the order of the list.
 #[cfg(test)]
 mod tests {
     use super::*;

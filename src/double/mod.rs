@@ -1,7 +1,7 @@
-//! The CPU engine in f64: the sources of the f32 engine, compiled once more with `double/real.rs`
-//! in the place of `real.rs`. It draws the same random numbers, packs the scene without rounding it
-//! to f32 and keeps directions as they are, so that a picture of it and one of [`crate::cpu`]
-//! differ by what single precision costs, and by that alone.
+//! The CPU engine in f64: the sources of the f32 engine, compiled a second time with
+//! `double/real.rs` in place of `real.rs`. It draws the same random numbers, packs the scene
+//! without rounding it to f32 and does not quantize directions, so its images differ from those of
+//! [`crate::cpu`] only by the error of single precision.
 
 #![allow(clippy::duplicate_mod, clippy::useless_conversion, clippy::unnecessary_cast)]
 
@@ -9,7 +9,7 @@ pub mod real;
 
 #[path = "../math"]
 pub mod math {
-    //! The twin of [`crate::math`] in f64.
+    //! f64 version of [`crate::math`].
 
     use super::real;
 
@@ -27,7 +27,7 @@ pub mod math {
 
 #[path = "../accel"]
 pub mod accel {
-    //! The twin of [`crate::accel`] in f64: what depends on the kernels' numbers.
+    //! f64 version of the precision-dependent modules of [`crate::accel`].
 
     use super::{math, real, shapes};
 

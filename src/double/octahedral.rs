@@ -1,21 +1,22 @@
-//! Directions in records, in f64: as they are. In f32 they are packed, by `src/math/octahedral.rs`.
+//! Directions in records in f64, stored without packing. The f32 version, `src/math/octahedral.rs`,
+//! packs them.
 
 use super::super::real::Vec3;
 
-/// A unit vector in a record.
+/// Unit vector in a record.
 pub type Direction = Vec3;
 
-/// The vector for a record.
+/// Encodes a unit vector: returns it unchanged.
 pub fn oct_encode(v: Vec3) -> Direction {
     v
 }
 
-/// The vector of a record.
+/// Decodes a unit vector: returns it unchanged.
 pub fn oct_decode(code: Direction) -> Vec3 {
     code
 }
 
-/// The direction of [`oct_decode`] at any length.
+/// Decodes the direction of [`oct_decode`] without normalizing it.
 pub fn oct_vector(code: Direction) -> Vec3 {
     code
 }

@@ -1,45 +1,44 @@
-//! The numbers that kernels count in: here f64. See `src/real.rs`, which has the same names in f32.
+//! Number types of the kernels: here f64. See `src/real.rs`, which has the same names in f32.
 
-// Tables of f64 and u32 have gaps and are no plain bytes, nor need they be where no GPU reads them.
+// tables of f64 and u32 have gaps, so they are not plain bytes; no GPU reads them
 pub use glam::{DVec2 as Vec2, DVec3 as Vec3, DVec4 as Vec4};
 pub use std::default::Default as Plain;
 pub use std::f64::consts;
 pub use wide::{f64x4 as Reals, u64x4 as Words};
 
-/// A number of the kernels.
+/// Floating-point type of the kernels.
 pub type Real = f64;
-/// As many bits as a [`Real`] has.
+/// Unsigned integer as wide as a [`Real`].
 pub type Bits = u64;
-/// Twice as many bits.
+/// Unsigned integer twice as wide as a [`Real`].
 pub type WideBits = u128;
 
-/// The engine's name.
+/// Name of the engine.
 pub const ENGINE: &str = "CPU in f64";
-/// The exponent's bits.
+/// Mask of the exponent bits.
 pub const EXPONENT: Bits = 0x7ff0_0000_0000_0000;
-/// The bits of the leading half of the mantissa and all above: products of two such numbers are
-/// exact.
+/// Mask that clears the low half of the mantissa: products of two such numbers are exact.
 pub const LEADING: Bits = 0xffff_ffff_f800_0000;
 
-/// An f64 rounding over an f32 rounding: 2^-29.
+/// Ratio of an f64 rounding to an f32 rounding: 2^-29.
 const FINER: Real = 1.0 / 536_870_912.0;
 
-/// A tolerance of some roundings, written as it is in f32 and in WGSL, for this precision.
+/// Converts a tolerance of a few roundings, given for f32 as in WGSL, to this precision.
 pub const fn roundings(single: Real) -> Real {
     single * FINER
 }
 
-/// The same for a tolerance that goes with the square root of a rounding.
+/// Converts a tolerance that scales with the square root of a rounding, likewise.
 pub const fn root_roundings(single: Real) -> Real {
     // sqrt(2^-29)
     single * 4.315_837_287_515_549e-5
 }
 
-/// Rounds what the host computed to the numbers of the kernels.
+/// Converts host vectors to the kernels' precision.
 pub trait ToReal {
-    /// The kernels' vector.
+    /// Vector type of the kernels.
     type Vector;
-    /// Nearest vector.
+    /// Rounds to the nearest vector; exact in f64.
     fn to_real(self) -> Self::Vector;
 }
 
@@ -57,11 +56,11 @@ impl ToReal for Vec3 {
     }
 }
 
-/// The kernels' numbers as the host computes.
+/// Converts the kernels' vectors to the host's f64.
 pub trait ToDouble {
-    /// The host's vector.
+    /// Vector type of the host.
     type Vector;
-    /// The same vector.
+    /// Converts exactly.
     fn to_double(self) -> Self::Vector;
 }
 

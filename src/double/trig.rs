@@ -1,7 +1,7 @@
-//! Elementary functions in f64, from the standard library: no GPU has to give the same bits. The
-//! twin in f32 is `src/math/trig.rs`.
+//! Elementary functions in f64, from the standard library: no GPU has to match their bits. The f32
+//! version is `src/math/trig.rs`.
 
-/// `x` itself. In f32 it hides `x` from shader compilers.
+/// Returns `x`. The f32 version hides it from shader compilers.
 pub fn kept(x: f64) -> f64 {
     x
 }

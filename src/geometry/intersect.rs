@@ -1,5 +1,5 @@
-//! A ray against the whole scene: shapes outside the kd-tree one by one, then the kd-tree.
-//! Twin: `shaders/geometry/intersect.wgsl`.
+//! Intersection of a ray with the whole scene: shapes outside the kd-tree one by one, then the
+//! kd-tree. Twin: `shaders/geometry/intersect.wgsl`.
 
 use super::shapes::cuboid::intersect_cuboid;
 use super::shapes::disc::{intersect_disc, intersect_plane};
@@ -14,7 +14,7 @@ use super::shapes::triangle::{RayShear, intersect_triangle};
 use super::shapes::triangles::intersect_triangles;
 use super::tables::*;
 
-/// A ray against the shape that `reference` names.
+/// Intersects a ray with the shape that `reference` identifies.
 #[inline]
 pub fn intersect_primitive(
     scene: &Scene,
@@ -51,24 +51,24 @@ pub fn intersect_primitive(
     }
 }
 
-/// Bits of a set of patches.
+/// Capacity of the set of deferred patches, in bits.
 const PATCH_SET: usize = 128;
 
-/// Whether patches are put off until the walk through the tree is over. A ring lies in many leaves,
-/// and a search for a root costs more than all else; so each patch is searched once, and only up to
-/// what the ray hits besides. Where there are more patches than bits, they are searched in each
-/// leaf.
+/// Returns true if tests of patches are deferred to the end of the tree traversal. A ring lies in
+/// many leaves, and a root search is by far the most expensive test; deferral searches each patch
+/// once, and only up to the nearest other hit. If the scene has more patches than the set has bits,
+/// they are searched in each leaf.
 pub fn has_patch_set(scene: &Scene) -> bool {
     !scene.patches.is_empty() && scene.patches.len() <= PATCH_SET
 }
 
-/// The shapes of a scene before one ray.
+/// Shapes of a scene, tested against one ray.
 struct Shapes<'a> {
     scene: &'a Scene,
     shear: RayShear,
-    /// In search of any hit it may stop at one.
+    /// True if any hit ends the search.
     any: bool,
-    /// The patches of the leaves that the ray has met, by index.
+    /// Set of the patches, by index, in the leaves visited so far.
     put_off: u128,
 }
 
@@ -80,7 +80,7 @@ impl<'a> Shapes<'a> {
 }
 
 impl Primitives for Shapes<'_> {
-    /// Of the triangles both ends: some lie in two cache lines.
+    /// Prefetches both ends of each triangle, since some triangles straddle two cache lines.
     #[inline(always)]
     fn expect(&self, references: &[u32]) {
         for reference in references.iter().take_while(|r| kind_of(**r) == KIND_TRIANGLE) {
@@ -90,7 +90,8 @@ impl Primitives for Shapes<'_> {
         }
     }
 
-    /// Triangles first, several at a time, then the others in the order of their kinds.
+    /// Tests the triangles first, several at a time, then the other shapes in the order of their
+    /// kinds.
     #[inline(always)]
     fn intersect(&mut self, references: &[u32], ray: &Ray, hit: &mut Hit) {
         let Shapes { scene, shear, any, .. } = *self;
@@ -119,7 +120,7 @@ impl Primitives for Shapes<'_> {
         }
     }
 
-    /// Searches the patches that were put off, in the order of their indices.
+    /// Searches the deferred patches in the order of their indices.
     #[inline(always)]
     fn finish(&mut self, ray: &Ray, hit: &mut Hit) {
         while self.put_off != 0 {
@@ -133,8 +134,8 @@ impl Primitives for Shapes<'_> {
     }
 }
 
-/// A ray against the first of some references, spheres or rectangles, with those that lie in the
-/// same four; returns the other references.
+/// Tests the first of some references to spheres or rectangles together with the others of the same
+/// group of four; returns the remaining references.
 #[inline(always)]
 fn intersect_fours<'a>(
     scene: &Scene,
@@ -167,13 +168,13 @@ fn intersect_fours<'a>(
     others
 }
 
-/// What triangles need to know of a ray; three divisions that a scene without them is spared.
+/// Per-ray constants of the triangle test; skips the three divisions if the scene has no triangles.
 #[inline]
 fn shear_of(scene: &Scene, ray: &Ray) -> RayShear {
     if scene.triangles.is_empty() { RayShear::NONE } else { RayShear::new(ray) }
 }
 
-/// The nearest hit of a ray, or a hit whose reference is [`NONE`].
+/// Nearest hit of a ray; its reference is [`NONE`] if there is none.
 #[inline(always)]
 pub fn intersect_scene(scene: &Scene, ray: &Ray) -> Hit {
     let mut hit = intersect_unbounded(scene, ray);
@@ -183,9 +184,10 @@ pub fn intersect_scene(scene: &Scene, ray: &Ray) -> Hit {
     hit
 }
 
-/// [`intersect_scene`] for many rays: asks `next` for a ray in one of
-/// [`STREAM`](super::kdtree_stream::STREAM) lanes and tells it what the ray before has hit in this
-/// lane, until no lane gets one. Which lane is asked when is not said.
+/// [`intersect_scene`] for many rays. Calls `next` with one of
+/// [`STREAM`](super::kdtree_stream::STREAM) lanes and the hit of the lane's previous ray, and
+/// traces the ray that it returns, until it returns none for every lane. The order of the lanes is
+/// unspecified.
 #[inline(always)]
 pub fn intersect_scene_many(
     scene: &Scene,
@@ -202,7 +204,7 @@ pub fn intersect_scene_many(
     traverse_closest_many(&tree(scene), &mut Source { scene, next }, shapes);
 }
 
-/// Rays, tested with what lies outside the tree.
+/// Adapts a closure to [`Rays`]: intersects each ray with the shapes outside the tree.
 struct Source<'a, N> {
     scene: &'a Scene,
     next: N,
@@ -216,7 +218,7 @@ impl<N: FnMut(usize, Option<&Hit>) -> Option<Ray>> Rays for Source<'_, N> {
     }
 }
 
-/// The nearest hit with a shape outside the tree.
+/// Nearest hit with a shape outside the tree.
 #[inline(always)]
 fn intersect_unbounded(scene: &Scene, ray: &Ray) -> Hit {
     let mut hit = Hit::none(ray);
@@ -226,7 +228,7 @@ fn intersect_unbounded(scene: &Scene, ray: &Ray) -> Hit {
     hit
 }
 
-/// Whether anything lies on the ray between `t_min` and `t_max`.
+/// Returns true if anything lies on the ray between `t_min` and `t_max`.
 #[inline(always)]
 pub fn occluded(scene: &Scene, ray: &Ray) -> bool {
     let mut hit = Hit { t: ray.t_max, reference: NONE, u: 0.0, v: 0.0 };

@@ -1,4 +1,4 @@
-//! What a hit means: position, normals, texture coordinates, material. Twin:
+//! Surface data at a hit: position, normals, texture coordinates, material. Twin:
 //! `shaders/geometry/surface.wgsl`.
 
 use super::math::unit;
@@ -12,30 +12,31 @@ use super::shapes::sphere::{sphere_error, sphere_normal, sphere_project, sphere_
 use super::shapes::triangle::{triangle_error, triangle_normal, triangle_point};
 use super::tables::*;
 
-/// The surface at a hit.
+/// Surface data at a hit.
 #[derive(Clone, Copy, Debug)]
 pub struct Surface {
     /// Point on the surface, in scene space.
     pub position: Vec3,
-    /// Bound of its distance from the true surface.
+    /// Bound on the distance of `position` from the true surface, scene units.
     pub error: Real,
-    /// Geometric unit normal, on the shape's outer side.
+    /// Geometric unit normal on the shape's outer side.
     pub normal: Vec3,
     /// Material index.
     pub material: u32,
-    /// Shading normal: interpolated on smooth meshes, on the same side as `normal`.
+    /// Shading normal, on the same side as `normal`; interpolated on smooth meshes.
     pub shading: Vec3,
     /// Light index or [`NONE`].
     pub light: u32,
-    /// Texture coordinates; on spheres where the material has a texture.
+    /// Texture coordinates; on spheres only set if the material has a texture.
     pub uv: Vec2,
-    /// Second coordinate of the shape's own (u, v): on revolutions the profile parameter.
+    /// Second coordinate of the shape's own (u, v): the profile parameter on surfaces of
+    /// revolution, 0 elsewhere.
     pub v: Real,
-    /// The outline that it lies in, among the outlines, or [`NONE`].
+    /// Index of the outline that contains the point, or [`NONE`].
     pub outline: u32,
 }
 
-/// The surface at `hit` of `ray`.
+/// Computes the surface data at `hit` of `ray`.
 #[inline(always)]
 pub fn surface_at(scene: &Scene, ray: &Ray, hit: &Hit) -> Surface {
     let index = index_of(hit.reference) as usize;
@@ -90,7 +91,7 @@ pub fn surface_at(scene: &Scene, ray: &Ray, hit: &Hit) -> Surface {
                 outline: NONE,
             };
             planar = sphere.uv;
-            // two arctangents, which most spheres have no use for
+            // skip the two arctangents for the many spheres without a texture
             if planar == UV_NATURAL && scene.materials[sphere.material as usize].texture != NONE {
                 let uv = sphere_uv(n);
                 s.uv = Vec2::new(uv.x, within_ends(scene, s.material, uv.y));
@@ -189,8 +190,8 @@ pub fn surface_at(scene: &Scene, ray: &Ray, hit: &Hit) -> Surface {
     s
 }
 
-/// `v` of a shape whose v ends at poles or rims, drawn in by half a row of its picture, so that no
-/// filter mixes in the other end.
+/// Clamps `v` of a shape whose v range ends at poles or rims to half a texel row from either end,
+/// so that filtering does not mix in the opposite end.
 fn within_ends(scene: &Scene, material: u32, v: Real) -> Real {
     if scene.textures.is_empty() {
         return v;

@@ -1,11 +1,11 @@
-//! WGSL of the dispatch over materials, composed from the list in `materials/mod.rs`: functions
-//! with one case for each material that the scene has.
+//! WGSL dispatch over materials, generated from the list in `materials/mod.rs`: functions with one
+//! case for each material in the scene.
 
 use crate::materials::Bsdf;
 use crate::plan::Kernel;
 use crate::plan::features::{Feature, Features};
 
-/// The declarations that `kernel` needs.
+/// Declarations that `kernel` needs.
 pub fn dispatch(kernel: Kernel, features: Features) -> String {
     let gathers = kernel == Kernel::Gather && features.has(Feature::Lobes);
     let traces = kernel.info().traces;
@@ -55,8 +55,8 @@ pub fn dispatch(kernel: Kernel, features: Features) -> String {
     out
 }
 
-/// A function that calls `PREFIX_MATERIAL` by the kind, or returns `other`. A single material needs
-/// no test.
+/// Generates a function that calls `PREFIX_MATERIAL` by the kind, or returns `other`. A single
+/// material needs no test.
 fn cases(
     signature: &str,
     (kind, prefix, arguments, other): (&str, &str, &str, &str),

@@ -1,5 +1,5 @@
-//! A kernel's shader from the files it needs, one after another, with the declarations of what it
-//! binds; and the way back from naga's line numbers to files.
+//! Composition of a kernel's shader from the files that it needs and the declarations of its
+//! bindings, and mapping of naga's line numbers back to files.
 
 use super::bsdf;
 use super::fragments::{Fragment, Names, fragments, preprocess};
@@ -8,10 +8,10 @@ use crate::plan::Kernel;
 use crate::plan::features::{Feature, Features};
 use std::collections::BTreeSet;
 
-/// Path under which errors in the generated declarations are reported.
+/// Path that errors in the generated declarations are reported under.
 pub const DECLARATIONS: &str = "(declarations)";
 
-/// A fault in a shader.
+/// Error in a shader.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{file}:{line}: {message}")]
 pub struct ShaderError {
@@ -19,21 +19,21 @@ pub struct ShaderError {
     pub file: &'static str,
     /// Line in that file, from 1.
     pub line: u32,
-    /// What is wrong.
+    /// Description of the error.
     pub message: String,
 }
 
-/// The shader of one kernel.
+/// Shader of one kernel.
 #[derive(Clone, Debug)]
 pub struct Shader {
-    /// WGSL.
+    /// WGSL source.
     pub source: String,
-    /// Path and first line within `source`, from 1, of each part.
+    /// Path of each part, and its first line within `source`, from 1.
     parts: Vec<(&'static str, u32)>,
 }
 
-/// The names that fences may use for `kernel`: the features, every kernel's stem, `scene` (the
-/// kernel reads the flattened scene) and `area` (some light is a shape).
+/// Names that fences may use for `kernel`: the features, all kernels' stems, `scene` (the kernel
+/// reads the packed scene) and `area` (some light is a shape).
 pub fn names(kernel: Kernel, features: &Features) -> Names {
     let stems = Kernel::ALL.map(Kernel::stem);
     let known = Feature::all().map(Feature::name).chain(stems).chain(["scene", "area"]);
@@ -48,7 +48,7 @@ pub fn names(kernel: Kernel, features: &Features) -> Names {
     Names { known: known.collect(), held }
 }
 
-/// The shader of `kernel` for a scene that needs `features` and has the tables `scene`.
+/// Composes the shader of `kernel` for a scene that needs `features` and has the tables `scene`.
 pub fn compose(
     kernel: Kernel,
     features: &Features,
@@ -57,7 +57,7 @@ pub fn compose(
     compose_from(&fragments(), kernel, features, scene)
 }
 
-/// [`compose`] from given files.
+/// [`compose`] with the given shader files.
 pub fn compose_from(
     fragments: &[Fragment],
     kernel: Kernel,
@@ -89,13 +89,13 @@ impl Shader {
         self.source.push_str(text);
     }
 
-    /// File and line of a line of `source`, both from 1.
+    /// Maps a line of `source` to its file and the line in it, both from 1.
     pub fn locate(&self, line: u32) -> (&'static str, u32) {
         let part = self.parts.iter().rev().find(|(_, first)| *first <= line);
         part.map_or((DECLARATIONS, line), |(path, first)| (path, line - first + 1))
     }
 
-    /// Parses and validates with naga.
+    /// Parses and validates the shader with naga.
     pub fn validate(&self) -> Result<(naga::Module, naga::valid::ModuleInfo), ShaderError> {
         let at = |location: Option<naga::SourceLocation>, message: String| {
             let (file, line) = self.locate(location.map_or(1, |l| l.line_number));
@@ -115,7 +115,7 @@ impl Shader {
     }
 }
 
-/// An error and its causes on one line.
+/// Formats an error and its causes on one line.
 pub fn causes(error: &dyn std::error::Error) -> String {
     let chain = std::iter::successors(error.source(), |e| e.source());
     chain.fold(error.to_string(), |text, cause| format!("{text}: {cause}"))

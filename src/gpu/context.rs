@@ -1,61 +1,61 @@
-//! Adapters, the choice among them, and an open device that reports failures as errors instead of
+//! Adapters, selection of one, and an open device that reports failures as errors instead of
 //! panicking.
 
 use super::visible::adapters;
 use crate::engine::EngineError;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// What an adapter is made of.
+/// Type of an adapter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum AdapterKind {
-    /// A graphics card of its own.
+    /// Discrete graphics card.
     Discrete,
-    /// Part of the processor's chip.
+    /// GPU integrated with the processor.
     Integrated,
     /// A share of a GPU in a virtual machine.
     Virtual,
-    /// Hardware that does not say what it is.
+    /// Hardware of unknown type.
     Other,
     /// A driver that runs shaders on the CPU, such as lavapipe.
     Software,
 }
 
-/// What there is to know of an adapter before opening it.
+/// Properties of an adapter that are known before opening it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AdapterSummary {
     /// Name.
     pub name: String,
-    /// What it is made of.
+    /// Type of the adapter.
     pub kind: AdapterKind,
     /// Graphics interface: vulkan, metal, dx12, ...
     pub backend: String,
     /// Driver and version.
     pub driver: String,
-    /// Most bytes that a kernel can bind as one buffer.
+    /// Greatest size of a storage binding, bytes.
     pub binding_bytes: u64,
-    /// Most bytes of one buffer.
+    /// Greatest size of a buffer, bytes.
     pub buffer_bytes: u64,
-    /// Most storage buffers that a kernel can bind.
+    /// Greatest number of storage buffers that a kernel can bind.
     pub storage_buffers: u32,
-    /// Most invocations of a workgroup.
+    /// Greatest number of invocations in a workgroup.
     pub workgroup_invocations: u32,
 }
 
 impl AdapterSummary {
-    /// Whether the kernels can run: 8 storage buffers and workgroups of 256.
+    /// Returns true if the kernels can run: 8 storage buffers and workgroups of 256 invocations.
     pub fn fits(&self) -> bool {
         self.storage_buffers >= 8 && self.workgroup_invocations >= 256
     }
 }
 
-/// Which adapter to open.
+/// Criterion that selects the adapter to open.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum AdapterChoice {
     /// The first hardware GPU.
     Hardware,
     /// The first software driver.
     Software,
-    /// The first whose name holds this, in any case.
+    /// First adapter whose name contains this text, ignoring case.
     Named(String),
 }
 
@@ -95,13 +95,13 @@ pub(super) fn summarize(adapter: &wgpu::Adapter) -> AdapterSummary {
     }
 }
 
-/// Adapters that the kernels can run on, hardware first; those that `WGPU_BACKEND` and
-/// `WGPU_ADAPTER_NAME` allow.
+/// Adapters that the kernels can run on, hardware first, restricted by `WGPU_BACKEND` and
+/// `WGPU_ADAPTER_NAME`.
 pub fn list() -> Vec<AdapterSummary> {
     adapters().iter().map(|(_, summary)| summary.clone()).collect()
 }
 
-/// What went wrong between two looks, and whether the device is gone for good.
+/// Failures since the last check, and whether the device is permanently lost.
 #[derive(Debug, Default)]
 struct Failures {
     first: Option<EngineError>,
@@ -110,19 +110,19 @@ struct Failures {
 
 type Failure = Arc<Mutex<Failures>>;
 
-/// An open device.
+/// Open device.
 pub struct Gpu {
     /// wgpu's device.
     pub device: wgpu::Device,
     /// Its queue.
     pub queue: wgpu::Queue,
-    /// What it is.
+    /// Properties of its adapter.
     pub summary: AdapterSummary,
     failure: Failure,
 }
 
 impl Gpu {
-    /// Opens the adapter of `choice` with its own limits.
+    /// Opens the adapter of `choice` with the adapter's limits.
     pub fn open(choice: &AdapterChoice) -> Result<Self, EngineError> {
         let found = adapters().iter().find(|(_, summary)| choice.takes(summary));
         let (adapter, summary) = found.ok_or_else(|| {
@@ -130,7 +130,7 @@ impl Gpu {
         })?;
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("caustica"),
-            // a clock, where there is one, for those who ask for times
+            // timestamp queries, if supported, for timed passes
             required_features: adapter.features() & wgpu::Features::TIMESTAMP_QUERY,
             required_limits: adapter.limits(),
             ..Default::default()
@@ -149,24 +149,24 @@ impl Gpu {
         Ok(Self { device, queue, summary: summary.clone(), failure })
     }
 
-    /// Whether it has a clock that kernels can be timed with.
+    /// Returns true if the device has a clock that can time kernels.
     pub fn has_clock(&self) -> bool {
         self.device.features().contains(wgpu::Features::TIMESTAMP_QUERY)
     }
 
-    /// The failure since the last look, if any. A device that is lost stays so.
+    /// Returns the failure since the last check, if any. A lost device stays lost.
     pub fn check(&self) -> Result<(), EngineError> {
         let mut failures = self.failure.lock().unwrap_or_else(PoisonError::into_inner);
         let lost = failures.lost.clone().map(EngineError::DeviceLost);
         lost.or(failures.first.take()).map_or(Ok(()), Err)
     }
 
-    /// Has the driver take the device away, as it does when it is reset: for tests.
+    /// Makes the driver lose the device, as in a reset; for tests.
     pub fn lose(&self) {
         self.device.destroy();
     }
 
-    /// Waits until all submitted work is done.
+    /// Waits until all submitted work is complete.
     pub fn wait(&self) -> Result<(), EngineError> {
         let polled = self.device.poll(wgpu::PollType::wait_indefinitely());
         self.check()?;
@@ -174,7 +174,7 @@ impl Gpu {
     }
 }
 
-/// Keeps the first failure: what follows is its consequence.
+/// Stores the first failure; later ones are its consequences.
 fn record(failure: &Failure, error: EngineError) {
     let mut failures = failure.lock().unwrap_or_else(PoisonError::into_inner);
     if let EngineError::DeviceLost(text) = &error {

@@ -1,20 +1,20 @@
-//! The shader files, and the preprocessor that leaves out what a scene does not require.
+//! Shader files, and the preprocessor that removes code that a scene does not require.
 //!
-//! Optional code is fenced by whole lines `//#if CONDITION`, `//#else` and `//#end`; a condition is
-//! made of names, `&&` and, binding less, `||`. Lines that are left out stay as empty lines, so
-//! that line numbers hold.
+//! Optional code is fenced by whole lines `//#if CONDITION`, `//#else` and `//#end`; a condition
+//! consists of names, `&&` and, with lower precedence, `||`. Removed lines are replaced by empty
+//! lines, so that line numbers stay valid.
 
 use crate::materials::SHADERS;
 use std::collections::BTreeSet;
 
-/// A shader file, and the condition under which a kernel needs it (empty: always).
+/// Shader file, and the condition under which a kernel needs it (empty: always).
 #[derive(Clone, Copy, Debug)]
 pub struct Fragment {
     /// Path below `shaders/`.
     pub path: &'static str,
-    /// Its text.
+    /// Text of the file.
     pub text: &'static str,
-    /// When a kernel needs it.
+    /// Condition under which a kernel needs it.
     pub condition: &'static str,
 }
 
@@ -35,7 +35,7 @@ pub fn fragments() -> Vec<Fragment> {
     SHARED.iter().copied().chain(materials).collect()
 }
 
-/// The shader files that are not a material's.
+/// Shader files other than those of materials.
 const SHARED: &[Fragment] = fragments![
     "shapes/table.wgsl" if "scene || gather && lobes || gather && outlines",
     "tables.wgsl" if "scene || gather && lobes || gather && outlines",
@@ -90,17 +90,17 @@ const SHARED: &[Fragment] = fragments![
     "kernels/resolve_parts.wgsl" if "resolve_parts",
 ];
 
-/// The names that conditions may use, and those that hold.
+/// Names that conditions may use, and those that are true.
 #[derive(Clone, Debug, Default)]
 pub struct Names {
-    /// All of them.
+    /// All valid names.
     pub known: BTreeSet<&'static str>,
-    /// Those that hold.
+    /// Names that are true.
     pub held: BTreeSet<&'static str>,
 }
 
 impl Names {
-    /// Whether `condition` holds; an error names what is not known.
+    /// Evaluates `condition`; the error names an unknown name.
     pub fn holds(&self, condition: &str) -> Result<bool, String> {
         if condition.is_empty() {
             return Ok(true);
@@ -120,8 +120,8 @@ impl Names {
     }
 }
 
-/// `text` with the lines emptied whose fences do not hold. An error is a line number (from 1) and
-/// what is wrong.
+/// Returns `text` with the lines of false fences emptied. An error is a line number (from 1) and a
+/// description.
 pub fn preprocess(text: &str, names: &Names) -> Result<String, (u32, String)> {
     struct Fence {
         opened: u32,
@@ -179,7 +179,7 @@ mod tests {
         assert_eq!(out.split_whitespace().collect::<Vec<_>>(), ["0", "1", "3", "6"]);
     }
 
-    /// `&&` binds more than `||`.
+    /// `&&` has higher precedence than `||`.
     #[test]
     fn conditions() {
         let holds = |c| names().holds(c).unwrap();
@@ -187,7 +187,7 @@ mod tests {
         assert!(!holds("c") && !holds("a && c") && !holds("c || c && a"));
     }
 
-    /// Each kind of broken fence is refused, at its line.
+    /// Each kind of broken fence is rejected, at its line.
     #[test]
     fn broken_fences() {
         let line = |text| preprocess(text, &names()).unwrap_err().0;

@@ -1,5 +1,5 @@
-//! The flattened scene as a kernel sees it: the struct `Scene` of the short tables in one storage
-//! buffer, each table an array of fixed length at a multiple of 16 bytes, and the bindings of every
+//! Layout of the packed scene for kernels: the struct `Scene` with the short tables in one storage
+//! buffer, each table an array of fixed length at a multiple of 16 bytes; and the bindings of every
 //! kernel.
 
 use crate::plan::features::{Features, few};
@@ -7,32 +7,33 @@ use crate::plan::{Access, Buffer, Kernel, Use};
 use crate::tables::{self, Material};
 use bytemuck::{Pod, Zeroable, bytes_of, cast_slice};
 
-/// A member of the struct `Scene`.
+/// Member of the struct `Scene`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Member {
     /// Name, the same as in [`tables::Scene`].
     pub name: &'static str,
     /// WGSL type.
     pub wgsl_type: String,
-    /// Bytes from the buffer's start.
+    /// Offset in the buffer, bytes.
     pub offset: usize,
 }
 
-/// The struct `Scene` of one scene: its members and the buffer's content.
+/// Struct `Scene` of one scene: its members and the buffer's contents.
 #[derive(Clone, Debug, Default)]
 pub struct SceneTables {
     /// Members in order.
     pub members: Vec<Member>,
-    /// Content of the buffer.
+    /// Contents of the buffer.
     pub bytes: Vec<u8>,
-    /// The shapes that are tested one after another (see [`few`]).
+    /// References of the shapes that are tested one after another (see [`few`]).
     pub few: Vec<u32>,
-    /// How many lights there are, so that a shader knows which it takes where there is one.
+    /// Number of lights, a constant in shaders, which makes the choice trivial if there is only
+    /// one.
     lights: usize,
 }
 
 impl SceneTables {
-    /// Lays out `scene`. Empty tables are left out.
+    /// Lays out `scene`. Empty tables are omitted.
     pub fn new(scene: &tables::Scene) -> Self {
         let mut out =
             Self { few: few(scene).to_vec(), lights: scene.lights.len(), ..Self::default() };
@@ -47,7 +48,7 @@ impl SceneTables {
         out.table("patches", "Patch", &scene.patches);
         out.table("profile_points", "vec2f", &scene.profile_points);
         out.table("unbounded", "u32", &scene.unbounded);
-        // shaders name the materials even where a scene has no surface
+        // shaders refer to the materials even if a scene has no surface
         let placeholder = [Material::zeroed()];
         out.table(
             "materials",
@@ -73,7 +74,7 @@ impl SceneTables {
         self.bytes.resize(self.bytes.len().next_multiple_of(16), 0);
     }
 
-    /// The WGSL declarations of the struct, and of what else is particular to the scene.
+    /// WGSL declarations of the struct and of the scene's constants and functions.
     pub fn declaration(&self) -> String {
         let members: String = self
             .members
@@ -84,9 +85,9 @@ impl SceneTables {
         format!("struct Scene {{\n{members}}}\n{lights}{}", self.intersect_few())
     }
 
-    /// The function that tests the few shapes, in the order in which the twin does. Since the
-    /// compiler knows which they are, a software driver reads one for all its lanes at once, where
-    /// each would read for itself.
+    /// WGSL function that tests the few shapes, in the same order as the Rust twin. Since their
+    /// indices are constants, a software driver reads each shape once for all its lanes instead of
+    /// once per lane.
     fn intersect_few(&self) -> String {
         if self.few.is_empty() {
             return String::new();
@@ -116,7 +117,7 @@ impl SceneTables {
     }
 }
 
-/// The tables that have their own buffers, with their content.
+/// Tables with separate buffers, and their contents.
 pub fn long_tables(scene: &tables::Scene) -> [(Buffer, &[u8]); 6] {
     [
         (Buffer::Nodes, cast_slice(&scene.nodes)),
@@ -128,10 +129,10 @@ pub fn long_tables(scene: &tables::Scene) -> [(Buffer, &[u8]); 6] {
     ]
 }
 
-/// What a kernel binds.
+/// Binding of a kernel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Bound {
-    /// The parameters of the dispatch, a uniform with a dynamic offset.
+    /// Parameters of the dispatch, a uniform with a dynamic offset.
     Dispatch,
     /// A storage buffer.
     Storage(Use),
@@ -168,13 +169,13 @@ impl Bound {
     }
 }
 
-/// What `kernel` binds in group 0; the place in the list is the number of the binding.
+/// Bindings of `kernel` in group 0; the position in the list is the binding number.
 pub fn bindings(kernel: Kernel, features: Features) -> Vec<Bound> {
     let buffers = kernel.uses(features).map(Bound::Storage);
     std::iter::once(Bound::Dispatch).chain(buffers).collect()
 }
 
-/// The WGSL declarations of `bindings`.
+/// WGSL declarations of `bindings`.
 pub fn declarations(bindings: &[Bound]) -> String {
     let line = |(i, b): (usize, &Bound)| {
         let (space, name, of) = (b.address_space(), b.name(), b.wgsl_type());

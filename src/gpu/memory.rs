@@ -1,22 +1,22 @@
-//! Buffers on the device: checked against its limits before they are made, filled and read back.
+//! Buffers on the device: checked against its limits before allocation, written and read back.
 
 use super::context::{AdapterKind, Gpu};
 use crate::engine::EngineError;
 use crate::memory::available;
 use wgpu::BufferUsages;
 
-/// Bytes of one step of reading back.
+/// Size of one read-back step, bytes.
 const READ_BYTES: u64 = 16 << 20;
 
 impl Gpu {
-    /// Most bytes of a storage buffer.
+    /// Greatest size of a storage buffer, bytes.
     pub fn binding_limit(&self) -> u64 {
         self.summary.binding_bytes.min(self.summary.buffer_bytes)
     }
 
-    /// Whether buffers of these sizes can be had: each by itself, and on a software driver, which
-    /// commits memory lazily and never says no, all of them together. `mend` says which setting to
-    /// change.
+    /// Checks that buffers of these sizes can be allocated: each one on all devices, and all
+    /// together on a software driver, which commits memory lazily and never refuses. `mend` names
+    /// the setting to change.
     pub fn check_sizes(&self, sizes: &[(&str, u64)], mend: &str) -> Result<(), EngineError> {
         let too_large = |what: &str, needed, limit| EngineError::TooLarge {
             what: what.to_owned(),
@@ -39,13 +39,13 @@ impl Gpu {
         }
     }
 
-    /// A storage buffer of at least `bytes` bytes, filled with zeros.
+    /// Allocates a storage buffer of at least `bytes` bytes, filled with zeros.
     pub fn storage(&self, label: &str, bytes: u64) -> Result<wgpu::Buffer, EngineError> {
         let usage = BufferUsages::STORAGE | BufferUsages::COPY_SRC | BufferUsages::COPY_DST;
         self.buffer(label, bytes, usage)
     }
 
-    /// A buffer of at least `bytes` bytes, filled with zeros.
+    /// Allocates a buffer of at least `bytes` bytes, filled with zeros.
     pub fn buffer(
         &self,
         label: &str,
@@ -61,21 +61,21 @@ impl Gpu {
         Ok(buffer)
     }
 
-    /// A storage buffer that holds `content`.
+    /// Allocates a storage buffer with the given contents.
     pub fn upload(&self, label: &str, content: &[u8]) -> Result<wgpu::Buffer, EngineError> {
         let buffer = self.storage(label, content.len() as u64)?;
         self.write(&buffer, content);
         Ok(buffer)
     }
 
-    /// Writes `content`, whole words, at the buffer's start.
+    /// Writes `content`, a whole number of words, to the start of the buffer.
     pub fn write(&self, buffer: &wgpu::Buffer, content: &[u8]) {
         if !content.is_empty() {
             self.queue.write_buffer(buffer, 0, content);
         }
     }
 
-    /// The first `bytes` bytes, whole words, of a buffer.
+    /// Reads the first `bytes` bytes, a whole number of words, of a buffer.
     pub fn read(&self, buffer: &wgpu::Buffer, bytes: u64) -> Result<Vec<u8>, EngineError> {
         let mut out = Vec::new();
         out.try_reserve_exact(bytes as usize)
@@ -90,7 +90,7 @@ impl Gpu {
             let mut encoder = self.device.create_command_encoder(&Default::default());
             encoder.copy_buffer_to_buffer(buffer, out.len() as u64, &staging, 0, size);
             self.queue.submit([encoder.finish()]);
-            // a failure shows in `wait` and in the view below
+            // a failure surfaces in `wait` and in the view below
             staging.map_async(wgpu::MapMode::Read, ..size, |_| ());
             self.wait()?;
             let view = staging

@@ -1,4 +1,4 @@
-//! The GPU engine: carries out a plan on wgpu. The only code that names wgpu or naga.
+//! GPU engine: executes a plan with wgpu. The only module that uses wgpu or naga.
 
 mod bsdf;
 pub mod compose;

@@ -1,26 +1,26 @@
-//! How much work goes into one submission: desktop drivers kill what runs for about two seconds, so
-//! each submission is to take about 50 ms, by the time that earlier ones took.
+//! Amount of work per submission. Desktop drivers reset a device that is busy for about two
+//! seconds, so each submission targets about 50 ms, estimated from the durations of earlier ones.
 
 use crate::plan::Kernel;
 use std::collections::BTreeMap;
 
-/// Seconds that a submission is to take, if nothing else is asked for.
+/// Default target duration of a submission, seconds.
 pub const SLICE: f64 = 0.05;
-/// Items of a kernel's first submission, when nothing is known of it.
+/// Number of items in a kernel's first submission, before its cost is known.
 const FIRST_ITEMS: u32 = 1 << 14;
-/// Factor by which one measurement can change an estimate.
+/// Greatest factor by which one measurement changes an estimate.
 const STEP: f64 = 8.0;
-/// Power of the ratio by which the submissions of a whole step lower an estimate if all are quick.
-/// One of them alone says little: the cost of items changes over a picture, and the next may be the
-/// dear ones again.
+/// Exponent of the ratio by which the submissions of a whole step lower an estimate if all are
+/// fast. A single fast submission is weak evidence: the cost of items varies over an image, and the
+/// next ones may be expensive again.
 const LOWERING: f64 = 0.5;
 
-/// Estimated seconds per item of each kernel, and what the submission under way holds.
+/// Estimated seconds per item of each kernel, and the contents of the current submission.
 #[derive(Clone, Debug)]
 pub struct Pace {
     slice: f64,
     seconds_per_item: BTreeMap<Kernel, f64>,
-    /// Kernel, items, and the share of its step that these are.
+    /// Kernel, number of items, and their fraction of the step.
     recorded: Vec<(Kernel, u32, f64)>,
 }
 
@@ -31,18 +31,19 @@ impl Default for Pace {
 }
 
 impl Pace {
-    /// Sets how many seconds a submission is to take; with infinity, nothing is split for its time.
+    /// Sets the target duration of a submission in seconds; with infinity, nothing is split for
+    /// time.
     pub fn set_slice(&mut self, seconds: f64) {
         self.slice = seconds;
     }
 
-    /// Whether submissions end by their time.
+    /// Returns true if submissions are split by time.
     fn splits(&self) -> bool {
         self.slice.is_finite()
     }
 
-    /// How many of `items` items of `kernel` still fit; 0 when the submission is full. A kernel of
-    /// which nothing is known gets a submission of its own.
+    /// Returns how many of `items` items of `kernel` still fit; 0 if the submission is full. A
+    /// kernel of unknown cost gets a separate submission.
     pub fn fit(&self, kernel: Kernel, items: u32) -> u32 {
         if !self.splits() {
             return items;
@@ -58,22 +59,23 @@ impl Pace {
         ((self.slice - spent) / seconds).clamp(1.0, items as f64) as u32
     }
 
-    /// Notes that `items` items of `kernel`, of `whole` in its step, were put into the submission.
+    /// Records that `items` items of `kernel`, of `whole` in its step, were added to the
+    /// submission.
     pub fn record(&mut self, kernel: Kernel, items: u32, whole: u32) {
         self.recorded.push((kernel, items, f64::from(items) / f64::from(whole.max(1))));
     }
 
-    /// The kernels of the submission, in order.
+    /// Kernels of the submission, in order.
     pub fn kernels(&self) -> impl Iterator<Item = Kernel> + '_ {
         self.recorded.iter().map(|(kernel, ..)| *kernel)
     }
 
-    /// Learns from the time that the submission took, and begins a new one.
+    /// Updates the estimates from the duration of the submission, and starts a new one.
     pub fn learn(&mut self, seconds: f64) {
         let estimate = self.estimate();
         let recorded = std::mem::take(&mut self.recorded);
         if !self.splits() {
-            // one submission of everything tells nothing of its kernels
+            // one submission of everything gives no information about individual kernels
             return;
         }
         for (kernel, items, share) in recorded {
@@ -93,9 +95,9 @@ impl Pace {
     }
 }
 
-/// By what an estimate is multiplied after `share` of a step took `ratio` times as long: at once
-/// where it took longer, slowly where it was quicker, since too long a submission costs more than
-/// too short a one.
+/// Factor on an estimate after `share` of a step took `ratio` times the estimated time: it rises at
+/// once but falls slowly, since a submission that is too long costs more than one that is too
+/// short.
 fn correction(ratio: f64, share: f64) -> f64 {
     if ratio > 1.0 { ratio.min(STEP) } else { ratio.powf(LOWERING * share).max(1.0 / STEP) }
 }
@@ -105,7 +107,7 @@ fn correction(ratio: f64, share: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Times of the submissions in which `rounds` rounds of two kernels of a million items run.
+    /// Durations of the submissions for `rounds` rounds of two kernels with a million items each.
     fn submissions(pace: &mut Pace, rounds: usize) -> Vec<f64> {
         let cost = |kernel| if kernel == Kernel::Gather { 3e-6 } else { 2e-8 };
         let (mut times, mut time) = (Vec::new(), 0.0);
@@ -130,7 +132,7 @@ mod tests {
         times
     }
 
-    /// After a few submissions each takes about a slice, none ten times as long.
+    /// After a few submissions each takes about one slice, and none takes ten times as long.
     #[test]
     fn slices_settle() {
         for slice in [SLICE, 0.2 * SLICE] {
@@ -144,8 +146,8 @@ mod tests {
         }
     }
 
-    /// Where a third of the items costs three times as much, as the floor of a picture does, none
-    /// takes much longer than a slice for that, and not many are much shorter.
+    /// If a third of the items cost three times as much, as on the floor of an image, no submission
+    /// takes much longer than a slice, and few are much shorter.
     #[test]
     fn dear_items_are_expected() {
         let (mut pace, mut times) = (Pace::default(), Vec::new());
@@ -166,7 +168,7 @@ mod tests {
         assert!(times.len() as f64 * SLICE < 2.5 * times.iter().sum::<f64>(), "{times:?}");
     }
 
-    /// Without a limit everything is one submission, and what was learned before it holds after it.
+    /// Without a limit there is a single submission, and earlier estimates remain valid afterwards.
     #[test]
     fn without_a_slice_nothing_is_split() {
         let mut pace = Pace::default();

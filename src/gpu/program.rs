@@ -1,4 +1,4 @@
-//! A kernel, compiled: its pipeline and what it binds.
+//! Compiled kernel: its pipeline and its bindings.
 
 use super::compose::{Shader, causes, compose};
 use super::context::Gpu;
@@ -11,9 +11,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc;
 use std::time::Instant;
 
-/// A compiled kernel.
+/// Compiled kernel.
 pub struct Program {
-    /// Which.
+    /// Kernel that was compiled.
     pub kernel: Kernel,
     pub(super) pipeline: wgpu::ComputePipeline,
     layout: wgpu::BindGroupLayout,
@@ -63,7 +63,7 @@ impl Program {
             module: &module,
             entry_point: Some(stem),
             compilation_options: wgpu::PipelineCompilationOptions {
-                // each kernel writes its workgroup memory before it reads it
+                // each kernel writes its workgroup memory before reading it
                 zero_initialize_workgroup_memory: false,
                 ..Default::default()
             },
@@ -71,7 +71,7 @@ impl Program {
         });
         match pollster::block_on(scope.pop()) {
             Some(error) => Err(EngineError::Shader(match shader.validate() {
-                // with file and line
+                // names file and line
                 Err(fault) => fault.to_string(),
                 Ok(_) => format!("{stem}: {}", causes(&error)),
             })),
@@ -79,7 +79,8 @@ impl Program {
         }
     }
 
-    /// Binds the buffers that `buffer` finds; `dispatches` holds the parameters of the dispatches.
+    /// Binds the buffers that `buffer` returns; `dispatches` holds the parameters of the
+    /// dispatches.
     pub fn bind<'a>(
         &self,
         gpu: &Gpu,
@@ -114,17 +115,17 @@ impl Program {
     }
 }
 
-/// How kernels are made ready.
+/// Scheduling of compilation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Compiling {
-    /// On several threads.
+    /// Several threads in parallel.
     Together,
-    /// One after another, so that the times of each can be told.
+    /// One kernel after another, so that each can be timed.
     OneByOne,
 }
 
-/// Composes and compiles kernels, and hands each over as soon as it is ready, with the seconds that
-/// it took.
+/// Composes and compiles kernels, and passes each to `take` as soon as it is ready, with the
+/// seconds that this took.
 pub fn make_programs(
     gpu: &Gpu,
     kernels: &[Kernel],
@@ -148,7 +149,7 @@ pub fn make_programs(
     let (sender, receiver) = mpsc::channel();
     let compile = |sender: mpsc::Sender<_>| {
         while let Some(kernel) = kernels.get(next.fetch_add(1, Ordering::Relaxed)) {
-            // nobody listens any more after a failure
+            // the receiver is gone after a failure
             if sender.send(make(kernel)).is_err() {
                 break;
             }
@@ -160,7 +161,7 @@ pub fn make_programs(
             let sender = sender.clone();
             std::thread::Builder::new().spawn_scoped(scope, move || compile(sender)).is_ok()
         });
-        // a system that gives no thread leaves this one
+        // compile on this thread if the system provides no other
         if started.count() == 0 {
             compile(sender.clone());
         }
@@ -169,8 +170,7 @@ pub fn make_programs(
     })
 }
 
-/// Rows and columns of `groups` workgroups, at most 65535 in a row; surplus invocations find
-/// nothing to do.
+/// Columns and rows of `groups` workgroups, at most 65535 in a row; surplus invocations do nothing.
 pub fn arrange(groups: u32) -> (u32, u32) {
     const ROW: u32 = 65535;
     let rows = groups.div_ceil(ROW).max(1);
@@ -196,7 +196,7 @@ fn layout_entry(binding: u32, bound: &Bound) -> wgpu::BindGroupLayoutEntry {
 mod tests {
     use super::*;
 
-    /// Every arrangement holds all groups, stays in the limit and wastes less than a row.
+    /// Every arrangement holds all groups, respects the limit and wastes less than a row.
     #[test]
     fn arrangements() {
         for groups in [0, 1, 65535, 65536, 131_070, 131_071, 1 << 22, u32::MAX / 64] {

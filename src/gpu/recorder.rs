@@ -1,5 +1,5 @@
-//! Commands on their way to the device. One submission at a time is under way, so that its time can
-//! be measured.
+//! Recording of commands into submissions. Only one submission is in flight at a time, so that its
+//! duration can be measured.
 
 use super::context::Gpu;
 use super::program::{Program, arrange};
@@ -10,12 +10,12 @@ use crate::plan::Kernel;
 use bytemuck::bytes_of;
 use std::time::Instant;
 
-/// Most dispatches of one submission.
+/// Greatest number of dispatches in one submission.
 const SLOTS: usize = 64;
 
 /// Records one submission after another.
 pub struct Recorder {
-    /// The numbers of the submission's dispatches, one per slot.
+    /// Parameters of the submission's dispatches, one slot each.
     pub dispatches: wgpu::Buffer,
     stride: usize,
     staged: Vec<u8>,
@@ -24,7 +24,7 @@ pub struct Recorder {
 }
 
 impl Recorder {
-    /// Nothing recorded.
+    /// Creates a recorder without commands.
     pub fn new(gpu: &Gpu) -> Result<Self, EngineError> {
         let alignment = gpu.device.limits().min_uniform_buffer_offset_alignment as usize;
         let stride = size_of::<Dispatch>().next_multiple_of(alignment.max(1));
@@ -33,12 +33,13 @@ impl Recorder {
         Ok(Self { dispatches, stride, staged: Vec::new(), encoder: None, stamps: None })
     }
 
-    /// Whether no further dispatch has a slot.
+    /// Returns true if no slot is left for another dispatch.
     pub fn is_full(&self) -> bool {
         self.staged.len() >= SLOTS * self.stride
     }
 
-    /// Begins or ends to time every dispatch by the device's clock; whether it can.
+    /// Starts or stops timing every dispatch by the device's clock; returns true if dispatches are
+    /// now timed.
     pub fn stamp(&mut self, gpu: &Gpu, on: bool) -> Result<bool, EngineError> {
         self.stamps = if on { Stamps::new(gpu, SLOTS as u32)? } else { None };
         Ok(self.stamps.is_some())
@@ -64,7 +65,7 @@ impl Recorder {
         self.encoder(gpu).copy_buffer_to_buffer(source, from, target, to, bytes);
     }
 
-    /// Records one dispatch; there must be a slot.
+    /// Records one dispatch; a slot must be free.
     pub fn dispatch(
         &mut self,
         gpu: &Gpu,
@@ -89,7 +90,7 @@ impl Recorder {
         pass.dispatch_workgroups(columns, rows, 1);
     }
 
-    /// Submits what was recorded and waits for it; the seconds it took.
+    /// Submits the recorded commands and waits for them; returns the seconds this took.
     pub fn finish(&mut self, gpu: &Gpu) -> Result<f64, EngineError> {
         let begun = Instant::now();
         if !self.submit(gpu) {
@@ -99,7 +100,7 @@ impl Recorder {
         Ok(begun.elapsed().as_secs_f64())
     }
 
-    /// Submits what was recorded; whether there was anything.
+    /// Submits the recorded commands; returns false if there were none.
     pub fn submit(&mut self, gpu: &Gpu) -> bool {
         let Some(mut encoder) = self.encoder.take() else {
             return false;
@@ -113,8 +114,8 @@ impl Recorder {
         true
     }
 
-    /// Seconds of each dispatch of the last submission by the device's clock, where dispatches are
-    /// stamped.
+    /// Seconds of each dispatch of the last submission by the device's clock; empty if dispatches
+    /// are not timed.
     pub fn stamped(&mut self, gpu: &Gpu) -> Result<Vec<(Kernel, f64)>, EngineError> {
         self.stamps.as_mut().map_or(Ok(Vec::new()), |stamps| stamps.read(gpu))
     }

@@ -1,8 +1,8 @@
-//! Paths that a software driver stopped, traced again by the Rust twins of the kernels.
+//! Retraces paths that a software driver stopped, with the Rust twins of the kernels.
 //!
-//! Mesa's software driver leaves all loops of an invocation, without a word, once they have made
-//! 65535 rounds together (`LP_MAX_TGSI_LOOP_ITERATIONS`); long paths through surfaces of revolution
-//! need more. The kernels notice and mark what they then wrote. The twins find the same bits as the
+//! Mesa's software driver silently leaves all loops of an invocation once they have run 65535
+//! rounds together (`LP_MAX_TGSI_LOOP_ITERATIONS`); long paths through surfaces of revolution need
+//! more. The kernels detect this and mark their output. The twins compute the same bits that the
 //! driver would have.
 
 use super::context::Gpu;
@@ -16,7 +16,7 @@ use bytemuck::{cast_slice, pod_collect_to_vec};
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 
-/// Finds the marked points of a chunk again; their number and that of the rays.
+/// Retraces the marked points of a chunk; returns the numbers of points and of rays.
 pub fn retrace_points(
     gpu: &Gpu,
     scene: &Scene,
@@ -37,7 +37,7 @@ pub fn retrace_points(
     Ok(retraced)
 }
 
-/// Takes the samples of the marked pixels of a chunk.
+/// Retraces the samples of the marked pixels of a chunk.
 pub fn retrace_aovs(
     gpu: &Gpu,
     scene: &Scene,
@@ -56,19 +56,19 @@ pub fn retrace_aovs(
     Ok(())
 }
 
-/// What [`retrace_photons`] found.
+/// Result of [`retrace_photons`].
 pub struct RetracedPhotons {
-    /// Records of the batch now.
+    /// Number of records of the batch after retracing.
     pub records: u32,
-    /// Photons that were traced again.
+    /// Number of photons that were retraced.
     pub photons: u32,
-    /// Their rays.
+    /// Number of their rays.
     pub rays: u64,
-    /// How they ended.
+    /// Numbers of photons by how their paths ended.
     pub ends: [u32; 3],
 }
 
-/// Replaces the records of the marked photons, of `count` records.
+/// Replaces the records of the marked photons among the `count` records of a batch.
 pub fn retrace_photons(
     gpu: &Gpu,
     scene: &Scene,
@@ -83,7 +83,7 @@ pub fn retrace_photons(
     }
     let bytes = count as u64 * size_of::<PhotonRecord>() as u64;
     let mut records: Vec<PhotonRecord> = pod_collect_to_vec(&gpu.read(buffer, bytes)?);
-    // no direction has the code 0
+    // no encoded direction is 0
     let is_mark = |record: &PhotonRecord| record.direction == 0;
     let marked: BTreeSet<u32> =
         records.iter().filter(|r| is_mark(r)).map(|mark| mark.key).collect();

@@ -1,21 +1,22 @@
-//! Times of dispatches by the device's own clock, where it has one that shaders can be timed with.
+//! Timing of dispatches by the device's clock, if it supports timestamp queries.
 
 use super::context::Gpu;
 use crate::engine::EngineError;
 use crate::plan::Kernel;
 
-/// Two queries a dispatch: when it began and when it ended.
+/// Timestamp queries, two per dispatch: its begin and its end.
 pub struct Stamps {
     queries: wgpu::QuerySet,
     resolved: wgpu::Buffer,
-    /// Seconds between two counts of the clock.
+    /// Seconds per clock tick.
     period: f64,
-    /// The kernels of the dispatches in the submission.
+    /// Kernels of the dispatches in the submission.
     kernels: Vec<Kernel>,
 }
 
 impl Stamps {
-    /// For at most `dispatches` dispatches a submission; none where the device has no such clock.
+    /// Creates queries for at most `dispatches` dispatches per submission; `None` if the device
+    /// does not support them.
     pub fn new(gpu: &Gpu, dispatches: u32) -> Result<Option<Self>, EngineError> {
         if !gpu.has_clock() {
             return Ok(None);
@@ -31,7 +32,7 @@ impl Stamps {
         Ok(Some(Self { queries, resolved, period, kernels: Vec::new() }))
     }
 
-    /// What times the submission's next dispatch.
+    /// Returns the queries that time the submission's next dispatch.
     pub fn next(&mut self, kernel: Kernel) -> wgpu::ComputePassTimestampWrites<'_> {
         let first = 2 * self.kernels.len() as u32;
         self.kernels.push(kernel);
@@ -42,7 +43,7 @@ impl Stamps {
         }
     }
 
-    /// Records, as the last command of a submission, that its times be kept.
+    /// Records the copy of the times to a buffer, as the last command of a submission.
     pub fn resolve(&self, encoder: &mut wgpu::CommandEncoder) {
         let count = 2 * self.kernels.len() as u32;
         if count > 0 {
@@ -50,7 +51,7 @@ impl Stamps {
         }
     }
 
-    /// Seconds of the dispatches of a submission that is done.
+    /// Reads the seconds of the dispatches of a completed submission.
     pub fn read(&mut self, gpu: &Gpu) -> Result<Vec<(Kernel, f64)>, EngineError> {
         let kernels = std::mem::take(&mut self.kernels);
         let bytes = gpu.read(&self.resolved, 16 * kernels.len() as u64)?;

@@ -1,16 +1,16 @@
-//! Adapters that the environment variables `WGPU_BACKEND` and `WGPU_ADAPTER_NAME` let through, and
-//! those that they hide.
+//! Adapters that the environment variables `WGPU_BACKEND` and `WGPU_ADAPTER_NAME` allow, and those
+//! that they hide.
 
 use std::fmt;
 use std::sync::OnceLock;
 
 use super::context::{AdapterKind, AdapterSummary, holds, summarize};
 
-/// Restricts the graphics interfaces.
+/// Environment variable that restricts the graphics interfaces.
 const BACKEND: &str = "WGPU_BACKEND";
-/// Restricts the names of adapters.
+/// Environment variable that restricts the names of adapters.
 const NAME: &str = "WGPU_ADAPTER_NAME";
-/// Words of [`BACKEND`], in lower case, and the interface that each stands for.
+/// Words of [`BACKEND`] in lower case, and the interface that each denotes.
 const INTERFACES: [(&str, wgpu::Backends); 11] = [
     ("vulkan", wgpu::Backends::VULKAN),
     ("vk", wgpu::Backends::VULKAN),
@@ -25,16 +25,16 @@ const INTERFACES: [(&str, wgpu::Backends); 11] = [
     ("noop", wgpu::Backends::NOOP),
 ];
 
-/// An environment variable that hides adapters, or has words that mean nothing.
+/// Environment variable that hides adapters, or contains unknown words.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Hidden {
-    /// The variable.
+    /// Name of the variable.
     pub variable: &'static str,
-    /// Its value.
+    /// Value of the variable.
     pub value: String,
-    /// Adapters that would be there without it.
+    /// Adapters that would be available without it.
     pub adapters: Vec<AdapterSummary>,
-    /// Words in it that name no graphics interface.
+    /// Words in it that denote no graphics interface.
     pub unknown: Vec<String>,
 }
 
@@ -57,7 +57,7 @@ impl fmt::Display for Hidden {
     }
 }
 
-/// What both variables ask for; an empty value asks for nothing.
+/// Values of both variables; `None` if a value is empty or not set.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 struct Filter {
     backend: Option<String>,
@@ -73,7 +73,7 @@ impl Filter {
         Self { backend: value(BACKEND), name: value(NAME) }
     }
 
-    /// The interfaces to look at, and words that name none.
+    /// Graphics interfaces to search, and the words that denote none.
     fn backends(&self) -> (wgpu::Backends, Vec<String>) {
         let Some(list) = &self.backend else { return (wgpu::Backends::all(), Vec::new()) };
         let mut backends = wgpu::Backends::empty();
@@ -92,13 +92,13 @@ impl Filter {
     }
 }
 
-/// What was found: adapters that may be used, and those whose names do not fit.
+/// Adapters found: those that may be used, and those excluded by their names.
 struct Filtered {
     visible: Vec<(wgpu::Adapter, AdapterSummary)>,
     misnamed: Vec<AdapterSummary>,
 }
 
-/// Adapters are looked for once, since drivers take a while to answer.
+/// Searches for adapters, once, since drivers take a while to respond.
 fn found() -> &'static Filtered {
     static FOUND: OnceLock<Filtered> = OnceLock::new();
     FOUND.get_or_init(|| {
@@ -110,11 +110,12 @@ fn found() -> &'static Filtered {
     })
 }
 
-/// The adapters of these interfaces that the kernels can run on, hardware first.
+/// Adapters of the given interfaces that the kernels can run on, hardware first.
 fn of_backends(backends: wgpu::Backends) -> Vec<(wgpu::Adapter, AdapterSummary)> {
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
     descriptor.backends = backends;
-    // no dispatch here takes its size from a buffer, so no kernel is needed that checks such sizes
+    // no dispatch reads its size from a buffer, so wgpu need not compile a kernel that validates
+    // such sizes
     descriptor.flags.remove(wgpu::InstanceFlags::VALIDATION_INDIRECT_CALL);
     let instance = wgpu::Instance::new(descriptor);
     let mut list: Vec<_> = pollster::block_on(instance.enumerate_adapters(backends))
@@ -129,15 +130,15 @@ fn of_backends(backends: wgpu::Backends) -> Vec<(wgpu::Adapter, AdapterSummary)>
     list
 }
 
-/// Adapters that the kernels can run on, hardware first; those that `WGPU_BACKEND` and
-/// `WGPU_ADAPTER_NAME` allow.
+/// Adapters that the kernels can run on, hardware first, restricted by `WGPU_BACKEND` and
+/// `WGPU_ADAPTER_NAME`.
 pub(super) fn adapters() -> &'static [(wgpu::Adapter, AdapterSummary)] {
     &found().visible
 }
 
-/// The variables that hide adapters or have words that mean nothing. Interfaces that `WGPU_BACKEND`
-/// excludes are looked at only where no hardware is left without them, since their drivers may be
-/// what it excludes.
+/// Variables that hide adapters or contain unknown words. Interfaces that `WGPU_BACKEND` excludes
+/// are searched only if no hardware is left without them, since faulty drivers may be the reason
+/// for the exclusion.
 pub fn hidden() -> &'static [Hidden] {
     static HIDDEN: OnceLock<Vec<Hidden>> = OnceLock::new();
     HIDDEN.get_or_init(|| {
@@ -154,7 +155,7 @@ pub fn hidden() -> &'static [Hidden] {
     })
 }
 
-/// What there is to say of each variable.
+/// Describes the effect of each variable.
 fn described(
     filter: &Filter,
     excluded: Vec<AdapterSummary>,
@@ -170,9 +171,8 @@ fn described(
     backend.into_iter().chain(name).filter(matters).collect()
 }
 
-/// Theory: a variable that is empty or not set hides nothing; a word that names no interface, or an
-/// adapter that is excluded, gives one line that names variable, value, what is hidden and the
-/// remedy.
+/// Theory: a variable that is empty or not set hides nothing; an unknown word, or an excluded
+/// adapter, gives one line that names the variable, its value, what is hidden and the remedy.
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,7 +1,6 @@
-//! What a pixel shows in addition to radiance, from the same eye path as a visible point: at the
-//! first hit, and beyond mirrors and glass at the first hit that is neither. Run by one invocation
-//! per pixel for one of its samples; reads the scene, updates `aovs`. Twin:
-//! `shaders/kernels/aov_trace.wgsl`.
+//! AOVs of a pixel, from the same eye path as a visible point: values at the first hit, and at the
+//! first hit beyond mirrors and glass. Run by one invocation per pixel for one of its samples;
+//! reads the scene, updates `aovs`. Twin: `shaders/kernels/aov_trace.wgsl`.
 
 use super::camera::camera_ray;
 use super::direct::direct_light;
@@ -18,48 +17,49 @@ use super::records::Dispatch;
 use super::tables::*;
 use bytemuck::Zeroable;
 
-/// Means over a pixel's samples, in scene space and scene units.
+/// AOVs of a pixel: means over its samples, in scene space and scene units.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Plain, Zeroable)]
 pub struct AovPixel {
-    /// Reflectance of the first hit that is neither mirror nor glass times the throughput before
-    /// it; 0 where there is none.
+    /// Reflectance of the first hit that is neither mirror nor glass, times the throughput before
+    /// it; 0 if there is none.
     pub albedo: Vec3,
-    /// Distance of the first hit along the view direction, over the samples that hit anything.
+    /// Distance of the first hit along the view direction; mean over the samples that hit anything.
     pub depth: Real,
-    /// Shading normal toward the viewer of the first hit that is neither mirror nor glass; 0 where
-    /// there is none.
+    /// Shading normal, on the viewer's side, of the first hit that is neither mirror nor glass; 0
+    /// if there is none.
     pub normal: Vec3,
-    /// Samples that hit anything.
+    /// Number of samples that hit anything.
     pub hits: Real,
-    /// The first hit, over the samples that hit anything.
+    /// Position of the first hit; mean over the samples that hit anything.
     pub position: Vec3,
-    /// Samples that end at a visible point.
+    /// Number of samples that end at a visible point.
     pub points: Real,
-    /// Emission and environment met on the way, times throughput.
+    /// Emission and environment along the path, times throughput.
     pub emission: Vec3,
-    /// Start radius, over the samples that end at a visible point.
+    /// Start radius; mean over the samples that end at a visible point.
     pub radius: Real,
     /// Sampled direct light, times throughput.
     pub direct: Vec3,
-    /// What the ray through the middles of pixel and lens hits; [`NONE`] for nothing.
+    /// Reference of the shape hit by the ray through the centres of pixel and lens, or [`NONE`].
     pub reference: u32,
-    /// Its material or [`NONE`].
+    /// Material index at that hit, or [`NONE`].
     pub material: u32,
-    /// [`super::records::STOPPED`] where a sample is still to be taken, or 0.
+    /// [`super::records::STOPPED`] if a sample must be traced again, or 0.
     pub state: u32,
-    /// Padding.
+    /// Padding to 16 bytes.
     pub pad: [u32; 2],
 }
 
-/// Adds to pixel `id` of the chunk the sample after the `passes_done` that it holds. `sampled`:
-/// with direct light by shadow rays.
+/// Adds the next sample, number `passes_done`, to pixel `id` of the chunk. `sampled` includes
+/// direct light by shadow rays.
 pub fn aov_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, id: u32, aov: &mut AovPixel) {
     let camera = &scene.camera;
     let pixel = window_pixel(dispatch, camera, dispatch.chunk_first / dispatch.eye_samples + id);
     let x = pixel % camera.width;
     let y = pixel / camera.width;
     let mut next = *aov;
+    // shape and material at the pixel's centre, once
     if dispatch.passes_done == 0 {
         let ray = camera_ray(camera, x, y, Vec4::splat(0.5));
         let hit = intersect_scene(scene, &ray);
@@ -77,6 +77,7 @@ pub fn aov_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, id: u32, aov
         dispatch.points,
     );
     let ray = camera_ray(camera, x, y, stratified(rng_next(&mut rng), k, pixel, dispatch));
+    // follow the same path as `eye_trace`
     let mut path = EyePath::new(scene, ray);
     let mut albedo = Vec3::ZERO;
     let mut normal = Vec3::ZERO;
@@ -118,7 +119,7 @@ pub fn aov_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, id: u32, aov
         if path.bounce == dispatch.max_bounces {
             break;
         }
-        // as in `eye_trace`, with the same numbers
+        // as in `eye_trace`, with the same random numbers
         let v = rng_next(&mut rng);
         let scattered = scatter_specular(scene, &p, &path.interior, v.x, RADIANCE);
         if !path.scatter(&s, &scattered, v.y) {
@@ -134,6 +135,7 @@ pub fn aov_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, id: u32, aov
     if !is_finite(direct) {
         direct = Vec3::ZERO;
     }
+    // add to the running means
     let share = 1.0 / (dispatch.passes_done + 1) as Real;
     next.albedo += (albedo - next.albedo) * share;
     next.normal += (normal - next.normal) * share;

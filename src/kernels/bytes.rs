@@ -1,5 +1,5 @@
-//! What engines keep of pixels and visible points as bytes: fields in the order of their structs,
-//! numbers with the least byte first. In f32 these are the bytes of the device's buffers.
+//! Serialization of the per-pixel and per-visible-point buffers: fields in struct order, numbers
+//! little-endian. In f32 these are exactly the bytes of the device's buffers.
 
 use super::aov_trace::AovPixel;
 use super::real::{Real, Vec3};
@@ -7,16 +7,16 @@ use super::records::{FilmPixel, Statistics};
 use super::resolve_parts::PartsPixel;
 
 const REAL: usize = size_of::<Real>();
-/// Bytes of a pixel.
+/// Serialized size of a [`FilmPixel`], bytes.
 pub const FILM_BYTES: usize = 12 * REAL + 4 * 4;
-/// Bytes of a visible point's statistics.
+/// Serialized size of a [`Statistics`], bytes.
 pub const STATISTICS_BYTES: usize = 2 * REAL + 2 * 4;
-/// Bytes of what a pixel shows in addition to radiance.
+/// Serialized size of an [`AovPixel`], bytes.
 pub const AOV_BYTES: usize = 19 * REAL + 5 * 4;
-/// Bytes of a pixel's photons by their way.
+/// Serialized size of a [`PartsPixel`], bytes.
 pub const PARTS_BYTES: usize = 7 * REAL + 4;
 
-/// The bytes of a film.
+/// Serializes a film.
 pub fn film_bytes(film: &[FilmPixel]) -> Vec<u8> {
     let mut out = Writer(Vec::with_capacity(film.len() * FILM_BYTES));
     for p in film {
@@ -32,7 +32,7 @@ pub fn film_bytes(film: &[FilmPixel]) -> Vec<u8> {
     out.0
 }
 
-/// The film of these bytes.
+/// Deserializes a film.
 pub fn film_of(bytes: &[u8]) -> Vec<FilmPixel> {
     let pixel = |bytes| {
         let mut from = Reader(bytes);
@@ -51,7 +51,7 @@ pub fn film_of(bytes: &[u8]) -> Vec<FilmPixel> {
     bytes.chunks_exact(FILM_BYTES).map(pixel).collect()
 }
 
-/// The bytes of visible points' statistics.
+/// Serializes the statistics of visible points.
 pub fn statistics_bytes(statistics: &[Statistics]) -> Vec<u8> {
     let mut out = Writer(Vec::with_capacity(statistics.len() * STATISTICS_BYTES));
     for s in statistics {
@@ -63,7 +63,7 @@ pub fn statistics_bytes(statistics: &[Statistics]) -> Vec<u8> {
     out.0
 }
 
-/// The statistics of these bytes.
+/// Deserializes the statistics of visible points.
 pub fn statistics_of(bytes: &[u8]) -> Vec<Statistics> {
     let point = |bytes| {
         let mut from = Reader(bytes);
@@ -77,7 +77,7 @@ pub fn statistics_of(bytes: &[u8]) -> Vec<Statistics> {
     bytes.chunks_exact(STATISTICS_BYTES).map(point).collect()
 }
 
-/// The bytes of what pixels show in addition to radiance.
+/// Serializes the AOVs of pixels.
 pub fn aov_bytes(aovs: &[AovPixel]) -> Vec<u8> {
     let mut out = Writer(Vec::with_capacity(aovs.len() * AOV_BYTES));
     for a in aovs {
@@ -95,7 +95,7 @@ pub fn aov_bytes(aovs: &[AovPixel]) -> Vec<u8> {
     out.0
 }
 
-/// What pixels of these bytes show in addition to radiance.
+/// Deserializes the AOVs of pixels.
 pub fn aovs_of(bytes: &[u8]) -> Vec<AovPixel> {
     let pixel = |bytes| {
         let mut from = Reader(bytes);
@@ -118,7 +118,7 @@ pub fn aovs_of(bytes: &[u8]) -> Vec<AovPixel> {
     bytes.chunks_exact(AOV_BYTES).map(pixel).collect()
 }
 
-/// The bytes of pixels' photons by their way.
+/// Serializes the caustic and indirect parts of pixels.
 pub fn parts_bytes(parts: &[PartsPixel]) -> Vec<u8> {
     let mut out = Writer(Vec::with_capacity(parts.len() * PARTS_BYTES));
     for p in parts {
@@ -130,7 +130,7 @@ pub fn parts_bytes(parts: &[PartsPixel]) -> Vec<u8> {
     out.0
 }
 
-/// Pixels' photons by their way, of these bytes.
+/// Deserializes the caustic and indirect parts of pixels.
 pub fn parts_of(bytes: &[u8]) -> Vec<PartsPixel> {
     let pixel = |bytes| {
         let mut from = Reader(bytes);
@@ -155,7 +155,7 @@ impl Writer {
     }
 }
 
-/// Reads from as many bytes as are asked for; beyond them it would read zeros.
+/// Sequential reader; returns zeros past the end.
 struct Reader<'a>(&'a [u8]);
 
 impl Reader<'_> {
@@ -178,8 +178,8 @@ impl Reader<'_> {
     }
 }
 
-/// Theory: what is written is read again bit by bit, in f32 it is what a device holds, and no field
-/// is left out or exchanged with another.
+/// Theory: reading restores the written values bit by bit, the f32 bytes equal those of a device's
+/// buffer, and no field is omitted or swapped.
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -242,7 +242,7 @@ mod tests {
         assert_eq!(aovs_of(&aov_bytes(&[aov; 2])), [aov; 2]);
         assert_eq!(parts_bytes(&[parts; 2]).len(), 2 * PARTS_BYTES);
         assert_eq!(parts_of(&parts_bytes(&[parts; 2])), [parts; 2]);
-        // in f32 the structs have no gaps, so that these are a device's bytes
+        // in f32 the structs have no gaps, so these are a device's bytes
         if REAL == 4 {
             assert_eq!((size_of::<AovPixel>(), size_of::<PartsPixel>()), (AOV_BYTES, PARTS_BYTES));
             assert_eq!(aov_bytes(&[aov])[4 * 19..4 * 20], 20u32.to_le_bytes());

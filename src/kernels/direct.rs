@@ -1,6 +1,6 @@
-//! Direct light at a rough surface: one shadow ray to a sampled light and, if the material's lobe is
-//! narrow, one ray by its density, combined by multiple importance sampling (Veach & Guibas 1995). Twin:
-//! `shaders/kernels/direct.wgsl`.
+//! Direct light at a rough surface, and absorption along a ray. One shadow ray goes to a sampled
+//! light and, if the material's lobe is narrow, one ray is sampled from the lobe; multiple
+//! importance sampling combines both (Veach & Guibas 1995). Twin: `shaders/kernels/direct.wgsl`.
 
 use super::geometry::intersect::{intersect_scene, occluded};
 use super::geometry::surface::surface_at;
@@ -17,7 +17,7 @@ use super::real::{Real, Vec2, Vec3, Vec4};
 use super::shapes::ray::Ray;
 use super::tables::*;
 
-/// Beer-Lambert transmittance over `distance` in a medium.
+/// Beer-Lambert transmittance over `distance` (scene units) in a medium.
 #[inline(always)]
 pub fn transmittance(scene: &Scene, medium: u32, distance: Real) -> Vec3 {
     if medium == NONE {
@@ -27,8 +27,8 @@ pub fn transmittance(scene: &Scene, medium: u32, distance: Real) -> Vec3 {
     Vec3::new(exponential(depth.x), exponential(depth.y), exponential(depth.z))
 }
 
-/// Radiance toward the path from one sampled light, and the number of shadow rays. `mis`: weighted
-/// against scattered rays that could meet the same light.
+/// Radiance towards the path from one sampled light, and the number of shadow rays. `mis` weights
+/// it against scattered rays that could hit the same light.
 #[inline(always)]
 pub fn next_event(
     scene: &Scene,
@@ -65,7 +65,7 @@ pub fn next_event(
     (radiance, 1)
 }
 
-/// Radiance toward the path from the lights, and the number of rays spent.
+/// Radiance towards the path from all lights, and the number of rays traced.
 #[inline(always)]
 pub fn direct_light(
     scene: &Scene,
@@ -73,7 +73,7 @@ pub fn direct_light(
     interior: &Interior,
     rng: &mut Rng,
 ) -> (Vec3, u32) {
-    // scattered rays find lights that fill a narrow lobe
+    // for narrow lobes, scattered rays find large lights with less noise
     let narrow = !p.lobe.bsdf.is_wide();
     let (mut radiance, mut rays) = next_event(scene, p, interior, narrow, rng_next(rng));
     if narrow {

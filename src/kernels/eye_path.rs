@@ -1,4 +1,4 @@
-//! The walk of an eye path, which eye tracing, layers and path tracing share. Twin:
+//! Steps of an eye path, shared by eye tracing, AOVs and path tracing. Twin:
 //! `shaders/kernels/eye_path.wgsl`.
 
 use super::direct::transmittance;
@@ -14,27 +14,27 @@ use super::records::{Dispatch, HIDDEN_FACES};
 use super::shapes::ray::{Hit, Ray};
 use super::tables::*;
 
-/// An eye path.
+/// State of an eye path.
 #[derive(Clone, Copy, Debug)]
 pub struct EyePath {
-    /// The next ray.
+    /// Next ray.
     pub ray: Ray,
-    /// Product of the weights so far.
+    /// Product of the scattering weights, roulette factors and transmittances so far.
     pub throughput: Vec3,
-    /// Interior list of the ray.
+    /// Media that the ray's origin lies in.
     pub interior: Interior,
-    /// Hidden faces passed.
+    /// Number of hidden faces passed.
     pub hidden: u32,
-    /// Scattering events.
+    /// Number of scattering events.
     pub bounce: u32,
-    /// Length so far, scene units.
+    /// Path length so far, scene units.
     pub length: Real,
-    /// Rays traced.
+    /// Number of rays traced.
     pub rays: u32,
 }
 
 impl EyePath {
-    /// A path that starts with a camera ray.
+    /// Starts a path with a camera ray.
     #[inline(always)]
     pub fn new(scene: &Scene, ray: Ray) -> Self {
         let interior = interior_at(scene, scene.camera.medium, ray.origin);
@@ -42,20 +42,20 @@ impl EyePath {
         Self { ray, throughput, interior, hidden: 0, bounce: 0, length: 0.0, rays: 0 }
     }
 
-    /// Returns whether the path is within its limits.
+    /// Returns true while the path is within its limits on scattering events and hidden faces.
     #[inline(always)]
     pub fn continues(&self, dispatch: &Dispatch) -> bool {
         self.bounce <= dispatch.max_bounces && self.hidden <= HIDDEN_FACES
     }
 
-    /// Traces the ray.
+    /// Traces the path's ray and counts it.
     #[inline(always)]
     pub fn trace(&mut self, scene: &Scene) -> Hit {
         self.rays += 1;
         intersect_scene(scene, &self.ray)
     }
 
-    /// Environment in the ray's direction, times throughput.
+    /// Radiance of the environment in the ray's direction, times throughput.
     #[inline(always)]
     pub fn environment(&self, scene: &Scene) -> Vec3 {
         if scene.world.environment == NONE {
@@ -65,7 +65,7 @@ impl EyePath {
         self.throughput * eval_environment(scene, light, self.ray.direction)
     }
 
-    /// Moves to a hit: the medium on the way absorbs.
+    /// Moves to a hit and applies the absorption of the medium on the way.
     #[inline(always)]
     pub fn arrive(&mut self, scene: &Scene, hit: &Hit) -> Surface {
         let s = surface_at(scene, &self.ray, hit);
@@ -75,7 +75,7 @@ impl EyePath {
         s
     }
 
-    /// Emission of the surface toward the path, times throughput.
+    /// Emission of the surface towards the path, times throughput.
     #[inline(always)]
     pub fn emission(&self, scene: &Scene, s: &Surface) -> Vec3 {
         if s.light == NONE || (-self.ray.direction).dot(s.normal) <= 0.0 {
@@ -84,7 +84,7 @@ impl EyePath {
         self.throughput * scene.lights[s.light as usize].color
     }
 
-    /// Passes a hidden glass face, or returns false.
+    /// Passes through the face if it is a hidden one; returns false otherwise.
     #[inline(always)]
     pub fn passes(&mut self, scene: &Scene, s: &Surface) -> bool {
         let passed = passes_hidden(scene, s, &mut self.ray, &mut self.interior);
@@ -93,8 +93,8 @@ impl EyePath {
     }
 
     /// Continues with a scattered ray. Returns false if Russian roulette with the random number `u`
-    /// ends the path, which it does only if little is left to lose: glass dims the throughput on
-    /// the way in and undoes that on the way out.
+    /// ends the path. Its survival probability is min(1, 4 throughput), because glass lowers the
+    /// throughput on entry and restores it on exit.
     #[inline(always)]
     pub fn scatter(&mut self, s: &Surface, scattered: &Scatter, u: Real) -> bool {
         self.throughput *= scattered.weight;

@@ -1,4 +1,4 @@
-//! Eye path of one visible point: lens and pixel sample, through mirrors and glass, to the first
+//! Eye path of one visible point: samples pixel and lens, follows mirrors and glass to the first
 //! non-specular hit. Run by one invocation per visible point; reads the scene, writes
 //! `visible_points`. Twin: `shaders/kernels/eye_trace.wgsl`.
 
@@ -15,8 +15,8 @@ use super::records::{BAD_DIRECT, BAD_EYE, Dispatch, VisiblePoint};
 use super::tables::*;
 use bytemuck::Zeroable;
 
-/// Traces visible point `id` of the chunk; also returns the number of rays. `sampled`: direct light
-/// by shadow rays.
+/// Traces visible point `id` of the chunk; also returns the number of rays. `sampled` adds direct
+/// light by shadow rays.
 #[inline(always)]
 pub fn eye_trace(
     scene: &Scene,
@@ -24,6 +24,7 @@ pub fn eye_trace(
     sampled: bool,
     id: u32,
 ) -> (VisiblePoint, u32) {
+    // sample the pixel and the lens
     let camera = &scene.camera;
     let place = (dispatch.chunk_first + id) / dispatch.eye_samples;
     let k = dispatch.chunk_first + id - place * dispatch.eye_samples;
@@ -50,6 +51,7 @@ pub fn eye_trace(
             continue;
         }
         let p = shading_point(scene, &s, -path.ray.direction);
+        // store the visible point at the first non-specular hit
         if !p.lobe.bsdf.is_specular() {
             if max_component(p.lobe.reflectance) <= 0.0 {
                 break;
@@ -79,6 +81,7 @@ pub fn eye_trace(
             }
             break;
         }
+        // scatter at mirrors and glass
         if path.bounce == dispatch.max_bounces {
             break;
         }

@@ -1,9 +1,8 @@
-//! Density estimate at one visible point: the sum over the photons in its disc, or in two discs
-//! where photons that a diffuse surface has scattered have a wider one. Run by one invocation per
-//! visible point and photon batch; reads `visible_points`, `sorted`, `starts` (and `statistics`
-//! under the local rule), adds to `gathered`. Twin: `shaders/kernels/gather.wgsl`, which tests
-//! photons one at a time; here some are tested at once, and those that are near are taken in the
-//! same order.
+//! Density estimate at one visible point: the sum over the photons in its disc, or in two discs if
+//! indirect photons use a wider one. Run by one invocation per visible point and photon batch;
+//! reads `visible_points`, `sorted`, `starts` (and `statistics` under the local rule), adds to
+//! `gathered`. Twin: `shaders/kernels/gather.wgsl`, which tests photons one at a time; this module
+//! tests several at once and sums those inside in the same order.
 
 use super::grid::{grid_bucket, grid_cell, grid_code};
 use super::grid_build::SortedRecords;
@@ -18,31 +17,31 @@ use bytemuck::Zeroable;
 use glam::IVec3;
 use std::ops::Range;
 
-/// Photons farther than this from the tangent plane, in radii, lie on another surface.
+/// Distance from the tangent plane, in radii, beyond which photons lie on another surface.
 const FLATNESS: Real = 0.25;
-/// Least cosine with the geometric normal for which the shading normal's correction is formed.
+/// Lower bound of the cosine to the geometric normal that the shading-normal correction divides by.
 const COS_MIN: Real = 1e-2;
 
-/// Added to the squared sine between an axis and the normal, so that no rounding makes the box
+/// Added to the squared sine between an axis and the normal, so that rounding never makes the box
 /// about a disc too small.
 const BOX_SLACK: Real = 1e-4;
 
-/// Photons in a row that are summed up before they are added to the whole sum: so a million photons
-/// lose no more than some thousand roundings.
+/// Number of consecutive photons that are summed before their sum is added to the total: a sum of a
+/// million photons accumulates about 2000 roundings.
 const BLOCK: usize = 1024;
-/// Photons that are tested at once.
+/// Number of photons that are tested at once.
 const LANES: usize = 16;
 
-/// Directions at a visible point.
+/// Shading frame of a visible point.
 #[derive(Clone, Copy)]
 struct Frame {
     /// Geometric normal.
     ng: Vec3,
     /// Shading normal.
     n: Vec3,
-    /// To the eye, unless the lobe is diffuse.
+    /// Direction to the viewer; zero for a diffuse lobe.
     wo: Vec3,
-    /// The lobe.
+    /// Lobe of the material.
     lobe: Lobe,
 }
 
@@ -66,8 +65,8 @@ pub fn scale_sq(dispatch: &Dispatch, local: bool, statistics: &Statistics) -> Re
     if statistics.scale_sq == 0.0 { 1.0 } else { statistics.scale_sq - statistics.drop }
 }
 
-/// Adds the photons of one batch around a visible point to `gathered`. Inlined, so that it becomes
-/// code for the processor's widest vectors inside of [`pulp::Arch::dispatch`].
+/// Adds the photons of one batch around a visible point to `gathered`. Inlined, so that it is
+/// compiled for the processor's widest vectors inside [`pulp::Arch::dispatch`].
 #[inline(always)]
 pub fn gather(
     outlines: &[Outline],
@@ -106,8 +105,8 @@ pub fn gather(
     gathered.bias_probe += found.bias_probe;
 }
 
-/// The photons of one class: their BRDF times flux, but for the point's weight, their number, and
-/// their ring.
+/// Sums the photons of one class: BRDF times flux without the point's weight, their number, and the
+/// bias probe.
 #[inline(always)]
 fn gather_class(
     outlines: &[Outline],
@@ -125,9 +124,11 @@ fn gather_class(
     let folded = lobe.bsdf == Bsdf::Diffuse;
     let both = lobe.bsdf.transmits();
     let flat = point.normal == point.shading;
+    // clip the disc to the outline
     let clip = clip_at(outlines, point.outline, point.position, ng, radius);
     let depth = clip.depth.min(FLATNESS * radius);
     let inner = clip.whole - 2.0 * clip.inner;
+    // range of cells that the disc overlaps
     let reach = disc_reach(ng, radius, depth);
     let low = grid_cell(point.position - reach, inv_cell);
     let high = grid_cell(point.position + reach, inv_cell);
@@ -135,18 +136,20 @@ fn gather_class(
     let mut sum = Vec4::ZERO;
     let mut ring = Vec4::ZERO;
     let mut outer = [false; LANES];
+    // walk the rows of cells
     for z in low.z..=high.z {
         for y in low.y..=high.y {
             let cell = IVec3::new(low.x, y, z);
             let code = grid_code(cell, photon_class);
             let bucket = grid_bucket(cell, dispatch.mask);
             let last = bucket + ((high.x - low.x) as u32).min(dispatch.mask);
-            // a row that passes the table's end goes on at its beginning
+            // a row that passes the end of the table continues at its start
             for part in 0..1 + (last > dispatch.mask) as u32 {
                 let begin = if part == 0 { bucket } else { 0 };
                 let to = if part == 0 { last.min(dispatch.mask) } else { last - dispatch.mask - 1 };
                 let (mut first, end) =
                     (starts[begin as usize] as usize, starts[to as usize + 1] as usize);
+                // walk the row's photons block by block
                 while first < end {
                     let mut block = Vec4::ZERO;
                     let last = (first + BLOCK).min(end);
@@ -167,6 +170,7 @@ fn gather_class(
                             let k = near.trailing_zeros() as usize / 8;
                             let i = first + k;
                             near &= near - 1;
+                            // reject photons outside the outline or behind a wall
                             if clip.crossed {
                                 let [xs, ys, zs] = &sorted.positions;
                                 let position = Vec3::new(xs[i], ys[i], zs[i]);
@@ -181,8 +185,8 @@ fn gather_class(
                             if !flat || !folded {
                                 let [us, vs, ws] = &sorted.directions;
                                 let wi = unit(Vec3::new(us[i], vs[i], ws[i]));
-                                // flux arrives by the geometric cosine, the BSDF asks for the
-                                // shading one
+                                // flux arrives with the geometric cosine, the BSDF uses the shading
+                                // one
                                 if folded {
                                     flux *= wi.dot(n).max(0.0) / wi.dot(ng).max(COS_MIN);
                                 } else {
@@ -206,17 +210,17 @@ fn gather_class(
     Gathered { flux: sum.truncate() * clip.whole, count, bias_probe, ..Gathered::zeroed() }
 }
 
-/// How far along each axis the points of a disc about the origin reach that are no farther than
-/// `depth` from its plane.
+/// Half-extent along each axis of the part of a disc's surroundings that lies within `radius` of
+/// its centre and within `depth` of its plane.
 fn disc_reach(normal: Vec3, radius: Real, depth: Real) -> Vec3 {
     let sine_sq = (Vec3::splat(1.0 + BOX_SLACK) - normal * normal).max(Vec3::ZERO);
     Vec3::new(sine_sq.x.sqrt(), sine_sq.y.sqrt(), sine_sq.z.sqrt()) * radius + normal.abs() * depth
 }
 
-/// Which of the first [`LANES`] photons of `range` lie in the disc and in the row, no farther than
-/// `depth` from its plane, and come from the side that is seen or, with `both`, from any: a byte of
-/// one for each. `outer`
-/// tells those in the outer half of the disc's area.
+/// Tests the first [`LANES`] photons of `range`. A photon counts if it lies in the disc and in the
+/// row of cells, no farther than `depth` from the disc's plane, and arrives on the viewer's side
+/// or, with `both`, on either side. Returns one byte per photon, 1 if it counts. Sets `outer` for
+/// photons in the outer half of the disc's area.
 #[inline(always)]
 fn near(
     sorted: &SortedRecords,
@@ -229,7 +233,7 @@ fn near(
     both: bool,
     outer: &mut [bool; LANES],
 ) -> u128 {
-    // `SortedRecords` ends with entries of no cell, so that these lanes are there
+    // in bounds, because `SortedRecords` is padded with entries that belong to no cell
     let lanes = first..first + LANES;
     let codes = &sorted.codes[lanes.clone()];
     let [xs, ys, zs] = sorted.positions.each_ref().map(|values| &values[lanes.clone()]);

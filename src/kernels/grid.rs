@@ -1,17 +1,17 @@
-//! The hash grid over photon records: cells in rows along x, hashed into a table of buckets row by
-//! row. Two rows may share a bucket, so a reader compares the row's code. Twin:
+//! Hash grid over photon records: cells form rows along x, and rows are hashed into a table of
+//! buckets. Two rows may share a bucket, so readers compare the row's code. Twin:
 //! `shaders/kernels/grid.wgsl`.
 
 use super::real::{Real, Vec3};
 use glam::IVec3;
 
-/// Farthest cell from the origin; beyond it cells are merged, which costs time and nothing else.
+/// Greatest cell coordinate; cells beyond it are merged, which only costs time.
 const CELL_MAX: Real = 1e9;
-/// Cells along x in the length of one along y or z. A reader reads rows, so that short ones cost it
-/// nothing and spare it photons.
+/// Number of cells along x per cell side along y or z. Readers scan whole rows, so shorter cells
+/// cost them nothing and exclude more photons.
 const ALONG: Real = 4.0;
 
-/// Cell of a point; `inv_cell` is one over the side length along y and z. Monotone in each
+/// Cell of a point; `inv_cell` is the reciprocal side length along y and z. Monotone in each
 /// coordinate.
 pub fn grid_cell(position: Vec3, inv_cell: Real) -> IVec3 {
     let sides = Vec3::new(ALONG, 1.0, 1.0) * inv_cell;
@@ -19,9 +19,9 @@ pub fn grid_cell(position: Vec3, inv_cell: Real) -> IVec3 {
     p.as_ivec3()
 }
 
-/// Bucket of a cell: rows along x are hashed (Teschner et al. 2003, primes; then a finaliser so
-/// that near rows part), and the cells of a row follow one another, so that a reader finds the
-/// photons of several cells side by side.
+/// Bucket of a cell. Hashes the row (primes of Teschner et al. 2003, then a finalizer that
+/// separates nearby rows); the cells of a row follow one another, so a reader finds the photons of
+/// several cells in one contiguous range.
 pub fn grid_bucket(cell: IVec3, mask: u32) -> u32 {
     let mut h = (cell.y as u32).wrapping_mul(19349663) ^ (cell.z as u32).wrapping_mul(83492791);
     h ^= h >> 16;
@@ -30,8 +30,8 @@ pub fn grid_bucket(cell: IVec3, mask: u32) -> u32 {
     h.wrapping_add(cell.x as u32) & mask
 }
 
-/// A row along x and a class in one word. Rows less than 1024 apart have different codes, so that
-/// two that share a bucket are told apart by whoever visits fewer in a line.
+/// Row along x and photon class in one word. Rows less than 1024 cells apart have different codes,
+/// so a reader that visits fewer than 1024 rows in a line can tell rows in a shared bucket apart.
 pub fn grid_code(cell: IVec3, photon_class: u32) -> u32 {
     (cell.y as u32 & 0x3ff) | (cell.z as u32 & 0x3ff) << 10 | photon_class << 20
 }

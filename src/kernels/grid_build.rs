@@ -1,11 +1,10 @@
-//! The hash grid's construction: count, scan, scatter, sort. Twins:
+//! Construction of the hash grid: count, scan, scatter, sort. Twins:
 //! `shaders/kernels/grid_count.wgsl`, `grid_scan_reduce.wgsl`, `grid_scan_sums.wgsl`,
 //! `grid_scan.wgsl`, `grid_scatter.wgsl`, `grid_sort.wgsl` and `grid_sort_long.wgsl`.
 //!
-//! The result does not depend on the order in which threads arrive: within a bucket the records
-//! stand in the order of their keys. On the CPU each task that traced photons parts its records by
-//! the leading bits of their buckets; then each part of the buckets is sorted by itself, within the
-//! cache.
+//! The result does not depend on the order in which threads arrive: within a bucket the records are
+//! sorted by key. On the CPU each photon task partitions its records by the leading bits of their
+//! buckets; each part of the buckets is then sorted separately, within the cache.
 
 use super::grid::{grid_bucket, grid_cell, grid_code};
 use super::math::oct_vector;
@@ -16,45 +15,45 @@ use glam::IVec3;
 use rayon::prelude::*;
 use std::mem::{swap, take};
 
-/// Parts of the buckets, at the most: so many streams a processor writes at once without losing its
-/// pages, and a part of four million records fits the second-level cache.
+/// Greatest number of parts of the buckets: few enough write streams for the TLB, and with four
+/// million records a part fits in the L2 cache.
 const PARTS: u32 = 256;
 
-/// Records of one task of photons: in the order of their keys until [`grid_scatter`] parts them.
+/// Records of one photon task, in key order until [`grid_scatter`] partitions them.
 #[derive(Clone, Debug, Default)]
 pub struct RecordList {
     /// The records.
     pub records: Vec<PhotonRecord>,
-    /// The bucket of each.
+    /// Bucket of each record.
     buckets: Vec<u32>,
-    /// Number of records in each part of the buckets; then where the part ends.
+    /// Number of records in each part of the buckets; after [`grid_scatter`] the end of each part.
     parts: Vec<u32>,
 }
 
 impl RecordList {
-    /// A list of records in the order of their keys.
+    /// List of records in key order.
     pub fn new(records: Vec<PhotonRecord>) -> Self {
         Self { records, ..Self::default() }
     }
 }
 
-/// Records in the order of their buckets, each field by itself.
+/// Records in bucket order, as a structure of arrays.
 #[derive(Clone, Debug, Default)]
 pub struct SortedRecords {
     /// Positions: x, y, z.
     pub positions: [Vec<Real>; 3],
-    /// Directions to where photons came from, at any length: x, y, z.
+    /// Directions that the photons came from, not normalized: x, y, z.
     pub directions: [Vec<Real>; 3],
-    /// Rows of cells and classes, as [`grid_code`] gives them.
+    /// Row of cells and class of each record, see [`grid_code`].
     pub codes: Vec<u32>,
-    /// See [`PhotonRecord::flux`]; the fourth is 0.
+    /// See [`PhotonRecord::flux`]; the fourth component is 0.
     pub fluxes: Vec<Vec4>,
 }
 
-/// Entries after the last record, for those who read some at once.
+/// Padding entries after the last record, for readers that load several at once.
 const TAIL: usize = 16;
 
-/// A record's class: 1 for photons with a disc of their own (see [`Dispatch::indirect_radius`]).
+/// Class of a record: 1 for photons with a separate disc (see [`Dispatch::indirect_radius`]).
 fn record_family(dispatch: &Dispatch, record: &PhotonRecord) -> u32 {
     if dispatch.classes == 2 { record.key & 1 } else { 0 }
 }
@@ -73,17 +72,17 @@ pub fn record_bucket(dispatch: &Dispatch, record: &PhotonRecord) -> u32 {
     grid_bucket(record_cell(dispatch, record), dispatch.mask)
 }
 
-/// Row and class of a record in one word: what stands for its key once it is sorted.
+/// Row and class of a record in one word, which replaces its key once it is sorted.
 pub fn record_code(dispatch: &Dispatch, record: &PhotonRecord) -> u32 {
     grid_code(record_cell(dispatch, record), record_family(dispatch, record))
 }
 
-/// Bits by which a bucket's number exceeds that of its part.
+/// Number of bits to shift a bucket index right to get the index of its part.
 fn part_shift(dispatch: &Dispatch) -> u32 {
     dispatch.mask.count_ones().saturating_sub(PARTS.ilog2())
 }
 
-/// Counts the records of each part of the buckets.
+/// Counts the records in each part of the buckets.
 pub fn grid_count(dispatch: &Dispatch, lists: &mut [RecordList]) {
     let shift = part_shift(dispatch);
     lists.par_iter_mut().for_each(|RecordList { records, buckets, parts }| {
@@ -97,7 +96,7 @@ pub fn grid_count(dispatch: &Dispatch, lists: &mut [RecordList]) {
     });
 }
 
-/// The number of records in all parts before each; one more entry holds their total.
+/// Exclusive prefix sum of the parts' record counts over all lists; the last entry is the total.
 pub fn grid_scan(lists: &[RecordList]) -> Vec<u32> {
     let parts = lists.iter().map(|list| list.parts.len()).max().unwrap_or(0);
     let mut starts = vec![0; parts + 1];
@@ -112,7 +111,7 @@ pub fn grid_scan(lists: &[RecordList]) -> Vec<u32> {
     starts
 }
 
-/// Puts the records of each list into the order of their parts, and within these of their keys.
+/// Partitions the records of each list by part; the order of keys is kept within a part.
 pub fn grid_scatter(dispatch: &Dispatch, lists: &mut [RecordList]) {
     let shift = part_shift(dispatch);
     lists.par_iter_mut().for_each_init(RecordList::default, |other, list| {
@@ -136,9 +135,8 @@ pub fn grid_scatter(dispatch: &Dispatch, lists: &mut [RecordList]) {
     });
 }
 
-/// Copies the records to `sorted` in the order of their buckets; `starts[b]` becomes the number of
-/// records in the buckets before `b`, and one more entry holds their total. `part_starts` is what
-/// [`grid_scan`] gave.
+/// Copies the records to `sorted` in bucket order; `starts[b]` becomes the number of records in the
+/// buckets before `b`, and the last entry the total. `part_starts` is the result of [`grid_scan`].
 pub fn grid_sort(
     dispatch: &Dispatch,
     lists: &[RecordList],
@@ -167,13 +165,15 @@ pub fn grid_sort(
         };
         let within = (1 << shift) - 1;
         starts.fill(0);
+        // count the records per bucket, then sum
         runs().flatten().for_each(|(_, bucket)| starts[(*bucket & within) as usize] += 1);
         let mut end = first;
         for start in &mut *starts {
             end += *start;
             *start = end;
         }
-        // from the last to the first, so that starts begin as ends and end as starts
+        // fill from the last to the first: each entry of `starts` begins as an end and becomes a
+        // start
         for (record, bucket) in runs().rev().flat_map(|run| run.rev()) {
             let start = &mut starts[(*bucket & within) as usize];
             *start -= 1;
@@ -182,7 +182,7 @@ pub fn grid_sort(
     });
 }
 
-/// The whole construction from records in the order of their keys: `starts` and the sorted records.
+/// Runs the whole construction on records in key order; returns `starts` and the sorted records.
 pub fn build_grid(dispatch: &Dispatch, records: Vec<PhotonRecord>) -> (Vec<u32>, SortedRecords) {
     let mut lists = [RecordList::new(records)];
     let mut starts = vec![0; dispatch.mask as usize + 2];
@@ -194,7 +194,7 @@ pub fn build_grid(dispatch: &Dispatch, records: Vec<PhotonRecord>) -> (Vec<u32>,
     (starts, sorted)
 }
 
-/// Places of [`SortedRecords`] that one task fills.
+/// Slices of [`SortedRecords`] that one task fills.
 struct Places<'a> {
     positions: [&'a mut [Real]; 3],
     directions: [&'a mut [Real]; 3],
@@ -203,7 +203,7 @@ struct Places<'a> {
 }
 
 impl SortedRecords {
-    /// Makes room for `records` and the entries after them, which lie in no cell.
+    /// Resizes to `records` entries plus the padding, which belongs to no cell.
     fn resize(&mut self, records: usize) {
         let length = records + TAIL;
         self.positions
@@ -226,7 +226,7 @@ impl SortedRecords {
 }
 
 impl Places<'_> {
-    /// The next `count` places, which are no longer among these.
+    /// Splits off the next `count` entries.
     fn take(&mut self, count: usize) -> Self {
         Places {
             positions: self.positions.each_mut().map(|values| cut(values, count)),
@@ -249,7 +249,7 @@ impl Places<'_> {
     }
 }
 
-/// The first `count` of `values`, which keep the rest.
+/// Splits off the first `count` entries of `values`.
 fn cut<'a, T>(values: &mut &'a mut [T], count: usize) -> &'a mut [T] {
     let (first, rest) = take(values).split_at_mut(count);
     *values = rest;
@@ -262,7 +262,7 @@ mod tests {
     use super::super::real::Vec3;
     use super::*;
 
-    /// Records in a cube of `side` cells, some of them in one place.
+    /// Random records in a cube of `side` cells, one in five of them at the origin.
     fn random_records(count: u32, side: Real) -> Vec<PhotonRecord> {
         let mut state = 1u32;
         let mut random = || {
@@ -282,8 +282,8 @@ mod tests {
         (0..count).map(record).collect()
     }
 
-    /// Whether a grid is what the definition says: the records stably sorted by bucket, and the
-    /// number of records in the buckets before each.
+    /// Returns true if the grid matches its definition: the records stably sorted by bucket, and
+    /// `starts` the number of records in the buckets before each.
     fn is_grid(
         d: &Dispatch,
         mut records: Vec<PhotonRecord>,
@@ -304,8 +304,8 @@ mod tests {
             && sorted.codes[records.len()..] == [u32::MAX; TAIL]
     }
 
-    // Theory: the grid is defined by its records alone, however they are cut into lists and the
-    // buckets into parts. What is left from a larger grid must not show.
+    // Theory: the grid depends only on its records, not on how they are split into lists and the
+    // buckets into parts. Leftovers of a larger grid must not show.
     #[test]
     fn grid_is_its_definition() {
         let mut sorted = SortedRecords::default();
@@ -327,8 +327,7 @@ mod tests {
                 is_grid(&d, records.clone(), &starts, &sorted),
                 "{count} records, {buckets} buckets"
             );
-            // the comparator notices two neighbours that changed places, and a bucket that begins
-            // late
+            // the check detects two swapped records, and a bucket that starts late
             let last = count as usize - 1;
             let mut planted = sorted.clone();
             planted.fluxes.swap(0, last);

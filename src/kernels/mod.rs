@@ -1,5 +1,5 @@
-//! The kernels of a pass, each the twin of `shaders/kernels/` file of the same stem: a function of
-//! the invocation's number and of what the kernel reads, returning what it writes.
+//! Kernels of a pass, twins of the files of the same stem in `shaders/kernels/`. A kernel is a
+//! function of the invocation's index and of the data it reads, and returns what it writes.
 
 use super::{camera, geometry, lights, materials, math, real, shapes, tables};
 

@@ -1,6 +1,5 @@
-//! Path tracing with next-event estimation and multiple importance sampling: the independent check
-//! that photon mapping converges to the right picture wherever path tracing gets there. CPU engine
-//! only.
+//! Path tracing with next-event estimation and multiple importance sampling: an independent
+//! reference for photon mapping in scenes that path tracing can solve. CPU engine only.
 
 use super::camera::camera_ray;
 use super::direct::next_event;
@@ -17,8 +16,8 @@ use super::records::Dispatch;
 use super::shapes::ray::Ray;
 use super::tables::*;
 
-/// One path through the pixel at place `place` of the window: its radiance and the number of rays.
-/// `sampled`: next-event estimation.
+/// Traces one path through the pixel at position `place` of the window; returns its radiance and
+/// the number of rays. `sampled` enables next-event estimation.
 pub fn path_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, place: u32) -> (Vec3, u32) {
     let camera = &scene.camera;
     let pixel = window_pixel(dispatch, camera, place);
@@ -26,10 +25,10 @@ pub fn path_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, place: u32)
     let ray = camera_ray(camera, pixel % camera.width, pixel / camera.width, rng_next(&mut rng));
     let mut path = EyePath::new(scene, ray);
     let mut radiance = Vec3::ZERO;
-    // density of the last scattering; 0 if next-event estimation could not have found what is met
-    // now
+    // density of the last scattered direction; 0 if next-event estimation cannot sample what that
+    // ray hits
     let mut pdf = 0.0;
-    // where the probabilities of the lights at that place begin
+    // start of the light probabilities of the point that the ray leaves
     let mut shares = 0;
     while path.continues(dispatch) {
         let hit = path.trace(scene);

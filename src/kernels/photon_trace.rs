@@ -1,5 +1,5 @@
-//! Path of one photon: emission, then a record at every non-specular hit and on to the next until
-//! roulette ends it. Run by one invocation per photon; reads the scene, appends to `records`. Twin:
+//! Path of one photon: emission, then a record at every non-specular hit, until roulette ends the
+//! path. Run by one invocation per photon; reads the scene, appends to `records`. Twin:
 //! `shaders/kernels/photon_trace.wgsl`.
 
 use super::direct::transmittance;
@@ -17,21 +17,21 @@ use super::records::{Dispatch, HIDDEN_FACES, PhotonRecord};
 use super::shapes::ray::{Hit, Ray};
 use super::tables::*;
 
-/// How a photon's path ended: in [`PhotonPath::end`], and the place of its count.
+/// Value of [`PhotonPath::end`] and index of its counter: the path left the scene.
 pub const ESCAPED: usize = 0;
-/// Roulette ended it, or nothing was left of its flux.
+/// The path was ended by roulette, or its flux became zero.
 pub const ABSORBED: usize = 1;
-/// It had been scattered as often as allowed.
+/// The path reached the limit on scattering events or on hidden faces.
 pub const CUT: usize = 2;
 
-/// One photon on its way.
+/// State of one photon path.
 #[derive(Clone, Copy, Debug)]
 pub struct PhotonPath {
-    /// What it meets next.
+    /// Next ray.
     pub ray: Ray,
-    /// Rays traced.
+    /// Number of rays traced.
     pub rays: u32,
-    /// [`ESCAPED`], [`ABSORBED`] or [`CUT`], once it has ended.
+    /// [`ESCAPED`], [`ABSORBED`] or [`CUT`]; valid once the path has ended.
     pub end: usize,
     id: u32,
     rng: Rng,
@@ -53,7 +53,7 @@ impl PhotonPath {
         Self::emitted(emission, rng, id)
     }
 
-    /// A photon `id` of the batch that has just left its light.
+    /// Starts the path of photon `id` of the batch from an emission.
     #[inline(always)]
     pub fn emitted(emission: Emission, rng: Rng, id: u32) -> PhotonPath {
         PhotonPath {
@@ -71,7 +71,7 @@ impl PhotonPath {
         }
     }
 
-    /// Whether it goes on, with its `ray`.
+    /// Returns true if the path continues with `ray`, and counts that ray.
     #[inline(always)]
     pub fn goes_on(&mut self, dispatch: &Dispatch) -> bool {
         if self.bounce > dispatch.max_bounces || self.hidden > HIDDEN_FACES {
@@ -85,9 +85,9 @@ impl PhotonPath {
         true
     }
 
-    /// From what its ray hit to the next ray, or to its end. Hands a record to `store`, if it
-    /// leaves one. `sampled`: photons straight from a light are not stored, since shadow rays bring
-    /// that light.
+    /// Processes the hit of `ray` and samples the next ray; returns false if the path ends. Passes
+    /// a record to `store` if the photon leaves one. With `sampled`, photons directly from a light
+    /// are not stored, because shadow rays account for that light.
     #[inline(always)]
     pub fn meet(
         &mut self,
@@ -105,7 +105,7 @@ impl PhotonPath {
         let tracked = far || scene.world.guided != 0;
         let s = surface_at(scene, &self.ray, hit);
         let wo = -self.ray.direction;
-        // the first ray of light from infinity starts behind its origin, outside of every medium
+        // rays from infinity start behind their origin, where there is no medium
         self.interior = interior_before(scene, &s, wo, &self.interior);
         self.flux *= transmittance(scene, medium_of(&self.interior), hit.t.max(0.0));
         if passes_hidden(scene, &s, &mut self.ray, &mut self.interior) {
@@ -119,7 +119,7 @@ impl PhotonPath {
         if specular {
             scattered = scatter_specular(scene, &p, &self.interior, u.x, IMPORTANCE);
         } else {
-            // shadow rays end at faces, hidden ones too
+            // shadow rays end at faces, hidden ones included
             let stored = self.bounce > 0 || self.hidden > 0 || !sampled;
             if stored && max_component(p.lobe.reflectance) > 0.0 {
                 let key = self.id << dispatch.key_bits | self.bounce << 1 | self.photon_class;
@@ -138,8 +138,10 @@ impl PhotonPath {
                 self.photon_class = 1;
             }
         }
+        // Russian roulette
         let weight = max_component(scattered.weight);
-        // a faint photon, one of many that a map sends at glass and mirrors, is to get through them
+        // guiding maps send many faint photons at glass and mirrors: roulette must not end them
+        // there
         let mut survival = weight.min(1.0);
         if tracked {
             let kept = if specular { self.relative_flux.max(1.0) } else { self.relative_flux };
@@ -160,7 +162,7 @@ impl PhotonPath {
     }
 }
 
-/// Traces photon `id` of the batch and hands each record to `store`.
+/// Traces photon `id` of the batch and passes each record to `store`.
 #[inline(always)]
 pub fn photon_trace(
     scene: &Scene,

@@ -1,105 +1,106 @@
-//! What kernels hand to one another. Twin: `shaders/kernels/records.wgsl`.
+//! Data that kernels pass to one another. Twin: `shaders/kernels/records.wgsl`.
 
 use super::math::Direction;
 use super::math::rng::Points;
 use super::real::{Plain, Real, Vec3};
 use bytemuck::Zeroable;
 
-/// Numbers of one dispatch.
+/// Parameters of one dispatch.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Plain, Zeroable)]
 pub struct Dispatch {
-    /// First item of this dispatch.
+    /// Index of the first item of this dispatch.
     pub first: u32,
-    /// One past its last item.
+    /// One past the index of its last item.
     pub end: u32,
     /// Pass number of the random numbers, from 0.
     pub pass_number: u32,
-    /// Seed.
+    /// Seed of the random numbers.
     pub seed: u32,
-    /// First visible point of the chunk within the picture's.
+    /// Index of the chunk's first visible point among those of the image.
     pub chunk_first: u32,
-    /// First photon of the batch within the pass's.
+    /// Index of the batch's first photon among those of the pass.
     pub batch_first: u32,
-    /// Low bits of a record's key that hold the bounce and the class.
+    /// Number of low bits of a record's key that store the bounce and the class.
     pub key_bits: u32,
-    /// Records that the buffers hold.
+    /// Capacity of the record buffers.
     pub capacity: u32,
-    /// Most scattering events on a path.
+    /// Greatest number of scattering events on a path.
     pub max_bounces: u32,
     /// Visible points per pixel.
     pub eye_samples: u32,
-    /// Number of buckets less one.
+    /// Number of grid buckets, a power of two, less one.
     pub mask: u32,
-    /// One over the side length of a grid cell.
+    /// Reciprocal side length (along y and z) of a grid cell, per scene unit.
     pub inv_cell: Real,
     /// Squared radius of this pass over the squared start radius (fixed and global rules).
     pub scale_sq: Real,
-    /// `M`, photons emitted in a pass, as a float.
+    /// `M`, the number of photons emitted in a pass.
     pub photons: Real,
     /// `alpha` of the radius rule.
     pub alpha: Real,
-    /// Start radius in pixel footprints, or 0.
+    /// Start radius in pixel footprints; 0 if `radius_units` applies.
     pub radius_pixels: Real,
-    /// Start radius in scene units where `radius_pixels` is 0.
+    /// Start radius in scene units if `radius_pixels` is 0.
     pub radius_units: Real,
     /// Greatest start radius, in scene units.
     pub radius_max: Real,
-    /// Columns of the strata of a pixel's visible points.
+    /// Number of columns of the strata of a pixel's visible points.
     pub strata: u32,
-    /// Passes that the film holds already.
+    /// Number of passes that the film contains already.
     pub passes_done: u32,
-    /// Classes of photons with a disc and a grid of their own: 1, or 2 where those that a diffuse
-    /// surface has scattered have a wider disc.
+    /// Number of photon classes with separate discs and grids: 1, or 2 if photons scattered by a
+    /// diffuse surface use a wider disc.
     pub classes: u32,
-    /// Radius of the second class over that of the first.
+    /// Radius of the second class's disc over that of the first.
     pub indirect_radius: Real,
-    /// One over the side length of the second class's cells.
+    /// Reciprocal side length of the second class's cells.
     pub inv_cell_indirect: Real,
-    /// First pixel of the window that is rendered, counted in the whole picture.
+    /// First pixel of the render window, as an index into the full image.
     pub window_first: u32,
-    /// Pixels per row of the window.
+    /// Number of pixels per row of the window.
     pub window_width: u32,
-    /// Padding.
+    /// Padding to 16 bytes.
     pub pad: [u32; 3],
-    /// The pass's point for the first dimensions of eye paths.
+    /// Sobol point of the pass for the first dimensions of eye paths.
     pub points: Points,
 }
 
-/// Maximum number of hidden glass faces that a path passes (see
-/// [`super::materials::interior::passes_hidden`]); it ends beyond that.
+/// Greatest number of hidden glass faces that a path may pass (see
+/// [`super::materials::interior::passes_hidden`]); the path ends beyond it.
 pub const HIDDEN_FACES: u32 = 256;
 
-/// The driver stopped the kernel's loops: the point is to be found again.
+/// State bit: the driver stopped the kernel's loops, so the point must be traced again.
 pub const STOPPED: u32 = 1;
-/// What the eye path met on its way was not finite; it is left out of the radiance.
+/// State bit: the emission and environment along the eye path were not finite and are left out of
+/// the radiance.
 pub const BAD_EYE: u32 = 2;
-/// The sampled direct light was not finite; it is left out of the radiance.
+/// State bit: the sampled direct light was not finite and is left out of the radiance.
 pub const BAD_DIRECT: u32 = 4;
 
 /// First non-specular hit of an eye path.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Plain, Zeroable)]
 pub struct VisiblePoint {
-    /// In scene space.
+    /// Position in scene space.
     pub position: Vec3,
-    /// Start radius in scene units; 0 where the eye path met nothing.
+    /// Start radius in scene units; 0 if the eye path ends without a visible point.
     pub radius: Real,
-    /// Throughput; for diffuse surfaces times the BRDF.
+    /// Throughput; for diffuse surfaces multiplied by the BRDF.
     pub weight: Vec3,
     /// Geometric normal on the viewer's side.
     pub normal: Direction,
-    /// Radiance met on the way: emission, environment and sampled direct light, times throughput.
+    /// Emission, environment and sampled direct light along the path, times throughput.
     pub radiance: Vec3,
     /// Shading normal on the viewer's side.
     pub shading: Direction,
     /// Reflectance of the lobe, unless it is diffuse.
     pub reflectance: Vec3,
-    /// Width of the lobe, unless it is diffuse.
+    /// Width of the lobe (roughness alpha), unless it is diffuse.
     pub alpha: Real,
     /// Direction to the viewer, unless the lobe is diffuse.
     pub wo: Direction,
-    /// The outline that it lies in, among the outlines, or `NONE`.
+    /// Index of the outline that contains the point, or `NONE`.
     pub outline: u32,
     /// Sum of [`STOPPED`], [`BAD_EYE`] and [`BAD_DIRECT`].
     pub state: u32,
@@ -107,87 +108,87 @@ pub struct VisiblePoint {
     pub bsdf: u32,
 }
 
-/// A photon at a non-specular hit.
+/// Photon stored at a non-specular hit.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Plain, Zeroable)]
 pub struct PhotonRecord {
-    /// In scene space.
+    /// Position in scene space.
     pub position: Vec3,
-    /// (photon within the batch, bounce, class): the order of summation. On the GPU the cell's
-    /// code stands here once the record is sorted.
+    /// (photon within the batch, bounce, class): the order of summation. On the GPU the cell's code
+    /// replaces it once the record is sorted.
     pub key: u32,
-    /// Flux in W times the number of photons in the pass.
+    /// Flux in W, times the number of photons in the pass.
     pub flux: Vec3,
-    /// Direction to where it came from.
+    /// Direction that the photon came from.
     pub direction: Direction,
 }
 
-/// What a visible point gathered in one pass.
+/// Sums over the photons that a visible point gathered in one pass.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Plain, Zeroable)]
 pub struct Gathered {
     /// Sum of weight times BRDF times flux.
     pub flux: Vec3,
-    /// Photons inside the disc, on the right side of the surface.
+    /// Number of photons inside the disc, on the right side of the surface.
     pub count: u32,
-    /// The part of `flux` of the first of two classes.
+    /// Part of `flux` from photons of the first class, if there are two.
     pub caustic: Vec3,
-    /// Luminance of what the outer half of the disc's area holds of `flux`, less that of the inner
-    /// half.
+    /// Luminance of `flux` less that of the estimate from the inner half of the disc's area; for an
+    /// unclipped disc, the outer half's flux less the inner half's.
     pub bias_probe: Real,
 }
 
-/// Local rule: statistics of a pixel (SPPM) or visible point (PPM), with radii over the start
-/// radius.
+/// Statistics of the local rule for a pixel (SPPM) or a visible point (PPM), with radii relative to
+/// the start radius.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Plain, Zeroable)]
 pub struct Statistics {
-    /// `R^2` over the squared start radius, less what `drop` still holds back; 0 in fresh memory
-    /// stands for 1.
+    /// `R^2` over the squared start radius, before subtraction of `drop`; 0 in zeroed memory stands
+    /// for 1.
     pub scale_sq: Real,
-    /// Decrease of `R^2` not yet taken from `scale_sq`: small terms are summed here first, so that
-    /// they count.
+    /// Decrease of `R^2` not yet subtracted from `scale_sq`: accumulates small terms that rounding
+    /// would lose.
     pub drop: Real,
-    /// Photons so far, low word; `N = alpha` times this count.
+    /// Number of photons so far, low word; `N = alpha` times this count.
     pub count_low: u32,
-    /// Photons so far, high word.
+    /// Number of photons so far, high word.
     pub count_high: u32,
 }
 
-/// Causes of a rejected pass, as indices: what the eye path met, ...
+/// Reason for rejecting a pass, an index: emission or environment along the eye path.
 pub const REJECTED_EYE: u32 = 0;
-/// ... sampled direct light, ...
+/// Reason for rejecting a pass: sampled direct light.
 pub const REJECTED_DIRECT: u32 = 1;
-/// ... gathered photons, ...
+/// Reason for rejecting a pass: gathered photons.
 pub const REJECTED_PHOTONS: u32 = 2;
-/// ... or the estimate, though each of its parts was finite.
+/// Reason for rejecting a pass: the estimate, although its parts were finite.
 pub const REJECTED_ESTIMATE: u32 = 3;
-/// No cause: the pass counts.
+/// The pass is accepted.
 pub const ACCEPTED: u32 = 4;
 
-/// A pixel's estimate so far.
+/// Running estimate of a pixel.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Plain, Zeroable)]
 pub struct FilmPixel {
-    /// Mean over the passes, in W sr^-1 m^-2 of scene units, less what `carry` still holds back.
+    /// Mean over the passes, in W sr^-1 m^-2 of scene units, without `carry`.
     pub mean: Vec3,
-    /// Luminance: mean square of the passes' deviations (see [`super::resolve::fold`]).
+    /// Mean square of the passes' luminance deviations (see [`super::resolve::fold`]).
     pub spread: Real,
-    /// Change of the mean not yet put into `mean`: small terms are summed here first, so that they
-    /// count.
+    /// Change of the mean not yet added to `mean`: accumulates small terms that rounding would
+    /// lose.
     pub carry: Vec3,
     /// Luminance of the mean over the first 2^k passes, 2^k the greatest power of two below the
     /// number of passes.
     pub mean_at_pow2: Real,
-    /// Passes whose value was not finite and was left out, by cause: see `REJECTED_*`.
+    /// Number of passes rejected because a value was not finite, by reason: see `REJECTED_*`.
     pub rejected: [u32; 4],
-    /// Luminance: mean over the passes of the estimate in the whole disc less that in the inner
-    /// half of its area.
+    /// Mean over the passes of the luminance of the estimate from the whole disc less that from the
+    /// inner half of its area.
     pub bias_probe: Real,
-    /// The same mean with odd passes turned over.
+    /// The same mean with the sign of odd passes flipped.
     pub bias_probe_alternating: Real,
-    /// Luminance: mean over the passes of what two halves of the eye samples differ by, scaled so
-    /// that its square is the variance of the mean over all.
+    /// Mean over the passes of the luminance difference between two halves of the eye samples,
+    /// scaled so that its square is the variance of the mean over all samples.
     pub halves: Real,
     /// Luminance of the mean over the first 2^(k-1) passes.
     pub mean_at_half_pow2: Real,

@@ -1,34 +1,34 @@
-//! One pixel's estimate of the pass into the film, and the local rule's statistics. Run by one
-//! invocation per pixel; reads `visible_points` and `gathered`, updates `statistics` and `film`.
-//! Twin: `shaders/kernels/resolve.wgsl`.
+//! Adds one pass's estimate of a pixel to the film and updates the local rule's statistics. Run by
+//! one invocation per pixel; reads `visible_points` and `gathered`, updates `statistics` and
+//! `film`. Twin: `shaders/kernels/resolve.wgsl`.
 //!
-//! Under every rule the film holds the mean over passes of `radiance + flux / (M pi r^2)`. For the
-//! local rule this is the paper's `tau / (N_emitted pi R^2)`: tau and R^2 shrink by the same
-//! factor, so that `tau_P / R_P^2 = tau_{P-1} / R_{P-1}^2 + Phi_P / R_{P-1}^2`.
+//! Under every rule the film stores the mean over passes of `radiance + flux / (M pi r^2)`. For the
+//! local rule this equals the paper's `tau / (N_emitted pi R^2)`: tau and R^2 shrink by the same
+//! factor, so `tau_P / R_P^2 = tau_{P-1} / R_{P-1}^2 + Phi_P / R_{P-1}^2`.
 
 use super::gather::scale_sq;
 use super::math::{PI, is_finite, luminance, max_abs};
 use super::real::{Real, Vec3};
 use super::records::*;
 
-/// `drop` is taken from `scale_sq` when it exceeds this share of it.
+/// `drop` is subtracted from `scale_sq` when it exceeds this fraction of it.
 const DROP_SHARE: Real = 1.0 / 256.0;
 
-/// `carry` is put into `mean` when it exceeds this share of it.
+/// `carry` is added to `mean` when it exceeds this fraction of it.
 const CARRY_SHARE: Real = 1.0 / 256.0;
 
-/// What visible points found in one pass.
+/// Estimate of one pass.
 #[derive(Clone, Copy)]
 pub struct Estimate {
-    /// Radiance.
+    /// Radiance, W sr^-1 m^-2 of scene units.
     pub radiance: Vec3,
-    /// Luminance of the estimate in the whole disc less that in the inner half of its area.
+    /// Luminance of the estimate from the whole disc less that from the inner half of its area.
     pub bias_probe: Real,
-    /// Luminance by which two halves of the points differ, as [`FilmPixel::halves`].
+    /// Scaled luminance difference between two halves of the samples, see [`FilmPixel::halves`].
     pub halves: Real,
 }
 
-/// What one visible point found in this pass; it is no half of anything.
+/// Estimate of one visible point in this pass; `halves` is 0.
 pub fn pass_found(
     point: &VisiblePoint,
     gathered: &Gathered,
@@ -47,16 +47,16 @@ pub fn pass_found(
     }
 }
 
-/// What sample `k` of a pixel weighs in [`Estimate::halves`]. The halves are the strata's fields of
-/// either colour of a chessboard, so that a slope across the pixel is in both alike. With a and b
-/// samples in them the difference of their means times `sqrt(a b) / (a + b)` has the variance of
-/// the mean over all.
+/// Weight of sample `k` of a pixel in [`Estimate::halves`]. The strata are split like the fields of
+/// a chessboard, so that a gradient across the pixel affects both halves alike. With a and b
+/// samples in them, the difference of their means times `sqrt(a b) / (a + b)` has the variance of
+/// the mean over all samples.
 pub fn half_weight(k: u32, eye_samples: u32, strata: u32) -> Real {
     if eye_samples == 1 {
         return 0.0;
     }
-    // an odd number of strata has one more of the first colour; an even number of columns has as
-    // many of both
+    // with an odd number of strata the first colour has one more; with an even number of columns
+    // both have the same number
     let first = eye_samples.div_ceil(2) as Real;
     let second = (eye_samples / 2) as Real;
     let row = k / strata;
@@ -66,8 +66,8 @@ pub fn half_weight(k: u32, eye_samples: u32, strata: u32) -> Real {
     if odd == 0 { size } else { -size }
 }
 
-/// Hachisuka's rule with `N = alpha T`, T photons so far: `R'^2 = R^2 alpha (T + m) / (alpha T +
-/// m)`.
+/// Updates the local statistics after `m` photons by Hachisuka's rule with `N = alpha T`, T the
+/// photons so far: `R'^2 = R^2 alpha (T + m) / (alpha T + m)`.
 pub fn update_statistics(statistics: &mut Statistics, m: u32, alpha: Real) {
     if statistics.scale_sq == 0.0 {
         statistics.scale_sq = 1.0;
@@ -76,12 +76,14 @@ pub fn update_statistics(statistics: &mut Statistics, m: u32, alpha: Real) {
         return;
     }
     let t = statistics.count_high as Real * 4294967296.0 + statistics.count_low as Real;
+    // accumulate the small decreases in `drop`, so that rounding does not lose them
     let scale_sq = statistics.scale_sq - statistics.drop;
     statistics.drop += scale_sq * ((1.0 - alpha) * m as Real / (alpha * t + m as Real));
     if statistics.drop > DROP_SHARE * statistics.scale_sq {
         statistics.scale_sq -= statistics.drop;
         statistics.drop = 0.0;
     }
+    // 64-bit count in two words
     let low = statistics.count_low.wrapping_add(m);
     if low < m {
         statistics.count_high += 1;
@@ -89,7 +91,7 @@ pub fn update_statistics(statistics: &mut Statistics, m: u32, alpha: Real) {
     statistics.count_low = low;
 }
 
-/// Folds a pixel's visible points of this pass into `film`. `statistics` holds one entry per
+/// Folds the visible points of a pixel in this pass into `film`. `statistics` has one entry per
 /// visible point under the local rule.
 pub fn resolve(
     dispatch: &Dispatch,
@@ -98,6 +100,7 @@ pub fn resolve(
     mut statistics: Option<&mut [Statistics]>,
     film: &mut FilmPixel,
 ) {
+    // sum the estimates of the pixel's samples
     let mut sum = Estimate { radiance: Vec3::ZERO, bias_probe: 0.0, halves: 0.0 };
     let mut state = 0;
     let mut photons_finite = true;
@@ -124,7 +127,7 @@ pub fn resolve(
     fold(dispatch, cause(state, photons_finite), mean, film);
 }
 
-/// Why a pass cannot count, as far as its parts show.
+/// Reason to reject a pass, as far as its inputs show, or [`ACCEPTED`].
 pub fn cause(state: u32, photons_finite: bool) -> u32 {
     if state & BAD_EYE != 0 {
         return REJECTED_EYE;
@@ -135,10 +138,10 @@ pub fn cause(state: u32, photons_finite: bool) -> u32 {
     if photons_finite { ACCEPTED } else { REJECTED_PHOTONS }
 }
 
-/// Adds what one pass found to a pixel's means, or counts it under its cause.
+/// Adds the estimate of one pass to a pixel's means, or counts it under its reason for rejection.
 ///
-/// The n-th pass deviates from the mean of those before by delta. `sqrt((n - 1) / n) delta` has
-/// mean zero and the variance of a pass, and does not correlate with its predecessors (Helmert
+/// The n-th pass deviates from the mean of the passes before it by delta. `sqrt((n - 1) / n) delta`
+/// has mean zero and the variance of a pass, and is uncorrelated with its predecessors (Helmert
 /// 1876).
 pub fn fold(dispatch: &Dispatch, cause: u32, found: Estimate, film: &mut FilmPixel) {
     let value = found.radiance;
@@ -147,12 +150,15 @@ pub fn fold(dispatch: &Dispatch, cause: u32, found: Estimate, film: &mut FilmPix
         film.rejected[counted as usize] += 1;
         return;
     }
+    // number of accepted passes; record the mean when it is a power of two
     let r = film.rejected;
     let before = dispatch.passes_done - (r[0] + r[1] + r[2] + r[3]);
     if before & before.wrapping_sub(1) == 0 {
         film.mean_at_half_pow2 = film.mean_at_pow2;
         film.mean_at_pow2 = luminance(film.mean + film.carry);
     }
+    // running means; the mean itself is updated through `carry`, so that rounding does not lose
+    // small changes
     let n = (before + 1) as Real;
     let share = 1.0 / n;
     let delta = value - (film.mean + film.carry);

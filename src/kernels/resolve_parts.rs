@@ -1,6 +1,7 @@
-//! What photons bring to a pixel in a pass, by the way they came. Run by one invocation per pixel,
-//! before `resolve`; reads `visible_points` and `gathered` (and `statistics` under the local rule),
-//! updates `parts`. Twin: `shaders/kernels/resolve_parts.wgsl`.
+//! Adds one pass's photon estimate of a pixel, split into its caustic and indirect parts, to the
+//! layer. Run by one invocation per pixel, before `resolve`; reads `visible_points` and `gathered`
+//! (and `statistics` under the local rule), updates `parts`. Twin:
+//! `shaders/kernels/resolve_parts.wgsl`.
 
 use super::gather::scale_sq;
 use super::math::{PI, is_finite};
@@ -8,22 +9,22 @@ use super::real::{Plain, Real, Vec3};
 use super::records::{BAD_DIRECT, BAD_EYE, Dispatch, Gathered, Statistics, VisiblePoint};
 use bytemuck::Zeroable;
 
-/// Means over the passes that count, in W sr^-1 m^-2 of scene units.
+/// Means over the accepted passes, in W sr^-1 m^-2 of scene units.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Plain, Zeroable)]
 pub struct PartsPixel {
-    /// Of photons that no diffuse surface has scattered.
+    /// Radiance from photons that no diffuse surface has scattered.
     pub caustic: Vec3,
-    /// Passes that count.
+    /// Number of accepted passes.
     pub passes: Real,
-    /// Of all others.
+    /// Radiance from all other photons.
     pub indirect: Vec3,
-    /// Padding.
+    /// Padding to 16 bytes.
     pub pad: u32,
 }
 
-/// Adds what a pixel's visible points have gathered. `statistics` holds one entry per visible point
-/// under the local rule.
+/// Adds what the visible points of a pixel have gathered to `parts`. `statistics` has one entry per
+/// visible point under the local rule.
 pub fn resolve_parts(
     dispatch: &Dispatch,
     points: &[VisiblePoint],
@@ -47,7 +48,7 @@ pub fn resolve_parts(
             indirect += (gathered[k].flux - gathered[k].caustic) * share;
         }
     }
-    // as in `resolve`, a pass that is not finite does not count
+    // as in `resolve`, a pass that is not finite is rejected
     if (state & (BAD_EYE | BAD_DIRECT)) != 0 || !is_finite(caustic) || !is_finite(indirect) {
         return;
     }

@@ -1,11 +1,12 @@
-//! Photons that scatter far outside, aimed back at the scene. Twin: `shaders/lights/aim.wgsl`.
+//! Redirection of photons that scatter far from the scene back towards it. Twin:
+//! `shaders/lights/aim.wgsl`.
 //!
-//! Light from infinity that falls on wide ground far away carries a flux that grows with the square
-//! of its distance and returns to the scene with a probability that falls faster: few photons bring
-//! it, each a bright dot. So half of the directions that a diffuse surface sends from far outside
-//! are drawn from the cone about the sphere of radius `near_radius`, by the one-sample model with
-//! the balance heuristic (Veach & Guibas 1995); roulette then measures the flux against what a
-//! photon through the narrowest emission disc carries.
+//! Light from infinity that falls on distant ground carries a flux that grows with the square of
+//! its distance and returns to the scene with a probability that falls faster: few photons carry
+//! it, each a bright dot. Half of the directions that a diffuse surface scatters far outside are
+//! therefore sampled from the cone about the sphere of radius `near_radius`, by the one-sample
+//! model with the balance heuristic (Veach & Guibas 1995); roulette then compares the flux with
+//! that of a photon through the narrowest emission disc.
 
 use super::materials::Bsdf;
 use super::materials::shading::{Scatter, ShadingPoint};
@@ -14,11 +15,12 @@ use super::math::{INV_PI, TAU, from_frame, unit};
 use super::real::{Real, Vec2, Vec3, Vec4};
 use super::tables::*;
 
-/// Square of the distance, in near radii, from which on photons are aimed.
+/// Square of the distance, in near radii, from which photons are redirected.
 const FAR_OUTSIDE_SQ: Real = 4.0;
 
-/// `scattered`, which a diffuse surface drew by its cosine from `u.xy`, or a direction into the
-/// cone about the scene in its place, `u.z` deciding, with the weight of the mixture of both.
+/// Samples the mixture of the cosine and of the cone about the scene, at a distant diffuse surface.
+/// `scattered` is the cosine sample drawn from `u.xy`; if `u.z` is below 0.5, a direction in the
+/// cone replaces it. The weight is that of the mixture.
 pub fn aimed_scatter(scene: &Scene, at: &ShadingPoint, u: Vec4, scattered: Scatter) -> Scatter {
     let p = at.s.position - scene.world.near_center;
     let distance_sq = p.dot(p);
@@ -34,7 +36,7 @@ pub fn aimed_scatter(scene: &Scene, at: &ShadingPoint, u: Vec4, scattered: Scatt
     if u.z < 0.5 {
         wi = unit(from_frame(axis, sample_cone(Vec2::new(u.x, u.y), one_minus_cos)));
     } else {
-        // by the sine: the cosine of a narrow cone has no digits left
+        // test by the sine: the cosine of a narrow cone loses all digits
         let across = wi.cross(axis);
         in_cone = wi.dot(axis) > 0.0 && across.dot(across) < sin_sq;
     }

@@ -1,4 +1,4 @@
-//! Photon emission from every kind of light. Twin: `shaders/lights/emission.wgsl`.
+//! Photon emission from all kinds of lights. Twin: `shaders/lights/emission.wgsl`.
 
 use super::guide::{GUIDED, guided, pdf_guide};
 use super::light::{
@@ -15,21 +15,21 @@ use super::shape::{sample_shape, sample_sphere_facing};
 use super::shapes::ray::Ray;
 use super::tables::*;
 
-/// A photon as it leaves its light.
+/// Photon as it leaves its light.
 #[derive(Clone, Copy, Debug)]
 pub struct Emission {
-    /// Its first ray.
+    /// First ray.
     pub ray: Ray,
-    /// Flux in W times the number of photons emitted in the pass.
+    /// Flux in W, times the number of photons emitted in the pass.
     pub flux: Vec3,
-    /// Flux over that of the same photon if no map had sent it and it passed the center of what the
-    /// camera sees at half the near radius.
+    /// Flux relative to that of the same photon emitted without a guide map; for light from
+    /// infinity, of one that passes `near_center` at half of `near_radius`.
     pub relative_flux: Real,
-    /// Interior list at its origin.
+    /// Media that the ray's origin lies in.
     pub interior: Interior,
 }
 
-/// The next photon.
+/// Emits a photon from a randomly chosen light.
 #[inline(always)]
 pub fn emit_photon(scene: &Scene, rng: &mut Rng) -> Emission {
     let u = rng_next(rng);
@@ -37,7 +37,7 @@ pub fn emit_photon(scene: &Scene, rng: &mut Rng) -> Emission {
     emit_from(scene, &scene.lights[choose_light(scene, 0, u.x) as usize], u, v)
 }
 
-/// A photon of one light, sent by its map, if it has one.
+/// Emits a photon from `light`, by its guide map if it has one.
 #[inline(always)]
 pub fn emit_from(scene: &Scene, light: &Light, u: Vec4, v: Vec4) -> Emission {
     if light.kind >= LIGHT_SUN {
@@ -51,13 +51,13 @@ pub fn emit_from(scene: &Scene, light: &Light, u: Vec4, v: Vec4) -> Emission {
     emission
 }
 
-/// A photon of a lamp; `across` are the two numbers that matter most for where it goes.
+/// Emits a photon from a lamp; `across` are the two random numbers that determine its direction.
 #[inline(always)]
 fn emit_nearby(scene: &Scene, light: &Light, u: Vec4, across: Vec2) -> Emission {
     let mut ray = Ray { origin: light.position, t_min: 0.0, direction: Vec3::Z, t_max: FAR };
     if light.kind == LIGHT_AREA && kind_of(light.reference) == KIND_SPHERE {
-        // first the direction, then the point on the disc that is seen from there: the same
-        // density, and `across` says where in the scene the photon goes
+        // sample the direction first, then a point of the hemisphere that faces it: the same
+        // density, and `across` determines where in the scene the photon goes
         ray.direction = sample_sphere(across);
         let p = sample_sphere_facing(scene, light, Vec2::new(u.y, u.z), ray.direction);
         ray.origin = p.position + p.normal * p.error;
@@ -84,10 +84,10 @@ fn emit_nearby(scene: &Scene, light: &Light, u: Vec4, across: Vec2) -> Emission 
     Emission { ray, flux, relative_flux: 1.0, interior: interior_of(NONE) }
 }
 
-/// A photon of light from infinity. It enters through one of the emission discs about what the
-/// camera sees, each twice as wide as the one before; or, if the light has a map, with probability
-/// [`GUIDED`] through a cell of the square about the near disc. Both are one density (the balance
-/// heuristic's).
+/// Emits a photon of light from infinity. It passes through one of the emission discs about what
+/// the camera sees, each twice as wide as the one before; or, if the light has a guide map, with
+/// probability [`GUIDED`] through a cell of the square about the near disc. The balance heuristic
+/// combines both densities.
 #[inline(always)]
 fn emit_from_infinity(scene: &Scene, light: &Light, u: Vec4, v: Vec4) -> Emission {
     let near = scene.world.near_radius;
@@ -98,6 +98,7 @@ fn emit_from_infinity(scene: &Scene, light: &Light, u: Vec4, v: Vec4) -> Emissio
         ray.direction = -w;
         radiance = eval_environment(scene, light, w) * (1.0 / pdf_environment(scene, light, w));
     }
+    // choose a point on a disc or in the map's square
     let across = Vec2::new(v.x, v.y);
     let level = find_interval(scene, scene.world.disc_first, scene.world.disc_levels, v.z);
     let mut d = sample_disc(across) * disc_radius(scene, level);
@@ -105,12 +106,14 @@ fn emit_from_infinity(scene: &Scene, light: &Light, u: Vec4, v: Vec4) -> Emissio
         d = guided(scene, light, across, v.w * (1.0 / GUIDED)).0;
         d = (d * 2.0 - Vec2::ONE) * near;
     }
+    // density per area of that point
     let mut pdf = pdf_discs(scene, d.dot(d));
     if light.guide != 0 {
         let by_map =
             pdf_guide(scene, light, (d * (1.0 / near) + Vec2::ONE) * 0.5) / (4.0 * near * near);
         pdf = GUIDED * by_map + (1.0 - GUIDED) * pdf;
     }
+    // start far behind the plane of the discs
     let (tangent, bitangent) = basis(ray.direction);
     ray.origin = scene.world.near_center + tangent * d.x + bitangent * d.y;
     ray.t_min = -4.0 * disc_radius(scene, scene.world.disc_levels - 1);
@@ -124,12 +127,13 @@ fn emit_from_infinity(scene: &Scene, light: &Light, u: Vec4, v: Vec4) -> Emissio
     }
 }
 
-/// Radius of emission disc `level`, at most 31.
+/// Radius of emission disc `level`, which is at most 31, scene units.
 pub fn disc_radius(scene: &Scene, level: u32) -> Real {
     scene.world.disc_radius * (1u32 << level) as Real
 }
 
-/// Density per area, at squared distance `r_sq` from the middle, of a point on a disc so chosen.
+/// Density per area, at squared distance `r_sq` from the centre, of a point on a randomly chosen
+/// emission disc.
 pub fn pdf_discs(scene: &Scene, r_sq: Real) -> Real {
     let mut radius = scene.world.disc_radius;
     let mut sum = 0.0;

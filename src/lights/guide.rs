@@ -1,22 +1,24 @@
-//! Where a light's photons pass mirrors and glass on their way to what the camera sees: a map of
-//! their two main numbers (projection maps, Jensen 1996), which the host learns from pilot photons
-//! before the render (`pack::pilots`; Peter & Pietrek 1998). A photon carries flux over its
-//! density: nothing is missed and nothing counted twice. Twin: `shaders/lights/guide.wgsl`.
+//! Guide maps of photon emission: a density over the two random numbers that determine a photon's
+//! direction, which favours photons that pass mirrors and glass on their way to what the camera
+//! sees (projection maps, Jensen 1996). The host learns the maps from pilot photons before the
+//! render (`pack::pilots`; Peter & Pietrek 1998). A photon's flux is divided by its density, so no
+//! light is missed or counted twice. Twin: `shaders/lights/guide.wgsl`.
 
 use super::light::find_interval;
 use super::real::{Real, Vec2};
 use super::shape::pdf_bin;
 use super::tables::*;
 
-/// Cells along each side of a map.
+/// Number of cells along each side of a map.
 pub const GUIDE_SIDE: u32 = 32;
-/// Cells of a map.
+/// Number of cells of a map.
 pub const GUIDE_CELLS: u32 = GUIDE_SIDE * GUIDE_SIDE;
-/// Share of a light's photons that its map sends.
+/// Fraction of the photons of light from infinity that the map emits; lamps use it for all of
+/// theirs.
 pub const GUIDED: Real = 0.5;
 
-/// Numbers in place of `across`, by the map of `light` if it has one, and one over their density.
-/// `u` chooses the cell.
+/// Maps the random numbers `across` by the map of `light`, if it has one; returns the new numbers
+/// and the reciprocal of their density. `u` chooses the cell.
 #[inline(always)]
 pub fn guided(scene: &Scene, light: &Light, across: Vec2, u: Real) -> (Vec2, Real) {
     if light.guide == 0 {

@@ -1,5 +1,5 @@
-//! Choosing a light and sampling it from a surface point; densities per solid angle. Twin:
-//! `shaders/lights/light.wgsl`.
+//! Choice of a light and sampling of its direction from a surface point, with densities per solid
+//! angle. Twin: `shaders/lights/light.wgsl`.
 
 use super::materials::texture::eval_texture;
 use super::math::sampling::{PDF_SPHERE, sample_sphere};
@@ -10,26 +10,27 @@ use super::select::{choose_light, share_of};
 use super::shape::{pdf_bin, pdf_shape, pdf_sphere_cone, sample_shape, sample_sphere_cone};
 use super::tables::*;
 
-/// Light that reaches a point from a sampled direction, if nothing is in between.
+/// Unoccluded light that reaches a point from a sampled direction.
 #[derive(Clone, Copy, Debug)]
 pub struct LightSample {
     /// Unit direction to the light.
     pub direction: Vec3,
-    /// Distance up to which the way must be free.
+    /// Distance up to which the shadow ray must be free, scene units.
     pub distance: Real,
     /// Radiance, or irradiance at normal incidence for lights without extent.
     pub radiance: Vec3,
-    /// Density per solid angle times the probability of this light; for lights without extent that
-    /// probability.
+    /// Density per solid angle times the probability of choosing the light; for lights without
+    /// extent that probability alone.
     pub pdf: Real,
-    /// Whether a scattered ray could have met the same light.
+    /// True if a scattered ray could hit the same light.
     pub extended: bool,
 }
 
-/// First index at `first..first + count` whose cumulative value exceeds `u`.
+/// Returns the first k in `0..count` for which the cumulative value `distributions[first + k]`
+/// exceeds `u`, or the last k.
 #[inline(always)]
 pub fn find_interval(scene: &Scene, first: u32, count: u32, u: Real) -> u32 {
-    // without a branch on what is found, which no processor foresees
+    // binary search without branches on the compared values, which are unpredictable
     let mut low = 0;
     let mut length = count;
     while length > 1 {
@@ -40,8 +41,8 @@ pub fn find_interval(scene: &Scene, first: u32, count: u32, u: Real) -> u32 {
     low
 }
 
-/// Light at `position` from the light that `u.x` chooses by the probabilities at `shares`, sampled
-/// by the other three numbers.
+/// Samples light at `position`: `u.x` chooses the light by the probabilities at `shares`, the other
+/// three numbers sample it.
 #[inline(always)]
 pub fn sample_light(scene: &Scene, shares: u32, position: Vec3, u: Vec4) -> LightSample {
     let index = choose_light(scene, shares, u.x);
@@ -49,7 +50,7 @@ pub fn sample_light(scene: &Scene, shares: u32, position: Vec3, u: Vec4) -> Ligh
     sample_one_light(scene, &scene.lights[index as usize], share, position, u)
 }
 
-/// Light at `position` from `light`, which is chosen with probability `share`.
+/// Samples light at `position` from `light`, which is chosen with probability `share`.
 #[inline(always)]
 pub fn sample_one_light(
     scene: &Scene,
@@ -116,7 +117,7 @@ pub fn sample_one_light(
         let direction = to * (1.0 / distance);
         let mut radiance = light.color * (1.0 / dist_sq);
         if light.kind == LIGHT_SPOT {
-            // half the squared chord: near the axis 1 - cos has no digits left
+            // half the squared chord: near the axis 1 - cos loses all digits
             let chord = direction + light.direction;
             radiance *= spot_falloff(light, 0.5 * chord.dot(chord));
         }
@@ -147,8 +148,8 @@ pub fn sample_one_light(
     }
 }
 
-/// 1 inside the full cone of a spot, 0 outside the dark one, a smoothstep of the cosine between, at
-/// `versine = 1 - cos` of the angle with its axis.
+/// Spot falloff at `versine`, which is 1 - cos of the angle to the axis: 1 inside the inner cone, 0
+/// outside the outer cone, a smoothstep of the cosine in between.
 pub fn spot_falloff(light: &Light, versine: Real) -> Real {
     if versine <= light.inner {
         return 1.0;
@@ -160,9 +161,8 @@ pub fn spot_falloff(light: &Light, versine: Real) -> Real {
     x * x * (3.0 - 2.0 * x)
 }
 
-/// Density with which [`sample_light`] at `from` would have looked along `direction` and met area
-/// light `index` at distance `t`, where the surface has unit normal `normal` and profile parameter
-/// `v`.
+/// Density per solid angle with which [`sample_light`] at `from` samples `direction` on area light
+/// `index`, hit at distance `t` at a point with unit normal `normal` and profile parameter `v`.
 pub fn pdf_light(
     scene: &Scene,
     shares: u32,
@@ -186,8 +186,8 @@ pub fn pdf_light(
     pdf_shape(scene, light, v) * t * t / cos.max(1e-12) * share
 }
 
-/// Zenith-down texture coordinates of a direction seen in an equirectangular picture turned about
-/// y.
+/// Texture coordinates of a direction in an equirectangular image rotated about y; v is 1 at the
+/// zenith.
 pub fn environment_uv(light: &Light, direction: Vec3) -> Vec2 {
     let x = light.outer * direction.x - light.inner * direction.z;
     let z = light.inner * direction.x + light.outer * direction.z;
@@ -195,7 +195,7 @@ pub fn environment_uv(light: &Light, direction: Vec3) -> Vec2 {
     Vec2::new(0.5 - arctan2(z, x) * (1.0 / TAU), 1.0 - arctan2(r, direction.y) * (1.0 / PI))
 }
 
-/// Radiance from `direction`.
+/// Radiance of the environment from `direction`.
 pub fn eval_environment(scene: &Scene, light: &Light, direction: Vec3) -> Vec3 {
     if light.kind == LIGHT_CONSTANT {
         return light.color;
@@ -203,7 +203,7 @@ pub fn eval_environment(scene: &Scene, light: &Light, direction: Vec3) -> Vec3 {
     light.color * eval_texture(scene, light.reference, environment_uv(light, direction))
 }
 
-/// A direction from which the environment shines.
+/// Samples a direction towards the environment.
 pub fn sample_environment(scene: &Scene, light: &Light, u: Vec4) -> Vec3 {
     if light.kind == LIGHT_CONSTANT {
         return sample_sphere(Vec2::new(u.y, u.z));
@@ -216,8 +216,8 @@ pub fn sample_environment(scene: &Scene, light: &Light, u: Vec4) -> Vec3 {
         texture.width,
         u.z,
     );
-    // of the number's lower bits: a row that few numbers choose is not looked at along its edge
-    // alone
+    // offset in the row from the lower bits of u.w: what is left of u.y gives few distinct offsets
+    // in rows of low probability
     let fine = u.w * 4096.0;
     let across = (column as Real + u.w) / texture.width as Real;
     let down = (row as Real + (fine - fine.floor())) / texture.height as Real;
@@ -239,7 +239,7 @@ pub fn pdf_environment(scene: &Scene, light: &Light, direction: Vec3) -> Real {
     let column = ((uv.x * texture.width as Real).floor() as u32).min(texture.width - 1);
     let p = pdf_bin(scene, light.first, row, texture.height)
         * pdf_bin(scene, light.first + texture.height + row * texture.width, column, texture.width);
-    // from x and z: near a pole 1 - y^2 has no digits left
+    // from x and z: near a pole 1 - y^2 loses all digits
     let sin = (direction.x * direction.x + direction.z * direction.z).max(1e-12).sqrt();
     p / (2.0 * PI * PI * sin)
 }

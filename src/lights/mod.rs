@@ -1,4 +1,4 @@
-//! Sources of light: choice, shadow-ray samples and photon emission. Twins: `shaders/lights/`.
+//! Lights: choice, shadow-ray samples and photon emission. Twins: `shaders/lights/`.
 
 use super::{materials, math, real, shapes, tables};
 

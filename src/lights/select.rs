@@ -1,20 +1,19 @@
-//! Which light a shadow ray goes to: a light is chosen by what it contributes near the surface
-//! point.
+//! Choice of the light for a shadow ray, in proportion to its contribution near the surface point.
 //!
-//! A tree over space has leaves with cumulative probabilities of the lights of their own, learned
-//! by the host (`pack::cells`) from what the camera sees. A scene with one light has no tree. Twin:
+//! The leaves of a tree over space have separate cumulative probabilities of the lights, which the
+//! host (`pack::cells`) learns from what the camera sees. A scene with one light has no tree. Twin:
 //! `shaders/lights/select.wgsl`.
 
 use super::light::find_interval;
 use super::real::{Real, Vec3};
 use super::tables::Scene;
 
-/// Deepest leaf of the tree.
+/// Greatest depth of a leaf.
 pub const CELL_DEPTH: u32 = 8;
-/// `Cell::axis` of a leaf.
+/// Value of `Cell::axis` in a leaf.
 pub const CELL_LEAF: u32 = 3;
 
-/// First entry in `distributions` of the cumulative probabilities that hold at `position`.
+/// First entry in `distributions` of the cumulative probabilities that apply at `position`.
 #[inline(always)]
 pub fn shares_at(scene: &Scene, position: Vec3) -> u32 {
     if scene.cells.is_empty() {
@@ -31,7 +30,7 @@ pub fn shares_at(scene: &Scene, position: Vec3) -> u32 {
     cell.first
 }
 
-/// The light that `u` chooses by the probabilities at `shares`.
+/// Index of the light that `u` chooses by the probabilities at `shares`.
 #[inline(always)]
 pub fn choose_light(scene: &Scene, shares: u32, u: Real) -> u32 {
     find_interval(scene, shares, scene.world.light_count, u)

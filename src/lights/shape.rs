@@ -1,4 +1,4 @@
-//! Points on emitting shapes. Twin: `shaders/lights/shape.wgsl`.
+//! Sampling of points on emitting shapes. Twin: `shaders/lights/shape.wgsl`.
 
 use super::light::find_interval;
 use super::math::sampling::{sample_cone, sample_disc, sample_sphere, sample_triangle};
@@ -12,12 +12,12 @@ use super::shapes::sphere::{sphere_error, sphere_project};
 use super::shapes::triangle::{triangle_error, triangle_normal, triangle_point};
 use super::tables::*;
 
-/// A point on a shape.
+/// Sampled point on a shape.
 #[derive(Clone, Copy, Debug)]
 pub struct ShapePoint {
-    /// In scene space.
+    /// Position in scene space.
     pub position: Vec3,
-    /// Bound of the distance from the true surface.
+    /// Bound on the distance from the true surface, scene units.
     pub error: Real,
     /// Unit normal on the emitting side.
     pub normal: Vec3,
@@ -25,7 +25,8 @@ pub struct ShapePoint {
     pub pdf: Real,
 }
 
-/// A point on the shape of an area light, by area. `w` is one more uniform number.
+/// Samples a point on the shape of an area light, uniform by area except on surfaces of revolution.
+/// `w` is a third uniform number, which chooses a face or a patch.
 pub fn sample_shape(scene: &Scene, light: &Light, u: Vec2, w: Real) -> ShapePoint {
     let index = index_of(light.reference) as usize;
     let pdf = 1.0 / light.area;
@@ -72,6 +73,7 @@ pub fn sample_shape(scene: &Scene, light: &Light, u: Vec2, w: Real) -> ShapePoin
             let e = cuboid.upper - cuboid.lower;
             let x = e.y * e.z;
             let y = e.z * e.x;
+            // choose a pair of opposite faces by area, then one of the two
             let pick = w * light.area;
             let upper = if u.x < 0.5 { 3.0 } else { 0.0 };
             let s = if u.x < 0.5 { 2.0 * u.x } else { 2.0 * u.x - 1.0 };
@@ -117,8 +119,8 @@ pub fn sample_shape(scene: &Scene, light: &Light, u: Vec2, w: Real) -> ShapePoin
     }
 }
 
-/// A point on the hemisphere of a spherical light that faces `direction`, even on the disc that is
-/// seen from there.
+/// Samples a point on the hemisphere of a spherical light that faces `direction`, uniform on the
+/// disc visible from there.
 pub fn sample_sphere_facing(scene: &Scene, light: &Light, u: Vec2, direction: Vec3) -> ShapePoint {
     let sphere = &scene.spheres[index_of(light.reference) as usize];
     let d = sample_disc(u);
@@ -128,7 +130,7 @@ pub fn sample_sphere_facing(scene: &Scene, light: &Light, u: Vec2, direction: Ve
     ShapePoint { position: p, error: sphere_error(sphere, p), normal: n, pdf: 1.0 / light.area }
 }
 
-/// A point of a revolution and the area that a unit of v covers there, the whole way round.
+/// Point of a surface of revolution, and its area per unit of v for a full turn (`stretch`).
 struct PatchPoint {
     position: Vec3,
     error: Real,
@@ -136,7 +138,7 @@ struct PatchPoint {
     stretch: Real,
 }
 
-/// The point of a revolution light at profile parameter `v` in its patch `k`.
+/// Point of a revolution light at profile parameter `v` in its patch `k` and angle `theta`.
 fn patch_point(scene: &Scene, light: &Light, k: u32, v: Real, theta: Real) -> PatchPoint {
     let patch = &scene.patches[(light.patch_first + k) as usize];
     let revolution = &scene.revolutions[patch.revolution as usize];
@@ -154,24 +156,25 @@ fn patch_point(scene: &Scene, light: &Light, k: u32, v: Real, theta: Real) -> Pa
     }
 }
 
-/// Density per v of patch `k`'s part, `width` long.
+/// Density per unit of v in the part of patch `k`, which has length `width`.
 fn pdf_patch(scene: &Scene, light: &Light, k: u32, width: Real) -> Real {
     let at = light.first + light.patch_count + k;
     let low = if k > 0 { scene.distributions[(at - 1) as usize] } else { 0.0 };
     (scene.distributions[at as usize] - low) / width
 }
 
-/// Density of bin `bin` of `count` equal bins on [0, 1), from the cumulative values at `first`.
+/// Density in bin `bin` of `count` equal bins on [0, 1), from the cumulative values at `first`.
 pub fn pdf_bin(scene: &Scene, first: u32, bin: u32, count: u32) -> Real {
     let high = scene.distributions[(first + bin) as usize];
     let low = if bin > 0 { scene.distributions[(first + bin - 1) as usize] } else { 0.0 };
     (high - low) * count as Real
 }
 
-/// Density per area of [`sample_shape`] at a point with profile parameter `v` (revolutions only).
+/// Density per area of [`sample_shape`] at a point with profile parameter `v` (used only for
+/// surfaces of revolution).
 pub fn pdf_shape(scene: &Scene, light: &Light, v: Real) -> Real {
     if kind_of(light.reference) == KIND_REVOLUTION {
-        // the last patch whose part starts at or before v
+        // last patch whose part starts at or before v
         let k = find_interval(scene, light.first, light.patch_count, v);
         let k =
             if k > 0 && scene.distributions[(light.first + k) as usize] > v { k - 1 } else { k };
@@ -187,8 +190,8 @@ pub fn pdf_shape(scene: &Scene, light: &Light, v: Real) -> Real {
     1.0 / light.area
 }
 
-/// A point on an emitting sphere as seen from `from` outside: uniform in the cone that the sphere
-/// fills. `pdf` is per solid angle here.
+/// Samples a point on an emitting sphere, uniform in the cone that it subtends at `from`, which is
+/// outside. `pdf` is per solid angle here.
 pub fn sample_sphere_cone(sphere: &Sphere, from: Vec3, u: Vec2) -> ShapePoint {
     let center = sphere.anchor - sphere.normal * sphere.radius;
     let d = center - from;
@@ -197,8 +200,9 @@ pub fn sample_sphere_cone(sphere: &Sphere, from: Vec3, u: Vec2) -> ShapePoint {
     let one_minus_cos = cone_one_minus_cos(sin_sq);
     let local = sample_cone(u, one_minus_cos);
     let w = from_frame(unit(d), local);
-    // nearest crossing of the ray with the sphere, clamped at the tangent; from the sine, since the
-    // distances of a small sphere's middle and rim differ by less than a rounding
+    // nearest crossing of the ray with the sphere, clamped at the tangent; computed from the sine,
+    // since the distances to the centre and the rim of a small sphere differ by less than a
+    // rounding
     let along = dist_sq.sqrt() * local.z;
     let off_sq = (local.x * local.x + local.y * local.y) / sin_sq;
     let half = sphere.radius * (1.0 - off_sq).max(0.0).sqrt();
@@ -211,13 +215,13 @@ pub fn sample_sphere_cone(sphere: &Sphere, from: Vec3, u: Vec2) -> ShapePoint {
     }
 }
 
-/// `1 - cos` of the half angle whose squared sine is `sin_sq`.
+/// `1 - cos` of the half-angle whose squared sine is `sin_sq`.
 pub fn cone_one_minus_cos(sin_sq: Real) -> Real {
     sin_sq / (1.0 + (1.0 - sin_sq).max(0.0).sqrt())
 }
 
-/// Density per solid angle with which [`sample_sphere_cone`] looks toward the sphere from `from`; 0
-/// inside.
+/// Density per solid angle of [`sample_sphere_cone`] in a direction towards the sphere from `from`;
+/// 0 if `from` is inside.
 pub fn pdf_sphere_cone(sphere: &Sphere, from: Vec3) -> Real {
     let d = sphere.anchor - sphere.normal * sphere.radius - from;
     let sin_sq = sphere.radius * sphere.radius / d.dot(d);

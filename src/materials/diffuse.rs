@@ -15,10 +15,10 @@ pub const WIDE: bool = true;
 /// See [`super::Bsdf::transmits`].
 pub const TRANSMITS: bool = false;
 
-/// Least cosine with the geometric normal for which a shading normal's correction is formed.
+/// Lower bound of the cosine to the geometric normal that the shading-normal correction divides by.
 const ADJOINT_COS_MIN: Real = 1e-2;
 
-/// `rho cos / pi`.
+/// Diffuse BRDF times cosine: `rho cos / pi`.
 #[inline(always)]
 pub fn eval_diffuse(lobe: &Lobe, n: Vec3, _: Vec3, wi: Vec3) -> Vec3 {
     let cos = wi.dot(n);
@@ -28,7 +28,7 @@ pub fn eval_diffuse(lobe: &Lobe, n: Vec3, _: Vec3, wi: Vec3) -> Vec3 {
     lobe.reflectance * (INV_PI * cos)
 }
 
-/// `cos / pi`, sr^-1.
+/// Density of the cosine-weighted direction: `cos / pi`, sr^-1.
 #[inline(always)]
 pub fn pdf_diffuse(_: &Lobe, n: Vec3, _: Vec3, wi: Vec3) -> Real {
     let cos = wi.dot(n);
@@ -38,8 +38,8 @@ pub fn pdf_diffuse(_: &Lobe, n: Vec3, _: Vec3, wi: Vec3) -> Real {
     cos * INV_PI
 }
 
-/// A direction by the cosine with the shading normal. The adjoint of a diffuse surface sends about
-/// the geometric normal what the shading normal receives.
+/// Samples a direction by the cosine to the shading normal. For photons the adjoint applies: they
+/// scatter about the geometric normal, with the weight of the shading normal on arrival.
 #[inline(always)]
 pub fn sample_diffuse(p: &ShadingPoint, u: Vec2, mode: u32) -> Sample {
     let mut axis = p.n;
@@ -51,8 +51,8 @@ pub fn sample_diffuse(p: &ShadingPoint, u: Vec2, mode: u32) -> Sample {
         }
     }
     let wi = renormalized(from_frame(axis, sample_cosine(u)));
-    // a cosine about `ng` itself is above 2^-13; without the test the weight does not depend on the
-    // direction, so roulette need not wait for it
+    // a cosine about `ng` itself is above 2^-13; without this test the photon's weight does not
+    // depend on the direction, so roulette need not wait for it
     if mode == RADIANCE && wi.dot(p.ng) <= 0.0 {
         weight = Vec3::ZERO;
     }

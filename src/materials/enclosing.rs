@@ -13,14 +13,14 @@ use super::real::Vec3;
 use super::shapes::ray::Ray;
 use super::tables::*;
 
-/// Maximum number of surfaces that one ray passes.
+/// Greatest number of surfaces that one ray passes.
 const FACES: u32 = 256;
 /// Unit direction of the rays for closed bodies, oblique so that it rarely hits edges of
 /// axis-aligned models.
 const LOOK: Vec3 = Vec3::new(0.3104505, 0.8912933, 0.3304795);
 
 /// Interior list at `position` on a lamp or lens whose medium is `known`: a glass material index,
-/// [`NONE`], or [`ASTRIDE`] if it has to be determined for each point.
+/// [`NONE`], or [`ASTRIDE`] if it must be determined for each point.
 #[inline(always)]
 pub fn interior_at(scene: &Scene, known: u32, position: Vec3) -> Interior {
     if known == ASTRIDE { enclosing(scene, position) } else { interior_of(known) }
@@ -28,6 +28,7 @@ pub fn interior_at(scene: &Scene, known: u32, position: Vec3) -> Interior {
 
 /// Interior list at `position`.
 pub fn enclosing(scene: &Scene, position: Vec3) -> Interior {
+    // closed bodies first, then each open sheet along its mean normal
     let mut interior = looked(scene, position, LOOK, NONE, &interior_of(NONE));
     for k in 0..scene.world.body_count {
         let body = scene.world.body_first + k;

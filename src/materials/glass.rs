@@ -12,19 +12,21 @@ pub const EXAMPLES: &[Material] = &[
     Material { ior: 0.75, absorption: Vec3::new(0.5, 0.2, 0.1), ..Material::EMPTY },
 ];
 
-/// What a dielectric interface does with a ray.
+/// Reflection and refraction at a dielectric interface.
 #[derive(Clone, Copy, Debug)]
 pub struct Interface {
     /// Fresnel reflectance for unpolarised light; 1 beyond the critical angle.
     pub reflectance: Real,
-    /// Cosine of the refracted ray with the far side of the normal; 0 when there is none.
+    /// Cosine of the refracted ray with the normal on the far side; 0 under total internal
+    /// reflection.
     pub cos_t: Real,
 }
 
-/// Fresnel's equations: `cos_i` > 0 on the side the ray comes from, `eta` = ior there / ior beyond.
+/// Fresnel equations: `cos_i` > 0 on the side the ray comes from, `eta` = ior on that side / ior on
+/// the far side.
 pub fn fresnel(cos_i: Real, eta: Real) -> Interface {
-    // as a product: 1 - cos^2 has no digits left near the normal, where dense glass has its
-    // critical angle
+    // as a product: 1 - cos^2 loses all digits near the normal, where dense glass has its critical
+    // angle
     let sin_t_sq = eta * eta * ((1.0 - cos_i) * (1.0 + cos_i)).max(0.0);
     if sin_t_sq >= 1.0 {
         return Interface { reflectance: 1.0, cos_t: 0.0 };
@@ -35,13 +37,13 @@ pub fn fresnel(cos_i: Real, eta: Real) -> Interface {
     Interface { reflectance: 0.5 * (parallel * parallel + perpendicular * perpendicular), cos_t }
 }
 
-/// Direction of the refracted ray; `wo` away from the surface on the side of `n`.
+/// Direction of the refracted ray; `wo` points away from the surface on the side of `n`.
 pub fn refracted(wo: Vec3, n: Vec3, cos_i: Real, cos_t: Real, eta: Real) -> Vec3 {
     n * (eta * cos_i - cos_t) - wo * eta
 }
 
-/// Reflects or refracts by Fresnel's equations, chosen by `u`. A refracted direction on the wrong
-/// side of the surface is refracted at the geometric normal instead.
+/// Reflects or refracts by the Fresnel equations, chosen by `u`. A refracted direction on the wrong
+/// side of the surface is replaced by refraction at the geometric normal.
 #[inline(always)]
 pub fn scatter_glass(
     scene: &Scene,

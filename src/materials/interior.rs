@@ -1,10 +1,10 @@
 //! Interior list: the glass bodies that contain a point. Twin: `shaders/materials/interior.wgsl`.
 //!
-//! Where bodies overlap, the medium is the body with the highest priority, or the smaller one if
+//! If bodies overlap, the medium is the body with the highest priority, or the smaller one if
 //! priorities are equal (Schmidt & Budge 2002, "Simple nested dielectrics in ray traced images").
-//! Each body has its own entry in the material table, sorted by rank, so the medium is the smallest
-//! index in the list. The list is a set: hitting a face twice does not change it. In scenes without
-//! overlapping bodies it holds one entry.
+//! Each body has a separate entry in the material table, sorted by rank, so the medium is the
+//! smallest index in the list. The list is a set: hitting a face twice does not change it. In
+//! scenes without overlapping bodies it holds one entry.
 
 use super::Bsdf;
 use super::geometry::surface::Surface;
@@ -13,13 +13,13 @@ use super::real::{Real, Vec3};
 use super::shapes::ray::Ray;
 use super::tables::*;
 
-/// Maximum length of an interior list; the lowest-ranked bodies are dropped beyond it.
+/// Greatest length of an interior list; the lowest-ranked bodies are dropped beyond it.
 pub const BODIES: usize = 8;
 
 /// Glass material indices in ascending order, padded with [`NONE`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Interior {
-    /// The indices; the first one is the medium.
+    /// Material indices; the first one is the medium.
     pub bodies: [u32; BODIES],
 }
 
@@ -37,7 +37,7 @@ pub fn medium_of(interior: &Interior) -> u32 {
     interior.bodies[0]
 }
 
-/// Returns whether the list contains `body`.
+/// Returns true if the list contains `body`.
 pub fn holds(interior: &Interior, body: u32) -> bool {
     let mut found = false;
     for k in 0..BODIES {
@@ -119,9 +119,8 @@ pub fn relative_ior(
     ior_of(scene, here) / ior_of(scene, medium_of(beyond))
 }
 
-/// Passes a hidden face, one with the same index of refraction on both sides: such a face neither
-/// refracts nor reflects. Moves the ray and the interior list behind it, or returns false for any
-/// other face.
+/// Moves the ray and the interior list past a hidden face, one with the same index of refraction on
+/// both sides, which neither refracts nor reflects. Returns false for any other face.
 #[inline(always)]
 pub fn passes_hidden(scene: &Scene, s: &Surface, ray: &mut Ray, interior: &mut Interior) -> bool {
     if scene.world.nested == 0 || scene.materials[s.material as usize].kind != Bsdf::Glass as u32 {
@@ -137,8 +136,8 @@ pub fn passes_hidden(scene: &Scene, s: &Surface, ray: &mut Ray, interior: &mut I
     true
 }
 
-/// Initial interior list of a photon from an infinitely distant light: the glass planes whose back
-/// it approaches.
+/// Initial interior list of a photon from an infinitely distant light: the glass planes that it
+/// approaches from inside.
 pub fn interior_from(scene: &Scene, direction: Vec3) -> Interior {
     let mut interior = interior_of(NONE);
     for i in 0..scene.world.unbounded_count {

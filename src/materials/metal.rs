@@ -21,11 +21,11 @@ pub const WIDE: bool = false;
 /// See [`super::Bsdf::transmits`].
 pub const TRANSMITS: bool = false;
 
-/// Least `alpha`: below it rounding spoils the lobe's peak.
+/// Least `alpha`: below it, rounding degrades the lobe's peak.
 pub const ALPHA_MIN: Real = root_roundings(1e-3);
 
-/// Distribution of microfacet normals `h`, GGX. The sine comes from `h.x` and `h.y`: in a narrow
-/// lobe `1 - cos^2` has no digits left.
+/// GGX distribution of microfacet normals `h`, sr^-1. The sine is computed from `h.x` and `h.y`: in
+/// a narrow lobe `1 - cos^2` loses all digits.
 pub fn ggx_d(h: Vec3, alpha: Real) -> Real {
     let a2 = alpha * alpha;
     let sin_sq = h.x * h.x + h.y * h.y;
@@ -57,8 +57,8 @@ pub fn ggx_brdf(wo: Vec3, wi: Vec3, f0: Vec3, alpha: Real) -> Vec3 {
     schlick(f0, wo.dot(h)) * (ggx_d(h, alpha) * g / (4.0 * wo.z * wi.z))
 }
 
-/// A microfacet normal `h` by the distribution of visible normals (Heitz 2018); the direction is
-/// `mirrored(wo, h)`.
+/// Samples a microfacet normal `h` by the distribution of visible normals (Heitz 2018); the
+/// scattered direction is `mirrored(wo, h)`.
 pub fn ggx_visible_normal(wo: Vec3, alpha: Real, u: Vec2) -> Vec3 {
     let vh = unit(Vec3::new(alpha * wo.x, alpha * wo.y, wo.z));
     let len_sq = vh.x * vh.x + vh.y * vh.y;
@@ -76,7 +76,7 @@ pub fn ggx_visible_normal(wo: Vec3, alpha: Real, u: Vec2) -> Vec3 {
     unit(Vec3::new(alpha * nh.x, alpha * nh.y, nh.z.max(1e-6)))
 }
 
-/// Solid angle density of the directions of [`ggx_visible_normal`], sr^-1.
+/// Density per solid angle of the directions sampled through [`ggx_visible_normal`], sr^-1.
 pub fn ggx_pdf(wo: Vec3, wi: Vec3, alpha: Real) -> Real {
     if wo.z <= 0.0 || wi.z <= 0.0 {
         return 0.0;
@@ -85,8 +85,8 @@ pub fn ggx_pdf(wo: Vec3, wi: Vec3, alpha: Real) -> Real {
     ggx_d(h, alpha) / (4.0 * wo.z * (1.0 + ggx_lambda(wo.z, alpha)))
 }
 
-/// `ggx_brdf * cos / ggx_pdf` in closed form, `F G2 / G1`, for `wi` mirrored at `h`. (From
-/// `wo + wi` a shader compiler could cancel `wo` against the one in `wi`.)
+/// `ggx_brdf * cos / ggx_pdf` in closed form, `F G2 / G1`, for `wi` mirrored at `h`. (Given
+/// `wo + wi`, a shader compiler could cancel `wo` against the one in `wi`.)
 pub fn ggx_weight(wo: Vec3, h: Vec3, wi: Vec3, f0: Vec3, alpha: Real) -> Vec3 {
     if wi.z <= 0.0 {
         return Vec3::ZERO;
@@ -95,7 +95,7 @@ pub fn ggx_weight(wo: Vec3, h: Vec3, wi: Vec3, f0: Vec3, alpha: Real) -> Vec3 {
     schlick(f0, wo.dot(h)) * ((1.0 + lo) / (1.0 + lo + ggx_lambda(wi.z, alpha)))
 }
 
-/// BRDF times the cosine with `n`.
+/// GGX BRDF times the cosine to `n`.
 #[inline(always)]
 pub fn eval_metal(lobe: &Lobe, n: Vec3, wo: Vec3, wi: Vec3) -> Vec3 {
     let cos = wi.dot(n);
@@ -120,7 +120,7 @@ pub fn pdf_metal(lobe: &Lobe, n: Vec3, wo: Vec3, wi: Vec3) -> Real {
     ggx_pdf(local_wo, Vec3::new(wi.dot(t), wi.dot(b), cos), lobe.alpha)
 }
 
-/// A direction by the distribution of visible normals.
+/// Samples a direction by the distribution of visible normals.
 #[inline(always)]
 pub fn sample_metal(p: &ShadingPoint, u: Vec2, mode: u32) -> Sample {
     let (t, b) = basis(p.n);
@@ -132,7 +132,7 @@ pub fn sample_metal(p: &ShadingPoint, u: Vec2, mode: u32) -> Sample {
     if wi.dot(p.ng) <= 0.0 {
         weight = Vec3::ZERO;
     } else if mode == IMPORTANCE {
-        // from behind the shading normal an eye path would get nothing
+        // an eye path from behind the shading normal would receive nothing
         let seen = p.wo.dot(p.ns) > 0.0;
         weight *= if seen { shading_correction(p, p.n, wi) } else { 0.0 };
     }

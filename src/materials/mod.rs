@@ -1,13 +1,13 @@
 //! Materials and textures. Twins: `shaders/materials/`.
 //!
-//! A material is one file pair and one line in the list below. The dispatch over materials follows
-//! from the list: the enum [`Bsdf`] with its exhaustive matches here, and the WGSL of
+//! A material is one file pair and one line in the list below. The dispatch over materials is
+//! generated from the list: the enum [`Bsdf`] with its exhaustive matches here, and the WGSL of
 //! `gpu/bsdf.rs`.
 //!
-//! A *specular* material scatters into single directions; its file has `scatter_X`. A *rough* one
+//! A *specular* material scatters into discrete directions; its file has `scatter_X`. A *rough* one
 //! has `eval_X`, `sample_X`, `pdf_X` and the constants `WIDE` and `TRANSMITS`. `eval_X` includes
-//! the cosine between `wi` and the shading normal. Directions are unit vectors that point away
-//! from the surface. Tests of densities, energy, reciprocity and of the two engines run over the
+//! the cosine between `wi` and the shading normal. Directions are unit vectors that point away from
+//! the surface. Tests of densities, energy, reciprocity and engine agreement run over the
 //! `EXAMPLES` of every file.
 
 use super::{geometry, math, real, shapes, tables};
@@ -31,7 +31,7 @@ macro_rules! materials {
         $(pub mod $rough_name;)*
         $(pub mod $specular_name;)*
 
-        /// The kind of a material.
+        /// Kind of a material.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         #[repr(u32)]
         pub enum Bsdf {
@@ -43,7 +43,7 @@ macro_rules! materials {
             /// All materials.
             pub const ALL: &[Self] = &[$(Self::$rough,)* $(Self::$specular,)*];
 
-            /// Stem of its file pair, and suffix of its functions.
+            /// Stem of the material's file pair, and suffix of its functions.
             pub const fn name(self) -> &'static str {
                 match self {
                     $(Self::$rough => stringify!($rough_name),)*
@@ -51,7 +51,7 @@ macro_rules! materials {
                 }
             }
 
-            /// The material of a number in the material table.
+            /// Material with the number `kind` in the material table.
             #[inline(always)]
             pub const fn of(kind: u32) -> Self {
                 $(if kind == Self::$specular as u32 {
@@ -63,7 +63,7 @@ macro_rules! materials {
                 Self::Diffuse
             }
 
-            /// Examples of the material, which tests run over.
+            /// Example parameters of the material, used by tests.
             pub fn examples(self) -> impl Iterator<Item = Material> {
                 let examples = match self {
                     $(Self::$rough => $rough_name::EXAMPLES,)*
@@ -72,7 +72,7 @@ macro_rules! materials {
                 examples.iter().map(move |m| Material { kind: self as u32, ..*m })
             }
 
-            /// Returns whether the material scatters into single directions only.
+            /// Returns true if the material scatters into discrete directions only.
             #[inline(always)]
             pub const fn is_specular(self) -> bool {
                 match self {
@@ -81,8 +81,8 @@ macro_rules! materials {
                 }
             }
 
-            /// Returns whether a rough material scatters about evenly into a hemisphere, so that
-            /// sampled lights alone find direct light well.
+            /// Returns true if a rough material scatters roughly evenly into a hemisphere, so that
+            /// light sampling alone estimates direct light well.
             #[inline(always)]
             pub const fn is_wide(self) -> bool {
                 match self {
@@ -91,7 +91,7 @@ macro_rules! materials {
                 }
             }
 
-            /// Returns whether light passes through a rough material.
+            /// Returns true if light passes through a rough material.
             #[inline(always)]
             pub const fn transmits(self) -> bool {
                 match self {
@@ -144,7 +144,7 @@ macro_rules! materials {
             }
         }
 
-        /// Draws a direction at a rough surface from two random numbers.
+        /// Samples a direction at a rough surface from two random numbers.
         #[inline(always)]
         pub fn sample_rough(p: &ShadingPoint, u: Vec2, mode: u32) -> Sample {
             match p.lobe.bsdf {
@@ -179,7 +179,7 @@ materials! {
     rough {
         /// Lambertian reflection.
         Diffuse = diffuse, eval_diffuse, sample_diffuse, pdf_diffuse;
-        /// Diffuse reflection by facets (Oren & Nayar).
+        /// Diffuse reflection by rough microfacets (Oren & Nayar).
         RoughDiffuse = rough_diffuse, eval_rough_diffuse, sample_rough_diffuse, pdf_rough_diffuse;
         /// Diffuse reflection and transmission.
         Translucent = translucent, eval_translucent, sample_translucent, pdf_translucent;
@@ -194,7 +194,7 @@ materials! {
     }
 }
 
-/// Scatters at a rough surface, which leaves the interior list as it is.
+/// Scatters at a rough surface, which leaves the interior list unchanged.
 #[inline(always)]
 pub fn scatter_rough(p: &ShadingPoint, interior: &Interior, u: Vec2, mode: u32) -> Scatter {
     let Sample { direction, weight } = sample_rough(p, u, mode);

@@ -1,4 +1,4 @@
-//! Diffuse reflection by facets: the reciprocal form of Oren & Nayar's model by Fujii (2012, "A tiny
+//! Rough diffuse reflection: the reciprocal form of Oren & Nayar's model by Fujii (2012, "A tiny
 //! improvement of Oren-Nayar reflectance model"),
 //!
 //! `f = rho (1 + sigma s / t) / (pi + (pi / 2 - 2 / 3) sigma)`
@@ -23,10 +23,11 @@ pub const WIDE: bool = true;
 /// See [`super::Bsdf::transmits`].
 pub const TRANSMITS: bool = false;
 
-/// Least cosine with the geometric normal for which a shading normal's correction is formed.
+/// Lower bound of the cosine to the geometric normal that the shading-normal correction divides by,
+/// and of `t`.
 const ADJOINT_COS_MIN: Real = 1e-2;
 
-/// `f / rho` times pi.
+/// `pi f / rho`.
 #[inline(always)]
 fn facets_of(sigma: Real, n: Vec3, wo: Vec3, wi: Vec3) -> Real {
     let cos_i = wi.dot(n);
@@ -36,7 +37,7 @@ fn facets_of(sigma: Real, n: Vec3, wo: Vec3, wi: Vec3) -> Real {
     PI * (1.0 + sigma * (s / t)) / (PI + (0.5 * PI - 0.666_666_7) * sigma)
 }
 
-/// `f cos`.
+/// BRDF times cosine: `f cos`.
 #[inline(always)]
 pub fn eval_rough_diffuse(lobe: &Lobe, n: Vec3, wo: Vec3, wi: Vec3) -> Vec3 {
     let cos = wi.dot(n);
@@ -46,7 +47,7 @@ pub fn eval_rough_diffuse(lobe: &Lobe, n: Vec3, wo: Vec3, wi: Vec3) -> Vec3 {
     lobe.reflectance * (INV_PI * cos * facets_of(lobe.alpha, n, wo, wi).max(0.0))
 }
 
-/// `cos / pi`, sr^-1.
+/// Density of the cosine-weighted direction: `cos / pi`, sr^-1.
 #[inline(always)]
 pub fn pdf_rough_diffuse(_: &Lobe, n: Vec3, _: Vec3, wi: Vec3) -> Real {
     let cos = wi.dot(n);
@@ -56,7 +57,8 @@ pub fn pdf_rough_diffuse(_: &Lobe, n: Vec3, _: Vec3, wi: Vec3) -> Real {
     cos * INV_PI
 }
 
-/// A direction by the cosine; photons take that with the geometric normal, as on diffuse surfaces.
+/// Samples a direction by the cosine; for photons about the geometric normal, as on diffuse
+/// surfaces.
 #[inline(always)]
 pub fn sample_rough_diffuse(p: &ShadingPoint, u: Vec2, mode: u32) -> Sample {
     let mut axis = p.n;

@@ -1,4 +1,4 @@
-//! What materials share: the shading point, shading normals and their adjoint correction. Twin:
+//! Shading point, shading normals and their adjoint correction, shared by all materials. Twin:
 //! `shaders/materials/shading.wgsl`.
 
 use super::Bsdf;
@@ -9,29 +9,29 @@ use super::real::{Real, Vec2, Vec3};
 use super::tables::*;
 use super::texture::eval_texture;
 
-/// Transport of radiance: an eye path.
+/// Transport of radiance, along eye paths.
 pub const RADIANCE: u32 = 0;
-/// Transport of importance, that is of flux: a photon path.
+/// Transport of importance, that is of flux, along photon paths.
 pub const IMPORTANCE: u32 = 1;
 
-/// Parameters of a material at a point. A rough material needs nothing else to be evaluated, so a
+/// Material parameters at a point. A rough material needs nothing else to be evaluated, so a
 /// visible point stores these.
 #[derive(Clone, Copy, Debug)]
 pub struct Lobe {
     /// The material's kind.
     pub bsdf: Bsdf,
-    /// Width of the lobe, if the kind has one.
+    /// Width (alpha) of the lobe, if the kind has one.
     pub alpha: Real,
     /// Reflectance, in [0, 1]; at normal incidence for metal.
     pub reflectance: Vec3,
 }
 
-/// A point of a surface seen from `wo`.
+/// Surface point viewed from `wo`.
 #[derive(Clone, Copy, Debug)]
 pub struct ShadingPoint {
     /// The surface.
     pub s: Surface,
-    /// Unit direction to where the path came from.
+    /// Unit direction that the path came from.
     pub wo: Vec3,
     /// Geometric normal on the side of `wo`.
     pub ng: Vec3,
@@ -39,11 +39,11 @@ pub struct ShadingPoint {
     pub ns: Vec3,
     /// Shading normal: `ns`, or `ng` if `wo` is behind `ns` and the material is not wide.
     pub n: Vec3,
-    /// The material's parameters.
+    /// Material parameters.
     pub lobe: Lobe,
 }
 
-/// A direction drawn at a rough surface.
+/// Direction sampled at a rough surface.
 #[derive(Clone, Copy, Debug)]
 pub struct Sample {
     /// Unit direction.
@@ -52,7 +52,7 @@ pub struct Sample {
     pub weight: Vec3,
 }
 
-/// Where a path continues.
+/// Continuation of a path.
 #[derive(Clone, Copy, Debug)]
 pub struct Scatter {
     /// Unit direction.
@@ -73,26 +73,26 @@ pub fn reflectance_at(scene: &Scene, material: u32, uv: Vec2) -> Vec3 {
     m.reflectance
 }
 
-/// `v` turned to the side of `w`.
+/// Returns `v` or `-v`, whichever is on the side of `w`.
 #[inline(always)]
 pub fn toward(v: Vec3, w: Vec3) -> Vec3 {
     if v.dot(w) >= 0.0 { v } else { -v }
 }
 
-/// Evaluates normals and material parameters of a surface seen from `wo`.
+/// Computes the normals and material parameters of a surface viewed from `wo`.
 #[inline(always)]
 pub fn shading_point(scene: &Scene, s: &Surface, wo: Vec3) -> ShadingPoint {
     let m = &scene.materials[s.material as usize];
     let bsdf = Bsdf::of(m.kind);
     let ng = toward(s.normal, wo);
     let ns = toward(s.shading, ng);
-    // wide surfaces look the same from everywhere
+    // wide lobes do not depend on the viewing direction
     let n = if bsdf.is_wide() || wo.dot(ns) > 0.0 { ns } else { ng };
     let reflectance = reflectance_at(scene, s.material, s.uv);
     ShadingPoint { s: *s, wo, ng, ns, n, lobe: Lobe { bsdf, alpha: m.alpha, reflectance } }
 }
 
-/// Mirror direction and, for photons, its weight. A direction below the surface is mirrored at the
+/// Mirror direction and, for photons, its weight. If it points below the surface, mirrors at the
 /// geometric normal instead.
 #[inline(always)]
 pub fn reflected(p: &ShadingPoint, mode: u32) -> Sample {
@@ -108,8 +108,8 @@ pub fn reflected(p: &ShadingPoint, mode: u32) -> Sample {
     Sample { direction: wi, weight }
 }
 
-/// Adjoint correction of shading normals for particles (Veach 1997, eq. 5.19); 1 if both normals
-/// agree.
+/// Adjoint correction for shading normals in particle transport (Veach 1997, eq. 5.19); 1 if both
+/// normals agree.
 pub fn shading_correction(p: &ShadingPoint, n: Vec3, wi: Vec3) -> Real {
     if p.s.shading == p.s.normal {
         return 1.0;

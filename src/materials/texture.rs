@@ -1,4 +1,4 @@
-//! Textures: pictures live in a buffer and are filtered here, so that every engine filters alike.
+//! Textures. Images are stored in a buffer and filtered here, so that every engine filters alike.
 //! Twin: `shaders/materials/texture.wgsl`.
 
 use super::real::{Real, Vec2, Vec3};
@@ -7,6 +7,7 @@ use super::tables::*;
 /// Colour of texture `index` at `uv`, linear Rec. 709.
 pub fn eval_texture(scene: &Scene, index: u32, uv: Vec2) -> Vec3 {
     let texture = &scene.textures[index as usize];
+    // patterns
     let mut st = uv * texture.scale;
     if texture.kind == TEXTURE_CHECKER {
         let cell = st.x.floor() + st.y.floor();
@@ -18,6 +19,7 @@ pub fn eval_texture(scene: &Scene, index: u32, uv: Vec2) -> Vec3 {
         let odd = row - 2.0 * (row * 0.5).floor();
         st.y += 0.5 * odd;
     }
+    // position in texels, repeated or clamped
     let clamp_u = texture.flags & TEXTURE_CLAMP_U != 0;
     let clamp_v = texture.flags & TEXTURE_CLAMP_V != 0;
     let x =
@@ -27,6 +29,7 @@ pub fn eval_texture(scene: &Scene, index: u32, uv: Vec2) -> Vec3 {
     if texture.flags & TEXTURE_NEAREST != 0 {
         return eval_texel(scene, texture, x.floor() as i32, y.floor() as i32);
     }
+    // bilinear filter
     let x0 = (x - 0.5).floor();
     let y0 = (y - 0.5).floor();
     let fx = x - 0.5 - x0;
@@ -40,7 +43,8 @@ pub fn eval_texture(scene: &Scene, index: u32, uv: Vec2) -> Vec3 {
     top * (1.0 - fy) + bottom * fy
 }
 
-/// Texel at column `i`, row `j` from the top, wrapped or clamped. At most one picture size outside.
+/// Texel at column `i`, row `j` from the top, wrapped or clamped; `i` and `j` may be at most one
+/// image size outside.
 pub fn eval_texel(scene: &Scene, texture: &Texture, i: i32, j: i32) -> Vec3 {
     let w = texture.width as i32;
     let h = texture.height as i32;

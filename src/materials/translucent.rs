@@ -1,5 +1,5 @@
-//! Diffuse reflection and transmission: of the reflectance `rho` the share `alpha` leaves on the
-//! other side. A thin surface: paper, leaves, lampshades. Twin:
+//! Diffuse reflection and transmission by a thin surface, such as paper, leaves or lampshades: the
+//! fraction `alpha` of the reflectance `rho` leaves on the other side. Twin:
 //! `shaders/materials/translucent.wgsl`.
 
 use super::math::sampling::sample_cosine;
@@ -18,31 +18,31 @@ pub const WIDE: bool = true;
 /// See [`super::Bsdf::transmits`].
 pub const TRANSMITS: bool = true;
 
-/// Least cosine with the geometric normal for which a shading normal's correction is formed.
+/// Lower bound of the cosine to the geometric normal that the shading-normal correction divides by.
 const ADJOINT_COS_MIN: Real = 1e-2;
 
-/// Share of the light that goes to the side of `n` that a direction with cosine `cos` is on.
+/// Fraction of the light that leaves on the side of a direction with cosine `cos` to `n`.
 #[inline(always)]
 fn side_share(alpha: Real, cos: Real) -> Real {
     if cos > 0.0 { 1.0 - alpha } else { alpha }
 }
 
-/// `rho |cos| / pi` times the side's share.
+/// BSDF times cosine: `rho |cos| / pi` times the side's fraction.
 #[inline(always)]
 pub fn eval_translucent(lobe: &Lobe, n: Vec3, _: Vec3, wi: Vec3) -> Vec3 {
     let cos = wi.dot(n);
     lobe.reflectance * (INV_PI * cos.abs() * side_share(lobe.alpha, cos))
 }
 
-/// `|cos| / pi` times the side's share, sr^-1.
+/// Density: `|cos| / pi` times the side's fraction, sr^-1.
 #[inline(always)]
 pub fn pdf_translucent(lobe: &Lobe, n: Vec3, _: Vec3, wi: Vec3) -> Real {
     let cos = wi.dot(n);
     INV_PI * cos.abs() * side_share(lobe.alpha, cos)
 }
 
-/// A side by its share and a direction by the cosine; photons take that with the geometric normal,
-/// as on diffuse surfaces.
+/// Samples a side by its fraction and a direction by the cosine; for photons about the geometric
+/// normal, as on diffuse surfaces.
 #[inline(always)]
 pub fn sample_translucent(p: &ShadingPoint, u: Vec2, mode: u32) -> Sample {
     let alpha = p.lobe.alpha;
@@ -54,6 +54,7 @@ pub fn sample_translucent(p: &ShadingPoint, u: Vec2, mode: u32) -> Sample {
             weight *= p.wo.dot(p.n).max(0.0) / p.wo.dot(p.ng).max(ADJOINT_COS_MIN);
         }
     }
+    // choose the side and stretch the number that chose it to [0, 1]
     let mut x = (u.x - alpha) / (1.0 - alpha).max(1e-6);
     let mut side = 1.0;
     if u.x < alpha {

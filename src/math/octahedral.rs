@@ -1,12 +1,12 @@
-//! Directions in records, packed. Twin: `shaders/math/octahedral.wgsl`.
+//! Packed directions in records. Twin: `shaders/math/octahedral.wgsl`.
 
 use super::unit;
 use glam::{Vec2, Vec3};
 
-/// A unit vector in a record.
+/// Encoded unit vector in a record.
 pub type Direction = u32;
 
-/// A unit vector in 32 bits: octahedral map, 16 bits each (Cigolle et al. 2014).
+/// Encodes a unit vector in 32 bits: octahedral map, 16 bits per coordinate (Cigolle et al. 2014).
 pub fn oct_encode(v: Vec3) -> Direction {
     let s = 1.0 / (v.x.abs() + v.y.abs() + v.z.abs());
     let p = Vec2::new(v.x * s, v.y * s);
@@ -20,12 +20,12 @@ pub fn oct_encode(v: Vec3) -> Direction {
     x | y << 16
 }
 
-/// Inverse of [`oct_encode`].
+/// Decodes a unit vector; inverse of [`oct_encode`].
 pub fn oct_decode(code: Direction) -> Vec3 {
     unit(oct_vector(code))
 }
 
-/// The direction of [`oct_decode`] at any length.
+/// Decodes the direction of [`oct_decode`] without normalizing it.
 #[inline]
 pub fn oct_vector(code: Direction) -> Vec3 {
     let x = ((code & 0xffff) as f32 - 32768.0) * (1.0 / 32767.0);

@@ -1,5 +1,5 @@
 //! Counter-based random numbers: an integer hash of (index, pass, dimension, seed), the same in
-//! every engine.
+//! every engine. Twin: `shaders/math/rng.wgsl`.
 
 use super::real::{Real, Vec4};
 
@@ -7,38 +7,38 @@ use super::real::{Real, Vec4};
 pub const STREAM_EYE: u32 = 0x8000_0000;
 /// Stream of photon paths.
 pub const STREAM_PHOTON: u32 = 0;
-/// Stream of what a pixel's visible points have in common.
+/// Stream of the numbers that the visible points of a pixel share.
 pub const STREAM_STRATA: u32 = 0x4000_0000;
 
-/// The position of one path in its sequence.
+/// State of one path's random sequence.
 #[derive(Clone, Copy, Debug)]
 pub struct Rng {
-    /// Pixel sample or photon.
+    /// Index of the pixel sample or photon.
     pub index: u32,
-    /// Pass.
+    /// Pass number.
     pub pass_number: u32,
-    /// Next dimension; the top bit tells the stream.
+    /// Next dimension; the top bits identify the stream.
     pub dimension: u32,
     /// Seed.
     pub seed: u32,
-    /// The pass's point for the first dimensions of eye paths (see [`crate::math::sobol`]).
+    /// Sobol point of the pass for the first dimensions of eye paths (see [`crate::math::sobol`]).
     pub points: Points,
 }
 
-/// Sixteen coordinates, their bits in reverse.
+/// Sixteen coordinates with their bits reversed.
 pub type Points = [[u32; 4]; 4];
 
-/// The sequence of path `index` in a pass, by chance alone.
+/// Purely random sequence of path `index` in a pass.
 pub fn rng_new(index: u32, pass_number: u32, stream: u32, seed: u32) -> Rng {
     Rng { index, pass_number, dimension: stream, seed, points: [[0; 4]; 4] }
 }
 
-/// The sequence of eye path `index` in a pass.
+/// Sequence of eye path `index` in a pass, which starts with a Sobol point.
 pub fn rng_eye(index: u32, pass_number: u32, seed: u32, points: Points) -> Rng {
     Rng { index, pass_number, dimension: STREAM_EYE, seed, points }
 }
 
-/// pcg4d (Jarzynski & Olano 2020, "Hash Functions for GPU Rendering").
+/// Hash pcg4d (Jarzynski & Olano 2020, "Hash Functions for GPU Rendering").
 #[inline(always)]
 pub fn pcg4d(mut v: [u32; 4]) -> [u32; 4] {
     for x in &mut v {
@@ -58,8 +58,8 @@ pub fn pcg4d(mut v: [u32; 4]) -> [u32; 4] {
     v
 }
 
-/// Owen's scrambling of a digital net: a hash that lets each bit depend on those above it alone.
-/// `reversed` holds a coordinate's bits in reverse (Laine & Karras 2011, "Stratified Sampling for
+/// Owen scrambling of a digital net by a hash in which each bit depends only on those above it.
+/// `reversed` is a coordinate with its bits reversed (Laine & Karras 2011, "Stratified Sampling for
 /// Stochastic Transparency"; Burley 2020, "Practical Hash-based Owen Scrambling"; constants of
 /// Vegdahl 2021).
 #[inline(always)]
@@ -73,10 +73,10 @@ fn scrambled(reversed: u32, seed: u32) -> u32 {
     x.reverse_bits()
 }
 
-/// Four uniform numbers in [0, 1), multiples of 2^-24. The first sixteen of an eye path are the
-/// pass's Sobol point, scrambled for each visible point: every pass is uniform by itself, and the
-/// passes together cover the pixel, the lens, the ways through glass and the lights more evenly
-/// than chance.
+/// Returns four uniform numbers in [0, 1), multiples of 2^-24. The first sixteen of an eye path are
+/// the pass's Sobol point, scrambled for each visible point: the numbers of each pass are uniform,
+/// and those of all passes together cover the pixel, the lens, the paths through glass and the
+/// lights more evenly than random numbers.
 #[inline(always)]
 pub fn rng_next(rng: &mut Rng) -> Vec4 {
     let k = rng.dimension.wrapping_sub(STREAM_EYE);

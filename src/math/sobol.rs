@@ -1,11 +1,11 @@
-//! Sobol's sequence in sixteen dimensions (Sobol 1967), with the direction numbers of Joe & Kuo
-//! 2008, "Constructing Sobol sequences with better two-dimensional projections" (their table
+//! Sobol sequence in sixteen dimensions (Sobol 1967), with the direction numbers of Joe & Kuo 2008,
+//! "Constructing Sobol sequences with better two-dimensional projections" (their table
 //! new-joe-kuo-6).
 
 use crate::math::rng::Points;
 
-/// For the second dimension and those after it: degree of the primitive polynomial, its inner
-/// coefficients as bits, and the first direction numbers.
+/// Degree of the primitive polynomial, its inner coefficients as bits, and the initial direction
+/// numbers, for each dimension from the second on.
 const JOE_KUO: [(u32, u32, [u32; 6]); 15] = [
     (1, 0, [1, 0, 0, 0, 0, 0]),
     (2, 1, [1, 3, 0, 0, 0, 0]),
@@ -47,7 +47,7 @@ fn coordinate(index: u32, dimension: usize) -> u32 {
     (0..32).filter(|i| index >> i & 1 == 1).fold(0, |x, i| x ^ v[i])
 }
 
-/// Point `index`: every sixteen coordinates in units of 2^-32, their bits in reverse.
+/// All sixteen coordinates of point `index` in units of 2^-32, with their bits reversed.
 pub fn points(index: u32) -> Points {
     std::array::from_fn(|k| std::array::from_fn(|i| coordinate(index, 4 * k + i).reverse_bits()))
 }
@@ -56,9 +56,9 @@ pub fn points(index: u32) -> Points {
 mod tests {
     use super::*;
 
-    /// Theory: the first 2^m points have one in each of the 2^m intervals of every dimension, and
-    /// in the first two one in each box of volume 2^-m that is 2^-a wide and 2^(a-m) high (Sobol
-    /// 1967). A coordinate with a wrong direction number leaves some empty.
+    /// Theory: of the first 2^m points, each of the 2^m intervals of every dimension contains one;
+    /// in the first two dimensions, so does each box of volume 2^-m that is 2^-a wide and 2^(a-m)
+    /// high (Sobol 1967). A wrong direction number leaves some of them empty.
     #[test]
     fn nets() {
         let filled = |m: u32, cell: &dyn Fn(u32) -> u32| {
@@ -82,7 +82,7 @@ mod tests {
         }
     }
 
-    /// The first points of the sequence as published: 0, 1/2, then 1/4 and 3/4 in alternation.
+    /// First points of the sequence as published: 0, 1/2, then 1/4 and 3/4 in alternation.
     #[test]
     fn first_points() {
         let at = |index| [0, 1, 2].map(|d| f64::from(coordinate(index, d)) / 2f64.powi(32));

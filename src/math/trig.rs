@@ -1,12 +1,12 @@
-//! Elementary functions as fixed polynomials, so that every device rounds them alike. WGSL leaves
-//! the accuracy of its own `sin`, `exp`, ... open. Coefficients: Moshier, Cephes (single
+//! Elementary functions as fixed polynomials, so that every device rounds them alike; WGSL leaves
+//! the accuracy of its built-in `sin`, `exp`, ... open. Coefficients: Moshier, Cephes (single
 //! precision). Twin: `shaders/math/trig.wgsl`.
 
 use std::f32::consts::{FRAC_2_PI, FRAC_PI_2, FRAC_PI_4, LOG2_E, PI};
 
-/// `x` itself (a number below 1e30), hidden from compilers. Mesa's turns a b + a c into a (b + c),
-/// and (a + b) + constant into (a + constant) + b: the parts of a reduction, or the order of a sum,
-/// would be lost.
+/// Returns `x` (a number below 1e30) in a way that compilers cannot see through. Mesa rewrites
+/// `a * b + a * c` to `a * (b + c)`, and `(a + b) + constant` to `(a + constant) + b`, which would
+/// destroy the parts of an argument reduction or the order of a sum.
 pub fn kept(x: f32) -> f32 {
     x.min(1e30)
 }
@@ -39,7 +39,7 @@ pub fn arctan2(y: f32, x: f32) -> f32 {
         return 0.0;
     }
     let ratio = ax.min(ay) / big;
-    // tan(pi/8) parts the two expansions.
+    // tan(pi/8) separates the two expansions
     let shifted = ratio > 0.414_213_57;
     let w = if shifted { (ratio - 1.0) / (ratio + 1.0) } else { ratio };
     let z = w * w;
@@ -52,8 +52,8 @@ pub fn arctan2(y: f32, x: f32) -> f32 {
     if y < 0.0 { -half } else { half }
 }
 
-/// e^x; relative error below 2e-7. Zero below -87 (where f32 nears its smallest normal number), and
-/// held at e^88 above 88.
+/// e^x; relative error below 2e-7. Zero below -87, where f32 approaches its smallest normal number,
+/// and clamped to e^88 above 88.
 pub fn exponential(x: f32) -> f32 {
     if x < -87.0 {
         return 0.0;
@@ -70,13 +70,13 @@ pub fn exponential(x: f32) -> f32 {
     (kept(kept(p * z) + r) + 1.0) * power_of_two
 }
 
-/// Natural logarithm; absolute error below 1e-7 times max(1, |ln x|). Numbers below 2^-126, zero
-/// and the negative ones included, count as 2^-126.
+/// Natural logarithm; absolute error below 1e-7 times max(1, |ln x|). Arguments below 2^-126,
+/// including zero and negative numbers, count as 2^-126.
 pub fn logarithm(x: f32) -> f32 {
     let bits = x.max(1.175_494_4e-38).to_bits();
     let mut exponent = (bits >> 23) as i32 - 126;
     let mut m = f32::from_bits((bits & 0x007f_ffff) | 0x3f00_0000);
-    // m into [sqrt(1/2), sqrt(2)).
+    // scale m to [sqrt(1/2), sqrt(2))
     if m < std::f32::consts::FRAC_1_SQRT_2 {
         exponent -= 1;
         m += m;
@@ -111,7 +111,7 @@ mod tests {
             .fold(0.0, f64::max)
     }
 
-    // Theory: the f32 argument is exact, so std's f64 function of it is the true value to 1e-15.
+    // Theory: the f32 argument is exact, so the f64 function of std gives the true value to 1e-15.
     #[test]
     fn sin_cos_agrees_with_f64() {
         for range in [1.0, 10.0, 1e3, 1e4] {
@@ -124,7 +124,7 @@ mod tests {
             println!("sin_cos |x| <= {range}: {e:.2e}");
             assert!(e < 1e-7, "{e}");
         }
-        // The comparator notices an argument that is one part in a million off.
+        // the check detects an argument that is off by one part in a million
         assert!(
             worst(-10.0, 10.0, 1000, |x| (f64::from(sin_cos(x * 1.000_001).0)
                 - f64::from(x).sin())

@@ -1,4 +1,4 @@
-//! Small vector functions. Twin: `shaders/math/vector.wgsl`.
+//! Vector functions and constants. Twin: `shaders/math/vector.wgsl`.
 
 use super::real::{EXPONENT, Real, Vec3, consts};
 
@@ -8,20 +8,21 @@ pub const PI: Real = consts::PI;
 pub const TAU: Real = consts::TAU;
 /// One over pi.
 pub const INV_PI: Real = consts::FRAC_1_PI;
-/// Farther than anything in a scene; WGSL has no infinity to rely on.
+/// Distance beyond anything in a scene; WGSL does not guarantee infinities.
 pub const FAR: Real = 1e30;
-/// Half an ulp of 1, the bound of one rounding.
+/// Unit roundoff: half an ulp of 1, the relative error bound of one rounding.
 pub const EPS: Real = 0.5 * Real::EPSILON;
 
-/// What linear Rec. 709 values weigh in luminance.
+/// Weights of linear Rec. 709 components in luminance.
 pub const LUMINANCE: Vec3 = Vec3::new(0.2126, 0.7152, 0.0722);
 
-/// `v` at length one.
+/// Normalizes `v`.
 pub fn unit(v: Vec3) -> Vec3 {
     v * (1.0 / v.dot(v).sqrt())
 }
 
-/// Whether every component is a number (told from the bits, since a shader compiler may assume it).
+/// Returns true if every component is finite (tested on the bits, since shader compilers may assume
+/// finite numbers).
 pub fn is_finite(v: Vec3) -> bool {
     [v.x, v.y, v.z].iter().all(|x| x.to_bits() & EXPONENT != EXPONENT)
 }
@@ -31,12 +32,12 @@ pub fn max_component(v: Vec3) -> Real {
     v.x.max(v.y).max(v.z)
 }
 
-/// Greatest absolute value of a component.
+/// Greatest absolute component.
 pub fn max_abs(v: Vec3) -> Real {
     max_component(v.abs())
 }
 
-/// Rec. 709 luminance of linear Rec. 709 values.
+/// Rec. 709 luminance of a linear Rec. 709 colour.
 pub fn luminance(v: Vec3) -> Real {
     v.dot(LUMINANCE)
 }
@@ -49,19 +50,19 @@ pub fn basis(n: Vec3) -> (Vec3, Vec3) {
     (Vec3::new(1.0 + s * n.x * n.x * a, s * b, -s * n.x), Vec3::new(b, s + n.y * n.y * a, -n.y))
 }
 
-/// `local` (x, y along the tangents of [`basis`], z along `n`) in the space of `n`.
+/// Transforms `local` (x, y along the tangents of [`basis`], z along `n`) to the space of `n`.
 pub fn from_frame(n: Vec3, local: Vec3) -> Vec3 {
     let (t, b) = basis(n);
     t * local.x + b * local.y + n * local.z
 }
 
-/// `w` mirrored at the plane with unit normal `n`; both point away from the surface.
+/// Mirrors `w` at the unit normal `n`; both vectors point away from the surface.
 pub fn mirrored(w: Vec3, n: Vec3) -> Vec3 {
     n * (2.0 * w.dot(n)) - w
 }
 
-/// The origin of a ray that leaves `position` along `direction`, moved off the surface by the bound
-/// of the hit's error (the idea of pbrt-v4, section 6.8, with a scalar bound).
+/// Origin of a ray that leaves `position` along `direction`, offset from the surface by the bound
+/// on the hit's error (the method of pbrt-v4, section 6.8, with a scalar bound).
 pub fn offset_origin(position: Vec3, error: Real, normal: Vec3, direction: Vec3) -> Vec3 {
     if direction.dot(normal) >= 0.0 { position + normal * error } else { position - normal * error }
 }

@@ -1,25 +1,27 @@
-//! Bytes that a render takes, counted before they are taken, and how many there may be.
+//! Memory of a render, counted before allocation, and the limits on it.
 
 mod system;
 
 pub use system::{address_space, limited};
 
-/// How much memory a render may take.
+/// Memory limit of a render, and the permitted ways to meet it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Memory {
-    /// At most so many bytes, on the device and in main memory together. None: on the processor
-    /// what the system and the limits of the process leave, else what the device gives.
+    /// Greatest number of bytes, on the device and in main memory together. `None`: on the
+    /// processor, what the system and the limits of the process leave; on a GPU, what the device
+    /// provides.
     pub budget: Option<u64>,
-    /// Whether the film is copied on the way, for checkpoints; that of a device that may be lost is
-    /// anyway.
+    /// True if the film is copied during the render for checkpoints. It is always copied for a
+    /// device that may be lost.
     pub saves: bool,
-    /// Photons are not traced in smaller batches than the settings say, since their sums would be
-    /// rounded otherwise. Without a budget or a limit of the process they never are.
+    /// True if photons must not be traced in smaller batches than the settings request, since this
+    /// changes the rounding of their sums. Without a budget or a limit of the process they never
+    /// are.
     pub same_batches: bool,
 }
 
 impl Memory {
-    /// The limit, and in which words it is told, for buffers that are in main memory or not.
+    /// Limit in bytes and its description, for buffers inside or outside main memory.
     pub fn limit(&self, in_main_memory: bool) -> Option<(u64, &'static str)> {
         match self.budget {
             Some(budget) => Some((budget, "the memory budget")),
@@ -28,48 +30,48 @@ impl Memory {
         }
     }
 
-    /// Whether photons may be traced in smaller batches: where a budget is given, or the process
-    /// has a limit.
+    /// Returns true if photons may be traced in smaller batches: if there is a budget, or a limit
+    /// of the process.
     pub fn cuts_batches(&self) -> bool {
         !self.same_batches && (self.budget.is_some() || limited().is_some())
     }
 }
 
-/// What part of the memory is for.
+/// Memory for one purpose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Part {
-    /// Its purpose.
+    /// Purpose.
     pub what: &'static str,
-    /// Bytes.
+    /// Size in bytes.
     pub bytes: u64,
-    /// What makes it smaller.
+    /// Setting that makes it smaller.
     pub mend: &'static str,
 }
 
-/// The bytes of all parts.
+/// Total bytes of all parts.
 pub fn total(parts: &[Part]) -> u64 {
     parts.iter().map(|part| part.bytes).fold(0, u64::saturating_add)
 }
 
-/// A render that does not fit, however it is cut.
+/// A render does not fit the memory limit, however it is divided.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "the render takes at least {}, and {of} is {}; {} of it are for {}: {}",
     words(*.needed), words(*.limit), words(.largest.bytes), .largest.what, .largest.mend
 )]
 pub struct OverBudget {
-    /// Bytes of the least that it takes.
+    /// Least number of bytes that it takes.
     pub needed: u64,
-    /// What sets the limit.
+    /// Description of the limit.
     pub of: &'static str,
-    /// Bytes that there may be.
+    /// Limit in bytes.
     pub limit: u64,
-    /// The part that takes most.
+    /// Largest part.
     pub largest: Part,
 }
 
 impl OverBudget {
-    /// For these parts, as small as they get.
+    /// Creates the error from the parts at their smallest.
     pub fn new(parts: &[Part], (limit, of): (u64, &'static str)) -> Self {
         let largest = parts.iter().max_by_key(|part| part.bytes);
         let largest = largest.copied().unwrap_or(Part { what: "nothing", bytes: 0, mend: "" });
@@ -77,7 +79,7 @@ impl OverBudget {
     }
 }
 
-/// A number of bytes for people: 512 MB, 1.46 GB.
+/// Formats a number of bytes for display: 512 MB, 1.46 GB.
 pub fn words(bytes: u64) -> String {
     let bytes = bytes as f64;
     let units = [(1e12, "TB"), (1e9, "GB"), (1e6, "MB"), (1e3, "kB")];
@@ -91,10 +93,10 @@ pub fn words(bytes: u64) -> String {
     }
 }
 
-/// A number of bytes as people write it: 512MB, 1.5 GB, 2GiB, or bytes alone.
+/// Parses a number of bytes with an optional unit: 512MB, 1.5 GB, 2GiB.
 ///
 /// # Errors
-/// What is expected.
+/// Description of the expected format.
 pub fn parse(text: &str) -> Result<u64, String> {
     let units = [
         ("kib", 10, 0),
@@ -119,24 +121,24 @@ pub fn parse(text: &str) -> Result<u64, String> {
         .ok_or("expected a number of bytes with its unit, as in 512MB, 1.5GB or 2GiB".to_owned())
 }
 
-/// Whether so many bytes can be had at once; they are given back.
+/// Returns true if this many bytes can be allocated at once; they are freed again.
 pub fn can_be_had(bytes: u64) -> bool {
     usize::try_from(bytes).is_ok_and(|bytes| Vec::<u8>::new().try_reserve_exact(bytes).is_ok())
 }
 
-/// Most bytes of a file that is read as a whole, where the system does not say what it has left.
+/// Limit on the size of a file that is read as a whole, if the system reports no free memory,
+/// bytes.
 const READ_MAX: u64 = 4 << 30;
 
-/// Most bytes of a file that is read as a whole.
+/// Limit on the size of a file that is read as a whole, bytes.
 pub fn readable() -> u64 {
     available().map_or(READ_MAX, |limit| limit.0)
 }
 
-/// Checks that a picture of so many pixels, which take so many bytes each while it is read, can be
-/// held.
+/// Checks that an image can be read if each pixel takes `bytes_each` bytes in the process.
 ///
 /// # Errors
-/// What it takes, and what there is.
+/// The required and the available number of bytes.
 pub fn check_pixels(width: u64, height: u64, bytes_each: u64) -> Result<(), String> {
     let needed = width.saturating_mul(height).saturating_mul(bytes_each);
     match available() {
@@ -148,8 +150,8 @@ pub fn check_pixels(width: u64, height: u64, bytes_each: u64) -> Result<(), Stri
     }
 }
 
-/// Bytes of main memory that can still be had, by what is free and by the limits of the process and
-/// of its control group; and in whose words.
+/// Bytes of main memory that are still available, by the system's free memory and by the limits of
+/// the process and its control group; with a description of the tightest limit.
 pub fn available() -> Option<(u64, &'static str)> {
     system::free().into_iter().chain(limited()).min_by_key(|limit| limit.0)
 }

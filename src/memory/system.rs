@@ -1,29 +1,27 @@
-//! How much memory the system still gives this process: what is free, and the limits of the process
+//! Memory that the system still grants this process: free memory, and the limits of the process
 //! (`ulimit -v`, `ulimit -d`) and of its control group (a container's, on Linux).
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Bytes that can be had, and in whose words.
+/// Number of bytes available, and a description of the limit.
 pub type Limit = (u64, &'static str);
 
-/// In whose words the address space is limited.
+/// Description of the limit on the address space.
 const SPACE: &str = "what the limit of this process (ulimit -v) leaves";
-/// Least memory kept for what no plan counts: stacks, the allocator's own, a driver's compiler.
+/// Least memory reserved for what no plan counts: stacks, allocator overhead, a driver's compiler.
 const KEPT: u64 = 32 << 20;
-/// Share of the limit kept for the same: one part of so many.
+/// Reciprocal of the fraction of the limit reserved for the same.
 const KEPT_PART: u64 = 8;
 
-/// Bytes of main memory that are free, on the disk too where the system swaps; where the system
-/// says so.
+/// Bytes of free main memory, including free swap space; `None` if the system does not report it.
 pub fn free() -> Option<Limit> {
     let text = fs::read_to_string("/proc/meminfo").ok()?;
     let bytes = |name| kilobytes(&text, name);
     Some((bytes("MemAvailable:")? + bytes("SwapFree:").unwrap_or(0), "what the system has left"))
 }
 
-/// The least that a limit of the process or of its control group leaves, if there is any such
-/// limit.
+/// Tightest limit of the process or its control groups, less the reserve, if there is any limit.
 pub fn limited() -> Option<Limit> {
     let process = process_limits(Path::new("/proc/self"));
     let groups = group_limits(Path::new("/"));
@@ -38,13 +36,13 @@ fn kept_back(left: u64) -> u64 {
     left.saturating_sub((left / KEPT_PART).max(KEPT))
 }
 
-/// The number of a line `name 123 kB`, in bytes.
+/// Value of a line `name 123 kB`, in bytes.
 fn kilobytes(text: &str, name: &str) -> Option<u64> {
     let line = text.lines().find_map(|line| line.strip_prefix(name))?;
     line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok().map(|kib| kib << 10)
 }
 
-/// Bytes of address space that the limit of the process leaves (`ulimit -v`), if it has one.
+/// Bytes of address space that the limit of the process leaves (`ulimit -v`), if there is one.
 pub fn address_space() -> Option<u64> {
     process_limits(Path::new("/proc/self"))
         .into_iter()
@@ -52,12 +50,12 @@ pub fn address_space() -> Option<u64> {
         .map(|limit| limit.0)
 }
 
-/// What the resource limits of a process leave, from its folder in /proc.
+/// Bytes that the resource limits of a process leave, from its folder in /proc.
 fn process_limits(process: &Path) -> Vec<Limit> {
     let read = |name| fs::read_to_string(process.join(name)).unwrap_or_default();
     let (limits, status) = (read("limits"), read("status"));
     let left = |name: &str, used: &str, whose| {
-        // name, soft limit, hard limit, unit; `unlimited` is no number
+        // name, soft limit, hard limit, unit; `unlimited` does not parse
         let line = limits.lines().find_map(|line| line.strip_prefix(name))?;
         let soft = line.split_whitespace().next()?.parse::<u64>().ok()?;
         Some((soft.saturating_sub(kilobytes(&status, used)?), whose))
@@ -68,8 +66,8 @@ fn process_limits(process: &Path) -> Vec<Limit> {
     space.into_iter().chain(data).collect()
 }
 
-/// What the control groups of this process leave, those that its own lies in included. `root` is
-/// the root of the file system.
+/// Bytes that the control groups of this process and their ancestors leave. `root` is the root of
+/// the file system.
 fn group_limits(root: &Path) -> Vec<Limit> {
     let groups = fs::read_to_string(root.join("proc/self/cgroup")).unwrap_or_default();
     let mounts = fs::read_to_string(root.join("proc/self/mountinfo")).unwrap_or_default();
@@ -94,7 +92,7 @@ fn group_limits(root: &Path) -> Vec<Limit> {
     found
 }
 
-/// Where a version's files are mounted: the group that is the mount's root, and the mount point.
+/// Mount of a version's files: the group at the mount's root, and the mount point.
 fn mount_of(mounts: &str, version: &Version) -> Option<(PathBuf, PathBuf)> {
     mounts.lines().find_map(|line| {
         let (mount, filesystem) = line.split_once(" - ")?;
@@ -108,13 +106,13 @@ fn mount_of(mounts: &str, version: &Version) -> Option<(PathBuf, PathBuf)> {
     })
 }
 
-/// The files of a version of control groups.
+/// Files of a version of control groups.
 struct Version {
     filesystem: &'static str,
     option: &'static str,
     limit: &'static str,
     used: &'static str,
-    /// Line of `memory.stat` with what the kernel takes back when memory is short.
+    /// Line of `memory.stat` with the bytes that the kernel reclaims when memory is short.
     reclaimable: &'static str,
 }
 
@@ -132,15 +130,15 @@ const V2: Version = Version {
     used: "memory.current",
     reclaimable: "inactive_file ",
 };
-/// What version 1 says where there is no limit: the most that the kernel can count.
+/// Limits from here on mean none: version 1 reports the greatest number that the kernel can count.
 const UNLIMITED: u64 = 1 << 60;
 
 impl Version {
-    /// What the group of a folder leaves, if it has a limit.
+    /// Bytes that the group of a folder leaves, if it has a limit.
     fn left(&self, folder: &Path) -> Option<Limit> {
         let text = |name: &str| fs::read_to_string(folder.join(name)).ok();
         let number = |name: &str| text(name)?.trim().parse::<u64>().ok();
-        // `max` is no number
+        // `max` does not parse
         let limit = number(self.limit).filter(|limit| *limit < UNLIMITED)?;
         let stat = text("memory.stat").unwrap_or_default();
         let line = stat.lines().find_map(|line| line.strip_prefix(self.reclaimable));
@@ -153,8 +151,8 @@ impl Version {
     }
 }
 
-/// Theory: files as Linux writes them for a process with limits, in groups within groups of either
-/// version, leave what the tightest limit leaves; files without limits leave all.
+/// Theory: files as Linux writes them for a process with limits, in nested groups of either
+/// version, leave what the tightest limit leaves; files without limits leave everything.
 #[cfg(test)]
 mod tests {
     use super::*;

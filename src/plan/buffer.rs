@@ -1,5 +1,5 @@
-//! The buffers of the kernels: the one table that plan, engines, memory accounting and checkpoints
-//! read.
+//! Declarations of the kernels' buffers, the single table that plan, engines, memory accounting and
+//! checkpoints read.
 
 use super::super::kernels::aov_trace::AovPixel;
 use super::super::kernels::records::{FilmPixel, Gathered, PhotonRecord, Statistics, VisiblePoint};
@@ -10,10 +10,10 @@ use super::features::Feature;
 use super::kernel::SCAN_BLOCK;
 use crate::scene::Aov;
 
-/// A buffer that kernels bind.
+/// Buffer that kernels bind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Buffer {
-    /// The short tables of the scene in one struct.
+    /// Short tables of the scene in one struct.
     Scene,
     /// Nodes of the kd-tree.
     Nodes,
@@ -27,65 +27,65 @@ pub enum Buffer {
     Outlines,
     /// Texels of images.
     Texels,
-    /// Ends of the eye paths.
+    /// Visible points: the ends of the eye paths.
     VisiblePoints,
-    /// Photons found around visible points in a pass.
+    /// Sums over the photons gathered at visible points in a pass.
     Gathered,
-    /// Radii of visible points under the local rule.
+    /// Statistics of visible points under the local rule.
     Statistics,
-    /// Sums over passes.
+    /// Running estimates of the pixels.
     Film,
-    /// Layers of the first hits.
+    /// AOVs of the pixels.
     Aovs,
-    /// Photons' light by class.
+    /// Caustic and indirect radiance of the pixels.
     Parts,
-    /// Numbers of records, rays and photons of a pass; see `kernels/records.wgsl`.
+    /// Counters of records, rays and photons of a pass; see `kernels/records.wgsl`.
     Counters,
     /// Photon records in the order in which they were written.
     Records,
     /// Photon records in bucket order.
     Sorted,
-    /// Index of the record at each place of the bucket order.
+    /// Record indices in bucket order.
     Order,
-    /// Records in each bucket.
+    /// Number of records in each bucket.
     Counts,
-    /// First record of each bucket, and the number of all.
+    /// Index of the first record of each bucket; the last entry is the total.
     Starts,
-    /// Records in each block of buckets.
+    /// Number of records in each block of buckets.
     BlockSums,
 }
 
-/// What the number of a buffer's elements depends on.
+/// Quantity that determines the number of a buffer's elements.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Extent {
-    /// The scene.
+    /// Size of the scene's table.
     Scene,
-    /// One element for each visible point; chunks have their own.
+    /// One element per visible point; chunks may have separate buffers.
     VisiblePoints,
-    /// One element for each pixel; chunks have their own.
+    /// One element per pixel; chunks may have separate buffers.
     Pixels,
-    /// As many records as a batch may leave.
+    /// One element per record of the capacity.
     Records,
-    /// One element for each bucket of the grid.
+    /// One element per bucket of the grid.
     Buckets,
-    /// The same and one more.
+    /// One element per bucket, plus one.
     BucketEnds,
-    /// One element for each block of [`SCAN_BLOCK`] buckets, and one more.
+    /// One element per block of [`SCAN_BLOCK`] buckets, plus one.
     Blocks,
     /// One element.
     One,
 }
 
-/// When a buffer is filled with zeros.
+/// Time at which a buffer is filled with zeros.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cleared {
-    /// When it is allocated.
+    /// On allocation.
     Once,
     /// At the start of each tile of each pass.
     EachTile,
 }
 
-/// What is declared about a buffer.
+/// Declaration of a buffer.
 #[derive(Clone, Copy, Debug)]
 pub struct BufferInfo {
     /// Name in shaders, messages and reports.
@@ -94,18 +94,18 @@ pub struct BufferInfo {
     pub element: &'static str,
     /// Size of an element in bytes.
     pub element_bytes: usize,
-    /// Number of elements.
+    /// Quantity that determines the number of elements.
     pub extent: Extent,
-    /// Whether the host reads it.
+    /// True if the host reads it.
     pub read_back: bool,
-    /// Whether a checkpoint contains it.
+    /// True if a checkpoint contains it.
     pub checkpoint: bool,
-    /// When it is cleared.
+    /// Time at which it is cleared.
     pub cleared: Cleared,
 }
 
 impl Buffer {
-    /// All buffers: those of the scene first.
+    /// All buffers, those of the scene first.
     pub const ALL: [Self; 20] = [
         Self::Scene,
         Self::Nodes,
@@ -129,7 +129,7 @@ impl Buffer {
         Self::BlockSums,
     ];
 
-    /// The table.
+    /// Declaration of the buffer.
     pub fn info(self) -> BufferInfo {
         use Extent::{Blocks, BucketEnds, Buckets, One, Pixels, Records, VisiblePoints};
         match self {
@@ -145,7 +145,7 @@ impl Buffer {
             Self::VisiblePoints => {
                 BufferInfo::new::<VisiblePoint>("visible_points", "VisiblePoint", VisiblePoints)
             }
-            // a checkpoint has the counts, for the layer that shows them
+            // checkpoints store the counts, for the layer that shows them
             Self::Gathered => BufferInfo {
                 read_back: true,
                 checkpoint: true,
@@ -220,7 +220,7 @@ impl BufferInfo {
 }
 
 impl Plan {
-    /// Returns whether the plan needs a buffer.
+    /// Returns true if the plan needs `buffer`.
     pub fn needs(&self, buffer: Buffer) -> bool {
         let has = |feature| self.features.has(feature);
         match buffer {
@@ -246,8 +246,8 @@ impl Plan {
         }
     }
 
-    /// Returns whether chunks share one buffer by turns. The counts of `gathered` are kept if a
-    /// layer shows them.
+    /// Returns true if tiles share one buffer in turn. The counts in `gathered` are kept if a layer
+    /// shows them.
     pub fn is_reused(&self, buffer: Buffer) -> bool {
         self.tiled
             && match buffer {
@@ -257,14 +257,14 @@ impl Plan {
             }
     }
 
-    /// Returns whether each chunk has its own buffer.
+    /// Returns true if each chunk has a separate buffer.
     pub fn is_per_chunk(&self, buffer: Buffer) -> bool {
         let extent = buffer.info().extent;
         matches!(extent, Extent::VisiblePoints | Extent::Pixels) && !self.is_reused(buffer)
     }
 
-    /// Number of elements in a buffer that is not the scene's; of the largest chunk if chunks have
-    /// their own.
+    /// Number of elements in a buffer other than the scene's; that of the largest chunk if chunks
+    /// have separate buffers.
     pub fn elements(&self, buffer: Buffer) -> u64 {
         let points = u64::from(self.chunk(0).1);
         match buffer.info().extent {
@@ -279,8 +279,8 @@ impl Plan {
         }
     }
 
-    /// The buffers that are not the scene's and their sizes in bytes, those of chunks for the
-    /// largest chunk.
+    /// Buffers other than the scene's and their sizes in bytes; for per-chunk buffers the size of
+    /// the largest chunk.
     pub fn buffers(&self) -> Vec<(Buffer, u64)> {
         let own = |buffer: &Buffer| buffer.info().extent != Extent::Scene && self.needs(*buffer);
         let bytes = |buffer: Buffer| self.elements(buffer) * buffer.element_bytes() as u64;
@@ -294,8 +294,8 @@ mod tests {
     use crate::plan::{Buffer, Cleared, Command, Kernel, Plan};
     use std::collections::BTreeSet;
 
-    /// Theory: the tables are complete if every buffer is listed once, has its own name, is bound
-    /// by a kernel, and is cleared by a command if the table says so.
+    /// Theory: the tables are complete if every buffer is listed once, has a unique name, is bound
+    /// by a kernel, and is cleared by a command if the table requires it.
     #[test]
     fn declarations_are_complete() {
         let names: BTreeSet<_> = Buffer::ALL.iter().map(|buffer| buffer.name()).collect();

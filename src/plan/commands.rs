@@ -1,4 +1,4 @@
-//! A pass as a list of commands, which engines execute.
+//! A pass as a list of commands that engines execute.
 
 use super::super::kernels::records::Dispatch;
 use super::super::real::Real;
@@ -11,13 +11,13 @@ use bytemuck::Zeroable;
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-/// What an engine does next.
+/// Command to an engine.
 #[allow(clippy::large_enum_variant)] // lists of commands are short
 #[derive(Clone, Copy, Debug)]
 pub enum Command {
     /// Fills a chunk's `gathered` with zeros.
     ClearGathered {
-        /// The chunk.
+        /// Index of the chunk.
         chunk: u32,
     },
     /// Fills the counters with zeros.
@@ -26,12 +26,12 @@ pub enum Command {
     ClearRecords,
     /// Runs a stage.
     Run(Step),
-    /// Reads the number of rays so far: those of eye paths.
+    /// Reads the number of rays so far, which are those of eye paths.
     ReadEyeRays,
     /// Reads the number of records that a batch left. If it exceeds the capacity, the pass is
     /// discarded and run again with smaller batches.
     ReadRecords {
-        /// Photons of the batch.
+        /// Number of photons in the batch.
         photons: u32,
     },
     /// Reads the counters and decides whether the pass is kept. The commands that follow add to
@@ -39,12 +39,12 @@ pub enum Command {
     Commit,
 }
 
-/// A part of a pass.
+/// Stage of a pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
     /// Traces eye paths to visible points.
     EyeTrace,
-    /// Traces eye paths for the layers.
+    /// Traces eye paths for the AOVs.
     AovTrace,
     /// Traces photons to records.
     PhotonTrace,
@@ -52,14 +52,14 @@ pub enum Stage {
     BuildGrid,
     /// Gathers photons at visible points.
     Gather,
-    /// Adds up photons' light by class.
+    /// Adds the photons' radiance to the layers, by photon class.
     ResolveParts,
     /// Adds the pass to the film.
     Resolve,
 }
 
 impl Stage {
-    /// The kernels that a stage is made of on a device that runs kernels.
+    /// Kernels that implement the stage on a GPU or a software driver.
     pub const fn kernels(self) -> &'static [Kernel] {
         match self {
             Self::EyeTrace => &[Kernel::EyeTrace],
@@ -84,27 +84,27 @@ impl Stage {
 /// One run of a stage over `dispatch.first..dispatch.end`.
 #[derive(Clone, Copy, Debug)]
 pub struct Step {
-    /// The stage.
+    /// Stage to run.
     pub stage: Stage,
-    /// The chunk whose buffers it uses.
+    /// Chunk whose buffers it uses.
     pub chunk: u32,
-    /// Its parameters.
+    /// Parameters of the run.
     pub dispatch: Dispatch,
 }
 
-/// Grid cells are this many mean radii wide: with smaller ones more rows are visited, with larger
-/// ones more photons in vain.
+/// Width of grid cells in mean radii: smaller cells increase the number of rows visited, larger
+/// ones the number of photons tested in vain.
 const CELL_RADII: f64 = 1.2;
-/// The same for photons that no diffuse surface has scattered, where they are apart: there are few
-/// outside of caustics, so that the rows count.
+/// The same for caustic photons with a separate grid: outside of caustics they are sparse, so
+/// visiting rows dominates.
 const SPARSE_RADII: f64 = 3.0;
 
 impl Plan {
-    /// The numbers that all dispatches of pass `pass` share.
+    /// Parameters that all dispatches of pass `pass` share.
     pub fn dispatch(&self, pass: u32) -> Dispatch {
         let scale_sq = self.scale_sq(pass);
         let (pixels, units) = match self.settings.radius {
-            // Never: a plan's settings name what was chosen.
+            // unreachable: a plan's settings contain the chosen radius
             Radius::Auto => (1.0, 0.0),
             Radius::Pixels(p) => (p * self.widening, 0.0),
             Radius::Units(u) => (0.0, u * self.widening / self.unit),
@@ -141,8 +141,8 @@ impl Plan {
         }
     }
 
-    /// The numbers of a pass for its eye paths: fixed visible points are those of pass 0, whoever
-    /// makes the first pass.
+    /// Parameters of a pass for its eye paths. Fixed visible points use those of pass 0, regardless
+    /// of the render's first pass.
     fn eye_dispatch(&self, common: Dispatch) -> Dispatch {
         if self.settings.method != Method::Ppm {
             return common;
@@ -150,12 +150,11 @@ impl Plan {
         Dispatch { pass_number: 0, points: crate::math::sobol::points(0), ..common }
     }
 
-    /// The commands of pass `pass` of this render, from 0: one list for each tile, or a single
-    /// one. A batch has `batch_photons` photons, which are fewer than planned if a batch
-    /// overflowed.
+    /// Commands of pass `pass` of this render, from 0: one list per tile, or a single list. A batch
+    /// has `batch_photons` photons, fewer than planned if a batch overflowed.
     ///
     /// If the photons come in one batch, tiles share its grid. Otherwise each tile traces the
-    /// photons anew.
+    /// photons again.
     pub fn commands(&self, pass: u32, batch_photons: u32) -> Vec<Vec<Command>> {
         let all = 0..self.chunks();
         let tiles = if self.tiled { all.map(|c| c..c + 1).collect() } else { vec![all] };
@@ -177,7 +176,7 @@ impl Plan {
         let common = self.dispatch(pass);
         let eye = self.eye_dispatch(common);
         let mut commands = Vec::new();
-        // a buffer that tiles reuse is cleared for each of them
+        // clear a buffer that tiles reuse once per tile
         let cleared = match (self.is_reused(Buffer::Gathered), chunks.start) {
             (true, _) => chunks.clone(),
             (false, 0) => 0..self.chunks(),
@@ -225,8 +224,8 @@ impl Plan {
         commands
     }
 
-    /// The layer stages of pass `pass`, one for each sample of the pixels that the pass traces eye
-    /// paths through.
+    /// AOV stages of pass `pass`, one per chunk and eye sample. Empty without AOVs, and under PPM
+    /// after the first pass, which reuses the visible points.
     pub fn aov_steps(&self, pass: u32) -> Vec<Step> {
         let ppm = self.settings.method == Method::Ppm;
         if !self.aovs.are_traced() || ppm && pass > 0 {
@@ -246,7 +245,7 @@ impl Plan {
             .collect()
     }
 
-    /// The dispatches of a step on a device that runs kernels.
+    /// Kernels and dispatches that implement a step on a GPU or a software driver.
     pub fn lowered(&self, step: &Step) -> impl Iterator<Item = (Kernel, Dispatch)> {
         let (dispatch, capacity, buckets) = (step.dispatch, self.capacity, self.buckets);
         step.stage.kernels().iter().map(move |kernel| {
@@ -260,7 +259,7 @@ impl Plan {
         })
     }
 
-    /// The steps of a pass, without the commands between them.
+    /// Steps of a pass, without the other commands.
     pub fn steps(&self, pass: u32) -> Vec<Step> {
         let commands = self.commands(pass, self.batch_photons).into_iter().flatten();
         let step = |command| match command {
@@ -275,14 +274,14 @@ impl Plan {
         commands.filter_map(step).collect()
     }
 
-    /// The kernels that the plan needs and the chunks they run on.
+    /// Kernels that the plan needs, with the chunks they run on.
     pub fn kernels(&self) -> BTreeSet<(Kernel, u32)> {
         let kernels = |step: Step| step.stage.kernels().iter().map(move |k| (*k, step.chunk));
         self.steps(0).into_iter().flat_map(kernels).collect()
     }
 }
 
-/// Columns of the most nearly square arrangement of `n` strata.
+/// Number of columns in the most nearly square arrangement of `n` strata.
 fn strata(n: u32) -> u32 {
     (1..=n).filter(|c| n.is_multiple_of(*c) && c * c <= n).max().unwrap_or(1)
 }

@@ -1,4 +1,4 @@
-//! What a scene and its settings require; nothing else is compiled or allocated.
+//! Features that a scene and its settings require; nothing else is compiled or allocated.
 
 use super::super::geometry::intersect::has_patch_set;
 use super::super::materials::Bsdf;
@@ -7,7 +7,7 @@ use crate::scene::settings::{Direct, Method, RadiusRule, RenderSettings};
 
 macro_rules! features {
     ($($(#[$doc:meta])* $feature:ident = $name:literal,)*) => {
-        /// A part of the renderer that a scene may do without.
+        /// Optional part of the renderer.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum Feature {
             $($(#[$doc])* $feature,)*
@@ -15,17 +15,17 @@ macro_rules! features {
             Material(Bsdf),
         }
 
-        /// Places of the features in a set; materials follow.
+        /// Bit positions of the features in a set; the materials follow.
         enum Place {
             $($feature,)*
             Materials,
         }
 
-        /// The features that are not a material's.
+        /// Features other than materials.
         const SHARED: &[Feature] = &[$(Feature::$feature),*];
 
         impl Feature {
-            /// The name that fences optional code in shaders (`//#if name`).
+            /// Name that fences optional code in shaders (`//#if name`).
             pub const fn name(self) -> &'static str {
                 match self {
                     $(Self::$feature => $name,)*
@@ -60,15 +60,16 @@ features! {
     Plane = "plane",
     /// Bézier surfaces of revolution.
     Revolution = "revolution",
-    /// Leaves of the kd-tree defer the patches of revolutions to the end of the walk.
+    /// Patches of surfaces of revolution are deferred to the end of the kd-tree traversal.
     PatchSet = "patch_set",
     /// Outlines of flat shapes, which clip the gather disc.
     Outlines = "outlines",
     /// Shapes that are tested outside of the kd-tree.
     Unbounded = "unbounded",
-    /// A kd-tree with more than one leaf, or with many shapes in it.
+    /// A kd-tree with more than one leaf, with many shapes, or with a surface of revolution in its
+    /// leaf.
     KdTree = "kdtree",
-    /// A few shapes, which shaders test one after another by name.
+    /// A few shapes, which shaders test one after another without a kd-tree.
     Few = "few",
     /// Textures of any kind.
     Textures = "textures",
@@ -78,19 +79,20 @@ features! {
     Texels = "texels",
     /// Glass bodies that may overlap.
     Nested = "nested",
-    /// A lamp or lens that a glass surface crosses: its medium is found point by point.
+    /// A lamp or lens that a glass surface crosses, so that its medium is determined point by
+    /// point.
     Astride = "astride",
     /// Rough materials whose BRDF is not constant.
     Lobes = "lobes",
-    /// Materials that scatter into single directions.
+    /// Materials that scatter into discrete directions.
     Specular = "specular",
     /// Dielectrics that absorb.
     Absorption = "absorption",
     /// Any light.
     Lights = "lights",
-    /// Probabilities of lights that depend on the shading point.
+    /// Light probabilities that depend on the shading point.
     Cells = "cells",
-    /// Maps of where photons are worth emitting.
+    /// Guide maps of photon emission.
     Guided = "guided",
     /// Emitting triangles.
     AreaTriangle = "area_triangle",
@@ -110,7 +112,8 @@ features! {
     Spot = "spot",
     /// Light from infinity: suns and environments.
     Infinite = "infinite",
-    /// Emission discs that are aimed at parts of the scene.
+    /// Light from infinity that reaches distant surfaces; photons that scatter there are redirected
+    /// to the scene.
     Far = "far",
     /// An environment, constant or from an image.
     Environment = "environment",
@@ -126,7 +129,7 @@ features! {
     Split = "split",
     /// Photon tracing.
     Photons = "photons",
-    /// Photons that no diffuse surface has scattered are stored.
+    /// Photons that no diffuse surface has scattered are stored, too.
     First = "first",
     /// The layer of direct light.
     DirectLayer = "direct_layer",
@@ -143,14 +146,14 @@ impl Feature {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Features(u64);
 
-/// The set holds one bit for each feature.
+/// one bit per feature
 const _: () = assert!(SHARED.len() + Bsdf::ALL.len() <= u64::BITS as usize);
 
-/// Most shapes that shaders test one after another, without a kd-tree.
+/// Greatest number of shapes that shaders test one after another, without a kd-tree.
 const FEW: usize = 16;
 
-/// The shapes of a kd-tree that is one leaf, where they are few and the code to test one is short:
-/// shaders name each of them.
+/// Shapes of a kd-tree with a single leaf, if they are few and have short intersection code;
+/// shaders test each of them by a constant reference. Empty otherwise.
 pub fn few(scene: &Scene) -> &[u32] {
     match scene.nodes.first() {
         Some(root) if root.is_leaf() => {
@@ -163,7 +166,7 @@ pub fn few(scene: &Scene) -> &[u32] {
 }
 
 impl Features {
-    /// What `scene` rendered with `settings` requires.
+    /// Features that `scene` rendered with `settings` requires.
     pub fn of(scene: &Scene, settings: &RenderSettings) -> Self {
         let mut set = Self::default();
         let mut put = |feature, needed| {
@@ -230,12 +233,12 @@ impl Features {
         set
     }
 
-    /// Returns the set with one more feature.
+    /// Returns the set with `feature` added.
     pub const fn with(self, feature: Feature) -> Self {
         Self(self.0 | 1 << feature.place())
     }
 
-    /// Returns whether a feature is required.
+    /// Returns true if `feature` is required.
     pub const fn has(self, feature: Feature) -> bool {
         self.0 >> feature.place() & 1 == 1
     }

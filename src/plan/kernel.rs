@@ -1,49 +1,49 @@
-//! The kernels: one descriptor each, which shader composition, binding layouts, setup, bench and
-//! ablation read.
+//! Declarations of the kernels, one per kernel, which shader composition, binding layouts, setup,
+//! bench and ablation read.
 
 use super::buffer::Buffer;
 use super::features::{Feature, Features};
 
-/// Buckets that one workgroup of the scan kernels covers; the same number of blocks is the most
-/// there may be.
+/// Number of buckets that one workgroup of the scan kernels covers, and the greatest number of
+/// blocks.
 pub const SCAN_BLOCK: u32 = 4096;
-/// Buckets that one workgroup of [`Kernel::GridSortLong`] looks through.
+/// Number of buckets that one workgroup of [`Kernel::GridSortLong`] examines.
 pub const SORT_BUCKETS: u32 = 256;
-/// Items that one workgroup of most kernels covers.
+/// Number of items that one workgroup of most kernels covers.
 const WORKGROUP: u32 = 64;
 
-/// A kernel.
+/// Kernel of a pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Kernel {
-    /// Eye paths to visible points.
+    /// Traces eye paths to visible points.
     EyeTrace,
-    /// Eye paths to the layers of first hits.
+    /// Traces eye paths for the AOVs.
     AovTrace,
-    /// Photon paths to records.
+    /// Traces photon paths to records.
     PhotonTrace,
-    /// Records per bucket.
+    /// Counts the records per bucket.
     GridCount,
-    /// Sums of blocks of buckets.
+    /// Sums the counts in blocks of buckets.
     GridScanReduce,
-    /// Exclusive prefix sums of the blocks' sums.
+    /// Computes the exclusive prefix sums of the blocks' sums.
     GridScanSums,
-    /// Exclusive prefix sums of the buckets.
+    /// Computes the exclusive prefix sums of the buckets' counts.
     GridScan,
-    /// Records into bucket order.
+    /// Puts the record indices into bucket order.
     GridScatter,
-    /// Each short bucket into the order of its keys.
+    /// Sorts each short bucket by key.
     GridSort,
-    /// Each long bucket into the order of its keys.
+    /// Sorts each long bucket by key.
     GridSortLong,
-    /// Density estimates.
+    /// Computes the density estimates.
     Gather,
-    /// Photons' light by class.
+    /// Adds the photons' radiance to the layers, by photon class.
     ResolveParts,
-    /// Estimates into the film.
+    /// Adds the estimates to the film.
     Resolve,
 }
 
-/// What a kernel runs over: the range of its dispatch.
+/// Items that a kernel runs over: the range of its dispatch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Over {
     /// Visible points of a chunk.
@@ -52,7 +52,7 @@ pub enum Over {
     Pixels,
     /// Photons of a batch.
     Photons,
-    /// Records; the kernel stops at the count in `counters`.
+    /// Records of the capacity; the kernel stops at the count in `counters`.
     Records,
     /// Buckets of the grid.
     Buckets,
@@ -60,7 +60,7 @@ pub enum Over {
     Blocks,
 }
 
-/// How a kernel uses a buffer.
+/// Access of a kernel to a buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Access {
     /// Reads elements.
@@ -73,36 +73,36 @@ pub enum Access {
     Atomic,
 }
 
-/// A buffer that a kernel binds.
+/// Binding of a buffer to a kernel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Use {
-    /// The buffer.
+    /// Buffer that is bound.
     pub buffer: Buffer,
-    /// How it is used.
+    /// Access to the buffer.
     pub access: Access,
-    /// The feature without which it is not bound.
+    /// Feature that the binding requires, if any.
     pub feature: Option<Feature>,
 }
 
 impl Use {
-    /// Returns whether the kernel only reads the buffer.
+    /// Returns true if the kernel only reads the buffer.
     pub const fn is_read_only(self) -> bool {
         matches!(self.access, Access::Read | Access::ReadVectors)
     }
 }
 
-/// What is declared about a kernel.
+/// Declaration of a kernel.
 #[derive(Clone, Copy, Debug)]
 pub struct KernelInfo {
-    /// Stem of its shader file and of its Rust twin, entry point and label.
+    /// Stem of its shader file, which is also its entry point and label.
     pub stem: &'static str,
-    /// What it runs over.
+    /// Items that it runs over.
     pub over: Over,
-    /// Items that one workgroup covers; dispatches begin at multiples of it.
+    /// Number of items that one workgroup covers; dispatches start at multiples of it.
     pub workgroup_items: u32,
-    /// Whether it traces rays, and hence binds the scene.
+    /// True if it traces rays, and therefore binds the scene.
     pub traces: bool,
-    /// The buffers that it binds after the scene's.
+    /// Buffers that it binds after those of the scene.
     pub uses: &'static [Use],
 }
 
@@ -122,7 +122,7 @@ const fn with(feature: Feature, used: Use) -> Use {
     Use { feature: Some(feature), ..used }
 }
 
-/// The scene's buffers, for kernels that trace rays.
+/// Buffers of the scene, for kernels that trace rays.
 const SCENE: &[Use] = &[
     read(Buffer::Scene),
     with(Feature::KdTree, read(Buffer::Nodes)),
@@ -150,7 +150,7 @@ impl Kernel {
         Self::Resolve,
     ];
 
-    /// The descriptor.
+    /// Declaration of the kernel.
     pub const fn info(self) -> KernelInfo {
         use Buffer::*;
         match self {
@@ -281,7 +281,7 @@ impl Kernel {
         self.info().stem
     }
 
-    /// The buffers that it binds with these features, in the order of their bindings.
+    /// Buffers that the kernel binds with these features, in binding order.
     pub fn uses(self, features: Features) -> impl Iterator<Item = Use> {
         let info = self.info();
         let scene = if info.traces { SCENE } else { &[] };

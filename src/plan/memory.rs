@@ -1,4 +1,4 @@
-//! How much memory a plan takes, and the same plan cut so that it fits.
+//! Memory requirement of a plan, and division of a plan so that it fits a limit.
 
 use super::super::kernels::bytes::{FILM_BYTES, STATISTICS_BYTES};
 use super::super::kernels::records::PhotonRecord;
@@ -13,13 +13,13 @@ use crate::film::estimate::PixelError;
 use crate::memory::{Memory, OverBudget, Part, total};
 use crate::scene::settings::Method;
 
-/// Least visible points of a tile: with fewer a device has nothing to do between two steps.
+/// Least number of visible points in a tile: with fewer, a device is idle between steps.
 const LEAST_TILE: u32 = 1 << 14;
-/// Batches up to which smaller ones cost less than more tiles would.
+/// Number of batches up to which smaller batches cost less than more tiles.
 const MANY_BATCHES: u32 = 16;
-/// Bytes of each pixel that a channel of a picture file takes.
+/// Bytes per pixel of a channel of an image file in preparation.
 const CHANNEL_BYTES: u64 = 8;
-/// Most that is read back from a device in one step.
+/// Greatest number of bytes read back from a device in one step.
 const READING_BYTES: u64 = 16 << 20;
 
 const SCENE: &str = "take coarser meshes or smaller textures";
@@ -28,23 +28,24 @@ const SAMPLES: &str = "lower --eye-samples or --size, or take --radius-rule glob
 const LAYERS: &str = "ask for fewer layers by --aov, or make the picture smaller by --size";
 const PHOTONS: &str = "lower --photons, or trace them in smaller batches by --batch";
 
-/// Where a plan's buffers are.
+/// Location of a plan's buffers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BufferPlace {
-    /// In the program's own memory: the CPU engine.
+    /// In the program's memory: the CPU engine.
     Program {
-        /// Whether there is a copy of the film for checkpoints.
+        /// True if the film is copied for checkpoints.
         saves: bool,
     },
-    /// On a device with a driver, which keeps the scene and the film as well.
+    /// On a device with a driver; the program keeps copies of scene and film.
     Device {
-        /// Whether that is main memory too.
+        /// True if the device's memory is main memory.
         in_main_memory: bool,
     },
 }
 
 impl Plan {
-    /// Bytes by purpose, on the device and beside it, for a scene whose tables take `scene` bytes.
+    /// Bytes by purpose, on the device and in the program together, for a scene whose tables take
+    /// `scene` bytes.
     pub fn memory(&self, scene: u64, place: BufferPlace) -> Vec<Part> {
         let pixels = u64::from(self.pixels);
         let buffers = self.buffers();
@@ -52,7 +53,7 @@ impl Plan {
             buffers.iter().find(|(other, _)| *other == buffer).map_or(0, |(_, bytes)| *bytes)
         };
         let path = self.settings.method == Method::Path;
-        // buffers of chunks are told for the largest one
+        // sizes of per-chunk buffers are those of the largest chunk: scale to the whole image
         let points = pixels * u64::from(self.eye_samples);
         let whole = |buffer: Buffer| match self.is_reused(buffer) {
             true => bytes(buffer),
@@ -68,7 +69,8 @@ impl Plan {
         let film = pixels * FILM_BYTES as u64;
         let layers = whole(Buffer::Aovs) + whole(Buffer::Parts);
         let device = matches!(place, BufferPlace::Device { .. });
-        // what a render goes on from is kept twice, unless it cannot be lost
+        // the state that a render resumes from is stored twice, unless the engine cannot lose it
+        // and saves no checkpoints
         let copies = if place == (BufferPlace::Program { saves: false }) { 1 } else { 2 };
         let records = if device {
             [
@@ -89,8 +91,8 @@ impl Plan {
         } else {
             0
         };
-        // the picture and what it says of its error, beside the film on its way from the device or
-        // channels on theirs to a file
+        // image and error estimate, plus the film during its transfer from the device or the
+        // channels during theirs to a file
         let channels = (8 + 3 * self.aovs.iter().count() as u64) * CHANNEL_BYTES;
         let on_its_way = if device { channels.max(FILM_BYTES as u64) } else { channels };
         let result = pixels * (12 + size_of::<PixelError>() as u64 + on_its_way);
@@ -108,12 +110,12 @@ impl Plan {
         parts.into_iter().filter(|part| part.bytes > 0).collect()
     }
 
-    /// The same plan, cut so that it fits: the picture in tiles, which changes no bit, and where
-    /// that is not enough and `memory` lets it, photons in smaller batches, whose sums are rounded
-    /// otherwise. [`Self::settings`] then name the batch.
+    /// Divides the plan so that it fits: the image into tiles, which changes no bit, and, if that
+    /// is not enough and `memory` permits it, the photons into smaller batches, which changes the
+    /// rounding of their sums. [`Self::settings`] then contain the batch size.
     ///
     /// # Errors
-    /// Where nothing of it fits.
+    /// No division fits.
     pub fn within(
         mut self,
         scene: u64,
@@ -131,8 +133,8 @@ impl Plan {
         }
         let gathers = self.features.has(Feature::Photons) && self.settings.method != Method::Path;
         let (planned, whole) = (self.settings.batch, self.batch_photons);
-        // first no smaller batches at all, then some in large tiles, since each tile has the
-        // photons of smaller ones traced anew
+        // first keep the batches, then make some smaller in large tiles, since each tile traces the
+        // photons of smaller batches again
         let rounds: &[u32] =
             if memory.cuts_batches() && gathers { &[1, MANY_BATCHES, u32::MAX] } else { &[1] };
         for most in rounds {
@@ -159,14 +161,14 @@ impl Plan {
         Err(OverBudget::new(&self.memory(scene, place), (limit, of)).into())
     }
 
-    /// The same with the picture in tiles of about so many visible points, of which one at a time
-    /// is on the device.
+    /// Returns the plan with the image in tiles of about `points` visible points, of which one at a
+    /// time is on the device.
     pub fn in_tiles(self, points: u32) -> Self {
         let chunk_points = (points / self.eye_samples).max(1) * self.eye_samples;
         Self { tiled: true, chunk_points, ..self }
     }
 
-    /// Number of batches that a pass's photons come in.
+    /// Number of batches in a pass.
     pub fn batches(&self) -> u32 {
         if self.features.has(Feature::Photons) {
             self.settings.photons.div_ceil(self.batch_photons)
@@ -176,7 +178,7 @@ impl Plan {
     }
 }
 
-/// Name and bytes of every table of a flattened scene.
+/// Name and bytes of every table of a packed scene.
 pub fn scene_tables(scene: &Scene) -> Vec<(&'static str, u64)> {
     fn bytes<T>(table: &[T]) -> u64 {
         size_of_val(table) as u64
@@ -205,7 +207,7 @@ pub fn scene_tables(scene: &Scene) -> Vec<(&'static str, u64)> {
     ]
 }
 
-/// The bytes of all tables.
+/// Total bytes of all tables.
 pub fn scene_bytes(scene: &Scene) -> u64 {
     scene_tables(scene).iter().map(|(_, bytes)| bytes).sum()
 }

@@ -1,9 +1,9 @@
 //! A pass as data: a list of commands over declared buffers and kernels, which engines execute.
 //!
-//! The picture is cut into chunks of visible points and the photons into batches, so that no buffer
-//! passes a device's binding limit. Neither changes a result but for the grouping of the photons'
-//! sum, and batches are the same for every engine. Where memory is scarce chunks become tiles,
-//! which take turns with one set of buffers.
+//! The image is divided into chunks of visible points and the photons into batches, so that no
+//! buffer exceeds a device's binding limit. Chunks do not change the result; batches only change
+//! the grouping of the sum over photons, and are the same for every engine. If memory is scarce,
+//! chunks become tiles, which use one set of buffers in turn.
 
 mod buffer;
 mod commands;
@@ -34,65 +34,65 @@ pub use kernel::{Access, Kernel, KernelInfo, Over, SCAN_BLOCK, SORT_BUCKETS, Use
 pub use memory::{BufferPlace, scene_bytes, scene_tables};
 pub use scale::global_scale_sq;
 
-/// Bytes that one storage binding may have on every device (WebGPU's default limit).
+/// Greatest size of a storage binding that every device supports, bytes (WebGPU's default limit).
 pub const BINDING_LIMIT: u64 = 128 << 20;
-/// Most visible points in a chunk.
+/// Greatest number of visible points in a chunk.
 const CHUNK_POINTS: u32 = 1 << 20;
-/// Most records that a batch may store.
+/// Greatest number of records that a batch may store.
 const CAPACITY_MAX: u32 = 1 << 22;
-/// Buckets of the grid for every record that there may be: fewer, and readers meet more photons of
+/// Number of grid buckets per record of the capacity: with fewer, readers meet more photons of
 /// other rows.
 const BUCKETS: u32 = 2;
 
-/// What a render of one scene with one set of settings does.
+/// Plan of a render: one scene with one set of settings.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// What the scene and the settings need.
+    /// Features that the scene and the settings require.
     pub features: Features,
-    /// The settings, with a radius in the place of "auto".
+    /// Settings, with a chosen radius in place of "auto".
     pub settings: RenderSettings,
-    /// Pixels per row of the window that is rendered.
+    /// Number of pixels per row of the render window.
     pub width: u32,
-    /// Pixels of the window.
+    /// Number of pixels of the window.
     pub pixels: u32,
-    /// The window's first pixel, counted in the whole picture.
+    /// First pixel of the window, as an index into the full image.
     pub window_first: u32,
-    /// What is found in addition to radiance.
+    /// AOVs to compute in addition to radiance.
     pub aovs: Aovs,
-    /// Visible points per pixel.
+    /// Number of visible points per pixel.
     pub eye_samples: u32,
-    /// Visible points per chunk, a multiple of `eye_samples`.
+    /// Number of visible points per chunk, a multiple of `eye_samples`.
     pub chunk_points: u32,
-    /// Whether chunks are tiles: one after another goes through all steps of a pass, with the
-    /// buffers of the one before for what lives no longer than that.
+    /// True if chunks are tiles: each in turn goes through all steps of a pass and reuses the
+    /// buffers of the previous one for temporary data.
     pub tiled: bool,
-    /// Photons per batch.
+    /// Number of photons per batch.
     pub batch_photons: u32,
-    /// Records that the buffers hold.
+    /// Capacity of the record buffers.
     pub capacity: u32,
-    /// Buckets of the hash grid, a power of two.
+    /// Number of buckets of the hash grid, a power of two.
     pub buckets: u32,
-    /// What was found by looking at the scene before planning.
+    /// Results of the probe of the scene before planning.
     pub probe: Probe,
-    /// Radius of the first class of photons over [`RenderSettings::radius`]: one, or where diffuse
-    /// surfaces have scattered all that are stored [`RenderSettings::indirect_radius`].
+    /// Radius of the first class of photons over [`RenderSettings::radius`]:
+    /// [`RenderSettings::indirect_radius`] if all stored photons have been scattered by diffuse
+    /// surfaces, else one.
     pub widening: f64,
-    /// The world point at the scene's origin.
+    /// World point at the origin of scene space.
     pub center: DVec3,
-    /// Which shape of the scene a reference belongs to, where that is asked for.
+    /// Maps references to shapes of the scene file, if requested.
     pub objects: Objects,
-    /// World units in one scene unit.
+    /// World units per scene unit.
     pub unit: f64,
-    /// Scene radiance times this is world radiance.
+    /// Factor from scene radiance to world radiance.
     pub radiance_unit: f64,
-    /// Luminance of the brightest thing that eye paths may meet by mirrors or through glass, world
-    /// units.
+    /// Greatest luminance that eye paths may meet through mirrors or glass, world units.
     pub glint: f64,
-    /// Number of the render's first pass; all others count from there.
+    /// Number of the render's first pass; pass numbers count from it.
     pub first_pass: u32,
-    /// Passes that the film held when the engine took over.
+    /// Number of passes in the film when the engine took over a saved state.
     pub taken_over: u32,
-    /// Looked at between the steps of a pass, and on GPUs between submissions.
+    /// Cancellation flag, checked between the steps of a pass and on GPUs between submissions.
     pub cancel: Cancel,
 }
 
@@ -141,21 +141,20 @@ impl Plan {
         }
     }
 
-    /// The same with batches of at most so many photons.
+    /// Returns the plan with batches of at most `photons` photons.
     pub fn with_batch(mut self, photons: u32) -> Self {
         self.settings.batch = Some(photons);
         self.in_batches()
     }
 
-    /// The same with the batches that its settings ask for.
+    /// Recomputes the batches from the plan's settings.
     fn in_batches(mut self) -> Self {
         (self.capacity, self.batch_photons) = batch(&self.settings, &self.probe);
         self.buckets = BUCKETS * self.capacity;
         self
     }
 
-    /// The same for a film: for its window alone, and with what it asks for in addition to
-    /// radiance.
+    /// Restricts the plan to the film's window and adds the film's AOVs.
     pub fn on(mut self, film: &Film) -> Self {
         if let Some([x0, y0, x1, y1]) = film.window {
             self.window_first = y0 * film.width + x0;
@@ -166,23 +165,23 @@ impl Plan {
         if self.aovs.has(Aov::Direct) && self.settings.method != Method::Path {
             self.features = self.features.with(Feature::DirectLayer);
         }
-        // what tells caustics from the rest is their class
+        // the photon class distinguishes caustics from the rest
         if self.parts_photons() && self.features.has(Feature::First) {
             self.features = self.features.with(Feature::Split);
         }
         self
     }
 
-    /// Whether what photons bring is parted by the way they came.
+    /// Returns true if photons are accumulated separately by class.
     pub fn parts_photons(&self) -> bool {
         self.features.has(Feature::Photons)
             && (self.aovs.has(Aov::Caustic) || self.aovs.has(Aov::Indirect))
     }
 
-    /// Plans to go on from `state`.
+    /// Continues from `state`.
     ///
     /// # Errors
-    /// Where the plan has no use for it.
+    /// The state does not fit the plan.
     pub fn take_over(&mut self, state: &State) -> Result<(), EngineError> {
         let local = self.features.has(Feature::Local) && self.settings.method != Method::Path;
         if local && state.first_pass > 0 {
@@ -207,46 +206,46 @@ impl Plan {
         Ok(())
     }
 
-    /// What the film says.
+    /// Conversion of the film to results in world units.
     pub fn readout(&self) -> Readout {
         Readout { width: self.width, unit: self.radiance_unit, glint: self.glint }
     }
 
-    /// Why the radius is what it is, where the settings left it open and photons are gathered at
-    /// all.
+    /// Explanation of the automatically chosen radius; `None` if the settings fix it or no photons
+    /// are gathered.
     pub fn automatic_radius(&self) -> Option<Automatic> {
         self.probe.automatic.filter(|_| self.features.has(Feature::Photons))
     }
 
-    /// Number of chunks.
+    /// Number of chunks of the image.
     pub fn chunks(&self) -> u32 {
         let points = self.pixels as u64 * self.eye_samples as u64;
         points.div_ceil(self.chunk_points as u64) as u32
     }
 
-    /// First visible point of a chunk and their number.
+    /// First visible point of a chunk, and their number.
     pub fn chunk(&self, chunk: u32) -> (u32, u32) {
         let first = chunk * self.chunk_points;
         (first, (self.pixels * self.eye_samples - first).min(self.chunk_points))
     }
 
-    /// The picture that a film holds, in world units.
+    /// Image in a film, in world units.
     pub fn picture(&self, film: &[FilmPixel]) -> Picture {
         self.readout().picture(film)
     }
 
-    /// What a film after `passes` passes says of its error, in world units.
+    /// Error estimate of a film after `passes` passes, in world units.
     pub fn errors(&self, film: &[FilmPixel], passes: u32) -> ErrorMap {
         self.readout().errors(film, passes)
     }
 
-    /// What was left out of the picture that a film holds.
+    /// Counts of the passes that were left out of the image in a film.
     pub fn rejections(&self, film: &[FilmPixel]) -> Rejections {
         self.readout().rejections(film)
     }
 }
 
-/// Records that the buffers are to hold, and photons per batch.
+/// Capacity of the record buffers, and number of photons per batch.
 fn batch(settings: &RenderSettings, probe: &Probe) -> (u32, u32) {
     let most = settings.batch.unwrap_or(u32::MAX).clamp(1, settings.photons.max(1));
     let wanted = (most as f64 * probe.records_per_photon * 1.25).max(1024.0);
@@ -257,7 +256,7 @@ fn batch(settings: &RenderSettings, probe: &Probe) -> (u32, u32) {
     (capacity, fit.min(key_room).clamp(1, most as u64) as u32)
 }
 
-/// Bits that hold a bounce number and a class.
+/// Number of bits that store a bounce number and a class.
 fn key_bits(max_bounces: u32) -> u32 {
     33 - max_bounces.leading_zeros()
 }

@@ -1,11 +1,11 @@
-//! How the gather radius shrinks from pass to pass.
+//! Shrinking of the gather radius from pass to pass.
 
 use super::Plan;
 use crate::scene::settings::RadiusRule;
 
 impl Plan {
-    /// Squared radius in pass `pass` of this render over the squared start radius; the local rule's
-    /// is the plan's guess, which only sets the cell size.
+    /// Squared radius in pass `pass` of this render over the squared start radius. For the local
+    /// rule it is an estimate, which only sets the cell size.
     pub fn scale_sq(&self, pass: u32) -> f64 {
         match self.settings.radius_rule {
             RadiusRule::Fixed => 1.0,
@@ -13,8 +13,7 @@ impl Plan {
         }
     }
 
-    /// Typical gather radius of pass `pass` in world units; of the first class, where there are
-    /// two.
+    /// Typical gather radius of pass `pass` in world units; of the first class, if there are two.
     pub fn radius(&self, pass: u32) -> f64 {
         self.widening * self.probe.radius * self.scale_sq(pass).sqrt() * self.unit
     }
@@ -28,12 +27,12 @@ pub fn global_scale_sq(i: u64, alpha: f64) -> f64 {
     if i <= DIRECT {
         return head;
     }
-    // Gamma(i + a) / Gamma(i + 1) over the same at i = DIRECT
+    // Gamma(i + a) / Gamma(i + 1) relative to its value at i = DIRECT
     let ratio = |x: f64| ln_gamma(x + alpha) - ln_gamma(x + 1.0);
     head * (ratio(i as f64) - ratio(DIRECT as f64)).exp()
 }
 
-/// Stirling's series; good to 1e-15 relative for x >= 100.
+/// ln Gamma(x) by Stirling's series; relative error about 1e-15 for x >= 100.
 fn ln_gamma(x: f64) -> f64 {
     let r = 1.0 / x;
     (x - 0.5) * x.ln() - x + 0.918_938_533_204_672_7 + r / 12.0 - r * r * r / 360.0

@@ -1,11 +1,12 @@
-//! Axis-parallel box by slabs. Twin: `shaders/shapes/cuboid.wgsl`.
+//! Axis-parallel box, intersected by slabs. Twin: `shaders/shapes/cuboid.wgsl`.
 
 use super::math::{EPS, FAR, max_abs};
 use super::ray::{Hit, Ray};
 use super::real::{Real, Vec2, Vec3};
 use super::table::Cuboid;
 
-/// Nearest crossing in `(t_min, hit.t)`; `hit.u` is the face: axis, plus 3 on the upper side.
+/// Finds the nearest crossing in `(t_min, hit.t)`; `hit.u` is the face: its axis, plus 3 for the
+/// upper side.
 pub fn intersect_cuboid(cuboid: &Cuboid, reference: u32, ray: &Ray, hit: &mut Hit) {
     let mut near = -FAR;
     let mut far = FAR;
@@ -44,7 +45,7 @@ pub fn intersect_cuboid(cuboid: &Cuboid, reference: u32, ray: &Ray, hit: &mut Hi
     }
 }
 
-/// The axis that a face lies across.
+/// Axis that a face is perpendicular to.
 pub fn cuboid_axis(face: Real) -> u32 {
     face as u32 % 3
 }
@@ -60,20 +61,20 @@ pub fn cuboid_normal(face: Real) -> Vec3 {
     )
 }
 
-/// `position` moved onto a face.
+/// Projects `position` onto a face.
 pub fn cuboid_project(cuboid: &Cuboid, position: Vec3, face: Real) -> Vec3 {
     let n = cuboid_normal(face);
     let corner = if face >= 3.0 { cuboid.upper } else { cuboid.lower };
     position + (corner - position) * n.abs()
 }
 
-/// Bound of the distance between a projected point and its face.
+/// Bound on the distance between a projected point and its face, scene units.
 pub fn cuboid_error(cuboid: &Cuboid) -> Real {
     16.0 * EPS * max_abs(cuboid.lower).max(max_abs(cuboid.upper))
 }
 
-/// Each face is the unit square, upright and unmirrored to someone outside: v goes up along y; on
-/// top, v goes away along -z, and on the bottom along z.
+/// Texture coordinates: each face is the unit square, upright and not mirrored as seen from
+/// outside. On the sides v runs along +y, on the top along -z, on the bottom along +z.
 pub fn cuboid_uv(cuboid: &Cuboid, position: Vec3, face: Real) -> Vec2 {
     let q = (position - cuboid.lower) / (cuboid.upper - cuboid.lower);
     let n = cuboid_normal(face);

@@ -1,17 +1,17 @@
-//! Rays through the kd-tree. Twin: `shaders/shapes/kdtree.wgsl`.
+//! Ray traversal of the kd-tree. Twin: `shaders/shapes/kdtree.wgsl`.
 //!
-//! The far children that wait lie on a stack as deep as the tree. A node says which of its children
-//! are empty: these leaves, which are more than half of all, are neither read nor put on the stack.
-//! Both twins test the same leaves in the same order, so that ties in the distance end alike.
+//! The stack of deferred far children is as deep as the tree. A node stores which of its children
+//! are empty: these leaves, more than half of all, are neither read nor pushed. Both twins test the
+//! same leaves in the same order, so ties in the distance resolve identically.
 //!
-//! A computed hit lies off its primitive by at most some 30 roundings of the largest coordinate of
-//! the primitive as seen from the ray's origin. That is no more than the distance of the hit plus
-//! the primitive's extent. So every plane is taken as a slab of half-width `SLACK (|t| +
-//! primitive_size)`, with the greatest `|t|` in the ray's interval in the node (compare the
-//! interval padding of Ize 2013, "Robust BVH Ray Traversal"): a ray that is in the slab visits both
-//! sides, and the nearest computed hit is found exactly as by trying all primitives. The slab
-//! shrinks with the interval, so geometry far away does not widen it. The builder pads the few
-//! primitives that are larger than `primitive_size`.
+//! The error of a computed hit is at most about 30 roundings of the primitive's largest coordinate
+//! relative to the ray's origin. That coordinate is at most the hit distance plus the primitive's
+//! extent. Every splitting plane is therefore treated as a slab of half-width
+//! `SLACK (|t| + primitive_size)`, with the greatest `|t|` of the ray's interval in the node
+//! (compare the interval padding of Ize 2013, "Robust BVH Ray Traversal"): a ray inside the slab
+//! visits both children, and the nearest computed hit equals that of a brute-force search over all
+//! primitives. The slab narrows with the interval, so distant geometry does not widen it. The
+//! builder pads the few primitives that are larger than `primitive_size`.
 
 use super::math::EPS;
 use super::ray::{Hit, Ray};
@@ -19,51 +19,51 @@ use super::real::{Bits, Plain, Real, Vec3};
 use super::table::NONE;
 use bytemuck::Zeroable;
 
-/// Greatest number of interior nodes above a leaf, and so of children that wait.
+/// Greatest number of interior nodes above a leaf, and so the greatest number of deferred children.
 pub const MAX_DEPTH: u32 = 32;
-/// Half-width of the slab about a plane, over the hit's distance plus the primitive's size: 64
-/// roundings. The watertight triangle test is bounded by about 30 (7 is the most seen), the plane's
-/// distance by 3.
+/// Half-width of the slab about a splitting plane, as a fraction of the hit distance plus the
+/// primitive's size: 64 EPS. The watertight triangle test contributes at most about 30 EPS (7 EPS
+/// is the most observed), the distance to the plane 3 EPS.
 pub const SLACK: Real = 64.0 * EPS;
-/// Stands for a direction component that is (nearly) zero: so small that a slab which the ray runs
-/// beside is never reached within the tree, and one which the ray runs in is never left.
+/// Replaces direction components that are (nearly) zero. So small that a slab parallel to the ray
+/// and outside it is never reached within the tree, and one that contains the ray is never left.
 const LEVEL: Real = 1e-20;
 
-/// A node of the kd-tree in 8 bytes (16 in f64). Two siblings lie side by side, the lower one at an
-/// even index.
+/// Node of the kd-tree in 8 bytes (16 in f64). Siblings are adjacent, the lower one at an even
+/// index.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain, Zeroable)]
 pub struct Node {
     /// Interior: bits of the splitting plane's position. Leaf: index of its first reference.
     pub word0: Bits,
-    /// Interior: half the index of the lower child << 4, | 8 or | 4 where the upper or lower child
-    /// is empty, | axis. Leaf: number of references << 2 | 3.
+    /// Interior: half the lower child's index << 4, | 8 if the upper child is empty, | 4 if the
+    /// lower child is empty, | axis. Leaf: number of references << 2 | 3.
     pub word1: u32,
 }
 
-/// Index of an empty leaf: the place beside the root.
+/// Index of an empty leaf: the root's unused sibling.
 pub(super) const NOTHING: u32 = 1;
 
 impl Node {
-    /// A node with two children, at `children`, which is even, and after it, split at `axis =
-    /// position`; `empty`: which of them are leaves without references.
+    /// Interior node split at `axis = position`. Its children are at `children`, which is even, and
+    /// `children + 1`; `empty[i]` is true if child `i` is a leaf without references.
     pub fn interior(axis: usize, position: Real, children: u32, empty: [bool; 2]) -> Node {
         let empty = u32::from(empty[1]) << 3 | u32::from(empty[0]) << 2;
         Node { word0: position.to_bits(), word1: children << 3 | empty | axis as u32 }
     }
 
-    /// A leaf with `count` references from `first` on.
+    /// Leaf with the `count` references from index `first`.
     pub fn leaf(first: u32, count: u32) -> Node {
         Node { word0: first as Bits, word1: count << 2 | 3 }
     }
 
-    /// Whether the node has no children.
+    /// Returns true if the node has no children.
     #[inline]
     pub fn is_leaf(self) -> bool {
         self.word1 & 3 == 3
     }
 
-    /// Interior: axis and position of the plane, and index of the lower child.
+    /// Interior: axis and position of the splitting plane, and index of the lower child.
     #[inline]
     pub fn plane(self) -> (usize, Real, u32) {
         ((self.word1 & 3) as usize, Real::from_bits(self.word0), self.children())
@@ -75,13 +75,13 @@ impl Node {
         self.word1 >> 3 & !1
     }
 
-    /// Interior: whether the lower (0) or upper (1) child is an empty leaf.
+    /// Interior: returns true if the lower (0) or upper (1) child is an empty leaf.
     #[inline(always)]
     pub fn is_empty(self, child: u32) -> bool {
         self.word1 >> (2 + child) & 1 != 0
     }
 
-    /// Leaf: the range of its references.
+    /// Leaf: range of its references.
     #[inline]
     pub fn range(self) -> std::ops::Range<usize> {
         let first = self.word0 as usize;
@@ -89,23 +89,23 @@ impl Node {
     }
 }
 
-/// A kd-tree as the kernels see it; `nodes` has at least the first two.
+/// kd-tree as the kernels read it; `nodes` has at least two entries.
 #[derive(Clone, Copy, Debug)]
 pub struct Tree<'a> {
-    /// Nodes, the root first and an empty leaf beside it, then pairs of siblings.
+    /// Nodes: the root, an empty leaf as its sibling, then pairs of siblings.
     pub nodes: &'a [Node],
-    /// References in the order of the leaves.
+    /// References in leaf order.
     pub refs: &'a [u32],
-    /// Least corner of the box about everything.
+    /// Least corner of the bounding box of all primitives.
     pub bounds_min: Vec3,
-    /// Greatest corner.
+    /// Greatest corner of that box.
     pub bounds_max: Vec3,
-    /// Extent up to which the slab about a plane covers the rounding of triangles; larger ones are
-    /// padded.
+    /// Largest primitive extent (scene units) for which the slab about a plane covers the rounding
+    /// of the intersection tests; the builder pads larger primitives.
     pub primitive_size: Real,
 }
 
-/// A child that waits: its index and the ray's interval in it.
+/// Deferred child: its index and the ray's interval in it.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Waiting {
     pub node: u32,
@@ -113,13 +113,13 @@ pub(super) struct Waiting {
     pub end: Real,
 }
 
-/// The larger of two numbers in one instruction; `Real::max` takes four, in case one is none.
+/// Maximum in one instruction; `Real::max` takes four because it handles NaN.
 #[inline]
 pub(super) fn larger(a: Real, b: Real) -> Real {
     if a > b { a } else { b }
 }
 
-/// The smaller of two numbers.
+/// Minimum in one instruction; see [`larger`].
 #[inline]
 pub(super) fn smaller(a: Real, b: Real) -> Real {
     if a < b { a } else { b }
@@ -130,25 +130,26 @@ fn reciprocal(d: Real) -> Real {
     1.0 / if d.abs() < LEVEL { LEVEL } else { d }
 }
 
-/// What the walk needs to know of a ray along one axis.
+/// Per-ray constants of the traversal along one axis.
 #[derive(Clone, Copy)]
 pub(super) struct Axis {
     pub origin: Real,
     pub inverse: Real,
-    /// `SLACK` over the direction's component: half-width of a slab in t, per unit of distance.
+    /// `SLACK` over the magnitude of the direction's component: half-width of a slab in t, per unit
+    /// of distance.
     pub slack: Real,
-    /// 1 where the ray meets the upper child first.
+    /// 1 if the ray reaches the upper child first, else 0.
     pub backward: u32,
 }
 
-/// What the primitives of leaves are.
+/// Intersection tests for the primitives in leaves.
 pub trait Primitives {
-    /// Tests those that `references`, a leaf's, name and replaces `hit` by anything nearer.
+    /// Tests the primitives of a leaf, given by `references`, and replaces `hit` by any nearer hit.
     fn intersect(&mut self, references: &[u32], ray: &Ray, hit: &mut Hit);
-    /// Tests what was put off until the walk was over.
+    /// Runs the tests that were deferred to the end of the traversal.
     #[inline(always)]
     fn finish(&mut self, _ray: &Ray, _hit: &mut Hit) {}
-    /// Asks for what [`Primitives::intersect`] will read.
+    /// Prefetches the data that [`Primitives::intersect`] will read.
     fn expect(&self, _references: &[u32]) {}
 }
 
@@ -159,14 +160,14 @@ impl<F: Fn(&[u32], &Ray, &mut Hit)> Primitives for F {
     }
 }
 
-/// Lowers `hit` to the nearest hit with a primitive of the tree.
+/// Sets `hit` to the nearest hit with a primitive of the tree, if that is nearer.
 #[inline(always)]
 pub fn traverse_closest(tree: &Tree, ray: &Ray, hit: &mut Hit, mut primitives: impl Primitives) {
     traverse(tree, ray, false, hit, &mut primitives);
     primitives.finish(ray, hit);
 }
 
-/// Whether `hit` is not [`NONE`] after testing the leaves of the tree until something is hit.
+/// Tests leaves until something is hit; returns true if `hit` is then not [`NONE`].
 #[inline(always)]
 pub fn traverse_any(
     tree: &Tree,
@@ -181,8 +182,8 @@ pub fn traverse_any(
     hit.reference != NONE
 }
 
-/// What the walk needs to know of a ray, and the part of it up to `t_max` that lies in the tree's
-/// box, if any.
+/// Returns the per-axis constants of the ray and its interval, up to `t_max`, in the tree's box, or
+/// `None` if it misses the box. The fourth entry, a copy of z, keeps two-bit axis indices in range.
 #[inline(always)]
 pub(super) fn start(tree: &Tree, ray: &Ray, t_max: Real) -> Option<([Axis; 4], Real, Real)> {
     let inverse = Vec3::new(
@@ -224,6 +225,7 @@ fn traverse(tree: &Tree, ray: &Ray, any: bool, hit: &mut Hit, primitives: &mut i
     let mut begin = root_begin;
     let mut end = root_end;
     loop {
+        // descend to a leaf: near child first, the far one deferred if the ray enters it too
         let mut node = tree.nodes[index as usize];
         while !node.is_leaf() {
             let Axis { origin, inverse, slack, backward } = axes[(node.word1 & 3) as usize];
@@ -259,6 +261,7 @@ fn traverse(tree: &Tree, ray: &Ray, any: bool, hit: &mut Hit, primitives: &mut i
             }
         }
 
+        // resume at the nearest deferred child that starts before the hit
         loop {
             if waiting == 0 {
                 return;

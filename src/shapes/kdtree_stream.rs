@@ -1,27 +1,28 @@
-//! Many rays through the kd-tree, [`STREAM`] of them at a time: while one waits for memory, the
-//! others go on, four of them with each instruction. A ray tests the leaves that
-//! [`traverse_closest`](super::kdtree::traverse_closest) tests, in that order, so that its hit is
-//! the same to the bit. Only the CPU engine has this; on a GPU the lanes are rays anyway.
+//! Traversal of the kd-tree for [`STREAM`] rays at a time: while one ray waits for memory, the
+//! others advance, four per instruction. Each ray tests the same leaves in the same order as in
+//! [`traverse_closest`](super::kdtree::traverse_closest), so its hit is bit-identical. CPU engine
+//! only: on a GPU the lanes are rays already.
 //!
-//! A flight goes round by round. In each, rays at interior nodes take one step down, by the
-//! operations of `kdtree.rs`. Rays that come to a leaf wait there for two rounds: one for the
-//! leaf's references, one for what these name.
+//! The traversal proceeds in rounds. In each round, rays at interior nodes take one step down, by
+//! the operations of `kdtree.rs`. Rays that reach a leaf wait there for two rounds: one to prefetch
+//! the leaf's references, one to prefetch the primitives that these name.
 
 use super::kdtree::{Axis, MAX_DEPTH, NOTHING, Primitives, Tree, Waiting, smaller, start};
 use super::ray::{Hit, Ray};
 use super::real::{Bits, Real, Reals, Words};
 use wide::{CmpGe, CmpLe, CmpLt};
 
-/// Rays in flight: as many as a set has bits, and their stacks fit the first-level cache.
+/// Number of rays in flight: one per bit of the `u64` sets, few enough for their stacks to fit in
+/// the L1 cache.
 pub const STREAM: usize = 64;
-/// Numbers that one instruction takes.
+/// Number of values per SIMD instruction.
 const LANES: usize = 4;
 const GROUPS: usize = STREAM / LANES;
-/// A number of each ray.
+/// One number per ray.
 #[derive(Clone, Copy)]
 struct Each([Reals; GROUPS]);
 
-/// An index of each ray.
+/// One index per ray.
 #[derive(Clone, Copy)]
 struct EachIndex([Words; GROUPS]);
 
@@ -53,14 +54,14 @@ fn words(numbers: Reals) -> Words {
     bytemuck::cast(numbers)
 }
 
-/// The lanes in which this bit is 1.
+/// Mask of the lanes in which bit `bit` of `word` is set.
 #[inline(always)]
 fn has(word: Words, bit: u32) -> Reals {
     let bit = Words::splat(1 << bit);
     numbers((word & bit).cmp_eq(bit))
 }
 
-/// Takes the lanes of a set, the lowest first.
+/// Iterates over the lanes of a set, lowest first.
 #[inline(always)]
 fn each(mut set: u64) -> impl Iterator<Item = usize> {
     std::iter::from_fn(move || {
@@ -72,7 +73,7 @@ fn each(mut set: u64) -> impl Iterator<Item = usize> {
     })
 }
 
-/// Asks for a cache line before it is needed.
+/// Prefetches the cache line of `what` on x86-64; does nothing elsewhere.
 #[inline(always)]
 pub fn fetch<T>(what: Option<&T>) {
     #[cfg(target_arch = "x86_64")]
@@ -81,43 +82,43 @@ pub fn fetch<T>(what: Option<&T>) {
     }
 }
 
-/// See [`Axis`].
+/// [`Axis`] of every ray.
 struct Axes {
     origin: Each,
     inverse: Each,
     slack: Each,
 }
 
-/// What every step needs, each ray in its lane.
+/// State of the traversal steps, one lane per ray.
 struct Steps {
     axes: [Axes; 3],
-    /// Index of the node, and what it says.
+    /// Index of the current node, and its two words.
     node: EachIndex,
     word0: Each,
     word1: EachIndex,
-    /// The ray's interval in it.
+    /// The ray's interval in the node.
     begin: Each,
     end: Each,
     /// See [`Tree::primitive_size`].
     size: Real,
-    /// What may have to go on the stack.
+    /// Far child that may have to be pushed, and its interval.
     far: EachIndex,
     far_begin: Each,
     far_end: Each,
 }
 
-/// Sets of rays.
+/// Sets of rays after a step.
 struct Moves {
-    /// They entered both children, and the far one has to wait.
+    /// Entered both children: the far one must be pushed.
     push: u64,
-    /// They entered none.
+    /// Entered neither child.
     pop: u64,
-    /// They are at a leaf.
+    /// Are at a leaf.
     leaf: u64,
 }
 
 impl Steps {
-    /// From each interior node to the child that the ray enters first, if any.
+    /// Moves each ray at an interior node to the child that it enters first, if any.
     #[inline(always)]
     fn step(&mut self) -> Moves {
         let [x, y, z] = &self.axes;
@@ -164,21 +165,21 @@ impl Steps {
     }
 }
 
-/// Where the rays of a flight come from, and their hits go to.
+/// Source of the rays and receiver of their hits.
 pub trait Rays {
-    /// The next ray in this lane, and its nearest hit with what is not in the tree; `last` is the
-    /// hit of the ray before, if there was one.
+    /// Returns the next ray for this lane and its nearest hit with the shapes outside the tree;
+    /// `last` is the hit of the lane's previous ray, if there was one.
     fn next(&mut self, lane: usize, last: Option<&Hit>) -> Option<(Ray, Hit)>;
 }
 
-/// A ray in flight.
+/// Ray in flight, with its hit so far.
 struct Walk<P> {
     ray: Ray,
     hit: Hit,
     primitives: P,
 }
 
-/// Children that wait for a ray.
+/// Deferred children of one ray.
 #[derive(Clone, Copy)]
 struct Stack {
     count: usize,
@@ -189,14 +190,14 @@ struct Flight<'a, R, P, F> {
     tree: &'a Tree<'a>,
     rays: &'a mut R,
     primitives: F,
-    /// Lanes without a ray.
+    /// Set of lanes without a ray.
     idle: u64,
     steps: Steps,
     stacks: [Stack; STREAM],
     walks: [Option<Walk<P>>; STREAM],
 }
 
-/// Finds the nearest hits of all `rays` with the primitives of the tree.
+/// Finds the nearest hit of each of `rays` with the primitives of the tree.
 #[inline(always)]
 pub fn traverse_closest_many<P: Primitives>(
     tree: &Tree,
@@ -223,14 +224,15 @@ pub fn traverse_closest_many<P: Primitives>(
 }
 
 impl<R: Rays, P: Primitives, F: Fn(&Ray) -> P> Flight<'_, R, P, F> {
-    /// Round by round, until no lane has a ray.
+    /// Runs rounds until no lane has a ray.
     #[inline(always)]
     fn fly(&mut self) {
         let all = u64::MAX;
         for lane in each(all) {
             self.take(lane, None);
         }
-        // who waits at a leaf: all, and those who came to it one and two rounds ago
+        // lanes that wait at a leaf: all, those that reached it last round, and those one round
+        // earlier
         let (mut held, mut early, mut late) = (0, 0, 0);
         while self.idle != all {
             held &= !late;
@@ -264,19 +266,20 @@ impl<R: Rays, P: Primitives, F: Fn(&Ray) -> P> Flight<'_, R, P, F> {
         }
     }
 
-    /// Puts the far child on the stack.
+    /// Pushes the far child.
     #[inline(always)]
     fn push(&mut self, lane: usize) {
         let Steps { far, far_begin, far_end, .. } = &mut self.steps;
         let stack = &mut self.stacks[lane];
-        #[allow(clippy::unnecessary_cast)] // indices are as wide as numbers, and these may be f64
+        #[allow(clippy::unnecessary_cast)] // indices have the width of `Real`, which may be 64 bits
         let node = *far.of(lane) as u32;
         stack.children[stack.count] =
             Waiting { node, begin: *far_begin.of(lane), end: *far_end.of(lane) };
         stack.count += 1;
     }
 
-    /// Goes on with a child that waits; when there is none, with another ray.
+    /// Resumes at the nearest deferred child; if there is none, finishes the ray and takes the
+    /// next.
     #[inline(always)]
     fn next(&mut self, lane: usize) {
         let Some(walk) = &mut self.walks[lane] else {
@@ -298,8 +301,8 @@ impl<R: Rays, P: Primitives, F: Fn(&Ray) -> P> Flight<'_, R, P, F> {
         self.take(lane, Some(hit));
     }
 
-    /// Takes the next ray that meets the tree's box. One in some dozens of steps, and its code is
-    /// large: what shades the hit may be part of it.
+    /// Takes the next ray that meets the tree's box. Not inlined: it runs once in dozens of steps,
+    /// and its code is large, since the caller's shading may be inlined into it.
     #[inline(never)]
     fn take(&mut self, lane: usize, mut last: Option<Hit>) {
         while let Some((ray, hit)) = self.rays.next(lane, last.as_ref()) {
@@ -324,7 +327,7 @@ impl<R: Rays, P: Primitives, F: Fn(&Ray) -> P> Flight<'_, R, P, F> {
         self.idle |= 1 << lane;
     }
 
-    /// Tests what the leaf holds and goes on.
+    /// Tests the primitives of the leaf and resumes.
     #[inline(always)]
     fn leaf(&mut self, lane: usize) {
         let node = self.tree.nodes[*self.steps.node.of(lane) as usize];

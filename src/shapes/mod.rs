@@ -1,4 +1,5 @@
-//! Shapes: what a ray meets, each the twin of a file in `shaders/shapes/`.
+//! Shapes: ray intersection and surface data. Most modules are the twin of a file in
+//! `shaders/shapes/`.
 
 use super::{math, real};
 

@@ -1,7 +1,7 @@
-//! Outlines: flat outlines. A disc about a point near the outline reaches beyond it, where no
-//! photon can lie; what is found in it belongs to the part that the outline covers. Where a wall
-//! stands on the outline, it belongs to the part on this side of the wall. Twin:
-//! `shaders/shapes/outline.wgsl`.
+//! Outlines of flat shapes, and clipping of gather discs against them. A gather disc near an edge
+//! extends past the outline, where no photon can land; the estimate divides by the area inside the
+//! outline. If a wall stands on the shape, only the part of the disc on the query point's side of
+//! the wall counts. Twin: `shaders/shapes/outline.wgsl`.
 
 use super::math::trig::{arctan2, kept};
 use super::math::{EPS, PI, max_abs, unit};
@@ -9,86 +9,89 @@ use super::real::{Plain, Real, Vec2, Vec3, Vec4};
 use super::table::NONE;
 use bytemuck::Zeroable;
 
-/// Least share: an outline of less area within the disc counts as one of this.
+/// Lower bound of the covered share of a disc.
 const SHARE_MIN: Real = 1e-6;
-/// Photons of an outline lie within this many radii of its plane, and the rounding of their
-/// positions.
+/// Photons of an outline lie within this fraction of the disc's radius of its plane, plus the
+/// rounding of their positions.
 const DEPTH: Real = 0.02;
-/// Beyond this ratio of radii a circle's segment within the smaller circle counts as a parabola's.
+/// For ratios of radii above this, the circular segment inside the smaller circle is computed as a
+/// parabolic one.
 const SLIM: Real = 30.0;
-/// Photons this close to the outline or a wall, in errors of computed points, may lie on the
-/// adjacent face.
+/// Distance from the outline or from a wall, in units of [`Outline::error`], within which a photon
+/// may lie on the adjacent face.
 const MARGIN: Real = 0.25;
-/// Error of a computed point on an infinite plane, over its largest coordinate.
+/// Error of a computed point on an infinite plane, as a fraction of its largest coordinate.
 const PLANE_ERROR: Real = 16.0 * EPS;
-/// Relative width of the rim of a circle where photons may lie on what it closes.
+/// Relative margin on a circle's squared radius; photons within it may lie on the surface that the
+/// disc closes off.
 const RIM: Real = 1e-5;
-/// Walls that cut a disc at the most; it is left to others.
+/// Greatest number of walls that clip one disc; further walls are ignored.
 pub const CUTS: usize = 4;
-/// Low bits of [`Outline::walls`] that hold the number of walls.
+/// Number of low bits of [`Outline::walls`] that store the number of walls.
 pub const WALL_BITS: u32 = 6;
-/// Corners of a square cut by the four edges of an outline and by walls, at the most.
+/// Greatest number of corners of a square clipped by the four edges of an outline and by walls.
 const CORNERS: usize = 8 + CUTS;
 
-/// The outline of a flat shape: a parallelogram `origin + s u + t v`, s and t in [0, 1], or a
-/// circle.
+/// Outline of a flat shape: a parallelogram `origin + s u + t v`, s and t in [0, 1], or a circle.
+/// Scene units.
 ///
-/// A wall on an outline is one too: it stands on the segment `origin + s u`, on the side that `v`,
-/// a unit vector, points to. An edge of a mesh's flat region is a wall on both sides, of `radius`
-/// 1.
+/// The same struct describes a wall on an outline: it stands on the segment `origin + s u`, on the
+/// side that the unit vector `v` points to. An edge of a flat mesh region is a wall on both sides
+/// and has `radius` 1.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Plain, Zeroable)]
 pub struct Outline {
-    /// Corner, or centre. Its place across the plane does not matter.
+    /// Corner of the parallelogram (its offset along the normal has no effect) or centre of the
+    /// circle.
     pub origin: Vec3,
     /// Radius of the circle; 0 for a parallelogram.
     pub radius: Real,
     /// First edge.
     pub u: Vec3,
-    /// Bound of the distance of computed points from the plane.
+    /// Bound on the distance of computed points from the plane.
     pub error: Real,
     /// Second edge.
     pub v: Vec3,
-    /// Index of its first wall among the outlines << [`WALL_BITS`], | their number.
+    /// Index of its first wall in the outline table << [`WALL_BITS`], | the number of walls.
     pub walls: u32,
     /// In-plane vector with `dual_u . u = 1` and `dual_u . v = 0`.
     pub dual_u: Vec3,
-    /// Photons with s this close to 0 or 1 may lie on the adjacent face.
+    /// Margin on s: photons with s this close to 0 or 1 may lie on the adjacent face.
     pub margin_s: Real,
     /// In-plane vector with `dual_v . v = 1` and `dual_v . u = 0`.
     pub dual_v: Vec3,
-    /// The same for t.
+    /// Margin on t, likewise.
     pub margin_t: Real,
 }
 
-/// What an outline is to a disc about one of its points.
+/// Clipping of a gather disc by the outline that its centre lies in.
 #[derive(Clone, Copy, Debug)]
 pub struct Clip {
-    /// Whether the outline passes through the disc.
+    /// True if the outline or a wall passes through the disc.
     pub crossed: bool,
-    /// One over the share of the disc that the outline covers.
+    /// Reciprocal of the share of the disc that the outline covers.
     pub whole: Real,
-    /// The same of the disc of half the area about the same point.
+    /// The same for the concentric disc of half the area.
     pub inner: Real,
-    /// Farthest that photons of the outline may lie from its plane; the disc's radius where there
-    /// is no outline.
+    /// Greatest distance of the outline's photons from its plane; the disc's radius if there is no
+    /// outline.
     pub depth: Real,
-    /// In-plane unit vectors toward walls within the disc, and the distance of their lines from its
-    /// centre; (0, 0, 0, 1), which cuts nothing, beyond `count`.
+    /// In-plane unit vector towards each wall within the disc, and the distance of the wall's line
+    /// from the centre; entries from `count` on are (0, 0, 0, 1), which clips nothing.
     pub cuts: [Vec4; CUTS],
-    /// Number of cuts.
+    /// Number of walls in `cuts`.
     pub count: u32,
 }
 
-/// Angle, seen from the origin, from place `start` to place `end` on a line that passes it at
+/// Angle subtended at the origin by the piece from `start` to `end` of a line that passes at
 /// `distance`.
 fn turn(distance: Real, start: Real, end: Real) -> Real {
     arctan2(distance * (kept(end) - start), distance * distance + start * end)
 }
 
-/// Signed area that the unit circle about the origin shares with the triangle of the origin and a
-/// piece of a line: the line passes at `distance`, to the right where positive, and the piece goes
-/// from `start` to `end` along it.
+/// Signed area of the intersection of the unit disc about the origin with the triangle formed by
+/// the origin and a piece of a line. The line passes at `distance`, positive to the right; the
+/// piece runs from `start` to `end` along it.
 fn wedge(distance: Real, start: Real, end: Real) -> Real {
     let half_sq = 1.0 - distance * distance;
     let half = half_sq.max(0.0).sqrt();
@@ -105,7 +108,7 @@ fn cross_2d(a: Vec2, b: Vec2) -> Real {
     a.x * b.y - a.y * b.x
 }
 
-/// Area that the unit circle about the origin shares with the parallelogram
+/// Area of the intersection of the unit disc about the origin with the parallelogram
 /// `corner + s (width, 0) + t v`.
 fn parallelogram_area(corner: Vec2, width: Real, v: Vec2) -> Real {
     let length = v.dot(v).sqrt();
@@ -121,7 +124,8 @@ fn parallelogram_area(corner: Vec2, width: Real, v: Vec2) -> Real {
     ((front - back) + (right - left)).abs()
 }
 
-/// Area that the unit disc shares with one of `radius` whose centre is `distance` away.
+/// Area of the intersection of the unit disc with a disc of `radius` whose centre is `distance`
+/// away.
 fn discs_area(distance: Real, radius: Real) -> Real {
     if distance + 1.0 <= radius {
         return PI;
@@ -136,7 +140,7 @@ fn discs_area(distance: Real, radius: Real) -> Real {
         let rest = distance - x;
         return near + (kept(radius * radius * arctan2(y, rest)) - rest * y);
     }
-    // the other segment is too slim for a difference: the first term of its series
+    // the other segment is too slim for a difference of terms: use the first term of its series
     near + 0.666_666_7 * (y * y) * (y / radius)
 }
 
@@ -156,8 +160,8 @@ pub fn outline_share(outline: &Outline, position: Vec3, normal: Vec3, radius: Re
     (area / PI).clamp(SHARE_MIN, 1.0)
 }
 
-/// Cuts a convex polygon by the line at `distance` from the origin along the unit vector `normal`;
-/// keeps the side of smaller distances. Returns the number of corners.
+/// Clips a convex polygon by the line at `distance` from the origin along the unit vector `normal`,
+/// keeping the side of smaller distances. Returns the number of corners.
 fn cut_polygon(polygon: &mut [Vec2; CORNERS], count: u32, normal: Vec2, distance: Real) -> u32 {
     let old = *polygon;
     let mut kept = 0;
@@ -180,20 +184,21 @@ fn cut_polygon(polygon: &mut [Vec2; CORNERS], count: u32, normal: Vec2, distance
     kept
 }
 
-/// Share of the disc of `radius` about `position`, a point of a parallelogram, that it covers on
-/// this side of the cuts.
+/// Share of the disc of `radius` about `position`, a point of the parallelogram, that the
+/// parallelogram covers on the near side of all cuts.
 fn cut_share(outline: &Outline, clip: &Clip, position: Vec3, normal: Vec3, radius: Real) -> Real {
     let first = unit(outline.u);
     let second = normal.cross(first);
     let d = position - outline.origin;
     let scale = 1.0 / radius;
-    // a square about the unit disc, so that all corners are of its size
+    // start from a square about the unit disc, so that all corners have its scale
     let mut polygon = [Vec2::ZERO; CORNERS];
     polygon[0] = Vec2::new(-2.0, -2.0);
     polygon[1] = Vec2::new(2.0, -2.0);
     polygon[2] = Vec2::new(2.0, 2.0);
     polygon[3] = Vec2::new(-2.0, 2.0);
     let mut count = 4;
+    // clip the square by the four edges of the parallelogram, then by the walls
     for k in 0..4 + clip.count {
         let mut toward = outline.dual_u;
         let mut distance;
@@ -216,6 +221,7 @@ fn cut_share(outline: &Outline, clip: &Clip, position: Vec3, normal: Vec3, radiu
             count = cut_polygon(&mut polygon, count, across, distance);
         }
     }
+    // add up the area of the unit disc inside the polygon, edge by edge
     let mut area = 0.0;
     let mut a = polygon[(count.max(1) - 1) as usize];
     for i in 0..count {
@@ -232,7 +238,7 @@ fn cut_share(outline: &Outline, clip: &Clip, position: Vec3, normal: Vec3, radiu
     (area.abs() / PI).clamp(SHARE_MIN, 1.0)
 }
 
-/// Finds the walls on `outline` that stand in the disc.
+/// Finds the walls of `outline` that stand within the disc and stores their lines in `clip`.
 fn find_cuts(
     outlines: &[Outline],
     outline: &Outline,
@@ -247,7 +253,7 @@ fn find_cuts(
         let wall = &outlines[i as usize];
         let d = wall.origin - position;
         let rise = d.dot(wall.v);
-        // what stands on the other side or on the opposite face of a box is no wall here
+        // walls on the other side, or on the opposite face of a box, do not count
         if (wall.v.dot(normal) > 0.5 || wall.radius > 0.0) && rise.abs() <= clip.depth {
             let place = (-d.dot(wall.u) / wall.u.dot(wall.u)).clamp(0.0, 1.0);
             let nearest = d + wall.u * place;
@@ -263,10 +269,11 @@ fn find_cuts(
     }
 }
 
-/// Whether a point of the outline's plane lies on this side of all cuts of a disc about `center`.
+/// Returns true if a point of the outline's plane lies on the near side of all cuts of a disc about
+/// `center`.
 pub fn before_walls(clip: &Clip, center: Vec3, position: Vec3) -> bool {
     let d = position - center;
-    // without a loop, of which Mesa's software driver makes no more than 65535 rounds
+    // unrolled: Mesa's software driver runs a loop for at most 65535 rounds
     let [a, b, c, e] = clip.cuts;
     d.dot(a.truncate()) < a.w
         && d.dot(b.truncate()) < b.w
@@ -274,7 +281,8 @@ pub fn before_walls(clip: &Clip, center: Vec3, position: Vec3) -> bool {
         && d.dot(e.truncate()) < e.w
 }
 
-/// How outline `number`, if there is one, clips the disc of `radius` about its point `position`.
+/// Clips the disc of `radius` about `position`, a point of outline `number`, by that outline; the
+/// disc stays whole if `number` is [`NONE`].
 pub fn clip_at(
     outlines: &[Outline],
     number: u32,
@@ -289,6 +297,7 @@ pub fn clip_at(
     }
     let outline = &outlines[number as usize];
     let d = position - outline.origin;
+    // does the outline cross the disc?
     if outline.radius > 0.0 {
         let within = outline.radius - radius;
         clip.crossed = within <= 0.0 || d.dot(d) > within * within;
@@ -302,6 +311,7 @@ pub fn clip_at(
             || margin_t * margin_t < radius_sq * outline.dual_v.dot(outline.dual_v);
     }
     clip.depth = DEPTH * radius + 2.0 * (outline.error + PLANE_ERROR * max_abs(position));
+    // share of the disc inside the outline and before the walls
     find_cuts(outlines, outline, position, normal, &mut clip, radius);
     if clip.count > 0 {
         clip.crossed = true;
@@ -316,8 +326,8 @@ pub fn clip_at(
     clip
 }
 
-/// Whether a point of the outline's plane lies within its outline, and not on the edge that it has
-/// in common with an adjacent face.
+/// Returns true if a point of the outline's plane lies inside the outline and outside the margin
+/// along its edges, where it may belong to the adjacent face.
 pub fn in_outline(outline: &Outline, position: Vec3) -> bool {
     let d = position - outline.origin;
     if outline.radius > 0.0 {
@@ -329,7 +339,7 @@ pub fn in_outline(outline: &Outline, position: Vec3) -> bool {
     s > low_s && s < 1.0 - low_s && t > low_t && t < 1.0 - low_t
 }
 
-/// The margins of an outline whose error is known.
+/// Sets the margins of an outline from its error.
 pub fn with_margins(outline: Outline) -> Outline {
     let margin = |dual: Vec3| (MARGIN * outline.error * dual.dot(dual).sqrt()).min(0.25);
     Outline { margin_s: margin(outline.dual_u), margin_t: margin(outline.dual_v), ..outline }

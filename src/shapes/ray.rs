@@ -4,36 +4,36 @@ use super::real::{Plain, Real, Vec3};
 use super::table::NONE;
 use bytemuck::Zeroable;
 
-/// A segment of a line: the points `origin + t * direction` with `t_min < t < t_max`.
+/// Segment of a line: the points `origin + t * direction` with `t_min < t < t_max`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Plain, Zeroable)]
 pub struct Ray {
-    /// Where `t` is 0, in scene space.
+    /// Point at `t = 0`, in scene space.
     pub origin: Vec3,
-    /// Hits must lie strictly beyond, in scene units.
+    /// Lower bound of hit distances (exclusive), scene units.
     pub t_min: Real,
     /// Unit vector.
     pub direction: Vec3,
-    /// Hits must lie strictly before, in scene units; finite.
+    /// Upper bound of hit distances (exclusive), scene units; finite.
     pub t_max: Real,
 }
 
-/// The nearest hit so far.
+/// Nearest hit so far.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Plain, Zeroable)]
 pub struct Hit {
-    /// Distance along the ray; the ray's `t_max` while nothing was hit.
+    /// Distance along the ray; the ray's `t_max` if nothing was hit.
     pub t: Real,
-    /// What was hit (kind and index), or [`NONE`].
+    /// Reference of the shape (kind and index), or [`NONE`].
     pub reference: u32,
-    /// First parameter on the shape; a triangle's barycentric weight of `p1`.
+    /// First parameter on the shape; on triangles the barycentric weight of `p1`.
     pub u: Real,
-    /// Second parameter on the shape; a triangle's barycentric weight of `p2`.
+    /// Second parameter on the shape; on triangles the barycentric weight of `p2`.
     pub v: Real,
 }
 
 impl Hit {
-    /// Nothing hit yet on `ray`.
+    /// Initial hit of `ray`: nothing hit yet.
     #[inline]
     pub fn none(ray: &Ray) -> Hit {
         Hit { t: ray.t_max, reference: NONE, u: 0.0, v: 0.0 }

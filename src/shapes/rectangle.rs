@@ -5,11 +5,11 @@ use super::ray::{Hit, Ray};
 use super::real::{Real, Vec3};
 use super::table::Rectangle;
 
-/// How far beyond its edges, in edge lengths, a parallelogram still counts: neighbours that share
-/// an edge have no gap.
+/// Distance past its edges, in edge lengths, at which a parallelogram is still hit, so that
+/// neighbours that share an edge leave no gap.
 pub const EDGE: Real = 8.0 * EPS;
 
-/// The crossing in `(t_min, hit.t)`; `hit.u`, `hit.v` are s and t.
+/// Finds the crossing in `(t_min, hit.t)`; `hit.u`, `hit.v` are s and t.
 pub fn intersect_rectangle(rectangle: &Rectangle, reference: u32, ray: &Ray, hit: &mut Hit) {
     let d = ray.origin - rectangle.origin;
     let slope = ray.direction.dot(rectangle.normal);
@@ -29,12 +29,12 @@ pub fn intersect_rectangle(rectangle: &Rectangle, reference: u32, ray: &Ray, hit
     }
 }
 
-/// The point at (s, t).
+/// Point at (s, t).
 pub fn rectangle_point(rectangle: &Rectangle, s: Real, t: Real) -> Vec3 {
     rectangle.origin + rectangle.u * s + rectangle.v * t
 }
 
-/// Bound of the distance between [`rectangle_point`] and the plane.
+/// Bound on the distance between [`rectangle_point`] and the plane, scene units.
 pub fn rectangle_error(rectangle: &Rectangle) -> Real {
     16.0 * EPS * (max_abs(rectangle.origin) + max_abs(rectangle.u) + max_abs(rectangle.v))
 }

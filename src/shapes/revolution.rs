@@ -1,5 +1,5 @@
-//! Bezier surfaces of revolution: frame, ray intersection and surface data.
-//! Twin: `shaders/shapes/revolution.wgsl`.
+//! Bezier surfaces of revolution: local frame, ray intersection and surface data. Twin:
+//! `shaders/shapes/revolution.wgsl`.
 
 use super::real::{LEADING, Plain, Real, Vec2, Vec3, roundings};
 use bytemuck::Zeroable;
@@ -11,61 +11,61 @@ use super::math::trig::sin_cos;
 use super::math::{FAR, TAU, unit};
 use super::revolution_roots::first_root;
 
-/// Relative error of a hit's position, measured in the coordinates' and the surface's size: 16
-/// roundings.
+/// Relative error of a hit's position, as a fraction of the coordinates plus the surface's size: 16
+/// EPS.
 const REVOLUTION_ERROR: Real = roundings(9.6e-7);
 
-/// A surface of revolution's frame and attributes. A scene point p has the local coordinates
+/// Frame and attributes of a surface of revolution. A scene point p has the local coordinates
 /// (x_axis . q, y_axis . q, z_axis . q) / scale with q = p - center; the axes are orthonormal.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Plain, Zeroable)]
 pub struct Revolution {
-    /// Local x axis in the scene; theta = 0 lies along it.
+    /// Local x axis in scene space, the direction of theta = 0.
     pub x_axis: Vec3,
     /// Scene units per local unit.
     pub scale: Real,
-    /// The axis of revolution.
+    /// Local y axis in scene space, the axis of revolution.
     pub y_axis: Vec3,
     /// Local units per scene unit.
     pub inv_scale: Real,
-    /// Local z axis; theta = pi / 2 lies along it.
+    /// Local z axis in scene space, the direction of theta = pi / 2.
     pub z_axis: Vec3,
-    /// Number of profile segments, for v.
+    /// Number of profile segments; v spans all of them.
     pub segments: u32,
-    /// Point of the axis at half the profile's height, scene units.
+    /// Point on the axis at half the profile's height, scene units.
     pub center: Vec3,
     /// Index of the material.
     pub material: u32,
-    /// Index of the light, or the caller's mark for none.
+    /// Index of the light, or [`NONE`](super::ray::NONE).
     pub light: u32,
-    /// The caller's uv mode.
+    /// Source of the texture coordinates, one of the `UV_*` constants.
     pub uv: u32,
-    /// Zero.
+    /// Padding to 16 bytes, zero.
     pub padding: [u32; 2],
 }
 
-/// The exact surface at a hit.
+/// Surface data at a hit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RevolutionSurface {
     /// Point on the surface, scene units.
     pub position: Vec3,
-    /// Bound on the distance from `position` to the true surface and to the ray's hit on it, across
-    /// the surface, scene units.
+    /// Bound on the distance along the normal from `position` to the true surface and to the ray's
+    /// hit on it, scene units.
     pub error: Real,
-    /// Unit normal; outward where the profile is drawn upward.
+    /// Unit normal; points outward if the profile runs upward.
     pub normal: Vec3,
-    /// u around the axis, v along the profile over all its segments.
+    /// u around the axis, v along the profile over all its segments, both in [0, 1].
     pub uv: Vec2,
 }
 
-/// `x` with the last half of its bits cleared: products of two such numbers are exact.
+/// Clears the low half of the mantissa of `x`: products of two such numbers are exact.
 fn leading_bits(x: Real) -> Real {
     Real::from_bits(x.to_bits() & LEADING)
 }
 
-/// The ray in the frame of `revolution`, its origin moved next to the center. The move is exact up
-/// to a rounding of the result, however far the origin: distance and direction are split so that no
-/// product rounds.
+/// Transforms the ray to the frame of `revolution` and moves its origin next to the center. The
+/// move is exact up to one rounding of the result, however distant the origin is: distance and
+/// direction are split so that no product rounds.
 pub fn local_ray(revolution: &Revolution, origin: Vec3, direction: Vec3) -> LocalRay {
     let high =
         Vec3::new(leading_bits(direction.x), leading_bits(direction.y), leading_bits(direction.z));
@@ -84,8 +84,8 @@ pub fn local_ray(revolution: &Revolution, origin: Vec3, direction: Vec3) -> Loca
     LocalRay { origin: local_origin, start: far + near, direction: local_direction, side: -1.0 }
 }
 
-/// The first hit of the ray with the patch's whole ring at a distance from t_min to below t_max,
-/// scene units. `direction` is unit.
+/// First hit of the ray with the full ring of the patch at a distance in [t_min, t_max), scene
+/// units. `direction` is a unit vector.
 pub fn intersect_patch(
     points: &[Vec2],
     revolution: &Revolution,
@@ -100,7 +100,7 @@ pub fn intersect_patch(
     let d = ray.direction;
     let mut begin = (t_min - ray.start) * revolution.inv_scale;
     let mut end = (t_max - ray.start) * revolution.inv_scale;
-    // The slab of the ring's heights.
+    // clip the interval to the slab of the ring's heights
     if d.y.abs() > 1e-30 {
         let l0 = (piece.y_min - o.y) / d.y;
         let l1 = (piece.y_max - o.y) / d.y;
@@ -109,7 +109,7 @@ pub fn intersect_patch(
     } else if o.y < piece.y_min || o.y > piece.y_max {
         return patch_miss();
     }
-    // Its outer cylinder, and its inner one, which holds nothing.
+    // clip to the outer cylinder and cut out the inner one, which contains no surface
     let a = (d.x * d.x + d.z * d.z).max(1e-20);
     let l_axis = -(o.x * d.x + o.z * d.z) / a;
     let x = o.x + d.x * l_axis;
@@ -123,6 +123,7 @@ pub fn intersect_patch(
     let inner = ((piece.r_min * piece.r_min - axis_sq).max(0.0) / a).sqrt();
     begin = begin.max(l_axis - outer);
     end = end.min(l_axis + outer);
+    // search the part before the closest approach to the axis, then the part after it
     let mut hit = patch_miss();
     for i in 0..2 {
         ray.side = if i == 0 { -1.0 } else { 1.0 };
@@ -140,7 +141,7 @@ pub fn intersect_patch(
     hit
 }
 
-/// The surface at (theta, tau) of a hit.
+/// Surface data at (theta, tau) of a hit.
 pub fn revolution_surface(
     points: &[Vec2],
     revolution: &Revolution,
@@ -150,8 +151,7 @@ pub fn revolution_surface(
 ) -> RevolutionSurface {
     let mut at = ring_point(points, piece, theta, tau);
     let p = at.point * revolution.scale;
-    // The tangent alone gives the normal, on the axis too; at a cusp the tangent next to it stands
-    // in.
+    // the tangent alone gives the normal, even on the axis; at a cusp, use the tangent next to it
     if at.d_tau.dot(at.d_tau) <= roundings(1e-8) * piece.length * piece.length {
         at = ring_point(points, piece, theta, tau + (0.5 - tau) * 0.001);
     }

@@ -1,5 +1,5 @@
-//! The profile of a surface of revolution, piece by piece, and a ray seen in the profile's
-//! half-plane. Twin: `shaders/shapes/revolution_profile.wgsl`.
+//! Profile of a surface of revolution, cut into patches, and rays in the profile's half-plane.
+//! Twin: `shaders/shapes/revolution_profile.wgsl`.
 //!
 //! A surface is S(theta, tau) = (r cos theta, y, r sin theta) in a local frame whose axis is y and
 //! in which the profile has size about one. The host cuts the profile into *patches*: short Bezier
@@ -11,12 +11,12 @@ use bytemuck::Zeroable;
 
 use super::math::trig::{kept, sin_cos};
 
-/// Largest degree of a profile segment.
+/// Highest degree of a profile segment.
 pub const MAX_DEGREE: usize = 15;
 
-/// A short piece of profile, a graph over its chord, turned about the axis. Local units. Chord
-/// coordinates (s, h) of a profile point (r, y): s along `axis`, h along (axis.y, -axis.x), from
-/// `origin`; so h grows outward on an upward chord.
+/// Short piece of a profile that is a graph over its chord, revolved about the axis. Local units. A
+/// profile point (r, y) has the chord coordinates (s, h) relative to `origin`: s along `axis`, h
+/// along (axis.y, -axis.x); so h grows outward on an upward chord.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Plain, Zeroable)]
 pub struct Patch {
@@ -24,63 +24,62 @@ pub struct Patch {
     pub revolution: u32,
     /// Segment of the profile.
     pub segment: u32,
-    /// Index of the first control point; the points are chord coordinates.
+    /// Index of the first control point; control points are in chord coordinates.
     pub first_point: u32,
     /// Degree of the piece, 1 to 15.
     pub degree: u32,
-    /// Chord start (r, y).
+    /// Start of the chord (r, y).
     pub origin: Vec2,
-    /// Chord direction (r, y), unit.
+    /// Direction of the chord (r, y), unit.
     pub axis: Vec2,
-    /// Least and largest radius, rounded outward.
+    /// Least radius, rounded down.
     pub r_min: Real,
-    /// See `r_min`.
+    /// Greatest radius, rounded up.
     pub r_max: Real,
-    /// Least and largest height, rounded outward.
+    /// Least height, rounded down.
     pub y_min: Real,
-    /// See `y_min`.
+    /// Greatest height, rounded up.
     pub y_max: Real,
-    /// Range of phi, rounded outward; holds 0.
+    /// Lower bound of phi, rounded down; at most 0.
     pub phi_min: Real,
-    /// See `phi_min`.
+    /// Upper bound of phi, rounded up; at least 0.
     pub phi_max: Real,
     /// Bound on |phi'|.
     pub slope: Real,
     /// Length of the chord.
     pub length: Real,
-    /// Curve parameter of the segment at tau = 0 and tau = 1.
+    /// Curve parameter of the segment at tau = 0.
     pub t0: Real,
-    /// See `t0`.
+    /// Curve parameter of the segment at tau = 1.
     pub t1: Real,
-    /// Between two points, phi' leaves the range of its values there by no more than this.
+    /// Bound on how far phi' between two points leaves the range of its values at these points.
     pub wobble: Real,
-    /// Newton steps shorter than this, local units, end the search of a hit.
+    /// Newton steps shorter than this, in local units, end the root search.
     pub step_tolerance: Real,
 }
 
-/// A ray in local units: `origin` is the point near the surface's center, `start` its distance
-/// along the scene's ray in scene units.
+/// Ray in local units. Its origin is a point of the scene ray near the surface's center.
 #[derive(Clone, Copy, Debug)]
 pub struct LocalRay {
-    /// Local origin.
+    /// Local coordinates of the origin.
     pub origin: Vec3,
-    /// Scene distance of `origin`.
+    /// Distance of `origin` along the scene ray, scene units.
     pub start: Real,
-    /// Local direction, as long as the scene's.
+    /// Local direction; a unit vector if the scene ray's direction is one.
     pub direction: Vec3,
-    /// -1 for the part before the closest approach to the axis, 1 for the part after it.
+    /// -1 for the part of the ray before its closest approach to the axis, 1 for the part after it.
     pub side: Real,
 }
 
-/// A point of a ray in chord coordinates; s(l) and h(l) are convex or concave on each side of the
-/// axis.
+/// Point of a ray in chord coordinates; s(l) and h(l) are each convex or concave on either side of
+/// the closest approach to the axis.
 #[derive(Clone, Copy, Debug)]
 pub struct RayPoint {
-    /// Distance from the local origin.
+    /// Distance from the local origin, local units.
     pub l: Real,
-    /// Along the chord.
+    /// Coordinate along the chord.
     pub s: Real,
-    /// Across the chord.
+    /// Coordinate across the chord.
     pub h: Real,
     /// ds/dl.
     pub ds: Real,
@@ -88,7 +87,7 @@ pub struct RayPoint {
     pub dh: Real,
 }
 
-/// A surface point with its two partial derivatives, local units.
+/// Surface point with its two partial derivatives, local units.
 #[derive(Clone, Copy, Debug)]
 pub struct RingPoint {
     /// S(theta, tau).
@@ -99,7 +98,8 @@ pub struct RingPoint {
     pub d_tau: Vec3,
 }
 
-/// The patch's profile at `tau` with its derivative, (s, h, ds/dtau, dh/dtau), by de Casteljau.
+/// Evaluates the patch's profile and its derivative at `tau` by de Casteljau: (s, h, ds/dtau,
+/// dh/dtau).
 pub fn profile_point(points: &[Vec2], piece: &Patch, tau: Real) -> Vec4 {
     let n = piece.degree;
     let mut b = [Vec2::ZERO; MAX_DEGREE + 1];
@@ -117,14 +117,14 @@ pub fn profile_point(points: &[Vec2], piece: &Patch, tau: Real) -> Vec4 {
     Vec4::new(point.x, point.y, tangent.x, tangent.y)
 }
 
-/// The ray at distance `l`.
+/// Evaluates the ray at distance `l`.
 pub fn ray_point(piece: &Patch, ray: &LocalRay, l: Real) -> RayPoint {
     let o = ray.origin;
     let d = ray.direction;
     let x = o.x + d.x * l;
     let z = o.z + d.z * l;
     let radius = (x * x + z * z).sqrt();
-    // On the axis the radius has a kink: its slope there is the one-sided one.
+    // the radius has a kink on the axis: use the one-sided slope there
     let outward = if radius > 0.0 {
         (x * d.x + z * d.z) / radius
     } else {
@@ -142,7 +142,7 @@ pub fn ray_point(piece: &Patch, ray: &LocalRay, l: Real) -> RayPoint {
     }
 }
 
-/// The parameter at chord coordinate `s`: Newton on the monotone s(tau), kept inside a bracket.
+/// Parameter at chord coordinate `s`: Newton on the monotone s(tau), safeguarded by a bracket.
 pub fn tau_at(points: &[Vec2], piece: &Patch, s: Real) -> Real {
     let mut low = 0.0;
     let mut high = 1.0;
@@ -170,7 +170,7 @@ pub fn tau_at(points: &[Vec2], piece: &Patch, s: Real) -> Real {
 }
 
 /// (F, phi'(s), tau) with F = h - phi(s); phi is continued past the chord's ends by its tangents.
-/// Unless `exact`, +-1 stands for F outside the band that holds phi.
+/// Unless `exact`, F is replaced by +-1 outside the band that contains phi.
 pub fn profile_offset(points: &[Vec2], piece: &Patch, at: RayPoint, exact: bool) -> Vec3 {
     let past = (-at.s).max(at.s - piece.length).max(0.0) * piece.slope;
     if !exact && at.h > piece.phi_max + past {
@@ -187,11 +187,11 @@ pub fn profile_offset(points: &[Vec2], piece: &Patch, at: RayPoint, exact: bool)
     Vec3::new(at.h - (p.y + d_phi * (at.s - s)), d_phi, tau)
 }
 
-/// S and its derivatives at (theta, tau).
+/// Evaluates S and its derivatives at (theta, tau).
 pub fn ring_point(points: &[Vec2], piece: &Patch, theta: Real, tau: Real) -> RingPoint {
     let p = profile_point(points, piece, tau);
     let (sin, cos) = sin_cos(theta);
-    // Added one by one: Mesa rewrites e + (a b + c d).
+    // one addition at a time: Mesa rewrites e + (a b + c d)
     let r = (piece.origin.x + piece.axis.x * p.x) + piece.axis.y * p.y;
     let y = (piece.origin.y + piece.axis.y * p.x) - piece.axis.x * p.y;
     let dr = piece.axis.x * p.z + piece.axis.y * p.w;

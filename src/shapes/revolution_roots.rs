@@ -1,14 +1,15 @@
-//! Where a ray meets one patch of a surface of revolution. Twin:
+//! Intersection of a ray with one patch of a surface of revolution. Twin:
 //! `shaders/shapes/revolution_roots.wgsl`.
 //!
-//! In the half-plane (radius, y) a ray is a branch of a hyperbola, radius(l) = sqrt(x^2 + z^2)
-//! convex in the distance l and y(l) linear. On either side of its closest approach to the axis
-//! both are monotone, so their chord coordinates s(l) and h(l) are bounded by their ends and end
-//! slopes. F(l) = h(l) - phi(s(l)) is zero at the hits. The search walks along the ray over
-//! intervals that hold no root (by the range of F), or at most one (F' has one sign there), or are
-//! halved. A root is found by damped Newton on the 3x3 system, started from the chord's cone; where
-//! that system is singular (axis, silhouette, cusp) or leaves the interval, by a bracketed solve of
-//! F in l alone, which is regular everywhere.
+//! In the half-plane (radius, y) a ray is a branch of a hyperbola: radius(l) = sqrt(x^2 + z^2) is
+//! convex in the distance l, and y(l) is linear. On either side of the closest approach to the axis
+//! both are monotone, so the chord coordinates s(l) and h(l) are bounded by their values and slopes
+//! at the ends. The hits are the zeros of F(l) = h(l) - phi(s(l)). The search steps along the ray
+//! over intervals that contain no root (by the range of F) or at most one (F' has a constant sign
+//! there); other intervals are halved. A root is found by damped Newton iteration on the 3x3
+//! system, started from the cone over the chord. If that system is singular (axis, silhouette,
+//! cusp) or the iteration leaves the interval, a bracketed solve of F in l alone takes over, which
+//! is regular everywhere.
 
 use super::real::{Real, Vec2, Vec3, Vec4, root_roundings, roundings};
 
@@ -18,30 +19,31 @@ use super::revolution_profile::{
     LocalRay, Patch, RayPoint, RingPoint, profile_offset, ray_point, ring_point,
 };
 
-/// Newton steps at most.
+/// Greatest number of Newton steps.
 pub const NEWTON_STEPS: u32 = 15;
-/// Halvings of one Newton step at most.
+/// Greatest number of times that one Newton step is halved.
 pub const NEWTON_HALVINGS: u32 = 10;
-/// Set in [`PatchHit::steps`] when the bracketed solve gave the root.
+/// Bit of [`PatchHit::steps`] that is set if the bracketed solve found the root.
 pub const BRACKETED: u32 = 256;
-/// Intervals looked at on one side of the axis at most.
+/// Greatest number of intervals examined on one side of the axis.
 const MARCH_LIMIT: u32 = 256;
-/// Shortest interval, as a part of the first: nearer roots are a graze that rounding makes or
-/// undoes.
+/// Shortest interval, as a fraction of the first: closer pairs of roots are grazing hits that
+/// rounding creates or removes.
 const MARCH_LEAST: Real = root_roundings(1.0 / 8192.0);
-/// Length by which a patch reaches past its ends, in local units; several roundings of a local
+/// Length by which a patch extends past its ends, in local units: several roundings of a local
 /// coordinate.
 const END_TOLERANCE: Real = roundings(3e-7);
-/// Newton steps shorter than this (local units) may be rounding alone; see
+/// Newton steps shorter than this (local units) may be pure rounding; see
 /// [`Patch::step_tolerance`].
 pub const STEP_TOLERANCE: Real = roundings(4e-7);
-/// Residuals of this size may be rounding alone.
+/// Residuals up to this size (local units) may be pure rounding.
 const RESIDUAL_NOISE: Real = roundings(1e-6);
 
-/// Where a ray meets a patch.
+/// Hit of a ray with a patch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PatchHit {
-    /// Distance along the ray, scene units; [`FAR`] when there is no hit.
+    /// Distance along the ray, scene units ([`first_root`] returns local units); [`FAR`] if there
+    /// is no hit.
     pub t: Real,
     /// Angle about the axis, radians.
     pub theta: Real,
@@ -51,13 +53,13 @@ pub struct PatchHit {
     pub steps: u32,
 }
 
-/// No hit.
+/// Returns a miss.
 pub fn patch_miss() -> PatchHit {
     PatchHit { t: FAR, theta: 0.0, tau: 0.0, steps: 0 }
 }
 
-/// One Newton step (dl, dtheta, dtau) for f = o + l d - S, and D = d . (S_theta x S_tau); zero
-/// where D is as good as zero.
+/// One Newton step (dl, dtheta, dtau) for f = o + l d - S, and the determinant D = d . (S_theta x
+/// S_tau); zero if D is negligible.
 pub fn newton_step(direction: Vec3, f: Vec3, at: &RingPoint) -> Vec4 {
     let det = direction.dot(at.d_theta.cross(at.d_tau));
     if det * det <= (roundings(1e-8) * at.d_theta.dot(at.d_theta)) * at.d_tau.dot(at.d_tau) {
@@ -70,8 +72,8 @@ pub fn newton_step(direction: Vec3, f: Vec3, at: &RingPoint) -> Vec4 {
     Vec4::new(dl, d_theta, d_tau, det)
 }
 
-/// Damped Newton from (l, theta, tau), `t` standing for l; [`FAR`] in `t` when it does not
-/// converge.
+/// Damped Newton iteration from (l, theta, tau), with l stored in `t`; `t` is [`FAR`] if it does
+/// not converge.
 fn newton(points: &[Vec2], piece: &Patch, ray: &LocalRay, start: PatchHit) -> PatchHit {
     let mut x = start;
     let mut error_sq = FAR;
@@ -85,7 +87,8 @@ fn newton(points: &[Vec2], piece: &Patch, ray: &LocalRay, start: PatchHit) -> Pa
         let at = ring_point(points, piece, theta, tau);
         let f = (ray.origin + ray.direction * l) - at.point;
         let f_sq = f.dot(f);
-        // Far outside the patch the curve is of no use.
+        // accept the step if it reduces the residual; the curve is meaningless far outside the
+        // patch
         if f_sq < error_sq && tau > -1.0 && tau < 2.0 {
             x = PatchHit { t: l, theta, tau, steps: x.steps };
             error_sq = f_sq;
@@ -107,6 +110,7 @@ fn newton(points: &[Vec2], piece: &Patch, ray: &LocalRay, start: PatchHit) -> Pa
             part = 1.0;
             halvings = 0;
         } else {
+            // otherwise halve the step, unless the residual is already down to rounding
             if error_sq <= RESIDUAL_NOISE * RESIDUAL_NOISE {
                 return x;
             }
@@ -120,8 +124,8 @@ fn newton(points: &[Vec2], piece: &Patch, ray: &LocalRay, start: PatchHit) -> Pa
     PatchHit { t: FAR, ..x }
 }
 
-/// The root of F between `a` and `b`, where F has different signs: regula falsi (Illinois) with a
-/// bisection every third time.
+/// Root of F between `a` and `b`, where F has opposite signs: regula falsi (Illinois) with a
+/// bisection in every third step.
 fn bracketed_root(
     points: &[Vec2],
     piece: &Patch,
@@ -173,8 +177,8 @@ fn bracketed_root(
     PatchHit { t: at.l, theta: arctan2(z, x), tau, steps: BRACKETED }
 }
 
-/// The root of F between the chord points `a` and `b` where F has different signs. `slack` is how
-/// far in s, per unit of |F|, the root can lie from a place in between.
+/// Root of F between the chord points `a` and `b`, where F has opposite signs. `slack` bounds the
+/// distance in s between the root and a point in between, per unit of |F| at that point.
 fn find_root(
     points: &[Vec2],
     piece: &Patch,
@@ -183,7 +187,7 @@ fn find_root(
     b: RayPoint,
     slack: Real,
 ) -> PatchHit {
-    // h = 0 is the cone over the chord.
+    // initial guess: h = 0 is the cone over the chord; two Newton steps refine it
     let rise = b.h - a.h;
     let part = if rise.abs() > 1e-12 { (-a.h / rise).clamp(0.0, 1.0) } else { 0.5 };
     let mut l = a.l + (b.l - a.l) * part;
@@ -201,6 +205,7 @@ fn find_root(
     let x = ray.origin.x + ray.direction.x * l;
     let z = ray.origin.z + ray.direction.z * l;
     let tau = (at.s / piece.length).clamp(0.0, 1.0);
+    // solve the 3x3 system; if that fails, solve F by bracketing
     let root = newton(points, piece, ray, PatchHit { t: l, theta: arctan2(z, x), tau, steps: 0 });
     let over = END_TOLERANCE / piece.length;
     if root.t >= a.l && root.t <= b.l && root.tau >= -over && root.tau <= 1.0 + over {
@@ -210,8 +215,8 @@ fn find_root(
     PatchHit { steps: bracketed.steps | root.steps, ..bracketed }
 }
 
-/// Range (low, high) of F' between two chord points, where h' and s' are monotone and phi' lies in
-/// [d_phi_low, d_phi_high].
+/// Range (low, high) of F' between two chord points, given that h' and s' are monotone and phi'
+/// lies in [d_phi_low, d_phi_high].
 fn slope_range(a: RayPoint, b: RayPoint, d_phi_low: Real, d_phi_high: Real) -> Vec2 {
     let s_low = a.ds.min(b.ds);
     let s_high = a.ds.max(b.ds);
@@ -224,7 +229,7 @@ fn slope_range(a: RayPoint, b: RayPoint, d_phi_low: Real, d_phi_high: Real) -> V
     Vec2::new(a.dh.min(b.dh) - most, a.dh.max(b.dh) - least)
 }
 
-/// The first root of F in [begin, end], which lies on one side of the closest approach to the axis.
+/// First root of F in [begin, end], an interval on one side of the closest approach to the axis.
 pub fn first_root(
     points: &[Vec2],
     piece: &Patch,
@@ -245,8 +250,8 @@ pub fn first_root(
         }
         let next = (l + width).min(end);
         let b = ray_point(piece, ray, next);
-        // A function whose slope lies in an interval leaves the line between its ends by at most a
-        // quarter of that interval times the distance.
+        // a function whose slope lies in an interval deviates from its chord by at most a quarter
+        // of that interval's width times the distance
         let quarter = 0.25 * (next - l);
         let bow_s = (b.ds - a.ds).abs() * quarter + END_TOLERANCE;
         let bow_h = (b.dh - a.dh).abs() * quarter;
@@ -257,6 +262,8 @@ pub fn first_root(
             || s_high < 0.0
             || a.h.min(b.h) - bow_h > piece.phi_max + past
             || a.h.max(b.h) + bow_h < piece.phi_min - past;
+        // bound F' by the slope limit of the patch; unless F' may change sign, the sign of F
+        // suffices
         if !outside {
             let mut range = slope_range(a, b, -piece.slope, piece.slope);
             let exact = range.x <= 0.0 && range.y >= 0.0;
@@ -266,7 +273,7 @@ pub fn first_root(
                 f_a = f_b;
                 f_b = profile_offset(points, piece, if i == 0 { a } else { b }, exact);
             }
-            // While s runs one way, phi' is known from its ends.
+            // if s is monotone, its ends bound phi'
             if exact && (a.ds > 0.0) == (b.ds > 0.0) {
                 range = slope_range(
                     a,
@@ -275,6 +282,7 @@ pub fn first_root(
                     f_a.y.max(f_b.y) + piece.wobble,
                 );
             }
+            // halve the interval if it may contain more than one root
             let bow = (range.y - range.x) * quarter;
             let touches =
                 !exact || (f_a.x.min(f_b.x) - bow <= 0.0 && f_a.x.max(f_b.x) + bow >= 0.0);
@@ -282,6 +290,7 @@ pub fn first_root(
                 width *= 0.5;
                 continue;
             }
+            // at most one root is left: find it if F changes sign
             let crosses = touches && (f_a.x >= 0.0) != (f_b.x >= 0.0);
             if crosses {
                 let most_ds = a.ds.abs().max(b.ds.abs());

@@ -1,15 +1,16 @@
-//! Four rectangles or spheres at a time: lane by lane the operations of `rectangle.rs` and
-//! `sphere.rs`, and so the same bits. Only the CPU engine has this; on a GPU the lanes are rays.
+//! Intersection of four rectangles or spheres at a time, lane by lane by the operations of
+//! `rectangle.rs` and `sphere.rs`, so the results are bit-identical. CPU engine only: on a GPU the
+//! lanes are rays.
 
 use super::ray::{Hit, Ray};
 use super::real::{Real, Vec3, Vec4};
 use super::rectangle::EDGE;
 use super::table::{Rectangle, Sphere};
 
-/// Shapes of one kind that are tested at once.
+/// Number of shapes of one kind that are tested at once.
 pub const LANES: usize = 4;
 
-/// Four vectors, each coordinate by itself.
+/// Four vectors as a structure of arrays.
 #[derive(Clone, Copy, Debug)]
 struct Vectors {
     x: Vec4,
@@ -38,7 +39,7 @@ impl Vectors {
         Self { x: self.x - other.x, y: self.y - other.y, z: self.z - other.z }
     }
 
-    /// The points at `t` along `direction` from here.
+    /// Returns the points at distance `t` along `direction`.
     #[inline(always)]
     fn along(&self, direction: &Self, t: Vec4) -> Self {
         Self {
@@ -49,14 +50,14 @@ impl Vectors {
     }
 }
 
-/// A number of each shape; 0 in lanes without one.
+/// Gathers one number per shape; 0 in lanes without a shape.
 fn lanes<T>(shapes: &[T], number: impl Fn(&T) -> Real) -> Vec4 {
     let mut numbers = [0.0; LANES];
     numbers.iter_mut().zip(shapes).for_each(|(place, shape)| *place = number(shape));
     numbers.into()
 }
 
-/// Rectangles whose numbers differ in the last two bits only.
+/// Up to four rectangles whose indices differ only in the last two bits.
 #[derive(Clone, Copy, Debug)]
 pub struct FourRectangles {
     origin: Vectors,
@@ -66,7 +67,7 @@ pub struct FourRectangles {
 }
 
 impl FourRectangles {
-    /// At most four.
+    /// Packs one to four rectangles.
     pub fn new(shapes: &[Rectangle]) -> Self {
         Self {
             origin: Vectors::of(shapes, |r| r.origin),
@@ -76,7 +77,7 @@ impl FourRectangles {
         }
     }
 
-    /// Replaces `hit` by the nearest hit with those that `mask` names, as if by
+    /// Replaces `hit` by the nearest hit with the lanes in `mask`, as if by
     /// [`intersect_rectangle`](super::rectangle::intersect_rectangle) with each in turn. `first` is
     /// the reference of lane 0.
     #[inline(always)]
@@ -84,7 +85,7 @@ impl FourRectangles {
         let direction = Vectors::splat(ray.direction);
         let d = Vectors::splat(ray.origin).minus(&self.origin);
         let slope = direction.dot(&self.normal);
-        // where the slope is 0, t is infinite or no number
+        // if the slope is 0, t is infinite or NaN
         let t = -d.dot(&self.normal) / slope;
         let p = d.along(&direction, t);
         let s = p.dot(&self.dual_u);
@@ -105,7 +106,7 @@ impl FourRectangles {
     }
 }
 
-/// Spheres whose numbers differ in the last two bits only.
+/// Up to four spheres whose indices differ only in the last two bits.
 #[derive(Clone, Copy, Debug)]
 pub struct FourSpheres {
     anchor: Vectors,
@@ -114,7 +115,7 @@ pub struct FourSpheres {
 }
 
 impl FourSpheres {
-    /// At most four.
+    /// Packs one to four spheres.
     pub fn new(shapes: &[Sphere]) -> Self {
         Self {
             anchor: Vectors::of(shapes, |s| s.anchor),
@@ -123,7 +124,7 @@ impl FourSpheres {
         }
     }
 
-    /// Replaces `hit` by the nearest hit with those that `mask` names, as if by
+    /// Replaces `hit` by the nearest hit with the lanes in `mask`, as if by
     /// [`intersect_sphere`](super::sphere::intersect_sphere) with each in turn. `first` is the
     /// reference of lane 0.
     #[inline(always)]
@@ -176,7 +177,7 @@ mod tests {
     use super::*;
     use bytemuck::Zeroable;
 
-    /// Numbers in [-1, 1), every eighth of them 0.
+    /// Numbers in [-1, 1), one in eight of them 0.
     struct Random(u32);
 
     impl Random {
@@ -220,7 +221,8 @@ mod tests {
         }
     }
 
-    /// Rays for which `four` and `one` by one differ in a bit, and those that hit, of 20 000.
+    /// Counts, over 20 000 rays, those for which `four` and `one` differ in any bit, and those that
+    /// hit.
     fn compare<T>(
         make: impl Fn(&mut Random) -> T,
         four: impl Fn(&[T], u32, &Ray, &mut Hit),
@@ -245,9 +247,9 @@ mod tests {
         (differ, met)
     }
 
-    // Theory: each lane does the operations of the test of one shape, and the nearest, of equals
-    // the first, is kept. So every bit agrees, for missing lanes, rays along an axis, from behind
-    // their origin, and ends before the shape too.
+    // Theory: each lane performs the operations of the single-shape test, and the nearest hit, the
+    // first among equals, is kept. So every bit agrees, also for missing lanes, rays along an axis,
+    // rays that start behind their origin, and rays that end before the shape.
     #[test]
     fn four_rectangles_are_one_by_one() {
         let four = |r: &[Rectangle], mask, ray: &Ray, hit: &mut Hit| {
@@ -255,7 +257,7 @@ mod tests {
         };
         let (differ, met) = compare(Random::rectangle, four, intersect_rectangle);
         assert!(differ == 0 && met > 1000, "{differ} of {met}");
-        // the comparator notices a lane that is tested though it is not named
+        // the comparison detects a lane that is tested although `mask` excludes it
         let planted = |r: &[Rectangle], _, ray: &Ray, hit: &mut Hit| four(r, 15, ray, hit);
         assert!(compare(Random::rectangle, planted, intersect_rectangle).0 > 100);
     }

@@ -4,11 +4,12 @@
 use super::real::{Plain, Real, Vec3};
 use bytemuck::Zeroable;
 
-/// "No such index".
+/// Index that means "none".
 pub const NONE: u32 = 0xffff_ffff;
-/// Number of low bits of a reference that hold the index; the bits above hold the kind.
+/// Number of low bits of a reference that store the index; the bits above store the kind.
 pub const REFERENCE_BITS: u32 = 28;
-/// Reference kinds: what a leaf of the kd-tree or an area light points at.
+/// Kind of a reference, which a kd-tree leaf or an area light stores: see
+/// [`Triangle`](super::triangle::Triangle).
 pub const KIND_TRIANGLE: u32 = 0;
 /// See [`Sphere`].
 pub const KIND_SPHERE: u32 = 1;
@@ -23,41 +24,42 @@ pub const KIND_REVOLUTION: u32 = 5;
 /// See [`Plane`].
 pub const KIND_PLANE: u32 = 6;
 
-/// A reference from its kind and index.
+/// Packs a reference from its kind and index.
 pub const fn reference(kind: u32, index: usize) -> u32 {
     kind << REFERENCE_BITS | index as u32
 }
 
 /// Kind of the shape that a reference points at, one of `KIND_*`.
 #[inline]
-pub fn kind_of(reference: u32) -> u32 {
+pub const fn kind_of(reference: u32) -> u32 {
     reference >> REFERENCE_BITS
 }
 
 /// Index of the shape that a reference points at, among the shapes of its kind.
 #[inline]
-pub fn index_of(reference: u32) -> u32 {
+pub const fn index_of(reference: u32) -> u32 {
     reference & ((1 << REFERENCE_BITS) - 1)
 }
 
-/// `(u, v)` is the shape's own.
+/// `(u, v)` are the shape's own parameters.
 pub const UV_NATURAL: u32 = 0;
-/// `(u, v)` is world (x, z).
+/// `(u, v)` are the world coordinates (x, z).
 pub const UV_PLANAR: u32 = 1;
-/// The same as [`UV_NATURAL`], of a profile that ends where it begins: v goes on there.
+/// Like [`UV_NATURAL`], for a closed profile: v wraps around.
 pub const UV_LOOP: u32 = 2;
 
-/// A sphere through `anchor` with outward normal `normal` there: exact in f32 for any radius.
+/// Sphere given by a surface point `anchor` and the outward normal there: accurate in f32 for any
+/// radius.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Plain, Zeroable)]
 pub struct Sphere {
-    /// The point of the sphere nearest to the scene's middle.
+    /// Point of the sphere nearest to the scene's centre.
     pub anchor: Vec3,
-    /// `k = 1 / radius`.
+    /// Curvature, `1 / radius`, per scene unit.
     pub curvature: Real,
     /// Outward unit normal at the anchor.
     pub normal: Vec3,
-    /// Radius.
+    /// Radius, scene units.
     pub radius: Real,
     /// Material index.
     pub material: u32,
@@ -65,19 +67,19 @@ pub struct Sphere {
     pub light: u32,
     /// [`UV_NATURAL`] or [`UV_PLANAR`].
     pub uv: u32,
-    /// Padding.
+    /// Padding to 16 bytes.
     pub pad: u32,
 }
 
-/// A parallelogram `origin + s u + t v`, s and t in [0, 1].
+/// Parallelogram `origin + s u + t v`, s and t in [0, 1].
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Plain, Zeroable)]
 pub struct Rectangle {
-    /// Corner.
+    /// Corner at s = t = 0.
     pub origin: Vec3,
     /// Material index.
     pub material: u32,
-    /// Unit normal, along `u x v`.
+    /// Unit normal along `u x v`.
     pub normal: Vec3,
     /// Light index or [`NONE`].
     pub light: u32,
@@ -87,25 +89,25 @@ pub struct Rectangle {
     pub uv: u32,
     /// Second edge.
     pub v: Vec3,
-    /// Area.
+    /// Area, square scene units.
     pub area: Real,
     /// In-plane vector with `dual_u . u = 1` and `dual_u . v = 0`.
     pub dual_u: Vec3,
-    /// Its outline among the outlines.
+    /// Index of its outline.
     pub outline: u32,
     /// In-plane vector with `dual_v . v = 1` and `dual_v . u = 0`.
     pub dual_v: Vec3,
-    /// Padding.
+    /// Padding to 16 bytes.
     pub pad: u32,
 }
 
-/// A flat disc.
+/// Flat disc.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Plain, Zeroable)]
 pub struct Disc {
     /// Centre.
     pub center: Vec3,
-    /// Radius.
+    /// Radius, scene units.
     pub radius: Real,
     /// Unit normal.
     pub normal: Vec3,
@@ -115,13 +117,13 @@ pub struct Disc {
     pub light: u32,
     /// [`UV_NATURAL`] or [`UV_PLANAR`].
     pub uv: u32,
-    /// Its outline among the outlines.
+    /// Index of its outline.
     pub outline: u32,
-    /// Padding.
+    /// Padding to 16 bytes.
     pub pad: u32,
 }
 
-/// An axis-parallel box.
+/// Axis-parallel box.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Plain, Zeroable)]
 pub struct Cuboid {
@@ -135,17 +137,17 @@ pub struct Cuboid {
     pub light: u32,
     /// [`UV_NATURAL`] (each face is the unit square) or [`UV_PLANAR`].
     pub uv: u32,
-    /// The outline of the faces across x among the outlines; those across y and z follow.
+    /// Index of the outline of the faces perpendicular to x; those for y and z follow.
     pub outline: u32,
-    /// Padding.
+    /// Padding to 16 bytes.
     pub pad: [u32; 2],
 }
 
-/// An infinite plane.
+/// Infinite plane.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Plain, Zeroable)]
 pub struct Plane {
-    /// The plane's point nearest to the scene's middle.
+    /// Point of the plane nearest to the scene's centre.
     pub point: Vec3,
     /// Material index.
     pub material: u32,
@@ -153,21 +155,21 @@ pub struct Plane {
     pub normal: Vec3,
     /// [`UV_NATURAL`] (world units along the tangents) or [`UV_PLANAR`].
     pub uv: u32,
-    /// First tangent, in world units per scene unit.
+    /// First tangent; its length is the number of world units per scene unit.
     pub tangent: Vec3,
     /// u at `point`.
     pub u0: Real,
-    /// Second tangent, in world units per scene unit.
+    /// Second tangent; its length is the number of world units per scene unit.
     pub bitangent: Vec3,
     /// v at `point`.
     pub v0: Real,
-    /// Its outline among the outlines where walls stand on it, or [`NONE`].
+    /// Index of its outline if walls stand on it, or [`NONE`].
     pub outline: u32,
-    /// Padding.
+    /// Padding to 16 bytes.
     pub pad: [u32; 3],
 }
 
-/// Smooth normals and texture coordinates of a triangle's corners.
+/// Normals and texture coordinates of a triangle's vertices.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Plain, Zeroable)]
 pub struct Attributes {
@@ -189,7 +191,7 @@ pub struct Attributes {
     pub u2: Real,
     /// v at `p2`.
     pub v2: Real,
-    /// Bit 0: whether corner normals are interpolated. The rest: one plus the outline of the flat
-    /// region that the triangle is part of, or 0.
+    /// Bit 0: set if vertex normals are interpolated. Other bits: one plus the index of the outline
+    /// of the flat region that the triangle is part of, or 0.
     pub outline_smooth: u32,
 }

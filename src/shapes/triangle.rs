@@ -1,12 +1,12 @@
-//! Triangles: the watertight test of Woop, Benthin & Wald (JCGT 2013) in f32. Twin:
+//! Triangles: watertight ray-triangle test of Woop, Benthin & Wald (JCGT 2013) in f32. Twin:
 //! `shaders/shapes/triangle.wgsl`.
 //!
-//! Vertices are sheared so that the ray runs along +z; three edge functions then say on which side
-//! of each edge the ray passes. An edge function is a difference of two rounded products. Rounding
-//! is monotone, so its sign is right or it is 0, and it is the exact negative seen from the
-//! triangle on the other side: no ray slips between. Where the triangle is thin as the ray sees it,
-//! the rounding of the products (Dekker 1971) is added, which makes the signs exact and the weights
-//! accurate.
+//! Vertices are sheared so that the ray runs along +z; the signs of three edge functions then give
+//! the side of each edge on which the ray passes. An edge function is a difference of two rounded
+//! products. Rounding is monotone, so its sign is either correct or 0, and the adjacent triangle
+//! computes its exact negative: no ray slips between the two. For triangles that are thin in
+//! projection, the test adds the rounding errors of the products (Dekker 1971), which makes the
+//! signs exact and the weights accurate.
 
 use super::math::EPS;
 use super::ray::{Hit, Ray};
@@ -25,27 +25,28 @@ pub struct Triangle {
     pub p1: Vec3,
     /// Light index or [`NONE`](super::table::NONE).
     pub light: u32,
-    /// Third vertex; counter-clockwise seen from the side that the normal points to.
+    /// Third vertex; the vertices are counter-clockwise seen from the side the normal points to.
     pub p2: Vec3,
-    /// Index of its normals and texture coordinates, or [`NONE`](super::table::NONE).
+    /// Index of its normals and texture coordinates in the attribute table, or
+    /// [`NONE`](super::table::NONE).
     pub attributes: u32,
 }
 
-/// What the triangle test needs to know of a ray: axis permutation and shear that turn its
+/// Per-ray constants of the triangle test: the axis permutation and the shear that map the ray's
 /// direction to +z.
 #[derive(Clone, Copy, Debug)]
 pub struct RayShear {
     /// `(d_x / d_z, d_y / d_z, 1 / d_z)` after the permutation.
     pub shear: Vec3,
-    /// The direction's largest component, which becomes z.
+    /// Axis of the direction's largest component, which becomes z.
     pub axis: u32,
 }
 
 impl RayShear {
-    /// For tests of other shapes.
+    /// Placeholder for tests of other shapes, which ignore it.
     pub const NONE: RayShear = RayShear { shear: Vec3::ZERO, axis: 0 };
 
-    /// Once per ray.
+    /// Computes the constants for `ray`, once per ray.
     #[inline]
     pub fn new(ray: &Ray) -> RayShear {
         let a = ray.direction.abs();
@@ -61,7 +62,7 @@ impl RayShear {
     }
 }
 
-/// `v` with its components turned so that `axis` comes last.
+/// Rotates the components of `v` cyclically so that `axis` comes last.
 #[inline(always)]
 pub(super) fn permuted(v: Vec3, axis: u32) -> Vec3 {
     match axis {
@@ -71,15 +72,16 @@ pub(super) fn permuted(v: Vec3, axis: u32) -> Vec3 {
     }
 }
 
-/// `p` in the ray's space: (0, 0, t) lies on the ray. The same for every triangle with this vertex.
+/// Maps `p` to the ray's space, where the ray is (0, 0, t). Deterministic, so triangles that share
+/// a vertex get the same result.
 #[inline]
 fn sheared(p: Vec3, shear: &RayShear, ray: &Ray) -> Vec3 {
     let q = permuted(p - ray.origin, shear.axis);
     Vec3::new(q.x - shear.shear.x * q.z, q.y - shear.shear.y * q.z, shear.shear.z * q.z)
 }
 
-/// `a * b - p` exactly, where `p` is the rounded product (Dekker 1971, with the halves cut by a
-/// mask).
+/// Returns `a * b - p` exactly, where `p` is the rounded product (Dekker 1971, splitting the
+/// factors with a bit mask).
 fn product_error(a: Real, b: Real, p: Real) -> Real {
     let a_high = Real::from_bits(a.to_bits() & LEADING);
     let b_high = Real::from_bits(b.to_bits() & LEADING);
@@ -88,7 +90,7 @@ fn product_error(a: Real, b: Real, p: Real) -> Real {
     ((a_high * b_high - p) + a_high * b_low + a_low * b_high) + a_low * b_low
 }
 
-/// `a * d - b * c` with the right sign and a few correct digits at least.
+/// Returns `a * d - b * c` with the exact sign and at least a few correct digits.
 fn exact_cross(a: Real, b: Real, c: Real, d: Real) -> Real {
     let p = a * d;
     let q = b * c;
@@ -96,7 +98,7 @@ fn exact_cross(a: Real, b: Real, c: Real, d: Real) -> Real {
 }
 
 /// Replaces `hit` if the ray meets the triangle, from either side, in `(t_min, hit.t)`. Edges
-/// belong to both sides.
+/// belong to both of the triangles that share them.
 #[inline]
 pub fn intersect_triangle(
     triangle: &Triangle,
@@ -105,9 +107,11 @@ pub fn intersect_triangle(
     ray: &Ray,
     hit: &mut Hit,
 ) {
+    // shear the vertices into the ray's space
     let a = sheared(triangle.p0, shear, ray);
     let b = sheared(triangle.p1, shear, ray);
     let c = sheared(triangle.p2, shear, ray);
+    // edge functions; the ray misses if their signs differ
     let cb0 = c.x * b.y;
     let cb1 = c.y * b.x;
     let ac0 = a.x * c.y;
@@ -121,8 +125,8 @@ pub fn intersect_triangle(
         return;
     }
     let mut det = u + v + w;
-    // Thin: the rounding of the products would move the hit by more than about 8 roundings of the
-    // triangle's size.
+    // Thin in projection: the rounding of the products would move the hit by more than about 8
+    // roundings of the triangle's size.
     let products =
         cb0.abs().max(cb1.abs()).max(ac0.abs()).max(ac1.abs()).max(ba0.abs()).max(ba1.abs());
     if det.abs() < 0.5 * products {
@@ -139,12 +143,12 @@ pub fn intersect_triangle(
     }
     let t = (u * a.z + v * b.z + w * c.z) / det;
     if t > ray.t_min && t < hit.t {
-        // Not negative; this settles the sign of zero.
+        // `abs` only fixes the sign of zero: the quotient is never negative
         *hit = Hit { t, reference, u: (v / det).abs(), v: (w / det).abs() };
     }
 }
 
-/// Unit geometric normal: along `(p1 - p0) x (p2 - p0)`; +z where rounding leaves no direction.
+/// Unit geometric normal along `(p1 - p0) x (p2 - p0)`; +z if the cross product rounds to zero.
 pub fn triangle_normal(triangle: &Triangle) -> Vec3 {
     let n = (triangle.p1 - triangle.p0).cross(triangle.p2 - triangle.p0);
     let size = n.abs().x.max(n.abs().y).max(n.abs().z);
@@ -152,14 +156,14 @@ pub fn triangle_normal(triangle: &Triangle) -> Vec3 {
     m * (1.0 / m.dot(m).sqrt())
 }
 
-/// The point with barycentric weights `(1 - u - v, u, v)`.
+/// Point with barycentric weights `(1 - u - v, u, v)`.
 pub fn triangle_point(triangle: &Triangle, u: Real, v: Real) -> Vec3 {
     triangle.p0 + (triangle.p1 - triangle.p0) * u + (triangle.p2 - triangle.p0) * v
 }
 
-/// How far (scene units) a new ray must start from [`triangle_point`] along the normal so as not to
-/// meet the triangle again: 16 roundings of the largest coordinate. The point itself is off by less
-/// than 6 of them, the moved origin by 2 more.
+/// Offset (scene units) along the normal from [`triangle_point`] at which a new ray must start so
+/// that it does not hit the triangle again: 16 EPS times the largest coordinate. The error of the
+/// point itself is below 6 EPS, that of the offset origin at most 2 EPS more.
 pub fn triangle_error(triangle: &Triangle) -> Real {
     let m = triangle.p0.abs().max(triangle.p1.abs()).max(triangle.p2.abs());
     16.0 * EPS * m.x.max(m.y).max(m.z)

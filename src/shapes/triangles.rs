@@ -1,5 +1,5 @@
-//! Four triangles at a time: lane by lane the operations of `triangle.rs`, and so the same bits.
-//! Only the CPU engine has this; on a GPU the lanes are rays.
+//! Intersection of four triangles at a time, lane by lane by the operations of `triangle.rs`, so
+//! the results are bit-identical. CPU engine only: on a GPU the lanes are rays.
 
 use super::ray::{Hit, Ray};
 use super::real::{Vec3, Vec4};
@@ -7,8 +7,8 @@ use super::triangle::{RayShear, Triangle, intersect_triangle, permuted};
 
 const LANES: usize = 4;
 
-/// Replaces `hit` by the nearest hit with the triangles that `references` are the indices of, as if
-/// by [`intersect_triangle`] with each in turn.
+/// Replaces `hit` by the nearest hit with the triangles whose indices are `references`, as if by
+/// [`intersect_triangle`] with each in turn.
 #[inline]
 pub fn intersect_triangles(
     triangles: &[Triangle],
@@ -24,14 +24,14 @@ pub fn intersect_triangles(
     }
 }
 
-/// Four numbers along each of the ray's axes.
+/// Four vectors in the ray's space as a structure of arrays.
 struct Lanes {
     x: Vec4,
     y: Vec4,
     z: Vec4,
 }
 
-/// A corner of each triangle in the ray's space, where `AXIS` is the shear's.
+/// Shears one vertex of each triangle into the ray's space; `AXIS` is the axis of the shear.
 #[inline(always)]
 fn sheared<const AXIS: u32>(corner: [&Vec3; LANES], origin: &Lanes, slope: &Lanes) -> Lanes {
     let [a, b, c, d] = corner;
@@ -48,7 +48,7 @@ fn splat(v: Vec3) -> Lanes {
     Lanes { x: Vec4::splat(v.x), y: Vec4::splat(v.y), z: Vec4::splat(v.z) }
 }
 
-/// [`intersect_triangles`] for one axis, so that the permutation is settled when this is compiled.
+/// [`intersect_triangles`] for one axis, so that the permutation is resolved at compile time.
 fn along<const AXIS: u32>(
     triangles: &[Triangle],
     references: &[u32],
@@ -59,6 +59,7 @@ fn along<const AXIS: u32>(
     let origin = splat(permuted(ray.origin, AXIS));
     let slope = splat(shear.shear);
     for references in references.chunks(LANES) {
+        // the last reference fills the unused lanes
         let last = references.len() - 1;
         let t0 = &triangles[references[0] as usize];
         let t1 = &triangles[references[1.min(last)] as usize];
@@ -67,6 +68,7 @@ fn along<const AXIS: u32>(
         let a = sheared::<AXIS>([&t0.p0, &t1.p0, &t2.p0, &t3.p0], &origin, &slope);
         let b = sheared::<AXIS>([&t0.p1, &t1.p1, &t2.p1, &t3.p1], &origin, &slope);
         let c = sheared::<AXIS>([&t0.p2, &t1.p2, &t2.p2, &t3.p2], &origin, &slope);
+        // edge functions
         let (cb0, cb1) = (c.x * b.y, c.y * b.x);
         let (ac0, ac1) = (a.x * c.y, a.y * c.x);
         let (ba0, ba1) = (b.x * a.y, b.y * a.x);
@@ -80,9 +82,10 @@ fn along<const AXIS: u32>(
         let products =
             cb0.abs().max(cb1.abs()).max(ac0.abs()).max(ac1.abs()).max(ba0.abs()).max(ba1.abs());
         let thin = det.abs().cmplt(products * 0.5).bitmask();
-        // Where det is 0, t is no number and compares as false.
+        // if det is 0, t is NaN and fails both comparisons
         let t = (u * a.z + v * b.z + w * c.z) / det;
         let nearer = t.cmpgt(Vec4::splat(ray.t_min)) & t.cmplt(Vec4::splat(hit.t));
+        // keep the nearest hit; thin triangles go through the exact single test
         let mut lanes = (nearer.bitmask() | thin) & within;
         while lanes != 0 {
             let lane = lanes.trailing_zeros() as usize;

@@ -7,7 +7,8 @@ mod structure;
 mod triangles;
 
 use caustica::low_level::accel::kdtree::{KdTree, Primitive, build};
-use caustica::low_level::shapes::ray::{Hit, NONE, Ray};
+use caustica::low_level::shapes::ray::{Hit, Ray};
+use caustica::low_level::shapes::table::NONE;
 use caustica::low_level::shapes::triangle::RayShear;
 use glam::Vec3;
 use scenes::*;

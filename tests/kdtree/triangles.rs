@@ -2,7 +2,8 @@
 
 use crate::scenes::*;
 use caustica::low_level::math::unit;
-use caustica::low_level::shapes::ray::{Hit, NONE, Ray};
+use caustica::low_level::shapes::ray::{Hit, Ray};
+use caustica::low_level::shapes::table::NONE;
 use caustica::low_level::shapes::triangle::*;
 use caustica::low_level::shapes::triangles::intersect_triangles;
 use glam::{DVec3, Vec3};

@@ -1,4 +1,4 @@
-//! Executes the commands of a pass, and traces paths again that a software driver stopped.
+//! Executes the commands of a pass, and retraces paths that a software driver stopped.
 
 use super::super::retrace::{retrace_aovs, retrace_photons, retrace_points};
 use super::{COUNTERS_BYTES, ENDS, GpuEngine, READINGS_BYTES, STOPPED_COUNT};
@@ -8,24 +8,24 @@ use crate::plan::features::Feature;
 use crate::plan::{Buffer, Command, Kernel, Over, Stage, Step};
 use std::collections::BTreeMap;
 
-/// What a tile's commands count.
+/// Counts of one tile's commands.
 #[derive(Default)]
 struct Tile {
-    /// Number of batches, whose records are read.
+    /// Number of batches, one record count each.
     batches: usize,
-    /// Photons of each batch so far.
+    /// Number of photons of each batch so far.
     photons: Vec<u32>,
-    /// Records of each batch.
+    /// Number of records of each batch.
     records: Vec<u32>,
     eye_paths: u64,
     rays: u64,
     eye_rays: u64,
     ends: PhotonEnds,
-    /// Invocations that the driver stopped and that were not traced again.
+    /// Number of invocations that the driver stopped and that were not retraced.
     stopped: u32,
-    /// Rays of paths that were traced again.
+    /// Number of rays of retraced paths.
     retraced: u64,
-    /// The same of eye paths, once these are done.
+    /// The same for eye paths, set once these are complete.
     retraced_eyes: Option<u64>,
 }
 
@@ -34,12 +34,12 @@ impl Tile {
         Self { batches, ..Self::default() }
     }
 
-    /// Size of its readings.
+    /// Size of the tile's readings in bytes.
     fn bytes(&self) -> u64 {
         READINGS_BYTES + 4 * self.batches as u64
     }
 
-    /// Takes over the counters, their words of rays after the eye paths, and each batch's records.
+    /// Stores the counters, the ray count after the eye paths, and each batch's records.
     fn read(&mut self, words: &[u32]) {
         let wide = |at: usize| u64::from(words[at]) | u64::from(words[at + 1]) << 32;
         self.rays = wide(1) + self.retraced;
@@ -52,7 +52,7 @@ impl Tile {
         self.records = words[READINGS_BYTES as usize / 4..][..self.batches].to_vec();
     }
 
-    /// Returns whether a batch of several photons left more records than fit.
+    /// Returns true if a batch of several photons left more records than the capacity.
     fn overflows(&self, capacity: u32) -> bool {
         let mut batches = self.photons.iter().zip(&self.records);
         batches.any(|(photons, records)| *records > capacity && *photons > 1)
@@ -60,7 +60,7 @@ impl Tile {
 }
 
 impl GpuEngine {
-    /// Submits what was recorded.
+    /// Submits the recorded commands and updates the statistics and the pace.
     fn flush(&mut self) -> Result<(), EngineError> {
         let seconds = self.recorder.finish(&self.gpu)?;
         if self.stamped {
@@ -96,17 +96,17 @@ impl GpuEngine {
         Ok(())
     }
 
-    /// Records a kernel in as many dispatches as the pace asks for.
+    /// Records a kernel in as many dispatches as the pace requires.
     fn record(&mut self, kernel: Kernel, chunk: u32, whole: &Dispatch) -> Result<(), EngineError> {
         let Dispatch { mut first, end, .. } = *whole;
-        // one workgroup sees all blocks
+        // a single workgroup must see all blocks
         let indivisible = kernel.info().over == Over::Blocks;
         let granule = kernel.info().workgroup_items;
         while first < end {
             let fit = self.pace.fit(kernel, end - first);
             if fit == 0 || self.recorder.is_full() {
                 self.flush()?;
-                // after a commit the whole pass has to reach the film
+                // after a commit the whole pass must reach the film
                 if !self.partial {
                     self.plan.cancel.check()?;
                 }
@@ -123,8 +123,8 @@ impl GpuEngine {
         Ok(())
     }
 
-    /// Executes a pass with so many photons a batch. Returns `None` if the pass is discarded,
-    /// since records did not fit or the driver stopped long loops.
+    /// Executes a pass with `batch` photons per batch. Returns `None` if the pass is discarded
+    /// because records did not fit or the driver stopped long loops.
     pub(super) fn execute(&mut self, batch: u32) -> Result<Option<PassReport>, EngineError> {
         self.plan.cancel.check()?;
         let pass = self.passes_done;
@@ -146,7 +146,7 @@ impl GpuEngine {
             report.eye_paths += tile.eye_paths;
             report.rays += tile.rays;
             report.eye_rays += tile.eye_rays;
-            // photons that are traced again for another tile are the same
+            // tiles trace the same photons, so count them once
             if number == 0 {
                 report.records = tile.records.iter().map(|records| u64::from(*records)).sum();
                 report.ends = tile.ends;
@@ -156,7 +156,7 @@ impl GpuEngine {
         Ok(Some(report))
     }
 
-    /// Executes one command. Returns false if the pass has to be discarded.
+    /// Executes one command. Returns false if the pass must be discarded.
     fn command(
         &mut self,
         command: &Command,
@@ -194,7 +194,7 @@ impl GpuEngine {
                 self.flush()?;
                 let bytes = self.gpu.read(&self.readings, tile.bytes())?;
                 tile.read(&bytemuck::pod_collect_to_vec(&bytes));
-                // tiles before this one have been added to the film
+                // tiles before this one have already been added to the film
                 if tile.stopped > 0 && (batch == 1 || self.scene.is_none() || self.partial) {
                     return Err(self.unfinished());
                 }
@@ -207,7 +207,7 @@ impl GpuEngine {
         Ok(true)
     }
 
-    /// Makes the buffer of readings large enough.
+    /// Makes the buffer of readings at least `bytes` large.
     fn provide_readings(&mut self, bytes: u64) -> Result<(), EngineError> {
         if self.readings.size() < bytes {
             self.readings = self.gpu.storage("readings", bytes)?;
@@ -215,15 +215,15 @@ impl GpuEngine {
         Ok(())
     }
 
-    /// Records a copy of some bytes of the counters to an offset in the readings.
+    /// Records a copy of a byte range of the counters to an offset in the readings.
     fn read_counters(&mut self, bytes: std::ops::Range<u64>, to: u64) {
         let source = (&self.shared[&Buffer::Counters], bytes.start);
         let size = bytes.end - bytes.start;
         self.recorder.copy(&self.gpu, source, (&self.readings, to), size);
     }
 
-    /// Traces the paths of a step that a software driver stopped again, on the CPU. Returns the
-    /// number of their rays. Fails for layers if another driver has stopped.
+    /// Retraces the paths of a step that a software driver stopped, on the CPU. Returns the number
+    /// of their rays. Fails for AOVs if another kind of driver stopped loops.
     fn retrace(&mut self, step: &Step) -> Result<u64, EngineError> {
         match step.stage {
             Stage::EyeTrace | Stage::PhotonTrace if self.scene.is_none() => return Ok(0),
@@ -281,7 +281,7 @@ impl GpuEngine {
     }
 }
 
-/// A buffer of a chunk, or the one that chunks share.
+/// Buffer of a chunk, or the shared buffer if there is no such one.
 fn buffer<'a>(
     shared: &'a BTreeMap<Buffer, wgpu::Buffer>,
     chunks: &'a [BTreeMap<Buffer, wgpu::Buffer>],

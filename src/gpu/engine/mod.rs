@@ -1,4 +1,4 @@
-//! An engine on a GPU or a software driver: passes over one scene.
+//! GPU engine: renders one scene on a GPU or a software driver.
 
 mod execute;
 mod setup;
@@ -19,87 +19,88 @@ use std::collections::BTreeMap;
 
 pub use setup::{CompileSeconds, sizes};
 
-/// Bytes of `counters`: records of the batch, the pass's rays in two words, invocations that the
-/// driver stopped, photons by how they ended, and one unused.
+/// Size of `counters` in bytes: records of the batch, the pass's rays in two words, invocations
+/// that the driver stopped, photons by how their paths ended, and one unused word.
 const COUNTERS_BYTES: u64 = 32;
-/// What is read back of a pass: the counters, their two words of rays before the first photon, and
-/// each batch's records.
+/// Size of the readings of a pass in bytes without the records of batches: the counters, and the
+/// two words of eye rays. One word per batch follows.
 const READINGS_BYTES: u64 = COUNTERS_BYTES + 8;
-/// The word of the invocations that the driver stopped.
+/// Index of the word that counts the invocations stopped by the driver.
 const STOPPED_COUNT: usize = 3;
-/// The first word of the photons' ends.
+/// Index of the first word that counts photons by how their paths ended.
 const ENDS: usize = 4;
 
-/// Passes over one scene on a GPU or a software driver.
+/// Engine that renders one scene on a GPU or a software driver.
 pub struct GpuEngine {
     gpu: Gpu,
     plan: Plan,
     passes_done: u32,
-    /// Whether a pass ended while it was adding to the film.
+    /// True if a pass has begun to be added to the film but is not complete.
     partial: bool,
     recorder: Recorder,
     pace: Pace,
     programs: BTreeMap<Kernel, Program>,
-    /// Of the struct that the programs know the scene's short tables by.
+    /// Members of the struct in which the programs read the scene's short tables.
     members: Vec<Member>,
-    /// Those that the programs test one after another.
+    /// References of the shapes that the programs test one after another.
     few: Vec<u32>,
-    /// By kernel and chunk (0 where it has none).
+    /// Bind groups by kernel and chunk (chunk 0 if the kernel has none).
     groups: BTreeMap<(Kernel, u32), wgpu::BindGroup>,
     shared: BTreeMap<Buffer, wgpu::Buffer>,
     chunks: Vec<BTreeMap<Buffer, wgpu::Buffer>>,
     /// Copies of the pass's counters and of each batch's record count.
     readings: wgpu::Buffer,
-    /// On a software driver: what to trace stopped paths again with.
+    /// Scene for retracing stopped paths, on a software driver only.
     scene: Option<Scene>,
     device: String,
     compile_seconds: BTreeMap<Kernel, CompileSeconds>,
     submissions: Submissions,
-    /// Seconds of each kernel in the pass at hand, where they are asked for.
+    /// Seconds of each kernel in the current pass, if requested.
     clock: Clock,
-    /// Whether these come from the device's own clock, not from waiting for each kernel.
+    /// True if the times come from the device's clock rather than from waiting for each kernel.
     stamped: bool,
 }
 
-/// What was handed to the device.
+/// Statistics of submissions to the device.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Submissions {
-    /// How many.
+    /// Number of submissions.
     pub count: u64,
-    /// Seconds from handing over the longest one until it was known to be done.
+    /// Seconds from the start of the longest submission to its completion.
     pub longest_seconds: f64,
-    /// The kernels in that.
+    /// Kernels in the longest submission.
     pub longest: Vec<Kernel>,
 }
 
 impl GpuEngine {
-    /// What each kernel took to be made ready, if this was [measured](Self::measured).
+    /// Compile time of each kernel, if the engine was created by [`measured`](Self::measured).
     pub fn compile_seconds(&self) -> &BTreeMap<Kernel, CompileSeconds> {
         &self.compile_seconds
     }
 
-    /// Has the driver take the device away, as it does when it is reset: for tests.
+    /// Makes the driver lose the device, as in a reset; for tests.
     pub fn lose(&self) {
         self.gpu.lose();
     }
 
-    /// What it runs on.
+    /// Adapter that the engine runs on.
     pub fn adapter(&self) -> &AdapterSummary {
         &self.gpu.summary
     }
 
-    /// Sets how many seconds a submission is to take; with infinity, no pass is split for its time.
+    /// Sets the target duration of a submission in seconds; with infinity, passes are not split for
+    /// time.
     pub fn set_slice(&mut self, seconds: f64) {
         self.pace.set_slice(seconds);
     }
 
-    /// What was handed to the device since this was last asked for; counting begins anew.
+    /// Returns the statistics since the last call and resets them.
     pub fn take_submissions(&mut self) -> Submissions {
         std::mem::take(&mut self.submissions)
     }
 
-    /// Whether [`Engine::timed_pass`] reads the device's own clock. If not, it waits for each
-    /// kernel, and the times hold the way to the device and back.
+    /// Returns true if [`Engine::timed_pass`] reads the device's clock. Otherwise it waits for each
+    /// kernel, and the times include the communication with the device.
     pub fn has_clock(&self) -> bool {
         self.gpu.has_clock()
     }
@@ -118,8 +119,8 @@ impl Engine for GpuEngine {
                     self.passes_done += 1;
                     return Ok(report);
                 }
-                // thrown away and run again with batches half as large, which also shortens the
-                // loops over photons
+                // discard the pass and run it again with batches half as large, which also shortens
+                // the loops over photons
                 None => batch = (batch / 2).max(1),
             }
         }

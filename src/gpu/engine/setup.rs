@@ -1,4 +1,4 @@
-//! An engine made ready: its buffers, and its kernels compiled.
+//! Setup of an engine: allocates its buffers and compiles its kernels.
 
 use super::super::context::{AdapterChoice, AdapterKind, Gpu};
 use super::super::layout::{SceneTables, long_tables};
@@ -18,40 +18,40 @@ use crate::telemetry::stage::stage;
 use std::collections::BTreeMap;
 use std::time::Instant;
 
-/// What to change when the device is too small.
+/// Remedy if the device is too small.
 const MEND: &str = "make the picture smaller, or take --device cpu";
 
-/// What an engine is made of that another may have had before.
+/// Parts that an engine takes over from a previous one.
 struct Reusable {
     gpu: Gpu,
     pace: Pace,
     programs: BTreeMap<Kernel, Program>,
 }
 
-/// What it took to make a kernel ready.
+/// Time that it took to compile a kernel, seconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CompileSeconds {
-    /// To put its shader together, check it and hand it to the driver.
+    /// Time to compose and validate its shader and pass it to the driver.
     pub checking: f64,
-    /// Of the driver, until the kernel had run over nothing.
+    /// Time of the driver until the kernel had run over nothing.
     pub driver: f64,
 }
 
 impl CompileSeconds {
-    /// Both.
+    /// Sum of both.
     pub fn total(&self) -> f64 {
         self.checking + self.driver
     }
 }
 
 impl GpuEngine {
-    /// An engine for one scene and plan on the adapter of `choice`.
+    /// Creates an engine for one scene and plan on the adapter of `choice`.
     pub fn new(choice: &AdapterChoice, packed: &Packed, plan: Plan) -> Result<Self, EngineError> {
         Self::with(choice, packed, plan, Compiling::Together)
     }
 
-    /// The same, more slowly: the kernels are made ready one after another, so that
-    /// [`Self::compile_seconds`] can tell.
+    /// Like [`Self::new`], but compiles the kernels one after another, so that
+    /// [`Self::compile_seconds`] is available. Slower.
     pub fn measured(
         choice: &AdapterChoice,
         packed: &Packed,
@@ -76,8 +76,8 @@ impl GpuEngine {
         Self::on(kept, packed, plan, compiling)
     }
 
-    /// An engine for another scene, camera or plan on the device of this one, which keeps its
-    /// programs where the new ones would be the same.
+    /// Creates an engine for another scene, camera or plan on the same device. Keeps the compiled
+    /// programs if the new ones would be identical.
     pub fn renewed(self, packed: &Packed, plan: Plan) -> Result<Self, EngineError> {
         let tables = SceneTables::new(&packed.scene);
         let same = self.plan.features == plan.features
@@ -85,7 +85,7 @@ impl GpuEngine {
         Self::on(self.kept(same), packed, plan, Compiling::Together)
     }
 
-    /// What another engine can have of this one, whose buffers are given back first.
+    /// Frees the buffers and returns the parts that another engine can take over.
     fn kept(self, programs_too: bool) -> Reusable {
         let programs = if programs_too { self.programs } else { BTreeMap::new() };
         Reusable { gpu: self.gpu, pace: self.pace, programs }
@@ -144,9 +144,9 @@ impl GpuEngine {
         Ok(engine)
     }
 
-    /// Makes the kernels of the plan ready, some of which are `kept`. Each other one runs once over
-    /// nothing, since some drivers compile at the first run, and do so while the next kernels are
-    /// checked.
+    /// Compiles the kernels of the plan, except those in `kept`. Each new kernel runs once over
+    /// nothing, since some drivers compile at the first run; they do so while the next kernels are
+    /// validated.
     fn compile(
         &mut self,
         scene: &SceneTables,
@@ -178,7 +178,7 @@ impl GpuEngine {
                 }
                 groups.insert((program.kernel, number), group);
             }
-            // a software driver takes the next submission once it has compiled the one before
+            // a software driver accepts the next submission only after compiling the previous one
             if checking.is_some() {
                 running.begin(program.kernel.stem());
             }
@@ -206,12 +206,12 @@ impl GpuEngine {
     }
 }
 
-/// Bytes of a chunk's buffer, from those of the largest one.
+/// Size of a chunk's buffer, from that of the largest chunk.
 fn chunk_bytes(plan: &Plan, largest: u64, chunk: u32) -> u64 {
     largest * plan.chunk(chunk).1 as u64 / plan.chunk(0).1.max(1) as u64
 }
 
-/// Name and bytes of everything that will be allocated.
+/// Name and bytes of every buffer that will be allocated.
 pub fn sizes(plan: &Plan, scene: &Scene) -> Vec<(&'static str, u64)> {
     let mut list = vec![("scene", SceneTables::new(scene).bytes.len() as u64)];
     list.extend(long_tables(scene).map(|(buffer, content)| (buffer.name(), content.len() as u64)));

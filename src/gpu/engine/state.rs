@@ -1,4 +1,4 @@
-//! The state of an engine: read back, saved and restored.
+//! Reading, saving and restoring the state of an engine.
 
 use super::GpuEngine;
 use crate::engine::{EngineError, LayerState, State};
@@ -7,7 +7,7 @@ use crate::plan::layers::LayerInputs;
 use crate::plan::{Buffer, Extent, Plan};
 
 impl GpuEngine {
-    /// The content of a buffer of the plan (a chunk's, if it is one of those), for tests.
+    /// Contents of a buffer of the plan (of chunk `chunk` if it is per chunk), for tests.
     pub fn content(&self, buffer: Buffer, chunk: u32) -> Result<Vec<u8>, EngineError> {
         let found = self
             .chunks
@@ -17,7 +17,7 @@ impl GpuEngine {
         found.map_or(Ok(Vec::new()), |buffer| self.gpu.read(buffer, buffer.size()))
     }
 
-    /// What the passes so far left behind.
+    /// Reads the state after the passes so far.
     pub(super) fn state(&self) -> Result<State, EngineError> {
         Ok(State {
             first_pass: self.plan.first_pass,
@@ -29,7 +29,7 @@ impl GpuEngine {
         })
     }
 
-    /// Goes on from there.
+    /// Continues from a saved state.
     pub(super) fn take_over(&mut self, state: &State) -> Result<(), EngineError> {
         self.plan.take_over(state)?;
         self.passes_done = state.passes;
@@ -57,8 +57,8 @@ impl GpuEngine {
         self.gpu.check()
     }
 
-    /// What `make` makes of what is found in addition to radiance, which is read back; its default
-    /// where nothing is asked for.
+    /// Reads back the inputs of the layers and passes them to `make`; returns the default if there
+    /// are no AOVs.
     pub(super) fn with_found<T: Default>(
         &self,
         make: impl Fn(&Plan, &LayerInputs) -> T,
@@ -77,18 +77,18 @@ impl GpuEngine {
         Ok(make(&self.plan, &found))
     }
 
-    /// What the visible points gathered in the last pass.
+    /// Reads the sums that the visible points gathered in the last pass.
     pub(super) fn gathered_points(&self) -> Result<Vec<Gathered>, EngineError> {
         self.chunked(Buffer::Gathered, 1)
     }
 
-    /// The film, read back.
+    /// Reads the film.
     pub(super) fn film(&self) -> Result<Vec<FilmPixel>, EngineError> {
         self.chunked(Buffer::Film, self.plan.eye_samples)
     }
 
-    /// What all chunks hold in a buffer of theirs, an item for each `samples` visible points;
-    /// nothing where there is no such buffer.
+    /// Reads a buffer of all chunks, with one item per `samples` visible points; empty if there is
+    /// no such buffer.
     fn chunked<T: bytemuck::Pod>(
         &self,
         buffer: Buffer,
@@ -106,7 +106,7 @@ impl GpuEngine {
         Ok(all)
     }
 
-    /// All chunks' parts of a buffer, one after another; nothing where the plan has no such buffer.
+    /// Reads all chunks' parts of a buffer in sequence; empty if the plan has no such buffer.
     fn read_chunks(&self, buffer: Buffer) -> Result<Vec<u8>, EngineError> {
         self.check_whole()?;
         let mut bytes = Vec::new();
@@ -118,7 +118,7 @@ impl GpuEngine {
         Ok(bytes)
     }
 
-    /// Where a chunk's part of a buffer stands among those of all.
+    /// Byte range of a chunk's part within the whole buffer.
     fn place(&self, buffer: Buffer, chunk: u32) -> std::ops::Range<usize> {
         let (first, points) = self.plan.chunk(chunk);
         let info = buffer.info();
@@ -127,7 +127,7 @@ impl GpuEngine {
         at(first)..at(first + points)
     }
 
-    /// Fails where the buffers hold a part of a pass.
+    /// Fails if the buffers contain a partial pass.
     fn check_whole(&self) -> Result<(), EngineError> {
         if self.partial {
             let text = format!("{} failed in the middle of adding up a pass", self.device);
