@@ -12,12 +12,6 @@ const TEXTURE_CLAMP_V: u32 = 4u;
 const TEXELS_SRGB8: u32 = 0u;
 const TEXELS_LINEAR8: u32 = 1u;
 const TEXELS_FLOAT: u32 = 2u;
-const LIGHT_AREA: u32 = 0u;
-const LIGHT_POINT: u32 = 1u;
-const LIGHT_SPOT: u32 = 2u;
-const LIGHT_SUN: u32 = 3u;
-const LIGHT_CONSTANT: u32 = 4u;
-const LIGHT_IMAGE: u32 = 5u;
 
 struct World {
     bounds_min: vec3f,

@@ -176,19 +176,6 @@ pub struct Texture {
     pub pad1: u32,
 }
 
-/// Light kind: emitting shape, Lambertian on the side of its normal.
-pub const LIGHT_AREA: u32 = 0;
-/// Light kind: isotropic point light.
-pub const LIGHT_POINT: u32 = 1;
-/// Light kind: spot light, a point light with a cone.
-pub const LIGHT_SPOT: u32 = 2;
-/// Light kind: parallel light from infinity.
-pub const LIGHT_SUN: u32 = 3;
-/// Light kind: environment of constant radiance.
-pub const LIGHT_CONSTANT: u32 = 4;
-/// Light kind: environment with radiance from an equirectangular image.
-pub const LIGHT_IMAGE: u32 = 5;
-
 /// Light source.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Plain, Zeroable)]
@@ -196,7 +183,7 @@ pub struct Light {
     /// Radiance (area, constant: W sr^-1 m^-2; image: factor), intensity (point, spot: W/sr) or
     /// irradiance (sun: W m^-2), all in scene units.
     pub color: Vec3,
-    /// One of `LIGHT_*`.
+    /// Number of its [`LightKind`](super::lights::LightKind).
     pub kind: u32,
     /// Point and spot: position in scene space.
     pub position: Vec3,

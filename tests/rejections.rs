@@ -108,17 +108,17 @@ fn nothing_is_left_out_of_a_sound_scene() {
 /// each pixel is counted once, under the first cause.
 #[test]
 fn causes_are_told_apart() {
-    use caustica::low_level::tables::{LIGHT_AREA, LIGHT_POINT};
+    use caustica::low_level::lights::LightKind;
     for poison in [f32::INFINITY, f32::NAN] {
         let mut scene = packed(SCENE);
-        light(&mut scene, LIGHT_AREA).color = Vec3::new(1.0, poison, 1.0);
+        light(&mut scene, LightKind::Area as u32).color = Vec3::new(1.0, poison, 1.0);
         let (_, r) = on_both(&scene, &settings(Direct::Sampled));
         assert!(r.eye_path > 0 && r.direct_light > 0, "{poison}: {r:?}");
         assert_eq!(r.estimate + r.too_bright, 0, "{poison}: {r:?}");
         assert!(r.eye_path + r.direct_light + r.photons <= 3 * 24 * 16, "{poison}: {r:?}");
 
         let mut scene = packed(SCENE);
-        light(&mut scene, LIGHT_POINT).color = Vec3::new(poison, 1.0, 1.0);
+        light(&mut scene, LightKind::Point as u32).color = Vec3::new(poison, 1.0, 1.0);
         let (picture, r) = on_both(&scene, &settings(Direct::Sampled));
         assert!(r.direct_light > 0, "{poison}: {r:?}");
         assert_eq!((r.eye_path, r.estimate), (0, 0), "{poison}: {r:?}");
@@ -155,7 +155,8 @@ fn an_estimate_that_overflows_is_left_out() {
 #[test]
 fn paths_are_counted() {
     let mut scene = packed(SCENE);
-    light(&mut scene, caustica::low_level::tables::LIGHT_POINT).color = Vec3::splat(f32::NAN);
+    light(&mut scene, caustica::low_level::lights::LightKind::Point as u32).color =
+        Vec3::splat(f32::NAN);
     let settings = RenderSettings { method: Method::Path, ..settings(Direct::Sampled) };
     let plan = Plan::probed(&scene, &settings);
     let (picture, r) = rendered(CpuEngine::new(scene, plan), 3);

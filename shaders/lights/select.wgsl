@@ -4,6 +4,18 @@
 const CELL_DEPTH: u32 = 8u;
 const CELL_LEAF: u32 = 3u;
 
+fn find_interval(first: u32, count: u32, u: f32) -> u32 {
+    // binary search without branches on the compared values, which are unpredictable
+    var low = 0u;
+    var length = count;
+    while length > 1u {
+        let half = length / 2u;
+        low += select(half, 0u, scene.distributions[first + low + half - 1u] > u);
+        length -= half;
+    }
+    return low;
+}
+
 fn shares_at(position: vec3f) -> u32 {
     //#if cells
     var cell = scene.cells[0];

@@ -11,6 +11,7 @@ use crate::cpu::CpuEngine;
 use crate::engine::{Engine, EngineError};
 use crate::film::Picture;
 use crate::gpu::{AdapterChoice, GpuEngine};
+use crate::lights::LightKind;
 use crate::materials::Bsdf;
 use crate::pack::Packed;
 use crate::plan::Plan;
@@ -30,8 +31,11 @@ pub fn with_unused(scene: &Scene, feature: Feature) -> Option<Scene> {
         ..Material::zeroed()
     };
     let light = |kind| Light { kind, ..Light::zeroed() };
-    let area =
-        |shape: u32| Light { kind: LIGHT_AREA, reference: reference(shape, 0), ..Light::zeroed() };
+    let area = |shape: u32| Light {
+        kind: LightKind::Area as u32,
+        reference: reference(shape, 0),
+        ..Light::zeroed()
+    };
     match feature {
         Feature::Sphere => scene.spheres.push(Sphere::zeroed()),
         Feature::Rectangle => scene.rectangles.push(Rectangle::zeroed()),
@@ -76,8 +80,8 @@ pub fn with_unused(scene: &Scene, feature: Feature) -> Option<Scene> {
             scene.discs.push(Disc::zeroed());
             scene.lights.push(area(KIND_DISC));
         }
-        Feature::Point => scene.lights.push(light(LIGHT_POINT)),
-        Feature::Spot => scene.lights.push(light(LIGHT_SPOT)),
+        Feature::Point => scene.lights.push(light(LightKind::Point as u32)),
+        Feature::Spot => scene.lights.push(light(LightKind::Spot as u32)),
         // implied by one of the features above
         Feature::Textures
         | Feature::Specular

@@ -1,7 +1,7 @@
 //! Composition of a kernel's shader from the files that it needs and the declarations of its
 //! bindings, and mapping of naga's line numbers back to files.
 
-use super::bsdf;
+use super::dispatch;
 use super::fragments::{Fragment, Names, fragments, preprocess};
 use super::layout::{SceneTables, bindings, declarations};
 use crate::plan::Kernel;
@@ -70,7 +70,7 @@ pub fn compose_from(
     if kernel.info().traces {
         declared.insert_str(0, &scene.declaration());
     }
-    declared.push_str(&bsdf::dispatch(kernel, *features));
+    declared.push_str(&dispatch::dispatch(kernel, *features));
     shader.push(DECLARATIONS, &declared);
     for fragment in fragments {
         let fault = |line, message| ShaderError { file: fragment.path, line, message };

@@ -1,8 +1,8 @@
 //! GPU engine: executes a plan with wgpu. The only module that uses wgpu or naga.
 
-mod bsdf;
 pub mod compose;
 pub mod context;
+mod dispatch;
 mod engine;
 pub mod fragments;
 pub mod layout;

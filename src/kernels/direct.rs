@@ -4,7 +4,9 @@
 
 use super::geometry::intersect::{intersect_scene, occluded};
 use super::geometry::surface::surface_at;
-use super::lights::light::{eval_environment, pdf_environment, pdf_light, sample_light};
+use super::lights::area::pdf_area;
+use super::lights::environment::{eval_environment, pdf_environment};
+use super::lights::light::sample_light;
 use super::lights::select::{share_of, shares_at};
 use super::materials::interior::{Interior, medium_of};
 use super::materials::shading::{RADIANCE, ShadingPoint};
@@ -99,7 +101,7 @@ pub fn direct_light(
                 let at = surface_at(scene, &ray, &hit);
                 if at.light != NONE && ray.direction.dot(at.normal) < 0.0 {
                     let light = &scene.lights[at.light as usize];
-                    let other = pdf_light(
+                    let other = pdf_area(
                         scene,
                         shares,
                         at.light,

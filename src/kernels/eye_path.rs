@@ -4,7 +4,7 @@
 use super::direct::transmittance;
 use super::geometry::intersect::intersect_scene;
 use super::geometry::surface::{Surface, surface_at};
-use super::lights::light::eval_environment;
+use super::lights::environment::eval_environment;
 use super::materials::enclosing::interior_at;
 use super::materials::interior::{Interior, interior_before, medium_of, passes_hidden};
 use super::materials::shading::Scatter;

@@ -5,7 +5,8 @@ use super::camera::camera_ray;
 use super::direct::next_event;
 use super::eye_path::EyePath;
 use super::eye_sample::window_pixel;
-use super::lights::light::{pdf_environment, pdf_light};
+use super::lights::area::pdf_area;
+use super::lights::environment::pdf_environment;
 use super::lights::select::{share_of, shares_at};
 use super::materials::shading::{RADIANCE, shading_point};
 use super::materials::{pdf_rough, scatter_rough, scatter_specular};
@@ -47,7 +48,7 @@ pub fn path_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, place: u32)
         let Ray { origin: from, direction, .. } = path.ray;
         let s = path.arrive(scene, &hit);
         if pdf > 0.0 && s.light != NONE {
-            let other = pdf_light(scene, shares, s.light, from, direction, hit.t, s.normal, s.v);
+            let other = pdf_area(scene, shares, s.light, from, direction, hit.t, s.normal, s.v);
             radiance += path.emission(scene, &s) * balance(pdf, other);
         } else {
             radiance += path.emission(scene, &s);

@@ -4,8 +4,8 @@
 //! render (`pack::pilots`; Peter & Pietrek 1998). A photon's flux is divided by its density, so no
 //! light is missed or counted twice. Twin: `shaders/lights/guide.wgsl`.
 
-use super::light::find_interval;
 use super::real::{Real, Vec2};
+use super::select::find_interval;
 use super::shape::pdf_bin;
 use super::tables::*;
 

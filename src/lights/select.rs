@@ -4,7 +4,6 @@
 //! host (`pack::cells`) learns from what the camera sees. A scene with one light has no tree. Twin:
 //! `shaders/lights/select.wgsl`.
 
-use super::light::find_interval;
 use super::real::{Real, Vec3};
 use super::tables::Scene;
 
@@ -12,6 +11,21 @@ use super::tables::Scene;
 pub const CELL_DEPTH: u32 = 8;
 /// Value of `Cell::axis` in a leaf.
 pub const CELL_LEAF: u32 = 3;
+
+/// Returns the first k in `0..count` for which the cumulative value `distributions[first + k]`
+/// exceeds `u`, or the last k.
+#[inline(always)]
+pub fn find_interval(scene: &Scene, first: u32, count: u32, u: Real) -> u32 {
+    // binary search without branches on the compared values, which are unpredictable
+    let mut low = 0;
+    let mut length = count;
+    while length > 1 {
+        let half = length / 2;
+        low += if scene.distributions[(first + low + half - 1) as usize] > u { 0 } else { half };
+        length -= half;
+    }
+    low
+}
 
 /// First entry in `distributions` of the cumulative probabilities that apply at `position`.
 #[inline(always)]

@@ -1,9 +1,9 @@
 //! Sampling of points on emitting shapes. Twin: `shaders/lights/shape.wgsl`.
 
-use super::light::find_interval;
 use super::math::sampling::{sample_cone, sample_disc, sample_sphere, sample_triangle};
 use super::math::{FAR, PI, TAU, basis, from_frame, unit};
 use super::real::{Real, Vec2, Vec3};
+use super::select::find_interval;
 use super::shapes::cuboid::{cuboid_error, cuboid_normal};
 use super::shapes::disc::disc_error;
 use super::shapes::rectangle::{rectangle_error, rectangle_point};

@@ -1,5 +1,6 @@
 //! Packs glass bodies into the tables and determines the media of lamps and the camera.
 
+use super::lights::LightKind;
 use super::lights::shape::sample_shape;
 use super::materials::Bsdf;
 use super::materials::enclosing::enclosing;
@@ -48,17 +49,17 @@ pub fn pack_bodies(
 pub fn stand_lights(out: &mut Scene) {
     for i in 0..out.lights.len() {
         let light = &out.lights[i];
-        out.lights[i].medium = match light.kind {
-            LIGHT_AREA => {
+        out.lights[i].medium = match LightKind::of(light.kind) {
+            LightKind::Area => {
                 let index = index_of(light.reference) as usize;
                 let p = sample_shape(out, light, Vec2::splat(0.5), 0.5);
                 let (low, high) = lamp_box(out, kind_of(light.reference), index);
                 medium_of_box(out, p.position + p.normal * p.error, low, high)
             }
-            LIGHT_POINT | LIGHT_SPOT => {
+            LightKind::Point | LightKind::Spot => {
                 medium_of_box(out, light.position, light.position, light.position)
             }
-            _ => NONE,
+            LightKind::Sun | LightKind::Constant | LightKind::Image => NONE,
         };
     }
 }

@@ -1,5 +1,6 @@
 //! Lights: strengths in scene units, and sampling distributions.
 
+use super::lights::LightKind;
 use super::real::{Real, ToReal, Vec2, Vec3};
 use super::shape::Emitter;
 use super::shapes::revolution::ring_point;
@@ -44,7 +45,8 @@ pub fn pack_lights(
     let luminance = |color: DVec3| color.dot(DVec3::new(0.2126, 0.7152, 0.0722));
     let mut luminance_max = emitters.iter().map(|e| luminance(e.radiance)).fold(0.0, f64::max);
     for e in emitters {
-        let mut light = Light { kind: LIGHT_AREA, reference: e.reference, ..Light::zeroed() };
+        let mut light =
+            Light { kind: LightKind::Area as u32, reference: e.reference, ..Light::zeroed() };
         let mut area = e.area;
         if kind_of(e.reference) == KIND_REVOLUTION {
             area = revolution_distribution(out, &mut light, &mut distributions);
@@ -57,7 +59,7 @@ pub fn pack_lights(
         lights.push(match l {
             scene::Light::Point { position, intensity } => {
                 let light = Light {
-                    kind: LIGHT_POINT,
+                    kind: LightKind::Point as u32,
                     position: n.point(*position).to_real(),
                     ..Light::zeroed()
                 };
@@ -69,7 +71,7 @@ pub fn pack_lights(
                 let outer = versine(*angle_degrees);
                 let inner = versine(angle_degrees * (1.0 - blend)).min(outer);
                 let light = Light {
-                    kind: LIGHT_SPOT,
+                    kind: LightKind::Spot as u32,
                     position: n.point(*position).to_real(),
                     direction: (*target - *position).normalize().to_real(),
                     outer: outer as Real,
@@ -80,7 +82,7 @@ pub fn pack_lights(
             }
             scene::Light::Sun { direction, irradiance } => {
                 let light = Light {
-                    kind: LIGHT_SUN,
+                    kind: LightKind::Sun as u32,
                     direction: direction.normalize().to_real(),
                     ..Light::zeroed()
                 };
@@ -92,7 +94,7 @@ pub fn pack_lights(
         Some(Environment::Constant { radiance }) if DVec3::from(*radiance).max_element() > 0.0 => {
             out.world.environment = lights.len() as u32;
             lights.push((
-                Light { kind: LIGHT_CONSTANT, ..Light::zeroed() },
+                Light { kind: LightKind::Constant as u32, ..Light::zeroed() },
                 DVec3::from(*radiance),
                 4.0 * PI,
             ));
@@ -100,7 +102,7 @@ pub fn pack_lights(
         Some(Environment::Image { rotate_degrees, scale, .. }) => {
             let (sin, cos) = rotate_degrees.to_radians().sin_cos();
             let mut light = Light {
-                kind: LIGHT_IMAGE,
+                kind: LightKind::Image as u32,
                 reference: out.textures.len() as u32 - 1,
                 outer: cos as Real,
                 inner: sin as Real,

@@ -1,8 +1,8 @@
 //! Warnings about light that an image may lack without showing it.
 
 use super::Packed;
+use super::lights::LightKind;
 use super::materials::Bsdf;
-use super::tables::*;
 use crate::scene;
 use crate::scene::settings::{Method, RenderSettings};
 
@@ -22,7 +22,11 @@ impl Packed {
             let (light, name) = (&self.scene.lights[i], self.sources[i].describe(scene));
             let photons = f64::from(settings.photons) * f64::from(light.selection);
             let contribution = self.contributions.get(i).copied().unwrap_or(0.0);
-            if path && matches!(light.kind, LIGHT_POINT | LIGHT_SPOT | LIGHT_SUN) {
+            let sized = match LightKind::of(light.kind) {
+                LightKind::Point | LightKind::Spot | LightKind::Sun => false,
+                LightKind::Area | LightKind::Constant | LightKind::Image => true,
+            };
+            if path && !sized {
                 return Some(format!(
                     "path tracing cannot meet {name}, which has no size: the light that it casts \
                      by mirrors or through glass is missing from the picture and from its stated \

@@ -2,6 +2,7 @@
 //! infinity enters.
 
 use super::eye_pilots::{EyePilots, Region, Seen};
+use super::lights::LightKind;
 use super::real::Real;
 use super::tables::*;
 use crate::prepare::distribution::cumulative;
@@ -25,7 +26,7 @@ pub fn learn_discs(out: &mut Scene, eyes: &EyePilots, region: Region, far: f64) 
     out.world.near_radius = region.radius;
     out.world.far = 0;
     out.world.disc_levels = 0;
-    if !out.lights.iter().any(|light| light.kind >= LIGHT_SUN) {
+    if !out.lights.iter().any(|light| LightKind::of(light.kind).is_infinite()) {
         return;
     }
     out.world.far = (far > 2.0 * near) as u32;

@@ -5,6 +5,7 @@
 use super::geometry::intersect::intersect_scene;
 use super::kernels::photon_trace::PhotonPath;
 use super::kernels::records::Dispatch;
+use super::lights::LightKind;
 use super::lights::emission::emit_from;
 use super::lights::guide::{GUIDE_CELLS, GUIDE_SIDE, GUIDED, guided};
 use super::materials::Bsdf;
@@ -93,7 +94,7 @@ pub fn learn_emission(out: &mut Scene, visibility: &Visibility, power: &[f64]) -
             }
             tally.cells = found.cells;
             let first = out.lights[index].guide as usize;
-            let lamp = out.lights[index].kind < LIGHT_SUN;
+            let lamp = !LightKind::of(out.lights[index].kind).is_infinite();
             match map(&tally.cells, if lamp { EVEN } else { 0.0 }, lamp) {
                 Some(map) => out.distributions[first..][..map.len()].copy_from_slice(&map),
                 None => out.lights[index].guide = 0,
@@ -209,7 +210,7 @@ fn pilot(
     whole: bool,
 ) -> Pilot {
     let light = &scene.lights[index];
-    let infinite = light.kind >= LIGHT_SUN;
+    let infinite = LightKind::of(light.kind).is_infinite();
     let mut rng = rng_new(id, PASS, STREAM_PHOTON, index as u32);
     let (u, mut v) = (rng_next(&mut rng), rng_next(&mut rng));
     let in_cell = |i: u32| ((i % GUIDE_CELLS) as Real + 0.5) / GUIDE_CELLS as Real;

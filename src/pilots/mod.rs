@@ -16,9 +16,9 @@ mod visibility;
 pub use probe::{Probe, probe};
 pub use transfer::learned;
 
+use super::lights::LightKind;
 use super::pack::{PackError, Packed, pack};
 use super::real::{Real, ToDouble, Vec3};
-use super::tables::LIGHT_SUN;
 use super::{geometry, kernels, lights, materials, math, real, shapes, tables};
 use crate::prepare::learned::Learned;
 use crate::prepare::normalize::{Normalization, reach};
@@ -95,7 +95,11 @@ fn learn(packed: &mut Packed, scene: &Scene, eyes: &EyePilots) {
     let area = PI * f64::from(region.radius) * f64::from(region.radius);
     let lights = out.lights.iter().zip(&packed.power);
     let power: Vec<f64> = lights
-        .map(|(light, power)| if light.kind >= LIGHT_SUN { area * power } else { *power })
+        .map(
+            |(light, power)| {
+                if LightKind::of(light.kind).is_infinite() { area * power } else { *power }
+            },
+        )
         .collect();
     packed.contributions = emission::learn_emission(out, &Visibility::new(eyes, region), &power);
     cells::learn_cells(out, eyes, &power);

@@ -1,6 +1,7 @@
 //! Features that a scene and its settings require; nothing else is compiled or allocated.
 
 use super::super::geometry::intersect::has_patch_set;
+use super::super::lights::LightKind;
 use super::super::materials::Bsdf;
 use super::super::tables::*;
 use crate::scene::settings::{Direct, Method, RadiusRule, RenderSettings};
@@ -202,9 +203,13 @@ impl Features {
         put(Feature::Textures, !scene.textures.is_empty());
         put(Feature::Checker, scene.textures.iter().any(|t| t.kind == TEXTURE_CHECKER));
         put(Feature::Texels, !scene.texels.is_empty());
-        let light = |kind| scene.lights.iter().any(|l| l.kind == kind);
+        let lights = || scene.lights.iter().map(|l| LightKind::of(l.kind));
+        let light = |kind| lights().any(|k| k == kind);
         let area = |kind| {
-            scene.lights.iter().any(|l| l.kind == LIGHT_AREA && kind_of(l.reference) == kind)
+            scene
+                .lights
+                .iter()
+                .any(|l| l.kind == LightKind::Area as u32 && kind_of(l.reference) == kind)
         };
         put(Feature::Lights, !scene.lights.is_empty());
         put(Feature::Cells, !scene.cells.is_empty());
@@ -215,12 +220,12 @@ impl Features {
         put(Feature::AreaCuboid, area(KIND_CUBOID));
         put(Feature::AreaRevolution, area(KIND_REVOLUTION));
         put(Feature::Guided, scene.world.guided != 0);
-        put(Feature::Point, light(LIGHT_POINT));
-        put(Feature::Spot, light(LIGHT_SPOT));
-        put(Feature::Infinite, light(LIGHT_SUN) || light(LIGHT_CONSTANT) || light(LIGHT_IMAGE));
+        put(Feature::Point, light(LightKind::Point));
+        put(Feature::Spot, light(LightKind::Spot));
+        put(Feature::Infinite, lights().any(LightKind::is_infinite));
         put(Feature::Far, scene.world.far != 0);
-        put(Feature::Environment, light(LIGHT_CONSTANT) || light(LIGHT_IMAGE));
-        put(Feature::EnvironmentImage, light(LIGHT_IMAGE));
+        put(Feature::Environment, lights().any(LightKind::is_environment));
+        put(Feature::EnvironmentImage, light(LightKind::Image));
         put(Feature::Lens, scene.camera.aperture > 0.0);
         put(Feature::Sampled, settings.direct == Direct::Sampled && !scene.lights.is_empty());
         put(Feature::Local, settings.radius_rule == RadiusRule::Local);

@@ -2,6 +2,7 @@
 //! composition and layout.
 
 use bytemuck::Zeroable;
+use caustica::low_level::lights::LightKind;
 use caustica::low_level::materials::Bsdf;
 use caustica::low_level::plan::Kernel;
 use caustica::low_level::plan::features::{Feature, Features};
@@ -46,7 +47,7 @@ impl Mixture {
 
     fn area(&mut self, shape: Feature, kind: u32) {
         self.add(shape);
-        self.light(LIGHT_AREA, reference(kind, 0));
+        self.light(LightKind::Area as u32, reference(kind, 0));
     }
 
     fn material(&mut self, bsdf: Bsdf, absorption: f32) {
@@ -116,18 +117,18 @@ impl Mixture {
             Feature::AreaCuboid => self.area(Feature::Cuboid, KIND_CUBOID),
             Feature::AreaRevolution => self.area(Feature::Revolution, KIND_REVOLUTION),
             Feature::Lights | Feature::Point | Feature::Photons | Feature::First => {
-                self.light(LIGHT_POINT, 0)
+                self.light(LightKind::Point as u32, 0)
             }
-            Feature::Spot => self.light(LIGHT_SPOT, 0),
-            Feature::Infinite => self.light(LIGHT_SUN, 0),
+            Feature::Spot => self.light(LightKind::Spot as u32, 0),
+            Feature::Infinite => self.light(LightKind::Sun as u32, 0),
             Feature::Far => {
                 self.add(Feature::Infinite);
                 self.scene.world.far = 1;
             }
-            Feature::Environment => self.light(LIGHT_CONSTANT, 0),
+            Feature::Environment => self.light(LightKind::Constant as u32, 0),
             Feature::EnvironmentImage => {
                 self.add(Feature::Texels);
-                self.light(LIGHT_IMAGE, 0);
+                self.light(LightKind::Image as u32, 0);
             }
             Feature::Lens => s.camera.aperture = 1.0,
             Feature::Sampled => {
@@ -137,14 +138,14 @@ impl Mixture {
             Feature::Local => self.settings.radius_rule = RadiusRule::Local,
             Feature::Split => {
                 self.settings.indirect_radius = Some(2.0);
-                self.light(LIGHT_POINT, 0);
+                self.light(LightKind::Point as u32, 0);
             }
             Feature::Cells => {
-                self.light(LIGHT_POINT, 0);
+                self.light(LightKind::Point as u32, 0);
                 self.scene.cells.push(Cell::zeroed());
             }
             Feature::Guided => {
-                self.light(LIGHT_POINT, 0);
+                self.light(LightKind::Point as u32, 0);
                 self.scene.world.guided = 1;
             }
             Feature::DirectLayer => {}

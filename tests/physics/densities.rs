@@ -8,9 +8,11 @@ use std::f64::consts::PI;
 
 use caustica::low_level::geometry::intersect::intersect_scene;
 use caustica::low_level::geometry::surface::surface_at;
-use caustica::low_level::lights::light::{
-    eval_environment, pdf_environment, pdf_light, sample_environment, sample_light,
+use caustica::low_level::lights::area::pdf_area;
+use caustica::low_level::lights::environment::{
+    eval_environment, pdf_environment, sample_environment,
 };
+use caustica::low_level::lights::light::sample_light;
 use caustica::low_level::lights::select::{choose_light, share_of, shares_at};
 use caustica::low_level::lights::shape::sample_shape;
 use caustica::low_level::materials::metal::{ggx_brdf, ggx_pdf, ggx_visible_normal, ggx_weight};
@@ -184,7 +186,7 @@ fn placed(packed: &Packed, world: DVec3) -> Vec3 {
     ((world - packed.center) / packed.unit).as_vec3()
 }
 
-/// Theory: directions to a light follow `pdf_light` over the sphere of directions: what a ray in
+/// Theory: directions to a light follow `pdf_area` over the sphere of directions: what a ray in
 /// direction w meets tells the density there. The same for the environment with `pdf_environment`.
 #[test]
 fn lights() {
@@ -217,7 +219,7 @@ fn lights() {
             if s.normal.dot(ray.direction) > -0.1 {
                 return 0.0;
             }
-            pdf_light(
+            pdf_area(
                 &scene,
                 shares_at(&scene, from),
                 s.light,

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 
 use caustica::low_level::geometry::intersect::intersect_scene;
 use caustica::low_level::geometry::surface::{Surface, surface_at};
-use caustica::low_level::lights::light::eval_environment;
+use caustica::low_level::lights::environment::eval_environment;
 use caustica::low_level::materials::shading::reflectance_at;
 use caustica::low_level::pack::Packed;
 use caustica::low_level::pilots::prepare;

@@ -1,6 +1,7 @@
-//! WGSL dispatch over materials, generated from the list in `materials/mod.rs`: functions with one
-//! case for each material in the scene.
+//! WGSL generated from the kinds of materials and lights: their numbers, tests of a kind, and the
+//! dispatch over the materials in the scene.
 
+use crate::lights::LightKind;
 use crate::materials::Bsdf;
 use crate::plan::Kernel;
 use crate::plan::features::{Feature, Features};
@@ -22,9 +23,7 @@ pub fn dispatch(kernel: Kernel, features: Features) -> String {
         })
         .collect();
     let is = |name: &str, kinds: &mut dyn Iterator<Item = &Bsdf>| {
-        let tests: Vec<String> = kinds.map(|bsdf| format!("kind == {}u", *bsdf as u32)).collect();
-        let condition = if tests.is_empty() { "false".to_owned() } else { tests.join(" || ") };
-        format!("fn {name}(kind: u32) -> bool {{\n    return {condition};\n}}\n")
+        test_of(name, &mut kinds.map(|bsdf| *bsdf as u32))
     };
     out += &is("transmits", &mut rough.iter().filter(|bsdf| bsdf.transmits()));
     out += &cases(
@@ -35,6 +34,7 @@ pub fn dispatch(kernel: Kernel, features: Features) -> String {
     if !traces {
         return out;
     }
+    out += &lights();
     out += &is("is_specular", &mut specular.iter());
     out += &is("is_wide", &mut rough.iter().filter(|bsdf| bsdf.is_wide()));
     out += &cases(
@@ -53,6 +53,27 @@ pub fn dispatch(kernel: Kernel, features: Features) -> String {
         &specular,
     );
     out
+}
+
+/// Numbers of the lights' kinds, and the tests of a kind.
+fn lights() -> String {
+    let kinds = || LightKind::ALL.into_iter();
+    let mut out: String = kinds()
+        .map(|kind| format!("const LIGHT_{}: u32 = {}u;\n", kind.name(), kind as u32))
+        .collect();
+    let mut put = |name, holds: fn(LightKind) -> bool| {
+        out += &test_of(name, &mut kinds().filter(|kind| holds(*kind)).map(|kind| kind as u32));
+    };
+    put("is_infinite", LightKind::is_infinite);
+    put("is_environment", LightKind::is_environment);
+    out
+}
+
+/// Generates a function that tests whether a kind is one of `kinds`.
+fn test_of(name: &str, kinds: &mut dyn Iterator<Item = u32>) -> String {
+    let tests: Vec<String> = kinds.map(|kind| format!("kind == {kind}u")).collect();
+    let condition = if tests.is_empty() { "false".to_owned() } else { tests.join(" || ") };
+    format!("fn {name}(kind: u32) -> bool {{\n    return {condition};\n}}\n")
 }
 
 /// Generates a function that calls `PREFIX_MATERIAL` by the kind, or returns `other`. A single
