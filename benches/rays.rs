@@ -50,7 +50,7 @@ fn shape(bencher: Bencher, name: &str) {
         let mut sum: Real = 0.0;
         for ray in black_box(&rays) {
             let mut hit = Hit::none(ray);
-            intersect_primitive(&packed.scene, &RayShear::new(ray), reference, ray, &mut hit);
+            intersect_primitive(&packed.tables, &RayShear::new(ray), reference, ray, &mut hit);
             sum += hit.u;
         }
         sum
@@ -62,12 +62,12 @@ fn shape(bencher: Bencher, name: &str) {
 /// and 1e6 (little fits).
 const MESHES: [(u32, u32); 4] = [(32, 17), (100, 51), (316, 159), (1000, 501)];
 
-fn trace(bencher: Bencher, (nu, nv): (u32, u32), hit: impl Fn(&Scene, &Ray) -> bool) {
+fn trace(bencher: Bencher, (nu, nv): (u32, u32), hit: impl Fn(&SceneTables, &Ray) -> bool) {
     let packed = workload::displaced_sphere(nu, nv);
     let rays = workload::incoherent_rays(&packed, RAYS);
     bencher
         .counter(ItemsCount::new(RAYS))
-        .bench_local(|| black_box(&rays).iter().filter(|r| hit(&packed.scene, r)).count());
+        .bench_local(|| black_box(&rays).iter().filter(|r| hit(&packed.tables, r)).count());
 }
 
 #[divan::bench(args = MESHES)]
@@ -83,7 +83,7 @@ fn closest_hit_side_by_side(bencher: Bencher, (nu, nv): (u32, u32)) {
     bencher.counter(ItemsCount::new(RAYS)).bench_local(|| {
         let mut waiting = black_box(&rays).iter();
         let mut hits = 0;
-        intersect_scene_many(&packed.scene, |_, last| {
+        intersect_scene_many(&packed.tables, |_, last| {
             hits += usize::from(last.is_some_and(|hit| hit.reference != NONE));
             waiting.next().copied()
         });
@@ -101,7 +101,7 @@ fn any_hit(bencher: Bencher, size: (u32, u32)) {
 fn build(bencher: Bencher, (nu, nv): (u32, u32)) {
     let packed = workload::displaced_sphere(nu, nv);
     let triangles: Vec<Primitive> =
-        packed.scene.triangles.iter().map(|t| Primitive::Triangle([t.p0, t.p1, t.p2])).collect();
+        packed.tables.triangles.iter().map(|t| Primitive::Triangle([t.p0, t.p1, t.p2])).collect();
     bencher
         .counter(ItemsCount::new(triangles.len()))
         .bench_local(|| kdtree::build(black_box(&triangles)));

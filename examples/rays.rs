@@ -21,22 +21,22 @@ fn main() -> io::Result<()> {
     let folder = Path::new(&folder);
     let packed = workload::displaced_sphere(size(2, 316), size(3, 159));
     let rays = workload::incoherent_rays(&packed, 1 << 19);
-    let corners: Vec<_> = packed.scene.triangles.iter().flat_map(|t| [t.p0, t.p1, t.p2]).collect();
+    let corners: Vec<_> = packed.tables.triangles.iter().flat_map(|t| [t.p0, t.p1, t.p2]).collect();
     std::fs::write(folder.join("triangles.f32"), bytemuck::cast_slice(&corners))?;
     std::fs::write(folder.join("rays.f32"), bytemuck::cast_slice(&rays))?;
-    println!("{} triangles, {:?}", packed.scene.triangles.len(), packed.tree);
+    println!("{} triangles, {:?}", packed.tables.triangles.len(), packed.tree);
     let mut one_by_one = vec![0f32; rays.len()];
     let mut side_by_side = one_by_one.clone();
     for line in io::stdin().lock().lines() {
         line?;
         let start = Instant::now();
         for (distance, ray) in one_by_one.iter_mut().zip(&rays) {
-            *distance = intersect_scene(&packed.scene, ray).t;
+            *distance = intersect_scene(&packed.tables, ray).t;
         }
         let middle = Instant::now();
         let mut places = [0; STREAM];
         let mut waiting = rays.iter().enumerate();
-        intersect_scene_many(&packed.scene, |lane, last| {
+        intersect_scene_many(&packed.tables, |lane, last| {
             if let Some(hit) = last {
                 side_by_side[places[lane]] = hit.t;
             }

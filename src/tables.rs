@@ -1,4 +1,4 @@
-//! Packed scene: plain data that the kernels of both engines read, in scene space (the host moves
+//! PackedScene scene: plain data that the kernels of both engines read, in scene space (the host moves
 //! the scene's centre to the origin and scales its size to about one; see
 //! [`crate::prepare::normalize`]).
 //!
@@ -231,9 +231,9 @@ pub struct Cell {
     pub pad: u32,
 }
 
-/// Packed scene.
+/// PackedScene scene.
 #[derive(Clone, Debug)]
-pub struct Scene {
+pub struct SceneTables {
     /// Properties of the whole scene.
     pub world: World,
     /// The camera.

@@ -7,7 +7,7 @@ mod software;
 
 use bytemuck::{Zeroable, cast_slice, pod_collect_to_vec};
 use caustica::low_level::gpu::Gpu;
-use caustica::low_level::gpu::layout::SceneTables;
+use caustica::low_level::gpu::layout::SceneLayout;
 use caustica::low_level::gpu::program::Program;
 use caustica::low_level::gpu::recorder::Recorder;
 use caustica::low_level::kernels::grid_build::{record_bucket, record_code};
@@ -47,7 +47,7 @@ impl Grid {
         let recorder = Recorder::new(&gpu).unwrap();
         let features = Features::default().with(Feature::Photons);
         let programs = KERNELS
-            .map(|kernel| Program::new(&gpu, kernel, &features, &SceneTables::default()).unwrap())
+            .map(|kernel| Program::new(&gpu, kernel, &features, &SceneLayout::default()).unwrap())
             .into();
         Self { gpu, recorder, programs }
     }

@@ -6,7 +6,7 @@ mod ingredients;
 
 use bytemuck::Zeroable;
 use caustica::low_level::gpu::compose::compose;
-use caustica::low_level::gpu::layout::SceneTables;
+use caustica::low_level::gpu::layout::SceneLayout;
 use caustica::low_level::kernels::aov_trace::AovPixel;
 use caustica::low_level::kernels::records::*;
 use caustica::low_level::kernels::resolve_parts::PartsPixel;
@@ -212,7 +212,7 @@ fn hosts_of_gather() -> Vec<Layout> {
 
 fn everything_of(kernel: Kernel) -> (Mixture, naga::Module) {
     let mixture = Mixture::of(&Feature::all().collect::<Vec<_>>());
-    let shader = compose(kernel, &mixture.features(), &SceneTables::new(&mixture.scene)).unwrap();
+    let shader = compose(kernel, &mixture.features(), &SceneLayout::new(&mixture.scene)).unwrap();
     let (module, _) = shader.validate().unwrap();
     (mixture, module)
 }
@@ -329,7 +329,7 @@ fn scene_tables_agree() {
     mixture.scene.unbounded = vec![7, 8, 9];
     mixture.scene.distributions = vec![0.25, 0.5, 0.75, 0.875, 1.0];
     mixture.scene.discs.push(Disc { radius: 3.0, ..Disc::zeroed() });
-    let tables = SceneTables::new(&mixture.scene);
+    let tables = SceneLayout::new(&mixture.scene);
     let shader = compose(Kernel::EyeTrace, &mixture.features(), &tables).unwrap();
     let (module, _) = shader.validate().unwrap();
     let (members, span) = members(&module, "Scene").unwrap();

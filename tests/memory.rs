@@ -13,7 +13,7 @@ use caustica::low_level::film::exr_file::Channel;
 use caustica::low_level::film::{ErrorMap, Picture};
 use caustica::low_level::gpu::{self, GpuEngine};
 use caustica::low_level::memory::{Memory, Part, total};
-use caustica::low_level::pack::Packed;
+use caustica::low_level::pack::PackedScene;
 use caustica::low_level::pilots::prepare;
 use caustica::low_level::plan::{BufferPlace, Plan, scene_bytes};
 use caustica::low_level::scene::settings::{Method, RadiusRule, RenderSettings};
@@ -39,7 +39,7 @@ const CASES: [(&str, &str, Change, &str); 5] = [
     ("soft-shadows", "no photons", |s| s.max_bounces = 0, "albedo"),
 ];
 
-fn planned((name, _, change, aovs): (&str, &str, Change, &str)) -> (Packed, Plan) {
+fn planned((name, _, change, aovs): (&str, &str, Change, &str)) -> (PackedScene, Plan) {
     let mut loaded = scene::load(format!("scenes/{name}.toml").as_ref()).unwrap();
     let film = &mut loaded.scene.film;
     (film.width, film.height) = SIZE;
@@ -81,11 +81,11 @@ fn given(engine: &mut dyn Engine) -> Given {
     }
 }
 
-fn on_cpu(packed: &Packed, plan: &Plan) -> Given {
+fn on_cpu(packed: &PackedScene, plan: &Plan) -> Given {
     given(&mut CpuEngine::new(packed.clone(), plan.clone()))
 }
 
-fn on_driver(packed: &Packed, plan: &Plan) -> Given {
+fn on_driver(packed: &PackedScene, plan: &Plan) -> Given {
     given(&mut GpuEngine::new(&software::software(), packed, plan.clone()).unwrap())
 }
 
@@ -174,7 +174,7 @@ fn budgets_are_kept() {
     (loaded.scene.film.width, loaded.scene.film.height) = (256, 192);
     let packed = prepare(&loaded.scene, 256, 192).unwrap();
     let plan = Plan::probed(&packed, &loaded.settings).on(&loaded.scene.film);
-    let scene = scene_bytes(&packed.scene);
+    let scene = scene_bytes(&packed.tables);
     for place in
         [BufferPlace::Program { saves: false }, BufferPlace::Program { saves: true }, ON_DEVICE]
     {
@@ -233,7 +233,7 @@ fn the_setting_to_change_is_named() {
         let packed = prepare(&loaded.scene, width, height).unwrap();
         let plan = Plan::probed(&packed, &loaded.settings).on(&loaded.scene.film);
         let memory = Memory { budget: Some(1_000_000), same_batches: true, ..Memory::default() };
-        plan.within(scene_bytes(&packed.scene), ON_DEVICE, &memory).unwrap_err().to_string()
+        plan.within(scene_bytes(&packed.tables), ON_DEVICE, &memory).unwrap_err().to_string()
     };
     assert!(refused(1920, 1080, "", |_| ()).contains("--crop"));
     assert!(refused(64, 48, "", |s| s.photons = 1 << 20).contains("--batch"));
@@ -249,7 +249,7 @@ fn what_is_counted_is_what_is_made() {
     for case in CASES {
         let (packed, plan) = planned(case);
         for plan in [plan.clone(), tiled(&plan)] {
-            let made = gpu::sizes(&plan, &packed.scene);
+            let made = gpu::sizes(&plan, &packed.tables);
             let of = |names: &[&str]| -> u64 {
                 made.iter().filter(|(name, _)| names.contains(name)).map(|(_, bytes)| bytes).sum()
             };

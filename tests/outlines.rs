@@ -5,7 +5,7 @@ mod software;
 use bytemuck::{Zeroable, cast_slice, pod_collect_to_vec};
 use caustica::low_level::gpu::Gpu;
 use caustica::low_level::gpu::compose::compose;
-use caustica::low_level::gpu::layout::SceneTables;
+use caustica::low_level::gpu::layout::SceneLayout;
 use caustica::low_level::gpu::program::Program;
 use caustica::low_level::gpu::recorder::Recorder;
 use caustica::low_level::kernels::gather::gather;
@@ -292,7 +292,7 @@ fn the_driver_gathers_the_same() {
     let mut recorder = Recorder::new(&gpu).unwrap();
     let features =
         [Feature::Photons, Feature::Outlines, Feature::Disc].into_iter().collect::<Features>();
-    let shader = compose(Kernel::Gather, &features, &SceneTables::default()).unwrap();
+    let shader = compose(Kernel::Gather, &features, &SceneLayout::default()).unwrap();
     let program = Program::of_shader(&gpu, Kernel::Gather, &features, shader).unwrap();
     let (starts, _) = build_grid(&room.dispatch(), room.records.clone());
     let d = Dispatch { end: points.len() as u32, ..room.dispatch() };

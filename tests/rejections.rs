@@ -8,7 +8,7 @@ use caustica::low_level::film::{Picture, Rejections};
 use caustica::low_level::gpu::GpuEngine;
 use caustica::low_level::kernels::records::*;
 use caustica::low_level::kernels::resolve::resolve;
-use caustica::low_level::pack::Packed;
+use caustica::low_level::pack::PackedScene;
 use caustica::low_level::pilots::prepare;
 use caustica::low_level::plan::Plan;
 use caustica::low_level::scene;
@@ -51,7 +51,7 @@ position = [0.5, 1.5, 0.5]
 intensity = 1.0
 "#;
 
-fn packed(text: &str) -> Packed {
+fn packed(text: &str) -> PackedScene {
     let scene = scene::parse("scene.toml".as_ref(), text.as_bytes()).expect("a scene").scene;
     prepare(&scene, scene.film.width, scene.film.height).expect("packed")
 }
@@ -74,7 +74,7 @@ fn rendered(mut engine: impl Engine, passes: u32) -> (Picture, Rejections) {
 }
 
 /// Renders on both engines, which must give the same bits and counts; the picture must be finite.
-fn on_both(packed: &Packed, settings: &RenderSettings) -> (Picture, Rejections) {
+fn on_both(packed: &PackedScene, settings: &RenderSettings) -> (Picture, Rejections) {
     let plan = Plan::probed(packed, settings);
     let choice = software::software();
     let cpu = rendered(CpuEngine::new(packed.clone(), plan.clone()), settings.passes);
@@ -88,8 +88,8 @@ fn on_both(packed: &Packed, settings: &RenderSettings) -> (Picture, Rejections) 
 }
 
 /// The light of a kind in a scene.
-fn light(packed: &mut Packed, kind: u32) -> &mut caustica::low_level::tables::Light {
-    packed.scene.lights.iter_mut().find(|l| l.kind == kind).expect("such a light")
+fn light(packed: &mut PackedScene, kind: u32) -> &mut caustica::low_level::tables::Light {
+    packed.tables.lights.iter_mut().find(|l| l.kind == kind).expect("such a light")
 }
 
 /// Theory: a sound scene rejects nothing.

@@ -6,7 +6,7 @@ mod ingredients;
 
 use caustica::low_level::gpu::compose::{compose, compose_from};
 use caustica::low_level::gpu::fragments::{Fragment, fragments};
-use caustica::low_level::gpu::layout::{Bound, SceneTables, bindings};
+use caustica::low_level::gpu::layout::{Bound, SceneLayout, bindings};
 use caustica::low_level::plan::Kernel;
 use caustica::low_level::plan::features::{Feature, Features};
 use ingredients::Mixture;
@@ -39,7 +39,7 @@ fn faults(fragments: &[Fragment], count: usize) -> Vec<String> {
     let mut list = Vec::new();
     for names in mixtures(count) {
         let mixture = Mixture::of(&names);
-        let tables = SceneTables::new(&mixture.scene);
+        let tables = SceneLayout::new(&mixture.scene);
         for kernel in mixture.kernels() {
             let shader = compose_from(fragments, kernel, &mixture.features(), &tables);
             let fault = shader.and_then(|s| s.validate().map(|_| ())).err();
@@ -64,7 +64,7 @@ fn every_composition_is_valid() {
 fn the_layer_of_direct_light_is_valid() {
     for names in mixtures(20) {
         let mixture = Mixture::of(&names);
-        let (features, tables) = (mixture.features(), SceneTables::new(&mixture.scene));
+        let (features, tables) = (mixture.features(), SceneLayout::new(&mixture.scene));
         let source = |features: &Features| {
             let shader = compose(Kernel::AovTrace, features, &tables).unwrap();
             shader.validate().unwrap_or_else(|e| panic!("{e} with {names:?}"));
@@ -89,7 +89,7 @@ fn every_feature_is_mixed() {
 fn only_what_is_required() {
     let source = |features: &[Feature]| {
         let mixture = Mixture::of(features);
-        compose(Kernel::EyeTrace, &mixture.features(), &SceneTables::new(&mixture.scene))
+        compose(Kernel::EyeTrace, &mixture.features(), &SceneLayout::new(&mixture.scene))
             .unwrap()
             .source
     };

@@ -2,7 +2,7 @@
 //! its stem.
 
 use caustica::low_level::gpu::compose::compose;
-use caustica::low_level::gpu::layout::SceneTables;
+use caustica::low_level::gpu::layout::SceneLayout;
 use caustica::low_level::plan::Kernel;
 use caustica::low_level::plan::features::Feature;
 use std::collections::BTreeSet;
@@ -98,7 +98,7 @@ fn entry_points_are_stems() {
         let stem = kernel.stem();
         assert!(root().join(format!("shaders/kernels/{stem}.wgsl")).is_file(), "{stem}");
         let shader =
-            compose(kernel, &mixture.features(), &SceneTables::new(&mixture.scene)).unwrap();
+            compose(kernel, &mixture.features(), &SceneLayout::new(&mixture.scene)).unwrap();
         let (module, _) = shader.validate().unwrap();
         let entries: Vec<_> = module.entry_points.iter().map(|e| e.name.as_str()).collect();
         assert_eq!(entries, [stem]);

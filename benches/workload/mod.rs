@@ -4,7 +4,7 @@
 
 #![allow(dead_code)] // each program uses its part
 
-use caustica::low_level::pack::Packed;
+use caustica::low_level::pack::PackedScene;
 use caustica::low_level::pilots::prepare;
 use caustica::low_level::real::{ToDouble, ToReal};
 use caustica::low_level::scene::{self, Mesh, ShapeKind, Triangle};
@@ -27,12 +27,12 @@ pub fn parsed(shape: &str) -> scene::Scene {
 }
 
 /// The tables of a scene with one shape.
-pub fn packed(shape: &str) -> Packed {
+pub fn packed(shape: &str) -> PackedScene {
     prepare(&parsed(shape), 16, 16).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// The tables of the displaced sphere with 2 (`nu`) (`nv` - 1) triangles.
-pub fn displaced_sphere(nu: u32, nv: u32) -> Packed {
+pub fn displaced_sphere(nu: u32, nv: u32) -> PackedScene {
     let mut scene = parsed("type = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1");
     scene.shapes[0].kind = ShapeKind::Mesh(mesh(nu, nv));
     prepare(&scene, 16, 16).unwrap_or_else(|e| panic!("{e}"))
@@ -89,9 +89,10 @@ impl Random {
 
 /// `count` rays from a sphere of radius 2 about the scene's middle toward its inner cube, in the
 /// units of `packed`.
-pub fn incoherent_rays(packed: &Packed, count: usize) -> Vec<Ray> {
+pub fn incoherent_rays(packed: &PackedScene, count: usize) -> Vec<Ray> {
     let mut random = Random(5);
-    let middle = 0.5 * (packed.scene.world.bounds_min + packed.scene.world.bounds_max).to_double();
+    let middle =
+        0.5 * (packed.tables.world.bounds_min + packed.tables.world.bounds_max).to_double();
     let ray = |_| {
         let origin = loop {
             let p = random.point();

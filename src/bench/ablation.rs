@@ -13,7 +13,7 @@ use crate::film::Picture;
 use crate::gpu::{AdapterChoice, GpuEngine};
 use crate::lights::LightKind;
 use crate::materials::Bsdf;
-use crate::pack::Packed;
+use crate::pack::PackedScene;
 use crate::plan::Plan;
 use crate::plan::features::{Feature, Features};
 use crate::scene::settings::RenderSettings;
@@ -21,7 +21,7 @@ use crate::tables::*;
 
 /// Returns the scene with one unused item that requires `feature`. `None` for features that cannot
 /// be added alone or that change the image.
-pub fn with_unused(scene: &Scene, feature: Feature) -> Option<Scene> {
+pub fn with_unused(scene: &SceneTables, feature: Feature) -> Option<SceneTables> {
     let mut scene = scene.clone();
     let material = |bsdf| Material {
         kind: bsdf as u32,
@@ -116,7 +116,7 @@ pub fn with_unused(scene: &Scene, feature: Feature) -> Option<Scene> {
 }
 
 /// Returns the scene with one unused item for every addable feature that `features` lack.
-pub fn with_all_unused(scene: &Scene, features: Features) -> Scene {
+pub fn with_all_unused(scene: &SceneTables, features: Features) -> SceneTables {
     unused(features)
         .into_iter()
         .fold(scene.clone(), |scene, feature| with_unused(&scene, feature).unwrap_or(scene))
@@ -124,7 +124,7 @@ pub fn with_all_unused(scene: &Scene, features: Features) -> Scene {
 
 /// Returns the features that [`with_unused`] can add and that `features` lack.
 pub fn unused(features: Features) -> Vec<Feature> {
-    let empty = Scene::empty();
+    let empty = SceneTables::empty();
     let can_add = |feature: &Feature| with_unused(&empty, *feature).is_some();
     Feature::all().filter(|f| !features.has(*f) && can_add(f)).collect()
 }
@@ -151,7 +151,7 @@ pub struct Costs {
 /// Times `passes` passes (at least one) on a GPU or a software driver, kernel by kernel.
 pub fn on_gpu(
     choice: &AdapterChoice,
-    packed: &Packed,
+    packed: &PackedScene,
     settings: &RenderSettings,
     passes: u32,
 ) -> Result<Costs, EngineError> {
@@ -177,7 +177,7 @@ pub fn on_gpu(
 
 /// Times `passes` passes (at least one) on the CPU.
 pub fn on_cpu(
-    packed: Packed,
+    packed: PackedScene,
     settings: &RenderSettings,
     passes: u32,
 ) -> Result<Costs, EngineError> {
@@ -206,22 +206,22 @@ mod tests {
         loaded.settings.photons = 500;
         loaded.settings.indirect_radius = Some(1.0);
         let packed = prepare(&loaded.scene, 24, 16).unwrap();
-        let features = Features::of(&packed.scene, &loaded.settings);
+        let features = Features::of(&packed.tables, &loaded.settings);
         let missing = unused(features);
         assert!(missing.len() > 5, "{missing:?}");
         for feature in &missing {
-            let scene = with_unused(&packed.scene, *feature).unwrap();
+            let scene = with_unused(&packed.tables, *feature).unwrap();
             assert!(Features::of(&scene, &loaded.settings).has(*feature), "{feature:?}");
         }
         let mut heavy = packed.clone();
-        heavy.scene = with_all_unused(&packed.scene, features);
+        heavy.tables = with_all_unused(&packed.tables, features);
         let plain = on_cpu(packed.clone(), &loaded.settings, 2).unwrap();
         let with_all = on_cpu(heavy, &loaded.settings, 2).unwrap();
         assert!(plain.picture == with_all.picture);
         assert!(plain.picture.rgb.iter().flatten().any(|value| *value > 0.0));
         // a change to a light that is referenced is detected
         let mut brighter = packed.clone();
-        brighter.scene.lights[0].color *= 2.0;
+        brighter.tables.lights[0].color *= 2.0;
         assert!(on_cpu(brighter, &loaded.settings, 2).unwrap().picture != plain.picture);
     }
 }

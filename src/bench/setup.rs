@@ -10,7 +10,7 @@ use crate::double;
 use crate::engine::{Engine, EngineError};
 use crate::gpu::program::Compiling;
 use crate::gpu::{AdapterChoice, GpuEngine};
-use crate::pack::Packed;
+use crate::pack::PackedScene;
 use crate::pilots::prepare;
 use crate::plan::Plan;
 use crate::scene::Scene;
@@ -58,7 +58,7 @@ pub struct Ready {
     /// The engine.
     pub runner: Runner,
     /// The tables, in f32 whatever the device.
-    pub packed: Packed,
+    pub packed: PackedScene,
     /// The plan, in f32 whatever the device.
     pub plan: Plan,
     /// Bytes of the engine's buffers beside the scene's, by name.

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use caustica::low_level::engine::EngineError;
 use caustica::low_level::memory::{Memory, Part, total};
-use caustica::low_level::pack::Packed;
+use caustica::low_level::pack::PackedScene;
 use caustica::low_level::pilots::prepare;
 use caustica::low_level::plan::features::Feature;
 use caustica::low_level::plan::{Buffer, BufferPlace, Kernel, Plan, scene_bytes, scene_tables};
@@ -63,8 +63,8 @@ struct Need {
 }
 
 impl Need {
-    fn of(plan: &Plan, packed: &Packed, place: BufferPlace, budget: &Budget) -> Self {
-        let scene = scene_bytes(&packed.scene);
+    fn of(plan: &Plan, packed: &PackedScene, place: BufferPlace, budget: &Budget) -> Self {
+        let scene = scene_bytes(&packed.tables);
         let memory = budget.alone();
         let given = Memory { budget: memory.budget.or(Some(u64::MAX)), ..memory };
         match plan.clone().within(scene, place, &given) {
@@ -153,7 +153,7 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     Ok(Done::Fully)
 }
 
-fn report(packed: &Packed, plan: &Plan) -> InfoReport {
+fn report(packed: &PackedScene, plan: &Plan) -> InfoReport {
     let features =
         Feature::all().map(|feature| (feature.name().to_owned(), plan.features.has(feature)));
     let kernels = plan.kernels();
@@ -163,7 +163,7 @@ fn report(packed: &Packed, plan: &Plan) -> InfoReport {
     let kernels =
         Kernel::ALL.iter().map(|kernel| (kernel.stem().to_owned(), !path && used(*kernel)));
     let kernels = kernels.chain([("path_trace".to_owned(), path)]);
-    let tables = scene_tables(&packed.scene).into_iter().filter(|(_, bytes)| *bytes > 0);
+    let tables = scene_tables(&packed.tables).into_iter().filter(|(_, bytes)| *bytes > 0);
     let own_buffers =
         plan.buffers().into_iter().filter(|(buffer, _)| !path || *buffer == Buffer::Film);
     let own_buffers = own_buffers.map(|(buffer, bytes)| (buffer.name(), bytes));

@@ -5,7 +5,7 @@ use caustica::low_level::bench::ablation::{
 };
 use caustica::low_level::device::{self, DeviceKind};
 use caustica::low_level::gpu::AdapterChoice;
-use caustica::low_level::pack::Packed;
+use caustica::low_level::pack::PackedScene;
 use caustica::low_level::plan::Kernel;
 use caustica::low_level::plan::features::Features;
 use caustica::low_level::scene::settings::{Method, RenderSettings};
@@ -23,7 +23,7 @@ const KERNELS: [Kernel; 3] = [Kernel::EyeTrace, Kernel::PhotonTrace, Kernel::Gat
 /// more, and with everything.
 pub fn on_device(
     wanted: &str,
-    packed: &Packed,
+    packed: &PackedScene,
     settings: &RenderSettings,
     json: bool,
 ) -> Result<Done, Failure> {
@@ -40,7 +40,7 @@ pub fn on_device(
     // one disc: what is added may bring photons that ask for a second, in which sums are rounded
     // otherwise
     let settings = &RenderSettings { indirect_radius: Some(1.0), ..settings.clone() };
-    let cost = |packed: Packed| match device.kind {
+    let cost = |packed: PackedScene| match device.kind {
         DeviceKind::Cpu => on_cpu(packed, settings, PASSES),
         _ => on_gpu(&AdapterChoice::Named(device.name.clone()), &packed, settings, PASSES),
     };
@@ -51,10 +51,10 @@ pub fn on_device(
             "warning: Mesa keeps compiled shaders; for true times say MESA_SHADER_CACHE_DISABLE=true",
         );
     }
-    let features = Features::of(&packed.scene, settings);
+    let features = Features::of(&packed.tables, settings);
     let with = |scene| {
         let mut other = packed.clone();
-        other.scene = scene;
+        other.tables = scene;
         other
     };
     let tell = |added: &str, costs: &Costs, plain: &Costs| match json {
@@ -68,10 +68,10 @@ pub fn on_device(
     let plain = cost(packed.clone())?;
     tell("as it is", &plain, &plain)?;
     for feature in unused(features) {
-        let Some(scene) = with_unused(&packed.scene, feature) else { continue };
+        let Some(scene) = with_unused(&packed.tables, feature) else { continue };
         tell(&format!("+ {}", feature.name()), &cost(with(scene))?, &plain)?;
     }
-    let all = cost(with(with_all_unused(&packed.scene, features)))?;
+    let all = cost(with(with_all_unused(&packed.tables, features)))?;
     tell("+ all of these", &all, &plain)?;
     Ok(Done::Fully)
 }

@@ -15,7 +15,7 @@ use super::kernels::records::*;
 use super::kernels::resolve::{Estimate, fold, resolve};
 use super::kernels::resolve_parts::{PartsPixel, resolve_parts};
 use super::math::is_finite;
-use super::pack::Packed;
+use super::pack::PackedScene;
 use super::plan::features::Feature;
 use super::plan::layers::LayerInputs as Layers;
 use super::plan::{Buffer, Command, Kernel, Plan, Stage, Step};
@@ -34,7 +34,7 @@ use tasks::{EYE_TASK, EyePaths, GATHER_TASK, Gathers, trace_aovs};
 
 /// Engine that renders one scene on the processor's cores.
 pub struct CpuEngine {
-    packed: Arc<Packed>,
+    packed: Arc<PackedScene>,
     plan: Plan,
     passes_done: u32,
     visible_points: Vec<VisiblePoint>,
@@ -64,7 +64,7 @@ enum Unfinished {
 
 impl CpuEngine {
     /// Creates an engine for one scene and plan.
-    pub fn new(packed: impl Into<Arc<Packed>>, plan: Plan) -> Self {
+    pub fn new(packed: impl Into<Arc<PackedScene>>, plan: Plan) -> Self {
         let points = (plan.pixels * plan.eye_samples) as usize;
         let photons = plan.features.has(Feature::Photons);
         let buckets = if photons { plan.buckets as usize } else { 0 };
@@ -182,7 +182,7 @@ impl CpuEngine {
             self.place(Buffer::VisiblePoints, step.chunk),
             self.place(Buffer::Gathered, step.chunk),
         );
-        let scene = &self.packed.scene;
+        let scene = &self.packed.tables;
         let d = &step.dispatch;
         if let [kernel] = step.stage.kernels() {
             self.clock.begin(kernel.stem());
@@ -275,7 +275,7 @@ impl CpuEngine {
         self.clock.begin("path_trace");
         let d = self.plan.dispatch(self.passes_done);
         let sampled = self.plan.features.has(Feature::Sampled);
-        let scene = &self.packed.scene;
+        let scene = &self.packed.tables;
         report.eye_paths = self.film.len() as u64;
         report.rays = self
             .film

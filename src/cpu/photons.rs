@@ -5,7 +5,7 @@ use super::super::kernels::grid_build::RecordList;
 use super::super::kernels::photon_trace::{PhotonPath, photon_trace};
 use super::super::kernels::records::*;
 use super::super::shapes::kdtree_stream::STREAM;
-use super::super::tables::Scene;
+use super::super::tables::SceneTables;
 use crate::engine::Cancel;
 use bytemuck::Zeroable;
 use rayon::prelude::*;
@@ -20,14 +20,14 @@ const PHOTON_TASKS: u32 = 256;
 const LARGE: usize = 1 << 20;
 
 /// Returns true if the scene exceeds a core's cache, so that rays wait for memory.
-fn is_large(scene: &Scene) -> bool {
-    let Scene { nodes, refs, triangles, .. } = scene;
+fn is_large(scene: &SceneTables) -> bool {
+    let SceneTables { nodes, refs, triangles, .. } = scene;
     size_of_val(&nodes[..]) + size_of_val(&refs[..]) + size_of_val(&triangles[..]) > LARGE
 }
 
 /// Photons of one task.
 struct Photons<'a> {
-    scene: &'a Scene,
+    scene: &'a SceneTables,
     dispatch: &'a Dispatch,
     sampled: bool,
     ids: Range<u32>,
@@ -121,7 +121,7 @@ fn add_path((rays, ends): &mut Ends, path: &PhotonPath) {
 /// was requested do nothing.
 pub fn trace_photons(
     arch: pulp::Arch,
-    scene: &Scene,
+    scene: &SceneTables,
     d: &Dispatch,
     sampled: bool,
     cancel: &Cancel,
@@ -171,7 +171,7 @@ mod tests {
             let plan = Plan::probed(&packed, &loaded.settings);
             let dispatch = plan.dispatch(0);
             let trace = |dispatch: &Dispatch, side_by_side| {
-                let (scene, list) = (&packed.scene, &mut RecordList::default());
+                let (scene, list) = (&packed.tables, &mut RecordList::default());
                 let ids = 100..3000;
                 let ends = Photons { scene, dispatch, sampled: false, ids, side_by_side, list }
                     .with_simd(pulp::Scalar);

@@ -7,7 +7,7 @@ use super::super::kernels::gather::{gather, scale_sq};
 use super::super::kernels::grid_build::SortedRecords;
 use super::super::kernels::records::*;
 use super::super::plan::features::{Feature, Features};
-use super::super::tables::{Outline, Scene};
+use super::super::tables::{Outline, SceneTables};
 use rayon::prelude::*;
 
 /// Number of visible points that one task gathers for.
@@ -44,7 +44,7 @@ impl pulp::WithSimd for Gathers<'_> {
 
 /// Traces the eye paths of one task.
 pub struct EyePaths<'a> {
-    pub scene: &'a Scene,
+    pub scene: &'a SceneTables,
     pub dispatch: &'a Dispatch,
     pub sampled: bool,
     pub first: u32,
@@ -68,7 +68,7 @@ impl pulp::WithSimd for EyePaths<'_> {
 }
 
 /// Traces one sample of each pixel of a chunk for the AOVs.
-pub fn trace_aovs(scene: &Scene, d: &Dispatch, features: &Features, aovs: &mut [AovPixel]) {
+pub fn trace_aovs(scene: &SceneTables, d: &Dispatch, features: &Features, aovs: &mut [AovPixel]) {
     let sampled = features.has(Feature::Sampled) && features.has(Feature::DirectLayer);
     let first = (d.chunk_first / d.eye_samples) as usize;
     let pixels = aovs[first..first + d.end as usize].par_iter_mut();

@@ -11,7 +11,7 @@ use crate::engine::{Engine, EngineError, Space};
 use crate::gpu::{self, AdapterChoice, AdapterKind, AdapterSummary, GpuEngine};
 use crate::kernels::records::VisiblePoint;
 use crate::memory::{self, Memory, can_be_had, total};
-use crate::pack::Packed;
+use crate::pack::PackedScene;
 use crate::pilots::{self, prepare, probe};
 use crate::plan::{self, BufferPlace, Plan};
 use crate::prepare::radius::Automatic;
@@ -266,7 +266,7 @@ fn start(
     };
     if device.kind == DeviceKind::CpuDouble {
         let (wide, plan) = in_double(scene, &packed, settings)?;
-        let tables = plan::scene_bytes(&packed.scene) + double::plan::scene_bytes(&wide.scene);
+        let tables = plan::scene_bytes(&packed.tables) + double::plan::scene_bytes(&wide.tables);
         let place = double::plan::BufferPlace::Program { saves: memory.saves };
         let plan = plan.within(tables, place, memory)?;
         let cut = cut(plan.tiled, plan.chunks(), plan.settings.batch, settings.batch);
@@ -281,14 +281,14 @@ fn start(
         ));
     }
     let plan = Plan::new(&packed, settings, probe(&packed, settings)).on(film).within(
-        plan::scene_bytes(&packed.scene),
+        plan::scene_bytes(&packed.tables),
         place(device.kind, memory),
         memory,
     )?;
     let cut = cut(plan.tiled, plan.chunks(), plan.settings.batch, settings.batch);
     let (settings, automatic, space) =
         (plan.settings.clone(), plan.automatic_radius(), plan.space());
-    hold(&plan, &packed.scene, place(device.kind, memory))?;
+    hold(&plan, &packed.tables, place(device.kind, memory))?;
     let engine: Box<dyn Engine> = match device.kind {
         DeviceKind::Cpu => Box::new(CpuEngine::new(packed, plan)),
         _ => Box::new(on_gpu(&AdapterChoice::Named(device.name.clone()), &packed, plan)?),
@@ -297,7 +297,11 @@ fn start(
 }
 
 /// Fails if the CPU engine could run out of memory for its buffers during a render.
-fn hold(plan: &Plan, scene: &crate::tables::Scene, place: BufferPlace) -> Result<(), EngineError> {
+fn hold(
+    plan: &Plan,
+    scene: &crate::tables::SceneTables,
+    place: BufferPlace,
+) -> Result<(), EngineError> {
     let parts = plan.memory(plan::scene_bytes(scene), place);
     match place {
         BufferPlace::Program { .. } if !can_be_had(total(&parts)) => {
@@ -322,7 +326,11 @@ fn place(kind: DeviceKind, memory: &Memory) -> BufferPlace {
 }
 
 /// Creates an engine on a GPU; if its memory does not suffice, in tiles.
-fn on_gpu(choice: &AdapterChoice, packed: &Packed, plan: Plan) -> Result<GpuEngine, EngineError> {
+fn on_gpu(
+    choice: &AdapterChoice,
+    packed: &PackedScene,
+    plan: Plan,
+) -> Result<GpuEngine, EngineError> {
     let tiled = (!plan.tiled).then(|| plan.clone().in_tiles(SMALL_TILE));
     match (GpuEngine::new(choice, packed, plan), tiled) {
         (Err(EngineError::OutOfMemory(text)), Some(tiled)) => {
@@ -349,9 +357,9 @@ fn cut(tiled: bool, tiles: u32, batch: Option<u32>, asked: Option<u32>) -> Optio
 /// Scene and plan of the f64 engine; `single` is the scene packed in f32.
 pub fn in_double(
     scene: &Scene,
-    single: &Packed,
+    single: &PackedScene,
     settings: &RenderSettings,
-) -> Result<(double::pack::Packed, double::plan::Plan), EngineError> {
+) -> Result<(double::pack::PackedScene, double::plan::Plan), EngineError> {
     let film = &scene.film;
     // take learned and automatic values from the f32 engine, so that both render the same
     let packed =

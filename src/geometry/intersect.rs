@@ -17,7 +17,7 @@ use super::tables::*;
 /// Intersects a ray with the shape that `reference` identifies.
 #[inline]
 pub fn intersect_primitive(
-    scene: &Scene,
+    scene: &SceneTables,
     shear: &RayShear,
     reference: u32,
     ray: &Ray,
@@ -58,13 +58,13 @@ const PATCH_SET: usize = 128;
 /// many leaves, and a root search is by far the most expensive test; deferral searches each patch
 /// once, and only up to the nearest other hit. If the scene has more patches than the set has bits,
 /// they are searched in each leaf.
-pub fn has_patch_set(scene: &Scene) -> bool {
+pub fn has_patch_set(scene: &SceneTables) -> bool {
     !scene.patches.is_empty() && scene.patches.len() <= PATCH_SET
 }
 
 /// Shapes of a scene, tested against one ray.
 struct Shapes<'a> {
-    scene: &'a Scene,
+    scene: &'a SceneTables,
     shear: RayShear,
     /// True if any hit ends the search.
     any: bool,
@@ -74,7 +74,7 @@ struct Shapes<'a> {
 
 impl<'a> Shapes<'a> {
     #[inline(always)]
-    fn new(scene: &'a Scene, ray: &Ray, any: bool) -> Self {
+    fn new(scene: &'a SceneTables, ray: &Ray, any: bool) -> Self {
         Shapes { scene, shear: shear_of(scene, ray), any, put_off: 0 }
     }
 }
@@ -138,7 +138,7 @@ impl Primitives for Shapes<'_> {
 /// group of four; returns the remaining references.
 #[inline(always)]
 fn intersect_fours<'a>(
-    scene: &Scene,
+    scene: &SceneTables,
     shear: &RayShear,
     references: &'a [u32],
     ray: &Ray,
@@ -170,13 +170,13 @@ fn intersect_fours<'a>(
 
 /// Per-ray constants of the triangle test; skips the three divisions if the scene has no triangles.
 #[inline]
-fn shear_of(scene: &Scene, ray: &Ray) -> RayShear {
+fn shear_of(scene: &SceneTables, ray: &Ray) -> RayShear {
     if scene.triangles.is_empty() { RayShear::NONE } else { RayShear::new(ray) }
 }
 
 /// Nearest hit of a ray; its reference is [`NONE`] if there is none.
 #[inline(always)]
-pub fn intersect_scene(scene: &Scene, ray: &Ray) -> Hit {
+pub fn intersect_scene(scene: &SceneTables, ray: &Ray) -> Hit {
     let mut hit = intersect_unbounded(scene, ray);
     if !scene.nodes.is_empty() {
         traverse_closest(&tree(scene), ray, &mut hit, Shapes::new(scene, ray, false));
@@ -190,7 +190,7 @@ pub fn intersect_scene(scene: &Scene, ray: &Ray) -> Hit {
 /// unspecified.
 #[inline(always)]
 pub fn intersect_scene_many(
-    scene: &Scene,
+    scene: &SceneTables,
     mut next: impl FnMut(usize, Option<&Hit>) -> Option<Ray>,
 ) {
     if scene.nodes.is_empty() {
@@ -206,7 +206,7 @@ pub fn intersect_scene_many(
 
 /// Adapts a closure to [`Rays`]: intersects each ray with the shapes outside the tree.
 struct Source<'a, N> {
-    scene: &'a Scene,
+    scene: &'a SceneTables,
     next: N,
 }
 
@@ -220,7 +220,7 @@ impl<N: FnMut(usize, Option<&Hit>) -> Option<Ray>> Rays for Source<'_, N> {
 
 /// Nearest hit with a shape outside the tree.
 #[inline(always)]
-fn intersect_unbounded(scene: &Scene, ray: &Ray) -> Hit {
+fn intersect_unbounded(scene: &SceneTables, ray: &Ray) -> Hit {
     let mut hit = Hit::none(ray);
     for i in 0..scene.world.unbounded_count {
         intersect_primitive(scene, &RayShear::NONE, scene.unbounded[i as usize], ray, &mut hit);
@@ -230,7 +230,7 @@ fn intersect_unbounded(scene: &Scene, ray: &Ray) -> Hit {
 
 /// Returns true if anything lies on the ray between `t_min` and `t_max`.
 #[inline(always)]
-pub fn occluded(scene: &Scene, ray: &Ray) -> bool {
+pub fn occluded(scene: &SceneTables, ray: &Ray) -> bool {
     let mut hit = Hit { t: ray.t_max, reference: NONE, u: 0.0, v: 0.0 };
     for i in 0..scene.world.unbounded_count {
         intersect_primitive(scene, &RayShear::NONE, scene.unbounded[i as usize], ray, &mut hit);
@@ -243,7 +243,7 @@ pub fn occluded(scene: &Scene, ray: &Ray) -> bool {
 }
 
 #[inline(always)]
-fn tree(scene: &Scene) -> Tree<'_> {
+fn tree(scene: &SceneTables) -> Tree<'_> {
     Tree {
         nodes: &scene.nodes,
         refs: &scene.refs,

@@ -38,7 +38,7 @@ pub struct Surface {
 
 /// Computes the surface data at `hit` of `ray`.
 #[inline(always)]
-pub fn surface_at(scene: &Scene, ray: &Ray, hit: &Hit) -> Surface {
+pub fn surface_at(scene: &SceneTables, ray: &Ray, hit: &Hit) -> Surface {
     let index = index_of(hit.reference) as usize;
     let p = ray.origin + ray.direction * hit.t;
     let mut planar = UV_NATURAL;
@@ -192,7 +192,7 @@ pub fn surface_at(scene: &Scene, ray: &Ray, hit: &Hit) -> Surface {
 
 /// Clamps `v` of a shape whose v range ends at poles or rims to half a texel row from either end,
 /// so that filtering does not mix in the opposite end.
-fn within_ends(scene: &Scene, material: u32, v: Real) -> Real {
+fn within_ends(scene: &SceneTables, material: u32, v: Real) -> Real {
     if scene.textures.is_empty() {
         return v;
     }

@@ -3,7 +3,7 @@
 
 use super::dispatch;
 use super::fragments::{Fragment, Names, fragments, preprocess};
-use super::layout::{SceneTables, bindings, declarations};
+use super::layout::{SceneLayout, bindings, declarations};
 use crate::plan::Kernel;
 use crate::plan::features::{Feature, Features};
 use std::collections::BTreeSet;
@@ -52,7 +52,7 @@ pub fn names(kernel: Kernel, features: &Features) -> Names {
 pub fn compose(
     kernel: Kernel,
     features: &Features,
-    scene: &SceneTables,
+    scene: &SceneLayout,
 ) -> Result<Shader, ShaderError> {
     compose_from(&fragments(), kernel, features, scene)
 }
@@ -62,7 +62,7 @@ pub fn compose_from(
     fragments: &[Fragment],
     kernel: Kernel,
     features: &Features,
-    scene: &SceneTables,
+    scene: &SceneLayout,
 ) -> Result<Shader, ShaderError> {
     let names = names(kernel, features);
     let mut shader = Shader { source: String::new(), parts: Vec::new() };

@@ -10,7 +10,7 @@ use bytemuck::{Pod, Zeroable, bytes_of, cast_slice};
 /// Member of the struct `Scene`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Member {
-    /// Name, the same as in [`tables::Scene`].
+    /// Name, the same as in [`tables::SceneTables`].
     pub name: &'static str,
     /// WGSL type.
     pub wgsl_type: String,
@@ -20,7 +20,7 @@ pub struct Member {
 
 /// Struct `Scene` of one scene: its members and the buffer's contents.
 #[derive(Clone, Debug, Default)]
-pub struct SceneTables {
+pub struct SceneLayout {
     /// Members in order.
     pub members: Vec<Member>,
     /// Contents of the buffer.
@@ -32,9 +32,9 @@ pub struct SceneTables {
     lights: usize,
 }
 
-impl SceneTables {
+impl SceneLayout {
     /// Lays out `scene`. Empty tables are omitted.
-    pub fn new(scene: &tables::Scene) -> Self {
+    pub fn new(scene: &tables::SceneTables) -> Self {
         let mut out =
             Self { few: few(scene).to_vec(), lights: scene.lights.len(), ..Self::default() };
         out.push("world", "World".into(), bytes_of(&scene.world));
@@ -82,7 +82,7 @@ impl SceneTables {
             .map(|m| format!("    @align(16) {}: {},\n", m.name, m.wgsl_type))
             .collect();
         let lights = format!("const LIGHT_COUNT: u32 = {}u;\n", self.lights);
-        format!("struct Scene {{\n{members}}}\n{lights}{}", self.intersect_few())
+        format!("struct SceneTables {{\n{members}}}\n{lights}{}", self.intersect_few())
     }
 
     /// WGSL function that tests the few shapes, in the same order as the Rust twin. Since their
@@ -118,7 +118,7 @@ impl SceneTables {
 }
 
 /// Tables with separate buffers, and their contents.
-pub fn long_tables(scene: &tables::Scene) -> [(Buffer, &[u8]); 6] {
+pub fn long_tables(scene: &tables::SceneTables) -> [(Buffer, &[u8]); 6] {
     [
         (Buffer::Nodes, cast_slice(&scene.nodes)),
         (Buffer::Refs, cast_slice(&scene.refs)),

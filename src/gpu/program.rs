@@ -2,7 +2,7 @@
 
 use super::compose::{Shader, causes, compose};
 use super::context::Gpu;
-use super::layout::{Bound, SceneTables, bindings};
+use super::layout::{Bound, SceneLayout, bindings};
 use crate::engine::EngineError;
 use crate::kernels::records::Dispatch;
 use crate::plan::features::Features;
@@ -26,7 +26,7 @@ impl Program {
         gpu: &Gpu,
         kernel: Kernel,
         features: &Features,
-        scene: &SceneTables,
+        scene: &SceneLayout,
     ) -> Result<Self, EngineError> {
         let shader =
             compose(kernel, features, scene).map_err(|e| EngineError::Shader(e.to_string()))?;
@@ -130,7 +130,7 @@ pub fn make_programs(
     gpu: &Gpu,
     kernels: &[Kernel],
     features: &Features,
-    scene: &SceneTables,
+    scene: &SceneLayout,
     compiling: Compiling,
     mut take: impl FnMut(Program, f64) -> Result<(), EngineError>,
 ) -> Result<(), EngineError> {

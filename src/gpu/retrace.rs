@@ -11,7 +11,7 @@ use crate::kernels::aov_trace::{AovPixel, aov_trace};
 use crate::kernels::eye_trace::eye_trace;
 use crate::kernels::photon_trace::{PhotonPath, photon_trace};
 use crate::kernels::records::{Dispatch, PhotonRecord, STOPPED, VisiblePoint};
-use crate::tables::Scene;
+use crate::tables::SceneTables;
 use bytemuck::{cast_slice, pod_collect_to_vec};
 use rayon::prelude::*;
 use std::collections::BTreeSet;
@@ -19,7 +19,7 @@ use std::collections::BTreeSet;
 /// Retraces the marked points of a chunk; returns the numbers of points and of rays.
 pub fn retrace_points(
     gpu: &Gpu,
-    scene: &Scene,
+    scene: &SceneTables,
     dispatch: &Dispatch,
     sampled: bool,
     buffer: &wgpu::Buffer,
@@ -40,7 +40,7 @@ pub fn retrace_points(
 /// Retraces the samples of the marked pixels of a chunk.
 pub fn retrace_aovs(
     gpu: &Gpu,
-    scene: &Scene,
+    scene: &SceneTables,
     dispatch: &Dispatch,
     sampled: bool,
     buffer: &wgpu::Buffer,
@@ -71,7 +71,7 @@ pub struct RetracedPhotons {
 /// Replaces the records of the marked photons among the `count` records of a batch.
 pub fn retrace_photons(
     gpu: &Gpu,
-    scene: &Scene,
+    scene: &SceneTables,
     dispatch: &Dispatch,
     sampled: bool,
     buffer: &wgpu::Buffer,

@@ -53,7 +53,13 @@ pub struct AovPixel {
 
 /// Adds the next sample, number `passes_done`, to pixel `id` of the chunk. `sampled` includes
 /// direct light by shadow rays.
-pub fn aov_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, id: u32, aov: &mut AovPixel) {
+pub fn aov_trace(
+    scene: &SceneTables,
+    dispatch: &Dispatch,
+    sampled: bool,
+    id: u32,
+    aov: &mut AovPixel,
+) {
     let camera = &scene.camera;
     let pixel = window_pixel(dispatch, camera, dispatch.chunk_first / dispatch.eye_samples + id);
     let x = pixel % camera.width;

@@ -21,7 +21,7 @@ use super::tables::*;
 
 /// Beer-Lambert transmittance over `distance` (scene units) in a medium.
 #[inline(always)]
-pub fn transmittance(scene: &Scene, medium: u32, distance: Real) -> Vec3 {
+pub fn transmittance(scene: &SceneTables, medium: u32, distance: Real) -> Vec3 {
     if medium == NONE {
         return Vec3::ONE;
     }
@@ -33,7 +33,7 @@ pub fn transmittance(scene: &Scene, medium: u32, distance: Real) -> Vec3 {
 /// it against scattered rays that could hit the same light.
 #[inline(always)]
 pub fn next_event(
-    scene: &Scene,
+    scene: &SceneTables,
     p: &ShadingPoint,
     interior: &Interior,
     mis: bool,
@@ -70,7 +70,7 @@ pub fn next_event(
 /// Radiance towards the path from all lights, and the number of rays traced.
 #[inline(always)]
 pub fn direct_light(
-    scene: &Scene,
+    scene: &SceneTables,
     p: &ShadingPoint,
     interior: &Interior,
     rng: &mut Rng,

@@ -36,7 +36,7 @@ pub struct EyePath {
 impl EyePath {
     /// Starts a path with a camera ray.
     #[inline(always)]
-    pub fn new(scene: &Scene, ray: Ray) -> Self {
+    pub fn new(scene: &SceneTables, ray: Ray) -> Self {
         let interior = interior_at(scene, scene.camera.medium, ray.origin);
         let throughput = Vec3::ONE;
         Self { ray, throughput, interior, hidden: 0, bounce: 0, length: 0.0, rays: 0 }
@@ -50,14 +50,14 @@ impl EyePath {
 
     /// Traces the path's ray and counts it.
     #[inline(always)]
-    pub fn trace(&mut self, scene: &Scene) -> Hit {
+    pub fn trace(&mut self, scene: &SceneTables) -> Hit {
         self.rays += 1;
         intersect_scene(scene, &self.ray)
     }
 
     /// Radiance of the environment in the ray's direction, times throughput.
     #[inline(always)]
-    pub fn environment(&self, scene: &Scene) -> Vec3 {
+    pub fn environment(&self, scene: &SceneTables) -> Vec3 {
         if scene.world.environment == NONE {
             return Vec3::ZERO;
         }
@@ -67,7 +67,7 @@ impl EyePath {
 
     /// Moves to a hit and applies the absorption of the medium on the way.
     #[inline(always)]
-    pub fn arrive(&mut self, scene: &Scene, hit: &Hit) -> Surface {
+    pub fn arrive(&mut self, scene: &SceneTables, hit: &Hit) -> Surface {
         let s = surface_at(scene, &self.ray, hit);
         self.length += hit.t;
         self.interior = interior_before(scene, &s, -self.ray.direction, &self.interior);
@@ -77,7 +77,7 @@ impl EyePath {
 
     /// Emission of the surface towards the path, times throughput.
     #[inline(always)]
-    pub fn emission(&self, scene: &Scene, s: &Surface) -> Vec3 {
+    pub fn emission(&self, scene: &SceneTables, s: &Surface) -> Vec3 {
         if s.light == NONE || (-self.ray.direction).dot(s.normal) <= 0.0 {
             return Vec3::ZERO;
         }
@@ -86,7 +86,7 @@ impl EyePath {
 
     /// Passes through the face if it is a hidden one; returns false otherwise.
     #[inline(always)]
-    pub fn passes(&mut self, scene: &Scene, s: &Surface) -> bool {
+    pub fn passes(&mut self, scene: &SceneTables, s: &Surface) -> bool {
         let passed = passes_hidden(scene, s, &mut self.ray, &mut self.interior);
         self.hidden += u32::from(passed);
         passed

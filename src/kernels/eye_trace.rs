@@ -19,7 +19,7 @@ use bytemuck::Zeroable;
 /// light by shadow rays.
 #[inline(always)]
 pub fn eye_trace(
-    scene: &Scene,
+    scene: &SceneTables,
     dispatch: &Dispatch,
     sampled: bool,
     id: u32,

@@ -19,7 +19,12 @@ use super::tables::*;
 
 /// Traces one path through the pixel at position `place` of the window; returns its radiance and
 /// the number of rays. `sampled` enables next-event estimation.
-pub fn path_trace(scene: &Scene, dispatch: &Dispatch, sampled: bool, place: u32) -> (Vec3, u32) {
+pub fn path_trace(
+    scene: &SceneTables,
+    dispatch: &Dispatch,
+    sampled: bool,
+    place: u32,
+) -> (Vec3, u32) {
     let camera = &scene.camera;
     let pixel = window_pixel(dispatch, camera, place);
     let mut rng = rng_eye(pixel, dispatch.pass_number, dispatch.seed, dispatch.points);

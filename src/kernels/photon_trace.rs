@@ -46,7 +46,7 @@ pub struct PhotonPath {
 impl PhotonPath {
     /// Emits photon `id` of the batch.
     #[inline(always)]
-    pub fn new(scene: &Scene, dispatch: &Dispatch, id: u32) -> PhotonPath {
+    pub fn new(scene: &SceneTables, dispatch: &Dispatch, id: u32) -> PhotonPath {
         let mut rng =
             rng_new(dispatch.batch_first + id, dispatch.pass_number, STREAM_PHOTON, dispatch.seed);
         let emission = emit_photon(scene, &mut rng);
@@ -91,7 +91,7 @@ impl PhotonPath {
     #[inline(always)]
     pub fn meet(
         &mut self,
-        scene: &Scene,
+        scene: &SceneTables,
         dispatch: &Dispatch,
         sampled: bool,
         hit: &Hit,
@@ -165,7 +165,7 @@ impl PhotonPath {
 /// Traces photon `id` of the batch and passes each record to `store`.
 #[inline(always)]
 pub fn photon_trace(
-    scene: &Scene,
+    scene: &SceneTables,
     dispatch: &Dispatch,
     sampled: bool,
     id: u32,

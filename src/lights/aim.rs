@@ -21,7 +21,12 @@ const FAR_OUTSIDE_SQ: Real = 4.0;
 /// Samples the mixture of the cosine and of the cone about the scene, at a distant diffuse surface.
 /// `scattered` is the cosine sample drawn from `u.xy`; if `u.z` is below 0.5, a direction in the
 /// cone replaces it. The weight is that of the mixture.
-pub fn aimed_scatter(scene: &Scene, at: &ShadingPoint, u: Vec4, scattered: Scatter) -> Scatter {
+pub fn aimed_scatter(
+    scene: &SceneTables,
+    at: &ShadingPoint,
+    u: Vec4,
+    scattered: Scatter,
+) -> Scatter {
     let p = at.s.position - scene.world.near_center;
     let distance_sq = p.dot(p);
     let radius_sq = scene.world.near_radius * scene.world.near_radius;

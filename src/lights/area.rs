@@ -16,7 +16,7 @@ use super::tables::*;
 /// Samples the light at `position`: the cone that a sphere subtends, or the area of another shape.
 #[inline(always)]
 pub fn light_from_area(
-    scene: &Scene,
+    scene: &SceneTables,
     light: &Light,
     share: Real,
     position: Vec3,
@@ -66,7 +66,7 @@ pub fn light_from_area(
 /// Density per solid angle with which [`sample_light`](super::light::sample_light) at `from` samples `direction` on area light
 /// `index`, hit at distance `t` at a point with unit normal `normal` and profile parameter `v`.
 pub fn pdf_area(
-    scene: &Scene,
+    scene: &SceneTables,
     shares: u32,
     index: u32,
     from: Vec3,
@@ -90,7 +90,7 @@ pub fn pdf_area(
 
 /// Emits a photon from the light; `across` determines its direction.
 #[inline(always)]
-pub fn emit_area(scene: &Scene, light: &Light, u: Vec4, across: Vec2) -> Emission {
+pub fn emit_area(scene: &SceneTables, light: &Light, u: Vec4, across: Vec2) -> Emission {
     let mut ray = Ray { origin: Vec3::ZERO, t_min: 0.0, direction: Vec3::Z, t_max: FAR };
     if kind_of(light.reference) == KIND_SPHERE {
         // sample the direction first, then a point of the hemisphere that faces it: the same

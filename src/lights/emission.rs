@@ -38,7 +38,7 @@ impl Emission {
 
 /// Emits a photon from a randomly chosen light.
 #[inline(always)]
-pub fn emit_photon(scene: &Scene, rng: &mut Rng) -> Emission {
+pub fn emit_photon(scene: &SceneTables, rng: &mut Rng) -> Emission {
     let u = rng_next(rng);
     let v = rng_next(rng);
     emit_from(scene, &scene.lights[choose_light(scene, 0, u.x) as usize], u, v)
@@ -46,7 +46,7 @@ pub fn emit_photon(scene: &Scene, rng: &mut Rng) -> Emission {
 
 /// Emits a photon from `light`, by its guide map if it has one.
 #[inline(always)]
-pub fn emit_from(scene: &Scene, light: &Light, u: Vec4, v: Vec4) -> Emission {
+pub fn emit_from(scene: &SceneTables, light: &Light, u: Vec4, v: Vec4) -> Emission {
     match LightKind::of(light.kind) {
         LightKind::Area => {
             emit_nearby(scene, light, v, |across| emit_area(scene, light, u, across))
@@ -62,7 +62,12 @@ pub fn emit_from(scene: &Scene, light: &Light, u: Vec4, v: Vec4) -> Emission {
 /// Emits a photon from a lamp by `emit`, which takes the two random numbers that determine its
 /// direction.
 #[inline(always)]
-fn emit_nearby(scene: &Scene, light: &Light, v: Vec4, emit: impl Fn(Vec2) -> Emission) -> Emission {
+fn emit_nearby(
+    scene: &SceneTables,
+    light: &Light,
+    v: Vec4,
+    emit: impl Fn(Vec2) -> Emission,
+) -> Emission {
     let (across, scale) = guided(scene, light, Vec2::new(v.x, v.y), v.w);
     let mut emission = emit(across);
     emission.flux *= scale;

@@ -10,7 +10,7 @@ use super::real::{Real, Vec2, Vec3, Vec4};
 use super::tables::*;
 
 /// Radiance of the environment from `direction`.
-pub fn eval_environment(scene: &Scene, light: &Light, direction: Vec3) -> Vec3 {
+pub fn eval_environment(scene: &SceneTables, light: &Light, direction: Vec3) -> Vec3 {
     match LightKind::of(light.kind) {
         LightKind::Image => eval_image(scene, light, direction),
         LightKind::Constant
@@ -22,7 +22,7 @@ pub fn eval_environment(scene: &Scene, light: &Light, direction: Vec3) -> Vec3 {
 }
 
 /// Samples a direction towards the environment.
-pub fn sample_environment(scene: &Scene, light: &Light, u: Vec4) -> Vec3 {
+pub fn sample_environment(scene: &SceneTables, light: &Light, u: Vec4) -> Vec3 {
     match LightKind::of(light.kind) {
         LightKind::Image => sample_image(scene, light, u),
         LightKind::Constant
@@ -34,7 +34,7 @@ pub fn sample_environment(scene: &Scene, light: &Light, u: Vec4) -> Vec3 {
 }
 
 /// Density per solid angle of [`sample_environment`].
-pub fn pdf_environment(scene: &Scene, light: &Light, direction: Vec3) -> Real {
+pub fn pdf_environment(scene: &SceneTables, light: &Light, direction: Vec3) -> Real {
     match LightKind::of(light.kind) {
         LightKind::Image => pdf_image(scene, light, direction),
         LightKind::Constant
@@ -47,7 +47,12 @@ pub fn pdf_environment(scene: &Scene, light: &Light, direction: Vec3) -> Real {
 
 /// Samples the environment's light at any point.
 #[inline(always)]
-pub fn light_from_environment(scene: &Scene, light: &Light, share: Real, u: Vec4) -> LightSample {
+pub fn light_from_environment(
+    scene: &SceneTables,
+    light: &Light,
+    share: Real,
+    u: Vec4,
+) -> LightSample {
     let direction = sample_environment(scene, light, u);
     LightSample {
         direction,

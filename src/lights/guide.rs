@@ -20,7 +20,7 @@ pub const GUIDED: Real = 0.5;
 /// Maps the random numbers `across` by the map of `light`, if it has one; returns the new numbers
 /// and the reciprocal of their density. `u` chooses the cell.
 #[inline(always)]
-pub fn guided(scene: &Scene, light: &Light, across: Vec2, u: Real) -> (Vec2, Real) {
+pub fn guided(scene: &SceneTables, light: &Light, across: Vec2, u: Real) -> (Vec2, Real) {
     if light.guide == 0 {
         return (across, 1.0);
     }
@@ -31,7 +31,7 @@ pub fn guided(scene: &Scene, light: &Light, across: Vec2, u: Real) -> (Vec2, Rea
 }
 
 /// Density of the map of `light` at `across`, on the unit square; 0 outside of it.
-pub fn pdf_guide(scene: &Scene, light: &Light, across: Vec2) -> Real {
+pub fn pdf_guide(scene: &SceneTables, light: &Light, across: Vec2) -> Real {
     let x = (across.x * GUIDE_SIDE as Real).floor();
     let y = (across.y * GUIDE_SIDE as Real).floor();
     let side = GUIDE_SIDE as Real;

@@ -21,12 +21,12 @@ pub fn image_uv(light: &Light, direction: Vec3) -> Vec2 {
 }
 
 /// Radiance of the image from `direction`.
-pub fn eval_image(scene: &Scene, light: &Light, direction: Vec3) -> Vec3 {
+pub fn eval_image(scene: &SceneTables, light: &Light, direction: Vec3) -> Vec3 {
     light.color * eval_texture(scene, light.reference, image_uv(light, direction))
 }
 
 /// Samples a direction towards a pixel, in proportion to the pixel's radiance and solid angle.
-pub fn sample_image(scene: &Scene, light: &Light, u: Vec4) -> Vec3 {
+pub fn sample_image(scene: &SceneTables, light: &Light, u: Vec4) -> Vec3 {
     let texture = &scene.textures[light.reference as usize];
     let row = find_interval(scene, light.first, texture.height, u.y);
     let column = find_interval(
@@ -48,7 +48,7 @@ pub fn sample_image(scene: &Scene, light: &Light, u: Vec4) -> Vec3 {
 }
 
 /// Density per solid angle of [`sample_image`].
-pub fn pdf_image(scene: &Scene, light: &Light, direction: Vec3) -> Real {
+pub fn pdf_image(scene: &SceneTables, light: &Light, direction: Vec3) -> Real {
     let texture = &scene.textures[light.reference as usize];
     let uv = image_uv(light, direction);
     let row = (((1.0 - uv.y) * texture.height as Real).floor() as u32).min(texture.height - 1);

@@ -17,7 +17,7 @@ use super::tables::*;
 /// probability [`GUIDED`] through a cell of the square about the near disc. The balance heuristic
 /// combines both densities.
 #[inline(always)]
-pub fn emit_from_infinity(scene: &Scene, light: &Light, u: Vec4, v: Vec4) -> Emission {
+pub fn emit_from_infinity(scene: &SceneTables, light: &Light, u: Vec4, v: Vec4) -> Emission {
     let near = scene.world.near_radius;
     let mut ray = Ray { origin: Vec3::ZERO, t_min: 0.0, direction: light.direction, t_max: FAR };
     let mut radiance = light.color;
@@ -56,13 +56,13 @@ pub fn emit_from_infinity(scene: &Scene, light: &Light, u: Vec4, v: Vec4) -> Emi
 }
 
 /// Radius of emission disc `level`, which is at most 31, scene units.
-pub fn disc_radius(scene: &Scene, level: u32) -> Real {
+pub fn disc_radius(scene: &SceneTables, level: u32) -> Real {
     scene.world.disc_radius * (1u32 << level) as Real
 }
 
 /// Density per area, at squared distance `r_sq` from the centre, of a point on a randomly chosen
 /// emission disc.
-pub fn pdf_discs(scene: &Scene, r_sq: Real) -> Real {
+pub fn pdf_discs(scene: &SceneTables, r_sq: Real) -> Real {
     let mut radius = scene.world.disc_radius;
     let mut sum = 0.0;
     for level in 0..scene.world.disc_levels {

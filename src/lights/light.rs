@@ -36,7 +36,7 @@ impl LightSample {
 /// Samples light at `position`: `u.x` chooses the light by the probabilities at `shares`, the other
 /// three numbers sample it.
 #[inline(always)]
-pub fn sample_light(scene: &Scene, shares: u32, position: Vec3, u: Vec4) -> LightSample {
+pub fn sample_light(scene: &SceneTables, shares: u32, position: Vec3, u: Vec4) -> LightSample {
     let index = choose_light(scene, shares, u.x);
     let share = share_of(scene, shares, index);
     sample_one_light(scene, &scene.lights[index as usize], share, position, u)
@@ -45,7 +45,7 @@ pub fn sample_light(scene: &Scene, shares: u32, position: Vec3, u: Vec4) -> Ligh
 /// Samples light at `position` from `light`, which is chosen with probability `share`.
 #[inline(always)]
 pub fn sample_one_light(
-    scene: &Scene,
+    scene: &SceneTables,
     light: &Light,
     share: Real,
     position: Vec3,

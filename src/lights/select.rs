@@ -5,7 +5,7 @@
 //! `shaders/lights/select.wgsl`.
 
 use super::real::{Real, Vec3};
-use super::tables::Scene;
+use super::tables::SceneTables;
 
 /// Greatest depth of a leaf.
 pub const CELL_DEPTH: u32 = 8;
@@ -15,7 +15,7 @@ pub const CELL_LEAF: u32 = 3;
 /// Returns the first k in `0..count` for which the cumulative value `distributions[first + k]`
 /// exceeds `u`, or the last k.
 #[inline(always)]
-pub fn find_interval(scene: &Scene, first: u32, count: u32, u: Real) -> u32 {
+pub fn find_interval(scene: &SceneTables, first: u32, count: u32, u: Real) -> u32 {
     // binary search without branches on the compared values, which are unpredictable
     let mut low = 0;
     let mut length = count;
@@ -29,7 +29,7 @@ pub fn find_interval(scene: &Scene, first: u32, count: u32, u: Real) -> u32 {
 
 /// First entry in `distributions` of the cumulative probabilities that apply at `position`.
 #[inline(always)]
-pub fn shares_at(scene: &Scene, position: Vec3) -> u32 {
+pub fn shares_at(scene: &SceneTables, position: Vec3) -> u32 {
     if scene.cells.is_empty() {
         return 0;
     }
@@ -46,13 +46,13 @@ pub fn shares_at(scene: &Scene, position: Vec3) -> u32 {
 
 /// Index of the light that `u` chooses by the probabilities at `shares`.
 #[inline(always)]
-pub fn choose_light(scene: &Scene, shares: u32, u: Real) -> u32 {
+pub fn choose_light(scene: &SceneTables, shares: u32, u: Real) -> u32 {
     find_interval(scene, shares, scene.world.light_count, u)
 }
 
 /// Probability of light `index` by the probabilities at `shares`.
 #[inline(always)]
-pub fn share_of(scene: &Scene, shares: u32, index: u32) -> Real {
+pub fn share_of(scene: &SceneTables, shares: u32, index: u32) -> Real {
     let high = scene.distributions[(shares + index) as usize];
     let low = if index > 0 { scene.distributions[(shares + index - 1) as usize] } else { 0.0 };
     high - low

@@ -27,7 +27,7 @@ pub struct ShapePoint {
 
 /// Samples a point on the shape of an area light, uniform by area except on surfaces of revolution.
 /// `w` is a third uniform number, which chooses a face or a patch.
-pub fn sample_shape(scene: &Scene, light: &Light, u: Vec2, w: Real) -> ShapePoint {
+pub fn sample_shape(scene: &SceneTables, light: &Light, u: Vec2, w: Real) -> ShapePoint {
     let index = index_of(light.reference) as usize;
     let pdf = 1.0 / light.area;
     match kind_of(light.reference) {
@@ -121,7 +121,12 @@ pub fn sample_shape(scene: &Scene, light: &Light, u: Vec2, w: Real) -> ShapePoin
 
 /// Samples a point on the hemisphere of a spherical light that faces `direction`, uniform on the
 /// disc visible from there.
-pub fn sample_sphere_facing(scene: &Scene, light: &Light, u: Vec2, direction: Vec3) -> ShapePoint {
+pub fn sample_sphere_facing(
+    scene: &SceneTables,
+    light: &Light,
+    u: Vec2,
+    direction: Vec3,
+) -> ShapePoint {
     let sphere = &scene.spheres[index_of(light.reference) as usize];
     let d = sample_disc(u);
     let n = unit(from_frame(direction, Vec3::new(d.x, d.y, (1.0 - u.x).sqrt())));
@@ -139,7 +144,7 @@ struct PatchPoint {
 }
 
 /// Point of a revolution light at profile parameter `v` in its patch `k` and angle `theta`.
-fn patch_point(scene: &Scene, light: &Light, k: u32, v: Real, theta: Real) -> PatchPoint {
+fn patch_point(scene: &SceneTables, light: &Light, k: u32, v: Real, theta: Real) -> PatchPoint {
     let patch = &scene.patches[(light.patch_first + k) as usize];
     let revolution = &scene.revolutions[patch.revolution as usize];
     let t = v * revolution.segments as Real - patch.segment as Real;
@@ -157,14 +162,14 @@ fn patch_point(scene: &Scene, light: &Light, k: u32, v: Real, theta: Real) -> Pa
 }
 
 /// Density per unit of v in the part of patch `k`, which has length `width`.
-fn pdf_patch(scene: &Scene, light: &Light, k: u32, width: Real) -> Real {
+fn pdf_patch(scene: &SceneTables, light: &Light, k: u32, width: Real) -> Real {
     let at = light.first + light.patch_count + k;
     let low = if k > 0 { scene.distributions[(at - 1) as usize] } else { 0.0 };
     (scene.distributions[at as usize] - low) / width
 }
 
 /// Density in bin `bin` of `count` equal bins on [0, 1), from the cumulative values at `first`.
-pub fn pdf_bin(scene: &Scene, first: u32, bin: u32, count: u32) -> Real {
+pub fn pdf_bin(scene: &SceneTables, first: u32, bin: u32, count: u32) -> Real {
     let high = scene.distributions[(first + bin) as usize];
     let low = if bin > 0 { scene.distributions[(first + bin - 1) as usize] } else { 0.0 };
     (high - low) * count as Real
@@ -172,7 +177,7 @@ pub fn pdf_bin(scene: &Scene, first: u32, bin: u32, count: u32) -> Real {
 
 /// Density per area of [`sample_shape`] at a point with profile parameter `v` (used only for
 /// surfaces of revolution).
-pub fn pdf_shape(scene: &Scene, light: &Light, v: Real) -> Real {
+pub fn pdf_shape(scene: &SceneTables, light: &Light, v: Real) -> Real {
     if kind_of(light.reference) == KIND_REVOLUTION {
         // last patch whose part starts at or before v
         let k = find_interval(scene, light.first, light.patch_count, v);

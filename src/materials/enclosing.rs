@@ -22,12 +22,12 @@ const LOOK: Vec3 = Vec3::new(0.3104505, 0.8912933, 0.3304795);
 /// Interior list at `position` on a lamp or lens whose medium is `known`: a glass material index,
 /// [`NONE`], or [`ASTRIDE`] if it must be determined for each point.
 #[inline(always)]
-pub fn interior_at(scene: &Scene, known: u32, position: Vec3) -> Interior {
+pub fn interior_at(scene: &SceneTables, known: u32, position: Vec3) -> Interior {
     if known == ASTRIDE { enclosing(scene, position) } else { interior_of(known) }
 }
 
 /// Interior list at `position`.
-pub fn enclosing(scene: &Scene, position: Vec3) -> Interior {
+pub fn enclosing(scene: &SceneTables, position: Vec3) -> Interior {
     // closed bodies first, then each open sheet along its mean normal
     let mut interior = looked(scene, position, LOOK, NONE, &interior_of(NONE));
     for k in 0..scene.world.body_count {
@@ -42,7 +42,13 @@ pub fn enclosing(scene: &Scene, position: Vec3) -> Interior {
 
 /// Adds to `known` the bodies that a ray along `direction` leaves without having entered them: all
 /// closed bodies if `body` is [`NONE`], otherwise only the open sheet `body`.
-fn looked(scene: &Scene, position: Vec3, direction: Vec3, body: u32, known: &Interior) -> Interior {
+fn looked(
+    scene: &SceneTables,
+    position: Vec3,
+    direction: Vec3,
+    body: u32,
+    known: &Interior,
+) -> Interior {
     let mut found = *known;
     let mut ahead = interior_of(NONE);
     let mut origin = position;

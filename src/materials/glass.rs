@@ -4,7 +4,7 @@
 use super::interior::{Interior, interior_beyond, relative_ior};
 use super::real::{Real, Vec3};
 use super::shading::{IMPORTANCE, Sample, Scatter, ShadingPoint, reflected, shading_correction};
-use super::tables::{Material, Scene};
+use super::tables::{Material, SceneTables};
 
 /// See [`super::Bsdf::examples`].
 pub const EXAMPLES: &[Material] = &[
@@ -46,7 +46,7 @@ pub fn refracted(wo: Vec3, n: Vec3, cos_i: Real, cos_t: Real, eta: Real) -> Vec3
 /// side of the surface is replaced by refraction at the geometric normal.
 #[inline(always)]
 pub fn scatter_glass(
-    scene: &Scene,
+    scene: &SceneTables,
     p: &ShadingPoint,
     interior: &Interior,
     u: Real,

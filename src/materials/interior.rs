@@ -48,7 +48,7 @@ pub fn holds(interior: &Interior, body: u32) -> bool {
 
 /// Inserts `body`.
 #[inline(always)]
-pub fn entered(scene: &Scene, interior: &Interior, body: u32) -> Interior {
+pub fn entered(scene: &SceneTables, interior: &Interior, body: u32) -> Interior {
     if scene.world.nested == 0 {
         return interior_of(body);
     }
@@ -64,7 +64,7 @@ pub fn entered(scene: &Scene, interior: &Interior, body: u32) -> Interior {
 
 /// Removes `body`.
 #[inline(always)]
-pub fn left(scene: &Scene, interior: &Interior, body: u32) -> Interior {
+pub fn left(scene: &SceneTables, interior: &Interior, body: u32) -> Interior {
     if scene.world.nested == 0 {
         return interior_of(NONE);
     }
@@ -80,14 +80,19 @@ pub fn left(scene: &Scene, interior: &Interior, body: u32) -> Interior {
 }
 
 /// Index of refraction of a medium.
-pub fn ior_of(scene: &Scene, medium: u32) -> Real {
+pub fn ior_of(scene: &SceneTables, medium: u32) -> Real {
     if medium == NONE { 1.0 } else { scene.materials[medium as usize].ior }
 }
 
 /// Interior list of the ray with direction `-wo` before it hits `s`. A ray that hits glass from the
 /// inside was inside that glass, even if the list did not contain it.
 #[inline(always)]
-pub fn interior_before(scene: &Scene, s: &Surface, wo: Vec3, interior: &Interior) -> Interior {
+pub fn interior_before(
+    scene: &SceneTables,
+    s: &Surface,
+    wo: Vec3,
+    interior: &Interior,
+) -> Interior {
     let inside =
         scene.materials[s.material as usize].kind == Bsdf::Glass as u32 && wo.dot(s.normal) < 0.0;
     if inside { entered(scene, interior, s.material) } else { *interior }
@@ -95,7 +100,7 @@ pub fn interior_before(scene: &Scene, s: &Surface, wo: Vec3, interior: &Interior
 
 /// Interior list of the ray after it has passed the glass face `s`.
 #[inline(always)]
-pub fn interior_beyond(scene: &Scene, s: &Surface, wo: Vec3, before: &Interior) -> Interior {
+pub fn interior_beyond(scene: &SceneTables, s: &Surface, wo: Vec3, before: &Interior) -> Interior {
     if wo.dot(s.normal) >= 0.0 {
         entered(scene, before, s.material)
     } else {
@@ -106,7 +111,7 @@ pub fn interior_beyond(scene: &Scene, s: &Surface, wo: Vec3, before: &Interior) 
 /// Index of refraction in front of a glass face divided by that behind it.
 #[inline(always)]
 pub fn relative_ior(
-    scene: &Scene,
+    scene: &SceneTables,
     s: &Surface,
     wo: Vec3,
     before: &Interior,
@@ -122,7 +127,12 @@ pub fn relative_ior(
 /// Moves the ray and the interior list past a hidden face, one with the same index of refraction on
 /// both sides, which neither refracts nor reflects. Returns false for any other face.
 #[inline(always)]
-pub fn passes_hidden(scene: &Scene, s: &Surface, ray: &mut Ray, interior: &mut Interior) -> bool {
+pub fn passes_hidden(
+    scene: &SceneTables,
+    s: &Surface,
+    ray: &mut Ray,
+    interior: &mut Interior,
+) -> bool {
     if scene.world.nested == 0 || scene.materials[s.material as usize].kind != Bsdf::Glass as u32 {
         return false;
     }
@@ -138,7 +148,7 @@ pub fn passes_hidden(scene: &Scene, s: &Surface, ray: &mut Ray, interior: &mut I
 
 /// Initial interior list of a photon from an infinitely distant light: the glass planes that it
 /// approaches from inside.
-pub fn interior_from(scene: &Scene, direction: Vec3) -> Interior {
+pub fn interior_from(scene: &SceneTables, direction: Vec3) -> Interior {
     let mut interior = interior_of(NONE);
     for i in 0..scene.world.unbounded_count {
         let reference = scene.unbounded[i as usize];

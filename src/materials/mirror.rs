@@ -3,7 +3,7 @@
 use super::interior::Interior;
 use super::real::{Real, Vec3};
 use super::shading::{Sample, Scatter, ShadingPoint, reflected};
-use super::tables::{Material, Scene};
+use super::tables::{Material, SceneTables};
 
 /// See [`super::Bsdf::examples`].
 pub const EXAMPLES: &[Material] =
@@ -12,7 +12,7 @@ pub const EXAMPLES: &[Material] =
 /// Reflects at the shading normal.
 #[inline(always)]
 pub fn scatter_mirror(
-    _: &Scene,
+    _: &SceneTables,
     p: &ShadingPoint,
     interior: &Interior,
     _: Real,

@@ -14,7 +14,7 @@ use super::{geometry, math, real, shapes, tables};
 use interior::Interior;
 use real::{Real, Vec2, Vec3};
 use shading::{Lobe, Sample, Scatter, ShadingPoint};
-use tables::{Material, Scene};
+use tables::{Material, SceneTables};
 
 pub mod enclosing;
 pub mod interior;
@@ -157,7 +157,7 @@ macro_rules! materials {
         /// between reflection and refraction.
         #[inline(always)]
         pub fn scatter_specular(
-            scene: &Scene,
+            scene: &SceneTables,
             p: &ShadingPoint,
             interior: &Interior,
             u: Real,

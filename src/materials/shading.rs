@@ -65,7 +65,7 @@ pub struct Scatter {
 
 /// Reflectance of a material at `uv`.
 #[inline(always)]
-pub fn reflectance_at(scene: &Scene, material: u32, uv: Vec2) -> Vec3 {
+pub fn reflectance_at(scene: &SceneTables, material: u32, uv: Vec2) -> Vec3 {
     let m = &scene.materials[material as usize];
     if m.texture != NONE {
         return eval_texture(scene, m.texture, uv);
@@ -81,7 +81,7 @@ pub fn toward(v: Vec3, w: Vec3) -> Vec3 {
 
 /// Computes the normals and material parameters of a surface viewed from `wo`.
 #[inline(always)]
-pub fn shading_point(scene: &Scene, s: &Surface, wo: Vec3) -> ShadingPoint {
+pub fn shading_point(scene: &SceneTables, s: &Surface, wo: Vec3) -> ShadingPoint {
     let m = &scene.materials[s.material as usize];
     let bsdf = Bsdf::of(m.kind);
     let ng = toward(s.normal, wo);

@@ -5,7 +5,7 @@ use super::real::{Real, Vec2, Vec3};
 use super::tables::*;
 
 /// Colour of texture `index` at `uv`, linear Rec. 709.
-pub fn eval_texture(scene: &Scene, index: u32, uv: Vec2) -> Vec3 {
+pub fn eval_texture(scene: &SceneTables, index: u32, uv: Vec2) -> Vec3 {
     let texture = &scene.textures[index as usize];
     // patterns
     let mut st = uv * texture.scale;
@@ -45,7 +45,7 @@ pub fn eval_texture(scene: &Scene, index: u32, uv: Vec2) -> Vec3 {
 
 /// Texel at column `i`, row `j` from the top, wrapped or clamped; `i` and `j` may be at most one
 /// image size outside.
-pub fn eval_texel(scene: &Scene, texture: &Texture, i: i32, j: i32) -> Vec3 {
+pub fn eval_texel(scene: &SceneTables, texture: &Texture, i: i32, j: i32) -> Vec3 {
     let w = texture.width as i32;
     let h = texture.height as i32;
     let mut x = i;

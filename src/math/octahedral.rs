@@ -1,4 +1,4 @@
-//! Packed directions in records. Twin: `shaders/math/octahedral.wgsl`.
+//! PackedScene directions in records. Twin: `shaders/math/octahedral.wgsl`.
 
 use super::unit;
 use glam::{Vec2, Vec3};

@@ -17,7 +17,7 @@ use crate::scene;
 pub fn pack_bodies(
     scene: &scene::Scene,
     bodies: &Bodies,
-    out: &mut Scene,
+    out: &mut SceneTables,
     sources: &mut Vec<u32>,
 ) -> Vec<Vec<u32>> {
     out.world.nested = bodies.nested as u32;
@@ -46,7 +46,7 @@ pub fn pack_bodies(
 }
 
 /// Sets the medium of each lamp.
-pub fn stand_lights(out: &mut Scene) {
+pub fn stand_lights(out: &mut SceneTables) {
     for i in 0..out.lights.len() {
         let light = &out.lights[i];
         out.lights[i].medium = match LightKind::of(light.kind) {
@@ -65,7 +65,7 @@ pub fn stand_lights(out: &mut Scene) {
 }
 
 /// Sets the medium of the camera's lens.
-pub fn stand_camera(out: &mut Scene) {
+pub fn stand_camera(out: &mut SceneTables) {
     let camera = &out.camera;
     let half = Vec3::splat(camera.aperture);
     out.camera.medium =
@@ -74,7 +74,7 @@ pub fn stand_camera(out: &mut Scene) {
 
 /// Medium of everything in a box around `position`: a material index, [`NONE`], or [`ASTRIDE`] if a
 /// glass face crosses the box or several bodies contain it.
-fn medium_of_box(out: &Scene, position: Vec3, low: Vec3, high: Vec3) -> u32 {
+fn medium_of_box(out: &SceneTables, position: Vec3, low: Vec3, high: Vec3) -> u32 {
     if out.materials.iter().all(|m| m.kind != Bsdf::Glass as u32) {
         return NONE;
     }
@@ -86,7 +86,7 @@ fn medium_of_box(out: &Scene, position: Vec3, low: Vec3, high: Vec3) -> u32 {
 }
 
 /// Bounding box of a packed shape; conservative for surfaces of revolution.
-fn lamp_box(out: &Scene, kind: u32, index: usize) -> (Vec3, Vec3) {
+fn lamp_box(out: &SceneTables, kind: u32, index: usize) -> (Vec3, Vec3) {
     let hull = |points: &[Vec3]| {
         let low = points.iter().fold(Vec3::splat(FAR), |a, p| a.min(*p));
         (low, points.iter().fold(Vec3::splat(-FAR), |a, p| a.max(*p)))
@@ -121,7 +121,7 @@ fn lamp_box(out: &Scene, kind: u32, index: usize) -> (Vec3, Vec3) {
 }
 
 /// Returns whether a glass face may cross a box.
-fn glass_crosses(out: &Scene, low: Vec3, high: Vec3) -> bool {
+fn glass_crosses(out: &SceneTables, low: Vec3, high: Vec3) -> bool {
     let slack = Vec3::splat(64.0 * EPS * low.abs().max(high.abs()).max_element());
     let (low, high) = (low - slack, high + slack);
     let crosses = |reference: &u32| reference_crosses(out, *reference, low, high);
@@ -149,7 +149,7 @@ fn glass_crosses(out: &Scene, low: Vec3, high: Vec3) -> bool {
 }
 
 /// Returns whether `reference` is a glass shape whose surface may cross a box.
-fn reference_crosses(out: &Scene, reference: u32, low: Vec3, high: Vec3) -> bool {
+fn reference_crosses(out: &SceneTables, reference: u32, low: Vec3, high: Vec3) -> bool {
     let index = index_of(reference) as usize;
     let glass = |material: u32| out.materials[material as usize].kind == Bsdf::Glass as u32;
     let meets = |(a, b): (Vec3, Vec3)| a.cmple(high).all() && b.cmpge(low).all();

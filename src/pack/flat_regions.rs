@@ -99,7 +99,7 @@ struct Surface {
 }
 
 impl Surface {
-    fn new(out: &Scene) -> Self {
+    fn new(out: &SceneTables) -> Self {
         let corners: Vec<[DVec3; 3]> =
             out.triangles.par_iter().map(|t| [t.p0, t.p1, t.p2].map(|p| p.to_double())).collect();
         let normal = |[a, b, c]: &[DVec3; 3]| (*b - *a).cross(*c - *a).normalize_or_zero();
@@ -164,7 +164,7 @@ impl Surface {
 }
 
 /// Finds the flat regions of the meshes.
-pub fn regions(out: &Scene) -> Vec<Region> {
+pub fn regions(out: &SceneTables) -> Vec<Region> {
     if out.triangles.is_empty() || out.triangles.len() > TRIANGLES {
         return Vec::new();
     }
@@ -315,7 +315,7 @@ fn extremes(points: &[DVec3]) -> (DVec3, DVec3) {
 
 /// Adds an outline for each region, and stores its index in the attributes of the region's
 /// triangles.
-pub fn add_outlines(out: &mut Scene, regions: &[Region]) {
+pub fn add_outlines(out: &mut SceneTables, regions: &[Region]) {
     for region in regions {
         let outline = out.outlines.len() as u32;
         out.outlines.push(region.outline);

@@ -9,7 +9,7 @@ use glam::{DVec2, DVec3};
 
 /// Fills `textures` and `texels`. An environment image becomes an additional texture after the
 /// scene's own.
-pub fn pack_textures(scene: &scene::Scene, out: &mut Scene) {
+pub fn pack_textures(scene: &scene::Scene, out: &mut SceneTables) {
     if scene.images.iter().any(|i| matches!(i.texels, Texels::Rgba8 { srgb: true, .. })) {
         out.texels.extend((0..256).map(|i| (linear_from_srgb(i as f64 / 255.0) as Real).to_bits()));
     }

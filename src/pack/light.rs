@@ -33,7 +33,7 @@ pub fn pack_lights(
     scene: &scene::Scene,
     n: &Normalization,
     emitters: &[Emitter],
-    out: &mut Scene,
+    out: &mut SceneTables,
 ) -> PackedLights {
     // Strengths are in world radiance at first. Areas and distances are already in scene units, so
     // irradiance is radiance times solid angle in both.
@@ -141,7 +141,11 @@ pub fn pack_lights(
 
 /// Appends the start of each patch in v and the cumulative fractions of area; returns the area.
 /// Patches overlap their neighbours, so the part of a patch ends where the next one starts.
-fn revolution_distribution(out: &Scene, light: &mut Light, distributions: &mut Vec<Real>) -> f64 {
+fn revolution_distribution(
+    out: &SceneTables,
+    light: &mut Light,
+    distributions: &mut Vec<Real>,
+) -> f64 {
     let index = index_of(light.reference);
     let patches: Vec<&Patch> = out.patches.iter().filter(|p| p.revolution == index).collect();
     let revolution = &out.revolutions[index as usize];
@@ -175,7 +179,7 @@ fn revolution_distribution(out: &Scene, light: &mut Light, distributions: &mut V
 /// the variance. Filtering blends in its neighbours, so the weight is zero only if they are black
 /// as well.
 fn image_distribution(
-    out: &Scene,
+    out: &SceneTables,
     light: &mut Light,
     distributions: &mut Vec<Real>,
 ) -> Option<[f64; 2]> {

@@ -29,9 +29,9 @@ use glam::{DVec2, DVec3};
 
 /// A packed scene, and the factors that convert results to world units.
 #[derive(Clone, Debug)]
-pub struct Packed {
+pub struct PackedScene {
     /// Tables for the kernels.
-    pub scene: Scene,
+    pub tables: SceneTables,
     /// World point at the origin of scene space.
     pub center: DVec3,
     /// World units per scene unit.
@@ -68,9 +68,9 @@ pub fn pack(
     n: Normalization,
     width: u32,
     height: u32,
-) -> Result<Packed, PackError> {
+) -> Result<PackedScene, PackError> {
     let _stage = stage("pack");
-    let mut out = Scene::empty();
+    let mut out = SceneTables::empty();
     out.camera = camera(scene, &n, width, height);
     image::pack_textures(scene, &mut out);
     for m in &scene.materials {
@@ -113,8 +113,8 @@ pub fn pack(
     bodies::stand_camera(&mut out);
     bodies::stand_lights(&mut out);
     let learned_from = out.distributions.len();
-    Ok(Packed {
-        scene: out,
+    Ok(PackedScene {
+        tables: out,
         center: n.center,
         unit: n.unit,
         radiance_unit,
@@ -129,16 +129,16 @@ pub fn pack(
     })
 }
 
-impl Packed {
+impl PackedScene {
     /// Moves the camera to that of `scene`. Everything else stays the same, including the results
     /// learned for the previous camera.
     pub fn move_camera(&mut self, scene: &scene::Scene, width: u32, height: u32) {
-        self.scene.camera = camera(scene, &self.normalization, width, height);
-        bodies::stand_camera(&mut self.scene);
+        self.tables.camera = camera(scene, &self.normalization, width, height);
+        bodies::stand_camera(&mut self.tables);
     }
 }
 
-impl Scene {
+impl SceneTables {
     /// An empty scene.
     pub fn empty() -> Self {
         Self {

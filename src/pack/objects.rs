@@ -17,7 +17,7 @@ pub struct Objects {
 impl Objects {
     /// Assigns the table entries added since the last call, including patches up to `patches`, to
     /// shape `shape`.
-    pub fn mark(&mut self, scene: &Scene, patches: usize, shape: u32) {
+    pub fn mark(&mut self, scene: &SceneTables, patches: usize, shape: u32) {
         let lengths = [
             (KIND_TRIANGLE, scene.triangles.len()),
             (KIND_SPHERE, scene.spheres.len()),

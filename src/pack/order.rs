@@ -6,7 +6,7 @@ use super::tables::*;
 
 /// Reorders the triangles by their first use in the leaves, and updates all references. Returns the
 /// new index of each triangle.
-pub fn triangles_as_met(out: &mut Scene, emitters: &mut [Emitter]) -> Vec<u32> {
+pub fn triangles_as_met(out: &mut SceneTables, emitters: &mut [Emitter]) -> Vec<u32> {
     let is_triangle = |reference: u32| kind_of(reference) == KIND_TRIANGLE;
     let mut places = vec![NONE; out.triangles.len()];
     let mut ordered = Vec::with_capacity(out.triangles.len());

@@ -54,7 +54,7 @@ pub fn pack_shapes(
     kinds: &[Cow<ShapeKind>],
     materials: &[Vec<u32>],
     n: &Normalization,
-    out: &mut Scene,
+    out: &mut SceneTables,
     objects: &mut Objects,
 ) -> Result<Flattened, PackError> {
     let mut pack = Pack {
@@ -139,7 +139,7 @@ fn placement(transform: &Transform, n: &Normalization) -> Placement {
 
 struct Pack<'a> {
     n: &'a Normalization,
-    out: &'a mut Scene,
+    out: &'a mut SceneTables,
     primitives: Vec<Primitive>,
     references: Vec<u32>,
     emitters: Vec<Emitter>,

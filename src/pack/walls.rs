@@ -88,7 +88,7 @@ struct Foot {
 
 /// Adds outlines for the flat regions of meshes, the walls that stand on outlines, and outlines for
 /// planes with walls.
-pub fn find_walls(out: &mut Scene) {
+pub fn find_walls(out: &mut SceneTables) {
     let regions = flat_regions::regions(out);
     flat_regions::add_outlines(out, &regions);
     let mut floors = floors(out);
@@ -145,7 +145,7 @@ pub fn find_walls(out: &mut Scene) {
     }
 }
 
-fn floors(out: &Scene) -> Vec<Floor> {
+fn floors(out: &SceneTables) -> Vec<Floor> {
     let mut floors = Vec::new();
     for r in &out.rectangles {
         let outline = out.outlines[r.outline as usize];
@@ -187,7 +187,7 @@ fn floors(out: &Scene) -> Vec<Floor> {
 }
 
 /// Rectangles and faces of cuboids, which may be walls.
-fn polygons(out: &Scene) -> Vec<Polygon> {
+fn polygons(out: &SceneTables) -> Vec<Polygon> {
     let mut polygons = Vec::new();
     for r in &out.rectangles {
         let (o, u, v) = (r.origin, r.u, r.v);

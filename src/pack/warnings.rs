@@ -1,6 +1,6 @@
 //! Warnings about light that an image may lack without showing it.
 
-use super::Packed;
+use super::PackedScene;
 use super::lights::LightKind;
 use super::materials::Bsdf;
 use crate::scene;
@@ -11,15 +11,15 @@ const FEW_PHOTONS: f64 = 64.0;
 /// Fraction of the light seen by the camera above which a light can cause a warning.
 const LEAST_SHARE: f64 = 0.002;
 
-impl Packed {
+impl PackedScene {
     /// Warnings about light that may be missing from an image with these settings and from its
     /// error estimate. Each one describes the light in terms of the scene file, and gives a remedy.
     pub fn warnings(&self, scene: &scene::Scene, settings: &RenderSettings) -> Vec<String> {
-        let bsdfs = || self.scene.materials.iter().map(|m| Bsdf::of(m.kind));
+        let bsdfs = || self.tables.materials.iter().map(|m| Bsdf::of(m.kind));
         let path = settings.method == Method::Path;
         let focusing = bsdfs().any(|b| b.is_specular() || (!path && !b.is_wide()));
         let warning = |i: usize| {
-            let (light, name) = (&self.scene.lights[i], self.sources[i].describe(scene));
+            let (light, name) = (&self.tables.lights[i], self.sources[i].describe(scene));
             let photons = f64::from(settings.photons) * f64::from(light.selection);
             let contribution = self.contributions.get(i).copied().unwrap_or(0.0);
             let sized = match LightKind::of(light.kind) {

@@ -37,7 +37,7 @@ const STREAM: u32 = 0x2000_0001;
 
 /// Builds the light selection tree of `out` if it has several lights. `power` is the power of each
 /// light.
-pub fn learn_cells(out: &mut Scene, eyes: &EyePilots, power: &[f64]) {
+pub fn learn_cells(out: &mut SceneTables, eyes: &EyePilots, power: &[f64]) {
     out.cells.clear();
     if out.lights.len() < 2 {
         return;
@@ -108,7 +108,7 @@ fn move_to_front(points: &mut [Seen], first: impl Fn(&Seen) -> bool) -> usize {
 
 /// Cumulative probabilities of the lights at `points`: proportional to the root mean square of a
 /// sample's contribution, which minimizes the variance, and mixed with the power.
-fn probabilities(scene: &Scene, points: &[Seen], each: usize, power: &[f64]) -> Vec<Real> {
+fn probabilities(scene: &SceneTables, points: &[Seen], each: usize, power: &[f64]) -> Vec<Real> {
     let total: f64 = power.iter().sum();
     let step = (points.len() / each).max(1);
     let chosen: Vec<&Seen> = points.iter().step_by(step).take(each).collect();
@@ -148,7 +148,7 @@ fn dyadic(ends: &[f64]) -> Vec<Real> {
 
 /// Root mean square of the irradiance from samples of a light at `points`, plus [`OCCLUDED`] times
 /// the mean unoccluded irradiance.
-fn contribution(scene: &Scene, points: &[&Seen], index: usize) -> f64 {
+fn contribution(scene: &SceneTables, points: &[&Seen], index: usize) -> f64 {
     let (mut seen_sq, mut all) = (0.0, 0.0);
     for (k, point) in points.iter().enumerate() {
         let number = |word: u32| (word >> 8) as Real * (1.0 / 16777216.0);

@@ -20,7 +20,7 @@ const ROUNDS: u32 = 40;
 
 /// Sets the near sphere and, if light comes from infinity, the discs and their probabilities. `far`
 /// is the largest distance of a surface from the center of `region`, in scene units.
-pub fn learn_discs(out: &mut Scene, eyes: &EyePilots, region: Region, far: f64) {
+pub fn learn_discs(out: &mut SceneTables, eyes: &EyePilots, region: Region, far: f64) {
     let near = f64::from(region.radius);
     out.world.near_center = region.center;
     out.world.near_radius = region.radius;

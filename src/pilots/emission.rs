@@ -61,7 +61,7 @@ struct Tally {
 /// Sets the emission probabilities of the lights, and their maps. `power` is the power of each
 /// light. Returns the fraction of the light seen by the camera that each light contributes; empty
 /// if a single light brings all of it and no surface is specular.
-pub fn learn_emission(out: &mut Scene, visibility: &Visibility, power: &[f64]) -> Vec<f64> {
+pub fn learn_emission(out: &mut SceneTables, visibility: &Visibility, power: &[f64]) -> Vec<f64> {
     let specular = out.materials.iter().any(|m| Bsdf::of(m.kind).is_specular());
     for light in &mut out.lights {
         light.guide = 0;
@@ -111,7 +111,7 @@ pub fn learn_emission(out: &mut Scene, visibility: &Visibility, power: &[f64]) -
 }
 
 /// Sets the emission probabilities of the lights in proportion to `shares`.
-fn choose_by(out: &mut Scene, shares: &[f64]) {
+fn choose_by(out: &mut SceneTables, shares: &[f64]) {
     let mut before = 0.0;
     for (index, end) in cumulative(shares).enumerate() {
         out.distributions[index] = end as Real;
@@ -122,7 +122,7 @@ fn choose_by(out: &mut Scene, shares: &[f64]) {
 
 /// Lights that may get a map: all, or the [`MAPS`] lights whose first pilots brought most through
 /// mirrors and glass.
-fn candidates(scene: &Scene, visibility: &Visibility, count: usize) -> Vec<usize> {
+fn candidates(scene: &SceneTables, visibility: &Visibility, count: usize) -> Vec<usize> {
     let mut lights: Vec<usize> = (0..scene.lights.len()).collect();
     if lights.len() > MAPS {
         let sums: Vec<f64> = lights
@@ -172,7 +172,7 @@ struct Pilot {
 
 /// Sends `count` pilots of one round from a light.
 fn explore(
-    scene: &Scene,
+    scene: &SceneTables,
     visibility: &Visibility,
     index: usize,
     round: usize,
@@ -202,7 +202,7 @@ fn explore(
 /// Sends pilot `id` from a light. In the first round (`even`), guided pilots visit the cells of the
 /// map in turn. The path continues beyond the first non-specular surface only if `whole`.
 fn pilot(
-    scene: &Scene,
+    scene: &SceneTables,
     visibility: &Visibility,
     index: usize,
     id: u32,
@@ -252,7 +252,7 @@ fn pilot(
 }
 
 /// Map coordinates of a point on an emission disc, for light from infinity.
-fn on_square(scene: &Scene, origin: Vec3, direction: Vec3) -> Vec2 {
+fn on_square(scene: &SceneTables, origin: Vec3, direction: Vec3) -> Vec2 {
     let (t, b) = basis(direction);
     let d = origin - scene.world.near_center;
     (Vec2::new(d.dot(t), d.dot(b)) * (1.0 / scene.world.near_radius) + Vec2::ONE) * 0.5

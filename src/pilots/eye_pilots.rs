@@ -12,7 +12,7 @@ use super::math::sampling::sample_cosine;
 use super::math::{FAR, from_frame, oct_decode, offset_origin};
 use super::real::{Real, Vec2, Vec3};
 use super::shapes::ray::Ray;
-use super::tables::{NONE, Scene};
+use super::tables::{NONE, SceneTables};
 use bytemuck::Zeroable;
 use rayon::prelude::*;
 
@@ -57,7 +57,7 @@ pub struct Region {
 }
 
 /// Traces the pilot eye paths.
-pub fn trace_eye_pilots(scene: &Scene) -> EyePilots {
+pub fn trace_eye_pilots(scene: &SceneTables) -> EyePilots {
     let dispatch = Dispatch {
         pass_number: u32::MAX,
         max_bounces: BOUNCES,
@@ -92,7 +92,7 @@ fn seen(point: &VisiblePoint) -> Option<Seen> {
 }
 
 /// A random point that the surface at `seen` faces; `None` if the ray leaves the scene.
-fn faced(scene: &Scene, seen: &Seen, id: u32) -> Option<Seen> {
+fn faced(scene: &SceneTables, seen: &Seen, id: u32) -> Option<Seen> {
     let number = |word: u32| (word >> 8) as Real * (1.0 / 16777216.0);
     let u = pcg4d([id, 0, STREAM, 0]);
     let direction = from_frame(seen.normal, sample_cosine(Vec2::new(number(u[0]), number(u[1]))));

@@ -17,7 +17,7 @@ pub use probe::{Probe, probe};
 pub use transfer::learned;
 
 use super::lights::LightKind;
-use super::pack::{PackError, Packed, pack};
+use super::pack::{PackError, PackedScene, pack};
 use super::real::{Real, ToDouble, Vec3};
 use super::{geometry, kernels, lights, materials, math, real, shapes, tables};
 use crate::prepare::learned::Learned;
@@ -33,12 +33,12 @@ use visibility::Visibility;
 ///
 /// # Errors
 /// Those of [`pack`].
-pub fn prepare(scene: &Scene, width: u32, height: u32) -> Result<Packed, PackError> {
+pub fn prepare(scene: &Scene, width: u32, height: u32) -> Result<PackedScene, PackError> {
     let mut packed = pack(scene, Normalization::of(scene), width, height)?;
-    let mut eyes = trace_eye_pilots(&packed.scene);
+    let mut eyes = trace_eye_pilots(&packed.tables);
     if let Some(better) = better_normalization(&packed, &eyes) {
         packed = pack(scene, better, width, height)?;
-        eyes = trace_eye_pilots(&packed.scene);
+        eyes = trace_eye_pilots(&packed.tables);
     }
     learn(&mut packed, scene, &eyes);
     Ok(packed)
@@ -53,7 +53,7 @@ pub fn prepare_like(
     width: u32,
     height: u32,
     learned: &Learned,
-) -> Result<Packed, PackError> {
+) -> Result<PackedScene, PackError> {
     let mut packed = pack(scene, learned.normalization, width, height)?;
     transfer::apply(&mut packed, learned);
     Ok(packed)
@@ -61,11 +61,11 @@ pub fn prepare_like(
 
 /// Learns again for the current camera, so that the tables equal those of [`prepare`]. Returns
 /// false, without learning, if `prepare` might choose a different normalization.
-pub fn relearn(packed: &mut Packed, scene: &Scene) -> bool {
+pub fn relearn(packed: &mut PackedScene, scene: &Scene) -> bool {
     if packed.normalization != Normalization::of(scene) {
         return false;
     }
-    let eyes = trace_eye_pilots(&packed.scene);
+    let eyes = trace_eye_pilots(&packed.tables);
     if better_normalization(packed, &eyes).is_some() {
         return false;
     }
@@ -74,7 +74,7 @@ pub fn relearn(packed: &mut Packed, scene: &Scene) -> bool {
 }
 
 /// A normalization that suits the region seen by the camera, if the current one does not.
-fn better_normalization(packed: &Packed, eyes: &EyePilots) -> Option<Normalization> {
+fn better_normalization(packed: &PackedScene, eyes: &EyePilots) -> Option<Normalization> {
     let region = eyes.region()?;
     let center = packed.normalization.world(region.center.to_double());
     let radius = f64::from(region.radius) * packed.unit;
@@ -82,10 +82,10 @@ fn better_normalization(packed: &Packed, eyes: &EyePilots) -> Option<Normalizati
 }
 
 /// Learns emission discs, probabilities of lights, and guide maps.
-fn learn(packed: &mut Packed, scene: &Scene, eyes: &EyePilots) {
+fn learn(packed: &mut PackedScene, scene: &Scene, eyes: &EyePilots) {
     let _stage = stage("pilots");
     let n = &packed.normalization;
-    let out = &mut packed.scene;
+    let out = &mut packed.tables;
     out.distributions.truncate(packed.learned_from);
     // if nothing is seen, use the whole scene
     let all = Region { center: Vec3::ZERO, radius: (n.radius / n.unit) as Real };

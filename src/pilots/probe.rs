@@ -1,13 +1,13 @@
 //! Scene probe before planning: measures the width of a pixel at the visible surfaces and the
 //! number of records per photon. It always runs on the CPU, so that every engine plans alike.
 
-use super::super::pack::Packed;
+use super::super::pack::PackedScene;
 use super::kernels::eye_trace::eye_trace;
 use super::kernels::photon_trace::photon_trace;
 use super::kernels::records::{Dispatch, VisiblePoint};
 use super::math::oct_decode;
 use super::real::{Real, Vec3, consts};
-use super::tables::Scene;
+use super::tables::SceneTables;
 use crate::prepare::radius::{Automatic, automatic};
 use crate::scene::settings::{Direct, Radius, RenderSettings};
 use crate::telemetry::stage::stage;
@@ -43,9 +43,9 @@ pub struct Probe {
 }
 
 /// Probes the scene with a few eye paths and photons.
-pub fn probe(packed: &Packed, settings: &RenderSettings) -> Probe {
+pub fn probe(packed: &PackedScene, settings: &RenderSettings) -> Probe {
     let _stage = stage("probe");
-    let scene = &packed.scene;
+    let scene = &packed.tables;
     let dispatch = Dispatch {
         pass_number: PASS,
         max_bounces: settings.max_bounces,
@@ -104,7 +104,7 @@ pub fn probe(packed: &Packed, settings: &RenderSettings) -> Probe {
 
 /// Fraction of the photon flux, without light straight from lights, that has met only mirrors and
 /// glass before.
-fn caustic_share(scene: &Scene, dispatch: &Dispatch, photons: u32) -> f64 {
+fn caustic_share(scene: &SceneTables, dispatch: &Dispatch, photons: u32) -> f64 {
     let dispatch = Dispatch { key_bits: KEY_BITS, ..*dispatch };
     let photon = |id| {
         let (mut caustic, mut all, mut first) = (0.0, 0.0, true);

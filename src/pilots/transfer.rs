@@ -1,6 +1,6 @@
 //! Transfers the results of pilots to tables of another precision.
 
-use super::super::pack::Packed;
+use super::super::pack::PackedScene;
 use super::lights::select::CELL_LEAF;
 use super::real::{Real, ToDouble, ToReal};
 use super::tables::*;
@@ -8,8 +8,8 @@ use crate::prepare::learned::Learned;
 use glam::DVec3;
 
 /// Returns everything that pilots decided for `packed`.
-pub fn learned(packed: &Packed) -> Learned {
-    let (world, distributions) = (&packed.scene.world, &packed.scene.distributions);
+pub fn learned(packed: &PackedScene) -> Learned {
+    let (world, distributions) = (&packed.tables.world, &packed.tables.distributions);
     let base = packed.learned_from as u32;
     let double = |x: &Real| f64::from(*x);
     let guide = |light: &Light| (light.guide != 0).then(|| light.guide - base);
@@ -24,18 +24,18 @@ pub fn learned(packed: &Packed) -> Learned {
         disc_levels: world.disc_levels,
         far: world.far,
         guided: world.guided,
-        lights: distributions[..packed.scene.lights.len()].iter().map(double).collect(),
+        lights: distributions[..packed.tables.lights.len()].iter().map(double).collect(),
         distributions: distributions[packed.learned_from..].iter().map(double).collect(),
         disc_first: world.disc_first.saturating_sub(base),
-        guides: packed.scene.lights.iter().map(guide).collect(),
-        cells: packed.scene.cells.iter().map(cell).collect(),
+        guides: packed.tables.lights.iter().map(guide).collect(),
+        cells: packed.tables.cells.iter().map(cell).collect(),
     }
 }
 
 /// Applies results that were learned in another precision to tables without learned entries.
-pub fn apply(packed: &mut Packed, learned: &Learned) {
+pub fn apply(packed: &mut PackedScene, learned: &Learned) {
     let base = packed.learned_from as u32;
-    let out = &mut packed.scene;
+    let out = &mut packed.tables;
     out.world.near_center = DVec3::from(learned.near_center).to_real();
     out.world.near_radius = learned.near_radius as Real;
     out.world.disc_radius = learned.disc_radius as Real;

@@ -155,7 +155,7 @@ const FEW: usize = 16;
 
 /// Shapes of a kd-tree with a single leaf, if they are few and have short intersection code;
 /// shaders test each of them by a constant reference. Empty otherwise.
-pub fn few(scene: &Scene) -> &[u32] {
+pub fn few(scene: &SceneTables) -> &[u32] {
     match scene.nodes.first() {
         Some(root) if root.is_leaf() => {
             let refs = scene.refs.get(root.range()).unwrap_or_default();
@@ -168,7 +168,7 @@ pub fn few(scene: &Scene) -> &[u32] {
 
 impl Features {
     /// Features that `scene` rendered with `settings` requires.
-    pub fn of(scene: &Scene, settings: &RenderSettings) -> Self {
+    pub fn of(scene: &SceneTables, settings: &RenderSettings) -> Self {
         let mut set = Self::default();
         let mut put = |feature, needed| {
             if needed {

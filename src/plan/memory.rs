@@ -3,7 +3,7 @@
 use super::super::kernels::bytes::{FILM_BYTES, STATISTICS_BYTES};
 use super::super::kernels::records::PhotonRecord;
 use super::super::real::{Real, Vec4};
-use super::super::tables::Scene;
+use super::super::tables::SceneTables;
 use super::buffer::Buffer;
 use super::features::Feature;
 use super::kernel::SCAN_BLOCK;
@@ -179,7 +179,7 @@ impl Plan {
 }
 
 /// Name and bytes of every table of a packed scene.
-pub fn scene_tables(scene: &Scene) -> Vec<(&'static str, u64)> {
+pub fn scene_tables(scene: &SceneTables) -> Vec<(&'static str, u64)> {
     fn bytes<T>(table: &[T]) -> u64 {
         size_of_val(table) as u64
     }
@@ -208,6 +208,6 @@ pub fn scene_tables(scene: &Scene) -> Vec<(&'static str, u64)> {
 }
 
 /// Total bytes of all tables.
-pub fn scene_bytes(scene: &Scene) -> u64 {
+pub fn scene_bytes(scene: &SceneTables) -> u64 {
     scene_tables(scene).iter().map(|(_, bytes)| bytes).sum()
 }

@@ -16,7 +16,7 @@ mod scale;
 
 use super::kernels::bytes::{FILM_BYTES, STATISTICS_BYTES};
 use super::kernels::records::FilmPixel;
-use super::pack::{Objects, Packed};
+use super::pack::{Objects, PackedScene};
 use super::pilots::{Probe, probe};
 use super::real::Real;
 use crate::engine::{Cancel, EngineError, State};
@@ -98,13 +98,13 @@ pub struct Plan {
 
 impl Plan {
     /// Probes the scene and plans a render.
-    pub fn probed(packed: &Packed, settings: &RenderSettings) -> Self {
+    pub fn probed(packed: &PackedScene, settings: &RenderSettings) -> Self {
         Self::new(packed, settings, probe(packed, settings))
     }
 
     /// Plans a render. `probe` holds the measurements of the scene with these settings.
-    pub fn new(packed: &Packed, settings: &RenderSettings, probe: Probe) -> Self {
-        let features = Features::of(&packed.scene, settings);
+    pub fn new(packed: &PackedScene, settings: &RenderSettings, probe: Probe) -> Self {
+        let features = Features::of(&packed.tables, settings);
         let chosen =
             probe.automatic.map_or(settings.radius, |automatic| Radius::Pixels(automatic.pixels));
         let wider = settings.indirect_radius.or(probe.automatic.map(|a| a.indirect)).unwrap_or(1.0);
@@ -112,7 +112,7 @@ impl Plan {
             &RenderSettings { radius: chosen, indirect_radius: Some(wider), ..settings.clone() };
         let specular = features.has(Feature::Specular);
         let widening = if features.has(Feature::First) { 1.0 } else { wider };
-        let camera = &packed.scene.camera;
+        let camera = &packed.tables.camera;
         let eye_samples = if settings.method == Method::Ppm { settings.eye_samples } else { 1 };
         let (capacity, batch_photons) = batch(settings, &probe);
         Self {

@@ -15,7 +15,7 @@ use crate::engine::{Cancel, Engine, EngineError};
 use crate::gpu::{AdapterChoice, GpuEngine};
 use crate::plan::Plan;
 use crate::scene::settings::Method;
-use crate::tables::Scene;
+use crate::tables::SceneTables;
 
 /// Time that an idle thread sleeps before it checks for changes.
 const NAP: Duration = Duration::from_millis(50);
@@ -155,7 +155,7 @@ fn make(
         device: device.name.clone(),
         why,
         settings: plan.settings.clone(),
-        bytes: bytes(&packed.scene, &plan),
+        bytes: bytes(&packed.tables, &plan),
     };
     let engine = match device.kind {
         DeviceKind::Cpu => Running::Cpu(Box::new(CpuEngine::new(packed.clone(), plan))),
@@ -173,7 +173,7 @@ fn make(
 }
 
 /// Bytes of a scene's tables and of a plan's buffers.
-pub(super) fn bytes(scene: &Scene, plan: &Plan) -> u64 {
+pub(super) fn bytes(scene: &SceneTables, plan: &Plan) -> u64 {
     crate::gpu::sizes(plan, scene).iter().map(|(_, bytes)| bytes).sum()
 }
 

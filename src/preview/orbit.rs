@@ -7,7 +7,7 @@ use glam::{DQuat, DVec3};
 
 use crate::geometry::intersect::intersect_scene;
 use crate::math::FAR;
-use crate::pack::Packed;
+use crate::pack::PackedScene;
 use crate::real::Vec4;
 use crate::scene::Camera;
 use crate::tables::NONE;
@@ -114,13 +114,13 @@ fn rounded(x: f64, places: i32) -> f64 {
 /// Depth along the view direction, in units of the scene file, at a position in the image ((0, 0)
 /// at the top left, (1, 1) at the bottom right), through the centre of the lens; `None` if the ray
 /// hits nothing.
-pub fn depth_at(packed: &Packed, x: f64, y: f64) -> Option<f64> {
-    let mut camera = packed.scene.camera;
+pub fn depth_at(packed: &PackedScene, x: f64, y: f64) -> Option<f64> {
+    let mut camera = packed.tables.camera;
     camera.aperture = 0.0;
     (camera.width, camera.height) = (1, 1);
     let place = Vec4::new(x as f32, y as f32, 0.0, 0.0);
     let ray = crate::camera::camera_ray(&camera, 0, 0, place);
-    let hit = intersect_scene(&packed.scene, &ray);
+    let hit = intersect_scene(&packed.tables, &ray);
     let depth = f64::from(hit.t * ray.direction.dot(camera.forward)) * packed.unit;
     (hit.reference != NONE && hit.t < FAR && depth > 0.0).then_some(depth)
 }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::engine::EngineError;
-use crate::pack::Packed;
+use crate::pack::PackedScene;
 use crate::pilots::{prepare, relearn};
 use crate::scene::{Camera, Film, Scene};
 
@@ -11,7 +11,7 @@ use crate::scene::{Camera, Film, Scene};
 /// paths do. They are kept while the camera moves, and learned again when it stops.
 pub struct Ground {
     scene: Arc<Scene>,
-    packed: Arc<Packed>,
+    packed: Arc<PackedScene>,
 }
 
 impl Ground {
@@ -41,7 +41,7 @@ impl Ground {
     }
 
     /// Tables of the scene.
-    pub fn packed(&self) -> &Arc<Packed> {
+    pub fn packed(&self) -> &Arc<PackedScene> {
         &self.packed
     }
 
@@ -64,13 +64,13 @@ impl Ground {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gpu::layout::SceneTables;
+    use crate::gpu::layout::SceneLayout;
     use crate::scene;
     use glam::DVec3;
 
     fn tables(ground: &Ground) -> Vec<u8> {
-        let mut bytes = SceneTables::new(&ground.packed.scene).bytes;
-        bytes.extend_from_slice(bytemuck::cast_slice(&ground.packed.scene.nodes));
+        let mut bytes = SceneLayout::new(&ground.packed.tables).bytes;
+        bytes.extend_from_slice(bytemuck::cast_slice(&ground.packed.tables.nodes));
         bytes
     }
 

@@ -85,7 +85,7 @@ impl Quick {
             device: "cpu".to_owned(),
             why: "a small image".to_owned(),
             settings: plan.settings.clone(),
-            bytes: bytes(&packed.scene, &plan),
+            bytes: bytes(&packed.tables, &plan),
         };
         let engine = CpuEngine::new(packed.clone(), plan);
         let mut quick = Self { engine, passes: Passes::new(number, true, setup) };

@@ -218,7 +218,7 @@ material = "white"
     #[test]
     fn a_tolerance_reaches_the_patches() {
         let own = scene(SCENE);
-        let patches = |scene: &Scene| crate::pilots::prepare(scene, 8, 8).unwrap().scene.patches;
+        let patches = |scene: &Scene| crate::pilots::prepare(scene, 8, 8).unwrap().tables.patches;
         let least = patches(&own)[0].step_tolerance;
         assert_eq!(least, crate::shapes::revolution_roots::STEP_TOLERANCE);
         let with = |newton| patches(&with_newton(&own, newton).unwrap())[0].step_tolerance;

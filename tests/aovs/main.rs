@@ -16,7 +16,7 @@ use caustica::low_level::engine::Engine;
 use caustica::low_level::film::exr_file::{Channel, Numbers};
 use caustica::low_level::film::{Picture, Plane};
 use caustica::low_level::gpu::GpuEngine;
-use caustica::low_level::pack::Packed;
+use caustica::low_level::pack::PackedScene;
 use caustica::low_level::pilots::prepare;
 use caustica::low_level::plan::layers::NO_DEPTH;
 use caustica::low_level::plan::{Buffer, Plan, Stage};
@@ -58,7 +58,7 @@ fn loaded(settings: &str, rest: &str) -> Loaded {
         .unwrap_or_else(|e| panic!("{:?}\n{text}", miette::Report::new(e)))
 }
 
-fn planned(loaded: &Loaded) -> (Packed, Plan) {
+fn planned(loaded: &Loaded) -> (PackedScene, Plan) {
     let film = &loaded.scene.film;
     let packed = prepare(&loaded.scene, film.width, film.height).unwrap();
     let plan = Plan::probed(&packed, &loaded.settings).on(film);

@@ -7,13 +7,13 @@ use caustica::low_level::cpu::CpuEngine;
 use caustica::low_level::engine::{Cancel, Engine, EngineError, State};
 use caustica::low_level::film::Picture;
 use caustica::low_level::gpu::GpuEngine;
-use caustica::low_level::pack::Packed;
+use caustica::low_level::pack::PackedScene;
 use caustica::low_level::plan::Plan;
 
 use super::scenes::{SCENES, planned};
 use super::{photons, software};
 
-type Make = fn(&Packed, Plan) -> Box<dyn Engine>;
+type Make = fn(&PackedScene, Plan) -> Box<dyn Engine>;
 
 const ENGINES: [(&str, Make); 2] = [
     ("CPU", |packed, plan| Box::new(CpuEngine::new(packed.clone(), plan))),

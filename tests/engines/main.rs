@@ -22,7 +22,7 @@ use caustica::low_level::kernels::eye_trace::eye_trace;
 use caustica::low_level::kernels::photon_trace::photon_trace;
 use caustica::low_level::kernels::records::{PhotonRecord, VisiblePoint};
 use caustica::low_level::materials::Bsdf;
-use caustica::low_level::pack::Packed;
+use caustica::low_level::pack::PackedScene;
 use caustica::low_level::plan::features::Feature;
 use caustica::low_level::plan::{Buffer, Plan, Stage};
 use caustica::low_level::scene::settings::RenderSettings;
@@ -43,11 +43,11 @@ fn rendered(mut engine: impl Engine) -> Rendered {
     (reports, engine.picture().unwrap(), engine.errors().unwrap(), engine.layers().unwrap())
 }
 
-fn on_cpu(packed: &Packed, plan: &Plan) -> Rendered {
+fn on_cpu(packed: &PackedScene, plan: &Plan) -> Rendered {
     rendered(CpuEngine::new(packed.clone(), plan.clone()))
 }
 
-fn on_driver(packed: &Packed, plan: &Plan) -> Rendered {
+fn on_driver(packed: &PackedScene, plan: &Plan) -> Rendered {
     rendered(GpuEngine::new(&software::software(), packed, plan.clone()).unwrap())
 }
 
@@ -75,12 +75,12 @@ fn difference(a: &Rendered, b: &Rendered) -> Option<String> {
 }
 
 /// Which visible point and which photon record differ first: tells the kernel that is at fault.
-fn explain(packed: &Packed, plan: &Plan) -> String {
+fn explain(packed: &PackedScene, plan: &Plan) -> String {
     let mut engine = GpuEngine::new(&software::software(), packed, plan.clone()).unwrap();
     (0..LEAST_PASSES).map(|pass| explain_pass(packed, plan, &mut engine, pass)).collect()
 }
 
-fn explain_pass(packed: &Packed, plan: &Plan, engine: &mut GpuEngine, pass: u32) -> String {
+fn explain_pass(packed: &PackedScene, plan: &Plan, engine: &mut GpuEngine, pass: u32) -> String {
     engine.pass().unwrap();
     let sampled = plan.features.has(Feature::Sampled);
     let mut text = String::new();
@@ -90,7 +90,7 @@ fn explain_pass(packed: &Packed, plan: &Plan, engine: &mut GpuEngine, pass: u32)
             let theirs: Vec<VisiblePoint> =
                 pod_collect_to_vec(&engine.content(Buffer::VisiblePoints, step.chunk).unwrap());
             let ours: Vec<_> =
-                (0..d.end).map(|id| eye_trace(&packed.scene, d, sampled, id).0).collect();
+                (0..d.end).map(|id| eye_trace(&packed.tables, d, sampled, id).0).collect();
             let differing = (0..)
                 .zip(ours.iter().zip(&theirs))
                 .find(|(_, (a, b))| bytes_of(*a) != bytes_of(*b));
@@ -99,7 +99,7 @@ fn explain_pass(packed: &Packed, plan: &Plan, engine: &mut GpuEngine, pass: u32)
         if step.stage == Stage::PhotonTrace {
             let mut ours = Vec::new();
             for id in 0..d.end {
-                photon_trace(&packed.scene, d, sampled, id, |r| ours.push(r));
+                photon_trace(&packed.tables, d, sampled, id, |r| ours.push(r));
             }
             let mut theirs: Vec<PhotonRecord> =
                 pod_collect_to_vec(&engine.content(Buffer::Records, 0).unwrap());
@@ -153,10 +153,10 @@ fn engines_agree_on_every_material() {
     for bsdf in Bsdf::ALL {
         for (k, example) in bsdf.examples().enumerate() {
             let mut packed = packed.clone();
-            for material in packed.scene.materials.iter_mut().filter(|m| m.kind != 0) {
+            for material in packed.tables.materials.iter_mut().filter(|m| m.kind != 0) {
                 *material = example;
             }
-            packed.scene.materials[0] = example;
+            packed.tables.materials[0] = example;
             let plan = Plan::probed(&packed, &plan.settings);
             let difference = difference(&on_cpu(&packed, &plan), &on_driver(&packed, &plan));
             assert!(difference.is_none(), "{} {k}: {difference:?}", bsdf.name());
@@ -185,7 +185,7 @@ fn engines_agree_on_many_patches() {
     };
     for (count, set) in [(4, true), (9, true), (12, false)] {
         let (packed, plan) = planned_at((24, 16), "", &beads(count));
-        let patches = packed.scene.patches.len();
+        let patches = packed.tables.patches.len();
         assert_eq!(plan.features.has(Feature::PatchSet), set, "{patches} patches");
         let ours = on_cpu(&packed, &plan);
         assert_eq!(difference(&ours, &on_driver(&packed, &plan)), None, "{patches} patches");

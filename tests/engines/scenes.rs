@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use caustica::low_level::pack::Packed;
+use caustica::low_level::pack::PackedScene;
 use caustica::low_level::pilots::prepare;
 use caustica::low_level::plan::Plan;
 use caustica::low_level::scene::{Aovs, Loaded, parse};
@@ -439,7 +439,7 @@ fn ball(columns: u32, rows: u32) -> String {
 }
 
 /// The scene of these settings and shapes, and its plan.
-pub fn planned(settings: &str, rest: &str) -> (Packed, Plan) {
+pub fn planned(settings: &str, rest: &str) -> (PackedScene, Plan) {
     planned_at((48, 36), settings, rest)
 }
 
@@ -462,7 +462,7 @@ pub fn loaded_at((width, height): (u32, u32), settings: &str, rest: &str) -> Loa
 }
 
 /// The same with a picture of another size.
-pub fn planned_at(size: (u32, u32), settings: &str, rest: &str) -> (Packed, Plan) {
+pub fn planned_at(size: (u32, u32), settings: &str, rest: &str) -> (PackedScene, Plan) {
     let loaded = loaded_at(size, settings, rest);
     let packed = prepare(&loaded.scene, loaded.scene.film.width, loaded.scene.film.height).unwrap();
     let plan = Plan::probed(&packed, &loaded.settings);

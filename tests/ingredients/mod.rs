@@ -12,7 +12,7 @@ use glam::{Vec2, Vec3};
 
 /// A scene, never rendered, and settings.
 pub struct Mixture {
-    pub scene: Scene,
+    pub scene: SceneTables,
     pub settings: RenderSettings,
 }
 
@@ -20,7 +20,7 @@ pub struct Mixture {
 impl Mixture {
     pub fn of(features: &[Feature]) -> Self {
         let settings = RenderSettings { direct: Direct::Photons, ..RenderSettings::default() };
-        let mut mixture = Self { scene: Scene::empty(), settings };
+        let mut mixture = Self { scene: SceneTables::empty(), settings };
         for feature in features {
             mixture.add(*feature);
         }

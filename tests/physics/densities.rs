@@ -19,7 +19,7 @@ use caustica::low_level::materials::metal::{ggx_brdf, ggx_pdf, ggx_visible_norma
 use caustica::low_level::math::mirrored;
 use caustica::low_level::math::rng::{Rng, rng_new, rng_next};
 use caustica::low_level::math::sampling::*;
-use caustica::low_level::pack::Packed;
+use caustica::low_level::pack::PackedScene;
 use caustica::low_level::pilots::prepare;
 use caustica::low_level::shapes::ray::Ray;
 use caustica::low_level::shapes::table::NONE;
@@ -175,14 +175,14 @@ fn metal() {
     }
 }
 
-fn packed(light: &str) -> Packed {
+fn packed(light: &str) -> PackedScene {
     let head = "version = 1\n[camera]\nposition = [0, -2, 0]\ntarget = [0, 0, 0]\nup = [1, 0, 0]\nfov = 40.0\n\
                 [materials.m]\ntype = \"diffuse\"\nreflectance = 0.0\n";
     prepare(&parse(&format!("{head}{light}")), 8, 8).unwrap()
 }
 
 /// The scene-space point of a world point.
-fn placed(packed: &Packed, world: DVec3) -> Vec3 {
+fn placed(packed: &PackedScene, world: DVec3) -> Vec3 {
     ((world - packed.center) / packed.unit).as_vec3()
 }
 
@@ -203,7 +203,7 @@ fn lights() {
     for shape in shapes {
         let packed = packed(&format!("[[shapes]]\n{shape}\nmaterial = \"m\"\nemission = 1.0\n"));
         let from = placed(&packed, DVec3::new(0.06, -0.3, 0.08));
-        let scene = packed.scene;
+        let scene = packed.tables;
         // z is bin()'s axis: put the upward axis there
         let turn = |w: Vec3| Vec3::new(w.z, w.x, w.y);
         let back = |w: Vec3| Vec3::new(w.y, w.z, w.x);
@@ -260,7 +260,7 @@ fn environment() {
     let at = |x: usize, y: usize| (texels[y * 32 + x], texels[y * 32 + x], texels[y * 32 + x]);
     exr::prelude::write_rgb_file(folder().join("physics-density.exr"), 32, 16, at).unwrap();
     for light in ["radiance = 1.0", "file = \"physics-density.exr\"\nrotate = 50.0"] {
-        let scene = packed(&format!("[environment]\n{light}\n")).scene;
+        let scene = packed(&format!("[environment]\n{light}\n")).tables;
         let light = &scene.lights[0];
         // the picture's rows are bin()'s rings when y is its axis
         let turn = |w: Vec3| Vec3::new(w.z, w.x, w.y);
@@ -293,7 +293,7 @@ fn choice_of_lights() {
                 material = \"m\"\n";
     let text = format!("{text}{}", (0..10).map(lamp).collect::<String>());
     let packed = prepare(&parse(&text), 64, 64).unwrap();
-    let scene = &packed.scene;
+    let scene = &packed.tables;
     assert!(scene.cells.len() > 1);
     for index in 0..10u32 {
         let below = DVec3::new(f64::from(4 * index as i32 - 18), 0.0, 0.1);
@@ -322,7 +322,7 @@ fn a_lamp_from_its_own_surface() {
     let text = "[[shapes]]\ntype = \"sphere\"\ncenter = [0.5, 3.0, 0.5]\nradius = 0.5\n\
                 material = \"m\"\nemission = 1.0\n";
     let packed = packed(text);
-    let scene = &packed.scene;
+    let scene = &packed.tables;
     let mut rng = rng();
     let mut same = 0;
     for _ in 0..4000 {

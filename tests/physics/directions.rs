@@ -7,11 +7,11 @@ use caustica::low_level::geometry::intersect::intersect_scene;
 use caustica::low_level::geometry::surface::{Surface, surface_at};
 use caustica::low_level::lights::environment::eval_environment;
 use caustica::low_level::materials::shading::reflectance_at;
-use caustica::low_level::pack::Packed;
+use caustica::low_level::pack::PackedScene;
 use caustica::low_level::pilots::prepare;
 use caustica::low_level::scene::settings::{Direct, Method, Radius, RenderSettings};
 use caustica::low_level::shapes::ray::Ray;
-use caustica::low_level::tables::Scene;
+use caustica::low_level::tables::SceneTables;
 use glam::{DVec3, Vec3};
 
 use super::lab::*;
@@ -88,7 +88,7 @@ fn light_at_the_pole() {
     assert_agrees("path", runs(&text, &path).region(|_, _| true), truth, 0.03);
 }
 
-fn packed(text: &str) -> Packed {
+fn packed(text: &str) -> PackedScene {
     let head = "version = 1\n[camera]\nposition = [0, 0, 9]\ntarget = [0, 0, 0]\nfov = 40.0\n";
     prepare(&parse(&format!("{head}{text}")), 8, 8).unwrap()
 }
@@ -98,7 +98,7 @@ fn packed(text: &str) -> Packed {
 #[test]
 fn a_sky_has_no_seam() {
     let sky = grey_file("physics-seam.exr", 8, 4, |x, _| if x == 0 { 3.0 } else { x as f32 });
-    let scene = packed(&format!("[environment]\nfile = \"{sky}\"\n")).scene;
+    let scene = packed(&format!("[environment]\nfile = \"{sky}\"\n")).tables;
     let at = |u: f64| {
         let (sin, cos) = ((0.5 - u) * 2.0 * PI).sin_cos();
         eval_environment(&scene, &scene.lights[0], Vec3::new(cos as f32, 0.0, sin as f32)).x
@@ -108,7 +108,7 @@ fn a_sky_has_no_seam() {
     }
 }
 
-fn hit(scene: &Scene, from: DVec3, direction: DVec3) -> Surface {
+fn hit(scene: &SceneTables, from: DVec3, direction: DVec3) -> Surface {
     let ray =
         Ray { origin: from.as_vec3(), t_min: 0.0, direction: direction.as_vec3(), t_max: 1e30 };
     surface_at(scene, &ray, &intersect_scene(scene, &ray))
@@ -129,7 +129,7 @@ fn pictures_on_boxes_are_not_mirrored() {
             let right = up.cross(normal);
             for (a, b) in [(0.3, 0.2), (-0.6, 0.7), (0.1, -0.9)] {
                 let from = (normal * 3.0 + right * a + up * b - packed.center) / packed.unit;
-                let s = hit(&packed.scene, from, -normal);
+                let s = hit(&packed.tables, from, -normal);
                 let expected = [0.5 + 0.5 * a, 0.5 + 0.5 * b];
                 let off = (f64::from(s.uv.x) - expected[0]).abs()
                     + (f64::from(s.uv.y) - expected[1]).abs();
@@ -153,8 +153,8 @@ fn poles_do_not_mix() {
         let text = format!("{material}[[shapes]]\n{shape}\nmaterial = \"m\"\n");
         let head = "version = 1\n[camera]\nposition = [0, 0, 9]\ntarget = [0, 0, 0]\nfov = 40.0\n";
         let packed = prepare(&parse(&format!("{head}{text}")), 8, 8).unwrap();
-        let s = hit(&packed.scene, (from - packed.center) / packed.unit, direction);
-        reflectance_at(&packed.scene, s.material, s.uv).x
+        let s = hit(&packed.tables, (from - packed.center) / packed.unit, direction);
+        reflectance_at(&packed.tables, s.material, s.uv).x
     };
     let sphere = "type = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1";
     let near = DVec3::new(1e-3, 3.0, 2e-3);
@@ -263,7 +263,7 @@ fn a_dim_sky_beside_a_bright_sun() {
     );
     let path = RenderSettings { method: Method::Path, passes: 64, ..settings(1.0) };
     assert_agrees("path", runs(&text, &path).region(|_, _| true), 0.5, 0.05);
-    let scene = prepare(&parse(&text), 8, 8).unwrap().scene;
+    let scene = prepare(&parse(&text), 8, 8).unwrap().tables;
     let light = &scene.lights[0];
     let bins = |first: u32, count: u32| {
         let at = |i: u32| f64::from(scene.distributions[(light.first + first + i) as usize]);

@@ -94,7 +94,7 @@ fn stored_flux_is_emitted_flux() {
         .map(|part| {
             let mut sum = 0.0;
             for id in part * 2000..(part + 1) * 2000 {
-                let _ = photon_trace(&packed.scene, &dispatch, false, id, |r| {
+                let _ = photon_trace(&packed.tables, &dispatch, false, id, |r| {
                     sum += f64::from(r.flux.x)
                 });
             }

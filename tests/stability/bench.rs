@@ -13,7 +13,7 @@ use caustica::low_level::geometry::intersect::intersect_scene;
 use caustica::low_level::geometry::surface::surface_at;
 use caustica::low_level::gpu::compose::{Shader, compose, compose_from};
 use caustica::low_level::gpu::fragments::{Fragment, fragments};
-use caustica::low_level::gpu::layout::{SceneTables, long_tables};
+use caustica::low_level::gpu::layout::{SceneLayout, long_tables};
 use caustica::low_level::gpu::program::Program;
 use caustica::low_level::gpu::recorder::Recorder;
 use caustica::low_level::gpu::{AdapterChoice, Gpu, GpuEngine};
@@ -25,7 +25,7 @@ use caustica::low_level::kernels::records::{
     Dispatch, FilmPixel, Gathered, PhotonRecord, Statistics, VisiblePoint,
 };
 use caustica::low_level::kernels::resolve::resolve;
-use caustica::low_level::pack::Packed;
+use caustica::low_level::pack::PackedScene;
 use caustica::low_level::pilots::prepare;
 use caustica::low_level::plan::features::{Feature, Features};
 use caustica::low_level::plan::{Buffer, Kernel, Plan};
@@ -130,7 +130,7 @@ impl Bench {
         if self.long { many } else { few }
     }
 
-    pub fn packed(&self, text: &str) -> Packed {
+    pub fn packed(&self, text: &str) -> PackedScene {
         let scene = parse(text);
         prepare(&scene, scene.film.width, scene.film.height).expect("a scene that packs")
     }
@@ -140,7 +140,7 @@ impl Bench {
         self.render_packed(self.packed(text), settings)
     }
 
-    pub fn render_packed(&self, packed: Packed, settings: &RenderSettings) -> Picture {
+    pub fn render_packed(&self, packed: PackedScene, settings: &RenderSettings) -> Picture {
         let plan = Plan::probed(&packed, settings);
         let mut engine: Box<dyn Engine> = match self.on {
             On::Cpu => Box::new(CpuEngine::new(packed, plan)),
@@ -156,7 +156,7 @@ impl Bench {
     }
 
     /// The nearest hits of rays.
-    pub fn trace(&self, scene: &tables::Scene, rays: &[Ray]) -> Vec<Found> {
+    pub fn trace(&self, scene: &tables::SceneTables, rays: &[Ray]) -> Vec<Found> {
         match self.on {
             On::Cpu => rays.par_iter().map(|ray| trace(scene, ray)).collect(),
             On::Software => trace_on_driver(self.driver(), scene, rays),
@@ -184,7 +184,7 @@ impl Bench {
         let mut recorder = Recorder::new(gpu).expect("a recorder");
         let features = Features::default().with(Feature::Local);
         let shader =
-            compose(Kernel::Resolve, &features, &SceneTables::default()).expect("composed");
+            compose(Kernel::Resolve, &features, &SceneLayout::default()).expect("composed");
         let program = self.driver().program(Kernel::Resolve, &features, shader);
         let upload = |buffer: Buffer, bytes: &[u8]| {
             (buffer, gpu.upload(buffer.name(), bytes).expect("a buffer"))
@@ -260,7 +260,7 @@ fn gather_on_driver(
     let gpu = &driver.gpu;
     let mut recorder = Recorder::new(gpu).expect("a recorder");
     let shader =
-        compose(Kernel::Gather, &Features::default(), &SceneTables::default()).expect("composed");
+        compose(Kernel::Gather, &Features::default(), &SceneLayout::default()).expect("composed");
     let program = driver.program(Kernel::Gather, &Features::default(), shader);
     let upload = |buffer: Buffer, bytes: &[u8]| {
         (buffer, gpu.upload(buffer.name(), bytes).expect("a buffer"))
@@ -285,7 +285,7 @@ fn gather_on_driver(
     true
 }
 
-fn trace(scene: &tables::Scene, ray: &Ray) -> Found {
+fn trace(scene: &tables::SceneTables, ray: &Ray) -> Found {
     let hit = intersect_scene(scene, ray);
     let mut found = Found {
         t: hit.t,
@@ -301,11 +301,11 @@ fn trace(scene: &tables::Scene, ray: &Ray) -> Found {
     found
 }
 
-fn trace_on_driver(driver: &Driver, scene: &tables::Scene, rays: &[Ray]) -> Vec<Found> {
+fn trace_on_driver(driver: &Driver, scene: &tables::SceneTables, rays: &[Ray]) -> Vec<Found> {
     let gpu = &driver.gpu;
     let mut recorder = Recorder::new(gpu).expect("a recorder");
     let features = Features::of(scene, &RenderSettings::default());
-    let tables = SceneTables::new(scene);
+    let tables = SceneLayout::new(scene);
     let kernel = Kernel::EyeTrace;
     let swapped = |f: &Fragment| match f.path {
         "kernels/eye_trace.wgsl" => Fragment { text: include_str!("trace.wgsl"), ..*f },

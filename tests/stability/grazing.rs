@@ -116,7 +116,7 @@ fn grazing(b: &Bench) -> (Figure, Figure) {
                 ray(n.point(p - d * 0.3), d)
             })
             .collect();
-        let found = b.trace(&packed.scene, &rays);
+        let found = b.trace(&packed.tables, &rays);
         all += rays.len();
         let mut leaving = Vec::new();
         for f in found.iter().filter(|f| f.is_hit()) {
@@ -133,7 +133,7 @@ fn grazing(b: &Bench) -> (Figure, Figure) {
                 leaving.push(Ray { origin, t_min: 0.0, direction: d, t_max: 1e30 });
             }
         }
-        again += b.trace(&packed.scene, &leaving).iter().filter(|f| f.is_hit()).count();
+        again += b.trace(&packed.tables, &leaving).iter().filter(|f| f.is_hit()).count();
     }
     let note = format!("{met} of {all} rays, from 0.3 units away, meet the shape.");
     (Figure { value: worst, note }, (again as f64).into())

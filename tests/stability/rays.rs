@@ -3,7 +3,9 @@
 use caustica::low_level::accel::kdtree::build;
 use caustica::low_level::prepare::normalize::Normalization;
 use caustica::low_level::shapes::ray::Ray;
-use caustica::low_level::tables::{KIND_TRIANGLE, NONE, Scene, Triangle, index_of, reference};
+use caustica::low_level::tables::{
+    KIND_TRIANGLE, NONE, SceneTables, Triangle, index_of, reference,
+};
 use glam::{DVec3, Vec3};
 
 use super::bench::{Bench, parse};
@@ -114,7 +116,7 @@ fn floors(b: &Bench) -> Figure {
                 ray(n.point(DVec3::Y), on - DVec3::Y)
             })
             .collect();
-        for (ray, found) in rays.iter().zip(b.trace(&packed.scene, &rays)) {
+        for (ray, found) in rays.iter().zip(b.trace(&packed.tables, &rays)) {
             let (o, v) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
             let k = n.unit / radius;
             let truth =
@@ -152,7 +154,8 @@ fn small_balls(b: &Bench) -> Figure {
             ray(n.point(DVec3::Z), aim - DVec3::Z)
         })
         .collect();
-    for (i, found) in b.trace(&packed.scene, &rays).iter().enumerate().filter(|(_, f)| f.is_hit()) {
+    for (i, found) in b.trace(&packed.tables, &rays).iter().enumerate().filter(|(_, f)| f.is_hit())
+    {
         met += 1;
         let world = found.position.as_dvec3() * n.unit + n.center;
         worst = worst.max((world.distance(balls[i % balls.len()]) / R - 1.0).abs());
@@ -179,7 +182,7 @@ fn ball_on_giant(b: &Bench) -> Figure {
     let (r, k) = (R / n.unit, n.unit / 1e5);
     let (center, ground) = (n.point(DVec3::Y * R), n.point(DVec3::ZERO));
     let mut wrong = 0;
-    for (ray, found) in rays.iter().zip(b.trace(&packed.scene, &rays)) {
+    for (ray, found) in rays.iter().zip(b.trace(&packed.tables, &rays)) {
         let (o, v) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
         let closest = (center - o) - v * (center - o).dot(v);
         if (closest.length() / r - 1.0).abs() < 1e-3 {
@@ -205,8 +208,8 @@ fn ball_on_giant(b: &Bench) -> Figure {
 }
 
 /// A scene of triangles alone, already in scene space.
-fn of_triangles(mesh: &[[Vec3; 3]]) -> Scene {
-    let mut scene = Scene::empty();
+fn of_triangles(mesh: &[[Vec3; 3]]) -> SceneTables {
+    let mut scene = SceneTables::empty();
     let tree = build(&meshes::prims(mesh));
     scene.world.bounds_min = tree.bounds.min;
     scene.world.bounds_max = tree.bounds.max;

@@ -7,7 +7,7 @@ use caustica::low_level::math::FAR;
 use caustica::low_level::shapes::aabb::Aabb;
 use caustica::low_level::shapes::ray::Ray;
 use caustica::low_level::shapes::revolution::{BRACKETED, Patch, intersect_patch, patch_miss};
-use caustica::low_level::tables::{KIND_REVOLUTION, Scene, reference};
+use caustica::low_level::tables::{KIND_REVOLUTION, SceneTables, reference};
 use glam::{DVec2, Vec2, Vec3};
 use rayon::prelude::*;
 use revolution::judge::{Tally, judge};
@@ -179,8 +179,8 @@ fn squeezed(factors: &[f64]) -> Vec<Profile> {
 
 /// The surface alone. Its tables are filled up to one length, so that the driver compiles one
 /// kernel for all.
-fn scene_of(placed: &Placed) -> Scene {
-    let mut scene = Scene::empty();
+fn scene_of(placed: &Placed) -> SceneTables {
+    let mut scene = SceneTables::empty();
     scene.revolutions = placed.tables.revolutions.clone();
     scene.patches = placed.tables.patches.clone();
     scene.profile_points = placed.tables.profile_points.clone();

@@ -13,7 +13,7 @@ use crate::engine::{Engine, EngineError, PassReport, State};
 use crate::film::exr_file::Channel;
 use crate::film::{ErrorMap, Picture, Rejections};
 use crate::plan::{Buffer, Kernel, Plan};
-use crate::tables::Scene;
+use crate::tables::SceneTables;
 use crate::telemetry::clock::{Clock, KernelSeconds};
 use std::collections::BTreeMap;
 
@@ -51,7 +51,7 @@ pub struct GpuEngine {
     /// Copies of the pass's counters and of each batch's record count.
     readings: wgpu::Buffer,
     /// Scene for retracing stopped paths, on a software driver only.
-    scene: Option<Scene>,
+    scene: Option<SceneTables>,
     device: String,
     compile_seconds: BTreeMap<Kernel, CompileSeconds>,
     submissions: Submissions,

@@ -1,17 +1,17 @@
 //! Setup of an engine: allocates its buffers and compiles its kernels.
 
 use super::super::context::{AdapterChoice, AdapterKind, Gpu};
-use super::super::layout::{SceneTables, long_tables};
+use super::super::layout::{SceneLayout, long_tables};
 use super::super::pace::Pace;
 use super::super::program::{Compiling, Program, make_programs};
 use super::super::recorder::Recorder;
 use super::{GpuEngine, READINGS_BYTES, Submissions};
 use crate::engine::EngineError;
 use crate::kernels::records::Dispatch;
-use crate::pack::Packed;
+use crate::pack::PackedScene;
 use crate::plan::{Buffer, Kernel, Plan};
 use crate::scene::settings::Method;
-use crate::tables::Scene;
+use crate::tables::SceneTables;
 use crate::telemetry::clock::Clock;
 use crate::telemetry::compilation::Running;
 use crate::telemetry::stage::stage;
@@ -46,7 +46,11 @@ impl CompileSeconds {
 
 impl GpuEngine {
     /// Creates an engine for one scene and plan on the adapter of `choice`.
-    pub fn new(choice: &AdapterChoice, packed: &Packed, plan: Plan) -> Result<Self, EngineError> {
+    pub fn new(
+        choice: &AdapterChoice,
+        packed: &PackedScene,
+        plan: Plan,
+    ) -> Result<Self, EngineError> {
         Self::with(choice, packed, plan, Compiling::Together)
     }
 
@@ -54,7 +58,7 @@ impl GpuEngine {
     /// [`Self::compile_seconds`] is available. Slower.
     pub fn measured(
         choice: &AdapterChoice,
-        packed: &Packed,
+        packed: &PackedScene,
         plan: Plan,
     ) -> Result<Self, EngineError> {
         Self::with(choice, packed, plan, Compiling::OneByOne)
@@ -62,7 +66,7 @@ impl GpuEngine {
 
     fn with(
         choice: &AdapterChoice,
-        packed: &Packed,
+        packed: &PackedScene,
         plan: Plan,
         compiling: Compiling,
     ) -> Result<Self, EngineError> {
@@ -78,8 +82,8 @@ impl GpuEngine {
 
     /// Creates an engine for another scene, camera or plan on the same device. Keeps the compiled
     /// programs if the new ones would be identical.
-    pub fn renewed(self, packed: &Packed, plan: Plan) -> Result<Self, EngineError> {
-        let tables = SceneTables::new(&packed.scene);
+    pub fn renewed(self, packed: &PackedScene, plan: Plan) -> Result<Self, EngineError> {
+        let tables = SceneLayout::new(&packed.tables);
         let same = self.plan.features == plan.features
             && (&self.members, &self.few) == (&tables.members, &tables.few);
         Self::on(self.kept(same), packed, plan, Compiling::Together)
@@ -93,16 +97,16 @@ impl GpuEngine {
 
     fn on(
         kept: Reusable,
-        packed: &Packed,
+        packed: &PackedScene,
         plan: Plan,
         compiling: Compiling,
     ) -> Result<Self, EngineError> {
         let Reusable { gpu, pace, programs } = kept;
-        let scene = SceneTables::new(&packed.scene);
-        gpu.check_sizes(&sizes(&plan, &packed.scene), MEND)?;
+        let scene = SceneLayout::new(&packed.tables);
+        gpu.check_sizes(&sizes(&plan, &packed.tables), MEND)?;
         let recorder = Recorder::new(&gpu)?;
         let mut shared = BTreeMap::from([(Buffer::Scene, gpu.upload("scene", &scene.bytes)?)]);
-        for (buffer, content) in long_tables(&packed.scene) {
+        for (buffer, content) in long_tables(&packed.tables) {
             if !content.is_empty() {
                 shared.insert(buffer, gpu.upload(buffer.name(), content)?);
             }
@@ -120,7 +124,7 @@ impl GpuEngine {
         }
         let readings = gpu.storage("readings", READINGS_BYTES)?;
         let mut engine = Self {
-            scene: (gpu.summary.kind == AdapterKind::Software).then(|| packed.scene.clone()),
+            scene: (gpu.summary.kind == AdapterKind::Software).then(|| packed.tables.clone()),
             device: gpu.summary.name.clone(),
             gpu,
             passes_done: 0,
@@ -149,7 +153,7 @@ impl GpuEngine {
     /// validated.
     fn compile(
         &mut self,
-        scene: &SceneTables,
+        scene: &SceneLayout,
         compiling: Compiling,
         kept: BTreeMap<Kernel, Program>,
     ) -> Result<(), EngineError> {
@@ -212,8 +216,8 @@ fn chunk_bytes(plan: &Plan, largest: u64, chunk: u32) -> u64 {
 }
 
 /// Name and bytes of every buffer that will be allocated.
-pub fn sizes(plan: &Plan, scene: &Scene) -> Vec<(&'static str, u64)> {
-    let mut list = vec![("scene", SceneTables::new(scene).bytes.len() as u64)];
+pub fn sizes(plan: &Plan, scene: &SceneTables) -> Vec<(&'static str, u64)> {
+    let mut list = vec![("scene", SceneLayout::new(scene).bytes.len() as u64)];
     list.extend(long_tables(scene).map(|(buffer, content)| (buffer.name(), content.len() as u64)));
     for (buffer, bytes) in plan.buffers() {
         let name = buffer.name();
