@@ -176,7 +176,7 @@ fn thresholds_are_held_one_by_one() {
 fn pictures_that_cannot_be_used_are_1() {
     let folder = folder("pictures");
     ends(&folder, &["a.exr", "none.exr"], 1, &["none.exr", "cannot be read"]);
-    ends(&folder, &["broken.exr", "b.exr"], 1, &["broken.exr", "not a usable picture"]);
+    ends(&folder, &["broken.exr", "b.exr"], 1, &["broken.exr", "not a readable image"]);
     ends(&folder, &["a.exr", "wide.exr"], 1, &["40x24 and 41x24", "a.exr", "wide.exr"]);
     ends(
         &folder,
@@ -197,7 +197,7 @@ fn pictures_that_cannot_be_used_are_1() {
         1,
         &["glassy.exr: 24 pixels are not opaque", "background"],
     );
-    ends(&folder, &["a.exr", "b.exr", "-o", "no/flip.png"], 1, &["no folder `no`"]);
+    ends(&folder, &["a.exr", "b.exr", "-o", "no/flip.png"], 1, &["the folder `no` does not exist"]);
 }
 
 #[test]

@@ -178,7 +178,7 @@ fn wrong_use_is_2() {
 
 #[test]
 fn places_that_take_no_file_are_1() {
-    fails("folder", TUBE, &["p.toml", "-o", "no/p.obj"], 1, &["no/p.obj", "no folder `no`"]);
+    fails("folder", TUBE, &["p.toml", "-o", "no/p.obj"], 1, &["no/p.obj", "the folder `no` does not exist"]);
     fails("missing", TUBE, &["q.toml", "-o", "p.obj"], 1, &["q.toml", "did you mean p.toml?"]);
 }
 

@@ -98,16 +98,16 @@ fn outputs_are_known_before_the_scene_is_read() {
         "folder",
         &["render", "missing.toml", "-o", "no/a.png"],
         1,
-        &["no/a.png", "no folder `no`", "create"],
+        &["no/a.png", "the folder `no` does not exist", "create"],
     );
     fails(
         "second",
         &["render", "missing.toml", "-o", "a.exr", "-o", "no/a.png"],
         1,
-        &["no folder `no`"],
+        &["the folder `no` does not exist"],
     );
     fails("map", &["compare", "missing.toml", "-o", "map.exr"], 2, &["map.exr", ".png"]);
-    fails("map folder", &["compare", "missing.toml", "-o", "no/map.png"], 1, &["no folder `no`"]);
+    fails("map folder", &["compare", "missing.toml", "-o", "no/map.png"], 1, &["the folder `no` does not exist"]);
 }
 
 #[test]

@@ -183,7 +183,7 @@ fn pipes_get_pictures() {
     // a name of standard output does not say which picture; the message says how one does
     for name in ["/dev/stdout", "-", "/dev/fd/1", "/proc/self/fd/1", "/dev/stderr"] {
         let output =
-            run(&folder, &format!("--output={name}"), 2, &[name, "which kind of picture", "ln -s"]);
+            run(&folder, &format!("--output={name}"), 2, &[name, "does not determine", "ln -s"]);
         assert!(output.stdout.is_empty());
     }
     run(&folder, "--checkpoint end -o never.png", 1, &["end", "no regular file"]);
