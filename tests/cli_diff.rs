@@ -209,7 +209,7 @@ fn wrong_use_is_2() {
         &folder,
         &["a.exr", "grey.png"],
         2,
-        &["a.exr holds radiance", "grey.png what a display shows"],
+        &["a.exr contains radiance", "grey.png display values"],
     );
     for region in ["x", "x=1,2,3", "=0,0,1,1", "x=4,0,4,9", "x=-1,0,4,9", "x=0,0,1.5,9"] {
         ends(
@@ -227,7 +227,7 @@ fn wrong_use_is_2() {
         2,
         &["two regions `x`"],
     );
-    ends(&folder, &["a.exr", "b.exr", "--max-FLIP=y=0.1"], 2, &["no region `y`", "--region y="]);
+    ends(&folder, &["a.exr", "b.exr", "--max-FLIP=y=0.1"], 2, &["the region `y` is not defined", "--region y="]);
     ends(
         &folder,
         &["a.exr", "b.exr", "--region=x=0,0,4,4", "--max-FLIP=y=0.1"],
@@ -247,9 +247,9 @@ fn wrong_use_is_2() {
         &folder,
         &["grey.png", "white.png", "--max-HDR-FLIP", "0.5"],
         2,
-        &["no HDR-FLIP", "--max-FLIP"],
+        &["HDR-FLIP is not defined", "--max-FLIP"],
     );
-    ends(&folder, &["grey.png", "white.png", "--hdr-map", "m.png"], 2, &["no HDR-FLIP"]);
+    ends(&folder, &["grey.png", "white.png", "--hdr-map", "m.png"], 2, &["HDR-FLIP is not defined"]);
     ends(&folder, &["a.exr", "b.exr", "-o", "flip.exr"], 2, &["flip.exr", ".png"]);
     ends(
         &folder,
@@ -257,7 +257,7 @@ fn wrong_use_is_2() {
         2,
         &["m.png", "more than once"],
     );
-    ends(&folder, &["grey.png", "white.png", "-o", "./grey.png"], 2, &["would replace"]);
+    ends(&folder, &["grey.png", "white.png", "-o", "./grey.png"], 2, &["would overwrite"]);
     assert!(read_any(&folder.join("grey.png")).is_ok(), "the inputs are untouched");
     assert!(!folder.join("m.png").exists());
 }

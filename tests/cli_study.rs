@@ -156,8 +156,8 @@ fn what_does_not_belong_is_refused() {
     let with = |more: &[&'static str]| [&study[..], more].concat();
     refused(&with(&["--grid", "radios=1px"]), 2, "did you mean `radius`");
     refused(&with(&["--grid", "alpha=2"]), 2, "above 0 and up to 1");
-    refused(&with(&["--crop", "0,0,99,9"]), 2, "reaches beyond the picture");
-    refused(&with(&["--truth-time", "5s"]), 2, "takes all of the budget");
+    refused(&with(&["--crop", "0,0,99,9"]), 2, "extends beyond the image");
+    refused(&with(&["--truth-time", "5s"]), 2, "takes the whole budget");
     refused(&with(&["--grid", "device=cpu,Voodoo2"]), 4, "there is no device `Voodoo2`");
     refused(&with(&["--truth", "missing.exr"]), 1, "missing.exr");
     assert!(!folder.join("out").exists(), "nothing was begun");

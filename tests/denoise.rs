@@ -180,7 +180,7 @@ fn windows_are_denoised_as_well() {
 fn a_file_that_holds_the_render_alone_is_not_enough() {
     let folder = folder("alone");
     for output in ["a.pfm", "a.hdr"] {
-        let words = ["hold the render alone", "extension .png, or .exr"];
+        let words = ["store only the render", "extension .png, or .exr"];
         ends(&folder, &["render", SCENE, "--denoise", "-o", output], 2, &words);
     }
 }

@@ -92,7 +92,7 @@ fn what_is_no_use_is_told_before_the_work() {
         &folder,
         &format!("{line} --checkpoint note.txt"),
         2,
-        &["note.txt: this file is there already", "--resume"],
+        &["note.txt: the file already exists", "--resume"],
     );
     fails(&folder, &format!("{line} --checkpoint a.png"), 1, &["belongs to images", ".checkpoint"]);
     fails(
@@ -117,9 +117,9 @@ fn what_is_no_use_is_told_before_the_work() {
         &folder,
         "compare ball.toml --device cpu --device cpu --passes 2..5",
         2,
-        &["begins with pass 0"],
+        &["starts at pass 0"],
     );
-    fails(&folder, "info ball.toml --passes 2..5", 2, &["begins with pass 0"]);
+    fails(&folder, "info ball.toml --passes 2..5", 2, &["starts at pass 0"]);
     good(&folder, "info ball.toml --passes 0..5");
     // a checkpoint that is cut off
     good(&folder, &format!("{line} --passes 2 --checkpoint a.checkpoint -o a.exr"));

@@ -221,9 +221,9 @@ fn one_failed_output_keeps_no_other() {
         let rest = error.rsplit_once(start).unwrap_or_else(|| panic!("{start}: {error}")).1;
         folder.join(rest.split_whitespace().next().unwrap())
     };
-    let picture = caustica::low_level::film::read(&said("the picture is saved in ")).unwrap();
+    let picture = caustica::low_level::film::read(&said("image saved in ")).unwrap();
     assert_eq!((picture.width, picture.height), (12, 8));
-    let kept = said("the checkpoint is saved in ");
+    let kept = said("checkpoint saved in ");
     assert_eq!(read(&kept).unwrap().state.passes, 40, "{error}");
     let kept = kept.file_name().unwrap().to_str().unwrap().to_owned();
     run(&folder, &format!("-o again.png --passes 40 --resume {kept}"), 0, &[]);
