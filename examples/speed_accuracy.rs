@@ -187,8 +187,7 @@ fn page(studies: &[Studied]) -> String {
             quality.word()
         );
     }
-    let _ =
-        write!(out, "\n| |{columns}\n|---|{ruler}\n| seconds per pass of a million pixels |");
+    let _ = write!(out, "\n| |{columns}\n|---|{ruler}\n| seconds per pass of a million pixels |");
     studies.iter().for_each(|s| write!(out, " {} |", short(s.seconds())).unwrap_or(()));
     out.push('\n');
     for study in studies {

@@ -286,7 +286,7 @@ fn mistakes_are_told_before_the_work() {
     fails(
         &with(&["--max-relMSE", "0.1", "--max-relMSE", "0.2"]),
         2,
-        &["whole picture", "one for each"],
+        &["whole image", "one for each"],
     );
     fails(&with(&["--region", "a=0,0,9,9", "--region", "a=1,1,9,9"]), 2, &["two regions"]);
     fails(&with(&["--region", "a=0,0,25,9"]), 2, &["beyond the image", "24 columns"]);

@@ -225,9 +225,14 @@ fn wrong_use_is_2() {
         &folder,
         &["a.exr", "b.exr", "--region=x=0,0,4,4", "--region=x=4,4,8,8"],
         2,
-        &["two regions `x`"],
+        &["two regions are called `x`"],
     );
-    ends(&folder, &["a.exr", "b.exr", "--max-FLIP=y=0.1"], 2, &["the region `y` is not defined", "--region y="]);
+    ends(
+        &folder,
+        &["a.exr", "b.exr", "--max-FLIP=y=0.1"],
+        2,
+        &["the region `y` is not defined", "--region y="],
+    );
     ends(
         &folder,
         &["a.exr", "b.exr", "--region=x=0,0,4,4", "--max-FLIP=y=0.1"],
@@ -241,7 +246,7 @@ fn wrong_use_is_2() {
         &folder,
         &["a.exr", "b.exr", "--region=x=0,0,5,5", "--min-SSIM=x=0.5"],
         2,
-        &["no SSIM of the region x", "11 x 11"],
+        &["SSIM is not defined for the region x", "11 x 11"],
     );
     ends(
         &folder,
@@ -249,7 +254,12 @@ fn wrong_use_is_2() {
         2,
         &["HDR-FLIP is not defined", "--max-FLIP"],
     );
-    ends(&folder, &["grey.png", "white.png", "--hdr-map", "m.png"], 2, &["HDR-FLIP is not defined"]);
+    ends(
+        &folder,
+        &["grey.png", "white.png", "--hdr-map", "m.png"],
+        2,
+        &["HDR-FLIP is not defined"],
+    );
     ends(&folder, &["a.exr", "b.exr", "-o", "flip.exr"], 2, &["flip.exr", ".png"]);
     ends(
         &folder,

@@ -260,7 +260,7 @@ fn presets_promise_and_keep_their_passes() {
     let error = text(&output.stderr);
     for word in [
         "start radius",
-        "px for light that a diffuse surface has scattered, for",
+        "px for diffusely scattered light (",
         "draft: 4 passes of 768 photons",
         "expected",
         "% (",

@@ -135,7 +135,9 @@ fn an_interrupted_study_goes_on_to_the_same_end() {
     assert!(last.contains("\"complete\":false"), "{last}");
     let kept = runs(&folder);
     assert!((2..9).contains(&kept.len()), "{}", kept.len());
-    assert!(fs::read_to_string(folder.join("out/report.html")).unwrap().contains("Interrupted after"));
+    assert!(
+        fs::read_to_string(folder.join("out/report.html")).unwrap().contains("Interrupted after")
+    );
 
     assert_eq!(caustica(&folder, &SMALL).status.code(), Some(0));
     let ended = runs(&folder);
@@ -191,7 +193,11 @@ fn what_does_not_belong_is_refused() {
         2,
         "contains a study with 1 seeds",
     );
-    refused(&with(&["--seeds", "1", "--vary", "radius=3px", "--size", "32x24"]), 2, "a different grid");
+    refused(
+        &with(&["--seeds", "1", "--vary", "radius=3px", "--size", "32x24"]),
+        2,
+        "a different grid",
+    );
     fs::write(folder.join("ball.toml"), SCENE.replace("ior = 1.5", "ior = 1.4")).unwrap();
     refused(&small, 2, "a different text of this scene");
     fs::create_dir(folder.join("mine")).unwrap();
@@ -225,7 +231,9 @@ fn lamps_shrink() {
     let study_json = json(&folder.join("out/study.json"));
     assert_eq!(study_json["parts"].as_array().unwrap().len(), 3);
     assert!(
-        fs::read_to_string(folder.join("out/report.html")).unwrap().contains("Effect of the lamp area")
+        fs::read_to_string(folder.join("out/report.html"))
+            .unwrap()
+            .contains("Effect of the lamp area")
     );
     assert!(folder.join("out/charts/lamps.svg").exists());
     let flat = SCENE.replace(
@@ -237,7 +245,7 @@ fn lamps_shrink() {
         study.iter().map(|word| if *word == "out" { "flat" } else { word }).collect();
     let output = caustica(&folder, &[&other[..], &grid].concat());
     assert_eq!(output.status.code(), Some(2));
-    assert!(text(&output.stderr).contains("spheres"), "{}", text(&output.stderr));
+    assert!(text(&output.stderr).contains("spherical"), "{}", text(&output.stderr));
 }
 
 /// What surfaces of revolution are made of is an axis; all are held against one truth, of the exact

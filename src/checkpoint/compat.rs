@@ -27,16 +27,11 @@ impl Checkpoint {
         let mut differences = expected.differences(&self.origin);
         let [asked, known] = [expected.aovs, self.origin.aovs];
         if asked.iter().any(|aov| !known.has(aov)) {
-            differences.push(format!(
-                "layers: expected {}, found {}",
-                told(asked),
-                told(known)
-            ));
+            differences.push(format!("layers: expected {}, found {}", told(asked), told(known)));
         }
         if first_pass != self.state.first_pass {
             let found = self.state.first_pass;
-            differences
-                .push(format!("first pass: expected {first_pass}, found {found}"));
+            differences.push(format!("first pass: expected {first_pass}, found {found}"));
         }
         if bits != self.state.bits && self.cuts.is_empty() {
             let found = self.state.bits;
@@ -90,11 +85,7 @@ impl Origin {
         }
         let size = |origin: &Self| format!("{} x {}", origin.width, origin.height);
         if size(self) != size(found) {
-            list.push(format!(
-                "image size: expected {}, found {}",
-                size(self),
-                size(found)
-            ));
+            list.push(format!("image size: expected {}, found {}", size(self), size(found)));
         }
         let window = |origin: &Self| match origin.window {
             Some([x0, y0, x1, y1]) => format!("{x0},{y0},{x1},{y1}"),

@@ -61,8 +61,7 @@ fn check_follows(
         differences.push(format!("layers: expected {}, found {}", told(expected), told(found)));
     }
     if !differences.is_empty() {
-        let mend =
-            format!("\"expected\" is {}: render one of them again", first_file.display());
+        let mend = format!("\"expected\" is {}: render one of them again", first_file.display());
         return Err(CheckpointError::Other { file: file.clone(), differences, mend });
     }
     let unfit = |what: String, mend: &str| {

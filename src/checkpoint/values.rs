@@ -40,9 +40,7 @@ pub(super) fn check_points(origin: &Origin, statistics: u64, counts: u64) -> Res
     {
         if found != 0 && (found != points || !kept) {
             let points = if kept { points } else { 0 };
-            return Err(format!(
-                "{name} of {found} visible points, but expected {points}"
-            ));
+            return Err(format!("{name} of {found} visible points, but expected {points}"));
         }
     }
     Ok(())
@@ -88,7 +86,7 @@ macro_rules! precision {
                         return Err(format!("pixel {} has invalid layers", number * TOGETHER + i));
                     }
                 }
-                #[allow(clippy::unnecessary_cast)] // no cast where a real number is an f64
+                #[allow(clippy::unnecessary_cast)] // not a cast in the f64 instance
                 let most = f64::from(state.passes) as real::Real;
                 for (number, bytes) in state.layers.parts.chunks(PARTS_BYTES * TOGETHER).enumerate()
                 {

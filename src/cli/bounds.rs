@@ -168,9 +168,7 @@ fn no_figure(measure: &str, region: Option<&str>) -> Failure {
     let place = region.map_or("these images".to_owned(), |name| format!("the region {name}"));
     let help = match measure {
         "SSIM" => "it needs a window of 11 x 11 pixels inside the image",
-        _ => {
-            "it needs radiance (.exr, .pfm or .hdr); use --max-FLIP for display values"
-        }
+        _ => "it needs radiance (.exr, .pfm or .hdr); use --max-FLIP for display values",
     };
     Failure::wrong_use(&format!("{measure} is not defined for {place}"), help)
 }

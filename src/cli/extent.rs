@@ -31,10 +31,7 @@ impl Extent {
         if !outputs.iter().any(|output| Format::of(output) == Some(Format::Exr)) {
             if self.aov.is_some() {
                 let help = "add an output with the extension .exr, e.g. -o picture.exr";
-                return Err(Failure::wrong_use(
-                    "--aov: no output can store layers",
-                    help,
-                ));
+                return Err(Failure::wrong_use("--aov: no output can store layers", help));
             }
             film.aovs = Aovs::default();
         }

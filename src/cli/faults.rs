@@ -21,8 +21,11 @@ pub fn begin() {
 fn text(info: &PanicHookInfo) -> String {
     let payload = info.payload();
     let owned = || payload.downcast_ref::<String>().map(String::as_str);
-    let what =
-        payload.downcast_ref::<&str>().copied().or_else(owned).unwrap_or("panic payload is not text");
+    let what = payload
+        .downcast_ref::<&str>()
+        .copied()
+        .or_else(owned)
+        .unwrap_or("panic payload is not text");
     match info.location() {
         Some(place) => format!("{what} ({}:{})", short(place.file()), place.line()),
         None => what.to_owned(),

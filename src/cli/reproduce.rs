@@ -87,8 +87,7 @@ impl Like {
         });
         let other =
             self.made.digest.as_ref().is_some_and(|digest| *digest != Identity::of(scene).digest());
-        let scene =
-            other.then(|| "the scene or a file that it uses has changed since".to_owned());
+        let scene = other.then(|| "the scene or a file that it uses has changed since".to_owned());
         version.into_iter().chain(scene).collect()
     }
 }

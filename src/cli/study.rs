@@ -100,8 +100,10 @@ fn region(text: &str) -> Result<Region, String> {
     let numbers: Option<Vec<u32>> = text.split(',').map(|n| n.trim().parse().ok()).collect();
     match numbers.as_deref() {
         Some(&[x0, y0, x1, y1]) if x0 < x1 && y0 < y1 => Ok(Region { x0, y0, x1, y1 }),
-        _ => Err("expected four whole numbers with x0 < x1 and y0 < y1, e.g. 290,425,425,485"
-            .to_owned()),
+        _ => {
+            Err("expected four whole numbers with x0 < x1 and y0 < y1, e.g. 290,425,425,485"
+                .to_owned())
+        }
     }
 }
 

@@ -37,9 +37,7 @@ impl Viewer {
     /// continue.
     pub fn show(&mut self, picture: &Picture) {
         if let Some(error) = self.0.as_mut().and_then(|tev| tev.show(picture).err()) {
-            message(format_args!(
-                "warning: connection to tev lost: {error}; the render continues"
-            ));
+            message(format_args!("warning: connection to tev lost: {error}; the render continues"));
             self.0 = None;
         }
     }

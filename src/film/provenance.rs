@@ -98,9 +98,8 @@ impl Provenance {
                 format!("the attribute caustica.{name}, written by `caustica render`, is missing")
             })
         };
-        let wrong = |name: &str, what: &str| {
-            format!("the attribute caustica.{name} is invalid: {what}")
-        };
+        let wrong =
+            |name: &str, what: &str| format!("the attribute caustica.{name} is invalid: {what}");
         let settings = |name: &str| match get(name) {
             Some(text) => {
                 serde_json::from_str(text).map(Some).map_err(|e| wrong(name, &e.to_string()))

@@ -67,9 +67,7 @@ pub fn with_lamp(scene: &Scene, lamp: Lamp) -> Result<Scene, String> {
             let mut points = Vec::new();
             for shape in scene.shapes.iter().filter(|shape| shape.is_emitter()) {
                 let ShapeKind::Sphere { center, radius } = shape.kind else {
-                    return Err(
-                        "only spherical lamps can become points".to_owned(),
-                    );
+                    return Err("only spherical lamps can become points".to_owned());
                 };
                 let intensity = shape.emission.map(|radiance| radiance * PI * radius.powi(2));
                 points.push(Light::Point { position: center, intensity });

@@ -165,8 +165,7 @@ fn introduction(results: &Results, complete: bool, out: &mut String) {
             format!("{}: {radius} px", configured(&about.configs[*config]))
         });
         let radii: Vec<String> = radii.collect();
-        let _ =
-            write!(out, "<p>Automatic start radii: {}.</p>", escape(&radii.join("; ")));
+        let _ = write!(out, "<p>Automatic start radii: {}.</p>", escape(&radii.join("; ")));
     }
     let failed = results.runs.iter().filter_map(|run| Some((run.config, run.failed.as_ref()?)));
     let mut failed: Vec<_> = failed.collect();
@@ -218,9 +217,7 @@ fn section(conducted: &Conducted, part: &Part, number: usize, folder: &Folder, o
         let _ = write!(out, "<h3>{}</h3><div class=\"charts\">", escape(&panel.title));
         for (what, chart) in &panel.charts {
             let caption = match *what {
-                "error" => {
-                    "relMSE minus that of the truth. The band is the range over the seeds."
-                }
+                "error" => "relMSE minus that of the truth. The band is the range over the seeds.",
                 "flip" => "Visible difference, including the truth's noise.",
                 _ => "Solid: variance. Dashed: squared bias, if it exceeds its standard error.",
             };

@@ -59,9 +59,7 @@ impl FromStr for Newton {
         match (text, text.parse::<f64>()) {
             ("least", _) => Ok(Self::Least),
             (_, Ok(length)) if (1e-7..=1.0).contains(&length) => Ok(Self::Tolerance(length)),
-            _ => {
-                Err("expected least, or a length from 1e-7 to 1 in profile sizes".to_owned())
-            }
+            _ => Err("expected least, or a length from 1e-7 to 1 in profile sizes".to_owned()),
         }
     }
 }

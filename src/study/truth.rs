@@ -142,12 +142,7 @@ impl Maker<'_> {
             };
             pictures.push(picture);
         }
-        let source = format!(
-            "{}, {} seeds, {:.1} s",
-            described(method),
-            self.seeds,
-            self.seconds
-        );
+        let source = format!("{}, {} seeds, {:.1} s", described(method), self.seeds, self.seconds);
         Ok(Some(mean_of(&pictures, source)?))
     }
 

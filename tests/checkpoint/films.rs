@@ -222,7 +222,8 @@ fn the_program_keeps_crops_and_layers() {
     good(&folder, &format!("{fewer} --passes 9 --resume a.checkpoint -o depth.exr"));
     assert_eq!(channels("depth.exr").channels["depth.Z"], whole.channels["depth.Z"]);
     let refused = |options: &str, words: &[&str]| {
-        let words = [&["a.checkpoint: the checkpoint belongs to a different render"], words].concat();
+        let words =
+            [&["a.checkpoint: the checkpoint belongs to a different render"], words].concat();
         let line = format!(
             "render ball.toml --device cpu --quiet --resume a.checkpoint -o x.exr {options}"
         );

@@ -14,9 +14,11 @@ fn other_renders_are_refused_with_the_reason() {
     good(&folder, &format!("{line} --device cpu --passes 4 --checkpoint a.checkpoint -o a.exr"));
     let on_cpu = format!("{line} --device cpu --resume a.checkpoint -o b.exr");
     let refused = |more: &str, words: &[&str]| {
-        let words =
-            [&["a.checkpoint: the checkpoint belongs to a different render", "drop --resume"], words]
-                .concat();
+        let words = [
+            &["a.checkpoint: the checkpoint belongs to a different render", "drop --resume"],
+            words,
+        ]
+        .concat();
         let device = if more.contains("--device") { "" } else { "--device cpu" };
         fails(
             &folder,

@@ -186,7 +186,7 @@ fn pipes_get_pictures() {
             run(&folder, &format!("--output={name}"), 2, &[name, "does not determine", "ln -s"]);
         assert!(output.stdout.is_empty());
     }
-    run(&folder, "--checkpoint end -o never.png", 1, &["end", "no regular file"]);
+    run(&folder, "--checkpoint end -o never.png", 1, &["end", "not a regular file"]);
     assert!(fs::metadata(folder.join("end")).unwrap().file_type().is_fifo());
     assert!(!folder.join("never.png").exists());
 }
