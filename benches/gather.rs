@@ -1,7 +1,7 @@
-//! The density estimate at a visible point on the CPU. `cargo bench --bench gather`.
+//! Density estimation at visible points on the CPU. `cargo bench --bench gather`.
 //!
-//! Sizes: a disc holds about one photon where a picture is dark or a radius has shrunk, ten to a
-//! hundred where it is tuned, and a thousand in a caustic or at the start of a render.
+//! Sizes: a disc contains about one photon in dark areas or after the radius has shrunk, ten to a
+//! hundred for a well-chosen radius, and a thousand in a caustic or at the start of a render.
 
 use bytemuck::Zeroable;
 use caustica::low_level::kernels::gather::gather;
@@ -12,9 +12,9 @@ use caustica::low_level::tables::NONE;
 use divan::{Bencher, counter::ItemsCount};
 use glam::Vec3;
 
-/// Records on a square wall; enough that they do not all stay in the first-level cache.
+/// Number of records on a square wall; too many for the L1 cache.
 const RECORDS: u32 = 1 << 18;
-/// Visible points in a row of a measurement.
+/// Number of visible points per measurement.
 const POINTS: u32 = 1 << 10;
 
 fn main() {
@@ -29,7 +29,7 @@ fn photons_in_a_disc(bencher: Bencher, photons: u32) {
         (state >> 8) as f32 / 16_777_216.0
     };
     let up = oct_encode(Vec3::Y);
-    // a wall of area one; cells as wide as a disc
+    // wall of area one, cells as wide as a disc
     let radius = (photons as f32 / RECORDS as f32 / std::f32::consts::PI).sqrt();
     let mask = RECORDS - 1;
     let d = Dispatch {

@@ -1,8 +1,8 @@
-//! The hash grid's construction on the CPU, step by step. `cargo bench --bench grid`.
+//! Construction of the hash grid on the CPU, step by step. `cargo bench --bench grid`.
 //!
-//! Sizes: 2^16 records fit the second-level cache of most processors with everything that goes with
-//! them, 2^19 the last level of some, and 2^22, as many as a batch may have, none. There are as
-//! many buckets as records, as in a plan, and lists as long as those of a task of photons.
+//! Sizes: 2^16 records and their tables fit the L2 cache of most processors; 2^22 records, the
+//! maximum of a batch, exceed all caches. There are as many buckets as records, as in a plan, and
+//! lists are as long as those of a photon task.
 
 use bytemuck::Zeroable;
 use caustica::low_level::kernels::grid_build::{
@@ -18,11 +18,10 @@ fn main() {
     divan::main();
 }
 
-/// Records of a list.
+/// Number of records per list.
 const LIST: usize = 1 << 13;
 
-/// Records on the walls of a cube of such a size that a cell of the wall holds about four, as
-/// around visible points.
+/// Records on the walls of a cube, with about four per grid cell, as around visible points.
 fn lists(count: u32) -> (Dispatch, Vec<RecordList>) {
     let side = (count as f32 / 24.0).sqrt();
     let mut state = 1u32;

@@ -1,5 +1,5 @@
-//! Rays and trees: each test of a shape, rays through the kd-tree, and its construction. Rates are
-//! rays or triangles per second on one thread; the build uses all.
+//! Ray-shape intersection tests, ray traversal of the kd-tree, and its construction. Rates are rays
+//! per second on one thread, or triangles per second on all threads for the build.
 
 mod workload;
 
@@ -17,11 +17,11 @@ fn main() {
     divan::main();
 }
 
-/// Enough rays that each size of tree is walked all over, few enough for a run in a second.
+/// Number of rays: enough to visit all of each tree, few enough for a run within a second.
 const RAYS: usize = 1 << 14;
 
-/// One shape in the middle that many of the rays meet; the triangle is one of six. The profile is a
-/// cubic, whose patch takes Newton.
+/// Shapes in the center, hit by many of the rays. The triangle is one of six. The profile is a
+/// cubic curve, whose patch needs Newton's method.
 const SHAPES: [(&str, u32, &str); 6] = [
     ("sphere", KIND_SPHERE, "type = \"sphere\"\ncenter = [0, 0, 0]\nradius = 0.6"),
     (
@@ -57,9 +57,8 @@ fn shape(bencher: Bencher, name: &str) {
     });
 }
 
-/// (nu, nv) of a mesh of about 1e3 triangles (the tree fits the first-level cache), 1e4 (the second
-/// level), 1e5 (the size of the comparison with Embree; the triangles do not fit the second level)
-/// and 1e6 (little fits).
+/// (nu, nv) of meshes with about 1e3 triangles (the tree fits the L1 cache), 1e4 (L2 cache), 1e5
+/// (as in the comparison with Embree; the triangles exceed the L2 cache) and 1e6.
 const MESHES: [(u32, u32); 4] = [(32, 17), (100, 51), (316, 159), (1000, 501)];
 
 fn trace(bencher: Bencher, (nu, nv): (u32, u32), hit: impl Fn(&SceneTables, &Ray) -> bool) {
@@ -75,7 +74,7 @@ fn closest_hit(bencher: Bencher, size: (u32, u32)) {
     trace(bencher, size, |scene, ray| intersect_scene(scene, ray).reference != NONE);
 }
 
-/// As the CPU engine traces photons in large scenes.
+/// Several rays at a time, as the CPU engine traces photons in large scenes.
 #[divan::bench(args = MESHES)]
 fn closest_hit_side_by_side(bencher: Bencher, (nu, nv): (u32, u32)) {
     let packed = workload::displaced_sphere(nu, nv);
@@ -96,7 +95,7 @@ fn any_hit(bencher: Bencher, size: (u32, u32)) {
     trace(bencher, size, occluded);
 }
 
-/// As above without the smallest, whose tree is built before it can be timed.
+/// Without the smallest mesh, whose tree is built too fast to be timed.
 #[divan::bench(args = [MESHES[1], MESHES[2], MESHES[3]], sample_count = 10)]
 fn build(bencher: Bencher, (nu, nv): (u32, u32)) {
     let packed = workload::displaced_sphere(nu, nv);

@@ -1,10 +1,9 @@
-//! Checksums of pictures, to prove that a change of the code changes no bit of any picture.
+//! Checksums of images, to verify that a code change does not change any bit of them.
 //!
-//! `cargo run --release --example checksums -- [FILE.toml]...` renders the scenes of the feature
-//! list in `tests/engines/scenes.rs`, those in `scenes/` and the given files, small and with few
-//! photons, on the CPU in f32 and f64 and on the software driver. It prints one line for each
-//! picture: device, xxh3 of the radiance's bits and of the layers', scene. Compare two outputs with
-//! `diff`.
+//! `cargo run --release --example checksums -- [FILE.toml]...` renders the scenes of
+//! `tests/engines/scenes.rs`, those in `scenes/` and the given files at a small size with few
+//! photons, on the CPU in f32 and f64 and on the software driver. It prints one line per image:
+//! device, xxh3 of the bits of radiance and layers, scene. Compare two outputs with `diff`.
 
 #![allow(dead_code)] // the shared scene list has helpers for tests
 
@@ -21,7 +20,7 @@ mod scenes;
 mod support {
     use std::path::PathBuf;
 
-    /// An empty folder for the files that scenes name.
+    /// Creates an empty folder for the files of scenes.
     pub fn folder(name: &str) -> PathBuf {
         let folder = std::env::temp_dir().join(format!("caustica-checksums-{name}"));
         let _ = std::fs::remove_dir_all(&folder);
@@ -58,7 +57,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Renders on each device that has the method, and prints the checksums.
+/// Renders on each device that supports the method, and prints the checksums.
 fn print(name: &str, loaded: &Loaded) -> Result<(), Box<dyn Error>> {
     for (device, wanted) in &DEVICES {
         if *device == "software"

@@ -1,10 +1,11 @@
-//! How cost grows: one thing at a time is made larger, and the exponent of each kernel's seconds,
-//! of loading and of building is fitted. `cargo run --release --example growth -- [--device cpu]
-//! [--axis pixels]... [--full]` prints a table; docs/performance.md tells what it says.
+//! Scaling of cost: increases one quantity at a time, and fits the exponents of the seconds of each
+//! kernel, of loading and of building.
+//! `cargo run --release --example growth -- [--device cpu] [--axis pixels]... [--full]` prints a
+//! table, which docs/performance.md explains.
 //!
-//! Seconds are those of the processor (all threads) where the system tells them, so that other work
-//! on the machine does not count, in the mean of several passes. The exponent is that of the larger
-//! half of the sizes: fixed costs hide it before.
+//! Seconds are processor times of all threads if the system reports them, so that other load on the
+//! machine does not count, averaged over several passes. The exponent is fitted to the larger half
+//! of the sizes, since fixed costs dominate the smaller ones.
 
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -20,16 +21,17 @@ use caustica::low_level::scene::settings::{Radius, RenderSettings};
 use caustica::low_level::scene::{self, Allowance};
 use caustica::low_level::study::statistics::fit;
 
-/// Seconds over which passes are timed at least: the system counts in steps of some milliseconds.
+/// Minimum time in seconds over which passes are timed, since processor times have a resolution of
+/// some milliseconds.
 const WINDOW: f64 = 0.5;
-/// Share of a pass, or of reading and building, below which growth is not told.
+/// Fraction of a pass below which a row is omitted.
 const NOTICEABLE: f64 = 0.05;
 
-/// Something that grows.
+/// A quantity to scale.
 struct Axis {
     name: &'static str,
     sizes: Vec<f64>,
-    /// The scene file's text for a size, with a mesh `mesh.obj` beside it.
+    /// Text of the scene file for a size; it may refer to `mesh.obj`.
     scene: fn(f64) -> String,
     mesh: Option<fn(f64) -> String>,
     settings: fn(f64, &mut RenderSettings),
@@ -97,8 +99,8 @@ material = "white"
 transform = { scale = 0.4, translate = [0.0, 0.6, 0.0] }
 "#;
 
-/// A closed box of grey walls around the camera, `side` pixels square, lit by point lights below
-/// its ceiling.
+/// Scene text of a closed box of gray walls around the camera, lit by point lights below its
+/// ceiling, with an image of `side` x `side` pixels.
 fn cornell(side: u32, lights: u32, grey: f64) -> String {
     let mut text = format!(
         "version = 1\n[camera]\nposition = [0.0, 1.0, 4.0]\ntarget = [0.0, 1.0, 0.0]\nfov = 39.0\n\
@@ -131,7 +133,7 @@ fn cornell(side: u32, lights: u32, grey: f64) -> String {
     text
 }
 
-/// About `triangles` triangles on r = 1 + 0.1 sin 7u sin 9v.
+/// OBJ text with about `triangles` triangles on r = 1 + 0.1 sin 7u sin 9v.
 fn displaced_sphere(triangles: f64) -> String {
     let rows = (triangles / 4.0).sqrt().ceil() as u32;
     let columns = 2 * rows;
@@ -154,7 +156,7 @@ fn displaced_sphere(triangles: f64) -> String {
         for j in 0..columns {
             let at = |i: u32, j: u32| i * columns + j % columns + 1;
             let (a, b, c, d) = (at(i, j), at(i, j + 1), at(i + 1, j), at(i + 1, j + 1));
-            // those at the poles are no triangles
+            // triangles at the poles are degenerate
             if i > 0 {
                 let _ = writeln!(text, "f {a} {b} {c}");
             }
@@ -166,7 +168,7 @@ fn displaced_sphere(triangles: f64) -> String {
     text
 }
 
-/// Seconds of all threads on processors, where the system tells (Linux), else those on the wall.
+/// Processor seconds of all threads on Linux, otherwise wall-clock seconds since `begun`.
 fn spent(begun: Instant) -> f64 {
     let threads = fs::read_dir("/proc/self/task").into_iter().flatten().flatten();
     let nanoseconds = threads.filter_map(|thread| {
@@ -179,7 +181,7 @@ fn spent(begun: Instant) -> f64 {
     }
 }
 
-/// Seconds of everything at one size.
+/// Measures the seconds of loading, building and each kernel at one size.
 fn measure(
     axis: &Axis,
     size: f64,
@@ -193,7 +195,7 @@ fn measure(
     }
     let begun = Instant::now();
     let before = spent(begun);
-    // ten million triangles are a little more than what is allowed unasked
+    // ten million triangles exceed the default limits
     let allowance =
         Allowance { mesh_triangles: 1 << 24, mesh_bytes: 4 << 30, ..Allowance::default() };
     let mut loaded = scene::load_within(&file, &allowance)?;
@@ -220,7 +222,7 @@ fn measure(
         }
         passes += 1.0;
     }
-    // of the seconds on the wall, those in which this program ran, on all threads
+    // ratio of processor time to wall-clock time
     let share = (spent(begun) - before) / wall.elapsed().as_secs_f64();
     seconds.extend(sums.into_iter().map(|(kernel, sum)| (kernel, sum * share / passes)));
     Ok(seconds)
@@ -236,7 +238,7 @@ fn run() -> Result<(), Box<dyn Error>> {
             "--full" => full = true,
             other => {
                 return Err(format!(
-                    "unknown option {other}; there are --device, --axis and --full"
+                    "unknown option {other}; the options are --device, --axis and --full"
                 )
                 .into());
             }
@@ -245,12 +247,12 @@ fn run() -> Result<(), Box<dyn Error>> {
     let all = axes(full);
     if let Some(unknown) = chosen.iter().find(|name| all.iter().all(|axis| axis.name != **name)) {
         let names: Vec<_> = all.iter().map(|axis| axis.name).collect();
-        return Err(format!("there is no axis {unknown}; there are {}", names.join(", ")).into());
+        return Err(format!("unknown axis {unknown}; the axes are {}", names.join(", ")).into());
     }
     let folder: PathBuf =
         std::env::temp_dir().join(format!("caustica-growth-{}", std::process::id()));
     fs::create_dir_all(&folder)?;
-    println!("| grows | from | to | what | s at the least | s at the most | exponent | n log n |");
+    println!("| quantity | from | to | stage | s at smallest | at largest | exponent | n log n |");
     println!("|---|---|---|---|---|---|---|---|");
     for axis in
         all.iter().filter(|axis| chosen.is_empty() || chosen.iter().any(|name| name == axis.name))
@@ -273,7 +275,7 @@ fn run() -> Result<(), Box<dyn Error>> {
             let upper = &points[(points.len() - 1) / 2..];
             let Some(law) = fit(upper) else { continue };
             let (low, high) = (upper[0].0, last.0);
-            // what n log n would show between the same sizes; below one item it has no meaning
+            // exponent of n log n between the same sizes; undefined below one item
             let bound = (low > 1.0).then(|| 1.0 + (high.ln() / low.ln()).ln() / (high / low).ln());
             println!(
                 "| {} | {} | {} | {what} | {:.2e} | {:.2e} | {:.2} | {} |",

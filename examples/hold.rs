@@ -1,9 +1,9 @@
-//! Holds renders of the reference scenes against pictures of other renderers, and prints one table.
+//! Compares renders of the reference scenes with images of other renderers, and prints a table.
 //!
 //!     cargo run --release --example hold [-- --device cpu --full --only mesh]
 //!     cargo run --release --example hold -- --make-truth FULL.exr tests/data/truth/NAME.exr [--relmse 3.3e-4]
 //!
-//! Exits with 1 when a render disagrees. docs/truth.md explains the table.
+//! Exits with code 1 if a render disagrees. docs/truth.md explains the table.
 
 use std::error::Error;
 use std::path::{Path, PathBuf};
@@ -21,37 +21,37 @@ use caustica::low_level::validation::reference::{BLOCK, PixelNoise};
 use caustica::low_level::validation::{Agreement, BlockTruth, hold, render_parts};
 use clap::Parser;
 
-/// Hold renders of the reference scenes against their truths
+/// Compare renders of the reference scenes with reference images
 #[derive(Parser)]
 struct Arguments {
-    /// Device to render on: auto, gpu, software, cpu, cpu-f64, or a part of a device's name
+    /// Device to render on: auto, gpu, software, cpu, cpu-f64, or part of a device name
     #[arg(long, default_value = "auto")]
     device: String,
-    /// Four times as many passes
+    /// Render four times as many passes
     #[arg(long)]
     full: bool,
-    /// Only lines that hold this word, as in mesh or "ppm global"
+    /// Only rows that contain this text, e.g. mesh or "ppm global"
     #[arg(long, value_name = "WORD", default_value = "")]
     only: String,
-    /// Write each line's deviations as a picture (.pfm, a pixel per block) into this folder
+    /// Folder for images of each row's deviations (.pfm, one pixel per block)
     #[arg(long, value_name = "FOLDER")]
     maps: Option<PathBuf>,
-    /// Instead: make the block truth OUT.exr of the picture FULL.exr
+    /// Only convert the image FULL.exr to the block reference OUT.exr
     #[arg(long, num_args = 2, value_names = ["FULL.exr", "OUT.exr"])]
     make_truth: Option<Vec<PathBuf>>,
-    /// With --make-truth: the noise of a picture that brings no standard errors
+    /// With --make-truth: relMSE of an image without standard errors
     #[arg(long, value_name = "E", requires = "make_truth")]
     relmse: Option<f64>,
 }
 
-/// Scene files and truths by these names lie in tests/data/reference and tests/data/truth. Of
-/// variants, which have a hyphen, only the first two lines are made.
+/// Names of scenes in tests/data/reference and of references in tests/data/truth. For variants,
+/// whose names have a hyphen, only the first two rows are rendered.
 const SCENES: [&str; 5] = ["cornell", "drop", "drop-clear", "mesh", "mesh-turned"];
-/// Independent renders per line.
+/// Number of independent renders per row.
 const RENDERS: u32 = 16;
-/// Passes of each; path tracing makes eight times as many.
+/// Number of passes per render; eight times as many for path tracing.
 const PASSES: u32 = 2;
-/// Allowance for density estimation's bias.
+/// Allowed relative bias of density estimation.
 const BIAS: f64 = 0.01;
 
 fn main() -> ExitCode {
@@ -71,20 +71,20 @@ fn main() -> ExitCode {
 
 fn make_truth(full: &Path, out: &Path, relmse: Option<f64>) -> Result<(), Box<dyn Error>> {
     let exr = file::read_exr(full)?;
-    let picture = exr.picture("").ok_or("it has no channels R, G and B")?;
+    let picture = exr.picture("").ok_or("channels R, G and B are missing")?;
     let noise = match (exr.picture("SE."), relmse) {
         (_, Some(e)) => PixelNoise::RelMse(e),
         (Some(errors), None) => PixelNoise::Known(errors),
         (None, None) => {
-            return Err("it has no standard errors SE.R, SE.G, SE.B; say --relmse".into());
+            return Err("channels SE.R, SE.G and SE.B are missing; use --relmse".into());
         }
     };
     let truth = BlockTruth::from_picture(&picture, &noise)
-        .ok_or_else(|| format!("its sides are no multiples of {BLOCK}"))?;
+        .ok_or_else(|| format!("the image size is not a multiple of {BLOCK} pixels"))?;
     Ok(truth.write(out)?)
 }
 
-/// What one line of the table renders, and the bias that it may have.
+/// Rows of the table: label, settings and allowed relative bias.
 fn lines() -> Vec<(String, RenderSettings, f64)> {
     let mut lines = Vec::new();
     let path =
@@ -159,9 +159,11 @@ fn hold_all(arguments: &Arguments) -> Result<bool, Box<dyn Error>> {
         }
     }
     println!(
-        "outside: blocks beyond {LIMIT} sigma, and how many may be (chance brings more in {} % of renders that agree); \
-         no block beyond {LIMIT_FAR} sigma.\n\
-         regions: the same for {REGION} x {REGION} blocks.\nmean: within {} % and {MEAN_ERRORS} standard errors, the render's (+-) and the truth's joined.",
+        "outside: blocks beyond {LIMIT} sigma, and the allowed number (exceeded by chance in {} % \
+         of renders that agree); no block may be beyond {LIMIT_FAR} sigma.\n\
+         regions: the same for regions of {REGION} x {REGION} blocks.\n\
+         mean: within {} % plus {MEAN_ERRORS} combined standard errors of the render (+-) and the \
+         truth.",
         100.0 * CHANCE,
         100.0 * MEAN_LIMIT,
     );

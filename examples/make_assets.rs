@@ -1,4 +1,4 @@
-//! Writes the meshes and textures of the shipped scenes into assets/:
+//! Writes the meshes and textures of the shipped scenes to assets/:
 //!
 //!     cargo run --release --example make_assets [FOLDER]
 

@@ -1,4 +1,4 @@
-//! Measures what single precision costs: prints the tables of docs/precision.md.
+//! Measures the error of single precision and prints the tables of docs/precision.md.
 //!
 //!     cargo run --release --example precision [-- SCENE.toml...]
 
@@ -12,11 +12,11 @@ use caustica::low_level::film::{Picture, luminance};
 use caustica::low_level::scene::settings::RenderSettings;
 use caustica::low_level::scene::{self, Scene};
 
-/// Pixels across.
+/// Image width in pixels.
 const WIDTH: u32 = 160;
-/// Passes of each render.
+/// Passes per render.
 const PASSES: u32 = 16;
-/// Photons of each pass.
+/// Photons per pass.
 const PHOTONS: u32 = 100_000;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -54,8 +54,8 @@ fn render(
     Ok((engine.picture()?, start.elapsed()))
 }
 
-/// f32 and f64 with the same random numbers; then f32 with others, which tells the noise. RMS as in
-/// relMSE.
+/// Compares f32 and f64 with the same random numbers, and f32 with different ones to measure the
+/// noise. RMS values are square roots of relMSE.
 fn scene_row(path: &Path) -> Result<(), Box<dyn Error>> {
     let mut loaded = scene::load(path)?;
     let film = &mut loaded.scene.film;
@@ -67,7 +67,7 @@ fn scene_row(path: &Path) -> Result<(), Box<dyn Error>> {
     let (noisy, _) = render(&Wanted::Cpu, &loaded.scene, &other)?;
     let c = compare(&single, &double)?;
     let cost = c.rel_mse.sqrt();
-    // Two pictures' noise is in the difference.
+    // the difference contains the noise of two images
     let noise = (0.5 * compare(&noisy, &single)?.rel_mse).sqrt();
     println!(
         "| {} | {:.1e} | {:.1e} | {:.1e} | {:.1e} | {:.0} | {:.2} |",
@@ -82,8 +82,8 @@ fn scene_row(path: &Path) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Light of a spherical lamp whose radius is the `over`th part of its distance, over what it is in
-/// closed form.
+/// Ratio of the rendered to the analytic irradiance of a spherical lamp whose distance is `over`
+/// times its radius.
 fn lamp_row(over: f64) -> Result<(), Box<dyn Error>> {
     let distance = 9.0;
     let text = format!(

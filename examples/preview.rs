@@ -1,7 +1,7 @@
-//! How soon the preview shows something: from a scene and from a turned camera to the small picture
-//! and to the first pass of the whole one, on each device; medians of three. The whole one has a
-//! quarter of the scene's sides and a sixteenth of its photons, so that what it takes to begin is
-//! not lost in the pass. `cargo run --release --example preview [SCENE...]`
+//! Latency of the preview: time from a new scene, and from a camera rotation, to the small image
+//! and to the first pass of the full image, on each device; medians of three. The full image has a
+//! quarter of the scene's sides and a sixteenth of its photons, so that the startup time is not
+//! hidden by the pass. `cargo run --release --example preview [SCENE...]`
 
 use std::error::Error;
 use std::sync::Arc;
@@ -26,7 +26,8 @@ fn main() -> Result<(), Box<dyn Error>> {
             .to_vec();
     }
     println!(
-        "| scene | device | scene: small | scene: whole | camera: small | camera: whole |\n|---|---|---|---|---|---|"
+        "| scene | device | scene: small | scene: full | camera: small | camera: full |\n\
+         |---|---|---|---|---|---|"
     );
     for file in &files {
         for device in [Wanted::Cpu, Wanted::Software] {
@@ -63,17 +64,14 @@ fn main() -> Result<(), Box<dyn Error>> {
             println!("| {} | {device:?} | {} |", scene.name, middle.join(" | "));
         }
     }
-    println!(
-        "\n| scene | packing | GPU engine: new | with the programs of another |\n|---|---|---|---|"
-    );
+    println!("\n| scene | packing | GPU engine: new | with existing programs |\n|---|---|---|---|");
     for file in &files {
         println!("| {file} | {} |", renewal(file)?);
     }
     Ok(())
 }
 
-/// What it takes to flatten a scene, to make an engine on the software driver, and to make it
-/// again.
+/// Times to pack a scene, to create an engine on the software driver, and to recreate it.
 fn renewal(file: &str) -> Result<String, Box<dyn Error>> {
     let loaded = scene::load(file.as_ref())?;
     let film = loaded.scene.film;
@@ -91,7 +89,8 @@ fn renewal(file: &str) -> Result<String, Box<dyn Error>> {
     Ok(times.collect::<Vec<_>>().join(" | "))
 }
 
-/// Since `begun`, until a picture for wish `number` is there; the whole one's first pass, or any.
+/// Time from `begun` until an image of request `number` is available: the first pass of the full
+/// image if `whole`, otherwise any image.
 fn until(
     worker: &Worker,
     number: u64,

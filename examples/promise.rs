@@ -1,11 +1,11 @@
-//! Holds the error that renders state against the true one, and prints one table.
+//! Compares stated errors with true errors, and prints a table.
 //!
 //!     cargo run --release --example promise [-- --only "cornell sppm" --seeds 20 --device cpu]
 //!
-//! Truths of `cornell`, `drop` and `mesh` are those of tests/data/truth; those of the others, and
-//! of a larger `drop`, are made first, two renders of each, and kept in target/promise. Exits with
-//! 1 when fewer than nine of ten promises of a line are kept. docs/error-estimate.md explains the
-//! table.
+//! The references of `cornell`, `drop` and `mesh` are in tests/data/truth. Those of other scenes,
+//! and of a larger `drop`, are rendered first, as two independent images each, and stored in
+//! target/promise. Exits with code 1 if the stated error bounds the true one in fewer than 90 % of
+//! the renders of a row. docs/error-estimate.md explains the table.
 
 use std::error::Error;
 use std::path::{Path, PathBuf};
@@ -18,30 +18,31 @@ use caustica::low_level::scene::{self, Scene};
 use caustica::low_level::validation::{BlockTruth, NoisyTruth, Promise, promises};
 use clap::Parser;
 
-/// Hold stated errors against true ones
+/// Compare stated errors with true errors
 #[derive(Parser)]
 struct Arguments {
-    /// Device to render on: auto, gpu, software, cpu, cpu-f64, or a part of a device's name
+    /// Device to render on: auto, gpu, software, cpu, cpu-f64, or part of a device name
     #[arg(long, default_value = "cpu")]
     device: String,
-    /// Only lines that hold this word, as in mesh or "cornell ppm"
+    /// Only rows that contain this text, e.g. mesh or "cornell ppm"
     #[arg(long, value_name = "WORD", default_value = "")]
     only: String,
-    /// Renders of each line
+    /// Number of renders per row
     #[arg(long, default_value_t = 20)]
     seeds: u64,
 }
 
-/// Passes after which a render is asked.
+/// Numbers of passes after which errors are compared.
 const PASSES: [u32; 3] = [6, 16, 64];
-/// Share of the promises that is to be kept.
+/// Required fraction of renders whose stated error bounds the true one.
 const PROMISED: f64 = 0.9;
-/// Each of the two renders of a truth: passes, photons of each, and the start radius in pixels.
+/// Settings of each of the two renders of a reference: passes, photons per pass, start radius in
+/// pixels.
 const TRUTH: (u32, u32, f64) = (512, 131_072, 0.5);
 
-/// Scene and film, as large as the truth in tests/data/truth, or a size for which a truth is made.
-/// `drop` has both: among the 1200 pixels of the former too few have a glint for one to be seen in
-/// every render.
+/// Scenes and image sizes. `None` is the size of the reference in tests/data/truth; for other sizes
+/// the reference is rendered. `drop` has both: in the smaller image of 1200 pixels, too few have a
+/// glint for each render to contain one.
 const SCENES: [(&str, Option<(u32, u32)>); 6] = [
     ("cornell", None),
     ("drop", None),
@@ -51,7 +52,7 @@ const SCENES: [(&str, Option<(u32, u32)>); 6] = [
     ("soft-shadows", Some((96, 60))),
 ];
 
-/// Renders of every scene, and whether other scenes than the first are rendered so.
+/// Rows for each scene: label, settings, and whether scenes other than the first are rendered.
 fn lines() -> Vec<(&'static str, RenderSettings, bool)> {
     let sppm = || RenderSettings { photons: 32_768, ..RenderSettings::default() };
     vec![
@@ -148,7 +149,7 @@ fn print_line(scene: &str, line: &str, passes: u32, promises: &[Promise]) -> boo
     kept as f64 >= PROMISED * promises.len() as f64
 }
 
-/// The scene with its film, the start radius that its file asks for, and its truth.
+/// Loads a scene with its film, the start radius of its file, and its reference.
 fn scene_and_truth(
     wanted: &Wanted,
     name: &str,
@@ -176,7 +177,7 @@ fn scene_and_truth(
     Ok((loaded.scene, loaded.settings.radius, truth))
 }
 
-/// One of the renders of a truth, from its file if there is one.
+/// One of the renders of a reference, read from its file if it exists.
 fn truth_half(
     wanted: &Wanted,
     scene: &Scene,

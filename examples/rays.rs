@@ -1,7 +1,7 @@
-//! Our side of the comparison with Embree (`benches/embree.py`): writes the mesh and the rays as
-//! raw f32 to a folder, then traces all rays on one thread for every line that it reads, one by one
-//! and side by side, and prints the seconds of both; at the end it writes the distances, which are
-//! the same to the bit, or it fails.
+//! Ray tracing part of the comparison with Embree (`benches/embree.py`). Writes the mesh and the
+//! rays as raw f32 to a folder. For each line on standard input, traces all rays on one thread, one
+//! by one and side by side, and prints the seconds of both. Finally writes the distances; fails
+//! unless both ways give the same bits.
 
 #[path = "../benches/workload/mod.rs"]
 mod workload;
@@ -48,7 +48,7 @@ fn main() -> io::Result<()> {
         io::stdout().flush()?;
     }
     if one_by_one != side_by_side {
-        return Err(io::Error::other("rays side by side have other hits than one by one"));
+        return Err(io::Error::other("hits of rays side by side and one by one differ"));
     }
     std::fs::write(folder.join("distances.f32"), bytemuck::cast_slice(&one_by_one))
 }

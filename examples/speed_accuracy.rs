@@ -1,9 +1,9 @@
-//! Writes docs/speed-accuracy.md from the studies that `scenes/studies/run` made:
+//! Writes docs/speed-accuracy.md from the studies of `scenes/studies/run`:
 //!
 //!     cargo run --release --example speed_accuracy -- FOLDER PAGE
 //!
-//! FOLDER holds a study `scene-NAME` (each setting by itself) and `preset-NAME` (the presets'
-//! settings, longer) for each of the shipped scenes.
+//! FOLDER contains the studies `scene-NAME` (each setting varied alone) and `preset-NAME` (a longer
+//! run with the presets' settings) for each of the shipped scenes.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -15,7 +15,7 @@ use serde_json::Value;
 
 const SCENES: [&str; 6] =
     ["caustics", "cornell", "depth-of-field", "soft-shadows", "still-life", "water-drop"];
-/// Settings beside the presets' and what they are.
+/// Changes to the presets' settings and their labels.
 const CHOICES: [(&str, &str); 13] = [
     ("method=path", "path tracing"),
     ("radius=1px", "one disc of 1 px"),
@@ -32,7 +32,7 @@ const CHOICES: [(&str, &str); 13] = [
     ("alpha=0.8", "alpha 0.8"),
 ];
 
-/// A scene's two studies.
+/// The two studies of a scene.
 struct Studied {
     name: &'static str,
     star: Value,
@@ -62,7 +62,7 @@ fn number(value: &Value) -> f64 {
 }
 
 impl Studied {
-    /// The choices of a curve's configuration, in the words of [`CHOICES`].
+    /// Choice of a curve's configuration, as a key of [`CHOICES`]; empty for the base.
     fn choice(&self, curve: &Value) -> String {
         let configs = &self.star["results"]["about"]["configs"];
         let config = &configs[curve["config"].as_u64().unwrap_or(0) as usize];
@@ -78,26 +78,25 @@ impl Studied {
         if fewer { "photons/4".to_owned() } else { "photons*4".to_owned() }
     }
 
-    /// relMSE at the end of equal time; none where it was not rendered.
+    /// Final relMSE at equal time; `None` if the choice was not rendered.
     fn end(&self, choice: &str) -> Option<f64> {
         let curve = curves(&self.star).iter().find(|curve| self.choice(curve) == choice)?;
         points(curve).last().map(rel_mse)
     }
 
-    /// The mean over the seeds of what a run says.
+    /// Mean of a numeric field over all runs.
     fn of_runs(study: &Value, key: &str) -> f64 {
         let runs = study["results"]["runs"].as_array().map_or(&[][..], Vec::as_slice);
         let values: Vec<f64> = runs.iter().filter_map(|run| run[key].as_f64()).collect();
         values.iter().sum::<f64>() / values.len() as f64
     }
 
-    /// The radius that the presets' settings took.
+    /// Automatic radius of the presets' settings, in pixels.
     fn automatic(&self) -> f64 {
         Self::of_runs(&self.preset, "automatic_radius")
     }
 
-    /// relMSE by the presets' settings after so many passes, and whether it is drawn out along the
-    /// last two pictures.
+    /// relMSE of the presets' settings after `passes` passes, and whether it is extrapolated.
     fn after(&self, passes: u32) -> Option<(f64, bool)> {
         let curve = curves(&self.preset).first()?;
         let at = |point: &Value| number(&point["passes"]);
@@ -105,19 +104,19 @@ impl Studied {
             return Some((rel_mse(point), false));
         }
         let [.., before, last] = points(curve) else { return None };
-        // Between whole octaves; the last picture may lie close to the one before.
+        // use images at least a factor of three apart: the last two may be close together
         let early = points(curve).iter().rev().find(|p| at(p) <= at(last) / 3.0).unwrap_or(before);
         let slope = (rel_mse(last) / rel_mse(early)).ln() / (at(last) / at(early)).ln();
         Some((rel_mse(last) * (f64::from(passes) / at(last)).powf(slope), true))
     }
 
-    /// Exponent from one pass, as two tell its error, to many.
+    /// Exponent of relMSE from one pass, estimated from two, to `passes` passes.
     fn decay(&self, passes: u32) -> Option<f64> {
         let (end, _) = self.after(passes)?;
         Some((Self::of_runs(&self.preset, "one_pass") / end).ln() / f64::from(passes).ln())
     }
 
-    /// Seconds of a pass for a million pixels.
+    /// Seconds per pass of a million pixels.
     fn seconds(&self) -> f64 {
         let size = &self.preset["results"]["about"]["size"];
         let pixels = number(&size[0]) * number(&size[1]);
@@ -126,7 +125,7 @@ impl Studied {
     }
 }
 
-/// Median, least and greatest.
+/// Median, minimum and maximum.
 fn range(mut values: Vec<f64>) -> Option<[f64; 3]> {
     values.sort_by(f64::total_cmp);
     let middle =
@@ -138,7 +137,7 @@ fn page(studies: &[Studied]) -> String {
     let mut out = HEAD.to_owned();
     let columns = studies.iter().map(|s| format!(" {} |", s.name)).collect::<String>();
     let ruler = "---:|".repeat(studies.len());
-    let _ = write!(out, "\n## What each setting buys\n\n{BUYS}\n| |{columns}\n|---|{ruler}\n");
+    let _ = write!(out, "\n## Effect of each setting\n\n{BUYS}\n| |{columns}\n|---|{ruler}\n");
     for (choice, words) in CHOICES {
         let _ = write!(out, "| {words} |");
         for study in studies {
@@ -162,13 +161,16 @@ fn page(studies: &[Studied]) -> String {
     for study in studies {
         let _ = write!(out, " {} |", best(study).map_or("–", |(_, px)| px.trim_end_matches("px")));
     }
-    out.push_str("\n| error with the automatic two over the best single one's |");
+    out.push_str("\n| error with the automatic radii over that of the best single disc |");
     for study in studies {
         let ratio = best(study).zip(study.end("")).map(|((best, _), own)| own / best);
         let _ = write!(out, " {} |", ratio.map_or("–".to_owned(), |ratio| format!("{ratio:.2}")));
     }
     let _ = write!(out, "\n\n## The presets\n\n{PRESETS}\n");
-    out.push_str("| | passes | error, median | from | to | exponent, median | from | to |\n|---|---:|---:|---:|---:|---:|---:|---:|\n");
+    out.push_str(
+        "| | passes | error, median | from | to | exponent, median | from | to |\n\
+         |---|---:|---:|---:|---:|---:|---:|---:|\n",
+    );
     for quality in Quality::ALL {
         let passes = quality.passes();
         let errors =
@@ -176,7 +178,7 @@ fn page(studies: &[Studied]) -> String {
         let decays = range(studies.iter().filter_map(|s| s.decay(passes)).collect());
         let (Some(errors), Some(decays)) = (errors, decays) else { continue };
         let drawn = studies.iter().filter_map(|s| s.after(passes)).any(|(_, drawn)| drawn);
-        let mark = if drawn { " (drawn out)" } else { "" };
+        let mark = if drawn { " (extrapolated)" } else { "" };
         let [error, low, high] = errors.map(|e| format!("{:.1} %", 100.0 * e.sqrt()));
         let [decay, slow, fast] = decays.map(|d| format!("{d:.2}"));
         let _ = writeln!(
@@ -185,7 +187,7 @@ fn page(studies: &[Studied]) -> String {
             quality.word()
         );
     }
-    let _ = write!(out, "\n| |{columns}\n|---|{ruler}\n| s for a pass of a million pixels |");
+    let _ = write!(out, "\n| |{columns}\n|---|{ruler}\n| seconds per pass of a million pixels |");
     studies.iter().for_each(|s| write!(out, " {} |", short(s.seconds())).unwrap_or(()));
     out.push('\n');
     for study in studies {
@@ -193,7 +195,7 @@ fn page(studies: &[Studied]) -> String {
         let about = &study.star["results"]["about"];
         let _ = writeln!(
             out,
-            "{} x {} pixels, {} photons a pass, {} s for each render, {} seeds.\n",
+            "{} x {} pixels, {} photons per pass, {} s per render, {} seeds.\n",
             about["size"][0],
             about["size"][1],
             about["configs"][0]["settings"]["photons"],
@@ -216,40 +218,47 @@ fn page(studies: &[Studied]) -> String {
 }
 
 const HEAD: &str = "\
-# Speed against accuracy, scene by scene
+# Speed and accuracy of the shipped scenes
 
-Written by `scenes/studies/run target/studies scenes`, which runs `caustica study` on every shipped scene with the CPU engine;
-not edited by hand. [study.md](study.md) tells how a study measures.
+`scenes/studies/run target/studies scenes` writes this page. It runs `caustica study` on every
+shipped scene with the CPU engine. Do not edit the page by hand. [study.md](study.md) explains how a
+study measures.
 
-How to read the charts: both axes are logarithmic, so that a power law is a straight line and the dotted guides show the
-slopes -1 (noise averaged away) and -2/3 (progressive photon mapping in theory). Lower is better, and the curve that is lowest
-at the time you have is the one to take; where two cross, the better one depends on that time. A curve that bends flat has
-reached its bias: more passes buy nothing, a smaller radius does. *relMSE* is a squared error over the squared brightness: its
-root is the error of a typical pixel, so 0.0025 is 5 %; four times less is half the error. *preset final* are the presets' settings:
-SPPM, one photon a pass for each pixel, automatic radius, global rule, alpha 2/3, sampled direct light.
+Both axes of the charts are logarithmic, so a power law is a straight line. The dotted guides show
+the slopes -1 (averaging of noise) and -2/3 (progressive photon mapping in theory). Lower is better.
+Take the curve that is lowest at the time you have. If two curves cross, the better one depends on
+that time. A curve that flattens has reached its bias: more passes do not help, but a smaller radius
+does. *relMSE* is a squared error over the squared brightness. Its root is the error of a typical
+pixel, so 0.0025 means 5 %, and a quarter of the relMSE means half the error. *preset final* stands
+for the presets' settings: SPPM, one photon per pass for each pixel, automatic radius, global rule,
+alpha 2/3, sampled direct light.
 ";
 
 const BUYS: &str = "\
-relMSE at equal time with one setting changed, over that of the presets' settings: below 1 is better. Two seeds and small
-pictures: a tenth is noise.
+relMSE at equal time with one setting changed, divided by the relMSE of the presets' settings.
+Values below 1 are better. The studies use two seeds and small images, so differences of a tenth are
+noise.
 ";
 
 const RADIUS: &str = "\
-Chosen before the first pass from how many photons fall on a pixel and whether they are caustics (`src/prepare/radius.rs`): a start radius,
-and a wider one for photons that a diffuse surface has scattered. Beside it, the best single disc of those tried.
+The renderer chooses the radius before the first pass from the number of photons on a pixel and from
+the share of caustics (`src/prepare/radius.rs`). The choice consists of a start radius and a wider radius
+for photons that a diffuse surface has scattered. The table compares it with the best single disc of
+those tried.
 ";
 
 const PRESETS: &str = "\
-`--quality` takes these settings, and this many passes. Errors are roots of relMSE over the scenes. The exponent is that with
-which relMSE falls from that of one pass, as the first two passes tell it without a truth, to that at the end; it is what
-`caustica render --quality` promises by (`src/render/quality.rs`). Errors of passes that the studies have no time for are drawn out
-along the last octaves.
+`--quality` uses these settings and this number of passes. The errors are roots of relMSE over the
+scenes. The exponent describes how relMSE falls from its value after one pass to its value at the
+end. The first two passes estimate the former without a ground truth. `caustica render --quality`
+uses this exponent for its predictions (`src/render/quality.rs`). Errors for more passes than the studies
+had time for are extrapolated from the last octaves.
 ";
 
 fn main() -> Result<(), String> {
     let arguments: Vec<String> = env::args().skip(1).collect();
     let [folder, page_file] = arguments.as_slice() else {
-        return Err("expected a folder of studies and a page to write".to_owned());
+        return Err("expected arguments: FOLDER PAGE".to_owned());
     };
     let folder = Path::new(folder);
     let studied = |name: &'static str| {

@@ -1,9 +1,9 @@
-//! Prints the table of docs/stability.md: every extreme with its figure on the CPU and on lavapipe,
-//! and its bound.
+//! Prints the table of docs/stability.md: each extreme case with its measured value on the CPU and
+//! on lavapipe, and its bound.
 //!
 //!     cargo run --release --example stability [WORD] > table.md
 //!
-//! With a word, only the rows whose names hold it. Exits with 1 when a bound does not hold.
+//! WORD selects the rows whose names contain it. Exits with code 1 if a bound is exceeded.
 
 #[path = "../tests/stability/bench.rs"]
 mod bench;
@@ -33,8 +33,8 @@ fn main() -> ExitCode {
     ExitCode::from(u8::from(!holds))
 }
 
-/// Prints the table as Markdown, section by section, measured on both devices; whether every row
-/// holds.
+/// Measures all rows on both devices and prints them as Markdown tables. Returns true if all bounds
+/// hold.
 fn print_table(only: &str) -> bool {
     let benches = [On::Cpu, On::Software].map(|on| Bench::new(on, true));
     let mut holds = true;

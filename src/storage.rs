@@ -1,9 +1,9 @@
-//! Files as the program writes and reads them.
+//! Atomic writing and safe reading of files.
 //!
-//! A regular file is complete or as it was: it is written under a name of this writer alone in the
-//! same folder, then renamed. Links are followed, mode and owner stay, and a file without write
-//! permission is refused, even for root. What is no regular file (a pipe, a device) is written to,
-//! never replaced.
+//! A regular file is written under a unique temporary name in the same folder and then renamed, so
+//! it is either complete or unchanged. Links are followed, mode and owner are kept, and files
+//! without write permission are refused, even for root. Pipes and devices are written to directly
+//! and never replaced.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Read, Write};
@@ -12,40 +12,41 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use xxhash_rust::xxh3::xxh3_64;
 
-/// Links that are followed at most.
+/// Maximum number of links to follow.
 const LINKS: u32 = 40;
-/// Times that a file is compared with the one that its name leads to.
+/// Maximum number of attempts to resolve a name while another program replaces the file.
 const LOOKS: u32 = 16;
 /// Names of standard output.
 const OUTPUT: [&str; 3] = ["/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"];
-/// What unfinished files and locks begin with; the rest is short, whatever the name of the file.
+/// Prefix of temporary files and locks. The rest of their names is short, regardless of the file
+/// name.
 const PREFIX: &str = ".caustica-";
 
-/// What stands, or may stand, at the place of an output.
+/// Kind of file at the location of an output.
 enum Target {
-    /// Nothing yet.
+    /// No file exists.
     Free(PathBuf),
     /// A regular file.
     Taken(PathBuf, fs::Metadata),
     /// A pipe or a device.
     Special(PathBuf),
-    /// This program's standard output, whatever it is.
+    /// Standard output of this program.
     Output,
 }
 
-/// What a file is for.
+/// Purpose of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Purpose {
-    /// A result: it may go to a pipe or a device, too.
+    /// Result; may also be a pipe or a device.
     Result,
-    /// Something to be read again: it is brought to the disk, and is a regular file.
+    /// File to be read again; must be a regular file, and is synced to disk.
     Keepsake,
 }
 
-/// Finds out before the work whether `file` can be written after it, and leaves nothing there.
+/// Checks that `file` can be written, without leaving a file behind.
 ///
 /// # Errors
-/// Why it cannot.
+/// The reason why it cannot be written.
 pub fn check(file: &Path, purpose: Purpose) -> io::Result<()> {
     match place(file)? {
         Target::Special(_) | Target::Output if purpose == Purpose::Keepsake => Err(not_regular()),
@@ -57,10 +58,10 @@ pub fn check(file: &Path, purpose: Purpose) -> io::Result<()> {
     }
 }
 
-/// Writes what `fill` gives to `file`.
+/// Writes the output of `fill` to `file` atomically.
 ///
 /// # Errors
-/// Where the system refuses; what was there stays.
+/// If the file cannot be written. An existing file is unchanged.
 pub fn write(
     file: &Path,
     purpose: Purpose,
@@ -79,7 +80,7 @@ pub fn write(
         Target::Taken(target, found) => (target, Some(found)),
     };
     let (unfinished, mut out) = unfinished(&target)?;
-    // first the mode: what is private must not be readable by others while it is written
+    // set the mode first, so that private data is never readable by others
     let written = before
         .map_or(Ok(()), |before| take_over(&out, &before))
         .and_then(|()| fill(&mut out))
@@ -87,13 +88,13 @@ pub fn write(
         .and_then(|()| put_in_place(&unfinished, &target))
         .and_then(|()| if purpose == Purpose::Keepsake { sync_folder(&target) } else { Ok(()) });
     written.inspect_err(|_| {
-        // It may not be there; the error to report is the first one.
+        // the file may not exist; report the first error
         let _ = fs::remove_file(&unfinished);
     })
 }
 
-/// Moves `unfinished` to the place of `target`. What is mounted there by itself, as a container's
-/// volume of one file, cannot be replaced, and is written over.
+/// Renames `unfinished` to `target`. A mount point, such as a single-file volume of a container,
+/// cannot be replaced and is overwritten instead.
 fn put_in_place(unfinished: &Path, target: &Path) -> io::Result<()> {
     match fs::rename(unfinished, target) {
         Err(error) if is_mount(&error) => {
@@ -110,12 +111,12 @@ fn is_mount(error: &io::Error) -> bool {
     matches!(error.kind(), io::ErrorKind::ResourceBusy | io::ErrorKind::CrossesDevices)
 }
 
-/// Reads a regular file of at most `most` bytes. Others may never end.
+/// Reads a regular file of at most `most` bytes. Other files may be endless.
 ///
 /// # Errors
-/// Where it is none, is larger, or the system refuses.
+/// If the file is not regular, is too large, or cannot be read.
 pub fn read(file: &Path, most: u64) -> io::Result<Vec<u8>> {
-    // opening a pipe would wait for its writer
+    // opening a pipe would block until it has a writer
     let found = fs::metadata(file)?;
     if !found.is_file() {
         return Err(not_regular());
@@ -126,7 +127,7 @@ pub fn read(file: &Path, most: u64) -> io::Result<Vec<u8>> {
         return Err(not_regular());
     }
     if found.len() > most {
-        let text = format!("it has {} bytes, and at most {most} are read", found.len());
+        let text = format!("the file has {} bytes, more than the limit of {most}", found.len());
         return Err(io::Error::new(io::ErrorKind::FileTooLarge, text));
     }
     let mut bytes = Vec::new();
@@ -137,13 +138,13 @@ pub fn read(file: &Path, most: u64) -> io::Result<Vec<u8>> {
 /// Reads a regular file as text.
 ///
 /// # Errors
-/// As [`read`], and where it is not UTF-8.
+/// As for [`read`], and if the content is not UTF-8.
 pub fn read_text(file: &Path, most: u64) -> io::Result<String> {
     String::from_utf8(read(file, most)?)
         .map_err(|error| io::Error::new(io::ErrorKind::InvalidData, error))
 }
 
-/// Whether two names are of one file, links followed.
+/// Returns true if two names refer to the same file after following links.
 pub fn same(a: &Path, b: &Path) -> bool {
     match (target(a), target(b)) {
         (Ok(a), Ok(b)) => {
@@ -155,8 +156,8 @@ pub fn same(a: &Path, b: &Path) -> bool {
     }
 }
 
-/// Whether a name is one of an open file: `-`, standard output or error, or a number of the
-/// process's own.
+/// Returns true if a name refers to an open stream: `-`, standard output or error, or a file
+/// descriptor of this process.
 pub fn is_stream(file: &Path) -> bool {
     let folders = ["/dev/fd", "/proc/self/fd"];
     let names = ["-", "/dev/stdout", "/dev/stderr"];
@@ -164,30 +165,29 @@ pub fn is_stream(file: &Path) -> bool {
         || folders.iter().any(|folder| file.starts_with(folder))
 }
 
-/// Held while a render writes to a file: no other one that asks can hold it. It ends with the
-/// process.
+/// Advisory lock on a file that a render writes to. Released when the process ends.
 #[derive(Debug)]
 pub struct Lock {
     path: PathBuf,
-    // the lock is that of the open file
+    // the lock belongs to the open file
     _file: File,
 }
 
-/// Why a lock is not to be had.
+/// Reason why a lock cannot be acquired.
 #[derive(Debug)]
 pub enum LockError {
-    /// Another process holds it, with this id if it is known.
+    /// Another process holds it, with this ID if known.
     Held(Option<u32>),
-    /// The system refuses.
+    /// The system reported an error.
     Io(io::Error),
 }
 
 impl Lock {
-    /// Locks `file`, which need not exist, and removes what a killed writer left of it. Where the
-    /// file system knows no locks there is none to hold.
+    /// Locks `file`, which need not exist, and removes temporary files of killed writers. Returns
+    /// `None` if the file system does not support locks.
     ///
     /// # Errors
-    /// Where another process holds the lock, or the system refuses.
+    /// If another process holds the lock, or the lock file cannot be opened.
     pub fn of(file: &Path) -> Result<Option<Self>, LockError> {
         let target = target(file).map_err(LockError::Io)?;
         let path = target.with_file_name(format!("{PREFIX}{}.lock", hash(&target)));
@@ -206,11 +206,11 @@ impl Lock {
                 }
                 Err(fs::TryLockError::Error(error)) => return Err(LockError::Io(error)),
             }
-            // the holder before may have removed the name between opening and locking
+            // the previous holder may have removed the file between opening and locking
             if !is_at(&opened, &path) {
                 continue;
             }
-            // who holds it is for people; the lock does not depend on it
+            // the process ID is for messages only
             let _ = opened.set_len(0).and_then(|()| write!(opened, "{}", std::process::id()));
             remove_leftovers(&target);
             return Ok(Some(Self { path, _file: opened }));
@@ -218,8 +218,8 @@ impl Lock {
     }
 }
 
-/// Opens a lock's file, or makes it. Another user's may be read-only here: the lock is the same,
-/// and only the holder's number cannot be put in.
+/// Opens or creates a lock file. If it is another user's and read-only, it can still be locked, but
+/// the process ID cannot be written.
 fn open_lock(path: &Path) -> io::Result<File> {
     match OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path) {
         Err(error) if error.kind() == io::ErrorKind::PermissionDenied => {
@@ -231,13 +231,13 @@ fn open_lock(path: &Path) -> io::Result<File> {
 
 impl Drop for Lock {
     fn drop(&mut self) {
-        // while it is still locked, so that nobody else's is removed
+        // remove the file while it is locked, so that it cannot be another holder's
         let _ = fs::remove_file(&self.path);
     }
 }
 
-/// Whether the file system has no locks at all, or none left (`ENOLCK`, as NFS without its lock
-/// service).
+/// Returns true if the file system does not support locks or has none left (`ENOLCK`, e.g. NFS
+/// without its lock service).
 fn knows_no_locks(error: &io::Error) -> bool {
     const NO_LOCKS: i32 = 37;
     error.kind() == io::ErrorKind::Unsupported
@@ -248,7 +248,7 @@ fn is_at(file: &File, path: &Path) -> bool {
     file.metadata().is_ok_and(|found| is_same(&found, &fs::metadata(path).ok()))
 }
 
-/// Whether both are of one file.
+/// Returns true if both belong to the same file.
 #[cfg(unix)]
 fn is_same(a: &fs::Metadata, b: &Option<fs::Metadata>) -> bool {
     use std::os::unix::fs::MetadataExt;
@@ -260,7 +260,7 @@ fn is_same(_: &fs::Metadata, b: &Option<fs::Metadata>) -> bool {
     b.is_some()
 }
 
-/// Removes unfinished files of `target`, whose lock is held.
+/// Removes temporary files of `target`, whose lock is held.
 fn remove_leftovers(target: &Path) {
     let start = format!("{PREFIX}{}-", hash(target));
     let folder = folder(target);
@@ -283,7 +283,7 @@ fn place(file: &Path) -> io::Result<Target> {
         Err(error) => return Err(error),
     };
     if found.is_dir() {
-        return Err(io::Error::new(io::ErrorKind::IsADirectory, "this is a folder"));
+        return Err(io::Error::new(io::ErrorKind::IsADirectory, "is a folder"));
     }
     if found.permissions().readonly() {
         return Err(io::Error::new(io::ErrorKind::PermissionDenied, "the file is read-only"));
@@ -291,11 +291,11 @@ fn place(file: &Path) -> io::Result<Target> {
     if !found.is_file() {
         return Ok(Target::Special(file.to_owned()));
     }
-    // whether this user may, the system knows best
+    // let the system check the permissions of this user
     OpenOptions::new().write(true).open(file)?;
     let target = target(file)?;
-    // the links of /proc/self/fd also lead to pipes and to files that have no name any more; another
-    // program may replace the file between the two looks
+    // links in /proc/self/fd may also lead to pipes and deleted files, and another program may
+    // replace the file between the two calls
     for _ in 0..LOOKS {
         if is_same(&found, &fs::metadata(&target).ok()) {
             return Ok(Target::Taken(target, found));
@@ -305,21 +305,21 @@ fn place(file: &Path) -> io::Result<Target> {
     Ok(Target::Special(file.to_owned()))
 }
 
-/// Whether a name leads by links to standard output. That may be a file which a shell has opened
-/// for several programs: only by the open file itself does each write after the one before.
+/// Returns true if a name leads to standard output via links. A shell may have opened that file for
+/// several programs, whose outputs follow each other only if all use the open file.
 fn is_output(file: &Path) -> bool {
     let is = |path: &Path| cfg!(unix) && OUTPUT.iter().any(|name| path == Path::new(name));
     let link = |path: &PathBuf| Some(folder(path).join(fs::read_link(path).ok()?));
     std::iter::successors(Some(file.to_owned()), link).take(LINKS as usize).any(|path| is(&path))
 }
 
-/// The file that a name stands for, links followed as far as there are any.
+/// Resolves a name by following links.
 fn target(file: &Path) -> io::Result<PathBuf> {
     let mut target = file.to_owned();
     for _ in 0..LINKS {
         match fs::read_link(&target) {
             Ok(link) => target = folder(&target).join(link),
-            // no link, or nothing there
+            // not a link, or no file
             Err(_) => return Ok(target),
         }
     }
@@ -333,9 +333,9 @@ fn folder(file: &Path) -> PathBuf {
     }
 }
 
-/// A new file beside `target`, of this writer alone. Another process may have the same number (in
-/// another container, on another machine), and one that was killed may have left its file: such
-/// names are passed over.
+/// Creates a unique temporary file next to `target`. Skips names that exist, since another process
+/// may have the same ID (in another container or on another machine), or a killed one may have left
+/// its file.
 fn unfinished(target: &Path) -> io::Result<(PathBuf, File)> {
     static COUNT: AtomicU64 = AtomicU64::new(0);
     loop {
@@ -350,20 +350,20 @@ fn unfinished(target: &Path) -> io::Result<(PathBuf, File)> {
     }
 }
 
-/// Tells names in one folder apart.
+/// Short hash that distinguishes files in one folder.
 fn hash(target: &Path) -> String {
     let name = target.file_name().unwrap_or_default();
     format!("{:08x}", xxh3_64(name.as_encoded_bytes()) as u32)
 }
 
-/// Gives `file` the mode of what it replaces, and its owner as far as this user may.
+/// Sets the mode of `file` to that of the file it replaces, and the owner if permitted.
 fn take_over(file: &File, before: &fs::Metadata) -> io::Result<()> {
     #[cfg(unix)]
     {
         use std::os::unix::fs::{MetadataExt, fchown};
         let new = file.metadata()?;
         if (new.uid(), new.gid()) != (before.uid(), before.gid()) {
-            // only root may give files away; the group alone often may be given
+            // only root can change the owner, but users can often change the group
             let _ = fchown(file, Some(before.uid()), Some(before.gid()))
                 .or_else(|_| fchown(file, None, Some(before.gid())));
         }
@@ -371,11 +371,11 @@ fn take_over(file: &File, before: &fs::Metadata) -> io::Result<()> {
     file.set_permissions(before.permissions())
 }
 
-/// Brings a new name to the disk, where folders can be opened.
+/// Syncs a new directory entry to disk, on systems where folders can be opened.
 fn sync_folder(file: &Path) -> io::Result<()> {
     if cfg!(unix) { File::open(folder(file))?.sync_all() } else { Ok(()) }
 }
 
 fn not_regular() -> io::Error {
-    io::Error::other("this is no regular file but a pipe or a device")
+    io::Error::other("not a regular file, but a pipe or a device")
 }

@@ -212,7 +212,7 @@ fn people_get_a_table() {
         "gather",
         "all kernels",
         "a pass takes",
-        "bytes a pixel",
+        "bytes per pixel",
     ] {
         assert!(table.contains(word), "no `{word}` in\n{table}");
     }
@@ -286,10 +286,10 @@ fn mistakes_are_told_before_the_work() {
     fails(
         &with(&["--max-relMSE", "0.1", "--max-relMSE", "0.2"]),
         2,
-        &["whole picture", "one for each"],
+        &["whole image", "one for each"],
     );
     fails(&with(&["--region", "a=0,0,9,9", "--region", "a=1,1,9,9"]), 2, &["two regions"]);
-    fails(&with(&["--region", "a=0,0,25,9"]), 2, &["beyond the picture", "24 columns"]);
+    fails(&with(&["--region", "a=0,0,25,9"]), 2, &["beyond the image", "24 columns"]);
     fails(&with(&["--size", "8x8"]), 1, &["8x8", "24x16", "--size"]);
     fails(
         &["ball.toml", "--device", "software", "--method", "path"],

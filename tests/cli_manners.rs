@@ -104,7 +104,7 @@ fn manual_pages() {
     if let Ok(output) = Command::new("groff").args(["-ww", "-man", "-Tascii"]).arg(&render).output()
     {
         assert_eq!((output.status.success(), text(&output.stderr)), (true, String::new()));
-        assert!(text(&output.stdout).contains("Render a scene into pictures"));
+        assert!(text(&output.stdout).contains("Render a scene to images"));
     }
     let output = with(&folder, &[], &["man", "missing"]);
     assert_eq!(output.status.code(), Some(1));

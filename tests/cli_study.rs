@@ -64,7 +64,7 @@ fn a_small_study_writes_what_it_promises() {
         assert!(error.contains(word), "{word}: {error}");
     }
     let said = text(&output.stdout);
-    assert!(said.contains("For a preview in") && said.contains("For a final picture"), "{said}");
+    assert!(said.contains("For a preview in") && said.contains("For a final image"), "{said}");
     assert!(said.ends_with("report.html\n"), "{said}");
     // CSV: the same number of fields in each line, and one line for each picture.
     let csv = fs::read_to_string(folder.join("out/study.csv")).unwrap();
@@ -135,7 +135,9 @@ fn an_interrupted_study_goes_on_to_the_same_end() {
     assert!(last.contains("\"complete\":false"), "{last}");
     let kept = runs(&folder);
     assert!((2..9).contains(&kept.len()), "{}", kept.len());
-    assert!(fs::read_to_string(folder.join("out/report.html")).unwrap().contains("Stopped after"));
+    assert!(
+        fs::read_to_string(folder.join("out/report.html")).unwrap().contains("Interrupted after")
+    );
 
     assert_eq!(caustica(&folder, &SMALL).status.code(), Some(0));
     let ended = runs(&folder);
@@ -156,8 +158,8 @@ fn what_does_not_belong_is_refused() {
     let with = |more: &[&'static str]| [&study[..], more].concat();
     refused(&with(&["--grid", "radios=1px"]), 2, "did you mean `radius`");
     refused(&with(&["--grid", "alpha=2"]), 2, "above 0 and up to 1");
-    refused(&with(&["--crop", "0,0,99,9"]), 2, "reaches beyond the picture");
-    refused(&with(&["--truth-time", "5s"]), 2, "takes all of the budget");
+    refused(&with(&["--crop", "0,0,99,9"]), 2, "extends beyond the image");
+    refused(&with(&["--truth-time", "5s"]), 2, "takes the whole budget");
     refused(&with(&["--grid", "device=cpu,Voodoo2"]), 4, "there is no device `Voodoo2`");
     refused(&with(&["--truth", "missing.exr"]), 1, "missing.exr");
     assert!(!folder.join("out").exists(), "nothing was begun");
@@ -189,16 +191,20 @@ fn what_does_not_belong_is_refused() {
     refused(
         &with(&["--seeds", "2", "--vary", "radius=2px", "--size", "32x24"]),
         2,
-        "it holds a study of 1 seeds",
+        "contains a study with 1 seeds",
     );
-    refused(&with(&["--seeds", "1", "--vary", "radius=3px", "--size", "32x24"]), 2, "another grid");
+    refused(
+        &with(&["--seeds", "1", "--vary", "radius=3px", "--size", "32x24"]),
+        2,
+        "a different grid",
+    );
     fs::write(folder.join("ball.toml"), SCENE.replace("ior = 1.5", "ior = 1.4")).unwrap();
-    refused(&small, 2, "an older text of this scene");
+    refused(&small, 2, "a different text of this scene");
     fs::create_dir(folder.join("mine")).unwrap();
     fs::write(folder.join("mine/letter"), "dear").unwrap();
     let mine: Vec<&str> =
         small.iter().map(|word| if *word == "out" { "mine" } else { word }).collect();
-    refused(&mine, 2, "something else than a study");
+    refused(&mine, 2, "something other than a study");
     assert_eq!(fs::read_to_string(folder.join("mine/letter")).unwrap(), "dear");
 }
 
@@ -225,7 +231,9 @@ fn lamps_shrink() {
     let study_json = json(&folder.join("out/study.json"));
     assert_eq!(study_json["parts"].as_array().unwrap().len(), 3);
     assert!(
-        fs::read_to_string(folder.join("out/report.html")).unwrap().contains("As the lamp shrinks")
+        fs::read_to_string(folder.join("out/report.html"))
+            .unwrap()
+            .contains("Effect of the lamp area")
     );
     assert!(folder.join("out/charts/lamps.svg").exists());
     let flat = SCENE.replace(
@@ -237,7 +245,7 @@ fn lamps_shrink() {
         study.iter().map(|word| if *word == "out" { "flat" } else { word }).collect();
     let output = caustica(&folder, &[&other[..], &grid].concat());
     assert_eq!(output.status.code(), Some(2));
-    assert!(text(&output.stderr).contains("spheres"), "{}", text(&output.stderr));
+    assert!(text(&output.stderr).contains("spherical"), "{}", text(&output.stderr));
 }
 
 /// What surfaces of revolution are made of is an axis; all are held against one truth, of the exact
@@ -262,7 +270,7 @@ fn revolutions_become_meshes() {
     let output = caustica(&folder, &[&study[..], &vary].concat());
     assert_eq!(output.status.code(), Some(2));
     let error = error(&output);
-    assert!(error.contains("there is no surface of revolution in this scene"), "{error}");
+    assert!(error.contains("the scene has no surface of revolution"), "{error}");
     let with = SCENE.clone()
         + "[[shapes]]\ntype = \"revolution\"\nprofile = [[0.0, 0.0], [0.6, 0.3], [0.0, 1.0]]\nmaterial = \"white\"\n";
     fs::write(folder.join("ball.toml"), with).unwrap();
@@ -273,7 +281,7 @@ fn revolutions_become_meshes() {
     let study_json = json(&folder.join("with/study.json"));
     let labels: Vec<&str> =
         study_json["labels"].as_array().unwrap().iter().map(|l| l.as_str().unwrap()).collect();
-    assert_eq!(labels, ["the scene's own", "meshes of 16 sectors", "Newton tolerance 1e-2"]);
+    assert_eq!(labels, ["scene settings", "meshes of 16 sectors", "Newton tolerance 1e-2"]);
     assert_eq!(study_json["parts"].as_array().unwrap().len(), 1, "one truth");
     let csv = fs::read_to_string(folder.join("with/study.csv")).unwrap();
     assert!(

@@ -168,8 +168,14 @@ const TUBE: &str = "profile = [[1, 0], [1, 2]]\n";
 #[test]
 fn wrong_use_is_2() {
     fails("none", TUBE, &[], 2, &["<PROFILE>"]);
-    fails("extension", TUBE, &["p.toml", "-o", "p.ply"], 2, &["p.ply", "end the name in .obj"]);
-    fails("bare", TUBE, &["missing.toml", "-o", "mesh"], 2, &["end the name in .obj"]);
+    fails(
+        "extension",
+        TUBE,
+        &["p.toml", "-o", "p.ply"],
+        2,
+        &["p.ply", "a file name that ends in .obj"],
+    );
+    fails("bare", TUBE, &["missing.toml", "-o", "mesh"], 2, &["a file name that ends in .obj"]);
     fails("sectors", TUBE, &["p.toml", "--sectors", "2"], 2, &["--sectors", "3..=4096"]);
     fails("flatness", TUBE, &["p.toml", "--flatness", "0"], 2, &["1e-6 to 0.1"]);
     fails("negative", TUBE, &["p.toml", "--flatness", "-1"], 2, &["1e-6 to 0.1"]);
@@ -178,7 +184,13 @@ fn wrong_use_is_2() {
 
 #[test]
 fn places_that_take_no_file_are_1() {
-    fails("folder", TUBE, &["p.toml", "-o", "no/p.obj"], 1, &["no/p.obj", "no folder `no`"]);
+    fails(
+        "folder",
+        TUBE,
+        &["p.toml", "-o", "no/p.obj"],
+        1,
+        &["no/p.obj", "the folder `no` does not exist"],
+    );
     fails("missing", TUBE, &["q.toml", "-o", "p.obj"], 1, &["q.toml", "did you mean p.toml?"]);
 }
 

@@ -98,16 +98,21 @@ fn outputs_are_known_before_the_scene_is_read() {
         "folder",
         &["render", "missing.toml", "-o", "no/a.png"],
         1,
-        &["no/a.png", "no folder `no`", "create"],
+        &["no/a.png", "the folder `no` does not exist", "create"],
     );
     fails(
         "second",
         &["render", "missing.toml", "-o", "a.exr", "-o", "no/a.png"],
         1,
-        &["no folder `no`"],
+        &["the folder `no` does not exist"],
     );
     fails("map", &["compare", "missing.toml", "-o", "map.exr"], 2, &["map.exr", ".png"]);
-    fails("map folder", &["compare", "missing.toml", "-o", "no/map.png"], 1, &["no folder `no`"]);
+    fails(
+        "map folder",
+        &["compare", "missing.toml", "-o", "no/map.png"],
+        1,
+        &["the folder `no` does not exist"],
+    );
 }
 
 #[test]
@@ -176,7 +181,7 @@ fn info_tells_what_is_needed_and_what_is_not() {
     let chosen = |output: &Output| {
         text(&output.stdout).lines().filter(|l| l.starts_with("start radius: ")).count()
     };
-    assert!(line("start radius: ").contains(" px for light"), "{shown}");
+    assert!(line("start radius: ").contains(" px for diffusely"), "{shown}");
     assert_eq!(chosen(&caustica(&folder, &["info", "ball.toml", "--radius", "2px"])), 0);
     let path = caustica(&folder, &["info", "ball.toml", "--method", "path"]);
     assert_eq!(chosen(&path), 0);
@@ -305,7 +310,9 @@ fn limits_are_told() {
         text(&output.stdout)
     );
     let error = text(&output.stderr);
-    for word in ["shapes[0] is", "tiny.toml:16:10", "expected at least 1e-5", "the camera is"] {
+    for word in
+        ["shapes[0] is", "tiny.toml:16:10", "expected at least 1e-5", "the camera's distance"]
+    {
         assert!(error.contains(word), "{word}: {error}");
     }
     let quick = ["--device", "cpu", "--passes", "1", "--photons", "10", "--quiet"];

@@ -70,7 +70,7 @@ fn a_denoised_picture_is_nearer_to_the_truth() {
     let what = denoiser.denoise(&part, &guides(&a)).unwrap_err().to_string();
     assert!(what.contains("Open Image Denoise 2: ") && what.contains("size"), "{what}");
     let what = denoiser.denoise(&noisy, &guides(&a)[..5]).unwrap_err().to_string();
-    assert!(what.contains("normal.Z is missing"), "{what}");
+    assert!(what.contains("normal.Z, which is missing"), "{what}");
 }
 
 /// Stripes that drown in noise: only who is told where they are and how coloured finds them again.
@@ -180,7 +180,7 @@ fn windows_are_denoised_as_well() {
 fn a_file_that_holds_the_render_alone_is_not_enough() {
     let folder = folder("alone");
     for output in ["a.pfm", "a.hdr"] {
-        let words = ["hold the render alone", "extension .png, or .exr"];
+        let words = ["store only the render", "extension .png, or .exr"];
         ends(&folder, &["render", SCENE, "--denoise", "-o", output], 2, &words);
     }
 }

@@ -113,7 +113,7 @@ fn camera_and_field_of_view() {
     assert_eq!(found[0].line_column(), Some((6, 7)), "{found:?}");
     // half the way to the camera over half the diagonal of the shapes
     let from = "position = [0.0, 2.0, 0.0]";
-    let words = ["camera is", "times as far", "1e4"];
+    let words = ["camera's distance", "times the width", "1e4"];
     let radius =
         SOUND.replace("units = 0.01", "units = 10.0").replace("radius = 0.25", "radius = 2.0");
     let at = |y: &str| told(&radius.replace(from, &format!("position = [0.0, {y}, 0.0]")));
@@ -182,7 +182,7 @@ fn far_from_the_origin() {
     assert!(moved(2.9e8).is_empty(), "{:?}", moved(2.9e8));
     let found = moved(3.1e8);
     assert_eq!(found.len(), 1, "{found:?}");
-    assert!(found[0].message().contains("1.0e8 times its own radius from the origin"), "{found:?}");
+    assert!(found[0].message().contains("from the origin is 1.0e8 times its radius"), "{found:?}");
 }
 
 #[test]
@@ -202,7 +202,7 @@ fn lights_and_lamps() {
         )
     };
     let from = "[[lights]]\ntype = \"point\"\nposition = [0.0, 1.5, 1.0]";
-    limit(from, &lamp(200.0), &lamp(220.0), "1.0", &["shapes[2] shines", "1e2"]);
+    limit(from, &lamp(200.0), &lamp(220.0), "1.0", &["shapes[2] is a lamp", "1e2"]);
 }
 
 #[test]

@@ -308,7 +308,7 @@ fn without_a_desktop_the_reason_is_told() {
         (None, &["ball.toml", "-o", "picture.gif"], 2, ".exr"),
         (None, &["ball.toml", "--device", "cpu", "--root", "."], 1, "DISPLAY"),
         (None, &["ball.toml", "--root", "elsewhere"], 1, "lies outside of elsewhere"),
-        (None, &["ball.toml", "--root", "nowhere"], 2, "no such folder"),
+        (None, &["ball.toml", "--root", "nowhere"], 2, "the folder does not exist"),
         (None, &["ball.toml", "--limit", "shapes=1"], 1, "`shapes`"),
     ] {
         let mut command = preview(&folder, arguments);

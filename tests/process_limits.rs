@@ -126,7 +126,7 @@ fn too_many_threads() {
     let output = output(command);
     let error = text(&output.stderr);
     assert!(
-        output.status.success() && error.contains(&format!("{} are started", 4 * cores)),
+        output.status.success() && error.contains(&format!("using {} threads", 4 * cores)),
         "{error}"
     );
 }

@@ -1,8 +1,7 @@
-//! What is traced: the displaced sphere of the comparison with Embree, r = 1 + 0.1 sin 7u sin 9v,
-//! and rays that have nothing in common, from a sphere of radius 2 toward random points of a cube
-//! of half-width 0.7.
+//! Workload: the displaced sphere r = 1 + 0.1 sin 7u sin 9v of the comparison with Embree, and
+//! incoherent rays from a sphere of radius 2 toward random points in a cube of half-width 0.7.
 
-#![allow(dead_code)] // each program uses its part
+#![allow(dead_code)] // each program uses a part of this module
 
 use caustica::low_level::pack::PackedScene;
 use caustica::low_level::pilots::prepare;
@@ -12,7 +11,7 @@ use caustica::low_level::shapes::ray::Ray;
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
-/// A camera and one shape, which `shape` describes.
+/// Scene with a camera and one shape, given as TOML text.
 pub fn parsed(shape: &str) -> scene::Scene {
     let text = format!(
         "version = 1\n[camera]\nposition = [0, 0, 4]\ntarget = [0, 0, 0]\nfov = 30\n\
@@ -26,12 +25,12 @@ pub fn parsed(shape: &str) -> scene::Scene {
     }
 }
 
-/// The tables of a scene with one shape.
+/// PackedScene scene with one shape.
 pub fn packed(shape: &str) -> PackedScene {
     prepare(&parsed(shape), 16, 16).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// The tables of the displaced sphere with 2 (`nu`) (`nv` - 1) triangles.
+/// PackedScene scene of the displaced sphere with 2 (`nu`) (`nv` - 1) triangles.
 pub fn displaced_sphere(nu: u32, nv: u32) -> PackedScene {
     let mut scene = parsed("type = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1");
     scene.shapes[0].kind = ShapeKind::Mesh(mesh(nu, nv));
@@ -87,7 +86,7 @@ impl Random {
     }
 }
 
-/// `count` rays from a sphere of radius 2 about the scene's middle toward its inner cube, in the
+/// `count` rays from a sphere of radius 2 around the scene's center toward its inner cube, in the
 /// units of `packed`.
 pub fn incoherent_rays(packed: &PackedScene, count: usize) -> Vec<Ray> {
     let mut random = Random(5);

@@ -1,10 +1,9 @@
-//! Throws broken files at everything that reads files: `cargo run --release --example fuzz --
-//! --seconds 60 scene obj`. docs/hostile-input.md tells what it looks for and how memory is
-//! bounded.
+//! Fuzzer for all file readers: `cargo run --release --example fuzz -- --seconds 60 scene obj`.
+//! docs/hostile-input.md describes the findings and the memory limits.
 //!
-//! Inputs are mutated seeds. One whose outcome (its one error without names and numbers) is new
-//! joins the seeds. A panic, or a run longer than the bound, is a finding; its input is kept in the
-//! folder `fuzz-findings`.
+//! Inputs are mutated seeds. An input with a new outcome (its error message without names and
+//! numbers) is added to the seeds. A panic, or a run that exceeds the time limit, is a finding; its
+//! input is saved in the folder `fuzz-findings`.
 
 mod mutate;
 mod seeds;
@@ -24,37 +23,37 @@ use clap::Parser;
 use mutate::Mutator;
 use targets::{MORE, Target};
 
-/// Mutates files and reads them.
+/// Fuzz file readers with mutated files.
 #[derive(Parser)]
 struct Arguments {
-    /// What to read: scene, plan, obj, mtl, texture, profile, checkpoint [default: all]
+    /// Targets: scene, plan, obj, mtl, texture, profile, checkpoint [default: all]
     targets: Vec<Target>,
-    /// Seconds for each
+    /// Seconds per target
     #[arg(long, default_value_t = 60)]
     seconds: u64,
-    /// Most runs for each
+    /// Maximum number of runs per target
     #[arg(long, default_value_t = u64::MAX)]
     runs: u64,
-    /// Longest time of a run in milliseconds
+    /// Time limit of a run in milliseconds
     #[arg(long, default_value_t = 2000)]
     most_ms: u64,
-    /// Seed of the random numbers
+    /// Random seed
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Threads
+    /// Number of threads
     #[arg(long, default_value_t = 1)]
     threads: u64,
-    /// Reads these files, each once, in place of mutated ones
+    /// Read each of these files once instead of mutated ones
     #[arg(long)]
     replay: Vec<PathBuf>,
 }
 
-/// Bytes of the longest input.
+/// Maximum length of an input in bytes.
 const LONGEST: usize = 16 << 10;
-/// After so long a run counts as one that never ends.
+/// Time after which a run is assumed to hang.
 const HANG: Duration = Duration::from_secs(60);
 
-/// What all threads of a target share.
+/// State shared by all threads of a target.
 struct Shared {
     target: Target,
     corpus: Mutex<Vec<Vec<u8>>>,
@@ -118,7 +117,7 @@ fn fuzz(target: Target, arguments: &Arguments) -> u64 {
             for (current, _) in workers.iter().filter(|(_, done)| !done.load(Ordering::Relaxed)) {
                 let (since, input) = &*current.lock().unwrap();
                 if since.elapsed() > HANG {
-                    shared.keep("no end", input);
+                    shared.keep("hang", input);
                     std::process::exit(1);
                 }
             }
@@ -153,7 +152,7 @@ fn work(
         }
         let input = {
             let corpus = shared.corpus.lock().unwrap();
-            // Every seed as it is, then mutated ones.
+            // first each seed unchanged, then mutated ones
             match corpus.get(run as usize) {
                 Some(seed) if run < corpus.len() as u64 => seed.clone(),
                 _ => mutator.mutate(&corpus, LONGEST),
@@ -174,7 +173,7 @@ impl Shared {
         };
         let (outcome, mut took) = run();
         if took > most {
-            // The machine may have had other things to do.
+            // repeat, since the machine may have been busy
             took = took.min(run().1);
         }
         let Ok(outcome) = outcome else {
@@ -196,7 +195,7 @@ impl Shared {
         }
     }
 
-    /// Keeps an input that should not be, once for each message.
+    /// Saves the input of a finding, once for each message.
     fn keep(&self, message: &str, input: &[u8]) {
         self.findings.fetch_add(1, Ordering::Relaxed);
         let place: String = message.chars().filter(|c| !c.is_ascii_digit()).take(160).collect();

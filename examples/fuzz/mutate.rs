@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use serde_json::Value as Json;
 
-/// What texts are broken with, beside the schema's words.
+/// Tokens to insert into text, in addition to the words of the schema.
 const TOKENS: &[&str] = &[
     "0",
     "-0",
@@ -81,7 +81,7 @@ const TOKENS: &[&str] = &[
     "\nNs 10\n",
 ];
 
-/// Values of one, two and four bytes that lie at borders.
+/// Boundary values of one, two and four bytes.
 const BORDERS: &[u32] = &[
     0,
     1,
@@ -98,14 +98,15 @@ const BORDERS: &[u32] = &[
     u32::MAX,
 ];
 
-/// Random numbers (SplitMix64; Steele, Lea & Flood 2014) and the words to use.
+/// Mutator with a random number generator (SplitMix64; Steele, Lea & Flood 2014) and words of the
+/// schema.
 pub struct Mutator {
     state: u64,
     words: Vec<String>,
 }
 
 impl Mutator {
-    /// One of its own for each seed.
+    /// Creates a mutator with a random seed.
     pub fn new(seed: u64) -> Self {
         let schema: Json =
             serde_json::from_str(&caustica::low_level::scene::schema_json()).expect("a schema");
@@ -114,7 +115,7 @@ impl Mutator {
         Self { state: seed, words: words.into_iter().collect() }
     }
 
-    /// A number below `end`; 0 where that is 0.
+    /// Random number below `end`, or 0 if `end` is 0.
     pub fn below(&mut self, end: usize) -> usize {
         self.state = self.state.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.state;
@@ -123,7 +124,7 @@ impl Mutator {
         ((u128::from(z ^ (z >> 31)) * end as u128) >> 64) as usize
     }
 
-    /// An input with some mutations.
+    /// Applies one to four mutations to a random input of the corpus.
     pub fn mutate(&mut self, corpus: &[Vec<u8>], longest: usize) -> Vec<u8> {
         let pick = self.below(corpus.len());
         let mut input = corpus.get(pick).cloned().unwrap_or_default();
@@ -189,7 +190,7 @@ impl Mutator {
         text.as_bytes().to_vec()
     }
 
-    /// Puts a token in the place of a word or number.
+    /// Replaces a word or number by a token.
     fn replace_word(&mut self, input: &mut Vec<u8>) {
         let is_word = |byte: &u8| byte.is_ascii_alphanumeric() || b"_.-+".contains(byte);
         let at = self.below(input.len());
@@ -212,7 +213,7 @@ impl Mutator {
     }
 }
 
-/// Keys and words of a schema.
+/// Collects the keys and constants of a schema.
 fn collect(schema: &Json, words: &mut BTreeSet<String>) {
     match schema {
         Json::Object(table) => {

@@ -1,4 +1,4 @@
-//! Files to begin with: the shipped scenes, small meshes and pictures, a checkpoint.
+//! Seeds: the shipped scenes, small meshes and images, and checkpoints.
 
 use std::fs;
 use std::io::Cursor;
@@ -16,7 +16,7 @@ const OBJ: &str = "mtllib mesh.mtl\nusemtl a\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0
 g one\nf 1/1/1 2/2/1 3/3/1 4/1/1\nusemtl b\ng two\nf 1 2 5\nf -1 -2 -3\nusemtl c\nf 4 3 2 1 5\n";
 const MTL: &str = "newmtl a\nKd 0.5 0.5 0.5\nmap_Kd t.png\nnewmtl b\nillum 5\nKs 0.9 0.9 0.9\nNs 10\nnewmtl c\nNi 1.5\nd 0.1\n\
 illum 7\nKe 1 1 1\n";
-/// A scene that reads what the other targets break.
+/// Scene that reads the files of the other targets.
 pub const READER: &str = "version = 1\n[camera]\nposition = [0, 1, 4]\ntarget = [0, 1, 0]\nfov = 39\n\
 [[lights]]\ntype = \"point\"\nposition = [0, 3, 0]\nintensity = 1.0\n";
 
@@ -24,7 +24,7 @@ fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// A fresh folder with every file that seeds name.
+/// Creates a folder with all files that the seeds refer to.
 pub fn folder(name: &str) -> PathBuf {
     let folder = std::env::temp_dir().join(format!("caustica-fuzz-{name}"));
     fs::create_dir_all(&folder).expect("a folder for broken files");
@@ -44,7 +44,7 @@ pub fn folder(name: &str) -> PathBuf {
     folder
 }
 
-/// What a target begins with.
+/// Seeds of a target.
 pub fn of(target: Target) -> Vec<Vec<u8>> {
     match target {
         Target::Scene | Target::Plan => scenes(),
@@ -119,7 +119,7 @@ fn pictures() -> Vec<Vec<u8>> {
     pictures
 }
 
-/// What the checkpoints are of.
+/// Scene and engine of the checkpoints.
 pub fn opened(rule: RadiusRule) -> (Loaded, Opened) {
     let text = format!(
         "{READER}[film]\nwidth = 3\nheight = 2\n[render]\nphotons = 10\n[materials.m]\ntype = \"diffuse\"\nreflectance = 0.5\n\
@@ -140,7 +140,7 @@ fn checkpoint(rule: RadiusRule) -> Vec<u8> {
     let checkpoint = Checkpoint {
         origin: Origin::of(&opened, &loaded.scene, ""),
         totals: Totals::default(),
-        state: opened.engine.save().expect("what the engine holds"),
+        state: opened.engine.save().expect("an engine state"),
         cuts: Vec::new(),
     };
     let file =

@@ -1,4 +1,4 @@
-//! What reads the broken files.
+//! Targets of the fuzzer: the file readers.
 
 use std::fs;
 use std::path::Path;
@@ -13,12 +13,12 @@ use xxhash_rust::xxh3::xxh3_128;
 use crate::mutate::Mutator;
 use crate::seeds::{self, READER};
 
-/// Readers of files.
+/// A file reader.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Target {
     /// Scene files.
     Scene,
-    /// Scene files, and the tables and buffers that a render of them makes.
+    /// Scene files, including packing and planning.
     Plan,
     /// OBJ files.
     Obj,
@@ -26,18 +26,19 @@ pub enum Target {
     Mtl,
     /// PNG, JPEG, HDR and EXR files.
     Texture,
-    /// Profile files, and their meshes.
+    /// Profile files, including tessellation.
     Profile,
-    /// Checkpoints, their pictures, and a pass more of each.
+    /// Checkpoints, including development and resuming for one pass.
     Checkpoint,
 }
 
-/// Bytes of a checkpoint before its header, and of its sum.
+/// Bytes of a checkpoint before its header.
 const PREFIX: usize = 24;
+/// Bytes of a checkpoint's checksum.
 const SUM: usize = 16;
 
 impl Target {
-    /// All of them.
+    /// All targets.
     pub const ALL: [Self; 7] = [
         Self::Scene,
         Self::Plan,
@@ -48,7 +49,7 @@ impl Target {
         Self::Checkpoint,
     ];
 
-    /// Reads an input; the outcome is empty where it is accepted, else says why not.
+    /// Reads an input. Returns an empty string if it is accepted, otherwise the generalized error.
     pub fn run(self, folder: &Path, input: &[u8]) -> String {
         let allowance = Allowance {
             root: Some(folder.to_owned()),
@@ -74,7 +75,7 @@ impl Target {
                 told(scene(reader("mesh.obj", "").as_bytes()).map(warnings))
             }
             Self::Texture => {
-                // The content decides the format.
+                // the content determines the format
                 let name = if input.starts_with(&[0x76, 0x2f, 0x31, 0x01]) {
                     "sky.exr"
                 } else {
@@ -107,7 +108,7 @@ impl Target {
         }
     }
 
-    /// Mends the sums and lengths of some inputs, without which nothing else would be read.
+    /// Corrects the checksums and lengths of some inputs, which would otherwise be rejected early.
     pub fn finish(self, mut input: Vec<u8>, mutator: &mut Mutator) -> Vec<u8> {
         match self {
             Self::Checkpoint if mutator.below(8) > 0 && input.len() > PREFIX + SUM => {
@@ -129,7 +130,7 @@ impl Target {
     }
 }
 
-/// Renders a pass more, where the engine takes the checkpoint over.
+/// Resumes a checkpoint for one pass, if the engine accepts it.
 fn resume(checkpoint: &Checkpoint) -> String {
     let (_, mut opened) = seeds::opened(checkpoint.origin.settings.radius_rule);
     let engine = &mut opened.engine;
@@ -143,15 +144,14 @@ fn resume(checkpoint: &Checkpoint) -> String {
     }
 }
 
-/// Length of the JSON object that some bytes begin with.
+/// Length of the JSON object at the start of `bytes`.
 fn header(bytes: &[u8]) -> Option<u32> {
     let mut stream = serde_json::Deserializer::from_slice(bytes).into_iter::<serde_json::Value>();
     stream.next()?.ok()?;
     u32::try_from(stream.byte_offset()).ok()
 }
 
-/// Makes the check sums of a PNG file's chunks right (ISO 3309, as the PNG specification's annex D
-/// has it).
+/// Corrects the checksums of the chunks of a PNG file (ISO 3309; PNG specification, annex D).
 fn mend_png(input: &mut [u8]) {
     let mut at = 8;
     while let Some(word) = input.get(at..at + 4) {
@@ -176,7 +176,7 @@ fn reader(mesh: &str, more: &str) -> String {
 }
 
 fn write(folder: &Path, name: &str, input: &[u8]) {
-    fs::write(folder.join(name), input).expect("a file in a folder of one's own");
+    fs::write(folder.join(name), input).expect("a file in a temporary folder");
 }
 
 fn warnings(loaded: Loaded) -> String {
@@ -200,10 +200,10 @@ fn plan(loaded: &Loaded) -> String {
     }
 }
 
-/// Ends the outcome of what has several errors, which is too broken to go on from.
+/// Suffix of the outcome of inputs with several errors, which are not added to the seeds.
 pub const MORE: &str = "..";
 
-/// The outcome of a scene: its first error without names and numbers.
+/// Outcome of a scene: its first error without names and numbers.
 fn told(outcome: Result<String, SceneErrors>) -> String {
     match outcome {
         Ok(told) => told,
@@ -219,7 +219,7 @@ fn told(outcome: Result<String, SceneErrors>) -> String {
     }
 }
 
-/// A message without numbers and what stands in quotes.
+/// Message without numbers and quoted text.
 fn general(message: &str) -> String {
     let unquoted = message.split(['`', '"']).step_by(2).collect::<String>();
     let words = unquoted.split(' ').filter(|word| !word.contains(['/', '.', '[', '{']));

@@ -1,4 +1,4 @@
-//! A picture to paint on in sRGB, row 0 on top, saved as PNG.
+//! An sRGB canvas, row 0 on top, saved as PNG.
 
 use glam::{DVec2, DVec3};
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};

@@ -10,7 +10,7 @@ use std::f64::consts::{PI, TAU};
 
 /// The part of the atlas's height that the body takes; the rest holds the small parts.
 pub const BODY_V: (f64, f64) = (0.375, 1.0);
-/// A black texel for what nobody sees.
+/// A black texel for hidden surfaces.
 const BLACK: DVec2 = DVec2::new(0.985, 0.36);
 /// The wheel's place in the atlas: (u0, v0, u1, v1), u round the axle, v from tread to hub.
 pub const WHEEL: [f64; 4] = [0.0, 0.0, 0.5, 0.34];

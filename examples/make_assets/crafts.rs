@@ -15,7 +15,7 @@ pub fn planks() -> Canvas {
     Canvas::paint(512, 1024, |p| {
         let board = (p.x * BOARDS).floor();
         let x = p.x * BOARDS - board;
-        // each board is cut in two pieces at heights of its own
+        // each board is cut into two pieces at different heights
         let shift = 0.11 + 0.5 * hash(board as i64, 0, 5);
         let y = (p.y + shift).fract();
         let second = y > 0.46;

@@ -1,4 +1,4 @@
-//! The meshes and textures of the shipped scenes, made by code and the same on every machine.
+//! Procedural meshes and textures of the shipped scenes, bit-identical on all machines.
 
 pub mod canvas;
 pub mod car;
@@ -17,18 +17,18 @@ use canvas::Canvas;
 use image::codecs::hdr::HdrEncoder;
 use mesh::Mesh;
 
-/// What a file of assets/ holds.
+/// Content of a file in assets/.
 pub enum Content {
-    /// Text, as it stands in the file.
+    /// Text of the file.
     Text(String),
-    /// A picture, to be saved as PNG.
+    /// Image to be saved as PNG.
     Picture(Canvas),
-    /// Linear radiance, this many pixels wide, to be saved as Radiance HDR.
+    /// Width in pixels and linear radiance, to be saved as Radiance HDR.
     Radiance(u32, Vec<[f32; 3]>),
 }
 
 impl Content {
-    /// The bytes of the file.
+    /// Encodes the file.
     pub fn to_bytes(&self) -> Result<Vec<u8>, image::ImageError> {
         match self {
             Content::Text(text) => Ok(text.clone().into_bytes()),
@@ -44,27 +44,27 @@ impl Content {
     }
 }
 
-/// A file of assets/ and what it was made from.
+/// A file in assets/ and its content.
 pub struct Asset {
     /// The file's name.
     pub name: &'static str,
-    /// What the file holds.
+    /// Content of the file.
     pub content: Content,
 }
 
-/// A mesh and the OBJ file that it becomes.
+/// A mesh and its OBJ file.
 pub struct NamedMesh {
     /// The file's name.
     pub name: &'static str,
-    /// The material library that the file names, if any.
+    /// Material library of the file, if any.
     pub library: Option<&'static str>,
-    /// What it shows: the file's first line.
+    /// Description, written as the first line of the file.
     pub comment: &'static str,
     /// The triangles.
     pub mesh: Mesh,
 }
 
-/// Every mesh.
+/// All meshes.
 pub fn meshes() -> Vec<NamedMesh> {
     let unwrapping = car_shape::Unwrapping::new();
     vec![
@@ -89,7 +89,7 @@ pub fn meshes() -> Vec<NamedMesh> {
     ]
 }
 
-/// Every picture and material library.
+/// All images and material libraries.
 pub fn pictures() -> Vec<Asset> {
     let picture = |name, canvas| Asset { name, content: Content::Picture(canvas) };
     vec![
@@ -109,7 +109,7 @@ pub fn pictures() -> Vec<Asset> {
     ]
 }
 
-/// Every asset.
+/// All assets.
 pub fn all() -> Vec<Asset> {
     let mut assets = pictures();
     assets.extend(meshes().into_iter().map(|m| Asset {

@@ -1,4 +1,4 @@
-//! Building parts that houses are put together from.
+//! Parts of buildings.
 
 use crate::assets::mesh::Mesh;
 use crate::assets::numbers::sin_cos;

@@ -1,24 +1,24 @@
-//! What a bench runs on, as far as the system tells.
+//! Description of the machine that a benchmark runs on.
 
 use std::fs;
 
 use serde::Serialize;
 
-/// The machine beside its graphics adapters.
+/// A machine, without its graphics adapters.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Machine {
-    /// Operating system, with its release where that is told.
+    /// Operating system, with its release if known.
     pub os: String,
     /// Instruction set.
     pub architecture: &'static str,
-    /// The processor's name.
+    /// Processor name, if known.
     pub processor: Option<String>,
-    /// Threads of the CPU engine.
+    /// Number of threads of the CPU engine.
     pub threads: usize,
 }
 
 impl Machine {
-    /// This one.
+    /// Describes the current machine.
     pub fn this() -> Self {
         let release =
             field("/etc/os-release", "PRETTY_NAME=").map(|name| name.trim_matches('"').to_owned());
@@ -33,20 +33,19 @@ impl Machine {
     }
 }
 
-/// The most main memory that this program has held since [`forget_peak`], where the system tells
-/// (Linux).
+/// Peak resident memory of this process since [`forget_peak`], in bytes; Linux only.
 pub fn peak_resident_bytes() -> Option<u64> {
     let kib = field("/proc/self/status", "VmHWM")?;
     kib.strip_suffix("kB")?.trim().parse::<u64>().ok().map(|kib| kib << 10)
 }
 
-/// Lets the peak begin anew from what is held now, where the system can (Linux).
+/// Resets the peak resident memory to the current value; Linux only.
 pub fn forget_peak() {
-    // one that stays is only too high
+    // if this fails, the peak is only overestimated
     let _ = fs::write("/proc/self/clear_refs", "5");
 }
 
-/// What follows `key` and a separator in the first line of a file that begins so.
+/// Text after `key` and a separator in the first line of a file that starts with `key`.
 fn field(file: &str, key: &str) -> Option<String> {
     let text = fs::read_to_string(file).ok()?;
     let value = text.lines().find_map(|line| line.strip_prefix(key))?;

@@ -1,9 +1,9 @@
-//! What a device does with a scene, in figures: times and rates of the kernels, compile times,
-//! memory, what splitting costs, and time to error. The same figures on every device, in a form
-//! that can be sent on.
+//! Benchmark of a device with a scene: kernel times and rates, compile times, memory, cost of
+//! splitting submissions, and time to error. All devices report the same figures.
 //!
-//! [`setup`] makes an engine, [`device_report`] runs passes on it, [`work`] counts what they do,
-//! [`to_error`] holds a render against a truth, [`spread`] and [`machine`] are what they say.
+//! [`setup`] creates an engine, [`device_report`] runs passes on it, [`work`] counts their
+//! operations, [`to_error`] compares a render with a reference, [`spread`] summarizes repeated
+//! measurements, and [`machine`] describes the host.
 
 pub mod ablation;
 pub mod machine;
@@ -28,118 +28,118 @@ use spread::Spread;
 use to_error::Approach;
 use work::Work;
 
-/// How a bench goes.
+/// Parameters of a benchmark.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Conduct {
-    /// Passes that are not counted; at least one.
+    /// Number of warm-up passes; at least one.
     pub warm_up: u32,
-    /// Rounds that are: a pass by kernels and one as it is for each slice.
+    /// Number of measured rounds: a pass with timed kernels, and a regular pass for each slice.
     pub passes: u32,
-    /// No round is begun after this time.
+    /// Time limit; no round starts after it.
     pub time: Option<Duration>,
-    /// Seconds that a submission to a GPU is to take, infinite for no splitting; 50 ms where there
-    /// are none. The first one's passes count. The CPU engine makes as many passes, so that those
-    /// of all devices are the same.
+    /// Target times of a GPU submission in seconds, infinite for no splitting; 50 ms if empty. The
+    /// main figures use the first. The CPU engine renders as many passes, so that passes are the
+    /// same on all devices.
     pub slices: Vec<f64>,
 }
 
-/// A device's figures for one scene.
+/// Benchmark figures of a device for one scene.
 #[derive(Clone, Debug, Serialize)]
 pub struct DeviceReport {
-    /// Its name.
+    /// Device name.
     pub name: String,
-    /// Its `--device` word.
+    /// Device kind, as a value of `--device`.
     pub kind: &'static str,
-    /// Graphics interface, driver and version; for the CPU, how many threads.
+    /// Graphics API, driver and version; for the CPU, the number of threads.
     pub driver: String,
-    /// The settings in force, with a radius in the place of "auto".
+    /// Effective settings, with "auto" radii resolved.
     pub settings: RenderSettings,
-    /// Where the kernels' times come from.
+    /// Source of the kernel times.
     pub clock: &'static str,
-    /// Passes that were not counted.
+    /// Number of warm-up passes.
     pub warm_up: u32,
-    /// Seconds of the steps to the first pass.
+    /// Seconds of the setup steps.
     pub setup: SetupSeconds,
-    /// Seconds to compile the kernels, one after another; none on the CPU.
+    /// Seconds to compile each kernel, one after another; empty on the CPU.
     pub compile: BTreeMap<&'static str, Compile>,
-    /// Seconds of the first pass, which is not counted elsewhere.
+    /// Seconds of the first pass, which is not part of other figures.
     pub first_pass: f64,
-    /// Seconds of a pass.
+    /// Seconds per pass.
     pub pass: Spread,
-    /// Figures of a pass by the clock on the wall.
+    /// Rates of a pass by wall-clock time.
     pub rates: BTreeMap<&'static str, f64>,
-    /// Seconds of a pass whose kernels are timed.
+    /// Seconds per pass with timed kernels.
     pub timed_pass: Spread,
-    /// Of these, the seconds in no kernel.
+    /// Seconds per timed pass outside of kernels.
     pub rest: Spread,
-    /// The kernels, in the order of their names.
+    /// Figures of each kernel, by name.
     pub kernels: BTreeMap<&'static str, KernelReport>,
-    /// What a pass did: the last timed one, and of what is gathered the middle one.
+    /// Operations of the last timed pass; the number of gathered photons is the median over all
+    /// timed passes.
     pub work: Work,
-    /// Passes by how they were split; none on the CPU.
+    /// Figures for each slice; empty on the CPU.
     pub slices: Vec<SliceReport>,
-    /// Bytes.
+    /// Memory use.
     pub memory: Memory,
-    /// How the picture came closer to the truth, if there is one.
+    /// Convergence to the reference, if there is one.
     pub to_error: Vec<Approach>,
 }
 
-/// Seconds to make a kernel ready.
+/// Seconds to prepare a kernel.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Compile {
-    /// To put its shader together, check it and hand it to the driver.
+    /// Composition and validation of the shader, until it is passed to the driver.
     pub checking: f64,
-    /// Of the driver, until the kernel had run over nothing.
+    /// Time in the driver, until the kernel has run with no work items.
     pub driver: f64,
 }
 
-/// One kernel's figures.
+/// Figures of one kernel.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct KernelReport {
-    /// Seconds in a pass.
+    /// Seconds per pass.
     pub seconds: Spread,
-    /// Its part of the seconds of all kernels, by the medians.
+    /// Fraction of the time of all kernels, computed from the medians.
     pub share: f64,
-    /// What it does a second, by its median.
+    /// Operations per second, computed from the median.
     pub rates: BTreeMap<&'static str, f64>,
 }
 
-/// Passes that were split in one way.
+/// Figures for one target time of submissions.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SliceReport {
-    /// Seconds that a submission was to take; none for no splitting.
+    /// Target time of a submission in seconds; `None` for no splitting.
     pub slice: Option<f64>,
-    /// Seconds of a pass.
+    /// Seconds per pass.
     pub pass: Spread,
-    /// Submissions in a pass.
+    /// Mean number of submissions per pass.
     pub submissions: f64,
     /// Seconds of the longest submission.
     pub longest: f64,
-    /// The kernels in that.
+    /// Kernels in the longest submission.
     pub longest_kernels: Vec<&'static str>,
-    /// Seconds of a pass over those of a pass that is not split, less one, by the medians; none
-    /// where there is none.
+    /// Relative increase of the median time over that of unsplit passes; `None` if those were not
+    /// measured.
     pub loss: Option<f64>,
 }
 
-/// Bytes.
+/// Memory use in bytes.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Memory {
-    /// Of each buffer beside the scene's; those of chunks, of all chunks.
+    /// Size of each buffer except those of the scene, summed over all chunks.
     pub buffers: BTreeMap<&'static str, u64>,
-    /// Of those that go with the picture, by pixel.
+    /// Bytes per pixel of the buffers that grow with the image.
     pub per_pixel: f64,
-    /// Of those that go with the photons, by photon of a batch.
+    /// Bytes per photon of a batch of the buffers that grow with the photons.
     pub per_photon: f64,
-    /// Of these, by record that fits.
+    /// Bytes of the same buffers per photon record that fits.
     pub per_record: f64,
-    /// The most main memory that the program held from before the setup until after the passes,
-    /// where the system tells.
+    /// Peak resident memory of the process from before the setup until after the passes, if known.
     pub peak_resident: Option<u64>,
 }
 
-/// Runs passes and counts. With a truth, see [`to_error::approach`]. `stop` is asked after each
-/// round; once it says so the report is of the rounds so far.
+/// Benchmarks a device. For convergence to a reference, see [`to_error::approach`]. `stop` is
+/// called after each round; if it returns true, the report covers the rounds so far.
 pub fn device_report(
     device: &DeviceInfo,
     scene: &Scene,
@@ -188,16 +188,16 @@ pub fn device_report(
     })
 }
 
-/// What was measured of the passes.
+/// Measurements of the passes.
 struct Run {
     first_pass: f64,
     kernels: BTreeMap<&'static str, Vec<f64>>,
     timed: Vec<f64>,
     rest: Vec<f64>,
     slices: Vec<SliceReport>,
-    /// Of the last timed pass.
+    /// Report of the last timed pass.
     report: PassReport,
-    /// Photons gathered in the middle timed pass.
+    /// Median number of photons gathered in a timed pass.
     gathered: u64,
 }
 
@@ -233,7 +233,7 @@ fn run(ready: &mut Ready, conduct: &Conduct, stop: &dyn Fn() -> bool) -> Result<
         let whole = start.elapsed().as_secs_f64();
         timed.push(whole);
         rest.push((whole - seconds.values().sum::<f64>()).max(0.0));
-        // the CPU engine scans and sorts in one go
+        // the CPU engine scans and sorts in a single step
         let skipped = |kernel: &str| {
             cpu && ["grid_scan_reduce", "grid_scan_sums", "grid_sort_long"].contains(&kernel)
         };
@@ -311,12 +311,12 @@ fn kernel_reports(
     spreads.iter().map(report).collect()
 }
 
-/// Buffers that go with the picture; of those with chunks, each chunk has its own.
+/// Buffers that grow with the image. Each chunk has separate ones.
 const OF_THE_PICTURE: [&str; 4] = ["visible_points", "gathered", "film", "statistics"];
 
 fn memory(ready: &Ready) -> Memory {
     let plan = &ready.plan;
-    // a path tracer keeps nothing but the film
+    // path tracing uses only the film
     let path = plan.settings.method == Method::Path;
     let largest = f64::from(plan.chunk(0).1);
     let chunks = f64::from(plan.pixels) * f64::from(plan.eye_samples) / largest;
@@ -337,7 +337,7 @@ fn memory(ready: &Ready) -> Memory {
     }
 }
 
-/// Whether a device can run a method at all.
+/// Returns true if a device supports the method.
 pub fn can_run(device: &DeviceInfo, settings: &RenderSettings) -> bool {
     settings.method != Method::Path
         || matches!(device.kind, DeviceKind::Cpu | DeviceKind::CpuDouble)

@@ -1,4 +1,4 @@
-//! An engine for a bench, with the seconds that each step to it took.
+//! Creation of an engine for a benchmark, with the time of each step.
 
 use std::time::Instant;
 
@@ -19,24 +19,24 @@ use crate::scene::settings::RenderSettings;
 /// Seconds of the steps from a scene to an engine.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct SetupSeconds {
-    /// The scene into tables, with its kd-tree.
+    /// Packing of the scene, including the kd-tree.
     pub pack: f64,
-    /// The look at the scene and the plan.
+    /// Probing of the scene and planning.
     pub plan: f64,
-    /// The engine: buffers, and on a GPU the kernels.
+    /// Creation of the engine: buffers, and kernels on a GPU.
     pub engine: f64,
 }
 
-/// An engine of one kind or the other.
+/// An engine of either type.
 pub enum Runner {
-    /// On the processor.
+    /// CPU engine.
     Cpu(Box<dyn Engine>),
-    /// On a GPU or a software driver.
+    /// GPU engine, on hardware or a software driver.
     Gpu(Box<GpuEngine>),
 }
 
 impl Runner {
-    /// What all engines have.
+    /// Interface common to all engines.
     pub fn engine(&mut self) -> &mut dyn Engine {
         match self {
             Self::Cpu(engine) => engine.as_mut(),
@@ -44,7 +44,7 @@ impl Runner {
         }
     }
 
-    /// What those on a GPU have.
+    /// Interface specific to GPU engines.
     pub fn gpu(&mut self) -> Option<&mut GpuEngine> {
         match self {
             Self::Cpu(_) => None,
@@ -53,22 +53,23 @@ impl Runner {
     }
 }
 
-/// An engine, ready for passes, and what it was made of.
+/// An engine that is ready to render, and its inputs.
 pub struct Ready {
-    /// The engine.
+    /// Engine.
     pub runner: Runner,
-    /// The tables, in f32 whatever the device.
+    /// PackedScene scene in f32, even for the f64 engine.
     pub packed: PackedScene,
-    /// The plan, in f32 whatever the device.
+    /// Plan in f32, even for the f64 engine.
     pub plan: Plan,
-    /// Bytes of the engine's buffers beside the scene's, by name.
+    /// Names and sizes in bytes of the engine's buffers, except those of the scene.
     pub buffers: Vec<(&'static str, u64)>,
-    /// What it took.
+    /// Setup times.
     pub seconds: SetupSeconds,
 }
 
-/// Makes an engine on `device`, and if kernels are to be compiled one by one, after its time was
-/// taken another.
+/// Creates an engine on `device`. If `compiling` is [`Compiling::OneByOne`], a GPU engine is
+/// created a second time, after the setup time was measured, to time the compilation of each
+/// kernel.
 pub fn ready(
     device: &DeviceInfo,
     scene: &Scene,

@@ -1,22 +1,22 @@
-//! Figures that were measured several times.
+//! Statistics of repeated measurements.
 
 use serde::Serialize;
 
 /// Median and extremes of repeated measurements.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Spread {
-    /// The middle one; of an even number, the mean of the two middle ones.
+    /// Median; for an even number, the mean of the two middle values.
     pub median: f64,
-    /// The least.
+    /// Minimum.
     pub least: f64,
-    /// The greatest.
+    /// Maximum.
     pub most: f64,
-    /// How many.
+    /// Number of measurements.
     pub count: usize,
 }
 
 impl Spread {
-    /// Of some measurements; all zero for none.
+    /// Statistics of `measured`; all zero if it is empty.
     pub fn of(measured: &[f64]) -> Self {
         let mut sorted = measured.to_vec();
         sorted.sort_by(f64::total_cmp);

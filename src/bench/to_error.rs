@@ -1,4 +1,4 @@
-//! Time to error: how long passes must go on until a picture is so close to the truth.
+//! Time to error: render time until the error against a reference reaches a goal.
 
 use serde::Serialize;
 
@@ -7,65 +7,66 @@ use crate::film::metrics::{MetricsError, compare, compare_in};
 use crate::film::{Picture, Region};
 use std::time::{Duration, Instant};
 
-/// A place of the picture and the relMSE to reach there.
+/// Target relMSE of the whole image or of a region.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Goal {
-    /// The region's name; none for the whole picture.
+    /// Region and its name; `None` for the whole image.
     pub region: Option<(String, Region)>,
-    /// relMSE to reach; none where the error is only told.
+    /// Target relMSE; `None` to only report the error.
     pub rel_mse: Option<f64>,
-    /// The truth's own noise there: its relMSE against the exact picture, taken off.
+    /// relMSE of the reference against the exact image, due to noise. It is subtracted.
     pub truth_noise: f64,
 }
 
-/// The error of a place after some passes.
+/// Error after a number of passes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Point {
-    /// Passes.
+    /// Number of passes.
     pub passes: u32,
-    /// Seconds that they took; measuring is not in it.
+    /// Render time in seconds, without measuring.
     pub seconds: f64,
-    /// relMSE less the truth's noise.
+    /// relMSE minus the noise of the reference.
     pub rel_mse: f64,
 }
 
-/// How a place came closer to the truth.
+/// Convergence of the whole image or of a region.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Approach {
-    /// The region's name; none for the whole picture.
+    /// Name of the region; `None` for the whole image.
     pub region: Option<String>,
-    /// relMSE to reach, if any.
+    /// Target relMSE, if any.
     pub goal: Option<f64>,
-    /// When it was reached; none if it was not.
+    /// Time in seconds at which the target was reached; `None` if it was not.
     pub reached_seconds: Option<f64>,
-    /// The errors on the way.
+    /// Measured errors, by number of passes.
     pub series: Vec<Point>,
 }
 
-/// Where a run to a truth ends, if not where all goals are reached.
+/// Limits of a time-to-error run that does not reach all goals.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limit {
-    /// No pass is begun after this time.
+    /// Time limit; no pass starts after it.
     pub time: Duration,
-    /// Passes.
+    /// Maximum number of passes.
     pub passes: u32,
 }
 
-/// Why there is no time to error.
+/// Reason why a time-to-error run failed.
 #[derive(Debug, thiserror::Error)]
 pub enum ToErrorError {
     /// The engine failed.
     #[error(transparent)]
     Engine(#[from] EngineError),
-    /// The picture and the truth cannot be compared.
+    /// The image and the reference cannot be compared.
     #[error(transparent)]
     Metrics(#[from] MetricsError),
 }
 
-/// When the error of a series passes `goal` for good: between the last measurement above it and the
-/// next, by a power law through both; from the first on if none is above; none if the last is.
+/// Time in seconds from which on the error stays at or below `goal`, interpolated by a power law
+/// between the last measurement above the goal and the next one. The time of the first measurement
+/// if none is above, `None` if the last is.
 pub fn reached(series: &[Point], goal: f64) -> Option<f64> {
-    // an error that is no number is above every goal
+    // NaN is above every goal
     let above = |point: &Point| point.rel_mse.is_nan() || point.rel_mse > goal;
     let Some(last) = series.iter().rposition(above) else {
         return series.first().map(|first| first.seconds);
@@ -78,9 +79,9 @@ pub fn reached(series: &[Point], goal: f64) -> Option<f64> {
     Some(before.seconds * (after.seconds / before.seconds).powf(share))
 }
 
-/// Makes passes with an engine that has made none until all goals are reached or the limit is, and
-/// measures after each of the first sixteen, then whenever there are an eighth more. `stop` is
-/// asked after each pass; once it says so that pass is the last.
+/// Renders passes with a new engine until all goals or a limit are reached. Measures the error
+/// after each of the first sixteen passes, then whenever the number of passes has grown by an
+/// eighth. `stop` is called after each pass; if it returns true, that pass is the last.
 pub fn approach(
     engine: &mut dyn Engine,
     truth: &Picture,
@@ -128,8 +129,8 @@ pub fn approach(
     Ok(approaches)
 }
 
-/// Theory: an error that falls as `c / t` passes `g` at `c / g`, wherever it is measured; noise on
-/// it that lifts it above the goal again moves the time to the last such place.
+/// Theory: an error of `c / t` reaches `g` at `c / g`, independent of the measurement times. Noise
+/// that raises it above the goal again delays the time to the last such measurement.
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -159,12 +160,12 @@ mod tests {
         assert_eq!(reached(&bumpy, 0.15), Some(20.0));
         bumpy[4].rel_mse = f64::NAN;
         assert_eq!(reached(&bumpy, 0.15), None);
-        // below the truth's own noise the difference may be negative
+        // the corrected error may be negative
         let past = falling(&[1.0, 2.0], |t| 1.5 - t);
         assert_eq!(reached(&past, 0.1), Some(2.0));
     }
 
-    /// Each pass halves the picture's distance from one.
+    /// Test engine: each pass halves the difference of the image from one.
     struct Halver(f32);
 
     impl Engine for Halver {
@@ -176,7 +177,7 @@ mod tests {
             Ok(PassReport::default())
         }
         fn picture(&mut self) -> Result<Picture, EngineError> {
-            // the left half starts twice as far away
+            // the left half starts with twice the difference
             Ok(Picture::from_fn(4, 4, |x, _| [1.0 + self.0 * if x < 2 { 2.0 } else { 1.0 }; 3]))
         }
         fn errors(&mut self) -> Result<ErrorMap, EngineError> {
@@ -201,14 +202,14 @@ mod tests {
         let endless = Limit { time: Duration::from_secs(1000), passes: 1000 };
         let found = approach(&mut Halver(1.0), &truth, &goals, endless, &|| false).unwrap();
         let passes = |a: &Approach| a.series.last().unwrap().passes;
-        // the mean of both halves, less the largest pixel, 36 / 15 4^-p / 1.01, is below 0.001 from
-        // the sixth pass on
+        // the mean over both halves without the largest pixel, 36 / 15 4^-p / 1.01, is below 0.001
+        // from the sixth pass on
         assert_eq!(found.iter().map(passes).collect::<Vec<_>>(), [6, 6, 6]);
         assert!((found[0].series[0].rel_mse - 0.25 / 1.01).abs() < 1e-6);
         assert_eq!(found[0].reached_seconds, Some(found[0].series[0].seconds));
         assert!(found[1].reached_seconds.unwrap() <= found[1].series[5].seconds);
         assert_eq!((found[2].goal, found[2].reached_seconds), (None, None));
-        // the limit, and noise that is taken off
+        // pass limit and noise correction
         let short = Limit { passes: 3, ..endless };
         let found =
             approach(&mut Halver(1.0), &truth, &[goal(None, Some(1e-3), 0.01)], short, &|| false)
@@ -216,7 +217,7 @@ mod tests {
         assert_eq!((passes(&found[0]), found[0].reached_seconds), (3, None));
         let error = found[0].series[2].rel_mse;
         let stopped = approach(&mut Halver(1.0), &truth, &goals, endless, &|| true).unwrap();
-        assert_eq!(passes(&stopped[0]), 1, "a stop leaves the passes before it");
+        assert_eq!(passes(&stopped[0]), 1, "passes before the stop are kept");
         assert!((error - (36.0 / 15.0 / 64.0 / 1.01 - 0.01)).abs() < 1e-6, "{error}");
     }
 }

@@ -1,4 +1,4 @@
-//! What the kernels of a pass do, counted: the denominators of rates.
+//! Operation counts of the kernels of a pass, for rates.
 
 use serde::Serialize;
 
@@ -7,27 +7,27 @@ use crate::kernels::records::{FilmPixel, Gathered, PhotonRecord, VisiblePoint};
 use crate::plan::features::Feature;
 use crate::plan::{Kernel, Plan};
 
-/// What a pass did.
+/// Operation counts of a pass.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Work {
     /// Eye paths.
     pub eye_paths: u64,
-    /// Their rays, shadow rays among them.
+    /// Rays of eye paths, including shadow rays.
     pub eye_rays: u64,
     /// Photon paths.
     pub photons: u64,
-    /// Their rays.
+    /// Rays of photon paths.
     pub photon_rays: u64,
     /// Photon records.
     pub records: u64,
-    /// Visible points that were gathered for, times batches.
+    /// Number of visible points times number of photon batches.
     pub gathers: u64,
-    /// Photons found in their discs.
+    /// Photons found in the gather discs.
     pub gathered: u64,
 }
 
 impl Work {
-    /// Of a pass that reported this and gathered so many photons.
+    /// Counts of a pass with this report and number of gathered photons.
     pub fn of(plan: &Plan, report: &PassReport, gathered: u64) -> Self {
         let batches = match plan.features.has(Feature::Photons) {
             true => u64::from(plan.settings.photons.div_ceil(plan.batch_photons.max(1))),
@@ -44,8 +44,8 @@ impl Work {
         }
     }
 
-    /// What is counted of a kernel: the name of the rate, and how much. The CPU engine builds its
-    /// grid in other steps than a GPU, whose bytes are not counted.
+    /// Names of the rates of a kernel and their counts. Empty for the grid kernels of the CPU
+    /// engine, which builds its grid in other steps than a GPU.
     pub fn counts(&self, plan: &Plan, kernel: &str, gpu: bool) -> Vec<(&'static str, f64)> {
         let counts = match kernel {
             "eye_trace" | "path_trace" => {
@@ -69,8 +69,8 @@ impl Work {
         counts.into_iter().map(|(name, count)| (name, count as f64)).collect()
     }
 
-    /// Bytes that a GPU's kernel of the grid, or `resolve`, has to move in a pass, if every datum
-    /// travels once each way.
+    /// Minimum number of bytes that a grid kernel on a GPU, or `resolve`, transfers in a pass, if
+    /// each value is read and written once.
     fn least_bytes(&self, plan: &Plan, kernel: &str) -> Option<f64> {
         let record = size_of::<PhotonRecord>() as f64;
         let records = self.records as f64;
@@ -79,16 +79,16 @@ impl Work {
         let buckets = f64::from(plan.buckets) * batches;
         let kernel = Kernel::ALL.into_iter().find(|k| k.stem() == kernel)?;
         Some(match kernel {
-            // the record in; the count in and out
+            // read the record; read and write the count
             Kernel::GridCount => records * (record + 8.0),
             Kernel::GridScanReduce => buckets * 4.0,
-            // the count in, the start out
+            // read the count, write the start
             Kernel::GridScan => buckets * 8.0,
-            // the record and the start in; the count in and out; the number out
+            // read the record and the start; read and write the count; write the index
             Kernel::GridScatter => records * (record + 16.0),
-            // the number and the record in, both out
+            // read and write the index and the record
             Kernel::GridSort => records * (2.0 * record + 8.0),
-            // the point and what it gathered in; the pixel in and out
+            // read the visible point and its gathered sums; read and write the pixel
             Kernel::Resolve => {
                 let point = (size_of::<VisiblePoint>() + size_of::<Gathered>()) as f64;
                 points * point + f64::from(plan.pixels) * 2.0 * size_of::<FilmPixel>() as f64

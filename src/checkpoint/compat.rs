@@ -1,5 +1,4 @@
-//! Whether a checkpoint is of the render at hand, or of the same as another one; if not, what
-//! differs.
+//! Compatibility of a checkpoint with a render or another checkpoint, and their differences.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -11,12 +10,12 @@ use crate::scene::Aovs;
 use crate::scene::settings::RenderSettings;
 
 impl Checkpoint {
-    /// Fails unless a render of `expected`, whose numbers have `bits` bits and whose passes are
-    /// numbered from `first_pass` and end before `end`, ends in the same bits from here as from its
-    /// start. The device does not count, nor does where it was to end.
+    /// Checks that a render of `expected` at a precision of `bits` bits with the passes
+    /// `first_pass..end` gives bit-identical results if resumed from this checkpoint. The device
+    /// and the planned number of passes may differ.
     ///
     /// # Errors
-    /// Everything that differs.
+    /// A list of all differences.
     pub fn check_resumes(
         &self,
         file: &Path,
@@ -28,27 +27,22 @@ impl Checkpoint {
         let mut differences = expected.differences(&self.origin);
         let [asked, known] = [expected.aovs, self.origin.aovs];
         if asked.iter().any(|aov| !known.has(aov)) {
-            differences.push(format!(
-                "the layers: expected {}, found {}",
-                told(asked),
-                told(known)
-            ));
+            differences.push(format!("layers: expected {}, found {}", told(asked), told(known)));
         }
         if first_pass != self.state.first_pass {
             let found = self.state.first_pass;
-            differences
-                .push(format!("the first pass: expected pass {first_pass}, found pass {found}"));
+            differences.push(format!("first pass: expected {first_pass}, found {found}"));
         }
         if bits != self.state.bits && self.cuts.is_empty() {
             let found = self.state.bits;
-            differences.push(format!("the device's numbers: expected {bits} bits, found {found}"));
+            differences.push(format!("precision: expected {bits} bits, found {found}"));
         }
         if !differences.is_empty() {
             return Err(CheckpointError::Other {
                 file: file.to_owned(),
                 differences,
-                mend: "expected is what this render asks for, found what the checkpoint is of: change the one back, or leave out \
-                       --resume"
+                mend: "\"expected\" is this render, \"found\" is the checkpoint: restore the \
+                       setting, or drop --resume"
                     .to_owned(),
             });
         }
@@ -60,14 +54,18 @@ impl Checkpoint {
         let (first, end_found) = (self.state.first_pass, self.end());
         if !self.cuts.is_empty() {
             return Err(unfit(
-                "it is merged, and no render rounds its sums in the same order".to_owned(),
-                format!("render passes from {end_found} on by themselves, and merge both"),
+                "a merged checkpoint cannot be resumed, since its sums are rounded in a \
+                 different order"
+                    .to_owned(),
+                format!("render the passes from {end_found} on separately, and merge both"),
             ));
         }
         if end_found > end {
             return Err(unfit(
-                format!("it holds passes {first}..{end_found}, this render ends before pass {end}"),
-                format!("ask for --passes {end_found} or more"),
+                format!(
+                    "contains passes {first}..{end_found}, but this render ends before pass {end}"
+                ),
+                format!("use --passes {end_found} or more"),
             ));
         }
         Ok(())
@@ -75,41 +73,37 @@ impl Checkpoint {
 }
 
 impl Origin {
-    /// What makes other bits than `self` would make. Where a render was to end, its device and how
-    /// it is tone-mapped do not.
+    /// Differences that change the rendered bits. Ignores the planned number of passes, the device
+    /// and tone mapping.
     pub fn differences(&self, found: &Self) -> Vec<String> {
         let mut list = Vec::new();
         if self.version != found.version {
             list.push(format!(
-                "caustica's version: expected {}, found {}",
+                "caustica version: expected {}, found {}",
                 self.version, found.version
             ));
         }
         let size = |origin: &Self| format!("{} x {}", origin.width, origin.height);
         if size(self) != size(found) {
-            list.push(format!(
-                "the picture's size: expected {}, found {}",
-                size(self),
-                size(found)
-            ));
+            list.push(format!("image size: expected {}, found {}", size(self), size(found)));
         }
         let window = |origin: &Self| match origin.window {
             Some([x0, y0, x1, y1]) => format!("{x0},{y0},{x1},{y1}"),
-            None => "the whole picture".to_owned(),
+            None => "the whole image".to_owned(),
         };
         if window(self) != window(found) {
-            list.push(format!("the crop: expected {}, found {}", window(self), window(found)));
+            list.push(format!("crop: expected {}, found {}", window(self), window(found)));
         }
         if self.identity != found.identity {
             list.push(format!(
-                "the scene ({}): {}",
+                "scene ({}): {}",
                 self.identity.differences(&found.identity).join(", "),
                 where_texts_differ(&self.scene_text, &found.scene_text)
             ));
         }
         if self.identity == found.identity && self.space != found.space {
             list.push(format!(
-                "its unit and place: expected {:?}, found {:?}",
+                "unit and position of the scene: expected {:?}, found {:?}",
                 self.space, found.space
             ));
         }
@@ -118,27 +112,28 @@ impl Origin {
     }
 }
 
-/// The names of layers.
+/// Names of layers for messages.
 pub(super) fn told(aovs: Aovs) -> String {
     if aovs.is_empty() { "none".to_owned() } else { aovs.to_string() }
 }
 
-/// The first line in which two scene files differ.
+/// Describes the first line in which two scene files differ.
 fn where_texts_differ(expected: &str, found: &str) -> String {
     let lines = expected.lines().count().max(found.lines().count());
     let line = |text: &str, at: usize| {
-        text.lines().nth(at).map_or("its end".to_owned(), |line| format!("`{line}`"))
+        text.lines().nth(at).map_or("end of file".to_owned(), |line| format!("`{line}`"))
     };
     match (0..lines).find(|at| line(expected, *at) != line(found, *at)) {
         Some(at) => {
             let [expected, found] = [line(expected, at), line(found, at)];
-            format!("in line {} of its file expected {expected}, found {found}", at + 1)
+            format!("in line {} of the scene file expected {expected}, found {found}", at + 1)
         }
-        None => "its file is the same, but not a mesh, picture or profile that it names".to_owned(),
+        None => "the scene file is the same, but a mesh, image or profile that it uses differs"
+            .to_owned(),
     }
 }
 
-/// All settings but the number of passes, as scene files spell them.
+/// Differences of all settings except the number of passes, in the spelling of scene files.
 fn setting_differences(expected: &RenderSettings, found: &RenderSettings) -> Vec<String> {
     let [expected, found] = [expected, found].map(|settings| serde_json::json!(settings));
     let names = |settings: &Value| {
@@ -152,7 +147,8 @@ fn setting_differences(expected: &RenderSettings, found: &RenderSettings) -> Vec
         .collect()
 }
 
-/// Theory: every field that decides bits is told, and no other.
+/// Theory: a difference is reported for each field that affects the rendered bits, and for no
+/// other.
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -189,11 +185,11 @@ mod tests {
     fn the_first_other_line_is_told() {
         assert_eq!(
             where_texts_differ("a\nb\nc", "a\nx\ny"),
-            "in line 2 of its file expected `b`, found `x`"
+            "in line 2 of the scene file expected `b`, found `x`"
         );
         assert_eq!(
             where_texts_differ("a\nb", "a"),
-            "in line 2 of its file expected `b`, found its end"
+            "in line 2 of the scene file expected `b`, found end of file"
         );
         assert!(where_texts_differ("a", "a").contains("mesh"));
     }

@@ -1,4 +1,4 @@
-//! What can be wrong with a checkpoint: which file, what, and how to mend it.
+//! Errors of checkpoints.
 
 use std::io;
 use std::path::PathBuf;
@@ -9,7 +9,7 @@ use thiserror::Error;
 /// A checkpoint that cannot be written, read or used.
 #[derive(Debug, Error, Diagnostic)]
 pub enum CheckpointError {
-    /// The operating system refused.
+    /// The operating system reported an error.
     #[error("{}: cannot be {verb}: {cause}", file.display())]
     #[diagnostic(help("check the name, the permissions and the free space"))]
     Io {
@@ -17,71 +17,77 @@ pub enum CheckpointError {
         file: PathBuf,
         /// "written" or "read".
         verb: &'static str,
-        /// What the system says.
+        /// The system's error.
         cause: io::Error,
     },
-    /// It is something else.
-    #[error("{}: this is no checkpoint: {what}", file.display())]
+    /// The file is not a checkpoint.
+    #[error("{}: not a checkpoint: {what}", file.display())]
     #[diagnostic(help(
-        "name a file that `caustica render --checkpoint` or `caustica merge` wrote"
+        "give a file written by `caustica render --checkpoint` or `caustica merge`"
     ))]
     NotOne {
         /// The file.
         file: PathBuf,
-        /// What shows it.
+        /// Reason.
         what: String,
     },
-    /// It is written in another way.
-    #[error("{}: expected a checkpoint of format {expected}, found one of format {found}", file.display())]
-    #[diagnostic(help("use the version of caustica that wrote it, or render anew"))]
+    /// The format version is not supported.
+    #[error(
+        "{}: expected a checkpoint of format {expected}, found one of format {found}",
+        file.display()
+    )]
+    #[diagnostic(help("use the version of caustica that wrote it, or render again"))]
     Format {
         /// The file.
         file: PathBuf,
-        /// The format that this program knows.
+        /// Supported format version.
         expected: u32,
-        /// That of the file.
+        /// Format version of the file.
         found: u32,
     },
-    /// Its end is missing, or there is more than its end.
+    /// The file is truncated or has extra bytes.
     #[error("{}: the checkpoint should have {expected} bytes, but has {found}", file.display())]
-    #[diagnostic(help("it was cut off or written over; take another copy, or render anew"))]
+    #[diagnostic(help("it was truncated or overwritten; use another copy, or render again"))]
     Length {
         /// The file.
         file: PathBuf,
-        /// What it says itself.
+        /// Length in bytes according to the header.
         expected: u64,
-        /// What there are.
+        /// Actual length in bytes.
         found: u64,
     },
-    /// Its bytes are not those that were written.
+    /// The content is corrupt.
     #[error("{}: the checkpoint is damaged: {what}", file.display())]
-    #[diagnostic(help("take another copy, or render anew"))]
+    #[diagnostic(help("use another copy, or render again"))]
     Damaged {
         /// The file.
         file: PathBuf,
-        /// What shows it.
+        /// Description of the first problem.
         what: String,
     },
-    /// It is of another scene, version or setting.
-    #[error("{}: the checkpoint is of another render:\n  {}", file.display(), differences.join("\n  "))]
+    /// The scene, the version of caustica or a setting differs.
+    #[error(
+        "{}: the checkpoint belongs to a different render:\n  {}",
+        file.display(), differences.join("\n  ")
+    )]
     #[diagnostic(help("{mend}"))]
     Other {
         /// The file.
         file: PathBuf,
-        /// Each difference with what is expected and what is found.
+        /// Differences, each with the expected and the found value.
         differences: Vec<String>,
-        /// What to do.
+        /// Suggested remedy.
         mend: String,
     },
-    /// It cannot be used so.
+    /// The file cannot be used in this way.
     #[error("{}: {what}", file.display())]
     #[diagnostic(help("{mend}"))]
     Unfit {
         /// The file.
         file: PathBuf,
-        /// Why not.
+        /// Reason.
         what: String,
-        /// What to do.
+        /// Suggested remedy.
         mend: String,
     },
 }

@@ -1,8 +1,8 @@
-//! Checkpoints as files.
+//! Checkpoint file format.
 //!
-//! In this order, numbers with the least byte first: 8 bytes [`MAGIC`]; the format, 4 bytes; the
-//! header's length, 4; the whole file's, 8; the header, JSON; the sections that it lists; XXH3 of
-//! all before, 16 bytes. A file is complete or absent (`storage`).
+//! Layout, little-endian: [`MAGIC`], 8 bytes; format version, 4; length of the header, 4; length of
+//! the file, 8; header in JSON; the sections listed in the header; XXH3 of everything before it, 16
+//! bytes. Writes are atomic (see `storage`).
 
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
@@ -19,11 +19,12 @@ use crate::memory;
 use crate::scene::Aov;
 use crate::storage::{self, Lock, LockError, Purpose};
 
-/// The extension of merged checkpoints; others may have any that is not a picture's.
+/// Extension of merged checkpoints. Other checkpoints may have any extension except those of
+/// images.
 pub const EXTENSION: &str = "checkpoint";
-/// What a checkpoint begins with.
+/// Signature at the start of a checkpoint.
 const MAGIC: [u8; 8] = *b"caustica";
-/// The way in which this program writes.
+/// Format version.
 const FORMAT: u32 = 2;
 /// Bytes before the header.
 const PREFIX: usize = 24;
@@ -31,10 +32,10 @@ const PREFIX: usize = 24;
 const SUM: usize = 16;
 /// Bytes of a pixel's `cuts`.
 const CUTS_BYTES: usize = 8;
-/// No render takes longer, in seconds: 35,000 years.
+/// Maximum plausible render time in seconds: 35,000 years.
 const ELAPSED_MAX: u64 = 1 << 40;
 
-/// What stands before the sections.
+/// Header before the sections.
 #[derive(Serialize, Deserialize)]
 struct Header {
     origin: Origin,
@@ -42,7 +43,7 @@ struct Header {
     first_pass: u32,
     passes: u32,
     bits: u32,
-    /// Bytes of each section, in order.
+    // length of each section in bytes, in file order
     film: u64,
     statistics: u64,
     cuts: u64,
@@ -52,26 +53,25 @@ struct Header {
     objects: u64,
 }
 
-/// Writes a checkpoint, so that at any moment either the one before or this one is whole on the
-/// disk.
+/// Writes a checkpoint atomically: at any time, either the old or the new file is complete.
 ///
 /// # Errors
-/// Where the system refuses; the one before stays.
+/// If the file cannot be written. The old file remains.
 pub fn write(file: &Path, checkpoint: &Checkpoint) -> Result<(), CheckpointError> {
     let written = storage::write(file, Purpose::Keepsake, |out| write_to(out, checkpoint));
     written.map_err(|cause| CheckpointError::Io { file: file.to_owned(), verb: "written", cause })
 }
 
-/// Finds out before the work whether a checkpoint can be written to this place.
+/// Checks before rendering that a checkpoint can be written to this file.
 ///
 /// # Errors
-/// Where it has a picture's name, or no file can be made there.
+/// If the name has an image extension, or the file cannot be created.
 pub fn check_place(file: &Path) -> Result<(), CheckpointError> {
     if Format::of(file).is_some() {
         return Err(CheckpointError::Unfit {
             file: file.to_owned(),
-            what: "this is a picture's name, not a checkpoint's".to_owned(),
-            mend: format!("end it in .{EXTENSION}; pictures are named by -o"),
+            what: "this extension belongs to images, not to checkpoints".to_owned(),
+            mend: format!("use a name that ends in .{EXTENSION}; -o names images"),
         });
     }
     storage::check(file, Purpose::Keepsake).map_err(|cause| CheckpointError::Io {
@@ -81,19 +81,21 @@ pub fn check_place(file: &Path) -> Result<(), CheckpointError> {
     })
 }
 
-/// Holds the place of a checkpoint, for as long as a render may write to it.
+/// Locks a checkpoint for as long as a render may write to it.
 ///
 /// # Errors
-/// Where another process holds it, or the system refuses.
+/// If another process holds the lock, or the file cannot be locked.
 pub fn lock(file: &Path) -> Result<Option<Lock>, CheckpointError> {
     Lock::of(file).map_err(|error| match error {
         LockError::Held(holder) => CheckpointError::Unfit {
             file: file.to_owned(),
             what: match holder {
-                Some(id) => format!("another caustica (process {id}) writes to this checkpoint"),
-                None => "another caustica writes to this checkpoint".to_owned(),
+                Some(id) => {
+                    format!("another caustica process ({id}) is writing to this checkpoint")
+                }
+                None => "another caustica process is writing to this checkpoint".to_owned(),
             },
-            mend: "wait for it to end, or name another file".to_owned(),
+            mend: "wait for it to end, or use another file".to_owned(),
         },
         LockError::Io(cause) => {
             CheckpointError::Io { file: file.to_owned(), verb: "locked", cause }
@@ -101,10 +103,10 @@ pub fn lock(file: &Path) -> Result<Option<Lock>, CheckpointError> {
     })
 }
 
-/// Reads a checkpoint. Takes no more memory than some times the file's length.
+/// Reads a checkpoint. Memory use is limited to a small multiple of the file length.
 ///
 /// # Errors
-/// Where there is none, or one that is damaged or of another format.
+/// If the file does not exist, is damaged or has another format.
 pub fn read(file: &Path) -> Result<Checkpoint, CheckpointError> {
     let bytes = storage::read(file, memory::readable()).map_err(|cause| CheckpointError::Io {
         file: file.to_owned(),
@@ -158,7 +160,7 @@ fn words_of(bytes: &[u8]) -> Vec<u32> {
     bytes.chunks_exact(4).map(|word| u32::from_le_bytes([0, 1, 2, 3].map(|k| word[k]))).collect()
 }
 
-/// Hashes what it hands on.
+/// Writer that hashes all bytes that it passes on.
 struct Summing<W> {
     inner: W,
     sum: Box<Xxh3>,
@@ -176,19 +178,19 @@ impl<W: Write> Write for Summing<W> {
     }
 }
 
-/// Reads a checkpoint from a file's bytes; `file` names it in messages.
+/// Decodes a checkpoint. `file` is used in error messages only.
 ///
 /// # Errors
-/// As [`read`].
+/// As for [`read`].
 pub fn decode(file: &Path, bytes: &[u8]) -> Result<Checkpoint, CheckpointError> {
     let not_one =
         |what: &str| CheckpointError::NotOne { file: file.to_owned(), what: what.to_owned() };
     let damaged = |what: String| CheckpointError::Damaged { file: file.to_owned(), what };
     if !bytes.starts_with(&MAGIC) {
-        return Err(not_one("it does not begin as one"));
+        return Err(not_one("the signature is missing"));
     }
     let Some((prefix, _)) = bytes.split_first_chunk::<PREFIX>() else {
-        return Err(not_one("it ends before its length is given"));
+        return Err(not_one("the file is too short"));
     };
     let word = |at: usize| u32::from_le_bytes([0, 1, 2, 3].map(|k| prefix[at + k]));
     let format = word(8);
@@ -207,16 +209,16 @@ pub fn decode(file: &Path, bytes: &[u8]) -> Result<Checkpoint, CheckpointError> 
     let Some((content, sum)) =
         bytes.split_last_chunk::<SUM>().filter(|(content, _)| content.len() >= PREFIX)
     else {
-        return Err(damaged("it ends before its checksum".to_owned()));
+        return Err(damaged("the checksum is missing".to_owned()));
     };
     if xxh3_128(content) != u128::from_le_bytes(*sum) {
-        return Err(damaged("its checksum is not that of its content".to_owned()));
+        return Err(damaged("the checksum does not match the content".to_owned()));
     }
-    let short = || damaged("its parts are longer than it is".to_owned());
+    let short = || damaged("the sections are longer than the file".to_owned());
     let (header, mut rest) =
         content[PREFIX..].split_at_checked(word(12) as usize).ok_or_else(short)?;
     let header: Header =
-        serde_json::from_slice(header).map_err(|error| damaged(format!("its header: {error}")))?;
+        serde_json::from_slice(header).map_err(|error| damaged(format!("header: {error}")))?;
     let mut section = |length: u64| {
         let (section, others) = rest.split_at_checked(usize::try_from(length).ok()?)?;
         rest = others;
@@ -230,7 +232,7 @@ pub fn decode(file: &Path, bytes: &[u8]) -> Result<Checkpoint, CheckpointError> 
     }
     let [film, statistics, cuts, aovs, parts, counts, objects] = sections;
     if !rest.is_empty() {
-        return Err(damaged("it is longer than its header says".to_owned()));
+        return Err(damaged("the file is longer than its sections".to_owned()));
     }
     check_header(&header).map_err(damaged)?;
     values::check_space(&header.origin.space).map_err(damaged)?;
@@ -253,7 +255,7 @@ pub fn decode(file: &Path, bytes: &[u8]) -> Result<Checkpoint, CheckpointError> 
     Ok(Checkpoint { origin: header.origin, totals: header.totals, state, cuts })
 }
 
-/// Whether the numbers fit one another.
+/// Checks that the numbers in the header are consistent.
 fn check_header(header: &Header) -> Result<(), String> {
     let [film_bytes, statistics_bytes, aov_bytes, parts_bytes] = match header.bits {
         32 => {
@@ -264,7 +266,7 @@ fn check_header(header: &Header) -> Result<(), String> {
             use double::kernels::bytes::*;
             [FILM_BYTES, STATISTICS_BYTES, AOV_BYTES, PARTS_BYTES]
         }
-        bits => return Err(format!("expected numbers of 32 or 64 bits, found {bits}")),
+        bits => return Err(format!("expected a precision of 32 or 64 bits, found {bits}")),
     };
     let Origin { width, height, window, aovs, .. } = &header.origin;
     if let Some([x0, y0, x1, y1]) = window
@@ -277,7 +279,7 @@ fn check_header(header: &Header) -> Result<(), String> {
     if pixels == 0 {
         return Err("no pixels".to_owned());
     }
-    // what may be left out, and what each pixel takes
+    // name, length, whether the section is present, bytes per pixel
     let by_pixel = [
         ("film", header.film, true, film_bytes),
         ("cuts", header.cuts, header.cuts > 0, CUTS_BYTES),

@@ -1,8 +1,8 @@
-//! What checkpoints hold in addition to radiance: as channels, and of two ranges as of one. In f64.
+//! Layers of checkpoints: conversion to EXR channels and merging of two pass ranges, in f64.
 //!
-//! Means are weighted by what they are means of: passes, samples that hit anything, or samples that
-//! end at a visible point. Numbers of surfaces and materials are those of the first pass, photons
-//! and radii those of the last one.
+//! Merged means are weighted by their number of passes, of samples that hit a surface, or of
+//! samples that end at a visible point. Object and material IDs come from the first pass, photon
+//! counts and radii from the last.
 
 use super::{Checkpoint, Origin};
 use crate::double::kernels::aov_trace::AovPixel;
@@ -18,8 +18,7 @@ use crate::plan::global_scale_sq;
 use crate::scene::settings::{Method, RadiusRule};
 
 impl Checkpoint {
-    /// What the film asks for in addition to radiance; the same bits that the render would have
-    /// given.
+    /// Layers requested by the film in addition to radiance; bit-identical to those of the render.
     pub fn layers(&self) -> Vec<Channel> {
         let Origin { settings, aovs, space, .. } = &self.origin;
         let [width, height] = self.origin.window_size();
@@ -47,7 +46,7 @@ impl Checkpoint {
     }
 }
 
-/// What two ranges, of which one follows the other, know of layers.
+/// Merges the layers of two consecutive pass ranges.
 pub(super) fn joined(first: &State, next: &State) -> LayerState {
     let passes = [first, next].map(|state| f64::from(state.passes));
     let aovs = wide_aovs(first).into_iter().zip(wide_aovs(next));
@@ -60,7 +59,7 @@ pub(super) fn joined(first: &State, next: &State) -> LayerState {
     }
 }
 
-/// Means of numbers of which there are so many; nothing of nothing is 0.
+/// Weighted mean of `a` and `b`; zero if both weights are zero.
 fn mixed([m, n]: [f64; 2], a: Vec3, b: Vec3) -> Vec3 {
     if m + n == 0.0 { Vec3::ZERO } else { (a * m + b * n) / (m + n) }
 }

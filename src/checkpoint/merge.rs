@@ -1,14 +1,16 @@
-//! Ranges of passes into one. Sums are made in f64.
+//! Merging of pass ranges. Sums are computed in f64.
 //!
-//! Means are weighted by the passes that count in a pixel, and the spread is joined by the parallel
-//! form of Welford's method (Chan, Golub & LeVeque 1979): `n S = n_a S_a + n_b S_b + delta^2 n_a
-//! n_b / n`, delta the difference of both means. So mean, spread, `bias_probe`, `bias_probe_alternating` and `halves`
-//! are those of one render but for rounding.
+//! Means are weighted by the number of accepted passes of a pixel. The spread is merged by the
+//! parallel form of Welford's method (Chan, Golub & LeVeque 1979):
+//! `n S = n_a S_a + n_b S_b + delta^2 n_a n_b / n`, where `delta` is the difference of the means.
+//! So mean, spread, `bias_probe`, `bias_probe_alternating` and `halves` are those of a single
+//! render except for rounding.
 //!
-//! `mean_at_pow2` and `mean_at_half_pow2` are not: those means over the first passes that a render of all would have
-//! kept are in no file. Any other two cuts into first and later passes serve the estimate alike, so
-//! of the five that the files know, where one ends and where either was cut itself, those are taken
-//! that are nearest to the middle and to a quarter of the passes from either end.
+//! `mean_at_pow2` and `mean_at_half_pow2` differ: the means over the first passes that a single
+//! render would have stored are in neither file. Any two cuts into earlier and later passes serve
+//! the error estimate equally well. Five cuts are known: the boundary between the ranges, and the
+//! two cuts of each range. The merge selects those nearest to the middle and to a quarter of the
+//! passes from either end.
 
 use std::path::PathBuf;
 
@@ -24,11 +26,11 @@ use crate::engine::{Space, State};
 use crate::kernels;
 use crate::scene::settings::{Method, RadiusRule};
 
-/// Makes one checkpoint of those of ranges that follow one another, given in any order with their
-/// files.
+/// Merges checkpoints of consecutive pass ranges, given in any order together with their files.
 ///
 /// # Errors
-/// Where there is none, they are not of one render, or passes are missing or in two of them.
+/// If the list is empty, the checkpoints belong to different renders, or passes are missing or
+/// duplicated.
 pub fn merge(checkpoints: Vec<(PathBuf, Checkpoint)>) -> Result<Checkpoint, CheckpointError> {
     let mut sorted = checkpoints;
     sorted.sort_by_key(|(_, checkpoint)| checkpoint.state.first_pass);
@@ -38,7 +40,7 @@ pub fn merge(checkpoints: Vec<(PathBuf, Checkpoint)>) -> Result<Checkpoint, Chec
         return Err(CheckpointError::Unfit {
             file: PathBuf::new(),
             what,
-            mend: "name checkpoints".to_owned(),
+            mend: "give at least one checkpoint".to_owned(),
         });
     };
     for (next_file, next) in rest {
@@ -56,11 +58,10 @@ fn check_follows(
     let mut differences = first.origin.differences(&next.origin);
     let [expected, found] = [first.origin.aovs, next.origin.aovs];
     if expected != found {
-        differences.push(format!("the layers: expected {}, found {}", told(expected), told(found)));
+        differences.push(format!("layers: expected {}, found {}", told(expected), told(found)));
     }
     if !differences.is_empty() {
-        let mend =
-            format!("expected is what {} is of: render one of both anew", first_file.display());
+        let mend = format!("\"expected\" is {}: render one of them again", first_file.display());
         return Err(CheckpointError::Other { file: file.clone(), differences, mend });
     }
     let unfit = |what: String, mend: &str| {
@@ -69,13 +70,15 @@ fn check_follows(
     let settings = &first.origin.settings;
     if settings.radius_rule == RadiusRule::Local && settings.method != Method::Path {
         return unfit(
-            "under the local rule each pass needs the photon counts of all before it, so that parts cannot be merged".into(),
-            "take the global rule, or go on from one checkpoint with --resume",
+            "the local radius rule cannot be merged, since each pass needs the photon counts of \
+             all earlier passes"
+                .into(),
+            "use the global rule, or continue one checkpoint with --resume",
         );
     }
     let (end, begin) = (first.end(), next.state.first_pass);
     let held = format!(
-        "{} ends before pass {end}, this one holds passes {begin}..{}",
+        "{} ends before pass {end}, this one contains passes {begin}..{}",
         first_file.display(),
         next.end()
     );
@@ -83,7 +86,7 @@ fn check_follows(
         let both = begin..end.min(next.end());
         return unfit(
             format!("passes {}..{} are in both: {held}", both.start, both.end),
-            "merge ranges that follow one another, as 0..500 and 500..1000",
+            "merge consecutive ranges, such as 0..500 and 500..1000",
         );
     }
     if begin > end {
@@ -95,7 +98,7 @@ fn check_follows(
     Ok(())
 }
 
-/// Two ranges of which one follows the other.
+/// Merges two consecutive ranges.
 fn join(first: &Checkpoint, next: &Checkpoint) -> Checkpoint {
     let halves = [first, next].map(|checkpoint| {
         let film = wide_film(&checkpoint.state);
@@ -141,18 +144,18 @@ fn join(first: &Checkpoint, next: &Checkpoint) -> Checkpoint {
     }
 }
 
-/// What a range of passes found in a pixel.
+/// Film data of one pixel for a range of passes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Part {
     film: FilmPixel,
-    /// All of them, also those that do not count.
+    /// Number of passes, including rejected ones.
     passes: u32,
-    /// Passes that `mean_at_pow2` and `mean_at_half_pow2` are means of.
+    /// Number of passes that `mean_at_pow2` and `mean_at_half_pow2` average.
     cuts: [u32; 2],
 }
 
 impl Part {
-    /// Both, `b` after `a`.
+    /// Merges `a` and the subsequent range `b`.
     fn joined(a: &Self, b: &Self) -> Self {
         let (na, nb) = (counted(&a.film, a.passes), counted(&b.film, b.passes));
         let (wa, wb, n) = (f64::from(na), f64::from(nb), f64::from(na) + f64::from(nb));
@@ -160,7 +163,7 @@ impl Part {
         let [mean_a, mean_b] = [a, b].map(|part| part.film.mean + part.film.carry);
         let delta = luminance(mean_b - mean_a);
         let between = if na + nb == 0 { 0.0 } else { delta * delta * (wa / n) * (wb / n) };
-        // a pass of odd number, counted from the first of its range, is turned over in `bias_probe_alternating`
+        // `bias_probe_alternating` flips the sign of odd passes, counted from the start of a range
         let sign = if a.passes.is_multiple_of(2) { 1.0 } else { -1.0 };
         let cuts = joined_cuts((a, na, luminance(mean_a)), (b, nb, luminance(mean_b)));
         let film = FilmPixel {
@@ -181,9 +184,9 @@ impl Part {
     }
 }
 
-/// The cut nearest to the middle and the other one nearest to a quarter from either end, each with
-/// the mean before it. With too few passes for two of them, 0 stands for none. Each part has its
-/// passes that count and its mean.
+/// Selects the cut nearest to the middle, and another one nearest to a quarter from either end,
+/// each with the mean of the passes before it. A cut of 0 means none, if there are too few passes.
+/// Each argument is a part with its number of accepted passes and its mean.
 fn joined_cuts(
     (a, na, mean_a): (&Part, u32, f64),
     (b, nb, mean_b): (&Part, u32, f64),
@@ -193,7 +196,7 @@ fn joined_cuts(
         let all = f64::from(na) + f64::from(cut);
         (na + cut, (f64::from(na) * mean_a + f64::from(cut) * mean) / all.max(1.0))
     };
-    // the cut of a single pass has nothing before it
+    // the cut of a range of one pass lies at its end, so it is not inside `a`
     let before_a = |cut: u32, mean: f64| if cut < na { (cut, mean) } else { (0, 0.0) };
     let known = [
         before_a(a.cuts[0], a.film.mean_at_pow2),
@@ -214,13 +217,13 @@ fn joined_cuts(
     [middle, nearest(4, middle.0)]
 }
 
-/// What reads the films of an origin.
+/// Film readout for an origin.
 pub(super) fn readout(origin: &Origin) -> Readout {
     let Space { radiance_unit, glint, .. } = origin.space;
     Readout { width: origin.window_size()[0], unit: radiance_unit, glint }
 }
 
-/// A film in f64, whichever it was saved in.
+/// Film in f64, converted from the saved precision.
 pub(super) fn wide_film(state: &State) -> Vec<FilmPixel> {
     if state.bits == 64 {
         return double::kernels::bytes::film_of(&state.film);
@@ -239,8 +242,9 @@ pub(super) fn wide_film(state: &State) -> Vec<FilmPixel> {
     kernels::bytes::film_of(&state.film).iter().map(wide).collect()
 }
 
-/// Theory: the f64 kernel `fold` folds all passes into one pixel, or two ranges into two; joined,
-/// these are the first but for rounding, and the cuts are means over the first passes.
+/// Theory: the f64 kernel `fold` accumulates all passes into one pixel, or two ranges into two
+/// pixels. Merged, the two equal the single one except for rounding, and the cuts are means over
+/// the first passes.
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -248,7 +252,7 @@ mod tests {
     use crate::double::kernels::resolve::{Estimate, fold};
     use bytemuck::Zeroable;
 
-    /// What pass `number` finds; one in eleven does not count.
+    /// Result of pass `number`; one in eleven is rejected.
     fn found(number: u32) -> (u32, Estimate) {
         let x = |k: u32| {
             f64::from((number * 2_654_435_761u32.wrapping_mul(k + 1)) >> 8) / f64::from(1 << 24)
@@ -272,14 +276,14 @@ mod tests {
         Part { film, passes, cuts: early_parts(counted(&film, passes)) }
     }
 
-    /// Luminance of the mean over the first passes that count.
+    /// Luminance of the mean over the first `count` accepted passes.
     fn mean_of_first(count: u32) -> f64 {
         let counting = (0..).map(found).filter(|(cause, _)| *cause == ACCEPTED);
         counting.take(count as usize).map(|(_, found)| luminance(found.radiance)).sum::<f64>()
             / f64::from(count)
     }
 
-    /// Largest difference of what is to be the same; counts must be.
+    /// Largest difference of the values that must agree; counts must be equal.
     fn distance(a: &Part, b: &Part) -> f64 {
         assert_eq!((a.passes, a.film.rejected), (b.passes, b.film.rejected));
         let numbers = |p: &FilmPixel| {
@@ -311,7 +315,7 @@ mod tests {
         assert!(worst < 1e-12, "{worst:e}");
         let three = Part::joined(&Part::joined(&range(0, 100), &range(100, 101)), &range(101, 350));
         assert!(distance(&three, &range(0, 350)) < 1e-12);
-        // the comparator sees the wrong order, a pass left out, and a sign that was not turned over
+        // the comparison detects a wrong order, a missing pass and a sign that was not flipped
         let (a, b) = (range(0, 101), range(101, 200));
         let whole = range(0, 200);
         assert!(distance(&Part::joined(&b, &Part { passes: 101, ..a }), &whole) > 1e-6);
@@ -327,14 +331,14 @@ mod tests {
         let part =
             |passes: u32| Part { film: FilmPixel::zeroed(), passes, cuts: early_parts(passes) };
         let cuts = |a: u32, b: u32| Part::joined(&part(a), &part(b)).cuts;
-        // those of one render, where the files know them
+        // equal to those of a single render if the files contain them
         assert_eq!(cuts(512, 512), early_parts(1024));
         assert_eq!(cuts(500, 500), [500, 256]);
         assert_eq!(cuts(10, 990), [522, 266]);
         assert_eq!(cuts(990, 10), [512, 256]);
         assert_eq!(cuts(1, 3), [2, 1]);
         assert_eq!(cuts(1, 1), [1, 0]);
-        // a single pass at the start is no quarter
+        // a single pass at the start is not selected as the quarter
         assert_eq!(cuts(1, 39), [17, 33]);
     }
 }

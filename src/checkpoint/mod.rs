@@ -1,8 +1,7 @@
-//! Renders on disk: what an engine holds between two passes, and what tells whose it is.
+//! Checkpoints: the engine state between two passes, and the identity of its render, on disk.
 //!
-//! A render that goes on from one ends in the bits of a render that never stopped, and those of
-//! ranges of passes merge into one. docs/checkpoints.md tells what is in the file and what is
-//! promised.
+//! A resumed render is bit-identical to an uninterrupted one, and checkpoints of pass ranges can be
+//! merged. docs/checkpoints.md describes the file content and the guarantees.
 
 mod compat;
 mod error;
@@ -28,18 +27,18 @@ pub use origin::Origin;
 /// A render between two passes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Checkpoint {
-    /// Which render.
+    /// Identity of the render.
     pub origin: Origin,
-    /// What was done.
+    /// Totals over all passes.
     pub totals: Totals,
-    /// What the engine held.
+    /// Engine state.
     pub state: State,
-    /// Merged: of each pixel, how many passes the film's `mean_at_pow2` and `mean_at_half_pow2` are means of; else
-    /// empty.
+    /// For each pixel of a merged checkpoint, the numbers of passes that the film's `mean_at_pow2`
+    /// and `mean_at_half_pow2` average; empty if not merged.
     pub cuts: Vec<[u32; 2]>,
 }
 
-/// What the passes took.
+/// Totals over all passes, including earlier sessions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Totals {
     /// Photon paths emitted.
@@ -48,16 +47,16 @@ pub struct Totals {
     pub eye_paths: u64,
     /// Rays traced.
     pub rays: u64,
-    /// How the photon paths ended.
+    /// Photon path terminations by cause.
     pub ends: PhotonEnds,
     /// Gather radius of the last pass in scene units.
     pub radius: f64,
-    /// Time, of all parts together.
+    /// Render time.
     pub elapsed: Duration,
 }
 
 impl Totals {
-    /// Those of a render in progress.
+    /// Totals of a render in progress.
     pub fn of(progress: &Progress) -> Self {
         let Progress { photons, eye_paths, rays, ends, radius, elapsed, .. } = *progress;
         Self { photons, eye_paths, rays, ends, radius, elapsed }
@@ -65,20 +64,19 @@ impl Totals {
 }
 
 impl Checkpoint {
-    /// Where a render is that goes on from here.
+    /// Progress of a render that resumes from this checkpoint.
     pub fn progress(&self, stop: Stop) -> Progress {
         let Totals { photons, eye_paths, rays, ends, radius, elapsed } = self.totals;
         let passes = self.state.passes;
         Progress { stop, passes, photons, eye_paths, rays, ends, radius, elapsed, error: None }
     }
 
-    /// Number of the pass after the last one in it.
+    /// Index of the pass after the last one in the checkpoint.
     pub fn end(&self) -> u32 {
         self.state.first_pass + self.state.passes
     }
 
-    /// The picture, what it says of its error, and what was left out of it; the same bits that the
-    /// render would have given.
+    /// Image, error estimate and rejections; bit-identical to those of the render.
     pub fn develop(&self) -> (Picture, ErrorMap, Rejections) {
         let film = merge::wide_film(&self.state);
         let readout = merge::readout(&self.origin);
@@ -90,7 +88,7 @@ impl Checkpoint {
         (readout.picture(&film), errors, readout.rejections(&film))
     }
 
-    /// How its pictures came about.
+    /// Provenance of images developed from the checkpoint.
     pub fn provenance(&self) -> Provenance {
         Provenance {
             scene: self.origin.scene.clone(),
@@ -105,7 +103,7 @@ impl Checkpoint {
         }
     }
 
-    /// How its pictures are tone-mapped.
+    /// Tone mapping of images developed from the checkpoint.
     pub fn development(&self) -> Development {
         Development {
             exposure: self.origin.exposure,

@@ -1,4 +1,4 @@
-//! Which render a checkpoint is of.
+//! Identity of the render that a checkpoint belongs to.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,43 +8,41 @@ use crate::render::identity::{Identity, program};
 use crate::scene::settings::RenderSettings;
 use crate::scene::{Aovs, Film, Scene, ToneMap};
 
-/// What a picture is made from.
+/// Scene, settings and device of a render.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Origin {
-    /// The program; see [`crate::render::identity::program`].
+    /// Program version; see [`crate::render::identity::program`].
     pub version: String,
-    /// The scene's name.
+    /// Scene name.
     pub scene: String,
-    /// The scene file's text.
+    /// Text of the scene file.
     pub scene_text: String,
     /// Digests of the scene.
     pub identity: Identity,
-    /// The materials' names, in the order of their numbers.
+    /// Material names, indexed by material ID.
     pub materials: Vec<String>,
-    /// Pixels per row of the whole picture.
+    /// Pixels per row of the whole image.
     pub width: u32,
-    /// Rows of the whole picture.
+    /// Rows of the whole image.
     pub height: u32,
-    /// The part of it that is rendered: columns x0 to x1 and rows y0 to y1, x1 and y1 left out;
-    /// `None` is all.
+    /// Crop window `[x0, y0, x1, y1]`: columns `x0..x1`, rows `y0..y1`; `None` for the whole image.
     pub window: Option<[u32; 4]>,
-    /// What is found in addition to radiance.
+    /// Layers rendered in addition to radiance.
     pub aovs: Aovs,
-    /// What tells its numbers in those of the world.
+    /// Conversion of scene units to world units.
     pub space: Space,
-    /// All settings, with a radius in the place of "auto". The number of passes is where the render
-    /// was to end.
+    /// All settings, with "auto" radii resolved. The number of passes is the planned one.
     pub settings: RenderSettings,
-    /// The device's name; of merged ones the names of all.
+    /// Device name; for merged checkpoints, the names of all devices.
     pub device: String,
-    /// Exposure of tone-mapped pictures in stops.
+    /// Exposure of tone-mapped images in stops.
     pub exposure: f64,
-    /// Curve of tone-mapped pictures.
+    /// Tone curve of tone-mapped images.
     pub tonemap: ToneMap,
 }
 
 impl Origin {
-    /// That of a render by an engine for a scene, which was read from a file of this text.
+    /// Identity of a render of `scene`, parsed from `scene_text`, on an opened device.
     pub fn of(opened: &Opened, scene: &Scene, scene_text: &str) -> Self {
         let Film { width, height, exposure, tonemap, aovs, window } = scene.film;
         Self {
@@ -65,13 +63,13 @@ impl Origin {
         }
     }
 
-    /// The film.
+    /// Film settings of the render.
     pub fn film(&self) -> Film {
         let Self { width, height, exposure, tonemap, aovs, window, .. } = *self;
         Film { width, height, exposure, tonemap, aovs, window }
     }
 
-    /// Columns and rows that are rendered.
+    /// Number of rendered columns and rows.
     pub fn window_size(&self) -> [u32; 2] {
         match self.window {
             Some([x0, y0, x1, y1]) => [x1.saturating_sub(x0), y1.saturating_sub(y0)],

@@ -1,33 +1,33 @@
-//! Whether the numbers of a checkpoint can be those of a render: a forged file must neither hang a
-//! render nor fill it with nonsense. Lengths of what is kept by pixel are checked before (`file`).
+//! Validation of checkpoint data: a forged file must neither hang a render nor corrupt it. `file`
+//! has already checked the lengths of per-pixel data.
 
 use super::Origin;
 use crate::engine::{Space, State};
 use crate::scene::settings::{Method, RadiusRule};
 
-/// Items that are looked at together, so that a large film is not copied as a whole.
+/// Number of items that are checked at a time, so that a large film is not copied as a whole.
 const TOGETHER: usize = 4096;
 
-/// Checks what the engine is to take over; `passes` is the number of passes of the film.
+/// Checks the engine state and, for a merged checkpoint, the cuts.
 ///
 /// # Errors
-/// The first number that no render gives.
+/// The first value that no render produces.
 pub(super) fn check(state: &State, cuts: &[[u32; 2]]) -> Result<(), String> {
     match state.bits {
         32 => single::check(state)?,
         _ => wide::check(state)?,
     }
     match cuts.iter().flatten().find(|cut| **cut > state.passes) {
-        Some(cut) => Err(format!("a mean over {cut} of {} passes", state.passes)),
+        Some(cut) => Err(format!("a mean over {cut} passes in a film of {}", state.passes)),
         None => Ok(()),
     }
 }
 
-/// Checks how many visible points there are numbers of; a film without layers and rules that need
-/// them has none.
+/// Checks the number of visible points with statistics and photon counts. Both are optional;
+/// statistics require the local radius rule, photon counts a method that gathers photons.
 ///
 /// # Errors
-/// Numbers of more or of fewer points than the picture has.
+/// If a number is neither zero nor that of the image's visible points.
 pub(super) fn check_points(origin: &Origin, statistics: u64, counts: u64) -> Result<(), String> {
     let settings = &origin.settings;
     let [columns, rows] = origin.window_size().map(u64::from);
@@ -40,18 +40,16 @@ pub(super) fn check_points(origin: &Origin, statistics: u64, counts: u64) -> Res
     {
         if found != 0 && (found != points || !kept) {
             let points = if kept { points } else { 0 };
-            return Err(format!(
-                "{name} of {found} visible points, and the picture has {points} with them"
-            ));
+            return Err(format!("{name} of {found} visible points, but expected {points}"));
         }
     }
     Ok(())
 }
 
-/// Checks what tells scene units.
+/// Checks the conversion of scene units to world units.
 ///
 /// # Errors
-/// The first number that no scene has.
+/// The first value that no scene has.
 pub(super) fn check_space(space: &Space) -> Result<(), String> {
     let Space { center, unit, radiance_unit, photons: _, glint } = *space;
     let positive = |x: f64| x > 0.0 && x.is_finite();
@@ -59,7 +57,7 @@ pub(super) fn check_space(space: &Space) -> Result<(), String> {
         return Err(format!("a scene unit of {unit} and a radiance unit of {radiance_unit}"));
     }
     if !(glint >= 0.0 && glint.is_finite() && center.iter().all(|x| x.is_finite())) {
-        return Err(format!("a scene about {center:?} with glints of {glint}"));
+        return Err(format!("a scene center of {center:?} and glints of {glint}"));
     }
     Ok(())
 }
@@ -72,8 +70,7 @@ macro_rules! precision {
             use $kernels as kernels;
             use $real as real;
 
-            /// Checks layers of pixels: means of finite numbers over no more passes or samples than
-            /// there are.
+            /// Checks per-pixel layers: means are finite, and counts are in range.
             fn check_layers(state: &State) -> Result<(), String> {
                 let all_finite = |v: &real::Vec3| v.is_finite();
                 for (number, bytes) in state.layers.aovs.chunks(AOV_BYTES * TOGETHER).enumerate() {
@@ -86,10 +83,10 @@ macro_rules! precision {
                             && vectors.into_iter().all(all_finite)
                     };
                     if let Some(i) = aovs_of(bytes).iter().position(|a| !sound(a)) {
-                        return Err(format!("pixel {} holds no layers", number * TOGETHER + i));
+                        return Err(format!("pixel {} has invalid layers", number * TOGETHER + i));
                     }
                 }
-                #[allow(clippy::unnecessary_cast)] // no cast where a real number is an f64
+                #[allow(clippy::unnecessary_cast)] // not a cast in the f64 instance
                 let most = f64::from(state.passes) as real::Real;
                 for (number, bytes) in state.layers.parts.chunks(PARTS_BYTES * TOGETHER).enumerate()
                 {
@@ -100,7 +97,7 @@ macro_rules! precision {
                     };
                     if let Some(i) = parts_of(bytes).iter().position(|p| !sound(p)) {
                         return Err(format!(
-                            "pixel {} holds no parts of its light",
+                            "pixel {} has invalid light components",
                             number * TOGETHER + i
                         ));
                     }
@@ -113,7 +110,7 @@ macro_rules! precision {
                     for (i, p) in film_of(bytes).iter().enumerate() {
                         let at = number * TOGETHER + i;
                         let means = [p.mean.x, p.mean.y, p.mean.z, p.carry.x, p.carry.y, p.carry.z];
-                        // squares of bright passes may go beyond what a number holds
+                        // squares of bright passes may overflow to infinity
                         let rest = [
                             p.spread,
                             p.mean_at_pow2,
@@ -125,13 +122,13 @@ macro_rules! precision {
                         let numbers =
                             means.iter().all(|x| x.is_finite()) && rest.iter().all(|x| !x.is_nan());
                         if !numbers || p.spread < 0.0 {
-                            return Err(format!("pixel {at} holds no radiance"));
+                            return Err(format!("pixel {at} has invalid radiance"));
                         }
                         let rejected: u64 = p.rejected.iter().map(|n| u64::from(*n)).sum();
                         if rejected > u64::from(state.passes) {
                             let passes = state.passes;
                             return Err(format!(
-                                "pixel {at} leaves out {rejected} of {passes} passes"
+                                "pixel {at} rejects {rejected} of {passes} passes"
                             ));
                         }
                     }
@@ -140,13 +137,13 @@ macro_rules! precision {
                     state.statistics.chunks(STATISTICS_BYTES * TOGETHER).enumerate()
                 {
                     for (i, s) in statistics_of(bytes).iter().enumerate() {
-                        // radii only shrink; 0 is a point that no pass has looked at
+                        // radii only shrink; 0 marks a point that no pass has updated
                         if !((0.0..=1.0).contains(&s.scale_sq)
                             && (0.0..=s.scale_sq).contains(&s.drop))
                         {
                             let at = number * TOGETHER + i;
                             return Err(format!(
-                                "visible point {at} has {} of its squared radius",
+                                "visible point {at} has the invalid squared radius scale {}",
                                 s.scale_sq
                             ));
                         }

@@ -1,4 +1,4 @@
-//! Options that say what a scene may read, and how much.
+//! Options that limit which files a scene may read, and their sizes.
 
 use std::path::{Path, PathBuf};
 
@@ -10,23 +10,21 @@ use super::Failure;
 
 /// Options of all commands that read scenes.
 #[derive(Args, Debug, Default)]
-#[command(next_help_heading = "For scenes of strangers")]
+#[command(next_help_heading = "Untrusted scenes")]
 pub struct Allowed {
-    /// Folder that holds every file that may be read, the scene's own among them, links resolved
+    /// Read files from this folder only, after resolving links; includes the scene file itself
     #[arg(long, value_name = "DIR")]
     root: Option<PathBuf>,
-    /// Another limit than the default: scene-bytes, shapes, mesh-bytes, mesh-triangles, triangles,
-    /// texture-pixels, texture-bytes, picture-pixels or errors, as in triangles=1e6; may be given
-    /// several times
+    /// Override a limit, e.g. triangles=1e6: scene-bytes, shapes, mesh-bytes, mesh-triangles,
+    /// triangles, texture-pixels, texture-bytes, picture-pixels or errors; repeatable
     #[arg(long, value_name = "NAME=N", value_parser = limit)]
     limit: Vec<(String, u64)>,
-    /// What an MTL or texture file that does not exist is: an error, or a warning and mid-gray in
-    /// its place
+    /// Treat missing MTL and texture files as an error, or warn and use mid-gray
     #[arg(long, value_name = "WHAT", value_enum, default_value_t)]
     missing: OnMissing,
 }
 
-/// What becomes of a scene with missing files.
+/// Handling of missing files.
 #[derive(Clone, Copy, Debug, Default, ValueEnum)]
 enum OnMissing {
     #[default]
@@ -44,18 +42,18 @@ impl From<OnMissing> for Missing {
 }
 
 impl Allowed {
-    /// As the library takes it.
+    /// Converts the options to the library's type.
     pub fn allowance(&self) -> Result<Allowance, Failure> {
         if let Some(root) = self.root.as_ref().filter(|root| !root.is_dir()) {
-            let what = format!("--root {}: there is no such folder", root.display());
+            let what = format!("--root {}: the folder does not exist", root.display());
             return Err(Failure::wrong_use(
                 &what,
-                "name the folder that holds the scene and its files",
+                "give the folder that contains the scene and its files",
             ));
         }
         let (root, missing) = (self.root.clone(), self.missing.into());
         let allowance = Allowance { root, missing, ..Allowance::default() };
-        // what is named is meant, whatever there is
+        // explicit limits override those derived from the available memory
         let mut allowance = match memory::limited() {
             Some((left, _)) => allowance.within_memory(left),
             None => allowance,
@@ -77,16 +75,16 @@ impl Allowed {
 fn limit(text: &str) -> Result<(String, u64), String> {
     let names = Allowance::LIMITS.join(", ");
     let (name, value) =
-        text.split_once('=').ok_or("expected NAME=N, as in triangles=1e6".to_owned())?;
+        text.split_once('=').ok_or("expected NAME=N, e.g. triangles=1e6".to_owned())?;
     if !Allowance::LIMITS.contains(&name) {
-        return Err(format!("no limit is called {name}; there are {names}"));
+        return Err(format!("unknown limit {name}; the limits are {names}"));
     }
     let exact = value.parse::<u64>().ok();
     let rounded =
         || value.parse::<f64>().ok().filter(|n| (0.0..1e19).contains(n)).map(|n| n as u64);
     let value = exact
         .or_else(rounded)
-        .ok_or(format!("`{value}` is not a number above zero, as in 1000000 or 1e6"))?;
+        .ok_or(format!("`{value}` is not a number of zero or more, e.g. 1000000 or 1e6"))?;
     Ok((name.to_owned(), value))
 }
 

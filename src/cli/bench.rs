@@ -1,4 +1,4 @@
-//! `caustica bench`: times and rates of devices, kernel by kernel, and time to error.
+//! `caustica bench`: kernel times and rates per device, and time to error.
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
@@ -26,35 +26,34 @@ use super::overrides::{Overrides, duration};
 use super::render::in_force;
 use super::{Done, Failure, compiling, hidden, interrupt};
 
-/// The scene where none is given.
+/// Default scene.
 const CORNELL: &[u8] = include_bytes!("../../scenes/cornell.toml");
-/// Passes where neither they nor a time are given.
+/// Default number of passes without a time limit.
 const PASSES: u32 = 10;
-/// How long a run to a truth takes at most, where nothing is said.
+/// Default time limit of a time-to-error run.
 const TO_ERROR: Duration = Duration::from_secs(60);
 
-/// Measure devices: times and rates of the kernels, compile times, memory, time to error
+/// Benchmark devices: kernel times and rates, compile times, memory, time to error
 #[derive(clap::Args)]
 #[command(after_help = HELP)]
 pub struct Arguments {
     /// Scene file [default: a Cornell box]
     scene: Option<PathBuf>,
-    /// Device to measure, as for `render`; several are measured one after another
+    /// Device to measure, as for `render`; repeatable
     #[arg(long, value_name = "DEVICE", value_parser = NonEmptyStringValueParser::new(), default_value = "auto")]
     device: Vec<String>,
-    /// Begin no pass after this time, as in 30s; each run to a truth has the same time, and then no
-    /// other limit [default: 60s for a run to a truth, unless --passes limits it]
+    /// Start no pass after this time, e.g. 30s; also limits the time-to-error run [default: 60s for
+    /// the time-to-error run, unless --passes is given]
     #[arg(long, value_name = "TIME", value_parser = duration)]
     time: Option<Duration>,
-    /// Passes before those that count
+    /// Warm-up passes, which are not measured
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..))]
     warm_up: u32,
-    /// Time that a submission to a GPU is to take, as in 50ms, or `none` for all in one; given
-    /// several times, passes are measured with each, and the first one's count
+    /// Target time of a GPU submission, e.g. 50ms, or `none` for a single submission; repeatable:
+    /// passes are measured with each value, and the main figures use the first
     #[arg(long, value_name = "TIME|none", value_parser = slice, default_value = "50ms")]
     slice: Vec<f64>,
-    /// Print one JSON object per line: what is measured, then all figures, times in seconds, memory
-    /// in bytes
+    /// Print one JSON object per line; times in seconds, memory in bytes
     #[arg(long)]
     json: bool,
     #[command(flatten)]
@@ -63,28 +62,28 @@ pub struct Arguments {
     overrides: Overrides,
 }
 
-/// What a render is held against.
+/// Reference image and error targets.
 #[derive(clap::Args)]
 #[command(next_help_heading = "Time to error")]
 struct Truth {
-    /// Picture that counts as the truth (.exr, .pfm, .hdr): tells relMSE over time
+    /// Reference image (.exr, .pfm, .hdr); reports relMSE over time
     #[arg(long, value_name = "FILE")]
     truth: Option<PathBuf>,
-    /// Tell the error of a region too: columns x0 to x1 and rows y0 to y1 from the top left, x1 and
-    /// y1 left out
+    /// Also report the error of a region: columns x0 to x1 and rows y0 to y1 from the top left, x1
+    /// and y1 excluded
     #[arg(long, value_name = "NAME=x0,y0,x1,y1", value_parser = region, requires = "truth")]
     region: Vec<(String, Region)>,
-    /// relMSE to reach; exit with 3 where it is not
+    /// Target relMSE; exit with code 3 if it is not reached
     #[arg(long = "max-relMSE", alias = "max-relmse", value_name = "[REGION=]X", value_parser = upper, allow_hyphen_values = true, requires = "truth")]
     max_rel_mse: Vec<Bound>,
-    /// relMSE of the truth itself, by its noise, to take off
+    /// relMSE of the reference due to its own noise, which is subtracted
     #[arg(long, value_name = "[REGION=]X", value_parser = upper, allow_hyphen_values = true, requires = "truth")]
     truth_noise: Vec<Bound>,
 }
 
 const HELP: &str = "\
-Each round of a measurement is a pass whose kernels are timed, by the device's own clock where it has one, and a pass as \
-it is for each --slice. docs/performance.md tells what the figures mean.
+Each measurement round consists of a pass with timed kernels (by the device's clock if it has \
+one) and a regular pass for each --slice. See docs/performance.md for the figures.
 
 Examples:
   caustica bench --device gpu --device cpu
@@ -123,8 +122,8 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
         hidden::warn(&wanted);
         if !can_run(device, &settings) {
             return Err(Failure::wrong_use(
-                &format!("path tracing does not run on {}", device.name),
-                "take --device cpu, or --method sppm",
+                &format!("{} does not support path tracing", device.name),
+                "use --device cpu, or --method sppm",
             ));
         }
         chosen.push(device);
@@ -164,10 +163,10 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
             complete = false;
             break;
         }
-        // the next device compiles first, which a signal need not wait for
+        // a signal need not wait for the next device to compile its kernels
         let figures = arguments.json.then(|| as_json(&reports, false));
         interrupt::last_words(move || {
-            // Standard output that takes nothing leaves nothing to do.
+            // a failure to write to standard output cannot be reported anywhere
             let _ = figures.map(result);
         });
     }
@@ -175,7 +174,7 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
         result(as_json(&reports, complete))?;
     }
     if !complete {
-        message("the figures are of the passes before the interrupt");
+        message("interrupted; the figures cover the passes before the interrupt");
         return Ok(Done::Interrupted);
     }
     let missed = |a: &Approach| a.goal.is_some() && a.reached_seconds.is_none();
@@ -206,7 +205,8 @@ fn measure(
     let cached = std::env::var_os("MESA_SHADER_CACHE_DISABLE").is_none();
     if device.kind == DeviceKind::Software && cached {
         message(
-            "note: Mesa keeps compiled shaders; for cold compile times say MESA_SHADER_CACHE_DISABLE=true",
+            "note: Mesa caches compiled shaders; set MESA_SHADER_CACHE_DISABLE=true for cold \
+             compile times",
         );
     }
     let wanted = arguments.overrides.pass_count();
@@ -238,7 +238,7 @@ fn measure(
     Ok(report)
 }
 
-/// The whole picture and each region, with what was asked of them.
+/// Goals of the whole image and of each region.
 fn goals(truth: &Truth) -> Vec<Goal> {
     let of = |bounds: &[Bound], name: Option<&str>| {
         bounds.iter().find(|bound| bound.region.as_deref() == name).map(|bound| bound.limit)
@@ -256,15 +256,15 @@ fn goals(truth: &Truth) -> Vec<Goal> {
         .collect()
 }
 
-/// Fails where a place has two bounds.
+/// Fails if the image or a region has two bounds.
 fn check_single(bounds: &[Bound]) -> Result<(), Failure> {
     let twice =
         bounds.iter().enumerate().find(|(i, b)| bounds[..*i].iter().any(|a| a.region == b.region));
     match twice {
         None => Ok(()),
         Some((_, bound)) => Err(Failure::wrong_use(
-            &format!("{} has two figures", bound.region.as_deref().unwrap_or("the whole picture")),
-            "give one for each place",
+            &format!("{} has two values", bound.region.as_deref().unwrap_or("the whole image")),
+            "give one value for the image and one for each region",
         )),
     }
 }
@@ -274,13 +274,13 @@ fn read_truth(file: &Path) -> Result<Picture, Failure> {
     match coding {
         Coding::Radiance => Ok(picture),
         Coding::Display => Err(Failure::wrong_use(
-            &format!("{} holds what a display shows, not radiance", file.display()),
-            "take an .exr, .pfm or .hdr file",
+            &format!("{} contains display values, not radiance", file.display()),
+            "use an .exr, .pfm or .hdr file",
         )),
     }
 }
 
-/// Finds before the measurement what the comparison would find after it.
+/// Checks before the measurement that the reference can be compared.
 fn check_truth(
     truth: &Picture,
     file: &Path,
@@ -296,8 +296,8 @@ fn check_truth(
     match regions.iter().find(|(_, region)| !region.fits(width, height)) {
         None => Ok(()),
         Some((name, region)) => Err(Failure::wrong_use(
-            &format!("the region {name} ({region}) reaches beyond the picture"),
-            &format!("the picture has {width} columns and {height} rows, counted from 0"),
+            &format!("the region {name} ({region}) extends beyond the image"),
+            &format!("the image has {width} columns and {height} rows, counted from 0"),
         )),
     }
 }

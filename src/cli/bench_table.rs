@@ -1,4 +1,4 @@
-//! A bench's figures as tables for people.
+//! Benchmark figures as text tables.
 
 use caustica::low_level::bench::machine::Machine;
 use caustica::low_level::bench::spread::Spread;
@@ -10,12 +10,13 @@ use caustica::low_level::scene::settings::RenderSettings;
 
 use super::progress::count;
 
-/// What is measured, and where.
+/// Heading with the scene, the settings and the machine.
 pub fn heading(scene: &Scene, settings: &RenderSettings, machine: &Machine) -> String {
     let Machine { os, architecture, processor, threads } = machine;
     let processor = processor.as_ref().map(|name| format!(", {name}")).unwrap_or_default();
     format!(
-        "caustica {}: {}, {} x {} pixels, {} photons a pass\non {os}, {architecture}{processor}, {threads} threads",
+        "caustica {}: {}, {} x {} pixels, {} photons per pass\n\
+         on {os}, {architecture}{processor}, {threads} threads",
         env!("CARGO_PKG_VERSION"),
         scene.name,
         scene.film.width,
@@ -24,13 +25,13 @@ pub fn heading(scene: &Scene, settings: &RenderSettings, machine: &Machine) -> S
     )
 }
 
-/// A device's figures.
+/// Figures of a device.
 pub fn device_text(report: &DeviceReport) -> String {
     let mut lines = vec![
         String::new(),
         format!("{} [{}] {}", report.name, report.kind, report.driver),
         format!(
-            "{} passes after {} to warm up; kernels by {}",
+            "{} passes after {} warm-up passes; kernels timed by {}",
             report.pass.count, report.warm_up, report.clock
         ),
         String::new(),
@@ -46,7 +47,7 @@ pub fn device_text(report: &DeviceReport) -> String {
     ));
     let setup = &report.setup;
     lines.push(format!(
-        "before it: tables {}, plan {}, engine {}; the first pass {}",
+        "setup: tables {}, plan {}, engine {}; first pass {}",
         time(setup.pack),
         time(setup.plan),
         time(setup.engine),
@@ -55,9 +56,9 @@ pub fn device_text(report: &DeviceReport) -> String {
     lines.extend(report.slices.iter().map(slice_line));
     let memory = &report.memory;
     let peak =
-        memory.peak_resident.map(|bytes| format!(", {}B resident at most", count(bytes as f64)));
+        memory.peak_resident.map(|bytes| format!(", {}B peak resident", count(bytes as f64)));
     lines.push(format!(
-        "memory: {:.0} bytes a pixel, {:.0} bytes a photon, {:.0} bytes a record{}",
+        "memory: {:.0} bytes per pixel, {:.0} bytes per photon, {:.0} bytes per record{}",
         memory.per_pixel,
         memory.per_photon,
         memory.per_record,
@@ -73,7 +74,7 @@ fn kernel_table(report: &DeviceReport) -> Vec<String> {
     if compiled {
         heading += &format!("{:>10}{:>10}", "check", "driver");
     }
-    heading += &format!("{:>10}{:>20}{:>7}   {}", "median", "least to most", "share", "a second");
+    heading += &format!("{:>10}{:>20}{:>7}   {}", "median", "min to max", "share", "per second");
     let stems = Kernel::ALL.map(Kernel::stem);
     let known = stems.iter().chain([&"path_trace"]).filter_map(|stem| {
         let kernel = report.kernels.get(stem)?;
@@ -105,7 +106,7 @@ fn kernel_table(report: &DeviceReport) -> Vec<String> {
     lines.push(format!("{:<17}{blank}{:>10}", "all kernels", time(sum)));
     lines.push(format!(
         "{:<17}{:width$}{:>10}",
-        "around them",
+        "other",
         "",
         time(report.rest.median),
         width = blank.len()
@@ -133,11 +134,11 @@ fn slice_line(slice: &SliceReport) -> String {
     let name =
         slice.slice.map_or("not split".to_owned(), |seconds| format!("split at {}", time(seconds)));
     let loss = match (slice.slice, slice.loss) {
-        (Some(_), Some(loss)) => format!(", {:+.1} % by splitting", 100.0 * loss),
+        (Some(_), Some(loss)) => format!(", {:+.1} % due to splitting", 100.0 * loss),
         _ => String::new(),
     };
     format!(
-        "{name}: a pass {}{loss}; {:.1} submissions, the longest {} ({})",
+        "{name}: a pass takes {}{loss}; {:.1} submissions, the longest {} ({})",
         spread(&slice.pass),
         slice.submissions,
         time(slice.longest),
@@ -167,7 +168,7 @@ fn spread(seconds: &Spread) -> String {
     format!("{} ({} to {})", time(seconds.median), time(seconds.least), time(seconds.most))
 }
 
-/// Seconds in a unit that suits them.
+/// Formats seconds with a suitable unit.
 fn time(seconds: f64) -> String {
     match seconds {
         s if s >= 10.0 => format!("{s:.1} s"),

@@ -1,43 +1,43 @@
-//! Thresholds for measures, each for the whole picture or for a named region.
+//! Thresholds for metrics, for the whole image or for a named region.
 
 use caustica::low_level::film::Measures;
 use serde_json::{Value, json};
 
 use super::Failure;
 
-/// A bound as in `0.1`, for the whole picture, or `caustic=0.1`, for a region.
+/// A bound such as `0.1` for the whole image, or `caustic=0.1` for a region.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bound {
     pub region: Option<String>,
     pub limit: f64,
 }
 
-/// Bounds for every measure; each may be given several times, for several regions.
+/// Bounds for all metrics; each may be given several times, for several regions.
 #[derive(clap::Args)]
-#[command(next_help_heading = "Thresholds: exit with 3 where a figure is beyond one")]
+#[command(next_help_heading = "Thresholds: exit with code 3 if one is exceeded")]
 pub struct Bounds {
-    /// Most LDR-FLIP
+    /// Maximum LDR-FLIP
     #[arg(long = "max-FLIP", alias = "max-flip", value_name = "[REGION=]X", value_parser = upper, allow_hyphen_values = true)]
     max_flip: Vec<Bound>,
-    /// Most HDR-FLIP
+    /// Maximum HDR-FLIP
     #[arg(long = "max-HDR-FLIP", alias = "max-hdr-flip", value_name = "[REGION=]X", value_parser = upper, allow_hyphen_values = true)]
     max_hdr_flip: Vec<Bound>,
-    /// Most relMSE
+    /// Maximum relMSE
     #[arg(long = "max-relMSE", alias = "max-relmse", value_name = "[REGION=]X", value_parser = upper, allow_hyphen_values = true)]
     max_rel_mse: Vec<Bound>,
-    /// Most MSE
+    /// Maximum MSE
     #[arg(long = "max-MSE", alias = "max-mse", value_name = "[REGION=]X", value_parser = upper, allow_hyphen_values = true)]
     max_mse: Vec<Bound>,
-    /// Most RMSE
+    /// Maximum RMSE
     #[arg(long = "max-RMSE", alias = "max-rmse", value_name = "[REGION=]X", value_parser = upper, allow_hyphen_values = true)]
     max_rmse: Vec<Bound>,
-    /// Least PSNR in dB
+    /// Minimum PSNR in dB
     #[arg(long = "min-PSNR", alias = "min-psnr", value_name = "[REGION=]X", value_parser = bound, allow_hyphen_values = true)]
     min_psnr: Vec<Bound>,
-    /// Least SSIM
+    /// Minimum SSIM
     #[arg(long = "min-SSIM", alias = "min-ssim", value_name = "[REGION=]X", value_parser = similarity, allow_hyphen_values = true)]
     min_ssim: Vec<Bound>,
-    /// Most that a channel's mean ratio may differ from 1, as in 0.005
+    /// Maximum difference of a channel's mean ratio from 1, e.g. 0.005
     #[arg(long, value_name = "[REGION=]X", value_parser = upper, allow_hyphen_values = true)]
     max_mean_ratio: Vec<Bound>,
 }
@@ -49,7 +49,7 @@ fn bound(text: &str) -> Result<Bound, String> {
     };
     match number.parse::<f64>() {
         Ok(limit) if limit.is_finite() => Ok(Bound { region, limit }),
-        _ => Err("expected a number, or a region's name and a number as in caustic=0.1".to_owned()),
+        _ => Err("expected a number, or a region and a number, e.g. caustic=0.1".to_owned()),
     }
 }
 
@@ -67,13 +67,13 @@ fn similarity(text: &str) -> Result<Bound, String> {
     })
 }
 
-/// Measures and where they were taken: a region's name, or none for the whole picture.
+/// Metrics of a named region, or of the whole image.
 pub struct Measured<'a> {
     pub region: Option<&'a str>,
     pub measures: Measures,
 }
 
-/// A bound that a figure is beyond.
+/// An exceeded bound.
 pub struct Passed<'a> {
     measure: &'static str,
     region: Option<&'a str>,
@@ -95,7 +95,7 @@ impl Passed<'_> {
     }
 }
 
-/// A measure, its side, the bounds given for it and its figure.
+/// Name of a metric, its direction, its bounds and its value.
 type Rule<'a> = (&'static str, &'static str, &'a [Bound], fn(&Measures) -> Option<f64>);
 
 impl Bounds {
@@ -114,13 +114,13 @@ impl Bounds {
         ]
     }
 
-    /// Fails for a bound on a region that is none of `regions`.
+    /// Fails if a bound names a region that is not in `regions`.
     pub fn check_regions(&self, regions: &[&str]) -> Result<(), Failure> {
         let bounds = self.rules().into_iter().flat_map(|(_, _, bounds, _)| bounds);
         check_regions(bounds, regions)
     }
 
-    /// The bounds that are passed. Fails for one on a figure that there is none of.
+    /// Returns the exceeded bounds. Fails if a bounded metric does not exist for these images.
     pub fn passed<'a>(&self, measured: &[Measured<'a>]) -> Result<Vec<Passed<'a>>, Failure> {
         let mut passed = Vec::new();
         for (measure, side, bounds, figure) in self.rules() {
@@ -129,7 +129,7 @@ impl Bounds {
                 {
                     let value =
                         figure(&place.measures).ok_or_else(|| no_figure(measure, place.region))?;
-                    // A value that is no number is beyond every bound.
+                    // NaN exceeds every bound
                     let within =
                         if side == "at most" { value <= bound.limit } else { value >= bound.limit };
                     if !within {
@@ -148,7 +148,7 @@ impl Bounds {
     }
 }
 
-/// Fails for a bound on a region that is none of `regions`.
+/// Fails if a bound names a region that is not in `regions`.
 pub fn check_regions<'a>(
     bounds: impl Iterator<Item = &'a Bound>,
     regions: &[&str],
@@ -158,19 +158,17 @@ pub fn check_regions<'a>(
         return Ok(());
     };
     let help = match regions {
-        [] => format!("define it, as in --region {unknown}=0,0,64,64"),
+        [] => format!("define it, e.g. --region {unknown}=0,0,64,64"),
         _ => format!("the regions are {}", regions.join(", ")),
     };
-    Err(Failure::wrong_use(&format!("there is no region `{unknown}`"), &help))
+    Err(Failure::wrong_use(&format!("the region `{unknown}` is not defined"), &help))
 }
 
 fn no_figure(measure: &str, region: Option<&str>) -> Failure {
-    let place = region.map_or("these pictures".to_owned(), |name| format!("the region {name}"));
+    let place = region.map_or("these images".to_owned(), |name| format!("the region {name}"));
     let help = match measure {
-        "SSIM" => "it needs a window of 11 x 11 pixels inside the picture",
-        _ => {
-            "it is for radiance: .exr, .pfm or .hdr; for pictures for a display there is --max-FLIP"
-        }
+        "SSIM" => "it needs a window of 11 x 11 pixels inside the image",
+        _ => "it needs radiance (.exr, .pfm or .hdr); use --max-FLIP for display values",
     };
-    Failure::wrong_use(&format!("there is no {measure} of {place}"), help)
+    Failure::wrong_use(&format!("{measure} is not defined for {place}"), help)
 }

@@ -1,23 +1,22 @@
-//! How much memory may be taken.
+//! The memory budget option.
 
 use caustica::low_level::memory::{self, Memory};
 use clap::Args;
 
 use super::checkpoint::Files;
 
-/// The option of commands that can do with less.
+/// Memory budget of commands that can reduce their memory use.
 #[derive(Args, Debug, Default)]
 pub struct Budget {
-    /// Most memory for buffers, on the device and in main memory together, as in 512MB or 2GiB;
-    /// what does not fit is rendered in tiles, and photons in smaller batches [default: what the
-    /// system has left, or the device gives]
+    /// Maximum buffer memory on the device and the host together, e.g. 512MB or 2GiB; larger
+    /// renders use tiles and smaller photon batches [default: the available memory]
     #[arg(long, value_name = "BYTES", value_parser = memory::parse)]
     memory_budget: Option<u64>,
 }
 
 impl Budget {
-    /// As the library takes it, for a render that is saved and gone on from or not. One that goes
-    /// on has the batches that it was begun with.
+    /// Converts the option for a render with the checkpoints `files`. A resumed render keeps its
+    /// photon batches.
     pub fn memory(&self, files: &Files) -> Memory {
         Memory {
             budget: self.memory_budget,
@@ -26,7 +25,7 @@ impl Budget {
         }
     }
 
-    /// The same for one that is neither.
+    /// Converts the option for a render without checkpoints.
     pub fn alone(&self) -> Memory {
         Memory { budget: self.memory_budget, ..Memory::default() }
     }

@@ -1,4 +1,4 @@
-//! `caustica check`: everything that is wrong with scene files, and nothing rendered.
+//! `caustica check`: errors and warnings of scene files, without rendering.
 
 use std::path::{Path, PathBuf};
 
@@ -21,18 +21,18 @@ pub struct Arguments {
     scenes: Vec<PathBuf>,
     #[command(flatten)]
     allowed: Allowed,
-    /// Print a JSON object for each file, with its errors and warnings
+    /// Print one JSON object per file, with its errors and warnings
     #[arg(long)]
     json: bool,
 }
 
 const HELP: &str = "\
-Every file is read with all the meshes and pictures that it names; nothing is rendered.
+Reads each file with all meshes and images that it refers to, and renders nothing.
 
 Example:
   caustica check scenes/cornell.toml scenes/caustics.toml";
 
-/// Checks each file; fails at the end if one has errors.
+/// Checks all files. Fails at the end if one has errors.
 pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     let allowance = arguments.allowed.allowance()?;
     let mut bad = 0;
@@ -76,8 +76,8 @@ fn tell(file: &Path, errors: Option<SceneErrors>, warnings: Vec<Finding>) -> Res
     result(format_args!("{}: good{count}", file.display()))
 }
 
-/// Lines and columns count from 1, columns in characters; they are null where a whole file is
-/// meant.
+/// Formats the result as JSON. Lines and columns count from 1, columns in characters; both are null
+/// for findings about a whole file.
 fn as_json(file: &Path, errors: Option<&SceneErrors>, warnings: &[Finding]) -> Value {
     let finding = |finding: &Finding| {
         let place = finding.line_column();

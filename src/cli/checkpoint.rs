@@ -1,5 +1,4 @@
-//! The checkpoints of `caustica render`: which files, what is read at the start and written on the
-//! way.
+//! Checkpoints of `caustica render`: read at the start, written during the render.
 
 use std::path::{Path, PathBuf};
 
@@ -17,30 +16,31 @@ use super::output::{message, result};
 use super::overrides::Passes;
 use super::progress::Reporter;
 
-/// What is gone on from, and what is written.
+/// Checkpoint files of a render.
 pub struct Files {
+    /// File to write.
     kept: Option<PathBuf>,
-    /// Held as long as the render may write to `kept`.
+    /// Lock on `kept`, held while the render may write to it.
     _lock: Option<Lock>,
     resumed: Option<(PathBuf, Checkpoint)>,
 }
 
 impl Files {
-    /// Those that are asked for; the one to go on from is read.
+    /// Locks the file `kept` to write, and reads the file `resumed`.
     ///
     /// # Errors
-    /// Where that is no whole checkpoint, none can be written to the place of the other, or another
-    /// render's would be lost there.
+    /// If `resumed` is not a valid checkpoint, `kept` cannot be written, or `kept` exists and is
+    /// not the resumed file.
     pub fn new(kept: Option<&Path>, resumed: Option<&Path>) -> Result<Self, Failure> {
         let mut lock = None;
         if let Some(file) = kept {
             check_place(file)?;
-            // before anything is said of the file: it may be that of a render under way
+            // lock first: another render may be writing the file
             lock = checkpoint::lock(file)?;
             if file.is_file() && !resumed.is_some_and(|other| storage::same(other, file)) {
                 return Err(Failure::wrong_use(
-                    &format!("{}: this file is there already", file.display()),
-                    "go on from it with --resume, or move it away",
+                    &format!("{}: the file already exists", file.display()),
+                    "continue from it with --resume, or move it away",
                 ));
             }
         }
@@ -51,17 +51,18 @@ impl Files {
         Ok(Self { kept: kept.map(Path::to_owned), _lock: lock, resumed })
     }
 
-    /// Whether any is to be written.
+    /// Returns true if checkpoints are written.
     pub fn keeps(&self) -> bool {
         self.kept.is_some()
     }
 
-    /// The one to go on from, if any.
+    /// Checkpoint to resume, if any.
     pub fn resumed(&self) -> Option<&Checkpoint> {
         self.resumed.as_ref().map(|(_, checkpoint)| checkpoint)
     }
 
-    /// Fails unless it fits; see [`Checkpoint::check_resumes`].
+    /// Fails if the resumed checkpoint does not match the render; see
+    /// [`Checkpoint::check_resumes`].
     pub fn check(&self, origin: &Origin, bits: u32, passes: Passes) -> Result<(), Failure> {
         if let Some((file, checkpoint)) = &self.resumed {
             checkpoint.check_resumes(file, origin, bits, passes.first, passes.end)?;
@@ -69,13 +70,13 @@ impl Files {
         Ok(())
     }
 
-    /// The settings, with the batches of what is gone on from where none are asked for.
+    /// Returns the settings with the batch size of the resumed checkpoint, unless they set one.
     pub fn batched(&self, settings: RenderSettings) -> RenderSettings {
         let batch = settings.batch.or(self.resumed().and_then(|from| from.origin.settings.batch));
         RenderSettings { batch, ..settings }
     }
 
-    /// Tells what is gone on from, if anything is.
+    /// Reports the resumed checkpoint, if any.
     pub fn tell(&self, json: bool, reporter: &Reporter) -> Result<(), Failure> {
         let Some((file, checkpoint)) = &self.resumed else {
             return Ok(());
@@ -84,29 +85,29 @@ impl Files {
         if json {
             return result(json!({ "event": "resume", "file": file, "passes": passes }));
         }
-        reporter.note(&format!("{}: goes on after {passes} passes", file.display()));
+        reporter.note(&format!("{}: resuming after {passes} passes", file.display()));
         Ok(())
     }
 }
 
-/// Writes checkpoints. One that cannot be written ends no render, but is told, and if it is the
-/// last one fails the command.
+/// Checkpoint writer. A failure to write is reported and does not end the render; a failure to
+/// write the last checkpoint fails the command.
 pub struct Keeper {
     file: Option<PathBuf>,
     origin: Origin,
     json: bool,
     failed: Option<CheckpointError>,
-    /// Where it is written for as long as it cannot be written to `file`.
+    /// Fallback location while `file` cannot be written.
     elsewhere: Option<PathBuf>,
 }
 
 impl Keeper {
-    /// Writes to the file of `files`.
+    /// Creates a writer for the checkpoint file of `files`.
     pub fn new(files: &Files, origin: Origin, json: bool) -> Self {
         Self { file: files.kept.clone(), origin, json, failed: None, elsewhere: None }
     }
 
-    /// Writes what the engine held at `progress`, and gives it back.
+    /// Writes the engine state at `progress`, and returns it.
     pub fn save(&mut self, state: State, progress: &Progress) -> State {
         let checkpoint = self.checkpoint(state, progress);
         if let Some(file) = self.file.clone() {
@@ -115,8 +116,8 @@ impl Keeper {
         checkpoint.state
     }
 
-    /// What is left of a render whose device failed. Where no checkpoint was asked for, it is
-    /// written next to the first picture, unless a file is there.
+    /// Checkpoint of a render whose device failed. If no checkpoint file was given, it is written
+    /// next to the first image, unless that file exists.
     pub fn rest(&mut self, state: State, progress: &Progress, pictures: &[PathBuf]) -> Checkpoint {
         let rest = self.checkpoint(state, progress);
         let beside = pictures.first().map(|picture| picture.with_extension(EXTENSION));
@@ -129,7 +130,7 @@ impl Keeper {
         rest
     }
 
-    /// Where the last one is, if it could be written.
+    /// File of the last checkpoint, if it was written successfully.
     pub fn place(&self) -> Option<&Path> {
         self.file.as_deref().filter(|_| self.failed.is_none())
     }
@@ -151,7 +152,7 @@ impl Keeper {
                 self.write_elsewhere(file, checkpoint);
             }
             None if self.json => {
-                // Standard output that takes nothing fails the results at the end.
+                // a failure of standard output is reported with the results at the end
                 let passes = checkpoint.state.passes;
                 let _ = result(json!({ "event": "checkpoint", "file": file, "passes": passes }));
             }
@@ -159,11 +160,11 @@ impl Keeper {
         }
     }
 
-    /// Writes what did not go to `file` into the current folder or that of temporary files, and
-    /// says where.
+    /// Writes a checkpoint that could not be written to `file` to the current folder or the
+    /// temporary folder, and reports its location.
     fn write_elsewhere(&mut self, file: &Path, checkpoint: &Checkpoint) {
         let stem = file.file_stem().unwrap_or_default().to_string_lossy();
-        // what the system takes as a name has at most 255 bytes
+        // file names are limited to 255 bytes
         let stem: String = stem.chars().take(50).collect();
         let name = format!("{stem}-saved-{}.{EXTENSION}", std::process::id());
         let folders = [PathBuf::from("."), std::env::temp_dir()];
@@ -171,12 +172,12 @@ impl Keeper {
         let places: Vec<PathBuf> = self.elsewhere.take().into_iter().chain(new).collect();
         self.elsewhere = places.into_iter().find(|place| write(place, checkpoint).is_ok());
         match &self.elsewhere {
-            Some(place) => message(format_args!("the checkpoint is saved in {}", place.display())),
-            None => message("the checkpoint could not be saved anywhere else"),
+            Some(place) => message(format_args!("checkpoint saved in {}", place.display())),
+            None => message("the checkpoint could not be saved elsewhere"),
         }
     }
 
-    /// Fails if the last one could not be written.
+    /// Fails if the last checkpoint could not be written.
     pub fn end(self) -> Result<(), Failure> {
         self.failed.map_or(Ok(()), |error| Err(error.into()))
     }

@@ -1,25 +1,24 @@
-//! Whether reports on standard error have colours. Usage and help, which clap prints, follow the
-//! same rule by themselves.
+//! Colors of reports on standard error. clap applies the same rules to usage and help.
 
 use std::ffi::OsString;
 use std::io::IsTerminal;
 
 use miette::{MietteHandlerOpts, ReportHandler};
 
-/// What lays out reports of errors and warnings.
+/// Formatter for reports of errors and warnings.
 pub fn handler() -> impl ReportHandler {
     let colored = on_errors();
     MietteHandlerOpts::new().color(colored).terminal_links(false).build()
 }
 
-/// Whether standard error has colours.
+/// Returns true if output on standard error is colored.
 pub fn on_errors() -> bool {
     colored(|name| std::env::var_os(name), std::io::stderr().is_terminal())
 }
 
-/// `NO_COLOR`, set to anything but nothing, says no (<https://no-color.org>); `CLICOLOR_FORCE` says
-/// yes, even where there is no terminal (<https://bixense.com/clicolors>); else a terminal that
-/// knows colours has them.
+/// A nonempty `NO_COLOR` disables colors (<https://no-color.org>). `CLICOLOR_FORCE` enables them
+/// even without a terminal (<https://bixense.com/clicolors>). Otherwise a terminal gets colors
+/// unless `TERM` is `dumb` or `CLICOLOR` is `0`.
 fn colored(variable: impl Fn(&str) -> Option<OsString>, terminal: bool) -> bool {
     let set = |name| variable(name).is_some_and(|value| !value.is_empty());
     let is = |name, word: &str| variable(name).is_some_and(|value| value == word);
@@ -32,7 +31,7 @@ fn colored(variable: impl Fn(&str) -> Option<OsString>, terminal: bool) -> bool 
     }
 }
 
-/// Theory: the variables' own pages.
+/// Theory: the specifications of the variables.
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -50,7 +49,7 @@ mod tests {
             assert!(!with(&[("NO_COLOR", value)], true), "{value}");
             assert!(!with(&[("NO_COLOR", value), ("CLICOLOR_FORCE", "1")], true), "{value}");
         }
-        assert!(with(&[("NO_COLOR", "")], true), "empty is as if not set");
+        assert!(with(&[("NO_COLOR", "")], true), "empty counts as unset");
         assert!(with(&[("CLICOLOR_FORCE", "1")], false));
         assert!(
             !with(&[("CLICOLOR_FORCE", "0")], false) && !with(&[("CLICOLOR_FORCE", "")], false)

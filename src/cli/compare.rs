@@ -1,4 +1,4 @@
-//! `caustica compare`: one scene on two devices, and how far the pictures are apart.
+//! `caustica compare`: one scene rendered on two devices, and the difference of the images.
 
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
@@ -18,24 +18,24 @@ use super::overrides::Overrides;
 use super::render::{OutputArgs, begin, load};
 use super::{Done, Failure, compiling, hidden};
 
-/// Render a scene on two devices and compare the pictures
+/// Render a scene on two devices and compare the images
 #[derive(clap::Args)]
 pub struct Arguments {
     /// Scene file
     scene: PathBuf,
-    /// The device and the one that counts as the truth, as for `render`; give it twice
+    /// Device to test, then the reference device, as for `render`; give the option twice
     #[arg(long, value_name = "DEVICE", value_parser = NonEmptyStringValueParser::new(), default_values = ["auto", "cpu"])]
     device: Vec<String>,
-    /// Picture of the difference to write (.png)
+    /// Difference image to write (.png)
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// Exit with 3 where a channel's means differ by more than this share, as in 0.005
+    /// Exit with code 3 if a channel's means differ by more than this fraction, e.g. 0.005
     #[arg(long, value_name = "SHARE", value_parser = share, allow_negative_numbers = true)]
     max_mean_ratio: Option<f64>,
-    /// Exit with 3 where relMSE is more than this
+    /// Exit with code 3 if relMSE exceeds this value
     #[arg(long, alias = "max-relMSE", value_name = "X", value_parser = share, allow_negative_numbers = true)]
     max_relmse: Option<f64>,
-    /// Exit with 3 where a bit differs
+    /// Exit with code 3 if any bit differs
     #[arg(long)]
     bits: bool,
     #[command(flatten)]
@@ -52,13 +52,13 @@ fn share(text: &str) -> Result<f64, String> {
 }
 
 impl Arguments {
-    /// The devices that are asked for.
+    /// Requested devices.
     pub fn devices(&self) -> &[String] {
         &self.device
     }
 }
 
-/// A picture and the device that made it.
+/// An image and the device that rendered it.
 struct Rendered {
     device: String,
     picture: Picture,
@@ -69,14 +69,14 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     let [first, second] = arguments.device.as_slice() else {
         return Err(Failure::wrong_use(
             &format!("compare takes two devices, not {}", arguments.device.len()),
-            "say --device twice, as in --device gpu --device cpu",
+            "give --device twice, e.g. --device gpu --device cpu",
         ));
     };
     if let Some(output) = &arguments.output {
         file::check_png(output)?;
     }
     let (scene, settings) = load(&arguments.scene, &arguments.overrides)?;
-    // A device that is not there should not show after the first render.
+    // report a missing device before the first render
     let devices = device::list();
     for wanted in [first, second] {
         let wanted = device::parse(wanted);
@@ -126,7 +126,7 @@ fn render_on(
 fn passed_thresholds(arguments: &Arguments, comparison: &Comparison) -> Vec<String> {
     let mut over = Vec::new();
     let mut hold = |name: &str, value: f64, most: Option<f64>| {
-        // A value that is no number is over every threshold.
+        // NaN exceeds every threshold
         if let Some(most) = most
             && (value.is_nan() || value > most)
         {
@@ -136,7 +136,7 @@ fn passed_thresholds(arguments: &Arguments, comparison: &Comparison) -> Vec<Stri
     hold("difference of the means", comparison.mean_error(), arguments.max_mean_ratio);
     hold("relMSE", comparison.rel_mse, arguments.max_relmse);
     if arguments.bits && comparison.pixels_differing > 0 {
-        over.push(format!("{} pixels of other bits, at most 0", comparison.pixels_differing));
+        over.push(format!("{} pixels differ, at most 0", comparison.pixels_differing));
     }
     over
 }
@@ -152,7 +152,7 @@ fn as_text(a: &str, b: &str, comparison: &Comparison, outside: f64) -> String {
         format!("RMSE                  {:.3e}", comparison.rmse),
         format!("PSNR                  {:.2} dB", comparison.psnr),
         format!("blocks over 4 sigma   {:.2} %", 100.0 * outside),
-        format!("pixels of other bits  {} of {}", comparison.pixels_differing, comparison.pixels),
+        format!("pixels that differ    {} of {}", comparison.pixels_differing, comparison.pixels),
         format!(
             "worst pixel           column {}, row {}: {:?} and {:?}",
             worst.x, worst.y, worst.a, worst.b
@@ -161,7 +161,7 @@ fn as_text(a: &str, b: &str, comparison: &Comparison, outside: f64) -> String {
     .join("\n")
 }
 
-/// The figures as a JSON object; those that are infinite are null.
+/// Metrics as a JSON object; infinite values are null.
 fn as_json(a: &str, b: &str, comparison: &Comparison, outside: f64) -> Value {
     let mut figures = comparison_json(comparison);
     figures["event"] = json!("comparison");

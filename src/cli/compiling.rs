@@ -1,5 +1,5 @@
-//! Progress while a driver compiles kernels, which may take a minute: on a terminal a live line,
-//! else a line now and then, with `--json` events.
+//! Progress while a driver compiles kernels, which may take a minute: a live line on a terminal,
+//! otherwise occasional lines, or events with `--json`.
 
 use std::io::IsTerminal;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
@@ -13,15 +13,14 @@ use serde_json::{Value, json};
 use super::log;
 use super::output::{message, result};
 
-/// How long it takes until there is something to see; most kernels come from a driver's cache
-/// sooner.
+/// Delay before the first output; kernels from the driver's cache are usually ready earlier.
 const FIRST: Duration = Duration::from_millis(600);
-/// Time between two looks of a live line.
+/// Time between two updates of the live line.
 const TICK: Duration = Duration::from_millis(100);
 /// Time between two events.
 const EVENT: Duration = Duration::from_secs(1);
 
-/// Where progress goes.
+/// Form of the progress output.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Form {
     Live,
@@ -29,7 +28,7 @@ enum Form {
     Events,
 }
 
-/// A compilation that is under way.
+/// A compilation in progress.
 #[derive(Clone, Debug)]
 struct State {
     begun: Instant,
@@ -59,7 +58,7 @@ impl State {
     }
 }
 
-/// What the thread that shows it and the observer share.
+/// State shared by the observer and the thread that shows progress.
 #[derive(Default)]
 struct Shared {
     state: Mutex<Option<State>>,
@@ -71,7 +70,7 @@ impl Shared {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Waits until the compilation ends, for `time` at most; its state if it still goes on.
+    /// Waits until the compilation ends, at most for `time`. Returns its state if it still runs.
     fn going_on(&self, time: Duration) -> Option<State> {
         let goes_on = |state: &mut Option<State>| state.as_ref().is_some_and(|state| !state.ended);
         let waited = self.changed.wait_timeout_while(self.state(), time, goes_on);
@@ -80,7 +79,8 @@ impl Shared {
     }
 }
 
-/// Shows from now on how far compilations are; nothing with `quiet`, unless `json` asks for events.
+/// Starts to show the progress of compilations. `quiet` suppresses it, unless `json` requests
+/// events.
 pub fn begin(quiet: bool, json: bool) {
     let form = match (json, quiet) {
         (true, _) => Form::Events,
@@ -102,7 +102,7 @@ pub fn begin(quiet: bool, json: bool) {
                 if let Some((shared, thread)) = shown.take() {
                     shared.state().iter_mut().for_each(|state| state.ended = true);
                     shared.changed.notify_all();
-                    // so that a live line is gone before anything else is printed
+                    // remove the live line before anything else is printed
                     let _ = thread.join();
                 }
             }
@@ -110,7 +110,7 @@ pub fn begin(quiet: bool, json: bool) {
     });
 }
 
-/// Begins to show a compilation; a system that gives no thread shows nothing.
+/// Starts a thread that shows a compilation. Shows nothing if no thread can be created.
 fn start(form: Form, compilation: &Compilation) -> Option<(Arc<Shared>, thread::JoinHandle<()>)> {
     let Compilation { device, kernel, done, of } = *compilation;
     let state =
@@ -142,7 +142,7 @@ fn live(shared: &Shared) {
     bar.inspect(ProgressBar::finish_and_clear);
 }
 
-/// A line soon, then ever more rarely, so that a log stays readable.
+/// Prints lines at growing intervals, to keep logs readable.
 fn lines(shared: &Shared) {
     let mut wait = FIRST;
     while let Some(state) = shared.going_on(wait) {
@@ -154,7 +154,7 @@ fn lines(shared: &Shared) {
 fn events(shared: &Shared) {
     let mut wait = FIRST;
     while let Some(state) = shared.going_on(wait) {
-        // Standard output that takes nothing fails the results at the end.
+        // a failure of standard output is reported with the results at the end
         let _ = result(state.event());
         wait = EVENT;
     }

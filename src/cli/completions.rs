@@ -1,11 +1,11 @@
-//! `caustica completions`: what a shell needs to complete the program's arguments.
+//! `caustica completions`: completion scripts for shells.
 
 use clap_complete::{Shell, generate};
 
 use super::output::bytes;
 use super::{Done, Failure, command};
 
-/// Print completions for a shell
+/// Print a completion script for a shell
 #[derive(clap::Args)]
 #[command(after_help = HELP)]
 pub struct Arguments {
@@ -19,7 +19,7 @@ Examples:
   caustica completions fish > ~/.config/fish/completions/caustica.fish
   caustica completions zsh > \"${fpath[1]}/_caustica\"";
 
-/// Prints them.
+/// Prints the script.
 pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     let mut script = Vec::new();
     generate(arguments.shell, &mut command(), "caustica", &mut script);

@@ -1,4 +1,4 @@
-//! `caustica render --denoise`: a picture to look at beside the one that is measured.
+//! `caustica render --denoise`: a denoised image for viewing, in addition to the render.
 
 use std::path::PathBuf;
 
@@ -9,27 +9,27 @@ use caustica::low_level::scene::{Aovs, Film};
 use super::Failure;
 use super::rendered::Made;
 
-/// Prepares the denoiser before the work, and adds the layers that it needs to the film's.
+/// Initializes the denoiser before rendering, and adds its auxiliary layers to the film.
 ///
 /// # Errors
-/// Where there is none, or no output would hold what it makes.
+/// If no denoiser is available, or no output can store its result.
 pub fn begin(film: &mut Film, outputs: &[PathBuf]) -> Result<Denoiser, Failure> {
     let denoiser = Denoiser::open()?;
     let holds = |output: &PathBuf| matches!(Format::of(output), Some(Format::Png | Format::Exr));
     if !outputs.iter().any(holds) {
         return Err(Failure::wrong_use(
-            "--denoise: .pfm and .hdr files hold the render alone",
-            "add an output with the extension .png, or .exr, which holds both",
+            "--denoise: .pfm and .hdr files store only the render",
+            "add an output with the extension .png, or .exr, which stores both",
         ));
     }
     film.aovs = film.aovs.union(guides());
     Ok(denoiser)
 }
 
-/// Denoises, and drops the layers that nobody but the denoiser has `asked` for.
+/// Denoises, and removes auxiliary layers that are not in `asked`.
 ///
 /// # Errors
-/// Those of the library; what was made is as it was.
+/// Errors of the library. The render is unaffected.
 pub fn end(denoiser: &Denoiser, made: &mut Made, asked: Aovs) -> Result<(), DenoiseError> {
     let denoised = denoiser.denoise(&made.picture, &made.layers);
     let dropped = guides().iter().filter(|aov| !asked.has(*aov));

@@ -1,4 +1,4 @@
-//! One device after another, and what is told where one fails.
+//! Fallback to other devices, and its messages.
 
 use caustica::low_level::device::{Candidates, Opened};
 use caustica::low_level::engine::{Engine, EngineError, State};
@@ -9,21 +9,21 @@ use serde_json::json;
 
 use super::output::{message, paragraph, result};
 
-/// The devices of one render.
+/// Devices of one render, in order of preference.
 pub struct Succession<'a> {
     candidates: Candidates,
     scene: &'a Scene,
     settings: RenderSettings,
     memory: Memory,
     json: bool,
-    /// The one that was tried last.
+    /// Device that was tried last.
     last: String,
-    /// Those that have rendered.
+    /// Devices that have rendered.
     rendered: Vec<String>,
 }
 
 impl<'a> Succession<'a> {
-    /// Those that may be tried.
+    /// Creates the sequence of candidate devices.
     pub fn new(
         candidates: Candidates,
         scene: &'a Scene,
@@ -43,22 +43,22 @@ impl<'a> Succession<'a> {
         }
     }
 
-    /// An engine on the first device that can render this.
+    /// Opens an engine on the first device that can render the scene.
     pub fn first(&mut self) -> Result<Opened, EngineError> {
         let mut refused = |name: &str, error: &EngineError| {
-            paragraph(format_args!("warning: {name} cannot render this: {error}"));
+            paragraph(format_args!("warning: {name} cannot render this scene: {error}"));
         };
         let opened =
             self.candidates.open(self.scene, &self.settings, &self.memory, &mut refused)?;
-        // the devices after it are to round alike
+        // later devices use the same batches, so that rounding does not change
         self.settings.batch = opened.settings.batch;
         self.memory.same_batches = true;
         self.take(opened.name.clone());
         Ok(opened)
     }
 
-    /// After the last one failed: an engine on the next one, which is to go on from `state`;
-    /// nothing where there is none.
+    /// Opens an engine on the next device after the last one failed; it continues from `state`.
+    /// Returns `None` if no device is left.
     pub fn next(
         &mut self,
         error: &EngineError,
@@ -72,9 +72,9 @@ impl<'a> Succession<'a> {
             Err(error) => return Some(Err(error)),
         };
         let passes = state.passes;
-        message(format_args!("going on with {name} after the {passes} passes that were kept"));
+        message(format_args!("continuing on {name} after {passes} recovered passes"));
         if self.json {
-            // Standard output that takes nothing fails the results at the end.
+            // a failure of standard output is reported with the results at the end
             let _ = result(json!({
                 "event": "device",
                 "device": name,
@@ -92,12 +92,12 @@ impl<'a> Succession<'a> {
         self.rendered.push(name);
     }
 
-    /// The settings as asked for, with the batches of photons that memory allows.
+    /// Requested settings, with the photon batches that fit into memory.
     pub fn asked(&self) -> &RenderSettings {
         &self.settings
     }
 
-    /// The devices that have rendered, in their order.
+    /// Names of the devices that have rendered, in order.
     pub fn device(&self) -> String {
         self.rendered.join(", ")
     }

@@ -1,4 +1,4 @@
-//! `caustica devices`: what there is to render on.
+//! `caustica devices`: list of devices.
 
 use caustica::low_level::device::{self, DeviceInfo};
 use caustica::low_level::gpu::{self, Hidden};
@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use super::output::result;
 use super::{Done, Failure, hidden};
 
-/// List the devices, their drivers and limits, and what --device auto takes
+/// List the devices with drivers and limits, and the choice of --device auto
 #[derive(clap::Args)]
 pub struct Arguments {
     /// Print the list as a JSON object
@@ -46,6 +46,6 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
             result(format_args!("    {limit:<32} {value}"))?;
         }
     }
-    result(format_args!("--device auto takes {} ({why})", auto.name))?;
+    result(format_args!("--device auto selects {} ({why})", auto.name))?;
     Ok(Done::Fully)
 }

@@ -1,4 +1,4 @@
-//! `caustica diff`: how far a picture is from the truth.
+//! `caustica diff`: difference of an image from a reference.
 
 use std::path::PathBuf;
 
@@ -16,25 +16,25 @@ use super::figures::{measures_json, table};
 use super::output::{message, result};
 use super::{Done, Failure};
 
-/// Measure how far a picture is from the truth, over the whole and over regions
+/// Measure the difference of an image from a reference, overall and per region
 #[derive(clap::Args)]
 #[command(after_help = HELP)]
 pub struct Arguments {
-    /// Picture to judge (.exr, .pfm, .hdr; .png, .jpg)
+    /// Image to test (.exr, .pfm, .hdr; .png, .jpg)
     a: PathBuf,
-    /// Picture that counts as the truth, of the same kind and size
+    /// Reference image with the same coding and size
     b: PathBuf,
-    /// Measure a region by itself too: columns x0 to x1 and rows y0 to y1 from the top left, x1 and
-    /// y1 left out; may be given several times
+    /// Also measure a region: columns x0 to x1 and rows y0 to y1 from the top left, x1 and y1
+    /// excluded; repeatable
     #[arg(long, value_name = "NAME=x0,y0,x1,y1", value_parser = region)]
     region: Vec<(String, Region)>,
-    /// Picture of LDR-FLIP to write (.png), black for 0 by violet and orange to light yellow for 1
+    /// LDR-FLIP map to write (.png), from black (0) via violet and orange to light yellow (1)
     #[arg(short, long, visible_alias = "map", value_name = "FILE")]
     output: Option<PathBuf>,
-    /// The same of HDR-FLIP
+    /// HDR-FLIP map to write (.png)
     #[arg(long, value_name = "FILE")]
     hdr_map: Option<PathBuf>,
-    /// Print the figures as a JSON object; those that are infinite or do not exist are null
+    /// Print the metrics as a JSON object; infinite or undefined values are null
     #[arg(long)]
     json: bool,
     #[command(flatten)]
@@ -42,17 +42,18 @@ pub struct Arguments {
 }
 
 const HELP: &str = "\
-MSE, RMSE, PSNR, relMSE and the mean ratios are of linear light; relMSE is the mean of (La - Lb)^2 / (Lb^2 + 0.01), \
-without the largest 0.1 %. SSIM and LDR-FLIP look at the picture clipped to [0, 1]. HDR-FLIP is the largest FLIP of a \
-series of exposures, from the one that brings the truth's brightest pixel to 0.85 on the screen (ACES curve) to the one \
-that brings its median there, one a stop; they are printed. FLIP is seen at 67 pixels per degree. docs/measures.md tells \
-more.
+MSE, RMSE, PSNR, relMSE and the mean ratios use linear light; relMSE is the mean of \
+(La - Lb)^2 / (Lb^2 + 0.01) without the largest 0.1 %. SSIM and LDR-FLIP use the image clipped to \
+[0, 1]. HDR-FLIP is the maximum of FLIP over a series of exposures, one per stop, from the \
+exposure that maps the reference's brightest pixel to a display value of 0.85 (ACES curve) to the \
+exposure that maps its median there. The exposures are printed. FLIP assumes 67 pixels per \
+degree. See docs/measures.md.
 
 Examples:
   caustica diff picture.exr truth.exr --max-FLIP 0.1 -o flip.png
   caustica diff a.exr b.exr --region lamp=96,32,160,64 --max-relMSE lamp=0.02 --json";
 
-/// A named region, as in `caustic=290,425,425,485`.
+/// Parses a named region such as `caustic=290,425,425,485`.
 pub fn region(text: &str) -> Result<(String, Region), String> {
     let parsed = text.split_once('=').and_then(|(name, numbers)| {
         let numbers: Vec<u32> =
@@ -62,13 +63,13 @@ pub fn region(text: &str) -> Result<(String, Region), String> {
     });
     match parsed {
         Some((name, region)) if !name.is_empty() && !region.is_empty() => Ok((name, region)),
-        _ => Err("expected a name and four whole numbers with x0 < x1 and y0 < y1, as in \
+        _ => Err("expected a name and four whole numbers with x0 < x1 and y0 < y1, e.g. \
                   caustic=290,425,425,485"
             .to_owned()),
     }
 }
 
-/// Reads, measures, and holds against the thresholds.
+/// Reads both images, computes the metrics and checks the thresholds.
 pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     check(&arguments)?;
     let (a, b, coding) = read_both(&arguments)?;
@@ -101,7 +102,7 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     Ok(if passed.is_empty() { Done::Fully } else { Done::OverThreshold })
 }
 
-/// Finds mistakes in the arguments before the work.
+/// Checks the arguments before the images are read.
 fn check(arguments: &Arguments) -> Result<(), Failure> {
     let names = region_names(&arguments.region)?;
     arguments.bounds.check_regions(&names)?;
@@ -112,10 +113,10 @@ fn check(arguments: &Arguments) -> Result<(), Failure> {
         if storage::same(&arguments.a, output) || storage::same(&arguments.b, output) {
             return Err(Failure::wrong_use(
                 &format!(
-                    "{}: the picture of the difference would replace a picture to compare",
+                    "{}: the difference image would overwrite an input image",
                     output.display()
                 ),
-                "give it another name",
+                "use another name",
             ));
         }
     }
@@ -127,14 +128,14 @@ fn check(arguments: &Arguments) -> Result<(), Failure> {
     }
 }
 
-/// The names of regions; fails where two have the same.
+/// Names of the regions; fails if two are equal.
 pub fn region_names(regions: &[(String, Region)]) -> Result<Vec<&str>, Failure> {
     let names: Vec<&str> = regions.iter().map(|(name, _)| name.as_str()).collect();
     if let Some((i, name)) = names.iter().enumerate().find(|(i, name)| names[..*i].contains(name)) {
         let first = &regions[names.iter().position(|other| other == name).unwrap_or(i)].1;
         return Err(Failure::wrong_use(
-            &format!("there are two regions `{name}`"),
-            &format!("give one of them another name; the first has {first}"),
+            &format!("two regions are called `{name}`"),
+            &format!("rename one of them; the first has {first}"),
         ));
     }
     Ok(names)
@@ -146,24 +147,29 @@ fn read_both(arguments: &Arguments) -> Result<(Picture, Picture, Coding), Failur
     if coding != other {
         let kind = |coding| match coding {
             Coding::Radiance => "radiance",
-            Coding::Display => "what a display shows",
+            Coding::Display => "display values",
         };
         let (a, b) = (arguments.a.display(), arguments.b.display());
         return Err(Failure::wrong_use(
-            &format!("{a} holds {} and {b} {}: they are not comparable", kind(coding), kind(other)),
-            "compare two of one kind; `caustica render` writes both, as in -o picture.png -o picture.exr",
+            &format!(
+                "{a} contains {} and {b} {}: they cannot be compared",
+                kind(coding),
+                kind(other)
+            ),
+            "compare images of one coding; `caustica render` writes both, e.g. -o picture.png \
+             -o picture.exr",
         ));
     }
     if coding == Coding::Display && arguments.hdr_map.is_some() {
         return Err(Failure::wrong_use(
-            "there is no HDR-FLIP of pictures for a display",
-            "leave --hdr-map out, or compare .exr, .pfm or .hdr files",
+            "HDR-FLIP is not defined for display values",
+            "drop --hdr-map, or compare .exr, .pfm or .hdr files",
         ));
     }
     Ok((a, b, coding))
 }
 
-/// A region outside the picture is wrong use; everything else is the pictures' fault.
+/// Converts the error: a region outside the image is a usage error, everything else a failure.
 fn incomparable(error: MetricsError, arguments: &Arguments) -> Failure {
     let (a, b) = (arguments.a.display(), arguments.b.display());
     match &error {
@@ -171,8 +177,8 @@ fn incomparable(error: MetricsError, arguments: &Arguments) -> Failure {
             let named = arguments.region.iter().find(|(_, region)| region == wrong);
             let name = named.map_or("", |(name, _)| name);
             Failure::wrong_use(
-                &format!("the region {name} ({wrong}) reaches beyond the picture"),
-                &format!("the picture has {width} columns and {height} rows, counted from 0"),
+                &format!("the region {name} ({wrong}) extends beyond the image"),
+                &format!("the image has {width} columns and {height} rows, counted from 0"),
             )
         }
         _ => {

@@ -1,4 +1,4 @@
-//! Which part of the picture is rendered, and what is kept of it in addition to radiance.
+//! Options for the crop window, layers and bit depth of images.
 
 use std::path::PathBuf;
 
@@ -9,42 +9,38 @@ use clap::Args;
 
 use super::Failure;
 
-/// Options about what a picture file holds.
+/// Options for the content of image files.
 #[derive(Args, Debug)]
 pub struct Extent {
-    /// Channels of .exr files in addition to radiance, names divided by commas, or all
+    /// Layers of .exr files in addition to radiance, comma-separated, or all
     #[arg(long, value_name = "NAME,...", value_parser = Aovs::parse)]
     pub aov: Option<Aovs>,
-    /// Render a window alone: columns x0 to x1 and rows y0 to y1 from the top left, x1 and y1 left
-    /// out
+    /// Render only columns x0 to x1 and rows y0 to y1 from the top left, x1 and y1 excluded
     #[arg(long, value_name = "x0,y0,x1,y1", value_parser = window, allow_hyphen_values = true)]
     pub crop: Option<[u32; 4]>,
-    /// Bits of each channel in .png files
+    /// Bits per channel of .png files
     #[arg(long, value_name = "8|16", value_parser = bits, default_value = "8")]
     pub bits: Bits,
 }
 
 impl Extent {
-    /// Puts the options in force on a film whose size is settled. Channels that no output can hold
-    /// are left out, and are an error where they are asked for here.
+    /// Applies the options to a film of final size. Layers that no output can store are dropped;
+    /// this is an error if the options request them.
     pub fn apply(&self, film: &mut Film, outputs: &[PathBuf]) -> Result<(), Failure> {
         film.aovs = self.aov.unwrap_or(film.aovs);
         if !outputs.iter().any(|output| Format::of(output) == Some(Format::Exr)) {
             if self.aov.is_some() {
-                let help = "add an output with the extension .exr, as in -o picture.exr";
-                return Err(Failure::wrong_use(
-                    "--aov: no output can hold more than radiance",
-                    help,
-                ));
+                let help = "add an output with the extension .exr, e.g. -o picture.exr";
+                return Err(Failure::wrong_use("--aov: no output can store layers", help));
             }
             film.aovs = Aovs::default();
         }
         film.window = self.crop.or(film.window);
         match film.window {
             Some([_, _, x1, y1]) if x1 > film.width || y1 > film.height => Err(Failure::wrong_use(
-                &format!("--crop: columns up to {x1} and rows up to {y1} reach beyond the picture"),
+                &format!("--crop: columns up to {x1} and rows up to {y1} extend beyond the image"),
                 &format!(
-                    "the picture has {} columns and {} rows, counted from 0",
+                    "the image has {} columns and {} rows, counted from 0",
                     film.width, film.height
                 ),
             )),
@@ -61,14 +57,14 @@ fn bits(text: &str) -> Result<Bits, String> {
     }
 }
 
-/// Four whole numbers, as in 100,40,180,120.
+/// Parses a window such as `100,40,180,120`.
 pub fn window(text: &str) -> Result<[u32; 4], String> {
     let numbers: Option<Vec<u32>> =
         text.split(',').map(|number| number.trim().parse().ok()).collect();
     match numbers.as_deref() {
         Some(&[x0, y0, x1, y1]) if x0 < x1 && y0 < y1 => Ok([x0, y0, x1, y1]),
         _ => {
-            Err("expected four whole numbers with x0 < x1 and y0 < y1, as in 100,40,180,120"
+            Err("expected four whole numbers with x0 < x1 and y0 < y1, e.g. 100,40,180,120"
                 .to_owned())
         }
     }

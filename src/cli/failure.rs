@@ -1,4 +1,4 @@
-//! Failures: what is printed and which exit code they have.
+//! Failures of commands: messages and exit codes.
 
 use std::process::ExitCode;
 
@@ -16,12 +16,13 @@ use miette::{Report, miette};
 
 use super::output::{paragraph, report};
 
-/// Why a command failed.
+/// Failure of a command.
 #[derive(Debug)]
 pub struct Failure {
     code: u8,
     report: Report,
-    /// Lines that follow: a driver's or a compiler's own, which no names of files are in.
+    /// Lines that follow the report, such as the log of a driver or compiler. They contain no file
+    /// names.
     details: String,
 }
 
@@ -31,7 +32,7 @@ impl Failure {
     const NO_SUCH_DEVICE: u8 = 4;
     const DEVICE_FAILED: u8 = super::Done::DeviceLost as u8;
 
-    /// Arguments that cannot be meant, and what would do.
+    /// Usage error, with a suggestion.
     pub fn wrong_use(what: &str, help: &str) -> Self {
         Self {
             code: Self::WRONG_USE,
@@ -40,12 +41,12 @@ impl Failure {
         }
     }
 
-    /// Anything else.
+    /// Any other failure.
     pub fn failed(report: impl Into<Report>) -> Self {
         Self { code: Self::FAILED, report: report.into(), details: String::new() }
     }
 
-    /// There is no device for this.
+    /// No suitable device exists.
     #[cfg(feature = "preview")]
     pub fn no_device(report: impl Into<Report>) -> Self {
         Self { code: Self::NO_SUCH_DEVICE, report: report.into(), details: String::new() }
@@ -96,8 +97,8 @@ impl From<DenoiseError> for Failure {
         match error {
             DenoiseError::NotBuilt => Self::wrong_use(
                 &format!("--denoise: {error}"),
-                "install Open Image Denoise 2 (https://www.openimagedenoise.org), name its folder in OIDN_DIR, and build with \
-                 `cargo build --release --features denoise`",
+                "install Open Image Denoise 2 (https://www.openimagedenoise.org), set OIDN_DIR to \
+                 its folder, and build with `cargo build --release --features denoise`",
             ),
             _ => Self::failed(miette!("--denoise: {error}")),
         }
@@ -130,10 +131,10 @@ impl From<DeviceError> for Failure {
         match error {
             DeviceError::NoSuchDevice { ref available, .. } => {
                 let help = match available.as_slice() {
-                    [] => "no device was found at all".to_owned(),
+                    [] => "no device was found".to_owned(),
                     names => {
                         format!(
-                            "there is: {}; run `caustica devices` for details",
+                            "available: {}; run `caustica devices` for details",
                             names.join(", ")
                         )
                     }

@@ -1,19 +1,19 @@
-//! What is printed if the program itself is at fault and panics.
+//! Panic messages.
 
 use std::backtrace::{Backtrace, BacktraceStatus};
 use std::panic::{self, PanicHookInfo};
 
 use super::output::{message, paragraph};
 
-/// Prints panics as faults of this program, with the place in its sources or in those of a library.
-/// The standard library's own message would name folders of the machine that built the program.
+/// Installs a panic hook that prints the source location relative to its crate. The default message
+/// would reveal folders of the build machine.
 pub fn begin() {
     panic::set_hook(Box::new(|info| {
-        message(format_args!("caustica has a fault and stops here: {}", text(info)));
+        message(format_args!("internal error in caustica: {}", text(info)));
         let trace = Backtrace::capture();
         match trace.status() {
             BacktraceStatus::Captured => paragraph(trace),
-            _ => message("please report this, with RUST_BACKTRACE=1 set if it happens again"),
+            _ => message("please report this, if possible with RUST_BACKTRACE=1 set"),
         }
     }));
 }
@@ -21,15 +21,18 @@ pub fn begin() {
 fn text(info: &PanicHookInfo) -> String {
     let payload = info.payload();
     let owned = || payload.downcast_ref::<String>().map(String::as_str);
-    let what =
-        payload.downcast_ref::<&str>().copied().or_else(owned).unwrap_or("a value that is no text");
+    let what = payload
+        .downcast_ref::<&str>()
+        .copied()
+        .or_else(owned)
+        .unwrap_or("panic payload is not text");
     match info.location() {
         Some(place) => format!("{what} ({}:{})", short(place.file()), place.line()),
         None => what.to_owned(),
     }
 }
 
-/// A source file from its library on: what is before the library's folder is about the machine.
+/// Source path from its crate on, without the folders of the build machine.
 fn short(file: &str) -> &str {
     let file = file
         .strip_prefix("/rustc/")
@@ -40,12 +43,12 @@ fn short(file: &str) -> &str {
     match libraries.and_then(|(_, rest)| rest.split_once('/')) {
         Some((_, rest)) => rest,
         None if !file.starts_with('/') => file,
-        // of this program, built from another folder
+        // this program, built from another folder
         None => file.rfind("/src/").map_or(file, |at| &file[at + 1..]),
     }
 }
 
-/// Theory: whatever folder a crate was built in, its own name and what is below it are left.
+/// Theory: independent of the build folder, the crate name and the path below it remain.
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,4 +1,4 @@
-//! Figures of pictures as JSON and as a table.
+//! Image metrics as JSON and as a table.
 
 use caustica::low_level::film::Measures;
 use caustica::low_level::film::metrics::Comparison;
@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::bounds::Measured;
 
-/// The figures of pixels by themselves; those that are infinite are null.
+/// Per-pixel metrics as JSON; infinite values are null.
 pub fn comparison_json(comparison: &Comparison) -> Value {
     let worst = &comparison.worst;
     json!({
@@ -22,7 +22,7 @@ pub fn comparison_json(comparison: &Comparison) -> Value {
     })
 }
 
-/// All figures; those that are infinite or do not exist are null.
+/// All metrics as JSON; infinite or undefined values are null.
 pub fn measures_json(measures: &Measures) -> Value {
     let mut figures = comparison_json(&measures.pixels);
     figures["ssim"] = json!(measures.ssim);
@@ -31,7 +31,7 @@ pub fn measures_json(measures: &Measures) -> Value {
     figures
 }
 
-/// A row for each measure, a column for each place.
+/// Table with a row for each metric and a column for the image and each region.
 pub fn table(measured: &[Measured]) -> String {
     type Row = (&'static str, fn(&Measures) -> String);
     const ROWS: [Row; 11] = [
@@ -47,7 +47,7 @@ pub fn table(measured: &[Measured]) -> String {
         ("HDR-FLIP", |m| or_dash(m.hdr_flip)),
         ("pixels that differ", |m| format!("{} of {}", m.pixels.pixels_differing, m.pixels.pixels)),
     ];
-    let heading = measured.iter().map(|place| place.region.unwrap_or("picture").to_owned());
+    let heading = measured.iter().map(|place| place.region.unwrap_or("image").to_owned());
     let mut rows = vec![(String::new(), heading.collect::<Vec<_>>())];
     rows.extend(ROWS.iter().map(|(name, figure)| {
         ((*name).to_owned(), measured.iter().map(|place| figure(&place.measures)).collect())

@@ -5,9 +5,8 @@ use caustica::low_level::gpu::{self, Hidden};
 
 use super::output::message;
 
-/// Warns about variables on which the choice of a device depends, after it was made: `auto` found
-/// no hardware GPU, or a value has words that mean nothing. If no device fits, the failure says
-/// what is hidden.
+/// Warns about variables that affected the choice of a device, if `auto` found no hardware GPU or a
+/// variable contains unknown words. If no device fits, the failure lists the hidden ones instead.
 pub fn warn(wanted: &Wanted) {
     if matches!(wanted, Wanted::Cpu | Wanted::CpuDouble) {
         return;

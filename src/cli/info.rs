@@ -1,4 +1,4 @@
-//! `caustica info`: what a scene needs and what it does without.
+//! `caustica info`: features, kernels and memory that a scene needs.
 
 use std::fmt;
 use std::path::PathBuf;
@@ -20,20 +20,19 @@ use super::overrides::Overrides;
 use super::render::load;
 use super::{Done, Failure, compiling};
 
-/// Show what a scene needs and what is left out: features, kernels, bytes of every buffer
+/// Show the features, kernels and buffers that a scene needs, and those it does not
 #[derive(clap::Args)]
 #[command(after_help = HELP)]
 pub struct Arguments {
     /// Scene file
     scene: PathBuf,
-    /// Time every kernel with and without each thing that is left out, on each of these devices
+    /// Time all kernels with and without each unused feature, on each --device
     #[arg(long)]
     measure: bool,
-    /// Device to measure on: auto, gpu, software, cpu, or a part of a device's name; several are
-    /// measured
+    /// Device to measure: auto, gpu, software, cpu, or part of a device name; repeatable
     #[arg(long, value_name = "DEVICE", value_parser = NonEmptyStringValueParser::new(), default_value = "auto", requires = "measure")]
     device: Vec<String>,
-    /// Print the figures as one JSON object per line: bytes, seconds
+    /// Print one JSON object per line; sizes in bytes, times in seconds
     #[arg(long)]
     json: bool,
     #[command(flatten)]
@@ -43,7 +42,7 @@ pub struct Arguments {
 }
 
 impl Arguments {
-    /// The devices to measure on, if any.
+    /// Devices to measure, if any.
     pub fn measured(&self) -> Option<&[String]> {
         self.measure.then_some(&self.device)
     }
@@ -56,7 +55,7 @@ Examples:
 
 const ON_GPU: BufferPlace = BufferPlace::Device { in_main_memory: false };
 
-/// What a render takes, cut as a budget has it.
+/// Memory of a render, and its tiles and batches under the budget.
 struct Need {
     parts: Vec<Part>,
     cut: String,
@@ -74,7 +73,7 @@ impl Need {
                     if tiles > 0 { format!("{tiles} tiles") } else { "one piece".to_owned() };
                 Self {
                     parts: plan.memory(scene, place),
-                    cut: format!("in {tiles}, photons in {batches} batches"),
+                    cut: format!("image in {tiles}, photons in {batches} batches"),
                 }
             }
             Err(error) => Self { parts: Vec::new(), cut: error.to_string() },
@@ -102,14 +101,14 @@ impl fmt::Display for Need {
     }
 }
 
-/// What a render of a scene is made of.
+/// Components of a render of a scene.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct InfoReport {
-    /// Features, and whether the scene needs them.
+    /// Feature names, true if the scene needs the feature.
     pub features: Vec<(String, bool)>,
-    /// Kernels, and whether they are compiled.
+    /// Kernel names, true if the kernel is compiled.
     pub kernels: Vec<(String, bool)>,
-    /// Buffers and their bytes.
+    /// Buffer names and sizes in bytes.
     pub buffers: Vec<(String, u64)>,
 }
 
@@ -141,7 +140,7 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
         }
         result(report(&packed, &plan))?;
         for (name, need) in &memory {
-            result(format_args!("{:<40} {:>16}\n{need}", format!("memory {name}, for"), "bytes"))?;
+            result(format_args!("{:<40} {:>16}\n{need}", format!("memory {name}"), "bytes"))?;
         }
     }
     if arguments.measure {
@@ -158,7 +157,7 @@ fn report(packed: &PackedScene, plan: &Plan) -> InfoReport {
         Feature::all().map(|feature| (feature.name().to_owned(), plan.features.has(feature)));
     let kernels = plan.kernels();
     let used = |kernel| kernels.iter().any(|(other, _)| *other == kernel);
-    // A path tracer is one kernel, of the CPU engine, and keeps nothing but the film.
+    // path tracing is a single kernel of the CPU engine, and its only buffer is the film
     let path = plan.settings.method == Method::Path;
     let kernels =
         Kernel::ALL.iter().map(|kernel| (kernel.stem().to_owned(), !path && used(*kernel)));

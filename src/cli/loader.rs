@@ -1,24 +1,23 @@
-//! Keeps Mesa's device-select layer quiet.
+//! Suppresses messages of Mesa's device-select layer.
 //!
-//! The Vulkan loader runs the layer in each program that looks for devices. It asks Wayland for a
-//! display, and libwayland complains about `XDG_RUNTIME_DIR` on standard error where there is no
-//! desktop. The layer stays away if `NODEVICE_SELECT` is set when the loader starts. A program
-//! cannot safely change its own environment, so it starts itself once more with the variable.
+//! The Vulkan loader loads the layer into each program that enumerates devices. The layer connects
+//! to Wayland, and libwayland complains about `XDG_RUNTIME_DIR` on standard error if there is no
+//! desktop. `NODEVICE_SELECT` disables the layer if it is set when the loader starts. A program
+//! cannot safely change its own environment, so it restarts itself with the variable set.
 
 use caustica::low_level::device::{self, Wanted};
 
-/// The variable that keeps the layer away.
+/// Variable that disables the layer.
 #[cfg(target_os = "linux")]
 const OFF: &str = "NODEVICE_SELECT";
 
-/// Whether a `--device` value means a device with a driver.
+/// Returns true if a `--device` value may select a device with a driver.
 pub fn is_driver(device: &str) -> bool {
     !matches!(device::parse(device), Wanted::Cpu | Wanted::CpuDouble)
 }
 
-/// Starts the program again, in the same process and with the same arguments, if the layer would
-/// complain. On a desktop, and where the user chooses a device by the layer's own variables, it
-/// stays as it is. Does nothing if the system refuses.
+/// Restarts the program (exec) with the same arguments if the layer would complain. Does nothing on
+/// a desktop, if the user selects a device with the layer's variables, or if exec fails.
 #[cfg(target_os = "linux")]
 pub fn quiet() {
     use std::env;
@@ -38,11 +37,11 @@ pub fn quiet() {
     if let Some(name) = arguments.next() {
         command.arg0(name);
     }
-    // returns only if it fails
+    // exec returns only if it fails
     let error = command.args(arguments).env(OFF, "1").exec();
-    log::debug!("the program does not start again: {error}");
+    log::debug!("the program cannot restart itself: {error}");
 }
 
-/// Other systems have no such layer.
+/// Does nothing: other systems have no such layer.
 #[cfg(not(target_os = "linux"))]
 pub fn quiet() {}

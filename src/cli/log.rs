@@ -1,5 +1,5 @@
-//! Logs on standard error: `-v` tells the device and the stages with their seconds, `-vv` every
-//! pass too.
+//! Logs on standard error: `-v` logs the device and the stages with their times, `-vv` also each
+//! pass.
 
 use std::sync::OnceLock;
 use std::time::Instant;
@@ -8,17 +8,17 @@ use log::{Level, LevelFilter, Log, Metadata, Record};
 
 use super::output::paragraph;
 
-/// The program's own name, with which the targets of its records begin.
+/// Prefix of the targets of the program's records.
 const OWN: &str = "caustica";
 
-/// Writes records that are wanted as lines: seconds since the start, level, target, text.
+/// Writes selected records as lines: seconds since the start, level, target, text.
 struct Writer {
     begun: OnceLock<Instant>,
 }
 
 static WRITER: Writer = Writer { begun: OnceLock::new() };
 
-/// Begins to write what `-v`, said so many times, asks for.
+/// Starts logging at the level of `verbosity` times `-v`.
 pub fn begin(verbosity: u8) {
     if verbosity == 0 {
         return;
@@ -29,13 +29,13 @@ pub fn begin(verbosity: u8) {
     }
 }
 
-/// Whether logs are written.
+/// Returns true if logging is enabled.
 pub fn is_on() -> bool {
     log::max_level() > LevelFilter::Off
 }
 
-/// Libraries are heard one level later than the program itself: `-v` has their warnings, `-vv` what
-/// they find worth telling.
+/// Selects records. Libraries log one level less than the program: warnings with `-v`, information
+/// with `-vv`.
 fn wanted(level: Level, target: &str, most: LevelFilter) -> bool {
     let own = target.split("::").next() == Some(OWN);
     let most = match (own, most) {
@@ -66,7 +66,7 @@ impl Log for Writer {
     fn flush(&self) {}
 }
 
-/// Theory: a library's records are as welcome as the program's own of the level above.
+/// Theory: a library's records are treated as the program's records one level lower.
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -81,6 +81,6 @@ mod tests {
         assert!(wanted(Level::Debug, "caustica::device", vv));
         assert!(wanted(Level::Warn, "wgpu_hal::vulkan", v) && !wanted(Level::Info, "wgpu_core", v));
         assert!(wanted(Level::Info, "wgpu_core", vv) && !wanted(Level::Debug, "wgpu_core", vv));
-        assert!(!wanted(Level::Info, "caustically", v), "a name that begins alike is another's");
+        assert!(!wanted(Level::Info, "caustically", v), "a longer name is a different crate");
     }
 }

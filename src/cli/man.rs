@@ -1,4 +1,4 @@
-//! `caustica man`: manual pages from the same text as `--help`.
+//! `caustica man`: manual pages, generated from the text of `--help`.
 
 use std::path::{Path, PathBuf};
 
@@ -9,11 +9,11 @@ use clap_mangen::Man;
 use super::output::{bytes, result};
 use super::{Done, Failure, command};
 
-/// Print the manual page, or write those of all commands into a folder
+/// Print the manual page, or write the pages of all commands to a folder
 #[derive(clap::Args)]
 #[command(after_help = HELP)]
 pub struct Arguments {
-    /// Folder to write to, which has to be there: caustica.1, caustica-render.1 and so on
+    /// Existing folder to write to: caustica.1, caustica-render.1 and so on
     #[arg(value_name = "DIR")]
     folder: Option<PathBuf>,
 }
@@ -23,7 +23,7 @@ Examples:
   caustica man | man -l -
   mkdir -p ~/.local/share/man/man1 && caustica man ~/.local/share/man/man1";
 
-/// Prints or writes them.
+/// Prints or writes the pages.
 pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     let mut root = command().disable_help_subcommand(true);
     root.build();

@@ -1,4 +1,4 @@
-//! `caustica info --measure`: what it gains to leave out what a scene does not require.
+//! `caustica info --measure`: time saved by omitting features that a scene does not need.
 
 use caustica::low_level::bench::ablation::{
     Costs, on_cpu, on_gpu, unused, with_all_unused, with_unused,
@@ -14,13 +14,13 @@ use serde_json::{Map, Value, json};
 use super::output::{message, result};
 use super::{Done, Failure, hidden};
 
-/// Passes of which the fastest counts.
+/// Number of passes; the fastest one counts.
 const PASSES: u32 = 5;
 /// Kernels whose code depends on the scene.
 const KERNELS: [Kernel; 3] = [Kernel::EyeTrace, Kernel::PhotonTrace, Kernel::Gather];
 
-/// Prints a table, or a JSON object for each of its lines: the scene as it is, with each thing
-/// more, and with everything.
+/// Prints a table, or one JSON object per row: the scene as it is, with each unused feature added,
+/// and with all of them.
 pub fn on_device(
     wanted: &str,
     packed: &PackedScene,
@@ -33,12 +33,12 @@ pub fn on_device(
     hidden::warn(&wanted);
     if settings.method == Method::Path || device.kind == DeviceKind::CpuDouble {
         return Err(Failure::wrong_use(
-            "there is nothing to measure: path tracing and the f64 engine are compiled once for all scenes",
+            "nothing to measure: path tracing and the f64 engine are not specialized for scenes",
             "measure sppm or ppm on gpu, software or cpu",
         ));
     }
-    // one disc: what is added may bring photons that ask for a second, in which sums are rounded
-    // otherwise
+    // a single disc: an added feature may add photons that need a second disc, which changes the
+    // rounding of sums
     let settings = &RenderSettings { indirect_radius: Some(1.0), ..settings.clone() };
     let cost = |packed: PackedScene| match device.kind {
         DeviceKind::Cpu => on_cpu(packed, settings, PASSES),
@@ -48,7 +48,8 @@ pub fn on_device(
         && std::env::var_os("MESA_SHADER_CACHE_DISABLE").is_none()
     {
         message(
-            "warning: Mesa keeps compiled shaders; for true times say MESA_SHADER_CACHE_DISABLE=true",
+            "warning: Mesa caches compiled shaders; set MESA_SHADER_CACHE_DISABLE=true for true \
+             compile times",
         );
     }
     let features = Features::of(&packed.tables, settings);
@@ -62,7 +63,7 @@ pub fn on_device(
         false => result(line(added, costs, plain)),
     };
     if !json {
-        result(format_args!("\non {}, the fastest of {PASSES} passes:", device.name))?;
+        result(format_args!("\non {}, fastest of {PASSES} passes:", device.name))?;
         result(heading(device.kind))?;
     }
     let plain = cost(packed.clone())?;
@@ -76,8 +77,8 @@ pub fn on_device(
     Ok(Done::Fully)
 }
 
-/// A line of the table; times in seconds, of all kernels of the fastest pass and of each whose code
-/// depends on the scene.
+/// Row of the table as JSON; times in seconds, for all kernels of the fastest pass together, and
+/// for each kernel whose code depends on the scene.
 fn as_json(device: &str, added: &str, costs: &Costs, plain: &Costs) -> Value {
     let kernels = costs.kernels.iter().map(|(name, cost)| {
         (name.to_string(), json!({ "compile_seconds": cost.compile, "seconds": cost.run }))
@@ -106,7 +107,7 @@ fn heading(kind: DeviceKind) -> String {
     line + &format!("{:>12}", "same bits")
 }
 
-/// Compile and run time of the kernels in ms, then of all of them together.
+/// Row of the table: compile and run times in ms, per kernel and for all kernels.
 fn line(name: &str, costs: &Costs, plain: &Costs) -> String {
     let ms = |seconds: f64| format!("{:.1} ms", 1000.0 * seconds);
     let mut line = format!("{name:<18}");

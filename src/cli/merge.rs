@@ -1,4 +1,4 @@
-//! `caustica merge`: checkpoints of ranges of passes in, the picture or the checkpoint of all out.
+//! `caustica merge`: merges checkpoints of pass ranges into an image or a checkpoint.
 
 use std::path::{Path, PathBuf};
 
@@ -14,16 +14,14 @@ use super::progress::{count, percent};
 use super::rendered::{left_out, write_all};
 use super::{Done, Failure};
 
-/// Merge checkpoints of ranges of passes into the picture of all
+/// Merge checkpoints of pass ranges into one image
 #[derive(clap::Args)]
 #[command(after_help = HELP)]
 pub struct Arguments {
-    /// Checkpoints of ranges of passes that follow one another, in any order; a single one gives
-    /// its picture
+    /// Checkpoints of consecutive pass ranges, in any order; a single one is developed as it is
     #[arg(required = true, value_name = "CHECKPOINT")]
     checkpoints: Vec<PathBuf>,
-    /// File to write, by its extension: .png (tone-mapped), .exr, .pfm, .hdr, or .checkpoint to
-    /// merge further; may be given several times
+    /// Output: .png (tone-mapped), .exr, .pfm, .hdr, or .checkpoint to merge further; repeatable
     #[arg(short, long, required = true, value_name = "FILE")]
     output: Vec<PathBuf>,
     /// Print the result as a JSON object
@@ -37,7 +35,7 @@ Examples:
   caustica render scenes/cornell.toml --passes 32..64 --checkpoint b.checkpoint
   caustica merge a.checkpoint b.checkpoint -o cornell.exr
 
-The picture is that of a render of all passes, but for rounding (docs/checkpoints.md).";
+The image equals a render of all passes except for rounding (docs/checkpoints.md).";
 
 /// Merges and writes.
 pub fn run(arguments: Arguments) -> Result<Done, Failure> {
@@ -49,7 +47,7 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     if let Some(file) = pictures.iter().find(|picture| Format::of(picture).is_none()) {
         return Err(FileError::UnknownFormat {
             file: file.clone(),
-            what: "its extension names neither a kind of picture nor a checkpoint".to_owned(),
+            what: "the extension is neither that of an image nor of a checkpoint".to_owned(),
             known: ".png, .exr, .pfm, .hdr or .checkpoint",
         }
         .into());
@@ -59,8 +57,8 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     for file in &merged {
         if checkpoints.iter().any(|read| storage::same(read, file)) {
             return Err(Failure::wrong_use(
-                &format!("{}: this checkpoint is one of those that are merged", file.display()),
-                "name another file: a merge that fails must not cost what it is made of",
+                &format!("{}: the output is one of the merged checkpoints", file.display()),
+                "use another file, so that a failed merge does not destroy its input",
             ));
         }
         checkpoint::check_place(file)?;
@@ -68,7 +66,7 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     }
     let read = |file: PathBuf| checkpoint::read(&file).map(|checkpoint| (file, checkpoint));
     let all = merge(checkpoints.into_iter().map(read).collect::<Result<_, _>>()?)?;
-    // each that can be written is, whatever becomes of the others
+    // write as many outputs as possible, even if some fail
     let written = merged.iter().map(|file| checkpoint::write(file, &all));
     let mut failures: Vec<Failure> = written.filter_map(Result::err).map(Failure::from).collect();
     let error = write_pictures(&pictures, &all).unwrap_or_else(|failure| {
@@ -113,14 +111,14 @@ fn as_text(all: &Checkpoint, error: Option<RelativeError>) -> String {
     });
     let (passes, photons) = (all.state.passes, count(all.totals.photons as f64));
     format!(
-        "{}: passes {}..{}, {passes} in all, {photons} photons{error}",
+        "{}: passes {}..{}, {passes} in total, {photons} photons{error}",
         all.origin.scene,
         all.state.first_pass,
         all.end()
     )
 }
 
-/// The same as a JSON object; errors are null for fewer passes than an estimate needs.
+/// Result as a JSON object; errors are null if there are too few passes for an estimate.
 fn as_json(all: &Checkpoint, error: Option<RelativeError>, outputs: &[PathBuf]) -> Value {
     json!({
         "event": "merged",

@@ -1,6 +1,6 @@
-//! Arguments to calls to exit codes; one file per command.
+//! Command line: arguments, dispatch and exit codes; one file per command.
 //!
-//! Standard output carries results, standard error everything else.
+//! Results go to standard output, everything else to standard error.
 
 mod allowed;
 mod bench;
@@ -57,7 +57,7 @@ use output::{paragraph, printable};
 #[derive(Parser)]
 #[command(version, after_help = HELP)]
 struct Arguments {
-    /// Log to standard error: which device and why, stages with their seconds; -vv each pass too
+    /// Log device choice and stage times to standard error; -vv also logs each pass
     #[arg(short, long, global = true, action = ArgAction::Count)]
     verbose: u8,
     #[command(subcommand)]
@@ -69,8 +69,8 @@ Examples:
   caustica render scenes/caustics.toml -o picture.png -o picture.exr
   caustica check scenes/cornell.toml scenes/caustics.toml
 
-Exit codes: 0 done, 1 failed, 2 wrong use, 3 over a threshold, 4 no such device, 5 the device failed, with the picture \
-so far saved, 130 interrupted with the picture so far saved";
+Exit codes: 0 success, 1 failure, 2 usage error, 3 threshold exceeded, 4 no such device, 5 device \
+failed (partial image saved), 130 interrupted (partial image saved)";
 
 #[derive(Subcommand)]
 enum Command {
@@ -93,7 +93,7 @@ enum Command {
 }
 
 impl Command {
-    /// Whether it may open a device that has a driver, or looks for one.
+    /// Returns true if the command may open or enumerate devices with a driver.
     fn needs_driver(&self) -> bool {
         let any = |devices: &[String]| devices.iter().any(|device| loader::is_driver(device));
         match self {
@@ -108,16 +108,16 @@ impl Command {
     }
 }
 
-/// How a command that did not fail ended.
+/// Exit code of a command that did not fail.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Done {
-    /// As asked.
+    /// Success.
     Fully = 0,
-    /// A figure is over its threshold.
+    /// A metric exceeds its threshold.
     OverThreshold = 3,
-    /// The device failed; the picture so far is saved.
+    /// The device failed; the partial image is saved.
     DeviceLost = 5,
-    /// By the user; the picture so far is saved.
+    /// The user interrupted the command; the partial image is saved.
     Interrupted = 130,
 }
 
@@ -126,9 +126,9 @@ fn command() -> clap::Command {
     Arguments::command()
 }
 
-/// Prints what is wrong with the command line, or the help that it asks for.
+/// Prints a usage error, or the requested help.
 fn parsed_otherwise(error: &clap::Error) -> ExitCode {
-    // arguments are quoted as they are
+    // clap quotes arguments without escaping control characters
     let plain = |argument: std::ffi::OsString| {
         let text = argument.to_string_lossy();
         printable(&text) == text
@@ -136,13 +136,13 @@ fn parsed_otherwise(error: &clap::Error) -> ExitCode {
     if error.use_stderr() && !std::env::args_os().all(plain) {
         paragraph(error.render().to_string().trim_end());
     } else {
-        // as clap prints it, in colours where these are wanted
+        // clap prints in color if enabled
         let _ = error.print();
     }
     ExitCode::from(error.exit_code() as u8)
 }
 
-/// Carries out the command line.
+/// Runs the command line.
 pub fn run() -> ExitCode {
     if interrupt::is_end() {
         return ExitCode::from(Done::Interrupted as u8);

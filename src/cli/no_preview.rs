@@ -1,8 +1,8 @@
-//! `caustica preview` in a program that was built without the window.
+//! `caustica preview` in a build without the preview window.
 
 use super::{Done, Failure};
 
-/// Open a window on a scene (this program was built without it)
+/// Preview a scene in a window (not included in this build)
 #[derive(clap::Args)]
 #[command(disable_help_flag = true)]
 pub struct Arguments {
@@ -10,12 +10,12 @@ pub struct Arguments {
     rest: Vec<std::ffi::OsString>,
 }
 
-/// Says how to build the window.
+/// Explains how to build with the window.
 pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     let rest = arguments.rest.iter().map(|word| word.to_string_lossy());
     let line = ["cargo run --release --features preview -- preview".into()].into_iter().chain(rest);
     Err(Failure::wrong_use(
-        "this program was built without the preview window",
-        &format!("build it once with `{}`", line.collect::<Vec<_>>().join(" ")),
+        "this build does not include the preview window",
+        &format!("build it with `{}`", line.collect::<Vec<_>>().join(" ")),
     ))
 }

@@ -1,8 +1,7 @@
-//! Lines on standard output and standard error. A reader that went away, as in `caustica info
-//! scene.toml | head`, is no failure; results that cannot be written for another reason are.
+//! Output to standard output and standard error. A closed pipe, as in
+//! `caustica info scene.toml | head`, is not a failure; other write errors of results are.
 //!
-//! Names and texts come from files that may be anybody's: control characters in them never reach a
-//! terminal.
+//! Names and texts may come from untrusted files, so control characters are escaped for terminals.
 
 use std::borrow::Cow;
 use std::fmt::Display;
@@ -17,12 +16,12 @@ use super::shown::Shown;
 pub fn result(line: impl Display) -> Result<(), Failure> {
     let line = line.to_string();
     let out = io::stdout();
-    // what reads a pipe wants names as they are
+    // programs that read a pipe need unescaped names
     let shown = if out.is_terminal() { printable(&line) } else { Cow::Borrowed(line.as_str()) };
     written(writeln!(&out, "{shown}"))
 }
 
-/// Prints a whole text to standard output.
+/// Writes bytes to standard output.
 pub fn bytes(text: &[u8]) -> Result<(), Failure> {
     let mut out = io::stdout();
     written(out.write_all(text).and_then(|()| out.flush()))
@@ -31,41 +30,40 @@ pub fn bytes(text: &[u8]) -> Result<(), Failure> {
 fn written(outcome: io::Result<()>) -> Result<(), Failure> {
     match outcome {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
-            Err(Failure::failed(miette::miette!("standard output cannot be written: {error}")))
+            Err(Failure::failed(miette::miette!("cannot write to standard output: {error}")))
         }
         _ => Ok(()),
     }
 }
 
-/// Prints a line of anything else to standard error. A line feed in it comes from a name, and is
-/// shown as an escape.
+/// Prints a one-line message to standard error. Line feeds are escaped, since they come from names.
 pub fn message(line: impl Display) {
     to_stderr(&one_line(&line.to_string()));
 }
 
-/// Prints lines of anything else to standard error.
+/// Prints a multi-line message to standard error.
 pub fn paragraph(lines: impl Display) {
     to_stderr(&printable(&lines.to_string()));
 }
 
-/// Prints a report to standard error, in colours where these are wanted.
+/// Prints a diagnostic report to standard error, in color if enabled.
 pub fn report(found: &dyn Diagnostic) {
     to_stderr(&Shown::of(found).report());
 }
 
 fn to_stderr(line: &str) {
-    // There is nowhere to tell that standard error is gone.
+    // a failure of standard error cannot be reported
     let _ = writeln!(io::stderr(), "{line}");
 }
 
-/// Whether a terminal shows `c` and does nothing else. Characters that turn the direction of
-/// writing do.
+/// Returns true if a terminal only displays `c`. Control characters and those that change the text
+/// direction do more.
 fn is_plain(c: char) -> bool {
     let turns = matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
     (!c.is_control() && !turns) || matches!(c, '\n' | '\t')
 }
 
-/// `text` with control characters as escapes, as in `\\x1b`: all but line feeds and tabs.
+/// Escapes control characters in `text`, e.g. as `\\x1b`, except line feeds and tabs.
 pub fn printable(text: &str) -> Cow<'_, str> {
     if text.chars().all(is_plain) {
         return Cow::Borrowed(text);
@@ -81,13 +79,13 @@ pub fn printable(text: &str) -> Cow<'_, str> {
     Cow::Owned(out)
 }
 
-/// As [`printable`], with line feeds as `\\n`.
+/// As [`printable`], and escapes line feeds as `\\n`.
 pub fn one_line(text: &str) -> String {
     printable(text).replace('\n', "\\n")
 }
 
-/// Theory: a terminal acts on C0 and C1 control characters, and on sequences that begin with one;
-/// even colours can hide what follows.
+/// Theory: a terminal interprets C0 and C1 control characters and sequences that begin with one;
+/// even colors can hide text.
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,4 +1,4 @@
-//! Options that stand in for what the scene file says.
+//! Options that override settings of the scene file.
 
 use std::time::Duration;
 
@@ -12,87 +12,83 @@ use serde::de::DeserializeOwned;
 
 use super::allowed::Allowed;
 
-/// Options of commands that render; each replaces the scene file's own value.
+/// Options of commands that render; each overrides a value of the scene file.
 #[derive(Args, Debug, Default)]
-#[command(next_help_heading = "Instead of the scene file's settings")]
+#[command(next_help_heading = "Scene file overrides")]
 pub struct Overrides {
-    /// Settings by what the picture is for, in the place of the scene's method, passes, photons,
-    /// radius, rule, alpha and direct; other options change them further
+    /// Preset of method, passes, photons, radius, rule, alpha and direct; other options override it
     #[arg(long, value_name = "draft|preview|final|reference", value_parser = quality(), hide_possible_values = true)]
     pub quality: Option<Quality>,
     /// Light transport: stochastic progressive photon mapping, progressive photon mapping, or path
     /// tracing (CPU only)
     #[arg(long, value_name = "sppm|ppm|path", value_parser = word::<Method>)]
     method: Option<Method>,
-    /// Number of passes; render alone also takes those numbered from A to before B, counted from 0,
-    /// to be merged with others
+    /// Number of passes; `render` also accepts a range (counted from 0, B excluded) to merge later
     #[arg(long, value_name = "N|A..B", value_parser = passes)]
     passes: Option<Passes>,
     /// Photons emitted per pass
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub photons: Option<u32>,
-    /// Photons that are traced and gathered at once, at the most [default: as many as four million
-    /// records hold]
+    /// Maximum photons traced and gathered at once [default: as many as fit in 4 million records]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     batch: Option<u32>,
-    /// Start radius: pixels at the visible point as 2px, scene units as 0.01, or auto
+    /// Start radius in pixels at the visible point (2px), in scene units (0.01), or auto
     #[arg(long, value_name = "R", value_parser = radius, allow_negative_numbers = true)]
     radius: Option<Radius>,
-    /// Start radius of photons that a diffuse surface has scattered, over that of the others, from
-    /// 1 to 16
+    /// Start radius of diffusely scattered photons relative to that of the others, 1 to 16
     #[arg(long, value_name = "X", value_parser = times, allow_negative_numbers = true)]
     indirect_radius: Option<f64>,
-    /// How the radius shrinks
+    /// Rule that shrinks the radius
     #[arg(long, value_name = "global|local|fixed", value_parser = word::<RadiusRule>)]
     radius_rule: Option<RadiusRule>,
-    /// Share of the photons kept when the radius shrinks, above 0 and up to 1
+    /// Fraction of photons kept when the radius shrinks, above 0 and up to 1
     #[arg(long, value_name = "A", value_parser = alpha, allow_negative_numbers = true)]
     alpha: Option<f64>,
-    /// Where direct light comes from
+    /// Source of direct light: light sampling, or the photon map
     #[arg(long, value_name = "sampled|photons", value_parser = word::<Direct>)]
     direct: Option<Direct>,
-    /// Most scattering events on a photon path and on an eye path; with 0, direct light only
+    /// Maximum scattering events on a photon path and on an eye path; 0 for direct light only
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..=65535))]
     max_bounces: Option<u32>,
     /// Fixed visible points per pixel (ppm only)
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=65536))]
     eye_samples: Option<u32>,
-    /// Seed of the random numbers
+    /// Random seed
     #[arg(long, value_name = "S")]
     seed: Option<u64>,
-    /// Size of the picture in pixels; the vertical field of view stays
+    /// Image size in pixels; keeps the vertical field of view
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub size: Option<(u32, u32)>,
     #[command(flatten)]
     pub allowed: Allowed,
 }
 
-/// Passes by number, from 0.
+/// A range of passes, counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Passes {
-    /// The first one.
+    /// First pass.
     pub first: u32,
-    /// The one after the last, above `first`.
+    /// Pass after the last, greater than `first`.
     pub end: u32,
 }
 
 impl Overrides {
-    /// The passes asked for, if any are.
+    /// Requested passes, if any.
     pub fn passes(&self) -> Option<Passes> {
         self.passes
     }
 
-    /// Number of passes, for commands that begin with the first.
+    /// Number of passes, for commands that start at pass 0.
     pub fn pass_count(&self) -> Option<u32> {
         self.passes.map(|passes| passes.end)
     }
 
-    /// Whether passes are asked for of which pass 0 is none.
+    /// Returns true if a range that does not start at pass 0 is requested.
     pub fn begins_later(&self) -> bool {
         self.passes.is_some_and(|passes| passes.first > 0)
     }
 
-    /// Puts the options in force; the number of passes is that of all up to the last.
+    /// Applies the options. For a range, the number of passes becomes the end of the range.
     pub fn apply(&self, scene: &mut Scene, settings: &mut RenderSettings) {
         fn set<T: Copy>(target: &mut T, value: Option<T>) {
             *target = value.unwrap_or(*target);
@@ -118,12 +114,12 @@ impl Overrides {
     }
 }
 
-/// The presets' words; clap names the nearest of them.
+/// Parser of preset names; clap suggests the closest one.
 fn quality() -> impl TypedValueParser<Value = Quality> {
     PossibleValuesParser::new(Quality::ALL.map(Quality::word)).try_map(|text| word(&text))
 }
 
-/// One of a setting's words, as scene files spell them.
+/// Parses an enumerated setting in the spelling of scene files.
 pub fn word<T: DeserializeOwned>(text: &str) -> Result<T, String> {
     serde_json::from_value(text.into()).map_err(|error| error.to_string())
 }
@@ -136,7 +132,7 @@ fn passes(text: &str) -> Result<Passes, String> {
     };
     let passes = first.zip(end).map(|(first, end)| Passes { first, end });
     passes.filter(|passes| passes.first < passes.end).ok_or(format!(
-        "expected a number from 1 to {}, or a range of them as in 0..500 or 500..1000",
+        "expected a number from 1 to {}, or a range such as 0..500 or 500..1000",
         u32::MAX
     ))
 }
@@ -173,7 +169,8 @@ fn radius(text: &str) -> Result<Radius, String> {
     let number = number.parse().ok().filter(|number| (SMALLEST..=LARGEST).contains(number));
     let expected = || {
         format!(
-            "expected auto, or a number from {SMALLEST:e} to {LARGEST:e}: pixels as in 2px, or scene units as in 0.01"
+            "expected auto, or a number from {SMALLEST:e} to {LARGEST:e}: pixels (2px) or scene \
+             units (0.01)"
         )
     };
     number.map(in_unit).ok_or_else(expected)
@@ -184,10 +181,10 @@ fn size(text: &str) -> Result<(u32, u32), String> {
     let (width, height) = text.split_once('x').unwrap_or((text, ""));
     side(width)
         .zip(side(height))
-        .ok_or("expected width x height in pixels, 1 to 65536 each, as in 640x480".to_owned())
+        .ok_or("expected width x height in pixels, 1 to 65536 each, e.g. 640x480".to_owned())
 }
 
-/// A duration such as 500ms, 30s, 5m or 1.5h.
+/// Parses a duration such as 500ms, 30s, 5m or 1.5h.
 pub fn duration(text: &str) -> Result<Duration, String> {
     let units = [("ms", 0.001), ("s", 1.0), ("m", 60.0), ("h", 3600.0)];
     let seconds = units.iter().find_map(|(unit, seconds)| {
@@ -196,10 +193,10 @@ pub fn duration(text: &str) -> Result<Duration, String> {
     });
     seconds
         .and_then(|seconds| Duration::try_from_secs_f64(seconds).ok())
-        .ok_or("expected a time with its unit, as in 500ms, 30s, 5m or 1.5h".to_owned())
+        .ok_or("expected a time with its unit, e.g. 500ms, 30s, 5m or 1.5h".to_owned())
 }
 
-/// A relative error such as 2% or 0.02.
+/// Parses a relative error such as 2% or 0.02.
 pub fn target_error(text: &str) -> Result<f64, String> {
     let number = match text.strip_suffix('%') {
         Some(percent) => positive(percent).map(|number| number / 100.0),
@@ -207,7 +204,7 @@ pub fn target_error(text: &str) -> Result<f64, String> {
     };
     match number {
         Ok(error) if error <= 1.0 => Ok(error),
-        _ => Err("expected a relative error above 0 and up to 100 %, as in 2% or 0.02".to_owned()),
+        _ => Err("expected a relative error above 0 and up to 100 %, e.g. 2% or 0.02".to_owned()),
     }
 }
 

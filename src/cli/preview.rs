@@ -1,4 +1,4 @@
-//! `caustica preview`: a window that shows the picture as it converges.
+//! `caustica preview`: a window that shows the image as it converges.
 
 use std::path::PathBuf;
 
@@ -14,23 +14,23 @@ use super::overrides::Overrides;
 use super::render::default_output;
 use super::{Done, Failure, hidden, threads};
 
-/// Show a scene in a window while it converges, and change it
+/// Show and edit a scene in a window while it converges
 #[derive(clap::Args)]
 #[command(after_help = HELP)]
 pub struct Arguments {
     /// Scene file
     scene: PathBuf,
-    /// Picture that the key S writes, by its extension: .png (tone-mapped), .exr, .pfm, .hdr; may
-    /// be given several times [default: the scene's name with .png, in the current folder]
+    /// Image that key S writes: .png (tone-mapped), .exr, .pfm, .hdr; repeatable [default: the
+    /// scene name with .png, in the current folder]
     #[arg(short, long, value_name = "FILE")]
     output: Vec<PathBuf>,
-    /// Device to render on: auto, gpu, software, cpu, cpu-f64, or a part of a device's name
+    /// Device to render on: auto, gpu, software, cpu, cpu-f64, or part of a device name
     #[arg(long, value_name = "DEVICE", value_parser = NonEmptyStringValueParser::new(), default_value = "auto")]
     device: String,
-    /// Hold the picture against this one: .exr, .pfm, .hdr, .png or .jpg
+    /// Compare with this image: .exr, .pfm, .hdr, .png or .jpg
     #[arg(long, value_name = "FILE", conflicts_with = "against_device")]
     against: Option<PathBuf>,
-    /// Hold the picture against that of another device
+    /// Compare with a render on another device
     #[arg(long, value_name = "DEVICE", value_parser = NonEmptyStringValueParser::new())]
     against_device: Option<String>,
     #[command(flatten)]
@@ -43,9 +43,9 @@ Examples:
   caustica preview scenes/cornell.toml --device cpu --against-device software
   caustica preview scenes/cornell.toml -o cornell.exr --against cornell-before.exr
 
-F1 in the window shows what keys and mouse do; docs/preview.md tells more.";
+F1 in the window lists the keys and mouse actions. See docs/preview.md.";
 
-/// Opens the window, and comes back when it is closed.
+/// Opens the window, and returns when it is closed.
 pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     let Arguments { scene: file, output, device, against, against_device, overrides } = arguments;
     let outputs = if output.is_empty() { vec![default_output(&file)] } else { output };
@@ -53,14 +53,14 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     if !threads::are_spare() {
         return Err(Failure::failed(miette!(
             help = "raise the limit of processes (ulimit -u)",
-            "the system gives this process no threads, and a window needs some"
+            "this process cannot create threads, and a window needs some"
         )));
     }
     let allowance = overrides.allowed.allowance()?;
     let mut loaded = scene::load_within(&file, &allowance)?;
     overrides.apply(&mut loaded.scene, &mut loaded.settings);
     let device = device::parse(&device);
-    // a device that is not there is told here, before there is a window
+    // report a missing device before the window opens
     let needs_list = |wanted: &device::Wanted| {
         !matches!(wanted, device::Wanted::Cpu | device::Wanted::CpuDouble)
     };
@@ -84,7 +84,8 @@ impl From<WindowError> for Failure {
         match error {
             WindowError::File(error) => error.into(),
             WindowError::NoDisplay(_) => Self::failed(miette!(
-                help = "a window needs a desktop, that is DISPLAY or WAYLAND_DISPLAY; without one, `caustica render` writes pictures",
+                help = "a window needs a desktop (DISPLAY or WAYLAND_DISPLAY); without one, use \
+                        `caustica render`",
                 "{error}"
             )),
             WindowError::NoDevice(_) => Self::no_device(miette!(

@@ -1,4 +1,4 @@
-//! Progress on standard error as a bar or as lines, or on standard output as JSON.
+//! Render progress: a bar or lines on standard error, or JSON on standard output.
 
 use std::io::IsTerminal;
 use std::time::Duration;
@@ -10,23 +10,23 @@ use serde_json::json;
 use super::log;
 use super::output::{message, result};
 
-/// Where progress goes.
+/// Form of the progress output.
 pub enum Reporter {
-    /// Nowhere.
+    /// No output.
     Silent,
-    /// A bar on a terminal.
+    /// Progress bar on a terminal.
     Bar(ProgressBar),
-    /// A line now and then.
+    /// Occasional lines.
     Lines(Pace),
-    /// A JSON object per line on standard output now and then.
+    /// Occasional JSON objects on standard output, one per line.
     Json(Pace),
 }
 
-/// Positions of the bar.
+/// Number of positions of the bar.
 const BAR_LENGTH: u64 = 1000;
 
 impl Reporter {
-    /// By the user's wish, and by what standard error is.
+    /// Selects the form by the user's options and the type of standard error.
     pub fn new(quiet: bool, json: bool) -> Self {
         if json {
             Self::Json(Pace::new(Duration::from_millis(200), 0.0))
@@ -43,7 +43,7 @@ impl Reporter {
         }
     }
 
-    /// Shows how far the render is, if it is time to.
+    /// Shows the progress, if an update is due.
     pub fn show(&mut self, progress: &Progress) {
         match self {
             Self::Silent => (),
@@ -58,21 +58,21 @@ impl Reporter {
             }
             Self::Json(pace) => {
                 if pace.due(progress) {
-                    // Standard output that takes nothing fails the results at the end.
+                    // a failure of standard output is reported with the results at the end
                     let _ = result(event("progress", progress));
                 }
             }
         }
     }
 
-    /// Takes the bar away.
+    /// Removes the bar.
     pub fn finish(&mut self) {
         if let Self::Bar(bar) = self {
             bar.finish_and_clear();
         }
     }
 
-    /// Prints a line above the progress if the user watches it.
+    /// Prints a line above the progress, if that is shown as text.
     pub fn note(&self, text: &str) {
         if let Self::Bar(_) | Self::Lines(_) = self {
             message(text);
@@ -80,8 +80,8 @@ impl Reporter {
     }
 }
 
-/// The progress as a JSON object with the name of an event; times in seconds, the radius in scene
-/// units, errors relative (null where there is no estimate yet).
+/// Progress as a JSON event; times in seconds, radius in scene units, relative errors (null without
+/// an estimate).
 pub fn event(name: &str, progress: &Progress) -> serde_json::Value {
     json!({
         "event": name,
@@ -103,9 +103,9 @@ pub fn event(name: &str, progress: &Progress) -> serde_json::Value {
     })
 }
 
-/// Decides which passes get a line: the first, the last, every tenth part, and those that come
-/// `every` after the last line or later; in a long render the gap grows to a share of the time gone
-/// by, so that a log stays readable.
+/// Selects the passes that get a line: the first, the last, one per tenth of the work, and those at
+/// least `every` after the previous line. In long renders, the interval grows to the fraction
+/// `growth` of the elapsed time, to keep logs readable.
 pub struct Pace {
     every: Duration,
     growth: f64,
@@ -151,14 +151,14 @@ fn line(progress: &Progress) -> String {
     parts.join(", ")
 }
 
-/// A share as a percentage with three digits.
+/// Formats a fraction as a percentage with three digits.
 pub fn percent(share: f64) -> String {
     let number = 100.0 * share;
     let decimals = if number < 9.995 { 2 } else { usize::from(number < 99.95) };
     format!("{number:.decimals$} %")
 }
 
-/// A number with three digits and a unit prefix.
+/// Formats a number with three digits and a unit prefix.
 pub fn count(number: f64) -> String {
     let prefixes = [(1e12, " T"), (1e9, " G"), (1e6, " M"), (1e3, " k")];
     match prefixes.iter().find(|(unit, _)| number >= *unit) {
@@ -171,7 +171,7 @@ pub fn count(number: f64) -> String {
     }
 }
 
-/// A duration for people: 3.2 s, 2 min 05 s, 1 h 20 min.
+/// Formats a duration: 3.2 s, 2 min 05 s, 1 h 20 min.
 pub fn time(duration: Duration) -> String {
     let seconds = duration.as_secs();
     match seconds {
@@ -181,8 +181,8 @@ pub fn time(duration: Duration) -> String {
     }
 }
 
-/// Theory: a watcher of a log wants a sign of life every two seconds or tenth part, and no more
-/// than some dozens of lines an hour.
+/// Theory: a log has a line every two seconds or tenth of the work, but no more than some dozens of
+/// lines per hour.
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -203,7 +203,7 @@ mod tests {
         }
     }
 
-    /// Lines of a render of `passes` passes of so many seconds each.
+    /// Passes with a line in a render of `passes` passes of `seconds` each.
     fn lines(passes: u32, seconds: f64) -> Vec<u32> {
         let mut pace = Pace::new(Duration::from_secs(2), 0.05);
         (1..=passes)

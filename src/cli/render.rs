@@ -1,4 +1,4 @@
-//! `caustica render`: a scene in, pictures out.
+//! `caustica render`: renders a scene to images.
 
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
@@ -36,52 +36,51 @@ use super::reproduce::Like;
 use super::tev::Viewer;
 use super::{Done, Failure, checkpoint, compiling, denoise, hidden, interrupt};
 
-/// Render a scene into pictures
+/// Render a scene to images
 #[derive(clap::Args)]
 #[command(after_help = HELP)]
 pub struct Arguments {
     /// Scene file
     #[arg(required_unless_present = "like")]
     scene: Option<PathBuf>,
-    /// Picture to write, by its extension: .png (tone-mapped), .exr, .pfm, .hdr; may be given
-    /// several times [default: the scene's name with .png, in the current folder]
+    /// Image to write: .png (tone-mapped), .exr, .pfm, .hdr; repeatable [default: the scene name
+    /// with .png, in the current folder]
     #[arg(short, long, value_name = "FILE")]
     output: Vec<PathBuf>,
-    /// Device to render on: auto, gpu, software, cpu, cpu-f64, or a part of a device's name
+    /// Device to render on: auto, gpu, software, cpu, cpu-f64, or part of a device name
     /// [default: auto]
     #[arg(long, value_name = "DEVICE", value_parser = NonEmptyStringValueParser::new())]
     device: Option<String>,
-    /// Make the picture of an .exr file again, with its scene, settings, size, passes and device;
-    /// other options change single ones [default output: the file's name with -again.exr, in the
-    /// current folder]
+    /// Repeat the render of an .exr file with its scene, settings, size, passes and device, which
+    /// other options override [default output: the file name with -again.exr, in the current
+    /// folder]
     #[arg(long, value_name = "FILE")]
     like: Option<PathBuf>,
-    /// Send the picture while it is rendered to the viewer tev that listens there [without an
-    /// address: 127.0.0.1:14158]
+    /// Send the image to the viewer tev during the render [address if omitted: 127.0.0.1:14158]
     #[arg(long, value_name = "HOST:PORT", num_args = 0..=1, require_equals = true, default_missing_value = ADDRESS)]
     tev: Option<String>,
-    /// Begin no pass after this time, as in 30s or 5m; without --passes, the only limit
+    /// Start no pass after this time, e.g. 30s or 5m; without --passes, the pass limit of the scene
+    /// does not apply
     #[arg(long, value_name = "TIME", value_parser = duration)]
     time: Option<Duration>,
-    /// Stop once the stated relative error is no larger, as in 2% or 0.02; without --passes and
-    /// --time, the only limit
+    /// Stop at this stated relative error, e.g. 2% or 0.02; without --passes, the pass limit of the
+    /// scene does not apply
     #[arg(long, value_name = "E", value_parser = target_error, allow_hyphen_values = true)]
     target_error: Option<f64>,
-    /// File to keep the render in, now and then and where it stops, so that --resume can go on from
-    /// there
+    /// File for checkpoints, written periodically and at the end; --resume continues from it
     #[arg(long, value_name = "FILE")]
     checkpoint: Option<PathBuf>,
-    /// Time between two of them, as in 30s or 5m
+    /// Time between checkpoints, e.g. 30s or 5m
     #[arg(long, value_name = "TIME", value_parser = duration, default_value = "30s", requires = "checkpoint")]
     checkpoint_every: Duration,
-    /// Go on from this checkpoint, to the picture of a render that never stopped
+    /// Resume from this checkpoint; the image is that of an uninterrupted render
     #[arg(long, value_name = "FILE")]
     resume: Option<PathBuf>,
-    /// Show in .png files a denoised picture, which .exr files store next to the render as the
-    /// layer denoised; no measure sees it (takes a build with the cargo feature denoise)
+    /// Write a denoised image to .png files, and as layer `denoised` to .exr files; the error
+    /// estimate does not cover it (needs the cargo feature denoise)
     #[arg(long)]
     denoise: bool,
-    /// Fail, with the pictures written, if a sample had to be left out because it was not finite
+    /// Fail, after writing the images, if a sample was rejected because it was not finite
     #[arg(long)]
     strict: bool,
     #[command(flatten)]
@@ -95,7 +94,7 @@ pub struct Arguments {
 }
 
 impl Arguments {
-    /// The device that is asked for, if it is known before any file is read.
+    /// Requested device, if it is known before any file is read.
     pub fn device(&self) -> Option<&str> {
         self.device.as_deref()
     }
@@ -111,15 +110,18 @@ Examples:
   caustica render scenes/cornell.toml -o layers.exr --aov albedo,normal,depth --crop 0,0,256,256
   caustica render --like layers.exr -o again.exr
 
-Layers for --aov: albedo, normal (both behind mirrors and glass), depth, position, object, material, radius, photons, \
-variance, and the parts that add up to the picture, emission, direct, caustic, indirect; docs/pictures.md tells more.
+Layers for --aov: albedo, normal (both seen through mirrors and glass), depth, position, object, \
+material, radius, photons, variance, and the components of the image: emission, direct, caustic, \
+indirect. See docs/pictures.md.
 
-The error is the root of relMSE, noise and bias: nine of ten pictures are no farther from the truth than stated.
-It is told from the fourth pass on; .exr files hold each pixel's variance and bias (docs/error-estimate.md).
-A checkpoint is gone on from with the same scene and settings, on any device; more --passes may be asked for
-(docs/checkpoints.md).";
+The error is the square root of relMSE and includes noise and bias: in nine of ten renders, the \
+true error is at most the stated one. The estimate is available from pass 4; .exr files contain \
+the variance and bias of each pixel (docs/error-estimate.md).
 
-/// How much is told, and in which form.
+To resume a checkpoint, use the same scene and settings; --device may differ, and --passes may be \
+higher (docs/checkpoints.md).";
+
+/// Verbosity and format of the output.
 #[derive(clap::Args)]
 pub struct OutputArgs {
     /// Show no progress
@@ -130,10 +132,10 @@ pub struct OutputArgs {
     pub json: bool,
 }
 
-/// Gives the devices that a wish means.
+/// Finds the devices that match a request.
 type Find<'a> = dyn Fn(&Wanted, &RenderSettings) -> Result<Candidates, DeviceError> + 'a;
 
-/// Renders and writes.
+/// Renders the scene and writes the images.
 pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     run_on(arguments, &|wanted, settings| {
         let candidates = Candidates::of(wanted, settings)?;
@@ -144,7 +146,7 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     })
 }
 
-/// The same on devices that `find` gives.
+/// Runs the command on devices found by `find`.
 fn run_on(arguments: Arguments, find: &Find) -> Result<Done, Failure> {
     compiling::begin(arguments.voice.quiet, arguments.voice.json);
     let like = arguments.like.as_deref().map(Like::read).transpose()?;
@@ -216,7 +218,7 @@ fn run_on(arguments: Arguments, find: &Find) -> Result<Done, Failure> {
     let mut save = |state: State, progress: &Progress| keeper.save(state, progress);
     let every = arguments.checkpoint_every;
     let saving = files.keeps().then_some(Saving { every, save: &mut save });
-    // of a render that goes on the first passes are not at hand
+    // calibration needs the first passes, which a resumed render lacks
     let outcome = match arguments.overrides.quality.filter(|_| from.is_none()) {
         Some(quality) => {
             let promise = Promise { quality, stop, settings: &opened.settings, json };
@@ -280,21 +282,22 @@ fn run_on(arguments: Arguments, find: &Find) -> Result<Done, Failure> {
     Ok(if made.ended == "interrupted" { Done::Interrupted } else { Done::Fully })
 }
 
-/// Tells why a render has ended early, and how to go on.
+/// Reports why a render ended early, and how to continue it.
 fn broken_off(error: EngineError, passes: u32, keeper: &Keeper) -> Result<Done, Failure> {
-    paragraph(format_args!("the picture holds the first {passes} passes only: {error}"));
+    paragraph(format_args!("the image contains only the first {passes} passes: {error}"));
     match keeper.place() {
         Some(file) => message(format_args!(
-            "they are saved in {}; to continue, run the same command with --resume {}, on any --device",
+            "checkpoint saved in {}; to continue, run the same command with --resume {}, on any \
+             --device",
             file.display(),
             file.display()
         )),
-        None => message("they are in no checkpoint"),
+        None => message("no checkpoint was written"),
     }
     if error.is_of_device() { Ok(Done::DeviceLost) } else { Err(error.into()) }
 }
 
-/// Fails where passes do not stand by themselves, but are to begin in the middle.
+/// Fails if a range does not start at pass 0, but its passes depend on earlier ones.
 fn check_range(first_pass: u32, settings: &RenderSettings) -> Result<(), Failure> {
     if first_pass > 0
         && settings.radius_rule == RadiusRule::Local
@@ -302,34 +305,34 @@ fn check_range(first_pass: u32, settings: &RenderSettings) -> Result<(), Failure
     {
         return Err(Failure::wrong_use(
             &format!(
-                "passes from {first_pass} on cannot be rendered by themselves under the local rule, where each needs the photon \
-                      counts of all before it"
+                "the local radius rule cannot start at pass {first_pass}, since each pass needs \
+                 the photon counts of all earlier passes"
             ),
-            "begin with pass 0 and go on by --resume, or take --radius-rule global",
+            "start with pass 0 and continue with --resume, or use --radius-rule global",
         ));
     }
     Ok(())
 }
 
-/// Fails where a part of the error stays however many passes there are, so that a render might
-/// never end.
+/// Fails if the error does not converge to zero, so that the render might never reach the target.
 fn check_target(settings: &RenderSettings) -> Result<(), Failure> {
     let (what, instead) = match settings {
-        RenderSettings { method: Method::Ppm, .. } => ("ppm keeps its eye paths", "--method sppm"),
+        RenderSettings { method: Method::Ppm, .. } => ("ppm has fixed eye paths", "--method sppm"),
         RenderSettings { method: Method::Sppm, radius_rule: RadiusRule::Fixed, .. } => {
-            ("the fixed rule keeps its radius", "--radius-rule global")
+            ("the fixed rule has a constant radius", "--radius-rule global")
         }
         _ => return Ok(()),
     };
     Err(Failure::wrong_use(
         &format!(
-            "{what}, and what the picture is off by that stays: it may never state the error aimed at"
+            "{what}, whose error remains with any number of passes: the render may never reach the \
+             target error"
         ),
         &format!("add --passes or --time to --target-error, or use {instead}"),
     ))
 }
 
-/// Says what is rendered where, before it is.
+/// Reports the scene, the device and the settings before the render.
 pub fn begin(voice: &OutputArgs, scene: &Scene, opened: &Opened) -> Result<Reporter, Failure> {
     let reporter = Reporter::new(voice.quiet, voice.json);
     reporter.note(&format!("{}: {} ({})", scene.name, opened.name, opened.why));
@@ -358,7 +361,7 @@ pub fn begin(voice: &OutputArgs, scene: &Scene, opened: &Opened) -> Result<Repor
     Ok(reporter)
 }
 
-/// A preset, of which the first passes tell what it will cost and give.
+/// Prediction of time and error of a preset from its first passes.
 struct Promise<'a> {
     quality: Quality,
     stop: Stop,
@@ -367,7 +370,7 @@ struct Promise<'a> {
 }
 
 impl Promise<'_> {
-    /// Tells the expected error and time of the whole render.
+    /// Reports the expected error and time of the whole render.
     fn tell(&self, calibration: &Calibration, reporter: &Reporter) {
         let Calibration { seconds_per_pass, one_pass } = *calibration;
         let in_time =
@@ -376,7 +379,7 @@ impl Promise<'_> {
         let seconds = seconds_per_pass * f64::from(passes);
         let expected = expected(one_pass, passes, self.settings.method);
         if self.json {
-            // Standard output that takes nothing fails the results at the end.
+            // a failure of standard output is reported with the results at the end
             let _ = result(json!({
                 "event": "calibration",
                 "quality": self.quality,
@@ -391,8 +394,8 @@ impl Promise<'_> {
         let Expected { rel_mse, low, high } = expected;
         let percent = |rel_mse: f64| 100.0 * rel_mse.sqrt();
         reporter.note(&format!(
-            "{}: {passes} passes of {} photons; after two of them, expected are {} in all and an error of {:.1} % \
-             ({:.1} to {:.1} %, relMSE {rel_mse:.1e})",
+            "{}: {passes} passes of {} photons; expected after two passes: total time {}, error \
+             {:.1} % ({:.1} to {:.1} %, relMSE {rel_mse:.1e})",
             self.quality.word(),
             count(f64::from(self.settings.photons)),
             time(Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX)),
@@ -403,18 +406,18 @@ impl Promise<'_> {
     }
 }
 
-/// Reads the scene, puts the options in force, and prints the warnings.
+/// Reads the scene, applies the options, and prints the warnings.
 pub fn load(file: &Path, overrides: &Overrides) -> Result<(Scene, RenderSettings), Failure> {
     in_force(overrides.allowed.load(file)?, overrides)
 }
 
-/// Puts the options in force and prints the warnings, for commands that begin with the first pass.
-/// What the film asks for in addition to radiance is left out.
+/// Applies the options and prints the warnings, for commands that start at pass 0. Layers of the
+/// film are dropped.
 pub fn in_force(loaded: Loaded, overrides: &Overrides) -> Result<(Scene, RenderSettings), Failure> {
     if overrides.begins_later() {
         return Err(Failure::wrong_use(
-            "this command begins with pass 0",
-            "give --passes a number; ranges are for render",
+            "this command starts at pass 0",
+            "give --passes a number; only `render` accepts ranges",
         ));
     }
     Ok(put_in_force(loaded, overrides))
@@ -430,7 +433,7 @@ fn put_in_force(mut loaded: Loaded, overrides: &Overrides) -> (Scene, RenderSett
     (loaded.scene, loaded.settings)
 }
 
-/// The picture that is written where none is named.
+/// Default output file.
 pub fn default_output(scene: &Path) -> PathBuf {
     Path::new(scene.file_stem().unwrap_or(scene.as_os_str())).with_extension("png")
 }

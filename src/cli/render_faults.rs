@@ -1,8 +1,8 @@
-//! The command `render` on devices that fail, at every step in turn.
+//! The command `render` on devices that fail at each step in turn.
 //!
-//! Theory: a person who named a device gets the picture of the passes that are left, a checkpoint
-//! of them, and exit code 5; one who left the choice to the program gets the picture. Both end in
-//! the bits of a render that never failed.
+//! Theory: with an explicit device, the command writes the image of the recovered passes and a
+//! checkpoint, and exits with code 5. With an automatic device, it completes the image. Both lead
+//! to the bits of a render without failures.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -14,7 +14,7 @@ use clap::{Args, Command, FromArgMatches};
 use super::engine::{FAULTS, Fault, Shared, Step, candidate, script, successor};
 use super::{Arguments, Done, Failure, run_on};
 
-/// An empty folder.
+/// Creates an empty folder.
 fn folder(name: &str) -> PathBuf {
     let folder =
         std::env::temp_dir().join(format!("caustica-faults-{}-{name}", std::process::id()));
@@ -25,8 +25,8 @@ fn folder(name: &str) -> PathBuf {
     folder
 }
 
-/// What the command is asked: the scene, small, into `a.exr` in a folder, with an error to aim at,
-/// so that no step depends on a clock.
+/// Arguments for a small render to `a.exr` in `folder`. A target error makes the steps independent
+/// of time.
 fn arguments(folder: &Path, more: &[&str]) -> Arguments {
     let output = folder.join("a.exr");
     let common = [
@@ -48,7 +48,7 @@ fn arguments(folder: &Path, more: &[&str]) -> Arguments {
     Arguments::from_arg_matches(&matches).unwrap()
 }
 
-/// Renders on devices of which each fails by its script, and perhaps one more that does not.
+/// Renders on devices that fail as scripted, and optionally on another one that does not.
 fn render(
     folder: &Path,
     more: &[&str],
@@ -66,8 +66,7 @@ fn pixels(folder: &Path) -> Vec<u32> {
     read(&folder.join("a.exr")).unwrap().rgb.iter().flatten().map(|x| x.to_bits()).collect()
 }
 
-/// The picture without failures, for one test, and what the device is asked for on the way with
-/// these options.
+/// Image of a render without failures, and the steps of its device.
 fn whole(test: &str, more: &[&str]) -> (Vec<u32>, Vec<Step>) {
     let (folder, script) = (folder(&format!("{test}-whole")), script(None));
     assert!(matches!(render(&folder, more, &[&script], false), Ok(Done::Fully)));
@@ -87,7 +86,7 @@ fn the_program_ends_in_the_same_bits() {
     let kept = [&ALWAYS[..], &["--checkpoint", file]].concat();
     let (picture, steps) = whole("named", &[]);
     for number in 0..steps.len() {
-        // a device that the user named
+        // explicit device
         let _ = fs::remove_file(file);
         let _ = fs::remove_file(folder.join("a.exr"));
         let faulty = script(Some((number, Fault::Lost)));
@@ -107,13 +106,13 @@ fn the_program_ends_in_the_same_bits() {
             }
             Ok(other) => panic!("step {number}: {other:?}"),
             Err(failure) => {
-                assert!(made <= 2, "step {number}: {made} passes are lost");
+                assert!(made <= 2, "step {number}: {made} passes lost");
                 assert_eq!(failure.code(), 5, "step {number}");
                 assert!(matches!(render(&folder, &kept, &[], true), Ok(Done::Fully)));
             }
         }
         assert!(pixels(&folder) == picture, "step {number}: other bits");
-        // a device that the program chose
+        // automatic device
         let _ = fs::remove_file(folder.join("a.exr"));
         let faulty = script(Some((number, FAULTS[number % FAULTS.len()])));
         assert!(matches!(render(&folder, &[], &[&faulty], true), Ok(Done::Fully)), "step {number}");
@@ -122,7 +121,7 @@ fn the_program_ends_in_the_same_bits() {
     fs::remove_dir_all(&folder).unwrap();
 }
 
-/// Without --checkpoint it is next to the picture; a file that is there already stays.
+/// Without --checkpoint, the checkpoint is written next to the image; an existing file is kept.
 #[test]
 fn work_is_kept_unasked() {
     let folder = folder("unasked");
@@ -142,12 +141,12 @@ fn work_is_kept_unasked() {
     fs::remove_dir_all(&folder).unwrap();
 }
 
-/// A render goes on with the batches that it was begun with.
+/// A resumed render keeps its photon batches.
 #[test]
 fn batches_stay() {
     let folder = folder("batches");
     let (batched, steps) = whole("batches", &["--batch", "150"]);
-    assert!(batched != whole("batches", &[]).0, "sums are rounded batch by batch");
+    assert!(batched != whole("batches", &[]).0, "batches change rounding");
     let third = (0..steps.len()).filter(|i| steps[*i] == Step::Pass).nth(2).unwrap();
     let faulty = script(Some((third, Fault::OutOfMemory)));
     assert!(matches!(

@@ -1,4 +1,4 @@
-//! A rendered picture: written, and told about.
+//! Writing and reporting of a rendered image.
 
 use std::cell::Cell;
 use std::path::{Path, PathBuf};
@@ -18,21 +18,21 @@ use super::Failure;
 use super::output::{message, result};
 use super::progress::{Reporter, count, event, percent, time};
 
-/// A picture with what belongs to it.
+/// A rendered image with its metadata.
 pub struct Made {
-    /// The estimate.
+    /// Radiance estimate.
     pub picture: Picture,
-    /// The same to be looked at: what PNG files show, and a layer in EXR files.
+    /// Denoised image: content of PNG files, and a layer of EXR files.
     pub denoised: Option<Picture>,
-    /// What it says of its own error; none for fewer passes than an estimate needs.
+    /// Error estimate; `None` if there are too few passes for one.
     pub errors: Option<ErrorMap>,
-    /// What the film asks for in addition to radiance.
+    /// Layers requested by the film in addition to radiance.
     pub layers: Vec<Channel>,
-    /// What was left out of it.
+    /// Counts of rejected samples.
     pub rejections: Rejections,
-    /// How far it is.
+    /// Progress at the end of the render.
     pub progress: Progress,
-    /// Why it is no further, in the word of the events.
+    /// Reason why the render ended, as in JSON events.
     pub ended: &'static str,
 }
 
@@ -50,7 +50,7 @@ impl From<Outcome> for Made {
 }
 
 impl Made {
-    /// The picture of what is left of a render whose device failed.
+    /// Develops the checkpoint of a render whose device failed.
     pub fn of_rest(rest: &Checkpoint, progress: Progress) -> Self {
         let (picture, errors, rejections) = rest.develop();
         let errors = Some(errors).filter(|_| progress.passes >= LEAST_PASSES);
@@ -59,7 +59,7 @@ impl Made {
         Self { picture, denoised: None, errors, layers, rejections, progress, ended: "failed" }
     }
 
-    /// Writes it into files.
+    /// Writes the image to all outputs.
     pub fn write(
         &self,
         outputs: &[PathBuf],
@@ -89,7 +89,7 @@ impl Made {
         written
     }
 
-    /// Tells how it came about, and the files.
+    /// Reports totals, error and files.
     pub fn tell(
         &self,
         json: bool,
@@ -116,11 +116,11 @@ impl Made {
             time(progress.elapsed)
         ));
         if let (Some(target), "passes" | "time") = (progress.stop.target_error, self.ended) {
-            reporter.note(&format!("the error aimed at, {}, is not reached", percent(target)));
+            reporter.note(&format!("the target error of {} was not reached", percent(target)));
         }
         if self.denoised.is_some() {
             reporter.note(&format!(
-                "denoised by {}; the error is that of the render before it",
+                "denoised by {}; the stated error is that of the render before denoising",
                 denoise::NAME
             ));
         }
@@ -128,28 +128,26 @@ impl Made {
     }
 }
 
-/// Saves a picture that could not be written where it should go, with its radiance, in the first of
-/// these places that takes it: the folder of another output, the current one, that of temporary
-/// files.
+/// Saves an image whose outputs could not be written as an EXR file, in the first writable one of
+/// these folders: those of the outputs, the current one, the temporary one.
 fn save_elsewhere(outputs: &[PathBuf], write: impl Fn(&Path) -> Result<(), FileError>) {
     let folders = outputs.iter().filter_map(|output| Some(output.parent()?.to_owned()));
     let folders = folders.chain([PathBuf::from("."), std::env::temp_dir()]);
     let stem = outputs.first().and_then(|output| output.file_stem()).unwrap_or_default();
-    // what the system takes as a name has at most 255 bytes
+    // file names are limited to 255 bytes
     let stem: String = stem.to_string_lossy().chars().take(50).collect();
     for folder in folders {
         let name = format!("{stem}-saved-{}.exr", std::process::id());
         let file = folder.join(name);
         if !file.exists() && write(&file).is_ok() {
-            message(format_args!("the picture is saved in {}", file.display()));
+            message(format_args!("image saved in {}", file.display()));
             return;
         }
     }
-    message("the picture could not be saved anywhere else");
+    message("the image could not be saved elsewhere");
 }
 
-/// Writes each output; one that fails keeps no other from being written. All failures but the last
-/// are printed, and that one is returned.
+/// Writes all outputs, even if some fail. Prints all failures except the last, which is returned.
 pub fn write_all(
     outputs: &[impl AsRef<Path>],
     write: impl Fn(&Path) -> Result<(), FileError>,
@@ -165,9 +163,9 @@ pub fn write_all(
     failed.map_or(Ok(()), Err)
 }
 
-/// What was left out of the picture and why.
+/// Describes the rejected samples.
 pub fn left_out(rejections: &Rejections) -> String {
     let causes: Vec<_> =
         rejections.causes().iter().map(|(count, cause)| format!("{count} {cause}")).collect();
-    format!("left out of the picture: {}", causes.join(", "))
+    format!("rejected: {}", causes.join(", "))
 }

@@ -1,4 +1,4 @@
-//! `caustica render --like`: what made a picture, from its file.
+//! `caustica render --like`: repeats a render from the metadata of its image.
 
 use std::path::{Path, PathBuf};
 
@@ -11,7 +11,7 @@ use super::Failure;
 use super::allowed::Allowed;
 use super::output::message;
 
-/// A picture that is to be made again.
+/// An image whose render is to be repeated.
 pub struct Like {
     file: PathBuf,
     made: Provenance,
@@ -19,7 +19,7 @@ pub struct Like {
 }
 
 impl Like {
-    /// Reads the attributes of an EXR file that this program wrote.
+    /// Reads the attributes of an EXR file written by caustica.
     pub fn read(path: &Path) -> Result<Self, Failure> {
         let attributes = file::read_exr(path)?.attributes;
         let made = Provenance::read(&attributes).map_err(|what| FileError::Malformed {
@@ -30,42 +30,41 @@ impl Like {
         Ok(Self { file: path.to_owned(), made, version })
     }
 
-    /// The scene file's name, as it was given.
+    /// Scene file name as given by the user of the original render.
     pub fn scene(&self) -> PathBuf {
         PathBuf::from(&self.made.scene_file)
     }
 
-    /// Its first pass.
+    /// First pass of the image.
     pub fn first_pass(&self) -> u32 {
         self.made.first_pass
     }
 
-    /// The device that it was made on.
+    /// Device of the original render.
     pub fn device(&self) -> &str {
         &self.made.device
     }
 
-    /// Where it goes where no name is given: beside nothing that is there by this program's own
-    /// naming.
+    /// Default output: a name that differs from the default names of other commands.
     pub fn output(&self) -> PathBuf {
         let stem = self.file.file_stem().unwrap_or_default().to_string_lossy();
         PathBuf::from(format!("{stem}-again.exr"))
     }
 
-    /// The scene, from its file or, where that is gone, from the text in the picture.
+    /// Loads the scene from its file or, if that does not exist, from the text in the image.
     pub fn load(&self, path: &Path, allowed: &Allowed) -> Result<Loaded, Failure> {
         if path.exists() {
             return allowed.load(path);
         }
         message(format_args!(
-            "{}: not there; the scene is read from the text in {}",
+            "{}: not found; the scene is read from the text in {}",
             path.display(),
             self.file.display()
         ));
         Ok(scene::parse_within(path, self.made.scene_text.as_bytes(), &allowed.allowance()?)?)
     }
 
-    /// Puts the picture's film and settings in force, and warns of what is not as it was.
+    /// Applies the image's film and settings, and warns about differences from the original render.
     pub fn apply(&self, loaded: &mut Loaded) {
         let Loaded { scene, settings, .. } = loaded;
         if let Some(film) = self.made.film {
@@ -82,14 +81,13 @@ impl Like {
     fn differences(&self, scene: &Scene) -> Vec<String> {
         let version = (self.version != VERSION).then(|| {
             format!(
-                "made by version {}, and this is {VERSION}: the picture may have other bits",
+                "rendered by version {}, this is {VERSION}: the image may have different bits",
                 self.version
             )
         });
         let other =
             self.made.digest.as_ref().is_some_and(|digest| *digest != Identity::of(scene).digest());
-        let scene =
-            other.then(|| "the scene, or a file that it names, has changed since".to_owned());
+        let scene = other.then(|| "the scene or a file that it uses has changed since".to_owned());
         version.into_iter().chain(scene).collect()
     }
 }

@@ -1,6 +1,5 @@
-//! Reports as a terminal may show them: without the control characters of what they quote. Lines of
-//! files come without them already (`scene::report`). Line feeds come from names too, and are
-//! escaped.
+//! Diagnostic reports with escaped control characters and line feeds, which may come from quoted
+//! names. Quoted lines of files are already free of them (`scene::report`).
 
 use std::error::Error;
 use std::fmt;
@@ -10,14 +9,14 @@ use miette::{Diagnostic, LabeledSpan, ReportHandler, Severity, SourceCode};
 use super::colors;
 use super::output::one_line;
 
-/// A diagnostic whose words have escapes in the place of control characters.
+/// A diagnostic with escaped control characters.
 pub struct Shown<'a> {
     found: &'a dyn Diagnostic,
     words: Words,
     related: Vec<Shown<'a>>,
 }
 
-/// The words of an error and of its causes.
+/// Messages of an error and of its causes.
 #[derive(Debug)]
 struct Words {
     text: String,
@@ -44,7 +43,7 @@ impl Error for Words {
 }
 
 impl<'a> Shown<'a> {
-    /// That of `found`.
+    /// Wraps a diagnostic.
     pub fn of(found: &'a dyn Diagnostic) -> Self {
         let cause = found.source().map(|cause| Box::new(Words::of(cause)));
         let words = Words { text: one_line(&found.to_string()), cause };
@@ -55,7 +54,7 @@ impl<'a> Shown<'a> {
         }
     }
 
-    /// The whole report, in colours where these are wanted.
+    /// Formats the report, in color if enabled.
     pub fn report(&self) -> String {
         struct Whole<'a, 'b>(&'b Shown<'a>);
         impl fmt::Display for Whole<'_, '_> {

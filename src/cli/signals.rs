@@ -1,13 +1,13 @@
-//! Waits for Ctrl-C, SIGTERM and SIGHUP on a separate thread.
+//! Handling of Ctrl-C, SIGTERM and SIGHUP on a separate thread.
 
 use std::io;
 
-/// Calls `handler` for each signal from now on. A signal that the program was started to ignore
-/// stays ignored (Linux): SIGHUP under `nohup`, SIGINT for a background job of a shell without job
-/// control.
+/// Calls `handler` for each signal from now on. On Linux, signals that were ignored when the
+/// program started stay ignored: SIGHUP under `nohup`, SIGINT for background jobs of a shell
+/// without job control.
 ///
 /// # Errors
-/// The system gives no thread or no handler; then no signal is caught.
+/// If the thread or a handler cannot be created; then no signal is caught.
 #[cfg(unix)]
 pub fn listen(handler: impl Fn() + Send + 'static) -> io::Result<()> {
     use std::sync::{Arc, Mutex, PoisonError};
@@ -19,8 +19,8 @@ pub fn listen(handler: impl Fn() + Send + 'static) -> io::Result<()> {
     let ignored = ignored();
     let caught = [SIGINT, SIGTERM, SIGHUP]
         .map(|signal| (ignored >> (signal - 1) & 1 == 0).then_some(signal));
-    // Handlers that nobody waits for would swallow signals, so that the thread comes first. It
-    // allocates nothing before a signal comes: glibc would reserve 64 MiB of address space for it.
+    // Without the thread, installed handlers would swallow signals, so start it first. It allocates
+    // nothing before the first signal: glibc would reserve 64 MiB of address space for it.
     let signals = Arc::new(Mutex::new(None::<Signals>));
     let theirs = signals.clone();
     let thread = thread::Builder::new().name("signals".to_owned()).spawn(move || {
@@ -38,7 +38,8 @@ pub fn listen(handler: impl Fn() + Send + 'static) -> io::Result<()> {
     Ok(())
 }
 
-/// The signals that this process ignores, one bit each, from 1. Asked before any handler is set.
+/// Bit mask of the signals that this process ignores, bit 0 for signal 1. Must be read before
+/// handlers are installed.
 #[cfg(unix)]
 fn ignored() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
@@ -49,7 +50,7 @@ fn ignored() -> u64 {
 /// Calls `handler` for each signal from now on.
 ///
 /// # Errors
-/// The system gives no thread or no handler.
+/// If the thread or the handler cannot be created.
 #[cfg(not(unix))]
 pub fn listen(handler: impl FnMut() + Send + 'static) -> io::Result<()> {
     ctrlc::set_handler(handler).map_err(io::Error::other)

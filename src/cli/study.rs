@@ -1,4 +1,4 @@
-//! `caustica study`: speed against accuracy, measured.
+//! `caustica study`: measures speed against accuracy.
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -32,44 +32,40 @@ use super::{Done, Failure, compiling, hidden, interrupt};
 pub struct Arguments {
     /// Scene file
     scene: PathBuf,
-    /// Folder for the report and the figures; one that holds this study unfinished is gone on with
-    /// [default: the scene's name with -study, in the current folder]
+    /// Folder for the report and the figures; continues an unfinished study in it [default: the
+    /// scene name with -study, in the current folder]
     #[arg(short, long, value_name = "FOLDER")]
     output: Option<PathBuf>,
-    /// Time for everything, as in 2m or 1h
+    /// Total time, e.g. 2m or 1h
     #[arg(long, value_name = "TIME", value_parser = duration, default_value = "2m")]
     budget: Duration,
-    /// Picture of radiance that counts as the truth; several, made independently, show its own
-    /// error
+    /// Reference image with radiance; give several independent ones to measure their own error
     #[arg(long, value_name = "FILE", conflicts_with_all = ["truth_time", "truth_method", "truth_seeds"])]
     truth: Vec<PathBuf>,
-    /// Time for a truth of its own [default: a third of the budget, shared by all sizes of the
-    /// lamp]
+    /// Time to render the reference [default: a third of the budget, shared by all lamp areas]
     #[arg(long, value_name = "TIME", value_parser = duration)]
     truth_time: Option<Duration>,
-    /// How it is made [default: the other method than those studied, unless that is much noisier or
-    /// misses light]
+    /// Method for the reference [default: a method other than those studied, unless it is much
+    /// noisier or misses light]
     #[arg(long, value_name = "sppm|ppm|path", value_parser = word::<Method>)]
     truth_method: Option<Method>,
-    /// Renders that the truth is the mean of
+    /// Number of renders whose mean is the reference
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=100), default_value_t = 4)]
     truth_seeds: u32,
-    /// Renders of each configuration
+    /// Number of renders per configuration
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000), default_value_t = 3)]
     seeds: u32,
-    /// A setting and its values; several are combined each with each
+    /// Setting and its values; several settings are combined to a grid
     #[arg(long, value_name = "NAME=V1,V2", value_parser = axis)]
     grid: Vec<Axis>,
-    /// A setting whose values are tried by themselves, the rest as in the scene file
+    /// Setting whose values are tried one at a time, with the others as in the scene file
     /// [default, without --grid: method, radius_rule, radius, photons, direct, alpha]
     #[arg(long, value_name = "NAME=V1,V2", value_parser = axis)]
     vary: Vec<Axis>,
-    /// Device to render on: auto, gpu, software, cpu, or a part of a device's name; several are
-    /// compared
+    /// Device to render on: auto, gpu, software, cpu, or part of a device name; repeat to compare
     #[arg(long, value_name = "DEVICE", value_parser = NonEmptyStringValueParser::new(), default_value = "auto")]
     device: Vec<String>,
-    /// Part of the picture to show, columns x0 to x1 and rows y0 to y1 [default: the one with most
-    /// contrast]
+    /// Crop to show: columns x0 to x1 and rows y0 to y1 [default: the crop with the most contrast]
     #[arg(long, value_name = "x0,y0,x1,y1", value_parser = region)]
     crop: Option<Region>,
     #[command(flatten)]
@@ -79,20 +75,21 @@ pub struct Arguments {
 }
 
 const HELP: &str = "\
-Settings for --grid and --vary: method, radius_rule, alpha, radius (2px or 0.01), photons, direct, max_bounces, eye_samples, \
-device, lamp_area (all lamps scaled to this area at equal power; spheres also to a point).
+Settings for --grid and --vary: method, radius_rule, alpha, radius (2px or 0.01), photons, direct, \
+max_bounces, eye_samples, device, lamp_area (all lamps scaled to this area at equal power; spheres \
+also to a point).
 
-Without --size, and without a --truth that has a size, the picture is made no larger than 256 pixels a side, and the photons \
-fewer in proportion. docs/study.md tells how to read the report.
+Without --size or --truth, the image is reduced to at most 256 pixels per side, and the number of \
+photons in proportion. See docs/study.md for how to read the report.
 
 Examples:
   caustica study scenes/caustics.toml --budget 2m
   caustica study scenes/cornell.toml --grid radius_rule=global,local --grid photons=16384,65536 --seeds 5 --budget 10m
   caustica study scenes/cornell.toml --truth truth.exr --vary radius=1px,2px,4px";
 
-/// Longest side of a study's pictures, unless the user says a size.
+/// Maximum side of a study's images in pixels, unless a size is given.
 const SIDE: u32 = 256;
-/// Share of the time that is left for rendering when files are read and pictures measured.
+/// Fraction of the budget that is used for rendering; the rest is for file access and metrics.
 const RENDERING: f64 = 0.85;
 
 fn axis(text: &str) -> Result<Axis, String> {
@@ -103,12 +100,14 @@ fn region(text: &str) -> Result<Region, String> {
     let numbers: Option<Vec<u32>> = text.split(',').map(|n| n.trim().parse().ok()).collect();
     match numbers.as_deref() {
         Some(&[x0, y0, x1, y1]) if x0 < x1 && y0 < y1 => Ok(Region { x0, y0, x1, y1 }),
-        _ => Err("expected four whole numbers with x0 < x1 and y0 < y1, as in 290,425,425,485"
-            .to_owned()),
+        _ => {
+            Err("expected four whole numbers with x0 < x1 and y0 < y1, e.g. 290,425,425,485"
+                .to_owned())
+        }
     }
 }
 
-/// Studies and writes.
+/// Runs the study and writes the report.
 pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     let (mut scene, mut settings) = load(&arguments.scene, &arguments.overrides)?;
     let own_size = (scene.film.width, scene.film.height);
@@ -119,9 +118,9 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     {
         let (width, height) = about.size;
         return Err(Failure::wrong_use(
-            &format!("the crop ({crop}) reaches beyond the picture"),
+            &format!("the crop ({crop}) extends beyond the image"),
             &format!(
-                "the study's pictures have {width} columns and {height} rows; --size sets that"
+                "the study's images have {width} columns and {height} rows; --size changes this"
             ),
         ));
     }
@@ -139,7 +138,7 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     compiling::begin(arguments.voice.quiet, arguments.voice.json);
     let conducted = study.conduct(&mut |event| teller.tell(event))?;
     if conducted.results.runs.is_empty() {
-        message("interrupted before the first render was done; the same command goes on");
+        message("interrupted before the first render was complete; repeat the command to continue");
         return Ok(Done::Interrupted);
     }
     let parts = report::write(&conducted, &study.folder)?;
@@ -166,12 +165,12 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
         result(path.join("report.html").display())?;
     }
     if !conducted.complete {
-        message("interrupted; the report holds what there is, and the same command goes on");
+        message("interrupted; the report is partial, repeat the command to continue");
         return Ok(Done::Interrupted);
     }
     match conducted.results.runs.iter().all(|run| run.failed.is_some()) {
         true => Err(Failure::failed(miette!(
-            "none of the settings could be rendered; the report says why"
+            "none of the settings could be rendered; see the report for the reasons"
         ))),
         false => Ok(Done::Fully),
     }
@@ -182,8 +181,8 @@ fn default_output(scene: &Path) -> PathBuf {
     PathBuf::from(format!("{stem}-study"))
 }
 
-/// The size that the user says, or the truth has, or one that is small enough to learn much in
-/// little time.
+/// Sets the image size: as given by the user or the reference, otherwise reduced so that renders
+/// are short.
 fn fit_size(
     arguments: &Arguments,
     scene: &mut Scene,
@@ -229,7 +228,7 @@ fn about(
         base.base = format!("preset {}", quality.word());
     }
     let mut configs = configs(&base, &product, &varied).map_err(StudyError::from)?;
-    // A device that is not there should not show after half of the time.
+    // report a missing device before any time is spent
     let devices = device::list();
     arguments.device.iter().for_each(|wanted| hidden::warn(&device::parse(wanted)));
     for config in &mut configs {
@@ -251,7 +250,7 @@ fn about(
     let run_seconds = RENDERING * (budget - truth_time) / runs;
     if run_seconds <= 0.0 {
         return Err(Failure::wrong_use(
-            "the truth takes all of the budget",
+            "the reference takes the whole budget",
             "raise --budget, or lower --truth-time",
         ));
     }
@@ -276,7 +275,7 @@ fn about(
     })
 }
 
-/// Tells what is going on.
+/// Reports the events of a study.
 struct Teller {
     quiet: bool,
     json: bool,
@@ -298,7 +297,7 @@ impl Teller {
         }
         if !self.quiet {
             message(format_args!(
-                "{}: {} settings, {} seeds each, {} s for each render, {} x {} pixels",
+                "{}: {} settings, {} seeds each, {} s per render, {} x {} pixels",
                 about.scene,
                 about.configs.len(),
                 about.seeds,
@@ -322,7 +321,7 @@ impl Teller {
                     "last": last,
                     "remaining": remaining.as_secs_f64(),
                 });
-                // Standard output that takes nothing fails the results at the end.
+                // a failure of standard output is reported with the results at the end
                 let _ = result(figures);
             }
             (Event::Note(text), true, _) => {

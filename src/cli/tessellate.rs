@@ -1,4 +1,4 @@
-//! `caustica tessellate`: a Bezier profile as a mesh of revolution.
+//! `caustica tessellate`: converts a Bezier profile to a mesh of revolution.
 
 use std::path::{Path, PathBuf};
 
@@ -12,22 +12,21 @@ use super::allowed::Allowed;
 use super::output::{message, report, result};
 use super::{Done, Failure};
 
-/// Turn a Bezier profile into a mesh of revolution
+/// Convert a Bezier profile to a mesh of revolution
 #[derive(clap::Args)]
 #[command(after_help = HELP)]
 pub struct Arguments {
     /// Profile file
     profile: PathBuf,
-    /// Wavefront OBJ file to write [default: the profile's name with .obj, in the current folder]
+    /// Wavefront OBJ file to write [default: the profile name with .obj, in the current folder]
     #[arg(short, long, value_name = "FILE.obj")]
     output: Option<PathBuf>,
     /// Sectors around the axis, 3 to 4096
     #[arg(long, value_name = "N", default_value_t = Fineness::default().sectors,
           value_parser = clap::value_parser!(u32).range(3..=4096))]
     sectors: u32,
-    /// Largest distance of the mesh's outline from the profile, as a share of the profile's size,
-    /// 1e-6 to 0.1 [default: as fine as around the axis: 2e-4 with 96 sectors, a quarter of that
-    /// with twice as many]
+    /// Maximum distance of the mesh from the profile curve relative to the profile's size, 1e-6 to
+    /// 0.1 [default: matches the sectors: 2e-4 for 96, a quarter of that for twice as many]
     #[arg(long, value_name = "F", value_parser = flatness, allow_negative_numbers = true)]
     flatness: Option<f64>,
     #[command(flatten)]
@@ -35,8 +34,9 @@ pub struct Arguments {
 }
 
 const HELP: &str = "\
-A profile file holds `profile = [[radius, height], ...]`, the control points of one Bezier curve of a degree up to 15, \
-or `segments = [[[radius, height], ...], ...]`, several that join; and if need be `transform`, as in a scene file.
+A profile file contains `profile = [[radius, height], ...]`, the control points of a Bezier curve \
+of degree up to 15, or `segments = [[[radius, height], ...], ...]`, several connected curves, and \
+optionally `transform`, as in a scene file.
 
 Example:
   caustica tessellate scenes/profiles/vase.toml -o vase.obj --sectors 64";
@@ -57,7 +57,7 @@ pub fn run(arguments: Arguments) -> Result<Done, Failure> {
     let (vertices, triangles) = (mesh.positions.len(), mesh.triangles.len());
     let name = arguments.profile.file_name().unwrap_or_default().to_string_lossy();
     let header =
-        format!("{name} turned about its axis: {vertices} vertices, {triangles} triangles");
+        format!("{name} rotated about its axis: {vertices} vertices, {triangles} triangles");
     write_whole(&output, mesh.to_obj(&header).as_bytes())?;
     message(format_args!("{vertices} vertices, {triangles} triangles"));
     result(output.display())?;
@@ -68,12 +68,12 @@ fn default_output(profile: &Path) -> PathBuf {
     Path::new(profile.file_stem().unwrap_or(profile.as_os_str())).with_extension("obj")
 }
 
-/// Finds out before the work whether the mesh can be written after it.
+/// Checks before the tessellation that the mesh can be written.
 fn check_output(output: &Path) -> Result<(), FileError> {
     if !output.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("obj")) {
         return Err(FileError::UnknownFormat {
             file: output.to_owned(),
-            what: "a mesh is written as a Wavefront OBJ file".to_owned(),
+            what: "meshes are written as Wavefront OBJ files".to_owned(),
             known: ".obj",
         });
     }

@@ -1,4 +1,4 @@
-//! The picture, sent to a running tev while it is rendered.
+//! Sends the image to the viewer tev during a render.
 
 use std::net::TcpStream;
 
@@ -11,11 +11,11 @@ use miette::miette;
 use super::Failure;
 use super::output::message;
 
-/// A viewer, until it is gone.
+/// Connection to the viewer, `None` if there is none or it was lost.
 pub struct Viewer(Option<Tev<TcpStream>>);
 
 impl Viewer {
-    /// Connects where an address is given; fails where nothing answers.
+    /// Connects if an address is given. Fails if no viewer answers.
     pub fn connect(address: Option<&str>, scene: &Scene) -> Result<Self, Failure> {
         let Some(address) = address else {
             return Ok(Self(None));
@@ -26,19 +26,18 @@ impl Viewer {
         match Tev::connect(address, &scene.name, frame) {
             Ok(tev) => Ok(Self(Some(tev))),
             Err(error) => Err(Failure::failed(miette!(
-                help = "start tev first, on this machine or with --host at the address, or leave --tev out",
-                "--tev: no viewer takes a picture at {address}: {error}"
+                help = "start tev first, on this machine or with --host at the address, or drop \
+                        --tev",
+                "--tev: no viewer at {address}: {error}"
             ))),
         }
     }
 
-    /// Sends the picture so far. A viewer that does not take it is told once and left alone: the
-    /// render goes on.
+    /// Sends the current image. On failure, prints a warning, disconnects, and lets the render
+    /// continue.
     pub fn show(&mut self, picture: &Picture) {
         if let Some(error) = self.0.as_mut().and_then(|tev| tev.show(picture).err()) {
-            message(format_args!(
-                "warning: tev takes no more pictures: {error}; the render goes on"
-            ));
+            message(format_args!("warning: connection to tev lost: {error}; the render continues"));
             self.0 = None;
         }
     }

@@ -1,7 +1,7 @@
-//! The thread pool, built before anything needs it.
+//! Setup of the global thread pool.
 //!
-//! A system may refuse threads (`ulimit -u`, a container's `pids.max`). Then there are fewer, and
-//! where it gives none, all work is done on the main thread.
+//! The system may limit threads (`ulimit -u`, a container's `pids.max`). Then the pool is smaller;
+//! if no thread can be created, all work runs on the main thread.
 
 use std::num::NonZero;
 use std::sync::{Arc, Mutex, mpsc};
@@ -13,18 +13,18 @@ use miette::miette;
 use super::Failure;
 use super::output::message;
 
-/// Most threads for each core that the process may use.
+/// Maximum number of threads per available core.
 const MOST_PER_CORE: usize = 4;
-/// Address space for each thread: its stack, and what the allocator reserves for it.
+/// Address space per thread: its stack, and the allocator's reservation.
 const SPACE: u64 = 160 << 20;
-/// Threads that the program needs in addition to the pool: signals, and those of a driver.
+/// Number of threads needed in addition to the pool: for signals, and by drivers.
 const OTHERS: usize = 2;
 
-/// Builds the pool: as many threads as the process may use cores, which on Linux follows the
-/// affinity and the cgroup's CPU quota, or as `RAYON_NUM_THREADS` says.
+/// Creates the pool with one thread per available core (on Linux, subject to the affinity and the
+/// cgroup's CPU quota), or as many as `RAYON_NUM_THREADS` specifies.
 ///
 /// # Errors
-/// Where the system allows no pool at all.
+/// If no pool can be created.
 pub fn begin() -> Result<(), Failure> {
     let cores = thread::available_parallelism().map_or(1, NonZero::get);
     let wanted = match std::env::var("RAYON_NUM_THREADS").ok().and_then(|text| text.parse().ok()) {
@@ -32,8 +32,8 @@ pub fn begin() -> Result<(), Failure> {
         Some(asked) if asked > MOST_PER_CORE * cores => {
             let most = MOST_PER_CORE * cores;
             message(format_args!(
-                "warning: RAYON_NUM_THREADS={asked} is more than {MOST_PER_CORE} threads for each of the {cores} \
-                 cores that this process may use; {most} are started"
+                "warning: RAYON_NUM_THREADS={asked} exceeds {MOST_PER_CORE} threads per available \
+                 core ({cores} cores); using {most} threads"
             ));
             most
         }
@@ -45,44 +45,45 @@ pub fn begin() -> Result<(), Failure> {
     let given = spare.max(1);
     if given < wanted {
         message(format_args!(
-            "warning: the system gives this process {given} of {wanted} threads (see ulimit -u, or the \
-             container's limit of processes)"
+            "warning: only {given} of {wanted} threads could be created (see ulimit -u, or the \
+             container's process limit)"
         ));
     }
     let pool = rayon::ThreadPoolBuilder::new().num_threads(given);
-    // Only where there is no other: work that another thread gives to the pool waits for this one
-    // then.
+    // the main thread joins the pool only if there is no other: work submitted by other threads
+    // would wait for it
     let pool = if spare == 0 { pool.use_current_thread() } else { pool };
     pool.build_global().map_err(|error| {
         Failure::failed(miette!(
             help = "raise the limit of processes (ulimit -u), or set RAYON_NUM_THREADS=1",
-            "the system gives this process no threads: {error}"
+            "this process cannot create threads: {error}"
         ))
     })
 }
 
-/// Whether the pool has threads of its own, so that other threads can give work to it at any time.
+/// Returns true if the pool has separate threads, so that other threads can submit work at any
+/// time.
 #[cfg(feature = "preview")]
 pub fn are_spare() -> bool {
-    // the main thread, which asks, is in the pool only where there is no other
+    // the caller is the main thread, which is in the pool only if there is no other thread
     rayon::current_thread_index().is_none()
 }
 
-/// How many of `wanted` threads the system gives at a time.
+/// Number of threads, up to `wanted`, that can exist at the same time.
 fn available(wanted: usize) -> usize {
     let (release, held) = mpsc::channel::<()>();
     let held = Arc::new(Mutex::new(held));
     let waiting: Vec<_> = (0..wanted)
         .map_while(|_| {
             let held = held.clone();
-            // returns when the sender is gone
+            // `recv` returns when the sender is dropped
             thread::Builder::new().spawn(move || drop(held.lock().map(|held| held.recv()))).ok()
         })
         .collect();
     let given = waiting.len();
     drop(release);
     for thread in waiting {
-        // such a thread cannot panic
+        // these threads cannot panic
         let _ = thread.join();
     }
     given

@@ -1,26 +1,26 @@
-//! Errors of what is compiled for f32 and for f64.
+//! Errors shared by the f32 and the f64 compilation of the CPU engine.
 
 use crate::accel::profile::ProfileError;
 
-/// Why a valid scene cannot be flattened.
+/// Reason why a valid scene cannot be packed.
 #[derive(Debug, thiserror::Error)]
 pub enum PackError {
-    /// More items than an index holds.
+    /// More items than an index can represent.
     #[error("the scene has {count} {what}, more than the limit of {limit}")]
     TooMany {
-        /// What there are too many of.
+        /// Plural name of the items.
         what: &'static str,
-        /// How many.
+        /// Number of items.
         count: usize,
-        /// How many there may be.
+        /// Maximum number.
         limit: usize,
     },
-    /// A profile that is no surface.
+    /// A profile does not describe a valid surface.
     #[error("shape {shape}: {cause}")]
     Profile {
         /// Index of the shape.
         shape: usize,
-        /// What is wrong.
+        /// Problem of the profile.
         cause: ProfileError,
     },
 }

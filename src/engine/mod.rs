@@ -1,4 +1,4 @@
-//! What every engine (GPU or CPU) does for the render loop.
+//! Interface between the render loop and the GPU and CPU engines.
 
 pub mod error;
 
@@ -11,29 +11,29 @@ use crate::memory::OverBudget;
 use crate::telemetry::clock::KernelSeconds;
 use serde::{Deserialize, Serialize};
 
-/// Photon paths by how they ended; together those that were emitted.
+/// Number of photon paths by termination cause. The sum is the number of emitted paths.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PhotonEnds {
-    /// Met nothing any more.
+    /// Paths that left the scene.
     pub escaped: u64,
-    /// Ended by roulette, with the probability of being absorbed.
+    /// Paths absorbed by Russian roulette.
     pub absorbed: u64,
-    /// Ended by `max_bounces`.
+    /// Paths ended by `max_bounces`.
     pub cut: u64,
 }
 
 impl PhotonEnds {
-    /// From the counts at the places that `kernels::photon_trace` gives them.
+    /// Creates the counts from an array in the order of `kernels::photon_trace`.
     pub fn of([escaped, absorbed, cut]: [u64; 3]) -> Self {
         Self { escaped, absorbed, cut }
     }
 
-    /// All of them.
+    /// Sum of all counts.
     pub fn total(&self) -> u64 {
         self.escaped + self.absorbed + self.cut
     }
 
-    /// Adds those of another pass.
+    /// Adds the counts of another pass.
     pub fn add(&mut self, other: &Self) {
         self.escaped = self.escaped.saturating_add(other.escaped);
         self.absorbed = self.absorbed.saturating_add(other.absorbed);
@@ -41,10 +41,10 @@ impl PhotonEnds {
     }
 }
 
-/// What one pass did.
+/// Statistics of one pass.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PassReport {
-    /// Photon paths emitted (photon mapping) in this pass.
+    /// Photon paths emitted in this pass.
     pub photons: u64,
     /// Photon records stored in this pass.
     pub records: u64,
@@ -52,128 +52,126 @@ pub struct PassReport {
     pub eye_paths: u64,
     /// Rays traced in this pass: eye, shadow and photon segments.
     pub rays: u64,
-    /// Of these, those of eye paths and of their shadow rays.
+    /// Rays of eye paths and their shadow rays, included in `rays`.
     pub eye_rays: u64,
-    /// How the photon paths ended.
+    /// Photon path terminations by cause.
     pub ends: PhotonEnds,
-    /// Gather radius of this pass in scene units: the mean over the visible points.
+    /// Mean gather radius over the visible points, in scene units.
     pub radius: f64,
 }
 
-/// What an engine keeps from pass to pass; everything else is made again from the scene, the
-/// settings and the pass's number. The bytes are those of `kernels::bytes`, alike for all engines
-/// that count in numbers of so many bits.
+/// Engine state between two passes. Everything else follows from the scene, the settings and the
+/// pass number. The byte formats are those of `kernels::bytes`, and are the same for all engines of
+/// equal precision.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct State {
-    /// Number of the first pass in it, from 0.
+    /// Index of the first pass, from 0.
     pub first_pass: u32,
-    /// Passes in it.
+    /// Number of passes.
     pub passes: u32,
-    /// Bits of its numbers, 32 or 64.
+    /// Precision in bits, 32 or 64.
     pub bits: u32,
-    /// The film; empty before the first pass.
+    /// Film; empty before the first pass.
     pub film: Vec<u8>,
-    /// Local radius rule: statistics of the visible points; else empty.
+    /// Statistics of the visible points for the local radius rule, otherwise empty.
     pub statistics: Vec<u8>,
-    /// What the film asks for in addition to radiance.
+    /// Data for the layers requested by the film in addition to radiance.
     pub layers: LayerState,
 }
 
-/// The part of a [`State`] that layers are made of; empty where none of them takes it.
+/// Data for layers in a [`State`]. Each vector is empty unless a layer needs it.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct LayerState {
-    /// By pixel: `AovPixel`.
+    /// `AovPixel` for each pixel.
     pub aovs: Vec<u8>,
-    /// By pixel: `PartsPixel`.
+    /// `PartsPixel` for each pixel.
     pub parts: Vec<u8>,
-    /// By visible point: photons gathered in the last pass.
+    /// Photons gathered in the last pass, for each visible point.
     pub counts: Vec<u32>,
-    /// By pixel: the number of the surface seen through its centre, from 1; 0 is nothing.
+    /// Object ID at the center of each pixel, from 1; 0 for none.
     pub objects: Vec<u32>,
 }
 
-/// What tells an engine's numbers in those of the world.
+/// Conversion of scene units to world units.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Space {
-    /// The world point at the scene's origin.
+    /// World position of the scene's origin.
     pub center: [f64; 3],
-    /// World units in one scene unit.
+    /// World units per scene unit.
     pub unit: f64,
-    /// Scene radiance times this is world radiance.
+    /// Factor from scene radiance to world radiance.
     pub radiance_unit: f64,
-    /// Whether photons are gathered.
+    /// True if photons are gathered.
     pub photons: bool,
-    /// Luminance of the brightest thing that eye paths may meet by mirrors or through glass, world
-    /// units; 0 where there is nothing of the kind.
+    /// Luminance of the brightest emitter that eye paths may hit via mirrors or glass, in world
+    /// units; 0 if there is none.
     #[serde(default)]
     pub glint: f64,
 }
 
 impl State {
-    /// Before any pass of a render that starts with pass number `first_pass`.
+    /// State before the first pass of a render that starts at pass `first_pass`.
     pub fn before(first_pass: u32) -> Self {
         Self { first_pass, ..Self::default() }
     }
 }
 
-/// Why an engine stopped.
+/// Error of an engine.
 #[derive(Debug, thiserror::Error)]
 pub enum EngineError {
-    /// The device cannot hold what the scene and the settings ask for.
+    /// A buffer or image exceeds a limit of the device.
     #[error("{what} needs {needed} bytes, but {device} allows {limit}; {mend}")]
     TooLarge {
-        /// The buffer or picture that does not fit.
+        /// Buffer or image that does not fit.
         what: String,
-        /// Bytes asked for.
+        /// Required size in bytes.
         needed: u64,
-        /// The device's name.
+        /// Device name.
         device: String,
-        /// Bytes allowed.
+        /// Maximum size in bytes.
         limit: u64,
-        /// The setting to change.
+        /// Suggested remedy.
         mend: String,
     },
-    /// There may not be as much memory as the render takes.
+    /// The render needs more memory than its budget.
     #[error(transparent)]
     OverBudget(Box<OverBudget>),
-    /// The driver gave up; `0` says how.
+    /// The device was lost; the field contains the driver's message.
     #[error("the device was lost: {0}")]
     DeviceLost(String),
-    /// The device had no memory left; `0` says for what.
-    #[error(
-        "the device is out of memory: {0}; make the picture smaller, or take less by --memory-budget"
-    )]
+    /// The device is out of memory; the field describes the allocation.
+    #[error("the device is out of memory: {0}; reduce the image size, or set --memory-budget")]
     OutOfMemory(String),
-    /// A kernel did not compile; a fault of this program.
+    /// A kernel failed to compile, which is a bug in caustica.
     #[error("shader: {0}")]
     Shader(String),
-    /// The scene cannot be flattened.
+    /// The scene cannot be packed.
     #[error(transparent)]
     Pack(#[from] crate::engine::error::PackError),
-    /// The engine cannot carry out this method.
+    /// The engine does not support the operation.
     #[error("{0}")]
     Unsupported(String),
-    /// The pass was given up on request; the film holds the passes before it.
-    #[error("the pass was given up")]
+    /// The pass was cancelled; the film contains the passes before it.
+    #[error("the pass was cancelled")]
     Cancelled,
 }
 
-/// Asks an engine to give up the pass that it is at. Clones are one.
+/// Request to cancel the current pass of an engine. Clones share the request.
 #[derive(Clone, Debug, Default)]
 pub struct Cancel(Arc<AtomicBool>);
 
 impl Cancel {
-    /// Asks for it, once and for all.
+    /// Requests the cancellation. It cannot be withdrawn.
     pub fn ask(&self) {
         self.0.store(true, Ordering::Relaxed);
     }
 
-    /// Whether it was asked for.
+    /// Returns true if the cancellation is requested.
     pub fn is_asked(&self) -> bool {
         self.0.load(Ordering::Relaxed)
     }
 
-    /// Fails once it was asked for.
+    /// Fails if the cancellation is requested.
     ///
     /// # Errors
     /// [`EngineError::Cancelled`].
@@ -189,71 +187,69 @@ impl From<OverBudget> for EngineError {
 }
 
 impl EngineError {
-    /// Whether the device failed, so that the same render may go well on another one or another
-    /// time.
+    /// Returns true if the device failed, so that the render may succeed on another device or at
+    /// another time.
     pub fn is_of_device(&self) -> bool {
         matches!(self, Self::DeviceLost(_) | Self::OutOfMemory(_))
     }
 
-    /// Whether the same would be said of any device.
+    /// Returns true if the error would occur on any device.
     pub fn is_of_scene(&self) -> bool {
         matches!(self, Self::Pack(_))
     }
 }
 
-/// Carries out passes over one scene with one set of settings.
+/// Renders passes of one scene with one set of settings.
 pub trait Engine {
-    /// The device's name, as printed.
+    /// Device name for display.
     fn device(&self) -> &str;
-    /// Runs the next pass.
+    /// Renders the next pass.
     fn pass(&mut self) -> Result<PassReport, EngineError>;
-    /// The same, and the seconds of each kernel in it; none where the engine cannot tell.
+    /// Renders the next pass and measures the seconds of each kernel; empty if the engine does not
+    /// support this.
     fn timed_pass(&mut self) -> Result<(PassReport, KernelSeconds), EngineError> {
         Ok((self.pass()?, KernelSeconds::new()))
     }
-    /// The estimate after the passes so far, in the scene's own radiometric units.
+    /// Radiance estimate of the passes so far, in world units.
     fn picture(&mut self) -> Result<Picture, EngineError>;
-    /// What the passes so far say of its error, in the same units.
+    /// Error estimate of the passes so far, in world units.
     fn errors(&mut self) -> Result<ErrorMap, EngineError>;
-    /// What the passes so far left out of it.
+    /// Counts of samples rejected in the passes so far.
     fn rejections(&mut self) -> Result<Rejections, EngineError>;
-    /// Both.
+    /// Radiance estimate and rejections.
     fn results(&mut self) -> Result<(Picture, Rejections), EngineError> {
         Ok((self.picture()?, self.rejections()?))
     }
-    /// Whether it can fail and take along what it holds. One that counts in the program's own
-    /// memory does not.
+    /// Returns true if the state can be lost with the device. False for engines whose state is in
+    /// host memory.
     fn can_be_lost(&self) -> bool {
         true
     }
-    /// After `error`: goes on from `state` on another device.
+    /// Continues from `state` on another device after `error`.
     ///
     /// # Errors
-    /// Where there is none that can: the last one's error.
+    /// The error of the last device, if no other device can continue.
     fn go_on(&mut self, state: &State, error: EngineError) -> Result<(), EngineError> {
         let _ = state;
         Err(error)
     }
-    /// What the passes so far left behind. After a pass that failed it is that of the passes
-    /// before, or an error.
+    /// Copies the state after the passes so far. After a failed pass, returns the state before that
+    /// pass, or an error.
     fn save(&mut self) -> Result<State, EngineError> {
-        Err(EngineError::Unsupported(format!("{} cannot hand over what it holds", self.device())))
+        Err(EngineError::Unsupported(format!("{} cannot save its state", self.device())))
     }
-    /// Goes on from there, with the same bits as the engine that saved it, if both have one scene
-    /// and one set of settings. For an engine that has made no pass.
+    /// Restores a saved state in an engine that has not rendered any pass. Further passes are
+    /// bit-identical to those of the engine that saved it, for equal scenes and settings.
     fn restore(&mut self, state: &State) -> Result<(), EngineError> {
         let _ = state;
-        Err(EngineError::Unsupported(format!(
-            "{} cannot take over what another one holds",
-            self.device()
-        )))
+        Err(EngineError::Unsupported(format!("{} cannot restore a saved state", self.device())))
     }
-    /// What the film asks for in addition to radiance, in world units.
+    /// Layers requested by the film in addition to radiance, in world units.
     fn layers(&mut self) -> Result<Vec<Channel>, EngineError> {
         Ok(Vec::new())
     }
-    /// Photons that the last pass found around all visible points; 0 where the engine does not
-    /// tell.
+    /// Number of photons gathered by all visible points in the last pass; 0 if the engine does not
+    /// count them.
     fn gathered(&mut self) -> Result<u64, EngineError> {
         Ok(0)
     }

@@ -1,4 +1,4 @@
-//! Picture files of either kind: radiance, and 8- or 16-bit pictures for a display.
+//! Image files of either coding: radiance, or 8- or 16-bit display values.
 
 use std::path::Path;
 
@@ -8,20 +8,20 @@ use super::file::{Format, decode_common, read, read_bytes, read_exr};
 use super::{FileError, Picture};
 use crate::math::srgb::linear_from_srgb;
 
-/// What the numbers of a file say.
+/// Coding of the values in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Coding {
     /// Linear light without an upper bound: .exr, .pfm, .hdr.
     Radiance,
-    /// What a display shows, coded by the sRGB curve: .png, .jpg.
+    /// Display values, encoded with the sRGB curve: .png, .jpg.
     Display,
 }
 
-/// Reads a picture as linear light. That of a file for a display is its values without the sRGB
-/// curve, in [0, 1]; a tone map that made them is not undone.
+/// Reads an image as linear light. Display values are decoded with the inverse sRGB curve to
+/// [0, 1]; a tone map that produced them is not inverted.
 ///
 /// # Errors
-/// Beside those of [`read`], for pictures with pixels that are not opaque.
+/// The errors of [`read`], and [`FileError::Transparent`] if a pixel is not opaque.
 pub fn read_any(file: &Path) -> Result<(Picture, Coding), FileError> {
     let extension =
         file.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase);
@@ -34,7 +34,7 @@ pub fn read_any(file: &Path) -> Result<(Picture, Coding), FileError> {
         }
         (None, _) => Err(FileError::UnknownFormat {
             file: file.to_owned(),
-            what: "its extension names no kind of picture that can be read".to_owned(),
+            what: "unsupported input image extension".to_owned(),
             known: ".exr, .pfm, .hdr, .png or .jpg",
         }),
     }
@@ -44,7 +44,7 @@ fn read_opaque_exr(file: &Path) -> Result<Picture, FileError> {
     let exr = read_exr(file)?;
     let picture = exr.picture("").ok_or_else(|| FileError::Malformed {
         file: file.to_owned(),
-        what: "it has no channels R, G and B".to_owned(),
+        what: "channels R, G and B are missing".to_owned(),
     })?;
     match exr.channels.get("A") {
         Some(alpha) => check_opaque(file, &picture, alpha.iter().map(|alpha| *alpha == 1.0)),
@@ -56,7 +56,7 @@ fn read_opaque_exr(file: &Path) -> Result<Picture, FileError> {
 fn read_display(file: &Path, format: ImageFormat) -> Result<Picture, FileError> {
     let image = decode_common(&read_bytes(file)?, format)
         .map_err(|what| FileError::Malformed { file: file.to_owned(), what })?;
-    // Eight bits widen to sixteen without a loss: 65535 = 255 * 257.
+    // Widening 8 bits to 16 is lossless: 65535 = 255 * 257.
     let opaque = match image.color().has_alpha() {
         true => {
             Some(image.to_rgba16().pixels().map(|pixel| pixel.0[3] == u16::MAX).collect::<Vec<_>>())

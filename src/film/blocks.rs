@@ -1,48 +1,49 @@
-//! A test whether a render agrees with a truth within their noise, block by block.
+//! Block-wise statistical test of a render against a reference.
 //!
-//! The mean luminance difference `d` of a block is set against its standard deviation
+//! The mean luminance difference `d` of a block is divided by its standard deviation
 //!
 //! ```text
 //! sigma^2 = s^2 / n + sum SE^2 / n^2 + (model * truth)^2
 //! ```
 //!
-//! from the scatter `s` of the difference inside the block (both pictures' noise, and detail that
-//! differs), the truth's standard errors `SE`, and an allowance for the bias of density estimation.
-//! For a render that agrees, `d / sigma` is Student-t of 63 degrees of freedom, so |d| > 4 sigma
-//! happens by chance in 1.7e-4 of the blocks.
+//! computed from the standard deviation `s` of the difference within the block (noise of both
+//! images, and detail that differs), the reference's standard errors `SE`, and an allowance for
+//! the bias of density estimation. If the render agrees with the reference, `d / sigma` follows a
+//! Student t distribution with 63 degrees of freedom, so |d| > 4 sigma occurs by chance in 1.7e-4
+//! of the blocks.
 
 use super::metrics::{MetricsError, check_comparable};
 use super::{Picture, luminance};
 
-/// Edge of a block in pixels. Columns and rows that fill no whole block are left out.
+/// Edge of a block in pixels. Columns and rows that do not fill a whole block are ignored.
 pub const BLOCK: u32 = 8;
 
-/// Deviation, in sigma, from which on a block counts as outside.
+/// Absolute deviation, in sigma, above which a block is an outlier.
 pub const LIMIT: f64 = 4.0;
 
-/// Keeps the sigma of black blocks above zero.
+/// Lower bound that keeps the sigma of black blocks above zero.
 const SMALLEST_VARIANCE: f64 = 1e-14;
 
-/// One block's verdict.
+/// Deviation of one block.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Block {
-    /// Column of its left pixels.
+    /// Column of the leftmost pixels.
     pub x: u32,
-    /// Row of its top pixels.
+    /// Row of the topmost pixels.
     pub y: u32,
-    /// Mean luminance difference, render less truth, over its sigma.
+    /// Mean luminance difference (render minus reference) divided by its sigma.
     pub deviation: f64,
 }
 
 impl Block {
-    /// Whether it differs by more than [`LIMIT`] sigma.
+    /// Returns true if the block deviates by more than [`LIMIT`] sigma.
     pub fn outside(&self) -> bool {
         self.deviation.abs() > LIMIT
     }
 }
 
-/// Holds `render` against `truth`, whose standard errors are `standard_error` if they are known.
-/// `model` is the allowed bias as a share of the block's mean luminance, e.g. 0.01.
+/// Compares `render` with `truth`, whose standard errors are `standard_error` if known. `model` is
+/// the allowed bias as a fraction of the block's mean luminance, e.g. 0.01.
 pub fn block_deviations(
     render: &Picture,
     truth: &Picture,
@@ -74,7 +75,7 @@ pub fn block_deviations(
     Ok(blocks)
 }
 
-/// Share of the blocks that are outside, in [0, 1]; zero for no blocks.
+/// Fraction of blocks that are outliers, in [0, 1]; zero without blocks.
 pub fn share_outside(blocks: &[Block]) -> f64 {
     let outside = blocks.iter().filter(|block| block.outside()).count();
     outside as f64 / blocks.len().max(1) as f64

@@ -1,7 +1,7 @@
-//! Colors for numbers.
+//! Color maps.
 
-/// The color map magma (Smith & van der Walt 2015, in the public domain) at every seventeenth of
-/// its 256 entries; what lies between is within 3 / 255 of the whole table.
+/// Every 17th of the 256 entries of the color map magma (Smith & van der Walt 2015, public domain).
+/// Interpolated colors are within 3 / 255 of the full table.
 const MAGMA: [[u8; 3]; 16] = [
     [0, 0, 4],
     [11, 9, 36],
@@ -21,13 +21,13 @@ const MAGMA: [[u8; 3]; 16] = [
     [252, 253, 191],
 ];
 
-/// Magma's color of `x`, clipped to [0, 1]: black by violet and orange to a light yellow.
+/// Maps `x`, clamped to [0, 1], to the color map magma: black, violet, orange, light yellow.
 pub fn magma(x: f64) -> [u8; 3] {
     gradient(&MAGMA, x)
 }
 
-/// The color at `x`, clipped to [0, 1], between evenly spaced stops, of which there are two at
-/// least.
+/// Interpolates linearly between evenly spaced color stops at `x`, clamped to [0, 1]. At least two
+/// stops are required.
 pub fn gradient(stops: &[[u8; 3]], x: f64) -> [u8; 3] {
     let at = x.clamp(0.0, 1.0) * (stops.len() - 1) as f64;
     let left = (at as usize).min(stops.len() - 2);

@@ -1,9 +1,9 @@
-//! A picture made smooth by [Open Image Denoise](https://www.openimagedenoise.org) 2, a C library
-//! that only the cargo feature `denoise` links. What it makes is to be looked at: it is no
-//! estimate, its bias is not known, and nothing here measures it.
+//! Denoising with [Open Image Denoise](https://www.openimagedenoise.org) 2, a C library that is
+//! linked only with the cargo feature `denoise`. The result is for viewing: it has an unknown bias
+//! that no error estimate covers.
 //!
-//! The filter `RT` takes radiance as it is (HDR), with the layers `albedo` and `normal` as
-//! auxiliary pictures that may be noisy themselves.
+//! The filter `RT` takes HDR radiance, with the layers `albedo` and `normal` as auxiliary images,
+//! which may be noisy.
 
 use thiserror::Error;
 
@@ -11,49 +11,47 @@ use super::exr_file::Channel;
 use super::{Picture, Plane};
 use crate::scene::{Aov, Aovs};
 
-/// What made a denoised picture, as files tell it. The library's safe interface in Rust does not
-/// give the rest of its version.
+/// Name of the denoiser as written to files. The Rust bindings do not expose the minor version.
 pub const NAME: &str = "Open Image Denoise 2";
 
-/// Why there is no denoised picture.
+/// Reason why an image could not be denoised.
 #[derive(Debug, Error)]
 pub enum DenoiseError {
     /// The feature is not compiled in.
-    #[error("this caustica is built without a denoiser")]
+    #[error("this build of caustica has no denoiser")]
     NotBuilt,
-    /// A layer that guides the filter is not there.
-    #[error("the layer {0} is missing, which guides the denoiser")]
+    /// An auxiliary layer is missing.
+    #[error("the denoiser needs the layer {0}, which is missing")]
     NoLayer(&'static str),
-    /// The library says so.
+    /// The library reported an error.
     #[error("{NAME}: {what}")]
     Library {
-        /// In its words.
+        /// The library's error message.
         what: String,
     },
 }
 
-/// The layers that a picture needs to be denoised.
+/// The auxiliary layers that the denoiser needs.
 pub fn guides() -> Aovs {
     [Aov::Albedo, Aov::Normal].into_iter().collect()
 }
 
-/// The library, ready to work on the processor.
+/// An initialized CPU device of the library.
 pub struct Denoiser(backend::Device);
 
 impl Denoiser {
-    /// Prepares it.
+    /// Initializes the library on the CPU.
     ///
     /// # Errors
-    /// Where the feature is not compiled in, or the library finds no processor that it can use.
+    /// If the feature is not compiled in, or the library does not support this CPU.
     pub fn open() -> Result<Self, DenoiseError> {
         backend::open().map(Self)
     }
 
-    /// The picture without its noise, in the same unit. `layers` hold [`guides`] of the same
-    /// pixels.
+    /// Denoises the image and keeps its unit. `layers` must contain [`guides`] for the same pixels.
     ///
     /// # Errors
-    /// Where a layer is missing or of another size, or the library fails.
+    /// If a layer is missing or has a different size, or the library fails.
     pub fn denoise(&self, picture: &Picture, layers: &[Channel]) -> Result<Picture, DenoiseError> {
         let albedo = vectors(layers, ["albedo.R", "albedo.G", "albedo.B"])?;
         let normal = vectors(layers, ["normal.X", "normal.Y", "normal.Z"])?;
@@ -69,14 +67,14 @@ impl Denoiser {
     }
 }
 
-/// A denoised picture as the layer `denoised`.
+/// The channels of the EXR layer `denoised`.
 pub fn layer(denoised: &Picture) -> [Channel; 3] {
     let plane = |c: usize| Plane::of(denoised, |rgb| f64::from(rgb[c]));
     [("denoised.R", 0), ("denoised.G", 1), ("denoised.B", 2)]
         .map(|(name, c)| Channel::float(name, plane(c)))
 }
 
-/// Three channels, pixel by pixel.
+/// Interleaves three channels.
 fn vectors(layers: &[Channel], names: [&'static str; 3]) -> Result<Vec<[f32; 3]>, DenoiseError> {
     let values = |name| {
         let channel = layers.iter().find(|channel| channel.name == name);
@@ -93,7 +91,7 @@ mod backend {
 
     use super::DenoiseError;
 
-    /// The processor, and no GPU: the same picture wherever it is made.
+    /// Opens the CPU device, never a GPU, so that results do not depend on the machine.
     pub fn open() -> Result<Device, DenoiseError> {
         Ok(Device::cpu()?)
     }
@@ -123,7 +121,7 @@ mod backend {
 mod backend {
     use super::DenoiseError;
 
-    /// There is none.
+    /// Uninhabited: there is no device without the feature.
     pub enum Device {}
 
     pub fn open() -> Result<Device, DenoiseError> {

@@ -1,4 +1,4 @@
-//! All measures of the difference of two pictures, over the whole and over regions.
+//! Error metrics of two images, over the whole image and over regions.
 
 use super::flip::{HdrFlip, hdr_flip, ldr_flip};
 use super::metrics::{Comparison, MetricsError, compare_in};
@@ -6,37 +6,37 @@ use super::plane::Plane;
 use super::ssim::Similarity;
 use super::{Coding, Picture, Region, colors};
 
-/// A picture against a truth. What looks at a pixel's neighbours is computed once, over the whole
-/// pictures; the regions then take its means.
+/// Comparison of an image with a reference. Metrics with a spatial filter are computed once over
+/// the whole images; regions average the resulting maps.
 pub struct Difference<'a> {
     a: &'a Picture,
     truth: &'a Picture,
     similarity: Similarity,
     /// LDR-FLIP of each pixel.
     pub ldr_flip: Plane,
-    /// HDR-FLIP of each pixel; none for pictures for a display.
+    /// HDR-FLIP of each pixel; `None` for display values.
     pub hdr_flip: Option<HdrFlip>,
 }
 
-/// Figures of a region.
+/// Metrics of a region.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measures {
-    /// Those of pixels by themselves, of linear light.
+    /// Per-pixel metrics of linear light.
     pub pixels: Comparison,
-    /// Mean structural similarity; none where no window of 11 x 11 pixels about one of the region's
-    /// lies in the picture.
+    /// Mean structural similarity; `None` if no 11 x 11 pixel window centered in the region fits
+    /// into the image.
     pub ssim: Option<f64>,
     /// Mean LDR-FLIP.
     pub ldr_flip: f64,
-    /// Mean HDR-FLIP; none for pictures for a display.
+    /// Mean HDR-FLIP; `None` for display values.
     pub hdr_flip: Option<f64>,
 }
 
 impl<'a> Difference<'a> {
-    /// Measures `a` against `truth`, both coded as `coding` says.
+    /// Compares `a` with `truth`. `coding` is the coding of the files that both were read from.
     ///
     /// # Errors
-    /// For pictures of different sizes, without pixels, or with values that are not finite.
+    /// If the sizes differ, an image is empty, or a value is not finite.
     pub fn new(a: &'a Picture, truth: &'a Picture, coding: Coding) -> Result<Self, MetricsError> {
         let hdr_flip = match coding {
             Coding::Radiance => Some(hdr_flip(a, truth)?),
@@ -46,10 +46,10 @@ impl<'a> Difference<'a> {
         Ok(Self { a, truth, similarity, ldr_flip, hdr_flip })
     }
 
-    /// The figures of a region, or of the whole picture.
+    /// Metrics of a region, or of the whole image for `None`.
     ///
     /// # Errors
-    /// For a region without pixels or with some that the pictures do not have.
+    /// If the region is empty or extends beyond the image.
     pub fn measures(&self, region: Option<Region>) -> Result<Measures, MetricsError> {
         let region = region.unwrap_or_else(|| Region::whole(self.truth));
         Ok(Measures {
@@ -61,7 +61,7 @@ impl<'a> Difference<'a> {
     }
 }
 
-/// A map of FLIP as display values, row by row, in FLIP's colors: black for 0, light yellow for 1.
+/// Display values of a FLIP map, row by row, in FLIP's color map: black for 0, light yellow for 1.
 pub fn flip_colors(map: &Plane) -> Vec<[u8; 3]> {
     map.values.iter().map(|value| colors::magma(*value)).collect()
 }

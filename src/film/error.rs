@@ -1,4 +1,4 @@
-//! What can go wrong with picture files: which file, what happened, and how to mend it.
+//! Errors of image files.
 
 use std::io;
 use std::path::PathBuf;
@@ -6,57 +6,56 @@ use std::path::PathBuf;
 use miette::Diagnostic;
 use thiserror::Error;
 
-/// A picture file that cannot be written or read.
+/// An image file that cannot be written or read.
 #[derive(Debug, Error, Diagnostic)]
 pub enum FileError {
-    /// The name's extension is none that is known for this use.
+    /// The extension does not name a format that is supported here.
     #[error("{}: {what}", file.display())]
-    #[diagnostic(help("end the name in {known}"))]
+    #[diagnostic(help("use a file name that ends in {known}"))]
     UnknownFormat {
         /// The file.
         file: PathBuf,
-        /// What is wrong with its name.
+        /// Description of the problem with its name.
         what: String,
-        /// The extensions that would do.
+        /// The supported extensions.
         known: &'static str,
     },
-    /// A name of an open file, such as standard output, which does not say which kind of picture to
-    /// write.
-    #[error("{}: the name of a stream does not say which kind of picture to write", file.display())]
+    /// The output is a stream, such as standard output, whose name does not determine a format.
+    #[error("{}: the name of a stream does not determine the image format", file.display())]
     #[diagnostic(help(
-        "name a link that ends in {known}: ln -s /dev/stdout picture.png, then -o picture.png; results are \
-         printed after the picture"
+        "use a link whose name ends in {known}: ln -s /dev/stdout picture.png, then \
+         -o picture.png; results are printed after the image"
     ))]
     StreamName {
         /// The name.
         file: PathBuf,
-        /// The extensions that would do.
+        /// The supported extensions.
         known: &'static str,
     },
-    /// The folder that the file should go to does not exist.
-    #[error("{}: there is no folder `{}`", file.display(), folder.display())]
+    /// The parent folder of the file does not exist.
+    #[error("{}: the folder `{}` does not exist", file.display(), folder.display())]
     #[diagnostic(help("create the folder first, or choose another one"))]
     NoFolder {
         /// The file.
         file: PathBuf,
-        /// Its folder.
+        /// Its parent folder.
         folder: PathBuf,
     },
     /// The name is that of a folder.
-    #[error("{}: this is a folder", file.display())]
+    #[error("{}: is a folder", file.display())]
     #[diagnostic(help("give the name of a file in it"))]
     IsFolder {
         /// The folder.
         file: PathBuf,
     },
-    /// The same output is named more than once.
-    #[error("{}: named as an output more than once", file.display())]
-    #[diagnostic(help("name every output once"))]
+    /// The same output is given more than once.
+    #[error("{}: given more than once as an output", file.display())]
+    #[diagnostic(help("give each output once"))]
     Repeated {
         /// The file.
         file: PathBuf,
     },
-    /// The operating system refused.
+    /// The operating system reported an error.
     #[error("{}: cannot be {verb}: {cause}", file.display())]
     #[diagnostic(help("check the name, the permissions and the free space"))]
     Io {
@@ -64,38 +63,41 @@ pub enum FileError {
         file: PathBuf,
         /// "written" or "read".
         verb: &'static str,
-        /// What the system says.
+        /// The system's error.
         cause: io::Error,
     },
-    /// The file's content is not a picture of its format.
-    #[error("{}: not a usable picture: {what}", file.display())]
-    #[diagnostic(help("the file may be damaged or of another format than its name says"))]
+    /// The content is not a valid image of the file's format.
+    #[error("{}: not a readable image: {what}", file.display())]
+    #[diagnostic(help("the file may be damaged, or its extension may not match its format"))]
     Malformed {
         /// The file.
         file: PathBuf,
-        /// The first thing that is wrong with it.
+        /// Description of the first problem.
         what: String,
     },
-    /// Some of its pixels are not opaque.
-    #[error("{}: {pixels} pixels are not opaque, the first in column {}, row {}", file.display(), at.0, at.1)]
+    /// Some pixels are not opaque.
+    #[error(
+        "{}: {pixels} pixels are not opaque, the first in column {}, row {}",
+        file.display(), at.0, at.1
+    )]
     #[diagnostic(help(
-        "lay it over a background first: what is seen behind it is not in the file"
+        "composite the image over a background first: the file does not contain what lies behind it"
     ))]
     Transparent {
         /// The file.
         file: PathBuf,
-        /// How many.
+        /// Number of such pixels.
         pixels: usize,
         /// Column and row of the first in reading order.
         at: (u32, u32),
     },
-    /// The picture cannot be expressed in the format.
+    /// The image cannot be represented in the format.
     #[error("{}: cannot be encoded: {what}", file.display())]
     #[diagnostic(help("try another format, such as .exr"))]
     Encode {
         /// The file.
         file: PathBuf,
-        /// What the encoder says.
+        /// The encoder's error message.
         what: String,
     },
 }

@@ -1,57 +1,56 @@
-//! What a picture says of its own error: variance and bias of every pixel, and one number for the
-//! whole. docs/error-estimate.md tells the method and how good it is.
+//! Error estimates: variance and bias of each pixel, and the relative error of the whole image.
+//! docs/error-estimate.md describes the method and its accuracy.
 
 use super::Plane;
 use super::exr_file::Channel;
 use super::plane::{gaussian, normalized};
 
-/// Least number of passes whose picture has an estimate: with three the earlier part is a single
-/// pass.
+/// Minimum number of passes for an estimate. With three, the early part would be a single pass.
 pub const LEAST_PASSES: u32 = 4;
 
-/// Bias of the estimate in a disc over what it differs by from that in the inner half of the disc's
-/// area. Where bias falls as the p-th power of the radius this is `1 / (1 - 2^(-p/2))`: 2 where
-/// radiance is smooth (p = 2), some 3.7 over straight edges; over whole pictures 1.7 to 2.3 were
-/// measured.
+/// Ratio of the bias of the estimate in a disc to its difference from the estimate in the inner
+/// half of the disc's area. If bias scales with the p-th power of the radius, the ratio is
+/// `1 / (1 - 2^(-p/2))`: 2 where radiance is smooth (p = 2), about 3.7 at straight edges.
+/// Measurements over whole images gave 1.7 to 2.3.
 pub const BIAS_OVER_RING: f64 = 2.25;
 
-/// The stated error is so many of the estimate's standard errors above the estimate.
+/// Number of standard errors by which the stated error exceeds the estimate.
 pub const CONFIDENCE: f64 = 2.0;
 
-/// Edge of the blocks, in pixels, whose errors count as independent of one another.
+/// Edge, in pixels, of blocks whose errors are treated as independent of each other.
 const BLOCK: usize = 16;
 
-/// Added to the squared luminance that an error is relative to, as in relMSE.
+/// Constant added to the squared luminance in the denominator of a relative error, as in relMSE.
 const DARK: f64 = 0.01;
 
-/// Pixels without an event that a pixel with one stands for, at the most.
+/// Maximum number of pixels without an event that a pixel with one represents.
 const UNSEEN_MOST: f64 = 2.0;
 
-/// Standard deviation, in pixels, of the Gaussian that smooths the map of the bias.
+/// Standard deviation, in pixels, of the Gaussian that smooths the bias map.
 const SMOOTHING: f64 = 2.0;
 
-/// What is known of one pixel's error: luminance, in W sr^-1 m^-2 or its square.
+/// Error statistics of one pixel: luminance, in W sr^-1 m^-2 or its square.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PixelError {
     /// The estimate.
     pub luminance: f64,
-    /// Variance of the mean over the passes from their mean squared deviation, as if they were
-    /// independent.
+    /// Variance of the mean over the passes, computed as if passes were independent.
     pub variance: f64,
     /// Deviations of the mean, from two partitions of the passes into earlier and later ones. Each
-    /// has mean zero and the variance of the mean over all, also where passes even one another out.
+    /// has mean zero and the variance of the mean over all passes, even if the passes are
+    /// anticorrelated.
     pub deviations: [f64; 2],
-    /// Deviation of the mean over fixed eye samples, from two halves of them; 0 where each pass has
-    /// its own.
+    /// Deviation of the mean over fixed eye samples, from two halves of the samples; 0 if each pass
+    /// draws new ones.
     pub halves: f64,
-    /// Estimate in the disc less that in the inner half of its area, mean over the passes.
+    /// Estimate in the disc minus that in the inner half of its area, averaged over the passes.
     pub bias_probe: f64,
-    /// The same mean with odd passes turned over: the same noise and no signal.
+    /// The same average with the sign of odd passes flipped: same noise, zero mean.
     pub bias_probe_alternating: f64,
 }
 
 impl PixelError {
-    /// Of a pixel with too few passes.
+    /// Value for a pixel with too few passes.
     pub const UNKNOWN: Self = Self {
         luminance: 0.0,
         variance: f64::INFINITY,
@@ -61,8 +60,8 @@ impl PixelError {
         bias_probe_alternating: 0.0,
     };
 
-    /// Unbiased estimate of the squared bias, from the product of the means over even and over odd
-    /// passes; it may be negative.
+    /// Unbiased estimate of the squared bias: product of the means over even and odd passes. May be
+    /// negative.
     pub fn bias_sq(&self) -> f64 {
         BIAS_OVER_RING.powi(2)
             * (self.bias_probe + self.bias_probe_alternating)
@@ -70,16 +69,17 @@ impl PixelError {
     }
 }
 
-/// Passes in the early part of `passes`, at least two: the greatest power of two below.
+/// Number of passes in the early part of `passes` (at least two): the greatest power of two below
+/// `passes`.
 pub fn early_passes(passes: u32) -> u32 {
     1 << (passes.max(2) - 1).ilog2()
 }
 
-/// Deviation of `mean` over `all` passes, of which the first `part` have `part_mean`.
+/// Deviation of `mean` over `all` passes, of which the first `part` have the mean `part_mean`.
 ///
-/// The difference of the means over the first and over the other passes times `sqrt(a b) / (a +
-/// b)`, a and b passes in them, has the variance of the mean over all: exactly for independent
-/// passes, and for others as far as their sums over a part and over all behave alike.
+/// The difference of the means over the first `a` and the remaining `b` passes, times
+/// `sqrt(a b) / (a + b)`, has the variance of the mean over all passes: exactly if passes are
+/// independent, approximately if partial and total sums have similar statistics.
 pub fn partition(mean: f64, part_mean: f64, part: u32, all: u32) -> f64 {
     let (n, a) = (f64::from(all), f64::from(part));
     let b = n - a;
@@ -87,44 +87,43 @@ pub fn partition(mean: f64, part_mean: f64, part: u32, all: u32) -> f64 {
     (part_mean - rest) * (a * b).sqrt() / n
 }
 
-/// The errors of all pixels of a picture.
+/// Error statistics of all pixels of an image.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ErrorMap {
     /// Pixels per row.
     pub width: u32,
     /// Row by row, row 0 on top.
     pub pixels: Vec<PixelError>,
-    /// What one glint, met by one eye path of one pass, adds to a pixel's luminance; 0 where none
-    /// can be.
+    /// Luminance that one glint, hit by one eye path of one pass, adds to a pixel; 0 if the scene
+    /// has none.
     pub glint: f64,
 }
 
-/// Relative error of a whole picture: root of the relMSE of docs/measures.md.
+/// Relative error of a whole image: square root of the relMSE defined in docs/measures.md.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RelativeError {
-    /// Part of the estimate that is noise.
+    /// Noise component of the estimate.
     pub noise: f64,
-    /// Part of the estimate that is bias; both are the legs of which the estimate is the
-    /// hypotenuse.
+    /// Bias component of the estimate. The estimate is the hypotenuse of `noise` and `bias`.
     pub bias: f64,
-    /// The true error is within this one in nine of ten renders.
+    /// Upper bound that the true error stays below in nine of ten renders.
     pub stated: f64,
 }
 
 impl ErrorMap {
-    /// Variance of each pixel's luminance, in squares of W sr^-1 m^-2.
+    /// Variance of each pixel's luminance, in (W sr^-1 m^-2)^2.
     pub fn variance(&self) -> Plane {
         self.plane(|p| p.variance + p.halves * p.halves)
     }
 
-    /// Bias of each pixel's luminance, in W sr^-1 m^-2, smoothed by a Gaussian of two pixels: a
-    /// single pixel's estimate has more than twice the noise of the pixel itself.
+    /// Bias of each pixel's luminance, in W sr^-1 m^-2, smoothed by a Gaussian of two pixels,
+    /// because the bias estimate of a single pixel is more than twice as noisy as the pixel.
     pub fn bias(&self) -> Plane {
         let weights = normalized(&gaussian(SMOOTHING, 3 * SMOOTHING as usize));
         self.plane(|p| BIAS_OVER_RING * p.bias_probe).along_x(&weights).along_y(&weights)
     }
 
-    /// Both maps as layers of a picture file.
+    /// Both maps as EXR layers.
     pub fn layers(&self) -> Vec<Channel> {
         vec![Channel::float("Variance.Y", self.variance()), Channel::float("Bias.Y", self.bias())]
     }
@@ -133,7 +132,7 @@ impl ErrorMap {
         Plane { width: self.width as usize, values: self.pixels.iter().map(value).collect() }
     }
 
-    /// The whole picture's error.
+    /// Relative error of the whole image.
     pub fn relative(&self) -> RelativeError {
         let third = [1.0 / 3.0; 3];
         let around = self.plane(|p| p.luminance).along_x(&third).along_y(&third);
@@ -151,8 +150,8 @@ impl ErrorMap {
         };
         let (noise, bias) = (sum(|t| t.noise) / count, sum(|t| t.bias) / count);
         let blocks = self.block_sums(&terms, &kept).iter().map(|sum| sum * sum).sum::<f64>();
-        // one glint more than were seen (the rule of succession): where no pixel has met one yet,
-        // nothing else speaks for those that some pixel lacks
+        // Assume one glint more than was seen (rule of succession): as long as no pixel has hit
+        // one, nothing else accounts for those still missing.
         let mean =
             self.pixels.iter().map(|p| p.luminance).sum::<f64>() / self.pixels.len().max(1) as f64;
         let mut unseen = lacking(self.glint, mean);
@@ -163,13 +162,12 @@ impl ErrorMap {
         }
         let off = (blocks + sum(|t| t.alone_sq) + unseen_sq).sqrt() / count;
         let stated = ((noise + bias).max(0.0) + unseen / count + CONFIDENCE * off).sqrt();
-        // what overflows is no promise
+        // an overflow bounds nothing
         let stated = if stated.is_nan() { f64::INFINITY } else { stated };
         RelativeError { noise: noise.max(0.0).sqrt(), bias: bias.max(0.0).sqrt(), stated }
     }
 
-    /// Sums over blocks of what each kept pixel's squared error may be off by together with its
-    /// neighbours'.
+    /// Sums, per block, of the correlated part of each kept pixel's error in its squared error.
     fn block_sums(&self, terms: &[Term], kept: &[bool]) -> Vec<f64> {
         let width = (self.width as usize).max(1);
         let columns = width.div_ceil(BLOCK);
@@ -182,25 +180,26 @@ impl ErrorMap {
     }
 }
 
-/// A pixel's part in the relative error, all squared and relative.
+/// Contribution of a pixel to the relative error. All values are squared and relative.
 struct Term {
-    /// Rank among the pixels whose largest are dropped.
+    /// Sort key: pixels with the largest are dropped.
     rank: f64,
     noise: f64,
     bias: f64,
-    /// A number of mean zero that scatters as `noise` and `bias` do, and as the true error does.
+    /// Zero-mean value that scatters as `noise` and `bias` do, and as the true error does.
     off: f64,
-    /// Variance of that which shares nothing with neighbours.
+    /// Variance of the part that is independent of neighboring pixels.
     alone_sq: f64,
-    /// What light that came here once may cost in pixels that it has not come to yet.
+    /// Expected squared error in other pixels that have not yet received light like this pixel's.
     unseen: f64,
 }
 
 impl Term {
-    /// Noise of the passes and bias are relative to the estimate less its standard deviation: where
-    /// a single pass was bright this is what the others found, so that a rare bright sample does
-    /// not dwarf its own error. That of some few eye samples is relative to the mean of the pixels
-    /// around, for where all of them agree by chance the estimate is far off.
+    /// Normalizes the noise of the passes and the bias by the estimate minus its standard
+    /// deviation. If a single pass was bright, this is the estimate of the other passes, so a rare
+    /// bright sample does not hide its own error. The noise of a few fixed eye samples is
+    /// normalized by the mean of the surrounding pixels instead: if all samples agree by chance,
+    /// the pixel's own estimate is far off.
     fn of(p: &PixelError, around: f64) -> Self {
         let share_of = |reference: f64| 1.0 / (reference * reference + DARK);
         let share = share_of((p.luminance - p.variance.sqrt()).max(0.0));
@@ -212,26 +211,27 @@ impl Term {
             noise: 0.5 * (first + second) * share + halves,
             bias: p.bias_sq() * share,
             off: (first - second + bias_off) * share,
-            // of the estimate and of the true error, each of which has a square of this size
+            // one for the estimate, one for the true error: the square of each has this variance
             alone_sq: 2.0 * halves * halves,
             unseen: unseen(p),
         }
     }
 }
 
-/// Squared relative error that pixels without an event owe to those with one, where `p` had one.
+/// Expected squared relative error in pixels that missed an event, given a pixel `p` that had one.
 ///
-/// A glint that one pass in hundreds sees is in the mean of some pixels and of others not; what it
-/// leaves the others short of is in no variance. The rates of events in all pixels without one sum
-/// up to the expected number of pixels with one (Good 1953), so the light v of a single event
-/// stands for as much light unseen. Of unseen light x beside b that is always seen the squared
-/// relative error is `x^2 / ((b + x)^2 + DARK) <= x / (2 (b + sqrt(b^2 + DARK)))`, hence v over
-/// that. The number of events is told by the mean over its deviation, squared: n events of v each
-/// have the mean n v and the variance n v^2. What is always seen adds to the mean, so two events'
-/// worth still count half.
+/// A glint that is hit in one pass out of hundreds contributes to the mean of some pixels and is
+/// missing from others, and no variance accounts for the missing light. The event rates of all
+/// pixels without an event sum to the expected number of pixels with exactly one (Good 1953), so
+/// the light v of a single event represents the same amount of missing light. Missing light x next
+/// to steady light b has the squared relative error
+/// `x^2 / ((b + x)^2 + DARK) <= x / (2 (b + sqrt(b^2 + DARK)))`, here with x = v. The number of
+/// events is estimated as the squared ratio of mean to standard deviation: n events of v each have
+/// the mean n v and the variance n v^2. Steady light raises the mean, so an estimate of two events
+/// still counts half.
 ///
-/// However bright, an event counts for [`UNSEEN_MOST`] pixels: those that have less than one chance
-/// in that many to meet theirs are what the largest 0.1 % are left out for.
+/// Regardless of its brightness, an event counts for at most [`UNSEEN_MOST`] pixels. Pixels with a
+/// smaller chance of an event than one in that many are covered by the 0.1 % that relMSE drops.
 fn unseen(p: &PixelError) -> f64 {
     let single = 0.5 * (3.0 - p.luminance * p.luminance / p.variance);
     let event = p.variance.sqrt();
@@ -239,13 +239,13 @@ fn unseen(p: &PixelError) -> f64 {
     if single > 0.0 { single.min(1.0) * lacking(event, seen) } else { 0.0 }
 }
 
-/// Squared relative error of the pixels that lack an event beside light `seen`.
+/// Squared relative error of pixels that miss the light `event` next to steady light `seen`.
 fn lacking(event: f64, seen: f64) -> f64 {
     (event / (2.0 * (seen + seen.hypot(DARK.sqrt())))).min(UNSEEN_MOST)
 }
 
-/// All pixels but the 0.1 %, rounded up, of the largest variance; of a single pixel that one. The
-/// rank does not look at deviations, which would favour those that happen to be small.
+/// Mask of all pixels except the 0.1 % (rounded up) with the largest relative variance; a single
+/// pixel is always kept. Ranking by deviations would favor those that are small by chance.
 fn kept(terms: &[Term]) -> Vec<bool> {
     let dropped = terms.len().div_ceil(1000).min(terms.len().saturating_sub(1));
     let mut kept = vec![true; terms.len()];

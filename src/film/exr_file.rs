@@ -8,14 +8,14 @@ use exr::prelude::*;
 use super::{Picture, Plane};
 use crate::memory;
 
-/// What an EXR file's first layer holds.
+/// Content of the first layer of an EXR file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ExrFile {
     /// Pixels per row.
     pub width: u32,
     /// Rows.
     pub height: u32,
-    /// Where these lie in the whole picture.
+    /// Position of the data window in the display window.
     pub frame: Frame,
     /// Values of each channel, row 0 on top.
     pub channels: BTreeMap<String, Vec<f32>>,
@@ -24,9 +24,9 @@ pub struct ExrFile {
 }
 
 impl ExrFile {
-    /// The channels `<prefix>R`, `<prefix>G` and `<prefix>B` as a picture; none when one is
-    /// missing. The prefix is empty for radiance and `SE.` for the standard errors in reference
-    /// pictures.
+    /// The channels `<prefix>R`, `<prefix>G` and `<prefix>B` as an image, or `None` if one is
+    /// missing. The prefix is empty for radiance and `SE.` for the standard errors of reference
+    /// images.
     pub fn picture(&self, prefix: &str) -> Option<Picture> {
         let channel = |name| self.channels.get(&format!("{prefix}{name}"));
         let (r, g, b) = (channel("R")?, channel("G")?, channel("B")?);
@@ -35,55 +35,55 @@ impl ExrFile {
     }
 }
 
-/// A channel beside R, G and B.
+/// A channel other than R, G and B.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Channel {
-    /// Full name, as `Variance.Y`.
+    /// Full name, such as `Variance.Y`.
     pub name: &'static str,
-    /// Its values.
+    /// Values, one per pixel.
     pub plane: Plane,
-    /// How they are stored.
+    /// Sample type in the file.
     pub numbers: Numbers,
 }
 
-/// What a channel's values are stored as.
+/// Sample type of a channel in the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Numbers {
     /// 32-bit floats.
     Float,
-    /// 32-bit whole numbers.
+    /// 32-bit unsigned integers.
     Whole,
 }
 
 impl Channel {
-    /// A channel of floats.
+    /// Creates a channel that is stored as 32-bit floats.
     pub fn float(name: &'static str, plane: Plane) -> Self {
         Self { name, plane, numbers: Numbers::Float }
     }
 }
 
-/// Where a window lies in a picture.
+/// Position of a crop window in the whole image.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Frame {
     /// The window's first column.
     pub x: u32,
     /// Its first row.
     pub y: u32,
-    /// Pixels per row of the whole picture.
+    /// Pixels per row of the whole image.
     pub width: u32,
-    /// Rows of the whole picture.
+    /// Rows of the whole image.
     pub height: u32,
 }
 
 impl Frame {
-    /// That of a picture without a frame around it.
+    /// Frame of an image that is not cropped.
     pub fn of(picture: &Picture) -> Self {
         Self { x: 0, y: 0, width: picture.width, height: picture.height }
     }
 }
 
-/// The bytes of a losslessly compressed EXR file with the layers' channels beside R, G and B: the
-/// picture is the data window, the frame the display window. Equal arguments give equal bytes.
+/// Encodes a losslessly compressed EXR file with the channels R, G, B and those in `layers`. The
+/// image is the data window, the frame is the display window. Equal arguments give equal bytes.
 pub fn encode(
     picture: &Picture,
     frame: Frame,
@@ -97,7 +97,7 @@ pub fn encode(
             channel(name, FlatSamples::F32(picture.rgb.iter().map(|rgb| rgb[c]).collect()))
         })
         .collect();
-    // numbers beyond f32 become its largest
+    // clamp to the range of f32
     let held = |x: &f64| x.clamp(f64::from(f32::MIN), f64::from(f32::MAX)) as f32;
     let samples = |layer: &Channel| match layer.numbers {
         Numbers::Float => FlatSamples::F32(layer.plane.values.iter().map(held).collect()),
@@ -128,7 +128,7 @@ pub fn encode(
         .non_parallel()
         .to_buffered(Cursor::new(&mut bytes))
         .map_err(|error| error.to_string())?;
-    sort_attributes(&mut bytes).ok_or("the header's attributes do not end")?;
+    sort_attributes(&mut bytes).ok_or("the header is not terminated")?;
     Ok(bytes)
 }
 
@@ -172,10 +172,9 @@ pub fn decode(bytes: &[u8]) -> std::result::Result<ExrFile, String> {
     })
 }
 
-/// Fails where the pixels take more memory than there is: a short file may claim any number of
-/// them.
+/// Fails if decoding would exceed the available memory, since a short file can declare any size.
 fn check_size(bytes: &[u8]) -> std::result::Result<(), String> {
-    /// As the file's samples and as floats.
+    /// Bytes per value: the file's sample and the decoded float.
     const BYTES_OF_SAMPLE: u64 = 8;
     let meta = MetaData::read_from_buffered(Cursor::new(bytes), false)
         .map_err(|error| error.to_string())?;
@@ -187,9 +186,9 @@ fn check_size(bytes: &[u8]) -> std::result::Result<(), String> {
     })
 }
 
-/// Puts a single-part file's attributes into the order of their names. The `exr` crate keeps them
-/// in a hash map whose order changes from run to run, and the same picture must give the same file.
-/// None when the header is cut short.
+/// Sorts the header attributes of a single-part file by name. The `exr` crate stores them in a hash
+/// map, whose order differs between runs, but equal images must give equal files. Returns `None` if
+/// the header is truncated.
 fn sort_attributes(file: &mut [u8]) -> Option<()> {
     const MAGIC_AND_VERSION: usize = 8;
     let mut attributes = Vec::new();

@@ -1,4 +1,5 @@
-//! Picture files by extension, written whole or not at all (`storage`).
+//! Reading and writing of image files. The extension selects the format; writes are atomic (see
+//! `storage`).
 
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
@@ -12,7 +13,7 @@ use super::{Development, FileError, Picture, Provenance, pfm};
 use crate::memory;
 use crate::storage::{self, Purpose};
 
-/// A kind of picture file.
+/// An image file format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
     /// 8 or 16 bits per channel, tone-mapped.
@@ -21,12 +22,12 @@ pub enum Format {
     Exr,
     /// 32-bit float radiance.
     Pfm,
-    /// Radiance's shared-exponent radiance.
+    /// Shared-exponent radiance (RGBE) of the Radiance renderer.
     Hdr,
 }
 
 impl Format {
-    /// The format that a file's extension names, in either case.
+    /// Format of a file by its extension, ignoring case.
     pub fn of(file: &Path) -> Option<Self> {
         match file.extension()?.to_str()?.to_ascii_lowercase().as_str() {
             "png" => Some(Self::Png),
@@ -37,22 +38,22 @@ impl Format {
         }
     }
 
-    /// The format of an output file, or an error that names the known ones.
+    /// Format of an output file, or an error that lists the supported extensions.
     fn of_output(file: &Path) -> Result<Self, FileError> {
         let known = ".png, .exr, .pfm or .hdr";
         Self::of(file).ok_or_else(|| match storage::is_stream(file) {
             true => FileError::StreamName { file: file.to_owned(), known },
             false => FileError::UnknownFormat {
                 file: file.to_owned(),
-                what: "its extension names no known kind of picture".to_owned(),
+                what: "unsupported output image extension".to_owned(),
                 known,
             },
         })
     }
 }
 
-/// Finds out before the work whether the pictures can be written after it: known extensions,
-/// existing folders, no name twice, and folders that take new files.
+/// Checks before rendering that the images can be written afterwards: known extensions, existing
+/// and writable folders, and no duplicate names.
 pub fn check_outputs(files: &[PathBuf]) -> Result<(), FileError> {
     let mut seen: Vec<&PathBuf> = Vec::new();
     for file in files {
@@ -66,26 +67,26 @@ pub fn check_outputs(files: &[PathBuf]) -> Result<(), FileError> {
     Ok(())
 }
 
-/// Finds out whether a PNG file can be made of this name.
+/// Checks that a PNG file of this name can be created.
 pub fn check_png(file: &Path) -> Result<(), FileError> {
     if Format::of(file) != Some(Format::Png) {
         return Err(FileError::UnknownFormat {
             file: file.to_owned(),
-            what: "a picture of the difference is a PNG file".to_owned(),
+            what: "difference images are PNG files".to_owned(),
             known: ".png",
         });
     }
     check_place(file)
 }
 
-/// Writes display values, three to a pixel, as PNG.
+/// Writes 8-bit display values, three per pixel, as PNG.
 pub fn write_rgb8(file: &Path, width: u32, height: u32, rgb: &[u8]) -> Result<(), FileError> {
     let bytes = encode_rgb8(width, height, rgb)
         .map_err(|what| FileError::Encode { file: file.to_owned(), what })?;
     write_whole(file, &bytes)
 }
 
-/// Finds out whether a file can be made in its folder, and leaves nothing there.
+/// Checks that a file can be created in its folder, without leaving one behind.
 pub fn check_place(file: &Path) -> Result<(), FileError> {
     let folder = match file.parent() {
         Some(folder) if folder != Path::new("") => folder,
@@ -100,8 +101,8 @@ pub fn check_place(file: &Path) -> Result<(), FileError> {
     storage::check(file, Purpose::Result).map_err(|e| not_written(file, e))
 }
 
-/// Writes a picture in the format that the extension names. `development` counts for PNG, `layers`
-/// and `provenance` for EXR.
+/// Writes an image in the format given by the extension. `development` applies to PNG only,
+/// `layers` and `provenance` to EXR only.
 pub fn write(
     file: &Path,
     picture: &Picture,
@@ -121,7 +122,7 @@ pub fn write(
     write_whole(file, &bytes)
 }
 
-/// Writes the bytes so that nothing half-written is seen.
+/// Writes the bytes atomically, so that no partial file is ever visible.
 pub fn write_whole(file: &Path, bytes: &[u8]) -> Result<(), FileError> {
     let written = storage::write(file, Purpose::Result, |out| out.write_all(bytes));
     written.map_err(|cause| not_written(file, cause))
@@ -133,13 +134,13 @@ pub fn read(file: &Path) -> Result<Picture, FileError> {
     match Format::of(file) {
         Some(Format::Exr) => {
             let exr = read_exr(file)?;
-            exr.picture("").ok_or_else(|| malformed("it has no channels R, G and B".to_owned()))
+            exr.picture("").ok_or_else(|| malformed("channels R, G and B are missing".to_owned()))
         }
         Some(Format::Pfm) => pfm::decode(&read_bytes(file)?).map_err(malformed),
         Some(Format::Hdr) => decode_hdr(&read_bytes(file)?).map_err(malformed),
         Some(Format::Png) | None => Err(FileError::UnknownFormat {
             file: file.to_owned(),
-            what: "its extension names no kind of picture that holds radiance".to_owned(),
+            what: "the extension does not name a format that stores radiance".to_owned(),
             known: ".exr, .pfm or .hdr",
         }),
     }
@@ -174,13 +175,13 @@ fn encode_png(picture: &Picture, development: &Development) -> Result<Vec<u8>, S
         Bits::Sixteen => {
             let rgb: Vec<[u16; 3]> =
                 rgb.par_iter().map(|&radiance| development.words(radiance)).collect();
-            // the encoder takes words as they lie in memory
+            // the encoder expects native-endian samples
             encode_rgb(width, height, bytemuck::cast_slice(&rgb), ExtendedColorType::Rgb16)
         }
     }
 }
 
-/// The bytes of a PNG file of `width * height * 3` display values.
+/// Encodes `width * height * 3` display values as PNG.
 fn encode_rgb8(width: u32, height: u32, rgb: &[u8]) -> Result<Vec<u8>, String> {
     encode_rgb(width, height, rgb, ExtendedColorType::Rgb8)
 }
@@ -199,7 +200,7 @@ fn encode_rgb(
 }
 
 fn encode_hdr(picture: &Picture) -> Result<Vec<u8>, String> {
-    // The format's exponent is shared and its mantissas have no sign.
+    // RGBE mantissas are unsigned
     let rgb: Vec<_> =
         picture.rgb.iter().map(|rgb| image::Rgb(rgb.map(|value| value.max(0.0)))).collect();
     let mut bytes = Vec::new();
@@ -209,11 +210,12 @@ fn encode_hdr(picture: &Picture) -> Result<Vec<u8>, String> {
     Ok(bytes)
 }
 
-/// Decodes a file that is no EXR or PFM file; its size is known before memory is taken for its
-/// pixels.
+/// Decodes a file in a format of the `image` crate. The size is checked before memory for the
+/// pixels is allocated.
 pub(super) fn decode_common(bytes: &[u8], format: ImageFormat) -> Result<DynamicImage, String> {
-    /// What a decoder may take beside the pixels, and the picture made of them.
+    /// Memory that a decoder may allocate in addition to the pixels.
     const DECODER_BYTES: u64 = 64 << 20;
+    /// Bytes per pixel of the decoded [`Picture`].
     const PICTURE_BYTES: u64 = 12;
     let mut reader = image::ImageReader::with_format(Cursor::new(bytes), format);
     let most = memory::readable().saturating_add(DECODER_BYTES);
@@ -232,6 +234,6 @@ fn decode_hdr(bytes: &[u8]) -> Result<Picture, String> {
         DynamicImage::ImageRgb32F(pixels) => {
             Ok(Picture::from_fn(pixels.width(), pixels.height(), |x, y| pixels.get_pixel(x, y).0))
         }
-        other => Err(format!("its values are {:?}", other.color())),
+        other => Err(format!("unexpected pixel type {:?}", other.color())),
     }
 }

@@ -1,37 +1,39 @@
-//! A picture of the difference of two pictures: logarithmic, with its scale written below.
+//! Heat map of the difference of two images, with a labeled logarithmic scale below it.
 
 use super::colors::gradient;
 use super::metrics::{MetricsError, check_comparable, difference, same_bits};
 use super::{Picture, file};
 
-/// Decades of difference that the colors span.
+/// Decades of difference that the color map spans.
 const DECADES: i32 = 6;
-/// Heights in pixels of the scale's parts, and the space about them.
+/// Space in pixels around the parts of the scale.
 const MARGIN: usize = 4;
+/// Height of the color bar in pixels.
 const BAR: usize = 10;
+/// Columns and rows of a glyph before it is doubled.
 const DIGIT: (usize, usize) = (3, 5);
-/// Width of one decade of the scale: room for a label as wide as `1e-45` and a gap.
+/// Width of one decade in pixels: a label as wide as `1e-45` and a gap.
 const DECADE_WIDTH: usize = 44;
 const SCALE_HEIGHT: usize = 4 * MARGIN + BAR + 2 * DIGIT.1;
 const SCALE_WIDTH: usize = 2 * MARGIN + (DECADES as usize + 1) * DECADE_WIDTH;
 
-/// A rendered difference picture.
+/// A heat map as display values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HeatMap {
     /// Pixels per row.
     pub width: u32,
-    /// Rows: the pictures' own, then the scale's.
+    /// Rows of the compared images plus those of the scale.
     pub height: u32,
     /// 8-bit display values, row by row.
     pub rgb: Vec<[u8; 3]>,
-    /// The difference at the bright end of the colors, a power of ten.
+    /// Difference at the bright end of the color map, a power of ten.
     pub top: f64,
 }
 
 /// Draws the largest absolute channel difference of each pixel on a logarithmic scale of six
-/// decades that ends at the next power of ten above the largest one. Pixels of equal bits are
-/// black; smaller differences than the scale's have its first color. Below the picture stands the
-/// scale with a label at each decade.
+/// decades that ends at the smallest power of ten not below the largest difference. Bit-identical
+/// pixels are black; differences below the scale have its first color. The scale is drawn below the
+/// image, with a label at each decade.
 pub fn heat_map(a: &Picture, b: &Picture) -> Result<HeatMap, MetricsError> {
     check_comparable(a, b)?;
     let largest =
@@ -59,7 +61,7 @@ pub fn heat_map(a: &Picture, b: &Picture) -> Result<HeatMap, MetricsError> {
     })
 }
 
-/// Writes a difference picture as PNG.
+/// Writes a heat map as PNG.
 pub fn write(path: &std::path::Path, map: &HeatMap) -> Result<(), super::FileError> {
     file::write_rgb8(path, map.width, map.height, map.rgb.as_flattened())
 }
@@ -77,7 +79,7 @@ impl Canvas {
         self.rgb[y * self.width + x] = color;
     }
 
-    /// Draws text at double size; characters without a glyph stay blank.
+    /// Draws text at double size; characters without a glyph are blank.
     fn text(&mut self, x: usize, y: usize, text: &str) {
         for (place, character) in text.chars().enumerate() {
             let left = x + place * 2 * (DIGIT.0 + 1);
@@ -110,7 +112,7 @@ fn draw_scale(canvas: &mut Canvas, top_row: usize, top: i32) {
     }
 }
 
-/// Dark violet through red and yellow to white for `x` from 0 to 1, of rising luminance.
+/// Color map for `x` in [0, 1] with increasing luminance: dark violet, red, yellow, white.
 pub fn heat(x: f64) -> [u8; 3] {
     const STOPS: [[u8; 3]; 6] = [
         [40, 11, 84],
@@ -123,7 +125,7 @@ pub fn heat(x: f64) -> [u8; 3] {
     gradient(&STOPS, x)
 }
 
-/// Rows of a 3 x 5 glyph, three bits each.
+/// Rows of a 3 x 5 glyph, three bits each, leftmost pixel in the highest bit.
 fn glyph(character: char) -> [u8; 5] {
     match character {
         '0' => [0b111, 0b101, 0b101, 0b101, 0b111],

@@ -1,87 +1,91 @@
-//! How far two pictures are apart.
+//! Per-pixel error metrics of two images.
 
 use thiserror::Error;
 
 use super::{Picture, Region, luminance};
 
-/// Figures of a picture `a` against a truth `b`.
+/// Metrics of an image `a` against a reference `b`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
-    /// Mean of `a` over mean of `b` per channel; 1 where both are zero.
+    /// Mean of `a` divided by mean of `b` per channel; 1 if both are zero.
     pub mean_ratio: [f64; 3],
-    /// Mean over pixels of `(La - Lb)^2 / (Lb^2 + 0.01)`, the largest 0.1 % dropped (rounded up);
+    /// Mean over pixels of `(La - Lb)^2 / (Lb^2 + 0.01)` without the largest 0.1 % (rounded up);
     /// `L` is luminance.
     pub rel_mse: f64,
-    /// Mean squared difference over all channel values, in the square of their unit.
+    /// Mean squared difference over all channel values, in (W sr^-1 m^-2)^2.
     pub mse: f64,
-    /// Median over pixels of `|La - Lb| / Lb`: 0 where both are zero, infinite where `Lb` alone is.
+    /// Median over pixels of `|La - Lb| / Lb`; 0 if both are zero, infinite if only `Lb` is zero.
     pub median: f64,
-    /// Root of the mean squared difference over all channel values, in W sr^-1 m^-2.
+    /// Root mean squared difference over all channel values, in W sr^-1 m^-2.
     pub rmse: f64,
-    /// Peak signal-to-noise ratio in dB; the peak is the largest value of the whole truth. Infinite
-    /// for equal pictures.
+    /// Peak signal-to-noise ratio in dB. The peak is the largest value of the whole reference.
+    /// Infinite for equal images.
     pub psnr: f64,
-    /// The pixel with the largest absolute difference in a channel; the first such in reading
-    /// order.
+    /// Pixel with the largest absolute channel difference; the first in reading order if several
+    /// are equal.
     pub worst: WorstPixel,
-    /// How many pixels differ in at least one bit.
+    /// Number of pixels that differ in at least one bit.
     pub pixels_differing: usize,
-    /// How many pixels there are.
+    /// Number of pixels.
     pub pixels: usize,
 }
 
-/// A pixel of two pictures.
+/// Values of two images at one pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WorstPixel {
     /// Column.
     pub x: u32,
     /// Row, 0 on top.
     pub y: u32,
-    /// Its value in the first picture.
+    /// Value in the first image.
     pub a: [f32; 3],
-    /// Its value in the second.
+    /// Value in the second image.
     pub b: [f32; 3],
 }
 
-/// Pictures that cannot be compared.
+/// Reason why two images cannot be compared.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum MetricsError {
     /// Their sizes differ.
-    #[error("the pictures' sizes differ: {}x{} and {}x{}", .a.0, .a.1, .b.0, .b.1)]
+    #[error("the image sizes differ: {}x{} and {}x{}", .a.0, .a.1, .b.0, .b.1)]
     Size {
         /// Width and height of the first.
         a: (u32, u32),
         /// Width and height of the second.
         b: (u32, u32),
     },
-    /// There are values that no figure can be made of.
-    #[error("{count} values of the {which} picture are NaN or infinite, the first in column {}, row {}", .at.0, .at.1)]
+    /// An image contains NaN or infinity.
+    #[error(
+        "{count} values of the {which} image are NaN or infinite, the first in column {}, row {}",
+        .at.0, .at.1
+    )]
     NotFinite {
         /// "first" or "second".
         which: &'static str,
-        /// How many.
+        /// Number of such channel values.
         count: usize,
         /// Column and row of the first in reading order.
         at: (u32, u32),
     },
-    /// A picture has no pixels.
-    #[error("the pictures have no pixels")]
+    /// The images are empty.
+    #[error("the images have no pixels")]
     Empty,
-    /// A region has no pixels, or some that the pictures do not have.
+    /// A region is empty or extends beyond the images.
     #[error(
-        "the region ({region}) has no pixels, or reaches beyond the pictures' {width} columns and {height} rows"
+        "the region ({region}) is empty, or extends beyond the images' {width} columns and \
+         {height} rows"
     )]
     Region {
         /// The region.
         region: Region,
-        /// The pictures' columns.
+        /// Columns of the images.
         width: u32,
-        /// The pictures' rows.
+        /// Rows of the images.
         height: u32,
     },
 }
 
-/// Compares `a` with the truth `b`.
+/// Compares `a` with the reference `b`.
 pub fn compare(a: &Picture, b: &Picture) -> Result<Comparison, MetricsError> {
     check_comparable(a, b)?;
     Ok(figures(a, b, peak(b)))
@@ -134,13 +138,13 @@ fn median(a: &Picture, b: &Picture) -> f64 {
 }
 
 impl Comparison {
-    /// Largest distance of a channel's mean ratio from one.
+    /// Largest deviation of a channel's mean ratio from one.
     pub fn mean_error(&self) -> f64 {
         self.mean_ratio.iter().fold(0.0, |largest: f64, ratio| largest.max((ratio - 1.0).abs()))
     }
 }
 
-/// Fails for pictures of different sizes, without pixels, or with values that are not finite.
+/// Fails if the sizes differ, the images are empty, or a value is not finite.
 pub(super) fn check_comparable(a: &Picture, b: &Picture) -> Result<(), MetricsError> {
     if (a.width, a.height) != (b.width, b.height) {
         return Err(MetricsError::Size { a: (a.width, a.height), b: (b.width, b.height) });
@@ -163,7 +167,7 @@ pub(super) fn difference(a: [f32; 3], b: [f32; 3]) -> f64 {
     (0..3).fold(0.0, |largest: f64, i| largest.max((f64::from(a[i]) - f64::from(b[i])).abs()))
 }
 
-/// Whether two pixels agree in every bit; 0 and -0 do not.
+/// Returns true if two pixels are bit-identical; 0 and -0 are not.
 pub(super) fn same_bits(a: [f32; 3], b: [f32; 3]) -> bool {
     a.map(f32::to_bits) == b.map(f32::to_bits)
 }
@@ -193,7 +197,7 @@ fn rel_mse(a: &Picture, b: &Picture) -> f64 {
     let mut errors: Vec<f64> = a.rgb.iter().zip(&b.rgb).map(error).collect();
     errors.sort_by(f64::total_cmp);
     let dropped = errors.len().div_ceil(1000);
-    // A picture of one pixel keeps it.
+    // keep at least one pixel
     let kept = (errors.len() - dropped).max(1);
     mean(errors[..kept].iter().copied())
 }

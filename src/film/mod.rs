@@ -1,4 +1,4 @@
-//! Pictures: files, tone mapping and measures.
+//! Images: files, tone mapping and error metrics.
 
 pub mod any_file;
 pub mod blocks;
@@ -32,7 +32,7 @@ pub use region::Region;
 pub use rejections::Rejections;
 pub use tonemap::Development;
 
-/// Linear Rec. 709 radiance, row 0 on top.
+/// An image of linear Rec. 709 radiance, row 0 on top.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
     /// Pixels per row.
@@ -44,7 +44,7 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// A picture whose pixel in column `x` and row `y` is `radiance(x, y)`.
+    /// Creates an image whose pixel in column `x` and row `y` is `radiance(x, y)`.
     pub fn from_fn(
         width: u32,
         height: u32,
@@ -65,18 +65,18 @@ impl Picture {
         ((index % width) as u32, (index / width) as u32)
     }
 
-    /// How many channel values are NaN or infinite; a renderer's fault when it is not zero.
+    /// Number of channel values that are NaN or infinite. A correct renderer produces none.
     pub fn not_finite(&self) -> usize {
         self.rgb.as_flattened().iter().filter(|value| !value.is_finite()).count()
     }
 }
 
-/// Rec. 709 luminance of linear Rec. 709 values, in their unit.
+/// Rec. 709 luminance of linear Rec. 709 values, in the unit of the values.
 pub fn luminance(rgb: [f32; 3]) -> f64 {
     luminance_of(rgb.map(f64::from))
 }
 
-/// The same in f64.
+/// [`luminance`] of `f64` values.
 pub fn luminance_of([r, g, b]: [f64; 3]) -> f64 {
     0.2126 * r + 0.7152 * g + 0.0722 * b
 }

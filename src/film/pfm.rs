@@ -1,8 +1,8 @@
-//! Portable float maps: a short text header, then 32-bit floats, bottom row first.
+//! Portable float maps (PFM): a short text header, then 32-bit floats, bottom row first.
 
 use super::Picture;
 
-/// The bytes of a little-endian color PFM file.
+/// Encodes a little-endian color PFM file.
 pub fn encode(picture: &Picture) -> Vec<u8> {
     let mut bytes = format!("PF\n{} {}\n-1.0\n", picture.width, picture.height).into_bytes();
     for row in picture.rgb.chunks(picture.width as usize).rev() {
@@ -13,12 +13,12 @@ pub fn encode(picture: &Picture) -> Vec<u8> {
     bytes
 }
 
-/// Reads a color or grey PFM file of either byte order; values are multiplied by the header's
-/// scale.
+/// Decodes a color or grayscale PFM file of either byte order. Values are multiplied by the
+/// absolute scale in the header.
 pub fn decode(bytes: &[u8]) -> Result<Picture, String> {
     let mut rest = bytes;
     let mut word = || -> Result<&str, String> {
-        let end = rest.iter().position(u8::is_ascii_whitespace).ok_or("the header is cut short")?;
+        let end = rest.iter().position(u8::is_ascii_whitespace).ok_or("the header is truncated")?;
         let (word, tail) = rest.split_at(end);
         rest = &tail[1..];
         str::from_utf8(word).map_err(|_| "the header is not text".to_owned())
@@ -26,20 +26,20 @@ pub fn decode(bytes: &[u8]) -> Result<Picture, String> {
     let channels = match word()? {
         "PF" => 3,
         "Pf" => 1,
-        other => return Err(format!("it starts with `{other}` where PFM has `PF` or `Pf`")),
+        other => return Err(format!("it starts with `{other}`, but expected `PF` or `Pf`")),
     };
     let size = |text: &str| match text.parse::<u32>() {
         Ok(size) if size > 0 => Ok(size),
-        _ => Err(format!("`{text}` is no picture size")),
+        _ => Err(format!("`{text}` is not a valid width or height")),
     };
     let (width, height) = (size(word()?)?, size(word()?)?);
     let scale = word()?;
     let scale = scale.parse::<f32>().ok().filter(|s| s.is_finite() && *s != 0.0);
-    let scale = scale.ok_or("its scale is not a number other than zero")?;
+    let scale = scale.ok_or("the scale is not a finite nonzero number")?;
     let values = u64::from(width) * u64::from(height) * channels;
     if rest.len() as u64 != 4 * values {
         return Err(format!(
-            "{width} x {height} pixels take {} bytes, but it holds {}",
+            "{width} x {height} pixels take {} bytes, but the file contains {}",
             4 * values,
             rest.len()
         ));

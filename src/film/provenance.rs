@@ -1,4 +1,4 @@
-//! What a picture was made from: enough to make it again.
+//! Provenance of an image: all that is needed to render it again.
 
 use std::collections::BTreeMap;
 
@@ -7,41 +7,42 @@ use super::exr_file::Frame;
 use crate::scene::settings::RenderSettings;
 use crate::scene::{Aov, Aovs, Film, ToneMap};
 
-/// How a picture came about; written into EXR files as text attributes named `caustica.*`.
+/// Scene, settings and device of a render, written to EXR files as text attributes `caustica.*`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Provenance {
-    /// The scene's name.
+    /// Scene name.
     pub scene: String,
-    /// The scene file's name, as it was given.
+    /// Scene file name as given by the user.
     pub scene_file: String,
-    /// The scene file's text.
+    /// Text of the scene file.
     pub scene_text: String,
-    /// [`crate::render::identity::Identity::digest`] of the scene; none where nobody is to make it again.
+    /// [`crate::render::identity::Identity::digest`] of the scene; `None` if the render need not be
+    /// reproducible.
     pub digest: Option<String>,
-    /// What it was taken on; none for a whole picture with nothing but radiance.
+    /// Film settings; `None` for an uncropped image without AOVs.
     pub film: Option<Film>,
-    /// The materials' names, in the order of their numbers.
+    /// Material names, indexed by material ID.
     pub materials: Vec<String>,
-    /// All settings, with the command line's overrides, but with "auto" where the render chose.
+    /// Requested settings, including command-line overrides, with "auto" unresolved.
     pub asked: Option<RenderSettings>,
-    /// The same with what was chosen.
+    /// Effective settings, with "auto" resolved.
     pub settings: RenderSettings,
-    /// The device's name.
+    /// Device name.
     pub device: String,
-    /// Number of the picture's first pass; 0 but where a range of passes was asked for.
+    /// Index of the first pass; 0 unless a range of passes was requested.
     pub first_pass: u32,
-    /// Passes in the picture; fewer than `settings.passes` when the render was stopped early.
+    /// Number of passes in the image; less than `settings.passes` if the render stopped early.
     pub passes_done: u32,
-    /// What made the layer `denoised`; none where it is not there.
+    /// Name of the denoiser that produced the layer `denoised`; `None` without that layer.
     pub denoised: Option<String>,
 }
 
-/// This program's version, as written into files.
+/// Version of caustica, as written to files.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 impl Provenance {
-    /// Attribute names and values. `caustica.settings` holds all settings as one JSON object, and
-    /// `caustica.<setting>` each of them as a JSON value (strings without quotes).
+    /// Attribute names and values. `caustica.settings` contains all settings as one JSON object;
+    /// `caustica.<setting>` contains each setting as a JSON value (strings without quotes).
     pub fn attributes(&self) -> BTreeMap<String, String> {
         let settings = serde_json::json!(self.settings);
         let mut attributes = BTreeMap::from([
@@ -86,18 +87,19 @@ impl Provenance {
         attributes
     }
 
-    /// Reads what [`Self::attributes`] wrote, but for exposure, tone map and the materials' names;
-    /// an error says what is missing or not understood.
+    /// Parses the output of [`Self::attributes`], except exposure, tone map and material names.
+    ///
+    /// # Errors
+    /// The first attribute that is missing or invalid.
     pub fn read(attributes: &BTreeMap<String, String>) -> Result<Self, String> {
         let get = |name: &str| attributes.get(&format!("caustica.{name}"));
         let need = |name: &str| {
             get(name).ok_or_else(|| {
-                format!("it lacks the attribute caustica.{name}, which `caustica render` writes")
+                format!("the attribute caustica.{name}, written by `caustica render`, is missing")
             })
         };
-        let wrong = |name: &str, what: &str| {
-            format!("its attribute caustica.{name} is not understood: {what}")
-        };
+        let wrong =
+            |name: &str, what: &str| format!("the attribute caustica.{name} is invalid: {what}");
         let settings = |name: &str| match get(name) {
             Some(text) => {
                 serde_json::from_str(text).map(Some).map_err(|e| wrong(name, &e.to_string()))
@@ -107,7 +109,7 @@ impl Provenance {
         let numbers = |name: &str, text: &str, between: char| {
             let all: Option<Vec<u32>> =
                 text.split(between).map(|number| number.parse().ok()).collect();
-            all.ok_or_else(|| wrong(name, "no whole numbers"))
+            all.ok_or_else(|| wrong(name, "not whole numbers"))
         };
         let [width, height] = numbers("size", need("size")?, 'x')?[..] else {
             return Err(wrong("size", "not two numbers"));
@@ -117,7 +119,7 @@ impl Provenance {
                 [x0, y0, x1, y1] if x0 < x1 && y0 < y1 && x1 <= width && y1 <= height => {
                     Some([x0, y0, x1, y1])
                 }
-                _ => return Err(wrong("crop", "no window of the picture")),
+                _ => return Err(wrong("crop", "not a window of the image")),
             },
             None => None,
         };
@@ -141,13 +143,13 @@ impl Provenance {
             asked: settings("asked")?,
             settings: settings("settings")?.ok_or_else(|| wrong("settings", "it is missing"))?,
             device: need("device")?.clone(),
-            first_pass: first_pass.map_err(|_| wrong("first_pass", "no number of a pass"))?,
-            passes_done: passes.ok_or_else(|| wrong("passes_done", "no number of passes"))?,
+            first_pass: first_pass.map_err(|_| wrong("first_pass", "not a pass number"))?,
+            passes_done: passes.ok_or_else(|| wrong("passes_done", "not a number of passes"))?,
             denoised: get("denoised").cloned(),
         })
     }
 
-    /// Where the picture lies in the whole that it is a window of.
+    /// Position of the image in the whole frame, if it is a crop window.
     pub fn frame(&self, picture: &Picture) -> Frame {
         match self.film {
             Some(Film { width, height, window: Some([x, y, _, _]), .. }) => {

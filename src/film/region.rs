@@ -4,8 +4,7 @@ use std::fmt;
 
 use super::Picture;
 
-/// Columns `x0` to `x1` and rows `y0` to `y1` of a picture, row 0 on top; the last of each are left
-/// out.
+/// Columns `x0..x1` and rows `y0..y1` of an image, row 0 on top.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Region {
     /// First column.
@@ -19,22 +18,22 @@ pub struct Region {
 }
 
 impl Region {
-    /// All pixels of a picture.
+    /// Region of all pixels of an image.
     pub fn whole(picture: &Picture) -> Self {
         Self { x0: 0, y0: 0, x1: picture.width, y1: picture.height }
     }
 
-    /// Whether it holds no pixel.
+    /// Returns true if the region contains no pixels.
     pub fn is_empty(&self) -> bool {
         self.x0 >= self.x1 || self.y0 >= self.y1
     }
 
-    /// Whether it has pixels, and all of them lie in a picture of this size.
+    /// Returns true if the region is not empty and lies in an image of this size.
     pub fn fits(&self, width: u32, height: u32) -> bool {
         !self.is_empty() && self.x1 <= width && self.y1 <= height
     }
 
-    /// Its pixels that are at least `margin` pixels away from the border of a picture of this size.
+    /// Pixels of the region at least `margin` pixels away from the border of an image of this size.
     pub fn inside(&self, margin: u32, width: u32, height: u32) -> Self {
         Self {
             x0: self.x0.max(margin),
@@ -44,14 +43,14 @@ impl Region {
         }
     }
 
-    /// Its part of a picture that it fits into.
+    /// Crops an image to the region, which must lie in it.
     pub fn crop(&self, picture: &Picture) -> Picture {
         let at = |x, y| picture.rgb[(y * picture.width + x) as usize];
         Picture::from_fn(self.x1 - self.x0, self.y1 - self.y0, |x, y| at(self.x0 + x, self.y0 + y))
     }
 }
 
-/// In words, with the last column and row that are in it.
+/// Formats the region in words, with inclusive bounds.
 impl fmt::Display for Region {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let Self { x0, y0, x1, y1 } = *self;

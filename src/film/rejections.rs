@@ -1,9 +1,9 @@
-//! What was left out of a picture, so that no NaN and no infinity gets into it.
+//! Counts of samples rejected to keep NaN and infinity out of the image.
 
 use serde::Serialize;
 
-/// How many of a pixel's passes did not count, over all pixels, by the first cause that their parts
-/// show.
+/// Number of rejected pixel samples (one pass at one pixel), by the first component that was not
+/// finite.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Rejections {
     /// Emission, environment or throughput along an eye path was not finite.
@@ -12,32 +12,32 @@ pub struct Rejections {
     pub direct_light: u64,
     /// The sum of the photons was not finite.
     pub photons: u64,
-    /// Each part was finite, the estimate made of them not.
+    /// Each component was finite, but the resulting estimate was not.
     pub estimate: u64,
-    /// No pass, but pixels of the picture with a radiance beyond f32, which hold f32's largest
-    /// number instead.
+    /// Number of image pixels, not samples, that exceed the range of f32 and are clamped to its
+    /// largest value.
     pub too_bright: u64,
 }
 
 impl Rejections {
-    /// Number and description of each cause that there was.
+    /// Count and description of each cause that occurred.
     pub fn causes(&self) -> Vec<(u64, &'static str)> {
         let all = [
-            (self.eye_path, "eye paths that met no finite light"),
+            (self.eye_path, "eye paths with radiance that was not finite"),
             (self.direct_light, "samples of direct light that were not finite"),
             (self.photons, "sums of photons that were not finite"),
-            (self.estimate, "estimates that overflow, though their parts are finite"),
-            (self.too_bright, "pixels brighter than a picture can hold"),
+            (self.estimate, "estimates that overflow although their parts are finite"),
+            (self.too_bright, "pixels too bright for 32-bit floats"),
         ];
         all.into_iter().filter(|(count, _)| *count > 0).collect()
     }
 
-    /// All of them together.
+    /// Sum over all causes.
     pub fn total(&self) -> u64 {
         self.causes().iter().map(|(count, _)| count).sum()
     }
 
-    /// Whether nothing was left out.
+    /// Returns true if nothing was rejected.
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
     }

@@ -1,26 +1,29 @@
-//! Structural similarity.
+//! Structural similarity (SSIM).
 //!
 //! Wang, Bovik, Sheikh & Simoncelli, "Image Quality Assessment: From Error Visibility to Structural
-//! Similarity" (2004), equation 13 with the paper's window, 11 x 11 pixels of a Gaussian of 1.5
-//! pixels, and constants K1 = 0.01, K2 = 0.03. It is taken of the luma
-//! `Y' = 0.2126 R' + 0.7152 G' + 0.0722 B'` (Rec. 709) of the sRGB-coded picture, clipped to [0, 1].
+//! Similarity" (2004), equation 13, with the paper's window (11 x 11 pixels of a Gaussian with
+//! sigma = 1.5 pixels) and constants K1 = 0.01, K2 = 0.03. The input is the Rec. 709 luma
+//! `Y' = 0.2126 R' + 0.7152 G' + 0.0722 B'` of the image, clipped to [0, 1] and sRGB-encoded.
 
 use super::metrics::{MetricsError, check_comparable};
 use super::plane::{Plane, gaussian, normalized};
 use super::{Picture, Region};
 use crate::math::srgb::srgb_from_linear;
 
-/// Pixels from a window's middle to its edge.
+/// Pixels from the center of a window to its edge.
 pub const WINDOW_RADIUS: u32 = 5;
 const WINDOW_SIGMA: f64 = 1.5;
 const C1: f64 = 0.01 * 0.01;
 const C2: f64 = 0.03 * 0.03;
 
-/// The similarity of the windows about each pixel, in [-1, 1]; one where they are equal.
+/// SSIM map: similarity of the windows around each pixel, in [-1, 1]; 1 if they are equal.
 pub struct Similarity(Plane);
 
 impl Similarity {
-    /// Fails for pictures that cannot be compared.
+    /// Computes the SSIM map of two images.
+    ///
+    /// # Errors
+    /// If the images cannot be compared.
     pub fn of(a: &Picture, b: &Picture) -> Result<Self, MetricsError> {
         check_comparable(a, b)?;
         let window = normalized(&gaussian(WINDOW_SIGMA, WINDOW_RADIUS as usize));
@@ -28,7 +31,7 @@ impl Similarity {
         let (a, b) = (Plane::of(a, luma), Plane::of(b, luma));
         let product = |p: &Plane, q: &Plane| p.zip(q, |p, q| p * q);
         let (mean_a, mean_b) = (mean(&a), mean(&b));
-        // variances and covariance as mean product less product of the means
+        // covariance = mean of the product minus product of the means
         let covariance = |p: &Plane, q: &Plane, mean_p: &Plane, mean_q: &Plane| {
             mean(&product(p, q)).zip(&product(mean_p, mean_q), |both, apart| both - apart)
         };
@@ -42,7 +45,7 @@ impl Similarity {
         Ok(Self(product(&luminance, &structure)))
     }
 
-    /// Mean over the windows that lie in the picture and whose middle lies in the region; none when
+    /// Mean over all windows that lie in the image and are centered in the region, or `None` if
     /// there are none.
     pub fn mean(&self, region: &Region) -> Option<f64> {
         let (width, height) = (self.0.width, self.0.values.len() / self.0.width);

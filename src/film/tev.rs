@@ -1,10 +1,9 @@
-//! Pictures on their way to the viewer tev (<https://github.com/Tom94/tev>), by its protocol over
-//! TCP.
+//! Client for the image viewer tev (<https://github.com/Tom94/tev>) and its TCP protocol.
 //!
-//! A packet is its length in bytes as u32, the length's own four included, a byte that names its
-//! kind, and fields; all numbers are little endian, strings end with a zero byte. Two kinds do
-//! here: CreateImage (4) and UpdateImage in its third version (6), which sends values of several
-//! channels with an offset and a stride for each.
+//! A packet consists of its length in bytes as u32 (including these four bytes), a type byte and
+//! fields. All numbers are little-endian, strings are zero-terminated. Two types are used:
+//! CreateImage (4) and version 3 of UpdateImage (6), which sends values of several channels with an
+//! offset and a stride for each.
 
 use std::io::{self, Write};
 use std::net::{TcpStream, ToSocketAddrs};
@@ -13,19 +12,19 @@ use std::time::Duration;
 use super::Picture;
 use super::exr_file::Frame;
 
-/// Where tev listens unless it is told otherwise.
+/// Default address on which tev listens.
 pub const ADDRESS: &str = "127.0.0.1:14158";
 
 const CREATE_IMAGE: u8 = 4;
 const UPDATE_IMAGE: u8 = 6;
 const CHANNELS: [&str; 3] = ["R", "G", "B"];
 
-/// How long a viewer may take to answer or to read.
+/// Timeout for connecting and for each write.
 const PATIENCE: Duration = Duration::from_secs(5);
-/// Most values in a packet, but for a single row.
+/// Maximum number of values in a packet. A packet always has at least one row.
 const PACKET_VALUES: usize = 1 << 20;
 
-/// A connection to a running tev, and the picture that it shows.
+/// A connection to a running tev that displays one image.
 #[derive(Debug)]
 pub struct Tev<W: Write> {
     stream: W,
@@ -34,13 +33,13 @@ pub struct Tev<W: Write> {
 }
 
 impl Tev<TcpStream> {
-    /// Connects to `host:port` and opens a picture there under a name.
+    /// Connects to `host:port` and creates an image of the given name.
     ///
     /// # Errors
-    /// Where nothing answers within a few seconds, or what answers does not read.
+    /// If no connection is established within a few seconds, or a write fails or times out.
     pub fn connect(address: &str, name: &str, frame: Frame) -> io::Result<Self> {
         let mut failure =
-            io::Error::new(io::ErrorKind::AddrNotAvailable, "the name has no address");
+            io::Error::new(io::ErrorKind::AddrNotAvailable, "the host name has no address");
         for address in address.to_socket_addrs()? {
             match TcpStream::connect_timeout(&address, PATIENCE) {
                 Ok(stream) => {
@@ -55,7 +54,7 @@ impl Tev<TcpStream> {
 }
 
 impl<W: Write> Tev<W> {
-    /// Opens a picture under a name; one that has the name gives way.
+    /// Creates an image in tev. It replaces an existing image of the same name.
     pub fn open(mut stream: W, name: &str, frame: Frame) -> io::Result<Self> {
         let mut packet = Packet::new(CREATE_IMAGE, name);
         packet.ints(&[frame.width, frame.height, CHANNELS.len() as u32]);
@@ -65,7 +64,7 @@ impl<W: Write> Tev<W> {
         Ok(Self { stream, name: name.to_owned(), frame })
     }
 
-    /// Shows a picture at its place in the frame.
+    /// Sends the pixels of an image to its position in the frame.
     pub fn show(&mut self, picture: &Picture) -> io::Result<()> {
         let row = picture.width as usize;
         let rows = (PACKET_VALUES / (CHANNELS.len() * row).max(1)).max(1);
@@ -91,8 +90,8 @@ impl<W: Write> Tev<W> {
 struct Packet(Vec<u8>);
 
 impl Packet {
-    /// A packet about the picture of this name. A new one comes to the front, and stays there only
-    /// as long as nobody looks at another.
+    /// Starts a packet for the image of this name. Only a new image takes the focus, so that
+    /// updates do not interrupt a user who looks at another image.
     fn new(kind: u8, name: &str) -> Self {
         let mut packet = Self(vec![0; 4]);
         packet.bytes(&[kind, u8::from(kind == CREATE_IMAGE)]);

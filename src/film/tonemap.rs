@@ -1,4 +1,4 @@
-//! From radiance to display values: exposure, then AgX or a clip, then the sRGB curve.
+//! Tone mapping from radiance to display values: exposure, AgX or clipping, sRGB curve.
 
 use std::sync::LazyLock;
 
@@ -7,36 +7,36 @@ use glam::{DMat3, DVec3};
 use crate::math::srgb::srgb_from_linear;
 use crate::scene::{Film, ToneMap};
 
-/// How radiance is developed into a picture for a display.
+/// Conversion of radiance to display values.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Development {
     /// Exposure in stops (powers of two).
     pub exposure: f64,
-    /// The curve.
+    /// Tone curve.
     pub tonemap: ToneMap,
-    /// Bits of each channel in a file.
+    /// Bit depth of each channel in a file.
     pub bits: Bits,
 }
 
 impl Development {
-    /// The development that a film asks for, with eight bits for each channel.
+    /// Development with the exposure and tone map of a film, at 8 bits per channel.
     pub fn of(film: &Film) -> Self {
         Self { exposure: film.exposure, tonemap: film.tonemap, bits: Bits::Eight }
     }
 }
 
-/// Bits of each channel of a picture for a display.
+/// Bit depth per channel of display values.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Bits {
-    /// As a screen shows.
+    /// 8 bits, for viewing.
     #[default]
     Eight,
-    /// To work on.
+    /// 16 bits, for editing.
     Sixteen,
 }
 
 impl Development {
-    /// Display values in [0, 1], encoded for an sRGB display. NaN becomes black.
+    /// Display values in [0, 1] with the sRGB curve applied. NaN becomes black.
     pub fn display(&self, radiance: [f32; 3]) -> [f64; 3] {
         let exposed = DVec3::from(radiance.map(f64::from)) * self.exposure.exp2();
         let linear = match self.tonemap {
@@ -59,11 +59,11 @@ impl Development {
     }
 }
 
-/// Exposures that AgX's curve spans, in stops about a radiance of one.
+/// Range of the AgX curve, in stops relative to a radiance of one.
 const AGX_STOPS: (f64, f64) = (-12.473_93, 4.026_069);
 
-/// AgX's inset: pulls saturated colors toward grey before the curve, so that bright lights run to
-/// white. Each row is scaled to sum to one, so that grey stays grey exactly.
+/// AgX inset matrix: desaturates colors before the curve, so that bright lights turn white. Each
+/// row is normalized to sum to one, so that grays are preserved exactly.
 static AGX_INSET: LazyLock<DMat3> = LazyLock::new(|| {
     let rows = [
         DVec3::new(0.842_479_062_253_094, 0.078_433_599_999_999_2, 0.079_223_745_147_764_3),
@@ -76,9 +76,9 @@ static AGX_INSET: LazyLock<DMat3> = LazyLock::new(|| {
 
 static AGX_OUTSET: LazyLock<DMat3> = LazyLock::new(|| AGX_INSET.inverse());
 
-/// The AgX picture formation of Troy Sobotka (2022), with the matrices and the sixth-order fit of
-/// the curve by Benjamin Wrensch ("Minimal AgX Implementation", mean squared error 3.7e-6). Linear
-/// in, linear out.
+/// AgX tone mapping by Troy Sobotka (2022), with the matrices and the sixth-order polynomial fit of
+/// the curve by Benjamin Wrensch ("Minimal AgX Implementation", mean squared error 3.7e-6). Input
+/// and output are linear.
 fn agx(exposed: DVec3) -> DVec3 {
     let (low, high) = AGX_STOPS;
     let inset = *AGX_INSET * exposed.max(DVec3::ZERO);
@@ -87,11 +87,11 @@ fn agx(exposed: DVec3) -> DVec3 {
         agx_curve((stops - low) / (high - low)).clamp(0.0, 1.0)
     }));
     let display = *AGX_OUTSET * encoded;
-    // The curve's output is meant for a display of exponent 2.2.
+    // the curve's output is encoded for a display with gamma 2.2
     display.max(DVec3::ZERO).powf(2.2)
 }
 
-/// AgX's base contrast over [0, 1], which it maps to about [0, 1], rising throughout.
+/// AgX base contrast curve: increasing, from [0, 1] to approximately [0, 1].
 fn agx_curve(x: f64) -> f64 {
     const COEFFICIENTS: [f64; 7] = [15.5, -40.14, 31.96, -6.868, 0.4298, 0.1191, -0.002_32];
     COEFFICIENTS.iter().fold(0.0, |sum, coefficient| sum * x + coefficient)

@@ -1,31 +1,31 @@
-//! What a film says: the picture, its errors and what was left out, in world units.
+//! Conversion of a film to an image, an error estimate and rejection counts, in world units.
 
 use super::super::kernels::records::*;
 use crate::film::estimate::{LEAST_PASSES, PixelError, early_passes, partition};
 use crate::film::{ErrorMap, Picture, Rejections, luminance_of};
 
-/// Reads films of one size and unit.
+/// Converter for films of one size and unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Readout {
     /// Pixels per row.
     pub width: u32,
-    /// Scene radiance times this is world radiance.
+    /// Factor from scene radiance to world radiance.
     pub unit: f64,
-    /// Luminance of the brightest thing that eye paths may meet by mirrors or through glass, world
+    /// Luminance of the brightest emitter that eye paths may hit via mirrors or glass, in world
     /// units.
     pub glint: f64,
 }
 
 impl Readout {
-    /// The picture, in world units.
+    /// Radiance image, in world units.
     pub fn picture(&self, film: &[FilmPixel]) -> Picture {
-        // numbers beyond f32 become its largest, and are counted as rejections
+        // values beyond f32 are clamped, and counted as rejections
         let held = |x: f64| (x * self.unit).clamp(f64::from(f32::MIN), f64::from(f32::MAX)) as f32;
         let rgb = film.iter().map(|p| mean(p).map(held)).collect();
         Picture { width: self.width, height: film.len() as u32 / self.width.max(1), rgb }
     }
 
-    /// What a film after `passes` passes of one render says of its error, in world units.
+    /// Error estimate of a film after `passes` passes of a single render, in world units.
     pub fn errors(&self, film: &[FilmPixel], passes: u32) -> ErrorMap {
         let pixels = film.iter().map(|p| {
             let n = counted(p, passes);
@@ -35,7 +35,8 @@ impl Readout {
         ErrorMap { width: self.width, pixels: pixels.collect(), glint }
     }
 
-    /// The same where `mean_at_pow2` and `mean_at_half_pow2` are the means over the first `parts` passes.
+    /// Error estimate of a film whose `mean_at_pow2` and `mean_at_half_pow2` average the first
+    /// `parts` passes of each pixel.
     pub fn errors_by_parts(&self, film: &[FilmPixel], passes: u32, parts: &[[u32; 2]]) -> ErrorMap {
         let pixels =
             film.iter().zip(parts).map(|(p, parts)| self.error(p, counted(p, passes), *parts));
@@ -64,7 +65,7 @@ impl Readout {
         }
     }
 
-    /// What was left out of the picture.
+    /// Rejection counts.
     pub fn rejections(&self, film: &[FilmPixel]) -> Rejections {
         let count = |cause: u32| film.iter().map(|p| u64::from(p.rejected[cause as usize])).sum();
         let too_bright =
@@ -79,18 +80,18 @@ impl Readout {
     }
 }
 
-/// Passes of `passes` that count in a pixel.
+/// Number of accepted passes of a pixel, out of `passes`.
 pub fn counted(pixel: &FilmPixel, passes: u32) -> u32 {
     pixel.rejected.iter().fold(passes, |left, rejected| left.saturating_sub(*rejected))
 }
 
-/// Passes in `mean_at_pow2` and `mean_at_half_pow2` after `n` passes of one render.
+/// Numbers of passes in `mean_at_pow2` and `mean_at_half_pow2` after `n` passes of a single render.
 pub fn early_parts(n: u32) -> [u32; 2] {
     let part = early_passes(n);
     [part, part / 2]
 }
 
-/// A pixel's mean over the passes, scene units.
+/// Mean of a pixel over the passes, in scene units.
 pub fn mean(pixel: &FilmPixel) -> [f64; 3] {
     [0, 1, 2].map(|c| pixel.mean[c] as f64 + pixel.carry[c] as f64)
 }

@@ -1,5 +1,4 @@
-//! What a plan's passes have found in addition to radiance, as channels of a picture file in world
-//! units.
+//! Layers rendered in addition to radiance, as EXR channels in world units.
 
 use super::super::kernels::aov_trace::AovPixel;
 use super::super::kernels::bytes::{AOV_BYTES, PARTS_BYTES, aov_bytes, parts_bytes};
@@ -14,25 +13,25 @@ use crate::film::exr_file::{Channel, Numbers};
 use crate::scene::settings::{Method, RadiusRule};
 use crate::scene::{Aov, Aovs};
 
-/// Depth where a pixel's samples hit nothing, as Blender writes it.
+/// Depth of a pixel whose samples hit nothing, as written by Blender.
 pub const NO_DEPTH: f64 = 1e10;
 
-/// What engines keep of a window's pixels and visible points.
+/// Engine data from which layers are computed.
 pub struct LayerInputs<'a> {
-    /// By pixel; empty where no [`Aov`] takes it.
+    /// AOV sums for each pixel; empty if no requested [`Aov`] needs them.
     pub aovs: &'a [AovPixel],
-    /// By pixel; empty where photons are not parted.
+    /// Photon light by class for each pixel; empty if the classes are not separated.
     pub parts: &'a [PartsPixel],
-    /// By visible point, of the last pass; empty for path tracing.
+    /// Gathered sums of the last pass for each visible point; empty for path tracing.
     pub gathered: &'a [Gathered],
-    /// By visible point; empty but for the local rule.
+    /// Radius statistics for each visible point; empty unless the local rule is used.
     pub statistics: &'a [Statistics],
-    /// Passes made, at least one.
+    /// Number of completed passes, at least one.
     pub passes: u32,
 }
 
 impl Plan {
-    /// The channels of the [`Aov`]s that are asked for.
+    /// Channels of the requested [`Aov`]s.
     pub fn layers(&self, found: &LayerInputs) -> Vec<Channel> {
         let layering = Layering {
             aovs: self.aovs,
@@ -50,7 +49,7 @@ impl Plan {
         layering.channels(&SavedLayers { aovs, parts, counts, objects, statistics })
     }
 
-    /// What is kept for them between two passes.
+    /// Layer data to save between two passes.
     pub fn layer_state(&self, found: &LayerInputs) -> LayerState {
         LayerState {
             aovs: aov_bytes(&self.named(found.aovs)),
@@ -59,13 +58,13 @@ impl Plan {
         }
     }
 
-    /// With the scene's numbers of materials in the place of the tables'.
+    /// Replaces material indices of the packed scene by those of the scene file.
     fn named(&self, aovs: &[AovPixel]) -> Vec<AovPixel> {
         let named = |p: &AovPixel| AovPixel { material: self.objects.material(p.material), ..*p };
         aovs.iter().map(named).collect()
     }
 
-    /// The part of it that is the same for all engines.
+    /// Photon counts and object IDs, whose format is the same for all engines.
     fn numbers(&self, found: &LayerInputs) -> LayerState {
         let mut state = LayerState::default();
         if self.aovs.has(Aov::Photons) {
@@ -78,7 +77,7 @@ impl Plan {
         state
     }
 
-    /// Whether `state` is not what goes on to the layers that are asked for.
+    /// Returns true if `state` lacks data for the requested layers, so that it cannot be resumed.
     pub fn lacks_layers(&self, state: &LayerState) -> bool {
         let pixels = self.pixels as usize;
         self.aovs.are_traced() && state.aovs.len() != pixels * AOV_BYTES
@@ -88,7 +87,7 @@ impl Plan {
                 && state.counts.is_empty()
     }
 
-    /// What tells the render's numbers in those of the world.
+    /// Conversion of scene units to world units.
     pub fn space(&self) -> Space {
         Space {
             center: self.center.to_array(),
@@ -100,24 +99,24 @@ impl Plan {
     }
 }
 
-/// What is kept of a window's pixels and visible points, whoever keeps it.
+/// Layer data in the saved form, which does not depend on the engine.
 pub struct SavedLayers<'a> {
-    /// By pixel; empty where no [`Aov`] takes it.
+    /// AOV sums for each pixel; empty if no requested [`Aov`] needs them.
     pub aovs: &'a [AovPixel],
-    /// By pixel; empty where photons are not parted.
+    /// Photon light by class for each pixel; empty if the classes are not separated.
     pub parts: &'a [PartsPixel],
-    /// By visible point; empty where they are not asked for.
+    /// Photon counts for each visible point; empty if not requested.
     pub counts: &'a [u32],
-    /// By pixel; empty where they are not asked for.
+    /// Object IDs for each pixel; empty if not requested.
     pub objects: &'a [u32],
-    /// By visible point; empty but for the local rule.
+    /// Radius statistics for each visible point; empty unless the local rule is used.
     pub statistics: &'a [Statistics],
 }
 
-/// Makes channels of it.
+/// Conversion of saved layer data to channels.
 #[derive(Clone, Copy, Debug)]
 pub struct Layering {
-    /// Those that are asked for.
+    /// Requested layers.
     pub aovs: Aovs,
     /// Pixels per row of the window.
     pub width: u32,
@@ -125,19 +124,19 @@ pub struct Layering {
     pub pixels: u32,
     /// Visible points per pixel.
     pub eye_samples: u32,
-    /// What its numbers are in the world.
+    /// Conversion of scene units to world units.
     pub space: Space,
-    /// Who finds the light.
+    /// Light transport method.
     pub method: Method,
-    /// How radii change.
+    /// Radius rule.
     pub rule: RadiusRule,
-    /// Squared radius of the last pass over the squared start radius; of no use under the local
+    /// Squared radius of the last pass divided by the squared start radius; unused under the local
     /// rule.
     pub scale_sq: f64,
 }
 
 impl Layering {
-    /// The channels of the [`Aov`]s that are asked for.
+    /// Channels of the requested [`Aov`]s.
     pub fn channels(&self, kept: &SavedLayers) -> Vec<Channel> {
         self.aovs.iter().flat_map(|aov| self.channels_of(aov, kept)).collect()
     }
@@ -187,13 +186,12 @@ impl Layering {
             }
             Aov::Radius => float("radius.Y", self.radii(kept)),
             Aov::Photons => float("photons.Y", self.photons(kept)),
-            // a part of what the picture says of its error, which files hold anyway
+            // part of the error estimate, which files always contain
             Aov::Variance => Vec::new(),
         }
     }
 
-    /// What photons bring in one way; nothing where path tracing brings it, 0 where there are no
-    /// photons.
+    /// Channels of the light of one photon class: none for path tracing, zero without photons.
     fn part(
         &self,
         names: [&'static str; 3],
@@ -216,8 +214,8 @@ impl Layering {
         Plane { width: self.width as usize, values: values.collect() }
     }
 
-    /// Each pixel's gather radius in the last pass; under the local rule, where it is after that
-    /// pass.
+    /// Gather radius of each pixel in the last pass, in world units; under the local rule, the
+    /// radius after that pass.
     fn radii(&self, kept: &SavedLayers) -> Vec<f64> {
         let scale = self.scale_sq.sqrt();
         let Space { unit, photons, .. } = self.space;
@@ -234,7 +232,7 @@ impl Layering {
         kept.aovs.iter().map(radius).collect()
     }
 
-    /// How many photons each pixel's visible points found in the last pass.
+    /// Number of photons gathered by each pixel's visible points in the last pass.
     fn photons(&self, kept: &SavedLayers) -> Vec<f64> {
         let points = kept.counts.chunks(self.eye_samples.max(1) as usize);
         let mut counts: Vec<f64> =
@@ -244,7 +242,7 @@ impl Layering {
     }
 }
 
-#[allow(clippy::unnecessary_cast)] // no cast where a Real is an f64
+#[allow(clippy::unnecessary_cast)] // not a cast in the f64 compilation
 fn one(x: Real) -> f64 {
     x as f64
 }

@@ -1,8 +1,8 @@
-//! What single precision cannot hold, told before it is rendered.
+//! Warnings about scenes that exceed single precision.
 //!
-//! Kernels count in f32 about the scene's own centre, in units of about its size, and round every
-//! coordinate by 6e-8 of that. The thresholds are those up to which the rows of docs/stability.md
-//! hold.
+//! Kernels compute in f32, relative to the scene's center and in units of about its size, so
+//! coordinates are rounded by 6e-8 of the size. The thresholds are the limits up to which the
+//! bounds of docs/stability.md hold.
 
 use crate::prepare::normalize::{Normalization, extent};
 use crate::prepare::orientation::faces_inward;
@@ -10,25 +10,25 @@ use crate::scene::settings::{Radius, RenderSettings};
 use crate::scene::{Finding, Light, MaterialKind, Scene, ShapeKind, Spans};
 use glam::DVec3;
 
-/// Least gather radius, over the scene's radius.
+/// Minimum gather radius, relative to the scene's radius.
 const LEAST_RADIUS: f64 = 1e-6;
-/// Least width of a shape, over the scene's radius.
+/// Minimum width of a shape, relative to the scene's radius.
 const LEAST_WIDTH: f64 = 1e-5;
-/// Least extent of all shapes together, over the scene's radius, to which the camera's distance
-/// counts.
+/// Minimum extent of all shapes together, relative to the scene's radius, which includes the
+/// camera.
 const LEAST_CONTENT: f64 = 1e-4;
-/// Greatest radius of a sphere, over the scene's radius: beyond it f64 no longer holds where its
-/// surface is.
+/// Maximum radius of a sphere, relative to the scene's radius, for which f64 resolves the position
+/// of its surface.
 const GREATEST_SPHERE: f64 = 1e9;
-/// Greatest distance of the scene from the origin, over the scene's radius, for f64 as it is
-/// written in the file.
+/// Maximum distance of the scene from the origin, relative to the scene's radius, for which f64
+/// resolves the coordinates in the file.
 const GREATEST_SHIFT: f64 = 1e8;
-/// Greatest width of a lamp that is sampled by its area, over the distance that it shines over.
+/// Maximum width of a lamp that is sampled by area, relative to its distance from the scene.
 const GREATEST_LAMP: f64 = 100.0;
-/// Least share of the scene's light that a random number of 24 bits chooses.
+/// Minimum fraction of the scene's power that a 24-bit random number can select.
 const LEAST_SHARE: f64 = 6e-8;
 
-/// Everything of a scene and its settings that is out of range.
+/// Warnings about all values of a scene and its settings that are out of range.
 pub fn warnings(scene: &Scene, settings: &RenderSettings, places: &Spans) -> Vec<Finding> {
     let n = Normalization::of(scene);
     let limits = Limits { scene, places, size: n.radius, center: n.center };
@@ -47,7 +47,7 @@ pub fn warnings(scene: &Scene, settings: &RenderSettings, places: &Spans) -> Vec
 struct Limits<'a> {
     scene: &'a Scene,
     places: &'a Spans,
-    /// Radius of the sphere that holds the scene and its camera.
+    /// Radius of the bounding sphere of the scene and the camera.
     size: f64,
     center: DVec3,
 }
@@ -57,19 +57,19 @@ impl Limits<'_> {
         self.places.shapes.get(index).map_or("shapes", String::as_str)
     }
 
-    /// The scene lies so far out that the file's own numbers are coarse.
+    /// Warns if the scene is so far from the origin that f64 rounds its coordinates.
     fn shift(&self) -> Option<Finding> {
         let shift = self.center.length() / self.size;
         (shift > GREATEST_SHIFT).then(|| {
             self.places.warning(
                 &["camera.position"],
-                format!("the scene lies {shift:.1e} times its own radius from the origin"),
-                format!("expected at most {GREATEST_SHIFT:e}: f64 numbers round its shapes"),
+                format!("the scene's distance from the origin is {shift:.1e} times its radius"),
+                format!("expected at most {GREATEST_SHIFT:e}: double precision rounds its shapes"),
             )
         })
     }
 
-    /// The camera is so far away that everything it looks at is a speck.
+    /// Warns if the shapes are tiny compared with their distance from the camera.
     fn content(&self) -> Option<Finding> {
         let giant = |(a, b): &(DVec3, DVec3)| a.distance(*b) > 64.0 * self.size;
         let boxes = self.scene.shapes.iter().filter_map(|s| extent(&s.kind)).filter(|b| !giant(b));
@@ -83,7 +83,7 @@ impl Limits<'_> {
             self.places.warning(
                 &["camera.position"],
                 format!(
-                    "the camera is {:.1e} times as far away as the shapes are wide together",
+                    "the camera's distance is {:.1e} times the width of all shapes together",
                     1.0 / share
                 ),
                 format!(
@@ -99,7 +99,7 @@ impl Limits<'_> {
         let (radius, from) = match settings.radius {
             Radius::Units(units) => (units, "the gather radius"),
             Radius::Auto | Radius::Pixels(_) => {
-                // The least that is chosen is one pixel.
+                // the smallest automatic radius is one pixel
                 let pixels =
                     if let Radius::Pixels(pixels) = settings.radius { pixels } else { 1.0 };
                 let tan = (0.5 * camera.fov_degrees.to_radians()).tan();
@@ -120,21 +120,27 @@ impl Limits<'_> {
         })
     }
 
-    /// A closed body of glass, or one that emits, faces inward.
+    /// Warns if a closed body of glass, or one that emits light, faces inward.
     fn orientation(&self, index: usize) -> Option<Finding> {
         let shape = &self.scene.shapes[index];
         let glass = matches!(self.scene.materials[shape.material].kind, MaterialKind::Glass { .. });
         let does = match (glass, shape.is_emitter()) {
-            (true, _) => "its glass is outside of it",
-            (_, true) => "it shines inward",
+            (true, _) => "the glass is outside",
+            (_, true) => "it emits light inward",
             _ => return None,
         };
         let path = self.shape_path(index);
         faces_inward(&shape.kind).then(|| {
             self.places.warning(
-                &[&format!("{path}.profile"), &format!("{path}.segments"), &format!("{path}.file"), path],
+                &[
+                    &format!("{path}.profile"),
+                    &format!("{path}.segments"),
+                    &format!("{path}.file"),
+                    path,
+                ],
                 format!("{path} is a closed body that faces inward: {does}"),
-                "expected outward: reverse the order of each face's corners, or of the profile's points"
+                "expected outward: reverse the order of the vertices of each face, or of the \
+                 profile's points"
                     .to_owned(),
             )
         })
@@ -148,8 +154,11 @@ impl Limits<'_> {
         {
             return Some(self.places.warning(
                 &[&format!("{path}.radius"), path],
-                format!("{path} has {:.1e} times the scene's radius", radius / self.size),
-                format!("expected at most {GREATEST_SPHERE:e}, or a plane: f64 rounds where its surface is"),
+                format!("the radius of {path} is {:.1e} times the scene's", radius / self.size),
+                format!(
+                    "expected at most {GREATEST_SPHERE:e}, or a plane: double precision rounds \
+                     the position of its surface"
+                ),
             ));
         }
         let (width, key) = width(kind)?;
@@ -157,23 +166,23 @@ impl Limits<'_> {
         (share < LEAST_WIDTH).then(|| {
             self.places.warning(
                 &[&format!("{path}.{key}"), path],
-                format!("{path} is {share:.1e} of the scene's radius wide"),
+                format!("the width of {path} is {share:.1e} of the scene's radius"),
                 format!(
-                    "expected at least {LEAST_WIDTH:e}: single precision rounds its place by 6e-8"
+                    "expected at least {LEAST_WIDTH:e}: single precision rounds positions by 6e-8"
                 ),
             )
         })
     }
 
-    /// Lamps sampled by their area that are far wider than the scene: nearly every sample lands
-    /// where it does not matter.
+    /// Warns about lamps that are sampled by area and far wider than the scene, so that nearly all
+    /// samples contribute nothing.
     fn lamps(&self) -> Vec<Finding> {
         let lamp = |(index, shape): (usize, &crate::scene::Shape)| {
             let sampled_by_area =
                 !matches!(shape.kind, ShapeKind::Sphere { .. } | ShapeKind::Plane { .. });
             let (low, high) =
                 extent(&shape.kind).filter(|_| shape.is_emitter() && sampled_by_area)?;
-            // what it shines over: the way from it to the camera's target, which lies in the scene
+            // distance from the lamp to the camera's target, a point in the scene
             let way = self.scene.camera.target;
             let near = way.clamp(low, high).distance(way).max(f64::MIN_POSITIVE);
             let ratio = low.distance(high) / near.max(1e-2 * self.size);
@@ -181,15 +190,21 @@ impl Limits<'_> {
             (ratio > GREATEST_LAMP).then(|| {
                 self.places.warning(
                     &[&format!("{path}.emission"), path],
-                    format!("{path} shines, and is {ratio:.1e} times as wide as it is far from the camera's target"),
-                    format!("expected at most {GREATEST_LAMP:e}, or an [environment]: it is sampled by its area, and will be noisy"),
+                    format!(
+                        "{path} is a lamp whose width is {ratio:.1e} times its distance from the \
+                         camera's target"
+                    ),
+                    format!(
+                        "expected at most {GREATEST_LAMP:e}, or an [environment]: area sampling \
+                         will be noisy"
+                    ),
                 )
             })
         };
         self.scene.shapes.iter().enumerate().filter_map(lamp).collect()
     }
 
-    /// Point lights that no random number chooses beside stronger ones.
+    /// Warns about point lights that are too dim to be selected among stronger ones.
     fn dim_lights(&self) -> Vec<Finding> {
         let power = |light: &Light| match light {
             Light::Point { intensity, .. } | Light::Spot { intensity, .. } => {
@@ -205,13 +220,17 @@ impl Limits<'_> {
                 self.places.warning(
                     &[&format!("{path}.intensity"), &path],
                     format!("{path} has {share:.1e} of the intensity of the strongest light"),
-                    format!("expected at least {LEAST_SHARE:e}: lights are chosen by power, with 24 bits"),
+                    format!(
+                        "expected at least {LEAST_SHARE:e}: lights are selected by power with \
+                         24-bit numbers"
+                    ),
                 )
             })
         };
         self.scene.lights.iter().enumerate().filter_map(dim).collect()
     }
 
+    /// Warns about metals whose roughness is clamped.
     fn smooth_metal(&self) -> Vec<Finding> {
         let least = f64::from(crate::materials::metal::ALPHA_MIN).sqrt();
         let smooth = |(index, material): (usize, &crate::scene::Material)| {
@@ -220,8 +239,11 @@ impl Limits<'_> {
             (roughness < least).then(|| {
                 self.places.warning(
                     &[&format!("{path}.roughness"), path],
-                    format!("{path} has a roughness of {roughness}, which is rendered as {least:.4}"),
-                    "expected more, or type = \"mirror\": single precision cannot hold so sharp a peak"
+                    format!(
+                        "{path} has a roughness of {roughness}, which is rendered as {least:.4}"
+                    ),
+                    "expected more, or type = \"mirror\": single precision cannot represent so \
+                     sharp a peak"
                         .to_owned(),
                 )
             })
@@ -230,8 +252,8 @@ impl Limits<'_> {
     }
 }
 
-/// The least width of a shape that matters, and the key that it comes from. A flat shape's
-/// thickness does not.
+/// Smallest relevant width of a shape, and its key in the scene file. The thickness of flat shapes
+/// is not relevant.
 fn width(kind: &ShapeKind) -> Option<(f64, &'static str)> {
     Some(match kind {
         ShapeKind::Sphere { radius, .. } => (2.0 * radius, "radius"),

@@ -1,5 +1,4 @@
-//! What the first two passes tell about those to come. They are passes of the render like all
-//! others.
+//! Prediction of time and error from the first two passes, which are regular passes of the render.
 
 use std::time::Instant;
 
@@ -8,16 +7,16 @@ use crate::film::exr_file::Channel;
 use crate::film::{ErrorMap, Picture, Rejections};
 use crate::render::quality::one_pass_error;
 
-/// What two passes told.
+/// Measurements of the first two passes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Calibration {
-    /// Seconds for a pass, the less of both: the first may wait for what is made but once.
+    /// Seconds per pass: the minimum of both, since the first may include one-time setup.
     pub seconds_per_pass: f64,
-    /// relMSE of a picture of one pass.
+    /// relMSE of an image of one pass.
     pub one_pass: f64,
 }
 
-/// An engine that tells after its second pass. The pictures are those of the engine within.
+/// Engine wrapper that reports a [`Calibration`] after the second pass. It does not change images.
 pub struct Calibrating<'a> {
     inner: &'a mut dyn Engine,
     passes: u32,
@@ -27,7 +26,7 @@ pub struct Calibrating<'a> {
 }
 
 impl<'a> Calibrating<'a> {
-    /// Watches an engine that has made no pass.
+    /// Wraps an engine that has not rendered any pass.
     pub fn new(inner: &'a mut dyn Engine, tell: &'a mut dyn FnMut(&Calibration)) -> Self {
         Self { inner, passes: 0, seconds: f64::MAX, first: None, tell }
     }
@@ -48,8 +47,8 @@ impl Engine for Calibrating<'_> {
             match self.first.take() {
                 None => self.first = Some(picture),
                 Some(first) => {
-                    // Pictures of one engine have one size; without pixels there is nothing to
-                    // tell.
+                    // the sizes are equal, so this fails only without pixels or for values that
+                    // are not finite
                     if let Ok(one_pass) = one_pass_error(&first, &picture) {
                         (self.tell)(&Calibration { seconds_per_pass: self.seconds, one_pass });
                     }
@@ -100,8 +99,8 @@ impl Engine for Calibrating<'_> {
     }
 }
 
-/// Theory: an engine whose passes show 1, 3, 1, 3, ... has the mean 2 after two; a pass is off by 1
-/// there.
+/// Theory: an engine whose passes have the values 1, 3, 1, 3, ... has the mean 2 after two passes;
+/// each pass deviates by 1 from it.
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -148,9 +147,9 @@ mod tests {
         }
         assert_eq!(engine.picture().unwrap().rgb[0][0], 2.0);
         let [Calibration { seconds_per_pass, one_pass }] = told[..] else { panic!("{told:?}") };
-        // (1 - 2)^2 / (2^2 + 0.01), twice.
+        // twice (1 - 2)^2 / (2^2 + 0.01)
         assert!((one_pass - 2.0 / 4.01).abs() < 1e-6, "{one_pass}");
         assert!(seconds_per_pass >= 0.005, "{seconds_per_pass}");
-        assert_eq!(inner.passes, 4, "none was made beside");
+        assert_eq!(inner.passes, 4, "no extra passes");
     }
 }

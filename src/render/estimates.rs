@@ -1,31 +1,31 @@
-//! After which passes the error is estimated.
+//! Schedule of error estimates.
 
 use std::time::Duration;
 
 use super::progress::Progress;
 use crate::film::estimate::LEAST_PASSES;
 
-/// Which passes are followed by an estimate of the error. Each reads the film and takes about as
-/// long as a picture.
+/// Decides after which passes the error is estimated. An estimate reads the film and takes about as
+/// long as reading back the image.
 pub struct Estimates {
     next: u32,
     spent: Duration,
 }
 
-/// Estimates take at most this share of the time.
+/// Reciprocal of the maximum fraction of render time spent on estimates.
 const ESTIMATES_SHARE: u32 = 50;
 
 impl Estimates {
-    /// Those still to come after so many passes; also the one after the last of them, which may not
-    /// have been made.
+    /// Remaining estimates after `passes` passes. Includes one that is due after exactly that many
+    /// passes, since it may not have been made.
     pub fn after(passes: u32) -> Self {
         let places = std::iter::successors(Some(LEAST_PASSES), |place| Some(following(*place)));
         let next = places.into_iter().find(|place| *place >= passes || *place == u32::MAX);
         Self { next: next.unwrap_or(u32::MAX), spent: Duration::ZERO }
     }
 
-    /// With a target the passes depend on their number alone, since the picture's bits may not
-    /// depend on a clock.
+    /// Returns true if an estimate is due. With a target error, this depends on the pass count
+    /// only, because the image must not depend on timing.
     pub fn due(&self, progress: &Progress) -> bool {
         let cheap = || self.spent * ESTIMATES_SHARE <= progress.elapsed;
         progress.passes >= self.next && (progress.stop.target_error.is_some() || cheap())
@@ -37,7 +37,7 @@ impl Estimates {
     }
 }
 
-/// Passes at the estimate after the one at `passes`.
+/// Pass count of the next estimate after the one at `passes`.
 fn following(passes: u32) -> u32 {
     passes.saturating_add((passes / 8).max(1))
 }
@@ -46,7 +46,7 @@ fn following(passes: u32) -> u32 {
 mod tests {
     use super::*;
 
-    /// Estimates come after the passes after which they would have come without a stop.
+    /// A resumed render estimates after the same passes as an uninterrupted one.
     #[test]
     fn estimates_keep_their_places() {
         let places: Vec<u32> =

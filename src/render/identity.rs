@@ -1,5 +1,5 @@
-//! Which scene a picture is of, and which program makes it: digests of all that a scene file says
-//! and names, and of the kernels.
+//! Identity of a render: digests of the scene, including all files that it uses, and of the
+//! kernels.
 
 use std::fmt::{self, Write};
 
@@ -10,9 +10,9 @@ use crate::film::provenance::VERSION;
 use crate::gpu::fragments::fragments;
 use crate::scene::{ImageData, Mesh, Scene, ShapeKind, Texels};
 
-/// This program: its version, and a digest of its kernels' text, since programs on the way from one
-/// version to the next may make other bits. The text is that of the shaders, which the Rust twins
-/// follow; line ends do not count.
+/// Identity of the program: its version, and a digest of its kernels, since development builds of
+/// one version may render different bits. The digest covers the text of the shaders, which the Rust
+/// kernels mirror, and ignores line endings.
 pub fn program() -> String {
     let mut digest = Digest::default();
     for line in fragments().iter().flat_map(|fragment| fragment.text.lines()) {
@@ -22,25 +22,25 @@ pub fn program() -> String {
     format!("{VERSION}, kernels {:016x}", digest.0.digest())
 }
 
-/// Digests of the parts of a scene, 128 bits each: of what its file says and of what that names,
-/// whatever names and order of keys it uses. Pictures of scenes with equal ones are equal, if size,
-/// settings, device and program are; the film is no part of it.
+/// 128-bit digests of the parts of a scene, including all files that it uses. They do not depend on
+/// names, the order of keys or the film. Scenes with equal digests give equal images for equal
+/// size, settings, device and program.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Identity {
-    /// The camera.
+    /// Digest of the camera.
     pub camera: String,
-    /// Shapes, with their materials' numbers and their emission.
+    /// Digest of the shapes, with their material indices and emission.
     pub shapes: String,
-    /// Materials.
+    /// Digest of the materials.
     pub materials: String,
-    /// Textures and all pictures.
+    /// Digest of the textures and all images.
     pub textures: String,
-    /// Lights and the environment.
+    /// Digest of the lights and the environment.
     pub lights: String,
 }
 
 impl Identity {
-    /// That of a scene.
+    /// Computes the digests of a scene.
     pub fn of(scene: &Scene) -> Self {
         let Scene {
             name: _,
@@ -75,12 +75,12 @@ impl Identity {
         }
     }
 
-    /// One digest of all parts, as files hold it.
+    /// Single digest of all parts, as stored in files.
     pub fn digest(&self) -> String {
         Digest::of(self).end()
     }
 
-    /// The parts that are not those of another scene.
+    /// Names of the parts that differ from those of another scene.
     pub fn differences(&self, other: &Self) -> Vec<&'static str> {
         let parts = [
             ("camera", &self.camera, &other.camera),
@@ -93,7 +93,7 @@ impl Identity {
     }
 }
 
-/// Hashes one thing after another.
+/// Incremental hash of values.
 #[derive(Default)]
 struct Digest(Box<Xxh3>);
 
@@ -108,13 +108,13 @@ impl Digest {
         self.0.update(bytes);
     }
 
-    /// What a value prints as: floats in as many digits as tell them apart.
+    /// Hashes the `Debug` output of a value, which prints floats with enough digits to be exact.
     fn text(&mut self, value: &impl fmt::Debug) {
-        // Writing into a hash does not fail.
+        // writing to a hash cannot fail
         let _ = write!(self, "{value:?};");
     }
 
-    /// Numbers of 64 bits, with how many there are.
+    /// Hashes the number of rows and their 64-bit values.
     fn numbers<const N: usize>(&mut self, all: impl ExactSizeIterator<Item = [f64; N]>) {
         self.bytes(&(all.len() as u64).to_le_bytes());
         all.for_each(|row| row.iter().for_each(|x| self.bytes(&x.to_le_bytes())));
@@ -158,8 +158,8 @@ impl Write for Digest {
     }
 }
 
-/// Theory: a scene has one identity, and each kind of change shows in the part that it belongs to
-/// and in no other; names, the film and the place of a file are no change.
+/// Theory: each kind of change affects the digest of its part and no other; names, the film and
+/// file locations do not affect any.
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,5 +1,4 @@
-//! The loop over passes: stop conditions, progress, and what is kept of a render for the case that
-//! its device fails.
+//! The pass loop: stop conditions, progress, and recovery from device failures.
 
 pub mod calibration;
 mod estimates;
@@ -23,69 +22,69 @@ use run::{Run, Watch};
 
 pub use progress::{Progress, Stop};
 
-/// Why a render ended.
+/// Reason why a render ended.
 #[derive(Debug)]
 pub enum Ending {
-    /// All passes are made.
+    /// All passes are complete.
     Passes,
-    /// The time is up.
+    /// The time limit was reached.
     Time,
-    /// The stated error is no larger than the one aimed at.
+    /// The stated error reached the target.
     TargetError,
-    /// The user asked for it.
+    /// The user interrupted the render.
     Interrupted,
 }
 
-/// A picture, and how it came about.
+/// Result of a render.
 #[derive(Debug)]
 pub struct Outcome {
-    /// The estimate.
+    /// Radiance estimate.
     pub picture: Picture,
-    /// What it says of its own error; none for fewer passes than an estimate needs.
+    /// Error estimate; `None` if there are too few passes for one.
     pub errors: Option<ErrorMap>,
-    /// What the film asks for in addition to radiance.
+    /// Layers requested by the film in addition to radiance.
     pub layers: Vec<Channel>,
-    /// What was left out of it.
+    /// Counts of rejected samples.
     pub rejections: Rejections,
-    /// The state after the picture's last pass.
+    /// Progress after the last pass of the image.
     pub progress: Progress,
-    /// Why there were no more passes.
+    /// Reason why the render ended.
     pub ending: Ending,
 }
 
-/// What was done before a render's last device failed.
+/// State recovered from a render whose last device failed.
 #[derive(Debug)]
 pub struct Kept {
-    /// What the engine held.
+    /// Engine state.
     pub state: State,
-    /// How far that is.
+    /// Progress of that state.
     pub progress: Progress,
 }
 
-/// A render that no device goes on with.
+/// A render that failed and that no other device could continue.
 #[derive(Debug, thiserror::Error)]
 #[error("{error}")]
 pub struct Broken {
-    /// Why.
+    /// Error of the last device.
     pub error: EngineError,
-    /// What can be gone on from; none where no pass is left of it.
+    /// State from which the render can be resumed; `None` if no pass was recovered.
     pub kept: Option<Box<Kept>>,
 }
 
-/// Where a render is kept, so that it can be gone on from.
+/// Periodic saving of the engine state, e.g. to a checkpoint.
 pub struct Saving<'a> {
     /// Time between two calls.
     pub every: Duration,
-    /// Keeps what an engine held, and gives it back. Called between passes, at the end, and once
-    /// more where the device fails, if there is more by then.
+    /// Saves the state and returns it. Called between passes, at the end, and after a device
+    /// failure if passes were recovered that are not saved yet.
     pub save: &'a mut dyn FnMut(State, &Progress) -> State,
 }
 
-/// Makes passes until a stop condition holds or `interrupted` is set, which ends it after the pass
-/// in hand; calls `observer` after each.
+/// Renders passes until a stop condition holds or `interrupted` is set, which ends the render after
+/// the current pass. Calls `observer` after each pass.
 ///
 /// # Errors
-/// Where the engine fails and cannot [go on](Engine::go_on) elsewhere.
+/// If the engine fails and cannot [continue](Engine::go_on) on another device.
 pub fn render(
     engine: &mut dyn Engine,
     stop: Stop,
@@ -100,11 +99,12 @@ pub fn render(
     )
 }
 
-/// The same from where `progress` is, with an engine that has made no pass and takes over `state`,
-/// saved now and then. Time counts on. With nothing left to do it makes no pass.
+/// Resumes a render at `progress` with a new engine, which restores `state`. Elapsed time
+/// accumulates. Renders no pass if a stop condition already holds. If `saving` is given, the state
+/// is saved periodically.
 ///
 /// # Errors
-/// As above.
+/// As for [`render`].
 pub fn resume<'a>(
     engine: &mut dyn Engine,
     state: &'a State,

@@ -1,4 +1,4 @@
-//! An engine whose picture is shown while it comes about.
+//! Display of intermediate images during a render.
 
 use std::time::{Duration, Instant};
 
@@ -6,12 +6,12 @@ use crate::engine::{Engine, EngineError, PassReport, State};
 use crate::film::exr_file::Channel;
 use crate::film::{ErrorMap, Picture, Rejections};
 
-/// Pictures are shown no more often than this.
+/// Minimum time between two images.
 const EVERY: Duration = Duration::from_millis(500);
-/// Showing takes at most one part in so many of the time.
+/// Minimum time between two images as a multiple of the time to show one.
 const SHARE: u32 = 10;
 
-/// Carries out passes with another engine and shows the picture after the first, and now and then.
+/// Engine wrapper that shows the image after the first pass, and periodically afterwards.
 pub struct Showing<'a> {
     inner: &'a mut dyn Engine,
     next: Instant,
@@ -19,7 +19,7 @@ pub struct Showing<'a> {
 }
 
 impl<'a> Showing<'a> {
-    /// Shows what an engine makes.
+    /// Wraps an engine; `show` is called with each image.
     pub fn new(inner: &'a mut dyn Engine, show: &'a mut dyn FnMut(&Picture)) -> Self {
         Self { inner, next: Instant::now(), show }
     }

@@ -1,27 +1,27 @@
-//! How far a render is, and where it will stop.
+//! Progress and stop conditions of a render.
 
 use std::time::Duration;
 
 use crate::engine::{PassReport, PhotonEnds};
 use crate::film::RelativeError;
 
-/// When to stop; whichever comes first. At least one pass is made.
+/// Stop conditions; the first to hold ends the render. At least one pass is rendered.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stop {
-    /// After this many passes.
+    /// Maximum number of passes.
     pub passes: u32,
-    /// No pass is begun after this time.
+    /// Time limit; no pass starts after it.
     pub time: Option<Duration>,
-    /// Once the stated relative error (see [`RelativeError::stated`]) is no larger.
+    /// Target for the stated relative error (see [`RelativeError::stated`]).
     pub target_error: Option<f64>,
 }
 
-/// How far a render is, after a pass.
+/// Progress of a render after a pass. Totals include earlier sessions of a resumed render.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Progress {
-    /// Where it will stop.
+    /// Stop conditions.
     pub stop: Stop,
-    /// Passes made.
+    /// Completed passes.
     pub passes: u32,
     /// Photon paths emitted.
     pub photons: u64,
@@ -29,19 +29,18 @@ pub struct Progress {
     pub eye_paths: u64,
     /// Rays traced.
     pub rays: u64,
-    /// How the photon paths ended.
+    /// Photon path terminations by cause.
     pub ends: PhotonEnds,
-    /// Gather radius of the last pass in scene units, mean over the visible points.
+    /// Mean gather radius of the last pass over the visible points, in scene units.
     pub radius: f64,
-    /// Since the first pass began; of a render that was gone on from, that of all its parts
-    /// together.
+    /// Time since the first pass began, including earlier sessions.
     pub elapsed: Duration,
-    /// The newest estimate of the picture's error; none in the first passes.
+    /// Most recent error estimate; `None` during the first passes.
     pub error: Option<RelativeError>,
 }
 
 impl Progress {
-    /// Before the first pass.
+    /// Progress before the first pass.
     pub fn before(stop: Stop) -> Self {
         Self {
             stop,
@@ -61,15 +60,15 @@ impl Progress {
         self.rays as f64 / self.elapsed.as_secs_f64().max(1e-9)
     }
 
-    /// Share of the work that is done, in [0, 1].
+    /// Completed fraction of the work, in [0, 1].
     pub fn share(&self) -> f64 {
         let passes = f64::from(self.passes) / f64::from(self.stop.passes.max(1));
         let time = self
             .stop
             .time
             .map_or(0.0, |time| self.elapsed.as_secs_f64() / time.as_secs_f64().max(1e-9));
-        // the error of progressive photon mapping falls as N^(-1/3) (Kaplanyan & Dachsbacher 2013),
-        // or a little faster
+        // the error of progressive photon mapping decreases at least as fast as N^(-1/3)
+        // (Kaplanyan & Dachsbacher 2013)
         let error = match (self.stop.target_error, self.error) {
             (Some(target), Some(error)) => (target / error.stated).powi(3),
             _ => 0.0,
@@ -77,7 +76,7 @@ impl Progress {
         passes.max(time).max(error).min(1.0)
     }
 
-    /// Time left if the passes go on as they did.
+    /// Estimated remaining time, extrapolated from the completed passes.
     pub fn remaining(&self) -> Duration {
         let share = self.share();
         let seconds = self.elapsed.as_secs_f64() * (1.0 - share) / share.max(1e-9);

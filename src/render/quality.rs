@@ -1,7 +1,6 @@
-//! Presets: settings by what a picture is for, and how far its error is from that of its first
-//! passes.
+//! Quality presets, and prediction of their error from the first passes.
 //!
-//! The numbers are those of docs/speed-accuracy.md, which `scenes/studies/run` makes again.
+//! The constants come from docs/speed-accuracy.md, which `scenes/studies/run` regenerates.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,28 +8,28 @@ use crate::film::Picture;
 use crate::film::metrics::{MetricsError, compare};
 use crate::scene::settings::{Direct, Method, Radius, RadiusRule, RenderSettings};
 
-/// What a picture is for.
+/// A quality preset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Quality {
-    /// To see where things are.
+    /// To check the composition.
     Draft,
     /// To judge light and materials.
     Preview,
-    /// To show.
+    /// For publication.
     Final,
-    /// To hold others against.
+    /// As a reference for other renders.
     Reference,
 }
 
-/// Photons of a pass for each pixel.
+/// Photons per pass and pixel.
 const PHOTONS_PER_PIXEL: f64 = 1.0;
 
 impl Quality {
-    /// All of them, by growing cost.
+    /// All presets in order of cost.
     pub const ALL: [Self; 4] = [Self::Draft, Self::Preview, Self::Final, Self::Reference];
 
-    /// As the command line has it.
+    /// Name of the preset on the command line.
     pub fn word(self) -> &'static str {
         match self {
             Self::Draft => "draft",
@@ -40,7 +39,7 @@ impl Quality {
         }
     }
 
-    /// Passes.
+    /// Number of passes.
     pub fn passes(self) -> u32 {
         match self {
             Self::Draft => 4,
@@ -50,8 +49,8 @@ impl Quality {
         }
     }
 
-    /// Puts the preset in force for a picture of so many pixels. Bounces, eye samples and seed
-    /// stay.
+    /// Applies the preset to the settings of an image with `pixels` pixels. Keeps bounces, eye
+    /// samples and seed.
     pub fn apply(self, pixels: u64, settings: &mut RenderSettings) {
         *settings = RenderSettings {
             method: Method::Sppm,
@@ -66,45 +65,46 @@ impl Quality {
     }
 }
 
-/// relMSE of a picture of one pass, by two pictures, the second of which holds the pass of the
-/// first and one more: the mean of both lies half of their distance from either.
+/// Estimates the relMSE of an image of one pass from images after one and after two passes. The
+/// mean of two passes lies halfway between them, so its distance from the first is half of their
+/// difference.
 ///
 /// # Errors
-/// Where the pictures cannot be compared.
+/// If the images cannot be compared.
 pub fn one_pass_error(first: &Picture, both: &Picture) -> Result<f64, MetricsError> {
     Ok(2.0 * compare(first, both)?.rel_mse)
 }
 
-/// Passes, and the exponent with which relMSE falls from one pass to so many: over the shipped
-/// scenes the median, the least and the greatest.
+/// Number of passes, and the exponent with which relMSE decreases from one pass to that number:
+/// median, minimum and maximum over the shipped scenes.
 const DECAY: [(u32, [f64; 3]); 4] = [
     (4, [1.17, 0.99, 2.29]),
     (16, [1.10, 0.89, 1.68]),
     (256, [0.93, 0.79, 1.02]),
     (4096, [0.77, 0.67, 0.93]),
 ];
-/// That of path tracing, whose passes are independent and have no bias.
+/// Exponent of path tracing, whose passes are independent and unbiased.
 const DECAY_OF_PATHS: [f64; 3] = [1.0; 3];
 
-/// An error that is to be expected.
+/// Expected error of a render.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Expected {
-    /// relMSE, by the median scene.
+    /// relMSE for the median exponent.
     pub rel_mse: f64,
-    /// By the scene in which it falls fastest.
+    /// relMSE for the maximum exponent (fastest convergence).
     pub low: f64,
-    /// By the scene in which it falls slowest.
+    /// relMSE for the minimum exponent (slowest convergence).
     pub high: f64,
 }
 
-/// What to expect after so many passes where one pass has the relMSE `one_pass`.
+/// Predicts the error after `passes` passes if one pass has the relMSE `one_pass`.
 pub fn expected(one_pass: f64, passes: u32, method: Method) -> Expected {
     let decay = if method == Method::Path { DECAY_OF_PATHS } else { decay(passes) };
     let [rel_mse, high, low] = decay.map(|slope| one_pass * f64::from(passes).powf(-slope));
     Expected { rel_mse, low, high }
 }
 
-/// The exponents for a number of passes: between those of the table in proportion to its logarithm.
+/// Exponents for a number of passes, interpolated from the table linearly in its logarithm.
 fn decay(passes: u32) -> [f64; 3] {
     let (first, last) = (DECAY[0], DECAY[DECAY.len() - 1]);
     let between = DECAY.windows(2).find(|pair| (pair[0].0..=pair[1].0).contains(&passes));
@@ -116,8 +116,8 @@ fn decay(passes: u32) -> [f64; 3] {
     [0, 1, 2].map(|i| from[i] + part * (to[i] - from[i]))
 }
 
-/// Theory: two pictures of independent passes with variance V each have the mean squared distance 2
-/// V; the first's from their mean is half of either's from the other.
+/// Theory: images of two independent passes with variance V have the mean squared distance 2 V; the
+/// distance of the first from their mean is half of their distance.
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -130,7 +130,7 @@ mod tests {
                 state = state
                     .wrapping_mul(6_364_136_223_846_793_005)
                     .wrapping_add(1_442_695_040_888_963_407);
-                // Uniform in [1, 1.2): variance 1/300.
+                // uniform in [1, 1.2): variance 1/300
                 [1.0 + 0.2 * (state >> 40) as f32 / (1u64 << 24) as f32; 3]
             })
         };
@@ -141,7 +141,7 @@ mod tests {
         let told = one_pass_error(&first, &both).unwrap();
         let exact = 1.0 / 300.0 / (1.1f64.powi(2) + 0.01);
         assert!((told / exact - 1.0).abs() < 0.05, "{told} {exact}");
-        // The second pass alone in the place of the mean of both would tell four times as much.
+        // using the second pass alone instead of the mean would quadruple the estimate
         assert!(one_pass_error(&first, &second).unwrap() > 3.0 * exact);
     }
 
@@ -153,8 +153,7 @@ mod tests {
         );
         assert!(errors.iter().all(|e| e.low <= e.rel_mse && e.rel_mse <= e.high));
         assert_eq!(expected(0.1, 1, Method::Sppm).rel_mse, 0.1);
-        // Between the table's lines the exponent lies between theirs, on them it is theirs, beyond
-        // them the last.
+        // interpolation between table entries, and clamping beyond them
         let exponent = |passes: u32| {
             -(expected(1.0, passes, Method::Sppm).rel_mse).ln() / f64::from(passes).ln()
         };

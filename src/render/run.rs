@@ -1,4 +1,4 @@
-//! One render from its first pass to its picture, on one device after another.
+//! A single render with failover between devices.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -12,27 +12,28 @@ use crate::film::ErrorMap;
 use crate::film::estimate::LEAST_PASSES;
 use crate::telemetry::stage::stage;
 
-/// Who is told of passes, and who ends them.
+/// Observer and interrupt flag of a render.
 pub struct Watch<'a> {
-    /// Set from outside to end the render after the pass in hand.
+    /// If set, the render ends after the current pass.
     pub interrupted: &'a AtomicBool,
     /// Called after each pass.
     pub observer: &'a mut dyn FnMut(&Progress),
 }
 
-/// A render under way.
+/// A render in progress.
 pub struct Run<'a> {
     progress: Progress,
     kept: Keeping<'a>,
     saving: Option<Saving<'a>>,
-    /// Passes in what was saved last.
+    /// Number of passes in the last saved state.
     saved: Option<u32>,
+    /// Time of earlier sessions.
     before: Duration,
     start: Instant,
 }
 
 impl<'a> Run<'a> {
-    /// At `progress`, with an engine that holds `state`.
+    /// Creates a render at `progress` for an engine in `state`.
     pub fn new(
         progress: Progress,
         state: &'a State,
@@ -50,8 +51,8 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// To its picture, unless the engine has failed already. After a failure it goes on elsewhere
-    /// from what is kept.
+    /// Runs the render to completion. `failed` is an error that the engine has already reported.
+    /// After a failure, the engine continues on another device from the most recent copy.
     pub fn carry_out(
         mut self,
         engine: &mut dyn Engine,
@@ -127,12 +128,16 @@ impl<'a> Run<'a> {
         Ok(())
     }
 
-    /// Copies what the engine holds, and saves it if that is asked for.
+    /// Copies the engine state, and saves it if `save` is set.
     fn keep(&mut self, engine: &mut dyn Engine, save: bool) -> Result<(), EngineError> {
         let begun = Instant::now();
         let mut state = engine.save()?;
         let cost = begun.elapsed();
-        log::debug!("a copy after pass {}: {:.3} s", self.progress.passes, cost.as_secs_f64());
+        log::debug!(
+            "state copied after pass {}: {:.3} s",
+            self.progress.passes,
+            cost.as_secs_f64()
+        );
         if save && let Some(saving) = &mut self.saving {
             state = (saving.save)(state, &self.progress);
             self.saved = Some(self.progress.passes);
@@ -144,8 +149,8 @@ impl<'a> Run<'a> {
         Ok(())
     }
 
-    /// Keeps what an engine that has failed can still give, if it is more than what is kept and as
-    /// many passes as were counted.
+    /// Copies the state of a failed engine if it can still be read, is newer than the last copy and
+    /// contains exactly the completed passes.
     fn rescue(&mut self, engine: &mut dyn Engine) {
         let passes = self.progress.passes;
         if passes > self.kept.progress.passes
@@ -167,7 +172,7 @@ impl<'a> Run<'a> {
         Ok(Outcome { picture, errors, layers: engine.layers()?, rejections, progress, ending })
     }
 
-    /// Ends it, with what is kept saved unless it is already.
+    /// Ends a failed render. Saves the last copy if it is newer than the last saved state.
     fn broken(mut self, error: EngineError) -> Broken {
         let mut kept = self.kept.end();
         if let (Some(kept), Some(saving)) = (&mut kept, &mut self.saving)

@@ -1,5 +1,5 @@
-//! Theory: an engine that counts its passes into the picture shows by the picture alone how many
-//! were made, and the totals are the sums over its reports.
+//! Theory: the pixels of the test engine's image equal its pass count, and the totals are the sums
+//! over its reports.
 
 use std::sync::atomic::Ordering;
 
@@ -8,8 +8,8 @@ use super::*;
 use crate::engine::{EngineError, PassReport, PhotonEnds};
 use crate::film::estimate::{LEAST_PASSES, PixelError};
 
-/// Each pixel of its picture is the number of passes made. It fails in pass `fails_in`, and after
-/// that gives what it holds only if `survives`.
+/// Test engine whose pixels equal the number of completed passes. It fails in pass `fails_in`; its
+/// state can be read afterwards only if `survives` is set.
 struct Counter {
     passes: u32,
     fails_in: u32,
@@ -97,7 +97,7 @@ fn run(engine: &mut Counter, stop: Stop, keep: Keep) -> Result<Outcome, Broken> 
     Run::new(Progress::before(stop), &state, None, keep).carry_out(engine, watch, None)
 }
 
-/// Passes in what was kept of a render that broke.
+/// Error and recovered pass count of a failed render.
 fn left(outcome: Result<Outcome, Broken>) -> (String, Option<u32>) {
     let Broken { error, kept } = outcome.unwrap_err();
     let passes = kept.map(|kept| {
@@ -135,7 +135,7 @@ fn an_interrupt_ends_it_after_the_pass_in_hand() {
         render(&mut counter(NEVER, true), passes(100), &interrupted, &mut observer).unwrap();
     assert!(matches!(outcome.ending, Ending::Interrupted));
     assert_eq!((shown(&outcome), outcome.progress.passes), (3.0, 3));
-    // One that comes before the first pass still leaves a picture.
+    // an interrupt before the first pass still yields an image
     let outcome =
         render(&mut counter(NEVER, true), passes(100), &AtomicBool::new(true), &mut |_| ())
             .unwrap();
@@ -155,8 +155,8 @@ fn time_ends_it_between_passes() {
     assert_eq!(shown(&run(&mut counter(NEVER, true), none, KEEP).unwrap()), 1.0);
 }
 
-/// The error after N passes is 1 / N, so that 0.05 takes 20 passes, or one or two more where no
-/// estimate comes then.
+/// The error after N passes is 1 / N. A target of 0.05 takes 20 passes, or one or two more if no
+/// estimate is due then.
 #[test]
 fn an_error_ends_it() {
     let stop = Stop { passes: u32::MAX, time: None, target_error: Some(0.05) };
@@ -166,12 +166,12 @@ fn an_error_ends_it() {
     assert!((20..=22).contains(&outcome.progress.passes), "{:?}", outcome.progress);
     assert!(outcome.progress.error.unwrap().stated <= 0.05 && outcome.errors.is_some());
     assert_eq!(outcome.progress.share(), 1.0);
-    // after 4 to 16 passes one by one, then after 18, 20 and perhaps 22, and once more at the end
+    // after each of passes 4 to 16, after 18, 20 and perhaps 22, and once more at the end
     assert!(engine.errors_taken <= 16, "{}", engine.errors_taken);
-    // no estimate, no end: three passes never are enough
+    // without an estimate the render cannot end: three passes are never enough
     let eager = Stop { target_error: Some(1.0), ..stop };
     assert_eq!(run(&mut counter(NEVER, true), eager, KEEP).unwrap().progress.passes, LEAST_PASSES);
-    // passes come first where they are fewer
+    // a lower pass limit takes effect first
     let few = Stop { passes: 8, ..stop };
     assert!(matches!(run(&mut counter(NEVER, true), few, KEEP).unwrap().ending, Ending::Passes));
     let fewer = run(&mut counter(NEVER, true), Stop { passes: 3, ..stop }, KEEP).unwrap();
@@ -191,7 +191,7 @@ fn a_lost_device_leaves_what_was_kept() {
     let always = Keep { every: Duration::ZERO, times_cost: 0 };
     let lost = |keep| left(run(&mut counter(6, false), passes(8), keep));
     assert_eq!(lost(always), ("the device was lost: in pass 6".to_owned(), Some(5)));
-    // with nothing kept there is nothing to give, and the first failure is the one told
+    // without a copy nothing is recovered, and the first failure is reported
     assert_eq!(lost(KEEP), ("the device was lost: in pass 6".to_owned(), None));
     assert_eq!(left(run(&mut counter(1, true), passes(8), KEEP)).1, None);
 }
@@ -203,14 +203,14 @@ fn short_renders_read_the_picture_once() {
     assert_eq!((engine.pictures_taken, engine.states_taken), (1, 0));
 }
 
-/// With no time between them it is saved after each pass that another one follows, and at the end.
+/// With an interval of zero, the state is saved between all passes and at the end.
 #[test]
 fn saved_between_passes_and_at_the_end() {
     let saved_at = |fails_in: u32, every: Duration, from: u32| {
         let mut saved = Vec::new();
         let mut save = |state: State, progress: &Progress| {
             saved.push(progress.passes);
-            // what is saved is what the progress says
+            // state and progress agree
             assert_eq!(state.passes, progress.passes);
             state
         };
@@ -226,12 +226,12 @@ fn saved_between_passes_and_at_the_end() {
     };
     assert_eq!(saved_at(NEVER, Duration::ZERO, 0), (vec![1, 2, 3, 4], 4, 4));
     assert_eq!(saved_at(NEVER, Duration::MAX, 0), (vec![4], 4, 4));
-    assert_eq!(saved_at(3, Duration::ZERO, 0), (vec![1, 2], 2, 2), "nothing of a pass that failed");
+    assert_eq!(saved_at(3, Duration::ZERO, 0), (vec![1, 2], 2, 2), "failed pass not saved");
     assert_eq!(saved_at(NEVER, Duration::ZERO, 2), (vec![2, 3, 4], 4, 4));
-    assert_eq!(saved_at(NEVER, Duration::ZERO, 4), (vec![4], 4, 4), "no pass beyond");
+    assert_eq!(saved_at(NEVER, Duration::ZERO, 4), (vec![4], 4, 4), "no further pass");
 }
 
-/// What was not saved on the way is, where the device fails.
+/// A device failure saves the passes that were not saved before.
 #[test]
 fn a_failure_saves_what_is_kept() {
     let mut saved = Vec::new();
@@ -247,7 +247,7 @@ fn a_failure_saves_what_is_kept() {
     assert_eq!(saved, [3]);
 }
 
-/// Time and totals count on.
+/// Time and totals accumulate across sessions.
 #[test]
 fn a_resumed_render_counts_on() {
     let hour = Duration::from_secs(3600);

@@ -1,10 +1,9 @@
-//! Render settings: what a pass does and how many there are. Each field names its unit and the
-//! paper's symbol.
+//! Render settings, with the units and the symbols of the papers.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// How light is carried to the film.
+/// Light transport method.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Method {
@@ -17,7 +16,7 @@ pub enum Method {
     Path,
 }
 
-/// How the gather radius shrinks from pass to pass.
+/// Rule that shrinks the gather radius from pass to pass.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum RadiusRule {
@@ -26,27 +25,26 @@ pub enum RadiusRule {
     Global,
     /// Per visible point, from its own photon count (Hachisuka et al. 2008, eqs. 3-5).
     Local,
-    /// Constant; the bias stays.
+    /// Constant radius; the bias remains.
     Fixed,
 }
 
-/// How light that arrives straight from a light is found.
+/// Computation of direct light.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Direct {
     /// Shadow rays to sampled lights; photons straight from a light are not stored.
     #[default]
     Sampled,
-    /// All photons are stored and none but they light a surface.
+    /// All photons are stored, and surfaces receive light only from photons.
     Photons,
 }
 
-/// The start radius of the gather disc.
+/// Start radius of the gather disc.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Radius {
-    /// Chosen by a look at the scene, from how many photons fall on a pixel and whether they are
-    /// caustics.
+    /// Chosen automatically from the number of photons per pixel and the fraction of caustics.
     #[default]
     Auto,
     /// In widths of a pixel's footprint at the visible point.
@@ -55,7 +53,7 @@ pub enum Radius {
     Units(f64),
 }
 
-/// Everything except the scene and the device that decides the bits of a picture.
+/// All parameters, except the scene and the device, that determine the bits of an image.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct RenderSettings {
@@ -65,34 +63,33 @@ pub struct RenderSettings {
     pub passes: u32,
     /// Photons emitted per pass, `M`.
     pub photons: u32,
-    /// Photons of a pass that are traced and gathered at once, at the most; where it is not given,
-    /// as many as four million records hold. Sums are rounded batch by batch.
+    /// Maximum number of photons that are traced and gathered at once; by default, as many as fit
+    /// in four million records. Sums are rounded per batch.
     #[schemars(range(min = 1))]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub batch: Option<u32>,
     /// Start radius, `r_1`.
     pub radius: Radius,
-    /// Start radius of photons that a diffuse surface has scattered before, over `radius`. Their
-    /// light changes more slowly from place to place than that of the others. Under the local rule
-    /// one count shrinks both. If it is not given, it is 1 with a number for `radius`, and
-    /// chosen automatically with "auto".
+    /// Start radius of diffusely scattered photons relative to `radius`. Their light varies more
+    /// slowly across surfaces than that of the other photons. Under the local rule, one count
+    /// shrinks both radii. Default: 1 if `radius` is a number, automatic if it is "auto".
     #[schemars(range(min = 1.0, max = 16.0))]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub indirect_radius: Option<f64>,
-    /// How the radius shrinks.
+    /// Rule that shrinks the radius.
     pub radius_rule: RadiusRule,
-    /// Share of the photons kept when the radius shrinks, `alpha` in (0, 1].
+    /// Fraction of photons kept when the radius shrinks, `alpha` in (0, 1].
     pub alpha: f64,
-    /// Where direct light comes from.
+    /// Computation of direct light.
     pub direct: Direct,
-    /// Most scattering events on a photon path and on an eye path. With 0 only light seen directly
-    /// and, but for path tracing, light straight from lights is left.
+    /// Maximum number of scattering events on a photon path and on an eye path. With 0, only
+    /// visible emitters and, except with path tracing, direct light remain.
     #[schemars(range(max = 65535))]
     pub max_bounces: u32,
     /// PPM: fixed visible points per pixel, stratified over pixel and lens.
     #[schemars(range(min = 1, max = 65536))]
     pub eye_samples: u32,
-    /// Seed of the random numbers.
+    /// Random seed.
     pub seed: u64,
 }
 
@@ -116,13 +113,13 @@ impl Default for RenderSettings {
 }
 
 impl RenderSettings {
-    /// Start radius of photons that a diffuse surface has scattered over that of the others, but
-    /// for one that is still to be chosen.
+    /// Ratio of the start radius of diffusely scattered photons to that of the others; 1 if it is
+    /// to be chosen automatically.
     pub fn wider(&self) -> f64 {
         self.indirect_radius.unwrap_or(1.0)
     }
 
-    /// Whether they have a radius of their own.
+    /// Returns true if diffusely scattered photons have a separate radius.
     pub fn has_wider(&self) -> bool {
         self.indirect_radius.map_or(self.radius == Radius::Auto, |wider| wider != 1.0)
     }

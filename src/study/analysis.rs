@@ -1,4 +1,4 @@
-//! What the renders of a study say: curves over the seeds, slopes beside theory, who is ahead when.
+//! Analysis of a study: curves averaged over seeds, slopes compared with theory, Pareto front.
 
 use serde::Serialize;
 
@@ -8,39 +8,39 @@ use super::lamps::Lamp;
 use super::statistics::{PowerLaw, Split, Spread, fit, spread};
 use crate::scene::settings::{Method, RadiusRule};
 
-/// A configuration at a number of passes, over its seeds.
+/// Statistics of a configuration at a number of passes, over its seeds.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct CurvePoint {
-    /// Passes.
+    /// Number of passes.
     pub passes: u32,
-    /// Seconds of rendering, the least over the seeds: they do the same work, and what is more is
-    /// the machine's.
+    /// Render time in seconds: the minimum over the seeds, which do the same work, since longer
+    /// times are due to other load on the machine.
     pub seconds: f64,
-    /// relMSE without the truth's own.
+    /// relMSE, corrected for the reference's error.
     pub rel_mse: Spread,
-    /// Mean LDR-FLIP; the truth's own noise is in it.
+    /// Mean LDR-FLIP, including the reference's noise.
     pub flip: Spread,
-    /// Mean luminance over the truth's.
+    /// Mean luminance divided by that of the reference.
     pub mean_ratio: Spread,
-    /// Variance and squared bias, where all seeds are there.
+    /// Variance and squared bias, if all seeds are complete.
     pub split: Option<Split>,
 }
 
-/// A slope beside what theory says it tends to.
+/// A fitted slope and its asymptotic value by theory.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Slope {
-    /// As fitted; none where there are too few points above the noise.
+    /// Fit; `None` if there are too few points above the noise.
     pub fitted: Option<PowerLaw>,
-    /// Least and greatest exponent by theory; none where theory says that there is nothing.
+    /// Minimum and maximum exponent by theory; `None` if the quantity is zero by theory.
     pub theory: Option<(f64, f64)>,
 }
 
-/// A configuration's figures.
+/// Convergence of a configuration.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Curve {
     /// Index into the study's configurations.
     pub config: usize,
-    /// In the order of passes.
+    /// Points in order of passes.
     pub points: Vec<CurvePoint>,
     /// Variance over passes.
     pub variance: Slope,
@@ -50,42 +50,41 @@ pub struct Curve {
     pub mse: Slope,
     /// relMSE over seconds.
     pub rel_mse_by_time: Option<PowerLaw>,
-    /// Seconds for a pass.
+    /// Seconds per pass.
     pub seconds_per_pass: f64,
 }
 
-/// A place on the Pareto front: nothing is both faster and better.
+/// A point on the Pareto front: no other point is both faster and more accurate.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct FrontPoint {
     /// Index into the study's configurations.
     pub config: usize,
-    /// Passes.
+    /// Number of passes.
     pub passes: u32,
-    /// Seconds of rendering.
+    /// Render time in seconds.
     pub seconds: f64,
-    /// relMSE.
+    /// Mean relMSE over the seeds.
     pub rel_mse: f64,
 }
 
-/// Of all renders that were held against the same truth.
+/// Figures of all renders that were compared with the same reference.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Part {
-    /// The truth.
+    /// Reference.
     pub truth: TruthRecord,
-    /// Curves of its configurations.
+    /// Curves of the configurations.
     pub curves: Vec<Curve>,
-    /// By growing time.
+    /// Pareto front in order of time.
     pub front: Vec<FrontPoint>,
 }
 
 impl Part {
-    /// The size of its lamps.
+    /// Size of the lamps.
     pub fn lamp(&self) -> Option<Lamp> {
         self.truth.lamp
     }
 
-    /// The curves, best first, by relMSE after so many seconds; those that have no picture by then
-    /// are left out.
+    /// Curves with their relMSE after `seconds`, best first. Omits curves without an image by then.
     pub fn ranking(&self, seconds: f64) -> Vec<(&Curve, f64)> {
         let with = self.curves.iter().filter_map(|curve| Some((curve, curve.error_at(seconds)?)));
         let mut ranking: Vec<_> = with.collect();
@@ -93,7 +92,7 @@ impl Part {
         ranking
     }
 
-    /// An error that can be asked of most configurations: the median of what they reach at the end.
+    /// Median of the final errors of all configurations.
     pub fn common_error(&self) -> Option<f64> {
         let mut ends: Vec<f64> =
             self.curves.iter().filter_map(|c| Some(c.points.last()?.rel_mse.mean)).collect();
@@ -103,8 +102,8 @@ impl Part {
 }
 
 impl Curve {
-    /// relMSE after so many seconds, between two pictures as a power law; none before the first,
-    /// the last one's after it.
+    /// relMSE after `seconds`, interpolated between images by a power law; `None` before the first
+    /// image, constant after the last.
     pub fn error_at(&self, seconds: f64) -> Option<f64> {
         let last = self.points.last()?;
         if seconds >= last.seconds {
@@ -118,8 +117,8 @@ impl Curve {
         Some(fit(&points).map_or(pair[1].rel_mse.mean, |law| law.at(seconds)))
     }
 
-    /// Seconds to reach a relMSE for good, between two pictures as a power law; none where the last
-    /// picture has not.
+    /// Time in seconds from which on relMSE stays at or below a value, interpolated between images
+    /// by a power law; `None` if the last image is above.
     pub fn time_to(&self, rel_mse: f64) -> Option<f64> {
         let above = self.points.iter().rposition(|point| point.rel_mse.mean > rel_mse);
         let Some(above) = above else { return Some(self.points.first()?.seconds) };
@@ -128,24 +127,24 @@ impl Curve {
         Some(fit(&points).and_then(|law| law.reaches(rel_mse)).unwrap_or(to.seconds))
     }
 
-    /// Passes by which [`Curve::time_to`] is over.
+    /// Number of passes of the first image at or after [`Curve::time_to`].
     pub fn passes_to(&self, rel_mse: f64) -> Option<u32> {
         let above = self.points.iter().rposition(|point| point.rel_mse.mean > rel_mse);
         self.points.get(above.map_or(0, |above| above + 1)).map(|point| point.passes)
     }
 
-    /// Seconds to a relMSE that was not reached, if it goes on as it did.
+    /// Time in seconds to a relMSE that was not reached, extrapolated by the fitted slope.
     pub fn extrapolated_time_to(&self, rel_mse: f64) -> Option<f64> {
         let last = self.points.last()?;
         let law = self.rel_mse_by_time?;
         let slope = law.slope;
         let seconds = last.seconds * (rel_mse / last.rel_mse.mean).powf(1.0 / slope);
-        // Two points always lie on a line.
+        // two points are not enough: they always lie on a line
         (law.half_width.is_some() && slope < -0.05 && seconds.is_finite()).then_some(seconds)
     }
 }
 
-/// The figures of a study, one part for each truth.
+/// Analyzes the results of a study, with one part for each reference.
 pub fn analyse(results: &Results) -> Vec<Part> {
     let part = |truth: &TruthRecord| {
         let configs = results.about.configs.iter().enumerate();
@@ -192,7 +191,7 @@ fn curve(results: &Results, config: usize, setting: &Config, truth: &TruthRecord
     };
     let bias = |p: &CurvePoint| {
         let split = p.split?;
-        // What is not clear of its own error says nothing about a slope.
+        // only significant bias contributes to the slope
         (split.bias_sq > 2.0 * split.bias_sq_error.unwrap_or(0.0)).then_some(split.bias_sq)
     };
     let bias_theory = (-2.0 * (1.0 - alpha), -2.0 * (1.0 - alpha));
@@ -229,7 +228,7 @@ fn curve(results: &Results, config: usize, setting: &Config, truth: &TruthRecord
     })
 }
 
-/// Without the first passes, where the picture has more holes than noise, if there is enough left.
+/// Skips the first passes, in which the image has gaps rather than noise, if enough points remain.
 fn settled(points: &[CurvePoint]) -> &[CurvePoint] {
     match points.len() {
         0..4 => points,
@@ -238,8 +237,8 @@ fn settled(points: &[CurvePoint]) -> &[CurvePoint] {
     }
 }
 
-/// Less the truth's own error, which is known to about a tenth: what is left below that is put
-/// there.
+/// Subtracts the reference's error, which is known to about 10 %, so the result is at least 10 % of
+/// it.
 fn without(values: Spread, own: f64) -> Spread {
     let less = |value: f64| (value - own).max(0.1 * own);
     Spread { mean: less(values.mean), low: less(values.low), high: less(values.high) }
@@ -265,7 +264,7 @@ fn front(curves: &[Curve]) -> Vec<FrontPoint> {
     front
 }
 
-/// Theory: on exact power laws every question has a closed answer.
+/// Theory: for exact power laws, all results have closed forms.
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -302,16 +301,16 @@ mod tests {
         let curve = power_law(0, 0.01, -1.0, 0.1);
         assert!((curve.error_at(1.0).unwrap() - 0.01).abs() < 1e-12);
         assert!((curve.time_to(0.02).unwrap() - 0.5).abs() < 1e-12);
-        assert_eq!(curve.error_at(0.05), None, "no picture yet");
+        assert_eq!(curve.error_at(0.05), None, "no image yet");
         assert_eq!(curve.time_to(0.001), None, "not reached");
-        assert_eq!(curve.time_to(1.0), Some(0.1), "the first picture is better");
+        assert_eq!(curve.time_to(1.0), Some(0.1), "the first image is better");
         assert_eq!((curve.passes_to(0.02), curve.passes_to(0.001)), (Some(8), None));
         assert!((curve.extrapolated_time_to(0.001).unwrap() - 10.0).abs() < 1e-9);
     }
 
     #[test]
     fn the_front_is_what_nothing_beats() {
-        // Fast and coarse until the curves cross at 1 s, then slow and good.
+        // configuration 0 leads until the curves cross at 1 s, then configuration 1
         let curves = vec![power_law(0, 0.01, -0.5, 0.1), power_law(1, 0.01, -1.0, 0.15)];
         let front = front(&curves);
         assert!(

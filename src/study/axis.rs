@@ -1,17 +1,17 @@
-//! Logarithmic axes: what they span, where their ticks are, and how those are written.
+//! Logarithmic axes: ranges, ticks and tick labels.
 
-/// What an axis spans.
+/// Range of an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {
-    /// At the axis' beginning.
+    /// Lower end.
     pub low: f64,
-    /// At its end.
+    /// Upper end.
     pub high: f64,
 }
 
 impl Range {
-    /// Around positive values, to the next of 1, 2, 5 times a power of ten; at least a factor of
-    /// four.
+    /// Range of positive values, extended to 1, 2 or 5 times a power of ten and to at least a
+    /// factor of four.
     pub fn of(values: impl Iterator<Item = f64>) -> Self {
         let (low, high) =
             values.fold((f64::MAX, 0.0_f64), |(low, high), v| (low.min(v), high.max(v)));
@@ -35,13 +35,13 @@ impl Range {
         Self { low: step(low, false), high: step(high, true) }
     }
 
-    /// Powers of ten between its ends.
+    /// Length in decades.
     pub fn decades(self) -> f64 {
         (self.high / self.low).log10()
     }
 
-    /// About as many ticks as there is room for: every, or every second, ... power of ten, or 1, 2,
-    /// 5 of each.
+    /// Ticks with labels, at most about `room`: 1, 2, 5 times each power of ten, or every n-th
+    /// power of ten.
     pub fn ticks(self, room: f64) -> Vec<(f64, String)> {
         let (first, last) = (self.low.log10().floor() as i32, self.high.log10().ceil() as i32);
         let inside = |value: &f64| (self.low * 0.999..=self.high * 1.001).contains(value);
@@ -59,7 +59,7 @@ impl Range {
     }
 }
 
-/// A tick's value: plain between 0.001 and 10000, else as a power of ten.
+/// Formats a tick label: a plain number from 0.001 to 20000, otherwise a power of ten.
 pub fn number(value: f64) -> String {
     if (0.000_999..=20_000.0).contains(&value) {
         return format!("{:.4}", value).trim_end_matches('0').trim_end_matches('.').to_owned();

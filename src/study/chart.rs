@@ -1,31 +1,30 @@
-//! Charts with logarithmic axes as SVG, with labels beside the curves or, where there is no room,
-//! in a legend below.
+//! Charts with logarithmic axes as SVG, with labels next to the curves or in a legend below.
 
 use std::fmt::Write;
 
 use super::axis::Range;
 use super::palette::{SERIES, style};
 
-/// A point with, if it has one, the range of its value.
+/// x, y and optionally the range of y.
 pub type Value = (f64, f64, Option<(f64, f64)>);
 
 /// A curve.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Series {
-    /// Its name; an empty one is not shown.
+    /// Label; not shown if empty.
     pub label: String,
-    /// Index of its color and mark; none draws it faintly.
+    /// Index of the color and marker; `None` draws a faint curve.
     pub color: Option<usize>,
-    /// Whether it is dashed, with hollow marks.
+    /// If true, the curve is dashed, with hollow markers.
     pub dashed: bool,
-    /// In the order of x; those that are not positive are left out.
+    /// Points in order of x. Points that are not positive are not drawn.
     pub points: Vec<Value>,
 }
 
 /// A chart with two logarithmic axes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chart {
-    /// What it shows, for those who cannot see it.
+    /// Description for screen readers.
     pub title: String,
     /// Name of the horizontal axis.
     pub x_name: String,
@@ -33,30 +32,30 @@ pub struct Chart {
     pub y_name: String,
     /// Curves.
     pub series: Vec<Series>,
-    /// Slopes to draw as a guide, with a name.
+    /// Slopes to draw as guides, with labels.
     pub guides: Vec<(f64, String)>,
-    /// Ticks of the horizontal axis in place of powers of ten.
+    /// Ticks of the horizontal axis; `None` for automatic ticks.
     pub x_ticks: Option<Vec<(f64, String)>>,
 }
 
-/// Where a chart is shown.
+/// Layout of a chart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
-    /// In a page, 680 wide, labels at the curves' ends.
+    /// Inline in a page, 680 px wide, with labels at the ends of the curves.
     Wide,
-    /// In a page on a phone, 350 wide, a legend below.
+    /// Inline in a page on a phone, 350 px wide, with a legend below.
     Narrow,
-    /// A file of its own, wide, with its own colors.
+    /// Standalone file with the wide layout and embedded styles.
     File,
 }
 
-/// Height of a line of text.
+/// Height of a line of text in px.
 const LINE: f64 = 15.0;
-/// Width of a letter on the average.
+/// Average width of a letter in px.
 const LETTER: f64 = 6.6;
 
 impl Chart {
-    /// Whether there is anything to draw.
+    /// Returns true if there is nothing to draw.
     pub fn is_empty(&self) -> bool {
         self.values().next().is_none()
     }
@@ -68,7 +67,7 @@ impl Chart {
             .filter(|(x, y, _)| *x > 0.0 && *y > 0.0)
     }
 
-    /// The drawing as SVG text.
+    /// Renders the chart as SVG.
     pub fn svg(&self, format: Format) -> String {
         let labels: Vec<&Series> =
             self.series.iter().filter(|s| !s.label.is_empty() && has_values(s)).collect();
@@ -160,7 +159,7 @@ impl Chart {
         );
     }
 
-    /// A fan of slopes in the lower left, where falling curves leave room.
+    /// Draws a fan of guide slopes in the lower left, where decreasing curves leave room.
     fn guides(&self, plot: &Plot, out: &mut String) {
         let (x0, x1) = (plot.left + 10.0, plot.left + 0.16 * (plot.right - plot.left));
         let decades_x = (x1 - x0) / plot.per_decade_x();
@@ -191,7 +190,7 @@ impl Chart {
     }
 }
 
-/// The part of a drawing inside the axes, in its units.
+/// Plot area inside the axes, in px, and its value ranges.
 struct Plot {
     left: f64,
     top: f64,
@@ -219,7 +218,7 @@ impl Plot {
     }
 }
 
-/// Text inside XML.
+/// Escapes text for XML.
 pub fn escape(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
@@ -267,7 +266,7 @@ fn curve(series: &Series, plot: &Plot, out: &mut String) {
     out.push_str("</g>");
 }
 
-/// Marks differ in shape as well as in color.
+/// Marker of a series. Shapes differ as well as colors.
 fn mark(color: usize, hollow: bool, x: f64, y: f64) -> String {
     let class = if hollow { "hollow" } else { "mark" };
     match color % 4 {
@@ -285,8 +284,7 @@ fn mark(color: usize, hollow: bool, x: f64, y: f64) -> String {
     }
 }
 
-/// Names at the right, level with the curves' ends as far as there is room, with a line to where
-/// they belong.
+/// Draws labels on the right, as close to the ends of the curves as they fit, with leader lines.
 fn labels_beside(labels: &[&Series], plot: &Plot, out: &mut String) {
     let end = |series: &Series| {
         let last = series.points.iter().rev().find(|(x, y, _)| *x > 0.0 && *y > 0.0);
@@ -313,8 +311,8 @@ fn labels_beside(labels: &[&Series], plot: &Plot, out: &mut String) {
     }
 }
 
-/// Spans near the wanted ones, which are in order, at least `gap` apart and inside the bounds if
-/// they fit.
+/// Positions near the sorted positions `wanted`, at least `gap` apart and within the bounds if they
+/// fit.
 fn spaced(wanted: &[f64], gap: f64, low: f64, high: f64) -> Vec<f64> {
     let mut places = Vec::with_capacity(wanted.len());
     let mut next = low;
@@ -352,7 +350,7 @@ fn legend_below(labels: &[&Series], top: f64, out: &mut String) {
 mod tests {
     use super::*;
 
-    /// Labels keep their distance, their order and the bounds, and do not move when there is room.
+    /// Labels keep their spacing, order and bounds, and do not move if there is room.
     #[test]
     fn labels_do_not_overlap() {
         for wanted in [
@@ -368,7 +366,7 @@ mod tests {
         assert_eq!(spaced(&[30.0, 60.0, 90.0], 15.0, 20.0, 300.0), [30.0, 60.0, 90.0]);
     }
 
-    /// A point twice as high lies higher; what has no logarithm is left out, and names are escaped.
+    /// Values without a logarithm are not drawn, and labels are escaped.
     #[test]
     fn a_chart_is_xml_with_its_points() {
         let series = |label: &str, color, points: &[(f64, f64)]| Series {

@@ -1,5 +1,5 @@
-//! Goes through truths and renders, keeps each when it is finished, and can be stopped between any
-//! two passes.
+//! Runs a study: creates the references and the renders, saves each when it is complete, and can be
+//! interrupted between any two passes.
 
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
@@ -21,43 +21,43 @@ use crate::film::{Development, FileError, Picture, Region};
 use crate::render::quality::one_pass_error;
 use crate::scene::Scene;
 
-/// What a watcher is told.
+/// Progress event of a study.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Event {
-    /// In words.
+    /// Text message.
     Note(String),
-    /// A finished render.
+    /// A completed render.
     Run {
-        /// How many are finished.
+        /// Number of completed renders.
         done: usize,
-        /// Of how many.
+        /// Total number of renders.
         of: usize,
-        /// The configuration's label and its seed, from 1.
+        /// Label of the configuration.
         label: String,
-        /// From 1.
+        /// Seed number, from 1.
         seed: u32,
-        /// At its end; none for a render that failed.
+        /// Final measurement; `None` if the render failed.
         last: Option<Point>,
-        /// Time that the rest will take.
+        /// Estimated remaining time.
         remaining: Duration,
     },
 }
 
-/// A study at work.
+/// A study in progress.
 pub struct Study<'a> {
-    /// The scene; its film has the size of the study.
+    /// Scene; its film has the image size of the study.
     pub scene: &'a Scene,
-    /// What it is about.
+    /// Parameters of the study.
     pub about: About,
-    /// Where it is kept.
+    /// Folder with the results.
     pub folder: Folder,
-    /// The part of the picture to show; none takes the one with most contrast.
+    /// Crop to show; `None` selects the one with the most contrast.
     pub crop: Option<Region>,
-    /// Set to end it early.
+    /// If set, the study ends early.
     pub interrupted: &'a AtomicBool,
 }
 
-/// A configuration and what its renders are made of and held against.
+/// A configuration with its scene and its reference.
 #[derive(Clone, Copy)]
 struct GridCell<'a> {
     number: usize,
@@ -67,18 +67,22 @@ struct GridCell<'a> {
     crop: Region,
 }
 
-/// Results, and the truths and the crop that belong to them.
+/// Results of a study that ended or was interrupted.
 pub struct Conducted {
-    /// All that was found.
+    /// Results.
     pub results: Results,
-    /// The part of the picture that the crops show.
+    /// Region of the image that the crops show.
     pub crop: Region,
-    /// Whether all renders are finished.
+    /// True if all renders are complete.
     pub complete: bool,
 }
 
 impl Study<'_> {
-    /// Makes what is missing. Gives what there is when it is interrupted.
+    /// Runs all renders that are missing in the folder. If interrupted, returns the results so far.
+    ///
+    /// # Errors
+    /// If a reference cannot be rendered or read, a device does not exist, or a file cannot be
+    /// written. Renders that fail are part of the results.
     pub fn conduct(&self, observer: &mut dyn FnMut(&Event)) -> Result<Conducted, StudyError> {
         let whole = Region { x0: 0, y0: 0, x1: self.about.size.0, y1: self.about.size.1 };
         let mut results = Results {
@@ -94,11 +98,11 @@ impl Study<'_> {
                 variants.push(config.variant);
             }
         }
-        // All of them before the truth, since a scene may lack what is to be varied.
+        // create all variants before the reference: the scene may lack the shapes to vary
         let scenes = variants.iter().map(|v| v.of(self.scene)).collect::<Result<Vec<_>, _>>()?;
         let mut truths = Vec::new();
         for (number, lamp) in lamps.iter().enumerate() {
-            // Whatever else is varied is held against the exact surfaces.
+            // the reference uses exact surfaces for all other variants
             let exact = Variant { lamp: *lamp, ..Variant::default() }.of(self.scene)?;
             let Some(truth) = self.truth(number, *lamp, &exact, observer)? else {
                 return Ok(Conducted {
@@ -120,8 +124,8 @@ impl Study<'_> {
         let start = Instant::now();
         let mut made = 0;
         let total = self.about.configs.len() * self.about.seeds as usize;
-        // Seed by seed, so that a study that is stopped has something of everything, and so that
-        // what else the machine does in a while falls on all alike.
+        // Seeds in the outer loop, so that an interrupted study covers all configurations, and
+        // temporary load on the machine affects all of them alike.
         for seed in 0..self.about.seeds {
             for (number, config) in self.about.configs.iter().enumerate() {
                 let lamp = lamps.iter().position(|lamp| *lamp == config.variant.lamp).unwrap_or(0);
@@ -165,7 +169,7 @@ impl Study<'_> {
         }
     }
 
-    /// Sizes of the lamps, each once.
+    /// Distinct lamp sizes.
     fn lamps(&self) -> Vec<Option<Lamp>> {
         let mut lamps = Vec::new();
         for config in &self.about.configs {
@@ -204,8 +208,7 @@ impl Study<'_> {
         Ok(Some(truth))
     }
 
-    /// Whether a render is finished and, as long as its configuration is not, its pictures are
-    /// there.
+    /// Returns true if a render is complete and its images are still available if they are needed.
     fn is_done(&self, results: &Results, config: usize, seed: u32) -> bool {
         let finished = results.products.iter().any(|p| p.config == config);
         results.runs.iter().filter(|run| (run.config, run.seed) == (config, seed)).any(|run| {
@@ -215,7 +218,7 @@ impl Study<'_> {
         })
     }
 
-    /// One render, measured; none where it was interrupted.
+    /// Renders and measures one seed of a configuration; `None` if interrupted.
     fn run(
         &self,
         place: &GridCell,
@@ -285,8 +288,8 @@ impl Study<'_> {
         }))
     }
 
-    /// When all renders of a configuration are there: the products of their errors, after which the
-    /// pictures can go.
+    /// Computes the products of the errors of all renders of a configuration, then removes their
+    /// images.
     fn finish(
         &self,
         results: &mut Results,
@@ -332,7 +335,7 @@ impl Study<'_> {
     }
 }
 
-/// Name of the crop of a configuration's first render.
+/// File name of the crop of a configuration's first render.
 pub fn crop_name(config: usize, passes: u32) -> String {
     format!("crops/{config}-{passes}.png")
 }
@@ -341,7 +344,7 @@ fn unfinished(config: usize, seed: u32, passes: u32) -> String {
     format!("unfinished/{config}-{seed}-{passes}.pfm")
 }
 
-/// Passes that a configuration's first render made in its time; the others make as many.
+/// Number of passes of a configuration's first render, which the other seeds repeat.
 fn passes_of(results: &Results, config: usize) -> Option<u32> {
     let runs = results.runs.iter().filter(|run| run.config == config);
     runs.filter_map(|run| run.points.last().map(|point| point.passes)).next()

@@ -1,18 +1,17 @@
-//! The part of a picture that a report shows.
+//! Choice of the crop that a report shows.
 
 use crate::film::{Development, Picture, Region};
 
-/// Sides of the part, at most, in pixels.
+/// Maximum side of the crop in pixels.
 const SIDE: u32 = 96;
-/// Contrast is looked for between the means of blocks of so many pixels a side, so that noise is
-/// none.
+/// Edge in pixels of the blocks whose means are compared, so that noise does not count as contrast.
 const BLOCK: u32 = 4;
-/// More contrast than this, in display values of three channels, counts as this: a lamp's edge is
-/// not worth more than any.
+/// Upper limit of the contrast of two blocks, in display values summed over three channels, so that
+/// the edges of lamps do not dominate.
 const ENOUGH: f64 = 0.3;
 
-/// The square with the most contrast on the screen: the largest sum of differences of neighbouring
-/// blocks.
+/// Chooses the square with the most contrast in display values, that is the largest sum of
+/// differences of neighboring blocks.
 pub fn choose(picture: &Picture, development: &Development) -> Region {
     let side = SIDE.min(picture.width).min(picture.height);
     let (columns, rows) = (picture.width / BLOCK, picture.height / BLOCK);
@@ -46,7 +45,7 @@ pub fn choose(picture: &Picture, development: &Development) -> Region {
     Region { x0, y0, x1: x0 + side, y1: y0 + side }
 }
 
-/// Mean over a block of the sum of its display values.
+/// Mean over a block of the sum of the display values of three channels.
 fn mean_shown(picture: &Picture, development: &Development, column: u32, row: u32) -> f64 {
     let block = Region {
         x0: column * BLOCK,
@@ -63,8 +62,7 @@ fn mean_shown(picture: &Picture, development: &Development, column: u32, row: u3
 mod tests {
     use super::*;
 
-    /// A patch of large squares in a noisy picture is what is chosen, and a small picture is taken
-    /// whole.
+    /// The crop covers a patch of large squares in a noisy image, and fits into small images.
     #[test]
     fn contrast_attracts() {
         let patch = |x: u32, y: u32| (200..260).contains(&x) && (40..100).contains(&y);

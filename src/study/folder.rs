@@ -1,5 +1,5 @@
-//! The folder of a study: what it is about, and each finished piece, so that a stopped study goes
-//! on where it was.
+//! Folder of a study: its parameters and all completed renders, so that an interrupted study can be
+//! continued.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -17,112 +17,113 @@ use crate::film::{FileError, Picture, pfm};
 use crate::memory;
 use crate::storage::{self, Purpose};
 
-/// What a study is about; a folder holds one.
+/// Parameters of a study. Each folder contains one study.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct About {
-    /// This program's version.
+    /// Version of caustica.
     pub version: String,
-    /// The scene's name.
+    /// Scene name.
     pub scene: String,
-    /// The scene file's text.
+    /// Text of the scene file.
     pub scene_text: String,
-    /// Columns and rows of the pictures.
+    /// Image columns and rows.
     pub size: (u32, u32),
-    /// Columns and rows that the scene file asks for.
+    /// Image columns and rows in the scene file.
     pub own_size: (u32, u32),
-    /// The points of the grid.
+    /// Configurations of the grid.
     pub configs: Vec<Config>,
-    /// Renders of each.
+    /// Number of renders per configuration.
     pub seeds: u32,
-    /// Seconds of rendering for each render.
+    /// Time per render in seconds.
     pub run_seconds: f64,
-    /// Where the truth comes from.
+    /// Source of the reference.
     pub truth: TruthSpec,
 }
 
-/// A picture of a render against the truth.
+/// Measurement of an intermediate image against the reference.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Point {
-    /// Passes in it.
+    /// Number of passes.
     pub passes: u32,
-    /// Seconds of rendering.
+    /// Render time in seconds.
     pub seconds: f64,
     /// Photon paths emitted.
     pub photons: u64,
     /// Rays traced.
     pub rays: u64,
-    /// Mean squared error, the truth's own in it.
+    /// Mean squared error, including that of the reference.
     pub mse: f64,
-    /// Relative mean squared error as `caustica diff` has it, the truth's own in it.
+    /// relMSE as of `caustica diff`, including that of the reference.
     pub rel_mse: f64,
     /// Mean LDR-FLIP.
     pub flip: f64,
-    /// Mean luminance over the truth's.
+    /// Mean luminance divided by that of the reference.
     pub mean_ratio: f64,
 }
 
-/// A finished render.
+/// A completed render.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RunRecord {
     /// Index into [`About::configs`].
     pub config: usize,
-    /// Which of the seeds, from 0.
+    /// Seed number, from 0.
     pub seed: u32,
-    /// The device that it ran on.
+    /// Device name.
     pub device: String,
-    /// Seconds before the first pass: flattening, probing, compiling.
+    /// Seconds before the first pass: packing, probing, compiling.
     pub setup_seconds: f64,
-    /// The start radius in pixels that was chosen where the settings left it open.
+    /// Automatic start radius in pixels, if the settings ask for one.
     #[serde(default)]
     pub automatic_radius: Option<f64>,
-    /// relMSE of one pass, as two tell it without a truth; none where only one was made.
+    /// relMSE of one pass, estimated from the first two passes without a reference; `None` if only
+    /// one pass was rendered.
     #[serde(default)]
     pub one_pass: Option<f64>,
-    /// In the order of passes.
+    /// Measurements in order of passes.
     pub points: Vec<Point>,
-    /// Why there are no points, if there are none.
+    /// Error message of a failed render, which has no measurements.
     pub failed: Option<String>,
 }
 
-/// What all renders of a configuration say together.
+/// Joint statistics of all renders of a configuration.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ProductsRecord {
     /// Index into [`About::configs`].
     pub config: usize,
-    /// Passes of the pictures.
+    /// Number of passes of the images.
     pub passes: u32,
-    /// Products of their errors.
+    /// Products of the errors.
     pub products: Products,
 }
 
-/// A truth and how good it is.
+/// A reference and its accuracy.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TruthRecord {
-    /// The size of the lamps that it is for.
+    /// Lamp size that the reference belongs to.
     pub lamp: Option<Lamp>,
-    /// What it was made from.
+    /// Description of its source.
     pub source: String,
-    /// Its own mean squared relative error, all pixels in it, by the scatter of its parts; none
-    /// where it has only one.
+    /// Mean squared relative error over all pixels, from the scatter of the reference's images;
+    /// `None` for a single image.
     pub variance: Option<f64>,
-    /// Its own relMSE, likewise.
+    /// relMSE of the reference, likewise.
     pub rel_mse: Option<f64>,
 }
 
-/// All that a study has found.
+/// All results of a study.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Results {
-    /// What it is about.
+    /// Parameters.
     pub about: About,
-    /// One for each size of the lamps.
+    /// References, one for each lamp size.
     pub truths: Vec<TruthRecord>,
-    /// Finished renders.
+    /// Completed renders.
     pub runs: Vec<RunRecord>,
-    /// Of the configurations of which all renders are finished.
+    /// Joint statistics of the configurations whose renders are all complete.
     pub products: Vec<ProductsRecord>,
 }
 
-/// A study's folder.
+/// Folder of a study.
 #[derive(Clone, Debug)]
 pub struct Folder(PathBuf);
 
@@ -131,16 +132,16 @@ const RUNS: &str = "runs.jsonl";
 const PRODUCTS: &str = "products.jsonl";
 
 impl Folder {
-    /// Makes the folder, or finds the same study in it.
+    /// Creates the folder, or opens it if it contains the same study.
     ///
     /// # Errors
-    /// Where it holds another study, or other files and no study.
+    /// If the folder contains a different study, or other files.
     pub fn open(path: &Path, about: &About) -> Result<Self, StudyError> {
         let folder = Self(path.to_owned());
         let other = |what: String| StudyError::Folder { folder: path.to_owned(), what };
         let file = path.join(ABOUT);
         if file.exists() {
-            // what is added to later: a pipe would wait for a reader
+            // check the files that are written later: a pipe would block until it is read
             for file in [RUNS, PRODUCTS].map(|name| path.join(name)) {
                 storage::check(&file, Purpose::Keepsake)
                     .map_err(|cause| io(&file, "written", cause))?;
@@ -148,19 +149,19 @@ impl Folder {
             let text = storage::read_text(&file, memory::readable());
             let text = text.map_err(|cause| io(&file, "read", cause))?;
             let found: About = serde_json::from_str(&text).map_err(|error| {
-                other(format!("its {ABOUT} is not one of this version's: {error}"))
+                other(format!("cannot parse {ABOUT}, perhaps of another version: {error}"))
             })?;
             return match difference(&found, about) {
                 None => Ok(folder),
                 Some(what) => Err(other(format!(
-                    "it holds a study of {what}; name another folder, or remove this one"
+                    "contains a study with {what}; use another folder, or remove this one"
                 ))),
             };
         }
         let used = fs::read_dir(path).is_ok_and(|mut entries| entries.next().is_some());
         if used || path.is_file() {
             return Err(other(
-                "it holds something else than a study; name another folder".to_owned(),
+                "contains something other than a study; use another folder".to_owned(),
             ));
         }
         for sub in ["truth", "unfinished", "crops", "charts"] {
@@ -172,48 +173,48 @@ impl Folder {
         Ok(folder)
     }
 
-    /// A file in it.
+    /// Path of a file in the folder.
     pub fn file(&self, name: impl AsRef<Path>) -> PathBuf {
         self.0.join(name)
     }
 
-    /// Finished renders.
+    /// Reads the completed renders.
     pub fn runs(&self) -> Vec<RunRecord> {
         self.lines(RUNS)
     }
 
-    /// Keeps the finished renders.
+    /// Writes the completed renders.
     pub fn keep_runs(&self, runs: &[RunRecord]) -> Result<(), FileError> {
         self.keep(RUNS, runs)
     }
 
-    /// Products of errors of finished configurations.
+    /// Reads the joint statistics of completed configurations.
     pub fn products(&self) -> Vec<ProductsRecord> {
         self.lines(PRODUCTS)
     }
 
-    /// Keeps the products.
+    /// Writes the joint statistics.
     pub fn keep_products(&self, products: &[ProductsRecord]) -> Result<(), FileError> {
         self.keep(PRODUCTS, products)
     }
 
-    /// Keeps a picture with all its bits.
+    /// Writes an image losslessly as PFM.
     pub fn keep_picture(&self, name: &str, picture: &Picture) -> Result<(), FileError> {
         write_whole(&self.file(name), &pfm::encode(picture))
     }
 
-    /// A kept picture; none where it is missing or damaged.
+    /// Reads an image; `None` if it is missing or damaged.
     pub fn picture(&self, name: &str) -> Option<Picture> {
         read(&self.file(name)).ok()
     }
 
-    /// Removes a file that is no longer needed.
+    /// Removes a file.
     pub fn remove(&self, name: &str) {
-        // One that is gone already is as good.
+        // the file may be gone already
         let _ = fs::remove_file(self.file(name));
     }
 
-    /// The lines of a file that can be read; what was not finished is made again.
+    /// Parses the lines of a file and skips invalid ones, whose renders are repeated.
     fn lines<T: DeserializeOwned>(&self, name: &str) -> Vec<T> {
         let text = storage::read_text(&self.file(name), memory::readable()).unwrap_or_default();
         text.lines().filter_map(|line| serde_json::from_str(line).ok()).collect()
@@ -235,22 +236,22 @@ fn io(file: &Path, verb: &'static str, cause: std::io::Error) -> FileError {
     FileError::Io { file: file.to_owned(), verb, cause }
 }
 
-/// In which way a study is another one.
+/// Describes the first difference between two studies.
 fn difference(found: &About, wanted: &About) -> Option<String> {
     let About { version, scene, scene_text, size, own_size: _, configs, seeds, run_seconds, truth } =
         found;
     let checks = [
         (*scene != wanted.scene, format!("the scene `{scene}`")),
-        (*scene_text != wanted.scene_text, "an older text of this scene".to_owned()),
+        (*scene_text != wanted.scene_text, "a different text of this scene".to_owned()),
         (*size != wanted.size, format!("{} x {} pixels", size.0, size.1)),
-        (*configs != wanted.configs, format!("another grid, of {} configurations", configs.len())),
+        (*configs != wanted.configs, format!("a different grid of {} settings", configs.len())),
         (*seeds != wanted.seeds, format!("{seeds} seeds")),
-        (*truth != wanted.truth, "another truth".to_owned()),
+        (*truth != wanted.truth, "a different truth".to_owned()),
         (
             *run_seconds != wanted.run_seconds,
-            format!("{run_seconds:.3} s for each render (another --budget)"),
+            format!("{run_seconds:.3} s per render (a different --budget)"),
         ),
-        (*version != wanted.version, format!("version {version} of this program")),
+        (*version != wanted.version, format!("version {version} of caustica")),
     ];
     checks.into_iter().find(|(differs, _)| *differs).map(|(_, what)| what)
 }

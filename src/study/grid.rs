@@ -1,4 +1,4 @@
-//! Which settings a study goes through.
+//! Grid of settings of a study.
 
 use std::str::FromStr;
 
@@ -32,34 +32,37 @@ pub const NAMES: [(&str, &str); 13] = [
 pub struct Axis {
     /// One of [`NAMES`].
     pub name: String,
-    /// As written.
+    /// Values as written by the user.
     pub values: Vec<String>,
 }
 
-/// An axis or a value that cannot be.
+/// An invalid axis or value.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum GridError {
     /// Not of the form NAME=V1,V2.
-    #[error("`{0}`: expected a setting and its values, as in radius=1px,2px")]
+    #[error("`{0}`: expected a setting and its values, e.g. radius=1px,2px")]
     Form(String),
-    /// No such setting.
-    #[error("there is no setting `{name}`{}; a study may vary {known}", near.map(|n| format!(", did you mean `{n}`?")).unwrap_or_default())]
+    /// Unknown setting.
+    #[error(
+        "unknown setting `{name}`{}; a study may vary {known}",
+        near.map(|n| format!(", did you mean `{n}`?")).unwrap_or_default()
+    )]
     Name {
-        /// As written.
+        /// Name as written by the user.
         name: String,
-        /// The nearest that there is, if one is near.
+        /// The most similar known name, if one is similar.
         near: Option<&'static str>,
-        /// All that there are.
+        /// All known names.
         known: String,
     },
-    /// A value that the setting cannot have.
+    /// Invalid value of a setting.
     #[error("{name}={value}: {what}")]
     Value {
-        /// The setting.
+        /// Name of the setting.
         name: String,
-        /// As written.
+        /// Value as written by the user.
         value: String,
-        /// What is wrong.
+        /// Description of the problem.
         what: String,
     },
 }
@@ -89,41 +92,41 @@ impl FromStr for Axis {
                 known: NAMES.map(|(known, _)| known).join(", "),
             });
         }
-        // Each value has to be one, whatever it will be combined with.
+        // check each value independently of its combinations
         let mut any = Config::new(RenderSettings::default(), "auto");
         values.iter().try_for_each(|value| any.set(&name, value))?;
         Ok(Self { name, values })
     }
 }
 
-/// One point of the grid.
+/// A configuration, i.e. a point of the grid.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Config {
-    /// What the grid chose, as (setting, value).
+    /// Settings chosen by the grid, as (name, value).
     pub choices: Vec<(String, String)>,
     /// All settings.
     pub settings: RenderSettings,
-    /// As `--device` takes it.
+    /// Device, as a value of `--device`.
     pub device: String,
-    /// How the scene differs from its file.
+    /// Modification of the scene.
     pub variant: Variant,
-    /// Whose the settings are before the grid chooses.
+    /// Label of the settings without choices.
     #[serde(default = "scene_itself")]
     pub base: String,
 }
 
 fn scene_itself() -> String {
-    "the scene's own".to_owned()
+    "scene settings".to_owned()
 }
 
 impl Config {
-    /// The scene's own settings.
+    /// Configuration of the unmodified scene with these settings.
     pub fn new(settings: RenderSettings, device: &str) -> Self {
         let (device, base) = (device.to_owned(), scene_itself());
         Self { choices: Vec::new(), settings, device, variant: Variant::default(), base }
     }
 
-    /// The same with one more choice.
+    /// Adds a choice.
     fn with(&self, name: &str, value: &str) -> Result<Self, GridError> {
         let mut config = self.clone();
         config.set(name, value)?;
@@ -145,12 +148,12 @@ impl Config {
         Ok(())
     }
 
-    /// The value chosen for a setting, if the grid chose one.
+    /// Value that the grid chose for a setting, if any.
     pub fn choice(&self, name: &str) -> Option<&str> {
         self.choices.iter().find(|(choice, _)| choice == name).map(|(_, value)| value.as_str())
     }
 
-    /// A short name among others of the study.
+    /// Short label within the study.
     pub fn label(&self) -> String {
         match self.choices.as_slice() {
             [] => self.base.clone(),
@@ -162,7 +165,7 @@ impl Config {
         }
     }
 
-    /// The value that a setting of [`NAMES`] has, as a grid would write it.
+    /// Value of a setting of [`NAMES`], in the notation of a grid.
     pub fn value(&self, name: &str) -> String {
         match (name, self.settings.radius) {
             ("device", _) => self.device.clone(),
@@ -189,7 +192,7 @@ impl Config {
         }
     }
 
-    /// Its label without some settings.
+    /// Label that omits some settings.
     pub fn label_without(&self, left_out: &[&str]) -> String {
         let rest = self.choices.iter().filter(|(name, _)| !left_out.contains(&name.as_str()));
         let rest: Vec<_> = rest.cloned().collect();
@@ -197,7 +200,7 @@ impl Config {
     }
 }
 
-/// A setting's value in few words.
+/// Short label of a value of a setting.
 pub fn label(name: &str, value: &str) -> String {
     match name {
         "method" | "device" => value.to_owned(),
@@ -228,7 +231,7 @@ pub fn label(name: &str, value: &str) -> String {
     }
 }
 
-/// 65536 as 66k.
+/// Formats 65536 as 66k.
 fn thousands(number: f64) -> String {
     match number {
         n if n >= 999_500.0 => format!("{:.1}M", n / 1e6),
@@ -238,8 +241,8 @@ fn thousands(number: f64) -> String {
     }
 }
 
-/// All combinations of the axes' values, and with `varied` each of those axes' values alone beside
-/// the scene's own.
+/// All combinations of the values of `product`, and in addition each value of `varied` applied to
+/// `base` alone.
 pub fn configs(base: &Config, product: &[Axis], varied: &[Axis]) -> Result<Vec<Config>, GridError> {
     let mut configs = vec![base.clone()];
     for axis in product {
@@ -263,12 +266,12 @@ pub fn configs(base: &Config, product: &[Axis], varied: &[Axis]) -> Result<Vec<C
     Ok(configs)
 }
 
-/// The axes of a study that names none: each setting that matters most, by itself.
+/// Default axes: the most important settings, each varied alone.
 pub fn default_axes(base: &RenderSettings) -> Vec<Axis> {
     let axis = |name: &str, values: Vec<String>| Axis { name: name.to_owned(), values };
     let words = |words: &[&str]| words.iter().map(|word| (*word).to_owned()).collect::<Vec<_>>();
     let times = |factor: f64| match base.radius {
-        // About what is chosen in most scenes.
+        // close to the automatic radius of most scenes
         Radius::Auto => format!("{}px", 4.0 * factor),
         Radius::Pixels(r) => format!("{}px", r * factor),
         Radius::Units(r) => format!("{}", r * factor),
@@ -293,10 +296,10 @@ fn radius(text: &str) -> Result<Radius, String> {
         None => (text, Radius::Units),
     };
     let number = number.parse().ok().filter(|number| (SMALLEST..=LARGEST).contains(number));
-    number.map(unit).ok_or("expected auto, pixels as in 2px, or scene units as in 0.01".to_owned())
+    number.map(unit).ok_or("expected auto, pixels (2px) or scene units (0.01)".to_owned())
 }
 
-/// Settings with one of their fields read from text, as a scene file would.
+/// Sets a field of the settings from text in the notation of scene files.
 fn with_setting(
     settings: &RenderSettings,
     name: &str,
@@ -329,7 +332,7 @@ fn with_setting(
     }
 }
 
-/// Theory: a grid is a product, a variation is a star about the scene's own settings.
+/// Theory: a grid is a product, a variation is a star around the base settings.
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -351,13 +354,13 @@ mod tests {
         );
         assert_eq!(all[5].label(), "local rule, 40k photons");
         assert_eq!(all[5].label_without(&["radius_rule"]), "40k photons");
-        // The scene's own is there once: sppm is the default.
+        // the base occurs once, since sppm is the default
         let star = configs(&base, &[], &axes(&["method=sppm,path", "radius=1px,0.02"])).unwrap();
         let labels: Vec<_> = star.iter().map(Config::label).collect();
-        assert_eq!(labels, ["the scene's own", "path", "r 1px", "r 0.02"]);
+        assert_eq!(labels, ["scene settings", "path", "r 1px", "r 0.02"]);
         assert_eq!(star[1].settings.method, Method::Path);
         assert_eq!(star[2].settings.method, Method::Sppm);
-        // What differs in the scene alone is another point of the grid too.
+        // variants of the scene are different configurations
         let star = configs(
             &base,
             &[],
@@ -366,7 +369,7 @@ mod tests {
         let labels: Vec<_> = star.unwrap().iter().map(Config::label).collect();
         assert_eq!(
             labels,
-            ["the scene's own", "meshes of 16 sectors", "Newton tolerance 1e-3", "point lamp"]
+            ["scene settings", "meshes of 16 sectors", "Newton tolerance 1e-3", "point lamp"]
         );
     }
 

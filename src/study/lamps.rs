@@ -1,5 +1,4 @@
-//! A scene with its lamps made larger or smaller at equal power, for studies of what small lamps
-//! cost.
+//! Scaling of lamps at equal power, for studies of the cost of small lamps.
 
 use std::f64::consts::PI;
 use std::fmt;
@@ -10,13 +9,13 @@ use serde::{Deserialize, Serialize};
 
 use crate::scene::{Light, Scene, ShapeKind};
 
-/// How large the lamps are, all together.
+/// Total size of the lamps.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Lamp {
-    /// Their area in square scene units.
+    /// Total area in square scene units.
     Area(f64),
-    /// Spheres become points.
+    /// Point lights in place of spheres.
     Point,
 }
 
@@ -41,21 +40,19 @@ impl fmt::Display for Lamp {
     }
 }
 
-/// The scene with lamps of another size: each is scaled about its centre, and its radiance so that
-/// its power stays. A sphere that becomes a point has the same intensity in every direction, `pi
-/// r^2 L`.
+/// Resizes the lamps of a scene: each is scaled about its center, and its radiance is changed to
+/// keep its power. A sphere is replaced by a point light with its intensity `pi r^2 L`.
 ///
 /// # Errors
-/// In words, for a scene without a lamp that has an area, and for lamps that cannot be scaled or be
-/// points.
+/// A message, if the scene has no area lights, or a lamp cannot be scaled or replaced by a point.
 pub fn with_lamp(scene: &Scene, lamp: Lamp) -> Result<Scene, String> {
     let areas =
         scene.shapes.iter().filter(|shape| shape.is_emitter()).map(|shape| area(&shape.kind));
     let total = areas
         .sum::<Option<f64>>()
-        .ok_or("lamps that are meshes, planes or of revolution have no size to set")?;
+        .ok_or("lamps that are meshes, planes or surfaces of revolution cannot be resized")?;
     if total <= 0.0 {
-        return Err("there is no lamp with a surface in this scene".to_owned());
+        return Err("the scene has no area light".to_owned());
     }
     let mut scene = scene.clone();
     match lamp {
@@ -70,10 +67,7 @@ pub fn with_lamp(scene: &Scene, lamp: Lamp) -> Result<Scene, String> {
             let mut points = Vec::new();
             for shape in scene.shapes.iter().filter(|shape| shape.is_emitter()) {
                 let ShapeKind::Sphere { center, radius } = shape.kind else {
-                    return Err(
-                        "only lamps that are spheres shine like points when they are small"
-                            .to_owned(),
-                    );
+                    return Err("only spherical lamps can become points".to_owned());
                 };
                 let intensity = shape.emission.map(|radiance| radiance * PI * radius.powi(2));
                 points.push(Light::Point { position: center, intensity });
@@ -98,7 +92,7 @@ fn area(kind: &ShapeKind) -> Option<f64> {
     }
 }
 
-/// Scales a surface that has an [`area`] about its centre.
+/// Scales a surface that has an [`area`] about its center.
 fn scale(kind: &mut ShapeKind, factor: f64) {
     match kind {
         ShapeKind::Sphere { radius, .. } | ShapeKind::Disc { radius, .. } => *radius *= factor,
@@ -114,7 +108,7 @@ fn scale(kind: &mut ShapeKind, factor: f64) {
     }
 }
 
-/// Theory: power is pi times area times radiance, and the far field of a sphere is a point's.
+/// Theory: power is pi times area times radiance, and a sphere's far field equals that of a point.
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -158,7 +152,7 @@ emission = [2.0, 4.0, 8.0]
             assert!((power(&after) / power(&before) - 1.0).abs() < 1e-12, "{lamp}");
             assert!(
                 power(&after) / power(&scene(lamp)) < 1.5,
-                "the comparison sees a factor of two"
+                "the comparison detects a factor of two"
             );
         }
     }
@@ -172,12 +166,12 @@ emission = [2.0, 4.0, 8.0]
             panic!("{:?}", point.lights)
         };
         assert_eq!(position, DVec3::new(1.0, 2.0, 3.0));
-        // Power of a point is 4 pi I.
+        // the power of a point is 4 pi I
         assert!((4.0 * PI * intensity[1] / (PI * power(&sphere)) - 1.0).abs() < 1e-12);
         let disc = scene(
             "type = \"disc\"\ncenter = [1.0, 2.0, 3.0]\nnormal = [0.0, 1.0, 0.0]\nradius = 0.5",
         );
         assert!(with_lamp(&disc, Lamp::Point).is_err());
-        assert!(with_lamp(&point, Lamp::Area(1.0)).is_err(), "no lamp with a surface");
+        assert!(with_lamp(&point, Lamp::Area(1.0)).is_err(), "no area light");
     }
 }

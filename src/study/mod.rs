@@ -1,11 +1,11 @@
-//! Speed against accuracy: one scene rendered with a grid of settings and several seeds, measured
-//! against a truth while it gets better, and told as curves, tables and a page.
+//! Studies of speed against accuracy: renders a scene with a grid of settings and several seeds,
+//! measures the error against a reference (the *truth*) as the renders progress, and reports the
+//! results as curves, tables and an HTML page.
 //!
-//! [`grid`] says which settings there are, [`truth`] what they are held against, [`render`] makes
-//! one progressive render with snapshots, [`conduct`] goes through all of them and keeps what it
-//! has in a [`folder`]. [`statistics`] and [`analysis`] make figures of that, [`axis`], [`chart`]
-//! and [`panels`] pictures, [`tables`] and [`report`] the files. docs/study.md tells how to read
-//! them.
+//! [`grid`] defines the settings and [`truth`] the reference. [`render`] performs a progressive
+//! render with snapshots, [`conduct`] runs all renders and stores the results in a [`folder`].
+//! [`statistics`] and [`analysis`] evaluate them, [`axis`], [`chart`] and [`panels`] draw charts,
+//! [`tables`] and [`report`] write files. docs/study.md explains how to read them.
 
 pub mod analysis;
 pub mod axis;
@@ -35,38 +35,38 @@ use crate::engine::EngineError;
 use crate::film::FileError;
 use crate::film::metrics::MetricsError;
 
-/// Why a study cannot go on.
+/// Error that ends a study.
 #[derive(Debug, Error)]
 pub enum StudyError {
-    /// A setting of the grid that does not exist or cannot have this value.
+    /// Invalid setting or value in the grid.
     #[error(transparent)]
     Grid(#[from] grid::GridError),
-    /// A device that is not there, or that cannot render this.
+    /// The device does not exist or cannot render the scene.
     #[error(transparent)]
     Device(#[from] DeviceError),
-    /// A render that failed.
+    /// A render failed.
     #[error(transparent)]
     Engine(#[from] EngineError),
-    /// A picture that cannot be read or a file that cannot be written.
+    /// A file cannot be read or written.
     #[error(transparent)]
     File(#[from] FileError),
-    /// A truth that the renders cannot be held against.
+    /// The reference cannot be compared with the renders.
     #[error(transparent)]
     Metrics(#[from] MetricsError),
-    /// A folder that holds something else.
+    /// The folder contains other files or a different study.
     #[error("{}: {what}", folder.display())]
     Folder {
         /// The folder.
         folder: PathBuf,
-        /// What it holds.
+        /// Description of the problem.
         what: String,
     },
-    /// Surfaces that the scene lacks, or that cannot be as the grid asks.
+    /// The scene does not support a variant of the grid.
     #[error("{choice}: {what}")]
     Variant {
-        /// As the grid has it, as in `lamp_area=point`.
+        /// Choice in the notation of the grid, such as `lamp_area=point`.
         choice: String,
-        /// Why not.
+        /// Reason.
         what: String,
     },
 }

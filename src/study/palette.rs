@@ -1,8 +1,8 @@
-//! Colors of charts and pages, for light and dark screens. The series' hues are those of Okabe &
-//! Ito (2008), which color-blind eyes can tell apart, darkened or lightened until each stands out
-//! from the ground.
+//! Colors of charts and pages in light and dark mode. The hues are those of Okabe & Ito (2008),
+//! which color-blind viewers can distinguish, with adjusted lightness for contrast with the
+//! background.
 
-/// How many series there are before colors repeat.
+/// Number of series before colors repeat.
 pub const SERIES: usize = 8;
 
 const LIGHT: [&str; SERIES] =
@@ -10,7 +10,7 @@ const LIGHT: [&str; SERIES] =
 const DARK: [&str; SERIES] =
     ["#56b4e9", "#ff8f4d", "#2fcf9f", "#e79ac9", "#e6c84a", "#9cc9ff", "#c8c8c8", "#ff9c9c"];
 
-/// A style sheet that sets the color variables and the classes of charts.
+/// Style sheet with the color variables and the classes of charts.
 pub fn style() -> String {
     let variables = |ink: &str, soft: &str, line: &str, ground: &str, series: [&str; SERIES]| {
         let series: String =

@@ -1,4 +1,4 @@
-//! Which curves go together in a chart, and the charts of a study.
+//! Charts of a study, and the grouping of curves into charts.
 
 use super::analysis::{Curve, CurvePoint, Part};
 use super::chart::{Chart, Series, Value};
@@ -8,26 +8,26 @@ use super::lamps::Lamp;
 use super::palette::SERIES;
 use super::words::configured;
 
-/// Charts about the same configurations.
+/// Charts of a group of configurations.
 #[derive(Clone, Debug)]
 pub struct Panel {
-    /// What differs in it.
+    /// Name of the setting that varies, or of the group.
     pub title: String,
-    /// In file names.
+    /// Key for file names.
     pub key: String,
-    /// Error over time, FLIP over time, variance and bias over passes.
+    /// Charts of error over time, FLIP over time, and variance and bias over passes.
     pub charts: [(&'static str, Chart); 3],
 }
 
-/// Configurations, each with its name among the others of the group.
+/// A group of configurations with their labels within the group.
 struct Group {
     title: String,
     key: String,
     members: Vec<(usize, String)>,
 }
 
-/// The panels of a part: one for each setting of a star, one for each value of the first setting of
-/// a large product.
+/// Panels of a part: one for each varied setting of a star, or one for each value of the first
+/// setting of a large product.
 pub fn panels(about: &About, part: &Part) -> Vec<Panel> {
     let groups = groups(about, part);
     groups.into_iter().map(|group| panel(part, &group)).collect()
@@ -52,7 +52,7 @@ fn groups(about: &About, part: &Part) -> Vec<Group> {
     let named = |config: &Config, left_out: &[&str]| config.label_without(left_out);
     if let Some((own, base)) = base.filter(|_| members.len() > 1) {
         let group = |name: &str| {
-            let mut group = vec![(*own, format!("{} (own)", label(name, &base.value(name))))];
+            let mut group = vec![(*own, format!("{} (base)", label(name, &base.value(name))))];
             let others = members.iter().filter(|(_, config)| config.choice(name).is_some());
             group.extend(others.map(|(number, config)| (*number, named(config, &["lamp_area"]))));
             Group { title: title(name).to_owned(), key: name.to_owned(), members: group }
@@ -89,7 +89,7 @@ fn title(name: &str) -> &str {
         "indirect_radius" => "Indirect radius",
         "photons" => "Photons per pass",
         "direct" => "Direct light",
-        "max_bounces" => "Most bounces",
+        "max_bounces" => "Maximum bounces",
         "eye_samples" => "Eye samples",
         "device" => "Device",
         "revolutions" => "Surfaces of revolution",
@@ -120,7 +120,7 @@ fn panel(part: &Part, group: &Group) -> Panel {
         guides: guides.iter().map(|slope| (*slope, slope_name(*slope))).collect(),
         x_ticks: None,
     };
-    let time = "seconds of rendering";
+    let time = "render time in s";
     let error =
         curves(|p| (p.seconds, p.rel_mse.mean, Some((p.rel_mse.low, p.rel_mse.high))), false);
     let flip = curves(|p| (p.seconds, p.flip.mean, Some((p.flip.low, p.flip.high))), false);
@@ -141,7 +141,7 @@ fn panel(part: &Part, group: &Group) -> Panel {
     }
 }
 
-/// A squared bias that is clear of its own error; zero otherwise.
+/// Squared bias if it exceeds its standard error, otherwise zero.
 fn significant_bias(split: super::statistics::Split) -> f64 {
     if split.bias_sq > split.bias_sq_error.unwrap_or(0.0) { split.bias_sq } else { 0.0 }
 }
@@ -153,7 +153,7 @@ fn slope_name(slope: f64) -> String {
     }
 }
 
-/// All curves of a part: those on the front in color, the others faint.
+/// Chart of all curves of a part: those on the Pareto front in color, the others faint.
 pub fn overview(about: &About, part: &Part) -> Chart {
     let mut ahead: Vec<usize> = Vec::new();
     for point in &part.front {
@@ -161,7 +161,7 @@ pub fn overview(about: &About, part: &Part) -> Chart {
             ahead.push(point.config);
         }
     }
-    // The most often first, so that colors do not run out on those that lead but once.
+    // sort by number of points on the front, since the number of colors is limited
     let count = |config: &usize| part.front.iter().filter(|point| point.config == *config).count();
     ahead.sort_by_key(|config| std::cmp::Reverse(count(config)));
     ahead.truncate(SERIES);
@@ -176,11 +176,11 @@ pub fn overview(about: &About, part: &Part) -> Chart {
         Series { label, color, dashed: false, points }
     };
     let mut series: Vec<Series> = part.curves.iter().map(series).collect();
-    // Faint ones lie below.
+    // draw faint curves first
     series.sort_by_key(|series| series.color.is_some());
     Chart {
         title: "relMSE over time, all settings".to_owned(),
-        x_name: "seconds of rendering".to_owned(),
+        x_name: "render time in s".to_owned(),
         y_name: "relMSE".to_owned(),
         series,
         guides: vec![(-1.0, slope_name(-1.0)), (-2.0 / 3.0, slope_name(-2.0 / 3.0))],
@@ -188,7 +188,7 @@ pub fn overview(about: &About, part: &Part) -> Chart {
     }
 }
 
-/// relMSE after equal time over the size of the lamps; none where they have one size.
+/// Chart of relMSE after equal time over the lamp area; `None` if there is only one size.
 pub fn lamp_chart(about: &About, parts: &[Part], seconds: f64) -> Option<Chart> {
     let areas: Vec<f64> = parts.iter().filter_map(|part| area(part.lamp()?)).collect();
     let least = areas.iter().copied().reduce(f64::min)?;

@@ -1,4 +1,4 @@
-//! One progressive render, with its picture at passes 1, 2, 4, 8, ... and at the end.
+//! A progressive render with snapshots after 1, 2, 4, 8, ... passes and at the end.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -6,32 +6,32 @@ use std::time::{Duration, Instant};
 use crate::engine::{Engine, EngineError};
 use crate::film::Picture;
 
-/// A picture on its way.
+/// Intermediate image of a render.
 #[derive(Clone, Debug)]
 pub struct Snapshot {
-    /// Passes in it.
+    /// Number of passes.
     pub passes: u32,
-    /// Time that these passes took; reading and measuring pictures is not in it.
+    /// Render time of the passes in seconds, without reading back and measuring images.
     pub seconds: f64,
     /// Photon paths emitted.
     pub photons: u64,
     /// Rays traced.
     pub rays: u64,
-    /// The estimate.
+    /// Radiance estimate.
     pub picture: Picture,
 }
 
-/// Where a render ends.
+/// Stop condition of a render.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Until {
-    /// No pass is begun after so many seconds of rendering.
+    /// Render time in seconds; no pass starts after it.
     Seconds(f64),
-    /// After so many passes.
+    /// Number of passes.
     Passes(u32),
 }
 
-/// Makes passes until the end, and hands over each power of two and the last. False where
-/// `interrupted` was set: the last snapshot is then missing.
+/// Renders until the stop condition holds, and calls `take` after each power of two and after the
+/// last pass. Returns false if `interrupted` was set; the last snapshot is then missing.
 pub fn progressive(
     engine: &mut dyn Engine,
     until: Until,
@@ -69,7 +69,7 @@ pub fn progressive(
     }
 }
 
-/// Theory: an engine that counts its passes into the picture shows when each picture was taken.
+/// Theory: the test engine writes its pass count to the image, so images show when they were taken.
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -126,10 +126,10 @@ mod tests {
             |s| s.picture.rgb[0][0] == s.passes as f32 && s.photons == 5 * u64::from(s.passes)
         ));
         assert!(taken.windows(2).all(|pair| pair[0].seconds < pair[1].seconds));
-        assert_eq!(run(Until::Passes(8), false).1.len(), 4, "the last is not taken twice");
+        assert_eq!(run(Until::Passes(8), false).1.len(), 4, "the last snapshot is taken once");
     }
 
-    /// Five pictures of 100 ms would end it after the first otherwise.
+    /// Reading images back takes 100 ms each and must not count as render time.
     #[test]
     fn taking_pictures_is_no_rendering() {
         let (_, taken) = run(Until::Seconds(0.05), false);

@@ -1,4 +1,4 @@
-//! The files that a study ends in: a page of its own, tables, and charts as files.
+//! Output files of a study: an HTML page, tables and charts.
 
 use std::fmt::Write;
 
@@ -16,8 +16,8 @@ use crate::film::file::write_whole;
 use crate::memory;
 use crate::storage;
 
-/// Writes `report.html`, `study.csv`, `study.json`, `study.md` and `charts/*.svg`; gives the
-/// figures.
+/// Writes `report.html`, `study.csv`, `study.json`, `study.md` and `charts/*.svg`. Returns the
+/// analysis.
 pub fn write(conducted: &Conducted, folder: &Folder) -> Result<Vec<Part>, StudyError> {
     let results = &conducted.results;
     let parts = analyse(results);
@@ -63,7 +63,7 @@ fn heading(lamp: Option<Lamp>) -> String {
     }
 }
 
-/// The tables and sentences as Markdown.
+/// Recommendations and tables as Markdown.
 fn tables(about: &About, parts: &[Part]) -> String {
     let mut out = String::new();
     for sentence in crossings(about, parts) {
@@ -101,7 +101,7 @@ const LAYOUT: &str = "*{box-sizing:border-box}html{color-scheme:light dark}body{
     overflow-wrap:anywhere}code{overflow-wrap:anywhere}pre{overflow-x:auto;font-size:.85rem}\
     @media(max-width:40rem){.wide{display:none}.narrow{display:block}main{padding:.7rem}}";
 
-/// The page, with everything that it needs in it.
+/// Self-contained HTML page.
 fn page(conducted: &Conducted, parts: &[Part], folder: &Folder) -> String {
     let results = &conducted.results;
     let about = &results.about;
@@ -114,12 +114,12 @@ fn page(conducted: &Conducted, parts: &[Part], folder: &Folder) -> String {
     );
     introduction(results, conducted.complete, &mut out);
     if let Some(chart) = lamp_chart(about, parts, about.run_seconds) {
-        out.push_str("<h2>As the lamp shrinks</h2>");
+        out.push_str("<h2>Effect of the lamp area</h2>");
         for sentence in crossings(about, parts) {
             let _ = write!(out, "<p>{}</p>", escape(&sentence));
         }
         out.push_str("<div class=\"one\">");
-        figure(&chart, "Its power stays. The band is the spread over the seeds.", &mut out);
+        figure(&chart, "Lamps have equal power. The band is the range over the seeds.", &mut out);
         out.push_str("</div>");
     }
     for (number, part) in parts.iter().enumerate() {
@@ -139,7 +139,7 @@ fn introduction(results: &Results, complete: bool, out: &mut String) {
     let (width, height) = about.size;
     let _ = write!(
         out,
-        "<p>{} settings, {} seeds each, {} s of rendering for each render, {width} × {height} pixels, on {}. \
+        "<p>{} settings, {} seeds each, {} s per render, {width} × {height} pixels, on {}. \
          caustica {}.{}</p>",
         about.configs.len(),
         about.seeds,
@@ -150,7 +150,8 @@ fn introduction(results: &Results, complete: bool, out: &mut String) {
             String::new()
         } else {
             format!(
-                " <strong>Stopped after {} of {of} renders; the same command goes on.</strong>",
+                " <strong>Interrupted after {} of {of} renders; repeat the command to \
+                 continue.</strong>",
                 results.runs.len()
             )
         }
@@ -164,8 +165,7 @@ fn introduction(results: &Results, complete: bool, out: &mut String) {
             format!("{}: {radius} px", configured(&about.configs[*config]))
         });
         let radii: Vec<String> = radii.collect();
-        let _ =
-            write!(out, "<p>Start radii that were left open: {}.</p>", escape(&radii.join("; ")));
+        let _ = write!(out, "<p>Automatic start radii: {}.</p>", escape(&radii.join("; ")));
     }
     let failed = results.runs.iter().filter_map(|run| Some((run.config, run.failed.as_ref()?)));
     let mut failed: Vec<_> = failed.collect();
@@ -180,21 +180,21 @@ fn introduction(results: &Results, complete: bool, out: &mut String) {
     }
 }
 
-/// What is said about all renders that were held against one truth.
+/// Section of the page about all renders that were compared with one reference.
 fn section(conducted: &Conducted, part: &Part, number: usize, folder: &Folder, out: &mut String) {
     let about = &conducted.results.about;
     let heading = match heading(part.lamp()).as_str() {
-        "" => "What to take".to_owned(),
+        "" => "Recommendations".to_owned(),
         lamp => lamp.to_owned(),
     };
     let _ = write!(out, "<h2>{heading}</h2><div class=\"advice\">");
     for sentence in recommendations(about, part) {
         let _ = write!(out, "<p>{}</p>", escape(&sentence));
     }
-    let own = |value: Option<f64>| value.map_or("unknown, counted as zero".to_owned(), short);
+    let own = |value: Option<f64>| value.map_or("(unknown, taken as zero)".to_owned(), short);
     let _ = write!(
         out,
-        "</div><p class=\"soft\">Truth: {}; its own relMSE is {} and is subtracted.</p><div class=\"one\">",
+        "</div><p class=\"soft\">Truth: {}; its relMSE {} is subtracted.</p><div class=\"one\">",
         escape(&part.truth.source),
         own(part.truth.rel_mse)
     );
@@ -203,10 +203,13 @@ fn section(conducted: &Conducted, part: &Part, number: usize, folder: &Folder, o
     let caption = if all {
         "All settings."
     } else {
-        "All settings; colored are those that lead at some time."
+        "All settings. Settings that lead at some time are colored."
     };
     figure(&overview, caption, out);
-    out.push_str("</div><h3>Figures</h3><p class=\"soft\">Times in brackets are extrapolated along the fitted slope.</p>");
+    out.push_str(
+        "</div><h3>Figures</h3><p class=\"soft\">Times in parentheses are extrapolated by the \
+         fitted slope.</p>",
+    );
     table(&rows(about, part), out);
     front(about, part, out);
     crops(conducted, part, number, folder, out);
@@ -214,25 +217,25 @@ fn section(conducted: &Conducted, part: &Part, number: usize, folder: &Folder, o
         let _ = write!(out, "<h3>{}</h3><div class=\"charts\">", escape(&panel.title));
         for (what, chart) in &panel.charts {
             let caption = match *what {
-                "error" => "relMSE without the truth's own; the band is the spread over the seeds.",
-                "flip" => "What the eye sees; the truth's own noise is in it.",
-                _ => {
-                    "Solid: variance. Dashed, hollow: squared bias, where it is clear of its own error."
-                }
+                "error" => "relMSE minus that of the truth. The band is the range over the seeds.",
+                "flip" => "Visible difference, including the truth's noise.",
+                _ => "Solid: variance. Dashed: squared bias, if it exceeds its standard error.",
             };
             small_figure(chart, caption, out);
         }
         out.push_str("</div>");
     }
     out.push_str(
-        "<h3>Slopes over passes, beside theory</h3><p class=\"soft\">Exponents of power laws fitted to all but the first \
-         passes, with 95 % intervals as if the points were independent.</p>",
+        "<h3>Slopes over passes, and theory</h3><p class=\"soft\">Exponents of power laws fitted \
+         to all but the first passes, with 95 % intervals that assume independent points.</p>",
     );
     table(&slope_rows(about, part), out);
 }
 
 fn front(about: &About, part: &Part, out: &mut String) {
-    out.push_str("<details><summary>Pareto front: nothing is both faster and better</summary>");
+    out.push_str(
+        "<details><summary>Pareto front: no other point is both faster and more accurate</summary>",
+    );
     let head = ["seconds", "settings", "passes", "relMSE"].map(str::to_owned).to_vec();
     let row = |point: &super::analysis::FrontPoint| {
         let name = configured(&about.configs[point.config]);
@@ -242,7 +245,7 @@ fn front(about: &About, part: &Part, out: &mut String) {
     out.push_str("</details>");
 }
 
-/// Parts of pictures at equal time, then at equal error.
+/// Crops of images at equal time, then at equal error.
 fn crops(conducted: &Conducted, part: &Part, number: usize, folder: &Folder, out: &mut String) {
     let about = &conducted.results.about;
     let truth = || picture(folder, &format!("crops/truth-{number}.png"), "truth", "", out_of(part));
@@ -298,10 +301,10 @@ fn crops(conducted: &Conducted, part: &Part, number: usize, folder: &Folder, out
 }
 
 fn out_of(part: &Part) -> String {
-    format!("what the others are held against: {}", part.truth.source)
+    format!("reference for the other images: {}", part.truth.source)
 }
 
-/// A picture of the folder as part of the page; nothing where it is missing.
+/// Figure with an embedded image of the folder; empty if the file is missing.
 fn picture(folder: &Folder, file: &str, name: &str, figures: &str, title: String) -> String {
     let Ok(bytes) = storage::read(&folder.file(file), memory::readable()) else {
         return String::new();
@@ -330,7 +333,7 @@ fn figure(chart: &Chart, caption: &str, out: &mut String) {
     );
 }
 
-/// One of several side by side, where there is never room for more than a narrow chart.
+/// One of several figures in a row, which has room for narrow charts only.
 fn small_figure(chart: &Chart, caption: &str, out: &mut String) {
     if !chart.is_empty() {
         let svg = chart.svg(Format::Narrow);
@@ -352,20 +355,24 @@ fn table(rows: &[Vec<String>], out: &mut String) {
 fn reading(out: &mut String) {
     out.push_str(
         "<h2>How to read this</h2>\
-         <p>relMSE is the mean of (L − T)² / (T² + 0.01) over pixels, L their luminance and T the truth's, without the \
-         largest 0.1 %. Each curve is one progressive render after 1, 2, 4, 8, … passes, averaged over seeds; its time is \
-         that of rendering alone, without reading, compiling and measuring.</p>\
-         <p>The mean squared error is variance, which more passes average away, and squared bias, which is blur: light \
-         gathered over a disc. Theory (Knaus &amp; Zwicker 2011): with alpha the variance falls as N^−alpha, the squared bias \
-         as N^−2(1 − alpha), both as N^−2/3 at alpha = 2/3. Sampled direct light has no bias and falls as 1/N, so a picture \
-         lies between. A fixed radius and path tracing fall as 1/N; the fixed radius keeps its bias.</p>\
-         <p>Bias is found as what all seeds have in common, less the truth's own variance. Light that no seed has found \
-         looks like bias, and is: caustics of small lamps in path tracing. relMSE leaves out the worst 0.1 % of the pixels, \
-         variance does not: where it is a hundred times relMSE, a few bright dots carry the light.</p>",
+         <p>relMSE is the mean of (L − T)² / (T² + 0.01) over pixels, without the largest 0.1 %. \
+         L is the luminance of a pixel, T that of the truth. Each curve is a progressive render \
+         after 1, 2, 4, 8, … passes, averaged over seeds. Times are render times without reading, \
+         compiling and measuring.</p>\
+         <p>The mean squared error is the sum of variance, which averages out over passes, and \
+         squared bias, which is blur from light gathered over a disc. In theory (Knaus &amp; \
+         Zwicker 2011), the variance falls as N^−alpha and the squared bias as N^−2(1 − alpha); \
+         both fall as N^−2/3 at alpha = 2/3. Sampled direct light has no bias and its variance \
+         falls as 1/N, so an image lies in between. With path tracing or a fixed radius, the \
+         variance falls as 1/N; with a fixed radius, the bias remains.</p>\
+         <p>The bias is the error that all seeds share, minus the truth's variance. Light that no \
+         seed has found counts as bias, for example caustics of small lamps in path tracing. \
+         relMSE omits the worst 0.1 % of the pixels, the variance does not: if it is a hundred \
+         times relMSE, a few bright dots carry the light.</p>",
     );
 }
 
-/// RFC 4648, with padding.
+/// Base64 encoding with padding (RFC 4648).
 fn base64(bytes: &[u8]) -> String {
     const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut out = String::with_capacity(bytes.len().div_ceil(3) * 4);
@@ -384,7 +391,7 @@ fn base64(bytes: &[u8]) -> String {
 mod tests {
     use super::*;
 
-    /// The examples of RFC 4648, section 10.
+    /// Test vectors of RFC 4648, section 10.
     #[test]
     fn base64_of_the_standard() {
         let pairs = [

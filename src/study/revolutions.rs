@@ -1,5 +1,5 @@
-//! A scene with its surfaces of revolution as meshes, or met less exactly, for studies of what the
-//! exact surface costs.
+//! Replacement of surfaces of revolution by meshes, and coarser Newton tolerances, for studies of
+//! the cost of exact surfaces.
 
 use std::fmt;
 use std::str::FromStr;
@@ -9,25 +9,25 @@ use serde::{Deserialize, Serialize};
 use crate::accel::tessellate::{Fineness, RevolutionMesh, tessellate};
 use crate::scene::{Mesh, Scene, ShapeKind, Triangle};
 
-/// What surfaces of revolution are made of.
+/// Representation of surfaces of revolution.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Revolutions {
-    /// Their Bezier profiles.
+    /// Exact Bezier profiles.
     #[default]
     Exact,
-    /// The mesh that `caustica tessellate` makes with so many sectors, with smooth normals.
+    /// Mesh of `caustica tessellate` with this number of sectors, and smooth normals.
     Sectors(u32),
 }
 
-/// When the search of a ray's hit with the exact surface ends.
+/// Stop condition of the ray intersection with an exact surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Newton {
-    /// As far as the precision allows.
+    /// Smallest tolerance that the precision allows.
     #[default]
     Least,
-    /// After a Newton step shorter than this, in sizes of the profile.
+    /// Stop after a Newton step shorter than this, relative to the size of the profile.
     Tolerance(f64),
 }
 
@@ -59,9 +59,7 @@ impl FromStr for Newton {
         match (text, text.parse::<f64>()) {
             ("least", _) => Ok(Self::Least),
             (_, Ok(length)) if (1e-7..=1.0).contains(&length) => Ok(Self::Tolerance(length)),
-            _ => {
-                Err("expected least, or a length from 1e-7 to 1 in sizes of the profile".to_owned())
-            }
+            _ => Err("expected least, or a length from 1e-7 to 1 in profile sizes".to_owned()),
         }
     }
 }
@@ -75,12 +73,12 @@ impl fmt::Display for Newton {
     }
 }
 
-const NONE_HERE: &str = "there is no surface of revolution in this scene";
+const NONE_HERE: &str = "the scene has no surface of revolution";
 
-/// The scene with its surfaces of revolution as `revolutions` says.
+/// Changes the representation of all surfaces of revolution in a scene.
 ///
 /// # Errors
-/// In words, for a scene without such a surface, and for profiles that are no surface.
+/// A message, if the scene has no such surface or a profile cannot be tessellated.
 pub fn with_revolutions(scene: &Scene, revolutions: Revolutions) -> Result<Scene, String> {
     let mut scene = scene.clone();
     let mut found = false;
@@ -97,10 +95,10 @@ pub fn with_revolutions(scene: &Scene, revolutions: Revolutions) -> Result<Scene
     if found { Ok(scene) } else { Err(NONE_HERE.to_owned()) }
 }
 
-/// The scene with its exact surfaces of revolution met as `newton` says.
+/// Changes the Newton tolerance of all exact surfaces of revolution in a scene.
 ///
 /// # Errors
-/// In words, for a scene without such a surface.
+/// A message, if the scene has no such surface.
 pub fn with_newton(scene: &Scene, newton: Newton) -> Result<Scene, String> {
     let mut scene = scene.clone();
     let mut found = false;
@@ -131,9 +129,9 @@ fn smooth(mesh: RevolutionMesh) -> Mesh {
     }
 }
 
-/// Theory: a paraboloid r^2 = y turned about its axis, open at the top, has its vertices on the
-/// surface and its faces within a chord's height of it, which falls with the square of the sectors'
-/// number.
+/// Theory: the mesh of the paraboloid r^2 = y, open at the top, has its vertices on the surface and
+/// its faces within the sagitta of a chord, which is inversely proportional to the square of the
+/// number of sectors.
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -164,8 +162,8 @@ material = "white"
         crate::scene::parse("bowl.toml".as_ref(), text.as_bytes()).unwrap().scene
     }
 
-    /// Greatest distance, of middles of faces and edges, between the mesh and the paraboloid x^2 +
-    /// z^2 = 2 (y - 3).
+    /// Largest distance of centers of faces and edges from the paraboloid
+    /// x^2 + z^2 = 2 (y - 3).
     fn off(scene: &Scene) -> f64 {
         let ShapeKind::Mesh(mesh) = &scene.shapes[0].kind else { panic!("no mesh") };
         let height = |p: DVec3| (0.5 * (p.x * p.x + p.z * p.z) + 3.0 - p.y).abs();
@@ -177,7 +175,7 @@ material = "white"
                 .max(height((a + b) / 2.0))
                 .max(height((b + c) / 2.0))
                 .max(height((a + b + c) / 3.0));
-            // Smooth normals are the surface's own: along (x, -1, z).
+            // smooth normals are those of the surface, along (x, -1, z)
             for (p, n) in t.position.iter().zip(t.normal.unwrap()) {
                 let (p, n) = (mesh.positions[*p as usize], mesh.normals[n as usize]);
                 assert!(n.cross(DVec3::new(p.x, -1.0, p.z).normalize()).length() < 1e-9);
@@ -195,7 +193,7 @@ material = "white"
             let ratio = pair[0] / pair[1];
             assert!((2.5..6.0).contains(&ratio), "{errors:?}");
         }
-        assert_eq!(with(16).shapes[1], own.shapes[1], "the rest stays");
+        assert_eq!(with(16).shapes[1], own.shapes[1], "other shapes are unchanged");
         assert_eq!(with(16).shapes[0].material, own.shapes[0].material);
         assert_eq!(with_revolutions(&own, Revolutions::Exact).unwrap(), own);
         let ball = scene(&SCENE[..SCENE.find("[[shapes]]").unwrap()]);
@@ -213,8 +211,8 @@ material = "white"
         }
     }
 
-    /// Newton's steps shrink as their squares: one that ends the search at 1e-3 leaves an error
-    /// near 1e-6, one at 1e-1 near 1e-2, and the least tolerance is what scene files mean.
+    /// Newton's method converges quadratically: a last step of 1e-3 leaves an error near 1e-6, one
+    /// of 1e-1 near 1e-2. The smallest tolerance is the default of scene files.
     #[test]
     fn a_tolerance_reaches_the_patches() {
         let own = scene(SCENE);

@@ -1,36 +1,37 @@
-//! Figures of repeated renders: variance and bias apart, slopes with their intervals.
+//! Statistics of repeated renders: separation of variance and bias, fitted slopes with confidence
+//! intervals.
 
 use serde::{Deserialize, Serialize};
 
 use crate::film::{Picture, luminance};
 
-/// A line `ln y = intercept + slope ln x` through points by least squares.
+/// A power law, fitted as `ln y = intercept + slope ln x` by least squares.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PowerLaw {
     /// Exponent.
     pub slope: f64,
     /// `ln y` at `x = 1`.
     pub intercept: f64,
-    /// Half the width of the slope's 95 % interval (Student's t), if the points scatter
-    /// independently; none for two points, which leave no scatter to judge by.
+    /// Half the width of the slope's 95 % confidence interval (Student's t), assuming independent
+    /// points; `None` for two points, which have no residuals.
     pub half_width: Option<f64>,
 }
 
 impl PowerLaw {
-    /// The line's `y` at `x`.
+    /// Value of `y` at `x`.
     pub fn at(&self, x: f64) -> f64 {
         (self.intercept + self.slope * x.ln()).exp()
     }
 
-    /// Where the line has the value `y`; none for a flat one.
+    /// Value of `x` at which the law reaches `y`; `None` for a slope of zero.
     pub fn reaches(&self, y: f64) -> Option<f64> {
         let x = ((y.ln() - self.intercept) / self.slope).exp();
         (self.slope != 0.0 && x.is_finite()).then_some(x)
     }
 }
 
-/// Fits a power law to the points with positive coordinates; none where fewer than two differ in
-/// `x`.
+/// Fits a power law to the points with positive coordinates. Returns `None` if there are fewer than
+/// two distinct `x`.
 pub fn fit(points: &[(f64, f64)]) -> Option<PowerLaw> {
     let logs: Vec<(f64, f64)> = points
         .iter()
@@ -54,9 +55,8 @@ pub fn fit(points: &[(f64, f64)]) -> Option<PowerLaw> {
     Some(PowerLaw { slope, intercept, half_width })
 }
 
-/// The two-sided 95 % quantile of Student's t with `freedom` >= 1 degrees of freedom: the table's
-/// values up to ten, then the Cornish-Fisher expansion (Abramowitz & Stegun 26.7.5), which is good
-/// to 1e-4 there.
+/// Two-sided 95 % quantile of Student's t with `freedom` >= 1 degrees of freedom: tabulated up to
+/// ten, then the Cornish-Fisher expansion (Abramowitz & Stegun 26.7.5), accurate to 1e-4 there.
 pub fn student_t_95(freedom: usize) -> f64 {
     const TABLE: [f64; 10] =
         [12.7062, 4.3027, 3.1824, 2.7764, 2.5706, 2.4469, 2.3646, 2.3060, 2.2622, 2.2281];
@@ -70,31 +70,30 @@ pub fn student_t_95(freedom: usize) -> f64 {
     z + first / f + second / f.powi(2) + third / f.powi(3)
 }
 
-/// Mean over pixels of the products of the relative errors of renders with different seeds: entry
-/// (j, k) is `mean e_j e_k` with `e = (L - T) / sqrt(T^2 + 0.01)`, luminance and the truth's, so
-/// that (k, k) is relMSE with all pixels in it. All that is said about variance and bias follows
-/// from it.
+/// Matrix of mean products of the relative errors of renders with different seeds: entry (j, k) is
+/// the mean over pixels of `e_j e_k`, where `e = (L - T) / sqrt(T^2 + 0.01)`, L is the luminance
+/// and T that of the reference. So entry (k, k) is relMSE over all pixels. Variance and bias follow
+/// from this matrix.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Products(pub Vec<Vec<f64>>);
 
-/// Error of renders with different seeds, in parts.
+/// Mean squared error of renders with different seeds, split into variance and squared bias.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Split {
-    /// Mean squared relative error of one render, without the truth's.
+    /// Mean squared relative error of one render, minus the reference's variance.
     pub mse: f64,
-    /// Its variance: mean over the seeds of the squared distance from their mean, times K / (K -
-    /// 1).
+    /// Variance: mean over the K seeds of the squared distance from their mean, times
+    /// `K / (K - 1)`.
     pub variance: f64,
-    /// Its squared bias: squared error of the seeds' mean less `variance / K` and the truth's
-    /// variance. An estimate: it may fall below zero where it is lost in the noise.
+    /// Squared bias: squared error of the seeds' mean minus `variance / K` and the reference's
+    /// variance. The estimate may be negative if it is smaller than the noise.
     pub bias_sq: f64,
-    /// Standard error of `bias_sq`, by leaving out one seed at a time (jackknife); none for two
-    /// seeds.
+    /// Standard error of `bias_sq` by the jackknife over seeds; `None` for two seeds.
     pub bias_sq_error: Option<f64>,
 }
 
 impl Products {
-    /// Of pictures of one size against a truth of that size.
+    /// Computes the products for images and a reference of equal size.
     pub fn of(pictures: &[Picture], truth: &Picture) -> Self {
         let errors: Vec<Vec<f64>> =
             pictures.iter().map(|picture| relative_errors(picture, truth)).collect();
@@ -104,8 +103,8 @@ impl Products {
         Self(errors.iter().map(|a| errors.iter().map(|b| product(a, b)).collect()).collect())
     }
 
-    /// Variance and squared bias; none for fewer than two seeds. `truth_variance` is the mean
-    /// squared relative error of the truth itself.
+    /// Splits the error into variance and squared bias; `None` for fewer than two seeds.
+    /// `truth_variance` is the mean squared relative error of the reference.
     pub fn split(&self, truth_variance: f64) -> Option<Split> {
         let all: Vec<usize> = (0..self.0.len()).collect();
         let (mse, bias_sq) = self.parts(&all)?;
@@ -127,8 +126,8 @@ impl Products {
         })
     }
 
-    /// Mean squared error of one render, and its part that all renders share: the mean product of
-    /// two different ones. Their difference is the sample variance.
+    /// Mean squared error of one render, and the part that all renders share, i.e. the mean product
+    /// of two different ones. Their difference is the sample variance.
     fn parts(&self, seeds: &[usize]) -> Option<(f64, f64)> {
         let n = seeds.len() as f64;
         if seeds.len() < 2 {
@@ -140,33 +139,32 @@ impl Products {
     }
 }
 
-/// `(L - T) / sqrt(T^2 + 0.01)` of each pixel.
+/// Relative error `(L - T) / sqrt(T^2 + 0.01)` of each pixel's luminance.
 pub fn relative_errors(picture: &Picture, truth: &Picture) -> Vec<f64> {
     let pairs = picture.rgb.iter().zip(&truth.rgb).map(|(a, t)| (luminance(*a), luminance(*t)));
     pairs.map(|(a, t)| (a - t) / (t * t + 0.01).sqrt()).collect()
 }
 
-/// Mean, least and greatest of some values; none of none.
+/// Mean and range of some values.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Spread {
     /// Mean.
     pub mean: f64,
-    /// Least.
+    /// Minimum.
     pub low: f64,
-    /// Greatest.
+    /// Maximum.
     pub high: f64,
 }
 
-/// The spread of some values.
+/// Mean and range of `values`; `None` if there are none.
 pub fn spread(values: &[f64]) -> Option<Spread> {
     let low = values.iter().copied().reduce(f64::min)?;
     let high = values.iter().copied().reduce(f64::max)?;
     Some(Spread { mean: values.iter().sum::<f64>() / values.len() as f64, low, high })
 }
 
-/// Theory: a power law is a straight line in logarithms; noise of known variance and a bias of
-/// known size are found again within their sampling error, and the identities of the definitions
-/// hold to rounding.
+/// Theory: a power law is a line in log-log space; planted variance and bias are recovered within
+/// their sampling error, and the identities of the definitions hold up to rounding.
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -178,8 +176,8 @@ mod tests {
         (*state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
     }
 
-    /// Renders of a grey truth: relative noise of amplitude `a` (variance a^2 / 3), all too bright
-    /// by the share `bias`.
+    /// Renders of a gray reference with relative noise of amplitude `a` (variance a^2 / 3) and the
+    /// relative bias `bias`.
     fn renders(seeds: u64, a: f64, bias: f64) -> (Vec<Picture>, Picture) {
         let truth = Picture::from_fn(64, 64, |x, y| [0.3 + (x + y) as f32 / 128.0; 3]);
         let one = |seed: u64| {
@@ -209,7 +207,7 @@ mod tests {
         let law = fit(&[(1.0, 8.0), (4.0, 2.0)]).unwrap();
         assert_eq!(law.half_width, None);
         assert!((law.reaches(1.0).unwrap() - 8.0).abs() < 1e-9);
-        assert_eq!(fit(&[(2.0, 1.0), (2.0, 3.0)]), None, "no two places");
+        assert_eq!(fit(&[(2.0, 1.0), (2.0, 3.0)]), None, "no distinct x");
         assert_eq!(fit(&[(1.0, 1.0), (2.0, -1.0)]), None, "a negative value has no logarithm");
     }
 
@@ -222,8 +220,8 @@ mod tests {
         let law = fit(&points).unwrap();
         assert!((law.slope - 0.8).abs() < 1e-12, "{law:?}");
         assert!((law.half_width.unwrap() - 4.3027 * (0.9_f64 / 5.0).sqrt()).abs() < 1e-9);
-        // Of many noisy lines 95 % hold the true slope; an interval of half the width would hold 75
-        // %.
+        // 95 % of the intervals of noisy lines contain the true slope; intervals of half the width
+        // would contain it in 75 %
         let mut state = 5;
         let held = |width: f64, state: &mut u64| {
             let hits = (0..2000).filter(|_| {
@@ -281,20 +279,20 @@ mod tests {
     fn planted_noise_and_bias_come_back() {
         let (pictures, truth) = renders(4, 0.3, 0.1);
         let split = Products::of(&pictures, &truth).split(0.0).unwrap();
-        // 16384 values: the variance is known to about a hundredth.
+        // 16384 values determine the variance to about 1 %
         assert!((split.variance / 0.03 - 1.0).abs() < 0.03, "{split:?}");
         assert!((split.bias_sq / 0.01 - 1.0).abs() < 0.06, "{split:?}");
         let (pictures, truth) = renders(4, 0.3, 0.0);
         let split = Products::of(&pictures, &truth).split(0.0).unwrap();
         assert!(split.bias_sq.abs() < 6.0 * split.bias_sq_error.unwrap().max(5e-5), "{split:?}");
         assert!(split.bias_sq.abs() < 4e-4, "{split:?}");
-        // One render, or the same one twice, has no variance to show.
+        // one render has no variance, and neither have two identical ones
         assert_eq!(Products::of(&pictures[..1], &truth).split(0.0), None);
         let twice = [pictures[0].clone(), pictures[0].clone()];
         assert!(Products::of(&twice, &truth).split(0.0).unwrap().variance.abs() < 1e-12);
     }
 
-    /// A noisy truth looks like bias in every render until its variance is taken away.
+    /// Noise of the reference appears as bias of all renders unless its variance is subtracted.
     #[test]
     fn the_truths_own_noise_is_taken_away() {
         let (pictures, truth) = renders(4, 0.05, 0.0);

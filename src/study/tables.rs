@@ -1,4 +1,4 @@
-//! A study's figures as CSV, JSON and Markdown.
+//! Results of a study as CSV, JSON and Markdown.
 
 use std::fmt::Write;
 
@@ -8,8 +8,8 @@ use super::analysis::Part;
 use super::folder::{About, Results};
 use super::words::{configured, fitted, preview_seconds, recommendations, short, theory};
 
-/// One line for each picture: configuration, seed, passes and its figures. The truth's own error is
-/// in them.
+/// CSV with one line per image: configuration, seed, passes and metrics, including the error of the
+/// reference.
 pub fn csv(results: &Results) -> String {
     let mut out = String::from(
         "config,label,lamp,method,radius_rule,alpha,radius,photons_per_pass,direct,max_bounces,revolutions,newton_tolerance,device,seed,passes,seconds,\
@@ -50,7 +50,7 @@ pub fn csv(results: &Results) -> String {
     out
 }
 
-/// Everything: what was studied, each render's figures, and what was made of them.
+/// JSON with parameters, measurements and analysis.
 pub fn json(results: &Results, parts: &[Part]) -> Value {
     let labels: Vec<String> = results.about.configs.iter().map(|config| config.label()).collect();
     let advice: Vec<_> = parts.iter().map(|part| recommendations(&results.about, part)).collect();
@@ -63,7 +63,7 @@ pub fn json(results: &Results, parts: &[Part]) -> Value {
     })
 }
 
-/// Rows of a part's table: its head, then one for each configuration.
+/// Rows of the table of a part: heading, then one row per configuration.
 pub fn rows(about: &About, part: &Part) -> Vec<Vec<String>> {
     let (preview, goal) = (preview_seconds(about, part), part.common_error());
     let mut rows = vec![vec![
@@ -97,7 +97,7 @@ pub fn rows(about: &About, part: &Part) -> Vec<Vec<String>> {
     rows
 }
 
-/// Rows of a part's table of slopes.
+/// Rows of the table of slopes of a part.
 pub fn slope_rows(about: &About, part: &Part) -> Vec<Vec<String>> {
     let head =
         ["settings", "variance", "theory", "bias²", "theory", "MSE", "theory"].map(str::to_owned);
@@ -112,7 +112,7 @@ pub fn slope_rows(about: &About, part: &Part) -> Vec<Vec<String>> {
     rows
 }
 
-/// Rows as a Markdown table.
+/// Formats rows as a Markdown table.
 pub fn markdown(rows: &[Vec<String>]) -> String {
     let mut out = String::new();
     for (number, row) in rows.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! What the renders are held against: files, or a long render with several seeds.
+//! Reference (truth) of a study: image files, or long renders with several seeds.
 
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
@@ -16,41 +16,41 @@ use crate::film::{Picture, luminance, read};
 use crate::scene::Scene;
 use crate::scene::settings::{Direct, Method, Radius, RadiusRule, RenderSettings};
 
-/// Where the truth comes from.
+/// Source of the reference.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum TruthSpec {
-    /// Pictures of radiance, made independently of each other; their mean is the truth.
+    /// Independent images with radiance, whose mean is the reference.
     Files(Vec<PathBuf>),
-    /// Renders of its own.
+    /// Renders of the study.
     Made {
-        /// By this method; none leaves the choice to two short renders of each.
+        /// Method; `None` chooses it by short test renders.
         method: Option<Method>,
-        /// Seconds of rendering for each size of the lamps, all seeds together.
+        /// Render time in seconds for each lamp size, all seeds together.
         seconds: f64,
-        /// Independent renders; their scatter is the truth's error.
+        /// Number of independent renders; their scatter determines the error of the reference.
         seeds: u32,
     },
 }
 
-/// A truth at hand.
+/// A reference image and its accuracy.
 #[derive(Clone, Debug)]
 pub struct Truth {
     /// Radiance.
     pub picture: Picture,
-    /// How good it is.
+    /// Source and accuracy.
     pub record: TruthRecord,
 }
 
-/// Seeds of truths begin here, far from those of the renders.
+/// First seed of references, far from the seeds of the renders.
 const FIRST_SEED: u64 = 1 << 30;
-/// A method that is not studied itself is taken unless its error is so many times larger.
+/// Factor by which the error of a method that is not studied may be larger and still be preferred.
 const OTHER_METHOD: f64 = 4.0;
-/// Methods whose mean luminances differ by more see different light.
+/// Relative difference of mean luminance above which one method is assumed to miss light.
 const SAME_LIGHT: f64 = 0.02;
 
-/// The mean of pictures and its own error: the mean over them of their distance from their mean,
-/// over K - 1.
+/// Mean of K images, and its error: mean squared distance of the images from their mean, divided by
+/// K - 1.
 pub fn mean_of(pictures: &[Picture], source: String) -> Result<Truth, MetricsError> {
     let Some(first) = pictures.first() else { return Err(MetricsError::Empty) };
     for other in pictures {
@@ -76,31 +76,32 @@ pub fn mean_of(pictures: &[Picture], source: String) -> Result<Truth, MetricsErr
     Ok(Truth { picture: mean, record })
 }
 
-/// Reads truths from files.
+/// Reads a reference from files.
 pub fn from_files(files: &[PathBuf]) -> Result<Truth, StudyError> {
     let pictures = files.iter().map(|file| read(file)).collect::<Result<Vec<_>, _>>()?;
     let names: Vec<String> = files.iter().map(|file| file.display().to_string()).collect();
     Ok(mean_of(&pictures, names.join(", "))?)
 }
 
-/// Renders that make a truth for one scene.
+/// Renderer of the reference of one scene.
 pub struct Maker<'a> {
-    /// The scene, with its lamps as they should be.
+    /// Scene with the lamp size of the reference.
     pub scene: &'a Scene,
-    /// Number of the truth in the study.
+    /// Index of the reference in the study.
     pub number: usize,
-    /// The configurations that will be held against it.
+    /// Configurations that are compared with the reference.
     pub configs: &'a [&'a Config],
-    /// Seconds for all seeds.
+    /// Render time in seconds for all seeds together.
     pub seconds: f64,
-    /// How many seeds.
+    /// Number of seeds.
     pub seeds: u32,
-    /// Set to end it early.
+    /// If set, rendering ends early.
     pub interrupted: &'a AtomicBool,
 }
 
 impl Maker<'_> {
-    /// Makes the truth, or goes on with what the folder has of it; none where it was interrupted.
+    /// Renders the seeds of the reference that are missing in the folder. Returns `None` if
+    /// interrupted.
     pub fn make(
         &self,
         method: Option<Method>,
@@ -133,7 +134,7 @@ impl Maker<'_> {
                     let left = seconds * f64::from(self.seeds - seed - 1);
                     let (method, of) = (word(method), self.seeds);
                     note(&format!(
-                        "truth: {method}, seed {} of {of}; {left:.0} s left for it",
+                        "truth: {method}, seed {} of {of} done; {left:.0} s left",
                         seed + 1
                     ));
                     picture
@@ -141,18 +142,13 @@ impl Maker<'_> {
             };
             pictures.push(picture);
         }
-        let source = format!(
-            "{} of its own, {} seeds, {:.1} s",
-            described(method),
-            self.seeds,
-            self.seconds
-        );
+        let source = format!("{}, {} seeds, {:.1} s", described(method), self.seeds, self.seconds);
         Ok(Some(mean_of(&pictures, source)?))
     }
 
-    /// The method to trust: one that is not studied itself, unless it is much noisier or does not
-    /// see all the light (path tracing finds no caustics of points, and hardly any of small lamps).
-    /// Judged by two short renders of each.
+    /// Chooses the method by two short renders of each. Prefers a method that is not studied,
+    /// unless it is much noisier or misses light (path tracing finds no caustics of point lights
+    /// and hardly any of small lamps).
     fn choose(&self, note: &mut dyn FnMut(&str)) -> Result<Option<Method>, StudyError> {
         let seconds = self.seconds / 20.0;
         let mut pilots = Vec::new();
@@ -181,7 +177,8 @@ impl Maker<'_> {
             false => Method::Sppm,
         };
         note(&format!(
-            "truth: {} (mean of path tracing over photon mapping {:.4}, relMSE {path_error:.1e} and {sppm_error:.1e})",
+            "truth: {} (mean of path tracing over that of photon mapping {:.4}, relMSE \
+             {path_error:.1e} and {sppm_error:.1e})",
             described(method),
             path_mean / sppm_mean.max(1e-300),
         ));
@@ -208,8 +205,8 @@ impl Maker<'_> {
         Ok(picture.filter(|_| whole))
     }
 
-    /// Photon mapping starts at a radius of a pixel, so that its bias stays below what a pixel
-    /// shows.
+    /// Settings of the reference. Photon mapping starts at a radius of one pixel, so that its bias
+    /// blurs less than a pixel.
     fn settings(&self, method: Method, seed: u64) -> RenderSettings {
         let all = || self.configs.iter().map(|config| &config.settings);
         RenderSettings {
@@ -244,12 +241,12 @@ fn described(method: Method) -> &'static str {
     }
 }
 
-/// Mean luminance of a picture.
+/// Mean luminance of an image.
 pub fn mean_luminance(picture: &Picture) -> f64 {
     picture.rgb.iter().map(|rgb| luminance(*rgb)).sum::<f64>() / picture.rgb.len().max(1) as f64
 }
 
-/// Theory: the mean of K pictures with variance V has the variance V / K.
+/// Theory: the mean of K images with variance V has the variance V / K.
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -262,7 +259,7 @@ mod tests {
                 state = state
                     .wrapping_mul(6_364_136_223_846_793_005)
                     .wrapping_add(1_442_695_040_888_963_407);
-                // Uniform in [1, 1.1): variance 1/1200.
+                // uniform in [1, 1.1): variance 1/1200
                 [1.0 + 0.1 * (state >> 40) as f32 / (1u64 << 24) as f32; 3]
             })
         };

@@ -1,5 +1,5 @@
-//! How a configuration's scene differs from its file: the size of the lamps, and what surfaces of
-//! revolution are made of.
+//! Modifications of the scene by a configuration: lamp size, and representation of surfaces of
+//! revolution.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,23 +8,22 @@ use super::lamps::{Lamp, with_lamp};
 use super::revolutions::{Newton, Revolutions, with_newton, with_revolutions};
 use crate::scene::Scene;
 
-/// What a grid changes in the scene itself.
+/// Modifications of the scene that a grid can make.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Variant {
-    /// The size that the lamps are given; none leaves them as they are. It changes the true
-    /// picture.
+    /// Size of the lamps; `None` leaves them unchanged. Affects the reference.
     pub lamp: Option<Lamp>,
-    /// What surfaces of revolution are made of.
+    /// Representation of surfaces of revolution.
     pub revolutions: Revolutions,
-    /// How exactly rays meet them.
+    /// Accuracy of ray intersections with exact surfaces of revolution.
     pub newton: Newton,
 }
 
 impl Variant {
-    /// The scene with the changes.
+    /// Applies the modifications to a scene.
     ///
     /// # Errors
-    /// Where the scene has nothing to change, or it cannot be so.
+    /// If the scene does not contain or support what is to be modified.
     pub fn of(&self, scene: &Scene) -> Result<Scene, StudyError> {
         let mut changed = scene.clone();
         let fault = |choice: String| |what| StudyError::Variant { choice, what };

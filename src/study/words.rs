@@ -1,16 +1,16 @@
-//! Plain sentences and numbers for people.
+//! Sentences and number formats of reports.
 
 use super::analysis::{Curve, Part, Slope};
 use super::folder::About;
 use super::grid::Config;
 use super::statistics::Spread;
 
-/// A configuration's label without the size of its lamps.
+/// Label of a configuration without its lamp size.
 pub fn configured(config: &Config) -> String {
     config.label_without(&["lamp_area"])
 }
 
-/// A positive number with three digits.
+/// Formats a number with three significant digits, or fewer for small ones.
 pub fn short(value: f64) -> String {
     match value {
         0.0 => "0".to_owned(),
@@ -23,7 +23,7 @@ pub fn short(value: f64) -> String {
     }
 }
 
-/// A fitted slope with its interval, or a dash.
+/// Formats a fitted slope with its confidence interval, or a dash.
 pub fn fitted(slope: &Slope) -> String {
     match slope.fitted {
         Some(law) => match law.half_width {
@@ -34,7 +34,7 @@ pub fn fitted(slope: &Slope) -> String {
     }
 }
 
-/// What theory says of a slope.
+/// Formats the theoretical range of a slope.
 pub fn theory(slope: &Slope) -> String {
     match slope.theory {
         Some((least, greatest)) if (least - greatest).abs() < 1e-9 => format!("{least:.2}"),
@@ -43,8 +43,8 @@ pub fn theory(slope: &Slope) -> String {
     }
 }
 
-/// After how many seconds a preview is judged: two, or a quarter of the time where the renders are
-/// short, but not before half of the settings have a picture.
+/// Time in seconds at which previews are compared: two, or a quarter of the render time if it is
+/// below four, but not before half of the configurations have an image.
 pub fn preview_seconds(about: &About, part: &Part) -> f64 {
     let wanted = if about.run_seconds >= 4.0 { 2.0 } else { about.run_seconds / 4.0 };
     let firsts = part.curves.iter().filter_map(|curve| Some(curve.points.first()?.seconds));
@@ -53,7 +53,8 @@ pub fn preview_seconds(about: &About, part: &Part) -> f64 {
     firsts.get(firsts.len() / 2).map_or(wanted, |half| wanted.max(*half))
 }
 
-/// What to take, in plain words: for a preview, for a final picture, and what not to.
+/// Recommendations in plain sentences: the best and worst settings for a preview and for a final
+/// image.
 pub fn recommendations(about: &About, part: &Part) -> Vec<String> {
     let (preview, end) = (preview_seconds(about, part), about.run_seconds);
     let name = |curve: &Curve| configured(&about.configs[curve.config]);
@@ -73,13 +74,13 @@ pub fn recommendations(about: &About, part: &Part) -> Vec<String> {
             .map(|(c, _)| name(c));
         let as_good: Vec<String> = as_good.collect();
         if !as_good.is_empty() {
-            text += &format!(" As good within the seeds' scatter: {}.", as_good.join("; "));
+            text += &format!(" Equal within the scatter of the seeds: {}.", as_good.join("; "));
         }
         if let [.., (worst, error_of_worst)] = ranking.as_slice()
             && ranking.len() > 1
         {
             text += &format!(
-                " Last: {} ({} times the error).",
+                " Worst: {} ({} times the error).",
                 name(worst),
                 short(error_of_worst / error)
             );
@@ -87,18 +88,17 @@ pub fn recommendations(about: &About, part: &Part) -> Vec<String> {
         sentences.push(text);
     };
     advise("For a preview in", preview);
-    advise("For a final picture, after", end);
+    advise("For a final image after", end);
     if let Some((best, error)) = part.ranking(end).first() {
         let goal = error / 4.0;
-        // The curve that gets there first if all go on as they did, not necessarily the one that
-        // leads now.
+        // the extrapolated curve that reaches the goal first need not be the current leader
         let soonest = part.curves.iter().filter_map(|c| Some((c, c.extrapolated_time_to(goal)?)));
         if let Some((curve, seconds)) = soonest.min_by(|a, b| a.1.total_cmp(&b.1)) {
             sentences.push(format!(
-                "A quarter of that error would take {} about {} s, if its curve goes on as it did (extrapolated{}).",
+                "A quarter of that error takes {} about {} s (extrapolated{}).",
                 name(curve),
                 short(seconds),
-                if curve.config == best.config { "" } else { "; it overtakes by then" }
+                if curve.config == best.config { "" } else { "; it takes the lead by then" }
             ));
         }
     }
@@ -107,7 +107,8 @@ pub fn recommendations(about: &About, part: &Part) -> Vec<String> {
         / (f64::from(width) * f64::from(height));
     if share > 1.01 {
         sentences.push(format!(
-            "Times are for {width} x {height} pixels; {} x {} with photons in proportion takes about {} times as long.",
+            "Times are for {width} x {height} pixels; {} x {} with photons in proportion takes \
+             about {} times as long.",
             about.own_size.0,
             about.own_size.1,
             short(share)
@@ -116,8 +117,8 @@ pub fn recommendations(about: &About, part: &Part) -> Vec<String> {
     sentences
 }
 
-/// The seeds' range about the curve's error after so many seconds: that of the last picture by
-/// then, in proportion.
+/// Range over the seeds after `seconds`: that of the last image by then, scaled to the interpolated
+/// error.
 fn range_at(curve: &Curve, seconds: f64) -> Option<Spread> {
     let mean = curve.error_at(seconds)?;
     let Spread { mean: own, low, high } =
@@ -125,13 +126,13 @@ fn range_at(curve: &Curve, seconds: f64) -> Option<Spread> {
     Some(Spread { mean, low: mean * low / own, high: mean * high / own })
 }
 
-/// Whether the seeds' ranges of two curves, each relative to its mean, leave open which is better.
+/// Returns true if the ranges over the seeds of two curves overlap, so that neither is better.
 fn overlap(best: &Curve, other: &Curve, seconds: f64) -> bool {
     let ranges = range_at(best, seconds).zip(range_at(other, seconds));
     ranges.is_some_and(|(best, other)| best.high >= other.low)
 }
 
-/// Between which sizes of the lamp the best configuration changes.
+/// Sentences about lamp sizes between which the best configuration changes.
 pub fn crossings(about: &About, parts: &[Part]) -> Vec<String> {
     let mut sentences = Vec::new();
     let best = |part: &Part| {
@@ -145,7 +146,7 @@ pub fn crossings(about: &About, parts: &[Part]) -> Vec<String> {
             && from != to
         {
             sentences.push(format!(
-                "Between lamp areas {a} and {b} the lead passes from {from} to {to}."
+                "Between lamp areas {a} and {b}, the best setting changes from {from} to {to}."
             ));
         }
     }

@@ -1,12 +1,12 @@
-//! Where a pass's time goes: seconds by kernel, for those who ask.
+//! Optional timing of the kernels of a pass.
 
 use std::collections::BTreeMap;
 use std::time::Instant;
 
-/// Seconds by the kernels' stems.
+/// Seconds by kernel name.
 pub type KernelSeconds = BTreeMap<&'static str, f64>;
 
-/// Adds up the seconds of kernels that run one after another. Costs nothing until it is wound.
+/// Accumulates the seconds of kernels that run one after another. Has no cost unless enabled.
 #[derive(Debug, Default)]
 pub struct Clock {
     seconds: Option<KernelSeconds>,
@@ -14,17 +14,17 @@ pub struct Clock {
 }
 
 impl Clock {
-    /// Begins to count, from zero.
+    /// Enables the clock and resets all sums.
     pub fn enable(&mut self) {
         *self = Self { seconds: Some(KernelSeconds::new()), running: None };
     }
 
-    /// Whether it counts.
+    /// Returns true if the clock is enabled.
     pub fn is_enabled(&self) -> bool {
         self.seconds.is_some()
     }
 
-    /// A kernel begins, and the one before ends.
+    /// Starts the time of a kernel, and ends that of the previous one.
     pub fn begin(&mut self, kernel: &'static str) {
         if self.is_enabled() {
             let now = Instant::now();
@@ -33,7 +33,7 @@ impl Clock {
         }
     }
 
-    /// The last kernel ends.
+    /// Ends the time of the current kernel.
     pub fn end(&mut self) {
         if self.is_enabled() {
             self.end_at(Instant::now());
@@ -46,22 +46,22 @@ impl Clock {
         }
     }
 
-    /// Adds seconds that were measured otherwise.
+    /// Adds seconds that were measured in another way.
     pub fn add(&mut self, kernel: &'static str, seconds: f64) {
         if let Some(sums) = &mut self.seconds {
             *sums.entry(kernel).or_default() += seconds;
         }
     }
 
-    /// Stops counting; what was counted.
+    /// Disables the clock and returns the sums.
     pub fn take(&mut self) -> KernelSeconds {
         self.running = None;
         self.seconds.take().unwrap_or_default()
     }
 }
 
-/// Theory: the kernels' seconds are the parts of one stretch of time, and a clock that is not wound
-/// tells none.
+/// Theory: the seconds of the kernels add up to at most the total time, and a disabled clock
+/// reports none.
 #[cfg(test)]
 mod tests {
     use super::*;

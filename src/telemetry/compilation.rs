@@ -1,18 +1,17 @@
-//! Progress of the compilation of kernels, for a program that shows it. A software driver takes up
-//! to a minute for large scenes.
+//! Progress of kernel compilation, which takes up to a minute on a software driver.
 
 use std::sync::OnceLock;
 
 /// A kernel that a driver is compiling.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Compilation<'a> {
-    /// The device's name.
+    /// Device name.
     pub device: &'a str,
-    /// The kernel's name.
+    /// Kernel name.
     pub kernel: &'static str,
-    /// Kernels that are ready.
+    /// Number of kernels that are ready.
     pub done: usize,
-    /// Kernels to compile, from 1.
+    /// Number of kernels to compile, at least 1.
     pub of: usize,
 }
 
@@ -20,14 +19,14 @@ type Observer = Box<dyn Fn(Option<&Compilation>) + Send + Sync>;
 
 static OBSERVER: OnceLock<Observer> = OnceLock::new();
 
-/// Calls `observer` from now on, for each kernel that is begun and with `None` when an engine's
-/// kernels are ready or have failed. The first observer of a process stays; returns whether this is
-/// it.
+/// Registers an observer for the whole process. It is called when the compilation of a kernel
+/// starts, and with `None` when the kernels of an engine are ready or have failed. Returns false if
+/// an observer is already registered, which then stays in place.
 pub fn observe(observer: impl Fn(Option<&Compilation>) + Send + Sync + 'static) -> bool {
     OBSERVER.set(Box::new(observer)).is_ok()
 }
 
-/// The compilation of an engine's kernels; ends when dropped.
+/// Compilation of the kernels of an engine. Ends when dropped.
 pub(crate) struct Running<'a> {
     device: &'a str,
     begun: usize,
@@ -35,7 +34,7 @@ pub(crate) struct Running<'a> {
 }
 
 impl<'a> Running<'a> {
-    /// Begins with the first of `of` kernels, if there are any.
+    /// Starts the compilation of `of` kernels and reports the first, if there is one.
     pub(crate) fn new(device: &'a str, first: Option<&'static str>, of: usize) -> Self {
         let running = Self { device, begun: 0, of };
         if let Some(first) = first {
@@ -44,7 +43,7 @@ impl<'a> Running<'a> {
         running
     }
 
-    /// Hands a kernel to the driver, which is done with those before.
+    /// Reports that the compilation of a kernel starts; all earlier ones are done.
     pub(crate) fn begin(&mut self, kernel: &'static str) {
         self.tell(kernel, self.begun);
         self.begun += 1;
@@ -65,8 +64,8 @@ impl Drop for Running<'_> {
     }
 }
 
-/// Theory: an observer hears of each kernel once it is begun, with those before it done, and of the
-/// end. An engine whose kernels are all kept says nothing.
+/// Theory: the observer is called when each kernel starts, with the number of completed ones, and
+/// at the end. An engine without kernels to compile reports nothing.
 #[cfg(test)]
 mod tests {
     use std::sync::Mutex;

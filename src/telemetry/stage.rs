@@ -1,16 +1,16 @@
-//! Stages of the work and their seconds, for logs (the `log` crate; the program writes them with
-//! `-v`).
+//! Logging of processing stages and their times with the `log` crate; the program prints them with
+//! `-v`.
 
 use std::time::Instant;
 
-/// A stage that is going on; logged with its seconds when dropped.
+/// A stage in progress; logged with its seconds when dropped.
 #[must_use]
 pub struct Stage {
     name: &'static str,
     begun: Instant,
 }
 
-/// Begins a stage. Stages within one another are logged in the order in which they end.
+/// Starts a stage. Nested stages are logged in the order in which they end.
 pub fn stage(name: &'static str) -> Stage {
     Stage { name, begun: Instant::now() }
 }

@@ -1,63 +1,64 @@
-//! Whether a render and a truth are two noisy pictures of the same thing.
+//! Statistical agreement of a render with a reference, given the noise of both.
 //!
-//! For every block and channel the difference `d` of the means is set against
+//! For each block and channel, the difference `d` of the means is divided by `sigma`,
 //!
 //! ```text
 //! sigma^2 = s^2 / K + SE^2 + (bias T)^2
 //! ```
 //!
-//! from the scatter `s` of the render's `K` parts (the larger of the block's own and the mean over
-//! the 3 x 3 blocks around it, since a few parts may all miss what is bright and rarely found), the
-//! truth's standard error, and an allowance for the bias of density estimation, a share of the
-//! truth `T`. Where both agree, `d / sigma` is about Student-t of `K - 1` degrees of freedom, or
-//! narrower. A block is outside when one of its channels is. The same is done for regions of 4 x 4
-//! blocks, whose means have less noise: smaller errors show there, if they are wider.
+//! computed from the standard deviation `s` over the render's `K` parts, the reference's standard
+//! error `SE`, and an allowance for the bias of density estimation as a fraction of the reference
+//! `T`. `s` is the larger of the block's own value and the root mean square over the surrounding
+//! 3 x 3 blocks, since a few parts may all miss rare bright samples. If render and reference agree,
+//! `d / sigma` approximately follows a Student t distribution with `K - 1` degrees of freedom, or a
+//! narrower one. A block is an outlier if one of its channels is. The same test runs on regions of
+//! 4 x 4 blocks, whose means are less noisy, to detect smaller but wider errors.
 
 use super::reference::{BlockTruth, Blocks};
 use super::student::{poisson_limit, two_sided_tail};
 use crate::film::metrics::compare;
 
-/// Deviation, in sigma, from which on a block is outside.
+/// Absolute deviation, in sigma, above which a block is an outlier.
 pub const LIMIT: f64 = 4.0;
-/// Deviation that no block may have.
+/// Absolute deviation, in sigma, that no block may exceed.
 pub const LIMIT_FAR: f64 = 8.0;
-/// Largest difference of a channel's mean over the picture, as a share of the truth.
+/// Maximum relative difference of a channel's mean over the image.
 pub const MEAN_LIMIT: f64 = 0.005;
-/// Standard errors of the ratio, the truth's and the render's joined, that are allowed beside
+/// Number of combined standard errors of the mean ratio that are allowed in addition to
 /// [`MEAN_LIMIT`].
 pub const MEAN_ERRORS: f64 = 3.0;
-/// Chance that an agreeing render has more blocks outside than allowed.
+/// Probability that a render that agrees has more outliers than allowed.
 pub const CHANCE: f64 = 1e-3;
 /// Edge of a region in blocks.
 pub const REGION: u32 = 4;
-/// Rounding of f32 sums, as a share of the truth.
+/// Rounding error of f32 sums, as a fraction of the reference.
 const ROUNDING: f64 = 1e-5;
 
-/// How a render and a truth agree.
+/// Result of the comparison of a render with a reference.
 #[derive(Clone, Debug)]
 pub struct Agreement {
-    /// Mean of the render over mean of the truth, per channel.
+    /// Mean of the render divided by mean of the reference, per channel.
     pub mean_ratio: [f64; 3],
-    /// Standard error of the ratio from the render's parts.
+    /// Standard error of the ratio due to the render's noise.
     pub ratio_error: [f64; 3],
-    /// Standard error of the ratio from the truth.
+    /// Standard error of the ratio due to the reference's noise.
     pub truth_error: [f64; 3],
     /// relMSE of the block means (see [`crate::film::metrics`]).
     pub rel_mse: f64,
-    /// Block by block.
+    /// Deviations of blocks.
     pub blocks: Deviations,
-    /// The same for regions of [`REGION`] x [`REGION`] blocks.
+    /// Deviations of regions of [`REGION`] x [`REGION`] blocks.
     pub regions: Deviations,
 }
 
-/// Deviations in sigma, each that of the channel that deviates most.
+/// Deviations of blocks or regions.
 #[derive(Clone, Debug)]
 pub struct Deviations {
-    /// Row by row.
+    /// Deviation of the worst channel in sigma, row by row.
     pub values: Vec<f64>,
-    /// How many outside chance alone brings, at most.
+    /// Upper bound on the expected number of outliers of a render that agrees.
     pub expected: f64,
-    /// How many it exceeds in a share [`CHANCE`] of renders.
+    /// Number of outliers that a render that agrees exceeds with probability [`CHANCE`] at most.
     pub allowed: usize,
 }
 
@@ -82,19 +83,19 @@ impl Deviations {
         Self { values: values.collect(), expected, allowed: poisson_limit(expected, CHANCE) }
     }
 
-    /// Number beyond [`LIMIT`].
+    /// Number of outliers, i.e. values beyond [`LIMIT`] or NaN.
     pub fn outside(&self) -> usize {
         self.values.iter().filter(|d| d.is_nan() || d.abs() > LIMIT).count()
     }
 
-    /// The one that is largest in size, or one that is no number.
+    /// Value of the largest magnitude, or NaN if there is one.
     pub fn worst(&self) -> f64 {
         self.values.iter().copied().fold(0.0, larger)
     }
 }
 
-/// Holds the mean of `parts` (two at least) against `truth`. `bias` is the allowed bias as a share
-/// of a block's value.
+/// Compares the mean of `parts` (at least two) with `truth`. `bias` is the allowed bias as a
+/// fraction of a block's value.
 pub fn hold(parts: &[Blocks], truth: &BlockTruth, bias: f64) -> Agreement {
     let (mean, error) = mean_and_error(parts.iter().map(Blocks::mean), parts.len() as f64);
     let (truth_mean, truth_error) = (truth.mean.mean(), truth.mean_error());
@@ -113,14 +114,14 @@ pub fn hold(parts: &[Blocks], truth: &BlockTruth, bias: f64) -> Agreement {
     }
 }
 
-/// Mean and standard error of every block over the parts.
+/// Mean and standard error of each block over the parts.
 fn block_means(parts: &[Blocks], truth: &BlockTruth) -> Vec<([f64; 3], [f64; 3])> {
     let block = |i: usize| mean_and_error(parts.iter().map(|part| part.rgb[i]), parts.len() as f64);
     (0..truth.mean.rgb.len()).map(block).collect()
 }
 
 impl Agreement {
-    /// What speaks against agreement; empty when nothing does.
+    /// Names of the failed criteria; empty if the render agrees with the reference.
     pub fn faults(&self) -> Vec<&'static str> {
         let mean = (0..3).all(|c| {
             let error = self.truth_error[c].hypot(self.ratio_error[c]);
@@ -136,12 +137,12 @@ impl Agreement {
     }
 }
 
-/// The deviation that is larger in size; what is no number is larger than any.
+/// Value of the larger magnitude; NaN is larger than any number.
 fn larger(a: f64, b: f64) -> f64 {
     if a.is_nan() || b.abs() <= a.abs() { a } else { b }
 }
 
-/// Indices of the 3 x 3 blocks around block `i`, fewer at the picture's border.
+/// Indices of the 3 x 3 blocks around block `i`, fewer at the image border.
 fn neighbours(i: usize, blocks: &Blocks) -> Vec<usize> {
     let (width, height) = (blocks.width as usize, blocks.height as usize);
     let (x, y) = (i % width, i / width);

@@ -1,22 +1,22 @@
-//! Stated errors against true ones: how often a render keeps what it promises.
+//! Coverage of error estimates: how often the stated error bounds the true error.
 
 use super::reference::BlockTruth;
 use crate::engine::{Engine, EngineError};
 use crate::film::{Picture, RelativeError, luminance};
 
-/// A picture of the truth that knows its own noise.
+/// A reference with known noise.
 #[derive(Clone, Debug)]
 pub enum NoisyTruth {
-    /// Two renders that share nothing but what they converge to: the product of the differences
-    /// from both has the expectation of the squared error.
+    /// Two independent renders with the same limit: the product of the differences from both is an
+    /// unbiased estimate of the squared error.
     Halves([Picture; 2]),
-    /// A pixel for each block, with standard errors.
+    /// Block means, one per pixel, with standard errors.
     Blocks(BlockTruth),
 }
 
 impl NoisyTruth {
-    /// relMSE of docs/measures.md of a picture of the same size, less what the truth's own noise
-    /// adds to it; below zero by chance where the error is small against that noise.
+    /// relMSE (see docs/measures.md) of an image of the same size, corrected for the noise of the
+    /// reference. May be negative if the error is small compared to that noise.
     pub fn rel_mse(&self, picture: &Picture) -> f64 {
         let mut errors: Vec<[f64; 2]> =
             picture.rgb.iter().enumerate().map(|(i, rgb)| self.pixel(i, luminance(*rgb))).collect();
@@ -25,7 +25,7 @@ impl NoisyTruth {
         errors[..kept].iter().map(|[_, error]| error).sum::<f64>() / kept as f64
     }
 
-    /// Relative squared error of a pixel, with the truth's noise and less it.
+    /// Relative squared error of a pixel, without and with correction for the reference's noise.
     fn pixel(&self, i: usize, seen: f64) -> [f64; 2] {
         let (a, b, noise) = match self {
             Self::Halves(halves) => {
@@ -46,32 +46,32 @@ impl NoisyTruth {
     }
 }
 
-/// What one render said, and what was true.
+/// Estimated and true error of a render.
 #[derive(Clone, Copy, Debug)]
 pub struct Promise {
-    /// What it said.
+    /// Error estimate of the render.
     pub said: RelativeError,
-    /// Root of its relMSE against the truth.
+    /// True error: square root of the relMSE against the reference.
     pub truth: f64,
 }
 
 impl Promise {
-    /// Whether the true error is within the stated one.
+    /// Returns true if the stated error bounds the true error.
     pub fn kept(&self) -> bool {
         self.truth <= self.said.stated
     }
 
-    /// The estimate over the true error.
+    /// Ratio of the estimated to the true error.
     pub fn estimate_ratio(&self) -> f64 {
         self.said.noise.hypot(self.said.bias) / self.truth
     }
 }
 
-/// Renders on until each of the numbers of passes, which rise, and hears what the picture says
-/// there.
+/// Renders up to each of the pass counts in `passes`, in ascending order, and compares the
+/// estimated with the true error there.
 ///
 /// # Errors
-/// When the engine fails.
+/// If the engine fails.
 pub fn promises(
     engine: &mut dyn Engine,
     truth: &NoisyTruth,

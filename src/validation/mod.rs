@@ -1,9 +1,10 @@
-//! Holding renders against pictures of other renderers, block by block, within the noise of both.
+//! Validation of renders against images of other renderers, block by block, within the noise of
+//! both.
 //!
-//! A truth gives mean and standard error of every block of pixels ([`BlockTruth`]). A render is
-//! made in parts that do not depend on each other ([`render_parts`]), so that its own noise is seen
-//! in their scatter and not guessed from the picture's texture. [`Agreement`] joins the two;
-//! [`Promise`] holds a render's own word against a truth.
+//! A reference provides mean and standard error of each block of pixels ([`BlockTruth`]). A render
+//! consists of independent parts ([`render_parts`]), whose scatter measures its noise.
+//! [`Agreement`] compares the two. [`Promise`] compares a render's error estimate with its true
+//! error.
 
 pub mod agreement;
 pub mod coverage;

@@ -1,4 +1,4 @@
-//! Renders in independent parts.
+//! Renders split into independent parts.
 
 use thiserror::Error;
 
@@ -9,35 +9,36 @@ use crate::film::Picture;
 use crate::scene::Scene;
 use crate::scene::settings::RenderSettings;
 
-/// No render to hold.
+/// Reason why a render cannot be validated.
 #[derive(Debug, Error)]
 pub enum HoldError {
-    /// No engine for the scene on this device.
+    /// The device has no engine for the scene.
     #[error(transparent)]
     Device(#[from] DeviceError),
     /// The engine failed in a pass.
     #[error(transparent)]
     Engine(#[from] EngineError),
-    /// Film and blocks do not fit.
-    #[error("a film of {0}x{1} pixels does not divide into the truth's blocks")]
+    /// The film size is not a multiple of the number of blocks.
+    #[error("a film of {0}x{1} pixels does not divide into the reference's blocks")]
     Size(u32, u32),
 }
 
-/// A picture and the parts it is the mean of.
+/// An image and the parts whose mean it is.
 #[derive(Clone, Debug)]
 pub struct Rendered {
-    /// The mean of all parts.
+    /// Mean of all parts.
     pub picture: Picture,
     /// Block means of each part.
     pub parts: Vec<Blocks>,
 }
 
-/// Renders `scene` on the device that is wanted `renders` times, with a seed each, and means over
-/// `width * height` blocks of each. (Passes are no parts: PPM's share their eye paths, and SPPM's
-/// share a walk through the pixel.)
+/// Renders `scene` `renders` times with different seeds on the `wanted` device, and averages each
+/// render over `width * height` blocks. Passes cannot serve as parts: those of PPM share their eye
+/// paths, and those of SPPM share a low-discrepancy sequence in the pixel.
 ///
 /// # Errors
-/// When the scene does not run on the device or its film does not divide into the blocks.
+/// If the scene does not run on the device, or the film size is not a multiple of the number of
+/// blocks.
 pub fn render_parts(
     wanted: &Wanted,
     scene: &Scene,

@@ -1,4 +1,4 @@
-//! Pictures as means over blocks of pixels, and files of them.
+//! Reference images as means over blocks of pixels, and their files.
 
 use std::io::Cursor;
 use std::path::Path;
@@ -8,10 +8,10 @@ use exr::prelude::*;
 use crate::film::file::{read_exr, write_whole};
 use crate::film::{FileError, Picture};
 
-/// Edge, in pixels of a full truth picture, of the blocks that [`BlockTruth::from_picture`] makes.
+/// Edge of the blocks of [`BlockTruth::from_picture`], in pixels of the reference image.
 pub const BLOCK: u32 = 8;
 
-/// A value per block and channel, row 0 on top.
+/// Values per block and channel, row 0 on top.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Blocks {
     /// Blocks per row.
@@ -23,8 +23,8 @@ pub struct Blocks {
 }
 
 impl Blocks {
-    /// Means of `picture` over `width * height` blocks of equal squares; none when they do not nest
-    /// in the picture. A box-filtered picture of any such size gives the same blocks but for noise.
+    /// Averages `picture` over `width * height` equal square blocks. Returns `None` if they do not
+    /// tile the image. Box-filtered images of any such size give the same blocks except for noise.
     pub fn of(picture: &Picture, width: u32, height: u32) -> Option<Self> {
         let edge = picture.width / width.max(1);
         if edge == 0 || (picture.width, picture.height) != (width * edge, height * edge) {
@@ -42,13 +42,13 @@ impl Blocks {
         }))
     }
 
-    /// Blocks whose value in column `x` and row `y` is `value(x, y)`.
+    /// Creates blocks whose value in column `x` and row `y` is `value(x, y)`.
     pub fn from_fn(width: u32, height: u32, mut value: impl FnMut(u32, u32) -> [f64; 3]) -> Self {
         let rgb = (0..width * height).map(|i| value(i % width, i / width)).collect();
         Self { width, height, rgb }
     }
 
-    /// Means over squares of `edge * edge` blocks, fewer at the right and bottom border.
+    /// Averages squares of `edge * edge` blocks, fewer at the right and bottom borders.
     pub fn coarser(&self, edge: u32) -> Self {
         let size = |blocks: u32| blocks.div_ceil(edge);
         Self::from_fn(size(self.width), size(self.height), |x, y| {
@@ -69,7 +69,7 @@ impl Blocks {
         [0, 1, 2].map(|c| self.rgb.iter().map(|rgb| rgb[c]).sum::<f64>() / self.rgb.len() as f64)
     }
 
-    /// The same as a picture with a pixel per block.
+    /// Image with one pixel per block.
     pub fn picture(&self) -> Picture {
         let rgb = self.rgb.iter().map(|rgb| rgb.map(|value| value as f32)).collect();
         Picture { width: self.width, height: self.height, rgb }
@@ -81,28 +81,28 @@ impl Blocks {
     }
 }
 
-/// Block means of a trusted picture and their standard errors.
+/// Block means of a reference image and their standard errors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BlockTruth {
-    /// Radiance.
+    /// Mean radiance.
     pub mean: Blocks,
-    /// Standard error of each mean; those of different blocks are independent.
+    /// Standard error of each mean; errors of different blocks are independent.
     pub standard_error: Blocks,
 }
 
-/// Where a picture's standard errors come from.
+/// Source of the standard errors of an image.
 #[derive(Clone, Debug)]
 pub enum PixelNoise {
-    /// A picture of them.
+    /// Image of standard errors.
     Known(Picture),
-    /// Given as relMSE `e` of the whole: a pixel of value `v` is taken to have the variance
+    /// relMSE `e` of the whole image: a pixel of value `v` is assumed to have the variance
     /// `e (v^2 + 0.01)`.
     RelMse(f64),
 }
 
 impl BlockTruth {
-    /// Blocks of [`BLOCK`] pixels of a picture whose pixels' errors are independent; none when they
-    /// do not fill it.
+    /// Averages an image with independent pixel errors over blocks of [`BLOCK`] x [`BLOCK`] pixels.
+    /// Returns `None` if the blocks do not tile the image.
     pub fn from_picture(picture: &Picture, noise: &PixelNoise) -> Option<Self> {
         let (width, height) = (picture.width / BLOCK, picture.height / BLOCK);
         let mean = Blocks::of(picture, width, height)?;
@@ -124,14 +124,14 @@ impl BlockTruth {
         Some(Self { mean, standard_error })
     }
 
-    /// The truth of squares of `edge * edge` blocks.
+    /// Reference of squares of `edge * edge` blocks.
     pub fn coarser(&self, edge: u32) -> Self {
         let map = |blocks: &Blocks, f: &dyn Fn(f64) -> f64| Blocks {
             rgb: blocks.rgb.iter().map(|rgb| rgb.map(f)).collect(),
             ..*blocks
         };
         let variance = map(&self.standard_error, &|e| e * e).coarser(edge);
-        // mean of the n variances over n, and n from a square of ones
+        // variance of the mean of n blocks: mean variance divided by n
         let count = Blocks::from_fn(variance.width, variance.height, |x, y| {
             let side = |at: u32, blocks: u32| f64::from(((at + 1) * edge).min(blocks) - at * edge);
             [side(x, self.mean.width) * side(y, self.mean.height); 3]
@@ -141,33 +141,33 @@ impl BlockTruth {
         Self { mean: self.mean.coarser(edge), standard_error: Blocks { rgb, ..variance } }
     }
 
-    /// Standard error of the whole picture's mean.
+    /// Standard error of the mean over the whole image.
     pub fn mean_error(&self) -> [f64; 3] {
         let errors = &self.standard_error.rgb;
         [0, 1, 2]
             .map(|c| errors.iter().map(|e| e[c] * e[c]).sum::<f64>().sqrt() / errors.len() as f64)
     }
 
-    /// Reads a file that [`BlockTruth::write`] made.
+    /// Reads a file written by [`BlockTruth::write`].
     ///
     /// # Errors
-    /// When the file cannot be read or lacks one of its channels.
+    /// If the file cannot be read or a channel is missing.
     pub fn read(file: &Path) -> std::result::Result<Self, FileError> {
         let exr = read_exr(file)?;
         let blocks = |prefix: &str| {
             exr.picture(prefix).map(Blocks::read).ok_or_else(|| FileError::Malformed {
                 file: file.to_owned(),
-                what: format!("it has no channels {prefix}R, {prefix}G and {prefix}B"),
+                what: format!("channels {prefix}R, {prefix}G and {prefix}B are missing"),
             })
         };
         Ok(Self { mean: blocks("")?, standard_error: blocks("SE.")? })
     }
 
-    /// Writes an EXR file with a pixel per block: means as R, G, B and standard errors as SE.R,
+    /// Writes an EXR file with one pixel per block: means as R, G, B and standard errors as SE.R,
     /// SE.G, SE.B.
     ///
     /// # Errors
-    /// When the file cannot be written.
+    /// If the file cannot be written.
     pub fn write(&self, file: &Path) -> std::result::Result<(), FileError> {
         let channel = |prefix: &str, c: usize, blocks: &Blocks| {
             let values = blocks.rgb.iter().map(|rgb| rgb[c] as f32).collect();

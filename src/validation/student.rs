@@ -1,19 +1,19 @@
-//! Chances of Student's t and of Poisson counts, for false-alarm rates.
+//! Tail probabilities of the Student t and Poisson distributions, for false-positive rates.
 
 use std::f64::consts::FRAC_PI_2;
 
-/// Intervals of Simpson's rule; the integrand is smooth.
+/// Number of intervals of Simpson's rule; the integrand is smooth.
 const INTERVALS: usize = 2000;
 
-/// `P(|t| > limit)` for Student's t of `degrees` degrees of freedom: with `t = sqrt(degrees) tan
-/// a`, the density of `a` is proportional to `cos^(degrees - 1) a`.
+/// `P(|t| > limit)` for Student's t with `degrees` degrees of freedom. With
+/// `t = sqrt(degrees) tan a`, the density of `a` is proportional to `cos^(degrees - 1) a`.
 pub fn two_sided_tail(limit: f64, degrees: u32) -> f64 {
     let density = |a: f64| a.cos().max(0.0).powi(degrees as i32 - 1);
     let from = (limit / f64::from(degrees).sqrt()).atan();
     simpson(density, from, FRAC_PI_2) / simpson(density, 0.0, FRAC_PI_2)
 }
 
-/// The least count that a Poisson variable of this mean exceeds with a chance below `chance`.
+/// Smallest count that a Poisson variable of this mean exceeds with probability at most `chance`.
 pub fn poisson_limit(mean: f64, chance: f64) -> usize {
     let mut term = (-mean).exp();
     let mut below = term;
@@ -39,7 +39,7 @@ mod tests {
 
     #[test]
     fn tails() {
-        // Cauchy for one degree of freedom, 1 - t / sqrt(2 + t^2) for two.
+        // Cauchy distribution for one degree of freedom, 1 - t / sqrt(2 + t^2) for two
         let close = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 1e-4, "{a} {b}");
         close(two_sided_tail(4.0, 1), 1.0 - 4.0_f64.atan() / FRAC_PI_2);
         close(two_sided_tail(4.0, 2), 1.0 - 4.0 / 18.0_f64.sqrt());

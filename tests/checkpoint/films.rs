@@ -222,18 +222,19 @@ fn the_program_keeps_crops_and_layers() {
     good(&folder, &format!("{fewer} --passes 9 --resume a.checkpoint -o depth.exr"));
     assert_eq!(channels("depth.exr").channels["depth.Z"], whole.channels["depth.Z"]);
     let refused = |options: &str, words: &[&str]| {
-        let words = [&["a.checkpoint: the checkpoint is of another render"], words].concat();
+        let words =
+            [&["a.checkpoint: the checkpoint belongs to a different render"], words].concat();
         let line = format!(
             "render ball.toml --device cpu --quiet --resume a.checkpoint -o x.exr {options}"
         );
         fails(&folder, &line, 1, &words);
     };
-    refused("", &["the crop: expected the whole picture, found 5,3,20,14"]);
-    refused("--crop 5,3,20,15", &["the crop: expected 5,3,20,15, found 5,3,20,14"]);
+    refused("", &["crop: expected the whole image, found 5,3,20,14"]);
+    refused("--crop 5,3,20,15", &["crop: expected 5,3,20,15, found 5,3,20,14"]);
     let crop = "--crop 5,3,20,14";
     refused(
         &format!("{crop} --aov normal,depth"),
-        &["the layers: expected normal,depth, found albedo,depth,indirect,photons"],
+        &["layers: expected normal,depth, found albedo,depth,indirect,photons"],
     );
     let range = |options: &str, name: &str| {
         let line = "render ball.toml --device cpu --quiet --passes 4..9";

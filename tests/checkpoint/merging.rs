@@ -158,10 +158,10 @@ fn what_does_not_go_together_is_refused() {
     fails(&[a.clone(), seed], &["`seed`: expected 0, found 1"]);
     let mut scene = b.clone();
     scene.origin.identity.textures = "0".into();
-    fails(&[a.clone(), scene], &["the scene (textures)", "picture"]);
+    fails(&[a.clone(), scene], &["scene (textures)", "image"]);
     let mut version = b.clone();
     version.origin.version = "0.0.1".into();
-    fails(&[a.clone(), version], &["caustica's version", "found 0.0.1"]);
+    fails(&[a.clone(), version], &["caustica version", "found 0.0.1"]);
     let mut size = b;
     size.origin.width = 12;
     size.origin.height = 32;

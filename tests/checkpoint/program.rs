@@ -14,9 +14,11 @@ fn other_renders_are_refused_with_the_reason() {
     good(&folder, &format!("{line} --device cpu --passes 4 --checkpoint a.checkpoint -o a.exr"));
     let on_cpu = format!("{line} --device cpu --resume a.checkpoint -o b.exr");
     let refused = |more: &str, words: &[&str]| {
-        let words =
-            [&["a.checkpoint: the checkpoint is of another render", "leave out --resume"], words]
-                .concat();
+        let words = [
+            &["a.checkpoint: the checkpoint belongs to a different render", "drop --resume"],
+            words,
+        ]
+        .concat();
         let device = if more.contains("--device") { "" } else { "--device cpu" };
         fails(
             &folder,
@@ -34,24 +36,24 @@ fn other_renders_are_refused_with_the_reason() {
         &["`radius`: expected {\"units\":0.25}, found {", "`alpha`: expected 0.5"],
     );
     refused("--size 20x16", &["size: expected 20 x 16, found 24 x 16"]);
-    refused("--crop 1,2,9,10", &["the crop: expected 1,2,9,10, found the whole picture"]);
-    refused("--aov depth", &["the layers: expected depth, found none"]);
-    refused("--device cpu-f64", &["numbers: expected 64 bits, found 32"]);
-    refused("--passes 2..9", &["the first pass: expected pass 2, found pass 0"]);
+    refused("--crop 1,2,9,10", &["crop: expected 1,2,9,10, found the whole image"]);
+    refused("--aov depth", &["layers: expected depth, found none"]);
+    refused("--device cpu-f64", &["precision: expected 64 bits, found 32"]);
+    refused("--passes 2..9", &["first pass: expected 2, found 0"]);
     // the scene: a shape, then a mesh and its file alone
     let moved = SCENE.replace("center = [0.0, 0.7, 0.0]", "center = [0.0, 0.8, 0.0]");
     fs::write(folder.join("ball.toml"), moved).unwrap();
     refused(
         "",
         &[
-            "the scene (",
+            "scene (",
             "shapes",
             "expected `center = [0.0, 0.8, 0.0]`, found `center = [0.0, 0.7, 0.0]`",
         ],
     );
     fs::write(folder.join("ball.toml"), SCENE.as_str()).unwrap();
     fs::write(folder.join("wall.obj"), MESH.replace("0 2 -1.5", "0 1.9 -1.5")).unwrap();
-    refused("", &["the scene (", "shapes", "not a mesh, picture or profile that it names"]);
+    refused("", &["scene (", "shapes", "a mesh, image or profile that it uses differs"]);
     fs::write(folder.join("wall.obj"), MESH).unwrap();
     // the version, which no other program is at hand to write
     let file = folder.join("a.checkpoint");
@@ -60,13 +62,13 @@ fn other_renders_are_refused_with_the_reason() {
     let mut other = sound.clone();
     other.origin.version = "0.0.9".into();
     write(&file, &other).unwrap();
-    refused("", &["caustica's version: expected", "found 0.0.9"]);
+    refused("", &["caustica version: expected", "found 0.0.9"]);
     write(&file, &sound).unwrap();
     fails(
         &folder,
         &format!("{on_cpu} --passes 3"),
         1,
-        &["holds passes 0..4", "before pass 3", "--passes 4"],
+        &["contains passes 0..4", "before pass 3", "--passes 4"],
     );
     // what changes no bit is no reason: comments, where it ends, development
     let told = SCENE
@@ -86,15 +88,15 @@ fn what_is_no_use_is_told_before_the_work() {
         &folder,
         &format!("{line} --resume note.txt"),
         1,
-        &["note.txt: this is no checkpoint", "--checkpoint"],
+        &["note.txt: not a checkpoint", "--checkpoint"],
     );
     fails(
         &folder,
         &format!("{line} --checkpoint note.txt"),
         2,
-        &["note.txt: this file is there already", "--resume"],
+        &["note.txt: the file already exists", "--resume"],
     );
-    fails(&folder, &format!("{line} --checkpoint a.png"), 1, &["a picture's name", ".checkpoint"]);
+    fails(&folder, &format!("{line} --checkpoint a.png"), 1, &["belongs to images", ".checkpoint"]);
     fails(
         &folder,
         &format!("{line} --checkpoint no/a.checkpoint"),
@@ -117,9 +119,9 @@ fn what_is_no_use_is_told_before_the_work() {
         &folder,
         "compare ball.toml --device cpu --device cpu --passes 2..5",
         2,
-        &["begins with pass 0"],
+        &["starts at pass 0"],
     );
-    fails(&folder, "info ball.toml --passes 2..5", 2, &["begins with pass 0"]);
+    fails(&folder, "info ball.toml --passes 2..5", 2, &["starts at pass 0"]);
     good(&folder, "info ball.toml --passes 0..5");
     // a checkpoint that is cut off
     good(&folder, &format!("{line} --passes 2 --checkpoint a.checkpoint -o a.exr"));
@@ -130,7 +132,7 @@ fn what_is_no_use_is_told_before_the_work() {
         &folder,
         &format!("{line} --resume cut.checkpoint"),
         1,
-        &["should have", &half, "cut off"],
+        &["should have", &half, "truncated"],
     );
     fails(&folder, "merge cut.checkpoint -o b.exr", 1, &["cut.checkpoint", "should have", &half]);
 }
@@ -243,9 +245,9 @@ fn ranges_merge() {
     wrong("a.checkpoint c.checkpoint", "x.exr", 1, &["passes 4..9 are missing", "--passes 4..9"]);
     wrong("ab.checkpoint b.checkpoint", "x.exr", 1, &["passes 4..9 are in both"]);
     wrong("c.checkpoint d.checkpoint", "x.exr", 1, &["passes 11..12 are missing"]);
-    wrong("a.checkpoint a.exr", "x.exr", 1, &["a.exr: this is no checkpoint"]);
+    wrong("a.checkpoint a.exr", "x.exr", 1, &["a.exr: not a checkpoint"]);
     wrong("a.checkpoint", "x.tif", 2, &["x.tif", ".checkpoint"]);
-    wrong("a.checkpoint", "no/x.exr", 1, &["no folder `no`"]);
+    wrong("a.checkpoint", "no/x.exr", 1, &["the folder `no` does not exist"]);
     wrong("a.checkpoint", "no/x.checkpoint", 1, &["no/x.checkpoint"]);
     range("4..9 --seed 3", "seed", "cpu");
     wrong("a.checkpoint seed.checkpoint", "x.exr", 1, &["`seed`: expected 0, found 3"]);
@@ -254,7 +256,7 @@ fn ranges_merge() {
         &folder,
         &format!("{on} -o x.exr"),
         1,
-        &["ab.checkpoint: it is merged", "passes from 9 on"],
+        &["ab.checkpoint: a merged checkpoint", "passes from 9 on"],
     );
     assert!(!folder.join("x.exr").exists());
 }

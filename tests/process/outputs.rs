@@ -183,10 +183,10 @@ fn pipes_get_pictures() {
     // a name of standard output does not say which picture; the message says how one does
     for name in ["/dev/stdout", "-", "/dev/fd/1", "/proc/self/fd/1", "/dev/stderr"] {
         let output =
-            run(&folder, &format!("--output={name}"), 2, &[name, "which kind of picture", "ln -s"]);
+            run(&folder, &format!("--output={name}"), 2, &[name, "does not determine", "ln -s"]);
         assert!(output.stdout.is_empty());
     }
-    run(&folder, "--checkpoint end -o never.png", 1, &["end", "no regular file"]);
+    run(&folder, "--checkpoint end -o never.png", 1, &["end", "not a regular file"]);
     assert!(fs::metadata(folder.join("end")).unwrap().file_type().is_fifo());
     assert!(!folder.join("never.png").exists());
 }
@@ -221,9 +221,9 @@ fn one_failed_output_keeps_no_other() {
         let rest = error.rsplit_once(start).unwrap_or_else(|| panic!("{start}: {error}")).1;
         folder.join(rest.split_whitespace().next().unwrap())
     };
-    let picture = caustica::low_level::film::read(&said("the picture is saved in ")).unwrap();
+    let picture = caustica::low_level::film::read(&said("image saved in ")).unwrap();
     assert_eq!((picture.width, picture.height), (12, 8));
-    let kept = said("the checkpoint is saved in ");
+    let kept = said("checkpoint saved in ");
     assert_eq!(read(&kept).unwrap().state.passes, 40, "{error}");
     let kept = kept.file_name().unwrap().to_str().unwrap().to_owned();
     run(&folder, &format!("-o again.png --passes 40 --resume {kept}"), 0, &[]);

@@ -38,7 +38,11 @@ fn pipes_and_devices_are_refused() {
     .unwrap();
     for name in ["pipe", "zero"] {
         for kind in ["exr", "pfm", "hdr", "png", "jpg"] {
-            refused(&folder, &format!("diff {name}.{kind} good.exr"), &[name, "no regular file"]);
+            refused(
+                &folder,
+                &format!("diff {name}.{kind} good.exr"),
+                &[name, "not a regular file"],
+            );
         }
         let render = "render ball.toml --device cpu --quiet -o out.exr";
         for line in [
@@ -48,7 +52,7 @@ fn pipes_and_devices_are_refused() {
             format!("render --like {name}.exr --device cpu --quiet -o out.exr"),
             format!("study ball.toml --truth {name}.exr -o studied"),
         ] {
-            refused(&folder, &line, &[name, "no regular file"]);
+            refused(&folder, &line, &[name, "not a regular file"]);
         }
     }
     refused(&folder, "diff folder.exr good.exr", &["folder.exr", "cannot be read"]);
@@ -72,7 +76,7 @@ fn a_study_does_not_wait_for_its_files() {
                 None => fifo(&file),
                 Some(device) => symlink(device, &file).unwrap(),
             }
-            refused(&folder, line, &[name, "no regular file"]);
+            refused(&folder, line, &[name, "not a regular file"]);
         }
         fs::remove_file(&file).unwrap();
         fs::write(&file, content).unwrap();

@@ -47,7 +47,7 @@ fn a_checkpoint_has_one_writer() {
             assert!(read(&file).is_ok());
         }
         let merging = ["merge", "a.checkpoint", "-o", "link.checkpoint"];
-        fails(&folder, &merging, 2, &["link.checkpoint", "one of those that are merged"]);
+        fails(&folder, &merging, 2, &["link.checkpoint", "one of the merged checkpoints"]);
         signal(&holder, kill);
         ended(holder);
     }
@@ -121,7 +121,7 @@ fn what_is_merged_is_not_written_over() {
         ["a.checkpoint", "b.checkpoint", "./a.checkpoint", "../merge/b.checkpoint", "l.checkpoint"]
     {
         let line = format!("merge a.checkpoint b.checkpoint -o {target}");
-        fails(&folder, &words(&line), 2, &[target, "one of those that are merged", "another"]);
+        fails(&folder, &words(&line), 2, &[target, "one of the merged checkpoints", "another"]);
     }
     good(&folder, &words("merge a.checkpoint b.checkpoint -o c.checkpoint"));
     assert!(a == fs::read(folder.join("a.checkpoint")).unwrap());

@@ -1,11 +1,11 @@
-//! The color spaces of FLIP: YCxCz for the eye's filters, Hunt-adjusted L*a*b* for differences.
+//! Color spaces of FLIP: YCxCz for spatial filters, Hunt-adjusted L*a*b* for color differences.
 
 use std::sync::LazyLock;
 
 use glam::{DMat3, DVec3};
 
-/// CIE XYZ of linear sRGB, from the primaries' and D65's chromaticities in fractions, as the
-/// authors' programs have it.
+/// Matrix from linear sRGB to CIE XYZ, as exact fractions derived from the chromaticities of the
+/// primaries and D65, as in the authors' implementation.
 static XYZ_FROM_RGB: LazyLock<DMat3> = LazyLock::new(|| {
     let columns = [
         DVec3::new(
@@ -27,7 +27,7 @@ static XYZ_FROM_RGB: LazyLock<DMat3> = LazyLock::new(|| {
     DMat3::from_cols_array_2d(&columns.map(|column| column.to_array()))
 });
 
-/// XYZ over the white's.
+/// Matrix from linear sRGB to XYZ relative to the white point.
 static RELATIVE_FROM_RGB: LazyLock<DMat3> = LazyLock::new(|| {
     let white = *XYZ_FROM_RGB * DVec3::ONE;
     DMat3::from_diagonal(DVec3::ONE / white) * *XYZ_FROM_RGB
@@ -35,24 +35,24 @@ static RELATIVE_FROM_RGB: LazyLock<DMat3> = LazyLock::new(|| {
 
 static RGB_FROM_RELATIVE: LazyLock<DMat3> = LazyLock::new(|| RELATIVE_FROM_RGB.inverse());
 
-/// YCxCz of linear sRGB: luminance, red against green, yellow against blue; linear in the light.
+/// Converts linear sRGB to YCxCz: luminance, red-green, blue-yellow. The conversion is affine.
 pub fn ycxcz(rgb: DVec3) -> DVec3 {
     opponents(*RELATIVE_FROM_RGB * rgb)
 }
 
-/// The luminance in [0, 1] of YCxCz.
+/// Converts the Y of YCxCz to relative luminance in [0, 1].
 pub fn relative_luminance(y: f64) -> f64 {
     (y + 16.0) / 116.0
 }
 
-/// Linear sRGB of YCxCz.
+/// Converts YCxCz to linear sRGB.
 pub fn rgb_from_ycxcz(color: DVec3) -> DVec3 {
     let y = relative_luminance(color.x);
     *RGB_FROM_RELATIVE * DVec3::new(y + color.y / 500.0, y, y - color.z / 200.0)
 }
 
-/// L*a*b* of linear sRGB in [0, 1], with a* and b* times L* / 100: colors are seen weaker in the
-/// dark (Hunt 1952).
+/// Converts linear sRGB in [0, 1] to L*a*b* with a* and b* multiplied by L* / 100, since colors
+/// appear less saturated at low luminance (Hunt 1952).
 pub fn hunt_lab(rgb: DVec3) -> DVec3 {
     const DELTA: f64 = 6.0 / 29.0;
     let root = |t: f64| {
@@ -63,8 +63,8 @@ pub fn hunt_lab(rgb: DVec3) -> DVec3 {
     DVec3::new(lab.x, 0.01 * lab.x * lab.y, 0.01 * lab.x * lab.z)
 }
 
-/// The HyAB distance (Abasi, Tehran & Fairchild 2019): city-block between lightness and color,
-/// Euclidean within color.
+/// HyAB distance (Abasi, Tehran & Fairchild 2019): absolute lightness difference plus Euclidean
+/// chroma difference.
 pub fn hyab(a: DVec3, b: DVec3) -> f64 {
     let d = a - b;
     d.x.abs() + (d.y * d.y + d.z * d.z).sqrt()

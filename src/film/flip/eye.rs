@@ -1,5 +1,5 @@
-//! What an eye makes of a picture: colors blurred by its contrast sensitivity, and the edges and
-//! points it finds.
+//! Model of human vision in FLIP: color filtering by contrast sensitivity, and detection of edges
+//! and points.
 
 use std::f64::consts::{PI, SQRT_2};
 use std::sync::LazyLock;
@@ -12,21 +12,22 @@ use super::color::{hunt_lab, hyab, relative_luminance, rgb_from_ycxcz, ycxcz};
 use crate::film::Picture;
 use crate::film::plane::{Plane, gaussian, normalized};
 
-/// Exponents of color and feature differences, and the bend of the color scale: a share `P_C` of
-/// the largest difference becomes `P_T`.
+/// Exponents of color and feature differences, and the knee of the color scale: a fraction `P_C` of
+/// the largest difference maps to `P_T`.
 const Q_C: f64 = 0.7;
 const Q_F: f64 = 0.5;
 const P_C: f64 = 0.4;
 const P_T: f64 = 0.95;
-/// Distance in degrees of the peak from the trough of the eye's edge detector.
+/// Peak-to-trough distance of the edge detector, in degrees.
 const FEATURE_WIDTH: f64 = 0.082;
 
-/// Contrast sensitivities of achromatic, red-green and blue-yellow as Gaussians `a sqrt(pi / b)
-/// exp(-pi^2 d^2 / b)` of the distance `d` in degrees: (a, b) of each (Table 1 of the paper).
+/// Contrast sensitivities of the achromatic, red-green and blue-yellow channels as sums of
+/// Gaussians `a sqrt(pi / b) exp(-pi^2 d^2 / b)` of the distance `d` in degrees: (a, b) of each
+/// (paper, Table 1).
 const SENSITIVITIES: [&[(f64, f64)]; 3] =
     [&[(1.0, 0.0047)], &[(1.0, 0.0053)], &[(34.1, 0.04), (13.5, 0.025)]];
 
-/// The HyAB distance of green and blue, to the power of Q_C: the largest there is.
+/// HyAB distance between green and blue to the power of Q_C: the maximum over all colors.
 static LARGEST: LazyLock<f64> =
     LazyLock::new(|| hyab(hunt_lab(DVec3::Y), hunt_lab(DVec3::Z)).powf(Q_C));
 
@@ -34,14 +35,14 @@ static BLURS: LazyLock<[Vec<Blur>; 3]> = LazyLock::new(|| SENSITIVITIES.map(blur
 
 static FEATURES: LazyLock<FeatureFilters> = LazyLock::new(feature_filters);
 
-/// A separable Gaussian and its share of a filter.
+/// A separable Gaussian and its weight in a filter.
 struct Blur {
     share: f64,
     weights: Vec<f64>,
 }
 
-/// The Gaussians of one sensitivity, scaled so that the weights of all sum to one over the square
-/// they cover.
+/// Gaussians of one contrast sensitivity, scaled so that the weights of the whole filter sum to
+/// one.
 fn blurs(sensitivity: &[(f64, f64)]) -> Vec<Blur> {
     let sigma = |b: f64| (b / (2.0 * PI * PI)).sqrt() * PIXELS_PER_DEGREE;
     let widest =
@@ -60,8 +61,8 @@ fn blurs(sensitivity: &[(f64, f64)]) -> Vec<Blur> {
     gaussians.iter().zip(&volumes).map(blur).collect()
 }
 
-/// A Gaussian and its first two derivatives, whose positive weights sum to 1 and negative ones to
-/// -1.
+/// A Gaussian and its first two derivatives. The positive weights of each derivative sum to 1, the
+/// negative ones to -1.
 struct FeatureFilters {
     across: Vec<f64>,
     edge: Vec<f64>,
@@ -86,18 +87,19 @@ fn feature_filters() -> FeatureFilters {
     }
 }
 
-/// A picture as it is seen.
+/// An image after the vision model.
 pub struct Seen {
     width: usize,
     /// Hunt-adjusted L*a*b* after the blur.
     colors: Vec<DVec3>,
-    /// How strong an edge is at each pixel, and how strong a point or line.
+    /// Edge strength at each pixel.
     edges: Plane,
+    /// Strength of points and lines at each pixel.
     points: Plane,
 }
 
 impl Seen {
-    /// `display` makes linear display values in [0, 1] of a channel's values.
+    /// Applies the model. `display` maps a channel value to a linear display value in [0, 1].
     pub fn of(picture: &Picture, display: impl Fn(f64) -> f64 + Sync) -> Self {
         let width = picture.width as usize;
         let seen = |rgb: &[f32; 3]| ycxcz(DVec3::from(rgb.map(|value| display(f64::from(value)))));
@@ -115,7 +117,7 @@ impl Seen {
         Self { width, colors, edges, points }
     }
 
-    /// FLIP of two pictures of one size.
+    /// FLIP of two images of equal size.
     pub fn difference(&self, other: &Self) -> Plane {
         let flip = |i: usize| {
             let color = color_difference(hyab(self.colors[i], other.colors[i]));
@@ -140,7 +142,7 @@ fn blurred(plane: &Plane, blurs: &[Blur]) -> Plane {
     blurs[1..].iter().fold(first, |sum, blur| sum.zip(&part(blur), |a, b| a + b))
 }
 
-/// Lengths of the first and the second derivative in x and y.
+/// Magnitudes of the first and second derivatives in x and y: edges and points.
 fn features(luminance: &Plane) -> (Plane, Plane) {
     let FeatureFilters { across, edge, point } = &*FEATURES;
     let length = |x: Plane, y: Plane| x.zip(&y, |x, y| (x * x + y * y).sqrt());
@@ -150,7 +152,7 @@ fn features(luminance: &Plane) -> (Plane, Plane) {
     (derivative(edge), derivative(point))
 }
 
-/// A HyAB distance on a scale from 0 to 1, on which only a twentieth is left to the largest ones.
+/// Maps a HyAB distance to [0, 1] with a knee: the largest distances share the top 5 %.
 fn color_difference(distance: f64) -> f64 {
     let (power, bend) = (distance.powf(Q_C), P_C * *LARGEST);
     if power < bend {

@@ -1,9 +1,9 @@
-//! ꟻLIP: how different two pictures look when one alternates between them on a screen.
+//! ꟻLIP: perceived difference of two images when a viewer alternates between them on a screen.
 //!
 //! Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström & Fairchild, "FLIP: A Difference Evaluator
-//! for Alternating Images" (2020), for pictures on a display; Andersson, Nilsson, Shirley &
+//! for Alternating Images" (2020), for display values; Andersson, Nilsson, Shirley &
 //! Akenine-Möller, "Visualizing Errors in Rendered High Dynamic Range Images" (2021), for radiance.
-//! Both give a number in [0, 1] for every pixel.
+//! Both give a value in [0, 1] for each pixel.
 
 mod color;
 mod eye;
@@ -16,14 +16,14 @@ use eye::Seen;
 
 pub use hdr::{Exposures, HdrFlip, hdr_flip};
 
-/// The papers' viewing distance, in pixels per degree of visual angle: a screen 0.7 m and 3840
-/// pixels wide, 0.7 m away.
+/// Viewing distance of the papers, in pixels per degree of visual angle: a screen 0.7 m and 3840
+/// pixels wide at a distance of 0.7 m.
 pub const PIXELS_PER_DEGREE: f64 = 3840.0 / 0.7 * 0.7 * (std::f64::consts::PI / 180.0);
 
-/// LDR-FLIP of linear values, which are clipped to [0, 1]. Symmetric.
+/// Computes LDR-FLIP of linear values, which are clamped to [0, 1]. Symmetric.
 ///
 /// # Errors
-/// For pictures that cannot be compared.
+/// If the images cannot be compared.
 pub fn ldr_flip(a: &Picture, b: &Picture) -> Result<Plane, MetricsError> {
     check_comparable(a, b)?;
     let seen = |picture| Seen::of(picture, |value| value.clamp(0.0, 1.0));
