@@ -12,7 +12,7 @@ mod software;
 
 use caustica::low_level::cpu::CpuEngine;
 use caustica::low_level::double;
-use caustica::low_level::engine::Engine;
+use caustica::low_level::engine::MeasuredEngine;
 use caustica::low_level::film::exr_file::{Channel, Numbers};
 use caustica::low_level::film::{Picture, Plane};
 use caustica::low_level::gpu::GpuEngine;
@@ -72,7 +72,7 @@ struct Seen {
 }
 
 impl Seen {
-    fn by(mut engine: impl Engine, passes: u32) -> Self {
+    fn by(mut engine: impl MeasuredEngine, passes: u32) -> Self {
         for _ in 0..passes {
             engine.pass().unwrap();
         }

@@ -1,7 +1,7 @@
 //! A real device that the driver takes away in the middle of a render.
 
 use caustica::low_level::device::{Candidate, Candidates, Opened};
-use caustica::low_level::engine::{Engine, EngineError, PassReport, State};
+use caustica::low_level::engine::{Engine, EngineError, MeasuredEngine, PassReport, State};
 use caustica::low_level::film::exr_file::Channel;
 use caustica::low_level::film::{ErrorMap, Picture, Rejections};
 use caustica::low_level::gpu::GpuEngine;
@@ -63,6 +63,10 @@ impl Engine for Losing {
 
     fn layers(&mut self) -> Result<Vec<Channel>, EngineError> {
         self.ask().layers()
+    }
+
+    fn can_be_lost(&self) -> bool {
+        true
     }
 
     fn save(&mut self) -> Result<State, EngineError> {

@@ -173,6 +173,10 @@ impl Engine for Faulty {
         self.carry_out(Step::Layers, |engine| engine.layers())
     }
 
+    fn can_be_lost(&self) -> bool {
+        true
+    }
+
     fn save(&mut self) -> Result<State, EngineError> {
         self.carry_out(Step::Save, |engine| engine.save())
     }

@@ -13,13 +13,13 @@ mod software;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-use caustica::low_level::device::failover::Relay;
 use caustica::low_level::device::{Candidates, Wanted, open};
 use caustica::low_level::engine::{Engine, EngineError, State};
 use caustica::low_level::film::Picture;
 use caustica::low_level::kernels::bytes::FILM_BYTES;
 use caustica::low_level::memory::Memory;
-use caustica::low_level::render::{Broken, Kept, Outcome, Progress, Saving, Stop, resume};
+use caustica::low_level::render::failover::Failover;
+use caustica::low_level::render::{Broken, Kept, Outcome, Progress, Saving, Session, Stop, resume};
 use caustica::low_level::scene::settings::{Method, Radius, RadiusRule, RenderSettings};
 use caustica::low_level::scene::{self, Aovs, Loaded};
 use engine::{FAULTS, Fault, Step, candidate, script, successor};
@@ -70,14 +70,22 @@ fn render(
         let (_, opened) = candidates.next(&loaded.scene, &loaded.settings, &memory)?;
         Some(opened.map(|opened| opened.engine))
     };
-    let mut relay = Relay::new(opened.engine, &mut next);
+    let mut engines = Failover::new(opened.engine, &mut next);
     let mut save = |state: State, _: &Progress| {
         saved.push(state.clone());
         state
     };
     let every = Duration::ZERO;
     let saving = (copies == Copies::Always).then_some(Saving { every, save: &mut save });
-    let outcome = resume(&mut relay, from.0, from.1, &never, &mut |_| (), saving);
+    let session = Session {
+        state: from.0,
+        progress: from.1,
+        interrupted: &never,
+        observer: &mut |_| (),
+        watchers: &mut [],
+        saving,
+    };
+    let outcome = resume(&mut engines, session);
     (outcome, saved)
 }
 

@@ -1,16 +1,15 @@
-//! Setup of an engine: allocates its buffers and compiles its kernels.
+//! Setup of an executor: allocates its buffers and compiles its kernels.
 
-use super::super::context::{AdapterChoice, AdapterKind, Gpu};
+use super::super::context::Gpu;
 use super::super::layout::{SceneLayout, long_tables};
 use super::super::pace::Pace;
 use super::super::program::{Compiling, Program, make_programs};
 use super::super::recorder::Recorder;
-use super::{GpuEngine, READINGS_BYTES, Submissions};
+use super::{Executor, READINGS_BYTES, Submissions};
 use crate::engine::EngineError;
 use crate::kernels::records::Dispatch;
 use crate::pack::PackedScene;
 use crate::plan::{Buffer, Kernel, Plan};
-use crate::scene::settings::Method;
 use crate::tables::SceneTables;
 use crate::telemetry::clock::Clock;
 use crate::telemetry::compilation::Running;
@@ -44,45 +43,25 @@ impl CompileSeconds {
     }
 }
 
-impl GpuEngine {
-    /// Creates an engine for one scene and plan on the adapter of `choice`.
-    pub fn new(
-        choice: &AdapterChoice,
-        packed: &PackedScene,
-        plan: Plan,
-    ) -> Result<Self, EngineError> {
-        Self::with(choice, packed, plan, Compiling::Together)
-    }
-
-    /// Like [`Self::new`], but compiles the kernels one after another, so that
-    /// [`Self::compile_seconds`] is available. Slower.
-    pub fn measured(
-        choice: &AdapterChoice,
-        packed: &PackedScene,
-        plan: Plan,
-    ) -> Result<Self, EngineError> {
-        Self::with(choice, packed, plan, Compiling::OneByOne)
-    }
-
-    fn with(
-        choice: &AdapterChoice,
+impl Executor {
+    /// Allocates the buffers and compiles the kernels of `plan` on an opened device.
+    pub(in super::super) fn new(
+        gpu: Gpu,
         packed: &PackedScene,
         plan: Plan,
         compiling: Compiling,
     ) -> Result<Self, EngineError> {
-        if plan.settings.method == Method::Path {
-            return Err(EngineError::Unsupported(
-                "path tracing runs on the CPU alone: take --device cpu".into(),
-            ));
-        }
-        let kept =
-            Reusable { gpu: Gpu::open(choice)?, pace: Pace::default(), programs: BTreeMap::new() };
+        let kept = Reusable { gpu, pace: Pace::default(), programs: BTreeMap::new() };
         Self::on(kept, packed, plan, compiling)
     }
 
-    /// Creates an engine for another scene, camera or plan on the same device. Keeps the compiled
+    /// Creates an executor for another scene, camera or plan on the same device. Keeps the compiled
     /// programs if the new ones would be identical.
-    pub fn renewed(self, packed: &PackedScene, plan: Plan) -> Result<Self, EngineError> {
+    pub(in super::super) fn renewed(
+        self,
+        packed: &PackedScene,
+        plan: Plan,
+    ) -> Result<Self, EngineError> {
         let tables = SceneLayout::new(&packed.tables);
         let same = self.plan.features == plan.features
             && (&self.members, &self.few) == (&tables.members, &tables.few);
@@ -123,8 +102,7 @@ impl GpuEngine {
             }
         }
         let readings = gpu.storage("readings", READINGS_BYTES)?;
-        let mut engine = Self {
-            scene: (gpu.summary.kind == AdapterKind::Software).then(|| packed.tables.clone()),
+        let mut executor = Self {
             device: gpu.summary.name.clone(),
             gpu,
             passes_done: 0,
@@ -144,8 +122,8 @@ impl GpuEngine {
             clock: Clock::default(),
             stamped: false,
         };
-        engine.compile(&scene, compiling, programs)?;
-        Ok(engine)
+        executor.compile(&scene, compiling, programs)?;
+        Ok(executor)
     }
 
     /// Compiles the kernels of the plan, except those in `kept`. Each new kernel runs once over

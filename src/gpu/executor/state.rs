@@ -1,12 +1,12 @@
-//! Reading, saving and restoring the state of an engine.
+//! Reading, saving and restoring the state of an executor.
 
-use super::GpuEngine;
+use super::Executor;
 use crate::engine::{EngineError, LayerState, State};
 use crate::kernels::records::{FilmPixel, Gathered};
 use crate::plan::layers::LayerInputs;
 use crate::plan::{Buffer, Extent, Plan};
 
-impl GpuEngine {
+impl Executor {
     /// Contents of a buffer of the plan (of chunk `chunk` if it is per chunk), for tests.
     pub fn content(&self, buffer: Buffer, chunk: u32) -> Result<Vec<u8>, EngineError> {
         let found = self
@@ -18,7 +18,7 @@ impl GpuEngine {
     }
 
     /// Reads the state after the passes so far.
-    pub(super) fn state(&self) -> Result<State, EngineError> {
+    pub(in super::super) fn state(&self) -> Result<State, EngineError> {
         Ok(State {
             first_pass: self.plan.first_pass,
             passes: self.passes_done,
@@ -30,7 +30,7 @@ impl GpuEngine {
     }
 
     /// Continues from a saved state.
-    pub(super) fn take_over(&mut self, state: &State) -> Result<(), EngineError> {
+    pub(in super::super) fn take_over(&mut self, state: &State) -> Result<(), EngineError> {
         self.plan.take_over(state)?;
         self.passes_done = state.passes;
         let LayerState { aovs, parts, counts, .. } = &state.layers;
@@ -59,7 +59,7 @@ impl GpuEngine {
 
     /// Reads back the inputs of the layers and passes them to `make`; returns the default if there
     /// are no AOVs.
-    pub(super) fn with_found<T: Default>(
+    pub(in super::super) fn with_found<T: Default>(
         &self,
         make: impl Fn(&Plan, &LayerInputs) -> T,
     ) -> Result<T, EngineError> {
@@ -78,12 +78,12 @@ impl GpuEngine {
     }
 
     /// Reads the sums that the visible points gathered in the last pass.
-    pub(super) fn gathered_points(&self) -> Result<Vec<Gathered>, EngineError> {
+    pub(in super::super) fn gathered_points(&self) -> Result<Vec<Gathered>, EngineError> {
         self.chunked(Buffer::Gathered, 1)
     }
 
     /// Reads the film.
-    pub(super) fn film(&self) -> Result<Vec<FilmPixel>, EngineError> {
+    pub(in super::super) fn film(&self) -> Result<Vec<FilmPixel>, EngineError> {
         self.chunked(Buffer::Film, self.plan.eye_samples)
     }
 

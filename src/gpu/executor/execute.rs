@@ -1,12 +1,22 @@
-//! Executes the commands of a pass, and retraces paths that a software driver stopped.
+//! Executes the commands of a pass.
 
-use super::super::retrace::{retrace_aovs, retrace_photons, retrace_points};
-use super::{COUNTERS_BYTES, ENDS, GpuEngine, READINGS_BYTES, STOPPED_COUNT};
+use super::{COUNTERS_BYTES, ENDS, Executor, READINGS_BYTES, STOPPED_COUNT};
 use crate::engine::{EngineError, PassReport, PhotonEnds};
 use crate::kernels::records::Dispatch;
-use crate::plan::features::Feature;
 use crate::plan::{Buffer, Command, Kernel, Over, Stage, Step};
 use std::collections::BTreeMap;
+
+/// Repair of what a driver leaves undone.
+pub trait Repair {
+    /// Repairs the results of `step`, which has just run. Returns the number of rays traced.
+    ///
+    /// # Errors
+    /// If the driver left loops unfinished that cannot be repaired.
+    fn after_step(&self, executor: &mut Executor, step: &Step) -> Result<u64, EngineError>;
+
+    /// Returns true if a pass with stopped loops may be complete with smaller batches.
+    fn allows_retry(&self) -> bool;
+}
 
 /// Counts of one tile's commands.
 #[derive(Default)]
@@ -59,7 +69,16 @@ impl Tile {
     }
 }
 
-impl GpuEngine {
+impl Executor {
+    /// Starts or ends the measurement of each kernel, by the device's clock if it has one.
+    pub(in super::super) fn measure(&mut self, on: bool) -> Result<(), EngineError> {
+        self.stamped = self.recorder.stamp(&self.gpu, on)?;
+        if on {
+            self.clock.enable();
+        }
+        Ok(())
+    }
+
     /// Submits the recorded commands and updates the statistics and the pace.
     fn flush(&mut self) -> Result<(), EngineError> {
         let seconds = self.recorder.finish(&self.gpu)?;
@@ -125,7 +144,11 @@ impl GpuEngine {
 
     /// Executes a pass with `batch` photons per batch. Returns `None` if the pass is discarded
     /// because records did not fit or the driver stopped long loops.
-    pub(super) fn execute(&mut self, batch: u32) -> Result<Option<PassReport>, EngineError> {
+    pub(in super::super) fn execute(
+        &mut self,
+        batch: u32,
+        repair: &dyn Repair,
+    ) -> Result<Option<PassReport>, EngineError> {
         self.plan.cancel.check()?;
         let pass = self.passes_done;
         let mut report = PassReport {
@@ -138,7 +161,7 @@ impl GpuEngine {
             let mut tile = Tile::new(batches.count());
             self.provide_readings(tile.bytes())?;
             for command in &commands {
-                if !self.command(command, &mut tile, batch)? {
+                if !self.command(command, &mut tile, batch, repair)? {
                     return Ok(None);
                 }
             }
@@ -162,6 +185,7 @@ impl GpuEngine {
         command: &Command,
         tile: &mut Tile,
         batch: u32,
+        repair: &dyn Repair,
     ) -> Result<bool, EngineError> {
         match command {
             Command::ClearGathered { chunk } => {
@@ -176,7 +200,7 @@ impl GpuEngine {
             }
             Command::Run(step) => {
                 self.run(step)?;
-                tile.retraced += self.retrace(step)?;
+                tile.retraced += repair.after_step(self, step)?;
                 if step.stage == Stage::EyeTrace {
                     tile.eye_paths += u64::from(step.dispatch.end);
                 }
@@ -195,7 +219,7 @@ impl GpuEngine {
                 let bytes = self.gpu.read(&self.readings, tile.bytes())?;
                 tile.read(&bytemuck::pod_collect_to_vec(&bytes));
                 // tiles before this one have already been added to the film
-                if tile.stopped > 0 && (batch == 1 || self.scene.is_none() || self.partial) {
+                if tile.stopped > 0 && (batch == 1 || !repair.allows_retry() || self.partial) {
                     return Err(self.unfinished());
                 }
                 if tile.overflows(self.plan.capacity) || tile.stopped > 0 {
@@ -222,58 +246,25 @@ impl GpuEngine {
         self.recorder.copy(&self.gpu, source, (&self.readings, to), size);
     }
 
-    /// Retraces the paths of a step that a software driver stopped, on the CPU. Returns the number
-    /// of their rays. Fails for AOVs if another kind of driver stopped loops.
-    fn retrace(&mut self, step: &Step) -> Result<u64, EngineError> {
-        match step.stage {
-            Stage::EyeTrace | Stage::PhotonTrace if self.scene.is_none() => return Ok(0),
-            Stage::EyeTrace | Stage::PhotonTrace | Stage::AovTrace => {}
-            Stage::BuildGrid | Stage::Gather | Stage::ResolveParts | Stage::Resolve => {
-                return Ok(0);
-            }
-        }
+    /// Waits for the recorded commands, and reads the counters.
+    pub(in super::super) fn counters(&mut self) -> Result<Vec<u32>, EngineError> {
         self.flush()?;
-        let counters = &self.shared[&Buffer::Counters];
-        let bytes = self.gpu.read(counters, COUNTERS_BYTES)?;
-        let mut words: Vec<u32> = bytemuck::pod_collect_to_vec(&bytes);
-        if words[STOPPED_COUNT] == 0 {
-            return Ok(0);
-        }
-        let Some(scene) = &self.scene else {
-            return Err(self.unfinished());
-        };
-        let (gpu, dispatch) = (&self.gpu, &step.dispatch);
-        let own = |which| buffer(&self.shared, &self.chunks, which, step.chunk);
-        let sampled = self.plan.features.has(Feature::Sampled);
-        let rays = match step.stage {
-            Stage::EyeTrace => {
-                let points = own(Buffer::VisiblePoints);
-                let (paths, rays) = retrace_points(gpu, scene, dispatch, sampled, points)?;
-                words[STOPPED_COUNT] -= paths.min(words[STOPPED_COUNT]);
-                rays
-            }
-            Stage::PhotonTrace => {
-                let records = own(Buffer::Records);
-                let found = retrace_photons(gpu, scene, dispatch, sampled, records, words[0])?;
-                words[0] = found.records;
-                words[ENDS..].iter_mut().zip(found.ends).for_each(|(word, count)| *word += count);
-                // the rest are loops of earlier batches, for which the pass is run again
-                words[STOPPED_COUNT] -= found.photons.min(words[STOPPED_COUNT]);
-                found.rays
-            }
-            Stage::AovTrace => {
-                let direct = sampled && self.plan.features.has(Feature::DirectLayer);
-                retrace_aovs(gpu, scene, dispatch, direct, own(Buffer::Aovs))?;
-                words[STOPPED_COUNT] = 0;
-                0
-            }
-            Stage::BuildGrid | Stage::Gather | Stage::ResolveParts | Stage::Resolve => 0,
-        };
-        gpu.write(counters, bytemuck::cast_slice(&words));
-        Ok(rays)
+        let bytes = self.gpu.read(&self.shared[&Buffer::Counters], COUNTERS_BYTES)?;
+        Ok(bytemuck::pod_collect_to_vec(&bytes))
     }
 
-    fn unfinished(&self) -> EngineError {
+    /// Replaces the counters.
+    pub(in super::super) fn set_counters(&mut self, words: &[u32]) {
+        self.gpu.write(&self.shared[&Buffer::Counters], bytemuck::cast_slice(words));
+    }
+
+    /// Buffer of a chunk, or the shared buffer if there is no such one.
+    pub(in super::super) fn buffer(&self, which: Buffer, chunk: u32) -> &wgpu::Buffer {
+        buffer(&self.shared, &self.chunks, which, chunk)
+    }
+
+    /// Error if loops were stopped and cannot be repaired.
+    pub(in super::super) fn unfinished(&self) -> EngineError {
         EngineError::Unsupported(format!(
             "{} leaves long loops unfinished; take --device cpu",
             self.device
