@@ -1,5 +1,5 @@
 // Plain data that every kernel reads. Twin: src/tables.rs, which documents the fields. The storage
-// struct `Scene` itself is composed per scene, since the lengths of its arrays are part of its
+// struct `SceneTables` itself is composed per scene, since the lengths of its arrays are part of its
 // type.
 
 const ASTRIDE: u32 = 0xfffffffeu;

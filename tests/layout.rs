@@ -296,7 +296,7 @@ fn no_struct_is_forgotten() {
                     naga::TypeInner::Array { base, .. } => open.push(*base),
                     // `Counters` is read word by word
                     naga::TypeInner::Struct { members, .. } if name != "Counters" => {
-                        assert!(name == "Scene" || hosts.iter().any(|h| h.0 == name), "{name}");
+                        assert!(name == "SceneTables" || hosts.iter().any(|h| h.0 == name), "{name}");
                         open.extend(members.iter().map(|m| m.ty));
                     }
                     _ => {}
@@ -332,7 +332,7 @@ fn scene_tables_agree() {
     let tables = SceneLayout::new(&mixture.scene);
     let shader = compose(Kernel::EyeTrace, &mixture.features(), &tables).unwrap();
     let (module, _) = shader.validate().unwrap();
-    let (members, span) = members(&module, "Scene").unwrap();
+    let (members, span) = members(&module, "SceneTables").unwrap();
     let theirs: Vec<_> = members
         .iter()
         .map(|m| (m.name.as_deref().unwrap_or_default(), m.offset as usize))
