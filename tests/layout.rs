@@ -296,7 +296,10 @@ fn no_struct_is_forgotten() {
                     naga::TypeInner::Array { base, .. } => open.push(*base),
                     // `Counters` is read word by word
                     naga::TypeInner::Struct { members, .. } if name != "Counters" => {
-                        assert!(name == "SceneTables" || hosts.iter().any(|h| h.0 == name), "{name}");
+                        assert!(
+                            name == "SceneTables" || hosts.iter().any(|h| h.0 == name),
+                            "{name}"
+                        );
                         open.extend(members.iter().map(|m| m.ty));
                     }
                     _ => {}
