@@ -20,12 +20,12 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::LazyLock;
 
+use crate::support::{DISC, LAMP, Shape, ball, folder_with, words};
 use caustica::low_level::checkpoint::{Checkpoint, Origin, Totals};
 use caustica::low_level::device::{self, Opened, Wanted};
 use caustica::low_level::engine::State;
 use caustica::low_level::scene::settings::RenderSettings;
 use caustica::low_level::scene::{self, Film, ToneMap};
-use support::{DISC, LAMP, Shape, ball, folder_with, words};
 
 /// With a mesh and a lens: two discs, maps of the lamp.
 pub static SCENE: LazyLock<String> = LazyLock::new(|| {
@@ -50,19 +50,19 @@ pub fn folder(name: &str) -> PathBuf {
 
 /// The program with the words of `line`.
 pub fn command(folder: &Path, line: &str) -> Command {
-    support::command(folder, &words(line))
+    crate::support::command(folder, &words(line))
 }
 
 /// Runs a command that must succeed; its standard output.
 #[track_caller]
 pub fn good(folder: &Path, line: &str) -> String {
-    support::good(folder, &words(line))
+    crate::support::good(folder, &words(line))
 }
 
 /// Runs a command that must fail with this code and these words.
 #[track_caller]
 pub fn fails(folder: &Path, line: &str, code: i32, told: &[&str]) {
-    support::fails(folder, &words(line), code, told);
+    crate::support::fails(folder, &words(line), code, told);
 }
 
 /// An engine for the scene at `size`.

@@ -10,15 +10,15 @@ use caustica::low_level::gpu::GpuEngine;
 use caustica::low_level::pack::Packed;
 use caustica::low_level::plan::Plan;
 
-use super::scenes::{SCENES, planned};
-use super::{photons, software};
+use super::agreement::photons;
+use crate::scenes::{SCENES, planned};
 
 type Make = fn(&Packed, Plan) -> Box<dyn Engine>;
 
 const ENGINES: [(&str, Make); 2] = [
     ("CPU", |packed, plan| Box::new(CpuEngine::new(packed.clone(), plan))),
     ("lavapipe", |packed, plan| {
-        Box::new(GpuEngine::new(&software::software(), packed, plan).unwrap())
+        Box::new(GpuEngine::new(&crate::support::software(), packed, plan).unwrap())
     }),
 ];
 

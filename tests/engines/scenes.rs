@@ -7,7 +7,7 @@ use caustica::low_level::pilots::prepare;
 use caustica::low_level::plan::Plan;
 use caustica::low_level::scene::{Aovs, Loaded, parse};
 
-use super::support::folder;
+use crate::support::folder;
 
 const HEAD: &str = r#"
 version = 1

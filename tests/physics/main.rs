@@ -4,6 +4,14 @@
 //!
 //! `CAUSTICA_DEVICE` chooses the device (default `cpu`).
 
+#[path = "../support/brute_force.rs"]
+#[allow(dead_code)] // `geometry` uses the rest
+mod brute_force;
+#[path = "../support/revolution/mod.rs"]
+mod revolution;
+#[path = "../support/mod.rs"]
+mod support;
+
 mod agreement;
 mod bent_normals;
 mod caustics;
@@ -14,6 +22,7 @@ mod dielectrics;
 mod directions;
 mod distant;
 mod energy;
+mod error_estimate;
 mod everything;
 mod far_ground;
 mod furnace;
@@ -24,4 +33,6 @@ mod lab;
 mod materials;
 mod media;
 mod meshes;
+mod stability;
+mod truth;
 mod walls;

@@ -14,8 +14,8 @@ use caustica::low_level::preview::view::{View, show};
 use caustica::low_level::scene::Allowance;
 use glam::DVec3;
 
-use super::support::{FLOOR, caustica, error};
-use super::{SCENE, bits, folder, loaded, software, wait};
+use super::worker::{SCENE, bits, folder, loaded, wait};
+use crate::support::{FLOOR, caustica, error};
 
 fn session(folder: &Path) -> Session {
     session_within(folder, Allowance::default())
@@ -216,7 +216,7 @@ fn pictures_are_held_against_others() {
     session.act(Action::Keep);
     assert!(session.beside.is_none() && session.split.is_none());
     // the same bits on another engine
-    software::software();
+    crate::support::software();
     session.beside_device("software", || ());
     session.act(Action::Home);
     let equal = ticked(&mut session, "both pictures", |s| {

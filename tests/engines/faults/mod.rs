@@ -1,0 +1,247 @@
+//! Devices that fail, at every step in turn.
+//!
+//! Theory: what was kept of a render is whole passes, and what a pass finds depends on its number
+//! alone. So whatever step a device fails at and in whichever way, the next one ends in the bits of
+//! a render that never failed; and where there is no next one, what is left can be gone on from to
+//! the same bits.
+
+mod device;
+mod engine;
+
+use std::sync::atomic::AtomicBool;
+use std::time::Duration;
+
+use caustica::low_level::device::failover::Relay;
+use caustica::low_level::device::{Candidates, Wanted, open};
+use caustica::low_level::engine::{Engine, EngineError, State};
+use caustica::low_level::film::Picture;
+use caustica::low_level::kernels::bytes::FILM_BYTES;
+use caustica::low_level::memory::Memory;
+use caustica::low_level::render::{Broken, Kept, Outcome, Progress, Saving, Stop, resume};
+use caustica::low_level::scene::settings::{Method, Radius, RadiusRule, RenderSettings};
+use caustica::low_level::scene::{self, Aovs, Loaded};
+use engine::{FAULTS, Fault, Step, candidate, script, successor};
+
+/// Enough passes for an estimate of the error on the way.
+const PASSES: u32 = 5;
+
+fn loaded(change: fn(&mut RenderSettings)) -> Loaded {
+    let mut loaded = scene::load("scenes/cornell.toml".as_ref()).unwrap();
+    (loaded.scene.film.width, loaded.scene.film.height) = (12, 8);
+    loaded.scene.film.aovs = Aovs::parse("all").unwrap();
+    loaded.settings.photons = 400;
+    loaded.settings.radius = Radius::Pixels(2.0);
+    change(&mut loaded.settings);
+    loaded
+}
+
+fn stop() -> Stop {
+    // with an error to aim at, which is never reached, no step depends on a clock
+    Stop { passes: PASSES, time: None, target_error: Some(1e-9) }
+}
+
+/// How often what an engine holds is copied.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Copies {
+    /// After each pass.
+    Always,
+    /// Not before it is too late.
+    Never,
+}
+
+/// Renders on these devices, from `from`; also what was saved on the way.
+fn render(
+    loaded: &Loaded,
+    candidates: Candidates,
+    copies: Copies,
+    from: (&State, Progress),
+) -> (Result<Outcome, Broken>, Vec<State>) {
+    let mut saved = Vec::new();
+    let mut candidates = candidates;
+    let memory = Memory::default();
+    let never = AtomicBool::new(false);
+    let opened = match candidates.open(&loaded.scene, &loaded.settings, &memory, &mut |_, _| ()) {
+        Ok(opened) => opened,
+        Err(error) => return (Err(Broken { error, kept: None }), saved),
+    };
+    let mut next = |_: &EngineError, _: &State| -> Option<Result<Box<dyn Engine>, EngineError>> {
+        let (_, opened) = candidates.next(&loaded.scene, &loaded.settings, &memory)?;
+        Some(opened.map(|opened| opened.engine))
+    };
+    let mut relay = Relay::new(opened.engine, &mut next);
+    let mut save = |state: State, _: &Progress| {
+        saved.push(state.clone());
+        state
+    };
+    let every = Duration::ZERO;
+    let saving = (copies == Copies::Always).then_some(Saving { every, save: &mut save });
+    let outcome = resume(&mut relay, from.0, from.1, &never, &mut |_| (), saving);
+    (outcome, saved)
+}
+
+fn begin(
+    loaded: &Loaded,
+    candidates: Candidates,
+    copies: Copies,
+) -> (Result<Outcome, Broken>, Vec<State>) {
+    render(loaded, candidates, copies, (&State::before(0), Progress::before(stop())))
+}
+
+/// What differs between two outcomes, but for times and for the eye paths of fixed visible points,
+/// which each device traces anew.
+fn difference(a: &Outcome, b: &Outcome) -> Option<&'static str> {
+    let bits = |p: &Picture| p.rgb.iter().flatten().map(|x| x.to_bits()).collect::<Vec<_>>();
+    let counts = |p: &Progress| (p.passes, p.photons, p.ends, p.radius.to_bits());
+    if bits(&a.picture) != bits(&b.picture) {
+        return Some("the picture");
+    }
+    if a.errors != b.errors {
+        return Some("what it says of its error");
+    }
+    if a.layers != b.layers {
+        return Some("the layers");
+    }
+    if a.rejections != b.rejections {
+        return Some("what was left out");
+    }
+    if counts(&a.progress) != counts(&b.progress) {
+        return Some("the counts");
+    }
+    let fixed = a.progress.eye_paths != u64::from(PASSES) * a.picture.rgb.len() as u64;
+    let rays = |p: &Progress| (p.eye_paths, p.rays);
+    (!fixed && rays(&a.progress) != rays(&b.progress)).then_some("the rays")
+}
+
+/// What an engine is asked for in a render that does not fail.
+fn steps(loaded: &Loaded, copies: Copies) -> (Outcome, Vec<Step>) {
+    let script = script(None);
+    let (outcome, _) = begin(loaded, Candidates::from_list([candidate(&script)]), copies);
+    (outcome.unwrap(), script.take().asked)
+}
+
+type Change = fn(&mut RenderSettings);
+
+const CHANGES: [(&str, Change); 3] = [
+    ("sppm", |_| ()),
+    ("ppm, local", |s| (s.method, s.radius_rule) = (Method::Ppm, RadiusRule::Local)),
+    ("path", |s| s.method = Method::Path),
+];
+
+/// Every step of the first device fails in every way, and the second goes on.
+#[test]
+fn the_next_device_ends_in_the_same_bits() {
+    for (name, change) in CHANGES {
+        let loaded = loaded(change);
+        let without_copies = (name == "sppm").then_some(Copies::Never);
+        for copies in [Copies::Always].into_iter().chain(without_copies) {
+            let (whole, steps) = steps(&loaded, copies);
+            for step in
+                [Step::Open, Step::Restore, Step::Pass, Step::Errors, Step::Results, Step::Layers]
+            {
+                assert!(steps.contains(&step), "{step:?} is never asked for");
+            }
+            assert_eq!(steps.contains(&Step::Save), copies == Copies::Always);
+            for (number, step) in steps.iter().enumerate() {
+                for fault in FAULTS {
+                    let script = script(Some((number, fault)));
+                    let devices = Candidates::from_list([candidate(&script), successor()]);
+                    let (outcome, _) = begin(&loaded, devices, copies);
+                    let told = format!("{name}, {copies:?}: {fault:?} at step {number}, {step:?}");
+                    let outcome = outcome.unwrap_or_else(|broken| panic!("{told}: {broken}"));
+                    assert_eq!(difference(&whole, &outcome), None, "{told}");
+                }
+            }
+        }
+    }
+}
+
+/// Two devices fail one after the other.
+#[test]
+fn the_third_device_too() {
+    let loaded = loaded(|_| ());
+    let (whole, steps) = steps(&loaded, Copies::Always);
+    for first in (0..steps.len()).step_by(2) {
+        for second in 0..4 {
+            let scripts = [first, second].map(|number| script(Some((number, Fault::Lost))));
+            let devices = Candidates::from_list([
+                candidate(&scripts[0]),
+                candidate(&scripts[1]),
+                successor(),
+            ]);
+            let outcome = begin(&loaded, devices, Copies::Always).0.unwrap();
+            assert_eq!(difference(&whole, &outcome), None, "at steps {first} and {second}");
+        }
+    }
+}
+
+/// Where there is no next device, what is left is gone on from to the same bits, and no more than
+/// the pass at hand is lost.
+#[test]
+fn what_is_left_can_be_gone_on_from() {
+    for (name, change) in CHANGES {
+        let loaded = loaded(change);
+        let (whole, steps) = steps(&loaded, Copies::Always);
+        for (number, step) in steps.iter().enumerate() {
+            for fault in FAULTS {
+                let script = script(Some((number, fault)));
+                let (outcome, saved) =
+                    begin(&loaded, Candidates::from_list([candidate(&script)]), Copies::Always);
+                let told = format!("{name}: {fault:?} at step {number}, {step:?}");
+                let Err(Broken { error, kept }) = outcome else { panic!("{told}: did not fail") };
+                assert_eq!(error.is_of_device(), fault != Fault::Unable, "{told}: {error}");
+                let made = passes_before(&steps, number);
+                let Some(kept) = kept else {
+                    assert!(made <= 1, "{told}: {made} passes are lost");
+                    assert!(saved.is_empty(), "{told}");
+                    continue;
+                };
+                let Kept { state, progress } = *kept;
+                assert_eq!(state.passes, progress.passes, "{told}");
+                assert!(
+                    made <= progress.passes + 1,
+                    "{told}: {} of {made} passes are left",
+                    progress.passes
+                );
+                assert!(saved.last() == Some(&state), "{told}: what is left is saved");
+                let rest = Candidates::from_list([successor()]);
+                let outcome = render(&loaded, rest, Copies::Never, (&state, progress)).0.unwrap();
+                assert_eq!(difference(&whole, &outcome), None, "{told}");
+            }
+        }
+    }
+}
+
+/// Passes that were made before a step.
+fn passes_before(steps: &[Step], number: usize) -> u32 {
+    steps[..number].iter().filter(|step| **step == Step::Pass).count() as u32
+}
+
+/// The comparison sees a pass that is made twice or not at all, and a bit.
+#[test]
+fn planted_differences_are_found() {
+    let loaded = loaded(|_| ());
+    let whole = steps(&loaded, Copies::Never).0;
+    // a state that says of itself that it has a pass less than it has is what a careless engine
+    // would hand over
+    let mut opened = open(&Wanted::Cpu, &loaded.scene, &loaded.settings).unwrap();
+    for _ in 0..3 {
+        opened.engine.pass().unwrap();
+    }
+    let state = opened.engine.save().unwrap();
+    let go_on = |state: &State| {
+        let progress = Progress { passes: state.passes, ..Progress::before(stop()) };
+        render(&loaded, Candidates::from_list([successor()]), Copies::Never, (state, progress))
+            .0
+            .unwrap()
+    };
+    let same = |outcome: &Outcome| outcome.picture == whole.picture;
+    assert!(same(&go_on(&state)));
+    assert!(!same(&go_on(&State { passes: 2, ..state.clone() })), "a pass twice");
+    assert!(!same(&go_on(&State { passes: 4, ..state.clone() })), "a pass left out");
+    let mut bit = state.clone();
+    bit.film.iter_mut().skip(1).step_by(FILM_BYTES).for_each(|byte| *byte ^= 1);
+    assert!(!same(&go_on(&bit)), "a bit of each pixel");
+    let mut counts = go_on(&state);
+    (counts.errors, counts.rejections) = (whole.errors.clone(), whole.rejections);
+    assert_eq!(difference(&whole, &counts), Some("the counts"), "those of three passes");
+}
