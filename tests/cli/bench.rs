@@ -1,15 +1,15 @@
-//! `caustica bench` through the program, on a tiny scene.
+//! `caustica bench` on a tiny scene.
 //!
-//! Theory: what the JSON says must agree with itself on every device: the kernels' seconds and the
-//! rest make up the timed pass, shares make up one, a rate times its time is the count that the
-//! work names, and the same scene on the CPU and on the software driver does the same work. Times
-//! themselves are not judged.
+//! Theory: the figures in the JSON report are consistent on every device: the kernels' seconds and
+//! the rest add up to the timed pass, shares add up to 1, a rate times its time is the stated
+//! amount of work, and the CPU and the software driver do the same work. The times themselves are
+//! not tested.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Output;
 
-use crate::support::{caustica, folder_with, good, json_lines, text};
+use crate::support::{caustica, folder_with, good, json_lines, software, text};
 use caustica::low_level::film::{Picture, pfm};
 use serde_json::Value;
 
@@ -65,7 +65,7 @@ fn json(folder: &Path, arguments: &[&str]) -> Value {
     report(good(folder, &[&["bench"], arguments].concat()).as_bytes())
 }
 
-/// The last event.
+/// Returns the last event.
 fn report(stdout: &[u8]) -> Value {
     json_lines(stdout).pop().unwrap()
 }
@@ -74,7 +74,7 @@ fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
 }
 
-/// What is wrong with a device's figures.
+/// Lists inconsistencies in a device's figures.
 fn faults(device: &Value, rounds: f64) -> Vec<String> {
     let mut list = Vec::new();
     let mut hold = |what: &str, holds: bool| {
@@ -140,7 +140,7 @@ fn faults(device: &Value, rounds: f64) -> Vec<String> {
 #[test]
 fn figures_agree_with_themselves_and_between_devices() {
     let folder = folder("figures");
-    let _ = crate::support::software();
+    let _ = software();
     let report = json(
         &folder,
         &[
@@ -215,8 +215,8 @@ fn people_get_a_table() {
     }
 }
 
-/// Against a black truth the error never falls below the lit scene's own; against itself it is
-/// nothing.
+/// Compared with a black reference the error never falls below the relative error of the lit scene
+/// itself.
 #[test]
 fn time_to_error() {
     let folder = folder("error");

@@ -1,43 +1,33 @@
-//! `caustica diff` through the program.
+//! `caustica diff`.
 //!
-//! Theory: flat pictures of known values have figures known in closed form; a figure beyond its
-//! threshold is exit code 3, a picture that cannot be used 1, and arguments that cannot be meant 2,
-//! each with words that name it.
+//! Theory: images of constant known values have metrics in closed form. A metric beyond its
+//! threshold gives exit code 3, an unusable image 1 and unusable arguments 2, each with a message
+//! that names the cause.
 
-use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Output;
 
-use crate::support::text;
-use caustica::low_level::film::{Coding, Picture, exr_file, pfm, read_any};
+use crate::support::{self, text, write_exr};
+use caustica::low_level::film::{Coding, Picture, pfm, read_any};
 use exr::prelude::{Image, SpecificChannels, WritableImage};
 use serde_json::Value;
 
-/// 0.25, but 0.5 in the columns from `bright` on.
+/// An image that is 0.25 left of column `bright` and 0.5 from there on.
 fn picture(width: u32, bright: u32) -> Picture {
     Picture::from_fn(width, 24, |x, _| if x < bright { [0.25; 3] } else { [0.5; 3] })
 }
 
-fn write_exr(folder: &Path, name: &str, picture: &Picture) {
-    fs::write(
-        folder.join(name),
-        exr_file::encode(picture, exr_file::Frame::of(picture), &[], &BTreeMap::new()).unwrap(),
-    )
-    .unwrap();
-}
-
-/// A fresh folder with pictures to compare. `a.exr` and `b.exr` differ in the columns 32 to 39 of
-/// 40.
+/// A fresh folder with images to compare. `a.exr` and `b.exr` differ in the columns 32 to 39 of 40.
 fn folder(name: &str) -> PathBuf {
-    let folder = crate::support::folder(name);
-    write_exr(&folder, "a.exr", &picture(40, 32));
-    write_exr(&folder, "b.exr", &picture(40, 40));
-    write_exr(&folder, "wide.exr", &picture(41, 41));
+    let folder = support::folder(name);
+    write_exr(&folder.join("a.exr"), &picture(40, 32));
+    write_exr(&folder.join("b.exr"), &picture(40, 40));
+    write_exr(&folder.join("wide.exr"), &picture(41, 41));
     fs::write(folder.join("a.pfm"), pfm::encode(&picture(40, 32))).unwrap();
     let mut holes = picture(40, 40);
     holes.rgb[2 * 40 + 7] = [f32::NAN, 0.0, f32::INFINITY];
-    write_exr(&folder, "nan.exr", &holes);
+    write_exr(&folder.join("nan.exr"), &holes);
     fs::write(folder.join("broken.exr"), "not a picture").unwrap();
     let coded = |level: u8, alpha: u8| {
         move |x, _| image::Rgba([level, level, level, if x == 3 { alpha } else { 255 }])
@@ -55,12 +45,12 @@ fn folder(name: &str) -> PathBuf {
 }
 
 fn caustica(folder: &Path, arguments: &[&str]) -> Output {
-    crate::support::caustica(folder, &[&["diff"], arguments].concat())
+    support::caustica(folder, &[&["diff"], arguments].concat())
 }
 
 #[track_caller]
 fn ends(folder: &Path, arguments: &[&str], code: i32, words: &[&str]) {
-    let output = crate::support::ends(folder, &[&["diff"], arguments].concat(), code, words);
+    let output = support::ends(folder, &[&["diff"], arguments].concat(), code, words);
     if code != 3 {
         assert_eq!(output.stdout.is_empty(), code != 0, "{arguments:?}: {}", text(&output.stdout));
         assert_eq!(output.stderr.is_empty(), code == 0, "{arguments:?}: {}", text(&output.stderr));
@@ -72,8 +62,9 @@ fn json(folder: &Path, arguments: &[&str]) -> Value {
     serde_json::from_str(&shown).unwrap_or_else(|error| panic!("{error}: {shown}"))
 }
 
-/// A fifth of the pixels is off by 0.25: MSE 0.0125, PSNR 20 log10(0.25 / sqrt(0.0125)), ratio 1.2,
-/// and relMSE without its largest pixel (one of 960) 0.0625 / 0.0725 * 191 / 959.
+/// Theory: a fifth of the pixels differs by 0.25, so MSE is 0.0125, PSNR 20 log10(0.25 /
+/// sqrt(0.0125)), the mean ratio 1.2, and relMSE without its largest pixel (one of 960) 0.0625 /
+/// 0.0725 * 191 / 959.
 #[test]
 fn figures_are_those_of_the_formulas() {
     let folder = folder("figures");
@@ -103,7 +94,7 @@ fn figures_are_those_of_the_formulas() {
     close(right, "ldr_flip", 0.0);
     assert_eq!((&right["psnr"], &right["mean_ratio"][0]), (&Value::Null, &Value::from(1.0)));
     assert_eq!(found["passed"], serde_json::json!([]));
-    // The same in words, from another format.
+    // The same figures as text, from another format.
     let shown =
         text(&caustica(&folder, &["a.pfm", "b.exr", "--region", "wrong=32,0,40,24"]).stdout);
     for words in [
@@ -141,7 +132,7 @@ fn thresholds_are_held_one_by_one() {
             3,
             &[&["over the threshold"], &words[..]].concat(),
         );
-        // Equal pictures pass the strictest of each; lower case will do.
+        // Equal images pass the strictest threshold; option names are case-insensitive.
         ends(&folder, &["b.exr", "b.exr", &beyond.to_lowercase()], 0, &[]);
     }
     let strict =
@@ -153,7 +144,7 @@ fn thresholds_are_held_one_by_one() {
         3,
         &["LDR-FLIP", "HDR-FLIP", "MSE", "SSIM", "means"],
     );
-    // One place's bound says nothing of another's.
+    // A threshold applies to its own region only.
     let regions = ["a.exr", "b.exr", "--region", "left=0,0,20,24", "--region", "right=20,0,40,24"];
     ends(&folder, &[&regions[..], &["--max-MSE", "left=0"]].concat(), 0, &[]);
     ends(
@@ -260,7 +251,8 @@ fn wrong_use_is_2() {
     assert!(!folder.join("m.png").exists());
 }
 
-/// The sRGB curve: 188/255 is 0.5029 of white's light. Sixteen bits say the same more finely.
+/// Theory: by the sRGB curve 188/255 is 0.5029 of the light of white. Sixteen bits are decoded by
+/// the same curve.
 #[test]
 fn pictures_for_a_display_are_decoded() {
     let folder = folder("display");
@@ -282,8 +274,7 @@ fn pictures_for_a_display_are_decoded() {
     assert_eq!(json(&folder, &["white.png", "white.png"])["picture"]["ldr_flip"], 0.0);
 }
 
-/// The maps are as large as the pictures, black where nothing differs and bright where something
-/// does.
+/// Maps have the size of the images, black where nothing differs and bright where something does.
 #[test]
 fn maps_show_where() {
     let folder = folder("maps");

@@ -1,12 +1,11 @@
-//! How the program fits in among others: completions, manual pages, colours, logs, events, and no
-//! folder of its own.
+//! Conventions of command-line programs: completions, manual pages, colours, logs, JSON events, and
+//! independence of the source folder.
 
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use crate::support::software;
-use crate::support::{folder, json_lines, text};
+use crate::support::{PROGRAM, command, folder, json_lines, repository, shipped, software, text};
 use serde_json::Value;
 
 const COMMANDS: [&str; 12] = [
@@ -24,27 +23,23 @@ const COMMANDS: [&str; 12] = [
     "man",
 ];
 
-fn scene(name: &str) -> String {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(name).display().to_string()
-}
-
-/// Runs in `folder` with these variables and none that speak of colours beside.
+/// Runs in `folder` with these environment variables and no others that affect colours.
 fn with(folder: &Path, variables: &[(&str, &str)], arguments: &[&str]) -> Output {
-    let mut command = crate::support::command(folder, arguments);
+    let mut command = command(folder, arguments);
     for name in ["NO_COLOR", "CLICOLOR", "CLICOLOR_FORCE", "FORCE_COLOR"] {
         command.env_remove(name);
     }
     command.envs(variables.iter().copied()).output().unwrap()
 }
 
-/// Standard output of a run that ends as it should.
+/// Runs a command that must succeed and returns its standard output.
 fn done(folder: &Path, arguments: &[&str]) -> String {
     let output = with(folder, &[], arguments);
     assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", text(&output.stderr));
     text(&output.stdout)
 }
 
-/// Every line is a JSON object with the name of an event.
+/// Parses events; every line must be a JSON object with the name of an event.
 fn events(stdout: &str) -> Vec<Value> {
     let events = json_lines(stdout.as_bytes());
     assert!(events.iter().all(|event| event["event"].is_string()), "{stdout}");
@@ -55,8 +50,9 @@ fn names(events: &[Value]) -> Vec<&str> {
     events.iter().filter_map(|event| event["event"].as_str()).collect()
 }
 
-/// Theory: the scripts come from the parser, so each names every command and an option of `render`;
-/// bash, where it is there, can read its own, and refuses the same cut in the middle of a block.
+/// Theory: completion scripts are generated from the parser, so each contains every command and an
+/// option of `render`. Where bash is installed it accepts its own script and rejects the same
+/// script truncated inside a block.
 #[test]
 fn completions() {
     let folder = folder("completions");
@@ -77,7 +73,7 @@ fn completions() {
     assert_eq!(with(&folder, &[], &["completions", "tcsh"]).status.code(), Some(2));
 }
 
-/// Theory: a page has a title, a name, a synopsis and options; there is one for every command.
+/// Theory: a manual page has a title, a name, a synopsis and options, and every command has one.
 #[test]
 fn manual_pages() {
     let folder = folder("man");
@@ -108,8 +104,8 @@ fn manual_pages() {
     assert!(text(&output.stderr).contains("missing"), "{}", text(&output.stderr));
 }
 
-/// Theory: standard error here is no terminal, so nothing is coloured unless `CLICOLOR_FORCE` says
-/// so, over which `NO_COLOR` wins, whatever its value but nothing.
+/// Theory: standard error is not a terminal here, so output is coloured only if `CLICOLOR_FORCE` is
+/// set. A non-empty `NO_COLOR` overrides it.
 #[test]
 fn colours() {
     let folder = folder("colours");
@@ -128,12 +124,12 @@ fn colours() {
     }
 }
 
-/// Theory: logs come on request, to standard error alone; each level has what the one before has,
-/// and standard output is the same events.
+/// Theory: logs are off by default and go to standard error. Each level includes the one before,
+/// and logging does not change the events on standard output.
 #[test]
 fn logs() {
     let folder = folder("logs");
-    let file = scene("cornell.toml");
+    let file = shipped("cornell.toml");
     let run = |more: &[&str]| {
         let small =
             ["--size", "8x8", "--photons", "500", "--passes", "2", "--device", "cpu", "--json"];
@@ -167,15 +163,13 @@ fn logs() {
     );
 }
 
-/// Theory: with `--json` standard output is events alone, which end with the result;
-/// docs/command-line.md names each of them.
+/// Theory: with `--json` standard output contains only events, the last of which is the result.
+/// docs/command-line.md documents every event.
 #[test]
 fn every_long_command_has_events() {
     let folder = folder("events");
-    let file = scene("cornell.toml");
-    let docs =
-        fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/command-line.md"))
-            .unwrap();
+    let file = shipped("cornell.toml");
+    let docs = fs::read_to_string(repository("docs/command-line.md")).unwrap();
     let ends = |arguments: &[&str], expected: &[&str]| {
         let events = events(&done(&folder, &[arguments, &["--json"]].concat()));
         let mut names = names(&events);
@@ -243,7 +237,7 @@ fn every_long_command_has_events() {
     assert_eq!((names(&events).first(), names(&events).last()), (Some(&"start"), Some(&"done")));
 }
 
-/// Theory: an error told as an event has the place that a person is shown.
+/// Theory: an error event contains the location that the text message shows.
 #[test]
 fn errors_as_events() {
     let folder = folder("errors");
@@ -252,7 +246,7 @@ fn errors_as_events() {
         "version = 1\n[camera]\nposition = [0, 0, 5]\ntarget = [0, 0, 0]\nfov = 400\n",
     )
     .unwrap();
-    let output = with(&folder, &[], &["check", "bad.toml", &scene("cornell.toml"), "--json"]);
+    let output = with(&folder, &[], &["check", "bad.toml", &shipped("cornell.toml"), "--json"]);
     assert_eq!(output.status.code(), Some(1));
     let events = events(&text(&output.stdout));
     assert_eq!((&events[0]["good"], &events[1]["good"]), (&false.into(), &true.into()));
@@ -263,15 +257,15 @@ fn errors_as_events() {
     );
 }
 
-/// Theory: the shaders are in the program. A copy of it, away from everything, renders from an
-/// empty folder what is rendered in place.
+/// Theory: the program embeds its shaders. A copy of it renders the same image from an empty
+/// folder.
 #[test]
 fn needs_no_folder() {
     software();
     let folder = folder("elsewhere");
     let program = folder.join(format!("copy{}", std::env::consts::EXE_SUFFIX));
-    fs::copy(env!("CARGO_BIN_EXE_caustica"), &program).unwrap();
-    let file = scene("cornell.toml");
+    fs::copy(PROGRAM, &program).unwrap();
+    let file = shipped("cornell.toml");
     let render = |program: &Path, device: &str, output: &str| {
         let arguments = [
             "render",
@@ -295,6 +289,6 @@ fn needs_no_folder() {
         fs::read(folder.join(output)).unwrap()
     };
     let copied = render(&program, "software", "a.pfm");
-    assert_eq!(copied, render(Path::new(env!("CARGO_BIN_EXE_caustica")), "software", "b.pfm"));
+    assert_eq!(copied, render(Path::new(PROGRAM), "software", "b.pfm"));
     assert_eq!(copied, render(&program, "cpu", "c.pfm"));
 }

@@ -1,8 +1,8 @@
-//! Pictures to work on, through the program on the CPU engine: layers, windows, 16 bits, a picture
-//! made again, and one sent to a viewer.
+//! Output images on the CPU engine: layers, crops, 16 bits, reproduction from an image, and display
+//! in tev.
 //!
-//! Theory: a window and a picture made again have the bits of the first one; what tev is sent, put
-//! together by its own protocol, is what the file holds.
+//! Theory: a crop and a reproduced image have the bits of the original. The image that tev's
+//! protocol transmits equals the file.
 
 use std::fs;
 use std::io::Read;
@@ -10,8 +10,8 @@ use std::net::TcpListener;
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
-use crate::support::{FLOOR, LAMP, MESH, ball, ends, error, folder_with};
-use caustica::low_level::film::exr_file::{self, ExrFile, Frame};
+use crate::support::{FLOOR, LAMP, MESH, ball, ends, error, folder_with, write_exr};
+use caustica::low_level::film::exr_file::{ExrFile, Frame};
 use caustica::low_level::film::tev::Tev;
 use caustica::low_level::film::{Development, Picture, file, read};
 
@@ -51,7 +51,7 @@ fn layers_stand_beside_radiance() {
     assert_eq!(names, expected.split_whitespace().collect::<Vec<_>>());
     assert_eq!(plain.channels.len(), 5);
     let of = |file: &ExrFile, name: &str| file.channels[name].clone();
-    // whole numbers: the floor, the ball with the floor's mesh behind it, and the dark
+    // indices: the floor, the ball with the floor's mesh behind it, and the background
     let mut ids = of(&all, "object.ID");
     ids.sort_by(f32::total_cmp);
     ids.dedup();
@@ -61,7 +61,7 @@ fn layers_stand_beside_radiance() {
         all.attributes["caustica.aov"],
         "albedo,normal,depth,position,object,material,emission,direct,caustic,indirect,radius,photons,variance"
     );
-    // the scene file asks as well, unless the command line does, and a PNG holds none
+    // the scene file selects layers, the command line overrides it, and a PNG holds none
     fs::write(
         folder.join("ball.toml"),
         SCENE.replace("height = 24", "height = 24\naov = [\"depth\", \"albedo\"]"),
@@ -128,7 +128,7 @@ fn a_window_is_a_part_of_the_picture() {
     for wrong in ["10,4,10,19", "1,2,3", "-1,0,4,4", "a"] {
         refused(&folder, &["ball.toml", "--crop", wrong], 2, &["four whole numbers with x0 < x1"]);
     }
-    // the window lies in the picture of the size that is asked for
+    // the crop refers to the image size on the command line
     rendered(
         &folder,
         &["ball.toml", "--device", "cpu", "--size", "64x48", "--crop", "40,30,64,48"],
@@ -160,7 +160,7 @@ fn sixteen_bits_hold_what_eight_round() {
     refused(&folder, &["ball.toml", "--bits", "12"], 2, &["expected 8 or 16"]);
 }
 
-/// What it does where it is built in is in `tests/denoise.rs`.
+/// `tests/film/denoise.rs` tests a build with the denoiser.
 #[cfg(not(feature = "denoise"))]
 #[test]
 fn a_denoiser_that_is_not_built_in_is_told() {
@@ -171,7 +171,7 @@ fn a_denoiser_that_is_not_built_in_is_told() {
     assert!(!folder.join("ball.png").exists());
 }
 
-/// A picture without the attributes that differ between runs.
+/// The channels of an image, without the attributes that differ between runs.
 fn bits(file: &ExrFile) -> Vec<(String, Vec<u32>)> {
     let bits = |values: &Vec<f32>| values.iter().map(|value| value.to_bits()).collect();
     file.channels.iter().map(|(name, values)| (name.clone(), bits(values))).collect()
@@ -224,10 +224,10 @@ fn a_picture_is_made_again() {
         );
         assert_eq!(exr(&folder, &first).frame, exr(&folder, &again).frame);
     }
-    // another seed makes another picture: the comparison can fail, and options are in force
+    // another seed gives another image, so the comparison can fail and options take effect
     rendered(&folder, &["--like", "plain.exr", "--seed", "5", "-o", "other.exr"]);
     assert_ne!(bits(&exr(&folder, "plain.exr")), bits(&exr(&folder, "other.exr")));
-    // what differs is told: a mesh that the scene names, and then the scene itself, which is gone
+    // a changed mesh gives a warning; a missing scene file is replaced by the text in the image
     fs::write(folder.join("floor.obj"), FLOOR.replace("v 3 0 -3", "v 3 0 -3.01")).unwrap();
     let told = rendered(&folder, &["--like", "plain.exr", "-o", "changed.exr"]);
     assert!(told.contains("a file that it names, has changed"), "{told}");
@@ -239,11 +239,11 @@ fn a_picture_is_made_again() {
         "{told}"
     );
     assert_eq!(bits(&exr(&folder, "plain.exr")), bits(&exr(&folder, "text.exr")));
-    // a scene that is named is taken, wherever it is
+    // a scene named on the command line is used wherever it is
     let told = rendered(&folder, &["moved.toml", "--like", "plain.exr", "-o", "moved.exr"]);
     assert!(!told.contains("warning") && !told.contains("from the text"), "{told}");
     assert_eq!(bits(&exr(&folder, "plain.exr")), bits(&exr(&folder, "moved.exr")));
-    // another version, by its attribute
+    // an image of another version
     let mut bytes = fs::read(folder.join("plain.exr")).unwrap();
     let here = [
         b"caustica.version\0string\0".as_slice(),
@@ -255,23 +255,22 @@ fn a_picture_is_made_again() {
     fs::write(folder.join("future.exr"), bytes).unwrap();
     let told = rendered(&folder, &["moved.toml", "--like", "future.exr", "-o", "b.exr"]);
     assert!(told.contains("made by version 9"), "{told}");
-    // files of others
+    // images of other programs
     let picture = Picture::from_fn(2, 2, |_, _| [1.0; 3]);
-    let foreign = exr_file::encode(&picture, Frame::of(&picture), &[], &Default::default());
-    fs::write(folder.join("foreign.exr"), foreign.unwrap()).unwrap();
+    write_exr(&folder.join("foreign.exr"), &picture);
     refused(&folder, &["--like", "foreign.exr"], 1, &["lacks the attribute caustica."]);
     refused(&folder, &["--like", "none.exr"], 1, &["none.exr"]);
     refused(&folder, &[], 2, &["SCENE"]);
 }
 
-/// What a viewer makes of the packets it was sent.
+/// The image that a viewer assembles from the packets.
 #[derive(Default)]
 struct Shown {
     name: String,
     width: usize,
     height: usize,
     channels: Vec<String>,
-    /// By channel, row by row; updates fill it in.
+    /// By channel, row by row; update packets fill it in.
     values: Vec<Vec<f32>>,
     updates: usize,
 }
@@ -349,7 +348,7 @@ impl Shown {
     }
 }
 
-/// A viewer that takes all that it is sent, and its address.
+/// Starts a viewer that receives all packets; returns its thread and address.
 fn viewer() -> (std::thread::JoinHandle<Vec<u8>>, String) {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let address = listener.local_addr().unwrap().to_string();
@@ -387,7 +386,7 @@ fn tev_is_sent_the_picture() {
         }
         assert!(shown.values == expected, "{crop:?}");
     }
-    // nobody there: before anything is rendered
+    // without a viewer the command fails before it renders
     let closed = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
     refused(
         &folder,
@@ -403,7 +402,7 @@ fn tev_is_sent_the_picture() {
     );
 }
 
-/// A viewer that goes away does not end the render.
+/// A viewer that disconnects does not end the render.
 #[test]
 fn a_viewer_may_go_away() {
     let folder = folder("gone");
@@ -418,7 +417,7 @@ fn a_viewer_may_go_away() {
     assert_eq!(exr(&folder, "a.exr").attributes["caustica.passes_done"], "6");
 }
 
-/// A picture too large for one packet comes in several, and is whole.
+/// An image too large for one packet is sent in several and arrives complete.
 #[test]
 fn large_pictures_come_in_parts() {
     let picture = Picture::from_fn(1500, 700, |x, y| [x as f32, y as f32, (x * y) as f32]);

@@ -1,20 +1,16 @@
-//! What the system gives the program: threads and memory.
+//! Limits of the operating system on threads and memory.
 //!
-//! Theory: a process may be refused threads and memory at any time, and a program that counts both
-//! before it takes them ends as documented: with a picture, or with a message and exit code 1. A
-//! panic (101) or an abort by the allocator (134, by signal 6) is neither.
+//! Theory: the system may refuse threads and memory at any time. The program counts both before it
+//! uses them, so it ends as documented: with an image, or with a message and exit code 1. A panic
+//! gives 101 and an abort by the allocator 134 (signal 6).
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Command, Output};
 
-use crate::support::{folder, text};
+use crate::support::{PROGRAM, folder, only_unprivileged, shipped, text, unprivileged};
 
-fn scene(name: &str) -> String {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(name).display().to_string()
-}
-
-/// The program under limits that util-linux's `prlimit` sets.
+/// The program under a limit set by util-linux's `prlimit`.
 fn limited(program: &Path, limit: &str, arguments: &[&str]) -> Command {
     let mut command = Command::new("prlimit");
     command.arg(limit).arg("--").arg(program).args(arguments).env("NO_COLOR", "1");
@@ -25,12 +21,8 @@ fn output(mut command: Command) -> Output {
     command.output().unwrap_or_else(|error| panic!("{command:?}: {error} (util-linux has it)"))
 }
 
-fn program() -> PathBuf {
-    PathBuf::from(env!("CARGO_BIN_EXE_caustica"))
-}
-
-/// Under every limit of the address space the render is cut until it fits, or says that it does
-/// not.
+/// Theory: under every limit of the address space the render is split until it fits, or reports
+/// that it does not.
 #[test]
 fn little_address_space() {
     let folder = folder("address-space");
@@ -39,9 +31,17 @@ fn little_address_space() {
     let mut refused = 0;
     for megabytes in [90, 110, 130, 170, 230, 300, 450] {
         let limit = format!("--as={}", megabytes * 1_000_000u64);
-        let arguments =
-            ["render", &scene("caustics.toml"), "--device", "cpu", "--passes", "1", "-o", &picture];
-        let output = output(limited(&program(), &limit, &arguments));
+        let arguments = [
+            "render",
+            &shipped("caustics.toml"),
+            "--device",
+            "cpu",
+            "--passes",
+            "1",
+            "-o",
+            &picture,
+        ];
+        let output = output(limited(PROGRAM.as_ref(), &limit, &arguments));
         let error = text(&output.stderr);
         match output.status.code() {
             Some(0) => cut += u32::from(error.contains("to save memory")),
@@ -58,25 +58,25 @@ fn little_address_space() {
     assert!(cut > 0 && refused > 0, "{cut} renders were cut and {refused} refused");
 }
 
-/// Under every limit of processes there are fewer threads, down to the main thread alone, and the
-/// same picture. Root has no such limit, so that the program runs as another user then.
+/// Theory: under every limit of processes the program uses fewer threads, down to the main thread
+/// alone, and renders the same image. Root has no such limit, so root runs the program as another
+/// user.
 #[test]
 fn few_threads() {
+    let _only = only_unprivileged();
     let folder = std::env::temp_dir().join(format!("caustica-threads-{}", std::process::id()));
     fs::create_dir_all(&folder).unwrap();
     let program = folder.join("caustica");
-    fs::copy(self::program(), &program).unwrap();
-    fs::copy(scene("cornell.toml"), folder.join("cornell.toml")).unwrap();
+    fs::copy(PROGRAM, &program).unwrap();
+    fs::copy(shipped("cornell.toml"), folder.join("cornell.toml")).unwrap();
     let open = |path: &Path| {
         use std::os::unix::fs::PermissionsExt;
         fs::set_permissions(path, fs::Permissions::from_mode(0o777)).unwrap();
     };
     open(&folder);
     open(&program);
-    let id = Command::new("id").arg("-u").output().unwrap();
-    let root = text(&id.stdout).trim() == "0";
     let mut pictures = Vec::new();
-    // another user of a machine may have processes already: then none may be left
+    // that user may have processes already, so that none may be left
     for processes in [1, 2, 4, 7, 100] {
         let picture = folder.join(format!("{processes}.pfm"));
         let limit = format!("--nproc={processes}");
@@ -91,12 +91,8 @@ fn few_threads() {
             "2",
             "--device",
         ];
-        let mut command = limited(&program, &limit, &arguments);
-        if root {
-            let mut other = Command::new("setpriv");
-            other.args(["--reuid=65534", "--clear-groups", "prlimit"]).args(command.get_args());
-            command = other;
-        }
+        let mut command = unprivileged("prlimit");
+        command.args(limited(&program, &limit, &arguments).get_args());
         command
             .args(["cpu", "-o"])
             .arg(&picture)
@@ -115,12 +111,12 @@ fn few_threads() {
     fs::remove_dir_all(&folder).unwrap();
 }
 
-/// A number of threads that nobody can mean is reported and not started.
+/// An absurd number of threads is reported and not started.
 #[test]
 fn too_many_threads() {
     let cores = std::thread::available_parallelism().unwrap().get();
-    let mut command = Command::new(program());
-    command.args(["check", &scene("cornell.toml")]).env("RAYON_NUM_THREADS", "100000");
+    let mut command = Command::new(PROGRAM);
+    command.args(["check", &shipped("cornell.toml")]).env("RAYON_NUM_THREADS", "100000");
     let output = output(command);
     let error = text(&output.stderr);
     assert!(

@@ -1,15 +1,14 @@
-//! Renders through the program on the CPU engine.
+//! `caustica render` on the CPU engine.
 //!
-//! Theory: the files, the exit code and the JSON lines are what a script sees; the same command
-//! gives the same bytes, and an interrupted render leaves the picture of whole passes.
+//! Theory: a script sees the files, the exit code and the JSON lines. Equal commands give equal
+//! bytes, and an interrupted render leaves an image of complete passes.
 
 use std::fs;
 use std::path::PathBuf;
-use std::process::{Command, Output, Stdio};
+use std::process::Output;
 use std::sync::LazyLock;
-use std::time::Duration;
 
-use crate::support::{DISC, LAMP, ball, caustica, command, folder_with, json_lines, text};
+use crate::support::{DISC, LAMP, ball, caustica, error, folder_with, json_lines, text};
 use caustica::low_level::film::{file, read};
 
 static SCENE: LazyLock<String> =
@@ -39,7 +38,8 @@ fn writes_what_is_asked_for_and_says_where() {
     assert_eq!(exr.attributes["caustica.scene_text"], *SCENE);
     let mean = exr.channels["G"].iter().sum::<f32>() / (32.0 * 24.0);
     assert!(mean > 1e-3, "the picture is not black: {mean}");
-    // Without -o it is the scene's name, in the current folder; --quiet says nothing.
+    // Without -o the file has the scene's name and lies in the current folder; --quiet prints
+    // nothing.
     let output = caustica(&folder, &["render", "ball.toml", "--device", "cpu", "--quiet"]);
     assert_eq!((text(&output.stdout).as_str(), text(&output.stderr).as_str()), ("ball.png\n", ""));
     assert!(folder.join("ball.png").exists());
@@ -67,7 +67,7 @@ fn options_replace_the_file_and_equal_commands_give_equal_bytes() {
     };
     let first = render("a.exr", "5");
     assert!(render("b.exr", "5") == first);
-    // PFM holds the pixels alone, so this is not the seed's attribute.
+    // PFM holds pixels only, so the difference is not the seed's attribute.
     assert!(render("c.pfm", "6") != render("d.pfm", "5"), "the seed counts");
     let exr = file::read_exr(&folder.join("a.exr")).unwrap();
     assert_eq!((exr.width, exr.height), (20, 10));
@@ -109,8 +109,8 @@ fn time_ends_a_render() {
     );
 }
 
-/// Theory: the passes after which the error is estimated are the same in every run, and so is the
-/// one that ends it.
+/// Theory: the error is estimated after the same passes in every run, so a target error ends a
+/// render after the same pass.
 #[test]
 fn an_error_aimed_at_ends_a_render() {
     let folder = folder("target_error");
@@ -133,17 +133,17 @@ fn an_error_aimed_at_ends_a_render() {
             .iter()
             .all(|line| line["error"].is_null() == (line["passes"].as_u64().unwrap() < 4))
     );
-    // the layers stand beside the picture, which reads as ever
+    // the file has layers in addition to the image
     let exr = file::read_exr(&folder.join("a.exr")).unwrap();
     assert!(exr.channels["Variance.Y"].iter().all(|variance| *variance >= 0.0));
     assert!(exr.channels["Bias.Y"].iter().any(|bias| *bias != 0.0));
     assert_eq!(read(&folder.join("a.exr")).unwrap(), exr.picture("").unwrap());
-    // again, and nearer to the truth
+    // the same target as a number, then a smaller one
     aimed("0.2", "b.exr");
     assert!(fs::read(folder.join("a.exr")).unwrap() == fs::read(folder.join("b.exr")).unwrap());
     let (_, _, lines) = aimed("0.05", "c.pfm");
     assert!(lines.last().unwrap()["passes"].as_u64().unwrap() > passes);
-    // fewer passes than an estimate needs: none is told, and no layers are written
+    // with too few passes for an estimate no error is reported and no layers are written
     let output =
         caustica(&folder, &["render", "ball.toml", "--device", "cpu", "--json", "-o", "d.exr"]);
     assert!(json_lines(&output.stdout).pop().unwrap()["error"].is_null());
@@ -170,7 +170,7 @@ fn compare_holds_its_thresholds() {
         text(&same.stdout)
     );
     assert!(text(&same.stdout).ends_with("map.png\n") && folder.join("map.png").exists());
-    // f32 against f64: other bits, the same picture
+    // f32 against f64: different bits, the same image
     let rounded = |bound: &[&str]| {
         let run = ["compare", "ball.toml", "--device", "cpu", "--device", "cpu-f64", "--quiet"];
         caustica(&folder, &[&run[..], bound].concat())
@@ -192,9 +192,8 @@ fn compare_holds_its_thresholds() {
     }
 }
 
-/// Theory: a preset is a set of settings, and what it promises is told from passes that the picture
-/// holds anyway: the same settings without a preset give the same bytes. Options change single
-/// settings.
+/// Theory: a preset is a set of settings, and its calibration uses passes of the render itself. So
+/// the same settings without a preset give the same bytes. Options override single settings.
 #[test]
 fn presets_promise_and_keep_their_passes() {
     let folder = folder("quality");
@@ -209,7 +208,7 @@ fn presets_promise_and_keep_their_passes() {
         lines.iter().find(|line| line["event"] == event).cloned().unwrap_or_default()
     };
     let (settings, told) = (of(&draft, "start")["settings"].clone(), of(&draft, "calibration"));
-    // One photon for each of 32 x 24 pixels, and a radius in numbers.
+    // One photon per pixel of 32 x 24, and a radius in numbers.
     assert_eq!((&settings["photons"], &settings["passes"]), (&768.into(), &4.into()));
     let pixels = settings["radius"]["pixels"].as_f64().unwrap();
     assert!(
@@ -231,8 +230,8 @@ fn presets_promise_and_keep_their_passes() {
     assert!(
         fs::read(folder.join("draft.pfm")).unwrap() == fs::read(folder.join("hand.pfm")).unwrap()
     );
-    // Options are stronger than the preset, which is stronger than the scene; it knows the size
-    // that options set.
+    // Options override the preset, which overrides the scene; the preset knows the size that
+    // options set.
     let changed = render(&[
         "--quality",
         "preview",
@@ -252,7 +251,7 @@ fn presets_promise_and_keep_their_passes() {
     assert_eq!((&settings["alpha"], &settings["radius"]["pixels"]), (&0.5.into(), &2.0.into()));
     assert_eq!(of(&changed, "start")["radius_why"], serde_json::Value::Null);
     assert_eq!(of(&changed, "calibration")["passes"], 3);
-    // For people.
+    // The same as text.
     let output =
         caustica(&folder, &["render", "ball.toml", "--device", "cpu", "--quality", "draft"]);
     let error = text(&output.stderr);
@@ -272,29 +271,30 @@ fn presets_promise_and_keep_their_passes() {
     assert!(text(&output.stderr).contains("'final'"), "{}", text(&output.stderr));
 }
 
-/// An interrupt while passes are being made: exit 130, and a picture of whole passes, fewer than
-/// asked for.
+/// An interrupt during the passes gives exit code 130 and an image of complete passes, fewer than
+/// requested.
 #[cfg(unix)]
 #[test]
 fn interrupts_save_the_picture() {
+    use crate::support::{interruptible, signal};
     use std::io::{BufRead, BufReader};
+    use std::process::Stdio;
+    use std::time::Duration;
 
     let folder = folder("interrupt");
     let options = ["--device", "cpu", "--json", "--passes", "1000000", "-o", "a.exr"];
-    let mut child = command(&folder, &[&["render", "ball.toml"][..], &options].concat())
+    let mut child = interruptible(&folder, &[&["render", "ball.toml"][..], &options].concat())
         .stdout(Stdio::piped())
         .stderr(Stdio::null())
         .spawn()
         .unwrap();
     let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
-    // The first progress line is there: the render is under way.
+    // After the first progress line the render is under way.
     let first_progress =
         lines.by_ref().map(Result::unwrap).find(|line| line.contains("\"progress\""));
     assert!(first_progress.is_some());
     std::thread::sleep(Duration::from_millis(100));
-    assert!(
-        Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success()
-    );
+    signal(&child, "INT");
     let last = lines.map(Result::unwrap).last().unwrap();
     assert_eq!(child.wait().unwrap().code(), Some(130));
     let done: serde_json::Value = serde_json::from_str(&last).unwrap();
@@ -305,9 +305,9 @@ fn interrupts_save_the_picture() {
     assert_eq!(read(&folder.join("a.exr")).unwrap().not_finite(), 0);
 }
 
-/// Theory: nothing is left out of a sound picture, and --strict changes nothing. Where a pixel is
-/// too bright for f32 the picture is written all the same, the cause is told, and --strict ends
-/// with 1.
+/// Theory: a sound image rejects no samples, and --strict changes nothing. If a pixel is too bright
+/// for f32, the image is written all the same, the cause is reported, and --strict gives exit code
+/// 1.
 #[test]
 fn what_is_left_out_is_told() {
     let folder = folder("strict");
@@ -346,14 +346,15 @@ fn what_is_left_out_is_told() {
     assert_eq!(read(&folder.join("b.exr")).unwrap().not_finite(), 0);
 }
 
-/// An error that is not reached is told; where it may never be, a limit is asked for.
+/// A missed target error is reported; where the target may be unreachable, the command requires a
+/// limit.
 #[test]
 fn a_target_out_of_reach() {
     let folder = folder("target");
     let render = |options: &[&str]| {
         let output =
             caustica(&folder, &[&["render", "ball.toml", "--device", "cpu"][..], options].concat());
-        (output.status.code(), crate::support::error(&output))
+        (output.status.code(), error(&output))
     };
     let (code, error) = render(&["--target-error", "0.1%", "--passes", "5"]);
     assert!(

@@ -1,16 +1,15 @@
-//! `caustica study` as a script sees it: exit codes, files, and what a second call does.
+//! `caustica study`: exit codes, files, and repeated calls.
 //!
-//! Theory: a study is the set of its renders, one for each configuration and seed. However it is
-//! cut by interrupts, the same command ends with the same set; renders that were finished are kept,
-//! and equal seeds make equal pictures, so that their errors are equal to the last digit.
+//! Theory: a study is the set of its renders, one for each configuration and seed. However often it
+//! is interrupted, the same command ends with the same set. Finished renders are kept, and equal
+//! seeds give equal images, so their errors are equal to the last digit.
 
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
 use std::sync::LazyLock;
 
-use crate::support::{DISC, GLOBE, ball, caustica, command, ends, error, folder_with, text};
+use crate::support::{DISC, GLOBE, ball, caustica, ends, error, folder_with, names, text};
 use serde_json::Value;
 
 static SCENE: LazyLock<String> = LazyLock::new(|| ball((32, 24), "photons = 2000", &[DISC, GLOBE]));
@@ -64,7 +63,7 @@ fn a_small_study_writes_what_it_promises() {
     let said = text(&output.stdout);
     assert!(said.contains("For a preview in") && said.contains("For a final picture"), "{said}");
     assert!(said.ends_with("report.html\n"), "{said}");
-    // CSV: the same number of fields in each line, and one line for each picture.
+    // CSV: the same number of fields in each line, and one line for each image.
     let csv = fs::read_to_string(folder.join("out/study.csv")).unwrap();
     let fields = |line: &str| line.split('"').step_by(2).collect::<String>().matches(',').count();
     let head = csv.lines().next().unwrap();
@@ -77,7 +76,7 @@ fn a_small_study_writes_what_it_promises() {
         .map(|run| run["points"].as_array().unwrap().len())
         .sum();
     assert_eq!(csv.lines().count(), 1 + pictures);
-    // Variance and bias of all three configurations, and errors that fall.
+    // All three configurations have variance and bias, and their errors fall.
     for curve in study["parts"][0]["curves"].as_array().unwrap() {
         let points = curve["points"].as_array().unwrap();
         assert!(
@@ -87,18 +86,15 @@ fn a_small_study_writes_what_it_promises() {
         let error = |i: usize| points[i]["rel_mse"]["mean"].as_f64().unwrap();
         assert!(error(points.len() - 1) < error(0), "{curve}");
     }
-    // The page needs nothing else: no address of anything outside, no script.
+    // The page is self-contained: no address outside, no script.
     let page = fs::read_to_string(folder.join("out/report.html")).unwrap();
     for outside in ["http", "src=\"/", "<script", "<link", "url(", "@import", "NaN"] {
         assert!(!page.contains(outside), "{outside}");
     }
     assert!(page.contains("data:image/png;base64,") && page.contains("prefers-color-scheme:dark"));
     assert_eq!(page.matches("<svg").count(), page.matches("</svg>").count());
-    assert!(
-        fs::read_dir(folder.join("out/unfinished")).unwrap().next().is_none(),
-        "pictures are gone"
-    );
-    // Nothing is left to do, and nothing is done again.
+    assert!(names(&folder.join("out/unfinished")).is_empty(), "pictures are gone");
+    // The same command again finds nothing to do.
     let before = runs(&folder);
     let again = caustica(&folder, &[&SMALL[..], &["--json"]].concat());
     assert_eq!(again.status.code(), Some(0), "{}", text(&again.stderr));
@@ -112,12 +108,14 @@ fn a_small_study_writes_what_it_promises() {
 #[cfg(unix)]
 #[test]
 fn an_interrupted_study_goes_on_to_the_same_end() {
+    use crate::support::{interruptible, signal};
     use std::io::{BufRead, BufReader};
+    use std::process::Stdio;
 
     let whole = folder("whole");
     assert_eq!(caustica(&whole, &SMALL).status.code(), Some(0));
     let folder = folder("interrupted");
-    let mut child = command(&folder, &[&SMALL[..], &["--json"]].concat())
+    let mut child = interruptible(&folder, &[&SMALL[..], &["--json"]].concat())
         .stdout(Stdio::piped())
         .stderr(Stdio::null())
         .spawn()
@@ -125,9 +123,7 @@ fn an_interrupted_study_goes_on_to_the_same_end() {
     let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
     let second = lines.by_ref().map(Result::unwrap).filter(|line| line.contains("\"run\"")).nth(1);
     assert!(second.is_some());
-    assert!(
-        Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success()
-    );
+    signal(&child, "INT");
     let last = lines.map(Result::unwrap).last().unwrap();
     assert_eq!(child.wait().unwrap().code(), Some(130), "{last}");
     assert!(last.contains("\"complete\":false"), "{last}");
@@ -138,7 +134,7 @@ fn an_interrupted_study_goes_on_to_the_same_end() {
     assert_eq!(caustica(&folder, &SMALL).status.code(), Some(0));
     let ended = runs(&folder);
     assert_eq!(ended.keys().collect::<Vec<_>>(), runs(&whole).keys().collect::<Vec<_>>());
-    // What was finished was kept, not made again: its time is the same to the last digit.
+    // Finished renders were kept: their times are equal to the last digit.
     assert!(kept.iter().all(|(key, run)| ended[key] == *run));
     let study = json(&folder.join("out/study.json"));
     assert!(!study["results"]["products"].as_array().unwrap().is_empty());
@@ -159,7 +155,7 @@ fn what_does_not_belong_is_refused() {
     refused(&with(&["--grid", "device=cpu,Voodoo2"]), 4, "there is no device `Voodoo2`");
     refused(&with(&["--truth", "missing.exr"]), 1, "missing.exr");
     assert!(!folder.join("out").exists(), "nothing was begun");
-    // Radiance of another size is no truth.
+    // A reference of another size is refused.
     let truth = [
         "render",
         "ball.toml",
@@ -182,7 +178,7 @@ fn what_does_not_belong_is_refused() {
     let small = with(&["--seeds", "1", "--vary", "radius=2px", "--size", "32x24"]);
     refused(&[&small[..], &["--truth", "t.exr"]].concat(), 1, "sizes differ");
     fs::remove_dir_all(folder.join("out")).unwrap();
-    // One study's folder takes no other study.
+    // The folder of one study is refused for another.
     assert_eq!(caustica(&folder, &small).status.code(), Some(0));
     refused(
         &with(&["--seeds", "2", "--vary", "radius=2px", "--size", "32x24"]),
@@ -200,7 +196,7 @@ fn what_does_not_belong_is_refused() {
     assert_eq!(fs::read_to_string(folder.join("mine/letter")).unwrap(), "dear");
 }
 
-/// A lamp of each size has a truth of its own, and a disc cannot become a point.
+/// Each lamp size has its own reference, and a disc lamp cannot become a point.
 #[test]
 fn lamps_shrink() {
     let folder = folder("lamps");
@@ -238,8 +234,8 @@ fn lamps_shrink() {
     assert!(text(&output.stderr).contains("spheres"), "{}", text(&output.stderr));
 }
 
-/// What surfaces of revolution are made of is an axis; all are held against one truth, of the exact
-/// surfaces. A scene that has none is told before any time is spent.
+/// Tessellation of surfaces of revolution is a study axis with one reference, the exact surfaces. A
+/// scene without such surfaces is refused at once.
 #[test]
 fn revolutions_become_meshes() {
     let folder = folder("revolutions");
@@ -280,7 +276,7 @@ fn revolutions_become_meshes() {
     );
 }
 
-/// The gain of leaving things out is a figure, and leaving them out changes no bit.
+/// Reports the time that omitted features save; omitting them changes no bit.
 #[test]
 fn info_measures_what_is_left_out() {
     let folder = folder("measure");

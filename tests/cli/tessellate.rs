@@ -1,17 +1,17 @@
-//! `caustica tessellate` through the program.
+//! `caustica tessellate`.
 //!
-//! Theory: a profile of straight lines turned in N sectors is a prism, a pyramid or stumps of one,
-//! exactly: its rings are regular N-gons of circumradius r. An N-gon has the perimeter 2 N r
-//! sin(pi/N) and the area N r^2 sin(2 pi/N) / 2; the sides of a pyramid of height h have the
-//! apothem sqrt(h^2 + r^2 cos^2(pi/N)). A curved profile's volume is that of the round body times
-//! the ratio of N-gon and circle, within the flatness asked for.
+//! Theory: a profile of straight lines with N sectors is exactly a prism, a pyramid or a frustum:
+//! its rings are regular N-gons of circumradius r. An N-gon has the perimeter 2 N r sin(pi/N) and
+//! the area N r^2 sin(2 pi/N) / 2; the sides of a pyramid of height h have the apothem sqrt(h^2 +
+//! r^2 cos^2(pi/N)). The volume of a curved profile is that of the round body times the ratio of
+//! N-gon to circle, within the requested flatness.
 
 use std::f64::consts::PI;
 use std::fs;
 use std::path::Path;
 use std::process::Output;
 
-use crate::support::{caustica, folder, text};
+use crate::support::{caustica, folder, names, repository, sound, text};
 use caustica::low_level::scene::{self, Mesh, ShapeKind};
 use glam::DVec3;
 
@@ -19,7 +19,7 @@ fn tessellate(folder: &Path, arguments: &[&str]) -> Output {
     caustica(folder, &[&["tessellate"], arguments].concat())
 }
 
-/// The mesh that a scene makes of an OBJ file.
+/// Loads the OBJ file back through a scene.
 fn load_back(obj: &Path, smooth: bool) -> Mesh {
     let text = format!(
         "version = 1\n[camera]\nposition = [0, 1, 9]\ntarget = [0, 1, 0]\nfov = 39\n[environment]\nradiance = 1\n\
@@ -28,7 +28,7 @@ fn load_back(obj: &Path, smooth: bool) -> Mesh {
         obj.display().to_string()
     );
     let loaded = scene::parse(Path::new("scene.toml"), text.as_bytes());
-    let loaded = loaded.unwrap_or_else(|errors| panic!("{:?}", miette::Report::new(errors)));
+    let loaded = sound(loaded);
     assert!(loaded.warnings.is_empty(), "{:?}", loaded.warnings);
     match loaded.scene.shapes.into_iter().next().unwrap().kind {
         ShapeKind::Mesh(mesh) => mesh,
@@ -36,7 +36,7 @@ fn load_back(obj: &Path, smooth: bool) -> Mesh {
     }
 }
 
-/// Tessellates a profile, loads the mesh back as flat triangles in the file's own winding.
+/// Tessellates a profile and loads the mesh back as flat triangles in the file's winding.
 fn mesh(name: &str, profile: &str, options: &[&str]) -> Mesh {
     let folder = folder(name);
     fs::write(folder.join("p.toml"), profile).unwrap();
@@ -46,7 +46,7 @@ fn mesh(name: &str, profile: &str, options: &[&str]) -> Mesh {
     load_back(&folder.join("p.obj"), false)
 }
 
-/// Area, and the volume on the side that the normals point away from.
+/// Area, and the volume on the side opposite to the normals.
 fn area_and_volume(mesh: &Mesh) -> (f64, f64) {
     let corners =
         mesh.triangles.iter().map(|t| t.position.map(|index| mesh.positions[index as usize]));
@@ -75,14 +75,14 @@ fn cylinder() {
         let (area, volume) = area_and_volume(mesh);
         assert!(close(area, 2.0 * base + 3.0 * perimeter), "{area}");
         assert!(close(volume, 3.0 * base), "{volume}");
-        // The comparator tells a mesh of one sector more.
+        // The comparison rejects a mesh with one sector more.
         let (more, _) = polygon(sectors + 1.0, 2.0);
         assert!(!close(volume, 3.0 * more));
     }
     assert!((area_and_volume(&own).1 / (12.0 * PI) - 1.0).abs() < 1e-3, "near the round one");
 }
 
-/// A cone that stands on its base, scaled by 2 and laid down along x, with its base at x = 10.
+/// A cone that stands on its base, scaled by 2 and rotated to lie along x, with its base at x = 10.
 #[test]
 fn cone_with_transform() {
     let profile = "segments = [[[0, 0], [1.5, 0]], [[1.5, 0], [0, 2]]]\n\
@@ -103,8 +103,8 @@ fn cone_with_transform() {
     assert!((lowest - 10.0).abs() < 1e-9, "{lowest}");
 }
 
-/// The profile (0, 0), (a/2, 0), (a, h) is the paraboloid y = h r^2 / a^2, half the volume of its
-/// cylinder. A finer mesh is nearer to it.
+/// Theory: the profile (0, 0), (a/2, 0), (a, h) is the paraboloid y = h r^2 / a^2, with half the
+/// volume of its cylinder. A finer mesh is closer to it.
 #[test]
 fn paraboloid_within_the_flatness() {
     let profile = "segments = [[[0, 0], [0.5, 0], [1, 1]], [[1, 1], [0, 1]]]\n";
@@ -118,7 +118,7 @@ fn paraboloid_within_the_flatness() {
     assert!(fine < 0.1 * coarse && coarse > 1e-4, "{coarse} {fine}");
 }
 
-/// Normals of the file are those of the round surface, outward.
+/// The normals in the file are those of the round surface and point outward.
 #[test]
 fn normals_are_the_surface_s() {
     let folder = folder("normals");
@@ -136,18 +136,19 @@ fn normals_are_the_surface_s() {
     }
 }
 
-/// The shipped profile, by its name alone.
+/// Tessellates the shipped profile with default options.
 #[test]
 fn shipped_profile() {
     let folder = folder("vase");
-    let vase = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/profiles/vase.toml");
+    let vase = repository("scenes/profiles/vase.toml");
     let output = tessellate(&folder, &[vase.to_str().unwrap()]);
     assert_eq!((output.status.code(), text(&output.stdout).as_str()), (Some(0), "vase.obj\n"));
     let (area, volume) = area_and_volume(&load_back(&folder.join("vase.obj"), false));
     assert!(area > 1.0 && volume > 0.1, "closed and outward: {area} {volume}");
 }
 
-/// Runs in a folder that holds `p.toml` alone; nothing may be written or printed as a result.
+/// Runs in a folder that contains only `p.toml`. The command must fail without writing a file or
+/// printing a result.
 fn fails(name: &str, profile: &str, arguments: &[&str], code: i32, words: &[&str]) {
     let folder = folder(name);
     fs::write(folder.join("p.toml"), profile).unwrap();
@@ -158,7 +159,7 @@ fn fails(name: &str, profile: &str, arguments: &[&str], code: i32, words: &[&str
         assert!(error.contains(word), "{name} should say `{word}`: {error}");
     }
     assert_eq!(text(&output.stdout), "");
-    assert_eq!(fs::read_dir(&folder).unwrap().count(), 1, "{name}: only the profile is there");
+    assert_eq!(names(&folder).len(), 1, "{name}: only the profile is there");
 }
 
 const TUBE: &str = "profile = [[1, 0], [1, 2]]\n";
@@ -180,7 +181,8 @@ fn places_that_take_no_file_are_1() {
     fails("missing", TUBE, &["q.toml", "-o", "p.obj"], 1, &["q.toml", "did you mean p.toml?"]);
 }
 
-/// As for scene files: every fault with line, column, the line itself and what was expected.
+/// All faults of a profile are reported with line, column, the line itself and what was expected,
+/// as for scene files.
 #[test]
 fn faults_of_a_profile_are_told_at_once() {
     let many = "profil = [[1, 0], [1, 1]]\nprofile = [[1, 0], [1, nan], [2]]\n\

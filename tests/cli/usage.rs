@@ -1,13 +1,13 @@
-//! The program's manners, without a render: exit codes and messages.
+//! Exit codes and messages of commands that do not render.
 //!
 //! Theory: a mistake ends with its own exit code and a message on standard error that names the
-//! mistake and the way out; standard output stays empty, and so does the folder.
+//! mistake and the remedy. Standard output stays empty, and no file is written.
 
 use std::fs;
 use std::path::PathBuf;
 use std::process::Output;
 
-use crate::support::{caustica, folder_with, text};
+use crate::support::{self, caustica, folder_with, names, text};
 
 const SCENE: &str = r#"
 version = 1
@@ -32,19 +32,17 @@ position = [0.0, 3.0, 3.0]
 intensity = [10.0, 10.0, 10.0]
 "#;
 
-/// A fresh folder with a good scene, `ball.toml`, in it.
+/// A fresh folder with a valid scene, `ball.toml`.
 fn folder(name: &str) -> PathBuf {
     folder_with(name, &[("ball.toml", SCENE)])
 }
 
-/// Runs in a fresh folder; the code must be as said, standard error must hold all the words,
-/// standard output nothing, and no file may be left.
+/// Runs a command in a fresh folder. The exit code must match, standard error must contain all the
+/// words, standard output must be empty, and no file may be left.
 fn fails(name: &str, arguments: &[&str], code: i32, words: &[&str]) {
     let folder = folder(name);
-    crate::support::fails(&folder, arguments, code, words);
-    let left: Vec<_> =
-        fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name()).collect();
-    assert_eq!(left, ["ball.toml"], "{arguments:?}");
+    support::fails(&folder, arguments, code, words);
+    assert_eq!(names(&folder), ["ball.toml"], "{arguments:?}");
 }
 
 #[test]
@@ -120,7 +118,7 @@ fn scenes_with_errors_are_1() {
         let error = text(&output.stderr);
         assert_eq!(output.status.code(), Some(1), "{error}");
         assert!(error.contains("bad.toml:16:") && error.contains("radius = -1.0"), "{error}");
-        assert_eq!(fs::read_dir(&folder).unwrap().count(), 2, "nothing is written");
+        assert_eq!(names(&folder).len(), 2, "nothing is written");
     }
 }
 
@@ -170,7 +168,7 @@ fn info_tells_what_is_needed_and_what_is_not() {
     let left_out: Vec<&str> = line("features left out: ").split([' ', ',']).collect();
     assert!(left_out.contains(&"glass") && !left_out.contains(&"diffuse"), "{shown}");
     assert_eq!(line("triangles"), "", "no table that the scene does without: {shown}");
-    // What was chosen where nobody names a radius, and why; path tracing has none.
+    // Without a radius the report shows the chosen one and why; path tracing has none.
     let chosen = |output: &Output| {
         text(&output.stdout).lines().filter(|l| l.starts_with("start radius: ")).count()
     };
@@ -191,7 +189,7 @@ fn info_tells_what_is_needed_and_what_is_not() {
     );
 }
 
-/// What is not built yet must not be offered.
+/// The help lists only features that are compiled in.
 #[test]
 fn help_lists_only_what_works() {
     let folder = folder("help");
@@ -234,7 +232,7 @@ fn help_lists_only_what_works() {
     assert_eq!(text(&version.stdout), format!("caustica {}\n", env!("CARGO_PKG_VERSION")));
 }
 
-/// Every example that a help text gives runs; renders are made small.
+/// Every example in the help texts runs; renders are made small.
 #[test]
 fn examples_of_the_help_texts_run() {
     let folder = folder("examples");
@@ -255,7 +253,7 @@ fn examples_of_the_help_texts_run() {
             let mut arguments: Vec<_> = example.split(' ').collect();
             if arguments[0] == "render" {
                 arguments.extend(["--passes", "1", "--photons", "1000"]);
-                // a window of the whole, and what is made like it, keep the size
+                // examples with a crop or a reproduced image keep the size
                 if !["--crop", "--like"].iter().any(|option| example.contains(option)) {
                     arguments.extend(["--size", "16x16"]);
                 }
@@ -268,11 +266,8 @@ fn examples_of_the_help_texts_run() {
         }
     }
     assert_eq!(run, 12, "two, seven, one, one and one");
-    let mut left: Vec<_> =
-        fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name()).collect();
-    left.sort();
     assert_eq!(
-        left,
+        names(&folder),
         [
             "again.exr",
             "caustics.png",
@@ -287,9 +282,9 @@ fn examples_of_the_help_texts_run() {
     );
 }
 
-/// Theory: what single precision cannot hold is no error: `check` counts it as a warning and shows
-/// number, file, line and column, and `render` says the same before it renders, also of what the
-/// command line asks for.
+/// Theory: numbers that single precision cannot hold are warnings, not errors. `check` counts them
+/// and shows number, file, line and column, and `render` repeats them before it renders, including
+/// those from the command line.
 #[test]
 fn limits_are_told() {
     let folder = folder("limits");

@@ -1,9 +1,11 @@
-//! The CPU engine and the software driver give the same bits. Theory: both carry out the same
-//! operations in the same order on numbers that lavapipe rounds as Rust does, so every bit of every
-//! picture and every count of every pass is equal; one operation that differs shows somewhere in a
-//! scene that uses it, so the scenes together use every feature.
+//! The CPU engine and the GPU engine on the software driver give the same bits.
+//!
+//! Theory: both execute the same operations in the same order, and lavapipe rounds as Rust does. So
+//! every bit of every image and every count of every pass is equal. A differing operation shows
+//! somewhere in a scene that uses it, so the scenes together use every feature.
 
 use crate::scenes::{SCENES, planned, planned_at};
+use crate::support::{bits, software};
 use bytemuck::{bytes_of, pod_collect_to_vec};
 use caustica::low_level::cpu::CpuEngine;
 use caustica::low_level::engine::{Engine, PassReport};
@@ -26,10 +28,10 @@ pub fn photons(photons: u32, plan: &Plan) -> RenderSettings {
     RenderSettings { photons, ..plan.settings.clone() }
 }
 
-/// Reports, picture, the picture's errors, and what is found in addition to radiance.
+/// Pass reports, image, its error map, and its layers.
 type Rendered = (Vec<PassReport>, Picture, ErrorMap, Vec<Channel>);
 
-/// Four passes, the fewest that have an estimate of their error.
+/// Renders four passes, the fewest with an error estimate.
 fn rendered(mut engine: impl Engine) -> Rendered {
     let reports = (0..LEAST_PASSES).map(|_| engine.pass().unwrap()).collect();
     (reports, engine.picture().unwrap(), engine.errors().unwrap(), engine.layers().unwrap())
@@ -40,15 +42,14 @@ fn on_cpu(packed: &Packed, plan: &Plan) -> Rendered {
 }
 
 fn on_driver(packed: &Packed, plan: &Plan) -> Rendered {
-    rendered(GpuEngine::new(&crate::support::software(), packed, plan.clone()).unwrap())
+    rendered(GpuEngine::new(&software(), packed, plan.clone()).unwrap())
 }
 
-/// How two renders differ, if they do.
+/// Describes how two renders differ, if they do.
 fn difference(a: &Rendered, b: &Rendered) -> Option<String> {
     if a.0 != b.0 {
         return Some(format!("reports {:?} and {:?}", a.0, b.0));
     }
-    let bits = |p: &Picture| p.rgb.iter().map(|c| c.map(f32::to_bits)).collect::<Vec<_>>();
     let (first, second) = (bits(&a.1), bits(&b.1));
     let wrong: Vec<usize> = (0..first.len()).filter(|i| first[*i] != second[*i]).collect();
     let Some(&i) = wrong.first() else {
@@ -66,9 +67,10 @@ fn difference(a: &Rendered, b: &Rendered) -> Option<String> {
     ))
 }
 
-/// Which visible point and which photon record differ first: tells the kernel that is at fault.
+/// Describes the first visible point and the first photon record that differ, which identifies the
+/// faulty kernel.
 fn explain(packed: &Packed, plan: &Plan) -> String {
-    let mut engine = GpuEngine::new(&crate::support::software(), packed, plan.clone()).unwrap();
+    let mut engine = GpuEngine::new(&software(), packed, plan.clone()).unwrap();
     (0..LEAST_PASSES).map(|pass| explain_pass(packed, plan, &mut engine, pass)).collect()
 }
 
@@ -129,14 +131,14 @@ fn engines_agree_to_the_bit() {
         }
     }
     assert!(faults.is_empty(), "{}", faults.join("\n"));
-    // materials have a test of their own
+    // `engines_agree_on_every_material` tests the materials
     let needed = Feature::all().filter(|feature| !matches!(feature, Feature::Material(_)));
     let unused: Vec<_> = needed.filter(|feature| !used.contains(feature)).collect();
     assert!(unused.is_empty(), "no scene uses {unused:?}");
 }
 
-/// The same of every example of every material: the table's material replaces the floor's and a
-/// body's.
+/// The same for every example of every material, which replaces the material of the floor and of a
+/// body.
 #[test]
 fn engines_agree_on_every_material() {
     let (_, settings, rest) =
@@ -156,8 +158,8 @@ fn engines_agree_on_every_material() {
     }
 }
 
-/// Theory: patches are put off where a set has a bit for each, and else searched leaf by leaf;
-/// either way the engines do the same.
+/// Theory: patches are deferred if a set has a bit for each of them, and otherwise searched leaf by
+/// leaf. Both engines do the same in both cases.
 #[test]
 fn engines_agree_on_many_patches() {
     let beads = |count: u32| {
@@ -184,8 +186,8 @@ fn engines_agree_on_many_patches() {
     }
 }
 
-/// Chunks of visible points, a batch that overflows the records' buffers, and many batches change
-/// nothing between engines; chunks change nothing at all.
+/// Theory: chunks of visible points, a batch that overflows the record buffers, and many batches
+/// leave the engines equal. Chunks change no bit at all.
 #[test]
 fn engines_agree_when_work_is_cut() {
     let (_, settings, rest) = SCENES[4];
@@ -200,7 +202,7 @@ fn engines_agree_when_work_is_cut() {
         None,
         "batches"
     );
-    // a batch of all photons leaves more records than fit
+    // a batch of all photons stores more records than fit
     let (packed, plan) = planned("direct = \"photons\"", SCENES[0].2);
     let tight = Plan {
         capacity: 4096,
@@ -218,9 +220,9 @@ fn engines_agree_when_work_is_cut() {
     assert_eq!(difference(&overflowing, &on_driver(&packed, &tight)), None, "overflow");
 }
 
-/// Mesa's software driver stops an invocation's loops after 65535 rounds. A pass whose visible
-/// points each sum over more photons is then found in smaller batches: the same records, and the
-/// same sums up to their grouping.
+/// Theory: Mesa's software driver stops a loop after 65535 iterations. A pass whose visible points
+/// each gather more photons is split into smaller batches, with the same records and the same sums
+/// up to their grouping.
 #[test]
 fn long_gathers_are_whole() {
     let settings = "direct = \"photons\"\nradius = { units = 3.0 }\nradius_rule = \"fixed\"";
@@ -236,7 +238,7 @@ fn long_gathers_are_whole() {
     for (a, b) in rgb(&ours.1).into_iter().zip(rgb(&theirs.1)) {
         assert!((a - b).abs() <= 1e-4 * a, "{a} and {b}");
     }
-    // also where only the batches before the last are too long
+    // also if only earlier batches are too long
     for batch_photons in [20_000, 35_000, 40_000] {
         let cut = Plan { batch_photons, ..plan.clone() };
         let (ours, theirs) = (on_cpu(&packed, &cut), on_driver(&packed, &cut));
@@ -253,7 +255,7 @@ fn long_gathers_are_whole() {
     );
 }
 
-/// A pixel that is off by one bit, and a count that is off by one, are noticed.
+/// The comparison detects a pixel that differs in one bit, and a count that differs by one.
 #[test]
 fn planted_differences_are_found() {
     let (_, settings, rest) = SCENES[3];

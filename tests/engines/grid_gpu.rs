@@ -1,8 +1,10 @@
-//! The hash grid's kernels on the software driver against a naive loop. Theory: the grid is right
-//! if `starts` are the naive prefix sums and `sorted` holds, bucket by bucket, the records in the
-//! order of their keys; since keys differ, this fixes every bit. Output buffers are poisoned first,
-//! so that what no invocation wrote shows.
+//! The hash grid's kernels on the software driver against a naive loop.
+//!
+//! Theory: the grid is right if `starts` are the naive prefix sums and `sorted` holds, bucket by
+//! bucket, the records in the order of their keys. Keys differ, so this determines every bit.
+//! Output buffers are poisoned first, so that elements that no invocation wrote are detected.
 
+use crate::support::software;
 use bytemuck::{Zeroable, cast_slice, pod_collect_to_vec};
 use caustica::low_level::gpu::Gpu;
 use caustica::low_level::gpu::layout::SceneTables;
@@ -32,7 +34,7 @@ struct Grid {
     programs: Vec<Program>,
 }
 
-/// What the kernels left behind.
+/// The output of the kernels.
 struct Built {
     counts: Vec<u32>,
     starts: Vec<u32>,
@@ -41,7 +43,7 @@ struct Built {
 
 impl Grid {
     fn new() -> Self {
-        let gpu = Gpu::open(&crate::support::software()).unwrap();
+        let gpu = Gpu::open(&software()).unwrap();
         let recorder = Recorder::new(&gpu).unwrap();
         let features = Features::default().with(Feature::Photons);
         let programs = KERNELS
@@ -101,7 +103,7 @@ impl Grid {
     }
 }
 
-/// What is wrong with a grid.
+/// Lists the errors of a grid.
 fn faults(records: &[PhotonRecord], d: &Dispatch, built: &Built) -> Vec<String> {
     let mut list = Vec::new();
     let mut by_bucket: BTreeMap<u32, Vec<&PhotonRecord>> = BTreeMap::new();
@@ -138,7 +140,7 @@ fn faults(records: &[PhotonRecord], d: &Dispatch, built: &Built) -> Vec<String> 
     list
 }
 
-/// `count` records in a cube of `size` cells, with distinct keys in no order.
+/// Makes `count` records in a cube of `size` cells, with distinct keys in random order.
 fn scattered(count: u32, size: f32) -> Vec<PhotonRecord> {
     let mut state = 7u32;
     let mut random = || {
@@ -148,7 +150,7 @@ fn scattered(count: u32, size: f32) -> Vec<PhotonRecord> {
     (0..count)
         .map(|i| PhotonRecord {
             position: Vec3::new(random(), random(), random()) * size,
-            // odd factor: a permutation of all words
+            // an odd factor permutes all words
             key: i.wrapping_mul(2654435761),
             flux: Vec3::new(i as f32, random(), random()),
             direction: i,
@@ -180,8 +182,8 @@ fn agrees_with_a_naive_loop() {
     }
 }
 
-/// Long buckets take the workgroup's sort: all records in one, buckets about the length where sorts
-/// change, and as many of them as a workgroup can meet.
+/// Long buckets use the workgroup's sort: all records in one bucket, buckets near the length where
+/// sorts change, and as many of them as a workgroup can have.
 #[test]
 fn long_buckets_are_sorted() {
     let mut grid = Grid::new();
@@ -206,8 +208,8 @@ fn long_buckets_are_sorted() {
     }
 }
 
-/// As many buckets as a plan ever has: more blocks than a workgroup has invocations, more
-/// workgroups than fit a row.
+/// The largest number of buckets of any plan: more blocks than a workgroup has invocations, and
+/// more workgroups than fit a row.
 #[test]
 fn four_million_buckets() {
     let mut grid = Grid::new();
@@ -218,8 +220,7 @@ fn four_million_buckets() {
     assert!(list.is_empty(), "{list:#?}");
 }
 
-/// Each kind of damage is noticed: two records of a bucket swapped, a start that is off, a record
-/// lost.
+/// The comparison detects two swapped records of a bucket, a wrong start, and a lost record.
 #[test]
 fn planted_faults_are_found() {
     let mut grid = Grid::new();

@@ -1,5 +1,5 @@
-//! Scenes made of named ingredients, one for each feature that shaders know, for tests of
-//! composition and layout.
+//! Scenes made of one ingredient for each feature that shaders know, for tests of composition and
+//! layout.
 
 use bytemuck::Zeroable;
 use caustica::low_level::materials::Bsdf;
@@ -9,7 +9,7 @@ use caustica::low_level::scene::settings::{Direct, RadiusRule, RenderSettings};
 use caustica::low_level::tables::*;
 use glam::{Vec2, Vec3};
 
-/// A scene, never rendered, and settings.
+/// A scene that is never rendered, and settings.
 pub struct Mixture {
     pub scene: Scene,
     pub settings: RenderSettings,
@@ -30,7 +30,7 @@ impl Mixture {
         Features::of(&self.scene, &self.settings)
     }
 
-    /// The kernels that a plan of this scene has.
+    /// The kernels in a plan of this scene.
     pub fn kernels(&self) -> Vec<Kernel> {
         let photons = self.features().has(Feature::Photons);
         Kernel::ALL

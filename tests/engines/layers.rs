@@ -1,17 +1,13 @@
-//! Modules depend on one another in the order of layers that docs/architecture.md states.
+//! Theory: modules import only lower layers, in the order that docs/architecture.md states.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
-use std::path::{Path, PathBuf};
 
-fn root() -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
-}
+use crate::support::{files, repository};
 
-/// The layer of each module: the lines of names in the code block after "in the order of these
-/// layers".
+/// Reads the layer of each module from the code block after "in the order of these layers".
 fn layers() -> BTreeMap<String, usize> {
-    let text = fs::read_to_string(root().join("docs/architecture.md")).unwrap();
+    let text = fs::read_to_string(repository("docs/architecture.md")).unwrap();
     let block = text.split("in the order of these layers").nth(1).expect("the list of layers");
     let lines = block.lines().skip(1).skip_while(|line| line.trim().is_empty());
     let lines = lines.take_while(|line| line.starts_with("      "));
@@ -21,19 +17,8 @@ fn layers() -> BTreeMap<String, usize> {
         .collect()
 }
 
-fn files(folder: &Path, list: &mut Vec<PathBuf>) {
-    for entry in fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        if path.is_dir() {
-            files(&path, list);
-        } else if path.extension().is_some_and(|extension| extension == "rs") {
-            list.push(path);
-        }
-    }
-}
-
-/// Root modules that a file's text names: by `crate::name`, or by `super::name` if its own folder
-/// has no such file.
+/// Root modules that a file imports: by `crate::name`, or by `super::name` if its own folder has no
+/// such file.
 fn named(text: &str, own: &BTreeSet<String>, known: &BTreeMap<String, usize>) -> BTreeSet<String> {
     let code: String = text
         .split("#[cfg(test)]\nmod ")
@@ -61,7 +46,7 @@ fn named(text: &str, own: &BTreeSet<String>, known: &BTreeMap<String, usize>) ->
     found
 }
 
-/// The imports that run against the order, as "file names module".
+/// Lists the imports that violate the order, as "file names module".
 fn violations(sources: &[(String, String)], known: &BTreeMap<String, usize>) -> Vec<String> {
     let mut list = Vec::new();
     for (file, text) in sources {
@@ -86,16 +71,14 @@ fn violations(sources: &[(String, String)], known: &BTreeMap<String, usize>) -> 
 fn dependencies_follow_the_layers() {
     let known = layers();
     assert!(known.len() > 40, "{known:?}");
-    let src = root().join("src");
-    let mut list = Vec::new();
-    files(&src, &mut list);
-    let mut sources: Vec<(String, String)> = list
+    let src = repository("src");
+    let mut sources: Vec<(String, String)> = files(&src, "rs")
         .iter()
         .map(|path| {
             let name = path.strip_prefix(&src).unwrap().to_str().unwrap().replace('\\', "/");
             (name, fs::read_to_string(path).unwrap())
         })
-        // the program, the roots, and the copy of the lower layers in f64
+        // skip the program, the roots, and the copy of the lower layers in f64
         .filter(|(name, _)| {
             !["cli/", "double/", "main.rs", "lib.rs", "low_level.rs"]
                 .iter()
@@ -104,7 +87,7 @@ fn dependencies_follow_the_layers() {
         .collect();
     let found = violations(&sources, &known);
     assert!(found.is_empty(), "{}", found.join("\n"));
-    // a planted import from a higher layer is found
+    // the check detects a planted import from a higher layer
     for (file, text) in
         [("math/rng.rs", "use crate::cpu::CpuEngine;"), ("scene/obj.rs", "use super::super::gpu;")]
     {

@@ -1,6 +1,7 @@
-//! Host structs lie in memory as the shaders' structs do. Theory: naga's offsets and spans are
-//! those that the driver is given, so equality by name with `offset_of!` and `size_of` proves the
-//! layout.
+//! Host structs have the memory layout of the shaders' structs.
+//!
+//! Theory: the driver receives naga's offsets and spans, so equality by name with `offset_of!` and
+//! `size_of` proves the layout.
 
 use crate::ingredients::Mixture;
 use bytemuck::Zeroable;
@@ -192,7 +193,7 @@ fn everything() -> (Mixture, naga::Module) {
     everything_of(Kernel::EyeTrace)
 }
 
-/// What the gather reads beside it.
+/// Structs that only the gather reads.
 fn hosts_of_gather() -> Vec<Layout> {
     vec![layout!(Outline {
         origin,
@@ -224,7 +225,7 @@ fn members<'a>(module: &'a naga::Module, name: &str) -> Option<(&'a [naga::Struc
     })
 }
 
-/// What differs between the hosts' structs and the module's.
+/// Lists the differences between the hosts' structs and those of the module.
 fn differences(module: &naga::Module, hosts: &[Layout]) -> Vec<String> {
     let mut list = Vec::new();
     for (name, size, fields) in hosts {
@@ -255,7 +256,7 @@ fn structs_agree() {
     let mut list = differences(&module, &hosts());
     list.extend(differences(&everything_of(Kernel::Gather).1, &hosts_of_gather()));
     assert!(list.is_empty(), "{}", list.join("\n"));
-    // that of one kernel alone
+    // a struct of one kernel only
     let (_, module) = everything_of(Kernel::AovTrace);
     let list = differences(&module, &[aov_pixel()]);
     assert!(list.is_empty(), "{}", list.join("\n"));
@@ -281,7 +282,7 @@ fn aov_pixel() -> Layout {
     })
 }
 
-/// Every struct that the scene or a buffer is made of has its host struct in the list.
+/// Every struct in a scene table or a buffer has its host struct in the list.
 #[test]
 fn no_struct_is_forgotten() {
     let hosts = [hosts(), hosts_of_gather()].concat();
@@ -304,7 +305,7 @@ fn no_struct_is_forgotten() {
     }
 }
 
-/// A wrong offset, a wrong size, a missing field and a missing struct are all noticed.
+/// The comparison detects a wrong offset, a wrong size, a missing field and a missing struct.
 #[test]
 fn planted_differences_are_found() {
     let (_, module) = everything();
@@ -319,11 +320,11 @@ fn planted_differences_are_found() {
     assert_eq!(found(|h| h[9].0 = "Quadrangle"), 1);
 }
 
-/// The scene's tables begin where naga says, and hold what the host put there.
+/// The scene's tables begin at naga's offsets, and hold the data of the host.
 #[test]
 fn scene_tables_agree() {
     let (mut mixture, _) = everything();
-    // odd lengths, so that each table's end is off the alignment
+    // odd lengths, so that each table ends off the alignment
     mixture.scene.unbounded = vec![7, 8, 9];
     mixture.scene.distributions = vec![0.25, 0.5, 0.75, 0.875, 1.0];
     mixture.scene.discs.push(Disc { radius: 3.0, ..Disc::zeroed() });

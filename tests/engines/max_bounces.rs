@@ -1,20 +1,22 @@
-//! A render without bounces: only light seen directly and light straight from lights.
+//! Renders without bounces: only light seen directly, and light straight from lights.
 //!
-//! Theory: a diffuse floor of reflectance rho under a point light of intensity I at height h shows
-//! rho I / (pi h^2) right below it. A white wall behind it sends light back, which counts from one
-//! bounce on. Sampled from a point, direct light has no variance; by photons it is the mean over
-//! the gather disc of a known flux.
+//! Theory: a diffuse floor of reflectance rho under a point light of intensity I at height h has
+//! radiance rho I / (pi h^2) right below it. A white wall behind it reflects light, which counts
+//! from one bounce on. Sampled from a point, direct light has no variance; by photons it is the
+//! mean over the gather disc of a known flux.
 
 use std::f64::consts::PI;
 use std::path::Path;
 
-use caustica::low_level::device::{self, Wanted};
+use caustica::low_level::device::Wanted;
 use caustica::low_level::film::Picture;
 use caustica::low_level::scene;
 use caustica::low_level::scene::settings::{Direct, Method, RenderSettings};
 
-/// The camera sees a patch of 1/100 about the point below the light; `looks_at` is the material
-/// there.
+use crate::support::{render_on, sound};
+
+/// The scene. The camera sees a patch of 1/100 around the point below the light, with the material
+/// `looks_at`.
 fn scene_text(looks_at: &str) -> String {
     format!(
         "version = 1\n[camera]\nposition = [0, 1, 2]\ntarget = [0, 0, 0]\nfov = 0.25\n[film]\nwidth = 4\nheight = 4\n\
@@ -29,17 +31,10 @@ fn scene_text(looks_at: &str) -> String {
 
 fn render(looks_at: &str, wanted: &Wanted, change: impl Fn(&mut RenderSettings)) -> Picture {
     let text = scene_text(looks_at);
-    let mut loaded = scene::parse(Path::new("bounces.toml"), text.as_bytes())
-        .unwrap_or_else(|errors| panic!("{:?}", miette::Report::new(errors)));
+    let mut loaded = sound(scene::parse(Path::new("bounces.toml"), text.as_bytes()));
     assert_eq!(loaded.settings.max_bounces, 0);
     change(&mut loaded.settings);
-    let opened =
-        device::open(wanted, &loaded.scene, &loaded.settings).unwrap_or_else(|e| panic!("{e}"));
-    let mut engine = opened.engine;
-    for _ in 0..loaded.settings.passes {
-        engine.pass().unwrap_or_else(|e| panic!("{e}"));
-    }
-    engine.picture().unwrap_or_else(|e| panic!("{e}"))
+    render_on(wanted, &loaded.scene, &loaded.settings)
 }
 
 /// Largest relative deviation of a pixel from the closed form.
@@ -62,7 +57,7 @@ fn direct_light_is_left() {
         let by_photons = deviation(&render("grey", &Wanted::Cpu, photons));
         assert!(by_photons < 0.3, "{method:?}: {by_photons}");
     }
-    // One bounce more brings the wall's light: the comparator sees it.
+    // One more bounce adds the wall's light, which the comparison detects.
     let one = deviation(&render("grey", &Wanted::Cpu, |s| s.max_bounces = 1));
     assert!(one > 0.05, "{one}");
 }
@@ -79,7 +74,8 @@ fn nothing_is_seen_by_a_mirror_and_path_tracing_sees_lights_alone() {
     assert!(deviation(&render("grey", &Wanted::Cpu, path(1))) < 1e-4);
 }
 
-/// The same bits on the software driver, where a photon's key has no bits for the bounce.
+/// The software driver gives the same bits, although a photon's key has no bits for the bounce
+/// here.
 #[test]
 fn engines_agree() {
     for direct in [Direct::Sampled, Direct::Photons] {

@@ -1,9 +1,9 @@
-//! Memory that is counted before it is taken, and renders cut so that they fit.
+//! Memory budgets, and renders that are split to fit them.
 //!
-//! Theory: a visible point's estimate needs the photons and itself alone, so that tiles, one after
-//! another with one set of buffers, give the bits of the whole picture at once; so do visible
-//! points and photons that are traced again for each tile, since random numbers hang on their
-//! numbers alone. Smaller batches group the photons' sums otherwise, the same way on every engine.
+//! Theory: the estimate of a visible point depends on the photons and on that point only. So tiles
+//! that reuse one set of buffers give the bits of the whole image, as do visible points and photons
+//! that are traced again for each tile, because random numbers depend on indices only. Smaller
+//! batches group the sums of photons differently, in the same way on every engine.
 
 use caustica::low_level::cpu::CpuEngine;
 use caustica::low_level::engine::{Engine, EngineError, State};
@@ -17,13 +17,15 @@ use caustica::low_level::plan::{BufferPlace, Plan, scene_bytes};
 use caustica::low_level::scene::settings::{Method, RadiusRule, RenderSettings};
 use caustica::low_level::scene::{self, Aovs};
 
+use crate::support::{bits, software};
+
 const SIZE: (u32, u32) = (40, 30);
 const PASSES: u32 = 5;
 const ON_DEVICE: BufferPlace = BufferPlace::Device { in_main_memory: false };
 
 type Change = fn(&mut RenderSettings);
 
-/// Scene, settings and layers.
+/// Name of a scene, render settings, change of the settings, and layers.
 const CASES: [(&str, &str, Change, &str); 5] = [
     ("cornell", "sppm", |_| (), ""),
     ("caustics", "sppm, all layers", |s| s.indirect_radius = Some(2.0), "all"),
@@ -49,7 +51,7 @@ fn planned((name, _, change, aovs): (&str, &str, Change, &str)) -> (Packed, Plan
     (packed, plan)
 }
 
-/// What a render gives.
+/// The results of a render.
 #[derive(Clone, PartialEq)]
 struct Given {
     picture: Picture,
@@ -84,14 +86,14 @@ fn on_cpu(packed: &Packed, plan: &Plan) -> Given {
 }
 
 fn on_driver(packed: &Packed, plan: &Plan) -> Given {
-    given(&mut GpuEngine::new(&crate::support::software(), packed, plan.clone()).unwrap())
+    given(&mut GpuEngine::new(&software(), packed, plan.clone()).unwrap())
 }
 
-/// What differs.
+/// Describes the first difference of two results.
 fn difference(a: &Given, b: &Given) -> Option<String> {
-    let bits = |p: &Picture| p.rgb.iter().flatten().map(|x| x.to_bits()).collect::<Vec<_>>();
-    let differing =
-        bits(&a.picture).iter().zip(bits(&b.picture)).filter(|(a, b)| **a != *b).count();
+    let (first, second) = (bits(&a.picture), bits(&b.picture));
+    let pairs = first.as_flattened().iter().zip(second.as_flattened());
+    let differing = pairs.filter(|(a, b)| a != b).count();
     if differing > 0 {
         return Some(format!("{differing} numbers of the picture"));
     }
@@ -108,7 +110,7 @@ fn difference(a: &Given, b: &Given) -> Option<String> {
     (counts(a) != counts(b)).then(|| format!("counts {:?} and {:?}", counts(a), counts(b)))
 }
 
-/// Tiles of about a ninth of the picture, and the last one smaller.
+/// Splits the plan into tiles of about a ninth of the image, the last one smaller.
 fn tiled(plan: &Plan) -> Plan {
     let tiled = plan.clone().in_tiles(140 * plan.eye_samples);
     assert!(tiled.chunks() > 8 && tiled.chunk(8).1 < tiled.chunk(0).1);
@@ -137,7 +139,7 @@ fn tiles_change_no_bit() {
     }
 }
 
-/// Photons that are traced again for each tile, also where a batch overflows.
+/// Photons are traced again for each tile, also if a batch overflows.
 #[test]
 fn batches_are_the_same_in_tiles() {
     let (packed, plan) = planned(CASES[0]);
@@ -145,7 +147,7 @@ fn batches_are_the_same_in_tiles() {
     let batched = plan.clone().with_batch(1500);
     assert_eq!((batched.batches(), batched.settings.batch), (3, Some(1500)));
     let in_batches = on_cpu(&packed, &batched);
-    // the sums are rounded otherwise, and not more than that
+    // sums differ by rounding only
     assert!(difference(&whole, &in_batches).is_some());
     for (a, b) in whole.picture.rgb.iter().flatten().zip(in_batches.picture.rgb.iter().flatten()) {
         assert!((a - b).abs() <= 1e-5 * a.abs(), "{a} and {b}");
@@ -164,8 +166,8 @@ fn batches_are_the_same_in_tiles() {
     );
 }
 
-/// Whatever the budget, the plan keeps to it or is refused, and as long as no smaller batch is
-/// needed the bits are the same.
+/// Theory: under any budget the plan fits it or is refused, and the bits do not change unless
+/// batches have to shrink.
 #[test]
 fn budgets_are_kept() {
     let mut loaded = scene::load("scenes/cornell.toml".as_ref()).unwrap();
@@ -195,7 +197,7 @@ fn budgets_are_kept() {
                     assert!(bytes(&cut) <= budget && cut.tiled, "{percent} %");
                     let batches = cut.settings.batch.is_some();
                     assert_eq!(batches, cut.capacity < plan.capacity);
-                    // tiles first
+                    // tiles come before smaller batches
                     let tiles_do = within(budget, true);
                     assert_eq!(tiles_do.is_ok(), !batches, "{percent} %");
                     seen = (seen.0 || !batches, seen.1 || batches);
@@ -214,12 +216,12 @@ fn budgets_are_kept() {
             "{place:?}: no budget asks for tiles alone, or none for batches"
         );
         assert!(matches!(within(1, false), Err(EngineError::OverBudget(_))));
-        // a plan that is one byte too large is not let through
+        // a plan one byte over the budget is refused
         assert!(within(most - 1, false).unwrap().tiled);
     }
 }
 
-/// What is largest is named, with the setting that makes it smaller.
+/// The message names the largest buffer and the setting that makes it smaller.
 #[test]
 fn the_setting_to_change_is_named() {
     let refused = |width: u32, height: u32, aovs: &str, change: Change| -> String {
@@ -241,7 +243,7 @@ fn the_setting_to_change_is_named() {
     assert!(many.contains("--eye-samples"), "{many}");
 }
 
-/// The count is that of the buffers that are made.
+/// The stated memory equals the size of the buffers that are created.
 #[test]
 fn what_is_counted_is_what_is_made() {
     for case in CASES {
@@ -274,7 +276,7 @@ fn what_is_counted_is_what_is_made() {
     }
 }
 
-/// The comparison sees a bit, a count and a layer.
+/// The comparison detects a changed bit, count and layer.
 #[test]
 fn planted_differences_are_found() {
     let (packed, plan) = planned(CASES[1]);
@@ -289,7 +291,7 @@ fn planted_differences_are_found() {
     assert!(wrong(|g| g.layers[3].plane.values[600] += 1e-9));
     assert!(wrong(|g| g.state.film[3] ^= 1));
     assert!(wrong(|g| g.records += 1));
-    // a tile that is left out
+    // an omitted tile
     let tiles = tiled(&plan);
     let short = Plan { pixels: plan.pixels - 1, ..tiles };
     assert!(difference(&whole, &on_cpu(&packed, &short)).is_some());

@@ -1,45 +1,33 @@
-//! The CPU engine in f64 against truths, against the engine in f32 and against exact answers.
+//! The CPU engine in f64 against reference images, against the engine in f32, and against exact
+//! answers.
 //!
-//! Theory: both engines are one source, and their random numbers are the same bits. So their
-//! pictures differ where rounding does: by some 1e-7 relative per operation in nearly every pixel,
-//! and by a whole path's light in the few where rounding turned a decision (an edge hit, a
-//! roulette, a photon inside the disc). The median over pixels sees the first, the mean over the
-//! picture the second.
+//! Theory: both engines share one source and the same random numbers. So their images differ by
+//! rounding: by about 1e-7 relative per operation in nearly every pixel, and by a whole path's
+//! light in the few pixels where rounding changed a decision (an edge hit, a roulette, a photon
+//! inside the disc). The median over pixels measures the first, the mean over the image the second.
 
-use std::path::{Path, PathBuf};
-
-use caustica::low_level::device::{self, Wanted};
+use caustica::low_level::device::Wanted;
 use caustica::low_level::film::metrics::{Comparison, compare};
 use caustica::low_level::film::{Picture, luminance};
 use caustica::low_level::scene::settings::{Direct, Method, Radius, RenderSettings};
 use caustica::low_level::scene::{self, Scene};
 use caustica::low_level::validation::{BlockTruth, hold, render_parts};
 
-/// Most that the pictures may differ by in the median over pixels.
+use crate::support::{data, render_on, shipped as shipped_scene};
+
+/// Largest median difference over pixels.
 const MEDIAN: f64 = 5e-5;
-/// Most that their means may differ by in a channel.
+/// Largest difference of the means in a channel.
 const MEAN: f64 = 2e-3;
 
-fn path(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join(name)
-}
-
-fn render(wanted: &Wanted, scene: &Scene, settings: &RenderSettings) -> Picture {
-    let mut engine = device::open(wanted, scene, settings).unwrap().engine;
-    for _ in 0..settings.passes {
-        engine.pass().unwrap();
-    }
-    engine.picture().unwrap()
-}
-
-/// The same under a sky: the passes are few, and light from far away comes in bright photons whose
-/// paths part by a rounding. After 200 passes the means differ by 1e-4.
+/// The same under a sky: there are few passes, and light from far away arrives in bright photons
+/// whose paths a rounding can separate. After 200 passes the means differ by 1e-4.
 const MEAN_UNDER_SKY: f64 = 2e-2;
 
-/// f32 against f64.
+/// Compares f32 with f64.
 fn cost(scene: &Scene, settings: &RenderSettings, of: impl Fn(Picture) -> Picture) -> Comparison {
-    let double = render(&Wanted::CpuDouble, scene, settings);
-    compare(&of(render(&Wanted::Cpu, scene, settings)), &double).unwrap()
+    let double = render_on(&Wanted::CpuDouble, scene, settings);
+    compare(&of(render_on(&Wanted::Cpu, scene, settings)), &double).unwrap()
 }
 
 fn rounding_alone(c: &Comparison) -> bool {
@@ -47,7 +35,7 @@ fn rounding_alone(c: &Comparison) -> bool {
 }
 
 fn shipped(name: &str) -> (Scene, RenderSettings) {
-    let mut loaded = scene::load(&path(&format!("scenes/{name}.toml"))).unwrap();
+    let mut loaded = scene::load(shipped_scene(&format!("{name}.toml")).as_ref()).unwrap();
     let film = &mut loaded.scene.film;
     (film.width, film.height) = (80, 80 * film.height / film.width);
     (loaded.scene, RenderSettings { passes: 3, photons: 30_000, eye_samples: 2, ..loaded.settings })
@@ -55,8 +43,8 @@ fn shipped(name: &str) -> (Scene, RenderSettings) {
 
 #[test]
 fn f64_agrees_with_the_truth() {
-    let mut scene = scene::load(&path("tests/data/reference/cornell.toml")).unwrap().scene;
-    let truth = BlockTruth::read(&path("tests/data/truth/cornell.exr")).unwrap();
+    let mut scene = scene::load(&data("reference/cornell.toml")).unwrap().scene;
+    let truth = BlockTruth::read(&data("truth/cornell.exr")).unwrap();
     let size = (truth.mean.width, truth.mean.height);
     (scene.film.width, scene.film.height) = (2 * size.0, 2 * size.1);
     let settings = RenderSettings {
@@ -69,7 +57,7 @@ fn f64_agrees_with_the_truth() {
     let a = hold(&rendered.parts, &truth, 0.01);
     println!("mean {:?} +- {:?}, worst block {}", a.mean_ratio, a.ratio_error, a.blocks.worst());
     assert!(a.faults().is_empty(), "{:?}", a.faults());
-    // 5 % more light is seen.
+    // 5 % more light is detected.
     for rgb in rendered.parts.iter_mut().flat_map(|part| &mut part.rgb) {
         *rgb = rgb.map(|value| 1.05 * value);
     }
@@ -87,13 +75,14 @@ fn shipped_scenes_differ_by_rounding() {
             println!("{name} {method:?}: median {:.1e}, means {:.1e}", c.median, c.mean_error());
             let most = if scene.environment.is_some() { MEAN_UNDER_SKY } else { MEAN };
             assert!(c.median <= MEDIAN && c.mean_error() <= most, "{name} {method:?}: {c:?}");
-            // Otherwise it would be the same engine.
+            // Identical bits would mean that both are the same engine.
             assert!(2 * c.pixels_differing > c.pixels, "{name} {method:?}: {c:?}");
         }
     }
 }
 
-/// Planted: one part in a thousand more light everywhere; more in a corner; other random numbers.
+/// The comparison rejects one part in a thousand more light everywhere, more in a corner, and other
+/// random numbers.
 #[test]
 fn the_comparator_sees_planted_errors() {
     let (scene, settings) = shipped("cornell");
@@ -107,14 +96,14 @@ fn the_comparator_sees_planted_errors() {
     assert!(rounding_alone(&cost(&scene, &settings, brighter(0.0, 80))));
     assert!(!rounding_alone(&cost(&scene, &settings, brighter(0.001, 80))));
     assert!(!rounding_alone(&cost(&scene, &settings, brighter(0.1, 20))));
-    let double = render(&Wanted::CpuDouble, &scene, &settings);
-    let other = render(&Wanted::Cpu, &scene, &RenderSettings { seed: 1, ..settings });
+    let double = render_on(&Wanted::CpuDouble, &scene, &settings);
+    let other = render_on(&Wanted::Cpu, &scene, &RenderSettings { seed: 1, ..settings });
     assert!(!rounding_alone(&compare(&other, &double).unwrap()));
 }
 
-/// A floor under a spherical lamp of radius r at distance d receives `pi L (r / d)^2`, so that its
-/// radiance is `reflectance L (r / d)^2`, less 3.4e-5 for the part of the floor beside the middle
-/// that the picture shows.
+/// Theory: a floor under a spherical lamp of radius r at distance d receives `pi L (r / d)^2`, so
+/// its radiance is `reflectance L (r / d)^2`, less 3.4e-5 because the image shows some floor around
+/// the centre.
 #[test]
 fn a_small_lamp_loses_no_light() {
     let d = 9.0;
@@ -131,7 +120,7 @@ fn a_small_lamp_loses_no_light() {
                 {{ type = "sphere", center = [0.0, {d:?}, 0.0], radius = {r:?}, material = "black", emission = 100.0 }},
             ]"#
         );
-        let scene = scene::parse(Path::new("lamp.toml"), text.as_bytes()).unwrap().scene;
+        let scene = scene::parse("lamp.toml".as_ref(), text.as_bytes()).unwrap().scene;
         let settings = RenderSettings {
             passes: 16,
             photons: 1,
@@ -139,7 +128,7 @@ fn a_small_lamp_loses_no_light() {
             ..RenderSettings::default()
         };
         for device in [Wanted::Cpu, Wanted::CpuDouble] {
-            let picture = render(&device, &scene, &settings);
+            let picture = render_on(&device, &scene, &settings);
             let mean = picture.rgb.iter().map(|rgb| luminance(*rgb)).sum::<f64>()
                 / picture.rgb.len() as f64;
             let ratio = mean / (0.5 * 100.0 * (r / d) * (r / d));
@@ -149,7 +138,7 @@ fn a_small_lamp_loses_no_light() {
     }
 }
 
-/// One problem in both precisions, whose answers are sums of numbers that both hold exactly.
+/// One problem in both precisions, with inputs and answers that both represent exactly.
 macro_rules! problems {
     ($name:ident, $core:path) => {
         mod $name {
@@ -235,7 +224,7 @@ fn f64_is_nearer_to_exact_answers() {
     for (name, single, double, exact, condition) in answers {
         let (f32_error, f64_error) = ((single - exact).abs(), (double - exact).abs());
         println!("{name}: f32 off by {f32_error:.1e}, f64 by {f64_error:.1e}");
-        // Some roundings of 1.1e-16 each; what f32 gives must fail this.
+        // A few roundings of 1.1e-16 each, a bound that the f32 result must exceed.
         let bound = 64.0 * 1.1e-16 * condition;
         assert!(f64_error < bound, "{name}: {double} {exact}");
         assert!(f32_error > bound, "{name}: f32 is as exact as f64");

@@ -1,5 +1,5 @@
-//! No NaN and no infinity gets into a picture: what would be one is left out and counted by cause,
-//! alike on both engines.
+//! Theory: no NaN and no infinity reaches an image. Such samples are rejected and counted by cause,
+//! in the same way on both engines.
 
 use bytemuck::Zeroable;
 use caustica::low_level::cpu::CpuEngine;
@@ -15,7 +15,9 @@ use caustica::low_level::scene;
 use caustica::low_level::scene::settings::{Direct, Method, Radius, RenderSettings};
 use glam::Vec3;
 
-/// A floor under a lamp that is seen, and a point light.
+use crate::support::{bits, software};
+
+/// A floor under a visible lamp, and a point light.
 const SCENE: &str = r#"version = 1
 [camera]
 position = [0.0, 1.0, 4.0]
@@ -71,21 +73,20 @@ fn rendered(mut engine: impl Engine, passes: u32) -> (Picture, Rejections) {
     (engine.picture().expect("a picture"), engine.rejections().expect("counts"))
 }
 
-/// Renders on both engines, which must give the same bits and counts; the picture must be finite.
+/// Renders on both engines, which must give the same bits and counts. The image must be finite.
 fn on_both(packed: &Packed, settings: &RenderSettings) -> (Picture, Rejections) {
     let plan = Plan::probed(packed, settings);
-    let choice = crate::support::software();
+    let choice = software();
     let cpu = rendered(CpuEngine::new(packed.clone(), plan.clone()), settings.passes);
     let driver =
         rendered(GpuEngine::new(&choice, packed, plan).expect("an engine"), settings.passes);
     assert_eq!(cpu.1, driver.1);
-    let bits = |p: &Picture| p.rgb.as_flattened().iter().map(|x| x.to_bits()).collect::<Vec<_>>();
     assert_eq!(bits(&cpu.0), bits(&driver.0));
     assert_eq!(cpu.0.not_finite(), 0);
     cpu
 }
 
-/// The light of a kind in a scene.
+/// Returns the scene's light of a kind.
 fn light(packed: &mut Packed, kind: u32) -> &mut caustica::low_level::tables::Light {
     packed.scene.lights.iter_mut().find(|l| l.kind == kind).expect("such a light")
 }
@@ -100,10 +101,10 @@ fn nothing_is_left_out_of_a_sound_scene() {
     }
 }
 
-/// Theory: scene files cannot make such numbers, so the flattened scene is poisoned, one number at
-/// a time. A lamp of infinite radiance that is seen spoils the eye paths that meet it; a point
-/// light of NaN the samples of direct light, or with `direct = "photons"` the photons. Each pass of
-/// each pixel is counted once, under the first cause.
+/// Theory: scene files cannot contain such numbers, so the test poisons the packed scene, one
+/// number at a time. A visible lamp of infinite radiance invalidates the eye paths that meet it,
+/// and a point light of NaN the direct light samples, or the photons with `direct = "photons"`.
+/// Each pass of each pixel counts once, under the first cause.
 #[test]
 fn causes_are_told_apart() {
     use caustica::low_level::tables::{LIGHT_AREA, LIGHT_POINT};
@@ -120,7 +121,7 @@ fn causes_are_told_apart() {
         let (picture, r) = on_both(&scene, &settings(Direct::Sampled));
         assert!(r.direct_light > 0, "{poison}: {r:?}");
         assert_eq!((r.eye_path, r.estimate), (0, 0), "{poison}: {r:?}");
-        // the lamp is seen as ever
+        // the lamp is still visible
         assert!(picture.rgb.iter().any(|c| (c[0] - 3.0).abs() < 1e-5));
 
         let (_, r) = on_both(&scene, &settings(Direct::Photons));
@@ -129,8 +130,9 @@ fn causes_are_told_apart() {
     }
 }
 
-/// Theory: flux and radius are finite, but over the area of a disc of radius 1e-19 (squared 1e-38)
-/// the sum of 1e9 of flux is beyond f32. Photons hardly meet such a disc, so the twin is fed.
+/// Theory: flux and radius are finite, but a summed flux of 1e9 over the area of a disc of radius
+/// 1e-19 (squared 1e-38) exceeds f32. Photons hardly meet such a disc, so the test calls the kernel
+/// directly.
 #[test]
 fn an_estimate_that_overflows_is_left_out() {
     let d = Dispatch { eye_samples: 1, scale_sq: 1.0, photons: 1.0, ..Dispatch::zeroed() };
@@ -144,12 +146,12 @@ fn an_estimate_that_overflows_is_left_out() {
         &mut film,
     );
     assert_eq!((film.rejected, film.mean), ([0, 0, 0, 1], Vec3::ZERO));
-    // the next pass is the first that counts
+    // the next pass counts as the first
     resolve(&Dispatch { passes_done: 1, ..d }, &[point], &[Gathered::zeroed()], None, &mut film);
     assert_eq!((film.rejected, film.mean + film.carry), ([0, 0, 0, 1], Vec3::ONE));
 }
 
-/// Theory: path tracing has one sum, that of the path.
+/// Theory: path tracing has one sum per path.
 #[test]
 fn paths_are_counted() {
     let mut scene = packed(SCENE);
@@ -161,7 +163,7 @@ fn paths_are_counted() {
     assert!(r.eye_path > 0 && r.total() == r.eye_path, "{r:?}");
 }
 
-/// A point light of the greatest strength at 1e-5 of a floor: I / d^2 = 1e40.
+/// A point light of the greatest intensity at 1e-5 above a floor: I / d^2 = 1e40.
 pub const TOO_BRIGHT: &str = r#"version = 1
 [camera]
 position = [0.0, 4e-5, 2e-5]
@@ -188,8 +190,8 @@ position = [0.0, 1e-5, 0.0]
 intensity = 1e30
 "#;
 
-/// Theory: radiance 1e30 / (1e-5)^2 0.5 / pi = 1.6e39 is beyond f32's 3.4e38: the pixel below the
-/// light holds f32's largest number and is counted, the dim ones at the border are not.
+/// Theory: radiance 1e30 / (1e-5)^2 0.5 / pi = 1.6e39 exceeds the 3.4e38 of f32. The pixel below
+/// the light holds the largest f32 and is counted; the dim pixels at the border are not.
 #[test]
 fn too_bright_pixels_are_counted() {
     let scene = packed(TOO_BRIGHT);

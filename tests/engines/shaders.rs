@@ -1,6 +1,7 @@
 //! Every composition of the shaders parses and validates: each feature alone, all of them, and a
-//! spread of mixtures. Theory: naga is the compiler that wgpu uses, so what it accepts here it
-//! accepts in a render.
+//! range of mixtures.
+//!
+//! Theory: wgpu compiles with naga, so a module that naga accepts here compiles in a render.
 
 use crate::ingredients::Mixture;
 use caustica::low_level::gpu::compose::{compose, compose_from};
@@ -10,7 +11,7 @@ use caustica::low_level::plan::Kernel;
 use caustica::low_level::plan::features::{Feature, Features};
 use std::collections::BTreeSet;
 
-/// Each feature alone, all of them, and `count` mixtures by a fixed sequence of random bits.
+/// Each feature alone, all of them, and `count` mixtures from a fixed sequence of random bits.
 fn mixtures(count: usize) -> Vec<Vec<Feature>> {
     let mut all: Vec<Vec<_>> = Feature::all().map(|feature| vec![feature]).collect();
     all.push(Vec::new());
@@ -30,8 +31,8 @@ fn mixtures(count: usize) -> Vec<Vec<Feature>> {
     all
 }
 
-/// The faults of all compositions from `fragments`, each once, with the first mixture that shows
-/// it.
+/// Validates all compositions of `fragments`. Lists each error once, with the first mixture that
+/// shows it.
 fn faults(fragments: &[Fragment], count: usize) -> Vec<String> {
     let mut seen = BTreeSet::new();
     let mut list = Vec::new();
@@ -57,7 +58,7 @@ fn every_composition_is_valid() {
     assert!(list.is_empty(), "{} faults:\n{}", list.len(), list.join("\n"));
 }
 
-/// The layer of direct light takes code that nothing else of its kernel does.
+/// The layer of direct light adds code to its kernel only.
 #[test]
 fn the_layer_of_direct_light_is_valid() {
     for names in mixtures(20) {
@@ -73,16 +74,16 @@ fn the_layer_of_direct_light_is_valid() {
     }
 }
 
-/// The ingredients bring every feature, so that none goes untested.
+/// The mixtures contain every feature.
 #[test]
 fn every_feature_is_mixed() {
-    // the layer of direct light comes from the film
+    // the layer of direct light depends on the film
     for feature in Feature::all().filter(|feature| *feature != Feature::DirectLayer) {
         assert!(Mixture::of(&[feature]).features().has(feature), "{feature:?}");
     }
 }
 
-/// A kernel's module has what the scene requires and nothing of what it does not.
+/// A kernel's module contains everything that the scene requires and nothing else.
 #[test]
 fn only_what_is_required() {
     let source = |features: &[Feature]| {
@@ -119,7 +120,7 @@ fn only_what_is_required() {
     }
 }
 
-/// WebGPU promises eight storage buffers.
+/// Theory: WebGPU guarantees only eight storage buffers.
 #[test]
 fn at_most_eight_storage_buffers() {
     let features = Mixture::of(&Feature::all().collect::<Vec<_>>()).features();
@@ -129,7 +130,7 @@ fn at_most_eight_storage_buffers() {
     }
 }
 
-/// A typo planted in any file is found, and named with its file and line.
+/// The check finds a typo planted in any file, and reports file and line.
 #[test]
 fn a_planted_error_is_found() {
     for (path, right, wrong) in [

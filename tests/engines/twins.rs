@@ -1,5 +1,5 @@
-//! Every WGSL file has a Rust twin of the same stem that names it, every kernel an entry point of
-//! its stem.
+//! Theory: every WGSL file has a Rust twin of the same stem that names it, and every kernel an
+//! entry point named like its stem.
 
 use caustica::low_level::gpu::compose::compose;
 use caustica::low_level::gpu::layout::SceneTables;
@@ -7,28 +7,10 @@ use caustica::low_level::plan::Kernel;
 use caustica::low_level::plan::features::Feature;
 use std::collections::BTreeSet;
 use std::fs;
-use std::path::{Path, PathBuf};
 
-fn files(root: &Path, extension: &str) -> Vec<PathBuf> {
-    let mut list = Vec::new();
-    for entry in fs::read_dir(root).unwrap() {
-        let path = entry.unwrap().path();
-        if path.is_dir() {
-            list.extend(files(&path, extension));
-        } else if path.extension().is_some_and(|e| e == extension) {
-            list.push(path);
-        }
-    }
-    list.sort();
-    list
-}
+use crate::support::{files, repository};
 
-fn root() -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
-}
-
-/// Shader files that implement one Rust module together, and the one helper that Rust does in a
-/// loop.
+/// Shader files that implement one Rust module together, and a helper that Rust writes as a loop.
 const PARTS: [(&str, &str); 9] = [
     ("kernels/grid_count", "kernels/grid_build"),
     ("kernels/grid_scan_reduce", "kernels/grid_build"),
@@ -44,7 +26,7 @@ const PARTS: [(&str, &str); 9] = [
 #[test]
 fn shaders_have_rust_twins() {
     let mut missing = Vec::new();
-    let shaders = root().join("shaders");
+    let shaders = repository("shaders");
     for shader in files(&shaders, "wgsl") {
         let stem = shader.strip_prefix(&shaders).unwrap().with_extension("");
         let stem = stem.to_str().unwrap().replace('\\', "/");
@@ -52,7 +34,7 @@ fn shaders_have_rust_twins() {
             .iter()
             .find(|(part, _)| *part == stem)
             .map_or(stem.as_str(), |(_, module)| module);
-        let rust = root().join("src").join(twin).with_extension("rs");
+        let rust = repository("src").join(twin).with_extension("rs");
         if !rust.is_file() {
             missing.push(format!("{} has no {}", shader.display(), rust.display()));
         }
@@ -63,12 +45,12 @@ fn shaders_have_rust_twins() {
 #[test]
 fn rust_twins_name_shaders_that_exist() {
     let mut missing = Vec::new();
-    for rust in files(&root().join("src"), "rs") {
+    for rust in files(&repository("src"), "rs") {
         let text = fs::read_to_string(&rust).unwrap();
         let header: String = text.lines().take_while(|l| l.starts_with("//!")).collect();
         for name in header.split('`').filter(|w| w.starts_with("shaders/") && w.ends_with(".wgsl"))
         {
-            if !root().join(name).is_file() {
+            if !repository(name).is_file() {
                 missing.push(format!("{} names {name}", rust.display()));
             }
         }
@@ -76,11 +58,11 @@ fn rust_twins_name_shaders_that_exist() {
     assert!(missing.is_empty(), "{}", missing.join("\n"));
 }
 
-/// Each kernel's module has exactly one entry point: the stem, which is also the file's name and
-/// the Rust function's.
+/// Each kernel's module has exactly one entry point, named like the file's stem and the Rust
+/// function.
 #[test]
 fn entry_points_are_stems() {
-    let rust: String = files(&root().join("src/kernels"), "rs")
+    let rust: String = files(&repository("src/kernels"), "rs")
         .iter()
         .map(|path| fs::read_to_string(path).unwrap())
         .collect();
@@ -94,7 +76,7 @@ fn entry_points_are_stems() {
     ]);
     for kernel in Kernel::ALL {
         let stem = kernel.stem();
-        assert!(root().join(format!("shaders/kernels/{stem}.wgsl")).is_file(), "{stem}");
+        assert!(repository(&format!("shaders/kernels/{stem}.wgsl")).is_file(), "{stem}");
         let shader =
             compose(kernel, &mixture.features(), &SceneTables::new(&mixture.scene)).unwrap();
         let (module, _) = shader.validate().unwrap();

@@ -1,11 +1,11 @@
-//! `render --denoise` with Open Image Denoise: `cargo test --release --features denoise --test
-//! denoise`.
+//! `render --denoise` with Open Image Denoise: `cargo test --release --features denoise --test film
+//! -- denoise`.
 //!
-//! Theory: the mean square of independent noise falls where like pixels are averaged, and a
-//! path-traced picture is full of it, so that a denoised one is many times nearer to what photons
-//! make of the scene in a long render. Layers lead it only if they lie over the picture as they
-//! should. Radiance has no upper bound, so a picture in another unit is the same picture in that
-//! unit. Nothing else knows of it: all that is measured has the same bits.
+//! Theory: averaging similar pixels reduces the mean square of independent noise. A path-traced
+//! image is full of such noise, so its denoised version is many times closer to a long
+//! photon-mapped render. Layers guide the filter only if they are aligned with the image. Radiance
+//! has no upper bound, so the filter commutes with a change of unit. Denoising affects nothing
+//! else: every measurement has the same bits.
 
 use std::path::Path;
 
@@ -20,7 +20,7 @@ const NAMES: [&str; 6] = ["albedo.R", "albedo.G", "albedo.B", "normal.X", "norma
 const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/cornell.toml");
 const ON: [&str; 6] = ["render", SCENE, "--device", "cpu", "--size", "96x72"];
 
-/// By path tracing with few paths.
+/// Renders by path tracing with few paths.
 fn rendered(folder: &Path, arguments: &[&str]) -> Vec<u8> {
     ends(folder, &[&ON[..], &["--method", "path", "--passes", "8"], arguments].concat(), 0, &[])
         .stdout
@@ -30,7 +30,7 @@ fn exr(folder: &Path, name: &str) -> ExrFile {
     file::read_exr(&folder.join(name)).unwrap()
 }
 
-/// The layers that guide, from a file that has them.
+/// Reads the guiding layers of a file.
 fn guides(file: &ExrFile) -> Vec<Channel> {
     let [albedo, normal] = [&NAMES[..3], &NAMES[3..]].map(|names| {
         let at = |i: usize| [0, 1, 2].map(|c: usize| file.channels[names[c]][i]);
@@ -58,10 +58,10 @@ fn a_denoised_picture_is_nearer_to_the_truth() {
     let (noisy, denoised) = (a.picture("").unwrap(), a.picture("denoised.").unwrap());
     let [before, after] = [&noisy, &denoised].map(|picture| error(picture, &truth));
     assert!(after < before / 5.0, "relMSE {before} before, {after} after");
-    // the library alone makes the same
+    // calling the library directly gives the same
     let denoiser = Denoiser::open().unwrap();
     assert_eq!(denoiser.denoise(&noisy, &guides(&a)).unwrap(), denoised);
-    // a picture of another size than its layers, and one without
+    // refuses an image of another size than its layers, and one without layers
     let part = Picture { height: 71, rgb: noisy.rgb[96..].to_vec(), ..noisy };
     let what = denoiser.denoise(&part, &guides(&a)).unwrap_err().to_string();
     assert!(what.contains("Open Image Denoise 2: ") && what.contains("size"), "{what}");
@@ -69,7 +69,8 @@ fn a_denoised_picture_is_nearer_to_the_truth() {
     assert!(what.contains("normal.Z is missing"), "{what}");
 }
 
-/// Stripes that drown in noise: only who is told where they are and how coloured finds them again.
+/// Theory: stripes hidden in noise can only be recovered with layers that show their place and
+/// colour.
 #[test]
 fn layers_lead_the_filter() {
     let colors = [[0.8, 0.1, 0.2], [0.1, 0.3, 0.8], [0.6, 0.7, 0.1]];
@@ -92,7 +93,7 @@ fn layers_lead_the_filter() {
         error(&denoiser.denoise(&noisy, &layers(albedo, &facing)).unwrap(), &truth)
     };
     let right = led_by(&truth);
-    // planted: channels in another order, stripes elsewhere, none at all
+    // planted errors: channels in another order, stripes elsewhere, no layers
     let wrong = [striped([2, 0, 1], 5, 0), striped([0, 1, 2], 5, 7), striped([0, 1, 2], 1000, 0)];
     for wrong in wrong.map(|albedo| led_by(&albedo)) {
         assert!(
@@ -115,7 +116,7 @@ fn radiance_may_be_in_any_unit() {
     let bright = Denoiser::open().unwrap().denoise(&scaled(&noisy, 1024.0), &guides(&a)).unwrap();
     let differs = error(&scaled(&bright, 1.0 / 1024.0), &denoised);
     assert!(differs < 1e-4, "relMSE {differs}");
-    // planted: values cut at 1, as display values are
+    // planted error: values clipped at 1, like display values
     let cut = Picture {
         rgb: denoised.rgb.iter().map(|rgb| rgb.map(|x| x.min(1.0))).collect(),
         ..denoised
@@ -145,11 +146,11 @@ fn nothing_measured_sees_it() {
     names.sort();
     assert_eq!(a.channels.keys().map(String::as_str).collect::<Vec<_>>(), names);
     assert_eq!(read(&folder.join("a.pfm")).unwrap(), plain.picture("").unwrap());
-    // what says how it was made tells of it, and does not ask for the layers that were only lent
+    // the attributes mention the denoiser and do not request layers that were only used as guides
     assert_eq!(a.attributes["caustica.denoised"], "Open Image Denoise 2");
     assert!(!plain.attributes.contains_key("caustica.denoised"));
     assert!(!a.attributes.contains_key("caustica.aov"));
-    // a PNG file shows the denoised picture, which is another one
+    // a PNG file contains the denoised image, which differs
     let image = image::open(folder.join("a.png")).unwrap().into_rgb8();
     let shows = |picture: &Picture| {
         let of = |i: usize| image.get_pixel(picture.position(i).0, picture.position(i).1).0;

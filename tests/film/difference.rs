@@ -1,9 +1,8 @@
-//! FLIP and SSIM against the programs of others, and all measures together.
+//! FLIP and SSIM against reference implementations, and all metrics together.
 //!
-//! Theory: pictures that formulas of exact binary fractions make are the same here and in Python.
-//! Their figures were computed by `tests/data/measures.py` with flip-evaluator 1.7, the FLIP
-//! authors' own program, which works in f32 (hence a tolerance of 5e-6), and scikit-image 0.26.0 in
-//! f64.
+//! Theory: images defined by formulas of exact binary fractions are identical here and in Python.
+//! `tests/data/measures.py` computed their metrics with flip-evaluator 1.7, the FLIP authors'
+//! program, which works in f32 (hence a tolerance of 5e-6), and with scikit-image 0.26.0 in f64.
 
 use caustica::low_level::film::colors::magma;
 use caustica::low_level::film::flip::{Exposures, PIXELS_PER_DEGREE, hdr_flip, ldr_flip};
@@ -14,7 +13,7 @@ use caustica::low_level::film::{Coding, Difference, Measures, Picture, Region, l
 const WIDTH: u32 = 96;
 const HEIGHT: u32 = 64;
 
-/// A whole number of 256ths in [0, 1).
+/// A multiple of 1/256 in [0, 1).
 fn unit(x: u32, y: u32, seed: u32) -> f32 {
     let mut h = x
         .wrapping_mul(0x9e37_79b1)
@@ -30,7 +29,7 @@ fn picture(rgb: impl Fn(u32, u32) -> [f32; 3]) -> Picture {
     Picture::from_fn(WIDTH, HEIGHT, rgb)
 }
 
-/// Ramps in red and green, a checkerboard in blue that is moved by `shift` pixels.
+/// Ramps in red and green, and a checkerboard in blue that is shifted by `shift` pixels.
 fn ramps(x: u32, y: u32, shift: u32) -> [f32; 3] {
     let checker = if ((x + shift) / 8 + y / 8) % 2 == 1 { 0.75 } else { 0.125 };
     [x as f32 / 128.0, y as f32 / 64.0, checker]
@@ -40,7 +39,7 @@ fn plain() -> Picture {
     picture(|x, y| ramps(x, y, 0))
 }
 
-/// Noise of a quarter about zero.
+/// Noise of amplitude 1/4 around zero.
 fn noisy() -> Picture {
     picture(|x, y| {
         let rgb = ramps(x, y, 0);
@@ -79,7 +78,7 @@ fn speck() -> Picture {
     })
 }
 
-/// What the others' programs find.
+/// Results of the reference implementations.
 struct Expected {
     name: &'static str,
     test: Picture,
@@ -156,7 +155,8 @@ fn ssim_is_that_of_scikit_image() {
     }
 }
 
-/// Planted errors larger than the noise move each measure further: the tests above would see them.
+/// Planted errors larger than the noise change each metric further, so the tests above would detect
+/// them.
 #[test]
 fn planted_errors_are_seen() {
     let (plain, noisy) = (plain(), noisy());
@@ -167,14 +167,14 @@ fn planted_errors_are_seen() {
     assert!(ldr(&spot, &plain) > ldr(&noisy, &plain) + 1e-3);
     assert!(hdr(&spot, &plain) > hdr(&noisy, &plain) + 1e-3);
     assert!(ssim(&spot, &plain) < ssim(&noisy, &plain) - 1e-4);
-    // A shift by a pixel, which leaves all values where they are in the sum.
+    // A shift by one pixel keeps the set of values.
     let shifted = picture(|x, y| ramps(x, y, 1));
     assert!(
         ldr(&shifted, &plain) > 0.05
             && hdr(&shifted, &plain) > 0.05
             && ssim(&shifted, &plain) < 0.99
     );
-    // What LDR-FLIP clips HDR-FLIP sees.
+    // HDR-FLIP detects differences that LDR-FLIP clips.
     let brighter = picture(|x, y| {
         bright().rgb[(y * WIDTH + x) as usize].map(|v| if v > 4.0 { 1.5 * v } else { v })
     });
@@ -182,8 +182,8 @@ fn planted_errors_are_seen() {
     assert!(hdr(&brighter, &bright()) > 0.01);
 }
 
-/// Equal pictures: nothing by any measure, to the last bit. LDR-FLIP and SSIM are symmetric by
-/// their definitions.
+/// Theory: equal images differ by exactly zero in every metric. LDR-FLIP and SSIM are symmetric by
+/// definition.
 #[test]
 fn equality_and_symmetry_are_exact() {
     let plain = plain();
@@ -201,8 +201,7 @@ fn equality_and_symmetry_are_exact() {
     assert!(a.rel_mse != b.rel_mse, "relMSE divides by the truth");
 }
 
-/// FLIP and SSIM stay in their ranges for the worst that can be: black against white, and random
-/// pixels.
+/// FLIP and SSIM stay in their ranges for extreme inputs: black against white, and random pixels.
 #[test]
 fn extremes() {
     let flat = |value| picture(move |_, _| [value; 3]);
@@ -219,7 +218,7 @@ fn extremes() {
         );
         assert!(ldr(&a, &b) > 0.5 && (-1.0..0.5).contains(&ssim(&a, &b)));
     }
-    // The exposures of pictures that are dark by half or altogether.
+    // Exposures of images that are half or entirely dark.
     let half = picture(|x, _| if x < 60 { [0.0; 3] } else { [1.0; 3] });
     let exposures = Exposures::of(&half);
     assert_eq!((exposures.start > 1.0, exposures.count), (true, 23), "log2 of 2^23");
@@ -234,7 +233,7 @@ fn extremes() {
     }
 }
 
-/// An error in one region: that region's figures show it, and those of a region far away are clean.
+/// An error in one region changes the metrics of that region and not those of a distant one.
 #[test]
 fn regions_look_at_their_own_pixels() {
     let plain = plain();
@@ -254,17 +253,17 @@ fn regions_look_at_their_own_pixels() {
             && left.ssim < Some(0.9)
     );
     assert_eq!((left.pixels.pixels, left.pixels.pixels_differing), (32 * 64, 32 * 64));
-    // The whole picture's figures are the means of its parts', weighted by their pixels.
+    // Metrics of the whole image are means of those of its parts, weighted by pixels.
     let whole = difference.measures(None).unwrap();
     let rest = at(32, 0, 96, 64).unwrap();
     let weighted = |of: &dyn Fn(&Measures) -> f64| (of(&left) + 2.0 * of(&rest)) / 3.0;
     assert_close("MSE", whole.pixels.mse, weighted(&|m| m.pixels.mse), 1e-12);
     assert_close("FLIP", whole.ldr_flip, weighted(&|m| m.ldr_flip), 1e-12);
     assert_eq!(at(0, 0, 96, 64).unwrap(), whole);
-    // A region's worst pixel is told by its place in the picture.
+    // The worst pixel of a region is given by its place in the image.
     let worst = at(8, 50, 32, 64).unwrap().pixels.worst;
     assert!((8..32).contains(&worst.x) && (50..64).contains(&worst.y), "{worst:?}");
-    // SSIM has windows about pixels 5 to 90; a region on the border has none.
+    // SSIM windows are centred on pixels 5 to 90, so a region on the border has none.
     assert_eq!(at(0, 0, 5, 64).unwrap().ssim, None);
     assert!(at(0, 0, 6, 64).unwrap().ssim.is_some());
     for (x0, y0, x1, y1) in [(0, 0, 97, 64), (0, 0, 96, 65), (5, 5, 5, 9), (9, 9, 5, 12)] {
@@ -272,8 +271,8 @@ fn regions_look_at_their_own_pixels() {
     }
 }
 
-/// Entries of matplotlib 3's table of magma, most of them between the stops kept here, and
-/// lightness that rises.
+/// Entries of matplotlib 3's magma table, most of them between the stops stored here; lightness
+/// rises.
 #[test]
 fn magma_is_magma() {
     for (entry, expected) in [

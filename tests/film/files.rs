@@ -1,20 +1,20 @@
-//! Picture files.
+//! Image files.
 //!
-//! Theory: EXR and PFM keep every bit of a finite f32; HDR keeps 8 bits of the largest channel, so
-//! a value is within 1/256 of the pixel's largest (Ward 1991); PNG keeps 8-bit display values. A
-//! file is there whole or not at all.
+//! Theory: EXR and PFM keep every bit of a finite f32. HDR keeps 8 bits of the largest channel, so
+//! a value is within 1/256 of the pixel's largest (Ward 1991). PNG keeps 8-bit display values. A
+//! file is written completely or not at all.
 
 use std::fs;
 use std::path::Path;
 
-use crate::support::folder;
+use crate::support::{bits, folder, names};
 use caustica::low_level::film::{
     Development, FileError, Picture, Provenance, check_outputs, exr_file, file, pfm, read, write,
 };
 use caustica::low_level::scene::settings::RenderSettings;
 
-/// Not square and unlike its mirror images, over many magnitudes; with denormal, negative zero and
-/// large values.
+/// A test image: not square, without mirror symmetry, over many magnitudes, with denormal, negative
+/// zero and large values.
 fn sample() -> Picture {
     let mut picture = Picture::from_fn(19, 7, |x, y| {
         let base = (1.7f32).powi(x as i32 - 9);
@@ -36,10 +36,6 @@ fn provenance() -> Provenance {
     }
 }
 
-fn bits(picture: &Picture) -> Vec<u32> {
-    picture.rgb.as_flattened().iter().map(|value| value.to_bits()).collect()
-}
-
 fn write_sample(file: &Path, picture: &Picture) {
     write(file, picture, &[], &Development::default(), &provenance()).unwrap();
 }
@@ -53,7 +49,7 @@ fn float_formats_keep_every_bit() {
         let back = read(&file).unwrap();
         assert_eq!((back.width, back.height), (19, 7), "{name}");
         assert_eq!(bits(&back), bits(&sample()), "{name}");
-        // The comparison must see a single changed bit.
+        // The comparison must detect a single changed bit.
         let mut changed = sample();
         changed.rgb[40][1] = f32::from_bits(changed.rgb[40][1].to_bits() ^ 1);
         write_sample(&file, &changed);
@@ -110,7 +106,7 @@ fn exr_attributes_tell_how_the_picture_was_made() {
     assert_eq!(settings, provenance().settings);
 }
 
-/// Equal pictures must give equal files; the attributes' hash map is seeded anew for every map.
+/// Equal images must give equal files, although the attributes' hash map has a new seed each time.
 #[test]
 fn equal_pictures_give_equal_bytes() {
     let attributes = provenance().attributes();
@@ -130,7 +126,7 @@ fn equal_pictures_give_equal_bytes() {
     );
 }
 
-/// Mistakes about outputs come before the work, each with its name.
+/// Invalid outputs are refused before the render, each with its name.
 #[test]
 fn outputs_are_checked_up_front() {
     let folder = folder("check");
@@ -152,13 +148,10 @@ fn outputs_are_checked_up_front() {
     assert!(matches!(check(&["a.png", "a.png"]), Err(FileError::Repeated { .. })));
     fs::create_dir(folder.join("sub.png")).unwrap();
     assert!(matches!(check(&["sub.png"]), Err(FileError::IsFolder { .. })));
-    let left: Vec<_> =
-        fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name()).collect();
-    assert_eq!(left, ["sub.png"], "checking leaves nothing");
+    assert_eq!(names(&folder), ["sub.png"], "checking leaves nothing");
 }
 
-/// A write that fails leaves neither the file nor a part of it; one that succeeds replaces the old
-/// file.
+/// A failed write leaves neither the file nor a part of it; a successful one replaces the old file.
 #[test]
 fn nothing_half_written_is_left() {
     let folder = folder("whole");
@@ -170,10 +163,7 @@ fn nothing_half_written_is_left() {
     let refused =
         write(&folder.join("b.pfm"), &sample(), &[], &Development::default(), &provenance());
     assert!(matches!(refused, Err(FileError::Io { verb: "written", .. })), "{refused:?}");
-    let mut left: Vec<_> =
-        fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name()).collect();
-    left.sort();
-    assert_eq!(left, ["a.pfm", "b.pfm"]);
+    assert_eq!(names(&folder), ["a.pfm", "b.pfm"]);
 }
 
 #[test]

@@ -1,7 +1,7 @@
-//! Measures of difference.
+//! Image difference metrics.
 //!
-//! Theory: each figure of a constructed pair of pictures is known in closed form, and each must
-//! move when an error is planted.
+//! Theory: the metrics of a constructed pair of images are known in closed form, and each must
+//! change when an error is planted.
 
 use caustica::low_level::film::blocks::{block_deviations, share_outside};
 use caustica::low_level::film::heat::heat_map;
@@ -12,7 +12,7 @@ fn grey(width: u32, height: u32, value: f32) -> Picture {
     Picture::from_fn(width, height, |_, _| [value; 3])
 }
 
-/// Uniform noise in [-0.5, 0.5] that depends on the seed alone (SplitMix64).
+/// Uniform noise in [-0.5, 0.5] that depends on the seed only (SplitMix64).
 fn noise(seed: u64, index: u64) -> f32 {
     let mut z = seed
         .wrapping_mul(0x9e37_79b9_7f4a_7c15)
@@ -40,8 +40,8 @@ fn equal_pictures() {
     assert_eq!(compare(&black, &black).unwrap().mean_ratio, [1.0; 3]);
 }
 
-/// Every pixel of `a` is 0.5 and of `b` 0.25: ratio 2, relMSE 0.0625 / 0.0725, RMSE 0.25, PSNR 0
-/// dB.
+/// Theory: every pixel of `a` is 0.5 and of `b` 0.25, so the ratio is 2, relMSE 0.0625 / 0.0725,
+/// RMSE 0.25 and PSNR 0 dB.
 #[test]
 fn constant_offset() {
     let c = compare(&grey(40, 50, 0.5), &grey(40, 50, 0.25)).unwrap();
@@ -50,13 +50,13 @@ fn constant_offset() {
     assert!((c.rel_mse - 0.0625 / 0.0725).abs() < 1e-12, "{}", c.rel_mse);
     assert!((c.rmse - 0.25).abs() < 1e-12 && c.psnr.abs() < 1e-9, "{} {}", c.rmse, c.psnr);
     assert_eq!(c.pixels_differing, 2000);
-    // A channel of its own: the mean ratio names it.
+    // The mean ratio names the one channel that differs.
     let tinted = Picture::from_fn(4, 4, |_, _| [0.25, 0.5, 0.25]);
     assert_eq!(compare(&tinted, &grey(4, 4, 0.25)).unwrap().mean_ratio, [1.0, 2.0, 1.0]);
 }
 
-/// relMSE drops one pixel in a thousand, so one firefly in 1000 pixels vanishes and a second one is
-/// seen.
+/// Theory: relMSE drops one pixel in a thousand, so it ignores one firefly in 1000 pixels and
+/// includes a second one.
 #[test]
 fn rel_mse_drops_the_largest_thousandth() {
     let truth = grey(50, 20, 1.0);
@@ -79,7 +79,7 @@ fn worst_pixel_and_bits() {
     let c = compare(&a, &truth).unwrap();
     assert_eq!((c.worst.x, c.worst.y, c.worst.a, c.worst.b), (22, 9, a.rgb[at], truth.rgb[at]));
     assert_eq!(c.pixels_differing, 2);
-    // Zero and negative zero are equal numbers of different bits.
+    // Zero and negative zero are equal numbers with different bits.
     let minus = compare(&grey(3, 3, -0.0), &grey(3, 3, 0.0)).unwrap();
     assert_eq!((minus.pixels_differing, minus.rmse), (9, 0.0));
 }
@@ -101,10 +101,10 @@ fn what_cannot_be_compared() {
     assert_eq!(compare(&grey(0, 0, 0.0), &grey(0, 0, 0.0)), Err(MetricsError::Empty));
 }
 
-/// Two pictures of the same mean and independent noise: at 4 sigma about 1.7e-4 of 1024 blocks, so
-/// 2 at most (the chance of more is below 1e-3, and the noise is fixed). A shift of 2 % of the mean
-/// in a quarter of the picture (noise of a block mean: 0.2 / sqrt(12) / 8 * sqrt(2) = 0.01, shift
-/// 0.1 = 10 sigma) must fill that quarter.
+/// Theory: for two images of the same mean and independent noise, about 1.7e-4 of 1024 blocks
+/// exceed 4 sigma, so at most 2 do (more have a chance below 1e-3, and the noise is fixed). A shift
+/// of 2 % of the mean in a quarter of the image (noise of a block mean: 0.2 / sqrt(12) / 8 *
+/// sqrt(2) = 0.01, shift 0.1 = 10 sigma) must mark that quarter.
 #[test]
 fn blocks_agree_within_noise_and_show_a_shift() {
     let truth = noisy(256, 256, 3, 5.0);
@@ -112,7 +112,7 @@ fn blocks_agree_within_noise_and_show_a_shift() {
     let blocks = block_deviations(&render, &truth, None, 0.0).unwrap();
     assert_eq!(blocks.len(), 1024);
     assert!(share_outside(&blocks) <= 2.0 / 1024.0, "{}", share_outside(&blocks));
-    // The deviations are of unit variance: Student-t of 63 degrees of freedom has 63/61, within 5
+    // The deviations have unit variance: Student's t with 63 degrees of freedom has 63/61, within 5
     // sigma of 1024 draws.
     let variance = blocks.iter().map(|block| block.deviation.powi(2)).sum::<f64>() / 1024.0;
     assert!((variance - 63.0 / 61.0).abs() < 5.0 * (2.0f64 / 1024.0).sqrt(), "{variance}");
@@ -125,27 +125,27 @@ fn blocks_agree_within_noise_and_show_a_shift() {
     for block in blocks.iter().filter(|block| block.x < 128 && block.y < 128) {
         assert!(block.outside() && block.deviation > 0.0, "{block:?}");
     }
-    // The same shift passes within an allowance of 3 % bias.
+    // The same shift passes with an allowance of 3 % bias.
     assert!(share_outside(&block_deviations(&shifted, &truth, None, 0.03).unwrap()) == 0.0);
 }
 
-/// One block of constant difference d = 0.3, standard error 0.4 in each pixel's every channel: the
-/// mean's error is lum(0.4) / 8 = 0.05, so the deviation is 6.
+/// Theory: one block of constant difference d = 0.3 with standard error 0.4 in each channel of each
+/// pixel. The error of the mean is lum(0.4) / 8 = 0.05, so the deviation is 6.
 #[test]
 fn standard_errors_enter_the_sigma() {
     let (render, truth) = (grey(8, 8, 1.3), grey(8, 8, 1.0));
     let blocks = block_deviations(&render, &truth, Some(&grey(8, 8, 0.4)), 0.0).unwrap();
     assert!((blocks[0].deviation - 6.0).abs() < 1e-5, "{blocks:?}");
-    // With twice the error it is 3, and inside.
+    // With twice the error it is 3, within the bound.
     let blocks = block_deviations(&render, &truth, Some(&grey(8, 8, 0.8)), 0.0).unwrap();
     assert!((blocks[0].deviation - 3.0).abs() < 1e-5 && !blocks[0].outside(), "{blocks:?}");
     assert!(block_deviations(&render, &truth, Some(&grey(9, 8, 0.8)), 0.0).is_err());
-    // Whole blocks only.
+    // Only whole blocks count.
     assert_eq!(block_deviations(&grey(23, 9, 1.0), &grey(23, 9, 1.0), None, 0.0).unwrap().len(), 2);
 }
 
-/// Equal pixels are black, differing ones are not, brighter for more; the top of the scale is the
-/// next power of ten.
+/// Equal pixels are black, differing ones brighter for larger differences; the top of the scale is
+/// the next power of ten.
 #[test]
 fn heat_map_shows_where_and_how_much() {
     let truth = grey(400, 30, 0.5);
@@ -163,7 +163,7 @@ fn heat_map_shows_where_and_how_much() {
         }
     }
     assert!(brightness(7, 3) > brightness(9, 4));
-    // A narrow picture gets a scale all the same, and equal pictures give a map too.
+    // A narrow image gets a scale too, and equal images give a map.
     let narrow = heat_map(&grey(2, 2, 1.0), &grey(2, 2, 1.0)).unwrap();
     assert!(narrow.width > 300 && narrow.rgb.len() == (narrow.width * narrow.height) as usize);
     assert_eq!(narrow.top, 1.0);

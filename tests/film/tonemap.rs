@@ -1,8 +1,8 @@
 //! Tone mapping.
 //!
-//! Theory: a tone curve must rise with radiance, keep grey grey, and stay in [0, 1] whatever comes
-//! in. AgX spans 16.5 stops and its base curve turns about middle grey, 0.18, which becomes one
-//! half on a display of exponent 2.2; the sRGB curve is that of IEC 61966-2-1.
+//! Theory: a tone curve must rise with radiance, keep grey grey, and stay in [0, 1] for any input.
+//! AgX spans 16.5 stops, and its base curve turns about middle grey, 0.18, which becomes one half
+//! on a display of exponent 2.2. The sRGB curve is that of IEC 61966-2-1.
 
 use caustica::low_level::film::Development;
 use caustica::low_level::film::tonemap::Bits;
@@ -15,7 +15,7 @@ fn development(tonemap: ToneMap) -> Development {
     Development { exposure: 0.0, tonemap, bits: Bits::Eight }
 }
 
-/// Radiances from 2^-16 to 2^8 in 32nds of a stop.
+/// Radiances from 2^-16 to 2^8 in steps of 1/32 stop.
 fn ramp() -> impl Iterator<Item = f32> {
     (-16 * 32..8 * 32).map(|i| (i as f32 / 32.0).exp2())
 }
@@ -32,7 +32,7 @@ fn rises_with_radiance() {
             "{tonemap:?}"
         );
     }
-    // AgX rises strictly where an eye sees it.
+    // AgX rises strictly in the visible range.
     let visible = ramp().filter(|value| (0.002..10.0).contains(value));
     let values: Vec<f64> =
         visible.map(|value| development(ToneMap::Agx).display([value; 3])[0]).collect();
@@ -80,16 +80,16 @@ fn known_values() {
     let agx = development(ToneMap::Agx);
     assert_eq!(agx.bytes([0.0; 3]), [0; 3]);
     assert_eq!(agx.bytes([1e6; 3]), [255; 3]);
-    // Middle grey, within twice the fit's root mean squared error of 1.9e-3.
+    // Middle grey, within twice the fit's RMS error of 1.9e-3.
     let grey = agx.display([0.18; 3])[0];
     let on_display = |value: f64| srgb_from_linear(value.powf(2.2));
     assert!((on_display(0.496)..on_display(0.504)).contains(&grey), "{grey}");
-    // A light too bright to show loses its hue, as on film.
+    // A very bright light loses its hue, as on film.
     let [r, g, b] = agx.display([1000.0, 100.0, 100.0]);
     assert!(r > 0.95 && g > 0.9 && b > 0.9, "{r} {g} {b}");
-    // The clip does not do so.
+    // The clip keeps it.
     assert_eq!(development(ToneMap::Srgb).bytes([1000.0, 0.0, 0.0]), [255, 0, 0]);
-    // The standard's own points: its linear toe, 0.5 -> 188 (187.516), and one.
+    // Points of the standard: its linear toe, 0.5 -> 188 (187.516), and one.
     let srgb = development(ToneMap::Srgb);
     assert_eq!(srgb.bytes([0.0, 0.5, 1.0]), [0, 188, 255]);
     assert!((srgb_from_linear(0.001) - 0.01292).abs() < 1e-15);

@@ -1,5 +1,6 @@
-//! Discs of points near the outline of a flat shape.
+//! Gather discs near the outline of a flat shape.
 
+use crate::support::software;
 use bytemuck::{Zeroable, cast_slice, pod_collect_to_vec};
 use caustica::low_level::gpu::Gpu;
 use caustica::low_level::gpu::compose::compose;
@@ -18,7 +19,7 @@ use caustica::low_level::tables::{NONE, Outline};
 use glam::{DVec2, Vec3, Vec4};
 use std::f64::consts::PI;
 
-/// Uniform numbers, the `i`-th four.
+/// The `i`-th four uniform random numbers.
 fn random(i: u32) -> Vec4 {
     rng_next(&mut rng_new(i, 0, STREAM_PHOTON, 9))
 }
@@ -30,7 +31,7 @@ fn parallelogram(origin: Vec3, u: Vec3, v: Vec3) -> Outline {
     Outline { origin, u, v, dual_u, dual_v, error: 1e-6, ..Outline::zeroed() }
 }
 
-/// Share of a disc that lies in an outline, by a sunflower of points.
+/// Share of a disc inside an outline, counted on a sunflower of points.
 fn counted(outline: &Outline, position: Vec3, normal: Vec3, radius: f32) -> f64 {
     const POINTS: u32 = 100_000;
     let (t, b) = basis(normal);
@@ -43,7 +44,7 @@ fn counted(outline: &Outline, position: Vec3, normal: Vec3, radius: f32) -> f64 
     inside.count() as f64 / f64::from(POINTS)
 }
 
-/// An outline in some plane, a point of it, its normal and a radius.
+/// A random outline in some plane, a point on it, its normal and a radius.
 fn case(i: u32) -> (Outline, Vec3, Vec3, f32) {
     let (a, b, c) = (random(3 * i), random(3 * i + 1), random(3 * i + 2));
     let normal = Vec3::new(a.x - 0.5, a.y - 0.5, a.z - 0.5).normalize();
@@ -62,9 +63,10 @@ fn case(i: u32) -> (Outline, Vec3, Vec3, f32) {
     (parallelogram(origin, u, v), origin + u * c.x + v * c.y, normal, radius)
 }
 
-/// Theory: the share is the area that disc and outline have in common over the disc's: counting
-/// points that are spread evenly over the disc gives it to a few times their spacing times the
-/// outline's length, below 0.004 here. An outline with an edge five hundredths longer is noticed.
+/// Theory: the share is the common area of disc and outline over the area of the disc. Counting
+/// points that are spread evenly over the disc gives it up to a few times their spacing times the
+/// outline's length, below 0.004 here. The test rejects an outline with an edge that is 0.05
+/// longer.
 #[test]
 fn shares_are_areas() {
     let mut noticed = 0;
@@ -92,9 +94,9 @@ fn shares_are_areas() {
 }
 
 /// Theory: at a corner of a rectangle a quarter of the disc is covered, at an edge a half, at a
-/// distance of x radii from an edge 1 - (acos x - x sqrt(1 - x^2)) / pi; of an outline within the
-/// disc all of it. For a circle far larger than the disc the edge is a parabola, which takes 1 / (3
-/// pi R) from the half.
+/// distance of x radii from an edge 1 - (acos x - x sqrt(1 - x^2)) / pi, and of an outline that
+/// contains the disc all of it. Near the edge of a circle far larger than the disc the edge is a
+/// parabola, which subtracts 1 / (3 pi R) from the half.
 #[test]
 fn shares_in_closed_form() {
     let square = parallelogram(Vec3::ZERO, 2.0 * Vec3::X, 2.0 * Vec3::Y);
@@ -119,7 +121,7 @@ fn shares_in_closed_form() {
     }
 }
 
-/// Floor and wall of a room, and what reaches a point of the floor.
+/// Floor and wall of a room, and the light that reaches a point of the floor.
 struct Room {
     outlines: Vec<Outline>,
     records: Vec<PhotonRecord>,
@@ -184,9 +186,9 @@ impl Room {
     }
 }
 
-/// Theory: with the photons of its outline alone, over the covered area, a point anywhere on the
-/// floor sees irradiance one, to 3 deviations of the count; nor does its ring find a bias. Without
-/// the outline the corner sees a quarter of it, and what lies beyond.
+/// Theory: with the photons of its own outline, over the covered area, every point of the floor
+/// receives irradiance one, within 3 deviations of the count, and its bias probe is zero. Without
+/// the outline a corner receives a quarter of it, plus light from beyond.
 #[test]
 fn edges_see_even_light() {
     let room = Room::new(0.1, 400_000);
@@ -213,9 +215,10 @@ fn edges_see_even_light() {
     );
 }
 
-/// Theory: where a wall stands on the floor, a point sees the even light of its own side, whatever
-/// lies on the other and on the wall, whether the disc meets the wall alone, a corner of two walls,
-/// or the outline as well; its ring finds no bias. A wall on the other side of the floor is none.
+/// Theory: where a wall stands on the floor, a point receives the even light of its own side,
+/// whatever lies on the other side and on the wall, whether the disc meets the wall alone, a corner
+/// of two walls, or the outline as well. Its bias probe is zero. A wall on the other side of the
+/// floor has no effect.
 #[test]
 fn walls_part_the_light() {
     let mut room = Room::new(0.1, 0);
@@ -226,7 +229,8 @@ fn walls_part_the_light() {
         let on_wall = key % 5 == 4;
         let position =
             if on_wall { Vec3::new(0.5, 0.1 * u.x, u.y) } else { Vec3::new(u.x, 0.0, u.y) };
-        // one, two and four in the parts of the floor, which the walls x = 0.5 and z = 0.5 leave
+        // irradiances one, two and four in the parts of the floor between the walls x = 0.5 and z =
+        // 0.5
         let irradiance = match (on_wall, position.x < 0.5, position.z < 0.5) {
             (true, _, _) => 9.0,
             (_, true, _) => 1.0,
@@ -269,8 +273,8 @@ fn walls_part_the_light() {
     assert!(open > 1.3, "without walls: {open}");
 }
 
-/// Theory: the driver forms the same sums in the same order, so the same bits. A depth that differs
-/// would show.
+/// Theory: the driver forms the same sums in the same order, so it gives the same bits. A differing
+/// depth would be detected.
 #[test]
 fn the_driver_gathers_the_same() {
     // few enough that the driver stops no loop
@@ -286,7 +290,7 @@ fn the_driver_gathers_the_same() {
             room.point(u.x * u.x, u.y * u.y, if u.z < 0.9 { i % 6 } else { NONE })
         })
         .collect();
-    let gpu = Gpu::open(&crate::support::software()).unwrap();
+    let gpu = Gpu::open(&software()).unwrap();
     let mut recorder = Recorder::new(&gpu).unwrap();
     let features =
         [Feature::Photons, Feature::Outlines, Feature::Disc].into_iter().collect::<Features>();

@@ -1,8 +1,8 @@
-//! Runs one WGSL kernel on a Vulkan adapter: a software one where there is one.
+//! Runs one WGSL kernel on a Vulkan adapter, preferably a software one.
 
 use wgpu::util::DeviceExt;
 
-/// What stands before the files under test in the kernels' module.
+/// Declarations that the files under test need.
 pub const PRELUDE: &str = "
 const FAR: f32 = 1e30;
 const TAU: f32 = 6.28318530717959;
@@ -11,7 +11,7 @@ fn unit(v: vec3f) -> vec3f {
 }
 ";
 
-/// The files under test.
+/// The WGSL files under test.
 pub const FILES: &[&str] = &[
     include_str!("../../shaders/math/trig.wgsl"),
     include_str!("../../shaders/shapes/revolution_profile.wgsl"),
@@ -19,7 +19,7 @@ pub const FILES: &[&str] = &[
     include_str!("../../shaders/shapes/revolution.wgsl"),
 ];
 
-/// One module of the prelude, the files and a kernel's text.
+/// Joins the prelude, the files and a kernel's text into one module.
 pub fn module(kernel: &str) -> String {
     format!("{PRELUDE}{}{kernel}", FILES.concat())
 }

@@ -100,14 +100,14 @@ fn agrees_with_the_oracle() {
     assert!(total.rays >= 1_000_000);
     let wrong = total.wrong();
     assert!(wrong * 100_000 < total.rays, "{wrong} of {} rays differ", total.rays);
-    // Grazing rays are drawn on purpose, one class in five.
+    // One class in five consists of grazing rays.
     assert!(total.ill_conditioned * 10_000 < total.rays);
     let newton: u64 = total.steps.iter().sum();
     assert!(newton > 0 && total.bracketed > 0, "both solvers are used");
 }
 
-// Theory: the comparison above is worth something only if it sees a lost patch, a profile that is
-// off by 1e-4, and a surface that is not there.
+// Theory: the comparison above is useful only if it detects a lost patch, a profile that is off by
+// 1e-4, and a surface that does not exist.
 #[test]
 fn the_comparison_notices_planted_errors() {
     let profile = &profiles()[3];

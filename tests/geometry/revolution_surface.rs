@@ -12,7 +12,7 @@ use caustica::low_level::shapes::revolution::{intersect_patch, revolution_surfac
 use caustica::low_level::shapes::revolution_roots::newton_step;
 use glam::{DMat3, DVec2, DVec3, Vec3, Vec4};
 
-/// S(theta, tau) of a patch in f64 from the scene's own profile, local units.
+/// S(theta, tau) of a patch in f64 from the scene's own profile, in local units.
 fn exact(placed: &Placed, patch: usize, theta: f64, tau: f64) -> DVec3 {
     let q = &placed.tables.patches[patch];
     let t = f64::from(q.t0) + (f64::from(q.t1) - f64::from(q.t0)) * tau;
@@ -20,7 +20,7 @@ fn exact(placed: &Placed, patch: usize, theta: f64, tau: f64) -> DVec3 {
     DVec3::new(p.x * theta.cos(), p.y, p.x * theta.sin())
 }
 
-/// Whether the f32 range [t0, t1] of a patch tells where in the segment `tau` is, to five digits.
+/// Whether the f32 range [t0, t1] of a patch determines `tau` within the segment to five digits.
 fn wide(placed: &Placed, patch: usize) -> bool {
     let q = &placed.tables.patches[patch];
     q.t1 - q.t0 > 0.02
@@ -48,7 +48,7 @@ fn newton_step_solves_the_linear_system() {
             let f = random.ball() * 0.1;
             let (s_theta, s_tau) = differences(&placed, patch, theta, tau);
             let jacobian = DMat3::from_cols(direction, -s_theta, -s_tau);
-            // Near the singular system any step is right.
+            // Near the singular system any step is valid.
             if jacobian.determinant().abs() < 0.05 * s_theta.length() * s_tau.length()
                 || s_theta.length() < 1e-3
                 || !wide(&placed, patch)
@@ -63,7 +63,7 @@ fn newton_step_solves_the_linear_system() {
                 (jacobian * x + f).length() / f.length()
             };
             assert!(residual(step) < 2e-3, "{}: {}", placed.name, residual(step));
-            // Each wrong sign is seen: the residual is then twice that column's part.
+            // Each wrong sign is detected: the residual is then twice that column's part.
             let flips = [
                 Vec4::new(-1.0, 1.0, 1.0, 1.0),
                 Vec4::new(1.0, -1.0, 1.0, 1.0),
@@ -114,7 +114,7 @@ fn normals_and_uv_are_the_surfaces() {
             assert!((f64::from(s.uv.y) - v).abs() < 1e-6 && (f64::from(s.uv.x) - u).abs() < 1e-6);
         }
     }
-    // On the axis, where dS/dtheta is zero, the drop's bottom looks down and the cone's tip along
+    // On the axis, where dS/dtheta is zero, the drop's bottom faces down and the cone's tip along
     // its side.
     let placed = place(&profiles()[4], &Placement::default());
     let t = &placed.tables;
@@ -168,9 +168,9 @@ fn boxes_enclose_the_surface() {
     }
 }
 
-// Theory: an origin moved off the hit by the error bound, to either side, is on that side of the
-// true surface: a ray into that side does not meet the surface where it starts. The f64 solver
-// knows what it meets.
+// Theory: an origin moved off the hit by the error bound, to either side, lies on that side of the
+// true surface. So a ray into that side does not meet the surface where it starts. The f64 solver
+// determines its next hit.
 #[test]
 fn offset_origins_do_not_meet_their_own_surface() {
     let mut random = Random(9);
@@ -206,7 +206,8 @@ fn offset_origins_do_not_meet_their_own_surface() {
                 let truth = oracle::all_hits(&placed.segments, lo, ld)
                     .first()
                     .map_or(f64::from(FAR), |h| h.t);
-                // Where truth is another hit, found must be it; a hit close by is an own hit.
+                // If the true hit is another one, it must be found; a hit close by is a
+                // self-intersection.
                 wrong +=
                     u32::from((found - truth).abs() > 1e-4 * f64::from(t.revolutions[0].scale));
                 checked += 1;
@@ -236,7 +237,7 @@ fn profiles_without_a_surface_are_refused() {
     assert_eq!(push(&[]), Err(ProfileError::Empty));
     assert_eq!(push(&[vec![p(0.5, 0.5)]]), Err(ProfileError::Degree { segment: 0, points: 1 }));
     assert_eq!(push(&[vec![p(0.5, f64::INFINITY), p(0.5, 0.5)]]), Err(ProfileError::NotFinite));
-    // A segment of no length between two others is skipped.
+    // A segment of zero length between two others is skipped.
     let (a, b, c) = (p(0.5, 0.0), p(0.5, 1.0), p(0.0, 1.0));
     assert!(push(&[vec![a, b], vec![b, b, b], vec![b, c]]).is_ok());
 }

@@ -1,5 +1,5 @@
-//! The WGSL of surfaces of revolution and of the elementary functions: valid, laid out like the
-//! host's structs, and on the Vulkan software adapter the same bits as the Rust twin.
+//! The WGSL of surfaces of revolution and of the elementary functions: valid, with the layout of
+//! the host's structs, and equal to the Rust twin bit for bit on the software driver.
 
 use super::revolution_device::{Device, module};
 use crate::revolution::profiles::{Placed, place, profiles, skew};
@@ -180,7 +180,7 @@ fn wgsl_gives_the_twins_bits() {
             );
             total += rays.len();
             hits += cpu.iter().filter(|a| f32::from_bits(a[0]) < FAR).count();
-            // The comparison notices one bit.
+            // The comparison detects one bit.
             cpu[5][0] ^= 1;
             assert_eq!(differing(&gpu, &cpu), 1);
         }
@@ -315,7 +315,7 @@ fn wgsl_is_valid_and_laid_out_like_the_host() {
             step_tolerance
         }
     );
-    // A member moved by four bytes would not pass.
+    // A member moved by four bytes is detected.
     let moved = source.replace("    scale: f32,\n    y_axis", "    y_axis");
     let moved = naga::front::wgsl::parse_str(&moved).map(|m| offsets(&m, "Revolution"));
     assert!(moved.map_or(true, |o| o != offsets(&module, "Revolution")));

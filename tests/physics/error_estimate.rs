@@ -1,9 +1,10 @@
-//! The error that a picture states of itself.
+//! The error estimate of an image.
 //!
-//! Theory, part by part: the variance of a mean is known where the values are; the bias of a disc
-//! is known over a plane that is lit by half and over one whose light grows with the square of the
-//! distance; and nine of ten renders are to be no farther from the truth than they state.
+//! Theory: the variance of a mean is known if the values are. The bias of a disc is known over a
+//! plane that is half lit, and over one whose light grows with the square of the distance. Nine of
+//! ten renders are no farther from the reference than they state.
 
+use crate::support::repository;
 use bytemuck::Zeroable;
 use caustica::low_level::cpu::CpuEngine;
 use caustica::low_level::engine::Engine;
@@ -25,7 +26,6 @@ use caustica::low_level::tables::NONE;
 use caustica::low_level::validation::{BlockTruth, NoisyTruth, Promise};
 use glam::Vec3;
 use std::f64::consts::PI;
-use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 /// Uniform in [0, 1).
@@ -41,7 +41,7 @@ impl Random {
 
 /// The plan of a picture of one pixel.
 fn one_pixel() -> Plan {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/cornell.toml");
+    let path = repository("scenes/cornell.toml");
     let scene = scene::load(&path).unwrap().scene;
     Plan::probed(
         &prepare(&scene, 1, 1).unwrap(),
@@ -49,7 +49,7 @@ fn one_pixel() -> Plan {
     )
 }
 
-/// A pixel's film after passes of these grey values.
+/// The film of one pixel after passes of these grey values.
 fn folded(values: impl Iterator<Item = f64>) -> FilmPixel {
     let mut film = FilmPixel::zeroed();
     for (passes_done, value) in (0..).zip(values) {
@@ -61,8 +61,8 @@ fn folded(values: impl Iterator<Item = f64>) -> FilmPixel {
 }
 
 /// Theory: with values x the variance of their mean is `sum (x - mean)^2 / (n (n - 1))`, and the
-/// two partitions follow from the means over the first 2^k. A hundred thousand passes lose nothing
-/// of it that counts.
+/// two partitions follow from the means over the first 2^k. A hundred thousand passes keep enough
+/// digits.
 #[test]
 fn variance_of_known_values() {
     let plan = one_pixel();
@@ -95,8 +95,8 @@ fn variance_of_known_values() {
     }
 }
 
-/// Theory: the squares of both deviations have the variance of the mean, s^2 / n, for every n; the
-/// mean of 20,000 of them is within 5 of its standard errors, some 1 % each.
+/// Theory: the squares of both deviations have the variance of the mean, s^2 / n, for every n. The
+/// mean of 20,000 of them is within 5 standard errors, of about 1 % each.
 #[test]
 fn deviations_have_the_variance_of_the_mean() {
     let mut random = Random(1);
@@ -118,9 +118,9 @@ fn deviations_have_the_variance_of_the_mean() {
     }
 }
 
-/// Theory: weights that sum to zero leave out what both halves share, and the sum of their squares,
-/// 1 / n, is the variance of the mean over that of a sample. Where rows or columns are even in
-/// number, a slope across the pixel is shared.
+/// Theory: weights that sum to zero cancel what both halves share, and the sum of their squares, 1
+/// / n, is the variance of the mean relative to that of a sample. For an even number of rows or
+/// columns, a slope across the pixel cancels.
 #[test]
 fn halves_of_eye_samples() {
     for (samples, strata) in [(2u32, 1u32), (3, 1), (4, 2), (6, 2), (9, 3), (16, 4), (12, 3)] {
@@ -143,8 +143,8 @@ fn halves_of_eye_samples() {
     assert_eq!(half_weight(0, 1, 1), 0.0);
 }
 
-/// What the disc about the origin gathers in its outer less its inner half, per area, from a
-/// lattice of photons with flux `light(x, z)` per area.
+/// Light gathered by a disc around the origin in its outer half minus its inner half, per area,
+/// from a lattice of photons with flux `light(x, z)` per area.
 fn ring(radius: f32, light: impl Fn(f64, f64) -> f64) -> f64 {
     const SIDE: i32 = 500;
     let step = 1.1 * f64::from(radius) / f64::from(SIDE);
@@ -183,10 +183,10 @@ fn ring(radius: f32, light: impl Fn(f64, f64) -> f64) -> f64 {
     f64::from(gathered.bias_probe) / (PI * f64::from(radius).powi(2))
 }
 
-/// Theory: of light E + c rho^2 the disc of radius r sees E + c r^2 / 2 and the inner half c r^2 /
-/// 4 less: half of the bias. Of light beyond a straight edge at the distance u r it sees the
-/// segment's share g(u) = (acos u - u sqrt(1 - u^2)) / pi, the inner half g(sqrt(2) u). Even light
-/// leaves nothing.
+/// Theory: for light E + c rho^2 the disc of radius r receives E + c r^2 / 2, and the inner half c
+/// r^2 / 4 less: half of the bias. For light beyond a straight edge at the distance u r the disc
+/// receives the segment's share g(u) = (acos u - u sqrt(1 - u^2)) / pi, the inner half g(sqrt(2)
+/// u). Even light gives zero.
 #[test]
 fn rings_of_known_light() {
     let r = 0.25;
@@ -204,15 +204,15 @@ fn rings_of_known_light() {
 }
 
 fn reference(name: &str) -> (scene::Scene, NoisyTruth) {
-    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data");
+    let data = repository("tests/data");
     let mut scene = scene::load(&data.join(format!("reference/{name}.toml"))).unwrap().scene;
     let truth = BlockTruth::read(&data.join(format!("truth/{name}.exr"))).unwrap();
     (scene.film.width, scene.film.height) = (truth.mean.width, truth.mean.height);
     (scene, NoisyTruth::Blocks(truth))
 }
 
-/// What 20 renders say after their passes, and what their maps say when they are changed by
-/// `spoil`.
+/// Stated and true errors of 20 renders, and their stated errors after `spoil` has changed the
+/// error map.
 fn promised(
     name: &str,
     settings: &RenderSettings,
@@ -240,9 +240,9 @@ fn kept(promises: &[Promise]) -> usize {
     promises.iter().filter(|promise| promise.kept()).count()
 }
 
-/// Short form of the example `promise`: by noise (mesh, whose floor shows the shadow rays' noise)
-/// and by bias (cornell by photons alone in wide discs), where an estimate that leaves either out
-/// is caught.
+/// Short form of the example `promise`: with noise (mesh, whose floor shows the noise of shadow
+/// rays) and with bias (cornell by photons alone in wide discs). An estimate without either part is
+/// rejected.
 #[test]
 fn promises_are_kept() {
     let noisy = RenderSettings { passes: 4, photons: 4096, ..RenderSettings::default() };
@@ -270,10 +270,11 @@ fn promises_are_kept() {
     }
 }
 
-/// Theory: of `drop` at 40 x 30 pixels a few glint at the lamp in one of hundreds of passes. In one
-/// render of five none has done so after 64 passes, and no statistics of the picture speaks for
-/// what it lacks: that a lamp is seen through glass does. Nine of ten promises are kept. Without
-/// the lamp's glint they are not, and neither are they all by stating far too much.
+/// Theory: in `drop` at 40 x 30 pixels a few pixels see a glint of the lamp in one of hundreds of
+/// passes. In one render of five none has done so after 64 passes, and no statistic of the image
+/// accounts for the missing light, except that a lamp is seen through glass. Nine of ten estimates
+/// hold. Without the term for the lamp's glint they do not, and not all of them hold by being far
+/// too large.
 #[test]
 fn glints_that_nobody_has_seen() {
     let settings = RenderSettings { passes: 64, photons: 8192, ..RenderSettings::default() };
@@ -283,11 +284,11 @@ fn glints_that_nobody_has_seen() {
     assert!(kept(&right) >= 18 && ratio < 2.5, "{ratio} {right:?}");
 }
 
-/// Theory: thirty of 4000 pixels have a glint in one of 160 passes, of mean 0.1 beside 0.1 that is
-/// always there. After 16 passes three of the thirty have seen theirs, and are among the four
-/// pixels left out. The others lack 0.1 of 0.2, which no variance tells: sqrt(27 / 4000 * 0.1^2 /
-/// (0.2^2 + 0.01)) = 3.7 %. What was seen once must speak for them. One picture in 20 sees none
-/// (e^-3). With pixels that seem to have seen a tenfold crowd of glints, nothing speaks.
+/// Theory: thirty of 4000 pixels have a glint in one of 160 passes, of mean 0.1 in addition to a
+/// constant 0.1. After 16 passes three of the thirty have seen theirs, and are among the four
+/// pixels left out. The others lack 0.1 of 0.2, which no variance shows: sqrt(27 / 4000 * 0.1^2 /
+/// (0.2^2 + 0.01)) = 3.7 %. Glints seen once must account for them. One image in 20 sees none
+/// (e^-3). If pixels seem to have seen ten times as many glints, the term vanishes.
 #[test]
 fn glints_seen_once_speak_for_those_unseen() {
     const PASSES: u32 = 16;
@@ -321,7 +322,7 @@ fn glints_seen_once_speak_for_those_unseen() {
     assert!(kept[0] >= 90 && kept[1] < 50, "{kept:?}");
 }
 
-/// A render that aims at an error ends with one no larger, and the true one is within it.
+/// A render with a target error ends with an estimate no larger, and the true error is within it.
 #[test]
 fn a_render_reaches_its_target() {
     let (scene, truth) = reference("mesh");
@@ -338,8 +339,7 @@ fn a_render_reaches_its_target() {
     assert!(stated <= 0.3 && error <= stated && error > 0.05, "{error}");
 }
 
-/// A pixel with too few passes knows nothing of its error, and a picture of such pixels states
-/// none.
+/// A pixel with too few passes has no error estimate, and neither has an image of such pixels.
 #[test]
 fn too_few_passes_promise_nothing() {
     let plan = one_pixel();

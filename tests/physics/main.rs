@@ -1,8 +1,10 @@
-//! Light transport against closed forms: every test states its theory first, renders the scene
-//! in-process with several seeds, and holds region means against the answer within a t-test's
-//! interval (see [`lab`]).
+//! Light transport against closed forms and reference images, numerical stability, and the error
+//! estimate.
 //!
-//! `CAUSTICA_DEVICE` chooses the device (default `cpu`).
+//! A test states its theory, renders the scene in-process with several seeds, and compares region
+//! means with the answer by a t-test (see [`lab`]).
+//!
+//! `CAUSTICA_DEVICE` selects the device (default `cpu`).
 
 #[path = "../support/brute_force.rs"]
 #[allow(dead_code)] // `geometry` uses the rest

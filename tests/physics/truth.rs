@@ -1,15 +1,13 @@
-//! Renders against pictures of other renderers: the short form of `cargo run --release --example
-//! hold`.
+//! Renders against reference images: the short form of `cargo run --release --example hold`.
 //!
-//! Theory: a box-filtered picture of any size has the same expected means over the same squares, so
-//! small films with 2 x 2 pixels to a block are held against the block means of large pictures.
-//! Differences are measured in standard errors of both (see `caustica::low_level::validation`); density estimation
-//! is biased, for which 1 % of a block is allowed, and path tracing is not. Films, seeds and passes
-//! are fixed: on one device these tests always say the same. What they can see is shown by planted
-//! errors.
+//! Theory: a box-filtered image of any size has the same expected means over the same squares, so
+//! small films with 2 x 2 pixels to a block are compared with the block means of large images.
+//! Differences are measured in standard errors of both (see `caustica::low_level::validation`).
+//! Density estimation is biased, so it may differ by 1 % of a block; path tracing may not. Films,
+//! seeds and passes are fixed, so on one device these tests are deterministic. Planted errors show
+//! their power.
 
-use std::path::Path;
-
+use crate::support::{folder, repository};
 use caustica::low_level::device::Wanted;
 use caustica::low_level::film::Picture;
 use caustica::low_level::scene::settings::{Direct, Method, Radius, RadiusRule, RenderSettings};
@@ -24,18 +22,18 @@ use caustica::low_level::validation::{
 const EDGE: u32 = 2;
 /// Allowance for the bias of density estimation.
 const BIAS: f64 = 0.01;
-/// Independent renders that a picture is made of.
+/// Number of independent renders per image.
 const RENDERS: u32 = 24;
 
 fn load(name: &str) -> (Scene, BlockTruth) {
-    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data");
+    let data = repository("tests/data");
     let mut scene = scene::load(&data.join(format!("reference/{name}.toml"))).unwrap().scene;
     let truth = BlockTruth::read(&data.join(format!("truth/{name}.exr"))).unwrap();
     (scene.film.width, scene.film.height) = (truth.mean.width * EDGE, truth.mean.height * EDGE);
     (scene, truth)
 }
 
-/// Half a pixel here is two of the truth's pixels.
+/// Half a pixel here is two pixels of the reference.
 fn settings() -> RenderSettings {
     RenderSettings {
         passes: 4,
@@ -71,7 +69,7 @@ fn assert_agrees(name: &str, settings: &RenderSettings, bias: f64) {
         a.regions.worst()
     );
     assert!(a.faults().is_empty(), "{name} {settings:?}: {:?}", a.faults());
-    // Otherwise the mean would say little.
+    // Otherwise the mean would have little meaning.
     assert!(a.ratio_error.iter().all(|e| *e < 0.007), "{:?}", a.ratio_error);
 }
 
@@ -92,8 +90,7 @@ fn every_rule_agrees_in_both_direct_modes() {
         ("cornell", RadiusRule::Fixed, Direct::Photons),
     ] {
         let small = Radius::Pixels(if radius_rule == RadiusRule::Fixed { 0.25 } else { 0.5 });
-        // on wide ground few photons reach so small a disc, and few of a kind tell no standard
-        // error
+        // on wide ground few photons reach such a small disc, too few for a standard error
         let photons = if name == "mesh" { 1 << 16 } else { settings().photons };
         assert_agrees(
             name,
@@ -103,8 +100,8 @@ fn every_rule_agrees_in_both_direct_modes() {
     }
 }
 
-/// Photons that a diffuse surface has scattered have a disc three times as wide, and half of the
-/// photons are sent by a map.
+/// Photons scattered by a diffuse surface have a disc three times as wide, and a map guides half of
+/// the photons.
 #[test]
 fn two_discs_agree_under_every_rule_and_in_both_direct_modes() {
     for (radius_rule, direct) in [
@@ -133,8 +130,8 @@ fn ppm_agrees_under_every_rule_and_in_both_direct_modes() {
     ] {
         let small = Radius::Pixels(0.25);
         let ppm = RenderSettings { method: Method::Ppm, radius: small, ..settings() };
-        // of a thousand eye paths at the drop's tip one or two see the lamp, and bring two thirds
-        // of the light there
+        // of a thousand eye paths at the drop's tip one or two see the lamp and bring two thirds of
+        // the light there
         let eye_samples = if name == "drop" { 64 } else { ppm.eye_samples };
         assert_agrees(name, &RenderSettings { radius_rule, direct, eye_samples, ..ppm }, BIAS);
     }
@@ -146,9 +143,9 @@ fn path_tracing_agrees_without_any_allowance() {
     assert_agrees("mesh", &path, 0.0);
 }
 
-/// What is planted into a render that agrees is found: 1.5 % of brightness, one channel's 1.5 %,
-/// one wrong block, a band that is 8 % too dark, a picture upside down, and a part that is not
-/// finite.
+/// Errors planted into a render that agrees are detected: 1.5 % of brightness, 1.5 % in one
+/// channel, one wrong block, a band that is 8 % too dark, an image upside down, and a part that is
+/// not finite.
 #[test]
 fn planted_errors_are_found() {
     let (rendered, truth) = rendered("cornell", &settings());
@@ -175,8 +172,8 @@ fn planted_errors_are_found() {
     assert!(hold(&turned, &truth, BIAS).faults().contains(&"blocks"));
 }
 
-/// Numbers of mean zero and variance one, nearly normal: the sum of twelve uniform ones (an LCG of
-/// Knuth's).
+/// Random numbers of mean zero and variance one, nearly normal: the sum of twelve uniform ones (an
+/// LCG of Knuth's).
 fn noise() -> impl FnMut() -> f64 {
     let mut state = 1_u64;
     move || {
@@ -189,9 +186,9 @@ fn noise() -> impl FnMut() -> f64 {
     }
 }
 
-/// Without a renderer: parts made of a truth plus noise of known size agree with it, their
-/// deviations are as wide as Student's t says or a little narrower (pooled variances), and their
-/// mean's error is the one that was put in.
+/// Without a renderer: parts made of a reference plus noise of known size agree with it, their
+/// deviations are as wide as Student's t predicts or a little narrower (pooled variances), and the
+/// error of their mean is the planted one.
 #[test]
 fn noise_of_known_size_agrees() {
     let mut next = noise();
@@ -218,8 +215,8 @@ fn noise_of_known_size_agrees() {
     assert!((a.ratio_error[1] * 2.0 / error - 1.0).abs() < 0.5, "{:?}", a.ratio_error);
 }
 
-/// Means and errors of blocks by hand: 16 x 8 pixels are two blocks; 64 pixels of error e have a
-/// mean of error e / 8, and the mean of two blocks an error of sqrt(2) / 2 of one's.
+/// Block means and errors computed by hand: 16 x 8 pixels are two blocks. 64 pixels of error e have
+/// a mean of error e / 8, and the mean of two blocks has sqrt(2) / 2 of one block's error.
 #[test]
 fn blocks_of_a_picture() {
     let picture =
@@ -232,11 +229,11 @@ fn blocks_of_a_picture() {
     // Variance 0.01 (1 + 0.01) of each pixel.
     let truth = BlockTruth::from_picture(&picture, &PixelNoise::RelMse(0.01)).unwrap();
     assert!((truth.standard_error.rgb[0][0] - 0.0101_f64.sqrt() / f64::from(BLOCK)).abs() < 1e-7);
-    // Smaller pictures nest; others do not.
+    // Smaller images nest; others do not.
     let small = Picture::from_fn(4, 2, |x, _| [if x < 2 { 1.0 } else { 3.5 }; 3]);
     assert_eq!(Blocks::of(&small, 2, 1).unwrap(), truth.mean);
     assert_eq!(Blocks::of(&small, 3, 1), None);
-    let file = crate::support::folder("blocks").join("truth.exr");
+    let file = folder("blocks").join("truth.exr");
     truth.write(&file).unwrap();
     let read = BlockTruth::read(&file).unwrap();
     assert_eq!(read.mean, truth.mean);

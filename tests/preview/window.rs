@@ -1,8 +1,8 @@
-//! The preview's window, for real: under Xvfb, drawn and rendered by the software Vulkan driver,
-//! with a hand made by xdotool.
+//! The preview's window under Xvfb, drawn and rendered by the software Vulkan driver, with input
+//! from xdotool.
 //!
-//! Theory: what a hand does to the window is in the files that it saves: the camera it turned, the
-//! setting it changed, and a picture that a plain render makes again bit for bit.
+//! Theory: user input shows in the files that the preview saves: the rotated camera, the changed
+//! setting, and an image that a plain render reproduces bit for bit.
 
 use std::fs;
 use std::io::{BufRead, BufReader, Read};
@@ -12,11 +12,11 @@ use std::sync::LazyLock;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use crate::support::{LAMP, PLANE, ball, command, folder_with, good};
+use crate::support::{LAMP, PLANE, ball, bits, command, folder_with, good, shipped, software};
 use caustica::low_level::film::{file::read_exr, read};
 use caustica::low_level::scene;
 
-/// With comments, which no saving takes away.
+/// The scene, with comments that saving must preserve.
 static SCENE: LazyLock<String> = LazyLock::new(|| {
     let scene = ball((96, 64), "passes = 4\nphotons = 2000 # few", &[PLANE, LAMP]);
     format!("# A ball of glass.\n{}", scene.replace("5.0]\ntarget", "5.0] # before it\ntarget"))
@@ -24,12 +24,12 @@ static SCENE: LazyLock<String> = LazyLock::new(|| {
 
 const PATIENCE: Duration = Duration::from_secs(120);
 
-/// A process that ends with the test.
+/// A process that is killed at the end of the test.
 struct Owned(Child);
 
 impl Drop for Owned {
     fn drop(&mut self) {
-        // It may have ended by itself.
+        // It may have ended already.
         let _ = self.0.kill();
         let _ = self.0.wait();
     }
@@ -51,8 +51,8 @@ fn preview(folder: &Path, arguments: &[&str]) -> Command {
 /// Columns of the screen.
 const COLUMNS: usize = 1100;
 
-/// An X server without a screen; its display. What it shows is in the file `Xvfb_screen0` of
-/// `folder`.
+/// Starts an X server without a screen and returns its display. The screen's content is in the file
+/// `Xvfb_screen0` of `folder`.
 fn server(folder: &Path) -> (Owned, String) {
     let screen =
         ["-displayfd", "1", "-screen", "0", &format!("{COLUMNS}x760x24"), "-nolisten", "tcp"];
@@ -71,7 +71,7 @@ fn server(folder: &Path) -> (Owned, String) {
     (server, format!(":{}", line.trim()))
 }
 
-/// What xdotool does with these words; what it prints.
+/// Runs xdotool with these arguments and returns its output.
 fn hand(display: &str, words: &[&str]) -> String {
     let output = Command::new("xdotool").args(words).env("DISPLAY", display).output();
     let output = output.unwrap_or_else(|error| {
@@ -81,7 +81,7 @@ fn hand(display: &str, words: &[&str]) -> String {
     String::from_utf8_lossy(&output.stdout).into_owned()
 }
 
-/// Does something again and again until it has come about.
+/// Repeats `act` until `came` holds.
 fn until(what: &str, mut act: impl FnMut(), came: impl Fn() -> bool) {
     let begun = Instant::now();
     while !came() {
@@ -97,7 +97,7 @@ fn photons(file: &Path) -> Option<String> {
 
 #[test]
 fn a_hand_turns_changes_saves_and_closes() {
-    crate::support::software();
+    software();
     let folder = folder("hand");
     let (_server, display) = server(&folder);
     let mut window = opened(
@@ -113,7 +113,7 @@ fn a_hand_turns_changes_saves_and_closes() {
     until("the first picture", || key("s"), || picture.exists());
     assert_eq!(photons(&picture).as_deref(), Some("2000"));
 
-    // a drag to the right and down from the middle of the picture
+    // a drag to the right and down from the middle of the image
     let steps =
         ["mousemove", "280", "280", "mousedown", "1", "sleep", "0.1", "mousemove", "310", "290"];
     hand(
@@ -136,7 +136,7 @@ fn a_hand_turns_changes_saves_and_closes() {
     let camera = scene::load(&file).unwrap().scene.camera;
     let turned = camera.position - camera.target;
     assert!((turned.length() - 25.25f64.sqrt()).abs() < 1e-3, "an orbit keeps the distance");
-    // what is before the target follows the hand: the camera goes left and up
+    // the scene follows the mouse: the camera moves left and up
     assert!(turned.x < -0.1 && turned.y > 0.6, "{turned}");
 
     until("the picture turned", || key("s"), || photons(&picture).as_deref() == Some("1000"));
@@ -144,20 +144,13 @@ fn a_hand_turns_changes_saves_and_closes() {
     let ended = wait(&mut window.0);
     assert!(ended.success(), "{ended}");
 
-    // a plain render of what was saved has the same bits
+    // a plain render of the saved scene has the same bits
     good(&folder, &["render", "--quiet", "--like", "picture.exr", "-o", "again.exr"]);
-    let bits = |name: &str| {
-        read(&folder.join(name))
-            .unwrap()
-            .rgb
-            .iter()
-            .map(|p| p.map(f32::to_bits))
-            .collect::<Vec<_>>()
-    };
+    let bits = |name: &str| bits(&read(&folder.join(name)).unwrap());
     assert!(bits("again.exr") == bits("picture.exr"));
 }
 
-/// A preview whose window is there and has the keyboard.
+/// Starts a preview and waits until its window is open and has the keyboard focus.
 fn opened(folder: &Path, display: &str, scene: &str, arguments: &[&str]) -> Owned {
     let mut command = preview(folder, arguments);
     let mut window = Owned(command.env("DISPLAY", display).stderr(Stdio::piped()).spawn().unwrap());
@@ -177,16 +170,11 @@ fn opened(folder: &Path, display: &str, scene: &str, arguments: &[&str]) -> Owne
     window
 }
 
-/// A scene that comes with the program.
-fn shipped(name: &str) -> String {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(name).display().to_string()
-}
-
-/// What the screen shows of the upper part of the picture: rows 150 to 250 of columns 150 to 450.
+/// Content of the screen in the upper part of the image: rows 150 to 250 of columns 150 to 450.
 fn seen(folder: &Path) -> Vec<u8> {
     use std::os::unix::fs::FileExt;
-    // after a header whose length is its first word, least byte last, and a color map: rows of 4
-    // bytes a pixel
+    // the pixels follow a header, whose length is its first word (little-endian), and a colour map:
+    // rows of 4 bytes a pixel
     let file = fs::File::open(folder.join("Xvfb_screen0")).unwrap();
     let length = file.metadata().unwrap().len();
     let row = 4 * COLUMNS as u64;
@@ -196,7 +184,7 @@ fn seen(folder: &Path) -> Vec<u8> {
     rows.chunks(row as usize).flat_map(|row| row[4 * 150..4 * 450].to_vec()).collect()
 }
 
-/// Pictures that the screen shows one after another while the mouse drags for 3 s at 60 Hz.
+/// Counts the images that the screen shows while the mouse drags for 3 s at 60 Hz.
 fn pictures_of_a_drag(folder: &Path, display: &str) -> u32 {
     let mut words: Vec<String> =
         ["mousemove", "150", "450", "mousedown", "1"].map(str::to_owned).to_vec();
@@ -227,19 +215,18 @@ fn pictures_of_a_drag(folder: &Path, display: &str) -> u32 {
     pictures
 }
 
-/// Theory: a hand that turns the camera sees it turn. While the mouse moves at 60 Hz, with no rest
-/// in which a whole picture could be made, small pictures follow one another. Two idle cores, which
-/// also draw the window, show more than 20; if only pictures of the last place of the mouse counted
-/// there would be one or two. Other programs on these cores slow a drag down, so the best of three
-/// counts.
+/// Theory: the image follows a mouse drag. While the mouse moves at 60 Hz, without a pause for a
+/// whole image, small images follow one another. Two idle cores, which also draw the window, show
+/// more than 20; if only images of the mouse's final place were shown there would be one or two.
+/// Other programs on these cores slow a drag down, so the best of three counts.
 #[test]
 fn a_drag_shows_many_pictures() {
-    crate::support::software();
+    software();
     let folder = folder("drag");
     let (_server, display) = server(&folder);
     let _window =
         opened(&folder, &display, "cornell", &[&shipped("cornell.toml"), "--device", "cpu"]);
-    // the scene is there, and its first picture
+    // the scene and its first image are visible
     let blank = seen(&folder);
     until("a picture", || (), || seen(&folder) != blank);
     let mut drags = (0..3).map(|_| {
@@ -249,13 +236,13 @@ fn a_drag_shows_many_pictures() {
     assert!(drags.any(|pictures| pictures >= 6), "a drag shows too few pictures");
 }
 
-/// Theory: a window closes when it is asked to, whatever is rendered: passes of a hundred million
-/// photons, which take a minute or more, are given up.
+/// Theory: a window closes on request whatever is being rendered: passes of a hundred million
+/// photons, which take a minute or more, are cancelled.
 #[test]
 fn a_window_closes_while_a_long_pass_runs() {
-    crate::support::software();
+    software();
     let folder = folder("close");
-    // the whole picture begins a quarter of a second after the small one, and compiles first
+    // the whole image begins a quarter of a second after the small one, and first compiles
     for (device, wait_ms) in [("cpu", 500), ("cpu", 8000), ("software", 8000)] {
         let (_server, display) = server(&folder);
         let scene = shipped("cornell.toml");
@@ -271,7 +258,7 @@ fn a_window_closes_while_a_long_pass_runs() {
     }
 }
 
-/// The window's number; empty where there is none yet, which xdotool calls a failure.
+/// The window's number; empty if there is none yet, which xdotool reports as a failure.
 fn found(display: &str, scene: &str) -> String {
     let words = ["search", "--onlyvisible", "--name", &format!("{scene} - caustica")];
     let output = Command::new("xdotool").args(words).env("DISPLAY", display).output();

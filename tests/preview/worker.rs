@@ -1,14 +1,15 @@
-//! The preview without its window.
+//! The preview's worker, without a window.
 //!
-//! Theory: passes are independent of what was asked for before them, so that after any way to a
-//! scene, camera and settings the picture has the bits of a plain render of these; a small picture
-//! is there before the whole one; what is wrong with a file or a device takes no picture away.
+//! Theory: passes do not depend on earlier requests, so whatever led to a scene, camera and
+//! settings, the image has the bits of a plain render of these. A small image precedes the whole
+//! one. An error in a file or a device removes no image.
+
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, LazyLock};
 use std::time::{Duration, Instant};
 
-use crate::support::{FLOOR, LAMP, MESH, ball, folder_with};
-use caustica::low_level::device::{self, Wanted};
+use crate::support::{FLOOR, LAMP, MESH, ball, bits, folder_with, render_on, software};
+use caustica::low_level::device::Wanted;
 use caustica::low_level::film::Picture;
 use caustica::low_level::preview::frame::{Frame, RenderRequest};
 use caustica::low_level::preview::orbit;
@@ -17,7 +18,7 @@ use caustica::low_level::preview::worker::Worker;
 use caustica::low_level::scene::settings::{Direct, Method, Radius, RadiusRule};
 use caustica::low_level::scene::{self, Aov, Loaded};
 
-/// With comments, which no saving takes away.
+/// The scene, with comments that saving must preserve.
 pub static SCENE: LazyLock<String> = LazyLock::new(|| {
     let scene = ball((48, 32), "passes = 4\nphotons = 2000", &[BALL, MESH, LAMP]);
     format!("# A ball of glass.\n{}", scene.replace("5.0]\ntarget", "5.0] # before it\ntarget"))
@@ -41,7 +42,7 @@ pub fn loaded(folder: &Path) -> Loaded {
     scene::load(&folder.join("ball.toml")).unwrap()
 }
 
-/// What `of` finds, as soon as it finds something.
+/// Repeats `of` until it returns a value.
 pub fn wait<T>(what: &str, mut of: impl FnMut() -> Option<T>) -> T {
     let begun = Instant::now();
     loop {
@@ -65,15 +66,7 @@ fn whole(worker: &Worker, number: u64, passes: u32) -> Arc<Frame> {
 fn rendered(wish: &RenderRequest, scene: &scene::Scene) -> Picture {
     let mut scene = scene.clone();
     (scene.camera, scene.film) = (wish.camera, wish.film);
-    let mut engine = device::open(&wish.device, &scene, &wish.settings).unwrap().engine;
-    for _ in 0..wish.settings.passes {
-        engine.pass().unwrap();
-    }
-    engine.picture().unwrap()
-}
-
-pub fn bits(picture: &Picture) -> (u32, Vec<[u32; 3]>) {
-    (picture.width, picture.rgb.iter().map(|rgb| rgb.map(f32::to_bits)).collect())
+    render_on(&wish.device, &scene, &wish.settings)
 }
 
 fn converges(folder: &Path, device: Wanted) {
@@ -84,7 +77,7 @@ fn converges(folder: &Path, device: Wanted) {
     let mut before = None;
     for change in 0..5 {
         match change {
-            // as a hand would: many cameras, of which the last one counts
+            // like a user's drag: many cameras, of which the last one counts
             1 => (0..12).for_each(|_| {
                 wish.camera = orbit::orbit(&wish.camera, 0.1, 0.02);
                 number = worker.change(wish.clone());
@@ -122,7 +115,7 @@ fn the_cpu_engine_converges_to_the_bits_of_a_render() {
 
 #[test]
 fn the_gpu_engine_converges_to_the_bits_of_a_render() {
-    crate::support::software();
+    software();
     converges(&folder("software"), Wanted::Software);
 }
 
@@ -145,7 +138,7 @@ fn a_small_picture_comes_first() {
     );
     let last = whole(&worker, number, 4);
     assert_eq!((last.picture.width, last.picture.height), (256, 192));
-    // halted, small pictures come and the whole one does not
+    // while halted, small images arrive and the whole one does not
     worker.pause(true);
     wish.camera = orbit::dolly(&wish.camera, 0.9);
     let number = worker.change(wish.clone());
@@ -168,7 +161,7 @@ fn what_cannot_be_rendered_takes_no_picture_away() {
         [(Wanted::Named("nonesuch".into()), "available: "), (Wanted::Software, "--device cpu")]
     {
         wish.device = device;
-        // which the GPU engine does not have
+        // which the GPU engine does not support
         wish.settings.method = Method::Path;
         worker.change(wish.clone());
         wait("the failure", || worker.board().failure().filter(|failure| failure.contains(words)));

@@ -1,13 +1,13 @@
-//! Text files as other systems write them: line ends of Windows, the byte order mark of UTF-8,
-//! UTF-16.
+//! Text encodings of other systems: Windows line ends, the UTF-8 byte order mark, UTF-16.
 //!
-//! Theory: neither line ends nor the mark are content. A scene has the same content whichever way
-//! its files are written, and an error stands at the same line and column with the same words. Text
-//! in UTF-16 or UTF-32 is told as such, by file name.
+//! Theory: neither line ends nor the mark are content. A scene has the same content in either
+//! encoding, and an error has the same line, column and words. Text in UTF-16 or UTF-32 is reported
+//! as such, with the file name.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use crate::support::{self, repository, sound};
 use caustica::low_level::render::identity::Identity;
 use caustica::low_level::scene::{Finding, load, load_profile};
 
@@ -35,7 +35,7 @@ profile = [[0.0, 2.0], [0.5, 2.0], [0.0, 3.0]]
 material = "white"
 "#;
 
-/// Errors in the scene file, the mesh and its materials.
+/// A scene with errors in the scene file, the mesh and its materials.
 const BROKEN: &str = r#"version = 1
 [camera]
 position = [0.0, 1.0, 4.0]
@@ -51,7 +51,7 @@ file = "broken.obj"
 
 type Write = fn(&str) -> Vec<u8>;
 
-/// The same content, written otherwise.
+/// Encodings of the same content.
 const SAME: [(&str, Write); 4] = [
     ("unix", |text| text.as_bytes().to_vec()),
     ("windows", |text| text.replace('\n', "\r\n").into_bytes()),
@@ -69,11 +69,11 @@ const FOREIGN: [(&str, Write); 3] = [
     }),
 ];
 
-/// A fresh folder with the files that scenes name, as UTF-8 of Unix.
+/// A fresh folder with the files that scenes refer to, in UTF-8 with Unix line ends.
 fn folder(name: &str) -> PathBuf {
-    let folder = crate::support::folder(name);
+    let folder = support::folder(name);
     fs::create_dir(folder.join("reference")).unwrap();
-    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data");
+    let data = repository("tests/data");
     fs::copy(data.join("reference/grid.png"), folder.join("reference/grid.png")).unwrap();
     for name in ["parts.obj", "parts.mtl", "cube.obj", "broken.obj", "broken.mtl"] {
         fs::copy(data.join(name), folder.join(name)).unwrap();
@@ -81,7 +81,7 @@ fn folder(name: &str) -> PathBuf {
     folder
 }
 
-/// Writes files of the folder again.
+/// Rewrites files of the folder in another encoding.
 fn rewrite(folder: &Path, names: &[&str], write: Write) {
     for name in names {
         let text = fs::read_to_string(folder.join(name)).unwrap();
@@ -90,7 +90,7 @@ fn rewrite(folder: &Path, names: &[&str], write: Write) {
 }
 
 fn identity(file: &Path) -> Identity {
-    let loaded = load(file).unwrap_or_else(|errors| panic!("{:?}", miette::Report::new(errors)));
+    let loaded = sound(load(file));
     Identity::of(&loaded.scene)
 }
 

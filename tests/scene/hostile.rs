@@ -1,19 +1,19 @@
-//! Scenes of strangers: what lies outside of the root is refused, by whatever way it is named, and
-//! every limit is told before the memory is taken.
+//! Untrusted scenes: files outside the root are refused under any name, and every limit is checked
+//! before memory is allocated.
 //!
 //! Theory: a path is inside if, with all links resolved, it begins with the root, links resolved.
-//! So each way out is paired here with one that looks alike and stays inside, which must be read: a
-//! check that refuses everything fails.
+//! Each way out is paired with a similar one that stays inside and must be read, so a check that
+//! refuses everything fails.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::support::HEAD;
+use crate::support::{self, HEAD};
 use caustica::low_level::scene::{
     Allowance, SceneErrors, load_profile_within, load_within, parse_within,
 };
 
-/// A scene with a light, a material and the rest.
+/// A scene with a light, a material and `rest`.
 fn lit(rest: &str) -> String {
     let light = "[[lights]]\ntype = \"point\"\nposition = [0, 3, 0]\nintensity = 1.0\n";
     format!("{HEAD}{light}[materials.m]\ntype = \"diffuse\"\nreflectance = 0.5\n{rest}")
@@ -21,10 +21,10 @@ fn lit(rest: &str) -> String {
 
 const OBJ: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
 
-/// A folder `root` with a mesh, a picture and a profile, and beside it a folder `out` with the
+/// A folder `root` with a mesh, an image and a profile, and next to it a folder `out` with the
 /// same.
 fn folders(name: &str) -> (PathBuf, PathBuf) {
-    let base = crate::support::folder(name);
+    let base = support::folder(name);
     let (root, out) = (base.join("root"), base.join("out"));
     for folder in [&root, &out] {
         fs::create_dir_all(folder.join("sub")).unwrap();
@@ -60,7 +60,7 @@ fn refusal(errors: SceneErrors) -> String {
     )
 }
 
-/// The first error of a scene in `root/scene.toml`; none where it is read.
+/// The first error of a scene in `root/scene.toml`; none if it loads.
 fn told(root: &Path, text: &str, allowance: &Allowance) -> Option<String> {
     parse_within(&root.join("scene.toml"), text.as_bytes(), allowance).err().map(refusal)
 }
@@ -71,7 +71,7 @@ fn assert_refused(root: &Path, text: &str, line: usize) {
     assert!(told.starts_with(&format!("Some(({line},")), "{told}");
 }
 
-/// Paths with `..`, absolute ones and links, of meshes and pictures.
+/// Paths with `..`, absolute paths and links, of meshes and images.
 #[test]
 fn what_lies_outside_is_refused() {
     let (root, out) = folders("paths");
@@ -82,7 +82,7 @@ fn what_lies_outside_is_refused() {
             format!("../out/{name}"),
             format!("sub/../../out/{name}"),
             out.join(name).display().to_string(),
-            // That there is no such file is not told of what lies outside.
+            // The message does not reveal whether a file outside the root exists.
             format!("../nowhere/{name}"),
             format!("/nowhere/{name}"),
         ];
@@ -97,7 +97,7 @@ fn what_lies_outside_is_refused() {
         ] {
             assert_eq!(told(&root, &scene(&file), &within(&root)), None, "{file}");
         }
-        // Without a root all of those that are there are read.
+        // Without a root all existing files load.
         for file in &outside[..3] {
             assert_eq!(told(&root, &scene(file), &Allowance::default()), None, "{file}");
         }
@@ -120,7 +120,7 @@ fn links_are_followed_before_they_are_judged() {
     for file in ["in.obj", "near/mesh.obj"] {
         assert_eq!(told(&root, &mesh(file), &within(&root)), None, "{file}");
     }
-    // A root that is itself a link is the folder that it leads to.
+    // A root that is itself a link stands for its target.
     symlink(&root, root.with_file_name("link")).unwrap();
     assert_eq!(told(&root, &mesh("in.obj"), &within(&root.with_file_name("link"))), None);
     // The scene's own file, and a profile.
@@ -136,7 +136,7 @@ fn links_are_followed_before_they_are_judged() {
     assert!(load_profile_within(&root.join("p.toml"), &within(&root)).is_ok());
 }
 
-/// The MTL file of an OBJ file, and the picture of an MTL file.
+/// The MTL file of an OBJ file, and the image of an MTL file.
 #[test]
 fn files_named_by_meshes_are_confined_too() {
     let (root, _) = folders("mtl");
@@ -168,7 +168,7 @@ fn files_named_by_meshes_are_confined_too() {
     first(1, "own.obj");
 }
 
-/// Folders and pipes: the latter would be waited for without an end.
+/// Folders and pipes; reading a pipe would block.
 #[cfg(unix)]
 #[test]
 fn only_regular_files_are_read() {
@@ -184,7 +184,7 @@ fn only_regular_files_are_read() {
     }
 }
 
-/// Each limit at what a scene has, which is read, and at one less, which is told by the limit's
+/// Each limit at the scene's value, which loads, and one less, which is refused by the limit's
 /// name.
 #[test]
 fn limits_are_told_by_name() {
@@ -221,7 +221,7 @@ fn limits_are_told_by_name() {
     assert!(refusal(load(scene.len() as u64 - 1).unwrap_err()).contains("--limit scene-bytes=N"));
 }
 
-/// A picture's header is believed before its pixels: 100000 x 100000 in some bytes.
+/// The header of an image is checked before its pixels: 100000 x 100000 in a few bytes.
 #[test]
 fn a_picture_that_claims_much_is_refused_by_its_header() {
     let (root, _) = folders("claims");
@@ -238,7 +238,7 @@ fn a_picture_that_claims_much_is_refused_by_its_header() {
     assert!(told.contains("10000000000 pixels") && told.contains("texture-pixels"), "{told}");
 }
 
-/// The first errors are listed and all are counted, whoever makes them.
+/// The first errors are listed and all are counted, whichever stage reports them.
 #[test]
 fn errors_beyond_the_limit_are_counted() {
     let bad: String = (0..5000)
@@ -256,7 +256,7 @@ fn errors_beyond_the_limit_are_counted() {
     }
 }
 
-/// A place in a line of a megabyte is shown with what is around it, not with all of it.
+/// A place in a line of a megabyte is shown with its surroundings only.
 #[test]
 fn long_lines_are_cut() {
     let numbers = "[0, 0], ".repeat(100_000);
@@ -269,14 +269,14 @@ fn long_lines_are_cut() {
     assert!(report.len() < 20_000 && report.contains("here"), "{} bytes", report.len());
 }
 
-/// One face of many corners, none of them an ear: ear clipping would take the cube of their number.
+/// One face of many corners without an ear: ear clipping would take time cubic in their number.
 #[test]
 fn faces_too_intricate_are_refused() {
     let (root, _) = folders("ears");
     let count = 6000;
     let mut obj = String::new();
     for n in 0..count {
-        // A spiral that winds many times: it cuts itself wherever it closes.
+        // A spiral with many turns, which intersects itself wherever it closes.
         let angle = f64::from(n) * 2.4;
         let radius = 1.0 + f64::from(n % 7);
         obj +=

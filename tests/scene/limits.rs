@@ -1,14 +1,14 @@
-//! What single precision cannot hold is told before it is rendered, at its place in the file.
+//! Limits of single precision: warnings before the render, at the place in the file.
 //!
-//! Theory: each case changes one number of a sound scene. Just inside the limit nothing is said;
-//! just beyond there is one warning, with the number that is out of range, at the value that makes
-//! it so.
+//! Theory: each case changes one number of a sound scene. Just inside the limit there is no
+//! warning; just beyond it there is one, with the number that is out of range, at the value that
+//! causes it.
 
 use caustica::low_level::prepare::limits::warnings;
 use caustica::low_level::scene::{Finding, load, parse};
 
-/// The scene's radius is half the diagonal of what holds camera, target and floor: sqrt(4 + 1 + 4)
-/// = 3.
+/// The scene's radius is half the diagonal of the box around camera, target and floor: sqrt(4 + 1 +
+/// 4) = 3.
 const SOUND: &str = r#"version = 1
 [camera]
 position = [0.0, 2.0, 0.0]
@@ -50,8 +50,8 @@ fn told(text: &str) -> Vec<Finding> {
     warnings(&loaded.scene, &loaded.settings, &loaded.places)
 }
 
-/// The scene with one text replaced says nothing with `inside` and, with `beyond`, one warning that
-/// holds `words` and stands at the line of `at`.
+/// Checks that the scene with one text replaced gives no warning with `inside`, and with `beyond`
+/// one that contains `words` and stands at the line of `at`.
 fn limit(from: &str, inside: &str, beyond: &str, at: &str, words: &[&str]) {
     assert_eq!(SOUND.matches(from).count(), 1, "{from}");
     let with = |to: &str| SOUND.replace(from, to);
@@ -98,7 +98,7 @@ fn gather_radius() {
 
 #[test]
 fn camera_and_field_of_view() {
-    // without a radius in the file the narrow view is the place
+    // without a radius in the file the warning stands at the narrow view
     let narrow = |fov: &str| {
         let text =
             SOUND.replace("[render]\nradius = { units = 0.01 }\n", "").replace("fov = 40.0", fov);
@@ -111,7 +111,7 @@ fn camera_and_field_of_view() {
             .replace("fov = 40.0", "fov = 0.001"),
     );
     assert_eq!(found[0].line_column(), Some((6, 7)), "{found:?}");
-    // half the way to the camera over half the diagonal of the shapes
+    // half the distance to the camera over half the diagonal of the shapes
     let from = "position = [0.0, 2.0, 0.0]";
     let words = ["camera is", "times as far", "1e4"];
     let radius =
@@ -143,7 +143,7 @@ fn small_and_giant_shapes() {
     );
     let floor = "u = [4.0, 0.0, 0.0]";
     limit(floor, "u = [4e-5, 0.0, 0.0]", "u = [1e-5, 0.0, 0.0]", "[1e-5", &["shapes[0]", "1e-5"]);
-    // a needle counts by its radius, a thin plate does not
+    // a needle is judged by its radius; a thin plate is not
     let revolution = |profile: &str| {
         format!(
             "type = \"revolution\"\nprofile = {profile}\nmaterial = \"grey\"\n[[shapes]]\ntype = \"sphere\""
@@ -216,10 +216,10 @@ fn smooth_metal() {
     );
 }
 
-/// Theory: the signed volume of a closed body is above zero where its surface faces outward. A
+/// Theory: the signed volume of a closed body is positive if its surface faces outward. A
 /// tetrahedron wound inward, a drop drawn from the top down and a ring drawn the wrong way round
-/// have their glass outside; the same bodies the right way round, open ones, the inner wall of a
-/// hollow body, and bodies on which it does not matter are fine.
+/// have their glass outside. The same bodies the right way round, open ones, the inner wall of a
+/// hollow body, and bodies on which it does not matter give no warning.
 #[test]
 fn closed_bodies_that_face_inward() {
     let folder = std::env::temp_dir().join(format!("caustica-inward-{}", std::process::id()));

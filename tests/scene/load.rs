@@ -1,8 +1,6 @@
-//! Scene files that are right: what they become.
+//! Valid scene files: the loaded scene.
 
-use std::path::Path;
-
-use crate::support::HEAD;
+use crate::support::{HEAD, data, folder, repository, sound};
 use caustica::low_level::scene::{
     Environment, Loaded, MaterialKind, Reflectance, Scene, SceneErrors, ShapeKind, Texels,
     TextureKind, load, parse,
@@ -10,20 +8,20 @@ use caustica::low_level::scene::{
 use glam::{DVec2, DVec3};
 
 fn reference(name: &str) -> Loaded {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/reference").join(name);
-    load(&path).unwrap_or_else(|errors| panic!("{:?}", miette::Report::new(errors)))
+    let path = data("reference").join(name);
+    sound(load(&path))
 }
 
 fn parse_text(text: &str) -> Result<Loaded, SceneErrors> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/scene.toml");
+    let path = data("scene.toml");
     parse(&path, text.as_bytes())
 }
 
 fn scene_of(text: &str) -> Scene {
-    parse_text(text).unwrap_or_else(|errors| panic!("{:?}", miette::Report::new(errors))).scene
+    sound(parse_text(text)).scene
 }
 
-/// Files as they stand in the reference folder load without a warning, with every name resolved.
+/// The reference scenes load without a warning, with every name resolved.
 #[test]
 fn reference_scenes() {
     let cornell = reference("cornell.toml");
@@ -115,9 +113,9 @@ fn transform_order() {
     assert!(transform.direction(DVec3::Z).distance(DVec3::X) < 1e-12);
 }
 
-/// tests/data/parts.obj: a red quad, a glowing triangle, a glass triangle, a mirror L-shape
-/// (concave hexagon of area 3), a triangle without area, a line. One shape for each material; total
-/// area is kept by triangulation.
+/// tests/data/parts.obj contains a red quad, a glowing triangle, a glass triangle, a mirror L-shape
+/// (concave hexagon of area 3), a triangle without area, and a line. Each material gives one shape,
+/// and triangulation preserves the total area.
 #[test]
 fn materials_of_an_obj() {
     let loaded =
@@ -161,8 +159,8 @@ fn materials_of_an_obj() {
 }
 
 /// A cube without normals: the angle-weighted normal at each corner is the diagonal, however its
-/// squares are cut (weights by area alone would lean to the faces cut at that corner). Flat on
-/// request; the quad's uv survive.
+/// squares are split (weights by area alone would lean to the faces split at that corner). Flat on
+/// request; the quad's uv are kept.
 #[test]
 fn normals_made_and_refused() {
     let text = |smooth: bool| {
@@ -219,7 +217,7 @@ fn render_settings() {
         ..RenderSettings::default()
     };
     assert_eq!(loaded.settings, expected);
-    // A radius that nobody names is chosen, and so is one that is left open in as many words.
+    // A missing radius and the explicit automatic one are both chosen automatically.
     let radius = |render: &str| {
         let text = format!("{HEAD}[environment]\nradiance = 1\n[render]\n{render}\n");
         parse_text(&text).unwrap().settings.radius
@@ -228,10 +226,10 @@ fn render_settings() {
     assert_eq!(radius("radius = { pixels = 2 }"), Radius::Pixels(2.0));
 }
 
-/// The schema that editors read is the one that the types give.
+/// The shipped schema for editors equals the one generated from the types.
 #[test]
 fn schema_is_current() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/schema.json");
+    let path = repository("scenes/schema.json");
     let kept = std::fs::read_to_string(path).unwrap().replace("\r\n", "\n");
     assert!(
         kept == caustica::low_level::scene::schema_json(),
@@ -239,11 +237,11 @@ fn schema_is_current() {
     );
 }
 
-/// Each image format keeps its numbers: 8-bit as they are, 16-bit through the sRGB curve (or not),
-/// hdr and exr in linear floats. The same file in the same color space is read once.
+/// Each image format keeps its values: 8-bit as stored, 16-bit through the sRGB curve (or not), hdr
+/// and exr in linear floats. The same file in the same colour space is read once.
 #[test]
 fn image_formats() {
-    let folder = crate::support::folder("images");
+    let folder = folder("images");
     let deep = image::ImageBuffer::from_pixel(2, 1, image::Rgb([32768u16, 0, 65535]));
     deep.save(folder.join("deep.png")).unwrap();
     let floats = image::ImageBuffer::from_fn(3, 2, |x, y| image::Rgb([x as f32, y as f32, 0.5]));
@@ -275,7 +273,7 @@ fn image_formats() {
     let Texels::Float(texels) = &hdr.images[2].texels else { panic!() };
     assert_eq!(texels[5], [2.0, 1.0, 0.5]);
 
-    // 1e4 is no reflectance, and NaN no radiance.
+    // 1e4 is not a reflectance, and NaN not a radiance.
     let text = format!("{HEAD}[textures.a]\ntype = \"image\"\nfile = \"sky.exr\"\n");
     let errors = parse(&folder.join("scene.toml"), text.as_bytes()).unwrap_err();
     assert!(errors.errors[0].message().contains("is 10000, above 1"));

@@ -1,4 +1,4 @@
-//! The shipped meshes and textures are what the generator makes, and they are well formed.
+//! The shipped meshes and textures equal the generator's output, and they are well formed.
 
 use crate::assets::mesh::Mesh;
 use crate::assets::{self, Content};
@@ -9,14 +9,13 @@ use std::sync::LazyLock;
 
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets");
 
-/// Everything, made once for all tests.
+/// All assets, generated once for all tests.
 static MADE: LazyLock<Vec<assets::Asset>> = LazyLock::new(assets::all);
 
-/// Most bytes in one file.
+/// Largest size of one file, in bytes.
 const SIZE_LIMIT: u64 = 1 << 20;
 
-/// What is wrong with `mesh`, or nothing. `closed` asks that its first `closed` triangles bound a
-/// solid.
+/// Lists the faults of `mesh`. Its first `closed` triangles must bound a solid.
 fn faults(mesh: &Mesh, closed: usize) -> Vec<String> {
     let mut faults = Vec::new();
     let count = mesh.positions.len();
@@ -38,13 +37,13 @@ fn faults(mesh: &Mesh, closed: usize) -> Vec<String> {
         if face.length() < 1e-9 {
             faults.push(format!("triangle {k} has no area"));
         }
-        // a face that looks away from all its normals is wound the wrong way
+        // a face that faces away from all its normals is wound the wrong way
         if t.iter().all(|&i| mesh.normals[i].dot(face) < 0.0) {
             faults.push(format!("triangle {k} at {a} faces away from its normals"));
         }
     }
-    // A surface bounds a solid if each edge, as a pair of places, is passed as often one way as the
-    // other.
+    // A surface bounds a solid if each edge, as a pair of positions, is used equally often in both
+    // directions.
     let place = |i: usize| (mesh.positions[i] * 1e5).to_array().map(|x| x.round() as i64);
     let mut edges: HashMap<_, i64> = HashMap::new();
     for t in mesh.triangles.iter().take(closed).filter(|t| t.iter().all(|&i| i < count)) {
@@ -62,7 +61,7 @@ fn faults(mesh: &Mesh, closed: usize) -> Vec<String> {
     faults
 }
 
-/// Six times the volume inside the first `closed` triangles, by the divergence theorem: positive if
+/// Six times the volume inside the first `closed` triangles, by the divergence theorem; positive if
 /// they wind counter-clockwise seen from outside.
 fn volume(mesh: &Mesh, closed: usize) -> f64 {
     let part = |t: &[usize; 3]| {
@@ -72,7 +71,7 @@ fn volume(mesh: &Mesh, closed: usize) -> f64 {
     mesh.triangles.iter().take(closed).map(part).sum()
 }
 
-/// How many bytes differ, or a length that does.
+/// Describes a difference: the number of differing bytes, or the lengths.
 fn difference(made: &[u8], shipped: &[u8]) -> Option<String> {
     if made.len() != shipped.len() {
         return Some(format!("{} bytes made, {} shipped", made.len(), shipped.len()));
@@ -81,8 +80,8 @@ fn difference(made: &[u8], shipped: &[u8]) -> Option<String> {
     (count > 0).then(|| format!("{count} bytes differ"))
 }
 
-/// Every file is what the generator makes: text byte for byte, pictures value for value (how a
-/// picture is compressed may change with the encoder's version).
+/// Every file equals the generator's output: text byte for byte, images value for value
+/// (compression may change with the encoder's version).
 #[test]
 fn shipped_assets_are_current() {
     let mut wrong = Vec::new();
@@ -112,7 +111,7 @@ fn shipped_assets_are_current() {
     assert!(difference(b"one", b"two").is_some() && difference(b"one", b"on").is_some());
 }
 
-/// No file is missing a maker, and none is larger than the limit.
+/// Every file has a generator, and none is larger than the limit.
 #[test]
 fn every_file_has_a_maker_and_is_small() {
     let made: Vec<_> = MADE.iter().map(|asset| asset.name).collect();
@@ -152,7 +151,7 @@ fn meshes_are_well_formed() {
     }
 }
 
-/// Every material that the house uses is in its library, and the other way about.
+/// Every material that the house uses is in its library, and the reverse.
 #[test]
 fn house_materials_match() {
     let library = assets::house::materials();
@@ -170,7 +169,7 @@ fn house_materials_match() {
     }
 }
 
-/// The checks see what they are for: each fault is planted in a sound cube and must be found.
+/// The checks detect each fault that is planted in a sound cube.
 #[test]
 fn faults_are_found() {
     let cube = || {

@@ -1,9 +1,9 @@
-//! Every shipped scene, small, through every engine of this machine.
+//! Every shipped scene, small, on every engine of this machine.
 //!
 //! Theory: random numbers are counter-based and sums have a fixed order, so the same scene,
 //! settings and device give the same bits. The software Vulkan driver rounds + - * / sqrt as Rust
-//! does and the twins use nothing else, so the CPU engine and lavapipe give the same bits as each
-//! other, too.
+//! does, and the twins use nothing else, so the CPU engine and lavapipe also give the same bits as
+//! each other.
 
 use caustica::low_level::device::{self, Wanted};
 use caustica::low_level::film::Picture;
@@ -11,19 +11,17 @@ use caustica::low_level::scene;
 use caustica::low_level::scene::settings::{Direct, Method, RadiusRule, RenderSettings};
 use std::path::{Path, PathBuf};
 
+use crate::support::{names, passes, repository};
+
 fn shipped() -> Vec<PathBuf> {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes");
-    let mut list: Vec<PathBuf> = std::fs::read_dir(folder)
-        .expect("the folder of shipped scenes")
-        .map(|entry| entry.expect("a readable folder").path())
-        .filter(|path| path.extension().is_some_and(|e| e == "toml"))
-        .collect();
-    list.sort();
+    let folder = repository("scenes");
+    let scenes = names(&folder).into_iter().filter(|name| name.ends_with(".toml"));
+    let list: Vec<PathBuf> = scenes.map(|name| folder.join(name)).collect();
     assert!(list.len() >= 6, "six scenes are shipped, found {list:?}");
     list
 }
 
-/// `scene` at 96 pixels across, two passes.
+/// Renders the scene at 96 pixels across with two passes.
 fn render(path: &Path, wanted: &Wanted, change: impl Fn(&mut RenderSettings)) -> Picture {
     let mut loaded = scene::load(path).unwrap_or_else(|e| panic!("{}: {e:?}", path.display()));
     let film = &mut loaded.scene.film;
@@ -35,9 +33,7 @@ fn render(path: &Path, wanted: &Wanted, change: impl Fn(&mut RenderSettings)) ->
     let opened =
         device::open(wanted, &loaded.scene, settings).unwrap_or_else(|e| panic!("{wanted:?}: {e}"));
     let mut engine = opened.engine;
-    for _ in 0..2 {
-        engine.pass().unwrap_or_else(|e| panic!("{}: {e}", path.display()));
-    }
+    passes(engine.as_mut(), 2);
     engine.picture().unwrap_or_else(|e| panic!("{}: {e}", path.display()))
 }
 
@@ -98,7 +94,7 @@ fn every_setting_gives_the_same_bits_on_both() {
             (s.method, s.radius_rule, s.direct) = (Method::Ppm, RadiusRule::Local, Direct::Photons);
         }),
     ];
-    let path = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/caustics.toml"));
+    let path = repository("scenes/caustics.toml");
     for (name, change) in changes {
         let cpu = render(&path, &Wanted::Cpu, change);
         let software = render(&path, &Wanted::Software, change);

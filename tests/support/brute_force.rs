@@ -1,4 +1,4 @@
-//! Primitives, rays and the exhaustive search that the kd-tree is held against.
+//! Primitives, rays, and the exhaustive search that tests compare the kd-tree with.
 
 use caustica::low_level::accel::kdtree::Primitive;
 use caustica::low_level::shapes::aabb::Aabb;
@@ -85,7 +85,7 @@ pub fn closest(prims: &[Primitive], tree: &Tree, ray: &Ray) -> Hit {
     hit
 }
 
-/// [`closest`] for many rays side by side.
+/// [`closest`] for a stream of rays.
 pub fn closest_many(prims: &[Primitive], tree: &Tree, rays: &[Ray]) -> Vec<Hit> {
     struct Source<'a> {
         rays: &'a [Ray],
@@ -177,7 +177,7 @@ pub fn prims(mesh: &[[Vec3; 3]]) -> Vec<Primitive> {
     mesh.iter().map(|t| Primitive::Triangle(*t)).collect()
 }
 
-/// Scenes that have been known to trip kd-trees, by name.
+/// Scenes that are known to expose errors of kd-trees, by name.
 pub fn scenes() -> Vec<(&'static str, Vec<Primitive>)> {
     let mut rng = Rng(1);
     let tri = |rng: &mut Rng, size: f32| {
@@ -255,7 +255,7 @@ pub fn scenes() -> Vec<(&'static str, Vec<Primitive>)> {
     out
 }
 
-/// Meshes of size one with something far away, by name.
+/// Unit-size meshes with distant geometry, by name.
 pub fn far_scenes() -> Vec<(&'static str, Vec<[Vec3; 3]>)> {
     let mesh = displaced_torus(60, 30);
     let with_vertex = |far: Vec3| {
@@ -282,19 +282,20 @@ pub fn far_scenes() -> Vec<(&'static str, Vec<[Vec3; 3]>)> {
         ("a tilted ground of 1e5", with_ground(1e5, -0.45, 0.3)),
         ("a mesh at a distance of 2000", mesh.iter().copied().chain(small).collect()),
         ("sizes of 1e-3 to 1e6", mesh.iter().copied().chain(sizes).collect()),
-        // computed hits with it lie off it by more than a cell is wide, before or behind those with the mesh
+        // computed hits on it are off by more than a cell's width, before or behind those on the
+        // mesh
         ("a ground of 1e7 through the mesh", with_ground(1e7, 0.1, 0.0)),
     ]
 }
 
-/// Rays of every kind that meets rounding: random, axis-parallel, within splitting planes and
-/// through corners, from far away, with tiny direction components and with either zero.
+/// Rays that expose rounding: random, axis-parallel, within splitting planes and through corners,
+/// from far away, with tiny direction components and with either zero.
 pub fn rays(prims: &[Primitive], tree: &Tree, count: usize, rng: &mut Rng) -> Vec<Ray> {
     let bounds = Aabb { min: tree.bounds_min, max: tree.bounds_max };
     rays_about(bounds, prims, tree, count, rng)
 }
 
-/// [`rays`] that start and aim in `bounds`.
+/// Like [`rays`], for rays that start and aim in `bounds`.
 pub fn rays_about(
     bounds: Aabb,
     prims: &[Primitive],

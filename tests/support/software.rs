@@ -1,8 +1,8 @@
-//! The software Vulkan driver that tests on a device run on.
+//! The software Vulkan driver for tests on a device.
 
 use caustica::low_level::gpu::{AdapterChoice, AdapterKind, list};
 
-/// Asks for the software driver; fails loudly where there is none.
+/// Selects the software driver; fails with instructions if there is none.
 pub fn software() -> AdapterChoice {
     let adapters = list();
     let Some(adapter) = adapters.iter().find(|a| a.kind == AdapterKind::Software) else {

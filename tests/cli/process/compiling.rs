@@ -1,31 +1,30 @@
-//! What is shown while a driver compiles, which lavapipe without its cache does for many seconds.
+//! Progress while a driver compiles kernels, which takes lavapipe many seconds without its cache.
 
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use super::{ended, folder, spawn};
-use crate::support::software;
-use crate::support::{command, json_lines, text, words};
+use super::folder;
+use crate::support::{PROGRAM, command, ended, json_lines, software, spawn, text, words};
 
-/// The program where no compiled kernel is kept.
+/// The program without Mesa's shader cache.
 fn cold(folder: &Path, line: &str) -> Command {
     let mut command = command(folder, &words(line));
     command.env("MESA_SHADER_CACHE_DISABLE", "true");
     command
 }
 
-/// Of a scene whose kernels are large.
+/// Arguments that render a scene with large kernels.
 const RENDER: &str = concat!(
     "render ",
     env!("CARGO_MANIFEST_DIR"),
     "/scenes/caustics.toml --size 16x16 --photons 1000 --device software --passes 1 -o a.png"
 );
 
-/// Theory: a user who waits longer than a second learns why. A log has lines that say which kernel
-/// is compiled and how many are done; --quiet has nothing; --json has events, and nothing on
-/// standard error.
+/// Theory: a user who waits longer than a second is told why. The log names the kernel that is
+/// being compiled and how many are done, --quiet prints nothing, and --json prints events and
+/// nothing on standard error.
 #[test]
 fn a_compilation_is_shown() {
     software();
@@ -69,13 +68,13 @@ fn a_compilation_is_shown() {
     }
 }
 
-/// On a terminal there is a live line, drawn many times, and it is gone at the end.
+/// Theory: a terminal shows a live line, which is redrawn often and erased at the end.
 #[test]
 fn a_terminal_has_a_live_line() {
     software();
     let folder = folder("live");
-    // util-linux's `script` gives the program a terminal
-    let line = format!("{} {RENDER}", env!("CARGO_BIN_EXE_caustica"));
+    // util-linux's `script` runs the program on a terminal
+    let line = format!("{} {RENDER}", PROGRAM);
     let mut command = Command::new("script");
     command.args(["--quiet", "--return", "--command", &line, "/dev/null"]).current_dir(&folder);
     command.env("MESA_SHADER_CACHE_DISABLE", "true").env("TERM", "xterm").stdin(Stdio::null());

@@ -1,15 +1,18 @@
-//! What the environment does to the choice of a device, and what drivers write to standard error.
+//! Environment variables that affect the choice of a device, and output of drivers on standard
+//! error.
 
 use std::fs;
 use std::os::unix::process::CommandExt;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use super::{ended, folder, signal, spawn, until};
-use crate::support::software;
-use crate::support::{command, ends, error, json_lines, text, words};
+use super::folder;
+use crate::support::{
+    command, ended, ends, error, json_lines, signal, software, spawn, text, until, words,
+};
 
-/// The program as on a server: no desktop, and nothing that keeps Mesa's layer quiet.
+/// The program as it runs on a server: without a desktop and without the variable that silences
+/// Mesa's device-select layer.
 fn bare(folder: &Path, line: &str) -> Command {
     let mut command = command(folder, &words(line));
     for name in ["NODEVICE_SELECT", "XDG_RUNTIME_DIR", "WAYLAND_DISPLAY", "DISPLAY"] {
@@ -18,8 +21,8 @@ fn bare(folder: &Path, line: &str) -> Command {
     command
 }
 
-/// Theory: standard error belongs to the program. Drivers and their layers find no fault with a
-/// machine that has no desktop.
+/// Theory: only the program writes to standard error. Drivers and their layers print no complaint
+/// about a machine without a desktop.
 #[test]
 fn drivers_are_quiet_without_a_desktop() {
     software();
@@ -43,8 +46,8 @@ fn drivers_are_quiet_without_a_desktop() {
     }
 }
 
-/// Theory: the program starts again only to keep the layer away; all that others see of a process
-/// stays: its number, name, arguments, folder and the signals that it was started to ignore.
+/// Theory: the program re-executes itself only to disable the layer. The process keeps its number,
+/// name, arguments, working folder and ignored signals.
 #[test]
 fn the_process_stays_what_it_was() {
     software();
@@ -63,9 +66,10 @@ fn the_process_stays_what_it_was() {
     assert_eq!(fs::read_to_string(process.join("comm")).unwrap().trim(), "caustica");
     until("ready", || super::signals::catches(&child));
     assert!(child.try_wait().unwrap().is_none());
-    signal(&child, "INT");
+    // TERM: the test suite may have been started with INT ignored
+    signal(&child, "TERM");
     assert_eq!(ended(child).status.code(), Some(130));
-    // a render on the processor needs no driver, and a desktop keeps the layer
+    // a CPU render needs no driver, and with a desktop the layer stays enabled
     for (line, runtime) in
         [(line.replace("software", "cpu"), None), (line.to_owned(), Some("/run"))]
     {
@@ -76,13 +80,13 @@ fn the_process_stays_what_it_was() {
         let child = spawn(command);
         until("ready", || super::signals::catches(&child));
         let variables = fs::read(format!("/proc/{}/environ", child.id())).unwrap();
-        signal(&child, "INT");
+        signal(&child, "TERM");
         assert!(!String::from_utf8_lossy(&variables).contains("NODEVICE_SELECT"), "{line}");
         assert_eq!(ended(child).status.code(), Some(130), "{line}");
     }
 }
 
-/// What the program says with a variable set to a value.
+/// Output and error of the program with an environment variable set.
 fn output_of(
     folder: &Path,
     line: &str,
@@ -98,9 +102,9 @@ fn output_of(
     (text(&output.stdout), error(&output))
 }
 
-/// Theory: a variable that hides an adapter, or has a word that means nothing, is named with its
-/// value, what it hides and the remedy, wherever a device is chosen. One that hides nothing is not
-/// mentioned.
+/// Theory: if a variable hides an adapter or has a meaningless value, every command that selects a
+/// device names it with its value, the hidden adapters and the remedy. A variable that hides
+/// nothing is not mentioned.
 #[test]
 fn variables_that_hide_devices_are_named() {
     software();
@@ -134,7 +138,7 @@ fn variables_that_hide_devices_are_named() {
             let (_, error) = output_of(&folder, &format!("{render} --device {wanted}"), set, 4);
             assert!(named(&error), "{wanted}: {error}");
         }
-        // the processor is there whatever is hidden
+        // the CPU is available whatever is hidden
         assert_eq!(output_of(&folder, &format!("{render} --device cpu"), set, 0).1, "");
     }
     for set in [("WGPU_BACKEND", "vulkan"), ("WGPU_BACKEND", ""), ("WGPU_ADAPTER_NAME", "LLVMpipe")]

@@ -1,15 +1,15 @@
-//! Scenes that take more memory than the process may have.
+//! Scenes that need more memory than the process may have.
 
 use std::fmt::Write;
 use std::fs;
 use std::process::Command;
 
-use super::{SCENE, ended, folder, spawn};
-use crate::support::{error, words};
+use super::{SCENE, folder};
+use crate::support::{PROGRAM, ended, error, spawn, words};
 
-/// Whether `error` refuses a scene for want of memory and helps: the limit of the scene that is
-/// exceeded and its option, or the limit of the process and what to make smaller. Which of the two
-/// comes first depends on what the allocator has reserved of the address space by then.
+/// Whether `error` reports a lack of memory and helps: it names the exceeded scene limit and its
+/// option, or the limit of the process and what to make smaller. Which of the two comes first
+/// depends on how much address space the allocator has reserved.
 fn helps(error: &str, option: &str) -> bool {
     let scene = error.contains(option);
     let process = error.contains("(ulimit -v)");
@@ -18,9 +18,9 @@ fn helps(error: &str, option: &str) -> bool {
             && ["take coarser meshes", "--size", "--limit"].iter().any(|help| error.contains(help))
 }
 
-/// Theory: the reader knows how much memory there is before it reads a mesh or a picture, so that
-/// under any limit there is a picture or a message, exit code 0 or 1; a failed allocation would end
-/// the program by signal 6. A limit that is named counts whatever there is.
+/// Theory: the reader checks the available memory before it reads a mesh or an image. So under any
+/// limit the program writes an image or a message, with exit code 0 or 1; a failed allocation would
+/// end it by signal 6. An explicit limit applies however much memory is free.
 #[test]
 fn large_scenes_in_little_memory() {
     let folder = folder("large");
@@ -45,7 +45,7 @@ fn large_scenes_in_little_memory() {
         let line =
             format!("render {scene} --device cpu --quiet --passes 1 --photons 100 -o a.png {more}");
         let mut command = Command::new("prlimit");
-        command.arg(format!("--as={}", megabytes * 1_000_000)).arg(env!("CARGO_BIN_EXE_caustica"));
+        command.arg(format!("--as={}", megabytes * 1_000_000)).arg(PROGRAM);
         command.args(words(&line)).current_dir(&folder).env("RAYON_NUM_THREADS", "1");
         ended(spawn(command))
     };

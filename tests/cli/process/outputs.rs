@@ -1,4 +1,4 @@
-//! Where pictures and checkpoints go.
+//! Output paths of images and checkpoints.
 
 use std::fs;
 use std::os::unix::fs::{FileTypeExt, MetadataExt, PermissionsExt, symlink};
@@ -9,8 +9,8 @@ use std::thread;
 use caustica::low_level::checkpoint::read;
 use caustica::low_level::storage::{self, Purpose};
 
-use super::{ended, fifo, folder, render, spawn, until};
-use crate::support::{error, text};
+use super::{fifo, folder, render};
+use crate::support::{PROGRAM, ended, error, names, spawn, text, until};
 
 const PNG: &[u8] = b"\x89PNG\r\n\x1a\n";
 
@@ -29,16 +29,14 @@ fn mode(path: &Path) -> u32 {
     fs::metadata(path).unwrap().permissions().mode() & 0o7777
 }
 
-/// What this program has left unfinished or locked in a folder.
+/// Temporary files and locks of the program in a folder.
 fn leftovers(folder: &Path) -> Vec<PathBuf> {
-    let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
-    entries
-        .filter(|path| path.file_name().unwrap().to_str().unwrap().starts_with(".caustica-"))
-        .collect()
+    let names = names(folder).into_iter();
+    names.filter(|name| name.starts_with(".caustica-")).map(|name| folder.join(name)).collect()
 }
 
-/// Theory: a name that is a link stands for the file at its end, there or not yet, through any
-/// number of folders; the link itself is no output.
+/// Theory: a link stands for its target, which may not exist yet, through any number of folders.
+/// The link itself is not replaced.
 #[test]
 fn links_are_followed() {
     let folder = folder("links");
@@ -62,7 +60,7 @@ fn links_are_followed() {
         assert!(fs::read(folder.join(file)).unwrap().starts_with(PNG), "{file}");
     }
     assert_eq!(read(&folder.join("far/kept")).unwrap().state.passes, 2);
-    // two names of one file are one output
+    // two names of one file count as one output
     run(&folder, "-o one.png -o real.png", 2, &["real.png"]);
     symlink("round.png", folder.join("round.png")).unwrap();
     run(&folder, "-o round.png", 1, &["round.png", "cannot be written"]);
@@ -71,9 +69,8 @@ fn links_are_followed() {
     }
 }
 
-/// Theory: a file that is written over keeps its mode and its owner, at no time is its new content
-/// readable to more than these allow, and one that nobody may write to is refused before the work,
-/// even for root.
+/// Theory: an overwritten file keeps its mode and owner, and its new content is at no time readable
+/// to more users. A read-only file is refused before the render starts, even for root.
 #[test]
 fn modes_and_owners_stay() {
     let folder = folder("modes");
@@ -94,7 +91,7 @@ fn modes_and_owners_stay() {
         assert_ne!(fs::read(path).unwrap(), b"before", "{name}");
     }
     assert_eq!(owner(&files[0]) == other, is_root);
-    // while it is written, too
+    // this also holds while the file is written
     storage::write(&files[0], Purpose::Result, |out| {
         let unfinished = leftovers(&folder);
         assert_eq!(unfinished.iter().map(|path| mode(path)).collect::<Vec<_>>(), [0o600]);
@@ -116,8 +113,8 @@ fn modes_and_owners_stay() {
     assert_eq!(mode(&kept), 0o400);
 }
 
-/// Theory: a name may have 255 bytes, of which the program needs none for itself; names of
-/// unfinished files that somebody else has taken are passed over.
+/// Theory: a name may have 255 bytes, and the program reserves none of them. Names of temporary
+/// files that are taken are skipped.
 #[test]
 fn names_may_be_long_and_taken() {
     let folder = folder("names");
@@ -130,7 +127,7 @@ fn names_may_be_long_and_taken() {
     let kept = long(255, ".checkpoint");
     run(&folder, &format!("-o a.png --checkpoint {kept} --resume {kept}"), 0, &[]);
     run(&folder, &format!("-o {}", long(256, ".png")), 1, &["cannot be written", "too long"]);
-    // what a killed process of this number may have left
+    // files that a killed process with this number may have left
     let file = folder.join("taken.png");
     storage::write(&file, Purpose::Result, |_| {
         let mine = leftovers(&folder).remove(0);
@@ -145,8 +142,8 @@ fn names_may_be_long_and_taken() {
     assert_eq!(fs::read(&file).unwrap(), b"whole");
 }
 
-/// Theory: what is no file is a way for bytes: it gets the picture and stays what it is. A
-/// checkpoint, which is to be read again, is refused there before the work.
+/// Theory: a pipe or device receives the image and is not replaced. A checkpoint, which must be
+/// read again, is refused there before the render starts.
 #[test]
 fn pipes_get_pictures() {
     let folder = folder("pipes");
@@ -170,17 +167,16 @@ fn pipes_get_pictures() {
     symlink("/dev/stdout", folder.join("out.png")).unwrap();
     let output = run(&folder, "-o out.png", 0, &[]);
     assert!(output.stdout.starts_with(PNG) && output.stdout.ends_with(b"out.png\n"));
-    // a file that a shell has opened for several programs keeps what they wrote before and write
-    // after
+    // a file that a shell has opened for several programs keeps what they write before and after
     let line = "{ echo before; \"$0\" render ball.toml --device cpu --quiet -o out.png; echo after; } >all.bin";
     let mut shell = std::process::Command::new("sh");
-    shell.args(["-c", line, env!("CARGO_BIN_EXE_caustica")]).current_dir(&folder);
-    assert_eq!(super::ended(super::spawn(shell)).status.code(), Some(0));
+    shell.args(["-c", line, PROGRAM]).current_dir(&folder);
+    assert_eq!(ended(spawn(shell)).status.code(), Some(0));
     let all = fs::read(folder.join("all.bin")).unwrap();
     let inner =
         all.strip_prefix(b"before\n").and_then(|rest| rest.strip_suffix(b"out.png\nafter\n"));
     assert!(inner == output.stdout.strip_suffix(b"out.png\n"), "{} bytes", all.len());
-    // a name of standard output does not say which picture; the message says how one does
+    // the name of standard output does not determine the format; the message says which names do
     for name in ["/dev/stdout", "-", "/dev/fd/1", "/proc/self/fd/1", "/dev/stderr"] {
         let output =
             run(&folder, &format!("--output={name}"), 2, &[name, "which kind of picture", "ln -s"]);
@@ -191,8 +187,8 @@ fn pipes_get_pictures() {
     assert!(!folder.join("never.png").exists());
 }
 
-/// Theory: what one output meets is nothing to the others; all failures are said, the exit code is
-/// 1, and the work is saved in a place that is said.
+/// Theory: a failed output does not affect the others. All failures are reported, the exit code is
+/// 1, and the result is saved in another place, which the message names.
 #[test]
 fn one_failed_output_keeps_no_other() {
     let folder = folder("gone");
@@ -202,10 +198,10 @@ fn one_failed_output_keeps_no_other() {
     let line = "-o gone/y.png -o ok.png -o lost/z.exr --passes 40 --time 60s --target-error 0.0001% \
                 --checkpoint lost/kept.checkpoint --checkpoint-every 0.001ms";
     let child = spawn(render(&folder, line));
-    // it has begun
+    // the render is under way
     until("a checkpoint", || folder.join("lost/kept.checkpoint").exists());
     for part in ["gone", "lost"] {
-        // it may write there at this moment
+        // the program may be writing there at this moment
         until("an empty folder", || fs::remove_dir_all(folder.join(part)).is_ok());
     }
     let output = ended(child);

@@ -1,14 +1,13 @@
-//! What commands read.
+//! Input files that are pipes, devices or forged.
 
-use std::collections::BTreeMap;
 use std::fs;
 use std::os::unix::fs::symlink;
 use std::path::Path;
 
-use caustica::low_level::film::{Picture, exr_file};
+use caustica::low_level::film::Picture;
 
-use super::{ended, fifo, folder, spawn};
-use crate::support::{command, error, words};
+use super::{fifo, folder};
+use crate::support::{command, ended, error, exr_bytes, spawn, words, write_exr};
 
 #[track_caller]
 fn refused(folder: &Path, line: &str, told: &[&str]) {
@@ -19,8 +18,8 @@ fn refused(folder: &Path, line: &str, told: &[&str]) {
         .for_each(|word| assert!(error.contains(word), "{line} should say `{word}`: {error}"));
 }
 
-/// Theory: a pipe may have no writer and a device no end, so neither is read, by any command,
-/// whatever name leads there. `ended` kills what waits.
+/// Theory: a pipe may have no writer and a device no end, so no command reads either, whatever name
+/// refers to it. `ended` kills a process that waits.
 #[test]
 fn pipes_and_devices_are_refused() {
     let folder = folder("special");
@@ -30,12 +29,7 @@ fn pipes_and_devices_are_refused() {
         symlink("/dev/zero", folder.join(format!("zero.{kind}"))).unwrap();
     }
     let picture = Picture::from_fn(12, 8, |_, _| [0.5; 3]);
-    let frame = exr_file::Frame::of(&picture);
-    fs::write(
-        folder.join("good.exr"),
-        exr_file::encode(&picture, frame, &[], &BTreeMap::new()).unwrap(),
-    )
-    .unwrap();
+    write_exr(&folder.join("good.exr"), &picture);
     for name in ["pipe", "zero"] {
         for kind in ["exr", "pfm", "hdr", "png", "jpg"] {
             refused(&folder, &format!("diff {name}.{kind} good.exr"), &[name, "no regular file"]);
@@ -55,8 +49,8 @@ fn pipes_and_devices_are_refused() {
     assert!(!folder.join("out.exr").exists());
 }
 
-/// Theory: a study's folder may be anybody's, too. None of the files that a study resumes from is
-/// waited for.
+/// Theory: the folder of a study may be untrusted too. A study waits for none of the files that it
+/// resumes from.
 #[test]
 fn a_study_does_not_wait_for_its_files() {
     let folder = folder("study");
@@ -77,7 +71,7 @@ fn a_study_does_not_wait_for_its_files() {
         fs::remove_file(&file).unwrap();
         fs::write(&file, content).unwrap();
     }
-    // a picture of the report that is none is left out
+    // the report omits an image that is unreadable
     let crops = fs::read_dir(folder.join("studied/crops")).unwrap();
     let crop =
         crops.map(|entry| entry.unwrap().path()).find(|path| path.extension().is_some()).unwrap();
@@ -87,15 +81,14 @@ fn a_study_does_not_wait_for_its_files() {
     assert_eq!(output.status.code(), Some(0), "{}", error(&output));
 }
 
-/// Theory: a file of some hundred bytes may claim any number of pixels; none of them are made
-/// before it is known that there is memory for all. An allocation that fails would end the program
-/// by signal 6.
+/// Theory: a file of a hundred bytes may claim any number of pixels. The reader checks the
+/// available memory before it allocates them; a failed allocation would end the program by signal
+/// 6.
 #[test]
 fn sizes_are_not_believed() {
     let folder = folder("sizes");
     let picture = Picture::from_fn(12, 8, |_, _| [0.5; 3]);
-    let mut exr =
-        exr_file::encode(&picture, exr_file::Frame::of(&picture), &[], &BTreeMap::new()).unwrap();
+    let mut exr = exr_bytes(&picture);
     fs::write(folder.join("good.exr"), &exr).unwrap();
     for window in ["dataWindow\0box2i\0", "displayWindow\0box2i\0"] {
         let at = exr.windows(window.len()).position(|bytes| bytes == window.as_bytes()).unwrap();
@@ -106,7 +99,7 @@ fn sizes_are_not_believed() {
     let hdr = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2000000 +X 2000000\n";
     fs::write(folder.join("huge.hdr"), hdr).unwrap();
     fs::write(folder.join("huge.pfm"), "PF\n2000000 2000000\n-1.0\n").unwrap();
-    // a sparse file, longer than any memory
+    // a sparse file, longer than the memory
     let sparse = fs::File::create(folder.join("long.pfm")).unwrap();
     sparse.set_len(1 << 43).unwrap();
     for name in ["huge.exr", "huge.hdr", "huge.pfm", "long.pfm"] {

@@ -1,16 +1,19 @@
-//! Two processes and one checkpoint.
+//! Two processes that share a checkpoint.
 
 use std::fs;
 use std::os::unix::fs::symlink;
 
 use caustica::low_level::checkpoint::read;
 
-use super::{ended, folder, render, signal, spawn, until};
-use crate::support::{error, fails, good, words};
+use super::{folder, render};
+use crate::support::{
+    PROGRAM, ended, error, fails, good, names, only_unprivileged, signal, spawn, unprivileged,
+    until, words,
+};
 
-/// Theory: of two renders that would write to one file, by whatever names, the second ends at its
-/// start and says who has it, whether there is a checkpoint yet or not; whoever is killed holds
-/// nothing.
+/// Theory: if two renders write to one file, by whatever names, the second ends at its start and
+/// names the process that holds it, whether or not the checkpoint exists yet. A killed process
+/// holds no lock.
 #[test]
 fn a_checkpoint_has_one_writer() {
     let folder = folder("writers");
@@ -22,8 +25,7 @@ fn a_checkpoint_has_one_writer() {
         let holder =
             spawn(render(&folder, &format!("{endless} {resume} --checkpoint-every 1ms -o a.exr")));
         let locked = || {
-            let names = fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name());
-            let lock = names.into_iter().find(|name| name.to_str().unwrap().ends_with(".lock"));
+            let lock = names(&folder).into_iter().find(|name| name.ends_with(".lock"));
             let holder_is = |text: String| text == holder.id().to_string();
             lock.is_some_and(|name| fs::read_to_string(folder.join(name)).is_ok_and(holder_is))
         };
@@ -42,7 +44,7 @@ fn a_checkpoint_has_one_writer() {
         second("--checkpoint a.checkpoint");
         second("--checkpoint a.checkpoint --resume a.checkpoint");
         second("--checkpoint link.checkpoint --resume a.checkpoint");
-        // what is there is whole at any moment, for those who only read
+        // readers always find a complete file
         for _ in 0..20 {
             assert!(read(&file).is_ok());
         }
@@ -51,47 +53,39 @@ fn a_checkpoint_has_one_writer() {
         signal(&holder, kill);
         ended(holder);
     }
-    // nobody holds it now, and nothing unfinished is left
+    // the lock is free, and no temporary file is left
     let passes = read(&file).unwrap().state.passes + 1;
     let line = format!(
         "--quiet -o c.exr --checkpoint a.checkpoint --resume a.checkpoint --passes {passes}"
     );
     assert_eq!(ended(spawn(render(&folder, &line))).status.code(), Some(0));
-    let mut left: Vec<_> =
-        fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name()).collect();
-    left.sort();
-    assert_eq!(left, ["a.checkpoint", "a.exr", "ball.toml", "c.exr", "link.checkpoint"]);
+    assert_eq!(names(&folder), ["a.checkpoint", "a.exr", "ball.toml", "c.exr", "link.checkpoint"]);
 }
 
-/// Theory: a lock is the same for a user who may only read its file: who holds it is said.
+/// Theory: a lock also works for a user who may only read its file.
 #[test]
 fn the_lock_of_another_user_counts() {
     use std::os::unix::fs::PermissionsExt;
+    let _only = only_unprivileged();
     let folder = std::env::temp_dir().join(format!("caustica-lock-{}", std::process::id()));
     fs::create_dir_all(&folder).unwrap();
     fs::set_permissions(&folder, fs::Permissions::from_mode(0o777)).unwrap();
     let program = folder.join("caustica");
-    fs::copy(env!("CARGO_BIN_EXE_caustica"), &program).unwrap();
+    fs::copy(PROGRAM, &program).unwrap();
     fs::write(folder.join("ball.toml"), super::SCENE.as_str()).unwrap();
     let line = "--quiet --passes 1000000 --time 60s --checkpoint a.checkpoint -o a.exr";
     let holder = spawn(render(&folder, line));
     let lock = || {
-        let names = fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().path());
+        let paths = names(&folder).into_iter().map(|name| folder.join(name));
         let own = |path: &std::path::PathBuf| {
             fs::read_to_string(path).is_ok_and(|text| text == holder.id().to_string())
         };
-        names.into_iter().find(|path| path.extension().is_some_and(|e| e == "lock") && own(path))
+        paths.into_iter().find(|path| path.extension().is_some_and(|e| e == "lock") && own(path))
     };
     until("locked", || lock().is_some());
     fs::set_permissions(lock().unwrap(), fs::Permissions::from_mode(0o444)).unwrap();
-    // root may write to any file, so that the second render is another user's then
-    let id = std::process::Command::new("id").arg("-u").output().unwrap();
-    let mut second = std::process::Command::new("setpriv");
-    if crate::support::text(&id.stdout).trim() == "0" {
-        second.args(["--reuid=65534", "--clear-groups"]).arg(&program);
-    } else {
-        second = std::process::Command::new(&program);
-    }
+    // root may write to any file, so root runs the second render as another user
+    let mut second = unprivileged(&program);
     second
         .args(words("render ball.toml --device cpu"))
         .args(words(&line.replace("a.exr", "b.exr")));
@@ -107,7 +101,7 @@ fn the_lock_of_another_user_counts() {
     fs::remove_dir_all(&folder).unwrap();
 }
 
-/// Theory: what a command reads it does not write over, whatever the names.
+/// Theory: a command does not overwrite its inputs, whatever their names.
 #[test]
 fn what_is_merged_is_not_written_over() {
     let folder = folder("merge");

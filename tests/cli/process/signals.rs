@@ -1,13 +1,15 @@
-//! Signals at any moment.
+//! Signals at any moment of a run.
 
 use std::fs;
 use std::path::Path;
 use std::process::Child;
 use std::time::Duration;
 
-use super::{ended, folder, render, signal, spawn, until};
-use crate::support::error;
-use crate::support::software;
+use super::{fifo, folder, render};
+use crate::support::{
+    PROGRAM, ended, error, interruptible, json_lines, signal, software, spawn, until,
+    with_default_signals, words,
+};
 
 /// Whether the program catches SIGINT (2), SIGTERM (15) and SIGHUP (1).
 pub fn catches(child: &Child) -> bool {
@@ -19,16 +21,16 @@ pub fn catches(child: &Child) -> bool {
     [2, 15, 1].iter().all(|signal| caught.is_some_and(|caught| caught >> (signal - 1) & 1 == 1))
 }
 
-/// Theory: from the moment at which it catches signals, and that is before anything is read, a
-/// render ends by the code of an interrupt, 130, whatever it is at. There is a picture if a pass is
-/// whole, else a word that there is none.
+/// Theory: the program catches signals before it reads anything. From then on a signal ends a
+/// render with exit code 130 at any moment. If a pass is complete the image is written, otherwise a
+/// message says that nothing is saved.
 #[test]
 fn a_signal_at_any_moment() {
     let folder = folder("moments");
     let (mut before, mut after) = (0, 0);
     for (number, wait) in [0, 0, 0, 1, 2, 4, 8, 16, 40, 100, 250, 600].into_iter().enumerate() {
         let name = ["INT", "TERM", "HUP"][number % 3];
-        // the large picture takes a while before the first pass
+        // the large image takes a while before its first pass ends
         let size = if number < 9 { "--size 1000x800" } else { "" };
         let picture = folder.join("a.png");
         let _ = fs::remove_file(&picture);
@@ -54,8 +56,8 @@ fn a_signal_at_any_moment() {
     assert!(before > 0 && after > 0, "{before} {after}");
 }
 
-/// Theory: a driver's compiler at work is no reason for another code. Lavapipe without its cache
-/// compiles for some seconds, on threads of its own.
+/// Theory: the exit code is the same while a driver compiles. Lavapipe without its cache compiles
+/// for seconds, on threads of its own.
 #[test]
 fn a_signal_while_a_driver_compiles() {
     software();
@@ -63,7 +65,7 @@ fn a_signal_while_a_driver_compiles() {
     let mut before = 0;
     for wait in (0..24).map(|n| 60 * n) {
         let line = "render ball.toml --device software --quiet --passes 100000 -o a.png";
-        let mut command = crate::support::command(&folder, &crate::support::words(line));
+        let mut command = interruptible(&folder, &words(line));
         command.env("MESA_SHADER_CACHE_DISABLE", "true");
         let child = spawn(command);
         until("ready", || catches(&child));
@@ -77,18 +79,17 @@ fn a_signal_while_a_driver_compiles() {
     assert!(before > 0);
 }
 
-/// A child of a shell that ignores these signals, as `nohup` and shells without job control do.
+/// Starts the program from a shell that ignores these signals, as `nohup` and shells without job
+/// control do.
 fn ignoring(folder: &Path, names: &str, line: &str) -> Child {
     let program = format!("trap '' {names}; exec \"$0\" \"$@\"");
-    let mut command = std::process::Command::new("sh");
-    command
-        .args(["-c", &program, env!("CARGO_BIN_EXE_caustica")])
-        .args(crate::support::words(line));
+    let mut command = with_default_signals("sh");
+    command.args(["-c", &program, PROGRAM]).args(words(line));
     command.current_dir(folder).env("NO_COLOR", "1");
     spawn(command)
 }
 
-/// Theory: a signal that the program was started to ignore means nothing to it. The others still
+/// Theory: a signal that is ignored when the program starts stays ignored. The other signals still
 /// end it.
 #[test]
 fn ignored_signals_stay_ignored() {
@@ -114,7 +115,7 @@ fn ignored_signals_stay_ignored() {
             ["HUP", "INT", "TERM"].iter().position(|n| *n == name).map(|i| [1, 2, 15][i])
         };
         let bit = |name: &str| 1u64 << (number(name).unwrap() - 1);
-        // a shell with -c may itself catch a signal before it runs the program
+        // the shell itself may catch a signal before it executes the program
         let program =
             || fs::read_to_string(format!("/proc/{}/comm", child.id())).unwrap_or_default();
         until("ready", || {
@@ -133,8 +134,8 @@ fn ignored_signals_stay_ignored() {
     }
 }
 
-/// Theory: a bench that is interrupted has measured something, and that is what it reports: rounds
-/// of the first device, or all of it while the next device compiles.
+/// Theory: an interrupted bench reports what it has measured: some rounds of the first device, or
+/// all of them if the next device is still compiling.
 #[test]
 fn an_interrupted_bench_keeps_its_figures() {
     use std::io::{BufRead, BufReader, Read};
@@ -153,7 +154,7 @@ fn an_interrupted_bench_keeps_its_figures() {
     ];
     for (line, begun, devices) in cases {
         let json = begun.starts_with(['m', '"']);
-        let mut command = crate::support::command(&folder, &crate::support::words(line));
+        let mut command = interruptible(&folder, &words(line));
         command.args(json.then_some("--json")).env("MESA_SHADER_CACHE_DISABLE", "true");
         let mut child = spawn(command);
         let mut stdout = BufReader::new(child.stdout.take().unwrap());
@@ -169,7 +170,7 @@ fn an_interrupted_bench_keeps_its_figures() {
         assert_eq!(output.status.code(), Some(130), "{line}: {}", error(&output));
         assert!(begun.elapsed() < Duration::from_secs(3), "{line}: {:?}", begun.elapsed());
         if json {
-            let bench = crate::support::json_lines(said.as_bytes()).pop().unwrap();
+            let bench = json_lines(said.as_bytes()).pop().unwrap();
             assert_eq!(
                 (&bench["event"], &bench["complete"]),
                 (&"bench".into(), &false.into()),
@@ -187,12 +188,12 @@ fn an_interrupted_bench_keeps_its_figures() {
     }
 }
 
-/// A command without passes ends the same way, and does not speak of passes.
+/// A command without passes ends with the same code and does not mention passes.
 #[test]
 fn a_command_without_passes() {
     let folder = folder("no passes");
-    super::fifo(&folder.join("pipe.toml"));
-    let child = spawn(crate::support::command(&folder, &["check", "pipe.toml"]));
+    fifo(&folder.join("pipe.toml"));
+    let child = spawn(interruptible(&folder, &["check", "pipe.toml"]));
     until("ready", || catches(&child));
     signal(&child, "INT");
     let output = ended(child);

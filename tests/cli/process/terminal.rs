@@ -1,4 +1,4 @@
-//! What reaches a terminal.
+//! Control characters in messages on a terminal.
 
 use std::fs;
 use std::path::Path;
@@ -6,17 +6,18 @@ use std::path::Path;
 use super::{SCENE, folder};
 use crate::support::{command, text};
 
-/// A title, a cleared screen, hidden text, a bell, a return, a C1 sequence, and text from right to
-/// left.
+/// Sets the title, clears the screen, hides text, rings the bell, returns, starts a C1 sequence,
+/// and reverses text.
 const HARM: [&str; 7] =
     ["\x1b]0;PWNED\x07", "\x1b[2J", "\x1b[8m", "\x07", "a\rb", "\u{9b}2J", "\u{202e}txt"];
 
-/// Whether a report sets this: a colour, bold, faint, italic or underlined text, or none of them.
+/// Whether a report may use this code: a colour, bold, faint, italic or underlined text, or a
+/// reset.
 fn is_color(code: &str) -> bool {
     code.parse::<u32>().is_ok_and(|code| !(5..=8).contains(&code))
 }
 
-/// What a terminal would act on in what a command says, but for the colours of reports.
+/// The control and direction characters of an output, except for the colours of reports.
 fn acts(output: &str) -> Vec<char> {
     let mut rest = String::new();
     let mut parts = output.split("\x1b[");
@@ -32,8 +33,8 @@ fn acts(output: &str) -> Vec<char> {
     rest.chars().filter(|c| (c.is_control() && *c != '\n') || turns(c)).collect()
 }
 
-/// Runs with and without colours; standard error must name the trouble and do nothing to the
-/// terminal.
+/// Runs with and without colours. Standard error must contain `told` and no character that a
+/// terminal would act on.
 #[track_caller]
 fn harmless(folder: &Path, arguments: &[&str], told: &str) {
     for colors in [false, true] {
@@ -49,8 +50,8 @@ fn harmless(folder: &Path, arguments: &[&str], told: &str) {
     }
 }
 
-/// Theory: a terminal acts on control characters. None comes from what the program quotes: lines of
-/// files, their names, names in them, arguments; with colours and without.
+/// Theory: a terminal acts on control characters, so the program escapes them in everything that it
+/// quotes: lines of files, file names, names in files and arguments, with colours and without.
 #[test]
 fn control_characters_are_shown() {
     let folder = folder("control");
@@ -63,7 +64,7 @@ fn control_characters_are_shown() {
         )
         .unwrap();
         harmless(&folder, &["check", "mesh.toml"], "m.obj");
-        // a comment of a scene beside an error, a name that is not known, one that is long
+        // a comment next to an error, an unknown name, a long name
         let beside =
             format!("{}\nshape = 3 # {harm}\n", SCENE.replace("[film]", "[film]\nwidht = 3"));
         fs::write(folder.join("beside.toml"), beside).unwrap();
@@ -72,7 +73,7 @@ fn control_characters_are_shown() {
         let unknown = SCENE.replace("material = \"", &format!("material = \"{escaped}"));
         fs::write(folder.join("unknown.toml"), unknown).unwrap();
         harmless(&folder, &["check", "unknown.toml"], "material");
-        // names of files, in messages and at the head of a quoted line
+        // file names, in messages and above a quoted line
         let named = format!("{harm}{number}.toml");
         harmless(&folder, &["check", &named], "cannot");
         fs::write(folder.join(&named), "version = 1\nfild = 3\n").unwrap();
@@ -88,8 +89,8 @@ fn control_characters_are_shown() {
     }
 }
 
-/// Theory: a line of a message is a line of the program. A line feed in a name is shown as an
-/// escape, so that no name can look like a message.
+/// Theory: a line feed in a name is shown as an escape, so no name can look like a separate
+/// message.
 #[test]
 fn line_feeds_in_names_are_shown() {
     let folder = folder("feeds");
@@ -121,8 +122,8 @@ fn line_feeds_in_names_are_shown() {
     assert!(says(&["diff", &format!("{harm}.exr"), "b.exr"]).contains(shown));
 }
 
-/// Theory: the caret stands under what it means, also after a character that is replaced, which is
-/// as long.
+/// Theory: the caret points at the right column after a replaced character, which has the same
+/// width.
 #[test]
 fn carets_stand_where_they_did() {
     let folder = folder("carets");

@@ -1,4 +1,4 @@
-//! A real device that the driver takes away in the middle of a render.
+//! A real device that is lost during a render.
 
 use caustica::low_level::device::{Candidate, Candidates, Opened};
 use caustica::low_level::engine::{Engine, EngineError, PassReport, State};
@@ -13,14 +13,15 @@ use caustica::low_level::scene::{Loaded, Scene};
 
 use super::engine::{sound, successor};
 use super::{Copies, begin, difference, loaded, steps};
+use crate::support::software;
 
 fn on_driver(scene: &Scene, settings: &RenderSettings) -> GpuEngine {
     let packed = prepare(scene, scene.film.width, scene.film.height).unwrap();
     let plan = Plan::probed(&packed, settings).on(&scene.film);
-    GpuEngine::new(&crate::support::software(), &packed, plan).unwrap()
+    GpuEngine::new(&software(), &packed, plan).unwrap()
 }
 
-/// Lavapipe, which is taken away before it carries out a request.
+/// Lavapipe, which is lost before it executes a request.
 struct Losing {
     inner: GpuEngine,
     requests_left: u32,
@@ -82,8 +83,7 @@ fn losing(requests: u32) -> Candidate {
     })
 }
 
-/// Whatever it is asked for after it was taken away, and however often, it says so; it never gives
-/// what it no longer has.
+/// A lost device reports the loss at every request, and never returns stale data.
 #[test]
 fn a_lost_device_says_so() {
     let Loaded { scene, settings, .. } = loaded(|_| ());
@@ -112,7 +112,7 @@ fn a_lost_device_says_so() {
     }
 }
 
-/// The CPU goes on from what was kept of it.
+/// The CPU resumes from the state that was saved.
 #[test]
 fn the_cpu_goes_on_from_lavapipe() {
     let loaded = loaded(|_| ());

@@ -1,4 +1,4 @@
-//! An engine that fails where it is told to.
+//! An engine that fails at a chosen request.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -11,55 +11,56 @@ use caustica::low_level::memory::Memory;
 use caustica::low_level::scene::Scene;
 use caustica::low_level::scene::settings::RenderSettings;
 
-/// What an engine is asked for.
+/// A request to an engine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Step {
-    /// To be made.
+    /// Creation.
     Open,
-    /// To take over.
+    /// Restoring a state.
     Restore,
     /// A pass.
     Pass,
-    /// The picture's error.
+    /// The error map.
     Errors,
-    /// What it holds.
+    /// Saving the state.
     Save,
-    /// The picture.
+    /// The image.
     Results,
-    /// What belongs to it.
+    /// The layers.
     Layers,
 }
 
-/// How it fails.
+/// The kind of failure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
-    /// The device is gone: from then on nothing is to be had of it.
+    /// The device is lost: all later requests fail as well.
     Lost,
-    /// Once, with all that it holds as it was.
+    /// A single failure that leaves the state intact.
     OutOfMemory,
-    /// The pass is made, or half made, and then fails: what it holds is no longer what was counted.
+    /// The pass is executed, wholly or partly, and then fails: the state no longer matches the
+    /// count of passes.
     Late,
-    /// The driver does not do what it should, as one that leaves loops unfinished.
+    /// The driver misbehaves, like one that leaves loops unfinished.
     Unable,
 }
 
-/// All kinds.
+/// All kinds of failure.
 pub const FAULTS: [Fault; 4] = [Fault::Lost, Fault::OutOfMemory, Fault::Late, Fault::Unable];
 
-/// What was asked for, and when to fail.
+/// The requests so far, and the one that fails.
 #[derive(Debug, Default)]
 pub struct Script {
-    /// Everything that was asked for, in its order.
+    /// All requests, in order.
     pub asked: Vec<Step>,
-    /// The request that fails, from 0, and how.
+    /// Index of the failing request, and the kind of failure.
     pub fails: Option<(usize, Fault)>,
     gone: bool,
 }
 
-/// A script that engine and test share.
+/// A script shared by the engine and the test.
 pub type Shared = Rc<RefCell<Script>>;
 
-/// A script that lets the given request fail.
+/// Makes a script in which the given request fails.
 pub fn script(fails: Option<(usize, Fault)>) -> Shared {
     Rc::new(RefCell::new(Script { fails, ..Script::default() }))
 }
@@ -68,7 +69,8 @@ fn lost() -> EngineError {
     EngineError::DeviceLost("as the test wants it".to_owned())
 }
 
-/// Whether the request may be carried out; if not, why, and whether it is carried out all the same.
+/// Records a request. If it fails, the error comes with a flag: whether to execute the request all
+/// the same.
 fn ask(script: &Shared, step: Step) -> Result<(), (EngineError, bool)> {
     let mut script = script.borrow_mut();
     let number = script.asked.len();
@@ -94,7 +96,7 @@ fn ask(script: &Shared, step: Step) -> Result<(), (EngineError, bool)> {
     }
 }
 
-/// The CPU engine, as a device that fails as its script says.
+/// The CPU engine as a device that fails as its script says.
 pub fn candidate(script: &Shared) -> Candidate {
     let script = script.clone();
     Candidate::new(
@@ -109,7 +111,7 @@ pub fn candidate(script: &Shared) -> Candidate {
     )
 }
 
-/// The CPU engine as it is.
+/// The CPU engine without failures.
 pub fn successor() -> Candidate {
     Candidate::new("cpu", sound)
 }

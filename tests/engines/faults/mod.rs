@@ -1,9 +1,9 @@
-//! Devices that fail, at every step in turn.
+//! Devices that fail at every request in turn.
 //!
-//! Theory: what was kept of a render is whole passes, and what a pass finds depends on its number
-//! alone. So whatever step a device fails at and in whichever way, the next one ends in the bits of
-//! a render that never failed; and where there is no next one, what is left can be gone on from to
-//! the same bits.
+//! Theory: the saved state of a render consists of whole passes, and the result of a pass depends
+//! on its number only. So whichever request fails and in whichever way, the next device ends with
+//! the bits of a render without failures. Without a next device, a later render can resume from the
+//! saved state to the same bits.
 
 mod device;
 mod engine;
@@ -11,10 +11,10 @@ mod engine;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
+use crate::support::bits;
 use caustica::low_level::device::failover::Relay;
 use caustica::low_level::device::{Candidates, Wanted, open};
 use caustica::low_level::engine::{Engine, EngineError, State};
-use caustica::low_level::film::Picture;
 use caustica::low_level::kernels::bytes::FILM_BYTES;
 use caustica::low_level::memory::Memory;
 use caustica::low_level::render::{Broken, Kept, Outcome, Progress, Saving, Stop, resume};
@@ -22,7 +22,7 @@ use caustica::low_level::scene::settings::{Method, Radius, RadiusRule, RenderSet
 use caustica::low_level::scene::{self, Aovs, Loaded};
 use engine::{FAULTS, Fault, Step, candidate, script, successor};
 
-/// Enough passes for an estimate of the error on the way.
+/// Enough passes for an error estimate during the render.
 const PASSES: u32 = 5;
 
 fn loaded(change: fn(&mut RenderSettings)) -> Loaded {
@@ -36,20 +36,20 @@ fn loaded(change: fn(&mut RenderSettings)) -> Loaded {
 }
 
 fn stop() -> Stop {
-    // with an error to aim at, which is never reached, no step depends on a clock
+    // the target error is never reached, so that no request depends on a clock
     Stop { passes: PASSES, time: None, target_error: Some(1e-9) }
 }
 
-/// How often what an engine holds is copied.
+/// How often the engine's state is copied.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Copies {
     /// After each pass.
     Always,
-    /// Not before it is too late.
+    /// Only after a failure.
     Never,
 }
 
-/// Renders on these devices, from `from`; also what was saved on the way.
+/// Renders on these devices, from the state `from`. Also returns the last saved state.
 fn render(
     loaded: &Loaded,
     candidates: Candidates,
@@ -87,10 +87,9 @@ fn begin(
     render(loaded, candidates, copies, (&State::before(0), Progress::before(stop())))
 }
 
-/// What differs between two outcomes, but for times and for the eye paths of fixed visible points,
-/// which each device traces anew.
+/// Describes the difference of two outcomes. Ignores times, and the eye paths of fixed visible
+/// points, which each device traces again.
 fn difference(a: &Outcome, b: &Outcome) -> Option<&'static str> {
-    let bits = |p: &Picture| p.rgb.iter().flatten().map(|x| x.to_bits()).collect::<Vec<_>>();
     let counts = |p: &Progress| (p.passes, p.photons, p.ends, p.radius.to_bits());
     if bits(&a.picture) != bits(&b.picture) {
         return Some("the picture");
@@ -112,7 +111,7 @@ fn difference(a: &Outcome, b: &Outcome) -> Option<&'static str> {
     (!fixed && rays(&a.progress) != rays(&b.progress)).then_some("the rays")
 }
 
-/// What an engine is asked for in a render that does not fail.
+/// The requests of a render without failures.
 fn steps(loaded: &Loaded, copies: Copies) -> (Outcome, Vec<Step>) {
     let script = script(None);
     let (outcome, _) = begin(loaded, Candidates::from_list([candidate(&script)]), copies);
@@ -127,7 +126,7 @@ const CHANGES: [(&str, Change); 3] = [
     ("path", |s| s.method = Method::Path),
 ];
 
-/// Every step of the first device fails in every way, and the second goes on.
+/// Every request of the first device fails in every way, and the second device continues.
 #[test]
 fn the_next_device_ends_in_the_same_bits() {
     for (name, change) in CHANGES {
@@ -174,8 +173,8 @@ fn the_third_device_too() {
     }
 }
 
-/// Where there is no next device, what is left is gone on from to the same bits, and no more than
-/// the pass at hand is lost.
+/// Without a next device, a later render resumes to the same bits, and at most the current pass is
+/// lost.
 #[test]
 fn what_is_left_can_be_gone_on_from() {
     for (name, change) in CHANGES {
@@ -211,18 +210,17 @@ fn what_is_left_can_be_gone_on_from() {
     }
 }
 
-/// Passes that were made before a step.
+/// Number of passes before a request.
 fn passes_before(steps: &[Step], number: usize) -> u32 {
     steps[..number].iter().filter(|step| **step == Step::Pass).count() as u32
 }
 
-/// The comparison sees a pass that is made twice or not at all, and a bit.
+/// The comparison detects a pass that is rendered twice or not at all, and a changed bit.
 #[test]
 fn planted_differences_are_found() {
     let loaded = loaded(|_| ());
     let whole = steps(&loaded, Copies::Never).0;
-    // a state that says of itself that it has a pass less than it has is what a careless engine
-    // would hand over
+    // a state that claims one pass less than it holds, as a careless engine would save it
     let mut opened = open(&Wanted::Cpu, &loaded.scene, &loaded.settings).unwrap();
     for _ in 0..3 {
         opened.engine.pass().unwrap();

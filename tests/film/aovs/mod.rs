@@ -1,9 +1,9 @@
-//! What pictures hold in addition to radiance.
+//! Image layers (AOVs).
 //!
-//! Theory: in scenes of planes the first hit, and the first one behind a mirror or a pane, are
-//! known in closed form. A mirror multiplies the albedo by its reflectance; a pane of index n seen
-//! head-on lets (1 - R) / (1 + R) through, R its face's Fresnel reflectance. Emission is all of the
-//! picture where surfaces are black. The same window of a picture has the same bits whether it is
+//! Theory: in scenes of planes the first hit, and the first hit behind a mirror or a pane, are
+//! known in closed form. A mirror multiplies the albedo by its reflectance. A pane of index n seen
+//! head-on transmits (1 - R) / (1 + R), with the Fresnel reflectance R of a face. If all surfaces
+//! are black, the image is emission only. A window of an image has the same bits whether it is
 //! rendered alone or with the rest.
 
 mod parts;
@@ -20,7 +20,7 @@ use caustica::low_level::plan::layers::NO_DEPTH;
 use caustica::low_level::plan::{Buffer, Plan, Stage};
 use caustica::low_level::scene::{Aovs, Loaded, parse};
 
-/// A camera at (1, 2, 4) that looks along -z at a picture of 24 by 16 pixels.
+/// A camera at (1, 2, 4) that looks along -z, with an image of 24 by 16 pixels.
 const HEAD: &str = r#"
 version = 1
 [camera]
@@ -91,7 +91,7 @@ impl Seen {
         &found.unwrap_or_else(|| panic!("no layer {name}")).plane
     }
 
-    /// The values of several layers in one pixel.
+    /// Values of several layers in one pixel.
     fn at<const N: usize>(&self, names: [&str; N], x: usize, y: usize) -> [f64; N] {
         names.map(|name| self.plane(name).values[y * self.picture.width as usize + x])
     }
@@ -119,7 +119,7 @@ fn a_wall_is_where_it_is() {
             assert!(near(seen.at(NORMAL, x, y), [0.0, 0.0, 1.0], 1e-6));
             assert!(near(seen.at(["depth.Z"], x, y), [5.0], 1e-5));
             assert_eq!(seen.at(["object.ID", "material.ID"], x, y), [1.0, 1.0]);
-            // the mean of samples lies in the pixel
+            // the mean position of the samples lies in the pixel
             let middle = [1.0 + (x as f64 - 11.5) * pixel, 2.0 - (y as f64 - 7.5) * pixel];
             let [px, py, pz] = seen.at(POSITION, x, y);
             assert!(
@@ -128,14 +128,14 @@ fn a_wall_is_where_it_is() {
             );
         }
     }
-    // the comparison sees another wall, and another pixel
+    // the comparison rejects another wall and another pixel
     assert!(!near(seen.at(POSITION, 3, 5), seen.at(POSITION, 5, 5), 0.51 * pixel));
     let moved = Seen::of("", &WALL.replace("-9.0, -1.0]", "-9.0, -1.001]"), 3);
     assert!(!near(moved.at(["depth.Z"], 3, 5), [5.0], 1e-5));
 }
 
-/// A mirror at 45 degrees shows the ceiling: albedo and normal are the ceiling's, all else the
-/// mirror's.
+/// A mirror at 45 degrees shows the ceiling. Albedo and normal are those of the ceiling, everything
+/// else those of the mirror.
 #[test]
 fn a_mirror_shows_what_it_reflects() {
     let rest = r#"
@@ -179,7 +179,7 @@ fn a_mirror_shows_what_it_reflects() {
     assert_eq!(seen.at(["object.ID", "material.ID"], middle.0, middle.1), [1.0, 2.0]);
 }
 
-/// Beside the light straight through a pane, none comes back from the dark behind the camera.
+/// Apart from light straight through a pane, the dark space behind the camera adds nothing.
 #[test]
 fn a_pane_dims_what_is_behind_it() {
     let pane = r#"
@@ -197,7 +197,8 @@ fn a_pane_dims_what_is_behind_it() {
     let faces: f64 = 0.04;
     let through = (1.0 - faces) / (1.0 + faces);
     let mean = |name: &str| seen.plane(name).values.iter().sum::<f64>() / (24.0 * 16.0);
-    // three standard errors of a share, and what a view up to 21 degrees off the axis reflects more
+    // three standard errors of a share, and the higher reflectance of views up to 21 degrees off
+    // the axis
     let tolerance =
         3.0 * (through * (1.0 - through) / (24.0 * 16.0 * f64::from(passes))).sqrt() + 1e-3;
     for (name, reflectance) in ALBEDO.iter().zip([0.8, 0.3, 0.1]) {
@@ -208,13 +209,13 @@ fn a_pane_dims_what_is_behind_it() {
         );
     }
     assert!((mean("normal.Z") - through).abs() < tolerance, "{}", mean("normal.Z"));
-    // one face, or none, is not within the tolerance
+    // the tolerance excludes one face and no face
     assert!((0.96 - through).abs() > tolerance && 1.0 - through > tolerance);
     assert!(near(seen.at(["depth.Z"], 12, 8), [3.9], 1e-5), "the first hit is the pane's");
     assert_eq!(seen.at(["object.ID", "material.ID"], 12, 8), [2.0, 1.0]);
 }
 
-/// In black surroundings the picture is what lamps send to the eye.
+/// In black surroundings the image is the light that lamps send to the eye.
 #[test]
 fn emission_is_all_of_a_dark_picture() {
     let rest = r#"
@@ -245,8 +246,7 @@ fn emission_is_all_of_a_dark_picture() {
         for (i, rgb) in seen.picture.rgb.iter().enumerate() {
             let emission = seen.at(names, i % 24, i / 24);
             let expected = rgb.map(f64::from);
-            // ends of paths by roulette are drawn in another order for path tracing, which this
-            // scene has none of
+            // path tracing draws the roulette in another order
             assert!(
                 near(emission, expected, 1e-5),
                 "{settings}, pixel {i}: {emission:?} and {expected:?}"
@@ -260,7 +260,7 @@ fn emission_is_all_of_a_dark_picture() {
     }
 }
 
-/// Numbers follow the order of the file, whatever order the tables have; a mesh is one surface.
+/// Indices follow the order of the file, whatever the order of the tables; a mesh is one surface.
 #[test]
 fn numbers_are_those_of_the_file() {
     let sphere = |x: f64| {
@@ -303,7 +303,7 @@ fn radius_and_photons_are_those_of_the_last_pass() {
         fixed.gathered
     );
     let global = Seen::of("radius = { units = 0.25 }\nalpha = 0.5\ndirect = \"photons\"", WALL, 3);
-    // (1 + 1/2) / 2 and (2 + 1/2) / 3 of the squared radius are left
+    // the first two passes leave (1 + 1/2) / 2 and (2 + 1/2) / 3 of the squared radius
     let expected = 0.25 * (0.75f64 * 2.5 / 3.0).sqrt();
     assert!(global.plane("radius.Y").values.iter().all(|r| (r - expected).abs() < 1e-6));
     let local = Seen::of(
@@ -315,8 +315,8 @@ fn radius_and_photons_are_those_of_the_last_pass() {
     assert!(radii.iter().all(|r| *r > 0.1 && *r <= 0.25 + 1e-6) && radii.iter().any(|r| *r < 0.24));
 }
 
-/// What nobody asks for is neither planned nor kept, and what is asked for changes no bit of the
-/// picture.
+/// Layers that are not requested are neither planned nor stored, and requested layers change no bit
+/// of the image.
 #[test]
 fn it_costs_nothing_unless_asked_for() {
     let mut plain = loaded("", WALL);
@@ -328,13 +328,13 @@ fn it_costs_nothing_unless_asked_for() {
     let without = Seen::by(CpuEngine::new(packed, plan), 2);
     assert!(without.layers.is_empty());
     assert_eq!(without.picture, with.picture);
-    // those that need no kernel run none
+    // layers without a kernel of their own run none
     plain.scene.film.aovs = Aovs::parse("photons,variance").unwrap();
     let (_, plan) = planned(&plain);
     assert!(plan.steps(0).iter().all(|step| step.stage != Stage::AovTrace));
 }
 
-/// In f64 it is the same but for roundings.
+/// The f64 engine gives the same up to rounding.
 #[test]
 fn both_precisions_agree() {
     let rest = format!(
@@ -354,7 +354,7 @@ fn both_precisions_agree() {
     }
 }
 
-/// A window alone, in f32 bits: its pixels and layers.
+/// Bits of the pixels and layers of a window.
 fn window_of(seen: &Seen, [x0, y0, x1, y1]: [u32; 4]) -> Vec<u64> {
     let width = seen.picture.width;
     let places = || (y0..y1).flat_map(|y| (x0..x1).map(move |x| (y * width + x) as usize));
@@ -381,7 +381,7 @@ fn a_window_has_the_bits_of_the_whole() {
         let whole = Seen::by(CpuEngine::new(packed, plan), 3);
         loaded.scene.film.window = Some(window);
         let (packed, plan) = planned(&loaded);
-        // in several chunks as well
+        // the same in several chunks
         let cut = Plan { chunk_points: plan.eye_samples * 40, ..plan.clone() };
         let expected = window_of(&whole, window);
         let alone = [0, 0, 11, 11];

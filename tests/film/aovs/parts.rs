@@ -1,6 +1,6 @@
-//! The picture in parts, by the way that light came.
+//! The image split by the light's path.
 //!
-//! Theory: each path to the eye belongs to one part, so that all of them together are the picture.
+//! Theory: each path to the eye belongs to one part, so the parts sum to the image.
 
 use super::{Seen, WALL};
 
@@ -11,7 +11,8 @@ pub const PARTS: [[&str; 3]; 4] = [
     ["indirect.R", "indirect.G", "indirect.B"],
 ];
 
-/// A lamp of some size, a glass ball, a metal wall and a white floor: every way of light is there.
+/// An area lamp, a glass ball, a metal wall and a white floor, which together produce every kind of
+/// path.
 const WAYS: &str = r#"
 [materials.pane]
 type = "glass"
@@ -45,8 +46,8 @@ material = "red"
 emission = [8.0, 9.0, 10.0]
 "#;
 
-/// What each part is off by, over the picture where that is more than 0.01: the largest of any
-/// channel.
+/// Largest difference in any channel between the sum of the parts and the image, relative to the
+/// image where it exceeds 0.01.
 fn off(seen: &Seen, parts: &[[&str; 3]]) -> f64 {
     let pixels = seen.picture.rgb.iter().enumerate().flat_map(|(i, rgb)| {
         (0..3).map(move |c| {
@@ -68,7 +69,7 @@ fn the_parts_are_all_of_the_picture() {
         "direct = \"photons\"",
     ] {
         let seen = Seen::of(settings, &wall, 6);
-        // means of six f32 in each part
+        // each part is a mean in f32 over six passes
         assert!(off(&seen, &PARTS) < 2e-5, "{settings}: {}", off(&seen, &PARTS));
         for missing in PARTS {
             let others: Vec<[&str; 3]> =
@@ -79,8 +80,7 @@ fn the_parts_are_all_of_the_picture() {
     }
 }
 
-/// A wall alone has no other light than direct, and a ball of glass casts its caustic where its
-/// shadow is.
+/// A wall alone receives direct light only, and a glass ball casts its caustic inside its shadow.
 #[test]
 fn light_is_told_by_its_way() {
     let alone = Seen::of("", WALL, 3);
@@ -92,7 +92,7 @@ fn light_is_told_by_its_way() {
         .replace("0.5]", "1.6]")
         .replace("2.0, 1.6", "2.4, 1.6");
     let materials = WAYS.split("[[shapes]]").next().unwrap();
-    // photons that come off the wall are all indirect, also those that then meet the ball
+    // photons scattered by the wall are indirect, even if they meet the ball afterwards
     let rest = format!("{materials}[[shapes]]{ball}{WALL}");
     let rest = rest.replace(
         "[materials.gold]\ntype = \"metal\"\nreflectance = [0.9, 0.7, 0.3]\nroughness = 0.4\n",
@@ -102,7 +102,7 @@ fn light_is_told_by_its_way() {
     let sum = |part: usize| seen.plane(PARTS[part][1]).values.iter().sum::<f64>();
     assert!(sum(0) == 0.0 && sum(1) > 0.0 && sum(2) > 0.0, "{} {} {}", sum(0), sum(1), sum(2));
     assert!(sum(3) < 0.2 * sum(2), "{} and {}", sum(3), sum(2));
-    // where no shadow ray reaches the lamp the caustic stands alone
+    // where no shadow ray reaches the lamp, only the caustic remains
     let (direct, caustic) = (&seen.plane(PARTS[1][1]).values, &seen.plane(PARTS[2][1]).values);
     let shadow: Vec<usize> = (0..direct.len()).filter(|i| direct[*i] == 0.0).collect();
     let inside = shadow.iter().map(|i| caustic[*i]).sum::<f64>();

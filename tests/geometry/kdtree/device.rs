@@ -1,4 +1,4 @@
-//! The WGSL twins: valid, and bit for bit the Rust ones on the software driver.
+//! The kd-tree's WGSL twins: valid, and equal to Rust bit for bit on the software driver.
 
 use crate::brute_force::*;
 use bytemuck::{Pod, Zeroable};
@@ -10,7 +10,7 @@ use caustica::low_level::shapes::triangle::Triangle;
 use glam::Vec3;
 use wgpu::util::DeviceExt;
 
-/// The test kernel.
+/// The test kernel's module.
 fn shader() -> String {
     let parts = [
         include_str!("trace.wgsl"),
@@ -103,7 +103,7 @@ impl Gpu {
         bytemuck::pod_collect_to_vec(&bytes[..])
     }
 
-    /// Nearest hits and shadows of `rays`, from buffers that held other bits before.
+    /// Nearest hits and shadows of `rays`, written to poisoned buffers.
     fn trace(&self, text: &str, inputs: &[wgpu::Buffer; 5], rays: usize) -> (Vec<Hit>, Vec<u32>) {
         let hits = self.input(&vec![0xdead_beef_u32; 4 * rays]);
         let shadows = self.input(&vec![0xdead_beef_u32; rays]);
@@ -150,13 +150,13 @@ impl Gpu {
     }
 }
 
-/// Theory: both twins are the same IEEE operations in the same order, so every bit of every hit
-/// agrees, ties in t included.
+/// Theory: both twins execute the same IEEE operations in the same order, so every bit of every hit
+/// agrees, including ties in t.
 #[test]
 fn device_gives_the_same_bits() {
     let gpu = Gpu::software();
     let mut mesh = displaced_torus(120, 60);
-    // Flat grids on top, whose splitting planes hold triangles.
+    // Flat grids on top, with triangles in splitting planes.
     for (_, prims) in
         scenes().into_iter().filter(|s| s.0.starts_with("lattice") || s.0.starts_with("every"))
     {
@@ -197,7 +197,7 @@ fn device_gives_the_same_bits() {
     println!("{different} of {} rays differ, {found} hits", rays.len());
     assert_eq!(different, 0);
     assert!(found > rays.len() / 4 && found < rays.len());
-    // Planted: triangles moved by one unit in the last place.
+    // Planted error: triangles moved by one unit in the last place.
     let mut moved = triangles.clone();
     moved.iter_mut().for_each(|t| t.p0.x = t.p0.x.next_up());
     let (hits, _) = gpu.trace(

@@ -1,4 +1,4 @@
-//! Geometry far away from what rays meet: the same hits, and no more work.
+//! Distant geometry: the same hits, at the same cost.
 
 use super::{differ, mismatches};
 use crate::brute_force::*;
@@ -11,11 +11,11 @@ use caustica::low_level::shapes::triangle::RayShear;
 use glam::Vec3;
 use std::cell::Cell;
 
-/// Where the mesh of size one lies in every scene.
+/// Bounds of the unit-size mesh in every scene.
 const MIDDLE: Aabb = Aabb { min: Vec3::splat(-1.4), max: Vec3::splat(1.4) };
 
-/// Theory: as `same_hits_as_exhaustive_search`, for rays about the mesh of size one and for rays
-/// about the whole; also backward from their origins, as light from infinity comes.
+/// Theory: as in `same_hits_as_exhaustive_search`, for rays around the unit-size mesh and around
+/// the whole scene, also backward from their origins like light from infinity.
 #[test]
 fn same_hits_as_exhaustive_search_with_far_geometry() {
     let mut rng = Rng(41);
@@ -26,7 +26,7 @@ fn same_hits_as_exhaustive_search_with_far_geometry() {
         rays.extend(crate::brute_force::rays(&prims, &tree.view(), 2000, &mut rng));
         for (i, ray) in rays.iter_mut().enumerate().filter(|(i, _)| i % 3 == 0) {
             ray.t_min = if i % 2 == 0 { -1e30 } else { -2.0 };
-            // off the corners that rays start at, where t is 0 of either sign
+            // exclude the corners that rays start at, where t is 0 of either sign
             ray.origin -= ray.direction * 0.37;
         }
         let truth: Vec<Hit> = rays.iter().map(|r| exhaustive(&prims, r)).collect();
@@ -39,7 +39,7 @@ fn same_hits_as_exhaustive_search_with_far_geometry() {
     }
 }
 
-/// Leaves that a ray enters, and primitives that it tests there, on average.
+/// Mean number of leaves that a ray enters, and of primitives that it tests there.
 fn work(mesh: &[[Vec3; 3]], tree: &KdTree, rays: &[Ray]) -> (f64, f64) {
     let prims = prims(mesh);
     let (leaves, tests) = (Cell::new(0usize), Cell::new(0usize));
@@ -59,19 +59,19 @@ fn work(mesh: &[[Vec3; 3]], tree: &KdTree, rays: &[Ray]) -> (f64, f64) {
     (leaves.get() as f64 / rays.len() as f64, tests.get() as f64 / rays.len() as f64)
 }
 
-/// Theory: what a ray that misses it costs does not depend on how far away a vertex, a ground or a
-/// ball lies. Bound: one and a half times the leaves and tests of the mesh alone, and some leaves
-/// of few large triangles more. (Hits with a ground of 1e6 may be off by more than the mesh is
-/// high, so that it lies in each of its leaves; a thousand leaves would be visited if the slabs
-/// went with the farthest corner.) Rays parallel to an axis run within a slab for all their length,
-/// and are the ones to suffer first.
+/// Theory: the cost of a ray that misses a distant vertex, ground or ball does not depend on its
+/// distance. Bound: one and a half times the leaves and tests of the mesh alone, plus some leaves
+/// of few large triangles. (Hits on a ground of size 1e6 may be off by more than the height of the
+/// mesh, so the ground lies in each of its leaves. A thousand leaves would be visited if the slabs
+/// were sized for the farthest corner.) Rays parallel to an axis stay within a slab for their whole
+/// length, so they show an error first.
 #[test]
 fn far_geometry_costs_no_leaves() {
     let fine = displaced_torus(180, 90);
     let mut rng = Rng(43);
-    // the last scenes: one is crowded with large triangles, one has a ground in nearly all of its leaves
+    // the last scenes: one has many large triangles, one has a ground in nearly all leaves
     for (name, mesh) in far_scenes().into_iter().rev().skip(2) {
-        // the mesh of size one, finer than the sweep's limit in place of below it
+        // with the unit-size mesh finer than the sweep's limit instead of coarser
         for fine in [None, Some(&fine)] {
             let alone = fine.cloned().unwrap_or_else(|| displaced_torus(60, 30));
             let mesh = match fine {

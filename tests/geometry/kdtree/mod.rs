@@ -13,8 +13,8 @@ use caustica::low_level::shapes::triangle::RayShear;
 use glam::Vec3;
 use std::time::Instant;
 
-/// Rays for which the tree's answer is not that of exhaustive search. The nearest `t` must agree
-/// bit for bit; where several primitives share it, any of them may be named.
+/// Counts rays for which the tree's answer differs from exhaustive search. The nearest `t` must
+/// agree bit for bit; if several primitives share it, any of them may be returned.
 fn mismatches(prims: &[Primitive], tree: &KdTree, rays: &[Ray], truth: &[Hit]) -> usize {
     let wrong = |ray: &Ray, want: &Hit| {
         let got = closest(prims, &tree.view(), ray);
@@ -31,15 +31,15 @@ fn mismatches(prims: &[Primitive], tree: &KdTree, rays: &[Ray], truth: &[Hit]) -
     rays.iter().zip(truth).filter(|(r, t)| wrong(r, t)).count()
 }
 
-/// Rays whose hit differs in any bit when they are traced side by side.
+/// Counts rays whose hit differs in any bit when they are traced in a stream.
 fn differ(prims: &[Primitive], tree: &KdTree, rays: &[Ray], one_by_one: &[Hit]) -> usize {
     let many = closest_many(prims, &tree.view(), rays);
     let bits = |h: &Hit| (h.t.to_bits(), h.reference, h.u.to_bits(), h.v.to_bits());
     many.iter().zip(one_by_one).filter(|(a, b)| bits(a) != bits(b)).count()
 }
 
-/// Theory: side by side each ray tests the leaves that it tests alone, in the same order. So every
-/// bit of its hit is the same, whatever flies beside it: no ray, fewer than there are lanes, or
+/// Theory: in a stream each ray tests the leaves that it tests alone, in the same order. So every
+/// bit of its hit is the same, whatever other rays are in the stream: none, fewer than lanes, or
 /// many.
 #[test]
 fn side_by_side_as_one_by_one() {
@@ -53,7 +53,7 @@ fn side_by_side_as_one_by_one() {
             assert_eq!(differ(&prims, &tree, rays, &truth), 0, "{name}");
         }
     }
-    // planted: a tree that has lost a leaf
+    // planted error: a tree without one of its leaves
     let prims = prims(&displaced_torus(60, 30));
     let mut tree = build(&prims);
     let rays = rays(&prims, &tree.view(), 20_000, &mut rng);
@@ -64,7 +64,7 @@ fn side_by_side_as_one_by_one() {
     assert!(differ(&prims, &tree, &rays, &truth) > 0);
 }
 
-/// Theory: a tree only leaves out what a ray cannot hit. So for every ray the nearest t is that of
+/// Theory: a tree omits only what a ray cannot hit. So for every ray the nearest t equals that of
 /// exhaustive search bit for bit.
 #[test]
 fn same_hits_as_exhaustive_search() {
@@ -82,7 +82,7 @@ fn same_hits_as_exhaustive_search() {
     }
 }
 
-/// The comparator above must see a tree that lost one leaf's primitives.
+/// The comparison above must detect a tree that lost one leaf's primitives.
 #[test]
 fn an_emptied_leaf_is_noticed() {
     let prims = prims(&displaced_torus(60, 30));
@@ -99,8 +99,8 @@ fn an_emptied_leaf_is_noticed() {
     assert!(mismatches(&prims, &tree, &rays, &truth) > 0);
 }
 
-/// Rays from inside a closed mesh that leave without a hit. Every ray aims at a vertex or at a
-/// point of an edge, where a test that rounds differently for the two neighbours lets some through.
+/// Counts rays from inside a closed mesh that leave without a hit. Every ray aims at a vertex or at
+/// a point of an edge, where a test that rounds differently for the two neighbours lets some pass.
 fn leaks(
     mesh: &[[Vec3; 3]],
     tree: &KdTree,
@@ -134,15 +134,15 @@ fn closed_meshes_are_watertight() {
         d / d.length() + rng.point() * 0.1
     };
     assert_eq!(leaks(&torus, &tree, tube, 500_000), 0);
-    // Planted: one leaf lost.
+    // Planted error: one leaf lost.
     let full = (0..tree.nodes.len())
         .find(|&i| tree.nodes[i].is_leaf() && !tree.nodes[i].range().is_empty());
     tree.nodes[full.expect("a torus fills leaves")].word1 = 3;
     assert!(leaks(&torus, &tree, tube, 500_000) > 0);
 }
 
-/// The mesh and the rays of the comparison with Embree: prints the rate, which depends on the
-/// machine, and checks what does not.
+/// The mesh and the rays of the comparison with Embree. Prints the rate, which depends on the
+/// machine, and checks the hits.
 #[test]
 fn rates() {
     let mesh = displaced_sphere(316, 158);

@@ -1,5 +1,5 @@
-//! The tree's form: complete, perfect splits, costs as predicted, the same on any number of
-//! threads.
+//! Structure of the tree: completeness, perfect splits, predicted cost, and independence of the
+//! number of threads.
 
 use crate::brute_force::*;
 use caustica::low_level::accel::kdtree::{INTERSECTION_COST, KdTree, Primitive, build};
@@ -25,7 +25,7 @@ fn leaves(tree: &KdTree) -> Vec<(Aabb, Vec<u32>)> {
     out
 }
 
-/// Points of triangles that no leaf which holds them knows of.
+/// Counts points of triangles that lie in a leaf which does not contain the triangle.
 fn lost(mesh: &[[Vec3; 3]], tree: &KdTree) -> usize {
     let mut rng = Rng(2);
     let known = |p: Vec3, reference: u32| {
@@ -38,7 +38,7 @@ fn lost(mesh: &[[Vec3; 3]], tree: &KdTree) -> usize {
                 }
             } else {
                 let (axis, position, lower) = node.plane();
-                // The point is rounded, so near a plane either side will do.
+                // The point is rounded, so near a plane either side is accepted.
                 if p[axis] <= position + 1e-6 {
                     open.push(lower as usize);
                 }
@@ -63,7 +63,7 @@ fn lost(mesh: &[[Vec3; 3]], tree: &KdTree) -> usize {
     count
 }
 
-/// Theory: every point of a primitive lies in a leaf that names the primitive.
+/// Theory: every point of a primitive lies in a leaf that contains the primitive.
 #[test]
 fn no_point_of_a_triangle_is_lost() {
     for mesh in [displaced_torus(120, 60), displaced_sphere(40, 20)] {
@@ -76,7 +76,7 @@ fn no_point_of_a_triangle_is_lost() {
     }
 }
 
-/// Children that their parent says are empty and that are not, or the other way round.
+/// Counts children that their parent declares empty and that are not, or the reverse.
 fn misnamed(tree: &KdTree) -> usize {
     let nodes = tree.nodes.iter().filter(|node| !node.is_leaf());
     nodes
@@ -91,7 +91,7 @@ fn misnamed(tree: &KdTree) -> usize {
         .sum()
 }
 
-/// Theory: a node says of each child whether it is an empty leaf, and at least one is not.
+/// Theory: a node states for each child whether it is an empty leaf, and at least one is not.
 #[test]
 fn nodes_know_empty_children() {
     for (name, prims) in scenes() {
@@ -126,8 +126,8 @@ fn separated(t: &[Vec3; 3], cell: Aabb, gap: f64) -> bool {
     })
 }
 
-/// Theory: with perfect splits a leaf names only primitives that enter its cell. Boxes in place of
-/// slanted triangles name many that do not.
+/// Theory: with perfect splits a leaf contains only primitives that enter its cell. Splits by
+/// bounding boxes would add many slanted triangles that do not.
 #[test]
 fn leaves_name_only_what_they_hold() {
     let mut rng = Rng(4);
@@ -168,7 +168,7 @@ fn cost_is_what_random_lines_pay() {
     let mut rng = Rng(9);
     let (mut lines, mut sum, mut sum_sq) = (0.0, 0.0, 0.0);
     for _ in 0..400_000 {
-        // Uniform lines through a sphere about the box: a point on it, a cosine-distributed
+        // Uniform lines through a sphere around the box: a point on it, a cosine-distributed
         // direction inward.
         let n = rng.direction();
         let d = (rng.direction() - n).normalize_or(-n);
@@ -192,7 +192,7 @@ fn cost_is_what_random_lines_pay() {
     let sigma = ((sum_sq / lines - mean * mean) / lines).sqrt();
     println!("tests per line: {mean:.3} +- {sigma:.3}, expected {expected:.3}; {:?}", tree.stats);
     assert!((mean - expected).abs() < 4.0 * sigma + 1e-3 * expected);
-    // The comparator sees 5 %.
+    // The comparison detects an error of 5 %.
     assert!((mean - 1.05 * expected).abs() > 4.0 * sigma + 1e-3 * expected);
     assert!(tree.stats.cost > INTERSECTION_COST * expected);
     let one_leaf = INTERSECTION_COST * mesh.len() as f64;
@@ -205,7 +205,7 @@ fn crosses(b: Aabb, ray: &Ray) -> bool {
     t0.min(t1).max_element() <= t0.max(t1).min_element()
 }
 
-/// Depth and counts as stated; the tree does not depend on the number of threads.
+/// Depth and counts match the statistics, and the tree does not depend on the number of threads.
 #[test]
 fn one_input_one_tree() {
     let mesh = prims(&displaced_sphere(150, 75));
@@ -223,7 +223,7 @@ fn one_input_one_tree() {
     let all = leaves(&tree);
     assert_eq!(all.len(), tree.stats.leaves);
     assert_eq!(all.iter().filter(|l| l.1.is_empty()).count(), tree.stats.empty_leaves);
-    // Beside the root lies an empty leaf.
+    // An empty leaf lies next to the root.
     assert_eq!(2 * all.len(), tree.nodes.len());
     assert!(tree.stats.depth <= MAX_DEPTH);
     assert!(tree.refs.len() < 4 * mesh.len(), "{}", tree.refs.len());

@@ -1,4 +1,5 @@
-//! The triangle test on its own: accuracy, error bounds, no hit of the triangle that a ray leaves.
+//! The triangle test on its own: accuracy, error bounds, and no hit of the triangle that a ray
+//! leaves.
 
 use crate::brute_force::*;
 use caustica::low_level::math::unit;
@@ -14,7 +15,7 @@ fn trace(t: &[Vec3; 3], ray: &Ray) -> Hit {
     hit
 }
 
-/// Triangles of every size and slimness near the origin.
+/// Makes triangles of every size and slimness near the origin.
 fn random_triangle(rng: &mut Rng) -> [Vec3; 3] {
     let size = 10f32.powf(1.5 * rng.signed() - 1.5);
     let slim = if rng.below(2) == 0 { 1.0 } else { 10f32.powf(3.0 * rng.signed() - 3.0) };
@@ -50,9 +51,9 @@ fn distance_to_triangle(p: DVec3, t: &[Vec3; 3]) -> f64 {
     sides.iter().map(|(a, b)| distance_to_segment(p, *a, *b)).fold(f64::MAX, f64::min)
 }
 
-/// Theory: the point at the computed t lies within about 30 roundings (of the largest coordinate as
-/// seen from the origin) of the triangle, however slim or edge-on it is. The traversal's slack of
-/// 64 rests on that.
+/// Theory: the point at the computed t lies within about 30 roundings (of the largest coordinate
+/// relative to the origin) of the triangle, however slim or edge-on it is. The traversal's slack of
+/// 64 relies on that.
 #[test]
 fn hits_lie_on_the_triangle() {
     let mut rng = Rng(31);
@@ -61,7 +62,7 @@ fn hits_lie_on_the_triangle() {
     for i in 0..1_000_000 {
         let t = random_triangle(&mut rng);
         let origin = rng.point() * 2.0;
-        // Half of the rays edge-on: in the triangle's plane but for rounding.
+        // Half of the rays are edge-on: in the triangle's plane up to rounding.
         let aim = inside(&t, &mut rng);
         let d =
             if i % 2 == 0 { aim - origin } else { inside(&t, &mut rng) - aim + rng.point() * 1e-7 };
@@ -88,8 +89,8 @@ fn hits_lie_on_the_triangle() {
     assert!(worst_planted > 30.0, "planted: t off by 1e-5");
 }
 
-/// Theory: on triangles seen from the front, hit or miss and t are those of exact arithmetic but
-/// for rays within a few roundings of an edge, which are left out.
+/// Theory: on triangles seen from the front, hit or miss and t are those of exact arithmetic. The
+/// test omits rays within a few roundings of an edge.
 #[test]
 fn agrees_with_f64() {
     let mut rng = Rng(33);
@@ -129,7 +130,7 @@ fn agrees_with_f64() {
     assert!(hits > 10_000 && misses > 10_000);
 }
 
-/// Rays that leave a triangle from `offset` times its error bound above a hit and meet it again.
+/// Counts rays that start `offset` times the error bound above a hit and meet the triangle again.
 fn met_again(offset: f32) -> usize {
     let mut rng = Rng(35);
     let mut count = 0;
@@ -195,8 +196,7 @@ fn normals() {
     assert_eq!(triangle_point(&unit_triangle, 0.25, 0.5), Vec3::new(0.25, 0.5, 0.0));
 }
 
-/// Triangles for which every branch is taken: near and far, thin, the same several times, and
-/// without area.
+/// Triangles that exercise every branch: near and far, thin, repeated, and without area.
 fn crowd(rng: &mut Rng) -> Vec<Triangle> {
     let mut out: Vec<Triangle> = Vec::new();
     for _ in 0..200 {
@@ -211,8 +211,8 @@ fn crowd(rng: &mut Rng) -> Vec<Triangle> {
     out
 }
 
-/// Rays for which four at a time is not the same, bit for bit and ties included, as one after the
-/// other.
+/// Counts rays for which four triangles at a time give other bits, including ties, than one after
+/// the other.
 fn differences(one: &[Triangle], many: &[Triangle], rng: &mut Rng) -> usize {
     (0..20_000)
         .filter(|_| {
@@ -236,7 +236,7 @@ fn differences(one: &[Triangle], many: &[Triangle], rng: &mut Rng) -> usize {
         .count()
 }
 
-/// Theory: each lane carries out the operations of the test of one triangle, and lanes are taken in
+/// Theory: each lane executes the operations of the single-triangle test, and lanes are combined in
 /// their order.
 #[test]
 fn four_at_a_time_give_the_same_bits() {

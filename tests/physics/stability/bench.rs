@@ -1,4 +1,5 @@
-//! What the rows measure with: pictures, rays and film folds on the CPU and on the software driver.
+//! The measuring tools of the rows: images, rays and film folds on the CPU and on the software
+//! driver.
 
 use std::cell::{OnceCell, RefCell};
 use std::collections::HashMap;
@@ -44,25 +45,25 @@ pub enum On {
     Software,
 }
 
-/// A device, and whether there is time for large samples.
+/// A device, and whether to use large samples.
 pub struct Bench {
     pub on: On,
     pub long: bool,
     driver: OnceCell<Driver>,
 }
 
-/// The software driver with the kernels that it has compiled so far, by their text.
+/// The software driver with its compiled kernels, by their text.
 struct Driver {
     gpu: Gpu,
     programs: RefCell<HashMap<String, Rc<Program>>>,
 }
 
-/// Where a ray met a scene.
+/// A hit of a ray.
 #[derive(Clone, Copy, Debug)]
 pub struct Found {
     /// Distance, in scene units.
     pub t: f32,
-    /// What was met, or [`NONE`].
+    /// The primitive, or [`NONE`].
     pub reference: u32,
     /// Point on the surface.
     pub position: Vec3,
@@ -78,7 +79,7 @@ impl Found {
     }
 }
 
-/// The scene that `text` describes; files that it names are relative to [`folder`].
+/// Parses the scene `text`; its files are relative to [`folder`].
 pub fn parse(text: &str) -> Scene {
     match scene::parse(&folder().join("scene.toml"), text.as_bytes()) {
         Ok(loaded) => loaded.scene,
@@ -86,7 +87,7 @@ pub fn parse(text: &str) -> Scene {
     }
 }
 
-/// What is wrong with the scene that `text` describes.
+/// The errors of the scene `text`.
 pub fn parse_errors(text: &str) -> Vec<String> {
     let errors = scene::parse(&folder().join("scene.toml"), text.as_bytes()).err();
     errors.into_iter().flat_map(|e| e.errors).map(|e| e.message().to_owned()).collect()
@@ -125,7 +126,7 @@ impl Bench {
         })
     }
 
-    /// `few` in tests, `many` for the table.
+    /// Returns `few` in tests and `many` for the table.
     pub fn samples(&self, few: u32, many: u32) -> u32 {
         if self.long { many } else { few }
     }
@@ -163,8 +164,8 @@ impl Bench {
         }
     }
 
-    /// Folds one pass after another into one pixel with one visible point that gathers the same in
-    /// all of them: `resolve` under the local rule.
+    /// Folds passes into one pixel whose one visible point gathers the same in all of them:
+    /// `resolve` under the local rule.
     pub fn resolve(
         &self,
         point: VisiblePoint,
@@ -213,7 +214,7 @@ impl Bench {
 }
 
 impl Bench {
-    /// What points gather from records in the grid of `dispatch`.
+    /// The sums that points gather from records in the grid of `dispatch`.
     pub fn gather(
         &self,
         dispatch: &Dispatch,
@@ -230,7 +231,7 @@ impl Bench {
                     gather(&[], &d, point, d.scale_sq, &starts, &sorted, gathered);
                 }
             } else if !gather_on_driver(self.driver(), &d, points, &starts, &coded, &mut sum) {
-                // the engine, too, takes smaller batches where the driver stops a loop
+                // like the engine, split into smaller batches if the driver stops a loop
                 let (first, second) = records.split_at(records.len() / 2);
                 left.extend([second, first]);
             }
@@ -239,7 +240,7 @@ impl Bench {
     }
 }
 
-/// Where each bucket starts, and the records in order as the driver and as the CPU reads them.
+/// The start of each bucket, and the records in order as the driver and as the CPU read them.
 fn binned(d: &Dispatch, records: &[PhotonRecord]) -> (Vec<u32>, Vec<PhotonRecord>, SortedRecords) {
     let coded = |record: &PhotonRecord| PhotonRecord { key: record_code(d, record), ..*record };
     let mut ordered = records.to_vec();
@@ -248,7 +249,7 @@ fn binned(d: &Dispatch, records: &[PhotonRecord]) -> (Vec<u32>, Vec<PhotonRecord
     (starts, ordered.iter().map(coded).collect(), sorted)
 }
 
-/// False, and nothing added, where the driver stopped a loop.
+/// Returns false, and adds nothing, if the driver stopped a loop.
 fn gather_on_driver(
     driver: &Driver,
     d: &Dispatch,
@@ -347,7 +348,7 @@ fn trace_on_driver(driver: &Driver, scene: &tables::Scene, rays: &[Ray]) -> Vec<
         let bytes =
             gpu.read(&buffers[1].1, (rays.len() * size_of::<VisiblePoint>()) as u64).expect("read");
         let answers: Vec<VisiblePoint> = pod_collect_to_vec(&bytes);
-        // the engine, too, traces again what the driver has stopped
+        // like the engine, trace again the rays that the driver stopped
         out.extend(rays.iter().zip(&answers).map(|(ray, a)| match a.state {
             0 => Found {
                 t: a.radius,

@@ -87,7 +87,7 @@ impl Uniform {
     }
 }
 
-/// Sums gathered over those in f64 at one radius, less one.
+/// Relative error of gathered sums against sums in f64, at one radius.
 fn gathered_error(b: &Bench, radius: f64) -> f64 {
     let mut u = Uniform(1);
     let normal = DVec3::new(0.48, 0.6, 0.64);
@@ -148,7 +148,7 @@ fn radii(b: &Bench) -> Figure {
 fn global_rule() -> Figure {
     let mut worst = 0.0f64;
     for alpha in [1e-3, 0.5, 2.0 / 3.0, 0.999, 1.0] {
-        // the logarithm's sum with its rounding carried along (Kahan)
+        // the sum of logarithms with a carried rounding error (Kahan)
         let (mut sum, mut carry) = (0.0f64, 0.0);
         for i in 1..=1_000_000u64 {
             if [1, 2, 10, 255, 256, 257, 1000, 10_000, 100_000, 1_000_000].contains(&i) {
@@ -208,7 +208,7 @@ fn means(b: &Bench) -> Figure {
     for start in [1000u32, 1_000_000, (1 << 24) - 500] {
         let count = b.samples(2000, 50_000);
         let film = FilmPixel { mean: Vec3::ONE, ..FilmPixel::zeroed() };
-        // values 1 / (pi photons): the number of photons makes them
+        // values 1 / (pi photons), produced by the number of photons
         let point = VisiblePoint { radius: 1.0, ..VisiblePoint::zeroed() };
         let gathered =
             Gathered { flux: Vec3::splat(std::f32::consts::PI), count: 1, ..Gathered::zeroed() };
@@ -231,14 +231,14 @@ fn means(b: &Bench) -> Figure {
     worst.into()
 }
 
-/// A point source at height 1 over a disc of radius 1 that a gather disc of radius 2 covers.
+/// A point source at height 1 over a disc of radius 1, covered by a gather disc of radius 2.
 fn photon_counts(b: &Bench) -> Figure {
     const TEXT: &str = "version = 1\n[camera]\nposition = [0, 0.4, 0.1]\ntarget = [0, 0, 0]\nfov = 10\n[film]\nwidth = 1\nheight = 1\n\
         [materials.m]\ntype = \"diffuse\"\nreflectance = 0.5\n\
         [[shapes]]\ntype = \"disc\"\ncenter = [0, 0, 0]\nnormal = [0, 1, 0]\nradius = 1\nmaterial = \"m\"\n\
         [[lights]]\ntype = \"point\"\nposition = [0, 1, 0]\nintensity = 1.0\n";
     let p = 0.5 * (1.0 - 0.5f64.sqrt());
-    // rho / pi times the flux that arrives over the area of the shape, which clips the gather disc
+    // rho / pi times the arriving flux over the area of the shape, which clips the gather disc
     let truth =
         0.5 / std::f64::consts::PI * (4.0 * std::f64::consts::PI * p) / std::f64::consts::PI;
     let mut counts =
@@ -273,7 +273,7 @@ fn many_equal(b: &Bench) -> Figure {
     let count = 1 << 20;
     let dispatch = Dispatch { inv_cell: 0.25, mask: 0, scale_sq: 1.0, ..Dispatch::zeroed() };
     let up = oct_encode(Vec3::Z);
-    // the middle of a cell that holds the disc
+    // the middle of the cell that contains the disc
     let position = Vec3::splat(2.0);
     let point = VisiblePoint {
         position,

@@ -31,7 +31,7 @@ pub fn rows() -> Vec<Row> {
     ]
 }
 
-/// A convex shape with its true surface.
+/// A convex shape and its exact surface.
 struct Body {
     toml: &'static str,
     /// A point of the surface and its outward normal, from three numbers in [-1, 1].
@@ -93,8 +93,8 @@ fn bodies() -> Vec<Body> {
     ]
 }
 
-/// Worst distance of points found at grazing incidence, in error bounds, and how many rays meet
-/// what they leave.
+/// Largest distance from the surface of points found at grazing incidence, in error bounds, and the
+/// number of rays that meet the surface they leave.
 fn grazing(b: &Bench) -> (Figure, Figure) {
     let mut rng = Rng(17);
     let (mut worst, mut again, mut met, mut all) = (0.0f64, 0, 0, 0);

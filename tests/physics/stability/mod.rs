@@ -1,5 +1,5 @@
-//! Every row of the table of extremes holds, on the CPU and on the software driver, with fewer
-//! samples than the table that `cargo run --release --example stability` prints.
+//! Numerical stability: every row of the table of extremes meets its bound, on the CPU and on the
+//! software driver, with smaller samples than `cargo run --release --example stability` uses.
 
 mod bench;
 mod counts;
@@ -10,13 +10,14 @@ mod surfaces;
 mod table;
 mod view;
 
+use crate::support::software;
 use bench::{Bench, On};
 use table::sections;
 
-/// Measures the rows of a section; all that fail are told.
+/// Measures the rows of a section and reports all that fail.
 fn hold(section: &str, on: On) {
     if on == On::Software {
-        crate::support::software();
+        software();
     }
     let bench = Bench::new(on, false);
     let sections = sections();
@@ -59,7 +60,7 @@ held! {
     light_film_view_on_driver: "Light, film and camera" on Software,
 }
 
-/// Theory: a figure that is no number must not pass, whatever the bound.
+/// Theory: NaN and infinity must not pass, whatever the bound.
 #[test]
 fn no_number_does_not_pass() {
     for (_, rows) in sections() {

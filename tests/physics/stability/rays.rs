@@ -115,7 +115,7 @@ fn floors(b: &Bench) -> Figure {
             let k = n.unit / radius;
             let truth =
                 sphere_t(o, v, n.point(DVec3::ZERO), DVec3::Y, k).expect("the floor lies below");
-            // over the horizon of the smallest the ray may just touch
+            // over the horizon of the smallest ball the ray may just touch it
             let at = o + v * truth - n.point(DVec3::ZERO);
             let sin = -v.dot((DVec3::Y + at * k).normalize());
             let error = if found.is_hit() { (f64::from(found.t) / truth - 1.0).abs() } else { 1.0 };
@@ -189,7 +189,7 @@ fn ball_on_giant(b: &Bench) -> Figure {
             None => !found.is_hit(),
             Some((t, which)) => {
                 let index = index_of(found.reference);
-                // toward the horizon t has no bound
+                // near the horizon t is unbounded
                 found.is_hit()
                     && index == which
                     && (t > 100.0 || (f64::from(found.t) / t - 1.0).abs() < 1e-5)
@@ -200,7 +200,7 @@ fn ball_on_giant(b: &Bench) -> Figure {
     f64::from(wrong).into()
 }
 
-/// A scene of triangles alone, already in scene space.
+/// A scene of triangles only, already in scene space.
 fn of_triangles(mesh: &[[Vec3; 3]]) -> Scene {
     let mut scene = Scene::empty();
     let tree = build(&brute_force::prims(mesh));
@@ -249,7 +249,7 @@ fn slivers(b: &Bench) -> Figure {
             if u + v > 1.0 {
                 (u, v) = (1.0 - u, 1.0 - v);
             }
-            // a third at edges, a third at vertices
+            // a third aim at edges, a third at vertices
             (u, v) = [(u, v), (u, 0.0), (0.0, 0.0)][i as usize % 3];
             ray(origin, t[0] + (t[1] - t[0]) * u + (t[2] - t[0]) * v - origin)
         })

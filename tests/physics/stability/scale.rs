@@ -1,4 +1,4 @@
-//! The same scene at other scales and places.
+//! The same scene at extreme scales and places.
 
 use caustica::low_level::film::Picture;
 use caustica::low_level::scene::settings::{Direct, Radius, RadiusRule, RenderSettings};
@@ -84,7 +84,7 @@ fn picture(b: &Bench, scale: f64, shift: DVec3) -> Picture {
     let name = "everything.obj";
     let path = folder().join(name);
     if !path.exists() {
-        // tests run side by side: the file appears whole or not at all
+        // tests run in parallel, so the rename publishes a complete file
         let beside = path.with_extension(format!("{:?}.part", std::thread::current().id()));
         std::fs::write(&beside, crate::everything::MESH).expect("written");
         std::fs::rename(&beside, &path).expect("renamed");
@@ -115,7 +115,7 @@ fn compared(b: &Bench, changes: impl Iterator<Item = (f64, DVec3)>) -> Figure {
     }
 }
 
-/// Pixels on the lit side of a ball that are black.
+/// Number of black pixels on the lit side of a ball.
 fn shadowed(b: &Bench, radius: f64, place: f64) -> u32 {
     let n = b.samples(96, 192);
     let at = DVec3::new(0.7, 0.4, -0.2) * place * radius;

@@ -174,8 +174,8 @@ fn squeezed(factors: &[f64]) -> Vec<Profile> {
     out
 }
 
-/// The surface alone. Its tables are filled up to one length, so that the driver compiles one
-/// kernel for all.
+/// A scene of the surface alone. All tables are padded to one length, so that the driver compiles
+/// one kernel for all.
 fn scene_of(placed: &Placed) -> Scene {
     let mut scene = Scene::empty();
     scene.revolutions = placed.tables.revolutions.clone();

@@ -1,28 +1,27 @@
-//! The rows: an extreme each, with the theory, the way it is measured, and the bound that must
-//! hold.
+//! The rows of the table: an extreme with its theory, its measurement, and its bound.
 
 use super::bench::Bench;
 
-/// One extreme.
+/// One row: an extreme.
 pub struct Row {
-    /// What is extreme.
+    /// The extreme quantity.
     pub name: &'static str,
     /// The theory and how the figure is measured.
     pub how: &'static str,
-    /// What the figure counts or in which unit it is.
+    /// Unit of the figure.
     pub unit: &'static str,
-    /// Greatest figure that passes.
+    /// Largest figure that passes.
     pub bound: f64,
-    /// Measures.
+    /// The measurement.
     pub measure: fn(&Bench) -> Figure,
 }
 
-/// What was measured.
+/// A result of a measurement.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Figure {
-    /// Held against the bound.
+    /// The number compared with the bound.
     pub value: f64,
-    /// What else is worth telling.
+    /// Further information for the table.
     pub note: String,
 }
 
@@ -33,7 +32,7 @@ impl From<f64> for Figure {
 }
 
 impl Row {
-    /// Whether a figure passes; what is no number does not.
+    /// Whether a figure passes; NaN and infinity do not.
     pub fn admits(&self, figure: &Figure) -> bool {
         figure.value <= self.bound
     }

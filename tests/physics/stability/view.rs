@@ -1,4 +1,4 @@
-//! Lights, films and cameras far from what is usual.
+//! Extreme lights, films and cameras.
 
 use caustica::low_level::scene::settings::{Direct, Radius, RadiusRule, RenderSettings};
 
@@ -77,7 +77,8 @@ fn one_pass() -> RenderSettings {
     RenderSettings { passes: 1, photons: 1, max_bounces: 0, ..RenderSettings::default() }
 }
 
-/// Greatest deviation of a pixel from `truth`, as a share of it (of one where it is zero).
+/// Largest relative deviation of a pixel from `truth` (absolute where the truth is zero, against
+/// one).
 fn worst(rgb: &[[f32; 3]], truth: f64) -> f64 {
     let scale = if truth == 0.0 { 1.0 } else { truth };
     let off = |x: &f32| (f64::from(*x) - truth).abs() / scale;
@@ -126,7 +127,7 @@ fn lamps(b: &Bench) -> Figure {
         )
     };
     let settings = RenderSettings { passes: b.samples(16, 64), ..one_pass() };
-    // a camera beside the lamp's axis, looking at a small part of the floor below it
+    // a camera next to the lamp's axis, looking at a small part of the floor below it
     let look = "version = 1\n[camera]\nposition = [0.3, 0.4, 0]\ntarget = [0, 0, 0]\nfov = 0.5\n[film]\nwidth = 48\nheight = 48\n";
     let small = lamp("type = \"disc\"\ncenter = [0, 1, 0]\nnormal = [0, -1, 0]\nradius = 1e-6");
     let small =
@@ -178,8 +179,8 @@ fn bounces(b: &Bench) -> Figure {
 const COLUMNS: u32 = 32;
 const ROWS: u32 = 32;
 
-/// A picture of a wall at distance 1 that shines left of x = `edge`; the view is along -z. The wall
-/// reaches `reach` far.
+/// An image of a wall at distance 1 that emits left of x = `edge`; the view is along -z. The wall
+/// extends `reach` to each side.
 fn edge_picture(b: &Bench, fov: f64, edge: f64, reach: f64, lens: &str, passes: u32) -> Vec<f64> {
     let text = format!(
         "version = 1\n[camera]\nposition = [0, 0, 1]\ntarget = [0, 0, 0]\nfov = {fov:?}\n{lens}\n\
@@ -228,7 +229,7 @@ fn apertures(b: &Bench) -> Figure {
             };
             let truth = (0..64).map(|k| share(at(k))).sum::<f64>() / 64.0;
             let n = f64::from(ROWS * passes);
-            // at least one sample's worth
+            // at least the weight of one sample
             let sigma = (truth * (1.0 - truth) / n).sqrt().max(1.0 / n);
             worst = worst.max((seen - truth).abs() / sigma);
         }

@@ -1,4 +1,4 @@
-//! Writes JPEG files of flat blocks (ITU-T T.81), with scans and sampling as one likes.
+//! Writes JPEG files of flat blocks (ITU-T T.81) with chosen scans and sampling.
 
 /// Resolution of luminance over that of chroma, horizontally and vertically.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,8 +41,8 @@ impl Bits {
         }
     }
 
-    /// A block of one value: its difference to the last, and, where all coefficients follow, their
-    /// end.
+    /// Writes a block of one value: its difference from the last one and, if all coefficients
+    /// follow, the end-of-block code.
     fn block(&mut self, difference: i32, is_progressive: bool) {
         let category = u32::BITS - difference.unsigned_abs().leading_zeros();
         self.put(category, 4);
@@ -54,10 +54,10 @@ impl Bits {
     }
 }
 
-/// A pixel's place and color.
+/// A pixel's place and colour.
 pub type Pixel = (usize, usize, [i32; 3]);
 
-/// A file with these scans, each of components, and colors at some pixels.
+/// Makes a file with these scans, each of components, and returns the colours of some pixels.
 pub fn jpeg(
     Sampling(h, v): Sampling,
     scans: &[&[usize]],
@@ -81,7 +81,7 @@ pub fn jpeg(
         3,
     ]);
     file.extend([1, (h << 4 | v) as u8, 0, 2, 0x11, 0, 3, 0x11, 0]);
-    // Categories 0 to 11 in four bits each; the end of a block in one.
+    // Huffman codes: categories 0 to 11 in four bits each; the end of a block in one.
     file.extend([0xff, 0xc4, 0, 31, 0, 0, 0, 0, 12]);
     file.extend([0; 12]);
     file.extend(0..12);
@@ -100,7 +100,7 @@ pub fn jpeg(
         };
         let blocks = |component: usize| if component == 0 { (h, v) } else { (1, 1) };
         if let [only] = scan[..] {
-            // Alone in a scan, a component's blocks come row by row.
+            // In a scan of its own, a component's blocks come row by row.
             let (h, v) = blocks(only);
             for (y, x) in (0..v * SQUARES).flat_map(|y| (0..h * SQUARES).map(move |x| (y, x))) {
                 put(only, (x / h, y / v));

@@ -1,9 +1,9 @@
-//! OBJ and MTL files as programs in the field write them: names, comments, line ends, missing
-//! files, values out of range.
+//! OBJ and MTL files in the form that programs write: names, comments, line ends, missing files,
+//! values out of range.
 //!
-//! Theory: what a file says does not depend on its layout. A name is the bytes that stand behind
-//! its keyword, and the first material of a name in the order of the libraries is the one that is
-//! meant. What no picture depends on refuses nothing.
+//! Theory: layout is not content. A name is the bytes after its keyword, and the first material of
+//! a name, in the order of the libraries, counts. A statement that does not affect the image causes
+//! no error.
 
 use std::path::Path;
 
@@ -13,7 +13,7 @@ use caustica::low_level::scene::{
 };
 
 use super::{HEAD, differs, told};
-use crate::support::{ends, folder};
+use crate::support::{ends, folder, sound};
 
 const SQUARES: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\n";
 const RED: Rgb = [1.0, 0.0, 0.0];
@@ -39,9 +39,9 @@ fn read(folder: &Path, missing: Missing) -> Result<Loaded, SceneErrors> {
     parse_within(&folder.join("scene.toml"), text.as_bytes(), &allowance)
 }
 
-/// Colors and numbers of triangles of the parts of `m.obj`, and the warnings.
+/// Colours and triangle counts of the parts of `m.obj`, and the warnings.
 fn parts(folder: &Path, missing: Missing) -> (Vec<(Rgb, usize)>, Vec<String>) {
-    let loaded = read(folder, missing).unwrap_or_else(|e| panic!("{:?}", miette::Report::new(e)));
+    let loaded = sound(read(folder, missing));
     let scene = &loaded.scene;
     let part = |shape: &caustica::low_level::scene::Shape| {
         let ShapeKind::Mesh(mesh) = &shape.kind else { panic!() };
@@ -89,7 +89,7 @@ fn names_stay_apart() {
     }
 }
 
-/// One file, in other layouts.
+/// One file in several layouts.
 #[test]
 fn layout_is_no_content() {
     let mtl = b"newmtl a\nKd 1 0 0\nnewmtl b\nKd 0 1 0\n";
@@ -120,8 +120,8 @@ fn layout_is_no_content() {
     assert_eq!(parts_of("mtl", lines.as_bytes(), &mtl), (vec![(RED, 2), (GREEN, 2)], vec![]));
 }
 
-/// Several libraries, and names of files: with blanks, `#` and backslashes, in the encoding of the
-/// system or not.
+/// Several libraries, and file names with blanks, `#` and backslashes, in the system's encoding or
+/// another.
 #[test]
 fn libraries_are_found() {
     let (a, b) =
@@ -152,7 +152,7 @@ fn libraries_are_found() {
     let obj = [b"mtllib m.mtl\nusemtl \xe9\n", SQUARES.as_bytes(), b"f 1 2 3 4\n"].concat();
     let found = parts_of("encodings", &obj, "newmtl \u{e9}\nKd 1 0 0\n".as_bytes());
     assert_eq!(found, (vec![(RED, 2)], vec![]));
-    // Within one library the first counts too, and a warning says so.
+    // Within one library the first counts too, with a warning.
     let obj = format!("mtllib m.mtl\nusemtl a\n{SQUARES}f 1 2 3 4\n");
     let (found, warnings) =
         parts_of("again", obj.as_bytes(), b"newmtl a\nKd 1 0 0\nnewmtl a\nKd 0 1 0\n");
@@ -160,8 +160,8 @@ fn libraries_are_found() {
     assert!(warnings.len() == 1 && warnings[0].contains("`a` is defined again"), "{warnings:?}");
 }
 
-/// A face's material that no library defines is an error, wherever its statement stands: no face
-/// vanishes.
+/// A face's material that no library defines is an error, wherever its statement stands. No face is
+/// dropped.
 #[test]
 fn undefined_materials() {
     let obj = format!("mtllib m.mtl\n{SQUARES}usemtl Grey #1\nf 1 2 3\nusemtl Grey #3\nf 1 2 3\n");
@@ -177,8 +177,8 @@ fn undefined_materials() {
     assert!(warnings.len() == 1 && warnings[0].contains("rendered in gray"), "{warnings:?}");
 }
 
-/// `--missing warn`: gray in place of a library or a picture that does not exist; a warning names
-/// file and place. A file that is there and broken stays an error.
+/// `--missing warn` replaces a missing library or image by gray, with a warning that names file and
+/// place. A broken file is still an error.
 #[test]
 fn missing_files() {
     let obj = format!("mtllib gone.mtl m.mtl\n{SQUARES}usemtl a\nf 1 2 3 4\nusemtl b\nf 2 5 6 3\n");
@@ -197,8 +197,8 @@ fn missing_files() {
     assert_eq!(differs(&errors, &[(3, 8, "cannot read image")]), None);
 }
 
-/// Keys that change how a surface looks elsewhere and are not read: each gives a warning at its
-/// line, and those whose value changes nothing give none.
+/// Keys that change a surface in other programs and are not supported give a warning at their line,
+/// unless their value has no effect.
 #[test]
 fn unread_keys() {
     let obj = format!("mtllib m.mtl\n{SQUARES}usemtl a\nf 1 2 3 4\n");
@@ -235,8 +235,7 @@ fn unread_keys() {
     assert_eq!(parts_of("idle", obj.as_bytes(), idle), (vec![(RED, 2)], vec![]));
 }
 
-/// Values that are not used, and those that rounding has carried out of range, refuse nothing;
-/// others do.
+/// Values that are unused, or out of range by rounding only, are accepted; others are errors.
 #[test]
 fn values_out_of_range() {
     let obj = format!("mtllib m.mtl\n{SQUARES}usemtl a\nf 1 2 3 4\n");
@@ -275,7 +274,7 @@ fn values_out_of_range() {
     }
 }
 
-/// Of an OBJ file: colors of vertices, and vertices that no face uses.
+/// OBJ files with vertex colours and unused vertices.
 #[test]
 fn unused_vertices() {
     let mtl = b"newmtl a\nKd 1 0 0\n";
@@ -327,7 +326,7 @@ fn unused_vertices() {
     }
 }
 
-/// Pictures of `map_Kd`: names with `#`, blanks and backslashes, and comments.
+/// Images in `map_Kd`: names with `#`, blanks and backslashes, and comments.
 #[test]
 fn pictures_of_materials() {
     let obj = format!("mtllib m.mtl\n{SQUARES}usemtl a\nf 1 2 3 4\n");
@@ -349,7 +348,7 @@ fn pictures_of_materials() {
     }
 }
 
-/// Every command that reads a scene takes the option, and the error names it.
+/// Every command that reads a scene accepts the option, and the error names it.
 #[test]
 fn missing_files_of_commands() {
     let obj = format!("mtllib gone.mtl\n{SQUARES}usemtl a\nf 1 2 3 4\n");
@@ -370,7 +369,7 @@ fn missing_files_of_commands() {
     ends(&folder, &["check", "s.toml", "--missing", "ignore"], 2, &["error, warn"]);
 }
 
-/// Lines of a scene file that end in carriage returns alone are none in TOML: one error says so.
+/// Lines that end in carriage returns only are not TOML, and one error says so.
 #[test]
 fn carriage_returns_of_a_scene() {
     let text = HEAD.replace('\n', "\r");

@@ -1,18 +1,12 @@
-//! Scene files that are wrong: what is said, and where.
+//! Errors and warnings in scene files: message and place.
 
 mod jpeg;
 mod meshes;
 mod mutated;
 mod pictures;
 
-use std::path::{Path, PathBuf};
-
-use crate::support::{HEAD, folder};
+use crate::support::{HEAD, data, folder};
 use caustica::low_level::scene::{Finding, SceneErrors, load, parse};
-
-fn data(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(name)
-}
 
 fn errors_of(text: &str) -> SceneErrors {
     match parse(&data("scene.toml"), text.as_bytes()) {
@@ -28,7 +22,7 @@ fn told(finding: &Finding) -> String {
     format!("{} | {} | {}", finding.message(), finding.label(), finding.help().unwrap_or(""))
 }
 
-/// Whether the findings are those expected, in order; else what is wrong.
+/// Compares findings with the expected ones, in order; describes the difference.
 fn differs(found: &[Finding], expected: &[Expected]) -> Option<String> {
     let found: Vec<_> =
         found.iter().map(|finding| (finding.line_column(), told(finding))).collect();
@@ -39,11 +33,10 @@ fn differs(found: &[Finding], expected: &[Expected]) -> Option<String> {
     (!same).then(|| format!("found {found:#?}, expected {expected:#?}"))
 }
 
-/// Five lines, so that a case's first line is line 6.
-/// Three lines.
+/// [`HEAD`] has five lines and this three, so a case starts at a known line.
 const MATERIAL: &str = "[materials.grey]\ntype = \"diffuse\"\nreflectance = 0.5\n";
 
-/// Each fault is told at its own place with what would be right.
+/// Each error is reported at its own place with the expected form.
 #[test]
 fn one_fault_each() {
     let after_head: &[(&str, Expected)] = &[
@@ -121,8 +114,8 @@ fn one_fault_each() {
     assert_eq!(wrong.collect::<Vec<_>>().join("\n"), "");
 }
 
-/// What f32 cannot hold once the scene is scaled: lengths above 1e15 or, where 0 is none, below
-/// 1e-15; light above 1e30. The bounds themselves pass.
+/// Numbers that f32 cannot represent once the scene is scaled: lengths above 1e15 or, where 0 is
+/// not allowed, below 1e-15; light above 1e30. The bounds themselves pass.
 #[test]
 fn numbers_beyond_single_precision() {
     let cases: &[(&str, Expected)] = &[
@@ -179,8 +172,8 @@ fn numbers_beyond_single_precision() {
     assert_eq!(differs(&errors, &[(2, 3, "`1e16` is too large")]), None);
 }
 
-/// One value is told of once, by the check that comes first; keys that are missing in one table,
-/// and several faults of one word of a mesh, are told each.
+/// One value is reported once, by the first failing check. Several missing keys of a table, and
+/// several errors in one word of a mesh, are each reported.
 #[test]
 fn one_report_for_a_value() {
     let plane = "[[shapes]]\ntype = \"plane\"\npoint = [0, 0, 0]\nnormal = [0, 1, 0]\nmaterial = \"grey\"\nemission = -1\n";
@@ -205,7 +198,7 @@ fn one_report_for_a_value() {
     assert_eq!(all_reported(&once), all_reported(&twice));
 }
 
-/// As above, in a shape that starts at line 9.
+/// The same for a shape that starts at line 9.
 #[test]
 fn one_fault_in_a_shape() {
     let shapes: &[(&str, Expected)] = &[
@@ -295,7 +288,8 @@ fn one_fault_in_a_shape() {
     assert_eq!(wrong.collect::<Vec<_>>().join("\n"), "");
 }
 
-/// One file, all stages of checking: everything in one go, in the order of the file.
+/// One file with errors from all stages of checking: all are reported at once, in the order of the
+/// file.
 #[test]
 fn many_faults_at_once() {
     let text = "version = 2\n[camera]\nposition = [0, 1, 4]\ntarget = [0, 1]\nfov = 200\n[render]\nalpha = 0.0\npasses = -3\n\
@@ -317,7 +311,7 @@ fn many_faults_at_once() {
     assert_eq!(differs(&errors_of(text).errors, &expected), None);
 }
 
-/// The comparator of this file finds a wrong line, a wrong column, a wrong text and a missing
+/// The comparison of this file detects a wrong line, a wrong column, a wrong text and a missing
 /// error.
 #[test]
 fn comparator_finds_planted_errors() {
@@ -334,7 +328,7 @@ fn comparator_finds_planted_errors() {
     }
 }
 
-/// Faults inside an OBJ and its MTL name that file and its lines.
+/// Errors inside an OBJ file and its MTL file name that file and its lines.
 #[test]
 fn faults_of_a_mesh() {
     let text = format!("{HEAD}[[shapes]]\ntype = \"mesh\"\nfile = \"broken.obj\"\n");
@@ -360,7 +354,7 @@ fn faults_of_a_mesh() {
     assert_eq!(differs(&mtl, &expected), None);
 }
 
-/// A file that is not there, one that is not text, and a folder.
+/// A missing file, one that is not text, and a folder.
 #[test]
 fn unreadable_files() {
     let errors = load(&data("reference/cornel.toml")).unwrap_err();
@@ -371,7 +365,7 @@ fn unreadable_files() {
     assert_eq!(differs(&errors.errors, &[(2, 3, "not UTF-8")]), None);
 }
 
-/// What a person sees: path, line, column, the line itself, a caret's text.
+/// The printed form: path, line, column, the line itself, the label of the caret.
 #[test]
 fn printed_form() {
     let mut text = String::new();
@@ -385,7 +379,7 @@ fn printed_form() {
     }
 }
 
-/// Odd but no errors.
+/// Warnings.
 #[test]
 fn warnings() {
     let warnings = |text: &str| parse(&data("scene.toml"), text.as_bytes()).unwrap().warnings;
@@ -398,8 +392,7 @@ fn warnings() {
     assert_eq!(differs(&found, &[(9, 13, "emits no light")]), None);
 }
 
-/// An alpha channel is not used, and a warning says so where it would matter: not where it is 1
-/// throughout.
+/// An alpha channel is ignored, with a warning unless it is 1 throughout.
 #[test]
 fn alpha_is_told_of() {
     let folder = folder("alpha");

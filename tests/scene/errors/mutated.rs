@@ -1,12 +1,11 @@
-//! Files of any bytes.
+//! Random bytes in files.
 
 use caustica::low_level::scene::parse;
 
-use super::data;
-use crate::support::{HEAD, folder};
+use crate::support::{HEAD, data, folder};
 
-/// Whatever bytes a file holds, it loads or is refused; nothing panics, and every error has a place
-/// in the text.
+/// A file of any bytes loads or is refused. Nothing panics, and every error has a place in the
+/// text.
 #[test]
 fn mutated_files() {
     let mut state = 0x2545_f491_4f6c_dd1d_u64;
@@ -44,7 +43,7 @@ fn mutated_files() {
     assert!(refused > 100, "the mutations do not bite: {refused}");
 }
 
-/// OBJ and MTL files of any bytes load or are refused; nothing panics (tobj alone does).
+/// OBJ and MTL files of any bytes load or are refused. Nothing panics (tobj alone does).
 #[test]
 fn mutated_meshes() {
     let mut state = 0x9e37_79b9_7f4a_7c15_u64;

@@ -1,5 +1,5 @@
-//! Pictures of textures: formats by content, channels of EXR files, JPEG files of several scans,
-//! texels near the limits.
+//! Texture images: formats by content, channels of EXR files, JPEG files of several scans, texels
+//! near the limits.
 
 use std::path::Path;
 
@@ -21,7 +21,7 @@ fn read(folder: &Path, file: &str, missing: Missing) -> Result<Loaded, SceneErro
     parse_within(&folder.join("scene.toml"), text.as_bytes(), &allowance)
 }
 
-/// The texels of a texture in linear numbers, and the warnings.
+/// The texels of a texture in linear values, and the warnings.
 fn texels(folder: &Path, file: &str) -> (Vec<[f32; 3]>, Vec<String>) {
     let loaded = read(folder, file, Missing::Error).unwrap_or_else(|e| panic!("{file}: {e:?}"));
     let texels = match &loaded.scene.images[0].texels {
@@ -43,7 +43,7 @@ fn refused(folder: &Path, file: &str) -> String {
 /// A channel's name and its values in two texels.
 type Channel = (&'static str, [f32; 2]);
 
-/// A file's name, its channels, and its texels in linear numbers.
+/// A file's name, its channels, and its texels in linear values.
 type Case<'c> = (&'c str, &'c [Channel], &'c [[f32; 3]]);
 
 /// An EXR file of 2 x 1 texels: each channel's values.
@@ -54,8 +54,9 @@ fn exr(path: &Path, channels: &[Channel]) {
     Image::from_channels((2, 1), AnyChannels::sort(list.collect())).write().to_file(path).unwrap();
 }
 
-/// Theory: the plain R, G, B of a file are its picture; without them Y is, in gray; without both,
-/// the one layer that has either. Nothing else says which of several is meant.
+/// Theory: the plain R, G, B of a file are its image. Without them it is Y, in gray, and without
+/// both the one layer that has either. Nothing else would determine which of several layers is
+/// meant.
 #[test]
 fn channels_of_exr_files() {
     let folder = folder("channels");
@@ -147,9 +148,8 @@ fn luminance_chroma(
     file
 }
 
-/// Luminance with chroma at a lower resolution is luminance, in gray, with a warning. Other
-/// channels of a lower resolution are refused by the header, before pixels are read that do not
-/// fit.
+/// Luminance with subsampled chroma loads as gray luminance, with a warning. Other subsampled
+/// channels are refused by the header, before pixels are read that do not fit.
 #[test]
 fn subsampled_exr() {
     let folder = folder("subsampled");
@@ -166,7 +166,7 @@ fn subsampled_exr() {
     let file = folder.join("rgb.exr");
     exr(&file, &[("B", [0.0; 2]), ("G", [0.0; 2]), ("R", [0.5; 2])]);
     let mut bytes = std::fs::read(&file).unwrap();
-    // A channel is its name, a zero, type, four bytes, and its sampling in x and y.
+    // A channel consists of its name, a zero, type, four bytes, and its sampling in x and y.
     let at = bytes.windows(7).position(|part| part == b"chlist\0").unwrap() + 7 + 4 + 2 + 8;
     bytes[at] = 2;
     std::fs::write(&file, bytes).unwrap();
@@ -174,8 +174,8 @@ fn subsampled_exr() {
     assert!(text.contains("`B` has one value for 2 x 1 pixels") && text.contains("`G`"), "{text}");
 }
 
-/// Theory: a format is what a file holds. Each format under the name of another is the same
-/// picture.
+/// Theory: the content determines the format. Each format under the name of another gives the same
+/// image.
 #[test]
 fn formats_by_content() {
     let folder = folder("content");
@@ -210,9 +210,9 @@ fn formats_by_content() {
     }
 }
 
-/// Theory: reflectance lies in [0, 1], and a file of floats may miss it by rounding. Such texels
-/// are the limit, which one warning for the file says with their number and the worst; what is
-/// further out is no rounding, and an error with its place.
+/// Theory: reflectance lies in [0, 1], and a float file may miss it by rounding. Such texels are
+/// clamped, with one warning for the file that states their number and the worst. Texels further
+/// out are an error with its place.
 #[test]
 fn texels_near_the_limits() {
     let folder = folder("limits");
@@ -247,7 +247,7 @@ fn texels_near_the_limits() {
         let text = refused(&folder, "t.exr");
         assert!(text.contains(part), "{text}");
     }
-    // Light may be brighter than 1.
+    // Emitted light may exceed 1.
     let text = format!("{HEAD}[environment]\nfile = \"t.exr\"\n");
     let sky = |first: f32| {
         of(first, 0.5);
@@ -261,7 +261,7 @@ fn texels_near_the_limits() {
     assert!(sky(-0.1).is_err());
 }
 
-/// The same of numbers in a scene file.
+/// The same for numbers in a scene file.
 #[test]
 fn numbers_near_the_limits() {
     let read = |number: &str| {
@@ -297,7 +297,7 @@ fn numbers_near_the_limits() {
     }
 }
 
-/// A texture that does not exist: an error that names the option, or with it a warning and gray.
+/// A missing texture is an error that names the option; with the option it is a warning and gray.
 #[test]
 fn missing_textures() {
     let folder = written("missing texture", &[("broken.png", b"no picture")]);
@@ -306,15 +306,15 @@ fn missing_textures() {
     assert_eq!(differs(&loaded.warnings, &[(8, 8, "gone.png")]), None);
     assert_eq!(loaded.scene.images[0].texels, Texels::Float(vec![[0.5; 3]]));
     assert!(read(&folder, "broken.png", Missing::Warn).is_err());
-    // Names as Windows writes them.
+    // File names in Windows style.
     let folder = written("backslash", &[("tex/t.png", b"")]);
     image::RgbImage::new(1, 1).save(folder.join("tex/t.png")).unwrap();
     assert!(read(&folder, "tex\\\\t.png", Missing::Error).is_ok());
 }
 
-/// Theory: the colors of a JPEG file do not depend on how its scans divide the components, nor,
-/// away from edges, on the resolution of its chroma. A file is decoded so, or refused; none is
-/// garbled.
+/// Theory: the colours of a JPEG file do not depend on how its scans divide the components, nor,
+/// away from edges, on the resolution of its chroma. A file is decoded correctly or refused; none
+/// is garbled.
 #[test]
 fn scans_of_jpeg_files() {
     let folder = folder("scans");

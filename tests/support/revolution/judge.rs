@@ -1,30 +1,31 @@
-//! How far an f32 hit may be from the oracle's.
+//! Allowed difference of an f32 hit from the oracle's.
 
 use super::oracle::{self, OracleHit};
 use super::profiles::Placed;
 use super::rays::curve;
 use glam::{DVec3, Vec3};
 
-/// Relative to the distance, or to the surface's size where that is larger.
+/// Allowed error relative to the distance, or to the surface's size if that is larger.
 const DISTANCE: f64 = 1e-5;
 /// Four roundings of the ray's and surface's coordinates.
 const ROUNDINGS: f64 = 4.0 / 16_777_216.0;
 
-/// Rays, and how the f32 solver's first hits differ from the oracle's.
+/// Counts of rays whose first f32 hits differ from the oracle's.
 #[derive(Clone, Default)]
 pub struct Tally {
     pub rays: u64,
     pub hits: u64,
-    /// Without excuse: the oracle's hit is not found, or one behind it is.
+    /// Missed hits that rounding does not explain: the oracle's hit is not found, or one behind it
+    /// is.
     pub lost: u64,
-    /// Without excuse: hits where the oracle has none, or nearer ones.
+    /// False hits that rounding does not explain: the oracle has none, or a farther one.
     pub false_hits: u64,
-    /// Hits whose distance is off without excuse.
+    /// Hits whose error in distance rounding does not explain.
     pub off: u64,
-    /// Largest error of all, and of those without excuse.
+    /// Largest error of all hits, and of those that rounding does not explain.
     pub worst: f64,
     pub worst_well: f64,
-    /// Rays whose hits differ by more for rounding of the ray.
+    /// Rays whose larger differences the ray's own rounding explains.
     pub ill_conditioned: u64,
     pub bracketed: u64,
     pub steps: [u64; 16],
@@ -35,7 +36,7 @@ impl Tally {
         self.lost + self.false_hits + self.off
     }
 
-    /// In one line.
+    /// The counts in one line.
     pub fn report(&self) -> String {
         format!(
             "{} rays, {} hits; lost {}, false {}, off {}; ill-conditioned {} (worst {:.1e}); others' worst {:.1e}; bracketed {}; Newton steps {:?}",
@@ -67,17 +68,17 @@ impl Tally {
     }
 }
 
-/// Stands for the distance of a miss.
+/// Distance that represents a miss.
 const MISS: f64 = 1e30;
 
-/// Whether moving the ray by a few f32 roundings, across the surface that it grazes or to a side,
-/// moves the true hit at least as far as `t`: then no f32 solver can be held to it.
+/// Whether moving the ray by a few f32 roundings, across the surface that it grazes or sideways,
+/// moves the true hit at least as far as `t`. No f32 solver can be more accurate than that.
 fn excused(placed: &Placed, o: Vec3, d: Vec3, t: f64, first: Option<&OracleHit>) -> bool {
     let revolution = &placed.tables.revolutions[0];
     let scale = f64::from(revolution.scale);
     let (lo, ld) = oracle::local_ray(revolution, o, d);
     let mut directions = vec![DVec3::X, DVec3::Y, DVec3::Z];
-    // toward the axis and away from it
+    // towards the axis and away from it
     directions.extend(ld.cross(DVec3::Y).try_normalize());
     if let Some(first) = first {
         let p = lo + ld * first.t;
@@ -101,8 +102,7 @@ fn excused(placed: &Placed, o: Vec3, d: Vec3, t: f64, first: Option<&OracleHit>)
     low <= t && t <= high
 }
 
-/// Holds a first hit at distance `found` against the oracle's; Newton's steps are left to the
-/// caller.
+/// Compares a first hit at distance `found` with the oracle's. The caller counts Newton's steps.
 pub fn judge(placed: &Placed, o: Vec3, d: Vec3, found: Option<f64>) -> Tally {
     let mut tally = Tally { rays: 1, ..Tally::default() };
     let revolution = &placed.tables.revolutions[0];

@@ -1,4 +1,4 @@
-//! What the tests of surfaces of revolution share: profiles, rays, and an independent solver.
+//! Shared by tests of surfaces of revolution: profiles, rays, and an independent solver.
 
 #![allow(dead_code)] // each test binary uses its part
 

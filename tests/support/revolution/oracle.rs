@@ -1,8 +1,10 @@
-//! All hits of a ray with a surface of revolution in f64, by a way of its own: the ray parameter at
-//! height y(t) is u(t) = (y(t) - o_y) / d_y, so a hit is a root of the polynomial g(t) = (o_x + u
-//! d_x)^2 + (o_z + u d_z)^2 - r^2, of twice the profile's degree. In Bernstein form its roots are
-//! isolated by subdivision (it lies in the hull of its coefficients, and has at most as many roots
-//! as they have sign changes). A horizontal ray instead meets the circles where y(t) = o_y.
+//! All hits of a ray with a surface of revolution in f64, by an independent method.
+//!
+//! The ray parameter at height y(t) is u(t) = (y(t) - o_y) / d_y, so a hit is a root of the
+//! polynomial g(t) = (o_x + u d_x)^2 + (o_z + u d_z)^2 - r^2, of twice the profile's degree.
+//! Subdivision in Bernstein form isolates its roots (the polynomial lies in the hull of its
+//! coefficients, and has at most as many roots as they have sign changes). A horizontal ray instead
+//! meets the circles where y(t) = o_y.
 
 use caustica::low_level::shapes::revolution::Revolution;
 use glam::{DVec2, DVec3, Vec3};
@@ -26,8 +28,8 @@ pub fn local_ray(revolution: &Revolution, origin: Vec3, direction: Vec3) -> (DVe
 
 /// Hits at distances above zero, nearest first.
 pub fn all_hits(segments: &[Vec<DVec2>], o: DVec3, d: DVec3) -> Vec<OracleHit> {
-    // Distances between which the ray is inside a ball around everything; from near it, coordinates
-    // are small.
+    // Distances between which the ray is inside a ball around the surface; relative to a point near
+    // it, coordinates are small.
     let radius = segments.iter().flatten().fold(0.0_f64, |a, p| a.max(p.length())) * 1.001;
     let (dd, od) = (d.length_squared(), o.dot(d));
     let near = -od / dd;
@@ -73,7 +75,7 @@ fn horizontal(points: &[DVec2], o: DVec3, d: DVec3, found: &mut impl FnMut(f64, 
 fn slanted(points: &[DVec2], o: DVec3, d: DVec3, reach: f64, found: &mut impl FnMut(f64, f64)) {
     let r: Vec<f64> = points.iter().map(|p| p.x).collect();
     let u: Vec<f64> = points.iter().map(|p| (p.y - o.y) / d.y).collect();
-    // Only the parts of the curve at heights that the ray passes; there u is of the ball's size.
+    // Only the parts of the curve at heights that the ray passes; there u has the size of the ball.
     let mut cuts = vec![0.0, 1.0];
     for bound in [-reach, reach] {
         cuts.extend(roots(&u.iter().map(|x| x - bound).collect::<Vec<_>>()));

@@ -1,4 +1,4 @@
-//! Profiles of every kind that a scene may hold.
+//! Profiles of every kind that a scene may contain.
 
 use caustica::low_level::accel::revolution::{Attributes, PatchBox, Placement, RevolutionTables};
 use glam::{DQuat, DVec2, DVec3};
@@ -19,7 +19,7 @@ pub struct Placed {
 }
 
 fn profile(name: &'static str, segments: &[&[[f64; 2]]]) -> Profile {
-    // Numbers that f32 holds, so that every solver gets the same profile.
+    // Round to f32, so that every solver receives the same profile.
     let round = |p: &[f64; 2]| DVec2::new(f64::from(p[0] as f32), f64::from(p[1] as f32));
     Profile { name, segments: segments.iter().map(|s| s.iter().map(round).collect()).collect() }
 }
