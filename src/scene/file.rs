@@ -10,6 +10,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::appearance::{Filter, Wrap};
+use super::images::ColorSpace;
 use super::numbers::{NonNegative, Paint, Positive, Share, Spectrum, Strength};
 use super::schema::close_variants;
 use super::{Aov, ToneMap};
@@ -99,16 +100,6 @@ impl Default for FilmFile {
             aov: Vec::new(),
         }
     }
-}
-
-/// Encoding of the values in an image file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum ColorSpace {
-    /// sRGB-encoded; the default for png and jpg.
-    Srgb,
-    /// Proportional to light; the default for hdr and exr.
-    Linear,
 }
 
 /// A color as a function of a surface's (u, v).

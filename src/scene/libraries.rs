@@ -5,13 +5,12 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use super::appearance::{Material, MaterialKind, Reflectance, Rgb, Texture};
+use super::diagnostics::{did_you_mean, nearest_file};
 use super::limits::{Missing, Refusal};
 use super::lines::{Text, Word, before_comment, parts, readings};
 use super::load::Loader;
 use super::mtl::{self, Library, Target};
 use super::obj::Scan;
-use super::report::did_you_mean;
-use super::text::nearest_file;
 
 /// Identifies a material by the index of its file and its index in that file.
 type Id = (usize, usize);

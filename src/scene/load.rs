@@ -7,11 +7,11 @@ use std::sync::LazyLock;
 
 use serde_json::Value as Json;
 
+use super::diagnostics::{Finding, Report, SceneErrors, list};
 use super::file::{EnvironmentFile, LightFile, MaterialFile, SceneFile, ShapeFile, TextureFile};
 use super::images::ImageStore;
 use super::libraries::{Own, OwnKey};
 use super::limits::{Allowance, within};
-use super::report::{Finding, Report, SceneErrors, list};
 use super::spans::Spans;
 use super::validate::{Document, document};
 use super::{Scene, camera, material, mesh, schema, surfaces, text};

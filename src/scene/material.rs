@@ -3,12 +3,12 @@
 use std::path::Path;
 
 use super::appearance::{Material, MaterialKind, Reflectance, Texture, TextureKind};
-use super::file::{ColorSpace, MaterialFile, TextureFile};
-use super::images::ImageFault;
+use super::diagnostics::nearest_file;
+use super::file::{MaterialFile, TextureFile};
+use super::images::{ColorSpace, ImageFault};
 use super::limits::Missing;
 use super::load::Loader;
 use super::numbers::Paint;
-use super::text::nearest_file;
 use super::validate::Item;
 
 pub(super) fn texture(loader: &mut Loader, item: &Item, file: TextureFile) -> Option<Texture> {

@@ -6,13 +6,13 @@ use std::ops::Range;
 use std::path::Path;
 
 use super::appearance::{Material, Rgb, Texture};
+use super::diagnostics::nearest_file;
 use super::geometry::{Mesh, Transform};
 use super::libraries::{Libraries, Own};
 use super::limits::{Refusal, within};
 use super::lines::Text;
 use super::load::Loader;
 use super::obj;
-use super::text::nearest_file;
 use super::triangles::{Builder, Polygon, Steps, vertex_normals};
 use super::validate::Item;
 

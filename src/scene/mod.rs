@@ -11,11 +11,8 @@ mod appearance;
 mod camera;
 mod diagnostics;
 mod encoding;
-mod exr_image;
-mod exr_subsampled;
 pub mod file;
 mod geometry;
-mod image_bytes;
 mod images;
 mod libraries;
 mod limits;
@@ -28,7 +25,6 @@ pub mod numbers;
 mod obj;
 mod profile;
 mod profile_file;
-mod report;
 mod schema;
 pub mod settings;
 mod spans;
@@ -46,11 +42,12 @@ pub use aov::{Aov, Aovs};
 pub use appearance::{
     Filter, ImageData, Material, MaterialKind, Reflectance, Rgb, Texels, Texture, TextureKind, Wrap,
 };
+pub use diagnostics::{Finding, SceneErrors};
 pub use geometry::{Mesh, Shape, ShapeKind, Transform, Triangle};
+pub use images::ColorSpace;
 pub use limits::{Allowance, Missing};
 pub use load::{Loaded, load, load_within, parse, parse_within};
 pub use profile_file::{LoadedProfile, ProfileFile, load_profile, load_profile_within};
-pub use report::{Finding, SceneErrors};
 pub use schema::schema_json;
 pub use spans::Spans;
 

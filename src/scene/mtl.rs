@@ -5,11 +5,11 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use super::appearance::{Material, MaterialKind, Reflectance, Rgb, Texture, TextureKind};
+use super::diagnostics::{Faults, nearest};
 use super::images::{ImageFault, ImageStore};
 use super::limits::{Allowance, Missing};
 use super::lines::{Statement, Text, Word, finite, readings, statements};
 use super::numbers::{BRIGHTEST, LARGEST, Rounded, rounded_into};
-use super::report::{Faults, nearest};
 
 /// Index of refraction of a transparent MTL material without `Ni`.
 const DEFAULT_IOR: f64 = 1.5;

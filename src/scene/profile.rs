@@ -2,8 +2,8 @@
 
 use glam::DVec2;
 
+use super::diagnostics::Report;
 use super::file::Segments;
-use super::report::Report;
 use super::tree::Node;
 use super::validate::Item;
 

@@ -8,11 +8,11 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use serde_json::Value as Json;
 
+use super::diagnostics::{Finding, SceneErrors};
 use super::file::{Segments, TransformFile};
 use super::geometry::Transform;
 use super::limits::Allowance;
 use super::profile::segments;
-use super::report::{Finding, SceneErrors};
 use super::surfaces::placed;
 use super::validate::whole;
 use super::{schema, text};

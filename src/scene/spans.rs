@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use super::report::{Finding, Report, SourceFile};
+use super::diagnostics::{Finding, Report, SourceFile};
 use super::validate::Item;
 
 /// Byte ranges in a scene file, by path and key.

@@ -4,11 +4,11 @@ use glam::{DMat3, DVec3};
 
 use super::appearance::{Material, Texture};
 use super::camera::unit;
+use super::diagnostics::Report;
 use super::file::{ShapeFile, SurfaceFile, TransformFile};
 use super::geometry::{Shape, ShapeKind, Transform};
 use super::load::Loader;
 use super::numbers::{LARGEST, SMALLEST};
-use super::report::Report;
 use super::validate::Item;
 use super::{mesh, profile};
 

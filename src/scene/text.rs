@@ -6,9 +6,9 @@ use std::path::Path;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
+use super::diagnostics::{Finding, Report, SceneErrors, SourceFile, nearest_file};
 use super::encoding::unmarked;
 use super::limits::Allowance;
-use super::report::{Finding, Report, SceneErrors, SourceFile, nearest};
 use super::tree::Node;
 
 /// Reads a file.
@@ -21,7 +21,7 @@ pub(super) fn read(path: &Path, allowance: &Allowance) -> Result<Vec<u8>, SceneE
         let near = || nearest_file(path).filter(|_| error.is_missing());
         let help = error.help().or_else(|| near().map(|near| format!("did you mean {near}?")));
         report.unreadable(format!("cannot read {}: {error}", path.display()), help);
-        errors(path, report)
+        report.into_errors()
     })
 }
 
@@ -41,7 +41,7 @@ pub(super) fn parse<T>(
         Err(foreign) => {
             let mut report = Report::new(path, SourceFile::new(path, String::new()), 1);
             report.unreadable(format!("{}: {foreign}", path.display()), Some(foreign.help()));
-            return Err(errors(path, report));
+            return Err(report.into_errors());
         }
     };
     let text = String::from_utf8_lossy(bytes).into_owned();
@@ -50,7 +50,7 @@ pub(super) fn parse<T>(
     if let Err(error) = std::str::from_utf8(bytes) {
         let at = error.valid_up_to();
         report.error(at..at + 1, "the file is not UTF-8", "expected UTF-8 text", None);
-        return Err(errors(path, report));
+        return Err(report.into_errors());
     }
     if text.contains('\r') && !text.contains('\n') {
         let end = text.find('\r').unwrap_or(0);
@@ -61,7 +61,7 @@ pub(super) fn parse<T>(
             "expected a line feed",
             help,
         );
-        return Err(errors(path, report));
+        return Err(report.into_errors());
     }
     let (table, faults) = DeTable::parse_recoverable(&text);
     for fault in &faults {
@@ -70,32 +70,10 @@ pub(super) fn parse<T>(
         report.error(span, fault.message(), "here", help);
     }
     if !report.errors.is_empty() {
-        return Err(errors(path, report));
+        return Err(report.into_errors());
     }
     let span = table.span().start..table.span().start;
     let root = Spanned::new(span, DeValue::Table(table.into_inner()));
-    match meaning(Node::new(&root), &mut report) {
-        Some(made) if report.errors.is_empty() => Ok((made, report.warnings.told())),
-        _ => Err(errors(path, report)),
-    }
-}
-
-fn errors(path: &Path, report: Report) -> SceneErrors {
-    let file = path.display().to_string();
-    let (more, mut errors) = (report.errors.more(), report.errors.listed());
-    errors.sort_by_cached_key(|error| (error.file() != file, error.line_column()));
-    SceneErrors { file, errors, more, warnings: report.warnings.told(), files: report.files }
-}
-
-/// The file in the same folder with the nearest name, if any is close.
-pub(super) fn nearest_file(path: &Path) -> Option<String> {
-    let wanted = path.file_name()?.to_string_lossy().into_owned();
-    let folder =
-        path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let mut names: Vec<_> = std::fs::read_dir(folder)
-        .ok()?
-        .filter_map(|entry| Some(entry.ok()?.file_name().to_string_lossy().into_owned()))
-        .collect();
-    names.sort();
-    nearest(&wanted, names.iter().map(String::as_str)).map(str::to_owned)
+    let made = meaning(Node::new(&root), &mut report);
+    report.conclude(made)
 }

@@ -7,8 +7,8 @@ use std::ops::Range;
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value as Json};
 
+use super::diagnostics::{Report, list};
 use super::numbers::{LARGEST, SMALLEST, rounded_into};
-use super::report::{Report, list};
 use super::schema::{alternatives, describe, has_type, in_range, listed_strings, tag};
 use super::tree::Node;
 
