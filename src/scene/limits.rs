@@ -220,7 +220,7 @@ pub(super) fn within(
 
 /// Reason why a file is not read.
 #[derive(Debug)]
-pub(super) enum Refusal {
+pub(crate) enum Refusal {
     /// The file lies outside the root.
     Outside { root: PathBuf },
     /// The path is a folder, a pipe or a device.

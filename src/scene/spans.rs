@@ -5,7 +5,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use super::diagnostics::{Finding, Report, SourceFile};
-use super::validate::Item;
+use super::parts::Part;
 
 /// Byte ranges in a scene file, by path and key.
 #[derive(Clone, Debug)]
@@ -22,7 +22,7 @@ pub struct Spans {
 }
 
 impl Spans {
-    pub(crate) fn new(path: &Path, source: SourceFile) -> Self {
+    pub(super) fn new(path: &Path, source: SourceFile) -> Self {
         Self {
             path: path.to_owned(),
             source,
@@ -32,11 +32,11 @@ impl Spans {
         }
     }
 
-    pub(crate) fn add(&mut self, item: &Item) {
-        self.spans.insert(item.path.clone(), item.node.span());
-        for (key, _, value) in item.node.entries() {
-            self.spans.insert(item.key(key), value.span());
-        }
+    /// Adds a part and its keys.
+    pub(super) fn add(&mut self, part: &dyn Part) {
+        let place = part.place();
+        self.spans.insert(place.to_owned(), part.span());
+        part.each_key(&mut |key, span| drop(self.spans.insert(format!("{place}.{key}"), span)));
     }
 
     /// Creates a warning at the first of `paths` that the file has, or else at its start; `label`

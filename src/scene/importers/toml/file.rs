@@ -1,7 +1,7 @@
 //! The scene file format as types.
 //!
 //! The parser, the checks and the JSON Schema for editors all derive from these types: field names
-//! are the keys, and doc comments are the descriptions. The validated [`Scene`](super::Scene)
+//! are the keys, and doc comments are the descriptions. The validated [`Scene`](crate::scene::Scene)
 //! documents the meaning of each key in full.
 
 use std::collections::BTreeMap;
@@ -9,12 +9,10 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::appearance::{Filter, Wrap};
-use super::images::ColorSpace;
 use super::numbers::{NonNegative, Paint, Positive, Share, Spectrum, Strength};
 use super::schema::close_variants;
-use super::{Aov, ToneMap};
 use crate::scene::settings::RenderSettings;
+use crate::scene::{Aov, ColorSpace, Filter, ToneMap, Wrap};
 
 /// Three coordinates: x, y, z.
 pub type Vec3 = [f64; 3];

@@ -5,9 +5,9 @@
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::ops::Range;
 
-use super::diagnostics::Faults;
 use super::lines::{Statement, Word, finite, statements};
-use super::numbers::LARGEST;
+use crate::scene::diagnostics::Faults;
+use crate::scene::numbers::LARGEST;
 
 /// Result of the scan of an OBJ file.
 #[derive(Debug)]
