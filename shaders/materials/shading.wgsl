@@ -3,6 +3,7 @@
 
 const RADIANCE: u32 = 0u;
 const IMPORTANCE: u32 = 1u;
+const ADJOINT_COS_MIN: f32 = 1e-2;
 
 struct Lobe {
     bsdf: u32,
@@ -66,6 +67,31 @@ fn reflected(p: ShadingPoint, mode: u32) -> Sample {
         weight *= shading_correction(p, n, wi);
     }
     return Sample(wi, weight);
+}
+
+struct CosineAxis {
+    axis: vec3f,
+    weight: vec3f,
+}
+
+fn cosine_axis(p: ShadingPoint, mode: u32) -> CosineAxis {
+    var axis = p.n;
+    var weight = p.lobe.reflectance;
+    if mode == IMPORTANCE {
+        axis = p.ng;
+        if any(p.s.shading != p.s.normal) {
+            weight *= max(dot(p.wo, p.n), 0.0) / max(dot(p.wo, p.ng), ADJOINT_COS_MIN);
+        }
+    }
+    return CosineAxis(axis, weight);
+}
+
+fn pdf_cosine(n: vec3f, wi: vec3f) -> f32 {
+    let cos = dot(wi, n);
+    if cos <= 0.0 {
+        return 0.0;
+    }
+    return cos * INV_PI;
 }
 
 fn shading_correction(p: ShadingPoint, n: vec3f, wi: vec3f) -> f32 {

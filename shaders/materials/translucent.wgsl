@@ -1,7 +1,5 @@
 // Diffuse reflection and transmission by a thin surface. Twin: src/materials/translucent.rs.
 
-const TRANSLUCENT_ADJOINT_COS_MIN: f32 = 1e-2;
-
 fn side_share(alpha: f32, cos: f32) -> f32 {
     return select(alpha, 1.0 - alpha, cos > 0.0);
 }
@@ -19,14 +17,8 @@ fn pdf_translucent(lobe: Lobe, n: vec3f, wo: vec3f, wi: vec3f) -> f32 {
 //#if scene
 fn sample_translucent(p: ShadingPoint, u: vec2f, mode: u32) -> Sample {
     let alpha = p.lobe.alpha;
-    var axis = p.n;
-    var weight = p.lobe.reflectance;
-    if mode == IMPORTANCE {
-        axis = p.ng;
-        if any(p.s.shading != p.s.normal) {
-            weight *= max(dot(p.wo, p.n), 0.0) / max(dot(p.wo, p.ng), TRANSLUCENT_ADJOINT_COS_MIN);
-        }
-    }
+    let sent = cosine_axis(p, mode);
+    var weight = sent.weight;
     // choose the side and stretch the number that chose it to [0, 1]
     var x = (u.x - alpha) / max(1.0 - alpha, 1e-6);
     var side = 1.0;
@@ -35,7 +27,7 @@ fn sample_translucent(p: ShadingPoint, u: vec2f, mode: u32) -> Sample {
         side = -1.0;
     }
     let local = sample_cosine(vec2f(clamp(x, 0.0, 1.0), u.y));
-    let wi = renormalized(from_frame(axis, vec3f(local.x, local.y, local.z * side)));
+    let wi = renormalized(from_frame(sent.axis, vec3f(local.x, local.y, local.z * side)));
     if dot(wi, p.ng) * side <= 0.0 {
         weight = vec3f(0.0);
     }

@@ -8,7 +8,7 @@ use bytemuck::Zeroable;
 use glam::{Vec2, Vec3};
 
 use crate::cpu::CpuEngine;
-use crate::engine::{Engine, EngineError};
+use crate::engine::{Engine, EngineError, MeasuredEngine};
 use crate::film::Picture;
 use crate::gpu::{AdapterChoice, GpuEngine};
 use crate::lights::LightKind;

@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::cpu::CpuEngine;
 use crate::device::{self, DeviceError, DeviceInfo, DeviceKind};
 use crate::double;
-use crate::engine::{Engine, EngineError};
+use crate::engine::{EngineError, MeasuredEngine};
 use crate::gpu::program::Compiling;
 use crate::gpu::{AdapterChoice, GpuEngine};
 use crate::pack::PackedScene;
@@ -30,14 +30,14 @@ pub struct SetupSeconds {
 /// An engine of either type.
 pub enum Runner {
     /// CPU engine.
-    Cpu(Box<dyn Engine>),
+    Cpu(Box<dyn MeasuredEngine>),
     /// GPU engine, on hardware or a software driver.
     Gpu(Box<GpuEngine>),
 }
 
 impl Runner {
     /// Interface common to all engines.
-    pub fn engine(&mut self) -> &mut dyn Engine {
+    pub fn engine(&mut self) -> &mut dyn MeasuredEngine {
         match self {
             Self::Cpu(engine) => engine.as_mut(),
             Self::Gpu(engine) => engine.as_mut(),
@@ -57,7 +57,7 @@ impl Runner {
 pub struct Ready {
     /// Engine.
     pub runner: Runner,
-    /// PackedScene scene in f32, even for the f64 engine.
+    /// Packed scene in f32, even for the f64 engine.
     pub packed: PackedScene,
     /// Plan in f32, even for the f64 engine.
     pub plan: Plan,

@@ -134,8 +134,7 @@ pub fn approach(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::engine::PassReport;
-    use crate::film::{ErrorMap, Rejections};
+    use crate::engine::scripted::Scripted;
 
     fn falling(times: &[f64], error: impl Fn(f64) -> f64) -> Vec<Point> {
         (1..)
@@ -165,27 +164,13 @@ mod tests {
         assert_eq!(reached(&past, 0.1), Some(2.0));
     }
 
-    /// Test engine: each pass halves the difference of the image from one.
-    struct Halver(f32);
-
-    impl Engine for Halver {
-        fn device(&self) -> &str {
-            "halver"
-        }
-        fn pass(&mut self) -> Result<PassReport, EngineError> {
-            self.0 *= 0.5;
-            Ok(PassReport::default())
-        }
-        fn picture(&mut self) -> Result<Picture, EngineError> {
-            // the left half starts with twice the difference
-            Ok(Picture::from_fn(4, 4, |x, _| [1.0 + self.0 * if x < 2 { 2.0 } else { 1.0 }; 3]))
-        }
-        fn errors(&mut self) -> Result<ErrorMap, EngineError> {
-            Ok(ErrorMap::default())
-        }
-        fn rejections(&mut self) -> Result<Rejections, EngineError> {
-            Ok(Rejections::default())
-        }
+    /// Test engine: each pass halves the difference of the image from one. The left half starts
+    /// with twice the difference.
+    fn halver() -> impl Engine {
+        Scripted::new(|passes| {
+            let difference = 0.5_f32.powi(passes as i32);
+            Picture::from_fn(4, 4, |x, _| [1.0 + difference * if x < 2 { 2.0 } else { 1.0 }; 3])
+        })
     }
 
     #[test]
@@ -200,7 +185,7 @@ mod tests {
             goal(None, None, 0.0),
         ];
         let endless = Limit { time: Duration::from_secs(1000), passes: 1000 };
-        let found = approach(&mut Halver(1.0), &truth, &goals, endless, &|| false).unwrap();
+        let found = approach(&mut halver(), &truth, &goals, endless, &|| false).unwrap();
         let passes = |a: &Approach| a.series.last().unwrap().passes;
         // the mean over both halves without the largest pixel, 36 / 15 4^-p / 1.01, is below 0.001
         // from the sixth pass on
@@ -212,11 +197,11 @@ mod tests {
         // pass limit and noise correction
         let short = Limit { passes: 3, ..endless };
         let found =
-            approach(&mut Halver(1.0), &truth, &[goal(None, Some(1e-3), 0.01)], short, &|| false)
+            approach(&mut halver(), &truth, &[goal(None, Some(1e-3), 0.01)], short, &|| false)
                 .unwrap();
         assert_eq!((passes(&found[0]), found[0].reached_seconds), (3, None));
         let error = found[0].series[2].rel_mse;
-        let stopped = approach(&mut Halver(1.0), &truth, &goals, endless, &|| true).unwrap();
+        let stopped = approach(&mut halver(), &truth, &goals, endless, &|| true).unwrap();
         assert_eq!(passes(&stopped[0]), 1, "passes before the stop are kept");
         assert!((error - (36.0 / 15.0 / 64.0 / 1.01 - 0.01)).abs() < 1e-6, "{error}");
     }

@@ -5,18 +5,18 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use caustica::low_level::checkpoint::Origin;
-use caustica::low_level::device::failover::Relay;
 use caustica::low_level::device::{self, Candidates, DeviceError, Opened, Wanted};
-use caustica::low_level::engine::{Engine, EngineError, State};
+use caustica::low_level::engine::{EngineError, State};
 use caustica::low_level::film::denoise::NAME;
 use caustica::low_level::film::tev::ADDRESS;
 use caustica::low_level::film::{Development, Picture, Provenance, check_outputs};
 use caustica::low_level::memory;
 use caustica::low_level::prepare::limits;
 use caustica::low_level::render::calibration::{Calibrating, Calibration};
-use caustica::low_level::render::observers::Showing;
+use caustica::low_level::render::failover::Failover;
 use caustica::low_level::render::quality::{Expected, Quality, expected};
-use caustica::low_level::render::{Broken, Kept, Progress, Saving, Stop, resume};
+use caustica::low_level::render::snapshots::Snapshots;
+use caustica::low_level::render::{Broken, Kept, Progress, Saving, Session, Stop, Watcher, resume};
 use caustica::low_level::scene::settings::{Method, RadiusRule, RenderSettings};
 use caustica::low_level::scene::{Aovs, Film, Loaded, Scene};
 use caustica::low_level::storage;
@@ -199,19 +199,11 @@ fn run_on(arguments: Arguments, find: &Find) -> Result<Done, Failure> {
     let from = files.resumed();
     let reporter = begin(&arguments.voice, &scene, &opened)?;
     let mut next = |error: &EngineError, state: &State| succession.next(error, state);
-    let mut engine = Relay::new(opened.engine, &mut next);
+    let mut engines = Failover::new(opened.engine, &mut next);
     let nothing = State::before(first_pass);
     let state = from.map_or(&nothing, |from| &from.state);
     let progress = from.map_or(Progress::before(stop), |from| from.progress(stop));
     files.tell(json, &reporter)?;
-    let mut shown = |picture: &Picture| viewer.show(picture);
-    let mut showing;
-    let engine: &mut dyn Engine = if arguments.tev.is_some() {
-        showing = Showing::new(&mut engine, &mut shown);
-        &mut showing
-    } else {
-        &mut engine
-    };
     let reporter = RefCell::new(reporter);
     let mut show = |progress: &Progress| reporter.borrow_mut().show(progress);
     let mut keeper = Keeper::new(&files, origin, json);
@@ -219,16 +211,29 @@ fn run_on(arguments: Arguments, find: &Find) -> Result<Done, Failure> {
     let every = arguments.checkpoint_every;
     let saving = files.keeps().then_some(Saving { every, save: &mut save });
     // calibration needs the first passes, which a resumed render lacks
-    let outcome = match arguments.overrides.quality.filter(|_| from.is_none()) {
-        Some(quality) => {
-            let promise = Promise { quality, stop, settings: &opened.settings, json };
-            let mut tell =
-                |calibration: &Calibration| promise.tell(calibration, &reporter.borrow());
-            let mut watched = Calibrating::new(engine, &mut tell);
-            resume(&mut watched, state, progress, interrupt::flag(), &mut show, saving)
+    let quality = arguments.overrides.quality.filter(|_| from.is_none());
+    let promise =
+        quality.map(|quality| Promise { quality, stop, settings: &opened.settings, json });
+    let mut tell = |calibration: &Calibration| {
+        if let Some(promise) = &promise {
+            promise.tell(calibration, &reporter.borrow());
         }
-        None => resume(engine, state, progress, interrupt::flag(), &mut show, saving),
     };
+    let mut calibrating = promise.is_some().then(|| Calibrating::new(&mut tell));
+    let mut send = |picture: &Picture| viewer.show(picture);
+    let mut snapshots = arguments.tev.is_some().then(|| Snapshots::new(&mut send));
+    let mut watchers: Vec<&mut dyn Watcher> = Vec::new();
+    watchers.extend(calibrating.iter_mut().map(|watcher| watcher as &mut dyn Watcher));
+    watchers.extend(snapshots.iter_mut().map(|watcher| watcher as &mut dyn Watcher));
+    let session = Session {
+        state,
+        progress,
+        interrupted: interrupt::flag(),
+        observer: &mut show,
+        watchers: &mut watchers,
+        saving,
+    };
+    let outcome = resume(&mut engines, session);
     let mut reporter = reporter.into_inner();
     reporter.finish();
     let (mut made, error) = match outcome {
@@ -439,7 +444,7 @@ pub fn default_output(scene: &Path) -> PathBuf {
 }
 
 #[cfg(test)]
-#[path = "../../tests/faults/engine.rs"]
+#[path = "../../tests/engines/faults/engine.rs"]
 mod engine;
 #[cfg(test)]
 #[path = "render_faults.rs"]

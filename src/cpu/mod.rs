@@ -20,7 +20,7 @@ use super::plan::features::Feature;
 use super::plan::layers::LayerInputs as Layers;
 use super::plan::{Buffer, Command, Kernel, Plan, Stage, Step};
 use super::real::{ENGINE, Real};
-use crate::engine::{Cancel, Engine, EngineError, PassReport, PhotonEnds, State};
+use crate::engine::{Cancel, Engine, EngineError, MeasuredEngine, PassReport, PhotonEnds, State};
 use crate::film::exr_file::Channel;
 use crate::film::{ErrorMap, Picture, Rejections};
 use crate::scene::settings::Method;
@@ -323,13 +323,6 @@ impl Engine for CpuEngine {
         Ok(report)
     }
 
-    fn timed_pass(&mut self) -> Result<(PassReport, KernelSeconds), EngineError> {
-        self.clock.enable();
-        let report = self.pass();
-        let seconds = self.clock.take();
-        Ok((report?, seconds))
-    }
-
     fn picture(&mut self) -> Result<Picture, EngineError> {
         Ok(self.plan.picture(&self.film))
     }
@@ -378,6 +371,15 @@ impl Engine for CpuEngine {
 
     fn layers(&mut self) -> Result<Vec<Channel>, EngineError> {
         Ok(self.plan.layers(&self.found()))
+    }
+}
+
+impl MeasuredEngine for CpuEngine {
+    fn timed_pass(&mut self) -> Result<(PassReport, KernelSeconds), EngineError> {
+        self.clock.enable();
+        let report = self.pass();
+        let seconds = self.clock.take();
+        Ok((report?, seconds))
     }
 
     fn gathered(&mut self) -> Result<u64, EngineError> {

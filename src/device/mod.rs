@@ -1,7 +1,6 @@
 //! Device selection: lists the devices, resolves a request, and creates an engine on a device.
 
 mod candidates;
-pub mod failover;
 
 use thiserror::Error;
 

@@ -1,6 +1,8 @@
 //! Interface between the render loop and the GPU and CPU engines.
 
 pub mod error;
+#[cfg(test)]
+pub mod scripted;
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -205,52 +207,36 @@ pub trait Engine {
     fn device(&self) -> &str;
     /// Renders the next pass.
     fn pass(&mut self) -> Result<PassReport, EngineError>;
-    /// Renders the next pass and measures the seconds of each kernel; empty if the engine does not
-    /// support this.
-    fn timed_pass(&mut self) -> Result<(PassReport, KernelSeconds), EngineError> {
-        Ok((self.pass()?, KernelSeconds::new()))
-    }
     /// Radiance estimate of the passes so far, in world units.
     fn picture(&mut self) -> Result<Picture, EngineError>;
     /// Error estimate of the passes so far, in world units.
     fn errors(&mut self) -> Result<ErrorMap, EngineError>;
     /// Counts of samples rejected in the passes so far.
     fn rejections(&mut self) -> Result<Rejections, EngineError>;
-    /// Radiance estimate and rejections.
+    /// Radiance estimate and rejections; an engine may read its film once for both.
     fn results(&mut self) -> Result<(Picture, Rejections), EngineError> {
         Ok((self.picture()?, self.rejections()?))
     }
     /// Returns true if the state can be lost with the device. False for engines whose state is in
     /// host memory.
-    fn can_be_lost(&self) -> bool {
-        true
-    }
-    /// Continues from `state` on another device after `error`.
-    ///
-    /// # Errors
-    /// The error of the last device, if no other device can continue.
-    fn go_on(&mut self, state: &State, error: EngineError) -> Result<(), EngineError> {
-        let _ = state;
-        Err(error)
-    }
+    fn can_be_lost(&self) -> bool;
     /// Copies the state after the passes so far. After a failed pass, returns the state before that
     /// pass, or an error.
-    fn save(&mut self) -> Result<State, EngineError> {
-        Err(EngineError::Unsupported(format!("{} cannot save its state", self.device())))
-    }
+    fn save(&mut self) -> Result<State, EngineError>;
     /// Restores a saved state in an engine that has not rendered any pass. Further passes are
     /// bit-identical to those of the engine that saved it, for equal scenes and settings.
-    fn restore(&mut self, state: &State) -> Result<(), EngineError> {
-        let _ = state;
-        Err(EngineError::Unsupported(format!("{} cannot restore a saved state", self.device())))
-    }
+    fn restore(&mut self, state: &State) -> Result<(), EngineError>;
     /// Layers requested by the film in addition to radiance, in world units.
-    fn layers(&mut self) -> Result<Vec<Channel>, EngineError> {
-        Ok(Vec::new())
-    }
-    /// Number of photons gathered by all visible points in the last pass; 0 if the engine does not
-    /// count them.
-    fn gathered(&mut self) -> Result<u64, EngineError> {
-        Ok(0)
-    }
+    fn layers(&mut self) -> Result<Vec<Channel>, EngineError>;
+}
+
+/// Engine whose work can be measured.
+pub trait MeasuredEngine: Engine {
+    /// Renders the next pass and measures the seconds of each kernel.
+    fn timed_pass(&mut self) -> Result<(PassReport, KernelSeconds), EngineError>;
+    /// Number of photons gathered by all visible points in the last pass.
+    ///
+    /// # Errors
+    /// [`EngineError::Unsupported`] if tiles reuse the buffer that holds the counts.
+    fn gathered(&mut self) -> Result<u64, EngineError>;
 }

@@ -4,6 +4,7 @@ pub mod compose;
 pub mod context;
 mod dispatch;
 mod engine;
+mod executor;
 pub mod fragments;
 pub mod layout;
 mod memory;
@@ -15,5 +16,6 @@ mod stamps;
 mod visible;
 
 pub use context::{AdapterChoice, AdapterKind, AdapterSummary, Gpu, list};
-pub use engine::{CompileSeconds, GpuEngine, Submissions, sizes};
+pub use engine::GpuEngine;
+pub use executor::{CompileSeconds, Submissions, sizes};
 pub use visible::{Hidden, hidden};

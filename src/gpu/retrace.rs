@@ -6,18 +6,93 @@
 //! driver would have.
 
 use super::context::Gpu;
+use super::executor::execute::Repair;
+use super::executor::{ENDS, Executor, STOPPED_COUNT};
 use crate::engine::EngineError;
 use crate::kernels::aov_trace::{AovPixel, aov_trace};
 use crate::kernels::eye_trace::eye_trace;
 use crate::kernels::photon_trace::{PhotonPath, photon_trace};
 use crate::kernels::records::{Dispatch, PhotonRecord, STOPPED, VisiblePoint};
+use crate::plan::features::Feature;
+use crate::plan::{Buffer, Stage, Step};
 use crate::tables::SceneTables;
 use bytemuck::{cast_slice, pod_collect_to_vec};
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 
+/// Retraces the paths that a software driver stopped.
+pub struct Retracer {
+    /// Tables of the scene.
+    pub scene: SceneTables,
+}
+
+impl Repair for Retracer {
+    fn after_step(&self, executor: &mut Executor, step: &Step) -> Result<u64, EngineError> {
+        match step.stage {
+            Stage::EyeTrace | Stage::PhotonTrace | Stage::AovTrace => {}
+            Stage::BuildGrid | Stage::Gather | Stage::ResolveParts | Stage::Resolve => {
+                return Ok(0);
+            }
+        }
+        let mut words = executor.counters()?;
+        if words[STOPPED_COUNT] == 0 {
+            return Ok(0);
+        }
+        let (scene, gpu, dispatch) = (&self.scene, &executor.gpu, &step.dispatch);
+        let own = |which| executor.buffer(which, step.chunk);
+        let sampled = executor.plan.features.has(Feature::Sampled);
+        let rays = match step.stage {
+            Stage::EyeTrace => {
+                let points = own(Buffer::VisiblePoints);
+                let (paths, rays) = retrace_points(gpu, scene, dispatch, sampled, points)?;
+                words[STOPPED_COUNT] -= paths.min(words[STOPPED_COUNT]);
+                rays
+            }
+            Stage::PhotonTrace => {
+                let records = own(Buffer::Records);
+                let found = retrace_photons(gpu, scene, dispatch, sampled, records, words[0])?;
+                words[0] = found.records;
+                words[ENDS..].iter_mut().zip(found.ends).for_each(|(word, count)| *word += count);
+                // the rest are loops of earlier batches, for which the pass is run again
+                words[STOPPED_COUNT] -= found.photons.min(words[STOPPED_COUNT]);
+                found.rays
+            }
+            Stage::AovTrace => {
+                let direct = sampled && executor.plan.features.has(Feature::DirectLayer);
+                retrace_aovs(gpu, scene, dispatch, direct, own(Buffer::Aovs))?;
+                words[STOPPED_COUNT] = 0;
+                0
+            }
+            Stage::BuildGrid | Stage::Gather | Stage::ResolveParts | Stage::Resolve => 0,
+        };
+        executor.set_counters(&words);
+        Ok(rays)
+    }
+
+    fn allows_retry(&self) -> bool {
+        true
+    }
+}
+
+/// Repairs nothing: for drivers that finish loops.
+pub struct Unrepaired;
+
+impl Repair for Unrepaired {
+    fn after_step(&self, executor: &mut Executor, step: &Step) -> Result<u64, EngineError> {
+        // layers are traced after the last reading of the counters in a pass
+        if step.stage == Stage::AovTrace && executor.counters()?[STOPPED_COUNT] > 0 {
+            return Err(executor.unfinished());
+        }
+        Ok(0)
+    }
+
+    fn allows_retry(&self) -> bool {
+        false
+    }
+}
+
 /// Retraces the marked points of a chunk; returns the numbers of points and of rays.
-pub fn retrace_points(
+fn retrace_points(
     gpu: &Gpu,
     scene: &SceneTables,
     dispatch: &Dispatch,
@@ -38,7 +113,7 @@ pub fn retrace_points(
 }
 
 /// Retraces the samples of the marked pixels of a chunk.
-pub fn retrace_aovs(
+fn retrace_aovs(
     gpu: &Gpu,
     scene: &SceneTables,
     dispatch: &Dispatch,
@@ -57,7 +132,7 @@ pub fn retrace_aovs(
 }
 
 /// Result of [`retrace_photons`].
-pub struct RetracedPhotons {
+struct RetracedPhotons {
     /// Number of records of the batch after retracing.
     pub records: u32,
     /// Number of photons that were retraced.
@@ -69,7 +144,7 @@ pub struct RetracedPhotons {
 }
 
 /// Replaces the records of the marked photons among the `count` records of a batch.
-pub fn retrace_photons(
+fn retrace_photons(
     gpu: &Gpu,
     scene: &SceneTables,
     dispatch: &Dispatch,

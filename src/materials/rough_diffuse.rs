@@ -10,7 +10,7 @@
 use super::math::sampling::sample_cosine;
 use super::math::{INV_PI, PI, from_frame};
 use super::real::{Real, Vec2, Vec3};
-use super::shading::{IMPORTANCE, Lobe, Sample, ShadingPoint, renormalized};
+use super::shading::{CosineAxis, Lobe, Sample, ShadingPoint, cosine_axis, pdf_cosine, renormalized};
 use super::tables::Material;
 
 /// See [`super::Bsdf::examples`].
@@ -23,17 +23,16 @@ pub const WIDE: bool = true;
 /// See [`super::Bsdf::transmits`].
 pub const TRANSMITS: bool = false;
 
-/// Lower bound of the cosine to the geometric normal that the shading-normal correction divides by,
-/// and of `t`.
-const ADJOINT_COS_MIN: Real = 1e-2;
+/// Lower bound of `t`.
+const COS_MIN: Real = 1e-2;
 
 /// `pi f / rho`.
 #[inline(always)]
-fn facets_of(sigma: Real, n: Vec3, wo: Vec3, wi: Vec3) -> Real {
+fn rho_ratio(sigma: Real, n: Vec3, wo: Vec3, wi: Vec3) -> Real {
     let cos_i = wi.dot(n);
     let cos_o = wo.dot(n);
     let s = wi.dot(wo) - cos_i * cos_o;
-    let t = if s > 0.0 { cos_i.max(cos_o).max(ADJOINT_COS_MIN) } else { 1.0 };
+    let t = if s > 0.0 { cos_i.max(cos_o).max(COS_MIN) } else { 1.0 };
     PI * (1.0 + sigma * (s / t)) / (PI + (0.5 * PI - 0.666_666_7) * sigma)
 }
 
@@ -44,35 +43,24 @@ pub fn eval_rough_diffuse(lobe: &Lobe, n: Vec3, wo: Vec3, wi: Vec3) -> Vec3 {
     if cos <= 0.0 {
         return Vec3::ZERO;
     }
-    lobe.reflectance * (INV_PI * cos * facets_of(lobe.alpha, n, wo, wi).max(0.0))
+    lobe.reflectance * (INV_PI * cos * rho_ratio(lobe.alpha, n, wo, wi).max(0.0))
 }
 
 /// Density of the cosine-weighted direction: `cos / pi`, sr^-1.
 #[inline(always)]
 pub fn pdf_rough_diffuse(_: &Lobe, n: Vec3, _: Vec3, wi: Vec3) -> Real {
-    let cos = wi.dot(n);
-    if cos <= 0.0 {
-        return 0.0;
-    }
-    cos * INV_PI
+    pdf_cosine(n, wi)
 }
 
 /// Samples a direction by the cosine; for photons about the geometric normal, as on diffuse
 /// surfaces.
 #[inline(always)]
 pub fn sample_rough_diffuse(p: &ShadingPoint, u: Vec2, mode: u32) -> Sample {
-    let mut axis = p.n;
-    let mut weight = p.lobe.reflectance;
-    if mode == IMPORTANCE {
-        axis = p.ng;
-        if p.s.shading != p.s.normal {
-            weight *= p.wo.dot(p.n).max(0.0) / p.wo.dot(p.ng).max(ADJOINT_COS_MIN);
-        }
-    }
+    let CosineAxis { axis, mut weight } = cosine_axis(p, mode);
     let wi = renormalized(from_frame(axis, sample_cosine(u)));
     if wi.dot(p.ng) <= 0.0 || wi.dot(p.n) <= 0.0 {
         weight = Vec3::ZERO;
     }
-    weight *= facets_of(p.lobe.alpha, p.n, p.wo, wi).max(0.0);
+    weight *= rho_ratio(p.lobe.alpha, p.n, p.wo, wi).max(0.0);
     Sample { direction: wi, weight }
 }

@@ -4,7 +4,7 @@
 use super::Bsdf;
 use super::geometry::surface::Surface;
 use super::interior::Interior;
-use super::math::mirrored;
+use super::math::{INV_PI, mirrored};
 use super::real::{Real, Vec2, Vec3};
 use super::tables::*;
 use super::texture::eval_texture;
@@ -13,6 +13,9 @@ use super::texture::eval_texture;
 pub const RADIANCE: u32 = 0;
 /// Transport of importance, that is of flux, along photon paths.
 pub const IMPORTANCE: u32 = 1;
+
+/// Lower bound of the cosine to the geometric normal that the shading-normal correction divides by.
+const ADJOINT_COS_MIN: Real = 1e-2;
 
 /// Material parameters at a point. A rough material needs nothing else to be evaluated, so a
 /// visible point stores these.
@@ -106,6 +109,41 @@ pub fn reflected(p: &ShadingPoint, mode: u32) -> Sample {
         weight *= shading_correction(p, n, wi);
     }
     Sample { direction: wi, weight }
+}
+
+/// Axis of a cosine-weighted direction, and the weight that the axis implies.
+#[derive(Clone, Copy, Debug)]
+pub struct CosineAxis {
+    /// Unit normal.
+    pub axis: Vec3,
+    /// Reflectance, with the correction of photons.
+    pub weight: Vec3,
+}
+
+/// Axis of the directions that a diffuse surface scatters: the shading normal. For photons the
+/// adjoint applies: they scatter about the geometric normal, with the weight of the shading normal
+/// on arrival (Veach 1997, eq. 5.19).
+#[inline(always)]
+pub fn cosine_axis(p: &ShadingPoint, mode: u32) -> CosineAxis {
+    let mut axis = p.n;
+    let mut weight = p.lobe.reflectance;
+    if mode == IMPORTANCE {
+        axis = p.ng;
+        if p.s.shading != p.s.normal {
+            weight *= p.wo.dot(p.n).max(0.0) / p.wo.dot(p.ng).max(ADJOINT_COS_MIN);
+        }
+    }
+    CosineAxis { axis, weight }
+}
+
+/// Density of a cosine-weighted direction about `n`: `cos / pi`, sr^-1.
+#[inline(always)]
+pub fn pdf_cosine(n: Vec3, wi: Vec3) -> Real {
+    let cos = wi.dot(n);
+    if cos <= 0.0 {
+        return 0.0;
+    }
+    cos * INV_PI
 }
 
 /// Adjoint correction for shading normals in particle transport (Veach 1997, eq. 5.19); 1 if both

@@ -5,7 +5,7 @@
 use super::math::sampling::sample_cosine;
 use super::math::{INV_PI, from_frame};
 use super::real::{Real, Vec2, Vec3};
-use super::shading::{IMPORTANCE, Lobe, Sample, ShadingPoint, renormalized};
+use super::shading::{CosineAxis, Lobe, Sample, ShadingPoint, cosine_axis, renormalized};
 use super::tables::Material;
 
 /// See [`super::Bsdf::examples`].
@@ -17,9 +17,6 @@ pub const EXAMPLES: &[Material] = &[
 pub const WIDE: bool = true;
 /// See [`super::Bsdf::transmits`].
 pub const TRANSMITS: bool = true;
-
-/// Lower bound of the cosine to the geometric normal that the shading-normal correction divides by.
-const ADJOINT_COS_MIN: Real = 1e-2;
 
 /// Fraction of the light that leaves on the side of a direction with cosine `cos` to `n`.
 #[inline(always)]
@@ -46,14 +43,7 @@ pub fn pdf_translucent(lobe: &Lobe, n: Vec3, _: Vec3, wi: Vec3) -> Real {
 #[inline(always)]
 pub fn sample_translucent(p: &ShadingPoint, u: Vec2, mode: u32) -> Sample {
     let alpha = p.lobe.alpha;
-    let mut axis = p.n;
-    let mut weight = p.lobe.reflectance;
-    if mode == IMPORTANCE {
-        axis = p.ng;
-        if p.s.shading != p.s.normal {
-            weight *= p.wo.dot(p.n).max(0.0) / p.wo.dot(p.ng).max(ADJOINT_COS_MIN);
-        }
-    }
+    let CosineAxis { axis, mut weight } = cosine_axis(p, mode);
     // choose the side and stretch the number that chose it to [0, 1]
     let mut x = (u.x - alpha) / (1.0 - alpha).max(1e-6);
     let mut side = 1.0;

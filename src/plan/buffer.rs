@@ -133,7 +133,7 @@ impl Buffer {
     pub fn info(self) -> BufferInfo {
         use Extent::{Blocks, BucketEnds, Buckets, One, Pixels, Records, VisiblePoints};
         match self {
-            Self::Scene => BufferInfo::new::<[u8; 1]>("scene", "Scene", Extent::Scene),
+            Self::Scene => BufferInfo::new::<[u8; 1]>("scene", "SceneTables", Extent::Scene),
             Self::Nodes => BufferInfo::new::<Node>("nodes", "vec2u", Extent::Scene),
             Self::Refs => BufferInfo::new::<u32>("refs", "u32", Extent::Scene),
             Self::Triangles => BufferInfo::new::<Triangle>("triangles", "Triangle", Extent::Scene),
@@ -213,7 +213,7 @@ impl BufferInfo {
     /// WGSL type of the buffer.
     pub fn wgsl_type(&self) -> String {
         match (self.extent, self.element) {
-            (Extent::One, element) | (Extent::Scene, element @ "Scene") => element.to_owned(),
+            (Extent::One, element) | (Extent::Scene, element @ "SceneTables") => element.to_owned(),
             (_, element) => format!("array<{element}>"),
         }
     }

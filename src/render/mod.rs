@@ -2,12 +2,13 @@
 
 pub mod calibration;
 mod estimates;
+pub mod failover;
 pub mod identity;
 mod keep;
-pub mod observers;
 mod progress;
 pub mod quality;
 mod run;
+pub mod snapshots;
 #[cfg(test)]
 mod tests;
 
@@ -18,7 +19,7 @@ use crate::engine::{Engine, EngineError, State};
 use crate::film::exr_file::Channel;
 use crate::film::{ErrorMap, Picture, Rejections};
 use keep::KEEP;
-use run::{Run, Watch};
+use run::Run;
 
 pub use progress::{Progress, Stop};
 
@@ -80,11 +81,69 @@ pub struct Saving<'a> {
     pub save: &'a mut dyn FnMut(State, &Progress) -> State,
 }
 
+/// Looks at the engine between passes.
+pub trait Watcher {
+    /// Called after each pass of this session, which took `time` and was number `passes` of the
+    /// render.
+    ///
+    /// # Errors
+    /// Those of the engine.
+    fn after_pass(
+        &mut self,
+        passes: u32,
+        time: Duration,
+        engine: &mut dyn Engine,
+    ) -> Result<(), EngineError>;
+}
+
+/// Engines that render one after another.
+pub trait Engines {
+    /// The current engine.
+    ///
+    /// # Errors
+    /// If no engine is left.
+    fn current(&mut self) -> Result<&mut dyn Engine, EngineError>;
+    /// Replaces the current engine, which failed with `error`, by one that continues from `state`.
+    ///
+    /// # Errors
+    /// The error of the last engine, if no other one can continue.
+    fn replace(&mut self, state: &State, error: EngineError) -> Result<(), EngineError>;
+}
+
+/// An engine without a substitute.
+pub struct Single<'a>(pub &'a mut dyn Engine);
+
+impl Engines for Single<'_> {
+    fn current(&mut self) -> Result<&mut dyn Engine, EngineError> {
+        Ok(self.0)
+    }
+
+    fn replace(&mut self, _state: &State, error: EngineError) -> Result<(), EngineError> {
+        Err(error)
+    }
+}
+
+/// Session of a render: where it starts, when it ends, and who follows it.
+pub struct Session<'a> {
+    /// State that the engine restores.
+    pub state: &'a State,
+    /// Progress of that state; elapsed time accumulates.
+    pub progress: Progress,
+    /// If set, the render ends after the current pass.
+    pub interrupted: &'a AtomicBool,
+    /// Called with the progress after each pass.
+    pub observer: &'a mut dyn FnMut(&Progress),
+    /// Called with the engine after each pass.
+    pub watchers: &'a mut [&'a mut dyn Watcher],
+    /// Periodic saving, if wanted.
+    pub saving: Option<Saving<'a>>,
+}
+
 /// Renders passes until a stop condition holds or `interrupted` is set, which ends the render after
 /// the current pass. Calls `observer` after each pass.
 ///
 /// # Errors
-/// If the engine fails and cannot [continue](Engine::go_on) on another device.
+/// If the engine fails.
 pub fn render(
     engine: &mut dyn Engine,
     stop: Stop,
@@ -92,31 +151,17 @@ pub fn render(
     observer: &mut dyn FnMut(&Progress),
 ) -> Result<Outcome, Broken> {
     let state = State::before(0);
-    Run::new(Progress::before(stop), &state, None, KEEP).carry_out(
-        engine,
-        Watch { interrupted, observer },
-        None,
-    )
+    let progress = Progress::before(stop);
+    let session =
+        Session { state: &state, progress, interrupted, observer, watchers: &mut [], saving: None };
+    Run::new(session, KEEP).execute(&mut Single(engine), None)
 }
 
-/// Resumes a render at `progress` with a new engine, which restores `state`. Elapsed time
-/// accumulates. Renders no pass if a stop condition already holds. If `saving` is given, the state
-/// is saved periodically.
+/// Resumes a render. Renders no pass if a stop condition already holds.
 ///
 /// # Errors
 /// As for [`render`].
-pub fn resume<'a>(
-    engine: &mut dyn Engine,
-    state: &'a State,
-    progress: Progress,
-    interrupted: &AtomicBool,
-    observer: &mut dyn FnMut(&Progress),
-    saving: Option<Saving<'a>>,
-) -> Result<Outcome, Broken> {
-    let failed = engine.restore(state).err();
-    Run::new(progress, state, saving, KEEP).carry_out(
-        engine,
-        Watch { interrupted, observer },
-        failed,
-    )
+pub fn resume(engines: &mut dyn Engines, session: Session) -> Result<Outcome, Broken> {
+    let failed = engines.current().and_then(|engine| engine.restore(session.state)).err();
+    Run::new(session, KEEP).execute(engines, failed)
 }

@@ -6,24 +6,19 @@ use std::time::{Duration, Instant};
 use super::estimates::Estimates;
 use super::keep::{Keep, Keeping};
 use super::progress::Progress;
-use super::{Broken, Ending, Outcome, Saving};
-use crate::engine::{Engine, EngineError, State};
+use super::{Broken, Ending, Engines, Outcome, Saving, Session, Watcher};
+use crate::engine::{Engine, EngineError};
 use crate::film::ErrorMap;
 use crate::film::estimate::LEAST_PASSES;
 use crate::telemetry::stage::stage;
-
-/// Observer and interrupt flag of a render.
-pub struct Watch<'a> {
-    /// If set, the render ends after the current pass.
-    pub interrupted: &'a AtomicBool,
-    /// Called after each pass.
-    pub observer: &'a mut dyn FnMut(&Progress),
-}
 
 /// A render in progress.
 pub struct Run<'a> {
     progress: Progress,
     kept: Keeping<'a>,
+    interrupted: &'a AtomicBool,
+    observer: &'a mut dyn FnMut(&Progress),
+    watchers: &'a mut [&'a mut dyn Watcher],
     saving: Option<Saving<'a>>,
     /// Number of passes in the last saved state.
     saved: Option<u32>,
@@ -33,17 +28,16 @@ pub struct Run<'a> {
 }
 
 impl<'a> Run<'a> {
-    /// Creates a render at `progress` for an engine in `state`.
-    pub fn new(
-        progress: Progress,
-        state: &'a State,
-        saving: Option<Saving<'a>>,
-        keep: Keep,
-    ) -> Self {
+    /// Starts a session with an engine in its state.
+    pub fn new(session: Session<'a>, keep: Keep) -> Self {
+        let Session { state, progress, interrupted, observer, watchers, saving } = session;
         let kept = Keeping::new(state, progress, keep);
         Self {
             progress,
             kept,
+            interrupted,
+            observer,
+            watchers,
             saving,
             saved: None,
             before: progress.elapsed,
@@ -53,34 +47,31 @@ impl<'a> Run<'a> {
 
     /// Runs the render to completion. `failed` is an error that the engine has already reported.
     /// After a failure, the engine continues on another device from the most recent copy.
-    pub fn carry_out(
+    pub fn execute(
         mut self,
-        engine: &mut dyn Engine,
-        mut watch: Watch,
+        engines: &mut dyn Engines,
         mut failed: Option<EngineError>,
     ) -> Result<Outcome, Broken> {
         let _stage = stage("passes");
         loop {
             let error = match failed.take() {
                 Some(error) => error,
-                None => match self.passes(engine, &mut watch) {
+                None => match engines.current().and_then(|engine| self.passes(engine)) {
                     Ok(outcome) => return Ok(outcome),
                     Err(error) => error,
                 },
             };
-            self.rescue(engine);
-            match engine.go_on(&self.kept.state, error) {
+            if let Ok(engine) = engines.current() {
+                self.rescue(engine);
+            }
+            match engines.replace(&self.kept.state, error) {
                 Ok(()) => self.progress = self.kept.progress,
                 Err(error) => return Err(self.broken(error)),
             }
         }
     }
 
-    fn passes(
-        &mut self,
-        engine: &mut dyn Engine,
-        watch: &mut Watch,
-    ) -> Result<Outcome, EngineError> {
+    fn passes(&mut self, engine: &mut dyn Engine) -> Result<Outcome, EngineError> {
         let stop = self.progress.stop;
         let mut estimates = Estimates::after(self.progress.passes);
         let mut next_save = self.next_save(self.progress.elapsed);
@@ -93,8 +84,8 @@ impl<'a> Run<'a> {
                 self.progress.error = Some(engine.errors()?.relative());
                 estimates.made(&self.progress, begun.elapsed());
             }
-            (watch.observer)(&self.progress);
-            if watch.interrupted.load(Ordering::Relaxed) {
+            (self.observer)(&self.progress);
+            if self.interrupted.load(Ordering::Relaxed) {
                 break Ending::Interrupted;
             }
             if self.progress.reached() {
@@ -122,9 +113,14 @@ impl<'a> Run<'a> {
     }
 
     fn pass(&mut self, engine: &mut dyn Engine) -> Result<(), EngineError> {
+        let begun = Instant::now();
         let report = engine.pass()?;
+        let time = begun.elapsed();
         let elapsed = self.elapsed();
         self.progress.add(&report, elapsed);
+        for watcher in self.watchers.iter_mut() {
+            watcher.after_pass(self.progress.passes, time, engine)?;
+        }
         Ok(())
     }
 

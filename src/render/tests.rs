@@ -73,6 +73,14 @@ impl Engine for Counter {
         Ok(Picture::from_fn(2, 1, |_, _| [self.passes as f32; 3]))
     }
 
+    fn layers(&mut self) -> Result<Vec<Channel>, EngineError> {
+        Ok(Vec::new())
+    }
+
+    fn can_be_lost(&self) -> bool {
+        true
+    }
+
     fn save(&mut self) -> Result<State, EngineError> {
         self.states_taken += 1;
         if self.lost {
@@ -93,8 +101,35 @@ fn passes(passes: u32) -> Stop {
 
 fn run(engine: &mut Counter, stop: Stop, keep: Keep) -> Result<Outcome, Broken> {
     let (state, interrupted) = (State::default(), AtomicBool::new(false));
-    let watch = Watch { interrupted: &interrupted, observer: &mut |_| () };
-    Run::new(Progress::before(stop), &state, None, keep).carry_out(engine, watch, None)
+    let session = Session {
+        state: &state,
+        progress: Progress::before(stop),
+        interrupted: &interrupted,
+        observer: &mut |_| (),
+        watchers: &mut [],
+        saving: None,
+    };
+    Run::new(session, keep).execute(&mut Single(engine), None)
+}
+
+/// Resumes a render at `progress`, and saves it if `save` is given.
+fn resumed(
+    engine: &mut Counter,
+    progress: Progress,
+    every: Duration,
+    save: Option<&mut dyn FnMut(State, &Progress) -> State>,
+) -> Result<Outcome, Broken> {
+    let state = State { passes: progress.passes, ..State::default() };
+    let interrupted = AtomicBool::new(false);
+    let session = Session {
+        state: &state,
+        progress,
+        interrupted: &interrupted,
+        observer: &mut |_| (),
+        watchers: &mut [],
+        saving: save.map(|save| Saving { every, save }),
+    };
+    resume(&mut Single(engine), session)
 }
 
 /// Error and recovered pass count of a failed render.
@@ -216,10 +251,7 @@ fn saved_between_passes_and_at_the_end() {
         };
         let mut engine = counter(fails_in, true);
         let progress = Progress { passes: from, ..Progress::before(passes(4)) };
-        let state = State { passes: from, ..State::default() };
-        let saving = Saving { every, save: &mut save };
-        let flag = AtomicBool::new(false);
-        let outcome = resume(&mut engine, &state, progress, &flag, &mut |_| (), Some(saving));
+        let outcome = resumed(&mut engine, progress, every, Some(&mut save));
         let made = outcome
             .map_or_else(|broken| broken.kept.unwrap().progress.passes, |o| o.progress.passes);
         (saved, made, engine.passes)
@@ -239,10 +271,8 @@ fn a_failure_saves_what_is_kept() {
         saved.push(state.passes);
         state
     };
-    let saving = Saving { every: Duration::MAX, save: &mut save };
-    let (state, flag) = (State::default(), AtomicBool::new(false));
     let progress = Progress::before(passes(4));
-    let outcome = resume(&mut counter(4, true), &state, progress, &flag, &mut |_| (), Some(saving));
+    let outcome = resumed(&mut counter(4, true), progress, Duration::MAX, Some(&mut save));
     assert_eq!(left(outcome).1, Some(3));
     assert_eq!(saved, [3]);
 }
@@ -254,12 +284,10 @@ fn a_resumed_render_counts_on() {
     let stop = Stop { passes: u32::MAX, time: Some(hour), target_error: None };
     let begun = Progress { passes: 3, photons: 30, elapsed: hour, ..Progress::before(stop) };
     let mut engine = counter(NEVER, true);
-    let state = State { passes: 3, ..State::default() };
-    let flag = AtomicBool::new(false);
-    let outcome = resume(&mut engine, &state, begun, &flag, &mut |_| (), None).unwrap();
+    let outcome = resumed(&mut engine, begun, Duration::MAX, None).unwrap();
     assert!(matches!(outcome.ending, Ending::Time) && outcome.progress.passes == 3);
     let longer = Progress { stop: passes(5), ..begun };
-    let outcome = resume(&mut engine, &state, longer, &flag, &mut |_| (), None).unwrap();
+    let outcome = resumed(&mut engine, longer, Duration::MAX, None).unwrap();
     assert_eq!((outcome.progress.passes, outcome.progress.photons), (5, 50));
     assert!(outcome.progress.elapsed >= hour);
 }

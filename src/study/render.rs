@@ -73,44 +73,15 @@ pub fn progressive(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::engine::PassReport;
-    use crate::film::{ErrorMap, Rejections};
-
-    struct Counter {
-        passes: u32,
-        slow_picture: bool,
-    }
-
-    impl Engine for Counter {
-        fn device(&self) -> &str {
-            "counter"
-        }
-
-        fn pass(&mut self) -> Result<PassReport, EngineError> {
-            self.passes += 1;
-            std::thread::sleep(Duration::from_millis(2));
-            Ok(PassReport { photons: 5, rays: 3, ..PassReport::default() })
-        }
-
-        fn errors(&mut self) -> Result<ErrorMap, EngineError> {
-            Ok(ErrorMap { width: 1, ..ErrorMap::default() })
-        }
-
-        fn rejections(&mut self) -> Result<Rejections, EngineError> {
-            Ok(Rejections::default())
-        }
-
-        fn picture(&mut self) -> Result<Picture, EngineError> {
-            if self.slow_picture {
-                std::thread::sleep(Duration::from_millis(100));
-            }
-            Ok(Picture::from_fn(1, 1, |_, _| [self.passes as f32; 3]))
-        }
-    }
+    use crate::engine::scripted::Scripted;
 
     fn run(until: Until, interrupted: bool) -> (bool, Vec<Snapshot>) {
         let mut taken = Vec::new();
-        let mut engine = Counter { passes: 0, slow_picture: true };
+        let mut engine = Scripted::new(|passes| {
+            std::thread::sleep(Duration::from_millis(100));
+            Picture::from_fn(1, 1, |_, _| [passes as f32; 3])
+        });
+        engine.work = || std::thread::sleep(Duration::from_millis(2));
         let flag = AtomicBool::new(interrupted);
         let whole =
             progressive(&mut engine, until, &flag, &mut |snapshot| taken.push(snapshot)).unwrap();
