@@ -1,8 +1,8 @@
-//! Scenes: a description that no file format shapes, and the importers that make one from files.
+//! Scenes: a description that does not depend on a file format, and importers that make it.
 //!
-//! A [`Scene`] holds materials, textures, shapes, lights, camera and film in f64 and in the units of
-//! the file, with every name resolved to an index and every number checked. It does not depend on
-//! a device. A program can build one without a file.
+//! A [`Scene`] holds materials, textures, shapes, lights, camera and film in f64 and in the units
+//! of the file, with every name resolved to an index and every number checked. It does not depend
+//! on a device. A program can build one without a file.
 //!
 //! [`load`] chooses an importer by the file's name and content. The importer adds each part of the
 //! file to a `SceneBuilder` together with its position in the source; the builder applies the

@@ -16,7 +16,7 @@ pub struct Spans {
     spans: HashMap<String, Range<usize>>,
     /// Path of each shape of the scene; several shapes may come from one mesh.
     pub shapes: Vec<String>,
-    /// Path of each material of the scene, up to those from MTL files, which come last and have
+    /// Path of each material of the scene, up to those from mesh files, which come last and have
     /// none.
     pub materials: Vec<String>,
 }

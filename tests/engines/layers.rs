@@ -186,10 +186,8 @@ fn ties(sources: &[(String, String)], importers: &BTreeSet<String>) -> Vec<Strin
 /// Importers do not import one another, and what they share imports none of them.
 #[test]
 fn importers_stand_alone() {
-    let src = root().join("src");
-    let mut list = Vec::new();
-    files(&src.join("scene"), &mut list);
-    let mut sources: Vec<(String, String)> = list
+    let src = repository("src");
+    let mut sources: Vec<(String, String)> = files(&src.join("scene"), "rs")
         .iter()
         .map(|path| {
             let name = path.strip_prefix(&src).unwrap().to_str().unwrap().replace('\\', "/");

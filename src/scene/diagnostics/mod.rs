@@ -1,9 +1,9 @@
-//! Errors and warnings with their positions in the source. Knows no scene format: importers, checks
-//! and image readers report through it.
+//! Errors and warnings with their positions in the source. This module knows no scene format;
+//! importers, checks and image readers report through it.
 //!
-//! A [`Report`] collects the findings of one load. A reader of a file that a scene names, such as a
-//! mesh, collects [`Faults`] instead, and hands them to the report, which adds where the scene names
-//! the file.
+//! A [`Report`] collects the findings of one load. A reader of a file that a scene names, such as
+//! a mesh, collects [`Faults`] and passes them to the report, which adds where the scene names the
+//! file.
 
 mod faults;
 mod finding;

@@ -56,8 +56,9 @@ const UNREAD: [&str; 28] = [
 ];
 
 /// Converts an MTL material to a scene material called `name`, and returns its emission, from `Ke`
-/// if `emits` is true. Adds the texture of `map_Kd` to the scene. The material is glass if `illum` is 4, 6, 7 or 9, or if `d` is below 1 and `Ni` is given and not 1;
-/// a mirror of `Ks` if `illum` is 3 or 5; else diffuse with `map_Kd` or, without one, `Kd`.
+/// if `emits` is true. Adds the texture of `map_Kd` to the scene. The material is glass if `illum`
+/// is 4, 6, 7 or 9, or if `d` is below 1 and `Ni` is given and not 1; a mirror of `Ks` if `illum`
+/// is 3 or 5; else diffuse with `map_Kd` or, without one, `Kd`.
 pub(super) fn material(
     library: &mut Library,
     entry: usize,

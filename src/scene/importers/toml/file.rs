@@ -1,8 +1,8 @@
 //! The scene file format as types.
 //!
 //! The parser, the checks and the JSON Schema for editors all derive from these types: field names
-//! are the keys, and doc comments are the descriptions. The validated [`Scene`](crate::scene::Scene)
-//! documents the meaning of each key in full.
+//! are the keys, and doc comments are the descriptions. The validated
+//! [`Scene`](crate::scene::Scene) documents the meaning of each key in full.
 
 use std::collections::BTreeMap;
 
