@@ -98,3 +98,126 @@ fn dependencies_follow_the_layers() {
         sources.pop();
     }
 }
+
+/// Paths that the code of a module names from `crate`, `self` or `super`, from the root, with
+/// braces expanded.
+fn paths(text: &str, module: &[&str]) -> Vec<Vec<String>> {
+    let code = text.split("#[cfg(test)]\nmod ").next().unwrap_or_default();
+    let code: String = code
+        .lines()
+        .map(|line| line.split("//").next().unwrap_or_default().to_owned() + "\n")
+        .collect();
+    let is_name = |c: char| c.is_alphanumeric() || c == '_';
+    let mut found = Vec::new();
+    for start in ["crate::", "self::", "super::"] {
+        for (at, _) in code.match_indices(start) {
+            if !code[..at].ends_with(|c| is_name(c) || c == ':') {
+                let module = module.iter().map(|&name| name.to_owned()).collect();
+                expand(module, &code[at..], &mut found);
+            }
+        }
+    }
+    found
+}
+
+/// Adds the paths that `rest` names, a path relative to `prefix`.
+fn expand(mut prefix: Vec<String>, rest: &str, found: &mut Vec<Vec<String>>) {
+    let rest = rest.trim_start();
+    if let Some(list) = rest.strip_prefix('{') {
+        let (mut depth, mut from) = (0, 0);
+        for (at, c) in list.char_indices() {
+            match c {
+                ',' | '}' if depth == 0 => {
+                    expand(prefix.clone(), &list[from..at], found);
+                    from = at + 1;
+                }
+                '{' => depth += 1,
+                '}' => depth -= 1,
+                _ => {}
+            }
+            if c == '}' && depth == 0 && from == at + 1 {
+                return;
+            }
+        }
+        return;
+    }
+    let name: String = rest.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
+    match name.as_str() {
+        "crate" => prefix.clear(),
+        "super" => drop(prefix.pop()),
+        "" | "self" | "low_level" => {}
+        _ => prefix.push(name.clone()),
+    }
+    match rest[name.len()..].strip_prefix("::") {
+        Some(rest) if !name.is_empty() => expand(prefix, rest, found),
+        _ => found.push(prefix),
+    }
+}
+
+/// The imports in `src/scene` that tie it to a file format, as "file names path": those of another
+/// importer in an importer, and those of any importer in what all of them share.
+fn ties(sources: &[(String, String)], importers: &BTreeSet<String>) -> Vec<String> {
+    let mut list = Vec::new();
+    for (file, text) in sources {
+        let mut module: Vec<&str> = file.trim_end_matches(".rs").split('/').collect();
+        let own = match module[1..] {
+            ["importers", own, _, ..] => Some(own),
+            ["builder" | "checks" | "diagnostics" | "images", ..] => None,
+            _ => continue,
+        };
+        if module.last() == Some(&"mod") {
+            module.pop();
+        }
+        for path in paths(text, &module) {
+            let names: Vec<&str> = path.iter().map(String::as_str).collect();
+            let is_tie = match names[..] {
+                ["scene", "importers"] => true,
+                ["scene", "importers", name, ..] => {
+                    own.is_none_or(|own| own != name && importers.contains(name))
+                }
+                _ => false,
+            };
+            if is_tie {
+                list.push(format!("{file} names {}", names.join("::")));
+            }
+        }
+    }
+    list
+}
+
+/// Importers do not import one another, and what they share imports none of them.
+#[test]
+fn importers_stand_alone() {
+    let src = repository("src");
+    let mut sources: Vec<(String, String)> = files(&src.join("scene"), "rs")
+        .iter()
+        .map(|path| {
+            let name = path.strip_prefix(&src).unwrap().to_str().unwrap().replace('\\', "/");
+            (name, fs::read_to_string(path).unwrap())
+        })
+        .collect();
+    let importers: BTreeSet<String> = sources
+        .iter()
+        .filter_map(|(file, _)| file.strip_prefix("scene/importers/")?.split_once('/'))
+        .map(|(name, _)| name.to_owned())
+        .collect();
+    assert!(importers.len() > 1, "{importers:?}");
+    let found = ties(&sources, &importers);
+    assert!(found.is_empty(), "{}", found.join("\n"));
+    // planted imports are found
+    for (file, text) in [
+        ("scene/importers/toml/mod.rs", "use super::obj::Obj;"),
+        ("scene/importers/toml/shape.rs", "use crate::scene::{importers::{obj, Importer}, Mesh};"),
+        ("scene/importers/obj/mtl.rs", "let item = super::super::toml::document::Item;"),
+        ("scene/checks/shape.rs", "use crate::low_level::scene::importers::toml;"),
+        ("scene/diagnostics/mod.rs", "use super::importers::Importer;"),
+    ] {
+        sources.push((file.to_owned(), text.to_owned()));
+        assert_eq!(ties(&sources, &importers).len(), 1, "{file}");
+        sources.pop();
+    }
+    // an importer may name its own folder and the traits
+    let text = "use super::Importer; use crate::scene::importers::{Importer, toml::file};";
+    let own = [("scene/importers/toml/mod.rs".to_owned(), text.to_owned())];
+    assert_eq!(ties(&own, &importers), [""; 0]);
+}

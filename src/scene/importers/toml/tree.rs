@@ -30,11 +30,6 @@ impl<'a> Node<'a> {
         self.0.get_ref().get(key).map(Node)
     }
 
-    /// The value at an index of an array.
-    pub fn at(&self, index: usize) -> Option<Node<'a>> {
-        self.0.get_ref().get(index).map(Node)
-    }
-
     pub fn table(&self) -> Option<&'a DeTable<'a>> {
         self.0.get_ref().as_table()
     }

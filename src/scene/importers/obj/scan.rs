@@ -6,8 +6,8 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 use std::ops::Range;
 
 use super::lines::{Statement, Word, finite, statements};
-use super::numbers::LARGEST;
-use super::report::Faults;
+use crate::scene::diagnostics::Faults;
+use crate::scene::numbers::LARGEST;
 
 /// Result of the scan of an OBJ file.
 #[derive(Debug)]

@@ -4,76 +4,13 @@
 use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;
 
-use serde::de::DeserializeOwned;
 use serde_json::{Map, Value as Json};
 
-use super::numbers::{LARGEST, SMALLEST, rounded_into};
-use super::report::{Report, list};
+use super::document::{Document, Item, THE_FILE, join, place};
 use super::schema::{alternatives, describe, has_type, in_range, listed_strings, tag};
 use super::tree::Node;
-
-/// A part of the file that is checked and read separately.
-#[derive(Debug)]
-pub(crate) struct Item<'a> {
-    /// Path as in messages: `shapes[3]`, `materials.glass`; empty for the whole file.
-    pub path: String,
-    /// Last key of the path of a named part.
-    pub name: &'a str,
-    pub node: Node<'a>,
-    /// The part as JSON without unknown keys; `None` if it does not match its type.
-    json: Option<Json>,
-}
-
-impl Item<'_> {
-    /// Name of the part in messages.
-    pub fn place(&self) -> &str {
-        place(&self.path)
-    }
-
-    /// Name of a key of the part in messages.
-    pub fn key(&self, key: &str) -> String {
-        join(&self.path, key)
-    }
-
-    /// Deserializes the part; `None` if its check found an error that prevents this.
-    pub fn read<T: DeserializeOwned>(&self, report: &mut Report) -> Option<T> {
-        let json = self.json.clone()?;
-        match serde_json::from_value(json) {
-            Ok(value) => Some(value),
-            Err(error) => {
-                let message = format!("{} cannot be read: {error}", self.place());
-                report.error(self.node.span(), message, "in here", None);
-                None
-            }
-        }
-    }
-}
-
-/// The parts of a file after the check.
-#[derive(Debug)]
-pub(crate) struct Document<'a> {
-    sections: BTreeMap<&'a str, Vec<Item<'a>>>,
-    /// Index of each named part in its section.
-    names: HashMap<(&'a str, &'a str), usize>,
-}
-
-impl<'a> Document<'a> {
-    /// Parts under a top-level key: the elements of an array, the entries of a table of named
-    /// parts, or the single value.
-    pub fn items(&self, section: &str) -> impl Iterator<Item = &Item<'a>> {
-        self.sections.get(section).into_iter().flatten()
-    }
-
-    /// Index of a named part in its section.
-    pub fn index(&self, section: &str, name: &str) -> Option<usize> {
-        self.names.get(&(section, name)).copied()
-    }
-
-    /// The single value under a top-level key.
-    pub fn item(&self, section: &str) -> Option<&Item<'a>> {
-        self.items(section).next()
-    }
-}
+use crate::scene::diagnostics::{Report, list};
+use crate::scene::numbers::{LARGEST, SMALLEST, rounded_into};
 
 /// Checks a file that consists of a single part.
 pub(crate) fn whole<'a>(root: &Json, file: Node<'a>, report: &mut Report) -> Item<'a> {
@@ -114,16 +51,6 @@ pub(crate) fn document<'a>(root: &Json, file: Node<'a>, report: &mut Report) -> 
         }
     }
     Document { sections, names }
-}
-
-const THE_FILE: &str = "the file";
-
-fn place(path: &str) -> &str {
-    if path.is_empty() { THE_FILE } else { path }
-}
-
-fn join(path: &str, key: &str) -> String {
-    if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") }
 }
 
 struct Checker<'c> {

@@ -5,9 +5,9 @@ use std::borrow::Cow;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use super::encoding::{Foreign, unmarked};
-use super::limits::Allowance;
-use super::report::SourceFile;
+use crate::scene::diagnostics::SourceFile;
+use crate::scene::encoding::{Foreign, unmarked};
+use crate::scene::limits::Allowance;
 
 /// A word and its byte range in the file.
 pub(super) type Word<'t> = (&'t str, Range<usize>);

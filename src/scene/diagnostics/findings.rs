@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
-use super::report::{Finding, Report};
+use super::finding::Finding;
 
 /// Findings in the order of discovery.
 #[derive(Debug)]
@@ -64,7 +64,7 @@ impl Findings {
 
     /// The listed findings, and one that states the number of the others.
     pub fn told(self) -> Vec<Finding> {
-        let unlisted = (self.more > 0).then(|| Report::unlisted(self.more));
+        let unlisted = (self.more > 0).then(|| Finding::unlisted(self.more));
         self.listed.into_iter().chain(unlisted).collect()
     }
 }

@@ -2,14 +2,16 @@
 //! kind uses; the rest causes warnings at most.
 
 use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use super::appearance::{Material, MaterialKind, Reflectance, Rgb, Texture, TextureKind};
-use super::images::{ImageFault, ImageStore};
-use super::limits::{Allowance, Missing};
+use super::library::Library;
 use super::lines::{Statement, Text, Word, finite, readings, statements};
-use super::numbers::{BRIGHTEST, LARGEST, Rounded, rounded_into};
-use super::report::{Faults, nearest};
+use crate::scene::builder::SceneBuilder;
+use crate::scene::diagnostics::{Faults, nearest};
+use crate::scene::images::ImageFault;
+use crate::scene::limits::Missing;
+use crate::scene::numbers::{BRIGHTEST, LARGEST, Rounded, rounded_into};
+use crate::scene::{Material, MaterialKind, Reflectance, Rgb, Texture, TextureKind};
 
 /// Index of refraction of a transparent MTL material without `Ni`.
 const DEFAULT_IOR: f64 = 1.5;
@@ -53,102 +55,16 @@ const UNREAD: [&str; 28] = [
     "sharpness",
 ];
 
-/// An MTL file.
-#[derive(Debug)]
-pub(super) struct Library {
-    pub path: PathBuf,
-    pub text: Text,
-    pub entries: Vec<Entry>,
-    pub faults: Faults,
-    pub warnings: Faults,
-    rounded: Rounded,
-}
-
-/// Byte ranges of a material in its file.
-#[derive(Clone, Debug)]
-pub(super) struct Entry {
-    pub name: Range<usize>,
-    body: Range<usize>,
-}
-
-impl Library {
-    /// Finds the materials of a file.
-    pub fn new(path: PathBuf, text: Text) -> Self {
-        let (mut entries, mut warnings) = (Vec::<Entry>::new(), Faults::warnings());
-        let lines = text.lines();
-        let mut stray = None;
-        for statement in statements(lines, 0..lines.len()) {
-            let (name, span) = statement.name();
-            let begin = statement.at.start;
-            if statement.keyword != "newmtl" {
-                if entries.is_empty() {
-                    stray = stray.or(Some(statement.at));
-                }
-                continue;
-            }
-            if let Some(last) = entries.last_mut() {
-                last.body.end = lines[..begin].rfind('\n').map_or(0, |end| end + 1);
-            }
-            if name.is_empty() {
-                warnings.push(statement.at, "`newmtl` has no name", "expected a name");
-            }
-            entries.push(Entry { name: span, body: line_end(lines, begin)..lines.len() });
-        }
-        if let Some(at) = stray {
-            warnings.push(
-                at,
-                "a statement before any `newmtl` is not used",
-                "expected `newmtl` above",
-            );
-        }
-        Self {
-            path,
-            text,
-            entries,
-            faults: Faults::default(),
-            warnings,
-            rounded: Rounded::default(),
-        }
-    }
-
-    /// Name of a material.
-    pub fn name(&self, entry: usize) -> &str {
-        &self.text.lines()[self.entries[entry].name.clone()]
-    }
-
-    /// Takes the errors and warnings, and leaves none.
-    pub fn take_findings(&mut self) -> (Faults, Faults) {
-        if let Some((at, message)) = std::mem::take(&mut self.rounded).take() {
-            self.warnings.push(at, message, "read as the limit");
-        }
-        (
-            std::mem::take(&mut self.faults),
-            std::mem::replace(&mut self.warnings, Faults::warnings()),
-        )
-    }
-}
-
-fn line_end(text: &str, at: usize) -> usize {
-    text[at..].find('\n').map_or(text.len(), |length| at + length + 1)
-}
-
-/// Destination of materials from MTL files.
-pub(super) struct Target<'r> {
-    pub allowance: &'r Allowance,
-    pub images: &'r mut ImageStore,
-    pub textures: &'r mut Vec<Texture>,
-    /// True if the materials' `Ke` counts.
-    pub emits: bool,
-}
-
-/// Converts an MTL material to a scene material called `name`, and returns its emission. The
-/// material is glass if `illum` is 4, 6, 7 or 9, or if `d` is below 1 and `Ni` is given and not 1;
-/// a mirror of `Ks` if `illum` is 3 or 5; else diffuse with `map_Kd` or, without one, `Kd`.
+/// Converts an MTL material to a scene material called `name`, and returns its emission, from `Ke`
+/// if `emits` is true. Adds the texture of `map_Kd` to the scene. The material is glass if `illum`
+/// is 4, 6, 7 or 9, or if `d` is below 1 and `Ni` is given and not 1; a mirror of `Ks` if `illum`
+/// is 3 or 5; else diffuse with `map_Kd` or, without one, `Kd`.
 pub(super) fn material(
     library: &mut Library,
     entry: usize,
     name: String,
-    target: &mut Target,
+    emits: bool,
+    builder: &mut SceneBuilder,
 ) -> (Material, Rgb) {
     let Library { path, text, entries, faults, warnings, rounded } = library;
     let lines = text.lines();
@@ -166,9 +82,10 @@ pub(super) fn material(
     }
     let mut reader =
         Reader { name: &name, given: &given, used: Vec::new(), faults, warnings, rounded };
-    let (kind, emission) = reader.kind(path, text, target);
+    let emission = if emits { reader.color("Ke", BRIGHTEST) } else { None };
+    let kind = reader.kind(path, text, builder);
     reader.unused(matches!(kind, MaterialKind::Glass { .. }));
-    (Material { name, kind }, emission)
+    (Material { name, kind }, emission.unwrap_or([0.0; 3]))
 }
 
 /// Most statements of a material that are examined.
@@ -185,14 +102,13 @@ struct Reader<'l, 't> {
 }
 
 impl<'t> Reader<'_, 't> {
-    fn kind(&mut self, path: &Path, text: &Text, target: &mut Target) -> (MaterialKind, Rgb) {
-        let emission = if target.emits { self.color("Ke", BRIGHTEST) } else { None };
+    fn kind(&mut self, path: &Path, text: &Text, builder: &mut SceneBuilder) -> MaterialKind {
         let illum = self.illum();
         let is_glass = matches!(illum, Some(4 | 6 | 7 | 9));
         let is_clear = !is_glass && self.number("d", 1.0).is_some_and(|d| d < 1.0);
         let ior = (is_glass || is_clear).then(|| self.number("Ni", LARGEST)).flatten();
         let ior = ior.filter(|&ior| ior > 0.0);
-        let kind = if is_glass || (is_clear && ior.is_some_and(|ior| ior != 1.0)) {
+        if is_glass || (is_clear && ior.is_some_and(|ior| ior != 1.0)) {
             MaterialKind::Glass {
                 ior: ior.unwrap_or(DEFAULT_IOR),
                 absorption: [0.0; 3],
@@ -207,13 +123,12 @@ impl<'t> Reader<'_, 't> {
                 MaterialKind::Mirror { reflectance: Reflectance::Color(color.unwrap_or([1.0; 3])) }
             } else {
                 let reflectance = match self.find("map_Kd") {
-                    Some(map) => self.map(&map, path, text, target),
+                    Some(map) => self.map(&map, path, text, builder),
                     None => Reflectance::Color(self.color("Kd", 1.0).unwrap_or(DEFAULT_DIFFUSE)),
                 };
                 MaterialKind::Diffuse { reflectance, roughness: 0.0 }
             }
-        };
-        (kind, emission.unwrap_or([0.0; 3]))
+        }
     }
 
     fn find(&self, key: &str) -> Option<Statement<'t>> {
@@ -301,7 +216,7 @@ impl<'t> Reader<'_, 't> {
         map: &Statement,
         path: &Path,
         text: &Text,
-        target: &mut Target,
+        builder: &mut SceneBuilder,
     ) -> Reflectance {
         let grey = Reflectance::Color([Missing::STAND_IN; 3]);
         self.used.push("map_Kd");
@@ -315,33 +230,33 @@ impl<'t> Reader<'_, 't> {
             return grey;
         }
         let folder = path.parent().unwrap_or("".as_ref());
-        let mut files = readings(name).map(|name| text.find(target.allowance, folder, name));
+        let mut files = readings(name).map(|name| text.find(builder.allowance, folder, name));
         let first = files.next().unwrap_or_default();
         let all = || std::iter::once(first.clone()).chain(files);
-        let file = all().find(|file| target.allowance.has(file)).unwrap_or(first.clone());
-        let image = target.images.load(&file, None).and_then(|image| {
-            target.images.bound_by_one(&file, image)?;
+        let file = all().find(|file| builder.allowance.has(file)).unwrap_or(first.clone());
+        let image = builder.images.load(&file, None).and_then(|image| {
+            builder.images.bound_by_one(&file, image)?;
             Ok(image)
         });
         match image {
             Ok(image) => {
-                if target.images.is_transparent(image) {
+                if builder.images.is_transparent(image) {
                     let message = format!(
                         "the alpha channel of map_Kd of material {} is not used",
                         self.name
                     );
                     self.warnings.push(at.clone(), message, "every texel counts as opaque");
                 }
-                for (message, label) in target.images.take_notes(image) {
+                for (message, label) in builder.images.take_notes(image) {
                     self.warnings.push(at.clone(), message, label);
                 }
                 let (filter, wrap) = Default::default();
                 let kind = TextureKind::Image { image, filter, wrap, scale: [1.0; 2] };
-                target.textures.push(Texture { name: self.name.to_owned(), kind });
-                Reflectance::Texture(target.textures.len() - 1)
+                let texture = Texture { name: self.name.to_owned(), kind };
+                Reflectance::Texture(builder.add_own_texture(texture))
             }
             Err(ImageFault { missing: true, message, .. })
-                if target.allowance.missing == Missing::Warn =>
+                if builder.allowance.missing == Missing::Warn =>
             {
                 self.warnings.push(at, message, "rendered in gray");
                 grey

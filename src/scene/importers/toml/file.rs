@@ -1,19 +1,18 @@
 //! The scene file format as types.
 //!
 //! The parser, the checks and the JSON Schema for editors all derive from these types: field names
-//! are the keys, and doc comments are the descriptions. The validated [`Scene`](super::Scene)
-//! documents the meaning of each key in full.
+//! are the keys, and doc comments are the descriptions. The validated
+//! [`Scene`](crate::scene::Scene) documents the meaning of each key in full.
 
 use std::collections::BTreeMap;
 
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::appearance::{Filter, Wrap};
 use super::numbers::{NonNegative, Paint, Positive, Share, Spectrum, Strength};
 use super::schema::close_variants;
-use super::{Aov, ToneMap};
 use crate::scene::settings::RenderSettings;
+use crate::scene::{Aov, ColorSpace, Filter, ToneMap, Wrap};
 
 /// Three coordinates: x, y, z.
 pub type Vec3 = [f64; 3];
@@ -99,16 +98,6 @@ impl Default for FilmFile {
             aov: Vec::new(),
         }
     }
-}
-
-/// Encoding of the values in an image file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum ColorSpace {
-    /// sRGB-encoded; the default for png and jpg.
-    Srgb,
-    /// Proportional to light; the default for hdr and exr.
-    Linear,
 }
 
 /// A color as a function of a surface's (u, v).

@@ -4,21 +4,18 @@ use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use super::appearance::{Material, MaterialKind, Reflectance, Rgb, Texture};
-use super::limits::{Missing, Refusal};
+use super::library::Library;
 use super::lines::{Text, Word, before_comment, parts, readings};
-use super::load::Loader;
-use super::mtl::{self, Library, Target};
-use super::obj::Scan;
-use super::report::did_you_mean;
-use super::text::nearest_file;
+use super::mtl;
+use super::scan::Scan;
+use crate::scene::builder::SceneBuilder;
+use crate::scene::diagnostics::{did_you_mean, nearest_file};
+use crate::scene::limits::{Missing, Refusal};
+use crate::scene::meshes::OwnMaterial;
+use crate::scene::{Material, MaterialKind, Reflectance};
 
 /// Identifies a material by the index of its file and its index in that file.
 type Id = (usize, usize);
-
-/// Key of a material from an MTL file: the mesh's file as the scene names it, the MTL file, the
-/// index in it, and whether its emission counts.
-pub(crate) type OwnKey = (String, PathBuf, usize, bool);
 
 /// MTL files of an OBJ file, in order.
 #[derive(Debug, Default)]
@@ -34,14 +31,6 @@ pub(super) struct Libraries {
     incomplete: bool,
 }
 
-/// A material that an OBJ file refers to.
-#[derive(Clone, Debug)]
-pub(crate) struct Own {
-    /// Index into the scene's materials.
-    pub material: usize,
-    pub emission: Rgb,
-}
-
 /// Most MTL files of one OBJ file.
 const MOST_FILES: usize = 1000;
 /// Most words that are tried as one file name with blanks.
@@ -49,7 +38,7 @@ const LONGEST_NAME: usize = 16;
 
 impl Libraries {
     /// Reads the MTL files that the OBJ file at `path` names.
-    pub fn read(loader: &mut Loader, path: &Path, text: &Text, scan: &mut Scan) -> Self {
+    pub fn read(builder: &mut SceneBuilder, path: &Path, text: &Text, scan: &mut Scan) -> Self {
         let mut libraries = Self::default();
         let folder = path.parent().unwrap_or(Path::new(""));
         let mut known = HashSet::new();
@@ -58,27 +47,33 @@ impl Libraries {
                 scan.faults.push(at, "`mtllib` names no file", "expected an MTL file");
                 continue;
             }
-            for (at, file) in files_of((name, at), text, loader, folder) {
+            for (at, file) in files_of((name, at), text, builder, folder) {
                 if known.len() == MOST_FILES {
                     let message = format!("more than {MOST_FILES} material files");
                     scan.faults.push(at, message, "expected fewer");
                     return libraries;
                 }
                 if known.insert(file.clone()) {
-                    libraries.add(loader, scan, at, file);
+                    libraries.add(builder, scan, at, file);
                 }
             }
         }
         libraries
     }
 
-    fn add(&mut self, loader: &mut Loader, scan: &mut Scan, at: Range<usize>, file: PathBuf) {
-        loader.report.files.push(file.clone());
-        let bytes = match loader.mesh_bytes(&file) {
+    fn add(
+        &mut self,
+        builder: &mut SceneBuilder,
+        scan: &mut Scan,
+        at: Range<usize>,
+        file: PathBuf,
+    ) {
+        builder.report.files.push(file.clone());
+        let bytes = match builder.mesh_bytes(&file) {
             Ok(bytes) => bytes,
             Err(error) => {
                 self.incomplete = true;
-                return unread(loader, scan, &file, at, &error);
+                return unread(builder, scan, &file, at, &error);
             }
         };
         let text = match Text::decode(&file, &bytes) {
@@ -134,22 +129,21 @@ impl Libraries {
     /// that is unused or undefined. Reports undefined names.
     pub fn materials(
         &mut self,
-        loader: &mut Loader,
+        builder: &mut SceneBuilder,
         (file, text): (&str, &Text),
         scan: &mut Scan,
         emits: bool,
-        (textures, materials): (&mut Vec<Texture>, &mut Vec<Material>),
-    ) -> Vec<Option<Own>> {
+    ) -> Vec<Option<OwnMaterial>> {
         let mut made = Vec::new();
         let uses = std::mem::take(&mut scan.uses);
-        let mut known = HashMap::<Id, Own>::new();
+        let mut known = HashMap::<Id, OwnMaterial>::new();
         for (name, at, used) in uses {
             if !used || name.is_empty() {
                 made.push(None);
                 continue;
             }
             let Some((id, called)) = self.find(text, name) else {
-                made.push(self.undefined(loader, (file, text), scan, (name, at), materials));
+                made.push(self.undefined(builder, (file, text), scan, (name, at)));
                 continue;
             };
             if called != name && before_comment(name).is_none() {
@@ -160,14 +154,12 @@ impl Libraries {
             let own = known.get(&id).cloned().unwrap_or_else(|| {
                 let library = &mut self.files[id.0];
                 let key = (file.to_owned(), library.path.clone(), id.1, emits);
-                loader.own_materials.get(&key).cloned().unwrap_or_else(|| {
+                builder.meshes.own_materials.get(&key).cloned().unwrap_or_else(|| {
                     let name = format!("{file}:{}", library.text.shown(library.name(id.1)));
-                    let (allowance, images) = (loader.allowance, &mut loader.images);
-                    let mut target = Target { allowance, images, textures, emits };
-                    let (material, emission) = mtl::material(library, id.1, name, &mut target);
-                    materials.push(material);
-                    let own = Own { material: materials.len() - 1, emission };
-                    loader.own_materials.insert(key, own.clone());
+                    let (material, emission) = mtl::material(library, id.1, name, emits, builder);
+                    let material = builder.add_own_material(material);
+                    let own = OwnMaterial { material, emission };
+                    builder.meshes.own_materials.insert(key, own.clone());
                     own
                 })
             });
@@ -178,30 +170,30 @@ impl Libraries {
     }
 
     /// Reports the findings in the MTL files.
-    pub fn report(&mut self, loader: &mut Loader, named_at: &Range<usize>) {
+    pub fn report(&mut self, builder: &mut SceneBuilder, named_at: &Range<usize>) {
         for library in &mut self.files {
             let (faults, warnings) = library.take_findings();
-            loader.report.asset_errors(named_at.clone(), &library.text.source, faults);
-            loader.report.asset_warnings(named_at.clone(), &library.text.source, warnings);
+            builder.report.asset_errors(named_at.clone(), &library.text.source, faults);
+            builder.report.asset_warnings(named_at.clone(), &library.text.source, warnings);
         }
     }
 
     fn undefined(
         &self,
-        loader: &Loader,
+        builder: &mut SceneBuilder,
         (file, text): (&str, &Text),
         scan: &mut Scan,
         (name, at): Word,
-        materials: &mut Vec<Material>,
-    ) -> Option<Own> {
+    ) -> Option<OwnMaterial> {
         let shown = text.shown(name);
         let message = format!("material `{shown}` is not defined");
-        if loader.allowance.missing == Missing::Warn {
+        if builder.allowance.missing == Missing::Warn {
             scan.warnings.push(at, message, "rendered in gray");
             let reflectance = Reflectance::Color([Missing::STAND_IN; 3]);
             let kind = MaterialKind::Diffuse { reflectance, roughness: 0.0 };
-            materials.push(Material { name: format!("{file}:{shown}"), kind });
-            return Some(Own { material: materials.len() - 1, emission: [0.0; 3] });
+            let material = Material { name: format!("{file}:{shown}"), kind };
+            let material = builder.add_own_material(material);
+            return Some(OwnMaterial { material, emission: [0.0; 3] });
         }
         // An unreadable file has been reported already, and may define the name.
         if !self.incomplete {
@@ -217,13 +209,13 @@ impl Libraries {
 }
 
 /// Reports an MTL file that cannot be read.
-fn unread(loader: &Loader, scan: &mut Scan, file: &Path, at: Range<usize>, error: &Refusal) {
+fn unread(builder: &SceneBuilder, scan: &mut Scan, file: &Path, at: Range<usize>, error: &Refusal) {
     let message = format!("cannot read {}: {error}", file.display());
     if !error.is_missing() {
         let mend = error.help().unwrap_or_else(|| "expected an MTL file".to_owned());
         return scan.faults.push(at, message, mend);
     }
-    if loader.allowance.missing == Missing::Warn {
+    if builder.allowance.missing == Missing::Warn {
         return scan.warnings.push(at, message, "its materials are rendered in gray");
     }
     let near = nearest_file(file).filter(|_| !scan.faults.is_full());
@@ -237,21 +229,21 @@ fn unread(loader: &Loader, scan: &mut Scan, file: &Path, at: Range<usize>, error
 fn files_of(
     (name, at): Word,
     text: &Text,
-    loader: &Loader,
+    builder: &SceneBuilder,
     folder: &Path,
 ) -> Vec<(Range<usize>, PathBuf)> {
     let span = |part: &str| {
         let start = at.start + (part.as_ptr() as usize - name.as_ptr() as usize);
         start..start + part.len()
     };
-    let find = |part: &str| text.find(loader.allowance, folder, part);
+    let find = |part: &str| text.find(builder.allowance, folder, part);
     let mut found = Vec::new();
     let mut rest = name;
     while !rest.is_empty() && (found.is_empty() || !rest.starts_with('#')) {
         let ends =
             parts(rest).map(|word| word.as_ptr() as usize - rest.as_ptr() as usize + word.len());
         let ends: Vec<_> = ends.take(LONGEST_NAME).chain([rest.len()]).collect();
-        let is_there = |&&end: &&usize| loader.allowance.has(&find(&rest[..end]));
+        let is_there = |&&end: &&usize| builder.allowance.has(&find(&rest[..end]));
         let is_named = |&&end: &&usize| rest[..end].to_ascii_lowercase().ends_with(".mtl");
         let there = ends.iter().rev().find(is_there);
         let end = there.or_else(|| ends.iter().find(is_named)).copied().unwrap_or(rest.len());

@@ -4,14 +4,14 @@ use std::collections::HashMap;
 
 use glam::{DVec2, DVec3};
 
-use super::geometry::{Mesh, Transform, Triangle};
+use crate::scene::{Mesh, Transform, Triangle};
 
 /// A triangle is degenerate if twice its area is at most this fraction of its longest edge squared.
 const DEGENERATE: f64 = 1e-12;
 
 /// A corner of a polygon in object space.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Corner {
+pub(crate) struct Corner {
     pub position: DVec3,
     pub normal: Option<DVec3>,
     pub uv: Option<DVec2>,
@@ -20,7 +20,7 @@ pub(super) struct Corner {
 /// Remaining steps of ear clipping. A polygon of n corners usually takes n^2 steps, and n^3 at
 /// worst, which would not end with thousands of corners.
 #[derive(Debug)]
-pub(super) struct Steps(u64);
+pub(crate) struct Steps(u64);
 
 impl Steps {
     /// Number of steps that takes about ten seconds.
@@ -44,36 +44,11 @@ impl Default for Steps {
     }
 }
 
-/// A face of an OBJ file.
+/// A face of a mesh file.
 #[derive(Clone, Debug)]
-pub(super) struct Polygon(pub Vec<Corner>);
+pub(crate) struct Polygon(pub Vec<Corner>);
 
 impl Polygon {
-    /// The faces of a mesh that tobj has read with a single index for all attributes.
-    pub fn of(mesh: &tobj::Mesh) -> Vec<Self> {
-        let vec3 = |values: &[f64], index: usize| {
-            values.get(3 * index..3 * index + 3).map(DVec3::from_slice)
-        };
-        let corner = |&index: &u32| {
-            let index = index as usize;
-            Corner {
-                position: vec3(&mesh.positions, index).unwrap_or_default(),
-                normal: vec3(&mesh.normals, index),
-                uv: mesh.texcoords.get(2 * index..2 * index + 2).map(DVec2::from_slice),
-            }
-        };
-        let mut rest = &mesh.indices[..];
-        let mut polygons = Vec::new();
-        let mut arities = mesh.face_arities.iter();
-        while !rest.is_empty() {
-            let arity = arities.next().map_or(3, |&arity| arity as usize).min(rest.len());
-            let (face, behind) = rest.split_at(arity);
-            polygons.push(Self(face.iter().map(corner).collect()));
-            rest = behind;
-        }
-        polygons
-    }
-
     /// Twice the area times the unit normal (Newell); exact for a planar polygon, and the best
     /// plane for a warped one.
     fn area_vector(&self) -> DVec3 {
@@ -132,7 +107,7 @@ fn key<const N: usize>(values: [f64; N]) -> Key<N> {
 
 /// Sums of face normals at each position, weighted by the corner's angle (Thuermer & Wuethrich
 /// 1998); not normalized.
-pub(super) fn vertex_normals<'p>(
+pub(crate) fn vertex_normals<'p>(
     polygons: impl Iterator<Item = &'p Polygon>,
     steps: &mut Steps,
 ) -> HashMap<Key<3>, DVec3> {
@@ -155,7 +130,7 @@ pub(super) fn vertex_normals<'p>(
 }
 
 /// Builds a world-space mesh from polygons.
-pub(super) struct Builder {
+pub(crate) struct MeshBuilder {
     pub mesh: Mesh,
     /// Number of triangles dropped because they have no area.
     pub degenerate: usize,
@@ -167,7 +142,7 @@ pub(super) struct Builder {
     uvs: HashMap<Key<2>, u32>,
 }
 
-impl Builder {
+impl MeshBuilder {
     pub fn new(transform: Transform) -> Self {
         Self {
             mesh: Mesh::default(),

@@ -9,13 +9,15 @@ use serde::Deserialize;
 use serde_json::Value as Json;
 
 use super::file::{Segments, TransformFile};
-use super::geometry::Transform;
-use super::limits::Allowance;
+use super::parse::parse;
 use super::profile::segments;
-use super::report::{Finding, SceneErrors};
-use super::surfaces::placed;
+use super::schema;
+use super::shape::placed;
+use super::tree::Node;
 use super::validate::whole;
-use super::{schema, text};
+use crate::scene::diagnostics::{Finding, Report, SceneErrors};
+use crate::scene::load::{self, InputFile};
+use crate::scene::{Allowance, Transform};
 
 /// A Bezier profile revolved about the y axis; the keys are those of a revolution in a scene file.
 #[derive(Debug, Deserialize, JsonSchema)]
@@ -35,7 +37,7 @@ pub struct ProfileFile {
 #[derive(Clone, Debug)]
 pub struct LoadedProfile {
     /// Control points (radius, height) of each Bezier segment, as in
-    /// [`super::ShapeKind::Revolution`].
+    /// [`ShapeKind::Revolution`](crate::scene::ShapeKind::Revolution).
     pub segments: Vec<Vec<DVec2>>,
     /// Transform from object to world space.
     pub transform: Transform,
@@ -60,14 +62,18 @@ pub fn load_profile_within(
     allowance: &Allowance,
 ) -> Result<LoadedProfile, SceneErrors> {
     static SCHEMA: LazyLock<Json> = LazyLock::new(schema::of::<ProfileFile>);
-    let bytes = text::read(path, allowance)?;
-    let ((segments, transform), warnings) =
-        text::parse(path, &bytes, allowance, |root, report| {
-            let item = whole(&SCHEMA, root, report);
-            let file: ProfileFile = item.read(report)?;
-            let segments = segments(report, &item, file.profile, file.segments);
-            let transform = placed(report, &item, &file.transform);
-            segments.zip(transform)
-        })?;
+    let bytes = load::read(path, allowance)?;
+    let (text, mut report) = InputFile { path, bytes: &bytes, allowance }.decode()?;
+    let root = parse(&text, &mut report);
+    let profile = root.as_ref().and_then(|root| profile(Node::new(root), &SCHEMA, &mut report));
+    let ((segments, transform), warnings) = report.conclude(profile)?;
     Ok(LoadedProfile { segments, transform, warnings })
+}
+
+fn profile(root: Node, schema: &Json, report: &mut Report) -> Option<(Vec<Vec<DVec2>>, Transform)> {
+    let item = whole(schema, root, report);
+    let file: ProfileFile = item.read(report)?;
+    let segments = segments(report, &item, file.profile, file.segments);
+    let transform = placed(report, &item, &file.transform);
+    segments.zip(transform)
 }

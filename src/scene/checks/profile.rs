@@ -1,11 +1,10 @@
 //! Checks of the Bezier profiles of surfaces of revolution.
 
+use std::ops::Range;
+
 use glam::DVec2;
 
-use super::file::Segments;
-use super::report::Report;
-use super::tree::Node;
-use super::validate::Item;
+use crate::scene::diagnostics::Report;
 
 /// Largest gap between two joined segments, relative to the extent of the profile.
 const JOIN_TOLERANCE: f64 = 1e-9;
@@ -14,60 +13,50 @@ const RADIUS_TOLERANCE: f64 = 1e-12;
 /// Most bisections of the parameter interval while the sign of the radius is undecided.
 const MOST_HALVINGS: u32 = 40;
 
-/// Segments of the profile after the checks: joined, not entirely on the axis, and without a
-/// negative radius.
-pub(super) fn segments(
-    report: &mut Report,
-    item: &Item,
-    profile: Option<Vec<[f64; 2]>>,
-    segments: Option<Segments>,
-) -> Option<Vec<Vec<DVec2>>> {
-    let one_of = "expected either `profile` or `segments`";
-    let (curves, nodes): (Vec<_>, Vec<_>) = match (profile, segments) {
-        (Some(profile), None) => (vec![profile], item.node.get("profile").into_iter().collect()),
-        (None, Some(Segments(curves))) => {
-            let nodes = item.node.get("segments").into_iter().flat_map(|node| node.elements());
-            (curves, nodes.collect())
-        }
-        (Some(_), Some(_)) => {
-            let message = format!("{} has both `profile` and `segments`", item.place());
-            report.error(item.node.span_of("segments"), message, one_of, None);
-            return None;
-        }
-        (None, None) => {
-            let message = format!("{} has neither `profile` nor `segments`", item.place());
-            report.error(item.node.span(), message, one_of, None);
-            return None;
-        }
-    };
-    let mut curves: Vec<Vec<_>> =
-        curves.into_iter().map(|curve| curve.into_iter().map(DVec2::from).collect()).collect();
-    let before = report.errors.found();
-    for (curve, node) in curves.iter().zip(&nodes) {
-        check_curve(report, curve, *node);
-    }
-    join(report, &mut curves, &nodes);
-    (report.errors.found() == before).then_some(curves)
+/// One Bezier curve of a profile, with its position in the source.
+pub(crate) struct Curve {
+    /// Control points (radius, height), at least two.
+    pub points: Vec<DVec2>,
+    pub span: Range<usize>,
+    /// Byte range of each control point.
+    pub point_spans: Vec<Range<usize>>,
 }
 
-fn check_curve(report: &mut Report, curve: &[DVec2], node: Node) {
-    let radii: Vec<_> = curve.iter().map(|point| point.x).collect();
+impl Curve {
+    fn span_of(&self, point: usize) -> Range<usize> {
+        self.point_spans.get(point).unwrap_or(&self.span).clone()
+    }
+}
+
+/// Segments of the profile after the checks: joined, not entirely on the axis, and without a
+/// negative radius.
+pub(crate) fn profile(report: &mut Report, mut curves: Vec<Curve>) -> Option<Vec<Vec<DVec2>>> {
+    let before = report.errors.found();
+    for curve in &curves {
+        check_curve(report, curve);
+    }
+    join(report, &mut curves);
+    let segments = || curves.into_iter().map(|curve| curve.points).collect();
+    (report.errors.found() == before).then(segments)
+}
+
+fn check_curve(report: &mut Report, curve: &Curve) {
+    let radii: Vec<_> = curve.points.iter().map(|point| point.x).collect();
     let largest = radii.iter().fold(0.0f64, |most, radius| most.max(radius.abs()));
     if largest == 0.0 {
         let message = "the profile lies on the axis and sweeps no surface";
         let label = "expected a control point with a radius above 0";
-        report.error(node.span(), message, label, None);
-    } else if curve.iter().all(|point| *point == curve[0]) {
+        report.error(curve.span.clone(), message, label, None);
+    } else if curve.points.iter().all(|point| *point == curve.points[0]) {
         let message = "the profile is a single point";
-        report.error(node.span(), message, "expected different control points", None);
+        report.error(curve.span.clone(), message, "expected different control points", None);
     } else if let Some(radius) = negative(&radii, RADIUS_TOLERANCE * largest, MOST_HALVINGS) {
         let worst = (0..radii.len()).min_by(|&a, &b| radii[a].total_cmp(&radii[b])).unwrap_or(0);
-        let span = node.at(worst).map_or(node.span(), |point| point.span());
         let message = format!("the profile crosses the axis: its radius falls to {radius:.3e}");
         let help = Some(
             "a control radius may be negative only if the curve stays right of the axis".to_owned(),
         );
-        report.error(span, message, "expected a larger radius here", help);
+        report.error(curve.span_of(worst), message, "expected a larger radius here", help);
     }
 }
 
@@ -94,21 +83,22 @@ fn negative(coefficients: &[f64], tolerance: f64, halvings: u32) -> Option<f64> 
 }
 
 /// Makes each segment start exactly where the previous one ends, or reports the gap.
-fn join(report: &mut Report, curves: &mut [Vec<DVec2>], nodes: &[Node]) {
-    let extent =
-        curves.iter().flatten().fold(0.0f64, |most, point| most.max(point.abs().max_element()));
+fn join(report: &mut Report, curves: &mut [Curve]) {
+    let points = curves.iter().flat_map(|curve| &curve.points);
+    let extent = points.fold(0.0f64, |most, point| most.max(point.abs().max_element()));
     for index in 1..curves.len() {
-        let (Some(&end), Some(&start)) = (curves[index - 1].last(), curves[index].first()) else {
+        let (Some(&end), Some(&start)) =
+            (curves[index - 1].points.last(), curves[index].points.first())
+        else {
             continue;
         };
         if start.distance(end) > JOIN_TOLERANCE * extent {
-            let span = nodes.get(index).and_then(|node| node.at(0)).map(|point| point.span());
             let message =
                 format!("segment {index} does not start where segment {} ends", index - 1);
             let label = format!("expected [{}, {}]", end.x, end.y);
-            report.error(span.unwrap_or(0..0), message, label, None);
+            report.error(curves[index].span_of(0), message, label, None);
         }
-        curves[index][0] = end;
+        curves[index].points[0] = end;
     }
 }
 
