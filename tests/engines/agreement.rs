@@ -228,7 +228,7 @@ fn long_gathers_are_whole() {
     let settings = "direct = \"photons\"\nradius = { units = 3.0 }\nradius_rule = \"fixed\"";
     let rest = "[[lights]]\ntype = \"spot\"\nposition = [0.0, 2.0, 0.0]\ntarget = [0.0, 0.0, 0.0]\n\
                 intensity = [9.0, 5.0, 3.0]\nangle = 2.0\n";
-    let (packed, plan) = planned_at((8, 6), settings, rest);
+    let (packed, plan) = planned_at((4, 3), settings, rest);
     let settings = photons(150_000, &plan);
     let plan =
         Plan { capacity: 1 << 18, buckets: 1 << 18, batch_photons: 150_000, settings, ..plan };

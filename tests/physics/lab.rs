@@ -166,26 +166,26 @@ pub struct Runs {
     pub pixels: Vec<Vec<f64>>,
 }
 
-/// Renders `text` [`RUNS`] times. A pilot of `settings.passes` passes with other seeds determines
-/// how many passes are needed to know the whole image's mean to `power`; more follow if that was
-/// too few.
+/// Renders `text` [`RUNS`] times. A pilot with other seeds and a quarter of `settings.passes`
+/// determines how many passes are needed to know the whole image's mean to `power`, at least
+/// `settings.passes`. The runs are repeated with more passes if that was too few.
 pub fn runs_to(power: f64, text: &str, settings: &RenderSettings) -> Runs {
     let reached = |runs: &Runs| {
         let Estimate { mean, error } = runs.region(|_, _| true);
         T * error / ((power - ARITHMETIC) * mean)
     };
-    let with = |passes: f64, seed| {
-        let passes = (passes.ceil() as u32).clamp(settings.passes, 256 * settings.passes);
-        (passes as f64, runs(text, &RenderSettings { passes, seed, ..settings.clone() }))
-    };
-    let (mut passes, mut runs) = with(settings.passes as f64, settings.seed + 1000);
-    for _ in 0..3 {
-        (passes, runs) = with(passes * (reached(&runs) / 0.65).powi(2), settings.seed);
-        if reached(&runs) < 0.95 {
+    let with = |passes, seed| runs(text, &RenderSettings { passes, seed, ..settings.clone() });
+    let mut passes = settings.passes.div_ceil(4);
+    let mut found = with(passes, settings.seed + 1000);
+    for _ in 0..4 {
+        let needed = f64::from(passes) * (reached(&found) / 0.75).powi(2);
+        passes = (needed.ceil() as u32).clamp(settings.passes, 256 * settings.passes);
+        found = with(passes, settings.seed);
+        if reached(&found) < 0.95 {
             break;
         }
     }
-    runs
+    found
 }
 
 /// Renders `text` [`RUNS`] times.

@@ -300,7 +300,7 @@ fn unused_vertices() {
             "used",
             "v 0 -1.#IND 0\n",
             "f 1 2 7\n",
-            (8, 5, "`-1.#IND` is not a finite number, but how"),
+            (8, 5, "`-1.#IND` is not a finite number, but the result of"),
         ),
         ("ahead", "f 1 2 7\nv 1.#QNAN 0 0\n", "", (9, 3, "`1.#QNAN` is not a finite number")),
         ("behind", "v nan 0 0\n", "f 1 2 -1\n", (8, 3, "`nan` is not a finite number")),
