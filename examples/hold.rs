@@ -1,7 +1,8 @@
 //! Compares renders of the reference scenes with images of other renderers, and prints a table.
 //!
 //!     cargo run --release --example hold [-- --device cpu --full --only mesh]
-//!     cargo run --release --example hold -- --make-truth FULL.exr tests/data/truth/NAME.exr [--relmse 3.3e-4]
+//!     cargo run --release --example hold -- --make-truth FULL.exr tests/data/truth/NAME.exr \
+//!         [--relmse 3.3e-4]
 //!
 //! Exits with code 1 if a render disagrees. docs/truth.md explains the table.
 

@@ -5,21 +5,28 @@
 //!
 //! WORD selects the rows whose names contain it. Exits with code 1 if a bound is exceeded.
 
-#[path = "../tests/stability/bench.rs"]
+#[path = "../tests/physics/stability/bench.rs"]
 mod bench;
-#[path = "../tests/stability/counts.rs"]
+#[path = "../tests/support/brute_force.rs"]
+#[allow(dead_code)] // tests use the rest
+mod brute_force;
+#[path = "../tests/physics/stability/counts.rs"]
 mod counts;
-#[path = "../tests/stability/grazing.rs"]
+#[path = "../tests/physics/everything.rs"]
+mod everything;
+#[path = "../tests/physics/stability/grazing.rs"]
 mod grazing;
-#[path = "../tests/stability/rays.rs"]
+#[path = "../tests/physics/stability/rays.rs"]
 mod rays;
-#[path = "../tests/stability/scale.rs"]
+#[path = "../tests/support/revolution/mod.rs"]
+mod revolution;
+#[path = "../tests/physics/stability/scale.rs"]
 mod scale;
-#[path = "../tests/stability/surfaces.rs"]
+#[path = "../tests/physics/stability/surfaces.rs"]
 mod surfaces;
-#[path = "../tests/stability/table.rs"]
+#[path = "../tests/physics/stability/table.rs"]
 mod table;
-#[path = "../tests/stability/view.rs"]
+#[path = "../tests/physics/stability/view.rs"]
 mod view;
 
 use std::process::ExitCode;

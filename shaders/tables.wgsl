@@ -1,6 +1,6 @@
 // Plain data that every kernel reads. Twin: src/tables.rs, which documents the fields. The storage
-// struct `SceneTables` itself is composed per scene, since the lengths of its arrays are part of its
-// type.
+// struct `SceneTables` itself is composed per scene, since the lengths of its arrays are part of
+// its type.
 
 const ASTRIDE: u32 = 0xfffffffeu;
 const TEXTURE_CHECKER: u32 = 0u;

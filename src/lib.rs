@@ -31,7 +31,9 @@
 //! # Build a scene in Rust
 //!
 //! ```
-//! use caustica::scene::{Camera, Light, Material, MaterialKind, Reflectance, Scene, Shape, ShapeKind};
+//! use caustica::scene::{
+//!     Camera, Light, Material, MaterialKind, Reflectance, Scene, Shape, ShapeKind,
+//! };
 //! use caustica::{Device, RenderSettings, open};
 //! use glam::DVec3;
 //!

@@ -1,4 +1,4 @@
-//! PackedScene scene: plain data that the kernels of both engines read, in scene space (the host moves
+//! Packed scene: plain data that the kernels of both engines read, in scene space (the host moves
 //! the scene's centre to the origin and scales its size to about one; see
 //! [`crate::prepare::normalize`]).
 //!
@@ -231,7 +231,7 @@ pub struct Cell {
     pub pad: u32,
 }
 
-/// PackedScene scene.
+/// Packed scene.
 #[derive(Clone, Debug)]
 pub struct SceneTables {
     /// Properties of the whole scene.

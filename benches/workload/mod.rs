@@ -25,12 +25,12 @@ pub fn parsed(shape: &str) -> scene::Scene {
     }
 }
 
-/// PackedScene scene with one shape.
+/// Packed scene with one shape.
 pub fn packed(shape: &str) -> PackedScene {
     prepare(&parsed(shape), 16, 16).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// PackedScene scene of the displaced sphere with 2 (`nu`) (`nv` - 1) triangles.
+/// Packed scene of the displaced sphere with 2 (`nu`) (`nv` - 1) triangles.
 pub fn displaced_sphere(nu: u32, nv: u32) -> PackedScene {
     let mut scene = parsed("type = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1");
     scene.shapes[0].kind = ShapeKind::Mesh(mesh(nu, nv));

@@ -22,7 +22,9 @@ fn intersect_unbounded(reference: u32, ray: Ray, hit: ptr<function, Hit>) {
 fn intersect_revolution(reference: u32, ray: Ray, hit: ptr<function, Hit>) {
     let patch_data = scene.patches[index_of(reference)];
     let revolution = scene.revolutions[patch_data.revolution];
-    let at = intersect_patch(revolution, patch_data, ray.origin, ray.direction, ray.t_min, (*hit).t);
+    let at = intersect_patch(
+        revolution, patch_data, ray.origin, ray.direction, ray.t_min, (*hit).t
+    );
     if at.t < (*hit).t {
         *hit = Hit(at.t, reference, at.theta, at.tau);
     }
@@ -108,7 +110,9 @@ fn intersect_leaf(first: u32, last: u32, ray: Ray, any_hit: bool, hit: ptr<funct
 var<private> put_off: vec4u;
 
 fn bit_of(index: u32) -> vec4u {
-    return select(vec4u(0u), vec4u(1u << (index & 31u)), vec4u(index >> 5u) == vec4u(0u, 1u, 2u, 3u));
+    return select(
+        vec4u(0u), vec4u(1u << (index & 31u)), vec4u(index >> 5u) == vec4u(0u, 1u, 2u, 3u)
+    );
 }
 
 // Searches the deferred patches in the order of their indices.
@@ -117,7 +121,9 @@ fn search_put_off(ray: Ray, any_hit: bool, hit: ptr<function, Hit>) {
         loop {
             let some = put_off != vec4u(0u);
             let word = select(select(select(3u, 2u, some.z), 1u, some.y), 0u, some.x);
-            let bits = select(select(select(put_off.w, put_off.z, some.z), put_off.y, some.y), put_off.x, some.x);
+            let bits = select(
+                select(select(put_off.w, put_off.z, some.z), put_off.y, some.y), put_off.x, some.x
+            );
             let index = 32u * word + firstTrailingBit(bits);
             put_off &= ~bit_of(index);
             intersect_revolution((KIND_REVOLUTION << REFERENCE_BITS) | index, ray, hit);

@@ -59,7 +59,17 @@ fn surface_at(ray: Ray, hit: Hit) -> Surface {
             let sphere = scene.spheres[index];
             let q = sphere_project(sphere, p);
             let n = sphere_normal(sphere, q);
-            s = Surface(q, sphere_error(sphere, q), n, sphere.material, n, sphere.light, vec2f(0.0), 0.0, NONE);
+            s = Surface(
+                q,
+                sphere_error(sphere, q),
+                n,
+                sphere.material,
+                n,
+                sphere.light,
+                vec2f(0.0),
+                0.0,
+                NONE,
+            );
             planar = sphere.uv;
             // skip the two arctangents for the many spheres without a texture
             if planar == UV_NATURAL && scene.materials[sphere.material].texture != NONE {

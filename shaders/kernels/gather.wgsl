@@ -58,13 +58,17 @@ fn gather(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups) gr
     // one call in a loop, because software drivers inline every call
     var photon_class = 0u;
     loop {
-        let one = gather_class(point, frame, photon_class, select(radius_sq, radius_sq * wider_sq, photon_class == 1u));
+        let one = gather_class(
+            point, frame, photon_class, select(radius_sq, radius_sq * wider_sq, photon_class == 1u)
+        );
         if photon_class == 0u {
             gathered[id].caustic += point.weight * one.flux;
         }
         found.flux += select(one.flux, one.flux * (1.0 / wider_sq), photon_class == 1u);
         found.count += one.count;
-        found.bias_probe += select(one.bias_probe, one.bias_probe * (1.0 / wider_sq), photon_class == 1u);
+        found.bias_probe += select(
+            one.bias_probe, one.bias_probe * (1.0 / wider_sq), photon_class == 1u
+        );
         photon_class += 1u;
         continuing {
             break if photon_class == 2u;
@@ -156,7 +160,8 @@ fn gather_class(point: VisiblePoint, frame: Frame, photon_class: u32, radius_sq:
                         //#if outlines
                         // reject photons outside the outline or behind a wall
                         if counts && clip.crossed {
-                            counts = in_outline(outline, position) && before_walls(&clip, point.position, position);
+                            counts = in_outline(outline, position)
+                                && before_walls(&clip, point.position, position);
                         }
                         //#end
                         if counts {

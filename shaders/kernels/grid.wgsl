@@ -1,5 +1,5 @@
-// Hash grid over photon records. Twin: src/kernels/grid.rs, which explains it, and the `record_*` functions
-// of src/kernels/grid_build.rs.
+// Hash grid over photon records. Twin: src/kernels/grid.rs, which explains it, and the `record_*`
+// functions of src/kernels/grid_build.rs.
 
 const CELL_MAX: f32 = 1e9;
 const ALONG: f32 = 4.0;
@@ -33,7 +33,9 @@ fn record_family(record: PhotonRecord) -> u32 {
 fn record_cell(record: PhotonRecord) -> vec3i {
     //#if split
     let indirect = record_family(record) == 1u;
-    return grid_cell(record.position, select(dispatch.inv_cell, dispatch.inv_cell_indirect, indirect));
+    return grid_cell(
+        record.position, select(dispatch.inv_cell, dispatch.inv_cell_indirect, indirect)
+    );
     //#else
     return grid_cell(record.position, dispatch.inv_cell);
     //#end

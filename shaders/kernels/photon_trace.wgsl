@@ -14,7 +14,9 @@ fn photon_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgrou
     if id >= dispatch.end {
         return;
     }
-    var rng = rng_new(dispatch.batch_first + id, dispatch.pass_number, STREAM_PHOTON, dispatch.seed);
+    var rng = rng_new(
+        dispatch.batch_first + id, dispatch.pass_number, STREAM_PHOTON, dispatch.seed
+    );
     let emission = emit_photon(&rng);
     var ray = emission.ray;
     var flux = emission.flux;
@@ -57,7 +59,9 @@ fn photon_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgrou
         if is_specular(p.lobe.bsdf) {
             scattered = scatter_specular(p, interior, u.x, IMPORTANCE);
         } else {
-            scattered = stored_and_scattered(id, bounce, hidden, &photon_class, p, interior, flux, u);
+            scattered = stored_and_scattered(
+                id, bounce, hidden, &photon_class, p, interior, flux, u
+            );
         }
         //#else
         scattered = stored_and_scattered(id, bounce, hidden, &photon_class, p, interior, flux, u);

@@ -31,7 +31,11 @@ fn resolve(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups) g
         sum.halves += half_weight(k) * luminance(found.radiance);
     }
     let share = 1.0 / f32(dispatch.eye_samples);
-    fold(id, cause(state, photons_finite), Estimate(sum.radiance * share, sum.bias_probe * share, sum.halves));
+    fold(
+        id,
+        cause(state, photons_finite),
+        Estimate(sum.radiance * share, sum.bias_probe * share, sum.halves),
+    );
 }
 
 fn cause(state: u32, photons_finite: bool) -> u32 {
@@ -68,7 +72,8 @@ fn fold(id: u32, cause: u32, found: Estimate) {
     let sign = select(-1.0, 1.0, (dispatch.passes_done & 1u) == 0u);
     pixel.spread += (deviation * deviation - pixel.spread) * share;
     pixel.bias_probe += (found.bias_probe - pixel.bias_probe) * share;
-    pixel.bias_probe_alternating += (sign * found.bias_probe - pixel.bias_probe_alternating) * share;
+    pixel.bias_probe_alternating +=
+        (sign * found.bias_probe - pixel.bias_probe_alternating) * share;
     pixel.halves += (found.halves - pixel.halves) * share;
     pixel.carry += delta * share;
     if max_abs(pixel.carry) > CARRY_SHARE * max_abs(pixel.mean) {

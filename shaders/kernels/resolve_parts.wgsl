@@ -11,7 +11,10 @@ struct PartsPixel {
 }
 
 @compute @workgroup_size(64)
-fn resolve_parts(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups) groups: vec3u) {
+fn resolve_parts(
+    @builtin(global_invocation_id) gid: vec3u,
+    @builtin(num_workgroups) groups: vec3u,
+) {
     let id = invocation(gid, groups);
     if id >= dispatch.end {
         return;

@@ -15,7 +15,9 @@ fn eval_image(light: Light, direction: vec3f) -> vec3f {
 fn sample_image(light: Light, u: vec4f) -> vec3f {
     let texture = scene.textures[light.reference];
     let row = find_interval(light.first, texture.height, u.y);
-    let column = find_interval(light.first + texture.height + row * texture.width, texture.width, u.z);
+    let column = find_interval(
+        light.first + texture.height + row * texture.width, texture.width, u.z
+    );
     // offset in the row from the lower bits of u.w: what is left of u.y gives few distinct offsets
     // in rows of low probability
     let fine = u.w * 4096.0;

@@ -97,7 +97,12 @@ fn sample_shape(light: Light, u: vec2f, w: f32) -> ShapePoint {
             let end = patch_end(light, k);
             let v = start + (end - start) * u.x;
             let r = patch_point(light, k, v, TAU * u.y - PI);
-            return ShapePoint(r.position, r.error, r.normal, pdf_patch(light, k, end - start) / max(r.stretch, 1e-30));
+            return ShapePoint(
+                r.position,
+                r.error,
+                r.normal,
+                pdf_patch(light, k, end - start) / max(r.stretch, 1e-30),
+            );
         }
         //#end
         default: {
@@ -131,7 +136,12 @@ fn patch_point(light: Light, k: u32, v: f32, theta: f32) -> PatchPoint {
     let ring = ring_point(patch_data, theta, tau);
     let by_v = ring.d_tau * (f32(revolution.segments) / (patch_data.t1 - patch_data.t0));
     let stretch = cross(ring.d_theta, by_v);
-    return PatchPoint(s.position, s.error, s.normal, sqrt(dot(stretch, stretch)) * (TAU * revolution.scale * revolution.scale));
+    return PatchPoint(
+        s.position,
+        s.error,
+        s.normal,
+        sqrt(dot(stretch, stretch)) * (TAU * revolution.scale * revolution.scale),
+    );
 }
 
 fn pdf_patch(light: Light, k: u32, width: f32) -> f32 {

@@ -21,7 +21,8 @@ fn eval_texture(index: u32, uv: vec2f) -> vec3f {
     let clamp_u = (texture.flags & TEXTURE_CLAMP_U) != 0u;
     let clamp_v = (texture.flags & TEXTURE_CLAMP_V) != 0u;
     let x = select(st.x - floor(st.x), clamp(st.x, 0.0, 1.0), clamp_u) * f32(texture.width);
-    let y = (1.0 - select(st.y - floor(st.y), clamp(st.y, 0.0, 1.0), clamp_v)) * f32(texture.height);
+    let t = select(st.y - floor(st.y), clamp(st.y, 0.0, 1.0), clamp_v);
+    let y = (1.0 - t) * f32(texture.height);
     if (texture.flags & TEXTURE_NEAREST) != 0u {
         return eval_texel(texture, i32(floor(x)), i32(floor(y)));
     }
@@ -33,7 +34,8 @@ fn eval_texture(index: u32, uv: vec2f) -> vec3f {
     let i = i32(x0);
     let j = i32(y0);
     let top = eval_texel(texture, i, j) * (1.0 - fx) + eval_texel(texture, i + 1, j) * fx;
-    let bottom = eval_texel(texture, i, j + 1) * (1.0 - fx) + eval_texel(texture, i + 1, j + 1) * fx;
+    let bottom = eval_texel(texture, i, j + 1) * (1.0 - fx)
+        + eval_texel(texture, i + 1, j + 1) * fx;
     return top * (1.0 - fy) + bottom * fy;
     //#else
     return vec3f(0.0);
@@ -57,7 +59,9 @@ fn eval_texel(texture: Texture, i: i32, j: i32) -> vec3f {
     let at = u32(y * w + x);
     if texture.format == TEXELS_FLOAT {
         let k = texture.first + 3u * at;
-        return vec3f(bitcast<f32>(texels[k]), bitcast<f32>(texels[k + 1u]), bitcast<f32>(texels[k + 2u]));
+        return vec3f(
+            bitcast<f32>(texels[k]), bitcast<f32>(texels[k + 1u]), bitcast<f32>(texels[k + 2u])
+        );
     }
     let word = texels[texture.first + at];
     let r = word & 255u;

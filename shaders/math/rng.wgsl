@@ -51,7 +51,9 @@ fn rng_next(rng: ptr<function, Rng>) -> vec4f {
     let k = (*rng).dimension - STREAM_EYE;
     var h: vec4u;
     if k < 4u {
-        h = scrambled(dispatch.points[k], pcg4d(vec4u((*rng).index, 0u, (*rng).dimension, (*rng).seed)));
+        h = scrambled(
+            dispatch.points[k], pcg4d(vec4u((*rng).index, 0u, (*rng).dimension, (*rng).seed))
+        );
     } else {
         h = pcg4d(vec4u((*rng).index, (*rng).pass_number, (*rng).dimension, (*rng).seed));
     }

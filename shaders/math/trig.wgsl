@@ -17,7 +17,9 @@ fn sin_cos(x: f32) -> vec2f {
     let odd = (quadrant & 1) == 1;
     let sin = select(s, c, odd);
     let cos = select(c, s, odd);
-    return vec2f(select(sin, -sin, quadrant >= 2), select(cos, -cos, quadrant == 1 || quadrant == 2));
+    return vec2f(
+        select(sin, -sin, quadrant >= 2), select(cos, -cos, quadrant == 1 || quadrant == 2)
+    );
 }
 
 fn arctan2(y: f32, x: f32) -> f32 {
@@ -31,7 +33,8 @@ fn arctan2(y: f32, x: f32) -> f32 {
     let shifted = ratio > 0.41421357;
     let w = select(ratio, (ratio - 1.0) / (ratio + 1.0), shifted);
     let z = w * w;
-    let p = kept((((8.0537445e-2 * z - 1.3877686e-1) * z + 1.9977711e-1) * z - 3.333295e-1) * z * w) + w;
+    let p =
+        kept((((8.0537445e-2 * z - 1.3877686e-1) * z + 1.9977711e-1) * z - 3.333295e-1) * z * w) + w;
     let octant = select(p, kept(p) + 0.7853982, shifted);
     let quadrant = select(octant, 1.5707964 - octant, ay > ax);
     let half = select(quadrant, 3.1415927 - quadrant, x < 0.0);

@@ -32,7 +32,9 @@ fn basis(n: vec3f) -> Basis {
     let s = select(-1.0, 1.0, n.z >= 0.0);
     let a = -1.0 / (s + n.z);
     let b = n.x * n.y * a;
-    return Basis(vec3f(1.0 + s * n.x * n.x * a, s * b, -s * n.x), vec3f(b, s + n.y * n.y * a, -n.y));
+    return Basis(
+        vec3f(1.0 + s * n.x * n.x * a, s * b, -s * n.x), vec3f(b, s + n.y * n.y * a, -n.y)
+    );
 }
 
 fn from_frame(n: vec3f, local: vec3f) -> vec3f {

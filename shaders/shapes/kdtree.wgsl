@@ -39,7 +39,9 @@ fn traverse(ray: Ray, any_hit: bool, hit: ptr<function, Hit>) {
     ray_shear = shear_of(ray);
     //#end
     // clip the ray to the tree's box, widened by the slab at its far end
-    let inverse = vec3f(reciprocal(ray.direction.x), reciprocal(ray.direction.y), reciprocal(ray.direction.z));
+    let inverse = vec3f(
+        reciprocal(ray.direction.x), reciprocal(ray.direction.y), reciprocal(ray.direction.z)
+    );
     let to_min = scene.world.bounds_min - ray.origin;
     let to_max = scene.world.bounds_max - ray.origin;
     let reach = max(abs(to_min), abs(to_max));

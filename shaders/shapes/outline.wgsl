@@ -100,7 +100,14 @@ fn outline_share(outline: Outline, position: vec3f, normal: vec3f, radius: f32) 
     return clamp(area / PI, SHARE_MIN, 1.0);
 }
 
-fn cut_polygon(polygon: ptr<function, array<vec2f, CORNERS>>, count: u32, normal: vec2f, distance: f32) -> u32 {
+fn cut_polygon(
+    polygon: ptr<function,
+    array<vec2f,
+    CORNERS>>,
+    count: u32,
+    normal: vec2f,
+    distance: f32,
+) -> u32 {
     let old = *polygon;
     var kept = 0u;
     var a = old[max(count, 1u) - 1u];
@@ -175,7 +182,14 @@ fn cut_share(outline: Outline, clip: Clip, position: vec3f, normal: vec3f, radiu
     return clamp(abs(area) / PI, SHARE_MIN, 1.0);
 }
 
-fn find_cuts(outline: Outline, position: vec3f, normal: vec3f, clip: ptr<function, Clip>, radius: f32) {
+fn find_cuts(
+    outline: Outline,
+    position: vec3f,
+    normal: vec3f,
+    clip: ptr<function,
+    Clip>,
+    radius: f32,
+) {
     let first = outline.walls >> WALL_BITS;
     let last = first + (outline.walls & ((1u << WALL_BITS) - 1u));
     for (var i = first; i < last; i++) {
@@ -238,7 +252,9 @@ fn clip_at(number: u32, position: vec3f, normal: vec3f, radius: f32) -> Clip {
     if clip.count > 0u {
         clip.crossed = true;
         for (var k = 0u; k < 2u; k++) {
-            let share = cut_share(outline, clip, position, normal, select(radius, 0.70710677 * radius, k == 1u));
+            let share = cut_share(
+                outline, clip, position, normal, select(radius, 0.70710677 * radius, k == 1u)
+            );
             clip.whole = select(clip.whole, 1.0 / share, k == 0u);
             clip.inner = select(clip.inner, 1.0 / share, k == 1u);
         }
@@ -247,7 +263,9 @@ fn clip_at(number: u32, position: vec3f, normal: vec3f, radius: f32) -> Clip {
     if clip.crossed {
         // in a loop, so that the function is inlined only once
         for (var k = 0u; k < 2u; k++) {
-            let share = outline_share(outline, position, normal, select(radius, 0.70710677 * radius, k == 1u));
+            let share = outline_share(
+                outline, position, normal, select(radius, 0.70710677 * radius, k == 1u)
+            );
             clip.whole = select(clip.whole, 1.0 / share, k == 0u);
             clip.inner = select(clip.inner, 1.0 / share, k == 1u);
         }

@@ -30,13 +30,17 @@ fn leading_bits(x: f32) -> f32 {
 }
 
 fn local_ray(revolution: Revolution, origin: vec3f, direction: vec3f) -> LocalRay {
-    let high = vec3f(leading_bits(direction.x), leading_bits(direction.y), leading_bits(direction.z));
+    let high = vec3f(
+        leading_bits(direction.x), leading_bits(direction.y), leading_bits(direction.z)
+    );
     let low = direction - high;
     let far = leading_bits(dot(revolution.center - origin, direction));
     let p = ((origin + high * far) - revolution.center) + low * far;
     let near = -dot(p, direction);
     let q = (p + direction * near) * revolution.inv_scale;
-    let local_origin = vec3f(dot(revolution.x_axis, q), dot(revolution.y_axis, q), dot(revolution.z_axis, q));
+    let local_origin = vec3f(
+        dot(revolution.x_axis, q), dot(revolution.y_axis, q), dot(revolution.z_axis, q)
+    );
     let local_direction = vec3f(
         dot(revolution.x_axis, direction),
         dot(revolution.y_axis, direction),
@@ -100,7 +104,12 @@ fn intersect_patch(
     return hit;
 }
 
-fn revolution_surface(revolution: Revolution, piece: Patch, theta: f32, tau: f32) -> RevolutionSurface {
+fn revolution_surface(
+    revolution: Revolution,
+    piece: Patch,
+    theta: f32,
+    tau: f32,
+) -> RevolutionSurface {
     load_control_points(piece);
     var at = ring_point(piece, theta, tau);
     let p = at.point * revolution.scale;
@@ -115,7 +124,8 @@ fn revolution_surface(revolution: Revolution, piece: Patch, theta: f32, tau: f32
     let dy = at.d_tau.y;
     let n = unit(vec3f(dy * cos, -dr, dy * sin));
     let position =
-        ((revolution.center + revolution.x_axis * p.x) + revolution.y_axis * p.y) + revolution.z_axis * p.z;
+        ((revolution.center + revolution.x_axis * p.x) + revolution.y_axis * p.y)
+            + revolution.z_axis * p.z;
     let normal = (revolution.x_axis * n.x + revolution.y_axis * n.y) + revolution.z_axis * n.z;
     let c = revolution.center;
     let size = revolution.scale + max(max(abs(c.x), abs(c.y)), abs(c.z));

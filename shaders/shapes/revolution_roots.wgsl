@@ -162,8 +162,12 @@ fn slope_range(a: RayPoint, b: RayPoint, d_phi_low: f32, d_phi_high: f32) -> vec
     let s_low = min(a.ds, b.ds);
     let s_high = max(a.ds, b.ds);
     let least =
-        min(min(d_phi_low * s_low, d_phi_low * s_high), min(d_phi_high * s_low, d_phi_high * s_high));
-    let most = max(max(d_phi_low * s_low, d_phi_low * s_high), max(d_phi_high * s_low, d_phi_high * s_high));
+        min(
+            min(d_phi_low * s_low, d_phi_low * s_high), min(d_phi_high * s_low, d_phi_high * s_high)
+        );
+    let most = max(
+        max(d_phi_low * s_low, d_phi_low * s_high), max(d_phi_high * s_low, d_phi_high * s_high)
+    );
     return vec2f(min(a.dh, b.dh) - most, max(a.dh, b.dh) - least);
 }
 
@@ -208,11 +212,14 @@ fn first_root(piece: Patch, ray: LocalRay, begin: f32, end: f32) -> PatchHit {
             }
             // if s is monotone, its ends bound phi'
             if exact && (a.ds > 0.0) == (b.ds > 0.0) {
-                range = slope_range(a, b, min(f_a.y, f_b.y) - piece.wobble, max(f_a.y, f_b.y) + piece.wobble);
+                range = slope_range(
+                    a, b, min(f_a.y, f_b.y) - piece.wobble, max(f_a.y, f_b.y) + piece.wobble
+                );
             }
             // halve the interval if it may contain more than one root
             let bow = (range.y - range.x) * quarter;
-            let touches = !exact || (min(f_a.x, f_b.x) - bow <= 0.0 && max(f_a.x, f_b.x) + bow >= 0.0);
+            let touches = !exact
+                || (min(f_a.x, f_b.x) - bow <= 0.0 && max(f_a.x, f_b.x) + bow >= 0.0);
             if touches && range.x <= 0.0 && range.y >= 0.0 && width > least {
                 width *= 0.5;
                 continue;

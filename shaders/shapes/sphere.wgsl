@@ -7,7 +7,9 @@ fn intersect_sphere(sphere: Sphere, reference: u32, ray: Ray, hit: ptr<function,
     let side = dot(d0, sphere.normal) + 0.5 * k * dot(d0, d0);
     // rays from infinity start behind their origin, so the side of the origin is irrelevant
     let backward = ray.t_min < 0.0;
-    if !backward && side >= 0.0 && dot(ray.direction, sphere.normal) + k * dot(d0, ray.direction) >= 0.0 {
+    if !backward
+        && side >= 0.0
+        && dot(ray.direction, sphere.normal) + k * dot(d0, ray.direction) >= 0.0 {
         return;
     }
     // solve from the point of the ray nearest to the anchor: small numbers however distant the

@@ -31,7 +31,9 @@ fn permuted(v: vec3f, axis: u32) -> vec3f {
 
 fn sheared(p: vec3f, ray: Ray) -> vec3f {
     let q = permuted(p - ray.origin, ray_shear.axis);
-    return vec3f(q.x - ray_shear.shear.x * q.z, q.y - ray_shear.shear.y * q.z, ray_shear.shear.z * q.z);
+    return vec3f(
+        q.x - ray_shear.shear.x * q.z, q.y - ray_shear.shear.y * q.z, ray_shear.shear.z * q.z
+    );
 }
 
 // Returns p unchanged. The compiler cannot know that, so it cannot fuse the product that gave `p`
@@ -81,7 +83,9 @@ fn intersect_triangle(triangle: Triangle, reference: u32, ray: Ray, hit: ptr<fun
     }
     var det = u + v + w;
     // thin in projection: recompute the edge functions with the rounding errors of their products
-    let products = max(max(max(max(max(abs(cb0), abs(cb1)), abs(ac0)), abs(ac1)), abs(ba0)), abs(ba1));
+    let products = max(
+        max(max(max(max(abs(cb0), abs(cb1)), abs(ac0)), abs(ac1)), abs(ba0)), abs(ba1)
+    );
     if abs(det) < 0.5 * products {
         u = exact_cross(c.x, c.y, b.x, b.y);
         v = exact_cross(a.x, a.y, c.x, c.y);

@@ -57,7 +57,7 @@ impl Runner {
 pub struct Ready {
     /// Engine.
     pub runner: Runner,
-    /// PackedScene scene in f32, even for the f64 engine.
+    /// Packed scene in f32, even for the f64 engine.
     pub packed: PackedScene,
     /// Plan in f32, even for the f64 engine.
     pub plan: Plan,

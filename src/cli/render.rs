@@ -444,7 +444,7 @@ pub fn default_output(scene: &Path) -> PathBuf {
 }
 
 #[cfg(test)]
-#[path = "../../tests/faults/engine.rs"]
+#[path = "../../tests/engines/faults/engine.rs"]
 mod engine;
 #[cfg(test)]
 #[path = "render_faults.rs"]

@@ -1,5 +1,5 @@
 //! Diagnostic reports with escaped control characters and line feeds, which may come from quoted
-//! names. Quoted lines of files are already free of them (`scene::report`).
+//! names. Quoted lines of files are already free of them (`scene::diagnostics`).
 
 use std::error::Error;
 use std::fmt;

@@ -1,5 +1,5 @@
-//! The shapes of a scene together: the nearest hit of a ray, and the surface there. Each file is the
-//! twin of a file in `shaders/geometry/`.
+//! The shapes of a scene together: the nearest hit of a ray, and the surface there. Each file is
+//! the twin of a file in `shaders/geometry/`.
 
 use super::{math, real, shapes, tables};
 

@@ -63,8 +63,9 @@ pub fn light_from_area(
     }
 }
 
-/// Density per solid angle with which [`sample_light`](super::light::sample_light) at `from` samples `direction` on area light
-/// `index`, hit at distance `t` at a point with unit normal `normal` and profile parameter `v`.
+/// Density per solid angle with which [`sample_light`](super::light::sample_light) at `from`
+/// samples `direction` on area light `index`, hit at distance `t` at a point with unit normal
+/// `normal` and profile parameter `v`.
 pub fn pdf_area(
     scene: &SceneTables,
     shares: u32,

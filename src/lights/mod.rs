@@ -1,8 +1,8 @@
 //! Lights: choice, shadow-ray samples and photon emission. Twins: `shaders/lights/`.
 //!
-//! A light is one file pair, with `light_from_X` for shadow rays and `emit_X` for photons, a variant
-//! of [`LightKind`], and a case in each dispatch: `light.rs` and `emission.rs` with their twins. The
-//! compiler finds the Rust ones that are missing.
+//! A light is one file pair, with `light_from_X` for shadow rays and `emit_X` for photons, a
+//! variant of [`LightKind`], and a case in each dispatch: `light.rs` and `emission.rs` with their
+//! twins. The compiler finds the Rust ones that are missing.
 
 use super::{materials, math, real, shapes, tables};
 

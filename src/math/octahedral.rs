@@ -1,4 +1,4 @@
-//! PackedScene directions in records. Twin: `shaders/math/octahedral.wgsl`.
+//! Packed directions in records. Twin: `shaders/math/octahedral.wgsl`.
 
 use super::unit;
 use glam::{Vec2, Vec3};

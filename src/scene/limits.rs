@@ -5,7 +5,7 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
-/// Treatment of MTL and texture files that do not exist.
+/// Treatment of material and texture files that do not exist.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Missing {
     /// Reject the scene.
@@ -30,15 +30,16 @@ pub struct Allowance {
     /// Folder that must contain every file that is read, including the scene file, after links are
     /// resolved; `None` allows all files.
     pub root: Option<PathBuf>,
-    /// Treatment of MTL and texture files that do not exist.
+    /// Treatment of material and texture files that do not exist.
     pub missing: Missing,
     /// Most bytes of a scene or profile file.
     pub scene_bytes: u64,
-    /// Most `[[shapes]]` of a scene.
+    /// Most shapes in a scene file.
     pub shapes: u64,
-    /// Most bytes of all OBJ and MTL files; a file that several shapes name counts for each.
+    /// Most bytes of all mesh files and their material files; a file that several shapes name
+    /// counts for each.
     pub mesh_bytes: u64,
-    /// Most triangles of one OBJ file.
+    /// Most triangles of one mesh file.
     pub mesh_triangles: u64,
     /// Most triangles of all meshes.
     pub triangles: u64,
@@ -220,7 +221,7 @@ pub(super) fn within(
 
 /// Reason why a file is not read.
 #[derive(Debug)]
-pub(super) enum Refusal {
+pub(crate) enum Refusal {
     /// The file lies outside the root.
     Outside { root: PathBuf },
     /// The path is a folder, a pipe or a device.

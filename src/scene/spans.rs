@@ -4,8 +4,8 @@ use std::collections::HashMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use super::report::{Finding, Report, SourceFile};
-use super::validate::Item;
+use super::diagnostics::{Finding, Report, SourceFile};
+use super::parts::Part;
 
 /// Byte ranges in a scene file, by path and key.
 #[derive(Clone, Debug)]
@@ -16,13 +16,13 @@ pub struct Spans {
     spans: HashMap<String, Range<usize>>,
     /// Path of each shape of the scene; several shapes may come from one mesh.
     pub shapes: Vec<String>,
-    /// Path of each material of the scene, up to those from MTL files, which come last and have
+    /// Path of each material of the scene, up to those from mesh files, which come last and have
     /// none.
     pub materials: Vec<String>,
 }
 
 impl Spans {
-    pub(crate) fn new(path: &Path, source: SourceFile) -> Self {
+    pub(super) fn new(path: &Path, source: SourceFile) -> Self {
         Self {
             path: path.to_owned(),
             source,
@@ -32,11 +32,11 @@ impl Spans {
         }
     }
 
-    pub(crate) fn add(&mut self, item: &Item) {
-        self.spans.insert(item.path.clone(), item.node.span());
-        for (key, _, value) in item.node.entries() {
-            self.spans.insert(item.key(key), value.span());
-        }
+    /// Adds a part and its keys.
+    pub(super) fn add(&mut self, part: &dyn Part) {
+        let place = part.place();
+        self.spans.insert(place.to_owned(), part.span());
+        part.each_key(&mut |key, span| drop(self.spans.insert(format!("{place}.{key}"), span)));
     }
 
     /// Creates a warning at the first of `paths` that the file has, or else at its start; `label`

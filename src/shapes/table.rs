@@ -19,7 +19,8 @@ pub const KIND_RECTANGLE: u32 = 2;
 pub const KIND_DISC: u32 = 3;
 /// See [`Cuboid`].
 pub const KIND_CUBOID: u32 = 4;
-/// See [`Patch`](super::revolution::Patch); for lights the index is that of the [`Revolution`](super::revolution::Revolution).
+/// See [`Patch`](super::revolution::Patch); for lights the index is that of the
+/// [`Revolution`](super::revolution::Revolution).
 pub const KIND_REVOLUTION: u32 = 5;
 /// See [`Plane`].
 pub const KIND_PLANE: u32 = 6;

@@ -1,21 +1,19 @@
-//! Engines that go on from what another one held.
+//! Engines that resume from a state saved by another engine.
+//!
+//! Theory: the saved state, the scene, the settings and the pass number determine every later pass,
+//! so a resumed render has the bits of an uninterrupted one on any device.
 
 use caustica::low_level::checkpoint::{read, write};
 use caustica::low_level::device::Wanted;
-use caustica::low_level::engine::{Engine, EngineError, LayerState, State};
+use caustica::low_level::engine::{EngineError, LayerState, State};
 use caustica::low_level::kernels::bytes::{AOV_BYTES, PARTS_BYTES};
 use caustica::low_level::scene::settings::{Direct, Method, Radius, RadiusRule, RenderSettings};
 use caustica::low_level::scene::{Aovs, Film};
 
 use super::{checkpoint, folder, open, open_on};
+use crate::support::passes;
 
 const SIZE: (u32, u32) = (24, 16);
-
-fn passes(engine: &mut dyn Engine, count: u32) {
-    for _ in 0..count {
-        engine.pass().unwrap();
-    }
-}
 
 type Change = fn(&mut RenderSettings);
 
@@ -31,8 +29,8 @@ const CHANGES: [(&str, Change); 7] = [
     ("path local", |s| (s.method, s.radius_rule) = (Method::Path, RadiusRule::Local)),
 ];
 
-/// What a render of six passes holds that starts on the first device and goes on, through a file,
-/// on the second after two and on the first again after five.
+/// Returns the state of a six-pass render that starts on the first device, resumes from a file on
+/// the second device after two passes, and on the first again after five.
 fn broken(devices: [&Wanted; 2], name: &str, change: Change) -> State {
     let file = folder(&format!("engines {name}")).join("a.checkpoint");
     let mut state = State::before(0);
@@ -70,7 +68,7 @@ fn go_on_with_the_same_bits() {
                 "{name}: {other:?}, cpu, {other:?}"
             );
         }
-        // what a checkpoint is developed to is what the engine gives
+        // a developed checkpoint equals the engine's own result
         let (picture, errors, rejections) = checkpoint(&whole, SIZE, state).develop();
         assert!(picture == whole.engine.picture().unwrap(), "{name}");
         assert!(errors == whole.engine.errors().unwrap(), "{name}");
@@ -93,8 +91,8 @@ fn the_f64_engine_too() {
     }
 }
 
-/// The comparison sees whatever is left behind: statistics, the film, the number of passes, the
-/// fixed visible points' pass.
+/// The comparison detects every kind of lost state: statistics, the film, the number of passes, and
+/// the pass of fixed visible points.
 #[test]
 fn nothing_may_be_left_behind() {
     let change: Change = |s| (s.method, s.radius_rule) = (Method::Ppm, RadiusRule::Local);
@@ -115,7 +113,7 @@ fn nothing_may_be_left_behind() {
         assert!(after(&|state| state.passes -= 1) != sound, "{device:?}: passes");
         assert!(after(&|state| state.film[0] ^= 1) != sound, "{device:?}: a bit");
     }
-    // passes from 3 on see the points of pass 0
+    // passes from 3 on use the visible points of pass 0
     let fixed: Change = |s| s.method = Method::Ppm;
     let picture = |first: u32| {
         let mut opened = open(&Wanted::Cpu, SIZE, |s| {
@@ -130,8 +128,8 @@ fn nothing_may_be_left_behind() {
     assert!(same > 24 * 16 * 9 / 10, "all but what one photon lights: {same}");
 }
 
-/// More visible points than a chunk holds, so that buffers of more than one go into the file and
-/// out of it, those of layers too.
+/// With more visible points than one chunk holds, buffers of several chunks are written to the file
+/// and restored from it, including those of layers.
 #[test]
 fn chunks_are_put_together() {
     let film = |film: &mut Film| {
@@ -144,7 +142,7 @@ fn chunks_are_put_together() {
     let mut cpu = open_on(&Wanted::Cpu, film, change);
     passes(cpu.engine.as_mut(), 1);
     let half_way = cpu.engine.save().unwrap();
-    // the last chunk, a row, is not like the beginning of the first one
+    // the last chunk, one row, differs from the start of the first chunk
     let LayerState { aovs, parts, counts, .. } = &half_way.layers;
     assert!(parts[..512 * PARTS_BYTES] != parts[parts.len() - 512 * PARTS_BYTES..]);
     assert!(aovs[..512 * AOV_BYTES] != aovs[aovs.len() - 512 * AOV_BYTES..]);

@@ -1,4 +1,4 @@
-//! Files that are not what they should be.
+//! Damaged and forged checkpoint files.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -11,13 +11,14 @@ use caustica::low_level::scene::{Aovs, Film};
 use xxhash_rust::xxh3::xxh3_128;
 
 use super::{checkpoint_on, folder, open_on};
+use crate::support::names;
 
-/// Bytes before the header, and of the checksum.
+/// Bytes before the header, and bytes of the checksum.
 const PREFIX: usize = 24;
 const SUM: usize = 16;
 const NO_STOP: Stop = Stop { passes: u32::MAX, time: None, target_error: None };
 
-/// A window of 4 x 3 pixels with all layers.
+/// Sets a window of 4 x 3 pixels with all layers.
 fn window(film: &mut Film) {
     (film.width, film.height, film.window) = (6, 5, Some([1, 2, 5, 5]));
     film.aovs = Aovs::parse("all").unwrap();
@@ -41,8 +42,8 @@ fn refusal(file: &Path, bytes: &[u8]) -> Option<CheckpointError> {
     decode(file, bytes).err()
 }
 
-/// Theory: a checksum of 128 bits over everything before it, and a length, leave no prefix and no
-/// flipped bit unseen.
+/// Theory: a 128-bit checksum over everything before it, together with a length, detects every
+/// truncation and every flipped bit.
 #[test]
 fn every_cut_and_every_flipped_byte_is_seen() {
     let (file, checkpoint) = made("damage");
@@ -89,8 +90,8 @@ fn what_is_no_checkpoint_is_told() {
     }
 }
 
-/// A file that lies: its checksum is right, its header is not. Nothing that it claims may be
-/// believed.
+/// Theory: a forged file may have a correct checksum and a wrong header. The reader must verify
+/// every claim of the header.
 #[test]
 fn forged_headers_are_refused() {
     let (file, _) = made("forged");
@@ -140,7 +141,7 @@ fn forged_headers_are_refused() {
     for (place, value) in changes {
         let mut lying = header.clone();
         *lying.pointer_mut(place).unwrap() = value.clone();
-        // two together may be a sum that a number of passes does not pass over
+        // also make first_pass + passes overflow
         if place == "/passes" && value == u32::MAX {
             lying["first_pass"] = 1.into();
         }
@@ -154,14 +155,13 @@ fn forged_headers_are_refused() {
         let error = forged(header.to_string().as_bytes(), lie);
         assert!(matches!(error, Some(CheckpointError::Damaged { .. })), "{lie}: {error:?}");
     }
-    // deep nesting is refused by the parser, not by the stack
+    // the parser refuses deep nesting; the stack does not overflow
     let deep = [vec![b'['; 100_000], vec![b']'; 100_000]].concat();
     assert!(matches!(forged(&deep, deep.len() as u32), Some(CheckpointError::Damaged { .. })));
 }
 
-/// Any bytes at any places, with the right checksum: what is refused is refused with a reason, and
-/// what is taken for a checkpoint can be developed and merged, whatever comes of it, and gone on
-/// from. Nothing panics.
+/// Writes random bytes at random places, with a correct checksum. Each file is refused with a
+/// reason, or it loads and can then be developed, merged and resumed. Nothing panics.
 #[test]
 fn forged_bytes_do_no_harm() {
     let (file, _) = made("chance");
@@ -178,8 +178,8 @@ fn forged_bytes_do_no_harm() {
     for round in 0..20_000 {
         let mut content = bytes[..bytes.len() - SUM].to_vec();
         for _ in 0..1 + below(4) {
-            // half of them in the numbers at the header's end, where a digit for a digit is still a
-            // header
+            // half of the changes hit the numbers at the end of the header, where replacing a digit
+            // by a digit still gives a valid header
             let header = PREFIX + u32::from_le_bytes(bytes[12..16].try_into().unwrap()) as usize;
             let at = if round % 2 == 0 { header - 1 - below(500) } else { below(content.len()) };
             let in_header = (PREFIX..header).contains(&at);
@@ -212,7 +212,7 @@ fn forged_bytes_do_no_harm() {
     assert!(taken > 1000 && refused > 1000 && gone_on > 100, "{taken} {refused} {gone_on}");
 }
 
-/// Theory: what cannot be written leaves what was there.
+/// Theory: a failed write leaves the previous file intact.
 #[test]
 fn a_failed_write_keeps_the_one_before() {
     let (file, checkpoint) = made("unwritable");
@@ -229,16 +229,12 @@ fn a_failed_write_keeps_the_one_before() {
     fs::set_permissions(&file, writable).unwrap();
     write(&file, &other).unwrap();
     assert!(read(&file).unwrap() == other);
-    assert_eq!(
-        fs::read_dir(file.parent().unwrap()).unwrap().count(),
-        3,
-        "nothing is left beside it"
-    );
+    assert_eq!(names(file.parent().unwrap()).len(), 3, "nothing is left beside it");
 }
 
-/// Theory: radii under the local rule shrink from 1, means of finite light are finite, no more
-/// passes are left out than there were. A file that says otherwise is no render's, whatever its
-/// checksum; one that says so is gone on from without an end that is not its own.
+/// Theory: radii under the local rule shrink from 1, means of finite light are finite, and no more
+/// passes are rejected than were rendered. A file that violates this is refused whatever its
+/// checksum. A file that satisfies it can be resumed without a panic.
 #[test]
 fn forged_numbers_are_refused() {
     let local = |s: &mut RenderSettings| (s.photons, s.radius_rule) = (50, RadiusRule::Local);
@@ -277,7 +273,7 @@ fn forged_numbers_are_refused() {
     for number in [f32::INFINITY, f32::NAN, -1e-3, 1.5] {
         assert!(refused(&drop(number)), "a decrease of {number}");
     }
-    // the film's mean and spread are its first four numbers
+    // the first four numbers of the film are mean and spread
     for number in [f32::INFINITY, -f32::INFINITY, f32::NAN] {
         for at in [0, 4, 8] {
             assert!(refused(&|c| put(&mut c.state.film[at..], number)), "radiance of {number}");
@@ -300,8 +296,8 @@ fn forged_numbers_are_refused() {
     assert!(!refused(&|_| ()), "the forger's hand is right");
 }
 
-/// Theory: the same of layers. Counts are of all visible points or of none, and statistics come
-/// with the local rule alone.
+/// Theory: the same holds for layers. Counts cover all visible points or none, and statistics exist
+/// only under the local rule.
 #[test]
 fn forged_layers_are_refused() {
     let (_, sound) = made("layers");
@@ -340,7 +336,7 @@ fn forged_layers_are_refused() {
             );
         }
     }
-    // samples that hit, samples that end at a visible point, passes
+    // in this order: samples that hit, samples that end at a visible point, passes
     assert!(refused(&|c| put(&mut c.state.layers.aovs, 28, -1.0)));
     assert!(refused(&|c| put(&mut c.state.layers.aovs, 44, -1.0)));
     assert!(refused(&|c| put(&mut c.state.layers.parts, 12, -1.0)));

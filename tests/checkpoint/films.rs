@@ -1,17 +1,18 @@
-//! A part of the picture, and what pictures hold in addition to radiance.
+//! Checkpoints of cropped images and of layers.
 //!
-//! Theory: a window's pixels need nothing of those around it, and layers are means over passes like
-//! the picture; so with both a render that goes on has the bits of one that never stopped, and
-//! ranges merge into all but for rounding.
+//! Theory: the pixels of a window do not depend on those around it, and layers are means over
+//! passes like the image. So a resumed render has the bits of an uninterrupted one for both, and
+//! merged ranges agree up to rounding.
 
 use caustica::low_level::checkpoint::{Checkpoint, merge, read, write};
 use caustica::low_level::device::Wanted;
-use caustica::low_level::engine::{Engine, State};
+use caustica::low_level::engine::State;
 use caustica::low_level::film::file::read_exr;
 use caustica::low_level::scene::settings::{Direct, Method, RadiusRule, RenderSettings};
 use caustica::low_level::scene::{Aovs, Film};
 
 use super::{checkpoint_on, fails, folder, good, open_on};
+use crate::support::passes;
 
 type Change = fn(&mut RenderSettings);
 
@@ -23,16 +24,10 @@ const CHANGES: [(&str, Change); 5] = [
     ("path", |s| s.method = Method::Path),
 ];
 
-/// 15 x 11 of 24 x 16 pixels, with all layers.
+/// Sets a window of 15 x 11 of 24 x 16 pixels, with all layers.
 fn part(film: &mut Film) {
     (film.width, film.height, film.window) = (24, 16, Some([5, 3, 20, 14]));
     film.aovs = Aovs::parse("all").unwrap();
-}
-
-fn passes(engine: &mut dyn Engine, count: u32) {
-    for _ in 0..count {
-        engine.pass().unwrap();
-    }
 }
 
 #[test]
@@ -67,11 +62,11 @@ fn go_on_with_the_same_bits() {
             }
             assert!(held == state, "{name}: {devices:?}");
         }
-        // with nothing left to do the layers are there too
+        // layers are also available when no pass is left to render
         let mut again = open_on(&other, part, change);
         again.engine.restore(&state).unwrap();
         assert!(again.engine.layers().unwrap() == layers, "{name}");
-        // what a checkpoint is developed to is what the engine gives
+        // a developed checkpoint equals the engine's own result
         let made = checkpoint_on(&whole, part, state);
         assert!(made.develop().0 == whole.engine.picture().unwrap(), "{name}");
         for (developed, layer) in made.layers().iter().zip(&layers) {
@@ -96,7 +91,7 @@ fn the_f64_engine_too() {
     assert!(checkpoint_on(&next, part, state).layers() == whole.engine.layers().unwrap());
 }
 
-/// The comparison sees whatever is left behind.
+/// The comparison detects every kind of lost state.
 #[test]
 fn nothing_may_be_left_behind() {
     let mut opened = open_on(&Wanted::Cpu, part, |_| ());
@@ -147,7 +142,7 @@ fn merged(parts: &[Checkpoint]) -> Checkpoint {
     merge(named.collect()).unwrap()
 }
 
-/// The layer that is farthest, and how far over its largest value.
+/// Returns the layer that differs most, and its difference relative to its largest value.
 fn distance(a: &Checkpoint, b: &Checkpoint) -> (f64, &'static str) {
     let (a, b) = (a.layers(), b.layers());
     assert_eq!(a.len(), b.len());
@@ -161,7 +156,7 @@ fn distance(a: &Checkpoint, b: &Checkpoint) -> (f64, &'static str) {
     far.max_by(|a, b| a.0.total_cmp(&b.0)).unwrap()
 }
 
-/// The roundings of a mean in f32 over some passes.
+/// Bound for the rounding of a mean in f32 over a few passes.
 const BOUND: f64 = 1e-6;
 
 #[test]
@@ -174,8 +169,8 @@ fn ranges_give_the_layers_of_all() {
             println!("{name} {cuts:?}: {far:.1e}, {layer}");
             assert!(far <= BOUND, "{name} {cuts:?}: {layer} {far:e}");
         }
-        // the comparator sees one pass of 24 that was made twice in the place of another, but of
-        // fixed points
+        // the comparison detects one pass of 24 that replaces another, except where visible points
+        // are fixed
         let mut other = range(11, 23, change);
         other.state.first_pass = 12;
         let (far, layer) = distance(&merged(&[range(0, 12, change), other]), &whole);
@@ -183,8 +178,7 @@ fn ranges_give_the_layers_of_all() {
     }
 }
 
-/// Through the program: a crop goes on and merges, another one is told and so is the lack of
-/// layers.
+/// The command line resumes and merges crops, and reports a different crop or missing layers.
 #[test]
 fn the_program_keeps_crops_and_layers() {
     let folder = folder("crops");
@@ -201,7 +195,7 @@ fn the_program_keeps_crops_and_layers() {
         (whole.frame.x, whole.frame.y, whole.frame.width, whole.frame.height),
         (5, 3, 24, 16)
     );
-    // one alone gives its own file's channels, two those of all but for rounding
+    // one checkpoint gives its own file's channels; two give those of the whole up to rounding
     good(&folder, "merge whole.checkpoint -o same.exr");
     let same = channels("same.exr");
     assert!(same.channels == whole.channels && same.frame == whole.frame);
@@ -217,7 +211,7 @@ fn the_program_keeps_crops_and_layers() {
             values.iter().zip(&ab.channels[name]).map(|(x, y)| (x - y).abs()).fold(0f32, f32::max);
         assert!(far <= 1e-5 * largest, "{name}: {far} of {largest}");
     }
-    // fewer layers may be asked for, others not
+    // fewer layers may be requested, but not others
     let fewer = line.replace("albedo,depth,indirect,photons", "depth");
     good(&folder, &format!("{fewer} --passes 9 --resume a.checkpoint -o depth.exr"));
     assert_eq!(channels("depth.exr").channels["depth.Z"], whole.channels["depth.Z"]);

@@ -1,8 +1,8 @@
-//! Renders that are killed at random moments and gone on with.
+//! Renders that are killed at random moments and resumed.
 //!
-//! Theory: the file's name is given to a whole checkpoint or to none, so after any kill there is
-//! one that can be read, it never holds fewer passes than before, and the render that at last comes
-//! to its end has written the bytes of one that never stopped.
+//! Theory: the checkpoint's name always refers to a complete file or to none. After any kill the
+//! file is readable and never holds fewer passes than before, and the render that finally finishes
+//! writes the bytes of an uninterrupted one.
 
 use std::fs;
 use std::path::Path;
@@ -12,9 +12,10 @@ use std::time::Duration;
 use caustica::low_level::checkpoint::{read, write};
 use caustica::low_level::film::file::read_exr;
 
-use super::{command, folder, good};
+use super::{folder, good};
+use crate::support::{interruptible, names, words};
 
-/// Numbers in [0, 1) by a linear congruence.
+/// Random numbers in [0, 1) from a linear congruential generator.
 struct Chance(u64);
 
 impl Chance {
@@ -25,22 +26,22 @@ impl Chance {
     }
 }
 
-/// A part of the picture, and all layers.
+/// Options for a crop with all layers.
 const WINDOW: &str = "--crop 5,3,20,14 --aov all";
 
-/// How lives ended.
+/// How the processes ended.
 #[derive(Debug, Default)]
 struct Tally {
-    /// By signal 9.
+    /// Killed by signal 9.
     killed: u32,
-    /// By signal 15, after the pass in hand.
+    /// Ended by signal 15, after the current pass.
     terminated: u32,
-    /// With passes made but not all.
+    /// Ended after at least one pass and before the last.
     midway: u32,
 }
 
-/// Renders `line` to its end through as many lives as it takes, each on the next of `devices` and
-/// ended after a random time.
+/// Runs `line` until it finishes, in as many processes as needed. Each runs on the next of
+/// `devices` and is ended after a random time.
 fn through_kills(
     folder: &Path,
     line: &str,
@@ -55,12 +56,12 @@ fn through_kills(
         let resume = if file.exists() { "--resume a.checkpoint" } else { "" };
         let device = devices[life % devices.len()];
         let keep = "--checkpoint a.checkpoint --checkpoint-every 1ms --quiet";
-        let mut child =
-            command(folder, &format!("{line} --device {device} {keep} {resume} -o a.exr"))
-                .stdout(Stdio::null())
-                .stderr(Stdio::null())
-                .spawn()
-                .unwrap();
+        let line = format!("{line} --device {device} {keep} {resume} -o a.exr");
+        let mut child = interruptible(folder, &words(&line))
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
         std::thread::sleep(Duration::from_secs_f64(wait * chance.next()));
         let signal = if chance.next() < 0.7 { "-9" } else { "-15" };
         let sent = Command::new("kill").args([signal, &child.id().to_string()]).status();
@@ -78,7 +79,7 @@ fn through_kills(
         let count = if signal == "-9" { &mut tally.killed } else { &mut tally.terminated };
         *count += 1;
         tally.midway += u32::from(passes > before);
-        // on any machine most lives shall make some passes, and few of them many
+        // adapt to the machine's speed: most processes finish a few passes
         wait *= if passes == before { 1.3 } else { 0.8 };
     }
 }
@@ -109,19 +110,17 @@ fn ends_in_the_same_bytes() {
     }
     println!("{tally:?}");
     assert!(tally.killed > 10 && tally.terminated > 3 && tally.midway > 10, "{tally:?}");
-    let mut left: Vec<_> =
-        fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name()).collect();
-    left.sort();
-    // of a checkpoint the next render removes what a kill left; a picture's may stay
+    let mut left = names(&folder);
+    // the next render removes temporary files of a killed checkpoint writer; those of an image may
+    // stay
     left.retain(|name| {
-        let name = name.to_str().unwrap();
         assert!(!name.ends_with(".lock"), "{name}");
         !name.starts_with(".caustica-")
     });
     assert_eq!(left, ["a.checkpoint", "a.exr", "ball.toml", "wall.obj", "whole.exr"]);
 }
 
-/// Each life on another device: lavapipe goes on with what the CPU began, and the other way round.
+/// Each process runs on another device: lavapipe resumes what the CPU started, and the reverse.
 #[test]
 fn ends_in_the_same_bits_on_changing_devices() {
     let folder = folder("kills on devices");
@@ -143,7 +142,7 @@ fn ends_in_the_same_bits_on_changing_devices() {
     }
 }
 
-/// The comparison sees a checkpoint that counts a pass which it does not hold.
+/// The comparison detects a checkpoint that counts one pass more than it holds.
 #[test]
 fn a_pass_left_out_is_seen() {
     let folder = folder("a pass left out");

@@ -1,9 +1,8 @@
-//! Checkpoints: what an engine holds, as a file, and as the program uses it.
+//! Checkpoints: an engine's state, its file format, and the options that use it.
 //!
-//! Theory: everything that a pass needs beside what is saved is made again from the scene, the
-//! settings and the pass's number, with the same bits. So a render that goes on from a checkpoint,
-//! on the CPU or on lavapipe, ends in the bits of one that never stopped; and where passes do not
-//! need one another, ranges of them merge into all but for rounding.
+//! Theory: a pass depends only on the saved state, the scene, the settings and the pass number. So
+//! a resumed render, on the CPU or on lavapipe, has the bits of an uninterrupted one. Where passes
+//! do not depend on one another, ranges of passes merge up to rounding.
 
 #[path = "../support/mod.rs"]
 mod support;
@@ -17,17 +16,17 @@ mod merging;
 mod program;
 
 use std::path::{Path, PathBuf};
-use std::process::Command;
 use std::sync::LazyLock;
 
+use crate::support::{DISC, LAMP, Shape, ball, folder_with, words};
 use caustica::low_level::checkpoint::{Checkpoint, Origin, Totals};
 use caustica::low_level::device::{self, Opened, Wanted};
 use caustica::low_level::engine::State;
 use caustica::low_level::scene::settings::RenderSettings;
 use caustica::low_level::scene::{self, Film, ToneMap};
-use support::{DISC, LAMP, Shape, ball, folder_with, words};
 
-/// With a mesh and a lens: two discs, maps of the lamp.
+/// The test scene, with a mesh and a lens, so that it uses two gather discs and a guiding map of
+/// the lamp.
 pub static SCENE: LazyLock<String> = LazyLock::new(|| {
     let scene = ball((24, 16), "passes = 24\nphotons = 1500", &[DISC, WALL, LAMP]);
     scene.replace("fov = 40.0\n", "fov = 40.0\naperture = 0.05\nfocus = 5.0\n")
@@ -40,20 +39,15 @@ file = "wall.obj"
 material = "white"
 "#;
 
-/// The wall behind it.
+/// The OBJ file of the wall behind the ball.
 pub const MESH: &str = "v -2 0 -1.5\nv 2 0 -1.5\nv 0 2 -1.5\nf 1 2 3\n";
 
-/// An empty folder with the scene in it.
+/// A fresh folder that contains the scene.
 pub fn folder(name: &str) -> PathBuf {
     folder_with(name, &[("ball.toml", &SCENE), ("wall.obj", MESH)])
 }
 
-/// The program with the words of `line`.
-pub fn command(folder: &Path, line: &str) -> Command {
-    support::command(folder, &words(line))
-}
-
-/// Runs a command that must succeed; its standard output.
+/// Runs a command that must succeed and returns its standard output.
 #[track_caller]
 pub fn good(folder: &Path, line: &str) -> String {
     support::good(folder, &words(line))
@@ -65,12 +59,12 @@ pub fn fails(folder: &Path, line: &str, code: i32, told: &[&str]) {
     support::fails(folder, &words(line), code, told);
 }
 
-/// An engine for the scene at `size`.
+/// Opens an engine for the scene at `size`.
 pub fn open(wanted: &Wanted, size: (u32, u32), change: impl Fn(&mut RenderSettings)) -> Opened {
     open_on(wanted, |film| (film.width, film.height) = size, change)
 }
 
-/// An engine for the scene on a film that is changed so.
+/// Opens an engine for the scene after `film` and `change` have edited its film and settings.
 pub fn open_on(
     wanted: &Wanted,
     film: impl Fn(&mut Film),
@@ -88,12 +82,12 @@ fn folder_once() -> &'static Path {
     FOLDER.get_or_init(|| folder("library"))
 }
 
-/// A checkpoint of what an engine holds for a picture of this size.
+/// Makes a checkpoint of an engine's state for an image of this size.
 pub fn checkpoint(opened: &Opened, size: (u32, u32), state: State) -> Checkpoint {
     checkpoint_on(opened, |film| (film.width, film.height) = size, state)
 }
 
-/// A checkpoint of what an engine holds for a film that is changed so.
+/// Makes a checkpoint of an engine's state for a film that `film` has edited.
 pub fn checkpoint_on(opened: &Opened, film: impl Fn(&mut Film), state: State) -> Checkpoint {
     let mut scene = scene::load(&folder_once().join("ball.toml")).unwrap().scene;
     (scene.film.exposure, scene.film.tonemap) = (0.5, ToneMap::Agx);

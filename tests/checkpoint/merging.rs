@@ -1,9 +1,9 @@
-//! Ranges of passes merged.
+//! Merged ranges of passes.
 //!
 //! Theory: a running mean over n passes in f32 with a carry is rounded in each pass by at most
-//! `2^-24 |x - mean| / n` in the change and `2^-24 |mean|` whenever the carry is put in, which
-//! happens while a pass changes the mean by a 256th, and with growing gaps later. The bound below,
-//! 32 roundings of the greatest of a pixel's values, is what docs/checkpoints.md states.
+//! `2^-24 |x - mean| / n` in the change, and by `2^-24 |mean|` whenever the carry is added. That
+//! happens while a pass changes the mean by more than 1/256, and less and less often later. The
+//! bound is 32 roundings of the largest channel of a pixel, as docs/checkpoints.md states.
 
 use caustica::low_level::checkpoint::{Checkpoint, CheckpointError, merge};
 use caustica::low_level::device::Wanted;
@@ -11,6 +11,7 @@ use caustica::low_level::engine::State;
 use caustica::low_level::scene::settings::{Method, RadiusRule, RenderSettings};
 
 use super::{checkpoint, open};
+use crate::support::passes;
 
 const SIZE: (u32, u32) = (24, 16);
 const ROUNDING: f64 = 1.0 / 16_777_216.0;
@@ -24,9 +25,7 @@ fn range(
 ) -> Checkpoint {
     let mut opened = open(wanted, SIZE, change);
     opened.engine.restore(&State::before(first)).unwrap();
-    for _ in first..end {
-        opened.engine.pass().unwrap();
-    }
+    passes(opened.engine.as_mut(), end - first);
     let state = opened.engine.save().unwrap();
     let mut made = checkpoint(&opened, SIZE, state);
     made.totals.photons = u64::from(end - first) * 10;
@@ -39,8 +38,8 @@ fn merged(parts: &[Checkpoint]) -> Result<Checkpoint, CheckpointError> {
     merge(named.collect())
 }
 
-/// How far two checkpoints' pictures and variances are apart, over the pixel's luminance in the
-/// second, and its square.
+/// Largest difference of the images relative to the pixel's luminance, and of the variances
+/// relative to its square.
 fn distance(a: &Checkpoint, b: &Checkpoint) -> [f64; 2] {
     let ((pa, ea, ra), (pb, eb, rb)) = (a.develop(), b.develop());
     assert_eq!(ra, rb);
@@ -49,7 +48,7 @@ fn distance(a: &Checkpoint, b: &Checkpoint) -> [f64; 2] {
         let largest = f64::from(y.iter().copied().fold(1e-30, f32::max));
         let apart = x.iter().zip(y).map(|(x, y)| f64::from((x - y).abs())).fold(0.0, f64::max);
         worst[0] = worst[0].max(apart / largest);
-        // the spread is a mean of squares of what passes deviate by
+        // the spread is a mean of squared deviations
         worst[1] = worst[1].max((ex.variance - ey.variance).abs() / (largest * largest));
     }
     worst
@@ -83,8 +82,7 @@ fn ranges_give_the_picture_of_all() {
                 picture <= BOUND && variance <= BOUND,
                 "{name} {cuts:?}: {picture:e} {variance:e}"
             );
-            // what passes of odd numbers say is turned over from the start of all, not of each
-            // range
+            // the alternating sign starts with the first pass of the whole, not of each range
             let bias = |c: &Checkpoint| {
                 c.develop().1.pixels.iter().map(|p| p.bias_probe_alternating).collect::<Vec<_>>()
             };
@@ -93,13 +91,13 @@ fn ranges_give_the_picture_of_all() {
             let far =
                 a.iter().zip(&b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / f64::from(scale);
             assert!(far <= BOUND, "{name} {cuts:?}: {far:e}");
-            // the error is stated from other cuts of the same passes
+            // the error estimate uses other subsets of the same passes
             let stated = |c: &Checkpoint| c.develop().1.relative().stated;
             let ratio = stated(&all) / stated(&whole);
             println!("  stated {ratio:.2} of that of all");
             assert!((0.5..2.0).contains(&ratio), "{name} {cuts:?}: stated {ratio}");
         }
-        // the comparator sees one pass of forty that was made twice in the place of another
+        // the comparison detects one pass of forty that replaces another
         let again = range(0, 20, &Wanted::Cpu, change);
         let mut other = range(19, 39, &Wanted::Cpu, change);
         other.state.first_pass = 20;
@@ -107,7 +105,7 @@ fn ranges_give_the_picture_of_all() {
     }
 }
 
-/// As many passes as two machines may share.
+/// Two ranges of the length that two machines might share.
 #[test]
 fn two_times_five_hundred_passes() {
     let few = |s: &mut RenderSettings| s.photons = 300;
@@ -126,7 +124,7 @@ fn devices_may_differ() {
     let all = merged(&parts).unwrap();
     assert!(distance(&all, &whole)[0] <= BOUND);
     assert!(all.origin.device.ends_with(" + cpu"), "{}", all.origin.device);
-    // merged ones merge on, as the ranges would have together
+    // merging step by step equals merging all ranges at once
     let last = range(12, 16, &Wanted::Cpu, |_| ());
     let steps = merged(&[all, last.clone()]).unwrap();
     let [first, second] = parts;

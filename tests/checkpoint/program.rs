@@ -1,4 +1,4 @@
-//! Checkpoints through the program: what is refused and why, what is told, and merging.
+//! Checkpoints on the command line: refusals with reasons, messages, and merging.
 
 use std::fs;
 
@@ -40,7 +40,7 @@ fn other_renders_are_refused_with_the_reason() {
     refused("--aov depth", &["layers: expected depth, found none"]);
     refused("--device cpu-f64", &["precision: expected 64 bits, found 32"]);
     refused("--passes 2..9", &["first pass: expected 2, found 0"]);
-    // the scene: a shape, then a mesh and its file alone
+    // the scene file: a changed shape, then a changed mesh file
     let moved = SCENE.replace("center = [0.0, 0.7, 0.0]", "center = [0.0, 0.8, 0.0]");
     fs::write(folder.join("ball.toml"), moved).unwrap();
     refused(
@@ -55,7 +55,7 @@ fn other_renders_are_refused_with_the_reason() {
     fs::write(folder.join("wall.obj"), MESH.replace("0 2 -1.5", "0 1.9 -1.5")).unwrap();
     refused("", &["scene (", "shapes", "a mesh, image or profile that it uses differs"]);
     fs::write(folder.join("wall.obj"), MESH).unwrap();
-    // the version, which no other program is at hand to write
+    // a checkpoint of another version
     let file = folder.join("a.checkpoint");
     let sound = read(&file).unwrap();
     assert!(sound.origin.version.starts_with(concat!(env!("CARGO_PKG_VERSION"), ", kernels ")));
@@ -70,7 +70,7 @@ fn other_renders_are_refused_with_the_reason() {
         1,
         &["contains passes 0..4", "before pass 3", "--passes 4"],
     );
-    // what changes no bit is no reason: comments, where it ends, development
+    // comments, the number of passes and development do not affect the state and are accepted
     let told = SCENE
         .replace("version = 1", "# a comment\nversion = 1")
         .replace("height = 16", "height = 16\nexposure = 1.0");
@@ -123,7 +123,7 @@ fn what_is_no_use_is_told_before_the_work() {
     );
     fails(&folder, "info ball.toml --passes 2..5", 2, &["starts at pass 0"]);
     good(&folder, "info ball.toml --passes 0..5");
-    // a checkpoint that is cut off
+    // a truncated checkpoint
     good(&folder, &format!("{line} --passes 2 --checkpoint a.checkpoint -o a.exr"));
     let bytes = fs::read(folder.join("a.checkpoint")).unwrap();
     fs::write(folder.join("cut.checkpoint"), &bytes[..bytes.len() / 2]).unwrap();
@@ -137,9 +137,8 @@ fn what_is_no_use_is_told_before_the_work() {
     fails(&folder, "merge cut.checkpoint -o b.exr", 1, &["cut.checkpoint", "should have", &half]);
 }
 
-/// Theory: a render goes on to more passes than it was to have, on another device and in the same
-/// bits; where nothing is left to do, the picture is written again. All of it can be read in the
-/// JSON lines.
+/// Theory: a finished render can be extended to more passes, on another device and with the same
+/// bits. If no pass is left, the image is written again. The JSON events report each of these.
 #[test]
 fn a_finished_render_goes_on() {
     let folder = folder("further");
@@ -174,7 +173,7 @@ fn a_finished_render_goes_on() {
     let channels = |file: &str| read_exr(&folder.join(file)).unwrap().channels;
     assert!(channels("c.exr") == channels("whole.exr"));
     assert_eq!(read(&folder.join("a.checkpoint")).unwrap().state.passes, 9);
-    // presets promise by their first passes, which are not made again
+    // the calibration passes of a preset are not rendered again
     let preset = format!("{line} --device cpu --quality draft");
     let begun = good(&folder, &format!("{preset} --passes 3 --checkpoint b.checkpoint -o d.exr"));
     assert_eq!(events(&begun, "calibration").len(), 1);
@@ -185,8 +184,8 @@ fn a_finished_render_goes_on() {
     );
 }
 
-/// Theory: 0..9 is 0..4 and 4..9, on any devices, as a picture or as a checkpoint, whose attributes
-/// say so; one alone gives its own picture to the byte.
+/// Theory: 0..9 is 0..4 merged with 4..9, on any devices, as an image or as a checkpoint, and the
+/// attributes say so. Merging one checkpoint alone gives its own image byte for byte.
 #[test]
 fn ranges_merge() {
     let folder = folder("merge");
@@ -229,7 +228,7 @@ fn ranges_merge() {
         (&"4".into(), &"5".into())
     );
     merge("whole.checkpoint", "same.exr");
-    // a picture by `render` also says how to make it again
+    // an image written by `render` has further attributes
     let [same, whole] = ["same.exr", "whole.exr"].map(|file| read_exr(&folder.join(file)).unwrap());
     assert!(same.channels == whole.channels);
     for (name, value) in &same.attributes {
@@ -261,8 +260,7 @@ fn ranges_merge() {
     assert!(!folder.join("x.exr").exists());
 }
 
-/// Theory: an error that is aimed at ends a render after the same pass, wherever it was stopped
-/// before.
+/// Theory: a target error ends a render after the same pass wherever the render was interrupted.
 #[test]
 fn an_error_aimed_at_is_met_in_the_same_pass() {
     let folder = folder("target");
@@ -294,7 +292,7 @@ fn the_help_tells_of_it() {
     ] {
         assert!(help.contains(word), "{word}: {help}");
     }
-    // the examples of merge run as they stand, but for their size
+    // the examples of merge run unchanged except for their size
     let scenes = format!("{}/scenes/", env!("CARGO_MANIFEST_DIR"));
     let help = good(&folder, "merge --help");
     let examples: Vec<_> =

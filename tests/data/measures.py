@@ -1,4 +1,4 @@
-"""Prints what tests/film_difference.rs expects of FLIP and SSIM, from the authors' program and scikit-image.
+"""Prints what tests/film/difference.rs expects of FLIP and SSIM, from the authors' program and scikit-image.
 
 pip install flip-evaluator==1.7 scikit-image==0.26.0
 """

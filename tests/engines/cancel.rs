@@ -1,30 +1,24 @@
-//! Passes that are given up on request.
+//! Cancelled passes.
 
 use std::thread;
 use std::time::{Duration, Instant};
 
 use caustica::low_level::cpu::CpuEngine;
 use caustica::low_level::engine::{Cancel, Engine, EngineError, State};
-use caustica::low_level::film::Picture;
 use caustica::low_level::gpu::GpuEngine;
 use caustica::low_level::pack::PackedScene;
 use caustica::low_level::plan::Plan;
 
-use super::scenes::{SCENES, planned};
-use super::{photons, software};
+use super::agreement::photons;
+use crate::scenes::{SCENES, planned};
+use crate::support::{bits, software};
 
 type Make = fn(&PackedScene, Plan) -> Box<dyn Engine>;
 
 const ENGINES: [(&str, Make); 2] = [
     ("CPU", |packed, plan| Box::new(CpuEngine::new(packed.clone(), plan))),
-    ("lavapipe", |packed, plan| {
-        Box::new(GpuEngine::new(&software::software(), packed, plan).unwrap())
-    }),
+    ("lavapipe", |packed, plan| Box::new(GpuEngine::new(&software(), packed, plan).unwrap())),
 ];
-
-fn bits(picture: &Picture) -> Vec<[u32; 3]> {
-    picture.rgb.iter().map(|rgb| rgb.map(f32::to_bits)).collect()
-}
 
 #[track_caller]
 fn cancelled(name: &str, engine: &mut dyn Engine) {
@@ -34,9 +28,8 @@ fn cancelled(name: &str, engine: &mut dyn Engine) {
     }
 }
 
-/// Theory: a pass that is given up leaves the film, the errors and the state of the passes before
-/// it, and another engine that goes on from there ends in the bits of a render that was never
-/// interrupted.
+/// Theory: a cancelled pass leaves film, errors and state as they were after the previous pass.
+/// Another engine that resumes from there ends with the bits of an uninterrupted render.
 #[test]
 fn what_was_done_before_stays() {
     let (_, settings, rest) = SCENES[0];
@@ -50,7 +43,7 @@ fn what_was_done_before_stays() {
         }
         cancel.ask();
         cancelled(name, engine.as_mut());
-        // once asked for it stays so
+        // a cancelled plan stays cancelled
         cancelled(name, engine.as_mut());
         assert_eq!(bits(&engine.picture().unwrap()), bits(&whole.picture().unwrap()), "{name}");
         assert_eq!(engine.errors().unwrap().pixels, whole.errors().unwrap().pixels, "{name}");
@@ -63,9 +56,8 @@ fn what_was_done_before_stays() {
     }
 }
 
-/// Theory: steps of the CPU engine and submissions to a GPU take a fraction of a second, so that a
-/// pass of a hundred million photons, which takes a minute, ends soon after another thread asks for
-/// it.
+/// Theory: steps of the CPU engine and submissions to a GPU take a fraction of a second. So a pass
+/// of a hundred million photons, which takes a minute, ends soon after another thread cancels it.
 #[test]
 fn a_long_pass_ends_soon() {
     let (_, settings, rest) = SCENES[0];

@@ -1,4 +1,4 @@
-//! Scenes that together use every feature, and the files that they name.
+//! Scenes that together use every feature, and the files that they refer to.
 
 use std::path::{Path, PathBuf};
 
@@ -7,7 +7,7 @@ use caustica::low_level::pilots::prepare;
 use caustica::low_level::plan::Plan;
 use caustica::low_level::scene::{Aovs, Loaded, parse};
 
-use super::support::folder;
+use crate::support::folder;
 
 const HEAD: &str = r#"
 version = 1
@@ -29,7 +29,7 @@ v = [0.0, 0.0, -6.0]
 material = "white"
 "#;
 
-/// Name, render settings, and the rest of the scene.
+/// Name, render settings, and the rest of the scene file.
 pub const SCENES: [(&str, &str, &str); 10] = [
     (
         "glass and mirror under a rectangle",
@@ -385,7 +385,7 @@ pub const SCENES: [(&str, &str, &str); 10] = [
     ),
 ];
 
-/// The folder with the files that scenes name.
+/// The folder with the files that scenes refer to.
 fn assets() -> &'static Path {
     static FOLDER: std::sync::OnceLock<PathBuf> = std::sync::OnceLock::new();
     FOLDER.get_or_init(|| {
@@ -407,7 +407,7 @@ fn assets() -> &'static Path {
     })
 }
 
-/// A wedge, whose ends are triangles.
+/// A wedge with triangular ends.
 const WEDGE: &str = "v 0 0 0\nv 0.5 0 0.1\nv 0.1 0.3 0\nv 0 0 0.6\nv 0.5 0 0.7\nv 0.1 0.3 0.6\n\
     f 1 3 2\nf 4 5 6\nf 1 2 5 4\nf 2 3 6 5\nf 3 1 4 6\n";
 
@@ -438,12 +438,12 @@ fn ball(columns: u32, rows: u32) -> String {
     text
 }
 
-/// The scene of these settings and shapes, and its plan.
+/// Packs the scene with these settings and shapes, and plans it.
 pub fn planned(settings: &str, rest: &str) -> (PackedScene, Plan) {
     planned_at((48, 36), settings, rest)
 }
 
-/// The scene of these settings and shapes with a picture of this size.
+/// Loads the scene with these settings and shapes and an image of this size.
 pub fn loaded_at((width, height): (u32, u32), settings: &str, rest: &str) -> Loaded {
     let film = format!("[film]\nwidth = {width}\nheight = {height}");
     let lens = if settings.contains("ppm") || rest.contains("lake") {
@@ -461,7 +461,7 @@ pub fn loaded_at((width, height): (u32, u32), settings: &str, rest: &str) -> Loa
     loaded
 }
 
-/// The same with a picture of another size.
+/// Like [`planned`], with an image of another size.
 pub fn planned_at(size: (u32, u32), settings: &str, rest: &str) -> (PackedScene, Plan) {
     let loaded = loaded_at(size, settings, rest);
     let packed = prepare(&loaded.scene, loaded.scene.film.width, loaded.scene.film.height).unwrap();

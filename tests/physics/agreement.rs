@@ -1,4 +1,4 @@
-//! All methods on one scene with everything in it.
+//! All methods on one scene with every shape, material and light.
 
 use caustica::low_level::scene::settings::{Direct, Method, RadiusRule, RenderSettings};
 use glam::DVec3;
@@ -10,7 +10,7 @@ type Case = (Method, Direct, RadiusRule);
 
 const PATH: Case = (Method::Path, Direct::Sampled, RadiusRule::Fixed);
 
-/// Renders `text` by every case and compares all pairs: the whole picture to `power`, tiles to four
+/// Renders `text` in every case and compares all pairs: the whole image to `power`, tiles to four
 /// times that.
 fn pairwise(name: &str, text: &str, cases: &[Case], power: f64) {
     let found: Vec<(String, Runs)> = cases
@@ -23,7 +23,7 @@ fn pairwise(name: &str, text: &str, cases: &[Case], power: f64) {
                 passes: 4,
                 photons: 1 << 14,
                 max_bounces: 24,
-                // methods must not share random numbers, or they would agree too well
+                // independent random numbers, or the methods would agree too well
                 seed: 100 * (method as u64 * 9 + direct as u64 * 3 + radius_rule as u64),
                 ..settings(0.02)
             };
@@ -37,10 +37,10 @@ fn pairwise(name: &str, text: &str, cases: &[Case], power: f64) {
     }
 }
 
-/// Theory: PPM and SPPM with every radius rule, direct light sampled and by photons, estimate one
-/// integral; their pictures agree pairwise, region by region. Discs of radius 0.02 blur and lose
-/// light at edges and corners, all alike at first and less under rules that shrink them: that bias
-/// lies within the noise asked for.
+/// Theory: PPM and SPPM with every radius rule, with direct light sampled or by photons, estimate
+/// one integral, so their images agree pairwise and region by region. Discs of radius 0.02 blur and
+/// lose light at edges and corners, all alike at first and less under rules that shrink them; that
+/// bias lies within the required noise.
 #[test]
 fn photon_mapping_agrees_pairwise() {
     let cases = [
@@ -52,8 +52,8 @@ fn photon_mapping_agrees_pairwise() {
     pairwise("everything", &everything(1.0, DVec3::ZERO, 24), &cases, 0.06);
 }
 
-/// Theory: path tracing finds all light except that of a point, a spot or a sun by way of mirrors
-/// and glass. With matte bodies in place of those, it agrees with photon mapping under all lights.
+/// Theory: path tracing finds all light except that of a point, a spot or a sun via mirrors and
+/// glass. With matte bodies instead, it agrees with photon mapping under all lights.
 #[test]
 fn path_tracing_agrees_on_matte_bodies() {
     let full = everything(1.0, DVec3::ZERO, 24);
@@ -74,7 +74,7 @@ fn path_tracing_agrees_on_matte_bodies() {
     pairwise("matte, lamp and sky", &format!("{lamps}{sky}"), &cases[..3], 0.06);
 }
 
-/// Theory: as above, with mirrors and glass under lights that have an extent.
+/// Theory: the same with mirrors and glass under lights that have an extent.
 #[test]
 fn path_tracing_agrees_under_lamp_and_sky() {
     let full = everything(1.0, DVec3::ZERO, 24);
@@ -91,8 +91,8 @@ fn path_tracing_agrees_under_lamp_and_sky() {
     pairwise("lamp and sky", &text, &cases, 0.06);
 }
 
-/// Theory: path tracing with shadow rays combines both ways to reach a light with weights that add
-/// up to one, and so gives the image of path tracing without shadow rays. The weights contain the
+/// Theory: path tracing with shadow rays combines both ways to reach a light with weights that sum
+/// to one, so it gives the image of path tracing without shadow rays. The weights contain the
 /// probability of the light at that point, which differs between the floor below a wide lamp and
 /// the floor below the sky.
 #[test]

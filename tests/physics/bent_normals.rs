@@ -1,9 +1,9 @@
-//! Flat walls whose corner normals all lean the same way: what interpolated normals do to light, in
-//! closed form.
+//! Flat walls whose corner normals all lean the same way: the effect of interpolated normals on
+//! light, in closed form.
 //!
-//! An eye path scatters about the shading normal n_s alone, so that a flat wall with n_s leaning
-//! from its geometric normal n_g acts as one whose every point is turned by that angle; photons
-//! must arrive at the same radiances, although their density follows n_g (Veach 1997, section 5.3).
+//! An eye path scatters about the shading normal n_s only, so a flat wall with n_s leaning from its
+//! geometric normal n_g acts as one whose every point is turned by that angle. Photons must arrive
+//! at the same radiances, although their density follows n_g (Veach 1997, section 5.3).
 
 use std::f64::consts::PI;
 
@@ -13,12 +13,12 @@ use glam::DVec3;
 use super::closed_forms as form;
 use super::lab::*;
 
-/// So dark that the floor's own light counts for less than a thousandth.
+/// So dark that light reflected by the floor contributes less than a thousandth.
 const FLOOR: f64 = 0.002;
 const SUN: f64 = 3.0;
 
-/// A floor at y = 0 seen about (0.3, 0, 0), the sun, and a square through `corners` with the
-/// shading normal `ns`.
+/// The scene: a floor at y = 0 seen around (0.3, 0, 0), the sun, and a square with these corners
+/// and the shading normal `ns`.
 fn scene(
     name: &str,
     material: &str,
@@ -67,9 +67,9 @@ fn at_degrees(a: f64) -> DVec3 {
     DVec3::new(a.to_radians().cos(), a.to_radians().sin(), 0.0)
 }
 
-/// Theory: the mirrored sun is a sun in the direction mirrored at n_s, of the same irradiance: the
-/// floor has E (cos + cos'). Here the sun stands 60 degrees over n_g and the normal leans by 15:
-/// photons alone would bring cos 60 / cos 30 = 0.58 of the mirrored part.
+/// Theory: the mirrored sun is a sun in the direction mirrored at n_s, of the same irradiance, so
+/// the floor receives E (cos + cos'). Here the sun stands 60 degrees over n_g and the normal leans
+/// by 15: uncorrected photons would bring cos 60 / cos 30 = 0.58 of the mirrored part.
 #[test]
 fn mirror() {
     let (to_sun, ns) = (at_degrees(60.0), at_degrees(15.0));
@@ -80,8 +80,8 @@ fn mirror() {
     });
 }
 
-/// Theory: a wall under irradiance E n_s . w has the radiance rho / pi times that; the floor sees
-/// it as Lambert's polygon, besides the sun.
+/// Theory: a wall under irradiance E n_s . w has the radiance rho / pi times that. The floor
+/// receives it by Lambert's polygon formula, in addition to the sun.
 #[test]
 fn diffuse() {
     const RHO: f64 = 0.9;
@@ -89,14 +89,14 @@ fn diffuse() {
     let (camera, text) =
         scene("diffuse", "type = \"diffuse\"\nreflectance = 0.9", &WALL, ns, -to_sun);
     let radiance = RHO / PI * SUN * to_sun.dot(ns);
-    // seen from the floor in front, the wall's corners run the other way about
+    // seen from the floor in front, the wall's corners run in the opposite sense
     check("diffuse", &camera, &text, |p| {
         SUN * to_sun.y + radiance * form::polygon(p, DVec3::Y, &WALL).abs()
     });
 }
 
 /// Theory: behind a flat face of glass with normal n_s the sun stands in the refracted direction
-/// with the irradiance T E cos_i / cos_t; the floor takes its cosine of that.
+/// with the irradiance T E cos_i / cos_t; the floor receives the cosine of that.
 #[test]
 fn glass() {
     const N: f64 = 1.5;

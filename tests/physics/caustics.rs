@@ -7,8 +7,8 @@ use glam::DVec3;
 
 use super::lab::*;
 
-/// So dark that what the floor sends to mirror or glass and gets back counts for less than a
-/// thousandth.
+/// So dark that light which the floor reflects to mirror or glass and receives back contributes
+/// less than a thousandth.
 const ALBEDO: f64 = 0.002;
 const RADIUS: f64 = 0.03;
 
@@ -22,11 +22,11 @@ fn floor(camera: &Camera) -> String {
 }
 
 /// Theory: a paraboloid y = r^2 / 4f makes the light of a point at its focus parallel. A ring of
-/// the mirror at radius r takes the solid angle 2 pi sin(theta) dtheta with r = 2 f tan(theta / 2),
-/// so that E(r) = (I / f^2) / (1 + r^2 / 4f^2)^2 on any plane across the axis. The mirror hangs
-/// upside down over the floor; a disc between lamp and floor keeps direct light away (its shadow
-/// falls inside r < 0.2). The quadratic profile (0, 0), (a/2, 0), (a, a^2/4f) is that paraboloid
-/// exactly.
+/// the mirror at radius r subtends the solid angle 2 pi sin(theta) dtheta with r = 2 f tan(theta /
+/// 2), so E(r) = (I / f^2) / (1 + r^2 / 4f^2)^2 on any plane across the axis. The mirror hangs
+/// upside down over the floor, and a disc between lamp and floor blocks direct light (its shadow
+/// falls inside r < 0.2). The quadratic profile (0, 0), (a/2, 0), (a, a^2/4f) is exactly that
+/// paraboloid.
 #[test]
 fn paraboloid_mirror() {
     const F: f64 = 0.5;
@@ -69,10 +69,10 @@ fn paraboloid_mirror() {
 }
 
 /// Theory: rays of a point light at height h that pass a slab of thickness w and index n meet the
-/// floor at b(theta) = (h - w) tan(theta) + w tan(theta'), sin(theta) = n sin(theta'), so that E(b)
-/// = I T sin(theta) / (b db/dtheta) with T = (1 - R)^2. Light reflected to and fro inside goes 3,
-/// 5, ... times through the slab: the same map with 3 w for w and R^2 more, and so on. R is the
-/// mean of both polarisations, as the renderer keeps none.
+/// floor at b(theta) = (h - w) tan(theta) + w tan(theta'), sin(theta) = n sin(theta'), so E(b) = I
+/// T sin(theta) / (b db/dtheta) with T = (1 - R)^2. Light reflected inside passes the slab 3, 5,
+/// ... times: the same map with 3 w for w and another factor R^2, and so on. R is the mean of both
+/// polarisations, because the renderer does not track polarisation.
 #[test]
 fn slab_over_a_floor() {
     const N: f64 = 1.5;
@@ -92,7 +92,7 @@ fn slab_over_a_floor() {
         let p = (N * c - ct) / (N * c + ct);
         0.5 * (s * s + p * p)
     };
-    // irradiance at b by light that went 2 k + 1 times through the slab
+    // irradiance at b by light that passed the slab 2 k + 1 times
     let order = |b: f64, k: i32| {
         let ways = W * (2 * k + 1) as f64;
         let place = |theta: f64| (H - W) * theta.tan() + ways * (theta.sin() / N).asin().tan();
@@ -115,10 +115,10 @@ fn slab_over_a_floor() {
     runs_to(0.05, &text, &settings).assert_picture("slab", &truth, 0.05);
 }
 
-/// Theory: a ray from a source at (0, `h`) that leaves it at angle theta from straight down, and
-/// the plane y = 0: a one-dimensional map theta -> x (signed). E(b) = sum of I T sin(theta) / (b
-/// |dx/dtheta|) over all theta with |x| = b. `map` gives x and the transmittance T of a ray, if it
-/// arrives.
+/// Theory: a ray leaves a source at (0, `h`) at angle theta from straight down and meets the plane
+/// y = 0, which defines a one-dimensional map theta -> x (signed). E(b) is the sum of I T
+/// sin(theta) / (b |dx/dtheta|) over all theta with |x| = b. `map` returns x and the transmittance
+/// T of a ray that arrives.
 fn mapped(b: f64, intensity: f64, map: &impl Fn(f64) -> Option<(f64, f64)>) -> f64 {
     const STEPS: usize = 4000;
     const WIDEST: f64 = 0.4;
@@ -129,7 +129,7 @@ fn mapped(b: f64, intensity: f64, map: &impl Fn(f64) -> Option<(f64, f64)>) -> f
         for k in 0..STEPS - 1 {
             let (mut low, mut high) = (at(k), at(k + 1));
             let (Some(a), Some(z)) = (off(low), off(high)) else { continue };
-            // a jump of the map is no root
+            // a discontinuity of the map is not a root
             if a * z > 0.0 || (a - z).abs() > 0.1 {
                 continue;
             }
@@ -149,11 +149,11 @@ fn mapped(b: f64, intensity: f64, map: &impl Fn(f64) -> Option<(f64, f64)>) -> f
     sum
 }
 
-/// Theory: the map of [`mapped`] for a ball lens of index n and radius R about (0, c): two
-/// refractions by Snell's law, T = (1 - F)^2 with the Fresnel reflectance F of both polarisations'
-/// mean, the same at both faces. Light sent to and fro inside the ball leaves it upward, or less
-/// than F^2 of it. The views lie in the ball's shadow, inside and outside of the caustic's fold at
-/// 0.076.
+/// Theory: the map of [`mapped`] for a ball lens of index n and radius R around (0, c): two
+/// refractions by Snell's law, T = (1 - F)^2 with the Fresnel reflectance F averaged over both
+/// polarisations, the same at both faces. Light reflected inside the ball leaves it upward, except
+/// for a share below F^2. The views lie in the ball's shadow, inside and outside the caustic's fold
+/// at 0.076.
 #[test]
 fn ball_lens() {
     const N: f64 = 1.2;
@@ -207,12 +207,12 @@ fn ball_lens() {
 }
 
 /// Theory: parallel light that falls into a mirror cylinder of radius R, seen along the axis, is
-/// turned at the wall's point R (cos phi, sin phi) into the direction -(cos 2 phi, sin 2 phi), and
-/// its tubes have the width |1 - 2 s / (R cos phi)| after the way s: they close at the caustic, a
-/// nephroid with its cusp at R / 2. Rays fall as far as they go (45 degrees), so that each place
-/// gets E_sun / sqrt 2 over the width from every turned ray through it that came in over the
-/// opposite rim and met the wall below its own, and as much from the sun itself where the rim
-/// throws no shadow.
+/// reflected at the wall's point R (cos phi, sin phi) into the direction -(cos 2 phi, sin 2 phi).
+/// Its tubes have the width |1 - 2 s / (R cos phi)| after the distance s: they close at the
+/// caustic, a nephroid with its cusp at R / 2. Rays descend as far as they travel (45 degrees), so
+/// each place receives E_sun / sqrt 2 over the width from every reflected ray through it that
+/// entered over the opposite rim and met the wall below its own, and as much from the sun itself
+/// where the rim casts no shadow.
 #[test]
 fn cylinder() {
     const HEIGHT: f64 = 0.8;
@@ -229,7 +229,7 @@ fn cylinder() {
             let to = glam::DVec2::new(p.x, p.z) - wall;
             (to.perp_dot(turned), to.dot(turned))
         };
-        // the way back to the opposite wall along -x
+        // the distance back to the opposite wall along -x
         let direct = p.x + (1.0 - p.z * p.z).sqrt() > HEIGHT;
         let mut widths = f64::from(direct);
         for k in 0..STEPS - 1 {
@@ -250,7 +250,7 @@ fn cylinder() {
         }
         SUN * 0.5f64.sqrt() * widths
     };
-    // on both sides of the cusp, and off the axis: the cusp itself lies between
+    // on both sides of the cusp and off the axis; the cusp itself lies between
     for (x, z) in [(0.35, 0.0), (0.65, 0.0), (0.3, 0.35)] {
         let camera = Camera {
             position: DVec3::new(x, 2.5, z + 0.4),

@@ -1,13 +1,14 @@
 //! Irradiance in closed form, f64. Receivers are points `x` with unit normal `n`; sources have
-//! radiance 1 unless said.
+//! radiance 1 unless stated otherwise.
 
 use std::f64::consts::{PI, TAU};
 
 use glam::DVec3;
 
-/// Under a polygon wholly above the horizon (Lambert 1760; Baum et al. 1989): half the sum over the
-/// edges of the angle each subtends times the cosine of its plane's normal. The corners run
-/// counter-clockwise seen from the lit side; negative for one that turns its back.
+/// Irradiance under a polygon wholly above the horizon (Lambert 1760; Baum et al. 1989): half the
+/// sum over the edges of the angle each subtends times the cosine of its plane's normal. The
+/// corners run counter-clockwise seen from the lit side; the result is negative for a polygon that
+/// faces away.
 pub fn polygon(x: DVec3, n: DVec3, corners: &[DVec3]) -> f64 {
     let sum: f64 = (0..corners.len())
         .map(|i| {
@@ -20,20 +21,20 @@ pub fn polygon(x: DVec3, n: DVec3, corners: &[DVec3]) -> f64 {
     0.5 * sum
 }
 
-/// Under a sphere wholly above the horizon: pi (R/d)^2 cos.
+/// Irradiance under a sphere wholly above the horizon: pi (R/d)^2 cos.
 pub fn sphere(x: DVec3, n: DVec3, center: DVec3, radius: f64) -> f64 {
     let to = center - x;
     PI * radius * radius / to.length_squared() * to.normalize().dot(n)
 }
 
-/// At distance `a` from the axis of a parallel disc of radius `r` at height `h`.
+/// Irradiance at distance `a` from the axis of a parallel disc of radius `r` at height `h`.
 pub fn disc(a: f64, h: f64, r: f64) -> f64 {
     let s = a * a + h * h;
     0.5 * PI * (1.0 - (s - r * r) / ((s + r * r).powi(2) - 4.0 * r * r * a * a).sqrt())
 }
 
-/// Under a convex surface wholly above the horizon that `point(s, t)`, s and t in [0, 1], covers
-/// with its area vector element: midpoint rule with `n_s` x `n_t` points.
+/// Irradiance under a convex surface wholly above the horizon, by the midpoint rule with `n_s` x
+/// `n_t` points. `point(s, t)`, s and t in [0, 1], returns a point and its area vector element.
 pub fn surface(
     x: DVec3,
     n: DVec3,
@@ -69,8 +70,8 @@ pub fn revolution(base: DVec3, profile: [[f64; 2]; 4]) -> impl Fn(f64, f64) -> (
 }
 
 /// Theory: a square of side 2 a at height h seen from below its middle is four times a corner's,
-/// and its quadrature must be the polygon's sum; a disc's too; an inscribed fine polygon is a disc;
-/// a sphere as a surface is a sphere.
+/// and its quadrature must equal the polygon's sum, as a disc's must. An inscribed fine polygon
+/// approaches a disc, and a sphere as a surface equals the sphere.
 #[test]
 fn closed_forms_agree_with_quadrature() {
     let x = DVec3::new(0.2, 0.0, -0.1);

@@ -1,4 +1,4 @@
-//! How the global rule converges: variance as N^-alpha, squared bias as N^-2(1 - alpha) (Knaus &
+//! Convergence of the global rule: variance as N^-alpha, squared bias as N^-2(1 - alpha) (Knaus &
 //! Zwicker 2011).
 
 use std::f64::consts::PI;
@@ -11,10 +11,10 @@ use super::lab::*;
 
 const ALBEDO: f64 = 0.5;
 const HEIGHT: f64 = 0.5;
-/// Pass counts at which the picture is looked at.
+/// Pass counts at which the image is evaluated.
 const COUNTS: [u32; 6] = [8, 16, 32, 64, 128, 256];
 
-/// A floor under a point light; one visible point per pixel that stays where it is.
+/// A floor under a point light, with one fixed visible point per pixel.
 fn scene(fov: f64, size: u32) -> String {
     Camera { position: DVec3::new(0.0, 1.4, 0.4), target: DVec3::ZERO, fov, size }.toml()
         + &format!(
@@ -56,8 +56,8 @@ fn slope(points: &[(f64, f64)]) -> f64 {
     sxy / sxx
 }
 
-/// [`slope`] of `figure` of all runs, and the standard error that leaving out one run at a time
-/// tells (jackknife).
+/// [`slope`] of `figure` of all runs, and its standard error by leaving out one run at a time
+/// (jackknife).
 fn fitted(runs: usize, figure: impl Fn(u32, Option<usize>) -> f64) -> Estimate {
     let fit = |left_out| {
         let points: Vec<(f64, f64)> =
@@ -71,13 +71,13 @@ fn fitted(runs: usize, figure: impl Fn(u32, Option<usize>) -> f64) -> Estimate {
     Estimate { mean: fit(None), error: ((k - 1.0) / k * spread).sqrt() }
 }
 
-/// Mean of a function of the squared radius, over the start's, over the first `n` passes.
+/// Mean of a function of the squared radius, relative to the start, over the first `n` passes.
 fn means(n: u32, alpha: f64, of: impl Fn(f64) -> f64) -> f64 {
     (1..=n).map(|i| of(global_scale_sq(u64::from(i), alpha))).sum::<f64>() / f64::from(n)
 }
 
-/// The slope of the exact curve at these counts, and how far it may lie from the one that it tends
-/// to.
+/// Compares with the slope of the exact curve at these counts, and limits its distance from the
+/// asymptotic slope.
 fn assert_slope(what: &str, found: Estimate, exact: f64, limit: f64) {
     println!(
         "{what}: slope {:.3} +- {:.3}, exact {exact:.3}, in the limit {limit:.3}",
@@ -85,13 +85,13 @@ fn assert_slope(what: &str, found: Estimate, exact: f64, limit: f64) {
     );
     assert!((exact - limit).abs() < 0.1, "{what}: the counts are too small for the limit");
     assert!(found.admits(exact, 0.0), "{what}: {found:?}, exact {exact}");
-    // neither the other law nor a fixed radius would pass
+    // the test rejects the other law and a fixed radius
     assert!(5.0 * found.error < 0.2, "{what}: too noisy, {found:?}");
 }
 
 /// Theory: under a point light at height h the mean irradiance over a disc of radius r below it is
-/// E(r) = (2 I / r^2) (1 - h / sqrt(h^2 + r^2)), against E(0) = I / h^2, so that the bias after N
-/// passes is the mean of E(r_i) - E(0), which falls as N^-(1 - alpha).
+/// E(r) = (2 I / r^2) (1 - h / sqrt(h^2 + r^2)), and E(0) = I / h^2. So the bias after N passes is
+/// the mean of E(r_i) - E(0), which falls as N^-(1 - alpha).
 #[test]
 fn bias_of_the_global_rule() {
     const RADIUS: f64 = 0.22;
@@ -120,8 +120,8 @@ fn bias_of_the_global_rule() {
     assert_slope("squared bias", fit, slope(&exact), -2.0 * (1.0 - ALPHA));
 }
 
-/// Theory: the variance of one pass goes with 1 / r_i^2, so that of the mean of N passes is
-/// sum 1 / r_i^2 over N^2, which falls as N^-alpha.
+/// Theory: the variance of one pass is proportional to 1 / r_i^2, so that of the mean of N passes
+/// is sum 1 / r_i^2 over N^2, which falls as N^-alpha.
 #[test]
 fn variance_of_the_global_rule() {
     const ALPHA: f64 = 2.0 / 3.0;

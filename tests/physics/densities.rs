@@ -1,8 +1,8 @@
-//! Every way of drawing a direction or a point against the density it claims.
+//! Samplers of directions and points against their stated densities.
 //!
-//! A sampler with density p draws a bin with the bin's integral of p. Counts of N draws over bins
-//! then follow a multinomial law, and sum (count - N P)^2 / (N P) is chi-square with (bins - 1)
-//! degrees of freedom: mean k, variance 2k. Bins expected to hold fewer than 10 are pooled.
+//! Theory: a sampler with density p draws a bin with the bin's integral of p. The counts of N draws
+//! over bins follow a multinomial law, and sum (count - N P)^2 / (N P) is chi-square with (bins -
+//! 1) degrees of freedom: mean k, variance 2k. Bins with fewer than 10 expected draws are pooled.
 
 use std::f64::consts::PI;
 
@@ -44,7 +44,7 @@ fn bin(w: Vec3) -> usize {
 
 /// Integral of `pdf` over every bin, by the midpoint rule.
 fn shares(pdf: impl Fn(Vec3) -> f32) -> Vec<f64> {
-    // finer in z, where a small cone about the axis spans little
+    // finer in z, where a small cone about the axis covers little
     const SUB: usize = 24;
     const FINE: usize = 144;
     let area = 4.0 * PI / (ROWS * COLUMNS * SUB * FINE) as f64;
@@ -61,8 +61,8 @@ fn shares(pdf: impl Fn(Vec3) -> f32) -> Vec<f64> {
     shares
 }
 
-/// How many standard deviations chi-square lies above its mean; `slack` is the quadrature's
-/// relative error of a share.
+/// Number of standard deviations of chi-square above its mean; `slack` is the relative quadrature
+/// error of a share.
 fn excess(counts: &[u32], shares: &[f64], slack: f64) -> f64 {
     let (mut sum, mut bins, mut pool) = (0.0, 0.0, (0.0, 0.0));
     let n = DRAWS as f64;
@@ -87,8 +87,8 @@ fn excess(counts: &[u32], shares: &[f64], slack: f64) -> f64 {
     (sum - k) / (2.0 * k).sqrt()
 }
 
-/// Draws with `draw` follow `pdf`; a density of which half the sphere is scaled by 1.05 must be
-/// told from it.
+/// Checks that draws of `draw` follow `pdf`, and that a density scaled by 1.05 on half the sphere
+/// is rejected.
 pub fn check(name: &str, draw: impl Fn(&mut Rng) -> Option<Vec3>, pdf: impl Fn(Vec3) -> f32) {
     let mut rng = rng();
     let mut counts = vec![0; ROWS * COLUMNS];
@@ -113,7 +113,7 @@ pub fn check(name: &str, draw: impl Fn(&mut Rng) -> Option<Vec3>, pdf: impl Fn(V
     assert!(wrong > 6.0, "{name}: a density off by 5 % is not found");
 }
 
-/// Theory: the densities in the functions' own words.
+/// Theory: the densities that the functions' comments state.
 #[test]
 fn basic_maps() {
     let two = |rng: &mut Rng| {
@@ -122,7 +122,7 @@ fn basic_maps() {
     };
     check("cosine", |r| Some(sample_cosine(two(r))), |w| w.z.max(0.0) / PI as f32);
     check("sphere", |r| Some(sample_sphere(two(r))), |_| PDF_SPHERE);
-    // a bin's edge lies at the cone's: 1 - cos = 4 / 8
+    // a bin's edge coincides with the cone's: 1 - cos = 4 / 8
     check(
         "cone",
         |r| Some(sample_cone(two(r), 0.5)),
@@ -150,8 +150,8 @@ fn basic_maps() {
     }
 }
 
-/// Theory: draws of the visible-normal sampler follow `ggx_pdf` (what falls below the surface is
-/// no direction), and weight = eval cos / pdf for each.
+/// Theory: draws of the visible-normal sampler follow `ggx_pdf` (directions below the surface are
+/// rejected), and weight = eval cos / pdf for each.
 #[test]
 fn metal() {
     for alpha in [0.3f32, 0.6, 1.0] {
@@ -186,8 +186,9 @@ fn placed(packed: &PackedScene, world: DVec3) -> Vec3 {
     ((world - packed.center) / packed.unit).as_vec3()
 }
 
-/// Theory: directions to a light follow `pdf_area` over the sphere of directions: what a ray in
-/// direction w meets tells the density there. The same for the environment with `pdf_environment`.
+/// Theory: directions to a light follow `pdf_area` over the sphere of directions; the surface that
+/// a ray in direction w meets gives the density there. The same holds for the environment with
+/// `pdf_environment`.
 #[test]
 fn lights() {
     let mesh = "v -1 1.2 0\nv 1 1 0.5\nv 0 1.5 -1\nv 0 0.6 0\nf 1 2 3\nf 1 4 2\nf 2 4 3\nf 3 4 1\n";
@@ -204,11 +205,11 @@ fn lights() {
         let packed = packed(&format!("[[shapes]]\n{shape}\nmaterial = \"m\"\nemission = 1.0\n"));
         let from = placed(&packed, DVec3::new(0.06, -0.3, 0.08));
         let scene = packed.tables;
-        // z is bin()'s axis: put the upward axis there
+        // turn the upward axis to z, the axis of bin()
         let turn = |w: Vec3| Vec3::new(w.z, w.x, w.y);
         let back = |w: Vec3| Vec3::new(w.y, w.z, w.x);
-        // what a direction meets: its density where the surface is turned to the point, and not so
-        // grazing that the density's pole spoils the quadrature
+        // the density of a direction where the surface faces the point, and is not so grazing that
+        // the pole of the density spoils the quadrature
         let pdf = |w: Vec3| {
             let ray = Ray { origin: from, t_min: 0.0, direction: back(w), t_max: 1e30 };
             let hit = intersect_scene(&scene, &ray);
@@ -232,14 +233,14 @@ fn lights() {
         };
         let draw = |r: &mut Rng| {
             let s = sample_light(&scene, shares_at(&scene, from), from, rng_next(r));
-            // a point on the far side is no direction to the light
+            // a point on the far side is not a direction to the light
             let ray = Ray { origin: from, t_min: 0.0, direction: s.direction, t_max: s.distance };
             let free = s.radiance.x > 0.0 && intersect_scene(&scene, &ray).reference == NONE;
             let w = turn(s.direction);
             (free && pdf(w) > 0.0).then_some(w)
         };
         check(shape.split('"').nth(1).unwrap(), draw, pdf);
-        // and the areas: mean of 1 / pdf is the area that pdf stands for
+        // the mean of 1 / pdf is the light's area
         let light = &scene.lights[0];
         let mut r = rng();
         let mean: f64 = (0..DRAWS)
@@ -262,7 +263,7 @@ fn environment() {
     for light in ["radiance = 1.0", "file = \"physics-density.exr\"\nrotate = 50.0"] {
         let scene = packed(&format!("[environment]\n{light}\n")).tables;
         let light = &scene.lights[0];
-        // the picture's rows are bin()'s rings when y is its axis
+        // the image's rows are bin()'s rings if y is its axis
         let turn = |w: Vec3| Vec3::new(w.z, w.x, w.y);
         let back = |w: Vec3| Vec3::new(w.y, w.z, w.x);
         let draw = |r: &mut Rng| {
@@ -274,9 +275,9 @@ fn environment() {
     }
 }
 
-/// Theory: a light is drawn with the probability that is stated for it, wherever the point lies;
-/// all probabilities are above zero and sum to one. Ten lamps of equal power in a row over a floor:
-/// below a lamp it, or it and the neighbour in the same cell, bring more light than all others
+/// Theory: a light is drawn with its stated probability, wherever the point lies; all probabilities
+/// are above zero and sum to one. Ten lamps of equal power stand in a row over a floor: below a
+/// lamp, that lamp, or it and its neighbour in the same cell, bring more light than all others
 /// together.
 #[test]
 fn choice_of_lights() {
@@ -315,8 +316,8 @@ fn choice_of_lights() {
     }
 }
 
-/// Theory: a lamp is sampled from its own surface, too, where a path has hit it; the sampled point
-/// may be the same. What comes back is finite, and nothing where there is no direction.
+/// Theory: a lamp is also sampled from its own surface after a path has hit it; the sampled point
+/// may coincide. The result is finite, and zero where there is no direction.
 #[test]
 fn a_lamp_from_its_own_surface() {
     let text = "[[shapes]]\ntype = \"sphere\"\ncenter = [0.5, 3.0, 0.5]\nradius = 0.5\n\
@@ -339,7 +340,7 @@ fn a_lamp_from_its_own_surface() {
 }
 
 /// Theory: in a lobe of width alpha the density depends on the sine of the half vector's angle,
-/// which f32 holds to 1e-7 of 1; so to 1e-7 / alpha of itself. Compared with f64 for the same
+/// which f32 resolves to 1e-7 of 1, so to 1e-7 / alpha of itself. Compared with f64 for the same
 /// directions.
 #[test]
 fn narrow_lobes_keep_their_digits() {

@@ -1,4 +1,4 @@
-//! Glass: Fresnel, absorption, and where cameras, lights and other things are inside of it.
+//! Glass: Fresnel reflection, absorption, and cameras, lights and other bodies inside it.
 
 use caustica::low_level::scene::settings::{Direct, Method, RenderSettings};
 use glam::DVec3;
@@ -7,7 +7,7 @@ use super::lab::*;
 
 const SPECULAR: [Method; 2] = [Method::Sppm, Method::Path];
 
-/// Eye paths only: what is seen needs no photon.
+/// Settings for eye paths only: the image needs no photon.
 fn seen(method: Method) -> RenderSettings {
     RenderSettings { method, passes: 32, photons: 1, max_bounces: 200, ..settings(0.02) }
 }
@@ -53,7 +53,7 @@ fn beer_lambert() {
             let text = along_z() + &glass(&body, 1.0, sigma);
             for method in SPECULAR {
                 let truth = vec![(-sigma * 1.2f64).exp(); 64];
-                // roulette decides about little light
+                // roulette decides about dim light
                 let power = if sigma < 1.0 { 0.002 } else { 0.06 };
                 let what = format!("{name}, sigma {sigma}, {method:?}");
                 runs_to(power, &text, &seen(method)).assert_picture(&what, &truth, power);
@@ -62,11 +62,11 @@ fn beer_lambert() {
     }
 }
 
-/// Theory: a slab has reflectance R at each face, and all the light that goes to and fro inside
-/// gets out: with a = exp(-sigma d) it transmits (1 - R)^2 a / (1 - R^2 a^2) and reflects
-/// R + R (1 - R)^2 a^2 / (1 - R^2 a^2). Without absorption that is (1 - R) / (1 + R) and 2 R / (1 + R). A
-/// bright wall in front of and behind the slab tells the two apart. The factor 1 / n^2 on the way
-/// in is undone on the way out.
+/// Theory: a slab has reflectance R at each face, and all light reflected inside gets out. With a =
+/// exp(-sigma d) it transmits (1 - R)^2 a / (1 - R^2 a^2) and reflects R + R (1 - R)^2 a^2 / (1 -
+/// R^2 a^2). Without absorption that is (1 - R) / (1 + R) and 2 R / (1 + R). A bright wall in front
+/// of or behind the slab separates the two. The factor 1 / n^2 on the way in is undone on the way
+/// out.
 #[test]
 fn slab() {
     for (ior, sigma) in [(1.5f64, 0.7), (2.4, 0.0), (1.0 / 1.5, 0.0)] {
@@ -106,8 +106,8 @@ fn slab() {
     }
 }
 
-/// Theory: Snell and Fresnel at 60 degrees, unpolarised: R = (R_s + R_p) / 2, for one face alone (a
-/// disc of glass with nothing behind it that light is sent back from).
+/// Theory: Snell's and Fresnel's laws at 60 degrees, unpolarised: R = (R_s + R_p) / 2, for one face
+/// alone (a disc of glass with nothing behind it that reflects light).
 #[test]
 fn fresnel_at_an_angle() {
     let (cos_i, n) = (0.5f64, 1.5f64);
@@ -134,8 +134,8 @@ fn fresnel_at_an_angle() {
     }
 }
 
-/// Theory: from inside an absorbing body of index 1, radiance 1 outside is seen through the rest of
-/// the way only.
+/// Theory: from inside an absorbing body of index 1, radiance 1 outside is attenuated along the
+/// remaining distance only.
 #[test]
 fn camera_inside_glass() {
     let camera =
@@ -153,8 +153,8 @@ fn camera_inside_glass() {
     }
 }
 
-/// Theory: radiance over the squared index stays along a ray, and light that a clear body sends
-/// back to and fro inside comes from everywhere: in constant light 1 the inside holds n^2.
+/// Theory: radiance over the squared index is constant along a ray, and light reflected inside a
+/// clear body comes from everywhere. So in constant light 1 the radiance inside is n^2.
 #[test]
 fn camera_inside_clear_glass() {
     let camera =
@@ -168,9 +168,9 @@ fn camera_inside_clear_glass() {
     }
 }
 
-/// Theory: camera, floor and point light inside one absorbing body of index 1: E = I h / d^3
-/// exp(-sigma d), and the way to the camera takes exp(-sigma c). Glass that shines through from
-/// outside must not change that.
+/// Theory: camera, floor and point light lie inside one absorbing body of index 1: E = I h / d^3
+/// exp(-sigma d), and the distance c to the camera attenuates by exp(-sigma c). Glass that emits
+/// from outside must not change that.
 #[test]
 fn all_inside_glass() {
     const SIGMA: f64 = 0.8;
@@ -263,7 +263,7 @@ fn extreme_indices() {
                     "{method:?} {emission:?}, index 1.000001: {a:?} for {b:?}"
                 );
             }
-            // of 2,048 paths a refraction in 2e5 is seldom one
+            // of 2,048 paths one with a probability of 2e-5 is rarely seen
             let dense = picture(&scene(&slab(1e6), emission));
             for a in dense {
                 let off = (f64::from(a[0]) - emission[1]).abs();
@@ -273,11 +273,11 @@ fn extreme_indices() {
     }
 }
 
-/// Theory: two slabs that touch are one: between glass and the same glass there is no interface, so
-/// that both together transmit (1 - R) / (1 + R), not the (1 - R) / (1 + 3 R) of two slabs with air
-/// between. Glass 2 on glass 1 has the three interfaces 1 : n1 : n2 : 1, which transmit, to and fro
-/// counted, 1 / (1 + sum R_i / (1 - R_i)) (reflectances of plates add up as resistances R / (1 - R)
-/// do). A body inside another is met from its glass likewise.
+/// Theory: two slabs that touch are one. Between glass and the same glass there is no interface, so
+/// both together transmit (1 - R) / (1 + R), not the (1 - R) / (1 + 3 R) of two slabs with air
+/// between. Glass 2 on glass 1 has the three interfaces 1 : n1 : n2 : 1, which transmit, with
+/// multiple reflections, 1 / (1 + sum R_i / (1 - R_i)) (reflectances of plates add like resistances
+/// R / (1 - R)). A body inside another is entered from the outer glass likewise.
 #[test]
 fn glass_on_glass() {
     let resistance = |a: f64, b: f64| {
@@ -335,11 +335,11 @@ fn glass_on_glass() {
     }
 }
 
-/// Theory: from inside glass of index n, total reflection begins where sin = 1 / n. Some roundings
-/// on either side of that angle the reflectance is that of Fresnel's equations in f64 at a squared
-/// cosine of the refracted ray that is off by a few roundings of 1 and no more, and exactly 1
-/// beyond; the refracted ray is a direction. At once steep and short is the way from 1 down to
-/// Brewster's angle in dense glass, where `1 - cos^2` would have no digits left.
+/// Theory: from inside glass of index n, total reflection begins where sin = 1 / n. A few roundings
+/// on either side of that angle the reflectance is that of Fresnel's equations in f64, at a squared
+/// cosine of the refracted ray that is off by only a few roundings of 1, and exactly 1 beyond. The
+/// refracted ray is a direction. In dense glass the reflectance falls from 1 to Brewster's angle
+/// within a short and steep range, where `1 - cos^2` would have no digits left.
 #[test]
 fn critical_angle() {
     use caustica::low_level::materials::glass::{fresnel, refracted};

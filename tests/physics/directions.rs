@@ -1,4 +1,4 @@
-//! Narrow spots, skies at their seam and poles, and pictures on shapes: upright, unmirrored, far
+//! Narrow spots, skies at their seam and poles, and textures on shapes: upright, not mirrored, far
 //! from the origin.
 
 use std::f64::consts::PI;
@@ -27,14 +27,14 @@ fn grey_file(
     name.to_owned()
 }
 
-/// Theory: within its full cone a spot gives the radiance `rho I / (pi d^2)` to what it faces,
-/// however narrow the cone is: by shadow rays, by photons alone and by path tracing.
+/// Theory: within its full cone a spot gives the radiance `rho I / (pi d^2)` to a surface that
+/// faces it, however narrow the cone is: by shadow rays, by photons and by path tracing.
 #[test]
 fn narrow_spots() {
     for degrees in [0.001f64, 0.01, 0.02, 0.3, 1.0] {
         for blend in [0.0, 0.5] {
             let full = (degrees * (1.0 - blend)).to_radians();
-            // the middle half of what the full cone lights
+            // the middle half of the area that the full cone lights
             let fov = 2.0 * full.tan().atan().to_degrees();
             let camera = format!(
                 "position = [0, 5, 0]\ntarget = [0, 0, 0]\nup = [0, 0, -1]\nfov = {fov:?}\n"
@@ -65,9 +65,9 @@ fn narrow_spots() {
     }
 }
 
-/// Theory: of a picture of 4096 rows with light L in the top row alone the bilinear filter makes L
-/// up to half a row from the pole and a slope to 0 at one row and a half. A floor gets, with a
-/// row's angle `a = pi / 4096`, `E = 2 pi a^2 L (1/8 + 5/12)`.
+/// Theory: an image of 4096 rows has light L in the top row only. The bilinear filter turns it into
+/// L up to half a row from the pole and a slope to 0 at one row and a half. With a row's angle `a =
+/// pi / 4096`, a floor receives `E = 2 pi a^2 L (1/8 + 5/12)`.
 #[test]
 fn light_at_the_pole() {
     let sky = grey_file("physics-pole.exr", 2, 4096, |_, y| if y == 0 { 1e6 } else { 0.0 });
@@ -93,8 +93,8 @@ fn packed(text: &str) -> PackedScene {
     prepare(&parse(&format!("{head}{text}")), 8, 8).unwrap()
 }
 
-/// Theory: a sky goes on around: at the picture's left and right edge it is the mean of the columns
-/// on either side, as between any two columns.
+/// Theory: a sky is periodic: at the image's left and right edge it is the mean of the columns on
+/// either side, as between any two columns.
 #[test]
 fn a_sky_has_no_seam() {
     let sky = grey_file("physics-seam.exr", 8, 4, |x, _| if x == 0 { 3.0 } else { x as f32 });
@@ -114,8 +114,8 @@ fn hit(scene: &SceneTables, from: DVec3, direction: DVec3) -> Surface {
     surface_at(scene, &ray, &intersect_scene(scene, &ray))
 }
 
-/// Theory: someone outside who looks at a face along its normal n, with `up` upward, has `up x n`
-/// to the right: u increases that way and v upward, on all six faces. On top up is -z, on the
+/// Theory: for a viewer outside who looks at a face along its normal n with `up` upward, `up x n`
+/// points right. On all six faces u increases to the right and v upward. On top up is -z, on the
 /// bottom z.
 #[test]
 fn pictures_on_boxes_are_not_mirrored() {
@@ -139,9 +139,9 @@ fn pictures_on_boxes_are_not_mirrored() {
     }
 }
 
-/// Theory: a picture whose rows are white at the top and black at the bottom is white at a sphere's
-/// north pole and black at its south pole, though it repeats; so at the ends of a vase. On a ring
-/// the picture goes on.
+/// Theory: an image whose rows are white at the top and black at the bottom is white at a sphere's
+/// north pole and black at its south pole although it repeats, and so are the ends of a vase. On a
+/// ring the image is periodic.
 #[test]
 fn poles_do_not_mix() {
     let picture = grey_file("physics-rows.exr", 4, 4, |_, y| [1.0, 0.6, 0.3, 0.0][y]);
@@ -169,8 +169,8 @@ fn poles_do_not_mix() {
     assert!((seam - 0.5).abs() < 0.1, "{seam}");
 }
 
-/// Theory: a checker, a repeated picture and planks look the same a whole number of their periods
-/// away, as far as the file's own numbers go.
+/// Theory: a checker, a repeated image and planks look the same after a whole number of periods, as
+/// far as the file's numbers are precise.
 #[test]
 fn textures_far_from_the_origin() {
     let picture = grey_file("physics-far.exr", 4, 4, |x, y| ((x + 2 * y) % 4) as f32 / 4.0);
@@ -221,7 +221,7 @@ fn textures_far_from_the_origin() {
     }
 }
 
-/// Shadow rays and photons alone tell the same of a sky with its light at the seam.
+/// Theory: shadow rays and photons give the same result for a sky with its light at the seam.
 #[test]
 fn a_lamp_across_the_seam() {
     let sky = grey_file("physics-lamp.exr", 64, 32, |x, y| {
@@ -244,8 +244,8 @@ fn a_lamp_across_the_seam() {
 }
 
 /// Theory: a sky of radiance 1 over half of the directions lights a floor that faces that half with
-/// `rho pi / pi`, a sun beside it in the other half, 10^4 times as strong, not at all. Rows and
-/// texels of the dim half are drawn seldom, but drawn.
+/// `rho pi / pi`. A sun 10^4 times as strong in the other half does not light it. Rows and texels
+/// of the dim half are drawn rarely, but they are drawn.
 #[test]
 fn a_dim_sky_beside_a_bright_sun() {
     let (width, height) = (64, 1024);

@@ -1,5 +1,5 @@
-//! What lies far from what the camera sees does not matter to the picture: neither wide floors, nor
-//! objects far away, nor the place of the camera, its target and its focus.
+//! Theory: distant geometry does not affect the image or its noise: neither wide floors, nor
+//! distant objects, nor the distance of the camera, its target and its focus.
 
 use caustica::low_level::cpu::CpuEngine;
 use caustica::low_level::pilots::prepare;
@@ -10,10 +10,10 @@ use caustica::low_level::validation::{NoisyTruth, Promise, promises};
 use super::lab::*;
 
 const SIZE: u32 = 24;
-/// Noise of a scene with distant objects over that of the scene without.
+/// Largest ratio of the noise with distant objects to the noise without.
 const MOST: f64 = 1.5;
 
-/// A scene around the origin, and what is far from there.
+/// Distances in a scene around the origin.
 #[derive(Clone, Copy)]
 struct Far {
     name: &'static str,
@@ -23,15 +23,15 @@ struct Far {
     camera: f64,
     /// Distance of the camera's target, which lies on the same line as the origin.
     target: f64,
-    /// More of the camera.
+    /// Further camera settings.
     lens: &'static str,
-    /// Center of a ball out of sight.
+    /// Centre of a ball out of sight.
     stray: Option<[f64; 3]>,
 }
 
 const HERE: Far = Far { name: "here", floor: 3.0, camera: 4.0, target: 4.0, lens: "", stray: None };
 
-/// The floor is wide, the camera far, its focus or target far, an object far: each alone and
+/// A wide floor, a distant camera, a distant focus or target, a distant object: each alone and all
 /// together.
 fn far() -> Vec<Far> {
     vec![
@@ -54,10 +54,10 @@ fn far() -> Vec<Far> {
     ]
 }
 
-/// The scene file of what is far and of `near`, on a floor of reflectance 1/2.
+/// The scene file of these distances and of `near`, on a floor of reflectance 1/2.
 fn scene(far: &Far, near: &str) -> String {
     let Far { floor, camera, target, lens, stray, .. } = *far;
-    // toward the origin from above
+    // looking at the origin from above
     let (y, z) = (0.8 * camera, 0.6 * camera);
     let (ty, tz) = (0.8 * (camera - target), 0.6 * (camera - target));
     let fov = 2.0 * (0.8f64 / camera).atan().to_degrees();
@@ -109,15 +109,15 @@ const LAMP_AND_SKY: &str = "[[shapes]]\ntype = \"sphere\"\ncenter = [0.0, 0.3, 0
                             emission = 100.0\n[environment]\nradiance = 0.1";
 
 /// Theory: a sun over a wide floor gives E = irradiance * cos everywhere, and the ball of glass
-/// moves light from its shadow to the caustic: nothing of this depends on what is far, so neither
-/// do the mean of the picture (but for the camera's perspective, which is weak) nor the noise.
+/// moves light from its shadow to the caustic. None of this depends on distant geometry, so neither
+/// do the mean of the image (except for the camera's weak perspective) and the noise.
 #[test]
 fn caustic_of_a_sun() {
     compare(SUN, Method::Sppm, 0.01);
 }
 
-/// Theory: the same for a small lamp and a dim sky. The lights' shares of power would depend on
-/// how much of the sky the world catches; what they bring to the picture does not.
+/// Theory: the same holds for a small lamp and a dim sky. Shares by power would depend on how much
+/// of the sky the world catches; the lights' contributions to the image do not.
 #[test]
 fn lamp_and_dim_sky() {
     for method in [Method::Sppm, Method::Path] {
@@ -135,7 +135,7 @@ fn compare(near: &str, method: Method, power: f64) {
         println!("{method:?} {}: noise {ratio:.2} of that here", far.name);
         assert!(ratio < MOST, "{}: {ratio:.2} times the noise", far.name);
         assert!(ratio > 1.0 / MOST, "{}: {ratio:.2} times the noise: another picture?", far.name);
-        // a wide floor hides a little of the sky below; perspective moves the ball's outline
+        // a wide floor hides a little of the sky below, and perspective moves the ball's outline
         let found = there.region(|_, _| true);
         let off = (found.mean / mean.mean - 1.0).abs();
         assert!(
@@ -146,9 +146,9 @@ fn compare(near: &str, method: Method, power: f64) {
     }
 }
 
-/// Theory: what is stated after 16 passes is not less than the true error for nine of ten seeds,
-/// wherever the camera stands and whatever is far. The truth has six times the photons in discs a
-/// tenth as wide.
+/// Theory: the error stated after 16 passes is at least the true error for nine of ten seeds,
+/// wherever the camera stands and whatever is distant. The reference has six times the photons in
+/// discs a tenth as wide.
 #[test]
 fn promises_with_distant_objects() {
     let distant = [HERE].into_iter().chain(far());
@@ -177,7 +177,7 @@ fn promises_with_distant_objects() {
             far.name, found[0].truth
         );
         assert!(kept >= 9, "{}: {found:?}", far.name);
-        // a statement that is always large enough would say nothing
+        // an estimate that is always too large would be useless
         assert!(ratio < 4.0, "{}: {ratio}", far.name);
     }
 }

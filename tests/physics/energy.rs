@@ -1,4 +1,4 @@
-//! Energy: what is emitted is absorbed, escapes, or is cut off by `max_bounces`.
+//! Energy conservation: emitted photons are absorbed, escape, or are cut off by `max_bounces`.
 
 use std::f64::consts::PI;
 
@@ -39,22 +39,22 @@ fn settings(closed: bool) -> RenderSettings {
     }
 }
 
-/// The ends of one pass on a device.
+/// Counts how the photons of one pass end on a device.
 fn ends(device: &str, text: &str, settings: &RenderSettings) -> PhotonEnds {
     let mut engine = device::open(&device::parse(device), &parse(text), settings).unwrap().engine;
     engine.pass().unwrap().ends
 }
 
-/// Whether `count` of `n` is what a probability of `p` makes likely (5 standard deviations).
+/// Whether `count` of `n` is likely at a probability of `p` (5 standard deviations).
 fn likely(count: u64, n: u32, p: f64) -> bool {
     let n = f64::from(n);
     (count as f64 - n * p).abs() <= 5.0 * (n * p * (1.0 - p)).sqrt()
 }
 
-/// Theory: every photon ends in one of three ways, so that the counts add up exactly, on every
-/// device and to the same numbers. Over a disc seen from h under the half angle a, (1 + cos a) / 2
-/// of the photons miss it, and rho of the others leave it again: both escape. In a closed room
-/// nothing escapes, and rho^(b + 1) is cut after b bounces (the walls are met b + 1 times).
+/// Theory: every photon ends in one of three ways, so the counts add up exactly, and to the same
+/// numbers on every device. Over a disc seen from h under the half angle a, (1 + cos a) / 2 of the
+/// photons miss it, and rho of the others leave it again: both escape. In a closed room nothing
+/// escapes, and rho^(b + 1) is cut after b bounces (the walls are met b + 1 times).
 #[test]
 fn photons_are_counted() {
     let h = 0.7f64;
@@ -77,11 +77,11 @@ fn photons_are_counted() {
     }
 }
 
-/// Theory: at each hit of flux f the surface absorbs (1 - rho) f and sends on rho f, in the mean
-/// over roulette. So the stored flux times (1 - rho), and what escapes or is cut, is what was
-/// emitted: in a closed room that is Phi (1 - rho) sum rho^k = Phi (1 - rho^(b + 1)) for the walls.
-/// Roulette keeps the flux of a survivor on grey walls, so that the balance of each photon is one
-/// of counts: stored = hits.
+/// Theory: at each hit of flux f the surface absorbs (1 - rho) f and scatters rho f, in the mean
+/// over roulette. So the stored flux times (1 - rho), plus the escaped and cut flux, is the emitted
+/// flux. In a closed room that is Phi (1 - rho) sum rho^k = Phi (1 - rho^(b + 1)) for the walls.
+/// Roulette keeps the flux of a survivor on grey walls, so the balance is one of counts: stored =
+/// hits.
 #[test]
 fn stored_flux_is_emitted_flux() {
     let (text, settings) = (scene(true, 0.7), settings(true));

@@ -1,10 +1,10 @@
-//! A scene with everything in it, at any scale and place.
+//! A scene with every shape and kind of light, at any scale and place.
 
 use glam::DVec3;
 
-/// A scene with every shape and kind of light, `scale` times as large and moved by `shift`
-/// afterwards; `mesh` is a file that holds [`MESH`]. Lengths scale; intensities scale by area,
-/// absorption by one over length; radiance and irradiance stay.
+/// A scene with every shape and kind of light, scaled by `scale` and then moved by `shift`; `mesh`
+/// is the name of a file that contains [`MESH`]. Lengths scale, intensities scale by area,
+/// absorption by one over length; radiance and irradiance do not change.
 pub fn everything_with(mesh: &str, scale: f64, shift: DVec3, size: u32) -> String {
     let list = |v: DVec3| format!("[{:?}, {:?}, {:?}]", v.x, v.y, v.z);
     let p = |x: f64, y: f64, z: f64| list(DVec3::new(x, y, z) * scale + shift);
@@ -132,6 +132,6 @@ radiance = 0.2
     )
 }
 
-/// An octahedron; its normals are interpolated.
+/// An octahedron with interpolated normals.
 pub const MESH: &str = "v 1 0 0\nv -1 0 0\nv 0 1 0\nv 0 -1 0\nv 0 0 1\nv 0 0 -1
 f 1 3 5\nf 3 2 5\nf 2 4 5\nf 4 1 5\nf 3 1 6\nf 2 3 6\nf 4 2 6\nf 1 4 6\n";

@@ -1,5 +1,5 @@
-//! Ground without end under light from infinity: what reaches an upright wall from it comes from
-//! near and from far.
+//! Endless ground under light from infinity: an upright wall receives light from near and distant
+//! ground.
 
 use std::f64::consts::PI;
 
@@ -13,7 +13,7 @@ const GROUND: f64 = 0.5;
 const SUN: f64 = 3.0;
 const SKY: f64 = 0.8;
 
-/// A small upright wall at height `h` above `ground`, and the camera before it.
+/// The scene: a small upright wall at height `h` above `ground`, and the camera in front of it.
 fn scene(h: f64, ground: &str, light: &str) -> String {
     let (position, target) = (DVec3::new(0.0, h, 1.5), DVec3::new(0.0, h, 0.0));
     Camera { position, target, fov: 7.0, size: 8 }.toml()
@@ -27,11 +27,11 @@ fn scene(h: f64, ground: &str, light: &str) -> String {
 }
 
 /// Theory: an upright wall sees an endless floor of radiance B with the form factor 1/2, so E = pi
-/// B / 2 beside what comes from above. A sun that shines straight down throws no shadow of the wall
-/// and no light on it: B = rho E_sun / pi. A sky of radiance L gives B = rho L and sends pi L / 2
-/// itself. Half of the light comes from ground farther away than the wall is high; the ground ends
-/// at 1e4 of the scene's size (planes) or at its horizon, which takes less than 1e-3. The wall
-/// hides under 4e-4 of the sky from the ground below it.
+/// B / 2 in addition to light from above. A sun straight overhead casts no shadow of the wall and
+/// no light on it: B = rho E_sun / pi. A sky of radiance L gives B = rho L and adds pi L / 2
+/// itself. Half of the light comes from ground farther away than the wall is high. The ground ends
+/// at 1e4 of the scene's size (planes) or at its horizon, which costs less than 1e-3. The wall
+/// hides less than 4e-4 of the sky from the ground below it.
 #[test]
 fn wall_above() {
     let plane = "type = \"plane\"\npoint = [0, 0, 0]\nnormal = [0, 1, 0]";
@@ -40,7 +40,7 @@ fn wall_above() {
     let sky = format!("[environment]\nradiance = {SKY}");
     let sunlit = (0.5 * GROUND * SUN, 0.0);
     let skylit = (0.5 * PI * GROUND * SKY, 0.5 * PI * SKY);
-    // the near wall stands within the sphere of the scene, the high ones above it
+    // the near wall stands within the scene's bounding sphere, the high ones above it
     for (name, h, ground, light, (from_ground, from_above)) in [
         ("near wall, plane, sun", 0.7, plane, &sun, sunlit),
         ("high wall, plane, sun", 12.0, plane, &sun, sunlit),

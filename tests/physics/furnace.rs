@@ -1,5 +1,5 @@
-//! Furnaces: scenes in which the radiance is the same everywhere, or in which a body must not be
-//! seen.
+//! Furnace tests: scenes in which the radiance is the same everywhere, or in which a body must be
+//! invisible.
 
 use std::f64::consts::PI;
 
@@ -8,10 +8,10 @@ use glam::{DVec2, DVec3};
 
 use super::lab::*;
 
-/// Theory: in a closed room whose walls all emit Le and reflect rho, L = Le + rho L, so
-/// L = Le / (1 - rho) everywhere, whatever the room's form; cut off after b scatterings, Le (1 - rho^(b+1)) /
-/// (1 - rho). Every shape that can shine is a wall here: a room inside a box would have its
-/// emission outside, so six rectangles close it and the others stand in it.
+/// Theory: in a closed room whose walls all emit Le and reflect rho, L = Le + rho L, so L = Le / (1
+/// - rho) everywhere, whatever the room's form. Cut off after b scatterings it is Le (1 -
+/// rho^(b+1)) / (1 - rho). Every shape that can emit is a wall here: a room inside a box would emit
+/// outward, so six rectangles close it and the others stand in it.
 #[test]
 fn closed_room() {
     const EMISSION: f64 = 0.25;
@@ -62,14 +62,14 @@ const CUBE: &str = "v -0.5 -0.5 -0.5\nv 0.5 -0.5 -0.5\nv 0.5 0.5 -0.5\nv -0.5 0.
 v -0.5 -0.5 0.5\nv 0.5 -0.5 0.5\nv 0.5 0.5 0.5\nv -0.5 0.5 0.5
 f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 3 4 8 7\nf 1 5 8 4\nf 2 3 7 6\n";
 
-/// A body alone in light of radiance 1 from everywhere, filling most of the picture.
+/// The scene: a body alone in light of radiance 1 from everywhere, filling most of the image.
 fn in_constant_light(body: &str) -> String {
     let camera =
         Camera { position: DVec3::new(0.4, 1.1, 3.0), target: DVec3::ZERO, fov: 34.0, size: 12 };
     camera.toml() + "[environment]\nradiance = 1.0\n" + body
 }
 
-/// Bodies of every closed form about the origin, of one material.
+/// Bodies of every shape around the origin, of one material.
 fn bodies() -> Vec<(&'static str, String)> {
     let mesh = file("physics-furnace-cube.obj", CUBE.as_bytes());
     vec![
@@ -80,10 +80,10 @@ fn bodies() -> Vec<(&'static str, String)> {
     ]
 }
 
-/// Theory: a body that absorbs nothing reflects and refracts radiance 1 only, and radiance 1 comes
-/// out (the factor (n_i / n_t)^2 on the way in is undone on the way out): in constant light mirrors
-/// and clear glass cannot be seen. Light that goes on inside for more bounces than allowed would be
-/// lost; roulette must not lose it either.
+/// Theory: a body that absorbs nothing only reflects and refracts radiance 1, so radiance 1 comes
+/// out (the factor (n_i / n_t)^2 on the way in is undone on the way out). In constant light mirrors
+/// and clear glass are invisible. Light inside for more bounces than allowed would be lost;
+/// roulette must not lose it either.
 #[test]
 fn mirrors_and_glass_are_invisible() {
     for (name, body) in bodies() {
@@ -112,7 +112,7 @@ fn mirrors_and_glass_are_invisible() {
 }
 
 /// Theory: a convex diffuse body in constant light L has E = pi L everywhere, so its radiance is
-/// rho L; behind it the picture is L.
+/// rho L; the background is L.
 #[test]
 fn diffuse_bodies() {
     const ALBEDO: f64 = 0.5;
@@ -142,7 +142,7 @@ fn diffuse_bodies() {
 }
 
 /// Directional albedo of GGX with F = 1 and the height-correlated Smith term at cosine `mu`: the
-/// integral over the half vector's angle and azimuth of D G2 / (4 mu cos_i) cos_i, here as the
+/// integral over the half vector's angle and azimuth of D G2 / (4 mu cos_i) cos_i. Computed as the
 /// integral over visible normals of G2 / G1 by stratified quadrature of Walter's (2007, eq. 35)
 /// sampling of D(h) cos h, which shares no code with the renderer: albedo = E_h[ G2 (wo.h) / (mu
 /// cos h) ].
@@ -168,13 +168,13 @@ fn ggx_albedo(mu: f64, alpha: f64) -> f64 {
 }
 
 /// Theory: a plane of GGX metal with reflectance 1 in constant light shows its directional albedo,
-/// less than 1 by what the single-scattering model loses (Heitz et al. 2016); and that loss grows
+/// which is below 1 by the loss of the single-scattering model (Heitz et al. 2016). That loss grows
 /// with roughness.
 #[test]
 fn metal_loses_what_single_scattering_loses() {
     for (roughness, elevation) in [(0.3f64, 60.0f64), (0.7, 35.0), (1.0, 50.0), (1.0, 12.0)] {
         let (sin, cos) = elevation.to_radians().sin_cos();
-        // narrow: nearly one direction
+        // a narrow view, nearly one direction
         let camera = Camera {
             position: DVec3::new(0.0, 4.0 * sin, 4.0 * cos),
             target: DVec3::ZERO,

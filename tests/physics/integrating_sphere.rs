@@ -36,10 +36,10 @@ fn wall(o: DVec3, d: DVec3) -> DVec3 {
 }
 
 /// Theory: a wall element sends the same irradiance to every other (cos cos' / d^2 = 1 / 4 R^2), so
-/// after k >= 1 bounces E_k = Phi rho^k / (4 pi R^2) everywhere, and in sum Phi rho /
-/// (4 pi R^2 (1 - rho)); direct light is I cos / d^2, uniform for a source in the middle. `max_bounces` b cuts
-/// the sum: photons are recorded up to their b-th bounce. The curved wall spreads a disc of radius
-/// r over area pi r^2 (1 + O(r^2 / R^2)): below 1e-3 here.
+/// after k >= 1 bounces E_k = Phi rho^k / (4 pi R^2) everywhere, and in sum Phi rho / (4 pi R^2 (1
+/// - rho)). Direct light is I cos / d^2, uniform for a source in the middle. `max_bounces` b cuts
+/// the sum: photons are stored up to their b-th bounce. The curved wall spreads a disc of radius r
+/// over area pi r^2 (1 + O(r^2 / R^2)): below 1e-3 here.
 #[test]
 fn total() {
     let phi = 4.0 * PI * INTENSITY;
@@ -65,7 +65,7 @@ fn total() {
                 (Method::Ppm, RadiusRule::Global),
                 (Method::Sppm, RadiusRule::Local),
             ];
-            // the rules one by one with the source that is not in the middle
+            // each radius rule with the off-centre source
             let count = if source == DVec3::ZERO { 1 } else { 3 };
             for (method, radius_rule) in rules.into_iter().take(count) {
                 let settings = RenderSettings {
@@ -89,8 +89,8 @@ fn total() {
     }
 }
 
-/// Theory: with `max_bounces` b the sum ends after b bounces; the differences are the single terms
-/// rho^k Phi / (4 pi R^2). A photon's roulette must leave each of them alone.
+/// Theory: with `max_bounces` b the sum ends after b bounces, and the differences are the single
+/// terms rho^k Phi / (4 pi R^2). A photon's roulette must preserve each of them.
 #[test]
 fn per_bounce() {
     let (_, text) = scene(DVec3::new(0.3, -0.4, 0.2));
@@ -103,7 +103,7 @@ fn per_bounce() {
             photons: 1 << 14,
             ..settings(0.08)
         };
-        // direct light falls away: the same picture without bounces
+        // direct light cancels: subtract the image without bounces
         let none = RenderSettings { max_bounces: 0, ..settings.clone() };
         let (with, without) = (runs(&text, &settings), runs(&text, &none));
         let means = |r: &Runs| {

@@ -1,4 +1,4 @@
-//! The same scene at another scale and place is the same picture.
+//! Invariance under scale and place.
 
 use caustica::low_level::scene::settings::{Direct, Method, Radius, RenderSettings};
 use glam::DVec3;
@@ -6,7 +6,7 @@ use glam::DVec3;
 use super::everything::{MESH, everything_with};
 use super::lab::*;
 
-/// [`everything_with`] its mesh.
+/// [`everything_with`] its mesh file.
 pub fn everything(scale: f64, shift: DVec3, size: u32) -> String {
     everything_with(&file("physics-everything.obj", MESH.as_bytes()), scale, shift, size)
 }
@@ -22,8 +22,8 @@ fn settings_at(scale: f64, method: Method) -> RenderSettings {
     }
 }
 
-/// Theory: a power of two changes no mantissa: not of lengths, and squares of powers of two not of
-/// intensities, so every bit of the picture stays.
+/// Theory: scaling by a power of two changes no mantissa, neither of lengths nor, by its square, of
+/// intensities. So every bit of the image stays.
 #[test]
 fn powers_of_two_change_no_bit() {
     for method in [Method::Sppm, Method::Path] {
@@ -40,8 +40,8 @@ fn powers_of_two_change_no_bit() {
     }
 }
 
-/// Theory: other scales and places change roundings only; paths part where they decide, so pictures
-/// agree within noise, which equal random numbers make small.
+/// Theory: other scales and places change roundings only. Paths part where a rounding changes a
+/// decision, so images agree within noise, which equal random numbers keep small.
 #[test]
 fn scale_and_place_change_nothing() {
     let size = 4.0;
@@ -60,7 +60,7 @@ fn scale_and_place_change_nothing() {
                     a.iter().sum::<f64>() / b.iter().sum::<f64>()
                 })
                 .collect();
-            // every run with its own numbers: far below the noise between runs
+            // every run has its own random numbers: far below the noise between runs
             assert_agrees(
                 &format!("{method:?}, scale {scale}, shift {shift}"),
                 Estimate::of(&difference),
@@ -79,8 +79,8 @@ fn scale_and_place_change_nothing() {
 }
 
 /// Theory: no point of a convex ball that faces a lamp is in shadow. Under a sun along the camera's
-/// axis every pixel on the ball has radiance rho E cos / pi > 0, and a shadowed one has 0: at any
-/// scale, and beside giants.
+/// axis every pixel on the ball has radiance rho E cos / pi > 0, and a shadowed one 0: at any
+/// scale, and next to giants.
 #[test]
 fn no_ball_shadows_itself() {
     for exponent in -6..=6 {
@@ -117,7 +117,7 @@ fn no_ball_shadows_itself() {
                 let o = camera.position - at;
                 let b = o.dot(d);
                 let discriminant = b * b - o.length_squared() + scale * scale;
-                // a pixel's width inside of the outline and of the terminator
+                // one pixel inside the outline and the terminator
                 let lit = discriminant > 0.0 && {
                     let n = (o + d * (-b - discriminant.sqrt())) / scale;
                     n.dot(to_sun) > 0.08 && n.dot(-d) > 0.2

@@ -12,7 +12,7 @@ use super::lab::*;
 const ALBEDO: f64 = 0.6;
 const RADIUS: f64 = 0.03;
 
-/// Looks under the lights at the floor about the origin: |x| < 0.3, |z| < 0.6.
+/// Looks below the lights at the floor around the origin: |x| < 0.3, |z| < 0.6.
 fn camera() -> Camera {
     Camera { position: DVec3::new(0.0, 1.6, 3.0), target: DVec3::ZERO, fov: 9.0, size: 16 }
 }
@@ -32,7 +32,7 @@ v = [0.0, 0.0, -2.0]
 material = "floor"
 "#;
 
-/// A floor of irradiance E has the radiance albedo E / pi, whichever way its light was found.
+/// Theory: a floor of irradiance E has the radiance albedo E / pi, however its light was found.
 fn check(name: &str, light: &str, irradiance: impl Fn(DVec3) -> f64 + Sync) {
     let text = camera().toml() + FLOOR + light;
     for direct in DIRECT {
@@ -40,7 +40,7 @@ fn check(name: &str, light: &str, irradiance: impl Fn(DVec3) -> f64 + Sync) {
         let passes = if sampled { 8 } else { 1 };
         let photons = if sampled { 1 } else { 1 << 15 };
         let settings = RenderSettings { direct, passes, photons, ..settings(RADIUS) };
-        // shadow rays go to the visible point itself, photons are averaged over the disc
+        // shadow rays end at the visible point itself, photons are averaged over the disc
         let blur = if sampled { 0.0 } else { RADIUS };
         let truth = camera().floor_picture(blur, |p| ALBEDO / PI * irradiance(p));
         let power = if sampled { 0.02 } else { 0.03 };
@@ -97,7 +97,7 @@ fn constant_environment() {
 const WIDTH: usize = 16;
 const HEIGHT: usize = 8;
 
-/// A picture with one bright patch of texels.
+/// An image with one bright patch of texels.
 fn sky() -> Vec<f64> {
     let mut texels = vec![0.25; WIDTH * HEIGHT];
     for (i, j, v) in [(3, 1, 16.0), (4, 1, 8.0), (3, 2, 4.0), (10, 2, 2.0)] {
@@ -106,7 +106,7 @@ fn sky() -> Vec<f64> {
     texels
 }
 
-/// Radiance of the picture from direction `d`: equirectangular, bilinear, turned about +y by
+/// Radiance of the image from direction `d`: equirectangular, bilinear, turned about +y by
 /// `degrees`.
 fn sky_radiance(texels: &[f64], d: DVec3, degrees: f64) -> f64 {
     let d = glam::DQuat::from_rotation_y(-degrees.to_radians()) * d;
@@ -123,7 +123,7 @@ fn sky_radiance(texels: &[f64], d: DVec3, degrees: f64) -> f64 {
     row(j) * (1.0 - fy) + row(j + 1.0) * fy
 }
 
-/// Theory: E = integral of L(w) cos over the hemisphere, by quadrature; with the picture turned.
+/// Theory: E = integral of L(w) cos over the hemisphere, by quadrature, with a rotated image.
 #[test]
 fn image_environment() {
     let texels = sky();
@@ -149,8 +149,8 @@ fn image_environment() {
     }
 }
 
-/// Theory: the rotation's sense, seen directly: a camera without scene that looks at the bright
-/// texels sees the picture's radiance there.
+/// Theory: a camera without a scene that looks at the bright texels sees the image's radiance
+/// there, which fixes the sense of rotation.
 #[test]
 fn image_environment_seen() {
     let texels = sky();
@@ -213,7 +213,7 @@ fn sphere() {
     check("sphere", &emitting(&shape), |p| 5.0 * form::sphere(p, DVec3::Y, at, 0.2));
 }
 
-/// Theory: Lambert's polygon sum, for a tilted rectangle that shines down.
+/// Theory: Lambert's polygon sum, for a tilted rectangle that emits downward.
 #[test]
 fn rectangle() {
     let (o, u, v) =
@@ -231,7 +231,7 @@ fn disc() {
     check("disc", &emitting(shape), |p| 5.0 * form::disc((p.x - 0.1).hypot(p.z + 0.1), 0.5, 0.3));
 }
 
-/// Theory: a convex body is the sum of its faces that are turned to the point.
+/// Theory: a convex body is the sum of its faces that face the point.
 #[test]
 fn cuboid() {
     let (a, b) = (DVec3::new(-0.2, 0.4, -0.3), DVec3::new(0.2, 0.6, 0.0));
@@ -247,7 +247,7 @@ fn cuboid() {
     });
 }
 
-/// Theory: a tetrahedron of four triangles is the sum of those that are turned to the point.
+/// Theory: a tetrahedron of four triangles is the sum of those that face the point.
 #[test]
 fn mesh() {
     let p =

@@ -1,10 +1,10 @@
-//! Renders a scene with independent seeds and compares means per region with the theory or with one
+//! Renders a scene with independent seeds and compares means per region with theory or with one
 //! another.
 //!
-//! With K runs a region's mean m and standard error s satisfy |m - truth| <= T s with
-//! probability 1 - 1e-4 (Student's t with K - 1 degrees of freedom). A comparison also plants an
-//! error of stated size in the truth and fails unless the same test would reject it: a test too
-//! noisy to find such an error does not count.
+//! With K runs a region's mean m and standard error s satisfy |m - truth| <= T s with probability 1
+//! - 1e-4 (Student's t with K - 1 degrees of freedom). A comparison also plants an error of stated
+//! size in the truth and fails unless the same test would reject it: a test too noisy to find such
+//! an error is not accepted.
 
 use std::path::PathBuf;
 
@@ -24,7 +24,7 @@ pub const RUNS: u64 = 20;
 /// Two-sided quantile of Student's t with RUNS - 1 degrees of freedom at 1e-4.
 const T: f64 = 4.897;
 
-/// A pinhole camera, y up, over a square picture.
+/// A pinhole camera, y up, with a square image.
 #[derive(Clone, Copy)]
 pub struct Camera {
     pub position: DVec3,
@@ -48,7 +48,7 @@ impl Camera {
         )
     }
 
-    /// Direction through the picture at (x, y) in [0, 1]^2, row 0 on top; not unit.
+    /// Direction through the image at (x, y) in [0, 1]^2, row 0 on top; not normalised.
     pub fn direction(&self, at: DVec2) -> DVec3 {
         let forward = (self.target - self.position).normalize();
         let right = forward.cross(DVec3::Y).normalize();
@@ -57,16 +57,16 @@ impl Camera {
         forward + right * tan * (2.0 * at.x - 1.0) + up * tan * (1.0 - 2.0 * at.y)
     }
 
-    /// Where the picture's point (x, y) lies on the plane y = 0.
+    /// The point of the plane y = 0 at (x, y) of the image.
     pub fn on_floor(&self, at: DVec2) -> DVec3 {
         let d = self.direction(at);
         self.position - d * (self.position.y / d.y)
     }
 
-    /// What the picture of a floor y = 0 with radiance `f` holds when photons are gathered from
-    /// discs of radius `r`: the mean over each pixel (2x2 Gauss points in each of its quarters) and
-    /// over the disc (8 points on each of three rings of equal area, turned against one another).
-    /// Both are exact for quadratics; folds of caustics, where f is infinite, want that many.
+    /// The expected image of a floor y = 0 with radiance `f`, gathered from discs of radius `r`:
+    /// the mean over each pixel (2x2 Gauss points in each of its quarters) and over the disc (8
+    /// points on each of three rings of equal area, rotated against one another). Both are exact
+    /// for quadratics; folds of caustics, where f is infinite, need that many.
     pub fn floor_picture(&self, r: f64, f: impl Fn(DVec3) -> f64 + Sync) -> Vec<f64> {
         let n = self.size;
         let offset = |k: usize| {
@@ -101,8 +101,7 @@ pub fn list(v: DVec3) -> String {
     format!("[{:?}, {:?}, {:?}]", v.x, v.y, v.z)
 }
 
-/// The settings of all tests before they change any: photon mapping in a few passes, radius in
-/// scene units.
+/// The default settings of all tests: photon mapping in a few passes, radius in scene units.
 pub fn settings(radius: f64) -> RenderSettings {
     RenderSettings {
         passes: 4,
@@ -122,7 +121,7 @@ pub fn folder() -> PathBuf {
     PathBuf::from(env!("CARGO_TARGET_TMPDIR"))
 }
 
-/// The scene that `text` describes; its files are relative to [`folder`].
+/// Parses the scene `text`; its files are relative to [`folder`].
 pub fn parse(text: &str) -> Scene {
     match scene::parse(&folder().join("scene.toml"), text.as_bytes()) {
         Ok(loaded) => loaded.scene,
@@ -130,12 +129,12 @@ pub fn parse(text: &str) -> Scene {
     }
 }
 
-/// One run. The path tracer runs on the CPU, everything else on the device that is asked for.
+/// Renders one run. The path tracer runs on the CPU, everything else on the chosen device.
 pub fn render(scene: &Scene, settings: &RenderSettings) -> Picture {
     snapshots(scene, settings, &[settings.passes]).remove(0)
 }
 
-/// The picture of one run after each of the numbers of passes, which rise.
+/// The image of one run after each of these numbers of passes, in increasing order.
 pub fn snapshots(scene: &Scene, settings: &RenderSettings, passes: &[u32]) -> Vec<Picture> {
     let device = std::env::var("CAUSTICA_DEVICE").unwrap_or_else(|_| "cpu".into());
     let mut engine: Box<dyn Engine> = if settings.method == Method::Path || device == "cpu" {
@@ -167,9 +166,9 @@ pub struct Runs {
     pub pixels: Vec<Vec<f64>>,
 }
 
-/// Renders `text` [`RUNS`] times with as many passes as a first look with other seeds, of
-/// `settings.passes`, says it takes for the whole picture's mean to be known to `power`, and with
-/// more where that was too few.
+/// Renders `text` [`RUNS`] times. A pilot of `settings.passes` passes with other seeds determines
+/// how many passes are needed to know the whole image's mean to `power`; more follow if that was
+/// too few.
 pub fn runs_to(power: f64, text: &str, settings: &RenderSettings) -> Runs {
     let reached = |runs: &Runs| {
         let Estimate { mean, error } = runs.region(|_, _| true);
@@ -211,7 +210,7 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// Of independent values.
+    /// The estimate from independent values.
     pub fn of(values: &[f64]) -> Self {
         let n = values.len() as f64;
         let mean = values.iter().sum::<f64>() / n;
@@ -219,14 +218,14 @@ impl Estimate {
         Self { mean, error: (variance / n).sqrt() }
     }
 
-    /// Whether the t-test lets `truth` pass; `slack` is a known numerical error of the truth or the
+    /// Whether the t-test accepts `truth`; `slack` is a known numerical error of the truth or the
     /// arithmetic.
     pub fn admits(&self, truth: f64, slack: f64) -> bool {
         (self.mean - truth).abs() <= T * self.error + slack * truth.abs()
     }
 }
 
-/// f32 sums and 16-bit directions: what no test can resolve.
+/// Relative error of f32 sums and 16-bit directions, which no test can resolve.
 const ARITHMETIC: f64 = 2e-4;
 
 impl Runs {
@@ -237,8 +236,8 @@ impl Runs {
         Estimate::of(&means)
     }
 
-    /// The whole picture and each of its quarters agree with `truth`, and would not with one that
-    /// is off by `power` (whole) or four times that (quarters). `what` names the case.
+    /// Checks that the whole image and each of its quarters agree with `truth`, and would not with
+    /// one that is off by `power` (whole) or four times that (quarters). `what` names the case.
     pub fn assert_picture(&self, what: &str, truth: &[f64], power: f64) {
         let n = self.size;
         assert_agrees(what, self.region(|_, _| true), region_mean(truth, n, &|_, _| true), power);
@@ -261,7 +260,8 @@ fn region_mean(pixels: &[f64], size: u32, inside: &impl Fn(u32, u32) -> bool) ->
     sum / count as f64
 }
 
-/// `found` agrees with `truth`, and would not if the truth were off by the share `power`.
+/// Checks that `found` agrees with `truth`, and would not if the truth were off by the share
+/// `power`.
 pub fn assert_agrees(what: &str, found: Estimate, truth: f64, power: f64) {
     let Estimate { mean, error } = found;
     let report = format!(
@@ -280,7 +280,8 @@ pub fn assert_agrees(what: &str, found: Estimate, truth: f64, power: f64) {
     }
 }
 
-/// Two estimates of one number agree, and would not if one were off by the share `power`.
+/// Checks that two estimates of one number agree, and would not if one were off by the share
+/// `power`.
 pub fn assert_same(what: &str, a: Estimate, b: Estimate, power: f64) {
     let difference = Estimate { mean: a.mean - b.mean, error: a.error.hypot(b.error) };
     let scale = 0.5 * (a.mean + b.mean).abs();
@@ -297,18 +298,19 @@ pub fn assert_same(what: &str, a: Estimate, b: Estimate, power: f64) {
     assert!(power * scale > bound, "{report}: too noisy to find an error of {power}");
 }
 
-/// A file in [`folder`], written once per name.
+/// Writes a file to [`folder`], once per name.
 pub fn file(name: &str, bytes: &[u8]) -> String {
     let path = folder().join(name);
-    // tests run side by side: the file appears whole or not at all
+    // tests run in parallel, so the rename publishes a complete file
     let beside = path.with_extension(format!("{:?}.part", std::thread::current().id()));
     std::fs::write(&beside, bytes).unwrap();
     std::fs::rename(&beside, &path).unwrap();
     name.to_owned()
 }
 
-/// Two sets of runs agree over the whole picture (and would not if one were off by twice `power`)
-/// and in each of 4x4 tiles, of which at least half would show an error of eight times `power`.
+/// Checks that two sets of runs agree over the whole image (and would not if one were off by twice
+/// `power`) and in each of 4x4 tiles, of which at least half would detect an error of eight times
+/// `power`.
 pub fn assert_regions(what: &str, a: &Runs, b: &Runs, power: f64) {
     let n = a.size;
     assert_same(what, a.region(|_, _| true), b.region(|_, _| true), 2.0 * power);

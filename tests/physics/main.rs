@@ -1,8 +1,18 @@
-//! Light transport against closed forms: every test states its theory first, renders the scene
-//! in-process with several seeds, and holds region means against the answer within a t-test's
-//! interval (see [`lab`]).
+//! Light transport against closed forms and reference images, numerical stability, and the error
+//! estimate.
 //!
-//! `CAUSTICA_DEVICE` chooses the device (default `cpu`).
+//! A test states its theory, renders the scene in-process with several seeds, and compares region
+//! means with the answer by a t-test (see [`lab`]).
+//!
+//! `CAUSTICA_DEVICE` selects the device (default `cpu`).
+
+#[path = "../support/brute_force.rs"]
+#[allow(dead_code)] // `geometry` uses the rest
+mod brute_force;
+#[path = "../support/revolution/mod.rs"]
+mod revolution;
+#[path = "../support/mod.rs"]
+mod support;
 
 mod agreement;
 mod bent_normals;
@@ -14,6 +24,7 @@ mod dielectrics;
 mod directions;
 mod distant;
 mod energy;
+mod error_estimate;
 mod everything;
 mod far_ground;
 mod furnace;
@@ -24,4 +35,6 @@ mod lab;
 mod materials;
 mod media;
 mod meshes;
+mod stability;
+mod truth;
 mod walls;

@@ -1,5 +1,4 @@
-//! What every material has to satisfy, tested on the examples that its file gives; and closed forms
-//! of scenes.
+//! Properties of every material, tested on the examples in its file, and closed forms of scenes.
 
 use std::f64::consts::PI;
 
@@ -27,7 +26,7 @@ fn lobes() -> Vec<(String, Lobe)> {
     lobes
 }
 
-/// A point of the plane z = 0 seen from `wo`.
+/// A shading point in the plane z = 0 seen from `wo`.
 fn point(lobe: Lobe, wo: Vec3) -> ShadingPoint {
     let s = Surface {
         position: Vec3::ZERO,
@@ -51,8 +50,8 @@ fn direction(cos: f32, turn: f32) -> Vec3 {
 const COSINES: [f32; 3] = [0.95, 0.5, 0.15];
 
 /// Theory: random numbers are multiples of 2^-24 below 1, so a diffuse surface sends photons at
-/// cosines of at least 2^-12 with the geometric normal, and none to its back. `sample_diffuse` does
-/// not test that.
+/// cosines of at least 2^-12 with the geometric normal, and none to its back. `sample_diffuse`
+/// relies on that.
 #[test]
 fn photons_leave_on_the_side_they_came_from() {
     let mut rng = rng();
@@ -72,8 +71,8 @@ fn photons_leave_on_the_side_they_came_from() {
     assert!((2f32.powi(-13)..2f32.powi(-11)).contains(&least), "{least}");
 }
 
-/// Theory: drawn directions follow the density (chi-square; a density off by 5 % is found), and the
-/// weight of each is BSDF times cosine over density.
+/// Theory: drawn directions follow the density (chi-square; a density off by 5 % is detected), and
+/// the weight of each is BSDF times cosine over density.
 #[test]
 fn directions_follow_their_density() {
     for (name, lobe) in lobes() {
@@ -116,8 +115,8 @@ fn albedo(lobe: &Lobe, wo: Vec3) -> DVec3 {
     sum * (4.0 * PI / f64::from(rows * columns))
 }
 
-/// Theory: no material scatters more than the share that its reflectance names, wide ones no less
-/// than three quarters of it; and exchanging the two directions does not change the BSDF.
+/// Theory: no material scatters more than the share that its reflectance states, and wide ones no
+/// less than three quarters of it. Exchanging the two directions does not change the BSDF.
 #[test]
 fn energy_and_reciprocity() {
     for (name, lobe) in lobes() {
@@ -158,7 +157,7 @@ fn floor(material: &str, light: [f64; 3]) -> String {
     )
 }
 
-/// All methods agree with a closed form of the floor's radiance.
+/// Checks that all methods agree with a closed form of the floor's radiance.
 fn agrees(name: &str, text: &str, radiance: impl Fn(DVec3) -> f64 + Sync) {
     let picture = CAMERA.floor_picture(0.0, radiance);
     let truth = picture.iter().sum::<f64>() / picture.len() as f64;

@@ -1,10 +1,10 @@
-//! Bodies of glass within, across and next to each other, and what stands exactly on something.
+//! Glass bodies inside, across and next to each other, and bodies that stand exactly on others.
 
 use caustica::low_level::scene::settings::{Direct, Method, RenderSettings};
 
 use super::lab::*;
 
-/// Both ways to bring light by photons, and path tracing.
+/// Photon mapping with both kinds of direct light, and path tracing.
 fn ways() -> [RenderSettings; 3] {
     let base = RenderSettings { photons: 1 << 13, passes: 16, max_bounces: 100, ..settings(0.05) };
     let path = RenderSettings { method: Method::Path, passes: 128, ..base.clone() };
@@ -69,8 +69,9 @@ fn boxes(name: &str, boxes: &[([f64; 3], [f64; 3])]) -> String {
     format!("type = \"mesh\"\nfile = \"{}\"\nsmooth = false", file(name, obj.as_bytes()))
 }
 
-/// Theory: what has the index of its surroundings is not seen. A ball in water in front of a lamp,
-/// and under the surface of a lake over a floor, whatever the surface is made of; by every method.
+/// Theory: a body with the index of its surroundings is invisible: a ball in water in front of a
+/// lamp, and one under the surface of a lake over a floor, whatever shape the surface has, by every
+/// method.
 #[test]
 fn index_matched_bodies_are_invisible() {
     let sheet = |low: f64| {
@@ -122,7 +123,8 @@ fn index_matched_bodies_are_invisible() {
 }
 
 /// Theory: in a room of radiance 1 everywhere, glass that absorbs nothing shows radiance 1, however
-/// bodies lie within, across and next to each other, and one mesh across itself (the second law).
+/// bodies lie inside, across and next to each other, and if a mesh intersects itself (the second
+/// law).
 #[test]
 fn overlapping_glass_neither_makes_nor_takes_light() {
     let base = camera("[2.5, 1.5, 3]", "[0, 0, 0]", 22.0)
@@ -177,10 +179,10 @@ fn overlapping_glass_neither_makes_nor_takes_light() {
     }
 }
 
-/// Theory: with index 1 a chord leaves exp(-(s1 d1 + s2 d2)), d1 and d2 its lengths in either
-/// medium. Where a ball lies across a slab, what they share is the ball's (it is smaller), or the
-/// slab's, if its priority is higher. The chord is 1 long in the ball and 0.8 in the slab, of which
-/// 0.3 are shared.
+/// Theory: with index 1 a chord transmits exp(-(s1 d1 + s2 d2)), with its lengths d1 and d2 in the
+/// two media. Where a ball overlaps a slab, the overlap belongs to the ball (it is smaller), or to
+/// the slab if its priority is higher. The chord is 1 long in the ball and 0.8 in the slab, of
+/// which 0.3 overlap.
 #[test]
 fn the_medium_of_an_overlap() {
     for (priority, [in_slab, in_ball]) in [(-1, [0.5f64, 1.0]), (0, [0.5, 1.0]), (1, [0.8, 0.7])] {
@@ -199,8 +201,8 @@ fn the_medium_of_an_overlap() {
     }
 }
 
-/// Theory: a camera below the surface of a lake is in the water, whatever the surface is made of:
-/// of a lamp at distance d it sees exp(-s d).
+/// Theory: a camera below the surface of a lake is in the water, whatever shape the surface has: it
+/// sees exp(-s d) of a lamp at distance d.
 #[test]
 fn cameras_under_open_surfaces() {
     for water in [
@@ -224,8 +226,8 @@ fn cameras_under_open_surfaces() {
     }
 }
 
-/// Theory: a lamp that is cut in two at the surface of water shines as before; each half lies in
-/// one medium. And photons and paths bring the same.
+/// Theory: a lamp that crosses the surface of water emits as before, each half into its own medium.
+/// Photons and paths agree.
 #[test]
 fn lamps_astride() {
     let base = camera("[0.5, 0, 3]", "[0.5, 0, 0]", 30.0)
@@ -251,7 +253,7 @@ fn lamps_astride() {
             if settings.method == Method::Path { 8 * settings.passes } else { settings.passes };
         let settings = RenderSettings { passes, ..settings };
         let [a, b] = [&whole, &cut].map(|lamps| runs(&(base.clone() + lamps), &settings));
-        // on the right the lamp itself is seen
+        // on the right the lamp itself is visible
         for (half, rows) in [("upper", 0..6), ("lower", 6..12)] {
             let what = format!("{half} half, {:?} {:?}", settings.method, settings.direct);
             let [a, b] = [&a, &b].map(|runs| runs.region(|x, y| x < 8 && rows.contains(&y)));
@@ -260,7 +262,7 @@ fn lamps_astride() {
     }
 }
 
-/// Theory: a body of index 1 that stands exactly on something is not there. All pairs of shapes.
+/// Theory: a body of index 1 that stands exactly on something is invisible. All pairs of shapes.
 #[test]
 fn what_stands_on_a_floor() {
     let can = "type = \"revolution\"\nsegments = [[[0, 0], [0.5, 0]], [[0.5, 0], [0.5, 0.6]], [[0.5, 0.6], [0, 0.6]]]\ntransform = { rotate = { axis = [0, 1, 0], degrees = 25 }, translate = [0.03, 0.0, 0.07] }";
@@ -313,8 +315,8 @@ fn what_stands_on_a_floor() {
     }
 }
 
-/// Theory: a lamp in the plane of a ceiling is seen with its own radiance, from corner to corner,
-/// and lights the floor as one a little below the ceiling does; by photons and by paths.
+/// Theory: a lamp in the plane of a ceiling has its own radiance from corner to corner, and lights
+/// the floor like one a little below the ceiling, by photons and by paths.
 #[test]
 fn lamps_in_ceilings() {
     let lamps = |y: f64| {
@@ -361,8 +363,8 @@ fn lamps_in_ceilings() {
     }
 }
 
-/// Theory: light that has passed hidden faces alone, of bodies of index 1 that overlap, comes as if
-/// they were not there; shadow rays end at them, so photons must bring it.
+/// Theory: light that passes only hidden faces, of overlapping bodies of index 1, arrives as if
+/// they did not exist. Shadow rays end at them, so photons must bring it.
 #[test]
 fn light_through_hidden_faces() {
     let base = camera("[0, 1.5, 0.01]", "[0, 0, 0]", 30.0)

@@ -1,5 +1,5 @@
-//! Smooth-shaded meshes: photon mapping and path tracing must see the same, although interpolated
-//! normals make the scattering of light non-symmetric (Veach 1997, section 5.3).
+//! Smooth-shaded meshes: photon mapping and path tracing must agree, although interpolated normals
+//! make the scattering of light non-symmetric (Veach 1997, section 5.3).
 
 use std::f64::consts::TAU;
 
@@ -28,7 +28,7 @@ fn torus(m: u32, n: u32) -> Vec<u8> {
     (v + &vn + &f).into_bytes()
 }
 
-/// A room's corner with a torus of few faces under a small lamp and a dim sky.
+/// The scene: a room's corner with a torus of few faces under a small lamp and a dim sky.
 fn scene(name: &str, material: &str) -> String {
     let mesh = file(&format!("physics-torus-{name}.obj"), &torus(12, 8));
     let camera = Camera {
@@ -68,9 +68,9 @@ emission = 6.0
         )
 }
 
-/// Theory: both methods estimate one integral with one BSDF, so their pictures agree region by
-/// region, photons' bias aside (radius a hundredth of the torus). Without the correction for
-/// shading normals, diffuse light scattered from such coarse outlines is off by several percent.
+/// Theory: both methods estimate one integral with one BSDF, so their images agree region by
+/// region, except for the photons' bias (radius a hundredth of the torus). Without the correction
+/// for shading normals, diffuse light scattered from so coarse a mesh is off by several percent.
 fn agree(name: &str, material: &str, modes: &[Direct], power: f64) {
     let text = scene(name, material);
     let run = |method, direct, passes, photons| {

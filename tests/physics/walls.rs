@@ -1,5 +1,5 @@
-//! Thin bodies, and walls that part a lit room from a dark one: what a disc of photons must not
-//! count.
+//! Thin bodies, and walls that separate a lit room from a dark one: photons that a gather disc must
+//! not count.
 
 use std::f64::consts::PI;
 use std::fmt::Write;
@@ -10,8 +10,8 @@ use glam::DVec3;
 use super::lab::*;
 
 /// Theory: a convex body of reflectance 0.8 under a sky of radiance one sees the whole half-space
-/// from each of its faces, so every face has the radiance 0.8, however slim it is against the disc.
-/// Photons of the adjacent faces are as many as those of the face itself where the disc is wide.
+/// from each of its faces, so every face has the radiance 0.8, however slim it is relative to the
+/// disc. Where the disc is wide, it covers as many photons of adjacent faces as of the face itself.
 #[test]
 fn slim_boxes_under_an_even_sky() {
     for (width, depth, radius) in [(0.012, 0.012, 0.05), (0.004, 0.1, 0.02), (0.05, 0.002, 0.015)] {
@@ -54,8 +54,8 @@ fn prism(polygon: &[[f64; 2]], back: f64) -> String {
     text
 }
 
-/// Theory: the same holds of any convex body that was modelled as triangles, since its flat faces
-/// have outlines too. Without them the faces of these prisms are 7 to 30 % off.
+/// Theory: the same holds for any convex triangle mesh, since its flat faces have outlines too.
+/// Without them the faces of these prisms are 7 to 30 % off.
 #[test]
 fn slim_meshes_under_an_even_sky() {
     let regular = |n: usize, size: f64| -> Vec<[f64; 2]> {
@@ -129,8 +129,8 @@ fn grid(n: usize) -> String {
     text
 }
 
-/// Two rooms, a lamp in the right one; the camera looks down at the floor on either side of the
-/// wall.
+/// The scene: two rooms, a lamp in the right one; the camera looks down at the floor on either side
+/// of the wall.
 fn rooms(wall: &str, floor: &str, camera: Camera, material: &str) -> String {
     let mesh = "v 0 0 -1\nv 0 0 1\nv 0 1 1\nv 0 1 -1\nf 1 2 3\nf 1 3 4\n";
     std::fs::write(folder().join("thin-wall.obj"), mesh).expect("written");
@@ -167,9 +167,9 @@ fn camera(side: f64) -> Camera {
     }
 }
 
-/// Theory: no light comes into the closed dark room, so every value there is exactly 0, with
-/// photons as with a path tracer, though the disc reaches from the dark side of the wall far into
-/// the lit room.
+/// Theory: no light enters the closed dark room, so every value there is exactly 0, with photons as
+/// with a path tracer, although the disc reaches from the dark side of the wall far into the lit
+/// room.
 #[test]
 fn nothing_passes_under_a_wall() {
     for (floor_name, floor) in FLOORS {
@@ -191,9 +191,9 @@ fn nothing_passes_under_a_wall() {
 }
 
 /// Theory: with black walls the lit floor has the irradiance of the lamp alone, cos / d^2, up to
-/// the foot of the wall: neither what the disc covers beyond the wall nor photons on the wall may
-/// count. The disc of 0.03 is cut to no less than a half, whose centre lies 0.42 radii from its
-/// own; the irradiance changes by less than 2 % over that.
+/// the foot of the wall. Neither the disc's area beyond the wall nor photons on the wall may count.
+/// The disc of 0.03 is cut to no less than a half, whose centroid lies 0.42 radii from its centre;
+/// the irradiance changes by less than 2 % over that distance.
 #[test]
 fn the_lit_side_is_even_up_to_the_wall() {
     for (floor_name, floor) in FLOORS {

@@ -1,5 +1,4 @@
-//! What the window shows and changes: files that change, pictures and scenes that are saved, and
-//! what is held beside.
+//! The preview session: reloaded files, saved images and scenes, and comparisons.
 
 use std::fs;
 use std::path::Path;
@@ -14,8 +13,8 @@ use caustica::low_level::preview::view::{View, show};
 use caustica::low_level::scene::Allowance;
 use glam::DVec3;
 
-use super::support::{FLOOR, caustica, error};
-use super::{SCENE, bits, folder, loaded, software, wait};
+use super::worker::{SCENE, folder, loaded, wait};
+use crate::support::{FLOOR, bits, caustica, data, error, software};
 
 fn session(folder: &Path) -> Session {
     session_within(folder, Allowance::default())
@@ -56,13 +55,13 @@ fn files_that_change_are_read_anew() {
         done(s).filter(|f| f.number != first.number)
     });
 
-    // a fault: it is told, and the picture stays
+    // an error is reported, and the image stays
     fs::write(&file, SCENE.replace("ior = 1.5", "ior = -1.5")).unwrap();
     let trouble = ticked(&mut session, "trouble", |s| s.trouble.clone());
     assert!(trouble.contains("ball.toml:") && trouble.contains("ior"), "{trouble}");
     assert!(Arc::ptr_eq(&session.frame().unwrap(), &own));
 
-    // a mesh that is not there, then is
+    // a missing mesh, which then appears
     fs::write(&file, SCENE.replace("floor.obj", "ground.obj")).unwrap();
     ticked(&mut session, "other trouble", |s| {
         s.trouble.clone().filter(|t| t.contains("ground.obj"))
@@ -80,15 +79,15 @@ fn files_that_change_are_read_anew() {
         ticked(&mut session, "another mesh", |s| done(s).filter(|f| f.number != mended.number));
     assert!(bits(&same.picture) == bits(&own.picture), "the same scene by another file name");
 
-    // what the file changes of camera and settings counts
+    // camera and settings that change in the file take effect
     let text = SCENE.replace("floor.obj", "ground.obj").replace("photons = 2000", "photons = 500");
     fs::write(&file, text.replace("[0.0, 1.0, 5.0]", "[0.0, 2.0, 5.0]")).unwrap();
     ticked(&mut session, "new settings", |s| (s.now.settings.photons == 500).then_some(()));
     assert_eq!(session.now.camera.position, DVec3::new(0.0, 2.0, 5.0));
 }
 
-/// Theory: what is read anew obeys what the first reading did. So does what is read to find out
-/// whether a file to be saved is a scene. With nothing confined the same files are read.
+/// Theory: a reload obeys the root and the limits of the first load, and so does the check whether
+/// an edited file is a scene. Without restrictions the same files load.
 #[test]
 fn files_that_change_keep_to_the_root_and_the_limits() {
     let outer = folder("confined");
@@ -97,7 +96,7 @@ fn files_that_change_keep_to_the_root_and_the_limits() {
     fs::write(root.join("floor.obj"), FLOOR).unwrap();
     let file = root.join("ball.toml");
     fs::write(&file, SCENE.as_str()).unwrap();
-    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/reference/grid.png");
+    let data = data("reference/grid.png");
     let textured = |name: &str| {
         let texture = format!("[textures.t]\ntype = \"image\"\nfile = {name:?}\n");
         SCENE.replace("reflectance = 0.5", "reflectance = \"t\"") + &texture
@@ -108,7 +107,7 @@ fn files_that_change_keep_to_the_root_and_the_limits() {
     let allowance = Allowance { root: Some(root.clone()), triangles: 2, ..Allowance::default() };
     let mut session = session_within(&root, allowance);
     let own = ticked(&mut session, "the picture", done);
-    // a texture outside: the error, at its place, and the picture that was there
+    // a texture outside the root: the error with its place, and the previous image
     fs::write(&file, textured("../grid.png")).unwrap();
     let trouble = ticked(&mut session, "trouble", |s| s.trouble.clone());
     assert!(trouble.contains("ball.toml:") && trouble.contains("lies outside of"), "{trouble}");
@@ -130,7 +129,7 @@ fn files_that_change_keep_to_the_root_and_the_limits() {
         done(s).filter(|f| s.trouble.is_none() && f.number != own.number)
     });
     assert!(bits(&inside.picture) != bits(&own.picture));
-    // where nothing is confined
+    // without restrictions
     let mut session = session_within(&root, Allowance::default());
     ticked(&mut session, "the picture", done);
     fs::write(&file, textured("../grid.png")).unwrap();
@@ -165,12 +164,12 @@ fn pictures_and_scenes_are_saved() {
     let text = fs::read_to_string(folder.join("ball.toml")).unwrap();
     assert!(text.starts_with("# A ball of glass.\n") && text.contains("] # before it\n"), "{text}");
     assert!(bits(&read(&folder.join("picture.exr")).unwrap()) == bits(&frame.picture));
-    // what is saved does not begin anything anew, though the file has changed
+    // saving does not restart the render, although the file has changed
     std::thread::sleep(Duration::from_millis(800));
     session.tick();
     assert_eq!(session.whole().map(|f| f.number), Some(frame.number));
 
-    // and the file makes the same picture again
+    // the saved file renders the same image
     let words = ["render", "ball.toml", "--quiet", "--like", "picture.exr", "-o", "again.exr"];
     let output = caustica(&folder, &words);
     let error = error(&output);
@@ -191,7 +190,7 @@ fn views_that_were_there_before_begin_nothing_anew() {
         assert!(show(&depth, view, &session.development(), None).is_some());
     }
     assert!(bits(&depth.picture) == bits(&first.picture), "layers change no bit");
-    // another camera asks for what is looked at alone
+    // another camera only requests the visible view
     session.act(Action::View(View::Picture));
     session.act(Action::Orbit(0.1, 0.0));
     let turned = ticked(&mut session, "the picture turned", |s| {
@@ -216,7 +215,7 @@ fn pictures_are_held_against_others() {
     session.act(Action::Keep);
     assert!(session.beside.is_none() && session.split.is_none());
     // the same bits on another engine
-    software::software();
+    software();
     session.beside_device("software", || ());
     session.act(Action::Home);
     let equal = ticked(&mut session, "both pictures", |s| {

@@ -1,4 +1,5 @@
-//! A glass ball over a floor under a lamp: caustics, direct and indirect light in few pixels.
+//! A scene of few pixels with caustics, direct and indirect light: a glass ball over a floor under
+//! a lamp.
 
 /// A floor, or a lamp: TOML of one shape.
 pub type Shape = &'static str;
@@ -54,8 +55,8 @@ material = "white"
 emission = [20.0, 20.0, 20.0]
 "#;
 
-/// The scene file, with a picture of so many pixels, the lines of `[render]`, and shapes beside the
-/// ball.
+/// The scene file, with an image of this size, the lines of `[render]`, and shapes in addition to
+/// the ball.
 pub fn ball((width, height): (u32, u32), render: &str, shapes: &[Shape]) -> String {
     format!(
         r#"version = 1

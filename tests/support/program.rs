@@ -3,14 +3,17 @@
 use std::path::Path;
 use std::process::{Command, Output};
 
-/// The program with these words, in `folder`, without colours.
+/// The path of the program under test.
+pub const PROGRAM: &str = env!("CARGO_BIN_EXE_caustica");
+
+/// The program with these arguments, in `folder`, without colours.
 pub fn command(folder: &Path, arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_caustica"));
+    let mut command = Command::new(PROGRAM);
     command.args(arguments).current_dir(folder).env("NO_COLOR", "1");
     command
 }
 
-/// Runs it.
+/// Runs the program with these arguments.
 pub fn caustica(folder: &Path, arguments: &[&str]) -> Output {
     command(folder, arguments).output().unwrap()
 }
@@ -20,7 +23,7 @@ pub fn text(bytes: &[u8]) -> String {
     String::from_utf8(bytes.to_vec()).unwrap()
 }
 
-/// Standard error on one line, as it was before long lines were broken to be printed.
+/// Standard error as one line, with line breaks and their decoration removed.
 pub fn error(output: &Output) -> String {
     text(&output.stderr)
         .split_whitespace()
@@ -29,7 +32,7 @@ pub fn error(output: &Output) -> String {
         .join(" ")
 }
 
-/// Runs what ends with this code and has these words on standard error.
+/// Runs a command that must end with this exit code and with these words on standard error.
 #[track_caller]
 pub fn ends(folder: &Path, arguments: &[&str], code: i32, words: &[&str]) -> Output {
     let output = caustica(folder, arguments);
@@ -41,13 +44,14 @@ pub fn ends(folder: &Path, arguments: &[&str], code: i32, words: &[&str]) -> Out
     output
 }
 
-/// Runs what ends well; its standard output.
+/// Runs a command that must succeed and returns its standard output.
 #[track_caller]
 pub fn good(folder: &Path, arguments: &[&str]) -> String {
     text(&ends(folder, arguments, 0, &[]).stdout)
 }
 
-/// Runs what fails with this code and these words, and says nothing on standard output.
+/// Runs a command that must fail with this exit code and these words, and with an empty standard
+/// output.
 #[track_caller]
 pub fn fails(folder: &Path, arguments: &[&str], code: i32, words: &[&str]) {
     let output = ends(folder, arguments, code, words);

@@ -1,0 +1,58 @@
+//! Lights without a surface, and the environment.
+
+use glam::DVec3;
+
+use super::Rgb;
+
+/// A light without a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Light {
+    /// A point light with the same intensity in all directions.
+    Point {
+        /// Position in world space.
+        position: DVec3,
+        /// Radiant intensity in W/sr.
+        intensity: Rgb,
+    },
+    /// A spot light that shines into a cone.
+    Spot {
+        /// Apex of the cone.
+        position: DVec3,
+        /// A point on the cone's axis, different from `position`.
+        target: DVec3,
+        /// Radiant intensity on the axis in W/sr.
+        intensity: Rgb,
+        /// Angle in degrees between the axis and the edge of the cone, in (0, 180].
+        angle_degrees: f64,
+        /// Fraction of `angle_degrees` over which the light fades, in [0, 1]: full up to
+        /// `(1 - blend) angle`, then a smoothstep in the angle's cosine down to zero at `angle`.
+        blend: f64,
+    },
+    /// Parallel light from infinitely far away.
+    Sun {
+        /// Unit vector in which the light travels.
+        direction: DVec3,
+        /// Irradiance on a surface facing the sun in W/m^2.
+        irradiance: Rgb,
+    },
+}
+
+/// Radiance from infinitely far away.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Environment {
+    /// The same radiance from all directions.
+    Constant {
+        /// Radiance in W sr^-1 m^-2.
+        radiance: Rgb,
+    },
+    /// An equirectangular image; row 0 is the zenith (+y). A direction `d`, turned back about y,
+    /// reads it at `u = 0.5 - atan2(d.z, d.x) / 2pi`, `v = 1 - acos(d.y) / pi`.
+    Image {
+        /// Index into [`Scene::images`].
+        image: usize,
+        /// Rotation of the image about +y in degrees, by the right-hand rule.
+        rotate_degrees: f64,
+        /// Radiance in W sr^-1 m^-2 of a texel value of one, per channel.
+        scale: Rgb,
+    },
+}

@@ -1,8 +1,0 @@
-//! What the tests of surfaces of revolution share: profiles, rays, and an independent solver.
-
-#![allow(dead_code)] // each test binary uses its part
-
-pub mod judge;
-pub mod oracle;
-pub mod profiles;
-pub mod rays;
