@@ -3,10 +3,8 @@
 //! `cargo run --release --example named_metals` prints the lines of `src/scene/named/metals.rs` and
 //! the tables of `docs/metals.md`.
 
-#![allow(dead_code)] // the shared modules have functions for tests and for the scene loader
+#![allow(dead_code)] // the derivation has functions for tests alone
 
-#[path = "../src/scene/named/mod.rs"]
-mod named;
 #[path = "named_metals/mod.rs"]
 mod named_metals;
 
@@ -25,7 +23,7 @@ fn main() -> Result<(), String> {
     println!("|---|---|---|---|---|---|---|");
     for (spectrum, fit) in &fits {
         let name = spectrum.name;
-        let metal = named::metals::metal(name).ok_or(format!("no metal is named {name}"))?;
+        let metal = caustica::low_level::scene::named::metals::metal(name).ok_or(format!("no metal is named {name}"))?;
         let (aliases, source) = (metal.aliases.join(", "), metal.source);
         let [r, eta, k] = [fit.reflectance, fit.eta, fit.k].map(|values| row(values, 3));
         println!("| {name} | {aliases} | {r} | {eta} | {k} | {source} | {} |", spectrum.page);

@@ -1,14 +1,11 @@
 //! The named metals reproduce the measured spectra, and the named glasses their catalogs.
 
-#![allow(dead_code)] // the shared modules have functions for the example and for the scene loader
-
-#[path = "../src/scene/named/mod.rs"]
-mod named;
-#[path = "../examples/named_metals/mod.rs"]
+#[allow(dead_code)] // the derivation has functions for the example alone
+#[path = "../../examples/named_metals/mod.rs"]
 mod named_metals;
 
-use named::glasses::{D_LINE_NM, GLASSES, glass, glass_names};
-use named::metals::{METALS, Metal, metal, metal_names};
+use caustica::low_level::scene::named::glasses::{D_LINE_NM, GLASSES, glass, glass_names};
+use caustica::low_level::scene::named::metals::{METALS, Metal, metal, metal_names};
 use named_metals::fit::{conductor, fit};
 use named_metals::observer::{channel_weights, wavelengths};
 use named_metals::spectra::{SPECTRA, Spectrum};
@@ -290,5 +287,53 @@ fn glasses_agree_with_their_catalogs() {
         let found = (glass.ior - 1.0) / (glass.index_at(486.1327) - glass.index_at(656.2725));
         assert!((glass.ior - ior).abs() < 1e-3, "{name}: {}", glass.ior);
         assert!((found - abbe).abs() < bound, "{name}: Abbe number {found}");
+    }
+}
+
+/// A glass in a scene file: the value of `key = value` lines, or the messages of the errors.
+fn loaded_glass(lines: &str) -> Result<(f64, [f64; 3]), String> {
+    let text = format!(
+        "version = 1\n[camera]\nposition = [0, 1, 4]\ntarget = [0, 1, 0]\nfov = 39\n\
+         [environment]\nradiance = 1\n[materials.g]\ntype = \"glass\"\n{lines}\n\
+         [[shapes]]\ntype = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1\nmaterial = \"g\"\n"
+    );
+    let loaded = caustica::scene::parse("glass.toml".as_ref(), text.as_bytes());
+    match loaded {
+        Ok(loaded) => match loaded.scene.materials[0].kind {
+            caustica::scene::MaterialKind::Glass { ior, absorption, .. } => Ok((ior, absorption)),
+            ref other => Err(format!("{other:?}")),
+        },
+        Err(errors) => Err(errors.errors.iter().map(|e| format!("{e}\n{}\n", e.label())).collect()),
+    }
+}
+
+/// Theory: a name stands for its index at the d line, and light that passes the attenuation
+/// distance keeps the attenuation color, so that `exp(-absorption distance)` is that color.
+#[test]
+fn scene_files_name_glasses() {
+    for name in glass_names() {
+        let (ior, _) = loaded_glass(&format!("material = \"{name}\"")).unwrap();
+        assert_eq!(ior, glass(name).unwrap().ior, "{name}");
+    }
+    assert_eq!(loaded_glass("material = \"N-BK7\"").unwrap().0, glass("bk7").unwrap().ior);
+    let color = [0.9, 0.5, 1.0];
+    let lines = "ior = 1.5\nattenuation_color = [0.9, 0.5, 1.0]\nattenuation_distance = 0.25";
+    let (_, absorption) = loaded_glass(lines).unwrap();
+    for (absorption, color) in absorption.iter().zip(color) {
+        assert!(((-absorption * 0.25).exp() - color).abs() < 1e-12, "{absorption}");
+    }
+    let (_, black) = loaded_glass("ior = 1.5\nattenuation_color = 0").unwrap();
+    assert!(black.iter().all(|x| x.is_finite() && *x > 100.0), "{black:?}");
+    for (lines, expected) in [
+        ("", "lacks `ior`"),
+        ("material = \"bk8\"", "did you mean `bk7`?"),
+        ("ior = 1.5\nmaterial = \"bk7\"", "both an index and the name"),
+        ("ior = 1.5\nabsorption = 1\nattenuation_color = 0.5", "two kinds of absorption"),
+        ("ior = 1.5\nabsorption = 1\nattenuation_distance = 2", "two kinds of absorption"),
+        ("ior = 1.5\nattenuation_distance = 2", "distance without a color"),
+        ("ior = 1.5\nattenuation_color = 0.5\nattenuation_distance = 0", "attenuation_distance"),
+    ] {
+        let message = loaded_glass(lines).unwrap_err();
+        assert!(message.contains(expected), "{lines}: {message}");
     }
 }
