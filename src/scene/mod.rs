@@ -27,6 +27,7 @@ mod light;
 mod limits;
 mod load;
 mod meshes;
+pub mod named;
 pub mod numbers;
 mod parts;
 pub mod settings;

@@ -11,5 +11,6 @@ mod errors;
 mod hostile;
 mod limits;
 mod load;
+mod named;
 mod shipped_assets;
 mod shipped_scenes;

@@ -169,10 +169,15 @@ pub enum MaterialFile {
     /// A smooth dielectric. Outside is air or, where bodies overlap, the other glass.
     Glass {
         /// Index of refraction.
-        ior: Positive,
-        /// Absorption coefficient inside, per scene unit (Beer-Lambert).
-        #[serde(default)]
-        absorption: Spectrum<NonNegative>,
+        ior: Option<Positive>,
+        /// Name of a material that has the index, such as bk7, water or diamond.
+        material: Option<String>,
+        /// Absorption coefficient inside, per scene unit (Beer-Lambert); 0 by default.
+        absorption: Option<Spectrum<NonNegative>>,
+        /// Fraction of light that is left at the attenuation distance; replaces `absorption`.
+        attenuation_color: Option<Spectrum<Share>>,
+        /// Distance in scene units at which the attenuation color is reached; 1 by default.
+        attenuation_distance: Option<Positive>,
         /// Rank where glass bodies overlap: the medium is the glass with the highest priority, or
         /// that of the smaller body if priorities are equal.
         #[serde(default)]

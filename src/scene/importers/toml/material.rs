@@ -5,7 +5,10 @@ use super::file::{MaterialFile, TextureFile};
 use super::index;
 use super::numbers::Paint;
 use crate::scene::builder::SceneBuilder;
-use crate::scene::{Material, MaterialKind, Reflectance, Texture, TextureKind};
+use crate::scene::named::glasses::{glass, glass_names};
+use crate::scene::numbers::LARGEST;
+use crate::scene::parts::Part;
+use crate::scene::{Material, MaterialKind, Reflectance, Rgb, Texture, TextureKind};
 
 pub(super) fn texture(builder: &mut SceneBuilder, item: &Item, file: TextureFile) -> Option<()> {
     let kind = match file {
@@ -46,12 +49,95 @@ pub(super) fn material(
         MaterialFile::Mirror { reflectance } => {
             MaterialKind::Mirror { reflectance: paint(&reflectance) }
         }
-        MaterialFile::Glass { ior, absorption, priority } => {
-            MaterialKind::Glass { ior: ior.0, absorption: absorption.rgb(), priority }
-        }
+        MaterialFile::Glass {
+            ior,
+            material,
+            absorption,
+            attenuation_color,
+            attenuation_distance,
+            priority,
+        } => MaterialKind::Glass {
+            ior: glass_index(builder, item, ior.map(f64::from), material.as_deref()),
+            absorption: glass_absorption(
+                builder,
+                item,
+                absorption.map(|absorption| absorption.rgb()),
+                attenuation_color.map(|color| color.rgb()),
+                attenuation_distance.map(f64::from),
+            ),
+            priority,
+        },
         MaterialFile::Metal { reflectance, roughness } => {
             MaterialKind::Metal { reflectance: paint(&reflectance), roughness: roughness.0 }
         }
     };
     builder.add_material(item, Material { name: item.name.to_owned(), kind });
+}
+
+/// Index of refraction from the key `ior` or from the name of a material. Reports a name that is
+/// not known, and none or both of the keys.
+fn glass_index(
+    builder: &mut SceneBuilder,
+    item: &Item,
+    ior: Option<f64>,
+    material: Option<&str>,
+) -> f64 {
+    let report = &mut builder.report;
+    match (ior, material) {
+        (Some(ior), None) => return ior,
+        (None, Some(name)) => match glass(name) {
+            Some(glass) => return glass.ior,
+            None => {
+                let message = format!("there is no glass called `{name}`");
+                let label = report.did_you_mean(name, glass_names(), "expected a known glass");
+                let names: Vec<_> = glass_names().collect();
+                let help = format!("known: {}; or give the index as `ior`", names.join(", "));
+                report.error(item.span_of("material"), message, label, Some(help));
+            }
+        },
+        (Some(_), Some(_)) => {
+            let message = format!("{} has both an index and the name of a glass", item.place());
+            let label = "expected either `ior` or `material`";
+            report.error(item.span_of("material"), message, label, None);
+        }
+        (None, None) => {
+            let message = format!("{} lacks `ior`", item.place());
+            let help = Some("for example ior = 1.5, or material = \"bk7\"".to_owned());
+            let label = "expected `ior` or `material`".to_owned();
+            report.missing(item.span(), message, label, help);
+        }
+    }
+    1.0
+}
+
+/// Absorption coefficient per scene unit, from itself or from the color that is left at a distance
+/// (glTF 2.0, KHR_materials_volume): `-ln(color) / distance`.
+fn glass_absorption(
+    builder: &mut SceneBuilder,
+    item: &Item,
+    absorption: Option<Rgb>,
+    color: Option<Rgb>,
+    distance: Option<f64>,
+) -> Rgb {
+    let report = &mut builder.report;
+    if absorption.is_some() && (color.is_some() || distance.is_some()) {
+        let message = format!("{} has two kinds of absorption", item.place());
+        let key = if color.is_some() { "attenuation_color" } else { "attenuation_distance" };
+        let label = "expected either `absorption` or `attenuation_color`";
+        report.error(item.span_of(key), message, label, None);
+    }
+    match (color, distance) {
+        (Some(color), distance) => {
+            let distance = distance.unwrap_or(1.0);
+            // a channel of zero leaves nothing at any distance that matters
+            color.map(|left| (-left.max(f64::MIN_POSITIVE).ln() / distance).min(LARGEST))
+        }
+        (None, Some(_)) if absorption.is_none() => {
+            let message = format!("{} has a distance without a color", item.place());
+            let label = "expected `attenuation_color` too";
+            report.error(item.span_of("attenuation_distance"), message, label, None);
+            [0.0; 3]
+        }
+        (None, _) => absorption.unwrap_or_default(),
+    }
 }
