@@ -23,7 +23,8 @@ fn main() -> Result<(), String> {
     println!("|---|---|---|---|---|---|---|");
     for (spectrum, fit) in &fits {
         let name = spectrum.name;
-        let metal = caustica::low_level::scene::named::metals::metal(name).ok_or(format!("no metal is named {name}"))?;
+        let metal = caustica::low_level::scene::named::metals::metal(name)
+            .ok_or(format!("no metal is named {name}"))?;
         let (aliases, source) = (metal.aliases.join(", "), metal.source);
         let [r, eta, k] = [fit.reflectance, fit.eta, fit.k].map(|values| row(values, 3));
         println!("| {name} | {aliases} | {r} | {eta} | {k} | {source} | {} |", spectrum.page);
