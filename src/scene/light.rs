@@ -48,7 +48,7 @@ pub enum Environment {
     /// An equirectangular image; row 0 is the zenith (+y). A direction `d`, turned back about y,
     /// reads it at `u = 0.5 - atan2(d.z, d.x) / 2pi`, `v = 1 - acos(d.y) / pi`.
     Image {
-        /// Index into [`Scene::images`].
+        /// Index into [`super::Scene::images`].
         image: usize,
         /// Rotation of the image about +y in degrees, by the right-hand rule.
         rotate_degrees: f64,

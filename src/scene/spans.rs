@@ -36,7 +36,9 @@ impl Spans {
     pub(super) fn add(&mut self, part: &dyn Part) {
         let place = part.place();
         self.spans.insert(place.to_owned(), part.span());
-        part.each_key(&mut |key, span| drop(self.spans.insert(format!("{place}.{key}"), span)));
+        part.each_key(&mut |key, span| {
+            self.spans.insert(format!("{place}.{key}"), span);
+        });
     }
 
     /// Creates a warning at the first of `paths` that the file has, or else at its start; `label`

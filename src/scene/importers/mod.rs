@@ -1,8 +1,8 @@
 //! File formats: a folder for each, which knows nothing of the others, and its line in one of the
 //! lists below.
 //!
-//! A scene format implements [`Importer`], a mesh format, which scene files of any format name,
-//! [`MeshReader`].
+//! A scene format implements `Importer`, a mesh format, which scene files of any format name,
+//! `MeshReader`.
 
 mod obj;
 pub mod toml;

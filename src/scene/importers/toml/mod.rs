@@ -1,8 +1,8 @@
 //! TOML scene files, and profile files.
 //!
-//! [`file`] declares the format as types, from which the JSON Schema follows. A file is parsed into
-//! a tree with positions, checked against the schema, and read part by part as these types, which
-//! the other modules convert to the description.
+//! [`mod@file`] declares the format as types, from which the JSON Schema follows. A file is parsed
+//! into a tree with positions, checked against the schema, and read part by part as these types,
+//! which the other modules convert to the description.
 
 mod camera;
 mod document;
