@@ -2,7 +2,7 @@
 //!
 //! [`prepare`] calls the stages in order: it packs the scene, traces pilot eye paths, packs again
 //! if these show that scene space should be centered elsewhere, and learns from pilot photons how
-//! to sample the lights. [`probe`](probe) then measures what a plan needs to know. Pilots run on
+//! to sample the lights. [`probe()`] then measures what a plan needs to know. Pilots run on
 //! the CPU for every engine, so that all engines render the same image.
 
 mod cells;

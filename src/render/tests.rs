@@ -112,12 +112,14 @@ fn run(engine: &mut Counter, stop: Stop, keep: Keep) -> Result<Outcome, Broken> 
     Run::new(session, keep).execute(&mut Single(engine), None)
 }
 
+type Save<'a> = &'a mut dyn FnMut(State, &Progress) -> State;
+
 /// Resumes a render at `progress`, and saves it if `save` is given.
 fn resumed(
     engine: &mut Counter,
     progress: Progress,
     every: Duration,
-    save: Option<&mut dyn FnMut(State, &Progress) -> State>,
+    save: Option<Save>,
 ) -> Result<Outcome, Broken> {
     let state = State { passes: progress.passes, ..State::default() };
     let interrupted = AtomicBool::new(false);

@@ -36,7 +36,7 @@ pub struct Revolution {
     pub center: Vec3,
     /// Index of the material.
     pub material: u32,
-    /// Index of the light, or [`NONE`](super::ray::NONE).
+    /// Index of the light, or [`NONE`](super::table::NONE).
     pub light: u32,
     /// Source of the texture coordinates, one of the `UV_*` constants.
     pub uv: u32,
