@@ -28,18 +28,19 @@ fn scene(fov: f64, size: u32) -> String {
 fn pictures(text: &str, alpha: f64, radius: f64, photons: u32) -> Vec<Runs> {
     let scene = parse(text);
     let mut all = COUNTS.map(|_| Runs { size: scene.film.width, pixels: Vec::new() });
+    let common = RenderSettings {
+        method: Method::Ppm,
+        eye_samples: 1,
+        direct: Direct::Photons,
+        radius_rule: RadiusRule::Global,
+        alpha,
+        photons,
+        ..settings(radius)
+    };
+    let prepared = Prepared::new(&scene, &common);
     for seed in 0..RUNS {
-        let settings = RenderSettings {
-            method: Method::Ppm,
-            eye_samples: 1,
-            direct: Direct::Photons,
-            radius_rule: RadiusRule::Global,
-            alpha,
-            photons,
-            seed,
-            ..settings(radius)
-        };
-        for (runs, picture) in all.iter_mut().zip(snapshots(&scene, &settings, &COUNTS)) {
+        let settings = RenderSettings { seed, ..common.clone() };
+        for (runs, picture) in all.iter_mut().zip(prepared.snapshots(&settings, &COUNTS)) {
             runs.pixels.push(grey(&picture));
         }
     }

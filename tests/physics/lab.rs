@@ -12,6 +12,7 @@ use caustica::low_level::cpu::CpuEngine;
 use caustica::low_level::device;
 use caustica::low_level::engine::Engine;
 use caustica::low_level::film::Picture;
+use caustica::low_level::pack::Packed;
 use caustica::low_level::pilots::prepare;
 use caustica::low_level::plan::Plan;
 use caustica::low_level::scene::settings::{Direct, Method, Radius, RadiusRule, RenderSettings};
@@ -136,28 +137,65 @@ pub fn render(scene: &Scene, settings: &RenderSettings) -> Picture {
 
 /// The image of one run after each of these numbers of passes, in increasing order.
 pub fn snapshots(scene: &Scene, settings: &RenderSettings, passes: &[u32]) -> Vec<Picture> {
-    let device = std::env::var("CAUSTICA_DEVICE").unwrap_or_else(|_| "cpu".into());
-    let mut engine: Box<dyn Engine> = if settings.method == Method::Path || device == "cpu" {
-        let packed =
-            prepare(scene, scene.film.width, scene.film.height).unwrap_or_else(|e| panic!("{e}"));
-        let plan = Plan::probed(&packed, settings);
-        Box::new(CpuEngine::new(packed, plan))
-    } else {
-        device::open(&device::parse(&device), scene, settings)
-            .unwrap_or_else(|e| panic!("{e}"))
-            .engine
-    };
-    let mut done = 0;
-    let mut snapshot = |until: &u32| {
-        while done < *until {
-            engine.pass().unwrap();
-            done += 1;
-        }
-        let picture = engine.picture().unwrap();
-        assert_eq!(picture.not_finite(), 0, "NaN or infinity in the picture");
-        picture
-    };
-    passes.iter().map(&mut snapshot).collect()
+    Prepared::new(scene, settings).snapshots(settings, passes)
+}
+
+/// A scene that is ready to be rendered. Preparation takes longer than a few passes of a small
+/// image. It does not depend on the seed or on the number of passes, so runs share it.
+pub struct Prepared<'s> {
+    scene: &'s Scene,
+    device: String,
+    cpu: Option<(Packed, Plan)>,
+}
+
+impl<'s> Prepared<'s> {
+    /// Prepares the scene for renders whose settings are `settings` but for seed and passes.
+    pub fn new(scene: &'s Scene, settings: &RenderSettings) -> Self {
+        let device = std::env::var("CAUSTICA_DEVICE").unwrap_or_else(|_| "cpu".into());
+        let cpu = (settings.method == Method::Path || device == "cpu").then(|| {
+            let packed = prepare(scene, scene.film.width, scene.film.height)
+                .unwrap_or_else(|e| panic!("{e}"));
+            let plan = Plan::probed(&packed, settings);
+            (packed, plan)
+        });
+        Self { scene, device, cpu }
+    }
+
+    /// As the function [`snapshots`].
+    pub fn snapshots(&self, settings: &RenderSettings, passes: &[u32]) -> Vec<Picture> {
+        let mut engine: Box<dyn Engine> = match &self.cpu {
+            Some((packed, plan)) => {
+                let mut plan = plan.clone();
+                (plan.settings.seed, plan.settings.passes) = (settings.seed, settings.passes);
+                Box::new(CpuEngine::new(packed.clone(), plan))
+            }
+            None => {
+                device::open(&device::parse(&self.device), self.scene, settings)
+                    .unwrap_or_else(|e| panic!("{e}"))
+                    .engine
+            }
+        };
+        let mut done = 0;
+        let mut snapshot = |until: &u32| {
+            while done < *until {
+                engine.pass().unwrap();
+                done += 1;
+            }
+            let picture = engine.picture().unwrap();
+            assert_eq!(picture.not_finite(), 0, "NaN or infinity in the picture");
+            picture
+        };
+        passes.iter().map(&mut snapshot).collect()
+    }
+
+    /// [`RUNS`] runs.
+    pub fn runs(&self, settings: &RenderSettings) -> Runs {
+        let run = |seed| {
+            let settings = RenderSettings { seed: settings.seed + seed, ..settings.clone() };
+            grey(&self.snapshots(&settings, &[settings.passes])[0])
+        };
+        Runs { size: self.scene.film.width, pixels: (0..RUNS).map(run).collect() }
+    }
 }
 
 /// Grey pixels of [`RUNS`] runs.
@@ -166,35 +204,34 @@ pub struct Runs {
     pub pixels: Vec<Vec<f64>>,
 }
 
-/// Renders `text` [`RUNS`] times. A pilot with other seeds and a quarter of `settings.passes`
-/// determines how many passes are needed to know the whole image's mean to `power`, at least
-/// `settings.passes`. The runs are repeated with more passes if that was too few.
+/// Renders `text` [`RUNS`] times. A pilot of `settings.passes` passes with other seeds determines
+/// how many passes are needed to know the whole image's mean to `power`; more follow if that was
+/// too few.
 pub fn runs_to(power: f64, text: &str, settings: &RenderSettings) -> Runs {
     let reached = |runs: &Runs| {
         let Estimate { mean, error } = runs.region(|_, _| true);
         T * error / ((power - ARITHMETIC) * mean)
     };
-    let with = |passes, seed| runs(text, &RenderSettings { passes, seed, ..settings.clone() });
-    let mut passes = settings.passes.div_ceil(4);
-    let mut found = with(passes, settings.seed + 1000);
-    for _ in 0..4 {
-        let needed = f64::from(passes) * (reached(&found) / 0.75).powi(2);
-        passes = (needed.ceil() as u32).clamp(settings.passes, 256 * settings.passes);
-        found = with(passes, settings.seed);
-        if reached(&found) < 0.95 {
+    let scene = parse(text);
+    let prepared = Prepared::new(&scene, settings);
+    let with = |passes: f64, seed| {
+        let passes = (passes.ceil() as u32).clamp(settings.passes, 256 * settings.passes);
+        (passes as f64, prepared.runs(&RenderSettings { passes, seed, ..settings.clone() }))
+    };
+    let (mut passes, mut runs) = with(settings.passes as f64, settings.seed + 1000);
+    for _ in 0..3 {
+        (passes, runs) = with(passes * (reached(&runs) / 0.65).powi(2), settings.seed);
+        if reached(&runs) < 0.95 {
             break;
         }
     }
-    found
+    runs
 }
 
 /// Renders `text` [`RUNS`] times.
 pub fn runs(text: &str, settings: &RenderSettings) -> Runs {
     let scene = parse(text);
-    let run = |seed| {
-        grey(&render(&scene, &RenderSettings { seed: settings.seed + seed, ..settings.clone() }))
-    };
-    Runs { size: scene.film.width, pixels: (0..RUNS).map(run).collect() }
+    Prepared::new(&scene, settings).runs(settings)
 }
 
 /// The mean of the three channels of every pixel.
