@@ -12,7 +12,7 @@ use caustica::low_level::cpu::CpuEngine;
 use caustica::low_level::device;
 use caustica::low_level::engine::Engine;
 use caustica::low_level::film::Picture;
-use caustica::low_level::pack::Packed;
+use caustica::low_level::pack::PackedScene;
 use caustica::low_level::pilots::prepare;
 use caustica::low_level::plan::Plan;
 use caustica::low_level::scene::settings::{Direct, Method, Radius, RadiusRule, RenderSettings};
@@ -145,7 +145,7 @@ pub fn snapshots(scene: &Scene, settings: &RenderSettings, passes: &[u32]) -> Ve
 pub struct Prepared<'s> {
     scene: &'s Scene,
     device: String,
-    cpu: Option<(Packed, Plan)>,
+    cpu: Option<(PackedScene, Plan)>,
 }
 
 impl<'s> Prepared<'s> {
