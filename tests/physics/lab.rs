@@ -1,10 +1,10 @@
 //! Renders a scene with independent seeds and compares means per region with theory or with one
 //! another.
 //!
-//! With K runs a region's mean m and standard error s satisfy |m - truth| <= T s with probability 1
-//! - 1e-4 (Student's t with K - 1 degrees of freedom). A comparison also plants an error of stated
-//! size in the truth and fails unless the same test would reject it: a test too noisy to find such
-//! an error is not accepted.
+//! With K runs a region's mean m and standard error s satisfy |m - truth| <= T s with probability
+//! 1 - 1e-4 (Student's t with K - 1 degrees of freedom). A comparison also plants an error of
+//! stated size in the truth and fails unless the same test would reject it: a test too noisy to
+//! find such an error is not accepted.
 
 use std::path::PathBuf;
 
