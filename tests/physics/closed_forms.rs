@@ -33,25 +33,26 @@ pub fn disc(a: f64, h: f64, r: f64) -> f64 {
     0.5 * PI * (1.0 - (s - r * r) / ((s + r * r).powi(2) - 4.0 * r * r * a * a).sqrt())
 }
 
-/// Irradiance under a convex surface wholly above the horizon, by the midpoint rule with `n_s` x
-/// `n_t` points. `point(s, t)`, s and t in [0, 1], returns a point and its area vector element.
-pub fn surface(
-    x: DVec3,
-    n: DVec3,
-    point: impl Fn(f64, f64) -> (DVec3, DVec3),
-    n_s: u32,
-    n_t: u32,
-) -> f64 {
-    let mut sum = 0.0;
-    for i in 0..n_s {
-        for j in 0..n_t {
-            let (p, area) = point((i as f64 + 0.5) / n_s as f64, (j as f64 + 0.5) / n_t as f64);
+/// A convex surface for the midpoint rule: `n_s` x `n_t` points with their area vector elements.
+/// `point(s, t)`, s and t in [0, 1], returns a point and its area vector element.
+pub struct Surface(Vec<(DVec3, DVec3)>);
+
+impl Surface {
+    pub fn new(point: impl Fn(f64, f64) -> (DVec3, DVec3), n_s: u32, n_t: u32) -> Self {
+        let middle = |i: u32, n: u32| (f64::from(i) + 0.5) / f64::from(n);
+        let row = |i: u32| (0..n_t).map(move |j| (middle(i, n_s), middle(j, n_t)));
+        Self((0..n_s).flat_map(row).map(|(s, t)| point(s, t)).collect())
+    }
+
+    /// Irradiance under the surface, wholly above the horizon.
+    pub fn irradiance(&self, x: DVec3, n: DVec3) -> f64 {
+        let element = |&(p, area): &(DVec3, DVec3)| {
             let to = p - x;
             let d2 = to.length_squared();
-            sum += (-to.dot(area)).max(0.0) * to.dot(n).max(0.0) / (d2 * d2);
-        }
+            (-to.dot(area)).max(0.0) * to.dot(n).max(0.0) / (d2 * d2)
+        };
+        self.0.iter().map(element).sum::<f64>() / self.0.len() as f64
     }
-    sum / (n_s as f64 * n_t as f64)
 }
 
 /// A cubic profile (radius, height) turned about y through `base`: point and outward area vector of
@@ -81,7 +82,7 @@ fn closed_forms_agree_with_quadrature() {
     let flat =
         |s: f64, t: f64| (DVec3::new(0.6 * s - 0.3, 0.7, 0.6 * t - 0.3), DVec3::NEG_Y * 0.36);
     let close = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 2e-5, "{a} {b}");
-    close(polygon(x, n, &square), surface(x, n, flat, 200, 200));
+    close(polygon(x, n, &square), Surface::new(flat, 200, 200).irradiance(x, n));
     let ring: Vec<DVec3> = (0..4000)
         .map(|i| TAU * i as f64 / 4000.0)
         .map(|a| DVec3::new(0.4 * a.cos(), 0.6, 0.4 * a.sin()))
@@ -93,7 +94,7 @@ fn closed_forms_agree_with_quadrature() {
         let w = DVec3::new((1.0 - z * z).sqrt() * cos, z, (1.0 - z * z).sqrt() * sin);
         (center + w * 0.25, w * 4.0 * PI * 0.0625)
     };
-    close(sphere(x, n, center, 0.25), surface(x, n, ball, 1000, 1000));
+    close(sphere(x, n, center, 0.25), Surface::new(ball, 1000, 1000).irradiance(x, n));
     // a straight profile is a cylinder: its area vectors sum to its area
     let tube = revolution(DVec3::ZERO, [[0.5, 0.0], [0.5, 0.2], [0.5, 0.4], [0.5, 0.6]]);
     let area: f64 = (0..100).map(|i| tube(0.5, i as f64 / 100.0).1.length()).sum::<f64>() / 100.0;

@@ -1,8 +1,9 @@
 //! Samplers of directions and points against their stated densities.
 //!
 //! Theory: a sampler with density p draws a bin with the bin's integral of p. The counts of N draws
-//! over bins follow a multinomial law, and sum (count - N P)^2 / (N P) is chi-square with (bins -
-//! 1) degrees of freedom: mean k, variance 2k. Bins with fewer than 10 expected draws are pooled.
+//! over bins follow a multinomial law, and sum (count - N P)^2 / (N P) is chi-square with
+//! (bins - 1) degrees of freedom: mean k, variance 2k. Bins with fewer than 10 expected draws are
+//! pooled.
 
 use std::f64::consts::PI;
 

@@ -280,8 +280,8 @@ fn revolution() {
         format!("type = \"revolution\"\n{profile}\ntransform = {{ translate = {} }}", list(base))
     };
     let one = shape(format!("profile = {egg:?}"));
-    let point = form::revolution(base, egg);
-    check("egg", &emitting(&one), |p| 5.0 * form::surface(p, DVec3::Y, &point, 128, 48));
+    let surface = form::Surface::new(form::revolution(base, egg), 128, 48);
+    check("egg", &emitting(&one), |p| 5.0 * surface.irradiance(p, DVec3::Y));
     // a double cone drawn as two straight segments; a straight cubic has its control points evenly
     // spaced
     let line = |a: [f64; 2], b: [f64; 2]| {
@@ -289,10 +289,10 @@ fn revolution() {
         [at(0.0), at(1.0 / 3.0), at(2.0 / 3.0), at(1.0)]
     };
     let two = shape("segments = [[[0.0, 0.0], [0.25, 0.1]], [[0.25, 0.1], [0.0, 0.4]]]".into());
-    let lower = form::revolution(base, line([0.0, 0.0], [0.25, 0.1]));
-    let upper = form::revolution(base, line([0.25, 0.1], [0.0, 0.4]));
+    let surface = |from, to| form::Surface::new(form::revolution(base, line(from, to)), 64, 48);
+    let lower = surface([0.0, 0.0], [0.25, 0.1]);
+    let upper = surface([0.25, 0.1], [0.0, 0.4]);
     check("double cone", &emitting(&two), |p| {
-        5.0 * (form::surface(p, DVec3::Y, &lower, 64, 48)
-            + form::surface(p, DVec3::Y, &upper, 64, 48))
+        5.0 * (lower.irradiance(p, DVec3::Y) + upper.irradiance(p, DVec3::Y))
     });
 }

@@ -12,21 +12,27 @@ use super::lab::*;
 /// Theory: a convex body of reflectance 0.8 under a sky of radiance one sees the whole half-space
 /// from each of its faces, so every face has the radiance 0.8, however slim it is relative to the
 /// disc. Where the disc is wide, it covers as many photons of adjacent faces as of the face itself.
+///
+/// Box and camera are as close together as the disc allows, since the sky sends its photons to the
+/// ball that contains both.
 #[test]
 fn slim_boxes_under_an_even_sky() {
     for (width, depth, radius) in [(0.012, 0.012, 0.05), (0.004, 0.1, 0.02), (0.05, 0.002, 0.015)] {
+        let height = 2.4 * radius;
         let camera = Camera {
-            position: DVec3::new(0.137, 0.211, -0.153),
+            position: DVec3::new(0.137, 0.211, height - 0.353),
             target: DVec3::new(0.137, 0.211, -0.353),
-            fov: (0.4 * width / 0.2f64).to_degrees(),
+            fov: (0.4 * width / height).to_degrees(),
             size: 4,
         };
         let (low, high) = (camera.target.x - 0.5 * width, camera.target.x + 0.5 * width);
         let text = format!(
             "{}[materials.m]\ntype = \"diffuse\"\nreflectance = 0.8\n[[shapes]]\ntype = \"box\"\nmaterial = \"m\"\n\
-             min = [{low:?}, 0.111, {:?}]\nmax = [{high:?}, 0.311, -0.353]\n[environment]\nradiance = 1.0\n",
+             min = [{low:?}, {:?}, {:?}]\nmax = [{high:?}, {:?}, -0.353]\n[environment]\nradiance = 1.0\n",
             camera.toml(),
-            -0.353 - depth
+            0.211 - 0.5 * height,
+            -0.353 - depth,
+            0.211 + 0.5 * height
         );
         let settings = RenderSettings { direct: Direct::Photons, ..settings(radius) };
         let found = runs_to(0.05, &text, &settings).region(|_, _| true);
@@ -64,8 +70,8 @@ fn slim_meshes_under_an_even_sky() {
     };
     let square = |w: f64, h: f64| vec![[-w, -h], [w, -h], [w, h], [-w, h]];
     let shapes = [
-        ("bar", square(0.006, 0.1), -0.012, 0.05),
-        ("plate", square(0.03, 0.1), -0.002, 0.015),
+        ("bar", square(0.006, 0.06), -0.012, 0.05),
+        ("plate", square(0.03, 0.018), -0.002, 0.015),
         ("triangle", regular(3, 0.012), -0.01, 0.02),
         ("pentagon", regular(5, 0.012), -0.01, 0.012),
     ];
@@ -73,9 +79,9 @@ fn slim_meshes_under_an_even_sky() {
         let file = format!("prism-{name}.obj");
         std::fs::write(folder().join(&file), prism(&polygon, back)).expect("written");
         let camera = Camera {
-            position: DVec3::new(0.137, 0.211, 0.2),
+            position: DVec3::new(0.137, 0.211, 0.05),
             target: DVec3::new(0.137, 0.211, 0.0),
-            fov: 1.5,
+            fov: 6.0,
             size: 4,
         };
         let text = format!(
@@ -202,8 +208,11 @@ fn the_lit_side_is_even_up_to_the_wall() {
             |(wall_name, _): &&(&str, &str)| floor_name == "rectangle" || *wall_name == "mesh";
         for (wall_name, wall) in WALLS.iter().filter(pairs) {
             let camera = camera(1.0);
-            let text = rooms(wall, floor, camera, "black");
-            let settings = RenderSettings { direct: Direct::Photons, ..settings(0.03) };
+            // a spot sends no photons to the far parts of the room
+            let spot = "type = \"spot\"\ntarget = [0, 0, 0]\nangle = 25.0\nblend = 0.0\n";
+            let text = rooms(wall, floor, camera, "black").replace("type = \"point\"\n", spot);
+            let settings =
+                RenderSettings { direct: Direct::Photons, photons: 1 << 11, ..settings(0.03) };
             let at = DVec3::new(0.4, 0.8, 0.0);
             let truth = camera.floor_picture(0.0, |p| 0.7 / PI * at.y / (at - p).length().powi(3));
             let mean = truth.iter().sum::<f64>() / truth.len() as f64;

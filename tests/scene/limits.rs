@@ -7,8 +7,8 @@
 use caustica::low_level::prepare::limits::warnings;
 use caustica::low_level::scene::{Finding, load, parse};
 
-/// The scene's radius is half the diagonal of the box around camera, target and floor: sqrt(4 + 1 +
-/// 4) = 3.
+/// The scene's radius is half the diagonal of the box around camera, target and floor: sqrt(4 +
+/// 1 + 4) = 3.
 const SOUND: &str = r#"version = 1
 [camera]
 position = [0.0, 2.0, 0.0]

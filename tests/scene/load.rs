@@ -69,10 +69,10 @@ fn reference_scenes() {
 }
 
 /// The torus R = 1, r = 0.38 of 48 x 20 quads, scaled by s = 0.5, turned and moved to c: 1920
-/// triangles; every vertex p = R s w + r s n + c with its own normal n and w a unit vector of the
-/// ring, so p - c - r s n has length R s. Faces are wound as their normals point: a closed
-/// polyhedron's volume from its winding is positive, and at these outlines within 3 % of 2 pi^2 R r^2
-/// s^3.
+/// triangles. Every vertex is p = R s w + r s n + c with its own normal n and a unit vector w of
+/// the ring, so p - c - r s n has length R s. Faces are wound as their normals point: the closed
+/// polyhedron's volume from its winding is positive, and with this many quads within 3 % of 2 pi^2
+/// R r^2 s^3.
 #[test]
 fn torus_of_the_mesh_scene() {
     let scene = reference("mesh.toml").scene;
