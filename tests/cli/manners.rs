@@ -140,7 +140,7 @@ fn logs() {
     let (quiet, none) = run(&[]);
     assert_eq!(none, "");
     let (_, stages) = run(&["-v"]);
-    for stage in ["parse", "pack", "kd-tree", "maps", "plan", "passes"] {
+    for stage in ["parse", "pack", "kd-tree", "maps", "pilots", "probe", "passes"] {
         let line =
             stages.lines().find(|line| line.contains(&format!("caustica::stage: {stage}: ")));
         assert!(line.is_some_and(|line| line.ends_with(" s")), "{stage}: {stages}");
