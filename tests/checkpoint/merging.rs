@@ -170,5 +170,5 @@ fn what_does_not_go_together_is_refused() {
         made
     };
     assert!(merged(&[local(0)]).is_ok(), "one alone is what it is");
-    fails(&[local(0), local(2)], &["local rule", "--resume"]);
+    fails(&[local(0), local(2)], &["local radius rule", "--resume"]);
 }

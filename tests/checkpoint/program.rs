@@ -113,7 +113,7 @@ fn what_is_no_use_is_told_before_the_work() {
         &folder,
         &format!("{line} --passes 2..5 --radius-rule local"),
         2,
-        &["local rule", "--resume", "global"],
+        &["local radius rule", "--resume", "global"],
     );
     fails(
         &folder,
