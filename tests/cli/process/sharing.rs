@@ -30,7 +30,7 @@ fn a_checkpoint_has_one_writer() {
             lock.is_some_and(|name| fs::read_to_string(folder.join(name)).is_ok_and(holder_is))
         };
         until("locked", locked);
-        let held = format!("process {}", holder.id());
+        let held = format!("process ({})", holder.id());
         let second = |line: &str| {
             let output = ended(spawn(render(&folder, &format!("--quiet -o b.exr {line}"))));
             let error = error(&output);
@@ -95,7 +95,7 @@ fn the_lock_of_another_user_counts() {
     }));
     let error = error(&output);
     assert_eq!(output.status.code(), Some(1), "{error}");
-    assert!(error.contains(&format!("process {}", holder.id())), "{error}");
+    assert!(error.contains(&format!("process ({})", holder.id())), "{error}");
     signal(&holder, "TERM");
     ended(holder);
     fs::remove_dir_all(&folder).unwrap();
