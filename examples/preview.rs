@@ -35,25 +35,25 @@ fn main() -> Result<(), Box<dyn Error>> {
             let begun = Instant::now();
             let loaded = scene::load(file.as_ref())?;
             let reading = begun.elapsed();
-            let mut wish = RenderRequest {
+            let mut request = RenderRequest {
                 camera: loaded.scene.camera,
                 film: loaded.scene.film,
                 settings: loaded.settings,
                 device: device.clone(),
             };
-            wish.film.width /= 4;
-            wish.film.height /= 4;
-            wish.settings.photons /= 16;
+            request.film.width /= 4;
+            request.film.height /= 4;
+            request.settings.photons /= 16;
             let scene = Arc::new(loaded.scene);
             let mut worker = Worker::start(|| ());
             for _ in 0..ROUNDS {
                 let begun = Instant::now();
-                let number = worker.scene(scene.clone(), wish.clone());
+                let number = worker.scene(scene.clone(), request.clone());
                 times[0].push(reading + until(&worker, number, false, begun)?);
                 times[1].push(reading + until(&worker, number, true, begun)?);
-                wish.camera = orbit(&wish.camera, 0.02, 0.0);
+                request.camera = orbit(&request.camera, 0.02, 0.0);
                 let begun = Instant::now();
-                let number = worker.change(wish.clone());
+                let number = worker.change(request.clone());
                 times[2].push(until(&worker, number, false, begun)?);
                 times[3].push(until(&worker, number, true, begun)?);
             }
@@ -101,7 +101,7 @@ fn until(
         if worker.frame().is_some_and(|frame| frame.number == number && !(whole && frame.quick)) {
             return Ok(begun.elapsed());
         }
-        if let Some(failure) = worker.board().failure() {
+        if let Some(failure) = worker.slot().failure() {
             return Err(failure.into());
         }
         std::thread::sleep(Duration::from_millis(1));

@@ -242,17 +242,17 @@ noise.
 
 const RADIUS: &str = "\
 The renderer chooses the radius before the first pass from the number of photons on a pixel and from
-the share of caustics (`src/prepare/radius.rs`). The choice consists of a start radius and a wider radius
-for photons that a diffuse surface has scattered. The table compares it with the best single disc of
-those tried.
+the share of caustics (`src/prepare/radius.rs`). The choice consists of a start radius and a wider
+radius for photons that a diffuse surface has scattered. The table compares it with the best single
+disc of those tried.
 ";
 
 const PRESETS: &str = "\
 `--quality` uses these settings and this number of passes. The errors are roots of relMSE over the
 scenes. The exponent describes how relMSE falls from its value after one pass to its value at the
 end. The first two passes estimate the former without a ground truth. `caustica render --quality`
-uses this exponent for its predictions (`src/render/quality.rs`). Errors for more passes than the studies
-had time for are extrapolated from the last octaves.
+uses this exponent for its predictions (`src/render/quality.rs`). Errors for more passes than the
+studies had time for are extrapolated from the last octaves.
 ";
 
 fn main() -> Result<(), String> {

@@ -27,7 +27,11 @@ impl Checkpoint {
         let mut differences = expected.differences(&self.origin);
         let [asked, known] = [expected.aovs, self.origin.aovs];
         if asked.iter().any(|aov| !known.has(aov)) {
-            differences.push(format!("layers: expected {}, found {}", told(asked), told(known)));
+            differences.push(format!(
+                "layers: expected {}, found {}",
+                layer_names(asked),
+                layer_names(known)
+            ));
         }
         if first_pass != self.state.first_pass {
             let found = self.state.first_pass;
@@ -113,7 +117,7 @@ impl Origin {
 }
 
 /// Names of layers for messages.
-pub(super) fn told(aovs: Aovs) -> String {
+pub(super) fn layer_names(aovs: Aovs) -> String {
     if aovs.is_empty() { "none".to_owned() } else { aovs.to_string() }
 }
 
@@ -157,23 +161,23 @@ mod tests {
     #[test]
     fn each_setting_is_told_but_passes() {
         let settings = RenderSettings::default();
-        let told = |change: fn(&mut RenderSettings)| {
+        let differences = |change: fn(&mut RenderSettings)| {
             let mut other = settings.clone();
             change(&mut other);
             setting_differences(&settings, &other)
         };
-        assert_eq!(told(|s| s.passes = 7), Vec::<String>::new());
-        assert_eq!(told(|s| s.seed = 7), ["`seed`: expected 0, found 7"]);
+        assert_eq!(differences(|s| s.passes = 7), Vec::<String>::new());
+        assert_eq!(differences(|s| s.seed = 7), ["`seed`: expected 0, found 7"]);
         assert_eq!(
-            told(|s| s.method = Method::Ppm),
+            differences(|s| s.method = Method::Ppm),
             ["`method`: expected \"sppm\", found \"ppm\""]
         );
         assert_eq!(
-            told(|s| s.indirect_radius = Some(2.0)),
+            differences(|s| s.indirect_radius = Some(2.0)),
             ["`indirect_radius`: expected null, found 2.0"]
         );
         assert_eq!(
-            told(|s| (s.radius, s.alpha) = (Radius::Pixels(2.0), 0.5)),
+            differences(|s| (s.radius, s.alpha) = (Radius::Pixels(2.0), 0.5)),
             [
                 "`alpha`: expected 0.6666666666666666, found 0.5",
                 "`radius`: expected \"auto\", found {\"pixels\":2.0}"

@@ -16,7 +16,7 @@ use std::path::PathBuf;
 
 use rayon::prelude::*;
 
-use super::compat::told;
+use super::compat::layer_names;
 use super::{Checkpoint, CheckpointError, Origin, Totals, layers};
 use crate::double::kernels::records::FilmPixel;
 use crate::double::math::luminance;
@@ -58,7 +58,11 @@ fn check_follows(
     let mut differences = first.origin.differences(&next.origin);
     let [expected, found] = [first.origin.aovs, next.origin.aovs];
     if expected != found {
-        differences.push(format!("layers: expected {}, found {}", told(expected), told(found)));
+        differences.push(format!(
+            "layers: expected {}, found {}",
+            layer_names(expected),
+            layer_names(found)
+        ));
     }
     if !differences.is_empty() {
         let mend = format!("\"expected\" is {}: render one of them again", first_file.display());

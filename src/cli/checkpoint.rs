@@ -120,9 +120,9 @@ impl Keeper {
     /// next to the first image, unless that file exists.
     pub fn rest(&mut self, state: State, progress: &Progress, pictures: &[PathBuf]) -> Checkpoint {
         let rest = self.checkpoint(state, progress);
-        let beside = pictures.first().map(|picture| picture.with_extension(EXTENSION));
+        let neighbor = pictures.first().map(|picture| picture.with_extension(EXTENSION));
         if self.file.is_none()
-            && let Some(file) = beside.filter(|file| !file.exists())
+            && let Some(file) = neighbor.filter(|file| !file.exists())
         {
             self.write(&file, &rest);
             self.file = Some(file);

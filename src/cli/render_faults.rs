@@ -129,14 +129,14 @@ fn work_is_kept_unasked() {
     let fourth = (0..steps.len()).filter(|i| steps[*i] == Step::Pass).nth(3).unwrap();
     let fail = || render(&folder, &[], &[&script(Some((fourth, Fault::OutOfMemory)))], false);
     assert!(matches!(fail(), Ok(Done::DeviceLost)));
-    let beside = folder.join("a.checkpoint");
-    let kept = fs::read(&beside).unwrap();
-    let resumed = ["--resume", beside.to_str().unwrap()];
+    let neighbor = folder.join("a.checkpoint");
+    let kept = fs::read(&neighbor).unwrap();
+    let resumed = ["--resume", neighbor.to_str().unwrap()];
     assert!(matches!(render(&folder, &resumed, &[], true), Ok(Done::Fully)));
     assert!(pixels(&folder) == picture);
-    fs::write(&beside, b"another's").unwrap();
+    fs::write(&neighbor, b"another's").unwrap();
     assert!(matches!(fail(), Ok(Done::DeviceLost)));
-    assert_eq!(fs::read(&beside).unwrap(), b"another's");
+    assert_eq!(fs::read(&neighbor).unwrap(), b"another's");
     assert_ne!(kept, b"another's");
     fs::remove_dir_all(&folder).unwrap();
 }

@@ -185,9 +185,9 @@ pub fn intersect_scene(scene: &SceneTables, ray: &Ray) -> Hit {
 }
 
 /// [`intersect_scene`] for many rays. Calls `next` with one of
-/// [`STREAM`](super::shapes::kdtree_stream::STREAM) lanes and the hit of the lane's previous ray, and
-/// traces the ray that it returns, until it returns none for every lane. The order of the lanes is
-/// unspecified.
+/// [`STREAM`](super::shapes::kdtree_stream::STREAM) lanes and the hit of the lane's previous ray,
+/// and traces the ray that it returns, until it returns none for every lane. The order of the lanes
+/// is unspecified.
 #[inline(always)]
 pub fn intersect_scene_many(
     scene: &SceneTables,

@@ -162,14 +162,14 @@ mod tests {
 
     #[test]
     fn bytes_for_people() {
-        for (bytes, told) in [
+        for (bytes, expected) in [
             (7, "7 bytes"),
             (1500, "1.50 kB"),
             (512_000_000, "512 MB"),
             (99_960_000, "100 MB"),
             (1_460_000_000, "1.46 GB"),
         ] {
-            assert_eq!(words(bytes), told);
+            assert_eq!(words(bytes), expected);
         }
     }
 

@@ -1,7 +1,7 @@
 //! Lights: strengths in scene units, and sampling distributions.
 
 use super::lights::LightKind;
-use super::real::{Real, ToReal, Vec2, Vec3};
+use super::real::{Real, ToDouble, ToReal, Vec2, Vec3};
 use super::shape::Emitter;
 use super::shapes::revolution::ring_point;
 use super::tables::*;
@@ -42,7 +42,6 @@ pub fn pack_lights(
         emitters.iter().map(|e| LightSource::Shape(e.shape)).collect();
     sources.extend((0..scene.lights.len()).map(LightSource::Light));
     let mut distributions = Vec::new();
-    let luminance = |color: DVec3| color.dot(DVec3::new(0.2126, 0.7152, 0.0722));
     let mut luminance_max = emitters.iter().map(|e| luminance(e.radiance)).fold(0.0, f64::max);
     for e in emitters {
         let mut light =
@@ -108,10 +107,13 @@ pub fn pack_lights(
                 inner: sin as Real,
                 ..Light::zeroed()
             };
-            if let Some([mean, most]) = image_distribution(out, &mut light, &mut distributions) {
-                luminance_max = luminance_max.max(luminance(DVec3::from(*scale)) * most);
+            let scale = DVec3::from(*scale);
+            if let Some([mean, brightest]) =
+                image_distribution(out, &mut light, scale, &mut distributions)
+            {
+                luminance_max = luminance_max.max(brightest);
                 out.world.environment = lights.len() as u32;
-                lights.push((light, DVec3::from(*scale), 4.0 * PI * mean));
+                lights.push((light, scale, 4.0 * PI * mean));
             }
         }
         _ => {}
@@ -173,26 +175,34 @@ fn revolution_distribution(
     areas.iter().sum()
 }
 
+/// Luminance of linear Rec. 709 light.
+fn luminance(color: DVec3) -> f64 {
+    color.dot(DVec3::new(0.2126, 0.7152, 0.0722))
+}
+
 /// Appends the cumulative fractions of rows, and of columns within each row, by channel mean times
-/// solid angle. Returns the average and the largest channel mean, or `None` for a black image. A
-/// texel has the weight of the root mean square of the filtered image inside it, which minimizes
+/// solid angle. Returns the average channel mean, and the greatest luminance times `scale`, or
+/// `None` for a black image. A texel has the weight of the root mean square of the filtered image inside it, which minimizes
 /// the variance. Filtering blends in its neighbours, so the weight is zero only if they are black
 /// as well.
 fn image_distribution(
     out: &SceneTables,
     light: &mut Light,
+    scale: DVec3,
     distributions: &mut Vec<Real>,
 ) -> Option<[f64; 2]> {
     let texture = &out.textures[light.reference as usize];
     let (w, h) = (texture.width, texture.height);
     light.first = distributions.len() as u32;
-    let value = |x: Real, y: Real| {
+    let mut brightest = 0.0_f64;
+    let mut value = |x: Real, y: Real| {
         let uv = Vec2::new(x / w as Real, 1.0 - y / h as Real);
         let c: Vec3 = super::materials::texture::eval_texture(out, light.reference, uv);
+        brightest = brightest.max(luminance(c.to_double() * scale));
         ((c.x + c.y + c.z) / 3.0).max(0.0) as f64
     };
     // (mean, root mean square) at the centers of the texel's quarters
-    let texel = |i: u32, j: u32| {
+    let mut texel = |i: u32, j: u32| {
         let quarters = [(0.25, 0.25), (0.75, 0.25), (0.25, 0.75), (0.75, 0.75)];
         let values = quarters.map(|(x, y)| value(i as Real + x, j as Real + y));
         let mean_of = |f: fn(f64) -> f64| values.iter().map(|v| f(*v)).sum::<f64>() / 4.0;
@@ -200,12 +210,11 @@ fn image_distribution(
     };
     let mut rows = Vec::new();
     let mut columns = Vec::new();
-    let (mut mean, mut most) = (0.0, 0.0);
+    let mut mean = 0.0;
     for j in 0..h {
         let theta = |j: u32| PI * j as f64 / h as f64;
         let solid = theta(j).cos() - theta(j + 1).cos();
         let (means, row): (Vec<f64>, Vec<f64>) = (0..w).map(|i| texel(i, j)).unzip();
-        most = row.iter().copied().fold(most, f64::max);
         rows.push(row.iter().sum::<f64>() * solid);
         mean += means.iter().sum::<f64>() * solid / (2.0 * w as f64);
         push_cumulative(&row, &mut columns);
@@ -215,7 +224,7 @@ fn image_distribution(
     }
     push_cumulative(&rows, distributions);
     distributions.extend(columns);
-    Some([mean, most])
+    Some([mean, brightest])
 }
 
 /// Appends cumulative fractions in steps of the random numbers. Each value above zero gets at least
@@ -224,4 +233,31 @@ fn push_cumulative(values: &[f64], target: &mut Vec<Real>) {
     let even = vec![1.0; values.len()];
     let dark = values.iter().sum::<f64>() <= 0.0;
     target.extend(cumulative(if dark { &even } else { values }).map(|share| share as Real));
+}
+
+/// Theory: the brightest texel of a sky is the one with the greatest luminance, whatever its color:
+/// of equal channels, green has 0.7152 of white, blue 0.0722.
+#[cfg(test)]
+mod tests {
+    use super::super::pack;
+    use super::*;
+    use crate::scene::{Camera, ImageData, Scene, Texels};
+
+    #[test]
+    fn skies_have_the_luminance_of_their_colors() {
+        for (color, scale, expected) in [
+            ([0.0, 1.0, 0.0], [1.0; 3], 0.7152),
+            ([0.0, 0.0, 1.0], [1.0; 3], 0.0722),
+            ([1.0, 1.0, 1.0], [0.0, 2.0, 0.0], 1.4304),
+        ] {
+            let mut scene = Scene::new(Camera::look_at(DVec3::Z, DVec3::ZERO, 40.0));
+            let texels = Texels::Float(vec![color; 8]);
+            let path = "sky.exr".to_owned();
+            scene.images.push(ImageData { path, width: 4, height: 2, texels });
+            let environment = Environment::Image { image: 0, rotate_degrees: 0.0, scale };
+            scene.environment = Some(environment);
+            let packed = pack(&scene, Normalization::of(&scene), 4, 4).unwrap();
+            assert!((packed.brightest - expected).abs() < 1e-6, "{color:?}: {}", packed.brightest);
+        }
+    }
 }

@@ -11,7 +11,7 @@ use crate::film::{Coding, Development, FileError, Picture, read_any};
 use crate::math::srgb::srgb_from_linear;
 
 /// An image that the window compares with the current one.
-pub struct Beside {
+pub struct Comparison {
     /// Label in the window.
     pub name: String,
     what: What,
@@ -23,7 +23,7 @@ enum What {
     Device(Box<Worker>, Wanted),
 }
 
-impl Beside {
+impl Comparison {
     /// Reads an image file.
     pub fn file(path: &Path) -> Result<Self, FileError> {
         let (picture, coding) = read_any(path)?;
@@ -54,7 +54,7 @@ impl Beside {
     /// Reason why there is no image, if rendering failed.
     pub fn failure(&self) -> Option<String> {
         match &self.what {
-            What::Device(worker, _) => worker.board().failure(),
+            What::Device(worker, _) => worker.slot().failure(),
             _ => None,
         }
     }

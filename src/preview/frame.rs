@@ -217,7 +217,7 @@ impl Passes {
         &mut self,
         engine: &mut dyn Engine,
         last: u32,
-        board: &FrameSlot,
+        slot: &FrameSlot,
     ) -> Result<(), EngineError> {
         let begun = Instant::now();
         let report = engine.pass()?;
@@ -238,7 +238,7 @@ impl Passes {
             self.errors = Some(Arc::new(errors));
             self.estimating += begun.elapsed();
         }
-        board.show(Frame {
+        slot.show(Frame {
             number: self.number,
             quick: self.quick,
             picture: engine.picture()?,

@@ -7,7 +7,7 @@ use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
 use super::frame::{FrameSlot, Passes, RenderRequest, Setup};
-use super::packed_cache::Ground;
+use super::packed_cache::Prepared;
 use crate::cpu::CpuEngine;
 use crate::device::{self, DeviceError, DeviceKind, Wanted};
 use crate::double;
@@ -40,22 +40,22 @@ impl Full {
     /// Starts to render `wish` with a copy of `ground`; `spare` is a GPU engine that can be reused.
     pub fn start(
         number: u64,
-        ground: Ground,
-        wish: RenderRequest,
+        prepared: Prepared,
+        request: RenderRequest,
         spare: Option<Box<GpuEngine>>,
-        board: Arc<FrameSlot>,
+        slot: Arc<FrameSlot>,
     ) -> Self {
         let control = Arc::new(Control::default());
-        control.passes.store(wish.settings.passes, Ordering::Relaxed);
+        control.passes.store(request.settings.passes, Ordering::Relaxed);
         let own = control.clone();
-        let thread = thread::spawn(move || match make(&ground, &wish, &own.cancel, spare) {
+        let thread = thread::spawn(move || match make(&prepared, &request, &own.cancel, spare) {
             Ok((engine, setup)) => {
-                drop(ground);
+                drop(prepared);
                 own.made.store(true, Ordering::Relaxed);
-                rendered(engine, Passes::new(number, false, setup), &own, number, &board)
+                rendered(engine, Passes::new(number, false, setup), &own, number, &slot)
             }
             Err(error) => {
-                board.fail(number, told(&error));
+                slot.fail(number, message(&error));
                 None
             }
         });
@@ -108,7 +108,7 @@ fn rendered(
     mut passes: Passes,
     control: &Control,
     number: u64,
-    board: &FrameSlot,
+    slot: &FrameSlot,
 ) -> Option<Box<GpuEngine>> {
     let engine: &mut dyn Engine = match &mut running {
         Running::Cpu(engine) => engine.as_mut(),
@@ -120,11 +120,11 @@ fn rendered(
         if passes.done >= last || control.paused.load(Ordering::Relaxed) {
             thread::park_timeout(NAP);
         } else {
-            match passes.step(engine, last, board) {
+            match passes.step(engine, last, slot) {
                 Ok(()) | Err(EngineError::Cancelled) => {}
                 Err(error) => {
                     // do not reuse a lost device
-                    board.fail(number, error.to_string());
+                    slot.fail(number, error.to_string());
                     return None;
                 }
             }
@@ -137,20 +137,22 @@ fn rendered(
 }
 
 fn make(
-    ground: &Ground,
-    wish: &RenderRequest,
+    prepared: &Prepared,
+    request: &RenderRequest,
     cancel: &Cancel,
     spare: Option<Box<GpuEngine>>,
 ) -> Result<(Running, Setup), DeviceError> {
-    let path = wish.settings.method == Method::Path && wish.device == Wanted::Auto;
-    let wanted = if path { &Wanted::Cpu } else { &wish.device };
+    let path = request.settings.method == Method::Path && request.device == Wanted::Auto;
+    let wanted = if path { &Wanted::Cpu } else { &request.device };
     let devices = device::list();
     let (device, why) = device::pick(wanted, &devices)?;
-    let ground = ground.settled(&wish.camera, &wish.film)?;
-    device::check_points(device, ground.scene(), &wish.settings)?;
-    let packed = ground.packed();
-    let plan =
-        Plan { cancel: cancel.clone(), ..Plan::probed(packed, &wish.settings).on(&wish.film) };
+    let prepared = prepared.settled(&request.camera, &request.film)?;
+    device::check_points(device, prepared.scene(), &request.settings)?;
+    let packed = prepared.packed();
+    let plan = Plan {
+        cancel: cancel.clone(),
+        ..Plan::probed(packed, &request.settings).on(&request.film)
+    };
     let setup = Setup {
         device: device.name.clone(),
         why,
@@ -160,7 +162,7 @@ fn make(
     let engine = match device.kind {
         DeviceKind::Cpu => Running::Cpu(Box::new(CpuEngine::new(packed.clone(), plan))),
         DeviceKind::CpuDouble => {
-            let (packed, plan) = device::in_double(ground.scene(), packed, &wish.settings)?;
+            let (packed, plan) = device::in_double(prepared.scene(), packed, &request.settings)?;
             let plan = double::plan::Plan { cancel: cancel.clone(), ..plan };
             Running::Double(Box::new(double::cpu::CpuEngine::new(packed, plan)))
         }
@@ -177,7 +179,7 @@ pub(super) fn bytes(scene: &SceneTables, plan: &Plan) -> u64 {
     crate::gpu::sizes(plan, scene).iter().map(|(_, bytes)| bytes).sum()
 }
 
-fn told(error: &DeviceError) -> String {
+fn message(error: &DeviceError) -> String {
     match error {
         DeviceError::NoSuchDevice { available, .. } => {
             format!("{error}; available: {}", available.join(", "))

@@ -9,12 +9,12 @@ use crate::scene::{Camera, Film, Scene};
 
 /// A scene and its tables. The kd-tree does not depend on the camera, but the results of the pilot
 /// paths do. They are kept while the camera moves, and learned again when it stops.
-pub struct Ground {
+pub struct Prepared {
     scene: Arc<Scene>,
     packed: Arc<PackedScene>,
 }
 
-impl Ground {
+impl Prepared {
     /// Packs a scene.
     pub fn new(scene: Arc<Scene>) -> Result<Self, EngineError> {
         let packed = prepare(&scene, scene.film.width, scene.film.height)?;
@@ -50,12 +50,12 @@ impl Ground {
         let mut scene = self.scene.clone();
         let own = Arc::make_mut(&mut scene);
         (own.camera, own.film) = (*camera, *film);
-        let mut ground = Self { scene, ..self.copy() };
-        ground.stand(camera, film);
-        if relearn(Arc::make_mut(&mut ground.packed), &ground.scene) {
-            return Ok(ground);
+        let mut prepared = Self { scene, ..self.copy() };
+        prepared.stand(camera, film);
+        if relearn(Arc::make_mut(&mut prepared.packed), &prepared.scene) {
+            return Ok(prepared);
         }
-        Self::new(ground.scene)
+        Self::new(prepared.scene)
     }
 }
 
@@ -68,28 +68,28 @@ mod tests {
     use crate::scene;
     use glam::DVec3;
 
-    fn tables(ground: &Ground) -> Vec<u8> {
-        let mut bytes = SceneLayout::new(&ground.packed.tables).bytes;
-        bytes.extend_from_slice(bytemuck::cast_slice(&ground.packed.tables.nodes));
+    fn tables(prepared: &Prepared) -> Vec<u8> {
+        let mut bytes = SceneLayout::new(&prepared.packed.tables).bytes;
+        bytes.extend_from_slice(bytemuck::cast_slice(&prepared.packed.tables.nodes));
         bytes
     }
 
     #[test]
     fn settled_tables_are_those_of_a_fresh_scene() {
         let scene = scene::load("scenes/cornell.toml".as_ref()).unwrap().scene;
-        let mut ground = Ground::new(Arc::new(scene.clone())).unwrap();
+        let mut prepared = Prepared::new(Arc::new(scene.clone())).unwrap();
         let small = Film { width: 32, height: 16, ..scene.film };
         let here = scene.camera;
         let toward = Camera { position: here.position.lerp(here.target, 0.1), ..here };
         let off = Camera { position: here.position * 9.0 + DVec3::X, ..here };
         for camera in [here, toward, off] {
-            ground.stand(&camera, &small);
-            let settled = ground.settled(&camera, &scene.film).unwrap();
+            prepared.stand(&camera, &small);
+            let settled = prepared.settled(&camera, &scene.film).unwrap();
             let mut anew = scene.clone();
             anew.camera = camera;
-            let fresh = Ground::new(Arc::new(anew)).unwrap();
+            let fresh = Prepared::new(Arc::new(anew)).unwrap();
             assert!(tables(&settled) == tables(&fresh));
-            let standing = ground.settled(&camera, &small).unwrap();
+            let standing = prepared.settled(&camera, &small).unwrap();
             assert!(tables(&standing) != tables(&fresh), "a film of another size");
         }
     }

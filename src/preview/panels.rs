@@ -86,9 +86,9 @@ fn picture(ui: &mut Ui, session: &mut Session) {
             &[(ToneMap::Agx, "AgX"), (ToneMap::Srgb, "sRGB")],
         );
     });
-    if let Some(beside) = &session.beside {
+    if let Some(comparison) = &session.comparison {
         row(ui, "compare with", |ui| {
-            ui.label(&beside.name);
+            ui.label(&comparison.name);
         });
     }
 }

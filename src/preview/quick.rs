@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use super::frame::{FrameSlot, Passes, RenderRequest, Setup};
 use super::full::bytes;
-use super::packed_cache::Ground;
+use super::packed_cache::Prepared;
 use crate::cpu::CpuEngine;
 use crate::engine::{Cancel, EngineError};
 use crate::plan::Plan;
@@ -69,17 +69,17 @@ impl Quick {
     /// it took. `cancel` cancels this pass and later ones.
     pub fn first(
         number: u64,
-        ground: &mut Ground,
-        wish: &RenderRequest,
+        prepared: &mut Prepared,
+        request: &RenderRequest,
         divisor: &mut Divisor,
         cancel: &Cancel,
-        board: &FrameSlot,
+        slot: &FrameSlot,
     ) -> Result<Self, EngineError> {
         let begun = Instant::now();
-        let film = divisor.film(&wish.film);
-        ground.stand(&wish.camera, &film);
-        let packed = ground.packed();
-        let plan = Plan::probed(packed, &divisor.settings(&wish.settings)).on(&film);
+        let film = divisor.film(&request.film);
+        prepared.stand(&request.camera, &film);
+        let packed = prepared.packed();
+        let plan = Plan::probed(packed, &divisor.settings(&request.settings)).on(&film);
         let plan = Plan { cancel: cancel.clone(), ..plan };
         let setup = Setup {
             device: "cpu".to_owned(),
@@ -89,14 +89,14 @@ impl Quick {
         };
         let engine = CpuEngine::new(packed.clone(), plan);
         let mut quick = Self { engine, passes: Passes::new(number, true, setup) };
-        quick.step(board)?;
+        quick.step(slot)?;
         divisor.learn(begun.elapsed());
         Ok(quick)
     }
 
     /// Renders another pass.
-    pub fn step(&mut self, board: &FrameSlot) -> Result<(), EngineError> {
-        self.passes.step(&mut self.engine, PASSES, board)
+    pub fn step(&mut self, slot: &FrameSlot) -> Result<(), EngineError> {
+        self.passes.step(&mut self.engine, PASSES, slot)
     }
 
     /// Returns whether all passes are done.

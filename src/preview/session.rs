@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::comparison::Beside;
+use super::comparison::Comparison;
 use super::document::{Edits, edited, save};
 use super::frame::{Frame, RenderRequest};
 use super::orbit;
@@ -95,7 +95,7 @@ pub struct Session {
     /// True if the full-size render is paused.
     pub paused: bool,
     /// Image to compare with.
-    pub beside: Option<Beside>,
+    pub comparison: Option<Comparison>,
     /// Position of the dividing line, from 0 to 1; `None` shows only the current image.
     pub split: Option<f32>,
     /// Message about the last action.
@@ -122,7 +122,7 @@ impl Session {
         let now = edits(&loaded);
         let scene = Arc::new(loaded.scene);
         let view = View::default();
-        let sent = wish(&now, view, &device);
+        let sent = request(&now, view, &device);
         let mut worker = Worker::start(wake);
         let number = worker.scene(scene.clone(), sent.clone());
         Self {
@@ -135,7 +135,7 @@ impl Session {
             device,
             view,
             paused: false,
-            beside: None,
+            comparison: None,
             split: None,
             notice: String::new(),
             trouble: None,
@@ -168,8 +168,8 @@ impl Session {
 
     /// Reason why rendering failed, if it did.
     pub fn failure(&self) -> Option<String> {
-        let beside = self.beside.as_ref().and_then(Beside::failure);
-        self.worker.board().failure().or(beside)
+        let comparison = self.comparison.as_ref().and_then(Comparison::failure);
+        self.worker.slot().failure().or(comparison)
     }
 
     /// Conversion of radiance to display values.
@@ -186,12 +186,12 @@ impl Session {
             self.scene.clone(),
             RenderRequest { device: wanted.clone(), ..self.sent.clone() },
         );
-        self.hold(Beside::device(name, worker, wanted));
+        self.hold(Comparison::device(name, worker, wanted));
     }
 
     /// Compares with another image.
-    pub fn hold(&mut self, beside: Beside) {
-        self.beside = Some(beside);
+    pub fn hold(&mut self, comparison: Comparison) {
+        self.comparison = Some(comparison);
         self.split = Some(0.5);
     }
 
@@ -242,17 +242,17 @@ impl Session {
             Action::Pause => {
                 self.paused = !self.paused;
                 self.worker.pause(self.paused);
-                if let Some((worker, _)) = self.beside.as_mut().and_then(Beside::worker) {
+                if let Some((worker, _)) = self.comparison.as_mut().and_then(Comparison::worker) {
                     worker.pause(self.paused);
                 }
             }
-            Action::Keep => match (self.beside.take(), self.frame()) {
-                (None, Some(frame)) => self.hold(Beside::kept(frame)),
+            Action::Keep => match (self.comparison.take(), self.frame()) {
+                (None, Some(frame)) => self.hold(Comparison::kept(frame)),
                 _ => self.split = None,
             },
             Action::Split => {
                 self.split = match self.split {
-                    None if self.beside.is_some() => Some(0.5),
+                    None if self.comparison.is_some() => Some(0.5),
                     _ => None,
                 }
             }
@@ -266,34 +266,34 @@ impl Session {
         if let Some(reloaded) = self.reloader.take() {
             self.take(reloaded);
         }
-        if let Some(depth) = self.worker.board().take_depth() {
+        if let Some(depth) = self.worker.slot().take_depth() {
             self.now.camera = orbit::focus(&self.now.camera, depth);
             self.notice = format!("focus at {:.4}", self.now.camera.focus);
         }
-        let wish = self.wish();
-        if wish != self.sent {
-            self.number = self.worker.change(wish.clone());
-            self.sent = wish;
+        let request = self.request();
+        if request != self.sent {
+            self.number = self.worker.change(request.clone());
+            self.sent = request;
             self.tell_beside(None);
         }
     }
 
     /// The render request for the current state. If nothing else has changed, it keeps the layers
     /// requested before, so that returning to their view does not restart the render.
-    fn wish(&self) -> RenderRequest {
-        let mut wish = wish(&self.now, self.view, &self.device);
-        let own = std::mem::replace(&mut wish.film.aovs, self.sent.film.aovs);
-        wish.film.aovs =
-            if wish.same_passes(&self.sent) { own.union(self.sent.film.aovs) } else { own };
-        wish
+    fn request(&self) -> RenderRequest {
+        let mut request = request(&self.now, self.view, &self.device);
+        let own = std::mem::replace(&mut request.film.aovs, self.sent.film.aovs);
+        request.film.aovs =
+            if request.same_passes(&self.sent) { own.union(self.sent.film.aovs) } else { own };
+        request
     }
 
     fn tell_beside(&mut self, scene: Option<&Arc<Scene>>) {
-        if let Some((worker, device)) = self.beside.as_mut().and_then(Beside::worker) {
-            let wish = RenderRequest { device: device.clone(), ..self.sent.clone() };
+        if let Some((worker, device)) = self.comparison.as_mut().and_then(Comparison::worker) {
+            let request = RenderRequest { device: device.clone(), ..self.sent.clone() };
             match scene {
-                Some(scene) => worker.scene(scene.clone(), wish),
-                None => worker.change(wish),
+                Some(scene) => worker.scene(scene.clone(), request),
+                None => worker.change(request),
             };
         }
     }
@@ -304,7 +304,7 @@ impl Session {
         let loaded = match reloaded {
             Ok(loaded) => loaded,
             Err(errors) => {
-                self.trouble = Some(told(&errors));
+                self.trouble = Some(message(&errors));
                 return;
             }
         };
@@ -324,7 +324,7 @@ impl Session {
         (scene.camera, scene.film) = (self.scene.camera, self.scene.film);
         if scene != *self.scene {
             self.scene = Arc::new(scene);
-            self.sent = wish(&self.now, self.view, &self.device);
+            self.sent = request(&self.now, self.view, &self.device);
             self.number = self.worker.scene(self.scene.clone(), self.sent.clone());
             let scene = self.scene.clone();
             self.tell_beside(Some(&scene));
@@ -384,7 +384,7 @@ fn edits(loaded: &Loaded) -> Edits {
     Edits { camera: loaded.scene.camera, film, settings: loaded.settings.clone() }
 }
 
-fn wish(now: &Edits, view: View, device: &Wanted) -> RenderRequest {
+fn request(now: &Edits, view: View, device: &Wanted) -> RenderRequest {
     // exposure and tone map do not affect the render
     let film = Film { aovs: view.aovs(), exposure: 0.0, tonemap: ToneMap::default(), ..now.film };
     RenderRequest {
@@ -406,7 +406,7 @@ fn times(radius: Radius, factor: f64) -> Radius {
 }
 
 /// The errors of a scene, one per line.
-fn told(errors: &SceneErrors) -> String {
+fn message(errors: &SceneErrors) -> String {
     let line = |finding: &crate::scene::Finding| {
         let place = finding
             .line_column()

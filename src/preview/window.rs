@@ -10,7 +10,7 @@ use eframe::egui::{
 };
 use thiserror::Error;
 
-use super::comparison::Beside;
+use super::comparison::Comparison;
 use super::frame::Frame;
 use super::keys::{Command, pressed};
 use super::panels;
@@ -50,8 +50,8 @@ pub enum Against {
 
 /// Opens a preview window, and returns when it is closed.
 pub fn open(start: Start, against: Option<Against>) -> Result<(), WindowError> {
-    let beside = match &against {
-        Some(Against::File(file)) => Some(Beside::file(file)?),
+    let comparison = match &against {
+        Some(Against::File(file)) => Some(Comparison::file(file)?),
         _ => None,
     };
     let film = start.loaded.scene.film;
@@ -72,7 +72,7 @@ pub fn open(start: Start, against: Option<Against>) -> Result<(), WindowError> {
         let waking = context.clone();
         let wake = move || waking.request_repaint();
         let mut session = Session::start(start, wake.clone());
-        beside.into_iter().for_each(|beside| session.hold(beside));
+        comparison.into_iter().for_each(|comparison| session.hold(comparison));
         if let Some(Against::Device(name)) = &against {
             session.beside_device(name, wake);
         }
@@ -250,12 +250,12 @@ impl Window {
                 );
             }
         }
-        let (Some(split), Some(beside)) = (session.split, &session.beside) else {
+        let (Some(split), Some(comparison)) = (session.split, &session.comparison) else {
             return;
         };
         let scale = self.picture.scale;
-        self.other.update(context, "other", beside.frame(), (view, development, scale), || {
-            beside.show(view, &development, scale)
+        self.other.update(context, "other", comparison.frame(), (view, development, scale), || {
+            comparison.show(view, &development, scale)
         });
         let line = rect.left() + split * rect.width();
         let right = Rect::from_min_max(Pos2::new(line, rect.top()), rect.max);
@@ -273,7 +273,11 @@ impl Window {
             painter.galley(place.min, galley, Color32::WHITE);
         };
         label(rect.left_bottom() + egui::vec2(10.0, -10.0), Align2::LEFT_BOTTOM, "this");
-        label(rect.right_bottom() + egui::vec2(-10.0, -10.0), Align2::RIGHT_BOTTOM, &beside.name);
+        label(
+            rect.right_bottom() + egui::vec2(-10.0, -10.0),
+            Align2::RIGHT_BOTTOM,
+            &comparison.name,
+        );
     }
 
     fn hand(&mut self, ui: &Ui, rect: Rect, response: &Response) {

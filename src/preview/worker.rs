@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 use super::frame::{Frame, FrameSlot, RenderRequest};
 use super::full::Full;
 use super::orbit::depth_at;
-use super::packed_cache::Ground;
+use super::packed_cache::Prepared;
 use super::quick::{Divisor, Quick};
 use crate::engine::Cancel;
 use crate::gpu::GpuEngine;
@@ -37,7 +37,7 @@ enum Command {
 /// A render thread; ends when this handle is dropped.
 pub struct Worker {
     commands: Option<Sender<Command>>,
-    board: Arc<FrameSlot>,
+    slot: Arc<FrameSlot>,
     number: u64,
     last: Option<RenderRequest>,
     /// Cancels the current small image.
@@ -49,8 +49,8 @@ impl Worker {
     /// Starts the thread; `wake` is called, on any thread, whenever there is something new to show.
     pub fn start(wake: impl Fn() + Send + Sync + 'static) -> Self {
         let (sender, receiver) = mpsc::channel();
-        let board = Arc::new(FrameSlot::new(wake));
-        let own = board.clone();
+        let slot = Arc::new(FrameSlot::new(wake));
+        let own = slot.clone();
         let closing = Cancel::default();
         let closes = closing.clone();
         let thread = thread::spawn(move || {
@@ -63,28 +63,28 @@ impl Worker {
                 Err(_) => work(),
             }
         });
-        Self { commands: Some(sender), board, number: 0, last: None, closing, thread: Some(thread) }
+        Self { commands: Some(sender), slot, number: 0, last: None, closing, thread: Some(thread) }
     }
 
     /// Renders another scene; returns the number of the request.
-    pub fn scene(&mut self, scene: Arc<Scene>, wish: RenderRequest) -> u64 {
+    pub fn scene(&mut self, scene: Arc<Scene>, request: RenderRequest) -> u64 {
         self.number += 1;
-        self.board.begin(self.number);
-        self.last = Some(wish.clone());
-        self.send(Command::Scene(self.number, scene, wish));
+        self.slot.begin(self.number);
+        self.last = Some(request.clone());
+        self.send(Command::Scene(self.number, scene, request));
         self.number
     }
 
     /// Changes the request; returns its number, which stays the same if only the number of passes
     /// differs.
-    pub fn change(&mut self, wish: RenderRequest) -> u64 {
-        let passes = wish.settings.passes;
-        let command = match self.last.replace(wish.clone()) {
-            Some(last) if last.same_passes(&wish) => Command::Passes(passes),
+    pub fn change(&mut self, request: RenderRequest) -> u64 {
+        let passes = request.settings.passes;
+        let command = match self.last.replace(request.clone()) {
+            Some(last) if last.same_passes(&request) => Command::Passes(passes),
             _ => {
                 self.number += 1;
-                self.board.begin(self.number);
-                Command::Change(self.number, wish)
+                self.slot.begin(self.number);
+                Command::Change(self.number, request)
             }
         };
         self.send(command);
@@ -103,13 +103,13 @@ impl Worker {
     }
 
     /// Slot with the newest results.
-    pub fn board(&self) -> &FrameSlot {
-        &self.board
+    pub fn slot(&self) -> &FrameSlot {
+        &self.slot
     }
 
     /// The newest frame.
     pub fn frame(&self) -> Option<Arc<Frame>> {
-        self.board.frame()
+        self.slot.frame()
     }
 
     fn send(&self, command: Command) {
@@ -132,9 +132,9 @@ impl Drop for Worker {
 
 /// State of the render thread.
 struct Hand {
-    board: Arc<FrameSlot>,
-    ground: Option<Ground>,
-    wish: Option<RenderRequest>,
+    slot: Arc<FrameSlot>,
+    prepared: Option<Prepared>,
+    request: Option<RenderRequest>,
     number: u64,
     divisor: Divisor,
     quick: Option<Quick>,
@@ -149,11 +149,11 @@ struct Hand {
 }
 
 impl Hand {
-    fn new(board: Arc<FrameSlot>, closing: Cancel) -> Self {
+    fn new(slot: Arc<FrameSlot>, closing: Cancel) -> Self {
         Self {
-            board,
-            ground: None,
-            wish: None,
+            slot,
+            prepared: None,
+            request: None,
             number: 0,
             divisor: Divisor::default(),
             quick: None,
@@ -177,26 +177,28 @@ impl Hand {
             let mut change = None;
             while let Some(taken) = command {
                 match taken {
-                    Command::Change(number, wish) => change = Some((number, wish)),
-                    Command::Scene(number, scene, wish) => {
+                    Command::Change(number, request) => change = Some((number, request)),
+                    Command::Scene(number, scene, request) => {
                         change = None;
-                        self.take_scene(number, scene, wish);
+                        self.take_scene(number, scene, request);
                     }
                     Command::Passes(passes) => match &mut change {
-                        Some((_, wish)) => wish.settings.passes = passes,
+                        Some((_, request)) => request.settings.passes = passes,
                         None => self.set_passes(passes),
                     },
                     Command::Pause(paused) => self.pause(paused),
                     Command::Look(x, y) => {
-                        let depth =
-                            self.ground.as_ref().and_then(|ground| depth_at(ground.packed(), x, y));
-                        depth.into_iter().for_each(|depth| self.board.tell_depth(depth));
+                        let depth = self
+                            .prepared
+                            .as_ref()
+                            .and_then(|prepared| depth_at(prepared.packed(), x, y));
+                        depth.into_iter().for_each(|depth| self.slot.tell_depth(depth));
                     }
                 }
                 command = commands.try_recv().ok();
             }
-            if let Some((number, wish)) = change {
-                self.take_change(number, wish);
+            if let Some((number, request)) = change {
+                self.take_change(number, request);
             }
             self.go_on();
         }
@@ -218,30 +220,30 @@ impl Hand {
         }
     }
 
-    fn take_scene(&mut self, number: u64, scene: Arc<Scene>, wish: RenderRequest) {
+    fn take_scene(&mut self, number: u64, scene: Arc<Scene>, request: RenderRequest) {
         self.halt(number);
         let mut scene = scene;
         let own = Arc::make_mut(&mut scene);
-        (own.camera, own.film) = (wish.camera, wish.film);
-        match Ground::new(scene) {
-            Ok(ground) => {
-                self.ground = Some(ground);
-                self.begin(wish, Duration::ZERO);
+        (own.camera, own.film) = (request.camera, request.film);
+        match Prepared::new(scene) {
+            Ok(prepared) => {
+                self.prepared = Some(prepared);
+                self.begin(request, Duration::ZERO);
             }
             Err(error) => {
-                self.ground = None;
-                self.board.fail(number, error.to_string());
+                self.prepared = None;
+                self.slot.fail(number, error.to_string());
             }
         }
     }
 
-    fn take_change(&mut self, number: u64, wish: RenderRequest) {
+    fn take_change(&mut self, number: u64, request: RenderRequest) {
         self.halt(number);
-        self.begin(wish, STILL);
+        self.begin(request, STILL);
     }
 
     fn set_passes(&mut self, passes: u32) {
-        self.wish.iter_mut().for_each(|wish| wish.settings.passes = passes);
+        self.request.iter_mut().for_each(|request| request.settings.passes = passes);
         self.full.iter().for_each(|full| full.set_passes(passes));
     }
 
@@ -256,27 +258,27 @@ impl Hand {
         }
     }
 
-    fn begin(&mut self, wish: RenderRequest, after: Duration) {
-        let Some(ground) = &mut self.ground else {
+    fn begin(&mut self, request: RenderRequest, after: Duration) {
+        let Some(prepared) = &mut self.prepared else {
             return;
         };
         match Quick::first(
             self.number,
-            ground,
-            &wish,
+            prepared,
+            &request,
             &mut self.divisor,
             &self.closing,
-            &self.board,
+            &self.slot,
         ) {
             Ok(quick) => {
                 self.quick = Some(quick);
                 self.settle = Some(Instant::now() + after);
             }
             Err(error) => {
-                self.board.fail(self.number, error.to_string());
+                self.slot.fail(self.number, error.to_string());
             }
         }
-        self.wish = Some(wish);
+        self.request = Some(request);
     }
 
     fn pause(&mut self, paused: bool) {
@@ -292,19 +294,19 @@ impl Hand {
         let due = self.settle.is_some_and(|at| at <= Instant::now());
         if due && self.ending.is_none() && !self.paused {
             self.settle = None;
-            if let (Some(ground), Some(wish)) = (&self.ground, &self.wish) {
-                let (ground, spare) = (ground.copy(), self.spare.take());
-                let board = self.board.clone();
-                self.full = Some(Full::start(self.number, ground, wish.clone(), spare, board));
+            if let (Some(prepared), Some(request)) = (&self.prepared, &self.request) {
+                let (prepared, spare) = (prepared.copy(), self.spare.take());
+                let slot = self.slot.clone();
+                self.full = Some(Full::start(self.number, prepared, request.clone(), spare, slot));
             }
         }
         let whole = self.full.as_ref().is_some_and(Full::is_made);
         if let Some(quick) = &mut self.quick {
             if whole || quick.is_done() {
                 self.quick = None;
-            } else if let Err(error) = quick.step(&self.board) {
+            } else if let Err(error) = quick.step(&self.slot) {
                 self.quick = None;
-                self.board.fail(self.number, error.to_string());
+                self.slot.fail(self.number, error.to_string());
             }
         }
     }

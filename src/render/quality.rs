@@ -138,9 +138,9 @@ mod tests {
         let mut pixels =
             first.rgb.iter().zip(&second.rgb).map(|(a, b)| [0, 1, 2].map(|c| 0.5 * (a[c] + b[c])));
         let both = Picture::from_fn(100, 80, |_, _| pixels.next().unwrap());
-        let told = one_pass_error(&first, &both).unwrap();
+        let estimated = one_pass_error(&first, &both).unwrap();
         let exact = 1.0 / 300.0 / (1.1f64.powi(2) + 0.01);
-        assert!((told / exact - 1.0).abs() < 0.05, "{told} {exact}");
+        assert!((estimated / exact - 1.0).abs() < 0.05, "{estimated} {exact}");
         // using the second pass alone instead of the mean would quadruple the estimate
         assert!(one_pass_error(&first, &second).unwrap() > 3.0 * exact);
     }

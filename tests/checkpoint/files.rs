@@ -100,18 +100,18 @@ fn forged_headers_are_refused() {
     let header: serde_json::Value =
         serde_json::from_slice(&bytes[PREFIX..PREFIX + length]).unwrap();
     let sections = &bytes[PREFIX + length..bytes.len() - SUM];
-    let forged = |header: &[u8], told: u32| {
+    let forged = |header: &[u8], reported: u32| {
         let total = (PREFIX + header.len() + sections.len() + SUM) as u64;
-        let start = [&bytes[..12], &told.to_le_bytes(), &total.to_le_bytes()].concat();
+        let start = [&bytes[..12], &reported.to_le_bytes(), &total.to_le_bytes()].concat();
         let content = [&start[..], header, sections].concat();
         let sum = xxh3_128(&content).to_le_bytes();
         refusal(&file, &[&content[..], &sum].concat())
     };
-    let told = |header: &serde_json::Value| {
+    let reported = |header: &serde_json::Value| {
         let header = header.to_string();
         forged(header.as_bytes(), header.len() as u32)
     };
-    assert!(told(&header).is_none(), "the forger's hand is right");
+    assert!(reported(&header).is_none(), "the forger's hand is right");
     let changes: [(&str, serde_json::Value); 24] = [
         ("/film", u64::MAX.into()),
         ("/film", 0.into()),
@@ -145,7 +145,7 @@ fn forged_headers_are_refused() {
         if place == "/passes" && value == u32::MAX {
             lying["first_pass"] = 1.into();
         }
-        let error = told(&lying);
+        let error = reported(&lying);
         assert!(
             matches!(error, Some(CheckpointError::Damaged { .. })),
             "{place} {value}: {error:?}"
@@ -229,7 +229,7 @@ fn a_failed_write_keeps_the_one_before() {
     fs::set_permissions(&file, writable).unwrap();
     write(&file, &other).unwrap();
     assert!(read(&file).unwrap() == other);
-    assert_eq!(names(file.parent().unwrap()).len(), 3, "nothing is left beside it");
+    assert_eq!(names(file.parent().unwrap()).len(), 3, "nothing else is left in the folder");
 }
 
 /// Theory: radii under the local rule shrink from 1, means of finite light are finite, and no more

@@ -13,7 +13,7 @@ use caustica::low_level::checkpoint::{read, write};
 use caustica::low_level::film::file::read_exr;
 
 use super::{folder, good};
-use crate::support::{interruptible, names, words};
+use crate::support::{Running, interruptible, names, words};
 
 /// Random numbers in [0, 1) from a linear congruential generator.
 struct Chance(u64);
@@ -57,11 +57,9 @@ fn through_kills(
         let device = devices[life % devices.len()];
         let keep = "--checkpoint a.checkpoint --checkpoint-every 1ms --quiet";
         let line = format!("{line} --device {device} {keep} {resume} -o a.exr");
-        let mut child = interruptible(folder, &words(&line))
-            .stdout(Stdio::null())
-            .stderr(Stdio::null())
-            .spawn()
-            .unwrap();
+        let mut child = Running::start(
+            interruptible(folder, &words(&line)).stdout(Stdio::null()).stderr(Stdio::null()),
+        );
         std::thread::sleep(Duration::from_secs_f64(wait * chance.next()));
         let signal = if chance.next() < 0.7 { "-9" } else { "-15" };
         let sent = Command::new("kill").args([signal, &child.id().to_string()]).status();

@@ -55,8 +55,8 @@ pub fn good(folder: &Path, line: &str) -> String {
 
 /// Runs a command that must fail with this code and these words.
 #[track_caller]
-pub fn fails(folder: &Path, line: &str, code: i32, told: &[&str]) {
-    support::fails(folder, &words(line), code, told);
+pub fn fails(folder: &Path, line: &str, code: i32, reported: &[&str]) {
+    support::fails(folder, &words(line), code, reported);
 }
 
 /// Opens an engine for the scene at `size`.

@@ -138,9 +138,9 @@ fn what_does_not_go_together_is_refused() {
     let (a, b) = (part(0, 3), part(3, 5));
     let fails = |parts: &[Checkpoint], words: &[&str]| {
         let error = merged(parts).unwrap_err();
-        let told = format!("{error}\n{}", miette::Diagnostic::help(&error).unwrap());
+        let reported = format!("{error}\n{}", miette::Diagnostic::help(&error).unwrap());
         for word in words {
-            assert!(told.contains(word), "{word}: {told}");
+            assert!(reported.contains(word), "{word}: {reported}");
         }
     };
     assert!(merged(&[a.clone(), b.clone()]).is_ok());

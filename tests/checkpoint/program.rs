@@ -71,10 +71,10 @@ fn other_renders_are_refused_with_the_reason() {
         &["contains passes 0..4", "before pass 3", "--passes 4"],
     );
     // comments, the number of passes and development do not affect the state and are accepted
-    let told = SCENE
+    let reported = SCENE
         .replace("version = 1", "# a comment\nversion = 1")
         .replace("height = 16", "height = 16\nexposure = 1.0");
-    fs::write(folder.join("ball.toml"), told).unwrap();
+    fs::write(folder.join("ball.toml"), reported).unwrap();
     good(&folder, &format!("{on_cpu} --passes 5"));
 }
 

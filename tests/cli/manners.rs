@@ -147,12 +147,12 @@ fn logs() {
     }
     assert!(stages.contains("cpu [cpu]") && stages.contains("(asked for)"), "{stages}");
     assert!(!stages.contains("pass 2"), "{stages}");
-    let (told, all) = run(&["-vv"]);
+    let (reported, all) = run(&["-vv"]);
     assert!(
         all.contains("pass 1: ") && all.contains("pass 2: ") && all.contains("kd-tree"),
         "{all}"
     );
-    assert_eq!(names(&events(&told)), names(&events(&quiet)));
+    assert_eq!(names(&events(&reported)), names(&events(&quiet)));
 
     let output = with(&folder, &[], &["-v", "devices"]);
     assert_eq!(

@@ -113,7 +113,7 @@ fn a_window_is_a_part_of_the_picture() {
     let shifted = |i: usize| whole.channels["R"][(4 + i / 15) * 32 + 11 + i % 15];
     assert!(
         part.channels["R"].iter().enumerate().any(|(i, r)| *r != shifted(i)),
-        "a column beside is another"
+        "the next column differs"
     );
     assert_eq!(image::open(folder.join("part.png")).unwrap().width(), 15);
     assert_eq!(read(&folder.join("part.pfm")).unwrap(), part.picture("").unwrap());
@@ -215,8 +215,8 @@ fn a_picture_is_made_again() {
     ] {
         let (first, again) = (format!("{name}.exr"), format!("{name}-again.exr"));
         rendered(&folder, &[&["ball.toml", "-o", &first][..], options].concat());
-        let told = rendered(&folder, &["--like", &first]);
-        assert!(!told.contains("warning"), "{told}");
+        let reported = rendered(&folder, &["--like", &first]);
+        assert!(!reported.contains("warning"), "{reported}");
         assert!(
             fs::read(folder.join(&first)).unwrap() == fs::read(folder.join(&again)).unwrap()
                 || bits(&exr(&folder, &first)) == bits(&exr(&folder, &again)),
@@ -229,19 +229,19 @@ fn a_picture_is_made_again() {
     assert_ne!(bits(&exr(&folder, "plain.exr")), bits(&exr(&folder, "other.exr")));
     // a changed mesh gives a warning; a missing scene file is replaced by the text in the image
     fs::write(folder.join("floor.obj"), FLOOR.replace("v 3 0 -3", "v 3 0 -3.01")).unwrap();
-    let told = rendered(&folder, &["--like", "plain.exr", "-o", "changed.exr"]);
-    assert!(told.contains("a file that it uses has changed"), "{told}");
+    let reported = rendered(&folder, &["--like", "plain.exr", "-o", "changed.exr"]);
+    assert!(reported.contains("a file that it uses has changed"), "{reported}");
     fs::write(folder.join("floor.obj"), FLOOR).unwrap();
     fs::rename(folder.join("ball.toml"), folder.join("moved.toml")).unwrap();
-    let told = rendered(&folder, &["--like", "plain.exr", "-o", "text.exr"]);
+    let reported = rendered(&folder, &["--like", "plain.exr", "-o", "text.exr"]);
     assert!(
-        told.contains("read from the text in plain.exr") && !told.contains("warning"),
-        "{told}"
+        reported.contains("read from the text in plain.exr") && !reported.contains("warning"),
+        "{reported}"
     );
     assert_eq!(bits(&exr(&folder, "plain.exr")), bits(&exr(&folder, "text.exr")));
     // a scene named on the command line is used wherever it is
-    let told = rendered(&folder, &["moved.toml", "--like", "plain.exr", "-o", "moved.exr"]);
-    assert!(!told.contains("warning") && !told.contains("from the text"), "{told}");
+    let reported = rendered(&folder, &["moved.toml", "--like", "plain.exr", "-o", "moved.exr"]);
+    assert!(!reported.contains("warning") && !reported.contains("from the text"), "{reported}");
     assert_eq!(bits(&exr(&folder, "plain.exr")), bits(&exr(&folder, "moved.exr")));
     // an image of another version
     let mut bytes = fs::read(folder.join("plain.exr")).unwrap();
@@ -253,8 +253,8 @@ fn a_picture_is_made_again() {
     let at = bytes.windows(here.len()).position(|w| w == here).unwrap() + here.len();
     bytes[at] = b'9';
     fs::write(folder.join("future.exr"), bytes).unwrap();
-    let told = rendered(&folder, &["moved.toml", "--like", "future.exr", "-o", "b.exr"]);
-    assert!(told.contains("rendered by version 9"), "{told}");
+    let reported = rendered(&folder, &["moved.toml", "--like", "future.exr", "-o", "b.exr"]);
+    assert!(reported.contains("rendered by version 9"), "{reported}");
     // images of other programs
     let picture = Picture::from_fn(2, 2, |_, _| [1.0; 3]);
     write_exr(&folder.join("foreign.exr"), &picture);
@@ -411,9 +411,9 @@ fn a_viewer_may_go_away() {
     let gone = std::thread::spawn(move || drop(listener.accept().unwrap()));
     let options =
         ["ball.toml", "--device", "cpu", "--size", "400x300", "--passes", "6", "-o", "a.exr", &tev];
-    let told = rendered(&folder, &options);
+    let reported = rendered(&folder, &options);
     gone.join().unwrap();
-    assert!(told.contains("connection to tev lost"), "{told}");
+    assert!(reported.contains("connection to tev lost"), "{reported}");
     assert_eq!(exr(&folder, "a.exr").attributes["caustica.passes_done"], "6");
 }
 

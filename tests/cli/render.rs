@@ -207,20 +207,20 @@ fn presets_promise_and_keep_their_passes() {
     let of = |lines: &[serde_json::Value], event: &str| {
         lines.iter().find(|line| line["event"] == event).cloned().unwrap_or_default()
     };
-    let (settings, told) = (of(&draft, "start")["settings"].clone(), of(&draft, "calibration"));
+    let (settings, reported) = (of(&draft, "start")["settings"].clone(), of(&draft, "calibration"));
     // One photon per pixel of 32 x 24, and a radius in numbers.
     assert_eq!((&settings["photons"], &settings["passes"]), (&768.into(), &4.into()));
     let pixels = settings["radius"]["pixels"].as_f64().unwrap();
     assert!(
         of(&draft, "start")["radius_why"].as_str().unwrap().starts_with(&format!("{pixels} px, "))
     );
-    assert_eq!((&told["quality"], &told["passes"]), (&"draft".into(), &4.into()));
-    let error = |key: &str| told["expected_relMSE"][key].as_f64().unwrap();
+    assert_eq!((&reported["quality"], &reported["passes"]), (&"draft".into(), &4.into()));
+    let error = |key: &str| reported["expected_relMSE"][key].as_f64().unwrap();
     assert!(
         0.0 < error("low") && error("low") <= error("rel_mse") && error("rel_mse") <= error("high")
     );
-    assert!(error("high") < told["one_pass_relMSE"].as_f64().unwrap(), "{told}");
-    assert!(told["expected_seconds"].as_f64().unwrap() > 0.0);
+    assert!(error("high") < reported["one_pass_relMSE"].as_f64().unwrap(), "{reported}");
+    assert!(reported["expected_seconds"].as_f64().unwrap() > 0.0);
     assert_eq!(of(&draft, "done")["passes"], 4, "the calibration's passes are among them");
     let radius = format!("{pixels}px");
     let indirect = settings["indirect_radius"].to_string();
@@ -276,18 +276,18 @@ fn presets_promise_and_keep_their_passes() {
 #[cfg(unix)]
 #[test]
 fn interrupts_save_the_picture() {
-    use crate::support::{interruptible, signal};
+    use crate::support::{Running, interruptible, signal};
     use std::io::{BufRead, BufReader};
     use std::process::Stdio;
     use std::time::Duration;
 
     let folder = folder("interrupt");
     let options = ["--device", "cpu", "--json", "--passes", "1000000", "-o", "a.exr"];
-    let mut child = interruptible(&folder, &[&["render", "ball.toml"][..], &options].concat())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::null())
-        .spawn()
-        .unwrap();
+    let mut child = Running::start(
+        interruptible(&folder, &[&["render", "ball.toml"][..], &options].concat())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null()),
+    );
     let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
     // After the first progress line the render is under way.
     let first_progress =
@@ -329,12 +329,12 @@ fn what_is_left_out_is_told() {
         "position = [1.2, 1.0, 1.0]\ntarget = [1.0, 0.0, 1.0]\nfov = 0.001",
     );
     fs::write(folder.join("bright.toml"), bright).unwrap();
-    let told = caustica(&folder, &["render", "bright.toml", "--device", "cpu", "-o", "a.exr"]);
-    assert_eq!(told.status.code(), Some(0), "{}", text(&told.stderr));
+    let reported = caustica(&folder, &["render", "bright.toml", "--device", "cpu", "-o", "a.exr"]);
+    assert_eq!(reported.status.code(), Some(0), "{}", text(&reported.stderr));
     assert!(
-        text(&told.stderr).contains("pixels too bright for 32-bit floats"),
+        text(&reported.stderr).contains("pixels too bright for 32-bit floats"),
         "{}",
-        text(&told.stderr)
+        text(&reported.stderr)
     );
     let strict = caustica(
         &folder,

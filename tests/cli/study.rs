@@ -108,18 +108,18 @@ fn a_small_study_writes_what_it_promises() {
 #[cfg(unix)]
 #[test]
 fn an_interrupted_study_goes_on_to_the_same_end() {
-    use crate::support::{interruptible, signal};
+    use crate::support::{Running, interruptible, signal};
     use std::io::{BufRead, BufReader};
     use std::process::Stdio;
 
     let whole = folder("whole");
     assert_eq!(caustica(&whole, &SMALL).status.code(), Some(0));
     let folder = folder("interrupted");
-    let mut child = interruptible(&folder, &[&SMALL[..], &["--json"]].concat())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::null())
-        .spawn()
-        .unwrap();
+    let mut child = Running::start(
+        interruptible(&folder, &[&SMALL[..], &["--json"]].concat())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null()),
+    );
     let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
     let second = lines.by_ref().map(Result::unwrap).filter(|line| line.contains("\"run\"")).nth(1);
     assert!(second.is_some());

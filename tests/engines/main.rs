@@ -13,6 +13,7 @@ mod layers;
 mod layout;
 mod max_bounces;
 mod memory;
+mod planted;
 mod precision;
 mod rejections;
 mod scenes;

@@ -204,8 +204,11 @@ fn budgets_are_kept() {
                 }
                 Err(EngineError::OverBudget(over)) => {
                     assert!(over.needed > budget && over.largest.bytes <= over.needed);
-                    let told = over.to_string();
-                    assert!(told.contains("--size") && told.contains("--crop"), "{told}");
+                    let reported = over.to_string();
+                    assert!(
+                        reported.contains("--size") && reported.contains("--crop"),
+                        "{reported}"
+                    );
                 }
                 Err(error) => panic!("{error}"),
             }

@@ -186,7 +186,7 @@ impl Room {
     }
 }
 
-/// Theory: with the photons of its own outline, over the covered area, every point of the floor
+/// Theory: with the photons inside the outline, over the covered area, every point of the floor
 /// receives irradiance one, within 3 deviations of the count, and its bias probe is zero. Without
 /// the outline a corner receives a quarter of it, plus light from beyond.
 #[test]
@@ -215,7 +215,7 @@ fn edges_see_even_light() {
     );
 }
 
-/// Theory: where a wall stands on the floor, a point receives the even light of its own side,
+/// Theory: where a wall stands on the floor, a point receives the even light of its side,
 /// whatever lies on the other side and on the wall, whether the disc meets the wall alone, a corner
 /// of two walls, or the outline as well. Its bias probe is zero. A wall on the other side of the
 /// floor has no effect.

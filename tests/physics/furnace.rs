@@ -8,10 +8,10 @@ use glam::{DVec2, DVec3};
 
 use super::lab::*;
 
-/// Theory: in a closed room whose walls all emit Le and reflect rho, L = Le + rho L, so
-/// L = Le / (1 - rho) everywhere, whatever the room's form. Cut off after b scatterings it is
-/// Le (1 - rho^(b+1)) / (1 - rho). Every shape that can emit is a wall here: a room inside a box would emit
-/// outward, so six rectangles close it and the others stand in it.
+/// Theory: in a closed room whose walls all emit Le and reflect rho, L = Le + rho L, so L = Le /
+/// (1 - rho) everywhere, whatever the room's form. Cut off after b scatterings it is Le
+/// (1 - rho^(b+1)) / (1 - rho). Every shape that can emit is a wall here: a room inside a box would
+/// emit outward, so six rectangles close it and the others stand in it.
 #[test]
 fn closed_room() {
     const EMISSION: f64 = 0.25;

@@ -36,10 +36,10 @@ fn wall(o: DVec3, d: DVec3) -> DVec3 {
 }
 
 /// Theory: a wall element sends the same irradiance to every other (cos cos' / d^2 = 1 / 4 R^2), so
-/// after k >= 1 bounces E_k = Phi rho^k / (4 pi R^2) everywhere, and in sum
-/// Phi rho / (4 pi R^2 (1 - rho)). Direct light is I cos / d^2, uniform for a source in the middle. `max_bounces` b cuts
-/// the sum: photons are stored up to their b-th bounce. The curved wall spreads a disc of radius r
-/// over area pi r^2 (1 + O(r^2 / R^2)): below 1e-3 here.
+/// after k >= 1 bounces E_k = Phi rho^k / (4 pi R^2) everywhere, and in sum Phi rho / (4 pi R^2
+/// (1 - rho)). Direct light is I cos / d^2, uniform for a source in the middle. `max_bounces` b
+/// cuts the sum: photons are stored up to their b-th bounce. The curved wall spreads a disc of
+/// radius r over area pi r^2 (1 + O(r^2 / R^2)): below 1e-3 here.
 #[test]
 fn total() {
     let phi = 4.0 * PI * INTENSITY;

@@ -2,9 +2,9 @@
 //! another.
 //!
 //! With K runs a region's mean m and standard error s satisfy |m - truth| <= T s with probability
-//! 1 - 1e-4 (Student's t with K - 1 degrees of freedom). A comparison also plants an error of stated
-//! size in the truth and fails unless the same test would reject it: a test too noisy to find such
-//! an error is not accepted.
+//! 1 - 1e-4 (Student's t with K - 1 degrees of freedom). A comparison also plants an error of
+//! stated size in the truth and fails unless the same test would reject it: a test too noisy to
+//! find such an error is not accepted.
 
 use std::path::PathBuf;
 
@@ -339,9 +339,9 @@ pub fn assert_same(what: &str, a: Estimate, b: Estimate, power: f64) {
 pub fn file(name: &str, bytes: &[u8]) -> String {
     let path = folder().join(name);
     // tests run in parallel, so the rename publishes a complete file
-    let beside = path.with_extension(format!("{:?}.part", std::thread::current().id()));
-    std::fs::write(&beside, bytes).unwrap();
-    std::fs::rename(&beside, &path).unwrap();
+    let neighbor = path.with_extension(format!("{:?}.part", std::thread::current().id()));
+    std::fs::write(&neighbor, bytes).unwrap();
+    std::fs::rename(&neighbor, &path).unwrap();
     name.to_owned()
 }
 

@@ -201,25 +201,26 @@ fn views_that_were_there_before_begin_nothing_anew() {
 
 #[test]
 fn pictures_are_held_against_others() {
-    let folder = folder("beside");
+    let folder = folder("comparison");
     let mut session = session(&folder);
     ticked(&mut session, "the picture", done);
     session.act(Action::Keep);
     session.act(Action::Expose(1.0));
     session.act(Action::Orbit(0.3, 0.0));
     let development = session.development();
-    let beside = session.beside.as_ref().unwrap().show(View::Picture, &development, None).unwrap();
+    let comparison =
+        session.comparison.as_ref().unwrap().show(View::Picture, &development, None).unwrap();
     let own = ticked(&mut session, "the picture turned", done);
     let own = show(&own, View::Picture, &development, None).unwrap();
-    assert!(session.split == Some(0.5) && own.rgb != beside.rgb);
+    assert!(session.split == Some(0.5) && own.rgb != comparison.rgb);
     session.act(Action::Keep);
-    assert!(session.beside.is_none() && session.split.is_none());
+    assert!(session.comparison.is_none() && session.split.is_none());
     // the same bits on another engine
     software();
     session.beside_device("software", || ());
     session.act(Action::Home);
     let equal = ticked(&mut session, "both pictures", |s| {
-        let (a, b) = (done(s)?, s.beside.as_ref()?.frame()?);
+        let (a, b) = (done(s)?, s.comparison.as_ref()?.frame()?);
         (!b.quick && b.passes == a.passes && b.number > 1)
             .then(|| bits(&a.picture) == bits(&b.picture))
     });

@@ -12,7 +12,9 @@ use std::sync::LazyLock;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use crate::support::{LAMP, PLANE, ball, bits, command, folder_with, good, shipped, software};
+use crate::support::{
+    LAMP, PLANE, Running, ball, bits, command, folder_with, good, shipped, software,
+};
 use caustica::low_level::film::{file::read_exr, read};
 use caustica::low_level::scene;
 
@@ -23,17 +25,6 @@ static SCENE: LazyLock<String> = LazyLock::new(|| {
 });
 
 const PATIENCE: Duration = Duration::from_secs(120);
-
-/// A process that is killed at the end of the test.
-struct Owned(Child);
-
-impl Drop for Owned {
-    fn drop(&mut self) {
-        // It may have ended already.
-        let _ = self.0.kill();
-        let _ = self.0.wait();
-    }
-}
 
 fn folder(name: &str) -> PathBuf {
     folder_with(name, &[("ball.toml", &SCENE)])
@@ -53,21 +44,19 @@ const COLUMNS: usize = 1100;
 
 /// Starts an X server without a screen and returns its display. The screen's content is in the file
 /// `Xvfb_screen0` of `folder`.
-fn server(folder: &Path) -> (Owned, String) {
+fn server(folder: &Path) -> (Running, String) {
     let screen =
         ["-displayfd", "1", "-screen", "0", &format!("{COLUMNS}x760x24"), "-nolisten", "tcp"];
-    let started = Command::new("Xvfb")
-        .args(screen)
-        .arg("-fbdir")
-        .arg(folder)
-        .stdout(Stdio::piped())
-        .stderr(Stdio::null())
-        .spawn();
-    let mut server = Owned(started.unwrap_or_else(|error| {
-        panic!("Xvfb does not start ({error}): install it (Debian and Ubuntu: apt install xvfb xdotool)")
+    let mut command = Command::new("Xvfb");
+    command.args(screen).arg("-fbdir").arg(folder).stdout(Stdio::piped()).stderr(Stdio::null());
+    let mut server = Running::from(command.spawn().unwrap_or_else(|error| {
+        panic!(
+            "Xvfb does not start ({error}): install it \
+             (Debian and Ubuntu: apt install xvfb xdotool)"
+        )
     }));
     let mut line = String::new();
-    BufReader::new(server.0.stdout.take().unwrap()).read_line(&mut line).unwrap();
+    BufReader::new(server.stdout.take().unwrap()).read_line(&mut line).unwrap();
     (server, format!(":{}", line.trim()))
 }
 
@@ -75,7 +64,10 @@ fn server(folder: &Path) -> (Owned, String) {
 fn hand(display: &str, words: &[&str]) -> String {
     let output = Command::new("xdotool").args(words).env("DISPLAY", display).output();
     let output = output.unwrap_or_else(|error| {
-        panic!("xdotool does not start ({error}): install it (Debian and Ubuntu: apt install xvfb xdotool)")
+        panic!(
+            "xdotool does not start ({error}): install it \
+             (Debian and Ubuntu: apt install xvfb xdotool)"
+        )
     });
     assert!(output.status.success(), "{words:?}: {}", String::from_utf8_lossy(&output.stderr));
     String::from_utf8_lossy(&output.stdout).into_owned()
@@ -141,7 +133,7 @@ fn a_hand_turns_changes_saves_and_closes() {
 
     until("the picture turned", || key("s"), || photons(&picture).as_deref() == Some("1000"));
     key("ctrl+q");
-    let ended = wait(&mut window.0);
+    let ended = wait(&mut window);
     assert!(ended.success(), "{ended}");
 
     // a plain render of the saved scene has the same bits
@@ -151,16 +143,16 @@ fn a_hand_turns_changes_saves_and_closes() {
 }
 
 /// Starts a preview and waits until its window is open and has the keyboard focus.
-fn opened(folder: &Path, display: &str, scene: &str, arguments: &[&str]) -> Owned {
+fn opened(folder: &Path, display: &str, scene: &str, arguments: &[&str]) -> Running {
     let mut command = preview(folder, arguments);
-    let mut window = Owned(command.env("DISPLAY", display).stderr(Stdio::piped()).spawn().unwrap());
+    let mut window = Running::start(command.env("DISPLAY", display).stderr(Stdio::piped()));
     let mut ids = String::new();
     let begun = Instant::now();
     while ids.is_empty() {
         ids = found(display, scene);
-        if let Some(status) = window.0.try_wait().unwrap() {
+        if let Some(status) = window.try_wait().unwrap() {
             let mut error = String::new();
-            window.0.stderr.take().unwrap().read_to_string(&mut error).unwrap();
+            window.stderr.take().unwrap().read_to_string(&mut error).unwrap();
             panic!("there is no window: {status} {error}");
         }
         assert!(begun.elapsed() < PATIENCE, "there is no window");
@@ -201,10 +193,9 @@ fn pictures_of_a_drag(folder: &Path, display: &str) -> u32 {
     }
     words.extend(["mouseup".to_owned(), "1".to_owned()]);
     let begun = Instant::now();
-    let mut mouse =
-        Owned(Command::new("xdotool").args(&words).env("DISPLAY", display).spawn().unwrap());
+    let mut mouse = Running::start(Command::new("xdotool").args(&words).env("DISPLAY", display));
     let (mut pictures, mut last) = (0, seen(folder));
-    while mouse.0.try_wait().unwrap().is_none() {
+    while mouse.try_wait().unwrap().is_none() {
         let now = seen(folder);
         pictures += u32::from(now != last);
         last = now;
@@ -251,7 +242,7 @@ fn a_window_closes_while_a_long_pass_runs() {
         sleep(Duration::from_millis(wait_ms));
         let begun = Instant::now();
         hand(&display, &["key", "ctrl+q"]);
-        let ended = wait(&mut window.0);
+        let ended = wait(&mut window);
         println!("{device} after {wait_ms} ms: {:?}", begun.elapsed());
         assert!(ended.success(), "{device}: {ended}");
         assert!(begun.elapsed() < Duration::from_secs(3), "{device}: {:?}", begun.elapsed());
@@ -263,7 +254,10 @@ fn found(display: &str, scene: &str) -> String {
     let words = ["search", "--onlyvisible", "--name", &format!("{scene} - caustica")];
     let output = Command::new("xdotool").args(words).env("DISPLAY", display).output();
     let output = output.unwrap_or_else(|error| {
-        panic!("xdotool does not start ({error}): install it (Debian and Ubuntu: apt install xvfb xdotool)")
+        panic!(
+            "xdotool does not start ({error}): install it \
+             (Debian and Ubuntu: apt install xvfb xdotool)"
+        )
     });
     String::from_utf8_lossy(&output.stdout).trim().to_owned()
 }

@@ -56,51 +56,51 @@ pub fn wait<T>(what: &str, mut of: impl FnMut() -> Option<T>) -> T {
 
 fn whole(worker: &Worker, number: u64, passes: u32) -> Arc<Frame> {
     wait("the whole picture", || {
-        if let Some(failure) = worker.board().failure() {
+        if let Some(failure) = worker.slot().failure() {
             panic!("{failure}");
         }
         worker.frame().filter(|f| f.number == number && !f.quick && f.passes == passes)
     })
 }
 
-fn rendered(wish: &RenderRequest, scene: &scene::Scene) -> Picture {
+fn rendered(request: &RenderRequest, scene: &scene::Scene) -> Picture {
     let mut scene = scene.clone();
-    (scene.camera, scene.film) = (wish.camera, wish.film);
-    render_on(&wish.device, &scene, &wish.settings)
+    (scene.camera, scene.film) = (request.camera, request.film);
+    render_on(&request.device, &scene, &request.settings)
 }
 
 fn converges(folder: &Path, device: Wanted) {
     let Loaded { scene, settings, .. } = loaded(folder);
-    let mut wish = RenderRequest { camera: scene.camera, film: scene.film, settings, device };
+    let mut request = RenderRequest { camera: scene.camera, film: scene.film, settings, device };
     let mut worker = Worker::start(|| ());
-    let mut number = worker.scene(Arc::new(scene.clone()), wish.clone());
+    let mut number = worker.scene(Arc::new(scene.clone()), request.clone());
     let mut before = None;
     for change in 0..5 {
         match change {
             // like a user's drag: many cameras, of which the last one counts
             1 => (0..12).for_each(|_| {
-                wish.camera = orbit::orbit(&wish.camera, 0.1, 0.02);
-                number = worker.change(wish.clone());
+                request.camera = orbit::orbit(&request.camera, 0.1, 0.02);
+                number = worker.change(request.clone());
                 std::thread::sleep(Duration::from_millis(5));
             }),
             2 => {
-                wish.settings.radius_rule = RadiusRule::Local;
-                wish.settings.radius = Radius::Pixels(3.0);
-                number = worker.change(wish.clone());
+                request.settings.radius_rule = RadiusRule::Local;
+                request.settings.radius = Radius::Pixels(3.0);
+                number = worker.change(request.clone());
             }
             3 => {
-                (wish.settings.direct, wish.camera.aperture) = (Direct::Photons, 0.05);
-                number = worker.change(wish.clone());
+                (request.settings.direct, request.camera.aperture) = (Direct::Photons, 0.05);
+                number = worker.change(request.clone());
             }
             4 => {
                 // further passes of the same render
-                wish.settings.passes = 7;
-                assert_eq!(worker.change(wish.clone()), number);
+                request.settings.passes = 7;
+                assert_eq!(worker.change(request.clone()), number);
             }
             _ => (),
         }
-        let frame = whole(&worker, number, wish.settings.passes);
-        let truth = rendered(&wish, &scene);
+        let frame = whole(&worker, number, request.settings.passes);
+        let truth = rendered(&request, &scene);
         assert!(bits(&frame.picture) == bits(&truth), "change {change}");
         if let Some(before) = before.replace(truth) {
             assert!(bits(&frame.picture) != bits(&before), "change {change} changes nothing");
@@ -124,12 +124,12 @@ fn a_small_picture_comes_first() {
     let Loaded { scene, settings, .. } = loaded(&folder("small"));
     let mut film = scene.film;
     (film.width, film.height) = (256, 192);
-    let mut wish = RenderRequest { camera: scene.camera, film, settings, device: Wanted::Cpu };
+    let mut request = RenderRequest { camera: scene.camera, film, settings, device: Wanted::Cpu };
     let mut worker = Worker::start(|| ());
-    let number = worker.scene(Arc::new(scene), wish.clone());
+    let number = worker.scene(Arc::new(scene), request.clone());
     whole(&worker, number, 4);
-    wish.camera = orbit::dolly(&wish.camera, 0.9);
-    let number = worker.change(wish.clone());
+    request.camera = orbit::dolly(&request.camera, 0.9);
+    let number = worker.change(request.clone());
     let first = wait("a picture", || worker.frame().filter(|frame| frame.number == number));
     assert!(
         first.quick
@@ -140,8 +140,8 @@ fn a_small_picture_comes_first() {
     assert_eq!((last.picture.width, last.picture.height), (256, 192));
     // while halted, small images arrive and the whole one does not
     worker.pause(true);
-    wish.camera = orbit::dolly(&wish.camera, 0.9);
-    let number = worker.change(wish.clone());
+    request.camera = orbit::dolly(&request.camera, 0.9);
+    let number = worker.change(request.clone());
     wait("a picture", || worker.frame().filter(|frame| frame.number == number));
     std::thread::sleep(Duration::from_millis(600));
     assert!(worker.frame().unwrap().quick);
@@ -152,38 +152,38 @@ fn a_small_picture_comes_first() {
 #[test]
 fn what_cannot_be_rendered_takes_no_picture_away() {
     let Loaded { scene, settings, .. } = loaded(&folder("failing"));
-    let mut wish =
+    let mut request =
         RenderRequest { camera: scene.camera, film: scene.film, settings, device: Wanted::Cpu };
     let mut worker = Worker::start(|| ());
-    let number = worker.scene(Arc::new(scene), wish.clone());
+    let number = worker.scene(Arc::new(scene), request.clone());
     whole(&worker, number, 4);
     for (device, words) in
         [(Wanted::Named("nonesuch".into()), "available: "), (Wanted::Software, "--device cpu")]
     {
-        wish.device = device;
+        request.device = device;
         // which the GPU engine does not support
-        wish.settings.method = Method::Path;
-        worker.change(wish.clone());
-        wait("the failure", || worker.board().failure().filter(|failure| failure.contains(words)));
+        request.settings.method = Method::Path;
+        worker.change(request.clone());
+        wait("the failure", || worker.slot().failure().filter(|failure| failure.contains(words)));
         assert!(worker.frame().is_some());
     }
-    wish.device = Wanted::Auto;
-    let number = worker.change(wish.clone());
+    request.device = Wanted::Auto;
+    let number = worker.change(request.clone());
     assert_eq!(whole(&worker, number, 4).setup.device, "cpu", "path tracing runs there");
-    assert_eq!(worker.board().failure(), None);
+    assert_eq!(worker.slot().failure(), None);
 }
 
 #[test]
 fn every_view_shows_something() {
     let Loaded { scene, settings, .. } = loaded(&folder("views"));
     let mut worker = Worker::start(|| ());
-    let mut wish =
+    let mut request =
         RenderRequest { camera: scene.camera, film: scene.film, settings, device: Wanted::Cpu };
-    worker.scene(Arc::new(scene), wish.clone());
+    worker.scene(Arc::new(scene), request.clone());
     let mut seen = Vec::new();
     for view in View::ALL {
-        wish.film.aovs = view.aovs();
-        let number = worker.change(wish.clone());
+        request.film.aovs = view.aovs();
+        let number = worker.change(request.clone());
         let frame = whole(&worker, number, 4);
         let shown = show(&frame, view, &Default::default(), None).unwrap();
         assert_eq!((shown.width, shown.height, shown.rgb.len()), (48, 32, 48 * 32), "{view:?}");

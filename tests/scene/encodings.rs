@@ -114,7 +114,7 @@ fn the_same_scene() {
 /// Line and column, message, label.
 type Told = (Option<(usize, usize)>, String, String);
 
-fn told(errors: &[Finding]) -> Vec<Told> {
+fn reported(errors: &[Finding]) -> Vec<Told> {
     errors.iter().map(|e| (e.line_column(), e.message().to_owned(), e.label().to_owned())).collect()
 }
 
@@ -124,7 +124,7 @@ fn the_same_errors() {
         let folder = folder("errors");
         rewrite(&folder, &["broken.obj", "broken.mtl"], write);
         fs::write(folder.join("scene.toml"), write(text)).unwrap();
-        told(&load(&folder.join("scene.toml")).unwrap_err().errors)
+        reported(&load(&folder.join("scene.toml")).unwrap_err().errors)
     };
     let unfinished = "version = 1\n[camera]\nposition = [0, 1\n";
     for (text, least) in [(BROKEN, 12), (unfinished, 1)] {
@@ -151,11 +151,11 @@ fn the_same_profile() {
     };
     let segments = of(text, SAME[0].1).unwrap().segments;
     let wrong = text.replace("[0.5", "[-0.5");
-    let errors = told(&of(&wrong, SAME[0].1).unwrap_err().errors);
+    let errors = reported(&of(&wrong, SAME[0].1).unwrap_err().errors);
     assert_eq!(errors[0].0.map(|(line, _)| line), Some(2));
     for (name, write) in SAME {
         assert_eq!(of(text, write).unwrap().segments, segments, "{name}");
-        assert_eq!(told(&of(&wrong, write).unwrap_err().errors), errors, "{name}");
+        assert_eq!(reported(&of(&wrong, write).unwrap_err().errors), errors, "{name}");
     }
 }
 

@@ -61,14 +61,14 @@ fn refusal(errors: SceneErrors) -> String {
 }
 
 /// The first error of a scene in `root/scene.toml`; none if it loads.
-fn told(root: &Path, text: &str, allowance: &Allowance) -> Option<String> {
+fn reported(root: &Path, text: &str, allowance: &Allowance) -> Option<String> {
     parse_within(&root.join("scene.toml"), text.as_bytes(), allowance).err().map(refusal)
 }
 
 fn assert_refused(root: &Path, text: &str, line: usize) {
-    let told = told(root, text, &within(root)).unwrap_or_else(|| panic!("read: {text}"));
-    assert!(told.contains("lies outside of") && told.contains("--root"), "{told}");
-    assert!(told.starts_with(&format!("Some(({line},")), "{told}");
+    let reported = reported(root, text, &within(root)).unwrap_or_else(|| panic!("read: {text}"));
+    assert!(reported.contains("lies outside of") && reported.contains("--root"), "{reported}");
+    assert!(reported.starts_with(&format!("Some(({line},")), "{reported}");
 }
 
 /// Paths with `..`, absolute paths and links, of meshes and images.
@@ -95,11 +95,11 @@ fn what_lies_outside_is_refused() {
             format!("../root/{name}"),
             root.join(name).display().to_string(),
         ] {
-            assert_eq!(told(&root, &scene(&file), &within(&root)), None, "{file}");
+            assert_eq!(reported(&root, &scene(&file), &within(&root)), None, "{file}");
         }
         // Without a root all existing files load.
         for file in &outside[..3] {
-            assert_eq!(told(&root, &scene(file), &Allowance::default()), None, "{file}");
+            assert_eq!(reported(&root, &scene(file), &Allowance::default()), None, "{file}");
         }
     }
 }
@@ -118,11 +118,11 @@ fn links_are_followed_before_they_are_judged() {
         assert_refused(&root, &mesh(file), 16);
     }
     for file in ["in.obj", "near/mesh.obj"] {
-        assert_eq!(told(&root, &mesh(file), &within(&root)), None, "{file}");
+        assert_eq!(reported(&root, &mesh(file), &within(&root)), None, "{file}");
     }
     // A root that is itself a link stands for its target.
     symlink(&root, root.with_file_name("link")).unwrap();
-    assert_eq!(told(&root, &mesh("in.obj"), &within(&root.with_file_name("link"))), None);
+    assert_eq!(reported(&root, &mesh("in.obj"), &within(&root.with_file_name("link"))), None);
     // The scene's own file, and a profile.
     fs::write(out.join("scene.toml"), mesh("mesh.obj")).unwrap();
     symlink(out.join("scene.toml"), root.join("scene.toml")).unwrap();
@@ -151,15 +151,15 @@ fn files_named_by_meshes_are_confined_too() {
         let errors =
             parse_within(&root.join("scene.toml"), scene.as_bytes(), &within(&root)).unwrap_err();
         assert!(errors.errors[0].file().ends_with(file), "{}", errors.errors[0].file());
-        let told = refusal(errors);
+        let reported = refusal(errors);
         assert!(
-            told.contains("lies outside of") && told.starts_with(&format!("Some(({line},")),
-            "{told}"
+            reported.contains("lies outside of") && reported.starts_with(&format!("Some(({line},")),
+            "{reported}"
         );
     };
     own("own.mtl");
     library("grid.png");
-    assert_eq!(told(&root, &scene, &within(&root)), None);
+    assert_eq!(reported(&root, &scene, &within(&root)), None);
     library("../out/grid.png");
     first(2, "own.mtl");
     library("grid.png");
@@ -179,8 +179,8 @@ fn only_regular_files_are_read() {
         (mesh, "/dev/zero"),
         (picture, "/dev/zero"),
     ] {
-        let told = told(&root, &scene(file), &Allowance::default()).unwrap();
-        assert!(told.contains("it is not a regular file"), "{told}");
+        let reported = reported(&root, &scene(file), &Allowance::default()).unwrap();
+        assert!(reported.contains("it is not a regular file"), "{reported}");
     }
 }
 
@@ -203,14 +203,15 @@ fn limits_are_told_by_name() {
         ("picture-pixels", mesh("mesh.obj") + "[film]\nwidth = 30\nheight = 20\n", 600),
     ];
     for (name, scene, exact) in cases {
-        let told = |value: u64| {
+        let reported = |value: u64| {
             let mut allowance = within(&root);
             *allowance.limit(name).unwrap() = value;
-            told(&root, &scene, &allowance)
+            reported(&root, &scene, &allowance)
         };
-        assert_eq!(told(exact), None, "{name}");
-        let told = told(exact - 1).unwrap_or_else(|| panic!("{name} = {} is not told", exact - 1));
-        assert!(told.contains(&format!("--limit {name}=N")), "{told}");
+        assert_eq!(reported(exact), None, "{name}");
+        let message = reported(exact - 1);
+        let message = message.unwrap_or_else(|| panic!("{name} = {} is not reported", exact - 1));
+        assert!(message.contains(&format!("--limit {name}=N")), "{message}");
     }
     let scene = mesh("mesh.obj");
     fs::write(root.join("scene.toml"), &scene).unwrap();
@@ -234,8 +235,11 @@ fn a_picture_that_claims_much_is_refused_by_its_header() {
     });
     claims[29..33].copy_from_slice(&crc.to_be_bytes());
     fs::write(root.join("claims.png"), claims).unwrap();
-    let told = told(&root, &picture("claims.png"), &within(&root)).unwrap();
-    assert!(told.contains("10000000000 pixels") && told.contains("texture-pixels"), "{told}");
+    let reported = reported(&root, &picture("claims.png"), &within(&root)).unwrap();
+    assert!(
+        reported.contains("10000000000 pixels") && reported.contains("texture-pixels"),
+        "{reported}"
+    );
 }
 
 /// The first errors are listed and all are counted, whichever stage reports them.
@@ -285,6 +289,6 @@ fn faces_too_intricate_are_refused() {
     obj += "f";
     (1..=count).for_each(|n| obj += &format!(" {n}"));
     fs::write(root.join("mesh.obj"), obj + "\n").unwrap();
-    let told = told(&root, &mesh("mesh.obj"), &within(&root)).unwrap();
-    assert!(told.contains("too intricate") && told.contains("triangulate"), "{told}");
+    let reported = reported(&root, &mesh("mesh.obj"), &within(&root)).unwrap();
+    assert!(reported.contains("too intricate") && reported.contains("triangulate"), "{reported}");
 }

@@ -45,7 +45,7 @@ position = [1.0, 1.5, 1.0]
 intensity = 2.0
 "#;
 
-fn told(text: &str) -> Vec<Finding> {
+fn reported(text: &str) -> Vec<Finding> {
     let loaded = parse("scene.toml".as_ref(), text.as_bytes()).unwrap_or_else(|e| panic!("{e:?}"));
     warnings(&loaded.scene, &loaded.settings, &loaded.places)
 }
@@ -55,10 +55,10 @@ fn told(text: &str) -> Vec<Finding> {
 fn limit(from: &str, inside: &str, beyond: &str, at: &str, words: &[&str]) {
     assert_eq!(SOUND.matches(from).count(), 1, "{from}");
     let with = |to: &str| SOUND.replace(from, to);
-    let quiet = told(&with(inside));
+    let quiet = reported(&with(inside));
     assert!(quiet.is_empty(), "{inside}: {quiet:?}");
     let text = with(beyond);
-    let found = told(&text);
+    let found = reported(&text);
     assert_eq!(found.len(), 1, "{beyond}: {found:?}");
     let said = format!("{} | {}", found[0].message(), found[0].label());
     for word in words {
@@ -71,7 +71,7 @@ fn limit(from: &str, inside: &str, beyond: &str, at: &str, words: &[&str]) {
 
 #[test]
 fn a_sound_scene_says_nothing() {
-    assert!(told(SOUND).is_empty());
+    assert!(reported(SOUND).is_empty());
     for name in
         ["caustics", "cornell", "depth-of-field", "soft-shadows", "still-life", "water-drop"]
     {
@@ -102,10 +102,10 @@ fn camera_and_field_of_view() {
     let narrow = |fov: &str| {
         let text =
             SOUND.replace("[render]\nradius = { units = 0.01 }\n", "").replace("fov = 40.0", fov);
-        told(&text).len()
+        reported(&text).len()
     };
     assert_eq!((narrow("fov = 0.01"), narrow("fov = 0.001")), (0, 1));
-    let found = told(
+    let found = reported(
         &SOUND
             .replace("[render]\nradius = { units = 0.01 }\n", "")
             .replace("fov = 40.0", "fov = 0.001"),
@@ -116,7 +116,7 @@ fn camera_and_field_of_view() {
     let words = ["camera's distance", "times the width", "1e4"];
     let radius =
         SOUND.replace("units = 0.01", "units = 10.0").replace("radius = 0.25", "radius = 2.0");
-    let at = |y: &str| told(&radius.replace(from, &format!("position = [0.0, {y}, 0.0]")));
+    let at = |y: &str| reported(&radius.replace(from, &format!("position = [0.0, {y}, 0.0]")));
     assert!(at("4e4").is_empty(), "{:?}", at("4e4"));
     let found = at("8e4");
     assert_eq!(found.len(), 1, "{found:?}");
@@ -158,7 +158,7 @@ fn small_and_giant_shapes() {
         &["shapes[1]"],
     );
     assert!(
-        told(&SOUND.replace("type = \"sphere\"", &revolution("[[1.0, 0.0], [0.0, 1e-7]]")))
+        reported(&SOUND.replace("type = \"sphere\"", &revolution("[[1.0, 0.0], [0.0, 1e-7]]")))
             .is_empty()
     );
 }
@@ -177,7 +177,7 @@ fn far_from_the_origin() {
             assert!(text.contains(&line(v)), "{key}");
             text = text.replace(&line(v), &line([v[0] + x, v[1], v[2]]));
         }
-        told(&text)
+        reported(&text)
     };
     assert!(moved(2.9e8).is_empty(), "{:?}", moved(2.9e8));
     let found = moved(3.1e8);
@@ -285,7 +285,7 @@ fn closed_bodies_that_face_inward() {
                  [[lights]]\ntype = \"point\"\nposition = [0.0"
                 ),
             );
-            let found: Vec<_> = told(&text)
+            let found: Vec<_> = reported(&text)
                 .into_iter()
                 .filter(|finding| finding.to_string().contains("inward"))
                 .collect();

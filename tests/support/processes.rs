@@ -1,6 +1,7 @@
 //! Processes that run in the background, receive signals, or run as another user.
 
 use std::ffi::OsStr;
+use std::ops::{Deref, DerefMut};
 use std::path::Path;
 use std::process::{Child, Command, Output, Stdio};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -27,23 +28,70 @@ pub fn with_default_signals(program: impl AsRef<OsStr>) -> Command {
     command
 }
 
+/// A process that is killed if the test ends first, also by a panic.
+pub struct Running(Option<Child>);
+
+impl From<Child> for Running {
+    fn from(child: Child) -> Self {
+        Self(Some(child))
+    }
+}
+
+impl Running {
+    /// Starts a command.
+    #[track_caller]
+    pub fn start(command: &mut Command) -> Self {
+        let name = command.get_program().to_owned();
+        command.spawn().unwrap_or_else(|error| panic!("{name:?}: {error}")).into()
+    }
+}
+
+impl Deref for Running {
+    type Target = Child;
+
+    fn deref(&self) -> &Child {
+        self.0.as_ref().expect("taken only by `ended`, which consumes it")
+    }
+}
+
+impl DerefMut for Running {
+    fn deref_mut(&mut self) -> &mut Child {
+        self.0.as_mut().expect("taken only by `ended`, which consumes it")
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        if let Some(child) = &mut self.0 {
+            // it may have ended already
+            let _ = child.kill();
+            let _ = child.wait();
+        }
+    }
+}
+
 /// Starts a command in the background, with its output captured.
-pub fn spawn(mut command: Command) -> Child {
-    command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
+#[track_caller]
+pub fn spawn(mut command: Command) -> Running {
+    Running::start(command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()))
 }
 
 /// Waits for the end of a process and returns its output; kills it after a minute.
 #[track_caller]
-pub fn ended(mut child: Child) -> Output {
+pub fn ended(mut running: Running) -> Output {
     let begun = Instant::now();
-    while child.try_wait().unwrap().is_none() {
+    let mut waits = false;
+    while running.try_wait().unwrap().is_none() {
         if begun.elapsed() > Duration::from_secs(60) {
-            child.kill().unwrap();
-            panic!("it waits: {:?}", child.wait_with_output());
+            waits = true;
+            running.kill().unwrap();
+            break;
         }
         std::thread::sleep(Duration::from_millis(2));
     }
-    child.wait_with_output().unwrap()
+    let output = running.0.take().map(Child::wait_with_output).unwrap().unwrap();
+    assert!(!waits, "it does not end: {output:?}");
+    output
 }
 
 /// Waits until `so` holds, at most a minute.

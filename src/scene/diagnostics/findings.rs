@@ -63,7 +63,7 @@ impl Findings {
     }
 
     /// The listed findings, and one that states the number of the others.
-    pub fn told(self) -> Vec<Finding> {
+    pub fn with_remainder(self) -> Vec<Finding> {
         let unlisted = (self.more > 0).then(|| Finding::unlisted(self.more));
         self.listed.into_iter().chain(unlisted).collect()
     }

@@ -134,7 +134,7 @@ impl Report {
     /// error or nothing was made.
     pub fn conclude<T>(self, made: Option<T>) -> Result<(T, Vec<Finding>), SceneErrors> {
         match made {
-            Some(made) if self.errors.is_empty() => Ok((made, self.warnings.told())),
+            Some(made) if self.errors.is_empty() => Ok((made, self.warnings.with_remainder())),
             _ => Err(self.into_errors()),
         }
     }
@@ -144,7 +144,13 @@ impl Report {
         let file = self.path;
         let (more, mut errors) = (self.errors.more(), self.errors.listed());
         errors.sort_by_cached_key(|error| (error.file() != file, error.line_column()));
-        SceneErrors { file, errors, more, warnings: self.warnings.told(), files: self.files }
+        SceneErrors {
+            file,
+            errors,
+            more,
+            warnings: self.warnings.with_remainder(),
+            files: self.files,
+        }
     }
 
     /// Like [`did_you_mean`], but returns `otherwise` when the list of errors is full.

@@ -29,7 +29,7 @@ const SMALL: &str = concat!(
     "/scenes/cornell.toml --size 16x16 --photons 1000 --device software --passes 1 -o a.png"
 );
 
-/// Theory: a user who waits longer than a second is told why. The log names the kernel that is
+/// Theory: a user who waits longer than a second sees why. The log names the kernel that is
 /// being compiled and how many are done, --quiet prints nothing, and --json prints events and
 /// nothing on standard error.
 #[test]

@@ -10,11 +10,12 @@ use super::{fifo, folder};
 use crate::support::{command, ended, error, exr_bytes, spawn, words, write_exr};
 
 #[track_caller]
-fn refused(folder: &Path, line: &str, told: &[&str]) {
+fn refused(folder: &Path, line: &str, reported: &[&str]) {
     let output = ended(spawn(command(folder, &words(line))));
     let error = error(&output);
     assert_eq!(output.status.code(), Some(1), "{line}: {:?} {error}", output.status);
-    told.iter()
+    reported
+        .iter()
         .for_each(|word| assert!(error.contains(word), "{line} should say `{word}`: {error}"));
 }
 

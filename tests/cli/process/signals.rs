@@ -2,12 +2,12 @@
 
 use std::fs;
 use std::path::Path;
-use std::process::Child;
+use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 
 use super::{fifo, folder, render};
 use crate::support::{
-    PROGRAM, ended, error, interruptible, json_lines, signal, software, spawn, until,
+    PROGRAM, Running, ended, error, interruptible, json_lines, signal, software, spawn, until,
     with_default_signals, words,
 };
 
@@ -57,7 +57,7 @@ fn a_signal_at_any_moment() {
 }
 
 /// Theory: the exit code is the same while a driver compiles. Lavapipe without its cache compiles
-/// for seconds, on threads of its own.
+/// for seconds, on separate threads.
 #[test]
 fn a_signal_while_a_driver_compiles() {
     software();
@@ -81,7 +81,7 @@ fn a_signal_while_a_driver_compiles() {
 
 /// Starts the program from a shell that ignores these signals, as `nohup` and shells without job
 /// control do.
-fn ignoring(folder: &Path, names: &str, line: &str) -> Child {
+fn ignoring(folder: &Path, names: &str, line: &str) -> Running {
     let program = format!("trap '' {names}; exec \"$0\" \"$@\"");
     let mut command = with_default_signals("sh");
     command.args(["-c", &program, PROGRAM]).args(words(line));
@@ -198,4 +198,20 @@ fn a_command_without_passes() {
     signal(&child, "INT");
     let output = ended(child);
     assert_eq!((output.status.code(), error(&output).as_str()), (Some(130), "interrupted"));
+}
+
+/// Theory: a test that fails leaves no process behind. A process that would run for a minute is
+/// gone once its owner has panicked.
+#[test]
+fn a_panic_leaves_no_process() {
+    let (sender, receiver) = std::sync::mpsc::channel();
+    let failing = std::thread::spawn(move || {
+        let running = Running::start(Command::new("sleep").arg("60"));
+        sender.send(running.id()).unwrap();
+        panic!("as a failing test");
+    });
+    assert!(failing.join().is_err());
+    let id = receiver.recv().unwrap().to_string();
+    let found = Command::new("kill").args(["-0", &id]).stderr(Stdio::null()).status().unwrap();
+    assert!(!found.success(), "process {id} is left");
 }

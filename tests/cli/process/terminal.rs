@@ -33,10 +33,10 @@ fn acts(output: &str) -> Vec<char> {
     rest.chars().filter(|c| (c.is_control() && *c != '\n') || turns(c)).collect()
 }
 
-/// Runs with and without colours. Standard error must contain `told` and no character that a
+/// Runs with and without colours. Standard error must contain `reported` and no character that a
 /// terminal would act on.
 #[track_caller]
-fn harmless(folder: &Path, arguments: &[&str], told: &str) {
+fn harmless(folder: &Path, arguments: &[&str], reported: &str) {
     for colors in [false, true] {
         let mut command = command(folder, arguments);
         if colors {
@@ -44,7 +44,7 @@ fn harmless(folder: &Path, arguments: &[&str], told: &str) {
         }
         let output = command.output().unwrap();
         let error = text(&output.stderr);
-        assert!(error.contains(told), "{arguments:?} should say {told:?}: {error:?}");
+        assert!(error.contains(reported), "{arguments:?} should say {reported:?}: {error:?}");
         assert_eq!(acts(&error), Vec::<char>::new(), "{arguments:?}: {error:?}");
         assert!(colors || !error.contains('\x1b'), "{arguments:?}: {error:?}");
     }
@@ -65,10 +65,10 @@ fn control_characters_are_shown() {
         .unwrap();
         harmless(&folder, &["check", "mesh.toml"], "m.obj");
         // a comment next to an error, an unknown name, a long name
-        let beside =
+        let neighbor =
             format!("{}\nshape = 3 # {harm}\n", SCENE.replace("[film]", "[film]\nwidht = 3"));
-        fs::write(folder.join("beside.toml"), beside).unwrap();
-        harmless(&folder, &["check", "beside.toml"], "beside.toml");
+        fs::write(folder.join("neighbor.toml"), neighbor).unwrap();
+        harmless(&folder, &["check", "neighbor.toml"], "neighbor.toml");
         let escaped: String = harm.chars().map(|c| format!("\\u{:04x}", u32::from(c))).collect();
         let unknown = SCENE.replace("material = \"", &format!("material = \"{escaped}"));
         fs::write(folder.join("unknown.toml"), unknown).unwrap();

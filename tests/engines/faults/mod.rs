@@ -153,9 +153,10 @@ fn the_next_device_ends_in_the_same_bits() {
                     let script = script(Some((number, fault)));
                     let devices = Candidates::from_list([candidate(&script), successor()]);
                     let (outcome, _) = begin(&loaded, devices, copies);
-                    let told = format!("{name}, {copies:?}: {fault:?} at step {number}, {step:?}");
-                    let outcome = outcome.unwrap_or_else(|broken| panic!("{told}: {broken}"));
-                    assert_eq!(difference(&whole, &outcome), None, "{told}");
+                    let reported =
+                        format!("{name}, {copies:?}: {fault:?} at step {number}, {step:?}");
+                    let outcome = outcome.unwrap_or_else(|broken| panic!("{reported}: {broken}"));
+                    assert_eq!(difference(&whole, &outcome), None, "{reported}");
                 }
             }
         }
@@ -193,26 +194,28 @@ fn what_is_left_can_be_gone_on_from() {
                 let script = script(Some((number, fault)));
                 let (outcome, saved) =
                     begin(&loaded, Candidates::from_list([candidate(&script)]), Copies::Always);
-                let told = format!("{name}: {fault:?} at step {number}, {step:?}");
-                let Err(Broken { error, kept }) = outcome else { panic!("{told}: did not fail") };
-                assert_eq!(error.is_of_device(), fault != Fault::Unable, "{told}: {error}");
+                let reported = format!("{name}: {fault:?} at step {number}, {step:?}");
+                let Err(Broken { error, kept }) = outcome else {
+                    panic!("{reported}: did not fail")
+                };
+                assert_eq!(error.is_of_device(), fault != Fault::Unable, "{reported}: {error}");
                 let made = passes_before(&steps, number);
                 let Some(kept) = kept else {
-                    assert!(made <= 1, "{told}: {made} passes are lost");
-                    assert!(saved.is_empty(), "{told}");
+                    assert!(made <= 1, "{reported}: {made} passes are lost");
+                    assert!(saved.is_empty(), "{reported}");
                     continue;
                 };
                 let Kept { state, progress } = *kept;
-                assert_eq!(state.passes, progress.passes, "{told}");
+                assert_eq!(state.passes, progress.passes, "{reported}");
                 assert!(
                     made <= progress.passes + 1,
-                    "{told}: {} of {made} passes are left",
+                    "{reported}: {} of {made} passes are left",
                     progress.passes
                 );
-                assert!(saved.last() == Some(&state), "{told}: what is left is saved");
+                assert!(saved.last() == Some(&state), "{reported}: what is left is saved");
                 let rest = Candidates::from_list([successor()]);
                 let outcome = render(&loaded, rest, Copies::Never, (&state, progress)).0.unwrap();
-                assert_eq!(difference(&whole, &outcome), None, "{told}");
+                assert_eq!(difference(&whole, &outcome), None, "{reported}");
             }
         }
     }

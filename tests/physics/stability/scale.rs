@@ -85,9 +85,9 @@ fn picture(b: &Bench, scale: f64, shift: DVec3) -> Picture {
     let path = folder().join(name);
     if !path.exists() {
         // tests run in parallel, so the rename publishes a complete file
-        let beside = path.with_extension(format!("{:?}.part", std::thread::current().id()));
-        std::fs::write(&beside, crate::everything::MESH).expect("written");
-        std::fs::rename(&beside, &path).expect("renamed");
+        let neighbor = path.with_extension(format!("{:?}.part", std::thread::current().id()));
+        std::fs::write(&neighbor, crate::everything::MESH).expect("written");
+        std::fs::rename(&neighbor, &path).expect("renamed");
     }
     let size = b.samples(32, 64);
     b.render(&crate::everything::everything_with(name, scale, shift, size), &settings(scale))

@@ -49,7 +49,7 @@ pub fn rows() -> Vec<Row> {
                 let at = |scale| {
                     tally(b, &profiles(), &CLASSES, &[Placement { scale, ..Placement::default() }])
                 };
-                told(&at(1e-6).add(at(1e6)))
+                reported(&at(1e-6).add(at(1e6)))
             },
         },
         Row {
@@ -233,7 +233,7 @@ fn tally(b: &Bench, profiles: &[Profile], classes: &[Class], placements: &[Place
     sum
 }
 
-fn told(tally: &Tally) -> Figure {
+fn reported(tally: &Tally) -> Figure {
     let note = format!(
         "{} rays, {} hits: {} missed, {} false, {} off; {} excused.",
         tally.rays, tally.hits, tally.lost, tally.false_hits, tally.off, tally.ill_conditioned
@@ -242,7 +242,7 @@ fn told(tally: &Tally) -> Figure {
 }
 
 fn wrong(b: &Bench, profiles: &[Profile], classes: &[Class]) -> Figure {
-    told(&tally(b, profiles, classes, &placements(b)))
+    reported(&tally(b, profiles, classes, &placements(b)))
 }
 
 fn steps(b: &Bench) -> Figure {

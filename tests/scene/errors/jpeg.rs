@@ -100,7 +100,7 @@ pub fn jpeg(
         };
         let blocks = |component: usize| if component == 0 { (h, v) } else { (1, 1) };
         if let [only] = scan[..] {
-            // In a scan of its own, a component's blocks come row by row.
+            // In a separate scan, a component's blocks come row by row.
             let (h, v) = blocks(only);
             for (y, x) in (0..v * SQUARES).flat_map(|y| (0..h * SQUARES).map(move |x| (y, x))) {
                 put(only, (x / h, y / v));

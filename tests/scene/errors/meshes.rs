@@ -12,7 +12,7 @@ use caustica::low_level::scene::{
     parse_within,
 };
 
-use super::{HEAD, differs, told};
+use super::{HEAD, differs, reported};
 use crate::support::{ends, folder, sound};
 
 const SQUARES: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\n";
@@ -52,7 +52,7 @@ fn parts(folder: &Path, missing: Missing) -> (Vec<(Rgb, usize)>, Vec<String>) {
         };
         (color, mesh.triangles.len())
     };
-    (scene.shapes.iter().map(part).collect(), loaded.warnings.iter().map(told).collect())
+    (scene.shapes.iter().map(part).collect(), loaded.warnings.iter().map(reported).collect())
 }
 
 /// The parts of a mesh with one library.

@@ -18,14 +18,14 @@ fn errors_of(text: &str) -> SceneErrors {
 /// Line, column, and a part of the message with its caret's label and its help.
 type Expected = (usize, usize, &'static str);
 
-fn told(finding: &Finding) -> String {
+fn reported(finding: &Finding) -> String {
     format!("{} | {} | {}", finding.message(), finding.label(), finding.help().unwrap_or(""))
 }
 
 /// Compares findings with the expected ones, in order; describes the difference.
 fn differs(found: &[Finding], expected: &[Expected]) -> Option<String> {
     let found: Vec<_> =
-        found.iter().map(|finding| (finding.line_column(), told(finding))).collect();
+        found.iter().map(|finding| (finding.line_column(), reported(finding))).collect();
     let same = found.len() == expected.len()
         && found.iter().zip(expected).all(|((place, text), &(line, column, part))| {
             *place == Some((line, column)) && text.contains(part)
@@ -194,7 +194,7 @@ fn one_report_for_a_value() {
     let [once, twice] = [once.clone(), format!("{once}{mesh}")]
         .map(|text| parse(&folder.join("scene.toml"), text.as_bytes()).unwrap_err().errors);
     assert!(!once.is_empty());
-    let all_reported = |errors: &[Finding]| errors.iter().map(told).collect::<Vec<_>>();
+    let all_reported = |errors: &[Finding]| errors.iter().map(reported).collect::<Vec<_>>();
     assert_eq!(all_reported(&once), all_reported(&twice));
 }
 

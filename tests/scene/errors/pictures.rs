@@ -8,7 +8,7 @@ use exr::prelude::{AnyChannel, AnyChannels, FlatSamples, Image, WritableImage};
 
 use super::jpeg::{Sampling, jpeg};
 use super::meshes::written;
-use super::{HEAD, differs, told};
+use super::{HEAD, differs, reported};
 use crate::support::folder;
 
 fn read(folder: &Path, file: &str, missing: Missing) -> Result<Loaded, SceneErrors> {
@@ -30,14 +30,14 @@ fn texels(folder: &Path, file: &str) -> (Vec<[f32; 3]>, Vec<String>) {
             data.iter().map(|texel| [0, 1, 2].map(|channel| f32::from(texel[channel]))).collect()
         }
     };
-    (texels, loaded.warnings.iter().map(told).collect())
+    (texels, loaded.warnings.iter().map(reported).collect())
 }
 
 /// The error of a texture.
 fn refused(folder: &Path, file: &str) -> String {
     let errors = read(folder, file, Missing::Error).unwrap_err().errors;
     assert!(errors.len() == 1 && errors[0].line_column() == Some((8, 8)), "{errors:?}");
-    told(&errors[0])
+    reported(&errors[0])
 }
 
 /// A channel's name and its values in two texels.
@@ -331,7 +331,7 @@ fn scans_of_jpeg_files() {
         let name = format!("{sampling:?} {scans:?}, progressive: {is_progressive}");
         let loaded = read(&folder, "t.jpg", Missing::Error);
         if scans.len() > 1 && !is_progressive {
-            let text = told(&loaded.unwrap_err().errors[0]);
+            let text = reported(&loaded.unwrap_err().errors[0]);
             assert!(text.contains("scan"), "{name}: {text}");
             continue;
         }
