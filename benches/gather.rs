@@ -60,7 +60,7 @@ fn photons_in_a_disc(bencher: Bencher, photons: u32) {
         let mut found = 0;
         for point in &points {
             let mut gathered = Gathered::zeroed();
-            gather(&[], &d, point, 1.0, &starts, &sorted, &mut gathered);
+            gather(&[], &[], &d, point, 1.0, &starts, &sorted, &mut gathered);
             found += gathered.count;
         }
         found

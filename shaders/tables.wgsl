@@ -57,6 +57,16 @@ struct Material {
     texture: u32,
     alpha: f32,
     planar_origin: vec2f,
+    eta: vec3f,
+    first: u32,
+    k: vec3f,
+    second: u32,
+    mean_fresnel: vec3f,
+    mean_albedo: f32,
+    albedo_low: vec4f,
+    albedo_high: vec4f,
+    stores: u32,
+    pad: array<u32, 3>,
 }
 
 struct Texture {

@@ -40,7 +40,7 @@
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! let mut scene = Scene::new(Camera::look_at(DVec3::new(0.0, 1.5, 4.0), DVec3::Y * 0.5, 40.0));
 //! (scene.film.width, scene.film.height) = (24, 16);
-//! let material = |name: &str, kind| Material { name: name.to_owned(), kind };
+//! let material = |name: &str, kind| Material { name: name.to_owned(), ..Material::new(kind) };
 //! let white = MaterialKind::Diffuse { reflectance: Reflectance::Color([0.7; 3]), roughness: 0.0 };
 //! let glass = MaterialKind::Glass { ior: 1.5, absorption: [0.0; 3], priority: 0 };
 //! scene.materials = vec![material("white", white), material("glass", glass)];

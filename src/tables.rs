@@ -6,7 +6,7 @@
 //! compares the layouts by name. The short tables share one storage buffer, `scene`; each long
 //! table has a separate buffer.
 
-use super::real::{Bits, Plain, Real, Vec2, Vec3};
+use super::real::{Bits, Plain, Real, Vec2, Vec3, Vec4};
 use super::shapes::simd4::{FourRectangles, FourSpheres};
 use bytemuck::Zeroable;
 
@@ -98,22 +98,46 @@ pub struct Camera {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Plain, Zeroable)]
 pub struct Material {
-    /// Reflectance, in [0, 1]; at normal incidence for metal. For an open glass sheet its unit mean
+    /// Reflectance, in [0, 1]; at normal incidence for metal. Mix and opacity: the amount, as the
+    /// mean of the channels. Thin glass: transmittance. For an open glass sheet its unit mean
     /// normal; zero for closed glass.
     pub reflectance: Vec3,
     /// Number of its [`Bsdf`](super::materials::Bsdf).
     pub kind: u32,
     /// Glass: absorption coefficient, per scene unit.
     pub absorption: Vec3,
-    /// Glass: index of refraction relative to the outside.
+    /// Glass, plastic: index of refraction relative to the outside. Opacity: cutoff of a mask, or 0.
     pub ior: Real,
     /// Index of the texture that replaces `reflectance`, or [`NONE`].
     pub texture: u32,
-    /// Metal: GGX alpha, `roughness^2`. Rough diffuse: roughness. Translucent: fraction
-    /// transmitted.
+    /// Microfacet lobes: GGX alpha, `roughness^2`; 0 for a smooth coat. Rough diffuse: roughness.
+    /// Translucent: fraction transmitted.
     pub alpha: Real,
     /// World (x, z) of the scene's origin, where planar uv starts, modulo the texture's period.
     pub planar_origin: Vec2,
+    /// Conductor: index of refraction relative to the outside, per channel.
+    pub eta: Vec3,
+    /// Mix, opacity: index of the first material; two-sided: that of the front. Plastic: 1 if light
+    /// takes on the base's color at each reflection inside, else 0.
+    pub first: u32,
+    /// Conductor: extinction coefficient relative to the outside, per channel.
+    pub k: Vec3,
+    /// Mix: index of the second material; two-sided: that of the back.
+    pub second: u32,
+    /// Microfacet lobes: mean over the hemisphere of the Fresnel reflectance (conductor).
+    pub mean_fresnel: Vec3,
+    /// Microfacet lobes: mean over the hemisphere of the polynomial `albedo`; 1 if no light needs
+    /// to be added (see `materials::albedo`).
+    pub mean_albedo: Real,
+    /// Microfacet lobes: coefficients of the polynomial in the cosine that gives the fraction of
+    /// light that is scattered once; coats: that is reflected. Lowest power first.
+    pub albedo_low: Vec4,
+    /// The coefficients of the higher powers.
+    pub albedo_high: Vec4,
+    /// Layered materials: 1 if photons are stored, because one of the materials is rough.
+    pub stores: u32,
+    /// Padding to 16 bytes.
+    pub pad: [u32; 3],
 }
 
 impl Material {
@@ -126,6 +150,16 @@ impl Material {
         texture: NONE,
         alpha: 0.0,
         planar_origin: Vec2::ZERO,
+        eta: Vec3::ONE,
+        first: NONE,
+        k: Vec3::ZERO,
+        second: NONE,
+        mean_fresnel: Vec3::ONE,
+        mean_albedo: 1.0,
+        albedo_low: Vec4::new(1.0, 0.0, 0.0, 0.0),
+        albedo_high: Vec4::ZERO,
+        stores: 0,
+        pad: [0; 3],
     };
 }
 

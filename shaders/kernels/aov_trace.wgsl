@@ -69,7 +69,13 @@ fn aov_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
             continue;
         }
         //#end
-        let p = shading_point(s, -path.ray.direction);
+        var p = shading_point(s, -path.ray.direction);
+        //#if layered
+        if is_layered(p.lobe.bsdf) {
+            let u = rng_next(&rng);
+            path.throughput *= choose_layer(&p, u.x);
+        }
+        //#end
         if !is_specular(p.lobe.bsdf) {
             albedo = path.throughput * p.lobe.reflectance;
             normal = p.n;

@@ -33,7 +33,13 @@ fn eye_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
             continue;
         }
         //#end
-        let p = shading_point(s, -path.ray.direction);
+        var p = shading_point(s, -path.ray.direction);
+        //#if layered
+        if is_layered(p.lobe.bsdf) {
+            let u = rng_next(&rng);
+            path.throughput *= choose_layer(&p, u.x);
+        }
+        //#end
         // store the visible point at the first non-specular hit
         if !is_specular(p.lobe.bsdf) {
             if max_component(p.lobe.reflectance) <= 0.0 {
@@ -45,6 +51,11 @@ fn eye_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
             point.normal = oct_encode(p.ng);
             point.shading = oct_encode(p.n);
             point.bsdf = p.lobe.bsdf;
+            //#if lobe_parameters
+            if reads_table(p.lobe) {
+                point.bsdf |= p.lobe.material << BSDF_BITS;
+            }
+            //#end
             point.weight = path.throughput * INV_PI * p.lobe.reflectance;
             //#if lobes
             if p.lobe.bsdf != MATERIAL_DIFFUSE {

@@ -31,7 +31,12 @@ fn frame_at(point: VisiblePoint) -> Frame {
     }
     //#if lobes
     frame.wo = oct_decode(point.wo);
-    frame.lobe = Lobe(point.bsdf, point.alpha, point.reflectance);
+    frame.lobe.bsdf = point.bsdf & ((1u << BSDF_BITS) - 1u);
+    frame.lobe.alpha = point.alpha;
+    frame.lobe.reflectance = point.reflectance;
+    //#if lobe_parameters
+    frame.lobe.material = point.bsdf >> BSDF_BITS;
+    //#end
     //#end
     return frame;
 }

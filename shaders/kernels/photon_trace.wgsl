@@ -51,20 +51,40 @@ fn photon_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgrou
             continue;
         }
         //#end
-        // store a record at non-specular hits and scatter
-        let p = shading_point(s, wo);
+        // choose a layer
+        var p = shading_point(s, wo);
+        var stores = !is_specular(p.lobe.bsdf) && max_component(p.lobe.reflectance) > 0.0;
+        //#if layered
+        var layer = 1.0;
+        if is_layered(p.lobe.bsdf) {
+            stores = scene.materials[p.lobe.material].stores != 0u;
+            let choice = rng_next(&rng);
+            layer = choose_layer(&p, choice.x);
+        }
+        //#end
+        // store a record at non-specular hits, unless shadow rays account for the light
+        //#if sampled
+        // shadow rays end at faces, hidden ones included
+        stores = stores && (bounce > 0u || hidden > 0u);
+        //#end
+        if stores {
+            let key = (id << dispatch.key_bits) | (bounce << 1u) | photon_class;
+            append(PhotonRecord(s.position, key, flux, oct_encode(wo)));
+        }
+        // scatter
         let u = rng_next(&rng);
         var scattered: Scatter;
         //#if specular
         if is_specular(p.lobe.bsdf) {
             scattered = scatter_specular(p, interior, u.x, IMPORTANCE);
         } else {
-            scattered = stored_and_scattered(
-                id, bounce, hidden, &photon_class, p, interior, flux, u
-            );
+            scattered = scattered_rough(&photon_class, p, interior, u);
         }
         //#else
-        scattered = stored_and_scattered(id, bounce, hidden, &photon_class, p, interior, flux, u);
+        scattered = scattered_rough(&photon_class, p, interior, u);
+        //#end
+        //#if layered
+        scattered.weight *= layer;
         //#end
         // Russian roulette
         let weight = max_component(scattered.weight);
@@ -95,17 +115,12 @@ fn photon_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgrou
     }
 }
 
-fn stored_and_scattered(
-    id: u32,
-    bounce: u32,
-    hidden: u32,
+fn scattered_rough(
     photon_class: ptr<function, u32>,
     p: ShadingPoint,
     interior: Interior,
-    flux: vec3f,
     u: vec4f,
 ) -> Scatter {
-    store_record(id, bounce, hidden, *photon_class, p, flux);
     let scattered = scatter_rough(p, interior, vec2f(u.x, u.y), IMPORTANCE);
     //#if split
     if is_wide(p.lobe.bsdf) {
@@ -117,27 +132,6 @@ fn stored_and_scattered(
     //#else
     return scattered;
     //#end
-}
-
-// Stores a record, unless shadow rays account for the light that the photon carries.
-fn store_record(
-    id: u32,
-    bounce: u32,
-    hidden: u32,
-    photon_class: u32,
-    p: ShadingPoint,
-    flux: vec3f,
-) {
-    //#if sampled
-    // shadow rays end at faces, hidden ones included
-    let stored = bounce > 0u || hidden > 0u;
-    //#else
-    let stored = true;
-    //#end
-    if stored && max_component(p.lobe.reflectance) > 0.0 {
-        let key = (id << dispatch.key_bits) | (bounce << 1u) | photon_class;
-        append(PhotonRecord(p.s.position, key, flux, oct_encode(p.wo)));
-    }
 }
 
 fn append(record: PhotonRecord) {

@@ -37,6 +37,8 @@ const STOPPED: u32 = 1u;
 const BAD_EYE: u32 = 2u;
 const BAD_DIRECT: u32 = 4u;
 
+const BSDF_BITS: u32 = 8u;
+
 struct VisiblePoint {
     position: vec3f,
     radius: f32,

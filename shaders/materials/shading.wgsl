@@ -9,6 +9,9 @@ struct Lobe {
     bsdf: u32,
     alpha: f32,
     reflectance: vec3f,
+    //#if lobe_parameters || layered || thin_glass || smooth_metal
+    material: u32,
+    //#end
 }
 
 //#if scene
@@ -42,25 +45,45 @@ fn reflectance_at(material: u32, uv: vec2f) -> vec3f {
     return m.reflectance;
 }
 
+fn lobe_at(material: u32, uv: vec2f) -> Lobe {
+    var lobe: Lobe;
+    lobe.bsdf = scene.materials[material].kind;
+    lobe.alpha = scene.materials[material].alpha;
+    lobe.reflectance = reflectance_at(material, uv);
+    //#if lobe_parameters || layered || thin_glass || smooth_metal
+    lobe.material = material;
+    //#end
+    return lobe;
+}
+
+//#if lobe_parameters
+fn reads_table(lobe: Lobe) -> bool {
+    if lobe.bsdf == MATERIAL_METAL {
+        return scene.materials[lobe.material].mean_albedo < 1.0;
+    }
+    return is_parametric(lobe.bsdf);
+}
+//#end
+
 fn toward(v: vec3f, w: vec3f) -> vec3f {
     return select(-v, v, dot(v, w) >= 0.0);
 }
 
 fn shading_point(s: Surface, wo: vec3f) -> ShadingPoint {
-    let kind = scene.materials[s.material].kind;
-    let alpha = scene.materials[s.material].alpha;
+    let lobe = lobe_at(s.material, s.uv);
     let ng = toward(s.normal, wo);
     let ns = toward(s.shading, ng);
     // wide lobes do not depend on the viewing direction
-    let n = select(ng, ns, is_wide(kind) || dot(wo, ns) > 0.0);
-    return ShadingPoint(s, wo, ng, ns, n, Lobe(kind, alpha, reflectance_at(s.material, s.uv)));
+    let n = select(ng, ns, is_wide(lobe.bsdf) || dot(wo, ns) > 0.0);
+    return ShadingPoint(s, wo, ng, ns, n, lobe);
+}
+
+fn mirror_normal(p: ShadingPoint) -> vec3f {
+    return select(p.n, p.ng, dot(mirrored(p.wo, p.n), p.ng) <= 0.0);
 }
 
 fn reflected(p: ShadingPoint, mode: u32) -> Sample {
-    var n = p.n;
-    if dot(mirrored(p.wo, n), p.ng) <= 0.0 {
-        n = p.ng;
-    }
+    let n = mirror_normal(p);
     let wi = mirrored(p.wo, n);
     var weight = vec3f(1.0);
     if mode == IMPORTANCE {
@@ -113,4 +136,36 @@ fn scatter_rough(p: ShadingPoint, interior: Interior, u: vec2f, mode: u32) -> Sc
     let drawn = sample_rough(p, u, mode);
     return Scatter(drawn.direction, interior, drawn.weight);
 }
+
+//#if layered
+const LAYERS: u32 = 8u;
+
+struct Layer {
+    lobe: Lobe,
+    weight: f32,
+    u: f32,
+}
+
+fn amount_at(p: ShadingPoint) -> f32 {
+    let color = p.lobe.reflectance;
+    return (color.x + color.y + color.z) * (1.0 / 3.0);
+}
+
+fn choose_layer(p: ptr<function, ShadingPoint>, u: f32) -> f32 {
+    var layer = Layer((*p).lobe, 1.0, u);
+    var weight = 1.0;
+    for (var k = 0u; k < LAYERS; k += 1u) {
+        if is_layered((*p).lobe.bsdf) {
+            layer = choose_once(*p, layer.u);
+            (*p).lobe = layer.lobe;
+            weight *= layer.weight;
+        }
+    }
+    // wide lobes do not depend on the viewing direction
+    if is_wide((*p).lobe.bsdf) {
+        (*p).n = (*p).ns;
+    }
+    return weight;
+}
+//#end
 //#end

@@ -53,6 +53,8 @@ pub fn with_unused(scene: &SceneTables, feature: Feature) -> Option<SceneTables>
             scene.profile_points.push(Vec2::ZERO);
         }
         Feature::Material(bsdf) => scene.materials.push(material(bsdf)),
+        Feature::LobeParameters => scene.materials.push(material(Bsdf::Conductor)),
+        Feature::Layered => scene.materials.push(material(Bsdf::Mix)),
         Feature::Absorption => {
             scene.materials.push(Material { absorption: Vec3::ONE, ..material(Bsdf::Glass) });
         }

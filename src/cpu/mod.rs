@@ -230,6 +230,7 @@ impl CpuEngine {
                             return;
                         }
                         self.arch.dispatch(Gathers {
+                            materials: &scene.materials,
                             outlines: &scene.outlines,
                             dispatch: d,
                             points,

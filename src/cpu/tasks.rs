@@ -7,7 +7,7 @@ use super::super::kernels::gather::{gather, scale_sq};
 use super::super::kernels::grid_build::SortedRecords;
 use super::super::kernels::records::*;
 use super::super::plan::features::{Feature, Features};
-use super::super::tables::{Outline, SceneTables};
+use super::super::tables::{Material, Outline, SceneTables};
 use rayon::prelude::*;
 
 /// Number of visible points that one task gathers for.
@@ -17,6 +17,7 @@ pub const EYE_TASK: usize = 512;
 
 /// Gathers photons for the visible points of one task.
 pub struct Gathers<'a> {
+    pub materials: &'a [Material],
     pub outlines: &'a [Outline],
     pub dispatch: &'a Dispatch,
     pub points: &'a [VisiblePoint],
@@ -37,7 +38,16 @@ impl pulp::WithSimd for Gathers<'_> {
                 Some(statistics) => scale_sq(self.dispatch, true, &statistics[i]),
                 None => self.dispatch.scale_sq,
             };
-            gather(self.outlines, self.dispatch, point, scale, self.starts, self.sorted, gathered);
+            gather(
+                self.materials,
+                self.outlines,
+                self.dispatch,
+                point,
+                scale,
+                self.starts,
+                self.sorted,
+                gathered,
+            );
         }
     }
 }

@@ -4,6 +4,7 @@
 use super::dispatch;
 use super::fragments::{Fragment, Names, fragments, preprocess};
 use super::layout::{SceneLayout, bindings, declarations};
+use crate::materials::Bsdf;
 use crate::plan::Kernel;
 use crate::plan::features::{Feature, Features};
 use std::collections::BTreeSet;
@@ -32,11 +33,33 @@ pub struct Shader {
     parts: Vec<(&'static str, u32)>,
 }
 
+/// Functions that several materials share, and these materials.
+const SHARED_CODE: [(&str, &[Bsdf]); 2] = [
+    (
+        "fresnel",
+        &[
+            Bsdf::Metal,
+            Bsdf::Conductor,
+            Bsdf::Coat,
+            Bsdf::PlasticBase,
+            Bsdf::SmoothMetal,
+            Bsdf::Glass,
+            Bsdf::ThinGlass,
+        ],
+    ),
+    ("microfacet", &[Bsdf::Metal, Bsdf::Conductor, Bsdf::Coat, Bsdf::PlasticBase]),
+];
+
 /// Names that fences may use for `kernel`: the features, all kernels' stems, `scene` (the kernel
-/// reads the packed scene) and `area` (some light is a shape).
+/// reads the packed scene), `area` (some light is a shape), `fresnel` and `microfacet` (some material
+/// uses those functions).
 pub fn names(kernel: Kernel, features: &Features) -> Names {
     let stems = Kernel::ALL.map(Kernel::stem);
-    let known = Feature::all().map(Feature::name).chain(stems).chain(["scene", "area"]);
+    let known = Feature::all()
+        .map(Feature::name)
+        .chain(stems)
+        .chain(["scene", "area"])
+        .chain(SHARED_CODE.map(|(name, _)| name));
     let mut held: BTreeSet<&'static str> = features.iter().map(Feature::name).collect();
     held.insert(kernel.stem());
     if kernel.info().traces {
@@ -44,6 +67,11 @@ pub fn names(kernel: Kernel, features: &Features) -> Names {
     }
     if features.iter().any(|feature| feature.name().starts_with("area_")) {
         held.insert("area");
+    }
+    for (name, users) in SHARED_CODE {
+        if users.iter().any(|bsdf| features.has(Feature::Material(*bsdf))) {
+            held.insert(name);
+        }
     }
     Names { known: known.collect(), held }
 }
@@ -69,6 +97,8 @@ pub fn compose_from(
     let mut declared = declarations(&bindings(kernel, *features));
     if kernel.info().traces {
         declared.insert_str(0, &scene.declaration());
+    } else if kernel == Kernel::Gather && features.has(Feature::LobeParameters) {
+        declared.insert_str(0, &scene.declaration_of(&["materials"]));
     }
     declared.push_str(&dispatch::dispatch(kernel, *features));
     shader.push(DECLARATIONS, &declared);

@@ -14,8 +14,10 @@ pub fn dispatch(kernel: Kernel, features: Features) -> String {
         return String::new();
     }
     let held = |bsdf: &&Bsdf| features.has(Feature::Material(**bsdf));
+    let (layered, scattering): (Vec<Bsdf>, Vec<Bsdf>) =
+        Bsdf::ALL.iter().filter(held).partition(|bsdf| bsdf.is_layered());
     let (specular, rough): (Vec<Bsdf>, Vec<Bsdf>) =
-        Bsdf::ALL.iter().filter(held).partition(|bsdf| bsdf.is_specular());
+        scattering.iter().partition(|bsdf| bsdf.is_specular());
     let mut out: String = Bsdf::ALL
         .iter()
         .map(|bsdf| {
@@ -36,6 +38,7 @@ pub fn dispatch(kernel: Kernel, features: Features) -> String {
     }
     out += &lights();
     out += &is("is_specular", &mut specular.iter());
+    out += &is("is_parametric", &mut rough.iter().filter(|bsdf| bsdf.is_parametric()));
     out += &is("is_wide", &mut rough.iter().filter(|bsdf| bsdf.is_wide()));
     out += &cases(
         "pdf_rough(lobe: Lobe, n: vec3f, wo: vec3f, wi: vec3f) -> f32",
@@ -52,6 +55,14 @@ pub fn dispatch(kernel: Kernel, features: Features) -> String {
         ("p.lobe.bsdf", "scatter", "(p, interior, u, mode)", "Scatter(p.wo, interior, vec3f(0.0))"),
         &specular,
     );
+    if !layered.is_empty() {
+        out += &is("is_layered", &mut layered.iter());
+        out += &cases(
+            "choose_once(p: ShadingPoint, u: f32) -> Layer",
+            ("p.lobe.bsdf", "choose", "(p, u)", "Layer(p.lobe, 1.0, u)"),
+            &layered,
+        );
+    }
     out
 }
 

@@ -61,6 +61,8 @@ const SHARED: &[Fragment] = fragments![
     "materials/interior.wgsl" if "scene",
     "materials/enclosing.wgsl" if "scene",
     "materials/shading.wgsl" if "scene || gather && lobes",
+    "materials/fresnel.wgsl" if "scene && fresnel || gather && fresnel",
+    "materials/microfacet.wgsl" if "scene && microfacet || gather && microfacet",
     "lights/shape.wgsl" if "scene && lights",
     "lights/select.wgsl" if "scene && lights",
     "lights/area.wgsl" if "scene && area",

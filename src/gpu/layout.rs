@@ -85,6 +85,21 @@ impl SceneLayout {
         format!("struct SceneTables {{\n{members}}}\n{lights}{}", self.intersect_few())
     }
 
+    /// WGSL declaration of the struct with the members `names` only; padding replaces the others.
+    pub fn declaration_of(&self, names: &[&str]) -> String {
+        let ends = self.members.iter().skip(1).map(|m| m.offset).chain([self.bytes.len()]);
+        let members: String = self
+            .members
+            .iter()
+            .zip(ends)
+            .map(|(m, end)| match names.contains(&m.name) {
+                true => format!("    @align(16) {}: {},\n", m.name, m.wgsl_type),
+                false => format!("    {}: array<vec4u, {}>,\n", m.name, (end - m.offset) / 16),
+            })
+            .collect();
+        format!("struct SceneTables {{\n{members}}}\n")
+    }
+
     /// WGSL function that tests the few shapes, in the same order as the Rust twin. Since their
     /// indices are constants, a software driver reads each shape once for all its lanes instead of
     /// once per lane.

@@ -8,8 +8,8 @@ use super::eye_path::EyePath;
 use super::eye_sample::{start_radius, stratified, window_pixel};
 use super::geometry::intersect::intersect_scene;
 use super::geometry::surface::surface_at;
-use super::materials::scatter_specular;
 use super::materials::shading::{RADIANCE, shading_point};
+use super::materials::{choose_layer, scatter_specular};
 use super::math::rng::{rng_eye, rng_next};
 use super::math::{is_finite, max_component};
 use super::real::{Plain, Real, Vec3, Vec4};
@@ -107,7 +107,11 @@ pub fn aov_trace(
         if path.passes(scene, &s) {
             continue;
         }
-        let p = shading_point(scene, &s, -path.ray.direction);
+        let mut p = shading_point(scene, &s, -path.ray.direction);
+        if p.lobe.bsdf.is_layered() {
+            let u = rng_next(&mut rng);
+            path.throughput *= choose_layer(scene, &mut p, u.x);
+        }
         if !p.lobe.bsdf.is_specular() {
             albedo = path.throughput * p.lobe.reflectance;
             normal = p.n;

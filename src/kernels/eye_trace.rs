@@ -7,11 +7,11 @@ use super::direct::direct_light;
 use super::eye_path::EyePath;
 use super::eye_sample::{start_radius, stratified, window_pixel};
 use super::materials::shading::{RADIANCE, shading_point};
-use super::materials::{Bsdf, scatter_specular};
+use super::materials::{Bsdf, choose_layer, scatter_specular};
 use super::math::rng::{rng_eye, rng_next};
 use super::math::{INV_PI, is_finite, max_component, oct_encode};
 use super::real::Vec3;
-use super::records::{BAD_DIRECT, BAD_EYE, Dispatch, VisiblePoint};
+use super::records::{BAD_DIRECT, BAD_EYE, BSDF_BITS, Dispatch, VisiblePoint};
 use super::tables::*;
 use bytemuck::Zeroable;
 
@@ -50,7 +50,11 @@ pub fn eye_trace(
         if path.passes(scene, &s) {
             continue;
         }
-        let p = shading_point(scene, &s, -path.ray.direction);
+        let mut p = shading_point(scene, &s, -path.ray.direction);
+        if p.lobe.bsdf.is_layered() {
+            let u = rng_next(&mut rng);
+            path.throughput *= choose_layer(scene, &mut p, u.x);
+        }
         // store the visible point at the first non-specular hit
         if !p.lobe.bsdf.is_specular() {
             if max_component(p.lobe.reflectance) <= 0.0 {
@@ -62,6 +66,9 @@ pub fn eye_trace(
             point.normal = oct_encode(p.ng);
             point.shading = oct_encode(p.n);
             point.bsdf = p.lobe.bsdf as u32;
+            if p.lobe.bsdf.reads_table(p.lobe.m) {
+                point.bsdf |= p.lobe.material << BSDF_BITS;
+            }
             point.weight = path.throughput * INV_PI * p.lobe.reflectance;
             if p.lobe.bsdf != Bsdf::Diffuse {
                 point.weight = path.throughput;

@@ -10,9 +10,9 @@ use super::materials::shading::Lobe;
 use super::materials::{Bsdf, eval_rough};
 use super::math::{LUMINANCE, oct_decode, unit};
 use super::real::{Real, Vec3, Vec4};
-use super::records::{Dispatch, Gathered, Statistics, VisiblePoint};
+use super::records::{BSDF_BITS, Dispatch, Gathered, Statistics, VisiblePoint};
 use super::shapes::outline::{before_walls, clip_at, in_outline};
-use super::tables::Outline;
+use super::tables::{Material, Outline};
 use bytemuck::Zeroable;
 use glam::IVec3;
 use std::ops::Range;
@@ -34,7 +34,7 @@ const LANES: usize = 16;
 
 /// Shading frame of a visible point.
 #[derive(Clone, Copy)]
-struct Frame {
+struct Frame<'a> {
     /// Geometric normal.
     ng: Vec3,
     /// Shading normal.
@@ -42,17 +42,19 @@ struct Frame {
     /// Direction to the viewer; zero for a diffuse lobe.
     wo: Vec3,
     /// Lobe of the material.
-    lobe: Lobe,
+    lobe: Lobe<'a>,
 }
 
-impl Frame {
+impl<'a> Frame<'a> {
     #[inline(always)]
-    fn at(point: &VisiblePoint) -> Self {
+    fn at(materials: &'a [Material], point: &VisiblePoint) -> Self {
         let ng = oct_decode(point.normal);
         let n = if point.normal == point.shading { ng } else { oct_decode(point.shading) };
-        let bsdf = Bsdf::of(point.bsdf);
+        let bsdf = Bsdf::of(point.bsdf & ((1 << BSDF_BITS) - 1));
         let wo = if bsdf == Bsdf::Diffuse { Vec3::ZERO } else { oct_decode(point.wo) };
-        let lobe = Lobe { bsdf, alpha: point.alpha, reflectance: point.reflectance };
+        let material = point.bsdf >> BSDF_BITS;
+        let m = materials.get(material as usize).unwrap_or(const { &Material::EMPTY });
+        let lobe = Lobe { bsdf, alpha: point.alpha, reflectance: point.reflectance, material, m };
         Self { ng, n, wo, lobe }
     }
 }
@@ -69,6 +71,7 @@ pub fn scale_sq(dispatch: &Dispatch, local: bool, statistics: &Statistics) -> Re
 /// compiled for the processor's widest vectors inside [`pulp::Arch::dispatch`].
 #[inline(always)]
 pub fn gather(
+    materials: &[Material],
     outlines: &[Outline],
     dispatch: &Dispatch,
     point: &VisiblePoint,
@@ -81,7 +84,7 @@ pub fn gather(
         return;
     }
     let radius_sq = point.radius * point.radius * scale_sq;
-    let frame = Frame::at(point);
+    let frame = Frame::at(materials, point);
     let mut found = gather_class(outlines, dispatch, point, &frame, 0, radius_sq, starts, sorted);
     if dispatch.classes == 2 {
         gathered.caustic += point.weight * found.flux;

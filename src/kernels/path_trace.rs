@@ -9,7 +9,7 @@ use super::lights::area::pdf_area;
 use super::lights::environment::pdf_environment;
 use super::lights::select::{share_of, shares_at};
 use super::materials::shading::{RADIANCE, shading_point};
-use super::materials::{pdf_rough, scatter_rough, scatter_specular};
+use super::materials::{choose_layer, pdf_rough, scatter_rough, scatter_specular};
 use super::math::rng::{rng_eye, rng_next};
 use super::math::sampling::balance;
 use super::real::{Vec2, Vec3};
@@ -65,7 +65,11 @@ pub fn path_trace(
         if path.bounce == dispatch.max_bounces {
             break;
         }
-        let p = shading_point(scene, &s, -direction);
+        let mut p = shading_point(scene, &s, -direction);
+        if p.lobe.bsdf.is_layered() {
+            let u = rng_next(&mut rng);
+            path.throughput *= choose_layer(scene, &mut p, u.x);
+        }
         let scattered = if p.lobe.bsdf.is_specular() {
             pdf = 0.0;
             let u = rng_next(&mut rng);

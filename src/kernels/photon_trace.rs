@@ -9,7 +9,7 @@ use super::lights::aim::aimed_scatter;
 use super::lights::emission::{Emission, emit_photon};
 use super::materials::interior::{Interior, interior_before, medium_of, passes_hidden};
 use super::materials::shading::{IMPORTANCE, shading_point};
-use super::materials::{scatter_rough, scatter_specular};
+use super::materials::{choose_layer, scatter_rough, scatter_specular};
 use super::math::rng::{Rng, STREAM_PHOTON, rng_new, rng_next};
 use super::math::{FAR, max_component, oct_encode, offset_origin};
 use super::real::{Real, Vec2, Vec3};
@@ -112,24 +112,32 @@ impl PhotonPath {
             self.hidden += 1;
             return true;
         }
-        let p = shading_point(scene, &s, wo);
+        let mut p = shading_point(scene, &s, wo);
+        let mut stores = !p.lobe.bsdf.is_specular() && max_component(p.lobe.reflectance) > 0.0;
+        let mut layer = 1.0;
+        if p.lobe.bsdf.is_layered() {
+            stores = p.lobe.m.stores != 0;
+            let u = rng_next(&mut self.rng);
+            layer = choose_layer(scene, &mut p, u.x);
+        }
+        // store a record at non-specular hits, unless shadow rays account for the light; shadow rays
+        // end at faces, hidden ones included
+        if stores && (self.bounce > 0 || self.hidden > 0 || !sampled) {
+            let key = self.id << dispatch.key_bits | self.bounce << 1 | self.photon_class;
+            store(PhotonRecord {
+                position: s.position,
+                key,
+                flux: self.flux,
+                direction: oct_encode(wo),
+            });
+        }
+        // scatter
         let specular = p.lobe.bsdf.is_specular();
         let u = rng_next(&mut self.rng);
         let mut scattered;
         if specular {
             scattered = scatter_specular(scene, &p, &self.interior, u.x, IMPORTANCE);
         } else {
-            // shadow rays end at faces, hidden ones included
-            let stored = self.bounce > 0 || self.hidden > 0 || !sampled;
-            if stored && max_component(p.lobe.reflectance) > 0.0 {
-                let key = self.id << dispatch.key_bits | self.bounce << 1 | self.photon_class;
-                store(PhotonRecord {
-                    position: s.position,
-                    key,
-                    flux: self.flux,
-                    direction: oct_encode(wo),
-                });
-            }
             scattered = scatter_rough(&p, &self.interior, Vec2::new(u.x, u.y), IMPORTANCE);
             if far {
                 scattered = aimed_scatter(scene, &p, u, scattered);
@@ -138,6 +146,7 @@ impl PhotonPath {
                 self.photon_class = 1;
             }
         }
+        scattered.weight *= layer;
         // Russian roulette
         let weight = max_component(scattered.weight);
         // guiding maps send many faint photons at glass and mirrors: roulette must not end them

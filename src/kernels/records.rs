@@ -78,6 +78,9 @@ pub const BAD_EYE: u32 = 2;
 /// State bit: the sampled direct light was not finite and is left out of the radiance.
 pub const BAD_DIRECT: u32 = 4;
 
+/// Number of bits for the lobe's kind in [`VisiblePoint::bsdf`].
+pub const BSDF_BITS: u32 = 8;
+
 /// First non-specular hit of an eye path.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Plain, Zeroable)]
@@ -104,7 +107,8 @@ pub struct VisiblePoint {
     pub outline: u32,
     /// Sum of [`STOPPED`], [`BAD_EYE`] and [`BAD_DIRECT`].
     pub state: u32,
-    /// Number of the lobe's [`Bsdf`](super::materials::Bsdf).
+    /// Number of the lobe's [`Bsdf`](super::materials::Bsdf) in the lowest [`BSDF_BITS`] bits; above
+    /// them the index of the material, if the gather reads its parameters.
     pub bsdf: u32,
 }
 

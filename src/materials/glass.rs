@@ -1,6 +1,7 @@
 //! Smooth dielectric: Fresnel reflection and refraction, total internal reflection. Twin:
 //! `shaders/materials/glass.wgsl`.
 
+use super::fresnel::fresnel;
 use super::interior::{Interior, interior_beyond, relative_ior};
 use super::real::{Real, Vec3};
 use super::shading::{IMPORTANCE, Sample, Scatter, ShadingPoint, reflected, shading_correction};
@@ -11,31 +12,6 @@ pub const EXAMPLES: &[Material] = &[
     Material { ior: 1.5, ..Material::EMPTY },
     Material { ior: 0.75, absorption: Vec3::new(0.5, 0.2, 0.1), ..Material::EMPTY },
 ];
-
-/// Reflection and refraction at a dielectric interface.
-#[derive(Clone, Copy, Debug)]
-pub struct Interface {
-    /// Fresnel reflectance for unpolarised light; 1 beyond the critical angle.
-    pub reflectance: Real,
-    /// Cosine of the refracted ray with the normal on the far side; 0 under total internal
-    /// reflection.
-    pub cos_t: Real,
-}
-
-/// Fresnel equations: `cos_i` > 0 on the side the ray comes from, `eta` = ior on that side / ior on
-/// the far side.
-pub fn fresnel(cos_i: Real, eta: Real) -> Interface {
-    // as a product: 1 - cos^2 loses all digits near the normal, where dense glass has its critical
-    // angle
-    let sin_t_sq = eta * eta * ((1.0 - cos_i) * (1.0 + cos_i)).max(0.0);
-    if sin_t_sq >= 1.0 {
-        return Interface { reflectance: 1.0, cos_t: 0.0 };
-    }
-    let cos_t = (1.0 - sin_t_sq).sqrt();
-    let parallel = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
-    let perpendicular = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
-    Interface { reflectance: 0.5 * (parallel * parallel + perpendicular * perpendicular), cos_t }
-}
 
 /// Direction of the refracted ray; `wo` points away from the surface on the side of `n`.
 pub fn refracted(wo: Vec3, n: Vec3, cos_i: Real, cos_t: Real, eta: Real) -> Vec3 {

@@ -6,18 +6,22 @@
 //!
 //! A *specular* material scatters into discrete directions; its file has `scatter_X`. A *rough* one
 //! has `eval_X`, `sample_X`, `pdf_X` and the constants `WIDE` and `TRANSMITS`. `eval_X` includes
-//! the cosine between `wi` and the shading normal. Directions are unit vectors that point away from
-//! the surface. Tests of densities, energy, reciprocity and engine agreement run over the
+//! the cosine between `wi` and the shading normal. A *layered* material is a sum of several others:
+//! its `choose_X` chooses one of them for the path, with a probability that does not depend on the
+//! scattered direction, so that eye paths, photons and shadow rays need only know one lobe at a
+//! time. Directions are unit vectors that point away from the surface. Tests of densities, energy, reciprocity and engine agreement run over the
 //! `EXAMPLES` of every file.
 
 use super::{geometry, math, real, shapes, tables};
 use interior::Interior;
 use real::{Real, Vec2, Vec3};
-use shading::{Lobe, Sample, Scatter, ShadingPoint};
+use shading::{Layer, Lobe, Sample, Scatter, ShadingPoint};
 use tables::{Material, SceneTables};
 
 pub mod enclosing;
+pub mod fresnel;
 pub mod interior;
+pub mod microfacet;
 pub mod shading;
 pub mod texture;
 
@@ -27,9 +31,12 @@ macro_rules! materials {
             $eval:ident, $sample:ident, $pdf:ident;)* }
         specular { $($(#[$specular_doc:meta])* $specular:ident = $specular_name:ident,
             $scatter:ident;)* }
+        layered { $($(#[$layered_doc:meta])* $layered:ident = $layered_name:ident,
+            $choose:ident;)* }
     ) => {
         $(pub mod $rough_name;)*
         $(pub mod $specular_name;)*
+        $(pub mod $layered_name;)*
 
         /// Kind of a material.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -37,17 +44,20 @@ macro_rules! materials {
         pub enum Bsdf {
             $($(#[$rough_doc])* $rough,)*
             $($(#[$specular_doc])* $specular,)*
+            $($(#[$layered_doc])* $layered,)*
         }
 
         impl Bsdf {
             /// All materials.
-            pub const ALL: &[Self] = &[$(Self::$rough,)* $(Self::$specular,)*];
+            pub const ALL: &[Self] =
+                &[$(Self::$rough,)* $(Self::$specular,)* $(Self::$layered,)*];
 
             /// Stem of the material's file pair, and suffix of its functions.
             pub const fn name(self) -> &'static str {
                 match self {
                     $(Self::$rough => stringify!($rough_name),)*
                     $(Self::$specular => stringify!($specular_name),)*
+                    $(Self::$layered => stringify!($layered_name),)*
                 }
             }
 
@@ -60,6 +70,9 @@ macro_rules! materials {
                 $(if kind == Self::$rough as u32 {
                     return Self::$rough;
                 })*
+                $(if kind == Self::$layered as u32 {
+                    return Self::$layered;
+                })*
                 Self::Diffuse
             }
 
@@ -68,6 +81,7 @@ macro_rules! materials {
                 let examples = match self {
                     $(Self::$rough => $rough_name::EXAMPLES,)*
                     $(Self::$specular => $specular_name::EXAMPLES,)*
+                    $(Self::$layered => $layered_name::EXAMPLES,)*
                 };
                 examples.iter().map(move |m| Material { kind: self as u32, ..*m })
             }
@@ -78,6 +92,17 @@ macro_rules! materials {
                 match self {
                     $(Self::$rough => false,)*
                     $(Self::$specular => true,)*
+                    $(Self::$layered => false,)*
+                }
+            }
+
+            /// Returns true if the material is a sum of several others.
+            #[inline(always)]
+            pub const fn is_layered(self) -> bool {
+                match self {
+                    $(Self::$rough => false,)*
+                    $(Self::$specular => false,)*
+                    $(Self::$layered => true,)*
                 }
             }
 
@@ -88,6 +113,7 @@ macro_rules! materials {
                 match self {
                     $(Self::$rough => $rough_name::WIDE,)*
                     $(Self::$specular => false,)*
+                    $(Self::$layered => false,)*
                 }
             }
 
@@ -97,6 +123,7 @@ macro_rules! materials {
                 match self {
                     $(Self::$rough => $rough_name::TRANSMITS,)*
                     $(Self::$specular => false,)*
+                    $(Self::$layered => false,)*
                 }
             }
         }
@@ -123,6 +150,14 @@ macro_rules! materials {
                 )),
                 concat!("scene && ", stringify!($specular_name)),
             ),)*
+            $((
+                concat!("materials/", stringify!($layered_name), ".wgsl"),
+                include_str!(concat!(
+                    env!("CARGO_MANIFEST_DIR"), "/shaders/materials/",
+                    stringify!($layered_name), ".wgsl"
+                )),
+                concat!("scene && ", stringify!($layered_name)),
+            ),)*
         ];
 
         /// BSDF of a rough material times the cosine between `wi` and the shading normal `n`, which
@@ -132,6 +167,7 @@ macro_rules! materials {
             match lobe.bsdf {
                 $(Bsdf::$rough => $rough_name::$eval(lobe, n, wo, wi),)*
                 $(Bsdf::$specular => Vec3::ZERO,)*
+                $(Bsdf::$layered => Vec3::ZERO,)*
             }
         }
 
@@ -141,6 +177,7 @@ macro_rules! materials {
             match lobe.bsdf {
                 $(Bsdf::$rough => $rough_name::$pdf(lobe, n, wo, wi),)*
                 $(Bsdf::$specular => 0.0,)*
+                $(Bsdf::$layered => 0.0,)*
             }
         }
 
@@ -150,6 +187,7 @@ macro_rules! materials {
             match p.lobe.bsdf {
                 $(Bsdf::$rough => $rough_name::$sample(p, u, mode),)*
                 $(Bsdf::$specular => Sample { direction: p.wo, weight: Vec3::ZERO },)*
+                $(Bsdf::$layered => Sample { direction: p.wo, weight: Vec3::ZERO },)*
             }
         }
 
@@ -170,6 +208,21 @@ macro_rules! materials {
                     interior: *interior,
                     weight: Vec3::ZERO,
                 },)*
+                $(Bsdf::$layered => Scatter {
+                    direction: p.wo,
+                    interior: *interior,
+                    weight: Vec3::ZERO,
+                },)*
+            }
+        }
+
+        /// Chooses one of the materials of a layered one by the random number `u`.
+        #[inline(always)]
+        fn choose_once<'a>(scene: &'a SceneTables, p: &ShadingPoint<'a>, u: Real) -> Layer<'a> {
+            match p.lobe.bsdf {
+                $(Bsdf::$layered => $layered_name::$choose(scene, p, u),)*
+                $(Bsdf::$rough => Layer { lobe: p.lobe, weight: 1.0, u },)*
+                $(Bsdf::$specular => Layer { lobe: p.lobe, weight: 1.0, u },)*
             }
         }
     };
@@ -185,13 +238,92 @@ materials! {
         Translucent = translucent, eval_translucent, sample_translucent, pdf_translucent;
         /// GGX conductor.
         Metal = metal, eval_metal, sample_metal, pdf_metal;
+        /// GGX conductor with a complex index of refraction.
+        Conductor = conductor, eval_conductor, sample_conductor, pdf_conductor;
+        /// Rough dielectric coat of plastic.
+        Coat = coat, eval_coat, sample_coat, pdf_coat;
+        /// Diffuse base of plastic.
+        PlasticBase = plastic_base, eval_plastic_base, sample_plastic_base, pdf_plastic_base;
     }
     specular {
         /// Perfect mirror.
         Mirror = mirror, scatter_mirror;
+        /// Smooth conductor.
+        SmoothMetal = smooth_metal, scatter_smooth_metal;
         /// Smooth dielectric.
         Glass = glass, scatter_glass;
+        /// Thin sheet of a dielectric.
+        ThinGlass = thin_glass, scatter_thin_glass;
+        /// No material.
+        Null = null, scatter_null;
     }
+    layered {
+        /// Diffuse base below a dielectric coat.
+        Plastic = plastic, choose_plastic;
+        /// Mix of two materials.
+        Mix = mix, choose_mix;
+        /// A material for each side.
+        TwoSided = two_sided, choose_two_sided;
+        /// A material that is partly transparent.
+        Opacity = opacity, choose_opacity;
+    }
+}
+
+/// Greatest depth of layered materials that contain others.
+pub const LAYERS: usize = 8;
+
+impl Bsdf {
+    /// Lobes that the entry `m` of this kind, itself not counted, chooses from; other entries of
+    /// the table have theirs.
+    pub fn lobes(self, m: &Material) -> &'static [Self] {
+        match self {
+            Self::Plastic if m.alpha > 0.0 => &[Self::PlasticBase, Self::Coat],
+            Self::Plastic => &[Self::PlasticBase, Self::Mirror],
+            Self::Opacity => &[Self::Null],
+            Self::Mix | Self::TwoSided => &[],
+            Self::Diffuse | Self::RoughDiffuse | Self::Translucent | Self::Metal => &[],
+            Self::Conductor | Self::Coat | Self::PlasticBase => &[],
+            Self::Mirror | Self::SmoothMetal | Self::Glass | Self::ThinGlass | Self::Null => &[],
+        }
+    }
+
+    /// Returns true if the lobe of the entry `m` has parameters that visible points do not store,
+    /// so that the gather reads the material table.
+    #[inline(always)]
+    pub fn reads_table(self, m: &Material) -> bool {
+        self.is_parametric() || self == Self::Metal && m.mean_albedo < 1.0
+    }
+
+    /// Returns true if every lobe of the kind has such parameters.
+    #[inline(always)]
+    pub const fn is_parametric(self) -> bool {
+        match self {
+            Self::Conductor | Self::Coat | Self::PlasticBase | Self::Plastic => true,
+            Self::Diffuse | Self::RoughDiffuse | Self::Translucent | Self::Metal => false,
+            Self::Mirror | Self::SmoothMetal | Self::Glass | Self::ThinGlass | Self::Null => false,
+            Self::Mix | Self::TwoSided | Self::Opacity => false,
+        }
+    }
+}
+
+/// Chooses a lobe if the material is layered, by the random number `u`. Returns the factor of the
+/// path's throughput.
+#[inline(always)]
+pub fn choose_layer<'a>(scene: &'a SceneTables, p: &mut ShadingPoint<'a>, u: Real) -> Real {
+    let mut layer = Layer { lobe: p.lobe, weight: 1.0, u };
+    let mut weight = 1.0;
+    for _ in 0..LAYERS {
+        if p.lobe.bsdf.is_layered() {
+            layer = choose_once(scene, p, layer.u);
+            p.lobe = layer.lobe;
+            weight *= layer.weight;
+        }
+    }
+    // wide lobes do not depend on the viewing direction
+    if p.lobe.bsdf.is_wide() {
+        p.n = p.ns;
+    }
+    weight
 }
 
 /// Scatters at a rough surface, which leaves the interior list unchanged.

@@ -20,18 +20,33 @@ const ADJOINT_COS_MIN: Real = 1e-2;
 /// Material parameters at a point. A rough material needs nothing else to be evaluated, so a
 /// visible point stores these.
 #[derive(Clone, Copy, Debug)]
-pub struct Lobe {
+pub struct Lobe<'a> {
     /// The material's kind.
     pub bsdf: Bsdf,
     /// Width (alpha) of the lobe, if the kind has one.
     pub alpha: Real,
     /// Reflectance, in [0, 1]; at normal incidence for metal.
     pub reflectance: Vec3,
+    /// Index in the material table.
+    pub material: u32,
+    /// Entry of the material table; WGSL reads it by the index.
+    pub m: &'a Material,
+}
+
+/// A choice among the materials of a layered one.
+#[derive(Clone, Copy, Debug)]
+pub struct Layer<'a> {
+    /// The chosen lobe, or a material that is itself layered.
+    pub lobe: Lobe<'a>,
+    /// Factor of the path's throughput.
+    pub weight: Real,
+    /// A random number for further choices.
+    pub u: Real,
 }
 
 /// Surface point viewed from `wo`.
 #[derive(Clone, Copy, Debug)]
-pub struct ShadingPoint {
+pub struct ShadingPoint<'a> {
     /// The surface.
     pub s: Surface,
     /// Unit direction that the path came from.
@@ -43,7 +58,7 @@ pub struct ShadingPoint {
     /// Shading normal: `ns`, or `ng` if `wo` is behind `ns` and the material is not wide.
     pub n: Vec3,
     /// Material parameters.
-    pub lobe: Lobe,
+    pub lobe: Lobe<'a>,
 }
 
 /// Direction sampled at a rough surface.
@@ -76,6 +91,21 @@ pub fn reflectance_at(scene: &SceneTables, material: u32, uv: Vec2) -> Vec3 {
     m.reflectance
 }
 
+/// Parameters of the entry `material` of the table at `uv`.
+#[inline(always)]
+pub fn lobe_at(scene: &SceneTables, material: u32, uv: Vec2) -> Lobe<'_> {
+    let m = &scene.materials[material as usize];
+    let reflectance = reflectance_at(scene, material, uv);
+    Lobe { bsdf: Bsdf::of(m.kind), alpha: m.alpha, reflectance, material, m }
+}
+
+/// Amount of a mix or opacity: the mean of the channels of its color.
+#[inline(always)]
+pub fn amount_at(p: &ShadingPoint) -> Real {
+    let color = p.lobe.reflectance;
+    (color.x + color.y + color.z) * (1.0 / 3.0)
+}
+
 /// Returns `v` or `-v`, whichever is on the side of `w`.
 #[inline(always)]
 pub fn toward(v: Vec3, w: Vec3) -> Vec3 {
@@ -84,25 +114,26 @@ pub fn toward(v: Vec3, w: Vec3) -> Vec3 {
 
 /// Computes the normals and material parameters of a surface viewed from `wo`.
 #[inline(always)]
-pub fn shading_point(scene: &SceneTables, s: &Surface, wo: Vec3) -> ShadingPoint {
-    let m = &scene.materials[s.material as usize];
-    let bsdf = Bsdf::of(m.kind);
+pub fn shading_point<'a>(scene: &'a SceneTables, s: &Surface, wo: Vec3) -> ShadingPoint<'a> {
+    let lobe = lobe_at(scene, s.material, s.uv);
     let ng = toward(s.normal, wo);
     let ns = toward(s.shading, ng);
     // wide lobes do not depend on the viewing direction
-    let n = if bsdf.is_wide() || wo.dot(ns) > 0.0 { ns } else { ng };
-    let reflectance = reflectance_at(scene, s.material, s.uv);
-    ShadingPoint { s: *s, wo, ng, ns, n, lobe: Lobe { bsdf, alpha: m.alpha, reflectance } }
+    let n = if lobe.bsdf.is_wide() || wo.dot(ns) > 0.0 { ns } else { ng };
+    ShadingPoint { s: *s, wo, ng, ns, n, lobe }
 }
 
-/// Mirror direction and, for photons, its weight. If it points below the surface, mirrors at the
-/// geometric normal instead.
+/// Normal of a mirror: the shading normal, or the geometric one if the mirrored direction would
+/// point below the surface.
+#[inline(always)]
+pub fn mirror_normal(p: &ShadingPoint) -> Vec3 {
+    if mirrored(p.wo, p.n).dot(p.ng) <= 0.0 { p.ng } else { p.n }
+}
+
+/// Mirror direction and, for photons, its weight.
 #[inline(always)]
 pub fn reflected(p: &ShadingPoint, mode: u32) -> Sample {
-    let mut n = p.n;
-    if mirrored(p.wo, n).dot(p.ng) <= 0.0 {
-        n = p.ng;
-    }
+    let n = mirror_normal(p);
     let wi = mirrored(p.wo, n);
     let mut weight = Vec3::ONE;
     if mode == IMPORTANCE {

@@ -3,7 +3,7 @@
 use super::real::{Bits, Real, ToReal, Vec2};
 use super::tables::*;
 use crate::math::srgb::linear_from_srgb;
-use crate::scene::{self, Filter, ImageData, Reflectance, Texels, TextureKind, Wrap};
+use crate::scene::{self, Filter, ImageData, Texels, TextureKind, Wrap};
 use bytemuck::Zeroable;
 use glam::{DVec2, DVec3};
 
@@ -52,9 +52,12 @@ pub fn pack_textures(scene: &scene::Scene, out: &mut SceneTables) {
 
 /// Period of a material's appearance in u and v; infinite if it does not repeat.
 pub fn period(scene: &scene::Scene, material: &scene::Material) -> DVec2 {
-    let texture = match material.kind.reflectance() {
-        Some(Reflectance::Texture(texture)) => scene.textures.get(*texture),
-        Some(Reflectance::Color(_)) | None => None,
+    // several textures need not have a common period
+    let mut textures = material.textures();
+    let only = textures.next().filter(|_| textures.next().is_none());
+    let texture = match material.kind.parts() {
+        Some(_) => None,
+        None => only.and_then(|texture| scene.textures.get(texture)),
     };
     let of = |scale: [f64; 2], cells: [f64; 2]| {
         let period = DVec2::from(cells) / DVec2::from(scale).abs();

@@ -1,9 +1,11 @@
 //! Conversion of a validated scene to the tables that the kernels read.
 
+pub mod albedo;
 mod bodies;
 mod flat_regions;
 mod image;
 mod light;
+mod material;
 mod objects;
 mod order;
 mod shape;
@@ -13,7 +15,6 @@ mod warnings;
 pub use crate::engine::error::PackError;
 pub use objects::Objects;
 
-use super::materials::Bsdf;
 use super::real::{Real, ToReal, Vec3};
 use super::shapes::simd4::{FourRectangles, FourSpheres, LANES};
 use super::tables::*;
@@ -22,10 +23,10 @@ use crate::prepare::bodies::{Bodies, joined};
 use crate::prepare::contact::grown;
 use crate::prepare::learned::LightSource;
 use crate::prepare::normalize::Normalization;
-use crate::scene::{self, MaterialKind, Reflectance};
+use crate::scene;
 use crate::telemetry::stage::stage;
 use bytemuck::Zeroable;
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
 /// A packed scene, and the factors that convert results to world units.
 #[derive(Clone, Debug)]
@@ -73,13 +74,7 @@ pub fn pack(
     let mut out = SceneTables::empty();
     out.camera = camera(scene, &n, width, height);
     image::pack_textures(scene, &mut out);
-    for m in &scene.materials {
-        out.materials.push(material(m, n.unit));
-        let origin = image::reduced(DVec2::new(n.center.x, n.center.z), image::period(scene, m));
-        if let Some(last) = out.materials.last_mut() {
-            last.planar_origin = origin.to_real();
-        }
-    }
+    material::pack_materials(scene, &n, &mut out);
     let kinds = joined(scene);
     let bodies = Bodies::of(scene, &kinds);
     let kinds = grown(scene, kinds, &bodies, &n);
@@ -190,37 +185,6 @@ fn camera(scene: &scene::Scene, n: &Normalization, width: u32, height: u32) -> C
         lens_up: up.to_real(),
         medium: NONE,
     }
-}
-
-fn material(m: &scene::Material, unit: f64) -> Material {
-    let mut out = Material::EMPTY;
-    match m.kind.reflectance() {
-        Some(Reflectance::Color(c)) => out.reflectance = rgb(*c),
-        Some(Reflectance::Texture(t)) => out.texture = *t as u32,
-        None => {}
-    }
-    let bsdf = match &m.kind {
-        MaterialKind::Diffuse { roughness, .. } if *roughness > 0.0 => {
-            out.alpha = *roughness as Real;
-            Bsdf::RoughDiffuse
-        }
-        MaterialKind::Diffuse { .. } => Bsdf::Diffuse,
-        MaterialKind::Translucent { transmission, .. } => {
-            out.alpha = *transmission as Real;
-            Bsdf::Translucent
-        }
-        MaterialKind::Mirror { .. } => Bsdf::Mirror,
-        MaterialKind::Glass { ior, absorption, .. } => {
-            out.ior = *ior as Real;
-            out.absorption = rgb(absorption.map(|a| a * unit));
-            Bsdf::Glass
-        }
-        MaterialKind::Metal { roughness, .. } => {
-            out.alpha = ((roughness * roughness) as Real).max(materials::metal::ALPHA_MIN);
-            Bsdf::Metal
-        }
-    };
-    Material { kind: bsdf as u32, ..out }
 }
 
 fn rgb(c: [f64; 3]) -> Vec3 {

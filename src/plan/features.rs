@@ -85,6 +85,10 @@ features! {
     Astride = "astride",
     /// Rough materials whose BRDF is not constant.
     Lobes = "lobes",
+    /// Materials with parameters that the gather reads from the material table.
+    LobeParameters = "lobe_parameters",
+    /// Materials that are sums of others.
+    Layered = "layered",
     /// Materials that scatter into discrete directions.
     Specular = "specular",
     /// Dielectrics that absorb.
@@ -190,11 +194,17 @@ impl Features {
         put(Feature::KdTree, kdtree);
         put(Feature::PatchSet, kdtree && has_patch_set(scene));
         put(Feature::Few, few);
-        let bsdfs = || scene.materials.iter().map(|m| Bsdf::of(m.kind));
+        let entries = || scene.materials.iter().map(|m| (Bsdf::of(m.kind), m));
+        let bsdfs = || {
+            entries().flat_map(|(bsdf, m)| [bsdf].into_iter().chain(bsdf.lobes(m).iter().copied()))
+        };
         Bsdf::ALL
             .iter()
             .for_each(|bsdf| put(Feature::Material(*bsdf), bsdfs().any(|b| b == *bsdf)));
-        put(Feature::Lobes, bsdfs().any(|b| !b.is_specular() && b != Bsdf::Diffuse));
+        let constant = |b: Bsdf| b == Bsdf::Diffuse || b.is_specular() || b.is_layered();
+        put(Feature::Lobes, !bsdfs().all(constant));
+        put(Feature::LobeParameters, entries().any(|(bsdf, m)| bsdf.reads_table(m)));
+        put(Feature::Layered, bsdfs().any(Bsdf::is_layered));
         put(Feature::Specular, bsdfs().any(Bsdf::is_specular));
         put(Feature::Nested, scene.world.nested != 0);
         let astride = scene.lights.iter().any(|l| l.medium == ASTRIDE);
@@ -231,7 +241,8 @@ impl Features {
         put(Feature::Local, settings.radius_rule == RadiusRule::Local);
         let photons = !scene.lights.is_empty() && settings.method != Method::Path;
         // photons that no wide surface has scattered are stored
-        let first = settings.direct == Direct::Photons || !bsdfs().all(Bsdf::is_wide);
+        let first =
+            settings.direct == Direct::Photons || !bsdfs().all(|b| b.is_wide() || b.is_layered());
         put(Feature::Photons, photons);
         put(Feature::First, photons && first);
         put(Feature::Split, photons && first && settings.has_wider());

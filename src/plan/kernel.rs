@@ -235,6 +235,7 @@ impl Kernel {
                 traces: false,
                 uses: const {
                     &[
+                        with(Feature::LobeParameters, read(Scene)),
                         with(Feature::Outlines, read(Outlines)),
                         read(VisiblePoints),
                         write(Counters),

@@ -230,20 +230,25 @@ impl Limits<'_> {
         self.scene.lights.iter().enumerate().filter_map(dim).collect()
     }
 
-    /// Warns about metals whose roughness is clamped.
+    /// Warns about metals and coats whose roughness is clamped.
     fn smooth_metal(&self) -> Vec<Finding> {
-        let least = f64::from(crate::materials::metal::ALPHA_MIN).sqrt();
+        let least = f64::from(crate::materials::microfacet::ALPHA_MIN).sqrt();
         let smooth = |(index, material): (usize, &crate::scene::Material)| {
-            let MaterialKind::Metal { roughness, .. } = material.kind else { return None };
+            let (MaterialKind::Metal { roughness, .. }
+            | MaterialKind::Conductor { roughness, .. }
+            | MaterialKind::Plastic { roughness, .. }) = material.kind
+            else {
+                return None;
+            };
             let path = self.places.materials.get(index).map_or("materials", String::as_str);
-            (roughness < least).then(|| {
+            (roughness > 0.0 && roughness < least).then(|| {
                 self.places.warning(
                     &[&format!("{path}.roughness"), path],
                     format!(
                         "{path} has a roughness of {roughness}, which is rendered as {least:.4}"
                     ),
-                    "expected more, or type = \"mirror\": single precision cannot represent so \
-                     sharp a peak"
+                    "expected more, or 0 for a mirror: single precision cannot represent so sharp a \
+                     peak"
                         .to_owned(),
                 )
             })

@@ -103,6 +103,34 @@ pub struct Material {
     pub name: String,
     /// Scattering model and its parameters.
     pub kind: MaterialKind,
+    /// Fraction of the surface that is there, if not all of it; not for glass and not for lights.
+    pub opacity: Option<Opacity>,
+}
+
+impl Material {
+    /// An opaque material without a name.
+    pub const fn new(kind: MaterialKind) -> Self {
+        Self { name: String::new(), kind, opacity: None }
+    }
+
+    /// Indices of the textures that the material uses.
+    pub fn textures(&self) -> impl Iterator<Item = usize> {
+        let opacity = self.opacity.as_ref().map(|opacity| &opacity.amount);
+        [self.kind.color(), opacity].into_iter().flatten().filter_map(|color| match color {
+            Reflectance::Texture(index) => Some(*index),
+            Reflectance::Color(_) => None,
+        })
+    }
+}
+
+/// Opacity of a surface, for holes in leaves, nets and lace.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Opacity {
+    /// Fraction of light that meets the surface; the rest passes straight through. The mean of the
+    /// channels counts.
+    pub amount: Reflectance,
+    /// If given, the surface is a mask: opaque where the amount is at least this, else absent.
+    pub cutoff: Option<f64>,
 }
 
 /// Scattering model of a material. All reflectances lie in [0, 1].
@@ -141,20 +169,86 @@ pub enum MaterialKind {
     Metal {
         /// Reflectance at normal incidence, `F_0`.
         reflectance: Reflectance,
-        /// Roughness in [0, 1]; GGX `alpha = roughness^2`.
+        /// Roughness in [0, 1]; GGX `alpha = roughness^2`. 0 is a mirror.
         roughness: f64,
     },
+    /// Two-sided GGX microfacet conductor with the exact Fresnel term.
+    Conductor {
+        /// Index of refraction per channel, > 0.
+        eta: Rgb,
+        /// Extinction coefficient per channel, >= 0.
+        k: Rgb,
+        /// Roughness in [0, 1]; GGX `alpha = roughness^2`. 0 is a mirror.
+        roughness: f64,
+    },
+    /// Two-sided diffuse base below a dielectric coat.
+    Plastic {
+        /// Albedo of the base.
+        reflectance: Reflectance,
+        /// Index of refraction of the coat, > 1.
+        ior: f64,
+        /// Roughness of the coat in [0, 1]; GGX `alpha = roughness^2`. 0 is a smooth coat.
+        roughness: f64,
+        /// If true, light takes on the color of the base each time that the coat reflects it back
+        /// inside.
+        nonlinear: bool,
+    },
+    /// Thin sheet of a smooth dielectric, which does not bend light.
+    ThinGlass {
+        /// Index of refraction, > 0.
+        ior: f64,
+        /// Fraction of the transmitted light that is left.
+        transmittance: Reflectance,
+    },
+    /// Mix of two materials.
+    Mix {
+        /// Indices into [`super::Scene::materials`].
+        materials: [usize; 2],
+        /// Fraction of the second material; the mean of the channels counts.
+        amount: Reflectance,
+    },
+    /// A material for each side of a surface.
+    TwoSided {
+        /// Index into [`super::Scene::materials`], for the side that the normal points to.
+        front: usize,
+        /// Likewise for the other side.
+        back: usize,
+    },
+    /// No material: light passes straight through.
+    Null,
 }
 
 impl MaterialKind {
-    /// The reflectance, which may be a texture; `None` for glass.
-    pub fn reflectance(&self) -> Option<&Reflectance> {
+    /// The reflectance, transmittance or amount, which may be a texture.
+    pub fn color(&self) -> Option<&Reflectance> {
         match self {
             Self::Diffuse { reflectance, .. }
             | Self::Translucent { reflectance, .. }
             | Self::Mirror { reflectance }
-            | Self::Metal { reflectance, .. } => Some(reflectance),
-            Self::Glass { .. } => None,
+            | Self::Metal { reflectance, .. }
+            | Self::Plastic { reflectance, .. } => Some(reflectance),
+            Self::ThinGlass { transmittance, .. } => Some(transmittance),
+            Self::Mix { amount, .. } => Some(amount),
+            Self::Glass { .. } | Self::Conductor { .. } | Self::TwoSided { .. } | Self::Null => {
+                None
+            }
+        }
+    }
+
+    /// Indices of the materials that this one consists of.
+    pub fn parts(&self) -> Option<[usize; 2]> {
+        match self {
+            Self::Mix { materials, .. } => Some(*materials),
+            Self::TwoSided { front, back } => Some([*front, *back]),
+            Self::Diffuse { .. }
+            | Self::Translucent { .. }
+            | Self::Mirror { .. }
+            | Self::Glass { .. }
+            | Self::Metal { .. }
+            | Self::Conductor { .. }
+            | Self::Plastic { .. }
+            | Self::ThinGlass { .. }
+            | Self::Null => None,
         }
     }
 }

@@ -35,7 +35,8 @@ mod spans;
 
 pub use aov::{Aov, Aovs};
 pub use appearance::{
-    Filter, ImageData, Material, MaterialKind, Reflectance, Rgb, Texels, Texture, TextureKind, Wrap,
+    Filter, ImageData, Material, MaterialKind, Opacity, Reflectance, Rgb, Texels, Texture,
+    TextureKind, Wrap,
 };
 pub use camera::Camera;
 pub use diagnostics::{Finding, SceneErrors};

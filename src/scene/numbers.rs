@@ -54,3 +54,6 @@ impl Rounded {
         Some((self.at, message))
     }
 }
+
+/// Greatest depth of materials that contain others; an opacity counts as one level.
+pub const LAYERS: usize = 8;

@@ -109,6 +109,8 @@ impl Mixture {
                 self.scene.camera.medium = ASTRIDE;
             }
             Feature::Absorption => self.material(Bsdf::Glass, 1.0),
+            Feature::LobeParameters => self.material(Bsdf::Conductor, 0.0),
+            Feature::Layered => self.material(Bsdf::Mix, 0.0),
             Feature::Lobes => self.material(Bsdf::Metal, 0.0),
             Feature::AreaTriangle => self.area(Feature::Triangle, KIND_TRIANGLE),
             Feature::AreaSphere => self.area(Feature::Sphere, KIND_SPHERE),

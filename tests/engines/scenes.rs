@@ -30,7 +30,7 @@ material = "white"
 "#;
 
 /// Name, render settings, and the rest of the scene file.
-pub const SCENES: [(&str, &str, &str); 10] = [
+pub const SCENES: [(&str, &str, &str); 11] = [
     (
         "glass and mirror under a rectangle",
         "",
@@ -381,6 +381,85 @@ pub const SCENES: [(&str, &str, &str); 10] = [
         emission = [20.0, 18.0, 15.0]
         [environment]
         radiance = 0.3
+        "#,
+    ),
+    (
+        "conductors, plastics, mixes, masks and panes",
+        "indirect_radius = 2.0",
+        r#"
+        [textures.holes]
+        type = "checker"
+        colors = [1.0, 0.1]
+        scale = [6.0, 6.0]
+        [materials.gold]
+        type = "metal"
+        material = "gold"
+        roughness = 0.7
+        [materials.copper]
+        type = "metal"
+        material = "copper"
+        [materials.glazed]
+        type = "plastic"
+        reflectance = [0.7, 0.2, 0.1]
+        nonlinear = true
+        [materials.worn]
+        type = "plastic"
+        reflectance = [0.1, 0.3, 0.7]
+        roughness = 0.5
+        [materials.leaf]
+        type = "mix"
+        materials = ["glazed", "gold"]
+        amount = "holes"
+        opacity = "holes"
+        opacity_cutoff = 0.5
+        [materials.veil]
+        type = "two_sided"
+        front = "leaf"
+        back = "worn"
+        opacity = 0.6
+        [materials.pane]
+        type = "glass"
+        ior = 1.5
+        thin = true
+        transmittance = [0.9, 0.7, 0.8]
+        [[shapes]]
+        type = "sphere"
+        center = [-0.9, 0.4, 0.0]
+        radius = 0.4
+        material = "gold"
+        [[shapes]]
+        type = "sphere"
+        center = [0.0, 0.4, -0.4]
+        radius = 0.4
+        material = "worn"
+        [[shapes]]
+        type = "sphere"
+        center = [0.9, 0.4, 0.0]
+        radius = 0.4
+        material = "glazed"
+        [[shapes]]
+        type = "sphere"
+        center = [0.4, 0.25, 0.6]
+        radius = 0.25
+        material = "copper"
+        [[shapes]]
+        type = "rectangle"
+        origin = [-0.9, 0.0, 0.9]
+        u = [0.9, 0.0, 0.3]
+        v = [0.0, 0.8, 0.0]
+        material = "veil"
+        [[shapes]]
+        type = "rectangle"
+        origin = [-0.2, 0.1, 1.2]
+        u = [0.9, 0.0, 0.0]
+        v = [0.0, 0.9, 0.0]
+        material = "pane"
+        [[lights]]
+        type = "point"
+        position = [0.5, 2.5, 1.0]
+        intensity = 8.0
+        [environment]
+        radiance = [0.2, 0.3, 0.4]
         "#,
     ),
 ];

@@ -179,7 +179,16 @@ impl Room {
         let (starts, sorted) = build_grid(&self.dispatch(), self.records.clone());
         let one = |point: &VisiblePoint| {
             let mut gathered = Gathered::zeroed();
-            gather(&self.outlines, &self.dispatch(), point, 1.0, &starts, &sorted, &mut gathered);
+            gather(
+                &[],
+                &self.outlines,
+                &self.dispatch(),
+                point,
+                1.0,
+                &starts,
+                &sorted,
+                &mut gathered,
+            );
             gathered
         };
         points.iter().map(one).collect()

@@ -16,7 +16,9 @@ use caustica::low_level::lights::environment::{
 use caustica::low_level::lights::light::sample_light;
 use caustica::low_level::lights::select::{choose_light, share_of, shares_at};
 use caustica::low_level::lights::shape::sample_shape;
-use caustica::low_level::materials::metal::{ggx_brdf, ggx_pdf, ggx_visible_normal, ggx_weight};
+use caustica::low_level::materials::microfacet::{
+    facets_at, ggx_pdf, ggx_visible_normal, sample_facets,
+};
 use caustica::low_level::math::mirrored;
 use caustica::low_level::math::rng::{Rng, rng_new, rng_next};
 use caustica::low_level::math::sampling::*;
@@ -160,15 +162,15 @@ fn metal() {
             let wo = Vec3::new((1.0 - cos * cos).sqrt() * 0.8, (1.0 - cos * cos).sqrt() * 0.6, cos);
             let draw = |r: &mut Rng| {
                 let u = rng_next(r);
-                let h = ggx_visible_normal(wo, alpha, Vec2::new(u.x, u.y));
-                let wi = mirrored(wo, h);
+                let drawn = sample_facets(Vec3::Z, wo, alpha, Vec2::new(u.x, u.y));
+                let wi = drawn.wi;
                 if wi.z <= 0.0 {
                     return None;
                 }
-                let f0 = Vec3::new(0.9, 0.5, 0.2);
-                let weight = ggx_weight(wo, h, wi, f0, alpha);
-                let ratio = ggx_brdf(wo, wi, f0, alpha) * (wi.z / ggx_pdf(wo, wi, alpha));
-                assert!((weight - ratio).length() < 1e-4, "{weight} {ratio}");
+                let facets = facets_at(Vec3::Z, wo, wi, alpha);
+                let ratio = facets.brdf * (wi.z / ggx_pdf(wo, wi, alpha));
+                assert!((drawn.weight - ratio).abs() < 1e-4, "{} {ratio}", drawn.weight);
+                assert!((drawn.cos_d - facets.cos_d).abs() < 1e-4);
                 Some(wi)
             };
             check(&format!("metal {alpha} at {cos}"), draw, |w| ggx_pdf(wo, w, alpha));
@@ -345,7 +347,7 @@ fn a_lamp_from_its_own_surface() {
 /// directions.
 #[test]
 fn narrow_lobes_keep_their_digits() {
-    use caustica::low_level::double::materials::metal as exact;
+    use caustica::low_level::double::materials::microfacet as exact;
     let mut rng = rng();
     for alpha in [1e-3f32, 2.5e-3, 1e-2, 0.1] {
         let mut worst = 0.0f64;
@@ -364,8 +366,8 @@ fn narrow_lobes_keep_their_digits() {
             let pairs = [
                 (f64::from(ggx_pdf(wo, wi, alpha)), exact::ggx_pdf(o, i, f64::from(alpha))),
                 (
-                    f64::from(ggx_brdf(wo, wi, Vec3::ONE, alpha).x),
-                    exact::ggx_brdf(o, i, DVec3::ONE, f64::from(alpha)).x,
+                    f64::from(facets_at(Vec3::Z, wo, wi, alpha).brdf),
+                    exact::facets_at(DVec3::Z, o, i, f64::from(alpha)).brdf,
                 ),
             ];
             worst = pairs.iter().fold(worst, |worst, (a, b)| worst.max((a / b - 1.0).abs()));

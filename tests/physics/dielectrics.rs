@@ -342,7 +342,8 @@ fn glass_on_glass() {
 /// within a short and steep range, where `1 - cos^2` would have no digits left.
 #[test]
 fn critical_angle() {
-    use caustica::low_level::materials::glass::{fresnel, refracted};
+    use caustica::low_level::materials::fresnel::fresnel;
+    use caustica::low_level::materials::glass::refracted;
     use glam::Vec3;
     const ROUNDINGS: f64 = 6.0 * 6e-8;
     let exact = |cos: f64, n: f64, off: f64| {

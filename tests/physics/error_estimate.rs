@@ -178,7 +178,7 @@ fn ring(radius: f32, light: impl Fn(f64, f64) -> f64) -> f64 {
         ..VisiblePoint::zeroed()
     };
     let mut gathered = Gathered::zeroed();
-    gather(&[], &d, &point, d.scale_sq, &starts, &sorted, &mut gathered);
+    gather(&[], &[], &d, &point, d.scale_sq, &starts, &sorted, &mut gathered);
     assert!(gathered.count > 100_000);
     f64::from(gathered.bias_probe) / (PI * f64::from(radius).powi(2))
 }

@@ -1,10 +1,8 @@
 //! Furnace tests: scenes in which the radiance is the same everywhere, or in which a body must be
 //! invisible.
 
-use std::f64::consts::PI;
-
 use caustica::low_level::scene::settings::{Direct, Method, RenderSettings};
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
 use super::lab::*;
 
@@ -141,38 +139,29 @@ fn diffuse_bodies() {
     }
 }
 
-/// Directional albedo of GGX with F = 1 and the height-correlated Smith term at cosine `mu`: the
-/// integral over the half vector's angle and azimuth of D G2 / (4 mu cos_i) cos_i. Computed as the
-/// integral over visible normals of G2 / G1 by stratified quadrature of Walter's (2007, eq. 35)
-/// sampling of D(h) cos h, which shares no code with the renderer: albedo = E_h[ G2 (wo.h) / (mu
-/// cos h) ].
-fn ggx_albedo(mu: f64, alpha: f64) -> f64 {
-    let wo = DVec3::new((1.0 - mu * mu).sqrt(), 0.0, mu);
-    let lambda = |c: f64| 0.5 * ((1.0 + alpha * alpha * (1.0 / (c * c) - 1.0)).sqrt() - 1.0);
-    let (n_theta, n_phi) = (300, 60);
-    let mut sum = 0.0;
-    for i in 0..n_theta {
-        let u = (i as f64 + 0.5) / n_theta as f64;
-        let tan = alpha * (u / (1.0 - u)).sqrt();
-        let cos = 1.0 / (1.0 + tan * tan).sqrt();
-        for k in 0..n_phi {
-            let (s, c) = (PI * (k as f64 + 0.5) / n_phi as f64).sin_cos();
-            let h = DVec3::new(tan * cos * c, tan * cos * s, cos);
-            let wi = h * (2.0 * wo.dot(h)) - wo;
-            if wo.dot(h) > 0.0 && wi.z > 0.0 {
-                sum += wo.dot(h) / ((1.0 + lambda(mu) + lambda(wi.z)) * mu * cos);
-            }
-        }
-    }
-    sum / (n_theta * n_phi) as f64
-}
-
-/// Theory: a plane of GGX metal with reflectance 1 in constant light shows its directional albedo,
-/// which is below 1 by the loss of the single-scattering model (Heitz et al. 2016). That loss grows
-/// with roughness.
+/// Theory: a plane of GGX metal with reflectance 1 in constant light is as bright as the light,
+/// because light that one facet sends to another is added. (Single scattering alone keeps 0.32 of it
+/// at roughness 1; Heitz et al. 2016.) The same holds for a white base below any coat.
 #[test]
-fn metal_loses_what_single_scattering_loses() {
-    for (roughness, elevation) in [(0.3f64, 60.0f64), (0.7, 35.0), (1.0, 50.0), (1.0, 12.0)] {
+fn white_metals_and_plastics_lose_nothing() {
+    let metal =
+        |roughness: f64| format!("type = \"metal\"\nreflectance = 1.0\nroughness = {roughness:?}");
+    let plastic = |roughness: f64, nonlinear: bool| {
+        format!(
+            "type = \"plastic\"\nreflectance = 1.0\nior = 1.6\nroughness = {roughness:?}\n\
+             nonlinear = {nonlinear}"
+        )
+    };
+    for (material, elevation) in [
+        (metal(0.3), 60.0f64),
+        (metal(0.7), 35.0),
+        (metal(1.0), 50.0),
+        (metal(1.0), 12.0),
+        (plastic(0.0, false), 50.0),
+        (plastic(0.0, true), 15.0),
+        (plastic(0.4, true), 50.0),
+        (plastic(0.8, false), 15.0),
+    ] {
         let (sin, cos) = elevation.to_radians().sin_cos();
         // a narrow view, nearly one direction
         let camera = Camera {
@@ -183,27 +172,24 @@ fn metal_loses_what_single_scattering_loses() {
         };
         let text = camera.toml()
             + &format!(
-                "[environment]\nradiance = 1.0\n[materials.m]\ntype = \"metal\"\nreflectance = 1.0\nroughness = {roughness:?}\n\
-                 [[shapes]]\ntype = \"disc\"\ncenter = [0, 0, 0]\nnormal = [0, 1, 0]\nradius = 3.0\nmaterial = \"m\"\n"
+                "[environment]\nradiance = 1.0\n[materials.m]\n{material}\n[[shapes]]\n\
+                 type = \"disc\"\ncenter = [0, 0, 0]\nnormal = [0, 1, 0]\nradius = 3.0\n\
+                 material = \"m\"\n"
             );
-        let pixels = 64;
-        let at = |i: usize| DVec2::new((i % 8) as f64 + 0.5, (i / 8) as f64 + 0.5) / 8.0;
-        let alpha = roughness * roughness;
-        let truth: Vec<f64> = (0..pixels)
-            .map(|i| ggx_albedo(-camera.direction(at(i)).normalize().y, alpha))
-            .collect();
+        let narrow = !material.contains("roughness = 1.0") && !material.contains("plastic");
         for (method, direct) in [
             (Method::Sppm, Direct::Sampled),
             (Method::Sppm, Direct::Photons),
             (Method::Path, Direct::Photons),
         ] {
-            if direct == Direct::Photons && method == Method::Sppm && roughness < 0.9 {
+            if direct == Direct::Photons && method == Method::Sppm && narrow {
                 continue; // photons seldom arrive within so narrow a lobe
             }
             let settings =
                 RenderSettings { method, direct, passes: 4, photons: 1 << 14, ..settings(0.05) };
-            let what = format!("metal {roughness} at {elevation} degrees, {method:?} {direct:?}");
-            runs_to(0.04, &text, &settings).assert_picture(&what, &truth, 0.04);
+            let found = runs_to(0.02, &text, &settings).region(|_, _| true);
+            let what = format!("{material} at {elevation} degrees, {method:?} {direct:?}");
+            assert_agrees(&what, found, 1.0, 0.02);
         }
     }
 }

@@ -337,3 +337,53 @@ fn scene_files_name_glasses() {
         assert!(message.contains(expected), "{lines}: {message}");
     }
 }
+
+/// The first material of a scene with `lines` as the material `m`, or the messages of the errors.
+fn loaded_material(lines: &str) -> Result<caustica::scene::MaterialKind, String> {
+    let text = format!(
+        "version = 1\n[camera]\nposition = [0, 1, 4]\ntarget = [0, 1, 0]\nfov = 39\n\
+         [environment]\nradiance = 1\n[materials.m]\n{lines}\n[materials.w]\n\
+         type = \"glass\"\nior = 1.3\n[[shapes]]\ntype = \"sphere\"\ncenter = [0, 0, 0]\n\
+         radius = 1\nmaterial = \"m\"\n[[shapes]]\ntype = \"sphere\"\ncenter = [3, 0, 0]\n\
+         radius = 1\nmaterial = \"w\"\n"
+    );
+    match caustica::scene::parse("m.toml".as_ref(), text.as_bytes()) {
+        Ok(loaded) => Ok(loaded.scene.materials[0].kind.clone()),
+        Err(errors) => Err(errors.errors.iter().map(|e| format!("{e}\n{}\n", e.label())).collect()),
+    }
+}
+
+/// Theory: a metal's name stands for its index, and whatever contradicts itself or has no meaning
+/// is an error that says what to do.
+#[test]
+fn scene_files_name_metals_and_compose_materials() {
+    use caustica::low_level::scene::named::metals::{metal, metal_names};
+    use caustica::scene::MaterialKind;
+    for name in metal_names() {
+        let kind = loaded_material(&format!("type = \"metal\"\nmaterial = \"{name}\"")).unwrap();
+        let metal = metal(name).unwrap();
+        let expected = MaterialKind::Conductor { eta: metal.eta, k: metal.k, roughness: 0.0 };
+        assert_eq!(kind, expected, "{name}");
+    }
+    for (lines, expected) in [
+        ("type = \"metal\"\nroughness = 0.2", "lacks `reflectance`"),
+        ("type = \"metal\"\nmaterial = \"gild\"", "did you mean `gold`?"),
+        ("type = \"metal\"\nmaterial = \"gold\"\nreflectance = 0.5", "given in several ways"),
+        ("type = \"metal\"\neta = 1.2", "`eta` without `k`"),
+        ("type = \"metal\"\nk = 1.2", "`k` without `eta`"),
+        ("type = \"metal\"\neta = 0\nk = 1", "eta"),
+        ("type = \"plastic\"\nreflectance = 0.5\nior = 1", "ior"),
+        ("type = \"glass\"\nior = 1.5\nthin = true\npriority = 1", "`priority` has no meaning"),
+        ("type = \"glass\"\nior = 1.5\ntransmittance = 0.5", "`transmittance` has no meaning"),
+        ("type = \"glass\"\nior = 1.5\nopacity = 0.5", "glass with an opacity"),
+        ("type = \"mirror\"\nreflectance = 1\nopacity_cutoff = 0.5", "cutoff without an opacity"),
+        ("type = \"mirror\"\nreflectance = 1\nopacity = \"leaf\"", "texture `leaf` is not defined"),
+        ("type = \"mix\"\nmaterials = [\"m\", \"m\"]\namount = 0.5", "contains itself"),
+        ("type = \"mix\"\nmaterials = [\"n\", \"m\"]\namount = 0.5", "material `n` is not defined"),
+        ("type = \"two_sided\"\nfront = \"w\"\nback = \"w\"", "contains glass"),
+        ("type = \"null\"\nopacity = 0.5", "opacity"),
+    ] {
+        let message = loaded_material(lines).unwrap_err();
+        assert!(message.contains(expected), "{lines}: {message}");
+    }
+}

@@ -163,6 +163,7 @@ impl<'a> SceneBuilder<'a> {
             environment: self.environment,
         };
         if self.report.errors.is_empty() {
+            checks::composition(&mut self.report, &scene, &self.named, &self.spans);
             checks::unused(&mut self.report, &scene, &self.named);
             checks::lit(&mut self.report, &scene);
         }

@@ -7,6 +7,7 @@
 mod camera;
 mod direction;
 mod light;
+mod material;
 mod profile;
 mod scene;
 mod settings;
@@ -15,6 +16,7 @@ mod shape;
 pub(crate) use camera::{camera, film};
 pub(crate) use direction::unit;
 pub(crate) use light::light;
+pub(crate) use material::composition;
 pub(crate) use profile::{Curve, profile};
 pub(crate) use scene::{Named, lit, shape_count, unused};
 pub(crate) use settings::{SETTINGS, setting};

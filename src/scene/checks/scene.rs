@@ -3,9 +3,9 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 
+use crate::scene::Scene;
 use crate::scene::diagnostics::Report;
 use crate::scene::limits::{Allowance, within};
-use crate::scene::{MaterialKind, Reflectance, Scene};
 
 /// Reports a number of shapes in the file, at `span`, that the limits do not allow; returns whether
 /// they do. Importers call this before they convert the shapes.
@@ -35,16 +35,12 @@ pub(crate) fn unused(report: &mut Report, scene: &Scene, named: &Named) {
     let mut warn = |message: String, span: &Range<usize>| {
         report.warn(span.clone(), message, "defined here");
     };
-    let used: BTreeSet<_> = scene.shapes.iter().map(|shape| shape.material).collect();
+    let parts = scene.materials.iter().filter_map(|material| material.kind.parts()).flatten();
+    let used: BTreeSet<_> = scene.shapes.iter().map(|shape| shape.material).chain(parts).collect();
     for (index, span) in named.materials.iter().filter(|(index, _)| !used.contains(index)) {
         warn(format!("material `{}` is not used", scene.materials[*index].name), span);
     }
-    let texture = |material: &MaterialKind| match material.reflectance() {
-        Some(Reflectance::Texture(index)) => Some(*index),
-        Some(Reflectance::Color(_)) | None => None,
-    };
-    let used = scene.materials.iter().filter_map(|material| texture(&material.kind));
-    let used: BTreeSet<_> = used.collect();
+    let used: BTreeSet<_> = scene.materials.iter().flat_map(|m| m.textures()).collect();
     for (index, span) in named.textures.iter().filter(|(index, _)| !used.contains(index)) {
         warn(format!("texture `{}` is not used", scene.textures[*index].name), span);
     }

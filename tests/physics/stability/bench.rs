@@ -228,7 +228,7 @@ impl Bench {
             let (starts, coded, sorted) = binned(&d, records);
             if self.on == On::Cpu {
                 for (point, gathered) in points.iter().zip(&mut sum) {
-                    gather(&[], &d, point, d.scale_sq, &starts, &sorted, gathered);
+                    gather(&[], &[], &d, point, d.scale_sq, &starts, &sorted, gathered);
                 }
             } else if !gather_on_driver(self.driver(), &d, points, &starts, &coded, &mut sum) {
                 // like the engine, split into smaller batches if the driver stops a loop

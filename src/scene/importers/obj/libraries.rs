@@ -191,7 +191,8 @@ impl Libraries {
             scan.warnings.push(at, message, "rendered in gray");
             let reflectance = Reflectance::Color([Missing::STAND_IN; 3]);
             let kind = MaterialKind::Diffuse { reflectance, roughness: 0.0 };
-            let material = Material { name: format!("{file}:{shown}"), kind };
+            let name = format!("{file}:{shown}");
+            let material = Material { name, kind, opacity: None };
             let material = builder.add_own_material(material);
             return Some(OwnMaterial { material, emission: [0.0; 3] });
         }

@@ -1,14 +1,13 @@
 //! Conversion of textures and materials.
 
 use super::document::{Document, Item};
-use super::file::{MaterialFile, TextureFile};
+use super::file::{CoverageFile, MaterialFile, TextureFile};
 use super::index;
+use super::named::{glass_absorption, glass_index, metal_index, thin_glass_keys};
 use super::numbers::Paint;
 use crate::scene::builder::SceneBuilder;
-use crate::scene::named::glasses::{glass, glass_names};
-use crate::scene::numbers::LARGEST;
 use crate::scene::parts::Part;
-use crate::scene::{Material, MaterialKind, Reflectance, Rgb, Texture, TextureKind};
+use crate::scene::{Material, MaterialKind, Opacity, Reflectance, Texture, TextureKind};
 
 pub(super) fn texture(builder: &mut SceneBuilder, item: &Item, file: TextureFile) -> Option<()> {
     let kind = match file {
@@ -38,16 +37,19 @@ pub(super) fn material(
         Paint::Color(color) => Reflectance::Color(color.rgb()),
         Paint::Texture(name) => Reflectance::Texture(index(document, "textures", name)),
     };
-    let kind = match file {
-        MaterialFile::Diffuse { reflectance, roughness } => {
-            MaterialKind::Diffuse { reflectance: paint(&reflectance), roughness: roughness.0 }
+    let named = |name: &str| index(document, "materials", name);
+    let (kind, coverage) = match file {
+        MaterialFile::Diffuse { reflectance, roughness, coverage } => {
+            let kind =
+                MaterialKind::Diffuse { reflectance: paint(&reflectance), roughness: roughness.0 };
+            (kind, coverage)
         }
-        MaterialFile::Translucent { reflectance, transmission } => MaterialKind::Translucent {
-            reflectance: paint(&reflectance),
-            transmission: transmission.0,
-        },
-        MaterialFile::Mirror { reflectance } => {
-            MaterialKind::Mirror { reflectance: paint(&reflectance) }
+        MaterialFile::Translucent { reflectance, transmission, coverage } => {
+            let reflectance = paint(&reflectance);
+            (MaterialKind::Translucent { reflectance, transmission: transmission.0 }, coverage)
+        }
+        MaterialFile::Mirror { reflectance, coverage } => {
+            (MaterialKind::Mirror { reflectance: paint(&reflectance) }, coverage)
         }
         MaterialFile::Glass {
             ior,
@@ -56,88 +58,73 @@ pub(super) fn material(
             attenuation_color,
             attenuation_distance,
             priority,
-        } => MaterialKind::Glass {
-            ior: glass_index(builder, item, ior.map(f64::from), material.as_deref()),
-            absorption: glass_absorption(
+            thin,
+            transmittance,
+            coverage,
+        } => {
+            let ior = glass_index(builder, item, ior.map(f64::from), material.as_deref());
+            let absorption = glass_absorption(
                 builder,
                 item,
                 absorption.map(|absorption| absorption.rgb()),
                 attenuation_color.map(|color| color.rgb()),
                 attenuation_distance.map(f64::from),
-            ),
-            priority,
-        },
-        MaterialFile::Metal { reflectance, roughness } => {
-            MaterialKind::Metal { reflectance: paint(&reflectance), roughness: roughness.0 }
+            );
+            thin_glass_keys(builder, item, thin);
+            let kind = if thin {
+                let transmittance =
+                    transmittance.as_ref().map_or(Reflectance::Color([1.0; 3]), paint);
+                MaterialKind::ThinGlass { ior, transmittance }
+            } else {
+                MaterialKind::Glass { ior, absorption, priority: priority.unwrap_or_default() }
+            };
+            (kind, coverage)
+        }
+        MaterialFile::Metal { reflectance, eta, k, material, roughness, coverage } => {
+            let index = metal_index(
+                builder,
+                item,
+                reflectance.is_some(),
+                [eta.map(|eta| eta.rgb()), k.map(|k| k.rgb())],
+                material.as_deref(),
+            );
+            let kind = match (index, reflectance) {
+                (Some([eta, k]), _) => MaterialKind::Conductor { eta, k, roughness: roughness.0 },
+                (None, reflectance) => MaterialKind::Metal {
+                    reflectance: reflectance.as_ref().map_or(Reflectance::Color([1.0; 3]), paint),
+                    roughness: roughness.0,
+                },
+            };
+            (kind, coverage)
+        }
+        MaterialFile::Plastic { reflectance, ior, roughness, nonlinear, coverage } => {
+            let reflectance = paint(&reflectance);
+            let roughness = roughness.0;
+            (MaterialKind::Plastic { reflectance, ior, roughness, nonlinear }, coverage)
+        }
+        MaterialFile::Mix { materials: [first, second], amount, coverage } => {
+            let materials = [named(&first), named(&second)];
+            (MaterialKind::Mix { materials, amount: paint(&amount) }, coverage)
+        }
+        MaterialFile::TwoSided { front, back, coverage } => {
+            (MaterialKind::TwoSided { front: named(&front), back: named(&back) }, coverage)
+        }
+        MaterialFile::Null {} => {
+            (MaterialKind::Null, CoverageFile { opacity: None, opacity_cutoff: None })
         }
     };
-    builder.add_material(item, Material { name: item.name.to_owned(), kind });
-}
-
-/// Index of refraction from the key `ior` or from the name of a material. Reports a name that is
-/// not known, and none or both of the keys.
-fn glass_index(
-    builder: &mut SceneBuilder,
-    item: &Item,
-    ior: Option<f64>,
-    material: Option<&str>,
-) -> f64 {
-    let report = &mut builder.report;
-    match (ior, material) {
-        (Some(ior), None) => return ior,
-        (None, Some(name)) => match glass(name) {
-            Some(glass) => return glass.ior,
-            None => {
-                let message = format!("there is no glass called `{name}`");
-                let label = report.did_you_mean(name, glass_names(), "expected a known glass");
-                let names: Vec<_> = glass_names().collect();
-                let help = format!("known: {}; or give the index as `ior`", names.join(", "));
-                report.error(item.span_of("material"), message, label, Some(help));
-            }
-        },
-        (Some(_), Some(_)) => {
-            let message = format!("{} has both an index and the name of a glass", item.place());
-            let label = "expected either `ior` or `material`";
-            report.error(item.span_of("material"), message, label, None);
+    let opacity = match (coverage.opacity, coverage.opacity_cutoff) {
+        (Some(amount), cutoff) => {
+            let cutoff = cutoff.map(|cutoff| cutoff.0);
+            Some(Opacity { amount: paint(&amount), cutoff })
         }
-        (None, None) => {
-            let message = format!("{} lacks `ior`", item.place());
-            let help = Some("for example ior = 1.5, or material = \"bk7\"".to_owned());
-            let label = "expected `ior` or `material`".to_owned();
-            report.missing(item.span(), message, label, help);
+        (None, Some(_)) => {
+            let message = format!("{} has a cutoff without an opacity", item.place());
+            let label = "expected `opacity` too, such as the name of a texture";
+            builder.report.error(item.span_of("opacity_cutoff"), message, label, None);
+            None
         }
-    }
-    1.0
-}
-
-/// Absorption coefficient per scene unit, from itself or from the color that is left at a distance
-/// (glTF 2.0, KHR_materials_volume): `-ln(color) / distance`.
-fn glass_absorption(
-    builder: &mut SceneBuilder,
-    item: &Item,
-    absorption: Option<Rgb>,
-    color: Option<Rgb>,
-    distance: Option<f64>,
-) -> Rgb {
-    let report = &mut builder.report;
-    if absorption.is_some() && (color.is_some() || distance.is_some()) {
-        let message = format!("{} has two kinds of absorption", item.place());
-        let key = if color.is_some() { "attenuation_color" } else { "attenuation_distance" };
-        let label = "expected either `absorption` or `attenuation_color`";
-        report.error(item.span_of(key), message, label, None);
-    }
-    match (color, distance) {
-        (Some(color), distance) => {
-            let distance = distance.unwrap_or(1.0);
-            // a channel of zero leaves nothing at any distance that matters
-            color.map(|left| (-left.max(f64::MIN_POSITIVE).ln() / distance).min(LARGEST))
-        }
-        (None, Some(_)) if absorption.is_none() => {
-            let message = format!("{} has a distance without a color", item.place());
-            let label = "expected `attenuation_color` too";
-            report.error(item.span_of("attenuation_distance"), message, label, None);
-            [0.0; 3]
-        }
-        (None, _) => absorption.unwrap_or_default(),
-    }
+        (None, None) => None,
+    };
+    builder.add_material(item, Material { name: item.name.to_owned(), kind, opacity });
 }

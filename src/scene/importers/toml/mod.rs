@@ -9,6 +9,7 @@ mod document;
 pub mod file;
 mod light;
 mod material;
+mod named;
 pub mod numbers;
 mod parse;
 mod profile;
@@ -67,7 +68,12 @@ fn scene(builder: &mut SceneBuilder, root: Node) {
     let document = &document(&SCHEMA, root, &mut builder.report);
     version(&mut builder.report, document);
     undefined(&mut builder.report, document, "materials", "shapes", "material");
-    undefined(&mut builder.report, document, "textures", "materials", "reflectance");
+    for key in ["materials", "front", "back"] {
+        undefined(&mut builder.report, document, "materials", "materials", key);
+    }
+    for key in ["reflectance", "transmittance", "amount", "opacity"] {
+        undefined(&mut builder.report, document, "textures", "materials", key);
+    }
     camera::camera(builder, document);
     camera::film(builder, document);
     camera::settings(builder, document);
@@ -118,7 +124,9 @@ fn index(document: &Document, section: &str, name: &str) -> usize {
 fn undefined(report: &mut Report, document: &Document, section: &str, user: &str, key: &str) {
     let singular = section.trim_end_matches('s');
     let known: Vec<_> = document.items(section).map(|item| item.name).collect();
-    for node in document.items(user).filter_map(|item| item.node.get(key)) {
+    let nodes = document.items(user).filter_map(|item| item.node.get(key));
+    // a name or a list of names
+    for node in nodes.flat_map(|node| [node].into_iter().chain(node.elements())) {
         let Some(name) = node.str().filter(|name| document.index(section, name).is_none()) else {
             continue;
         };

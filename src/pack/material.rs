@@ -1,0 +1,149 @@
+//! Materials and their parameters.
+
+use super::albedo::{Albedo, mean_over_hemisphere};
+use super::image::{period, reduced};
+use super::materials::microfacet::ALPHA_MIN;
+use super::materials::{Bsdf, LAYERS};
+use super::real::{Real, ToReal};
+use super::rgb;
+use super::tables::*;
+use crate::double::materials::fresnel::{fresnel, fresnel_conductor};
+use crate::prepare::normalize::Normalization;
+use crate::scene::{self, MaterialKind, Reflectance, numbers};
+use glam::{DVec2, DVec3};
+
+const _: () = assert!(LAYERS == numbers::LAYERS);
+
+/// Microfacets that lose no more than this fraction of the light by single scattering do without
+/// its compensation.
+const NEGLIGIBLE_LOSS: f64 = 0.003;
+
+/// Fills the material table: an entry for each material, at its index, then one for each material
+/// below an opacity.
+pub fn pack_materials(scene: &scene::Scene, n: &Normalization, out: &mut SceneTables) {
+    let origin = |m: &scene::Material| {
+        reduced(DVec2::new(n.center.x, n.center.z), period(scene, m)).to_real()
+    };
+    for m in &scene.materials {
+        out.materials.push(Material { planar_origin: origin(m), ..material(m, n.unit) });
+    }
+    for (i, m) in scene.materials.iter().enumerate() {
+        if let Some(opacity) = &m.opacity {
+            let first = out.materials.len() as u32;
+            let covered = out.materials[i];
+            out.materials.push(covered);
+            let cutoff = opacity.cutoff.map_or(0.0, |cutoff| cutoff.max(f64::MIN_POSITIVE));
+            let mut cover = Material {
+                kind: Bsdf::Opacity as u32,
+                ior: (cutoff as Real).min(1.0),
+                first,
+                planar_origin: covered.planar_origin,
+                ..Material::EMPTY
+            };
+            colored(&mut cover, Some(&opacity.amount));
+            out.materials[i] = cover;
+        }
+    }
+    for i in 0..out.materials.len() {
+        out.materials[i].stores = stores(&out.materials, i, LAYERS) as u32;
+    }
+}
+
+/// Returns whether one of the lobes of an entry is rough.
+fn stores(materials: &[Material], index: usize, depth: usize) -> bool {
+    let Some(m) = materials.get(index).filter(|_| depth > 0) else { return false };
+    let below = |index: u32| stores(materials, index as usize, depth - 1);
+    match Bsdf::of(m.kind) {
+        Bsdf::Mix | Bsdf::TwoSided => below(m.first) || below(m.second),
+        Bsdf::Opacity => below(m.first),
+        bsdf => !bsdf.is_specular(),
+    }
+}
+
+fn colored(out: &mut Material, color: Option<&Reflectance>) {
+    match color {
+        Some(Reflectance::Color(c)) => out.reflectance = rgb(*c),
+        Some(Reflectance::Texture(t)) => out.texture = *t as u32,
+        None => {}
+    }
+}
+
+fn material(m: &scene::Material, unit: f64) -> Material {
+    let mut out = Material::EMPTY;
+    colored(&mut out, m.kind.color());
+    let alpha = |roughness: f64| ((roughness * roughness) as Real).max(ALPHA_MIN);
+    let bsdf = match &m.kind {
+        MaterialKind::Diffuse { roughness, .. } if *roughness > 0.0 => {
+            out.alpha = *roughness as Real;
+            Bsdf::RoughDiffuse
+        }
+        MaterialKind::Diffuse { .. } => Bsdf::Diffuse,
+        MaterialKind::Translucent { transmission, .. } => {
+            out.alpha = *transmission as Real;
+            Bsdf::Translucent
+        }
+        MaterialKind::Mirror { .. } => Bsdf::Mirror,
+        MaterialKind::Glass { ior, absorption, .. } => {
+            out.ior = *ior as Real;
+            out.absorption = rgb(absorption.map(|a| a * unit));
+            Bsdf::Glass
+        }
+        MaterialKind::Metal { roughness, .. } if *roughness == 0.0 => Bsdf::SmoothMetal,
+        MaterialKind::Metal { roughness, .. } => {
+            out.alpha = alpha(*roughness);
+            compensate(&mut out);
+            Bsdf::Metal
+        }
+        MaterialKind::Conductor { eta, k, roughness } => {
+            out.reflectance = rgb([1.0; 3]);
+            let (eta, k) = (DVec3::from(*eta), DVec3::from(*k));
+            out.eta = eta.to_real();
+            out.k = k.to_real();
+            out.mean_fresnel = mean_over_hemisphere(|cos| fresnel_conductor(cos, eta, k)).to_real();
+            if *roughness == 0.0 {
+                Bsdf::SmoothMetal
+            } else {
+                out.alpha = alpha(*roughness);
+                compensate(&mut out);
+                Bsdf::Conductor
+            }
+        }
+        MaterialKind::Plastic { ior, roughness, nonlinear, .. } => {
+            out.ior = *ior as Real;
+            out.first = u32::from(*nonlinear);
+            let reflected = |cos| fresnel(cos, 1.0 / ior).reflectance;
+            let mean = mean_over_hemisphere(|cos| DVec3::splat(reflected(cos))).x;
+            out.mean_albedo = mean as Real;
+            if *roughness > 0.0 {
+                out.alpha = alpha(*roughness);
+                Albedo::of(f64::from(out.alpha), reflected).store(&mut out);
+            }
+            Bsdf::Plastic
+        }
+        MaterialKind::ThinGlass { ior, .. } => {
+            out.ior = *ior as Real;
+            Bsdf::ThinGlass
+        }
+        MaterialKind::Mix { materials: [first, second], .. } => {
+            (out.first, out.second) = (*first as u32, *second as u32);
+            Bsdf::Mix
+        }
+        MaterialKind::TwoSided { front, back } => {
+            (out.first, out.second) = (*front as u32, *back as u32);
+            Bsdf::TwoSided
+        }
+        MaterialKind::Null => {
+            out.reflectance = rgb([1.0; 3]);
+            Bsdf::Null
+        }
+    };
+    Material { kind: bsdf as u32, ..out }
+}
+
+/// Adds the light that microfacets scatter several times, unless it is negligible.
+fn compensate(out: &mut Material) {
+    let albedo = Albedo::of(f64::from(out.alpha), |_| 1.0);
+    if albedo.least < 1.0 - NEGLIGIBLE_LOSS {
+        albedo.store(out);
+    }
+}
