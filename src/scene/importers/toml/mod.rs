@@ -7,6 +7,7 @@
 mod camera;
 mod document;
 pub mod file;
+mod film;
 mod light;
 mod material;
 pub mod numbers;
@@ -69,8 +70,8 @@ fn scene(builder: &mut SceneBuilder, root: Node) {
     undefined(&mut builder.report, document, "materials", "shapes", "material");
     undefined(&mut builder.report, document, "textures", "materials", "reflectance");
     camera::camera(builder, document);
-    camera::film(builder, document);
-    camera::settings(builder, document);
+    film::film(builder, document);
+    film::settings(builder, document);
     for item in document.items("textures") {
         if let Some(file) = item.read::<TextureFile>(&mut builder.report) {
             material::texture(builder, item, file);
