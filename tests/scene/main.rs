@@ -12,5 +12,6 @@ mod hostile;
 mod limits;
 mod load;
 mod named;
+mod ply;
 mod shipped_assets;
 mod shipped_scenes;

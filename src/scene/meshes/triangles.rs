@@ -1,5 +1,6 @@
 //! Conversion of polygons to triangles: ear clipping, vertex normals, shared vertices.
 
+use std::borrow::Borrow;
 use std::collections::HashMap;
 
 use glam::{DVec2, DVec3};
@@ -107,12 +108,13 @@ fn key<const N: usize>(values: [f64; N]) -> Key<N> {
 
 /// Sums of face normals at each position, weighted by the corner's angle (Thuermer & Wuethrich
 /// 1998); not normalized.
-pub(crate) fn vertex_normals<'p>(
-    polygons: impl Iterator<Item = &'p Polygon>,
+pub(crate) fn vertex_normals(
+    polygons: impl Iterator<Item = impl Borrow<Polygon>>,
     steps: &mut Steps,
 ) -> HashMap<Key<3>, DVec3> {
     let mut normals = HashMap::new();
     for polygon in polygons {
+        let polygon = polygon.borrow();
         for triangle in polygon.triangulate(steps) {
             let p = triangle.map(|corner| polygon.0[corner].position);
             let Some(normal) = (p[1] - p[0]).cross(p[2] - p[0]).try_normalize() else {

@@ -273,14 +273,14 @@ pub enum ShapeFile {
     },
     /// A triangle mesh.
     Mesh {
-        /// A Wavefront OBJ file.
+        /// A Wavefront OBJ or PLY file.
         file: String,
         /// If true, shading uses the file's normals, or computes them where it has none, and faces
         /// are turned to the side that the file's normals point to. If false, faces are flat, and
         /// their corners are counterclockwise seen from outside.
         #[serde(default = "yes")]
         smooth: bool,
-        /// Name of a material; by default, the materials of the OBJ's own MTL.
+        /// Name of a material; by default, the materials of the OBJ's own MTL. PLY files need it.
         material: Option<String>,
         /// Transform from object to world space.
         #[serde(default)]
