@@ -12,6 +12,7 @@ mod hostile;
 mod limits;
 mod load;
 mod named;
+mod normals;
 mod ply;
 mod shipped_assets;
 mod shipped_scenes;

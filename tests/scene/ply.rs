@@ -363,7 +363,7 @@ fn faults_are_located() {
     let unused = SQUARE.replace("4 0 1 2 3", "3 0 1 2").replace("0 1 0\n", "0 inf 0\n");
     fs::write(folder.join("m.ply"), unused + "0 0\n").unwrap();
     let (_, warnings) = load(&folder, "m.ply", MATERIAL).unwrap();
-    assert!(warnings[0].contains("vertices have a number that cannot be used"), "{warnings:?}");
+    assert!(warnings[0].contains("1 vertex has a number that cannot be used"), "{warnings:?}");
     assert!(warnings[1].contains("bytes after the last element not used"), "{warnings:?}");
 }
 

@@ -17,7 +17,7 @@ use self::vertices::Vertices;
 use crate::scene::builder::SceneBuilder;
 use crate::scene::diagnostics::{Faults, SourceFile};
 use crate::scene::importers::MeshReader;
-use crate::scene::meshes::{Corner, MeshBuilder, MeshPart, MeshRequest, Polygon, vertex_normals};
+use crate::scene::meshes::{Corner, MeshBuilder, MeshPart, MeshRequest, Normals, Polygon};
 
 /// Reads PLY files.
 pub(super) struct Ply;
@@ -49,14 +49,17 @@ impl MeshReader for Ply {
         let content = content.filter(|_| !failed)?;
         builder.charge_triangles(request, content.faces.triangles())?;
         let steps = &mut builder.meshes.steps;
-        let shared = request.smooth.then(|| {
-            // Computed normals are for files without their own.
-            let polygons = content.polygons().filter(|_| content.vertices.normals.is_empty());
-            vertex_normals(polygons, steps)
+        let normals = request.smooth.then(|| {
+            // Without a crease angle, computed normals are for files without their own.
+            let needed = request.crease_angle.is_some() || content.vertices.normals.is_empty();
+            let polygons = content.polygons().filter(|_| needed);
+            Normals::of(polygons, request.crease_angle, steps)
         });
         let mut mesh = MeshBuilder::new(request.transform);
+        let mut triangles = 0;
         for polygon in content.polygons() {
-            mesh.add(&polygon, shared.as_ref(), steps);
+            mesh.add(&polygon, triangles, normals.as_ref(), steps);
+            triangles += polygon.triangles();
         }
         builder.check_steps(request)?;
         builder.warn_of_triangles(request, mesh.degenerate, mesh.unusable_normals);
@@ -148,11 +151,11 @@ impl Content {
             return Err(Broken::new(at, message, "expected the end of the line before this"));
         }
         read?;
+        content.check_vertices(found);
         if !values.is_at_end() {
             let message = format!("{} bytes after the last element not used", values.left());
             found.warnings.push(whole, message, "in this file");
         }
-        content.check_vertices(found);
         Ok(content)
     }
 
@@ -186,7 +189,8 @@ impl Content {
         used.into_iter().for_each(|broken| found.error(broken));
         let count = bad.len();
         if let Some(first) = bad.drain().map(|(_, broken)| broken).min_by_key(|b| b.span.start) {
-            let message = format!("{count} vertices have a number that cannot be used");
+            let vertices = if count == 1 { "vertex has" } else { "vertices have" };
+            let message = format!("{count} {vertices} a number that cannot be used");
             found.warnings.push(first.span, message, "no face uses them");
         }
     }
@@ -202,6 +206,9 @@ impl Content {
                 uv: own.or_else(|| vertices.uvs.get(vertex).copied()),
             })
         };
-        faces.ranges().map(move |range| Polygon(range.filter_map(corner).collect()))
+        faces.ranges().map(move |range| Polygon {
+            corners: range.filter_map(corner).collect(),
+            group: Some(0),
+        })
     }
 }

@@ -280,6 +280,10 @@ pub enum ShapeFile {
         /// their corners are counterclockwise seen from outside.
         #[serde(default = "yes")]
         smooth: bool,
+        /// Angle in degrees: normals are computed, in place of those of the file, and averaged only
+        /// across edges where two faces meet whose normals differ by less.
+        #[schemars(range(min = 0, max = 180))]
+        crease_angle: Option<f64>,
         /// Name of a material; by default, the materials of the OBJ's own MTL. PLY files need it.
         material: Option<String>,
         /// Transform from object to world space.
