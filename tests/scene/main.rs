@@ -8,6 +8,7 @@ mod support;
 
 mod encodings;
 mod errors;
+mod frustums;
 mod hostile;
 mod limits;
 mod load;

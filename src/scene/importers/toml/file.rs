@@ -310,6 +310,56 @@ pub enum ShapeFile {
         #[serde(flatten)]
         surface: SurfaceFile,
     },
+    /// A cylinder; the normal points away from its axis, and from the ends. It is a surface of
+    /// revolution: v goes through the lower cap, the side and the upper cap, an equal part for each.
+    Cylinder {
+        /// Radius in scene units.
+        radius: Positive,
+        /// Height above the origin along the local y axis; or give `p0` and `p1`.
+        height: Option<Positive>,
+        /// Centre of the lower end.
+        p0: Option<Vec3>,
+        /// Centre of the upper end.
+        p1: Option<Vec3>,
+        /// If true, discs close the ends.
+        #[serde(default = "yes")]
+        caps: bool,
+        /// Name of a material.
+        material: String,
+        /// Transform from object to world space.
+        #[serde(default)]
+        transform: TransformFile,
+        /// Emission and texture coordinates.
+        #[serde(flatten)]
+        surface: SurfaceFile,
+    },
+    /// A cone or, with an upper radius, a frustum of one; the normal points away from its axis, and
+    /// from the ends. It is a surface of revolution: v goes through the lower cap, the side and the
+    /// upper cap, an equal part for each.
+    Cone {
+        /// Radius of the lower end in scene units.
+        radius: Positive,
+        /// Radius of the upper end; 0, by default, is a tip.
+        #[serde(default)]
+        top_radius: NonNegative,
+        /// Height above the origin along the local y axis; or give `p0` and `p1`.
+        height: Option<Positive>,
+        /// Centre of the lower end.
+        p0: Option<Vec3>,
+        /// Centre of the upper end.
+        p1: Option<Vec3>,
+        /// If true, discs close the ends.
+        #[serde(default = "yes")]
+        caps: bool,
+        /// Name of a material.
+        material: String,
+        /// Transform from object to world space.
+        #[serde(default)]
+        transform: TransformFile,
+        /// Emission and texture coordinates.
+        #[serde(flatten)]
+        surface: SurfaceFile,
+    },
 }
 
 /// Control points (radius, height) of several Bezier curves, 2 to 16 each.

@@ -2,6 +2,7 @@
 
 use glam::{DMat3, DVec3};
 
+use super::axial::{Axis, frustum};
 use super::document::{Document, Item};
 use super::file::{ShapeFile, SurfaceFile, TransformFile};
 use super::{index, profile};
@@ -48,6 +49,30 @@ pub(super) fn shapes(
             let transform = placed(&mut builder.report, item, &transform)?;
             let segments = segments?;
             let kind = ShapeKind::Revolution { segments, transform, newton_tolerance: 0.0 };
+            (kind, material, surface)
+        }
+        ShapeFile::Cylinder { radius, height, p0, p1, caps, material, transform, surface } => {
+            let transform = placed(&mut builder.report, item, &transform)?;
+            let axis = Axis { height, p0, p1 };
+            let radii = [radius.0; 2];
+            let kind = frustum(&mut builder.report, item, &axis, radii, caps, &transform)?;
+            (kind, material, surface)
+        }
+        ShapeFile::Cone {
+            radius,
+            top_radius,
+            height,
+            p0,
+            p1,
+            caps,
+            material,
+            transform,
+            surface,
+        } => {
+            let transform = placed(&mut builder.report, item, &transform)?;
+            let axis = Axis { height, p0, p1 };
+            let radii = [radius.0, top_radius.0];
+            let kind = frustum(&mut builder.report, item, &axis, radii, caps, &transform)?;
             (kind, material, surface)
         }
         ShapeFile::Mesh { file, smooth, crease_angle, material, transform, surface } => {
