@@ -4,9 +4,8 @@ use glam::DVec2;
 
 use super::header::{Broken, Element, Kind, Number, Property};
 use super::lists::{length, skip};
-use super::values::{Values, scalar, unusable};
+use super::values::{Values, is_usable, scalar, unusable};
 use crate::scene::diagnostics::Faults;
-use crate::scene::numbers::LARGEST;
 
 /// Faces of a PLY file: corners one after another, and the end of each face among them.
 #[derive(Debug, Default)]
@@ -154,7 +153,7 @@ impl Row {
         for _ in 0..length(values, (size, item), element, property, bytes)? {
             let at = values.at();
             let uv = scalar(values, item, element, property, bytes)?;
-            if !(uv.abs() <= LARGEST) {
+            if !is_usable(uv) {
                 return Err(unusable(values.place(at), property, uv));
             }
             self.uvs.push(uv);

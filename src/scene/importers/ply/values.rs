@@ -232,6 +232,11 @@ pub(super) fn fits(
     }
 }
 
+/// Returns whether a position or a texture coordinate is finite and not too large.
+pub(super) fn is_usable(value: f64) -> bool {
+    value.abs() <= LARGEST
+}
+
 /// The error about a number that is not finite or too large.
 pub(super) fn unusable(place: Place, property: &Property, value: f64) -> Broken {
     let name = &property.name;

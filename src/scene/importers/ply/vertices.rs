@@ -6,8 +6,7 @@ use glam::{DVec2, DVec3};
 
 use super::header::{Broken, Element, Kind, Number};
 use super::lists::skip;
-use super::values::{Values, scalar, unusable};
-use crate::scene::numbers::LARGEST;
+use super::values::{Values, is_usable, scalar, unusable};
 
 /// Vertices of a PLY file. Attributes that the file lacks are empty.
 #[derive(Debug, Default)]
@@ -89,8 +88,8 @@ pub(super) fn vertices<V: Values>(
             };
             let at = values.at();
             row[slot] = scalar(values, number, element, property, bytes)?;
-            let is_usable = row[slot].abs() <= LARGEST || (NORMAL..UV).contains(&slot);
-            if !is_usable && let Ok(index) = u32::try_from(index) {
+            let usable = is_usable(row[slot]) || (NORMAL..UV).contains(&slot);
+            if !usable && let Ok(index) = u32::try_from(index) {
                 let fault = || unusable(values.place(at), property, row[slot]);
                 vertices.bad.entry(index).or_insert_with(fault);
             }
