@@ -421,14 +421,18 @@ pub enum ShapeFile {
     },
     /// A triangle mesh.
     Mesh {
-        /// A Wavefront OBJ file.
+        /// A Wavefront OBJ or PLY file.
         file: String,
         /// If true, shading uses the file's normals, or computes them where it has none, and faces
         /// are turned to the side that the file's normals point to. If false, faces are flat, and
         /// their corners are counterclockwise seen from outside.
         #[serde(default = "yes")]
         smooth: bool,
-        /// Name of a material; by default, the materials of the OBJ's own MTL.
+        /// Angle in degrees: normals are computed, in place of those of the file, and averaged only
+        /// across edges where two faces meet whose normals differ by less.
+        #[schemars(range(min = 0, max = 180))]
+        crease_angle: Option<f64>,
+        /// Name of a material; by default, the materials of the OBJ's own MTL. PLY files need it.
         material: Option<String>,
         /// Transform from object to world space.
         #[serde(default)]
@@ -445,6 +449,56 @@ pub enum ShapeFile {
         profile: Option<Vec<[f64; 2]>>,
         /// Control points of several Bezier curves, joined end to end.
         segments: Option<Segments>,
+        /// Name of a material.
+        material: String,
+        /// Transform from object to world space.
+        #[serde(default)]
+        transform: TransformFile,
+        /// Emission and texture coordinates.
+        #[serde(flatten)]
+        surface: SurfaceFile,
+    },
+    /// A cylinder; the normal points away from its axis, and from the ends. It is a surface of
+    /// revolution: v goes through the lower cap, the side and the upper cap, an equal part for each.
+    Cylinder {
+        /// Radius in scene units.
+        radius: Positive,
+        /// Height above the origin along the local y axis; or give `p0` and `p1`.
+        height: Option<Positive>,
+        /// Centre of the lower end.
+        p0: Option<Vec3>,
+        /// Centre of the upper end.
+        p1: Option<Vec3>,
+        /// If true, discs close the ends.
+        #[serde(default = "yes")]
+        caps: bool,
+        /// Name of a material.
+        material: String,
+        /// Transform from object to world space.
+        #[serde(default)]
+        transform: TransformFile,
+        /// Emission and texture coordinates.
+        #[serde(flatten)]
+        surface: SurfaceFile,
+    },
+    /// A cone or, with an upper radius, a frustum of one; the normal points away from its axis, and
+    /// from the ends. It is a surface of revolution: v goes through the lower cap, the side and the
+    /// upper cap, an equal part for each.
+    Cone {
+        /// Radius of the lower end in scene units.
+        radius: Positive,
+        /// Radius of the upper end; 0, by default, is a tip.
+        #[serde(default)]
+        top_radius: NonNegative,
+        /// Height above the origin along the local y axis; or give `p0` and `p1`.
+        height: Option<Positive>,
+        /// Centre of the lower end.
+        p0: Option<Vec3>,
+        /// Centre of the upper end.
+        p1: Option<Vec3>,
+        /// If true, discs close the ends.
+        #[serde(default = "yes")]
+        caps: bool,
         /// Name of a material.
         material: String,
         /// Transform from object to world space.

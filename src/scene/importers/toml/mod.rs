@@ -4,6 +4,7 @@
 //! into a tree with positions, checked against the schema, and read part by part as these types,
 //! which the other modules convert to the description.
 
+mod axial;
 mod camera;
 mod document;
 pub mod file;
