@@ -47,6 +47,12 @@ struct Camera {
     height: u32,
     lens_up: vec3f,
     medium: u32,
+    center: vec3f,
+    projection: u32,
+    filter_kind: u32,
+    filter_size: f32,
+    filter_b: f32,
+    filter_c: f32,
 }
 
 struct Material {

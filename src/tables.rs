@@ -64,21 +64,23 @@ pub struct World {
     pub pad: u32,
 }
 
-/// Pinhole or thin-lens camera.
+/// Camera: projection, lens and pixel filter.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Plain, Zeroable)]
 pub struct Camera {
-    /// Centre of the lens, scene space.
+    /// Centre of the lens, scene space. Orthographic: centre of the image's window.
     pub position: Vec3,
     /// Lens radius, scene units; 0 for a pinhole.
     pub aperture: Real,
-    /// Vector to the right, half the image's width at distance one.
+    /// Vector to the right, half the image's width: at distance one, orthographic in scene units,
+    /// fisheye in radians.
     pub right: Vec3,
-    /// Focus distance along `forward`, scene units.
+    /// Focus distance along `forward`, scene units. Fisheye: greatest angle from `forward`,
+    /// radians.
     pub focus: Real,
-    /// Vector upward, half the image's height at distance one.
+    /// Vector upward, half the image's height, likewise.
     pub up: Vec3,
-    /// Height of a pixel at distance one.
+    /// Height of a pixel at distance one; orthographic: in scene units.
     pub pixel: Real,
     /// Unit view direction.
     pub forward: Vec3,
@@ -92,6 +94,19 @@ pub struct Camera {
     pub lens_up: Vec3,
     /// Medium of the lens: a glass material index, [`NONE`] or [`ASTRIDE`].
     pub medium: u32,
+    /// Perspective: vector to the centre of the image at distance one, `forward` plus the shift.
+    pub center: Vec3,
+    /// Number of its [`ProjectionKind`](super::camera::ProjectionKind).
+    pub projection: u32,
+    /// Number of its pixel filter's [`FilterKind`](super::math::pixel_filter::FilterKind).
+    pub filter_kind: u32,
+    /// Box and tent: half the width in pixels. Gaussian: standard deviation in pixels. Mitchell:
+    /// integral of the absolute value of six times the filter from 0 to 2.
+    pub filter_size: Real,
+    /// Gaussian: fraction inside the circle. Mitchell: parameter B.
+    pub filter_b: Real,
+    /// Mitchell: parameter C.
+    pub filter_c: Real,
 }
 
 /// Material parameters.

@@ -26,7 +26,7 @@ use targets::{MORE, Target};
 /// Fuzz file readers with mutated files.
 #[derive(Parser)]
 struct Arguments {
-    /// Targets: scene, plan, obj, mtl, texture, profile, checkpoint [default: all]
+    /// Targets: scene, plan, obj, mtl, ply, texture, profile, checkpoint [default: all]
     targets: Vec<Target>,
     /// Seconds per target
     #[arg(long, default_value_t = 60)]

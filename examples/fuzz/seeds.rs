@@ -50,6 +50,7 @@ pub fn of(target: Target) -> Vec<Vec<u8>> {
         Target::Scene | Target::Plan => scenes(),
         Target::Obj => vec![OBJ.into(), read("tests/data/cube.obj"), read("tests/data/broken.obj"), read("tests/data/parts.obj")],
         Target::Mtl => vec![MTL.into(), read("tests/data/broken.mtl"), read("tests/data/parts.mtl"), read("assets/house.mtl")],
+        Target::Ply => plys(),
         Target::Texture => pictures(),
         Target::Profile => vec![
             read("scenes/profiles/vase.toml"),
@@ -79,6 +80,47 @@ fn scenes() -> Vec<Vec<u8>> {
         }
     }
     scenes
+}
+
+/// A PLY file in all encodings, with an element and properties that are not used.
+fn plys() -> Vec<Vec<u8>> {
+    let header = |format: &str| {
+        format!(
+            "ply\nformat {format} 1.0\ncomment seed\nelement vertex 4\nproperty float x\nproperty double y\n\
+             property short z\nproperty float nx\nproperty float ny\nproperty float nz\nproperty float s\nproperty float t\n\
+             property uchar red\nproperty uchar green\nproperty uchar blue\nelement face 2\n\
+             property list uchar int vertex_indices\nproperty list uchar float texcoord\nelement edge 1\nproperty int a\nend_header\n"
+        )
+    };
+    let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+    let faces: [(&[i32], usize); 2] = [(&[0, 1, 2, 3], 0), (&[2, 1, 0], 6)];
+    let mut text = header("ascii");
+    let [mut little, mut big] =
+        ["binary_little_endian", "binary_big_endian"].map(|format| header(format).into_bytes());
+    let mut put = |bytes: &[u8], word: String| {
+        little.extend(bytes);
+        big.extend(bytes.iter().rev());
+        text += &word;
+    };
+    for [x, y] in corners {
+        put(&(x as f32).to_le_bytes(), format!("{x}"));
+        put(&f64::to_le_bytes(y), format!(" {y}"));
+        put(&[0, 0], " 0".to_owned());
+        for number in [0.0f32, 0.0, 1.0, x as f32, y as f32] {
+            put(&number.to_le_bytes(), format!(" {number}"));
+        }
+        (0..3).for_each(|_| put(&[200], " 200".to_owned()));
+        put(&[], "\n".to_owned());
+    }
+    for (corners, uvs) in faces {
+        put(&[corners.len() as u8], format!("{}", corners.len()));
+        corners.iter().for_each(|corner| put(&corner.to_le_bytes(), format!(" {corner}")));
+        put(&[uvs as u8], format!(" {uvs}"));
+        (0..uvs).for_each(|_| put(&0.5f32.to_le_bytes(), " 0.5".to_owned()));
+        put(&[], "\n".to_owned());
+    }
+    put(&7i32.to_le_bytes(), "7\n".to_owned());
+    vec![text.into_bytes(), little, big]
 }
 
 fn picture(format: ImageFormat) -> Vec<u8> {

@@ -24,6 +24,8 @@ pub enum Target {
     Obj,
     /// MTL files.
     Mtl,
+    /// PLY files.
+    Ply,
     /// PNG, JPEG, HDR and EXR files.
     Texture,
     /// Profile files, including tessellation.
@@ -39,11 +41,12 @@ const SUM: usize = 16;
 
 impl Target {
     /// All targets.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Scene,
         Self::Plan,
         Self::Obj,
         Self::Mtl,
+        Self::Ply,
         Self::Texture,
         Self::Profile,
         Self::Checkpoint,
@@ -73,6 +76,10 @@ impl Target {
             Self::Mtl => {
                 write(folder, "mesh.mtl", input);
                 told(scene(reader("mesh.obj", "").as_bytes()).map(warnings))
+            }
+            Self::Ply => {
+                write(folder, "mesh.ply", input);
+                told(scene(reader("mesh.ply", "material = \"m\"").as_bytes()).map(warnings))
             }
             Self::Texture => {
                 // the content determines the format

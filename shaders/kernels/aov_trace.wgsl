@@ -43,7 +43,12 @@ fn aov_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
     // follow the same path as `eye_trace`
     let k = dispatch.passes_done % dispatch.eye_samples;
     var rng = rng_eye(pixel * dispatch.eye_samples + k, dispatch.pass_number, dispatch.seed);
-    var path = eye_path(camera_ray(camera, x, y, stratified(rng_next(&rng), k, pixel)));
+    let u = stratified(rng_next(&rng), k, pixel);
+    //#if filter
+    var path = eye_path(camera_ray(camera, x, y, filtered(camera, u)));
+    //#else
+    var path = eye_path(camera_ray(camera, x, y, u));
+    //#end
     var albedo = vec3f(0.0);
     var normal = vec3f(0.0);
     var emitted = vec3f(0.0);
@@ -60,7 +65,13 @@ fn aov_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
         if first {
             next.hits += 1.0;
             let share = 1.0 / next.hits;
-            next.depth += (dot(s.position - camera.position, camera.forward) - next.depth) * share;
+            var depth = dot(s.position - camera.position, camera.forward);
+            //#if projection
+            if sees_around(camera) {
+                depth = hit.t;
+            }
+            //#end
+            next.depth += (depth - next.depth) * share;
             next.position += (s.position - next.position) * share;
         }
         emitted += emission(path, s);
@@ -81,7 +92,7 @@ fn aov_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
             normal = p.n;
             if max_component(p.lobe.reflectance) > 0.0 {
                 next.points += 1.0;
-                let radius = start_radius(camera.pixel * path.length);
+                let radius = start_radius(footprint(camera, path.length));
                 next.radius += (radius - next.radius) * (1.0 / next.points);
                 //#if sampled && direct_layer
                 let found = direct_light(p, path.interior, &rng);
@@ -115,6 +126,12 @@ fn aov_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
         aovs[id].state |= STOPPED;
         return;
     }
+    //#if signed_filter
+    // parts of the image have its weights
+    let weight = signed_weight(camera, u, pixel);
+    emitted *= weight;
+    direct *= weight;
+    //#end
     // add to the running means
     let share = 1.0 / f32(dispatch.passes_done + 1u);
     next.albedo += (albedo - next.albedo) * share;

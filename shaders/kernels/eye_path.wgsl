@@ -1,5 +1,7 @@
 // Steps of an eye path, shared by eye tracing and AOVs. Twin: src/kernels/eye_path.rs.
 
+const NO_RAY: u32 = 0xffffffffu;
+
 struct EyePath {
     ray: Ray,
     throughput: vec3f,
@@ -12,7 +14,13 @@ struct EyePath {
 
 fn eye_path(ray: Ray) -> EyePath {
     let interior = interior_at(scene.camera.medium, ray.origin);
-    return EyePath(ray, vec3f(1.0), interior, 0u, 0u, 0.0, 0u);
+    var bounce = 0u;
+    //#if projection
+    if ray.t_max == 0.0 {
+        bounce = NO_RAY;
+    }
+    //#end
+    return EyePath(ray, vec3f(1.0), interior, 0u, bounce, 0.0, 0u);
 }
 
 fn continues(path: EyePath) -> bool {

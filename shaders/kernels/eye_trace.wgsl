@@ -15,7 +15,11 @@ fn eye_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
     let pixel = window_pixel(camera, place);
     var rng = rng_eye(pixel * dispatch.eye_samples + k, dispatch.pass_number, dispatch.seed);
     let u = stratified(rng_next(&rng), k, pixel);
+    //#if filter
+    let ray = camera_ray(camera, pixel % camera.width, pixel / camera.width, filtered(camera, u));
+    //#else
     let ray = camera_ray(camera, pixel % camera.width, pixel / camera.width, u);
+    //#end
     var path = eye_path(ray);
     var point = VisiblePoint();
     while continues(path) {
@@ -47,7 +51,7 @@ fn eye_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
             }
             point.position = s.position;
             point.outline = s.outline;
-            point.radius = start_radius(camera.pixel * path.length);
+            point.radius = start_radius(footprint(camera, path.length));
             point.normal = oct_encode(p.ng);
             point.shading = oct_encode(p.n);
             point.bsdf = p.lobe.bsdf;
@@ -89,6 +93,11 @@ fn eye_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
         }
         //#end
     }
+    //#if signed_filter
+    let weight = signed_weight(camera, u, pixel);
+    point.radiance *= weight;
+    point.weight *= weight;
+    //#end
     if !is_finite(point.radiance) {
         point.radiance = vec3f(0.0);
         point.state |= BAD_EYE;

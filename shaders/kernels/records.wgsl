@@ -26,9 +26,9 @@ struct Dispatch {
     inv_cell_indirect: f32,
     window_first: u32,
     window_width: u32,
+    fixed_points: u32,
     pad0: u32,
     pad1: u32,
-    pad2: u32,
     points: array<vec4u, 4>,
 }
 

@@ -108,6 +108,9 @@ pub fn with_unused(scene: &SceneTables, feature: Feature) -> Option<SceneTables>
         | Feature::Environment
         | Feature::EnvironmentImage
         | Feature::Lens
+        | Feature::Projection
+        | Feature::Filter
+        | Feature::SignedFilter
         | Feature::Sampled
         | Feature::Local
         | Feature::Split

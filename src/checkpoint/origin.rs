@@ -44,7 +44,7 @@ pub struct Origin {
 impl Origin {
     /// Identity of a render of `scene`, parsed from `scene_text`, on an opened device.
     pub fn of(opened: &Opened, scene: &Scene, scene_text: &str) -> Self {
-        let Film { width, height, exposure, tonemap, aovs, window } = scene.film;
+        let Film { width, height, exposure, tonemap, aovs, window, filter: _ } = scene.film;
         Self {
             version: program(),
             scene: scene.name.clone(),
@@ -63,10 +63,10 @@ impl Origin {
         }
     }
 
-    /// Film settings of the render.
+    /// Film settings of the render, without the pixel filter, which is part of the identity.
     pub fn film(&self) -> Film {
         let Self { width, height, exposure, tonemap, aovs, window, .. } = *self;
-        Film { width, height, exposure, tonemap, aovs, window }
+        Film { width, height, exposure, tonemap, aovs, window, ..Film::default() }
     }
 
     /// Number of rendered columns and rows.

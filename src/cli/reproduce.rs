@@ -68,8 +68,8 @@ impl Like {
     pub fn apply(&self, loaded: &mut Loaded) {
         let Loaded { scene, settings, .. } = loaded;
         if let Some(film) = self.made.film {
-            let scene::Film { exposure, tonemap, .. } = scene.film;
-            scene.film = scene::Film { exposure, tonemap, ..film };
+            let scene::Film { exposure, tonemap, filter, .. } = scene.film;
+            scene.film = scene::Film { exposure, tonemap, filter, ..film };
         }
         *settings = self.made.asked.clone().unwrap_or_else(|| self.made.settings.clone());
         settings.passes = self.made.first_pass + self.made.passes_done;

@@ -15,6 +15,7 @@ pub mod math {
 
     #[path = "../double/octahedral.rs"]
     pub mod octahedral;
+    pub mod pixel_filter;
     pub mod rng;
     pub mod sampling;
     #[path = "../double/trig.rs"]

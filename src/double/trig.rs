@@ -16,6 +16,11 @@ pub fn arctan2(y: f64, x: f64) -> f64 {
     y.atan2(x)
 }
 
+/// Natural logarithm; arguments below the smallest normal number count as that number.
+pub fn logarithm(x: f64) -> f64 {
+    x.max(f64::MIN_POSITIVE).ln()
+}
+
 /// e^x.
 pub fn exponential(x: f64) -> f64 {
     x.exp()

@@ -138,6 +138,7 @@ impl Provenance {
                 tonemap: ToneMap::default(),
                 aovs: aovs.map_err(|what| wrong("aov", &what))?,
                 window,
+                ..Film::default()
             }),
             materials: Vec::new(),
             asked: settings("asked")?,

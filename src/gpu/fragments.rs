@@ -44,6 +44,7 @@ const SHARED: &[Fragment] = fragments![
     "math/trig.wgsl" if "scene || gather && lobes || gather && outlines",
     "math/rng.wgsl" if "scene",
     "math/sampling.wgsl" if "scene",
+    "math/pixel_filter.wgsl" if "eye_trace && filter || aov_trace && filter",
     "shapes/ray.wgsl" if "scene",
     "shapes/sphere.wgsl" if "scene && sphere",
     "shapes/rectangle.wgsl" if "scene && rectangle",

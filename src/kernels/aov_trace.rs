@@ -2,10 +2,10 @@
 //! first hit beyond mirrors and glass. Run by one invocation per pixel for one of its samples;
 //! reads the scene, updates `aovs`. Twin: `shaders/kernels/aov_trace.wgsl`.
 
-use super::camera::camera_ray;
+use super::camera::{camera_ray, footprint, sees_around};
 use super::direct::direct_light;
 use super::eye_path::EyePath;
-use super::eye_sample::{start_radius, stratified, window_pixel};
+use super::eye_sample::{filter_weight, filtered, start_radius, stratified, window_pixel};
 use super::geometry::intersect::intersect_scene;
 use super::geometry::surface::surface_at;
 use super::materials::shading::{RADIANCE, shading_point};
@@ -82,7 +82,8 @@ pub fn aov_trace(
         dispatch.seed,
         dispatch.points,
     );
-    let ray = camera_ray(camera, x, y, stratified(rng_next(&mut rng), k, pixel, dispatch));
+    let u = stratified(rng_next(&mut rng), k, pixel, dispatch);
+    let ray = camera_ray(camera, x, y, filtered(camera, u));
     // follow the same path as `eye_trace`
     let mut path = EyePath::new(scene, ray);
     let mut albedo = Vec3::ZERO;
@@ -100,7 +101,11 @@ pub fn aov_trace(
         if first {
             next.hits += 1.0;
             let share = 1.0 / next.hits;
-            next.depth += ((s.position - camera.position).dot(camera.forward) - next.depth) * share;
+            let mut depth = (s.position - camera.position).dot(camera.forward);
+            if sees_around(camera) {
+                depth = hit.t;
+            }
+            next.depth += (depth - next.depth) * share;
             next.position += (s.position - next.position) * share;
         }
         emission += path.emission(scene, &s);
@@ -117,7 +122,7 @@ pub fn aov_trace(
             normal = p.n;
             if max_component(p.lobe.reflectance) > 0.0 {
                 next.points += 1.0;
-                let radius = start_radius(dispatch, camera.pixel * path.length);
+                let radius = start_radius(dispatch, footprint(camera, path.length));
                 next.radius += (radius - next.radius) * (1.0 / next.points);
                 if sampled {
                     let (radiance, _) = direct_light(scene, &p, &path.interior, &mut rng);
@@ -144,6 +149,12 @@ pub fn aov_trace(
     }
     if !is_finite(direct) {
         direct = Vec3::ZERO;
+    }
+    // parts of the image have its weights
+    let weight = filter_weight(camera, u, pixel, dispatch);
+    if weight != 1.0 {
+        emission *= weight;
+        direct *= weight;
     }
     // add to the running means
     let share = 1.0 / (dispatch.passes_done + 1) as Real;

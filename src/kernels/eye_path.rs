@@ -14,6 +14,9 @@ use super::records::{Dispatch, HIDDEN_FACES};
 use super::shapes::ray::{Hit, Ray};
 use super::tables::*;
 
+/// Number of scattering events that ends a path before its first ray.
+const NO_RAY: u32 = u32::MAX;
+
 /// State of an eye path.
 #[derive(Clone, Copy, Debug)]
 pub struct EyePath {
@@ -34,12 +37,13 @@ pub struct EyePath {
 }
 
 impl EyePath {
-    /// Starts a path with a camera ray.
+    /// Starts a path with a camera ray; one with `t_max` 0 is not traced.
     #[inline(always)]
     pub fn new(scene: &SceneTables, ray: Ray) -> Self {
+        let bounce = if ray.t_max == 0.0 { NO_RAY } else { 0 };
         let interior = interior_at(scene, scene.camera.medium, ray.origin);
         let throughput = Vec3::ONE;
-        Self { ray, throughput, interior, hidden: 0, bounce: 0, length: 0.0, rays: 0 }
+        Self { ray, throughput, interior, hidden: 0, bounce, length: 0.0, rays: 0 }
     }
 
     /// Returns true while the path is within its limits on scattering events and hidden faces.

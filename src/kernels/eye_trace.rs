@@ -2,10 +2,10 @@
 //! non-specular hit. Run by one invocation per visible point; reads the scene, writes
 //! `visible_points`. Twin: `shaders/kernels/eye_trace.wgsl`.
 
-use super::camera::camera_ray;
+use super::camera::{camera_ray, footprint};
 use super::direct::direct_light;
 use super::eye_path::EyePath;
-use super::eye_sample::{start_radius, stratified, window_pixel};
+use super::eye_sample::{filter_weight, filtered, start_radius, stratified, window_pixel};
 use super::materials::shading::{RADIANCE, shading_point};
 use super::materials::{Bsdf, choose_layer, scatter_specular};
 use super::math::rng::{rng_eye, rng_next};
@@ -36,7 +36,7 @@ pub fn eye_trace(
         dispatch.points,
     );
     let u = stratified(rng_next(&mut rng), k, pixel, dispatch);
-    let ray = camera_ray(camera, pixel % camera.width, pixel / camera.width, u);
+    let ray = camera_ray(camera, pixel % camera.width, pixel / camera.width, filtered(camera, u));
     let mut path = EyePath::new(scene, ray);
     let mut point = VisiblePoint::zeroed();
     while path.continues(dispatch) {
@@ -62,7 +62,7 @@ pub fn eye_trace(
             }
             point.position = s.position;
             point.outline = s.outline;
-            point.radius = start_radius(dispatch, camera.pixel * path.length);
+            point.radius = start_radius(dispatch, footprint(camera, path.length));
             point.normal = oct_encode(p.ng);
             point.shading = oct_encode(p.n);
             point.bsdf = p.lobe.bsdf as u32;
@@ -97,6 +97,11 @@ pub fn eye_trace(
         if !path.scatter(&s, &scattered, v.y) {
             break;
         }
+    }
+    let weight = filter_weight(camera, u, pixel, dispatch);
+    if weight != 1.0 {
+        point.radiance *= weight;
+        point.weight *= weight;
     }
     if !is_finite(point.radiance) {
         point.radiance = Vec3::ZERO;

@@ -4,7 +4,7 @@
 use super::camera::camera_ray;
 use super::direct::next_event;
 use super::eye_path::EyePath;
-use super::eye_sample::window_pixel;
+use super::eye_sample::{filter_weight, filtered, window_pixel};
 use super::lights::area::pdf_area;
 use super::lights::environment::pdf_environment;
 use super::lights::select::{share_of, shares_at};
@@ -28,7 +28,8 @@ pub fn path_trace(
     let camera = &scene.camera;
     let pixel = window_pixel(dispatch, camera, place);
     let mut rng = rng_eye(pixel, dispatch.pass_number, dispatch.seed, dispatch.points);
-    let ray = camera_ray(camera, pixel % camera.width, pixel / camera.width, rng_next(&mut rng));
+    let u = rng_next(&mut rng);
+    let ray = camera_ray(camera, pixel % camera.width, pixel / camera.width, filtered(camera, u));
     let mut path = EyePath::new(scene, ray);
     let mut radiance = Vec3::ZERO;
     // density of the last scattered direction; 0 if next-event estimation cannot sample what that
@@ -91,5 +92,5 @@ pub fn path_trace(
             break;
         }
     }
-    (radiance, path.rays)
+    (radiance * filter_weight(camera, u, pixel, dispatch), path.rays)
 }

@@ -60,8 +60,10 @@ pub struct Dispatch {
     pub window_first: u32,
     /// Number of pixels per row of the window.
     pub window_width: u32,
+    /// 1 if the passes share their visible points, else 0.
+    pub fixed_points: u32,
     /// Padding to 16 bytes.
-    pub pad: [u32; 3],
+    pub pad: [u32; 2],
     /// Sobol point of the pass for the first dimensions of eye paths.
     pub points: Points,
 }

@@ -17,6 +17,7 @@
 use super::real;
 
 pub mod octahedral;
+pub mod pixel_filter;
 pub mod rng;
 pub mod sampling;
 pub mod sobol;

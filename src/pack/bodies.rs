@@ -1,5 +1,6 @@
 //! Packs glass bodies into the tables and determines the media of lamps and the camera.
 
+use super::camera::ProjectionKind;
 use super::lights::LightKind;
 use super::lights::shape::sample_shape;
 use super::materials::Bsdf;
@@ -9,7 +10,7 @@ use super::math::{EPS, FAR};
 use super::real::{Real, ToReal, Vec2, Vec3};
 use super::tables::*;
 use crate::prepare::bodies::Bodies;
-use crate::scene;
+use crate::scene::{self, numbers::WIDEST_FILTER};
 
 /// Appends a material for each body to `out`, in the order of rank, if the scene needs them.
 /// Returns for each shape the material indices of its triangles, or a single one. Fills `sources`
@@ -67,9 +68,23 @@ pub fn stand_lights(out: &mut SceneTables) {
 /// Sets the medium of the camera's lens.
 pub fn stand_camera(out: &mut SceneTables) {
     let camera = &out.camera;
-    let half = Vec3::splat(camera.aperture);
+    let half = Vec3::splat(camera.aperture) + start_box(camera);
     out.camera.medium =
         medium_of_box(out, camera.position, camera.position - half, camera.position + half);
+}
+
+/// Half the bounding box of the points that rays start from, for a pinhole.
+fn start_box(camera: &Camera) -> Vec3 {
+    match ProjectionKind::of(camera.projection) {
+        ProjectionKind::Orthographic => {
+            // the filter reaches beyond the image
+            let pixel = Vec3::splat(WIDEST_FILTER as Real * camera.pixel);
+            camera.right.abs() + camera.up.abs() + pixel
+        }
+        ProjectionKind::Perspective | ProjectionKind::Panorama | ProjectionKind::Fisheye => {
+            Vec3::ZERO
+        }
+    }
 }
 
 /// Medium of everything in a box around `position`: a material index, [`NONE`], or [`ASTRIDE`] if a

@@ -15,15 +15,17 @@ mod warnings;
 pub use crate::engine::error::PackError;
 pub use objects::Objects;
 
+use super::camera::ProjectionKind;
+use super::math::pixel_filter::FilterKind;
 use super::real::{Real, ToReal, Vec3};
 use super::shapes::simd4::{FourRectangles, FourSpheres, LANES};
 use super::tables::*;
-use super::{accel, lights, materials, math, real, shapes, tables};
+use super::{accel, camera, lights, materials, math, real, shapes, tables};
 use crate::prepare::bodies::{Bodies, joined};
 use crate::prepare::contact::grown;
 use crate::prepare::learned::LightSource;
 use crate::prepare::normalize::Normalization;
-use crate::scene;
+use crate::scene::{self, PixelFilter, Projection};
 use crate::telemetry::stage::stage;
 use bytemuck::Zeroable;
 use glam::DVec3;
@@ -170,20 +172,71 @@ fn camera(scene: &scene::Scene, n: &Normalization, width: u32, height: u32) -> C
     let forward = (c.target - c.position).normalize();
     let right = forward.cross(c.up).normalize();
     let up = right.cross(forward);
-    let tan = (0.5 * c.fov_degrees.to_radians()).tan();
+    // lengths in the image: at distance one, in scene space or in radians
+    let kind = projection(&c.projection);
+    let unit = if kind == ProjectionKind::Orthographic { n.unit } else { 1.0 };
+    let half_width = c.half_width(width, height) / unit;
+    let half_height = c.half_height(width, height) / unit;
+    let shift = right * (2.0 * c.shift[0] * half_width) + up * (2.0 * c.shift[1] * half_height);
+    let position = match kind {
+        ProjectionKind::Orthographic => n.point(c.position) + shift,
+        ProjectionKind::Perspective | ProjectionKind::Panorama | ProjectionKind::Fisheye => {
+            n.point(c.position)
+        }
+    };
+    let focus = match c.projection {
+        Projection::Fisheye { fov_degrees, .. } => 0.5 * fov_degrees.to_radians(),
+        Projection::Perspective { .. } | Projection::Orthographic { .. } | Projection::Panorama => {
+            c.focus / n.unit
+        }
+    };
+    let (filter, [filter_size, filter_b, filter_c]) = pixel_filter(&scene.film.filter);
     Camera {
-        position: n.point(c.position).to_real(),
+        position: position.to_real(),
         aperture: (c.aperture / n.unit) as Real,
-        right: (right * (tan * width as f64 / height as f64)).to_real(),
-        focus: (c.focus / n.unit) as Real,
-        up: (up * tan).to_real(),
-        pixel: (2.0 * tan / height as f64) as Real,
+        right: (right * half_width).to_real(),
+        focus: focus as Real,
+        up: (up * half_height).to_real(),
+        pixel: (2.0 * half_height / height as f64) as Real,
         forward: forward.to_real(),
         width,
         lens_right: right.to_real(),
         height,
         lens_up: up.to_real(),
         medium: NONE,
+        center: (forward + shift).to_real(),
+        projection: kind as u32,
+        filter_kind: filter as u32,
+        filter_size: filter_size as Real,
+        filter_b: filter_b as Real,
+        filter_c: filter_c as Real,
+    }
+}
+
+fn projection(projection: &Projection) -> ProjectionKind {
+    match projection {
+        Projection::Perspective { .. } => ProjectionKind::Perspective,
+        Projection::Orthographic { .. } => ProjectionKind::Orthographic,
+        Projection::Panorama => ProjectionKind::Panorama,
+        Projection::Fisheye { .. } => ProjectionKind::Fisheye,
+    }
+}
+
+/// Kind of a pixel filter, and its numbers as [`Camera::filter_size`], `filter_b` and `filter_c`.
+fn pixel_filter(filter: &PixelFilter) -> (FilterKind, [f64; 3]) {
+    match *filter {
+        PixelFilter::Box { radius: 0.5 } => (FilterKind::Pixel, [0.5, 0.0, 0.0]),
+        PixelFilter::Box { radius } => (FilterKind::Box, [radius, 0.0, 0.0]),
+        PixelFilter::Tent { radius } => (FilterKind::Tent, [radius, 0.0, 0.0]),
+        PixelFilter::Gaussian { sigma, radius } => {
+            let inside = -(-0.5 * (radius / sigma).powi(2)).exp_m1();
+            (FilterKind::Gaussian, [sigma, inside, 0.0])
+        }
+        PixelFilter::Mitchell { b, c } => {
+            // the negative lobe is 6 c / (b + 6 c) wide
+            let width = if c > 0.0 { 6.0 * c / (b + 6.0 * c) } else { 0.0 };
+            (FilterKind::Mitchell, [3.0 + c * width.powi(3), b, c])
+        }
     }
 }
 

@@ -147,7 +147,8 @@ impl Plan {
         if self.settings.method != Method::Ppm {
             return common;
         }
-        Dispatch { pass_number: 0, points: crate::math::sobol::points(0), ..common }
+        let points = crate::math::sobol::points(0);
+        Dispatch { pass_number: 0, fixed_points: 1, points, ..common }
     }
 
     /// Commands of pass `pass` of this render, from 0: one list per tile, or a single list. A batch

@@ -1,8 +1,10 @@
 //! Features that a scene and its settings require; nothing else is compiled or allocated.
 
+use super::super::camera::ProjectionKind;
 use super::super::geometry::intersect::has_patch_set;
 use super::super::lights::LightKind;
 use super::super::materials::Bsdf;
+use super::super::math::pixel_filter::FilterKind;
 use super::super::tables::*;
 use crate::scene::settings::{Direct, Method, RadiusRule, RenderSettings};
 
@@ -126,6 +128,12 @@ features! {
     EnvironmentImage = "environment_image",
     /// A thin lens.
     Lens = "lens",
+    /// A camera other than a perspective one.
+    Projection = "projection",
+    /// A pixel filter other than the pixel itself.
+    Filter = "filter",
+    /// A pixel filter with negative lobes.
+    SignedFilter = "signed_filter",
     /// Direct light from shadow rays.
     Sampled = "sampled",
     /// The local radius rule.
@@ -237,6 +245,10 @@ impl Features {
         put(Feature::Environment, lights().any(LightKind::is_environment));
         put(Feature::EnvironmentImage, light(LightKind::Image));
         put(Feature::Lens, scene.camera.aperture > 0.0);
+        let filter = FilterKind::of(scene.camera.filter_kind);
+        put(Feature::Projection, scene.camera.projection != ProjectionKind::Perspective as u32);
+        put(Feature::Filter, filter != FilterKind::Pixel);
+        put(Feature::SignedFilter, filter == FilterKind::Mitchell);
         put(Feature::Sampled, settings.direct == Direct::Sampled && !scene.lights.is_empty());
         put(Feature::Local, settings.radius_rule == RadiusRule::Local);
         let photons = !scene.lights.is_empty() && settings.method != Method::Path;

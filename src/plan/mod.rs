@@ -16,9 +16,11 @@ mod scale;
 
 use super::kernels::bytes::{FILM_BYTES, STATISTICS_BYTES};
 use super::kernels::records::FilmPixel;
+use super::math::pixel_filter::FilterKind;
 use super::pack::{Objects, PackedScene};
 use super::pilots::{Probe, probe};
 use super::real::Real;
+use super::tables::Camera;
 use crate::engine::{Cancel, EngineError, State};
 use crate::film::{ErrorMap, Picture, Rejections};
 use crate::prepare::radius::Automatic;
@@ -134,7 +136,7 @@ impl Plan {
             objects: packed.objects.clone(),
             unit: packed.unit,
             radiance_unit: packed.radiance_unit,
-            glint: if specular { packed.brightest } else { 0.0 },
+            glint: if specular { packed.brightest * filter_peak(camera) } else { 0.0 },
             first_pass: 0,
             taken_over: 0,
             cancel: Cancel::default(),
@@ -242,6 +244,14 @@ impl Plan {
     /// Counts of the passes that were left out of the image in a film.
     pub fn rejections(&self, film: &[FilmPixel]) -> Rejections {
         self.readout().rejections(film)
+    }
+}
+
+/// Greatest weight of a sample in the pixel filter.
+fn filter_peak(camera: &Camera) -> f64 {
+    match FilterKind::of(camera.filter_kind) {
+        FilterKind::Pixel | FilterKind::Box | FilterKind::Tent | FilterKind::Gaussian => 1.0,
+        FilterKind::Mitchell => (f64::from(camera.filter_size) / 3.0).powi(2),
     }
 }
 

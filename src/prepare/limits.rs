@@ -102,16 +102,16 @@ impl Limits<'_> {
                 // the smallest automatic radius is one pixel
                 let pixels =
                     if let Radius::Pixels(pixels) = settings.radius { pixels } else { 1.0 };
-                let tan = (0.5 * camera.fov_degrees.to_radians()).tan();
-                let width = 2.0 * tan / f64::from(self.scene.film.height);
-                let radius = pixels * width * (camera.target - camera.position).length();
+                let distance = (camera.target - camera.position).length();
+                let film = &self.scene.film;
+                let radius = pixels * camera.footprint(distance, film.width, film.height);
                 (radius, "the gather radius, in pixels at the camera's target,")
             }
         };
         let share = radius / self.size;
         (share < LEAST_RADIUS).then(|| {
             self.places.warning(
-                &["render.radius", "camera.fov"],
+                &["render.radius", "camera.fov", "camera.focal_length", "camera.size"],
                 format!("{from} is {share:.1e} of the scene's radius"),
                 format!(
                     "expected at least {LEAST_RADIUS:e}: photons' positions are rounded by 6e-8"

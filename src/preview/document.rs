@@ -13,7 +13,7 @@ use crate::film::FileError;
 use crate::film::file::write_whole;
 use crate::memory;
 use crate::scene::settings::RenderSettings;
-use crate::scene::{Allowance, Camera, Film, SceneErrors, parse_within};
+use crate::scene::{Allowance, Camera, Film, Projection, SceneErrors, parse_within};
 use crate::storage;
 
 /// The parts of a scene that the window can change.
@@ -97,7 +97,14 @@ pub fn edited(text: &str, before: &Edits, after: &Edits) -> Result<String, Strin
     put("camera", "position", a.position != b.position, point(b.position));
     put("camera", "target", a.target != b.target, point(b.target));
     put("camera", "up", a.up != b.up, point(b.up));
-    put("camera", "fov", a.fov_degrees != b.fov_degrees, b.fov_degrees.into());
+    let differs = a.projection != b.projection;
+    match b.projection {
+        Projection::Perspective { fov_degrees, .. } | Projection::Fisheye { fov_degrees, .. } => {
+            put("camera", "fov", differs, fov_degrees.into());
+        }
+        Projection::Orthographic { size, .. } => put("camera", "size", differs, size.into()),
+        Projection::Panorama => {}
+    }
     put("camera", "aperture", a.aperture != b.aperture, b.aperture.into());
     // without a focus, scene files use the target's distance, but a lens with an aperture needs one
     let without = (b.target - b.position).length();
@@ -114,6 +121,11 @@ pub fn edited(text: &str, before: &Edits, after: &Edits) -> Result<String, Strin
     put("render", "radius_rule", a.radius_rule != b.radius_rule, written(&b.radius_rule));
     put("render", "alpha", a.alpha != b.alpha, b.alpha.into());
     put("render", "direct", a.direct != b.direct, written(&b.direct));
+    // a field of view replaces a focal length
+    if differs && let Some(camera) = document.get_mut("camera").and_then(Item::as_table_like_mut) {
+        camera.remove("focal_length");
+        camera.remove("sensor");
+    }
     Ok(document.to_string())
 }
 
@@ -215,8 +227,8 @@ fn stamp(file: &Path) -> Stamp {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::ToneMap;
     use crate::scene::settings::{Direct, Radius, RadiusRule};
+    use crate::scene::{Axis, ToneMap};
 
     const TEXT: &str = "\
 # A scene.
@@ -273,7 +285,8 @@ photons = 1000 # few
         after.camera.position = DVec3::new(3.25, -1.0, 1e-7);
         after.camera.target = DVec3::new(0.1, 0.2, 0.3);
         after.camera.up = DVec3::Z;
-        after.camera.fov_degrees = 35.5;
+        let axis = Axis::Vertical;
+        after.camera.projection = Projection::Perspective { fov_degrees: 35.5, axis };
         (after.camera.aperture, after.camera.focus) = (0.02, 3.75);
         (after.film.exposure, after.film.tonemap) = (-1.5, ToneMap::Srgb);
         let settings = &mut after.settings;

@@ -9,7 +9,7 @@ use crate::geometry::intersect::intersect_scene;
 use crate::math::FAR;
 use crate::pack::PackedScene;
 use crate::real::Vec4;
-use crate::scene::Camera;
+use crate::scene::{Camera, Film, Projection};
 use crate::tables::NONE;
 
 /// Minimum angle between the view direction and the up vector, in radians.
@@ -47,18 +47,24 @@ pub fn orbit(camera: &Camera, across: f64, over: f64) -> Camera {
     tidy(&Camera { position: camera.target + turned, ..*camera })
 }
 
-/// Moves camera and target across the view, so that points at the target's distance move by `right`
-/// and `down`, in image heights.
-pub fn pan(camera: &Camera, right: f64, down: f64) -> Camera {
+/// Moves camera and target across the view, so that points at the target's distance, near the view
+/// axis, move by `right` and `down`, in image heights.
+pub fn pan(camera: &Camera, film: &Film, right: f64, down: f64) -> Camera {
     let [x, y, _] = axes(camera);
-    let height = 2.0 * distance(camera) * (0.5 * camera.fov_degrees.to_radians()).tan();
+    let (width, rows) = (film.width, film.height);
+    let height = camera.footprint(distance(camera), width, rows) * f64::from(rows);
     let shift = (y * down - x * right) * height;
     tidy(&Camera { position: camera.position + shift, target: camera.target + shift, ..*camera })
 }
 
 /// Multiplies the camera's distance from the target by `factor`. The plane of focus stays in place
-/// in the world, or just in front of the lens if the lens has passed it.
+/// in the world, or just in front of the lens if the lens has passed it. An orthographic camera
+/// changes the size of its image instead, since its distance does not matter.
 pub fn dolly(camera: &Camera, factor: f64) -> Camera {
+    if let Projection::Orthographic { size, axis } = camera.projection {
+        let projection = Projection::Orthographic { size: short(size * factor), axis };
+        return Camera { projection, ..*camera };
+    }
     let before = distance(camera);
     let position = camera.target + (camera.position - camera.target) * factor;
     let focus = (camera.focus + before * (factor - 1.0)).max(0.01 * before * factor);
@@ -71,8 +77,11 @@ pub fn focus(camera: &Camera, depth: f64) -> Camera {
 }
 
 /// Opens (`factor` above 1) or closes the lens. A pinhole opens to a small aperture, and a smaller
-/// aperture than that closes to a pinhole.
+/// aperture than that closes to a pinhole. Panorama and fisheye stay pinholes.
 pub fn aperture(camera: &Camera, factor: f64) -> Camera {
+    if !camera.has_lens() {
+        return *camera;
+    }
     let first = FIRST_APERTURE * camera.focus;
     let wanted = camera.aperture * factor;
     let aperture = match factor > 1.0 {
@@ -89,12 +98,16 @@ pub fn aperture(camera: &Camera, factor: f64) -> Camera {
 pub fn tidy(camera: &Camera) -> Camera {
     let places = DIGITS - 1 - distance(camera).log10().floor() as i32;
     let point = |p: DVec3| DVec3::from(p.to_array().map(|x| rounded(x, places)));
-    let own = |x: f64| if x > 0.0 { rounded(x, DIGITS - 1 - x.log10().floor() as i32) } else { x };
     let (position, target) = (point(camera.position), point(camera.target));
     let distance = (target - position).length();
     let at_target = camera.aperture == 0.0 && (camera.focus - distance).abs() < 1e-4 * distance;
-    let focus = if at_target { distance } else { own(camera.focus) };
-    Camera { position, target, aperture: own(camera.aperture), focus, ..*camera }
+    let focus = if at_target { distance } else { short(camera.focus) };
+    Camera { position, target, aperture: short(camera.aperture), focus, ..*camera }
+}
+
+/// Rounds a number to six significant digits.
+fn short(x: f64) -> f64 {
+    if x > 0.0 { rounded(x, DIGITS - 1 - x.log10().floor() as i32) } else { x }
 }
 
 /// Rounds `x` to this number of decimal places; a negative number rounds to tens, hundreds and so
@@ -113,7 +126,7 @@ fn rounded(x: f64, places: i32) -> f64 {
 
 /// Depth along the view direction, in units of the scene file, at a position in the image ((0, 0)
 /// at the top left, (1, 1) at the bottom right), through the centre of the lens; `None` if the ray
-/// hits nothing.
+/// hits nothing, or nothing in front of a camera that sees all around.
 pub fn depth_at(packed: &PackedScene, x: f64, y: f64) -> Option<f64> {
     let mut camera = packed.tables.camera;
     camera.aperture = 0.0;
@@ -133,19 +146,16 @@ pub fn depth_at(packed: &PackedScene, x: f64, y: f64) -> Option<f64> {
 mod tests {
     use super::*;
     use crate::pilots::prepare;
-    use crate::scene;
+    use crate::scene::{self, Axis};
     use std::f64::consts::{PI, TAU};
 
     fn camera() -> Camera {
-        Camera {
-            position: DVec3::new(1.0, 2.0, 5.0),
-            target: DVec3::new(0.25, 0.5, -0.5),
-            up: DVec3::Y,
-            fov_degrees: 40.0,
-            aperture: 0.0,
-            focus: 4.0,
-        }
+        let (position, target) = (DVec3::new(1.0, 2.0, 5.0), DVec3::new(0.25, 0.5, -0.5));
+        Camera { focus: 4.0, ..Camera::look_at(position, target, FOV) }
     }
+
+    const FOV: f64 = 40.0;
+    const PARALLEL: Projection = Projection::Orthographic { size: 3.0, axis: Axis::Vertical };
 
     fn near(a: DVec3, b: DVec3) -> bool {
         a.distance(b) < 1e-4
@@ -155,7 +165,10 @@ mod tests {
     fn projected(camera: &Camera, p: DVec3) -> [f64; 2] {
         let [x, y, z] = axes(camera);
         let d = p - camera.position;
-        let height = 2.0 * d.dot(z) * (0.5 * camera.fov_degrees.to_radians()).tan();
+        let height = match camera.projection {
+            Projection::Orthographic { size, .. } => size,
+            _ => 2.0 * d.dot(z) * (0.5 * FOV.to_radians()).tan(),
+        };
         [d.dot(x) / height, -d.dot(y) / height]
     }
 
@@ -193,11 +206,15 @@ mod tests {
     #[test]
     fn what_is_panned_follows_the_hand() {
         let at = camera();
-        let panned = pan(&at, 0.1, -0.25);
+        let film = Film::default();
+        let panned = pan(&at, &film, 0.1, -0.25);
         let [x, y] = projected(&panned, at.target);
         assert!((x - 0.1).abs() < 1e-4 && (y + 0.25).abs() < 1e-4, "{x} {y}");
-        let wrong = pan(&at, -0.1, -0.25);
+        let wrong = pan(&at, &film, -0.1, -0.25);
         assert!((projected(&wrong, at.target)[0] - 0.1).abs() > 0.1, "the other way does not");
+        let at = Camera { projection: PARALLEL, ..at };
+        let [x, y] = projected(&pan(&at, &film, 0.1, -0.25), at.target);
+        assert!((x - 0.1).abs() < 1e-4 && (y + 0.25).abs() < 1e-4, "{x} {y}");
     }
 
     #[test]
@@ -210,6 +227,10 @@ mod tests {
             assert!((distance(&moved) - factor * distance(&at)).abs() < 1e-4);
         }
         assert!(dolly(&at, 0.01).focus > 0.0, "and never gets behind the lens");
+        // a parallel projection shows the same from every distance, so the image's size changes
+        let moved = dolly(&Camera { projection: PARALLEL, ..at }, 0.5);
+        let half = Projection::Orthographic { size: 1.5, axis: Axis::Vertical };
+        assert_eq!(moved, Camera { projection: half, ..at });
     }
 
     #[test]
@@ -218,6 +239,8 @@ mod tests {
         assert_eq!(open.aperture, 0.008);
         assert!(aperture(&open, 1.25).aperture > open.aperture);
         assert_eq!(aperture(&open, 0.8).aperture, 0.0);
+        let panorama = Camera { projection: Projection::Panorama, ..camera() };
+        assert_eq!(aperture(&panorama, 1.25), panorama);
     }
 
     #[test]

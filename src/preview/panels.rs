@@ -10,8 +10,8 @@ use super::session::{Action, Session};
 use super::view::{Scale, View};
 use crate::device::{self, Wanted};
 use crate::film::Picture;
-use crate::scene::ToneMap;
 use crate::scene::settings::{Direct, Method, Radius, RadiusRule};
+use crate::scene::{Camera, Projection, ToneMap};
 
 /// Range of the lengths that the panel can set.
 const LENGTHS: std::ops::RangeInclusive<f64> = 1e-6..=1e6;
@@ -166,15 +166,34 @@ fn radius(ui: &mut Ui, radius: &mut Radius) {
 
 fn camera(ui: &mut Ui, session: &mut Session) {
     let camera = &mut session.now.camera;
-    row(ui, "field of view", |ui| {
-        ui.add(
-            DragValue::new(&mut camera.fov_degrees)
-                .range(1.0..=170.0)
-                .speed(0.1)
-                .max_decimals(2)
-                .suffix("°"),
-        );
+    match &mut camera.projection {
+        Projection::Perspective { fov_degrees, .. } => angle(ui, fov_degrees, 170.0),
+        Projection::Fisheye { fov_degrees, .. } => angle(ui, fov_degrees, 360.0),
+        Projection::Orthographic { size, .. } => row(ui, "image size", |ui| {
+            let speed = 0.005 * *size;
+            ui.add(DragValue::new(size).range(LENGTHS).speed(speed).max_decimals(4));
+        }),
+        Projection::Panorama => {}
+    }
+    if camera.has_lens() {
+        lens(ui, camera);
+    }
+    let place = |p: glam::DVec3| format!("{:.3}  {:.3}  {:.3}", p.x, p.y, p.z);
+    row(ui, "position", |ui| {
+        ui.label(place(camera.position));
     });
+    row(ui, "target", |ui| {
+        ui.label(place(camera.target));
+    });
+}
+
+fn angle(ui: &mut Ui, degrees: &mut f64, most: f64) {
+    row(ui, "field of view", |ui| {
+        ui.add(DragValue::new(degrees).range(1.0..=most).speed(0.1).max_decimals(2).suffix("°"));
+    });
+}
+
+fn lens(ui: &mut Ui, camera: &mut Camera) {
     row(ui, "aperture", |ui| {
         let speed = 0.002 * camera.focus.max(camera.aperture);
         ui.add(
@@ -187,13 +206,6 @@ fn camera(ui: &mut Ui, session: &mut Session) {
     row(ui, "focus", |ui| {
         let speed = 0.005 * camera.focus;
         ui.add(DragValue::new(&mut camera.focus).range(LENGTHS).speed(speed).max_decimals(4));
-    });
-    let place = |p: glam::DVec3| format!("{:.3}  {:.3}  {:.3}", p.x, p.y, p.z);
-    row(ui, "position", |ui| {
-        ui.label(place(camera.position));
-    });
-    row(ui, "target", |ui| {
-        ui.label(place(camera.target));
     });
 }
 

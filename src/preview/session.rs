@@ -200,7 +200,7 @@ impl Session {
         let Edits { camera, film, settings } = &mut self.now;
         match action {
             Action::Orbit(across, over) => *camera = orbit::orbit(camera, across, over),
-            Action::Pan(right, down) => *camera = orbit::pan(camera, right, down),
+            Action::Pan(right, down) => *camera = orbit::pan(camera, film, right, down),
             Action::Dolly(factor) => *camera = orbit::dolly(camera, factor),
             Action::Focus(x, y) => self.worker.look(x, y),
             Action::Aperture(factor) => *camera = orbit::aperture(camera, factor),

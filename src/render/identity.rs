@@ -23,11 +23,11 @@ pub fn program() -> String {
 }
 
 /// 128-bit digests of the parts of a scene, including all files that it uses. They do not depend on
-/// names, the order of keys or the film. Scenes with equal digests give equal images for equal
+/// names, the order of keys or the film, except for its pixel filter. Scenes with equal digests give equal images for equal
 /// size, settings, device and program.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Identity {
-    /// Digest of the camera.
+    /// Digest of the camera and the pixel filter.
     pub camera: String,
     /// Digest of the shapes, with their material indices and emission.
     pub shapes: String,
@@ -45,7 +45,7 @@ impl Identity {
         let Scene {
             name: _,
             camera,
-            film: _,
+            film,
             images,
             textures,
             materials,
@@ -67,7 +67,7 @@ impl Identity {
         let mut all_materials = Digest::default();
         materials.iter().for_each(|material| all_materials.text(&material.kind));
         Self {
-            camera: Digest::of(camera).end(),
+            camera: Digest::of(&(camera, film.filter)).end(),
             shapes: all_shapes.end(),
             materials: all_materials.end(),
             textures: all_textures.end(),
@@ -195,7 +195,9 @@ mod tests {
             |s| s.images.iter_mut().for_each(|image| image.path = "elsewhere.png".to_owned()),
             &[],
         );
-        shows(|s| s.camera.fov_degrees *= 1.0 + 1e-15, &["camera"]);
+        shows(|s| s.camera.focus *= 1.0 + 1e-15, &["camera"]);
+        shows(|s| s.camera.projection = scene::Projection::Panorama, &["camera"]);
+        shows(|s| s.film.filter = scene::PixelFilter::Tent { radius: 1.0 }, &["camera"]);
         shows(|s| s.materials.iter_mut().for_each(|m| m.name += "x"), &[]);
         shows(
             |s| {

@@ -18,6 +18,8 @@ pub struct Film {
     pub tonemap: ToneMap,
     /// Channels of EXR files in addition to radiance.
     pub aovs: Aovs,
+    /// Filter of the pixels.
+    pub filter: PixelFilter,
     /// Crop window `[x0, y0, x1, y1]`: columns x0 to x1 and rows y0 to y1, with x1 and y1
     /// exclusive; inside the image and not empty. `None` renders the whole image.
     pub window: Option<[u32; 4]>,
@@ -31,8 +33,47 @@ impl Default for Film {
             exposure: 0.0,
             tonemap: ToneMap::default(),
             aovs: Aovs::default(),
+            filter: PixelFilter::default(),
             window: None,
         }
+    }
+}
+
+/// Reconstruction filter: the weight of the image plane in a pixel by the offset (x, y) from the
+/// pixel's centre. Lengths are in pixels; each filter integrates to one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PixelFilter {
+    /// Constant where |x| and |y| are at most `radius`.
+    Box {
+        /// Half the width, > 0.
+        radius: f64,
+    },
+    /// Product of `1 - |x| / radius` and the same of y.
+    Tent {
+        /// Half the width, > 0.
+        radius: f64,
+    },
+    /// Gaussian, cut off at a circle.
+    Gaussian {
+        /// Standard deviation along x and along y before the cut, > 0.
+        sigma: f64,
+        /// Radius of the circle, > 0.
+        radius: f64,
+    },
+    /// Product of two cubic filters with negative lobes that reach two pixels (Mitchell & Netravali
+    /// 1988, "Reconstruction Filters in Computer Graphics").
+    Mitchell {
+        /// Weight of the cubic B-spline, in [0, 1].
+        b: f64,
+        /// Sharpness, in [0, 1]; with 0, no lobe is negative.
+        c: f64,
+    },
+}
+
+impl Default for PixelFilter {
+    /// The pixel itself.
+    fn default() -> Self {
+        Self::Box { radius: 0.5 }
     }
 }
 

@@ -38,9 +38,9 @@ pub use appearance::{
     Filter, ImageData, Material, MaterialKind, Opacity, Reflectance, Rgb, Texels, Texture,
     TextureKind, Wrap,
 };
-pub use camera::Camera;
+pub use camera::{Axis, Camera, Projection};
 pub use diagnostics::{Finding, SceneErrors};
-pub use film::{Film, ToneMap};
+pub use film::{Film, PixelFilter, ToneMap};
 pub use geometry::{Mesh, Shape, ShapeKind, Transform, Triangle};
 pub use images::ColorSpace;
 pub use importers::toml::{

@@ -12,6 +12,13 @@ pub const SMALLEST: f64 = 1e-15;
 /// Largest strength of a light. Images store radiance in f32, up to 3e38, and light adds up.
 pub const BRIGHTEST: f64 = 1e30;
 
+/// Smallest radius or standard deviation of a pixel filter, in pixels.
+pub const NARROWEST_FILTER: f64 = 0.05;
+/// Largest radius of a pixel filter, in pixels.
+pub const WIDEST_FILTER: f64 = 16.0;
+/// Largest shift of a lens, in image widths and heights.
+pub const LARGEST_SHIFT: f64 = 16.0;
+
 /// Largest excess of a number over its range that counts as rounding; programs write at least four
 /// digits.
 const ROUNDING: f64 = 1e-4;

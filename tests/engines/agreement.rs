@@ -4,7 +4,7 @@
 //! every bit of every image and every count of every pass is equal. A differing operation shows
 //! somewhere in a scene that uses it, so the scenes together use every feature.
 
-use crate::scenes::{SCENES, planned, planned_at};
+use crate::scenes::{CAMERAS, SCENES, planned, planned_at, planned_with};
 use crate::support::{bits, software};
 use bytemuck::{bytes_of, pod_collect_to_vec};
 use caustica::low_level::cpu::CpuEngine;
@@ -106,35 +106,52 @@ fn explain_pass(packed: &PackedScene, plan: &Plan, engine: &mut GpuEngine, pass:
     text
 }
 
+/// Renders a scene with all layers on both engines, and describes how the results differ.
+fn disagreement(name: &str, packed: &PackedScene, plan: Plan) -> Option<String> {
+    let aovs = Aovs::parse("all").unwrap();
+    let (width, height) = (48, 36);
+    let film = Film { width, height, tonemap: ToneMap::Srgb, aovs, ..Film::default() };
+    let plan = plan.on(&film);
+    let cpu = on_cpu(packed, &plan);
+    assert!(cpu.1.rgb.iter().flatten().all(|x| x.is_finite()), "{name}");
+    let light = cpu.1.rgb.iter().flatten().sum::<f32>() / cpu.1.rgb.len() as f32;
+    assert!(
+        light > 1e-3 && cpu.0.iter().all(|r| r.records > 20),
+        "{name}: nothing to compare, {:?}",
+        cpu.0
+    );
+    let text = difference(&cpu, &on_driver(packed, &plan))?;
+    Some(format!("{name}: {text}{}", explain(packed, &plan)))
+}
+
 #[test]
 fn engines_agree_to_the_bit() {
     let mut used = BTreeSet::new();
     let mut faults = Vec::new();
     for (name, settings, rest) in SCENES {
         let (packed, plan) = planned(settings, rest);
-        let aovs = Aovs::parse("all").unwrap();
-        let (width, height) = (48, 36);
-        let film =
-            Film { width, height, exposure: 0.0, tonemap: ToneMap::Srgb, aovs, window: None };
-        let plan = plan.on(&film);
-        used.extend(plan.features.iter());
-        let cpu = on_cpu(&packed, &plan);
-        assert!(cpu.1.rgb.iter().flatten().all(|x| x.is_finite()), "{name}");
-        let light = cpu.1.rgb.iter().flatten().sum::<f32>() / cpu.1.rgb.len() as f32;
-        assert!(
-            light > 1e-3 && cpu.0.iter().all(|r| r.records > 20),
-            "{name}: nothing to compare, {:?}",
-            cpu.0
-        );
-        if let Some(text) = difference(&cpu, &on_driver(&packed, &plan)) {
-            faults.push(format!("{name}: {text}{}", explain(&packed, &plan)));
-        }
+        let layers = Film { aovs: Aovs::parse("all").unwrap(), ..Film::default() };
+        used.extend(plan.clone().on(&layers).features.iter());
+        faults.extend(disagreement(name, &packed, plan));
     }
     assert!(faults.is_empty(), "{}", faults.join("\n"));
+    for (_, settings, camera, film) in CAMERAS {
+        used.extend(planned_with(settings, camera, film).1.features.iter());
+    }
     // `engines_agree_on_every_material` tests the materials
     let needed = Feature::all().filter(|feature| !matches!(feature, Feature::Material(_)));
     let unused: Vec<_> = needed.filter(|feature| !used.contains(feature)).collect();
     assert!(unused.is_empty(), "no scene uses {unused:?}");
+}
+
+/// The same for every projection and pixel filter.
+#[test]
+fn engines_agree_on_every_camera() {
+    let faults = CAMERAS.iter().filter_map(|(name, settings, camera, film)| {
+        let (packed, plan) = planned_with(settings, camera, film);
+        disagreement(name, &packed, plan)
+    });
+    assert_eq!(faults.collect::<Vec<_>>().join("\n"), "");
 }
 
 /// The same for every example of every material, which replaces the material of the floor and of a

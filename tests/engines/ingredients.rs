@@ -2,8 +2,10 @@
 //! layout.
 
 use bytemuck::Zeroable;
+use caustica::low_level::camera::ProjectionKind;
 use caustica::low_level::lights::LightKind;
 use caustica::low_level::materials::Bsdf;
+use caustica::low_level::math::pixel_filter::FilterKind;
 use caustica::low_level::plan::Kernel;
 use caustica::low_level::plan::features::{Feature, Features};
 use caustica::low_level::scene::settings::{Direct, RadiusRule, RenderSettings};
@@ -133,6 +135,9 @@ impl Mixture {
                 self.light(LightKind::Image as u32, 0);
             }
             Feature::Lens => s.camera.aperture = 1.0,
+            Feature::Projection => s.camera.projection = ProjectionKind::Fisheye as u32,
+            Feature::Filter => s.camera.filter_kind = FilterKind::Tent as u32,
+            Feature::SignedFilter => s.camera.filter_kind = FilterKind::Mitchell as u32,
             Feature::Sampled => {
                 self.add(Feature::Point);
                 self.settings.direct = Direct::Sampled;

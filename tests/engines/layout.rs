@@ -58,7 +58,13 @@ fn hosts() -> Vec<Layout> {
             lens_right,
             height,
             lens_up,
-            medium
+            medium,
+            center,
+            projection,
+            filter_kind,
+            filter_size,
+            filter_b,
+            filter_c
         }),
         layout!(Sphere { anchor, curvature, normal, radius, material, light, uv }),
         layout!(Rectangle {
@@ -173,6 +179,7 @@ fn hosts() -> Vec<Layout> {
             inv_cell_indirect,
             window_first,
             window_width,
+            fixed_points,
             points
         }),
         layout!(VisiblePoint {

@@ -14,7 +14,6 @@ version = 1
 [camera]
 position = [0.2, 1.3, 4.5]
 target = [0.0, 0.6, 0.0]
-fov = 36.0
 "#;
 
 const FLOOR: &str = r#"
@@ -28,6 +27,59 @@ u = [6.0, 0.0, 0.0]
 v = [0.0, 0.0, -6.0]
 material = "white"
 "#;
+
+/// A ball of glass and a lamp.
+const BALL: &str = r#"
+[materials.glass]
+type = "glass"
+ior = 1.5
+[[shapes]]
+type = "sphere"
+center = [-0.6, 0.5, 0.0]
+radius = 0.5
+material = "glass"
+[[shapes]]
+type = "rectangle"
+origin = [-0.4, 2.5, -0.4]
+u = [0.8, 0.0, 0.0]
+v = [0.0, 0.0, 0.8]
+material = "white"
+emission = 20.0
+"#;
+
+/// Other cameras and pixel filters: name, render settings, and keys of the camera and the film.
+pub const CAMERAS: [(&str, &str, &str, &str); 5] = [
+    (
+        "orthographic camera with a lens, cubic filter, fixed points",
+        "method = \"ppm\"\neye_samples = 6",
+        "type = \"orthographic\"\nsize = 2.5\nshift = [0.1, 0.05]\naperture = 0.1\nfocus = 4.3",
+        "filter = \"mitchell\"",
+    ),
+    (
+        "panorama, tent filter",
+        "",
+        "type = \"panorama\"",
+        "filter = { type = \"tent\", radius = 1.25 }",
+    ),
+    (
+        "fisheye, Gaussian filter, local radii",
+        "radius_rule = \"local\"",
+        "type = \"fisheye\"\nfov = 200\nfov_axis = \"diagonal\"",
+        "filter = \"gaussian\"",
+    ),
+    (
+        "shifted lens, cubic filter",
+        "direct = \"photons\"",
+        "focal_length = 35.0\nfov_axis = \"larger\"\nshift = [-0.1, 0.2]\naperture = 0.05\nfocus = 4.0",
+        "filter = { type = \"mitchell\", b = 0.0, c = 0.5 }",
+    ),
+    (
+        "fisheye of all directions, wide box",
+        "",
+        "type = \"fisheye\"\nfov = 360",
+        "filter = { type = \"box\", radius = 1.0 }",
+    ),
+];
 
 /// Name, render settings, and the rest of the scene file.
 pub const SCENES: [(&str, &str, &str); 11] = [
@@ -523,15 +575,30 @@ pub fn planned(settings: &str, rest: &str) -> (PackedScene, Plan) {
 }
 
 /// Loads the scene with these settings and shapes and an image of this size.
-pub fn loaded_at((width, height): (u32, u32), settings: &str, rest: &str) -> Loaded {
-    let film = format!("[film]\nwidth = {width}\nheight = {height}");
+pub fn loaded_at(size: (u32, u32), settings: &str, rest: &str) -> Loaded {
     let lens = if settings.contains("ppm") || rest.contains("lake") {
         "aperture = 0.1\nfocus = 4.3\n"
     } else {
         ""
     };
+    loaded_with(size, settings, &format!("fov = 36.0\n{lens}"), "", rest)
+}
+
+/// Packs and plans a scene of [`CAMERAS`].
+pub fn planned_with(settings: &str, camera: &str, film: &str) -> (PackedScene, Plan) {
+    planned_from(&loaded_with((48, 36), settings, camera, film, BALL))
+}
+
+fn loaded_with(
+    (width, height): (u32, u32),
+    settings: &str,
+    camera: &str,
+    film: &str,
+    rest: &str,
+) -> Loaded {
     let text = format!(
-        "{HEAD}{lens}{film}\n[render]\nphotons = 6000\npasses = 3\n{settings}\n{FLOOR}{rest}"
+        "{HEAD}{camera}\n[film]\nwidth = {width}\nheight = {height}\n{film}\n[render]\n\
+         photons = 6000\npasses = 3\n{settings}\n{FLOOR}{rest}"
     );
     let path = assets().join("scene.toml");
     let mut loaded = parse(&path, text.as_bytes())
@@ -542,7 +609,10 @@ pub fn loaded_at((width, height): (u32, u32), settings: &str, rest: &str) -> Loa
 
 /// Like [`planned`], with an image of another size.
 pub fn planned_at(size: (u32, u32), settings: &str, rest: &str) -> (PackedScene, Plan) {
-    let loaded = loaded_at(size, settings, rest);
+    planned_from(&loaded_at(size, settings, rest))
+}
+
+fn planned_from(loaded: &Loaded) -> (PackedScene, Plan) {
     let packed = prepare(&loaded.scene, loaded.scene.film.width, loaded.scene.film.height).unwrap();
     let plan = Plan::probed(&packed, &loaded.settings);
     (packed, plan)

@@ -6,13 +6,13 @@ use glam::DVec3;
 use super::invariance::everything;
 use super::lab::*;
 
-type Case = (Method, Direct, RadiusRule);
+pub type Case = (Method, Direct, RadiusRule);
 
 const PATH: Case = (Method::Path, Direct::Sampled, RadiusRule::Fixed);
 
 /// Renders `text` in every case and compares all pairs: the whole image to `power`, tiles to four
 /// times that.
-fn pairwise(name: &str, text: &str, cases: &[Case], power: f64) {
+pub fn pairwise(name: &str, text: &str, cases: &[Case], power: f64) {
     let found: Vec<(String, Runs)> = cases
         .iter()
         .map(|&(method, direct, radius_rule)| {

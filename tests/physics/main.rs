@@ -16,6 +16,7 @@ mod support;
 
 mod agreement;
 mod bent_normals;
+mod cameras;
 mod caustics;
 mod closed_forms;
 mod convergence;
@@ -35,6 +36,7 @@ mod lab;
 mod materials;
 mod media;
 mod meshes;
+mod pixel_filters;
 mod stability;
 mod truth;
 mod walls;

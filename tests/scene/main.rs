@@ -8,9 +8,12 @@ mod support;
 
 mod encodings;
 mod errors;
+mod frustums;
 mod hostile;
 mod limits;
 mod load;
 mod named;
+mod normals;
+mod ply;
 mod shipped_assets;
 mod shipped_scenes;

@@ -3,7 +3,7 @@
 use crate::scene::diagnostics::Report;
 use crate::scene::limits::{Allowance, within};
 use crate::scene::parts::Part;
-use crate::scene::{Camera, Film};
+use crate::scene::{Camera, Film, Projection};
 
 /// Sine of the angle below which two directions count as parallel.
 const LEAST_SINE: f64 = 1e-9;
@@ -22,6 +22,23 @@ pub(crate) fn camera(report: &mut Report, part: &dyn Part, camera: &Camera) {
         let message = format!("`{}.up` is parallel to the view direction", part.place());
         let help = Some("turn it: [0, 0, -1] suits a camera that looks straight down".to_owned());
         report.error(part.span_of("up"), message, "expected another direction", help);
+    }
+    projection(report, part, camera);
+}
+
+/// Reports a lens or a shift that the projection does not have.
+fn projection(report: &mut Report, part: &dyn Part, camera: &Camera) {
+    let name = match camera.projection {
+        Projection::Perspective { .. } | Projection::Orthographic { .. } => return,
+        Projection::Panorama => "panorama",
+        Projection::Fisheye { .. } => "fisheye",
+    };
+    for (key, wrong) in [("aperture", camera.aperture > 0.0), ("shift", camera.shift != [0.0; 2])] {
+        if wrong {
+            let message = format!("a {name} camera has no `{key}`");
+            let help = "use a perspective or an orthographic camera, or leave it out";
+            report.error(part.span_of(key), message, "expected 0", Some(help.to_owned()));
+        }
     }
 }
 

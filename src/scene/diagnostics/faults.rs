@@ -49,6 +49,10 @@ impl Faults {
         }
     }
 
+    pub fn is_empty(&self) -> bool {
+        self.listed.is_empty()
+    }
+
     /// Returns whether no further fault will be listed.
     pub fn is_full(&self) -> bool {
         self.listed.len() == self.most

@@ -5,6 +5,7 @@
 //! `MeshReader`.
 
 mod obj;
+mod ply;
 pub mod toml;
 
 use std::path::Path;
@@ -18,7 +19,7 @@ use super::meshes::{MeshPart, MeshRequest};
 const SCENES: [&dyn Importer; 1] = [&toml::Toml];
 
 /// Mesh formats. The first one reads every file that no other one accepts.
-const MESHES: [&dyn MeshReader; 1] = [&obj::Obj];
+const MESHES: [&dyn MeshReader; 2] = [&obj::Obj, &ply::Ply];
 
 /// A format of scene files.
 pub(crate) trait Importer: Sync {

@@ -1,5 +1,6 @@
 //! Mesh files that scenes name, for every importer and every mesh format.
 
+mod normals;
 mod triangles;
 
 use std::collections::HashMap;
@@ -12,7 +13,8 @@ use super::importers::mesh_reader;
 use super::limits::{Refusal, within};
 use super::{Mesh, Rgb, Transform};
 
-pub(crate) use triangles::{Corner, MeshBuilder, Polygon, Steps, vertex_normals};
+pub(crate) use normals::Normals;
+pub(crate) use triangles::{Corner, MeshBuilder, Polygon, Steps};
 
 /// A mesh file with its options from the scene file.
 pub(crate) struct MeshRequest<'r> {
@@ -22,6 +24,9 @@ pub(crate) struct MeshRequest<'r> {
     pub named_at: Range<usize>,
     /// True if shading uses vertex normals.
     pub smooth: bool,
+    /// Angle in degrees between faces from which on the edge between them is a crease. If given,
+    /// computed normals replace those of the file.
+    pub crease_angle: Option<f64>,
     /// Material of all triangles; `None` for the materials of the mesh file.
     pub material: Option<usize>,
     pub transform: Transform,

@@ -1,9 +1,10 @@
-//! Conversion of polygons to triangles: ear clipping, vertex normals, shared vertices.
+//! Conversion of polygons to triangles: ear clipping, shared vertices.
 
 use std::collections::HashMap;
 
 use glam::{DVec2, DVec3};
 
+use super::normals::Normals;
 use crate::scene::{Mesh, Transform, Triangle};
 
 /// A triangle is degenerate if twice its area is at most this fraction of its longest edge squared.
@@ -46,23 +47,32 @@ impl Default for Steps {
 
 /// A face of a mesh file.
 #[derive(Clone, Debug)]
-pub(crate) struct Polygon(pub Vec<Corner>);
+pub(crate) struct Polygon {
+    pub corners: Vec<Corner>,
+    /// Smoothing group, whose faces share computed normals; `None` computes none.
+    pub group: Option<u32>,
+}
 
 impl Polygon {
     /// Twice the area times the unit normal (Newell); exact for a planar polygon, and the best
     /// plane for a warped one.
     fn area_vector(&self) -> DVec3 {
-        let base = self.0[0].position;
-        let edges = self.0.windows(2);
+        let base = self.corners[0].position;
+        let edges = self.corners.windows(2);
         edges.map(|pair| (pair[0].position - base).cross(pair[1].position - base)).sum()
+    }
+
+    /// Number of triangles that [`Self::triangulate`] makes.
+    pub fn triangles(&self) -> usize {
+        self.corners.len().saturating_sub(2)
     }
 
     /// Triangulates by ear clipping in the plane of [`Self::area_vector`]; returns indices of
     /// corners. A self-intersecting polygon has no such triangulation, so its remainder becomes a
     /// fan.
-    fn triangulate(&self, steps: &mut Steps) -> Vec<[usize; 3]> {
+    pub fn triangulate(&self, steps: &mut Steps) -> Vec<[usize; 3]> {
         let axis = self.area_vector();
-        let mut left: Vec<usize> = (0..self.0.len()).collect();
+        let mut left: Vec<usize> = (0..self.corners.len()).collect();
         let mut triangles = Vec::with_capacity(left.len().saturating_sub(2));
         while left.len() > 3 {
             let ear = (0..left.len()).find(|&at| self.is_ear(&left, at, axis, steps)).unwrap_or(1);
@@ -80,7 +90,7 @@ impl Polygon {
             return false;
         }
         let corners = around(left, at);
-        let [a, b, c] = corners.map(|corner| self.0[corner].position);
+        let [a, b, c] = corners.map(|corner| self.corners[corner].position);
         let turn = |p: DVec3, q: DVec3, r: DVec3| (q - p).cross(r - p).dot(axis);
         if turn(a, b, c) <= 0.0 {
             return false;
@@ -88,7 +98,7 @@ impl Polygon {
         steps.take(left.len());
         let others = left.iter().filter(|corner| !corners.contains(corner));
         let mut others =
-            others.map(|&corner| self.0[corner].position).filter(|p| ![a, b, c].contains(p));
+            others.map(|&corner| self.corners[corner].position).filter(|p| ![a, b, c].contains(p));
         !others.any(|p| turn(a, b, p) >= 0.0 && turn(b, c, p) >= 0.0 && turn(c, a, p) >= 0.0)
     }
 }
@@ -99,34 +109,18 @@ fn around(left: &[usize], at: usize) -> [usize; 3] {
 }
 
 /// Bits that distinguish positions; -0 equals 0.
-type Key<const N: usize> = [u64; N];
+pub(super) type Key<const N: usize> = [u64; N];
 
-fn key<const N: usize>(values: [f64; N]) -> Key<N> {
+pub(super) fn key<const N: usize>(values: [f64; N]) -> Key<N> {
     values.map(|value| (value + 0.0).to_bits())
 }
 
-/// Sums of face normals at each position, weighted by the corner's angle (Thuermer & Wuethrich
-/// 1998); not normalized.
-pub(crate) fn vertex_normals<'p>(
-    polygons: impl Iterator<Item = &'p Polygon>,
-    steps: &mut Steps,
-) -> HashMap<Key<3>, DVec3> {
-    let mut normals = HashMap::new();
-    for polygon in polygons {
-        for triangle in polygon.triangulate(steps) {
-            let p = triangle.map(|corner| polygon.0[corner].position);
-            let Some(normal) = (p[1] - p[0]).cross(p[2] - p[0]).try_normalize() else {
-                continue;
-            };
-            for corner in 0..3 {
-                let to_next = p[(corner + 1) % 3] - p[corner];
-                let to_last = p[(corner + 2) % 3] - p[corner];
-                let sum: &mut DVec3 = normals.entry(key(p[corner].to_array())).or_default();
-                *sum += to_next.angle_between(to_last) * normal;
-            }
-        }
+/// The normals divided by their lengths, if there are three that have a length.
+fn all_unit(normals: [Option<DVec3>; 3]) -> Option<[DVec3; 3]> {
+    match normals.map(|normal| normal?.try_normalize()) {
+        [Some(a), Some(b), Some(c)] => Some([a, b, c]),
+        _ => None,
     }
-    normals
 }
 
 /// Builds a world-space mesh from polygons.
@@ -155,20 +149,30 @@ impl MeshBuilder {
         }
     }
 
-    /// Adds a face. `smooth` provides normals for faces without their own; `None` makes all faces
-    /// flat.
+    /// Adds a face, whose triangles are numbered from `first` on in the order of the file. `normals`
+    /// provides those that the file lacks; `None` makes all faces flat.
     pub fn add(
         &mut self,
         polygon: &Polygon,
-        smooth: Option<&HashMap<Key<3>, DVec3>>,
+        first: usize,
+        normals: Option<&Normals>,
         steps: &mut Steps,
     ) {
-        for triangle in polygon.triangulate(steps) {
-            self.add_triangle(triangle.map(|corner| polygon.0[corner]), smooth);
+        for (at, triangle) in polygon.triangulate(steps).into_iter().enumerate() {
+            let corners = triangle.map(|corner| polygon.corners[corner]);
+            let shading = normals.map(|normals| {
+                [0, 1, 2].map(|corner| {
+                    let Corner { position, normal, .. } = corners[corner];
+                    let own = normal.filter(|_| !normals.replace());
+                    own.or_else(|| normals.at(position, polygon.group, (first + at, corner)))
+                })
+            });
+            self.add_triangle(corners, shading);
         }
     }
 
-    fn add_triangle(&mut self, mut corners: [Corner; 3], smooth: Option<&HashMap<Key<3>, DVec3>>) {
+    /// Adds a triangle with the shading normals of its corners, of any length; `None` makes it flat.
+    fn add_triangle(&mut self, mut corners: [Corner; 3], shading: Option<[Option<DVec3>; 3]>) {
         let [a, b, c] = corners.map(|corner| corner.position);
         let area = (b - a).cross(c - a);
         let longest =
@@ -178,15 +182,17 @@ impl MeshBuilder {
             self.degenerate += 1;
             return;
         }
-        let normals = smooth.and_then(|smooth| self.corner_normals(&corners, smooth));
+        let normals = shading.and_then(all_unit);
+        let own = shading.and_then(|_| all_unit(corners.map(|corner| corner.normal)));
+        if normals.is_none() && shading.is_some() && corners[0].normal.is_some() {
+            self.unusable_normals += 1;
+        }
         let mut normals = normals.map(|normals| normals.map(|normal| self.normal(normal)));
-        if let Some(own) = corners[0].normal.and(normals) {
-            // The file's normals define the outside; some exporters wind the corners the other way.
-            let side: DVec3 = own.iter().map(|&index| self.mesh.normals[index as usize]).sum();
-            if self.transform.direction(area).dot(side) < 0.0 {
-                corners.swap(1, 2);
-                normals = Some([own[0], own[2], own[1]]);
-            }
+        // The file's normals define the outside; some exporters wind the corners the other way.
+        let outward = own.map(|own| own.into_iter().sum::<DVec3>());
+        if outward.is_some_and(|outward| area.dot(outward) < 0.0) {
+            corners.swap(1, 2);
+            normals = normals.map(|[a, b, c]| [a, c, b]);
         }
         let position = corners.map(|corner| self.position(corner.position));
         let uv = match corners.map(|corner| corner.uv) {
@@ -194,24 +200,6 @@ impl MeshBuilder {
             _ => None,
         };
         self.mesh.triangles.push(Triangle { position, normal: normals, uv });
-    }
-
-    fn corner_normals(
-        &mut self,
-        corners: &[Corner; 3],
-        smooth: &HashMap<Key<3>, DVec3>,
-    ) -> Option<[DVec3; 3]> {
-        let normals = corners.map(|corner| {
-            let normal = corner.normal.or(smooth.get(&key(corner.position.to_array())).copied());
-            normal.and_then(|normal| normal.try_normalize())
-        });
-        match normals {
-            [Some(a), Some(b), Some(c)] => Some([a, b, c]),
-            _ => {
-                self.unusable_normals += usize::from(corners[0].normal.is_some());
-                None
-            }
-        }
     }
 
     fn position(&mut self, local: DVec3) -> u32 {

@@ -52,6 +52,19 @@ fn one_fault_each() {
         ("up = [0, -inf, 0]\n", (6, 10, "expected a finite number")),
         ("up = [0, 1e999, 0]\n", (6, 10, "not a finite number")),
         ("up = [0, 1]\n", (6, 6, "expected an array of 3 numbers")),
+        ("fov_axis = \"diag\"\n", (6, 12, "expected \"vertical\" or \"horizontal\"")),
+        ("focal_length = 50\n", (6, 16, "exclude each other")),
+        ("sensor = 24\n", (6, 10, "`sensor` without `focal_length`")),
+        ("shift = [0, 17]\n", (6, 13, "from -16 to 16")),
+        ("size = 3\n", (6, 1, "unknown key `size` in camera")),
+        ("type = \"fish\"\n", (6, 8, "did you mean `fisheye`? | known types: `perspective`, ")),
+        ("type = \"panorama\"\n", (5, 1, "unknown key `fov` in camera (panorama)")),
+        ("type = \"fisheye\"\naperture = 0.1\n", (7, 1, "unknown key `aperture`")),
+        ("[film]\nfilter = \"gaus\"\n", (7, 10, "or \"tent\" or \"gaussian\" or \"mitchell\"")),
+        ("[film]\nfilter = 3\n", (7, 10, "`film.filter` is a")),
+        ("[film]\nfilter = { type = \"tent\", radius = 0 }\n", (7, 36, "from 0.05 to 16")),
+        ("[film]\nfilter = { type = \"tent\", sigma = 1 }\n", (7, 27, "unknown key `sigma`")),
+        ("[film]\nfilter = { radius = 1 }\n", (7, 10, "`type` is missing in film.filter")),
         ("[render]\npasses = 0\n", (7, 10, "at least 1")),
         ("[render]\nphotons = 5_000_000_000\n", (7, 11, "out of range")),
         ("[render]\nalpha = 1.5\n", (7, 9, "greater than 0 and at most 1")),
@@ -309,6 +322,22 @@ fn many_faults_at_once() {
         (20, 8, "cannot read mesh"),
     ];
     assert_eq!(differs(&errors_of(text).errors, &expected), None);
+}
+
+/// A camera with neither a field of view nor a focal length, a fisheye with too wide a view, and a
+/// focal length that single precision cannot tell from zero.
+#[test]
+fn cameras_without_a_view() {
+    let head = "version = 1\n[camera]\nposition = [0, 1, 4]\ntarget = [0, 1, 0]\n";
+    for (rest, expected) in [
+        ("", (2, 1, "`fov` is missing in camera")),
+        ("type = \"fisheye\"\nfov = 400\n", (6, 7, "at most 360")),
+        ("type = \"fisheye\"\n", (2, 1, "`fov` is missing in camera (fisheye)")),
+        ("type = \"orthographic\"\n", (2, 1, "`size` is missing in camera (orthographic)")),
+        ("focal_length = 1e-15\nsensor = 1e15\n", (5, 16, "gives a view of 180 degrees")),
+    ] {
+        assert_eq!(differs(&errors_of(&format!("{head}{rest}")).errors, &[expected]), None);
+    }
 }
 
 /// The comparison of this file detects a wrong line, a wrong column, a wrong text and a missing

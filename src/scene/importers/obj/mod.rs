@@ -6,6 +6,7 @@ mod library;
 mod lines;
 mod mtl;
 mod scan;
+mod smoothing;
 
 use std::io::Cursor;
 use std::path::Path;
@@ -73,7 +74,7 @@ impl MeshReader for Obj {
                 return None;
             }
         };
-        let faces = faces(&models, request, &own, &mut builder.meshes.steps);
+        let faces = faces(&models, request, &own, &scan.smoothing, &mut builder.meshes.steps);
         builder.check_steps(request)?;
         if faces.count != scan.faces {
             let message =

@@ -6,6 +6,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 use std::ops::Range;
 
 use super::lines::{Statement, Word, finite, statements};
+use super::smoothing::SmoothingGroups;
 use crate::scene::diagnostics::Faults;
 use crate::scene::numbers::LARGEST;
 
@@ -19,6 +20,7 @@ pub(super) struct Scan<'t> {
     /// Number of triangles after triangulation.
     pub triangles: u64,
     pub faces: u64,
+    pub smoothing: SmoothingGroups,
     /// Arguments of each `mtllib`, without duplicates.
     pub libraries: Vec<Word<'t>>,
     known_libraries: HashSet<&'t str>,
@@ -52,6 +54,7 @@ pub(super) fn scan(text: &str, own_materials: bool) -> Scan<'_> {
         warnings: Faults::warnings(),
         triangles: 0,
         faces: 0,
+        smoothing: SmoothingGroups::default(),
         libraries: Vec::new(),
         known_libraries: HashSet::new(),
         uses: Vec::new(),
@@ -172,7 +175,12 @@ impl<'t> Scan<'t> {
                     self.libraries.push(argument);
                 }
             }
-            "usemtl" | "mtllib" | "s" => {}
+            "s" => {
+                if let Err((span, message)) = self.smoothing.begin(statement, self.faces) {
+                    self.warnings.push(span, message, "expected `off` or a number; not used");
+                }
+            }
+            "usemtl" | "mtllib" => {}
             keyword => *self.unread.entry(keyword).or_default() += 1,
         }
     }

@@ -4,9 +4,11 @@
 //! into a tree with positions, checked against the schema, and read part by part as these types,
 //! which the other modules convert to the description.
 
+mod axial;
 mod camera;
 mod document;
 pub mod file;
+mod film;
 mod light;
 mod material;
 mod named;
@@ -75,8 +77,8 @@ fn scene(builder: &mut SceneBuilder, root: Node) {
         undefined(&mut builder.report, document, "textures", "materials", key);
     }
     camera::camera(builder, document);
-    camera::film(builder, document);
-    camera::settings(builder, document);
+    film::film(builder, document);
+    film::settings(builder, document);
     for item in document.items("textures") {
         if let Some(file) = item.read::<TextureFile>(&mut builder.report) {
             material::texture(builder, item, file);

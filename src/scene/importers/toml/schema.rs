@@ -25,6 +25,21 @@ pub(crate) fn close_variants(schema: &mut schemars::Schema) {
     }
 }
 
+/// Makes `type` optional in the first variant, which is the default.
+pub(crate) fn default_to_first(schema: &mut schemars::Schema) {
+    let variants = schema.get_mut("oneOf").and_then(Json::as_array_mut);
+    let first = variants.and_then(|variants| variants.first_mut());
+    if let Some(required) = first.and_then(|first| first["required"].as_array_mut()) {
+        required.retain(|key| key != "type");
+    }
+}
+
+/// Returns whether a table of this schema needs no `type`.
+pub(crate) fn is_default(schema: &Json) -> bool {
+    let required = schema["required"].as_array();
+    !required.is_some_and(|keys| keys.iter().any(|key| key == "type"))
+}
+
 /// Schemas that a value may match: references resolved, nested alternatives flattened, `null` left
 /// out.
 pub(crate) fn alternatives<'s>(root: &'s Json, schema: &'s Json) -> Vec<&'s Json> {

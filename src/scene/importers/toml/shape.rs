@@ -2,6 +2,7 @@
 
 use glam::{DMat3, DVec3};
 
+use super::axial::{Axis, frustum};
 use super::document::{Document, Item};
 use super::file::{ShapeFile, SurfaceFile, TransformFile};
 use super::{index, profile};
@@ -50,11 +51,37 @@ pub(super) fn shapes(
             let kind = ShapeKind::Revolution { segments, transform, newton_tolerance: 0.0 };
             (kind, material, surface)
         }
-        ShapeFile::Mesh { file, smooth, material, transform, surface } => {
+        ShapeFile::Cylinder { radius, height, p0, p1, caps, material, transform, surface } => {
+            let transform = placed(&mut builder.report, item, &transform)?;
+            let axis = Axis { height, p0, p1 };
+            let radii = [radius.0; 2];
+            let kind = frustum(&mut builder.report, item, &axis, radii, caps, &transform)?;
+            (kind, material, surface)
+        }
+        ShapeFile::Cone {
+            radius,
+            top_radius,
+            height,
+            p0,
+            p1,
+            caps,
+            material,
+            transform,
+            surface,
+        } => {
+            let transform = placed(&mut builder.report, item, &transform)?;
+            let axis = Axis { height, p0, p1 };
+            let radii = [radius.0, top_radius.0];
+            let kind = frustum(&mut builder.report, item, &axis, radii, caps, &transform)?;
+            (kind, material, surface)
+        }
+        ShapeFile::Mesh { file, smooth, crease_angle, material, transform, surface } => {
+            flat_creases(&mut builder.report, item, smooth, crease_angle);
             let request = MeshRequest {
                 file: &file,
                 named_at: item.span_of("file"),
                 smooth,
+                crease_angle,
                 material: material.map(|name| index(document, "materials", &name)),
                 transform: placed(&mut builder.report, item, &transform)?,
                 emits: surface.emission.rgb() == [0.0; 3],
@@ -70,6 +97,15 @@ pub(super) fn shapes(
     let material = index(document, "materials", &material);
     builder.add_shapes(item, vec![shape(kind, material, surface.emission.rgb(), &surface)]);
     Some(())
+}
+
+/// Reports a crease angle of a mesh without normals.
+fn flat_creases(report: &mut Report, item: &Item, smooth: bool, crease_angle: Option<f64>) {
+    if !smooth && crease_angle.is_some() {
+        let message = format!("{} has a crease angle, but its faces are flat", item.place());
+        let help = Some("leave out `crease_angle` or `smooth = false`".to_owned());
+        report.error(item.span_of("crease_angle"), message, "expected a smooth mesh", help);
+    }
 }
 
 fn shape(kind: ShapeKind, material: usize, emission: [f64; 3], surface: &SurfaceFile) -> Shape {

@@ -7,7 +7,7 @@ use std::ops::Range;
 use serde_json::{Map, Value as Json};
 
 use super::document::{Document, Item, THE_FILE, join, place};
-use super::schema::{alternatives, describe, has_type, in_range, listed_strings, tag};
+use super::schema::{alternatives, describe, has_type, in_range, is_default, listed_strings, tag};
 use super::tree::Node;
 use crate::scene::diagnostics::{Report, list};
 use crate::scene::numbers::{LARGEST, SMALLEST, rounded_into};
@@ -190,11 +190,14 @@ impl<'c> Checker<'c> {
     ) -> Option<Json> {
         let schema = self.variant(whole, fitting, node, path)?;
         let place = match tag(schema) {
-            Some(kind) => format!("{path} ({kind})"),
-            None => place(path).to_owned(),
+            Some(kind) if node.get("type").is_some() => format!("{path} ({kind})"),
+            _ => place(path).to_owned(),
         };
         let mut complete = self.missing_keys(schema, node, &place);
         let mut table = Map::new();
+        if let Some(kind) = tag(schema) {
+            table.insert("type".to_owned(), Json::from(kind));
+        }
         for (key, key_span, value) in node.entries() {
             let Some(property) = self.property(schema, key, key_span, &place) else {
                 continue;
@@ -236,6 +239,9 @@ impl<'c> Checker<'c> {
         }
         let kinds = format!("known types: {}", list(tags.iter().copied()));
         let Some(kind) = node.get("type") else {
+            if let Some(default) = fitting.iter().find(|one| is_default(one)) {
+                return Some(default);
+            }
             let message = format!("`type` is missing in {path}");
             self.report.error(node.span(), message, "expected a `type` in here", Some(kinds));
             return None;
