@@ -14,3 +14,4 @@ mod load;
 mod named;
 mod shipped_assets;
 mod shipped_scenes;
+mod transforms;

@@ -11,6 +11,7 @@ use serde::Deserialize;
 
 use super::numbers::{NonNegative, Paint, Positive, Share, Spectrum, Strength};
 use super::schema::close_variants;
+use super::transform::PlacementFile;
 use crate::scene::settings::RenderSettings;
 use crate::scene::{Aov, ColorSpace, Filter, ToneMap, Wrap};
 
@@ -41,6 +42,12 @@ pub struct SceneFile {
     /// Surfaces, including area lights.
     #[serde(default)]
     pub shapes: Vec<ShapeFile>,
+    /// Named groups of shapes, which instances place.
+    #[serde(default)]
+    pub groups: BTreeMap<String, GroupFile>,
+    /// Placed groups.
+    #[serde(default)]
+    pub instances: Vec<InstanceFile>,
     /// Point, spot and sun lights.
     #[serde(default)]
     pub lights: Vec<LightFile>,
@@ -213,7 +220,7 @@ pub enum ShapeFile {
         radius: Positive,
         /// Name of a material.
         material: String,
-        /// Emission and texture coordinates.
+        /// Emission, texture coordinates and transform.
         #[serde(flatten)]
         surface: SurfaceFile,
     },
@@ -228,7 +235,7 @@ pub enum ShapeFile {
         v: Vec3,
         /// Name of a material.
         material: String,
-        /// Emission and texture coordinates.
+        /// Emission, texture coordinates and transform.
         #[serde(flatten)]
         surface: SurfaceFile,
     },
@@ -242,7 +249,7 @@ pub enum ShapeFile {
         radius: Positive,
         /// Name of a material.
         material: String,
-        /// Emission and texture coordinates.
+        /// Emission, texture coordinates and transform.
         #[serde(flatten)]
         surface: SurfaceFile,
     },
@@ -254,7 +261,7 @@ pub enum ShapeFile {
         normal: Vec3,
         /// Name of a material.
         material: String,
-        /// Emission and texture coordinates.
+        /// Emission, texture coordinates and transform.
         #[serde(flatten)]
         surface: SurfaceFile,
     },
@@ -267,7 +274,7 @@ pub enum ShapeFile {
         max: Vec3,
         /// Name of a material.
         material: String,
-        /// Emission and texture coordinates.
+        /// Emission, texture coordinates and transform.
         #[serde(flatten)]
         surface: SurfaceFile,
     },
@@ -282,10 +289,7 @@ pub enum ShapeFile {
         smooth: bool,
         /// Name of a material; by default, the materials of the OBJ's own MTL.
         material: Option<String>,
-        /// Transform from object to world space.
-        #[serde(default)]
-        transform: TransformFile,
-        /// Emission and texture coordinates.
+        /// Emission, texture coordinates and transform.
         #[serde(flatten)]
         surface: SurfaceFile,
     },
@@ -299,10 +303,7 @@ pub enum ShapeFile {
         segments: Option<Segments>,
         /// Name of a material.
         material: String,
-        /// Transform from object to world space.
-        #[serde(default)]
-        transform: TransformFile,
-        /// Emission and texture coordinates.
+        /// Emission, texture coordinates and transform.
         #[serde(flatten)]
         surface: SurfaceFile,
     },
@@ -324,9 +325,11 @@ pub struct SurfaceFile {
     pub emission: Spectrum<Strength>,
     /// Texture coordinates that replace the shape's own.
     pub uv: Option<Uv>,
+    /// Affine map from object to world space.
+    pub transform: Option<PlacementFile>,
 }
 
-/// Scale, then rotation, then translation.
+/// Scale, then rotation, then translation, of a profile file.
 #[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct TransformFile {
@@ -346,6 +349,27 @@ pub struct RotateFile {
     pub axis: Vec3,
     /// Angle in degrees.
     pub degrees: f64,
+}
+
+/// Shapes in a space of their own.
+#[derive(Debug, Default, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct GroupFile {
+    /// Surfaces; their transforms lead to the group's space.
+    pub shapes: Vec<ShapeFile>,
+    /// Instances of other groups in this one.
+    pub instances: Vec<InstanceFile>,
+}
+
+/// A group in another place.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct InstanceFile {
+    /// Name of a group.
+    pub group: String,
+    /// Affine map from the group's space to world space, or to that of the group that contains the
+    /// instance.
+    pub transform: Option<PlacementFile>,
 }
 
 /// A light without a surface.

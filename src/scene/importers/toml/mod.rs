@@ -7,6 +7,7 @@
 mod camera;
 mod document;
 pub mod file;
+mod group;
 mod light;
 mod material;
 pub mod numbers;
@@ -15,6 +16,7 @@ mod profile;
 mod profile_file;
 mod schema;
 mod shape;
+pub mod transform;
 mod tree;
 mod validate;
 
@@ -26,7 +28,9 @@ pub use self::profile_file::{LoadedProfile, ProfileFile, load_profile, load_prof
 pub use self::schema::schema_json;
 
 use self::document::Document;
-use self::file::{EnvironmentFile, LightFile, MaterialFile, SceneFile, ShapeFile, TextureFile};
+use self::file::{
+    EnvironmentFile, InstanceFile, LightFile, MaterialFile, SceneFile, ShapeFile, TextureFile,
+};
 use self::tree::Node;
 use self::validate::document;
 use crate::scene::builder::SceneBuilder;
@@ -59,15 +63,21 @@ impl Importer for Toml {
 
 /// Reads the parts of a scene.
 fn scene(builder: &mut SceneBuilder, root: Node) {
-    let count = root.get("shapes").map_or(0, |shapes| shapes.elements().count() as u64);
+    let count = |node: Node, key| node.get(key).map_or(0, |list| list.elements().count() as u64);
+    let own = |node: Node| count(node, "shapes") + count(node, "instances");
+    let groups = root.get("groups").into_iter().flat_map(|groups| groups.entries());
+    let count = own(root) + groups.map(|(_, _, group)| own(group)).sum::<u64>();
     let span = root.span_of("shapes");
     if !checks::shape_count(&mut builder.report, builder.allowance, count, span) {
         return;
     }
     let document = &document(&SCHEMA, root, &mut builder.report);
     version(&mut builder.report, document);
-    undefined(&mut builder.report, document, "materials", "shapes", "material");
-    undefined(&mut builder.report, document, "textures", "materials", "reflectance");
+    let all = |key| document.items(key).map(|item| item.node).chain(group::nodes(document, key));
+    undefined(&mut builder.report, document, "materials", (all("shapes"), "material"));
+    undefined(&mut builder.report, document, "groups", (all("instances"), "group"));
+    let materials = document.items("materials").map(|item| item.node);
+    undefined(&mut builder.report, document, "textures", (materials, "reflectance"));
     camera::camera(builder, document);
     camera::film(builder, document);
     camera::settings(builder, document);
@@ -83,7 +93,17 @@ fn scene(builder: &mut SceneBuilder, root: Node) {
     }
     for item in document.items("shapes") {
         if let Some(file) = item.read::<ShapeFile>(&mut builder.report) {
-            shape::shapes(builder, document, item, file);
+            if let Some(shapes) = shape::shapes(builder, document, item, file) {
+                builder.push_shapes(item, shapes);
+            }
+        }
+    }
+    let groups = group::groups(builder, document);
+    for item in document.items("instances") {
+        if let Some(file) = item.read::<InstanceFile>(&mut builder.report)
+            && let Some(shapes) = group::instance(builder, document, item, &file, &groups)
+        {
+            builder.push_shapes(item, shapes);
         }
     }
     for item in document.items("lights") {
@@ -114,11 +134,16 @@ fn index(document: &Document, section: &str, name: &str) -> usize {
     document.index(section, name).unwrap_or(0)
 }
 
-/// Reports names that parts of `user` reference under `key` and that `section` does not define.
-fn undefined(report: &mut Report, document: &Document, section: &str, user: &str, key: &str) {
+/// Reports names that nodes reference under `key` and that `section` does not define.
+fn undefined<'n>(
+    report: &mut Report,
+    document: &Document,
+    section: &str,
+    (nodes, key): (impl Iterator<Item = Node<'n>>, &str),
+) {
     let singular = section.trim_end_matches('s');
     let known: Vec<_> = document.items(section).map(|item| item.name).collect();
-    for node in document.items(user).filter_map(|item| item.node.get(key)) {
+    for node in nodes.filter_map(|node| node.get(key)) {
         let Some(name) = node.str().filter(|name| document.index(section, name).is_none()) else {
             continue;
         };

@@ -1,9 +1,10 @@
 //! Conversion of shapes and transforms.
 
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 
 use super::document::{Document, Item};
-use super::file::{ShapeFile, SurfaceFile, TransformFile};
+use super::file::{ShapeFile, SurfaceFile};
+use super::transform::placement;
 use super::{index, profile};
 use crate::scene::builder::SceneBuilder;
 use crate::scene::checks::unit;
@@ -12,13 +13,14 @@ use crate::scene::meshes::MeshRequest;
 use crate::scene::parts::Part;
 use crate::scene::{Shape, ShapeKind, Transform};
 
-/// Adds the shapes of an item: one, or one per material of a mesh with its own materials.
+/// The shapes of an item, checked: one, or one per material of a mesh with its own materials; `None`
+/// after an error, which is reported.
 pub(super) fn shapes(
     builder: &mut SceneBuilder,
     document: &Document,
     item: &Item,
     file: ShapeFile,
-) -> Option<()> {
+) -> Option<Vec<Shape>> {
     // The check of the emission follows also where the normal has no direction.
     let normal =
         |report: &mut Report, normal| unit(report, item, "normal", normal).unwrap_or(DVec3::Y);
@@ -43,57 +45,42 @@ pub(super) fn shapes(
         ShapeFile::Box { min, max, material, surface } => {
             (ShapeKind::Cuboid { min: min.into(), max: max.into() }, material, surface)
         }
-        ShapeFile::Revolution { profile, segments, material, transform, surface } => {
+        ShapeFile::Revolution { profile, segments, material, surface } => {
             let segments = profile::segments(&mut builder.report, item, profile, segments);
-            let transform = placed(&mut builder.report, item, &transform)?;
-            let segments = segments?;
+            let place = placement(&mut builder.report, item, surface.transform.as_ref())?;
+            let (segments, transform) = (segments?, place.similar.unwrap_or(Transform::IDENTITY));
             let kind = ShapeKind::Revolution { segments, transform, newton_tolerance: 0.0 };
-            (kind, material, surface)
+            let material = index(document, "materials", &material);
+            let shapes = vec![shape(kind, material, surface.emission.rgb(), &surface)];
+            return Some(builder.checked(item, shapes, place.rest()));
         }
-        ShapeFile::Mesh { file, smooth, material, transform, surface } => {
+        ShapeFile::Mesh { file, smooth, material, surface } => {
+            let place = placement(&mut builder.report, item, surface.transform.as_ref())?;
             let request = MeshRequest {
                 file: &file,
                 named_at: item.span_of("file"),
                 smooth,
                 material: material.map(|name| index(document, "materials", &name)),
-                transform: placed(&mut builder.report, item, &transform)?,
+                transform: place.similar.unwrap_or(Transform::IDENTITY),
                 emits: surface.emission.rgb() == [0.0; 3],
             };
             let parts = builder.mesh(&request)?.into_iter().map(|part| {
                 let emission = if request.emits { part.emission } else { surface.emission.rgb() };
                 shape(ShapeKind::Mesh(part.mesh), part.material, emission, &surface)
             });
-            builder.add_shapes(item, parts.collect());
-            return Some(());
+            let shapes = parts.collect();
+            return Some(builder.checked(item, shapes, place.rest()));
         }
     };
     let material = index(document, "materials", &material);
-    builder.add_shapes(item, vec![shape(kind, material, surface.emission.rgb(), &surface)]);
-    Some(())
+    let shapes = vec![shape(kind, material, surface.emission.rgb(), &surface)];
+    let place = match &surface.transform {
+        None => None,
+        file => Some(placement(&mut builder.report, item, file.as_ref())?),
+    };
+    Some(builder.checked(item, shapes, place.as_ref().map(|place| &place.map)))
 }
 
 fn shape(kind: ShapeKind, material: usize, emission: [f64; 3], surface: &SurfaceFile) -> Shape {
     Shape { kind, material, emission, planar_uv: surface.uv.is_some() }
-}
-
-/// Converts a transform; reports a rotation axis without a direction.
-pub(super) fn placed(report: &mut Report, item: &Item, file: &TransformFile) -> Option<Transform> {
-    let rotation = match &file.rotate {
-        None => DMat3::IDENTITY,
-        Some(rotate) => {
-            let Some(axis) = DVec3::from(rotate.axis).try_normalize() else {
-                let message = format!("`{}` has no direction", item.key("transform.rotate.axis"));
-                let node = item.node.get("transform").and_then(|node| node.get("rotate"));
-                let span = node.map_or(item.span(), |node| node.span_of("axis"));
-                report.error(span, message, "expected a vector of a length other than 0", None);
-                return None;
-            };
-            DMat3::from_axis_angle(axis, rotate.degrees.to_radians())
-        }
-    };
-    Some(Transform {
-        scale: file.scale.map_or(1.0, f64::from),
-        rotation,
-        translation: file.translate.into(),
-    })
 }
