@@ -20,13 +20,17 @@ fn continues(path: EyePath) -> bool {
 }
 
 fn environment(path: EyePath) -> vec3f {
+    var radiance = vec3f(0.0);
     //#if environment
     if scene.world.environment != NONE {
         let light = scene.lights[scene.world.environment];
-        return path.throughput * eval_environment(light, path.ray.direction);
+        radiance = path.throughput * eval_environment(light, path.ray.direction);
     }
     //#end
-    return vec3f(0.0);
+    //#if sun_disc
+    radiance += path.throughput * eval_sun_discs(path.ray.direction);
+    //#end
+    return radiance;
 }
 
 fn arrive(path: ptr<function, EyePath>, s: Surface, t: f32) {

@@ -103,8 +103,10 @@ pub fn with_unused(scene: &SceneTables, feature: Feature) -> Option<SceneTables>
         Feature::AreaTriangle | Feature::AreaCuboid | Feature::AreaRevolution => return None,
         // change what is rendered
         Feature::Infinite
+        | Feature::SunDisc
         | Feature::Environment
         | Feature::EnvironmentImage
+        | Feature::TiltedSky
         | Feature::Lens
         | Feature::Sampled
         | Feature::Local

@@ -5,6 +5,7 @@ use super::direct::transmittance;
 use super::geometry::intersect::intersect_scene;
 use super::geometry::surface::{Surface, surface_at};
 use super::lights::environment::eval_environment;
+use super::lights::sun_disc::eval_sun_discs;
 use super::materials::enclosing::interior_at;
 use super::materials::interior::{Interior, interior_before, medium_of, passes_hidden};
 use super::materials::shading::Scatter;
@@ -55,14 +56,18 @@ impl EyePath {
         intersect_scene(scene, &self.ray)
     }
 
-    /// Radiance of the environment in the ray's direction, times throughput.
+    /// Radiance of the environment and of suns in the ray's direction, times throughput.
     #[inline(always)]
     pub fn environment(&self, scene: &SceneTables) -> Vec3 {
-        if scene.world.environment == NONE {
-            return Vec3::ZERO;
+        let mut radiance = Vec3::ZERO;
+        if scene.world.environment != NONE {
+            let light = &scene.lights[scene.world.environment as usize];
+            radiance = self.throughput * eval_environment(scene, light, self.ray.direction);
         }
-        let light = &scene.lights[scene.world.environment as usize];
-        self.throughput * eval_environment(scene, light, self.ray.direction)
+        if scene.world.sun_discs != NONE {
+            radiance += self.throughput * eval_sun_discs(scene, self.ray.direction);
+        }
+        radiance
     }
 
     /// Moves to a hit and applies the absorption of the medium on the way.

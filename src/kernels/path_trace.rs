@@ -6,13 +6,14 @@ use super::direct::next_event;
 use super::eye_path::EyePath;
 use super::eye_sample::window_pixel;
 use super::lights::area::pdf_area;
-use super::lights::environment::pdf_environment;
+use super::lights::environment::{eval_environment, pdf_environment};
 use super::lights::select::{share_of, shares_at};
+use super::lights::sun_disc::{in_sun_disc, pdf_sun_disc};
 use super::materials::shading::{RADIANCE, shading_point};
 use super::materials::{pdf_rough, scatter_rough, scatter_specular};
 use super::math::rng::{rng_eye, rng_next};
 use super::math::sampling::balance;
-use super::real::{Vec2, Vec3};
+use super::real::{Real, Vec2, Vec3};
 use super::records::Dispatch;
 use super::shapes::ray::Ray;
 use super::tables::*;
@@ -39,15 +40,11 @@ pub fn path_trace(
     while path.continues(dispatch) {
         let hit = path.trace(scene);
         if hit.reference == NONE {
-            if pdf > 0.0 && scene.world.environment != NONE {
-                let sky = scene.world.environment;
-                let light = &scene.lights[sky as usize];
-                let other = pdf_environment(scene, light, path.ray.direction)
-                    * share_of(scene, shares, sky);
-                radiance += path.environment(scene) * balance(pdf, other);
+            radiance += if pdf > 0.0 {
+                weighted_environment(scene, &path, pdf, shares)
             } else {
-                radiance += path.environment(scene);
-            }
+                path.environment(scene)
+            };
             break;
         }
         let Ray { origin: from, direction, .. } = path.ray;
@@ -88,4 +85,28 @@ pub fn path_trace(
         }
     }
     (radiance, path.rays)
+}
+
+/// Radiance of the environment and of suns in the ray's direction, times throughput and the weight
+/// of scattering, which found the direction with density `pdf`, against next-event estimation.
+fn weighted_environment(scene: &SceneTables, path: &EyePath, pdf: Real, shares: u32) -> Vec3 {
+    let mut radiance = Vec3::ZERO;
+    let direction = path.ray.direction;
+    if scene.world.environment != NONE {
+        let sky = scene.world.environment;
+        let light = &scene.lights[sky as usize];
+        let other = pdf_environment(scene, light, direction) * share_of(scene, shares, sky);
+        let seen = path.throughput * eval_environment(scene, light, direction);
+        radiance = seen * balance(pdf, other);
+    }
+    let mut sun = scene.world.sun_discs;
+    while sun != NONE {
+        let light = &scene.lights[sun as usize];
+        if in_sun_disc(light, direction) {
+            let other = pdf_sun_disc(light) * share_of(scene, shares, sun);
+            radiance += path.throughput * light.color * balance(pdf, other);
+        }
+        sun = light.reference;
+    }
+    radiance
 }

@@ -36,5 +36,6 @@ mod materials;
 mod media;
 mod meshes;
 mod stability;
+mod sun_discs;
 mod truth;
 mod walls;
