@@ -12,6 +12,10 @@ const TEXTURE_CLAMP_V: u32 = 4u;
 const TEXELS_SRGB8: u32 = 0u;
 const TEXELS_LINEAR8: u32 = 1u;
 const TEXELS_FLOAT: u32 = 2u;
+const LIGHT_TWO_SIDED: u32 = 1u;
+const LIGHT_UNSEEN: u32 = 2u;
+const LIGHT_TEXTURED: u32 = 4u;
+const LIGHT_MAPPED: u32 = 8u;
 
 struct World {
     bounds_min: vec3f,
@@ -32,6 +36,10 @@ struct World {
     body_first: u32,
     body_count: u32,
     sun_discs: u32,
+    unseen: u32,
+    pad0: u32,
+    pad1: u32,
+    pad2: u32,
 }
 
 struct Camera {
@@ -88,6 +96,10 @@ struct Light {
     patch_count: u32,
     medium: u32,
     guide: u32,
+    flags: u32,
+    texture: u32,
+    map: u32,
+    pad: u32,
 }
 
 struct Cell {

@@ -63,6 +63,10 @@ pub struct World {
     /// Index of the first sun with an angular size, or [`NONE`]; [`Light::reference`] continues the
     /// list.
     pub sun_discs: u32,
+    /// 1 if some area light has the flag `LIGHT_UNSEEN`, else 0.
+    pub unseen: u32,
+    /// Padding to 16 bytes.
+    pub pad: [u32; 3],
 }
 
 /// Pinhole or thin-lens camera.
@@ -177,6 +181,15 @@ pub struct Texture {
     pub pad1: u32,
 }
 
+/// Light flag: an area light emits on both sides.
+pub const LIGHT_TWO_SIDED: u32 = 1;
+/// Light flag: rays straight from the camera pass through an area light.
+pub const LIGHT_UNSEEN: u32 = 2;
+/// Light flag: a texture scales the radiance of an area light.
+pub const LIGHT_TEXTURED: u32 = 4;
+/// Light flag: a textured rectangle is sampled by its emission map.
+pub const LIGHT_MAPPED: u32 = 8;
+
 /// Light source.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Plain, Zeroable)]
@@ -215,6 +228,14 @@ pub struct Light {
     pub medium: u32,
     /// First entry in `distributions` of its guide map (see `lights::guide`), or 0.
     pub guide: u32,
+    /// Area: sum of `LIGHT_TWO_SIDED`, `LIGHT_UNSEEN`, `LIGHT_TEXTURED` and `LIGHT_MAPPED`.
+    pub flags: u32,
+    /// Textured area: index of the texture that scales the radiance.
+    pub texture: u32,
+    /// Mapped area: first entry in `distributions` of its emission map (see `lights::glow`).
+    pub map: u32,
+    /// Padding to 16 bytes.
+    pub pad: u32,
 }
 
 /// Node of the tree over space whose leaves have separate probabilities of the lights for shadow

@@ -33,7 +33,13 @@ fn aov_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
     // shape and material at the pixel's centre, once
     if dispatch.passes_done == 0u {
         let ray = camera_ray(camera, x, y, vec4f(0.5));
-        let hit = intersect_scene(ray);
+        var hit = intersect_scene(ray);
+        //#if unseen
+        var centre = eye_path(ray);
+        while hit.reference != NONE && continues(centre) && passes_unseen(&centre, hit) {
+            hit = intersect_scene(centre.ray);
+        }
+        //#end
         next.reference = hit.reference;
         next.material = NONE;
         if hit.reference != NONE {
@@ -44,6 +50,7 @@ fn aov_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
     let k = dispatch.passes_done % dispatch.eye_samples;
     var rng = rng_eye(pixel * dispatch.eye_samples + k, dispatch.pass_number, dispatch.seed);
     var path = eye_path(camera_ray(camera, x, y, stratified(rng_next(&rng), k, pixel)));
+    var met = false;
     var albedo = vec3f(0.0);
     var normal = vec3f(0.0);
     var emitted = vec3f(0.0);
@@ -54,7 +61,13 @@ fn aov_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
             emitted += environment(path);
             break;
         }
-        let first = path.bounce == 0u && path.hidden == 0u;
+        //#if unseen
+        if passes_unseen(&path, hit) {
+            continue;
+        }
+        //#end
+        let first = !met;
+        met = true;
         let s = surface_at(path.ray, hit);
         arrive(&path, s, hit.t);
         if first {

@@ -100,13 +100,13 @@ fn direct_light(p: ShadingPoint, interior: Interior, rng: ptr<function, Rng>) ->
             } else {
                 //#if area
                 let at = surface_at(ray, hit);
-                if at.light != NONE && dot(ray.direction, at.normal) < 0.0 {
-                    let light = scene.lights[at.light];
-                    let other = pdf_area(
-                        shares, at.light, start, ray.direction, hit.t, at.normal, at.v
-                    );
-                    let seen = light.color * transmittance(medium_of(interior), hit.t);
-                    direct.radiance += scattered.weight * seen * balance(pdf, other);
+                if at.light != NONE {
+                    let emitted = eval_area(at, ray.direction);
+                    if max_component(emitted) > 0.0 {
+                        let other = pdf_area(shares, start, ray.direction, hit.t, at);
+                        let seen = emitted * transmittance(medium_of(interior), hit.t);
+                        direct.radiance += scattered.weight * seen * balance(pdf, other);
+                    }
                 }
                 //#end
             }

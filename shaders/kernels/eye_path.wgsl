@@ -41,12 +41,28 @@ fn arrive(path: ptr<function, EyePath>, s: Surface, t: f32) {
 
 fn emission(path: EyePath, s: Surface) -> vec3f {
     //#if area
-    if s.light != NONE && dot(-path.ray.direction, s.normal) > 0.0 {
-        return path.throughput * scene.lights[s.light].color;
+    if s.light != NONE {
+        return path.throughput * eval_area(s, path.ray.direction);
     }
     //#end
     return vec3f(0.0);
 }
+
+//#if unseen
+fn passes_unseen(path: ptr<function, EyePath>, hit: Hit) -> bool {
+    if (*path).bounce > 0u {
+        return false;
+    }
+    let s = surface_at((*path).ray, hit);
+    if s.light == NONE || (scene.lights[s.light].flags & LIGHT_UNSEEN) == 0u {
+        return false;
+    }
+    // the ray goes on from the same origin, so that lengths count from there
+    (*path).ray.t_min = hit.t;
+    (*path).hidden += 1u;
+    return true;
+}
+//#end
 
 //#if nested
 fn passes(path: ptr<function, EyePath>, s: Surface) -> bool {

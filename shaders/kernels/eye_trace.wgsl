@@ -25,6 +25,11 @@ fn eye_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
             point.radiance += environment(path);
             break;
         }
+        //#if unseen
+        if passes_unseen(&path, hit) {
+            continue;
+        }
+        //#end
         let s = surface_at(path.ray, hit);
         arrive(&path, s, hit.t);
         point.radiance += emission(path, s);

@@ -25,21 +25,21 @@ fn emit_from(light: Light, u: vec4f, v: vec4f) -> Emission {
     //#end
     //#if guided
     let sent = guided(light, vec2f(v.x, v.y), v.w);
-    var emission = emit_nearby(light, u, sent.across);
+    var emission = emit_nearby(light, u, sent.across, v.z);
     emission.flux *= sent.scale;
     emission.relative_flux *= sent.scale;
     //#else
-    var emission = emit_nearby(light, u, vec2f(v.x, v.y));
+    var emission = emit_nearby(light, u, vec2f(v.x, v.y), v.z);
     //#end
     emission.interior = interior_at(light.medium, emission.ray.origin);
     return emission;
 }
 
-fn emit_nearby(light: Light, u: vec4f, across: vec2f) -> Emission {
+fn emit_nearby(light: Light, u: vec4f, across: vec2f, side: f32) -> Emission {
     switch light.kind {
         //#if area
         case LIGHT_AREA: {
-            return emit_area(light, u, across);
+            return emit_area(light, u, across, side);
         }
         //#end
         //#if point

@@ -102,7 +102,10 @@ pub fn with_unused(scene: &SceneTables, feature: Feature) -> Option<SceneTables>
         // need geometry that a ray can reach
         Feature::AreaTriangle | Feature::AreaCuboid | Feature::AreaRevolution => return None,
         // change what is rendered
-        Feature::Infinite
+        Feature::Glow
+        | Feature::TwoSided
+        | Feature::Unseen
+        | Feature::Infinite
         | Feature::SunDisc
         | Feature::Environment
         | Feature::EnvironmentImage

@@ -63,6 +63,7 @@ const SHARED: &[Fragment] = fragments![
     "materials/shading.wgsl" if "scene || gather && lobes",
     "lights/shape.wgsl" if "scene && lights",
     "lights/select.wgsl" if "scene && lights",
+    "lights/glow.wgsl" if "scene && glow",
     "lights/area.wgsl" if "scene && area",
     "lights/point.wgsl" if "scene && point || scene && spot",
     "lights/spot.wgsl" if "scene && spot",

@@ -6,7 +6,6 @@ use super::camera::camera_ray;
 use super::direct::direct_light;
 use super::eye_path::EyePath;
 use super::eye_sample::{start_radius, stratified, window_pixel};
-use super::geometry::intersect::intersect_scene;
 use super::geometry::surface::surface_at;
 use super::materials::scatter_specular;
 use super::materials::shading::{RADIANCE, shading_point};
@@ -68,7 +67,14 @@ pub fn aov_trace(
     // shape and material at the pixel's centre, once
     if dispatch.passes_done == 0 {
         let ray = camera_ray(camera, x, y, Vec4::splat(0.5));
-        let hit = intersect_scene(scene, &ray);
+        let mut centre = EyePath::new(scene, ray);
+        let mut hit = centre.trace(scene);
+        while hit.reference != NONE
+            && centre.continues(dispatch)
+            && centre.passes_unseen(scene, &hit)
+        {
+            hit = centre.trace(scene);
+        }
         next.reference = hit.reference;
         next.material = NONE;
         if hit.reference != NONE {
@@ -85,6 +91,7 @@ pub fn aov_trace(
     let ray = camera_ray(camera, x, y, stratified(rng_next(&mut rng), k, pixel, dispatch));
     // follow the same path as `eye_trace`
     let mut path = EyePath::new(scene, ray);
+    let mut met = false;
     let mut albedo = Vec3::ZERO;
     let mut normal = Vec3::ZERO;
     let mut emission = Vec3::ZERO;
@@ -95,7 +102,11 @@ pub fn aov_trace(
             emission += path.environment(scene);
             break;
         }
-        let first = path.bounce == 0 && path.hidden == 0;
+        if path.passes_unseen(scene, &hit) {
+            continue;
+        }
+        let first = !met;
+        met = true;
         let s = path.arrive(scene, &hit);
         if first {
             next.hits += 1.0;

@@ -4,7 +4,7 @@
 
 use super::geometry::intersect::{intersect_scene, occluded};
 use super::geometry::surface::surface_at;
-use super::lights::area::pdf_area;
+use super::lights::area::{eval_area, pdf_area};
 use super::lights::environment::{eval_environment, pdf_environment};
 use super::lights::light::sample_light;
 use super::lights::select::{share_of, shares_at};
@@ -109,20 +109,13 @@ pub fn direct_light(
                 }
             } else {
                 let at = surface_at(scene, &ray, &hit);
-                if at.light != NONE && ray.direction.dot(at.normal) < 0.0 {
-                    let light = &scene.lights[at.light as usize];
-                    let other = pdf_area(
-                        scene,
-                        shares,
-                        at.light,
-                        origin,
-                        ray.direction,
-                        hit.t,
-                        at.normal,
-                        at.v,
-                    );
-                    let seen = light.color * transmittance(scene, medium_of(interior), hit.t);
-                    radiance += scattered.weight * seen * balance(pdf, other);
+                if at.light != NONE {
+                    let emitted = eval_area(scene, &at, ray.direction);
+                    if max_component(emitted) > 0.0 {
+                        let other = pdf_area(scene, shares, origin, ray.direction, hit.t, &at);
+                        let seen = emitted * transmittance(scene, medium_of(interior), hit.t);
+                        radiance += scattered.weight * seen * balance(pdf, other);
+                    }
                 }
             }
         }

@@ -4,6 +4,7 @@
 use super::direct::transmittance;
 use super::geometry::intersect::intersect_scene;
 use super::geometry::surface::{Surface, surface_at};
+use super::lights::area::eval_area;
 use super::lights::environment::eval_environment;
 use super::lights::sun_disc::eval_sun_discs;
 use super::materials::enclosing::interior_at;
@@ -83,10 +84,27 @@ impl EyePath {
     /// Emission of the surface towards the path, times throughput.
     #[inline(always)]
     pub fn emission(&self, scene: &SceneTables, s: &Surface) -> Vec3 {
-        if s.light == NONE || (-self.ray.direction).dot(s.normal) <= 0.0 {
+        if s.light == NONE {
             return Vec3::ZERO;
         }
-        self.throughput * scene.lights[s.light as usize].color
+        self.throughput * eval_area(scene, s, self.ray.direction)
+    }
+
+    /// Passes through a lamp that the camera does not see, if the path has come straight from the
+    /// camera; returns false otherwise. Called before [`Self::arrive`].
+    #[inline(always)]
+    pub fn passes_unseen(&mut self, scene: &SceneTables, hit: &Hit) -> bool {
+        if scene.world.unseen == 0 || self.bounce > 0 {
+            return false;
+        }
+        let s = surface_at(scene, &self.ray, hit);
+        if s.light == NONE || scene.lights[s.light as usize].flags & LIGHT_UNSEEN == 0 {
+            return false;
+        }
+        // the ray goes on from the same origin, so that lengths count from there
+        self.ray.t_min = hit.t;
+        self.hidden += 1;
+        true
     }
 
     /// Passes through the face if it is a hidden one; returns false otherwise.

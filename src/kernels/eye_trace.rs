@@ -45,6 +45,9 @@ pub fn eye_trace(
             point.radiance += path.environment(scene);
             break;
         }
+        if path.passes_unseen(scene, &hit) {
+            continue;
+        }
         let s = path.arrive(scene, &hit);
         point.radiance += path.emission(scene, &s);
         if path.passes(scene, &s) {

@@ -47,10 +47,13 @@ pub fn path_trace(
             };
             break;
         }
+        if path.passes_unseen(scene, &hit) {
+            continue;
+        }
         let Ray { origin: from, direction, .. } = path.ray;
         let s = path.arrive(scene, &hit);
         if pdf > 0.0 && s.light != NONE {
-            let other = pdf_area(scene, shares, s.light, from, direction, hit.t, s.normal, s.v);
+            let other = pdf_area(scene, shares, from, direction, hit.t, &s);
             radiance += path.emission(scene, &s) * balance(pdf, other);
         } else {
             radiance += path.emission(scene, &s);

@@ -49,7 +49,7 @@ pub fn emit_photon(scene: &SceneTables, rng: &mut Rng) -> Emission {
 pub fn emit_from(scene: &SceneTables, light: &Light, u: Vec4, v: Vec4) -> Emission {
     match LightKind::of(light.kind) {
         LightKind::Area => {
-            emit_nearby(scene, light, v, |across| emit_area(scene, light, u, across))
+            emit_nearby(scene, light, v, |across| emit_area(scene, light, u, across, v.z))
         }
         LightKind::Point => emit_nearby(scene, light, v, |across| emit_point(light, across)),
         LightKind::Spot => emit_nearby(scene, light, v, |across| emit_spot(light, across)),

@@ -4,12 +4,13 @@
 //! variant of [`LightKind`], and a case in each dispatch: `light.rs` and `emission.rs` with their
 //! twins. The compiler finds the Rust ones that are missing.
 
-use super::{materials, math, real, shapes, tables};
+use super::{geometry, materials, math, real, shapes, tables};
 
 pub mod aim;
 pub mod area;
 pub mod emission;
 pub mod environment;
+pub mod glow;
 pub mod guide;
 pub mod image;
 pub mod infinity;

@@ -1,5 +1,6 @@
 //! Lights: strengths in scene units, and sampling distributions.
 
+use super::glow::Glows;
 use super::lights::LightKind;
 use super::real::{Real, ToDouble, ToReal, Vec2, Vec3};
 use super::shape::Emitter;
@@ -42,7 +43,8 @@ pub fn pack_lights(
         emitters.iter().map(|e| LightSource::Shape(e.shape)).collect();
     sources.extend((0..scene.lights.len()).map(LightSource::Light));
     let mut distributions = Vec::new();
-    let mut luminance_max = emitters.iter().map(|e| luminance(e.radiance)).fold(0.0, f64::max);
+    let mut luminance_max = 0.0_f64;
+    let mut glows = Glows::default();
     for e in emitters {
         let mut light =
             Light { kind: LightKind::Area as u32, reference: e.reference, ..Light::zeroed() };
@@ -51,7 +53,10 @@ pub fn pack_lights(
             area = revolution_distribution(out, &mut light, &mut distributions);
         }
         light.area = area as Real;
-        lights.push((light, e.radiance, PI * area));
+        let glow = &scene.shapes[e.shape].glow;
+        let factor = glows.set(out, &mut light, glow, &mut distributions);
+        luminance_max = luminance_max.max(luminance(e.radiance) * factor.brightest);
+        lights.push((light, e.radiance, PI * area * factor.power));
     }
     for l in &scene.lights {
         let unit_sq = n.unit * n.unit;
@@ -153,6 +158,7 @@ pub fn pack_lights(
         light.color = (color / radiance_unit).to_real();
         light.selection = (power / total) as Real;
         light.first += count as u32;
+        light.map += count as u32;
         sum += power;
         out.distributions.push((sum / total) as Real);
         out.lights.push(light);
@@ -197,7 +203,7 @@ fn revolution_distribution(
 }
 
 /// Luminance of linear Rec. 709 light.
-fn luminance(color: DVec3) -> f64 {
+pub(super) fn luminance(color: DVec3) -> f64 {
     color.dot(DVec3::new(0.2126, 0.7152, 0.0722))
 }
 
@@ -250,7 +256,7 @@ fn image_distribution(
 
 /// Appends cumulative fractions in steps of the random numbers. Each value above zero gets at least
 /// one step, however bright the others are; if all are zero, the fractions are even.
-fn push_cumulative(values: &[f64], target: &mut Vec<Real>) {
+pub(super) fn push_cumulative(values: &[f64], target: &mut Vec<Real>) {
     let even = vec![1.0; values.len()];
     let dark = values.iter().sum::<f64>() <= 0.0;
     target.extend(cumulative(if dark { &even } else { values }).map(|share| share as Real));

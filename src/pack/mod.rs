@@ -2,6 +2,7 @@
 
 mod bodies;
 mod flat_regions;
+mod glow;
 mod image;
 mod light;
 mod objects;
@@ -73,9 +74,15 @@ pub fn pack(
     let mut out = SceneTables::empty();
     out.camera = camera(scene, &n, width, height);
     image::pack_textures(scene, &mut out);
-    for m in &scene.materials {
+    for (index, m) in scene.materials.iter().enumerate() {
         out.materials.push(material(m, n.unit));
-        let origin = image::reduced(DVec2::new(n.center.x, n.center.z), image::period(scene, m));
+        // the texture of an emission may have another period
+        let glows = |s: &scene::Shape| s.material == index && s.glow.texture.is_some();
+        let period = match scene.shapes.iter().any(glows) {
+            true => DVec2::INFINITY,
+            false => image::period(scene, m),
+        };
+        let origin = image::reduced(DVec2::new(n.center.x, n.center.z), period);
         if let Some(last) = out.materials.last_mut() {
             last.planar_origin = origin.to_real();
         }

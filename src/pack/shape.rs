@@ -74,6 +74,7 @@ pub fn pack_shapes(
         pack.period = scene
             .materials
             .get(shape.material)
+            .filter(|_| shape.glow.texture.is_none())
             .map_or(DVec2::INFINITY, |m| image::period(scene, m));
         let emission = shape.is_emitter().then(|| DVec3::from(shape.emission));
         match &*kinds[i] {

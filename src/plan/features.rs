@@ -107,6 +107,12 @@ features! {
     AreaCuboid = "area_cuboid",
     /// Emitting surfaces of revolution.
     AreaRevolution = "area_revolution",
+    /// Textured emission of area lights.
+    Glow = "glow",
+    /// Area lights that emit on both sides.
+    TwoSided = "two_sided",
+    /// Area lights that rays straight from the camera pass through.
+    Unseen = "unseen",
     /// Point lights.
     Point = "point",
     /// Spot lights.
@@ -223,6 +229,10 @@ impl Features {
         put(Feature::AreaDisc, area(KIND_DISC));
         put(Feature::AreaCuboid, area(KIND_CUBOID));
         put(Feature::AreaRevolution, area(KIND_REVOLUTION));
+        let flag = |flag| scene.lights.iter().any(|l| l.flags & flag != 0);
+        put(Feature::Glow, flag(LIGHT_TEXTURED));
+        put(Feature::TwoSided, flag(LIGHT_TWO_SIDED));
+        put(Feature::Unseen, scene.world.unseen != 0);
         put(Feature::Guided, scene.world.guided != 0);
         put(Feature::Point, light(LightKind::Point));
         put(Feature::Spot, light(LightKind::Spot));

@@ -55,7 +55,7 @@ impl Identity {
         } = scene;
         let mut all_shapes = Digest::default();
         for shape in shapes {
-            all_shapes.text(&(shape.material, shape.emission, shape.planar_uv));
+            all_shapes.text(&(shape.material, shape.emission, shape.glow, shape.planar_uv));
             match &shape.kind {
                 ShapeKind::Mesh(mesh) => all_shapes.mesh(mesh),
                 other => all_shapes.text(other),

@@ -14,6 +14,8 @@ pub struct Shape {
     /// Radiance in W sr^-1 m^-2 emitted on the side that the normal points to; zero for a surface
     /// that does not emit, and for planes.
     pub emission: Rgb,
+    /// Sides, visibility and texture of the emission.
+    pub glow: Glow,
     /// True if (u, v) is world (x, z) instead of the shape's own.
     pub planar_uv: bool,
 }
@@ -21,13 +23,25 @@ pub struct Shape {
 impl Shape {
     /// A shape without emission, with its own texture coordinates.
     pub fn new(kind: ShapeKind, material: usize) -> Self {
-        Self { kind, material, emission: [0.0; 3], planar_uv: false }
+        Self { kind, material, emission: [0.0; 3], glow: Glow::default(), planar_uv: false }
     }
 
     /// Returns whether it emits in any channel.
     pub fn is_emitter(&self) -> bool {
         self.emission.iter().any(|&channel| channel > 0.0)
     }
+}
+
+/// How a shape emits, in addition to its radiance.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Glow {
+    /// The side behind the normal emits the same radiance.
+    pub two_sided: bool,
+    /// Rays from the camera pass through the shape until they meet a mirror or glass. All other
+    /// light meets it.
+    pub hidden_from_camera: bool,
+    /// Index into [`super::Scene::textures`] of a factor on the radiance.
+    pub texture: Option<usize>,
 }
 
 /// Geometric primitives. Normals are unit; lengths are in scene units.

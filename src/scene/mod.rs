@@ -40,7 +40,7 @@ pub use appearance::{
 pub use camera::Camera;
 pub use diagnostics::{Finding, SceneErrors};
 pub use film::{Film, ToneMap};
-pub use geometry::{Mesh, Shape, ShapeKind, Transform, Triangle};
+pub use geometry::{Glow, Mesh, Shape, ShapeKind, Transform, Triangle};
 pub use images::ColorSpace;
 pub use importers::toml::{
     LoadedProfile, ProfileFile, load_profile, load_profile_within, schema_json,

@@ -50,6 +50,11 @@ impl Mixture {
         self.light(LightKind::Area as u32, reference(kind, 0));
     }
 
+    /// Sets a flag of every light.
+    fn flag(&mut self, flag: u32) {
+        self.scene.lights.iter_mut().for_each(|light| light.flags |= flag);
+    }
+
     fn material(&mut self, bsdf: Bsdf, absorption: f32) {
         self.scene.materials.push(Material {
             kind: bsdf as u32,
@@ -121,6 +126,20 @@ impl Mixture {
             }
             Feature::Spot => self.light(LightKind::Spot as u32, 0),
             Feature::Infinite => self.light(LightKind::Sun as u32, 0),
+            Feature::Glow => {
+                self.add(Feature::Texels);
+                self.add(Feature::AreaRectangle);
+                self.flag(LIGHT_TEXTURED);
+            }
+            Feature::TwoSided => {
+                self.add(Feature::AreaRectangle);
+                self.flag(LIGHT_TWO_SIDED);
+            }
+            Feature::Unseen => {
+                self.add(Feature::AreaRectangle);
+                self.flag(LIGHT_UNSEEN);
+                self.scene.world.unseen = 1;
+            }
             Feature::SunDisc => self.light(LightKind::SunDisc as u32, NONE),
             Feature::Far => {
                 self.add(Feature::Infinite);

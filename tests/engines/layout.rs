@@ -45,7 +45,8 @@ fn hosts() -> Vec<Layout> {
             primitive_size,
             body_first,
             body_count,
-            sun_discs
+            sun_discs,
+            unseen
         }),
         layout!(Camera {
             position,
@@ -129,7 +130,10 @@ fn hosts() -> Vec<Layout> {
             patch_first,
             patch_count,
             medium,
-            guide
+            guide,
+            flags,
+            texture,
+            map
         }),
         layout!(Dispatch {
             first,

@@ -30,7 +30,7 @@ material = "white"
 "#;
 
 /// Name, render settings, and the rest of the scene file.
-pub const SCENES: [(&str, &str, &str); 11] = [
+pub const SCENES: [(&str, &str, &str); 13] = [
     (
         "glass and mirror under a rectangle",
         "",
@@ -417,6 +417,139 @@ pub const SCENES: [(&str, &str, &str); 11] = [
         [environment]
         file = "sky.hdr"
         rotate = { axis = [1.0, 0.2, 0.3], degrees = 40.0 }
+        "#,
+    ),
+    (
+        "textured, two-sided and hidden lamps",
+        "",
+        r#"
+        [textures.picture]
+        type = "image"
+        file = "picture.png"
+        [textures.tiles]
+        type = "checker"
+        colors = [[0.9, 0.6, 0.3], [0.0, 0.2, 0.4]]
+        scale = [3.0, 2.0]
+        [textures.sky]
+        type = "image"
+        file = "sky.hdr"
+        [materials.steel]
+        type = "metal"
+        reflectance = 0.8
+        roughness = 0.4
+        [[shapes]]
+        type = "sphere"
+        center = [-0.6, 0.5, 0.0]
+        radius = 0.5
+        material = "steel"
+        [[shapes]]
+        type = "rectangle"
+        origin = [-0.4, 1.2, 2.0]
+        u = [0.8, 0.0, 0.0]
+        v = [0.0, 0.5, 0.1]
+        material = "white"
+        emission = "sky"
+        emission_strength = 0.5
+        two_sided_emission = true
+        camera_visible = false
+        [[shapes]]
+        type = "rectangle"
+        origin = [0.4, 1.2, -0.5]
+        u = [0.4, 0.0, 0.2]
+        v = [0.0, 0.5, 0.1]
+        material = "white"
+        uv = "planar"
+        emission = "tiles"
+        emission_strength = [8.0, 7.0, 6.0]
+        [[shapes]]
+        type = "sphere"
+        center = [0.8, 1.6, 0.2]
+        radius = 0.3
+        material = "white"
+        emission = "picture"
+        emission_strength = 5.0
+        [[shapes]]
+        type = "mesh"
+        file = "ball.obj"
+        material = "white"
+        emission = "picture"
+        emission_strength = 3.0
+        transform = { scale = 0.2, translate = [-0.9, 1.5, 0.3] }
+        "#,
+    ),
+    (
+        "textured lamps of the other kinds by photons, hidden from a lens",
+        "direct = \"photons\"\nmethod = \"ppm\"\neye_samples = 4",
+        r#"
+        [textures.picture]
+        type = "image"
+        file = "picture.png"
+        [textures.tiles]
+        type = "checker"
+        colors = [[0.9, 0.6, 0.3], [0.0, 0.2, 0.4]]
+        scale = [3.0, 2.0]
+        [textures.sky]
+        type = "image"
+        file = "sky.hdr"
+        [materials.steel]
+        type = "metal"
+        reflectance = 0.8
+        roughness = 0.4
+        [[shapes]]
+        type = "sphere"
+        center = [-0.6, 0.5, 0.0]
+        radius = 0.5
+        material = "steel"
+        [[shapes]]
+        type = "rectangle"
+        origin = [-0.4, 1.2, 2.0]
+        u = [0.8, 0.0, 0.0]
+        v = [0.0, 0.5, 0.1]
+        material = "white"
+        emission = "sky"
+        emission_strength = 0.5
+        two_sided_emission = true
+        camera_visible = false
+        [[shapes]]
+        type = "rectangle"
+        origin = [0.4, 1.2, -0.5]
+        u = [0.4, 0.0, 0.2]
+        v = [0.0, 0.5, 0.1]
+        material = "white"
+        uv = "planar"
+        emission = "tiles"
+        emission_strength = [8.0, 7.0, 6.0]
+        [[shapes]]
+        type = "sphere"
+        center = [0.8, 1.6, 0.2]
+        radius = 0.3
+        material = "white"
+        emission = "picture"
+        emission_strength = 5.0
+        [[shapes]]
+        type = "disc"
+        center = [-0.9, 1.2, 0.3]
+        normal = [0.3, -1.0, 0.1]
+        radius = 0.3
+        material = "white"
+        emission = "picture"
+        two_sided_emission = true
+        [[shapes]]
+        type = "box"
+        min = [-0.2, 1.5, -1.0]
+        max = [0.2, 1.7, -0.8]
+        material = "white"
+        emission = "picture"
+        emission_strength = 9.0
+        two_sided_emission = true
+        [[shapes]]
+        type = "revolution"
+        profile = [[0.1, 0.0], [0.3, 0.1], [0.1, 0.4]]
+        transform = { translate = [0.3, 1.4, 0.5] }
+        material = "white"
+        emission = "tiles"
+        emission_strength = 9.0
+        camera_visible = false
         "#,
     ),
 ];

@@ -222,16 +222,7 @@ fn lights() {
             if s.normal.dot(ray.direction) > -0.1 {
                 return 0.0;
             }
-            pdf_area(
-                &scene,
-                shares_at(&scene, from),
-                s.light,
-                from,
-                ray.direction,
-                hit.t,
-                s.normal,
-                s.v,
-            )
+            pdf_area(&scene, shares_at(&scene, from), from, ray.direction, hit.t, &s)
         };
         let draw = |r: &mut Rng| {
             let s = sample_light(&scene, shares_at(&scene, from), from, rng_next(r));

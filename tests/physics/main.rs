@@ -28,6 +28,7 @@ mod error_estimate;
 mod everything;
 mod far_ground;
 mod furnace;
+mod glow;
 mod integrating_sphere;
 mod invariance;
 mod irradiance;

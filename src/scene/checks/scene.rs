@@ -43,8 +43,9 @@ pub(crate) fn unused(report: &mut Report, scene: &Scene, named: &Named) {
         Some(Reflectance::Texture(index)) => Some(*index),
         Some(Reflectance::Color(_)) | None => None,
     };
+    let glows = scene.shapes.iter().filter_map(|shape| shape.glow.texture);
     let used = scene.materials.iter().filter_map(|material| texture(&material.kind));
-    let used: BTreeSet<_> = used.collect();
+    let used: BTreeSet<_> = used.chain(glows).collect();
     for (index, span) in named.textures.iter().filter(|(index, _)| !used.contains(index)) {
         warn(format!("texture `{}` is not used", scene.textures[*index].name), span);
     }

@@ -227,6 +227,22 @@ fn one_report_for_a_value() {
 fn one_fault_in_a_shape() {
     let shapes: &[(&str, Expected)] = &[
         (
+            "type = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1\nmaterial = \"grey\"\nemission = \"lamp\"",
+            (14, 12, "texture `lamp` is not defined"),
+        ),
+        (
+            "type = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1\nmaterial = \"grey\"\nemission_strength = 2",
+            (14, 21, "no meaning without a texture"),
+        ),
+        (
+            "type = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1\nmaterial = \"grey\"\ntwo_sided_emission = true",
+            (14, 22, "does not emit | expected an `emission` as well"),
+        ),
+        (
+            "type = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1\nmaterial = \"grey\"\ncamera_visible = false",
+            (14, 18, "does not emit"),
+        ),
+        (
             "type = \"sphere\"\ncenter = [0, 0, 0]\nradius = -1\nmaterial = \"grey\"",
             (12, 10, "greater than 0"),
         ),

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::numbers::{NonNegative, Paint, Positive, Share, Spectrum, Strength};
+use super::numbers::{Emission, NonNegative, Paint, Positive, Share, Spectrum, Strength};
 use super::schema::close_variants;
 use crate::scene::settings::RenderSettings;
 use crate::scene::{Aov, ColorSpace, Filter, ToneMap, Wrap};
@@ -319,9 +319,19 @@ pub struct Segments(
 /// Keys that every shape accepts.
 #[derive(Debug, Deserialize, JsonSchema)]
 pub struct SurfaceFile {
-    /// Emitted radiance in W sr^-1 m^-2, on the side that the normal points to.
+    /// Emitted radiance in W sr^-1 m^-2, on the side that the normal points to, or the name of a
+    /// texture.
     #[serde(default)]
-    pub emission: Spectrum<Strength>,
+    pub emission: Emission,
+    /// Radiance of a texture value of one, if the emission is a texture; 1 by default.
+    pub emission_strength: Option<Spectrum<Strength>>,
+    /// If true, both sides emit.
+    #[serde(default)]
+    pub two_sided_emission: bool,
+    /// If false, the camera sees through the emitting shape. Mirrors and glass show it, and it
+    /// casts shadows.
+    #[serde(default = "yes")]
+    pub camera_visible: bool,
     /// Texture coordinates that replace the shape's own.
     pub uv: Option<Uv>,
 }

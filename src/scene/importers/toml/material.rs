@@ -10,17 +10,32 @@ use crate::scene::numbers::LARGEST;
 use crate::scene::parts::Part;
 use crate::scene::{Material, MaterialKind, Reflectance, Rgb, Texture, TextureKind};
 
-pub(super) fn texture(builder: &mut SceneBuilder, item: &Item, file: TextureFile) -> Option<()> {
+pub(super) fn texture(
+    builder: &mut SceneBuilder,
+    document: &Document,
+    item: &Item,
+    file: TextureFile,
+) -> Option<()> {
+    // textures that only emit may have texels above 1
+    let names = |section, key: &str| {
+        let mut nodes = document.items(section).filter_map(|user| user.node.get(key));
+        nodes.any(|node| node.str() == Some(item.name))
+    };
+    let emits = names("shapes", "emission") && !names("materials", "reflectance");
+    let mut image = |file: &str, color_space| match emits {
+        true => builder.image(item, file, color_space),
+        false => builder.reflectance_image(item, file, color_space),
+    };
     let kind = match file {
         TextureFile::Image { file, color_space, filter, wrap, scale } => {
-            let image = builder.reflectance_image(item, &file, color_space)?;
+            let image = image(&file, color_space)?;
             TextureKind::Image { image, filter, wrap, scale }
         }
         TextureFile::Checker { colors, scale } => {
             TextureKind::Checker { colors: colors.map(|color| color.rgb()), scale }
         }
         TextureFile::Planks { file, size, color_space, filter } => {
-            let image = builder.reflectance_image(item, &file, color_space)?;
+            let image = image(&file, color_space)?;
             TextureKind::Planks { image, size: size.map(f64::from), filter }
         }
     };

@@ -68,12 +68,13 @@ fn scene(builder: &mut SceneBuilder, root: Node) {
     version(&mut builder.report, document);
     undefined(&mut builder.report, document, "materials", "shapes", "material");
     undefined(&mut builder.report, document, "textures", "materials", "reflectance");
+    undefined(&mut builder.report, document, "textures", "shapes", "emission");
     camera::camera(builder, document);
     camera::film(builder, document);
     camera::settings(builder, document);
     for item in document.items("textures") {
         if let Some(file) = item.read::<TextureFile>(&mut builder.report) {
-            material::texture(builder, item, file);
+            material::texture(builder, document, item, file);
         }
     }
     for item in document.items("materials") {

@@ -82,6 +82,23 @@ impl<T: Copy + Into<f64>> Spectrum<T> {
     }
 }
 
+/// Strength of a light from 0 to 1e30, linear [r, g, b], or the name of a texture.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(untagged)]
+#[schemars(inline)]
+pub enum Emission {
+    /// The same radiance everywhere.
+    Color(Spectrum<Strength>),
+    /// Name of a texture.
+    Texture(String),
+}
+
+impl Default for Emission {
+    fn default() -> Self {
+        Self::Color(Spectrum::default())
+    }
+}
+
 /// A number from 0 to 1, linear [r, g, b], or the name of a texture.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(untagged)]

@@ -4,13 +4,14 @@ use glam::{DMat3, DVec3};
 
 use super::document::{Document, Item};
 use super::file::{ShapeFile, SurfaceFile, TransformFile};
+use super::numbers::Emission;
 use super::{index, profile};
 use crate::scene::builder::SceneBuilder;
 use crate::scene::checks::unit;
 use crate::scene::diagnostics::Report;
 use crate::scene::meshes::MeshRequest;
 use crate::scene::parts::Part;
-use crate::scene::{Shape, ShapeKind, Transform};
+use crate::scene::{Glow, Rgb, Shape, ShapeKind, Transform};
 
 /// Adds the shapes of an item: one, or one per material of a mesh with its own materials.
 pub(super) fn shapes(
@@ -57,23 +58,60 @@ pub(super) fn shapes(
                 smooth,
                 material: material.map(|name| index(document, "materials", &name)),
                 transform: placed(&mut builder.report, item, &transform)?,
-                emits: surface.emission.rgb() == [0.0; 3],
+                emits: matches!(&surface.emission, Emission::Color(c) if c.rgb() == [0.0; 3]),
             };
+            let (own, glow) = emission(builder, document, item, &surface, request.emits);
             let parts = builder.mesh(&request)?.into_iter().map(|part| {
-                let emission = if request.emits { part.emission } else { surface.emission.rgb() };
-                shape(ShapeKind::Mesh(part.mesh), part.material, emission, &surface)
+                let emission = if request.emits { part.emission } else { own };
+                let planar_uv = surface.uv.is_some();
+                let kind = ShapeKind::Mesh(part.mesh);
+                Shape { kind, material: part.material, emission, glow, planar_uv }
             });
             builder.add_shapes(item, parts.collect());
             return Some(());
         }
     };
     let material = index(document, "materials", &material);
-    builder.add_shapes(item, vec![shape(kind, material, surface.emission.rgb(), &surface)]);
+    let (emission, glow) = emission(builder, document, item, &surface, false);
+    let planar_uv = surface.uv.is_some();
+    builder.add_shapes(item, vec![Shape { kind, material, emission, glow, planar_uv }]);
     Some(())
 }
 
-fn shape(kind: ShapeKind, material: usize, emission: [f64; 3], surface: &SurfaceFile) -> Shape {
-    Shape { kind, material, emission, planar_uv: surface.uv.is_some() }
+/// Converts the emission of a shape. Reports keys about an emission that the shape does not have;
+/// `elsewhere` if a mesh file may define one.
+fn emission(
+    builder: &mut SceneBuilder,
+    document: &Document,
+    item: &Item,
+    surface: &SurfaceFile,
+    elsewhere: bool,
+) -> (Rgb, Glow) {
+    let (radiance, texture) = match &surface.emission {
+        Emission::Color(color) => (color.rgb(), None),
+        Emission::Texture(name) => {
+            let strength = surface.emission_strength.map_or([1.0; 3], |strength| strength.rgb());
+            (strength, Some(index(document, "textures", name)))
+        }
+    };
+    let report = &mut builder.report;
+    if texture.is_none() && surface.emission_strength.is_some() {
+        let message = "`emission_strength` has no meaning without a texture as `emission`";
+        let label = "expected the name of a texture as `emission`";
+        report.error(item.span_of("emission_strength"), message, label, None);
+    }
+    let given = [
+        ("two_sided_emission", surface.two_sided_emission),
+        ("camera_visible", !surface.camera_visible),
+    ];
+    for (key, _) in given.into_iter().filter(|(_, given)| *given) {
+        if radiance == [0.0; 3] && !elsewhere {
+            let message = format!("`{key}` has no meaning on a shape that does not emit");
+            report.error(item.span_of(key), message, "expected an `emission` as well", None);
+        }
+    }
+    let hidden_from_camera = !surface.camera_visible;
+    (radiance, Glow { two_sided: surface.two_sided_emission, hidden_from_camera, texture })
 }
 
 /// Converts a transform; reports a rotation axis without a direction.
