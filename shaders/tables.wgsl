@@ -99,7 +99,9 @@ struct Light {
     flags: u32,
     texture: u32,
     map: u32,
-    pad: u32,
+    pad0: u32,
+    right: vec3f,
+    pad1: u32,
 }
 
 struct Cell {

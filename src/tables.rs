@@ -199,13 +199,14 @@ pub struct Light {
     pub color: Vec3,
     /// Number of its [`LightKind`](super::lights::LightKind).
     pub kind: u32,
-    /// Point and spot: position in scene space. Tilted image: its x axis.
+    /// Point, spot, profile, projector, beam: position in scene space. Tilted image: its x axis.
     pub position: Vec3,
     /// Probability that a photon starts at this light.
     pub selection: Real,
-    /// Spot and suns: unit direction in which light travels. Tilted image: its y axis.
+    /// Spot, projector, beam and suns: unit direction in which light travels. Tilted image: its y axis.
     pub direction: Vec3,
-    /// Area: area of the shape, square scene units.
+    /// Area and beam: area of the shape, square scene units. Projector: area of the image at
+    /// distance one.
     pub area: Real,
     /// Area: reference of the shape. Image: index of the texture. Sun disc: index of the next sun
     /// disc, or [`NONE`].
@@ -230,12 +231,17 @@ pub struct Light {
     pub guide: u32,
     /// Area: sum of `LIGHT_TWO_SIDED`, `LIGHT_UNSEEN`, `LIGHT_TEXTURED` and `LIGHT_MAPPED`.
     pub flags: u32,
-    /// Textured area: index of the texture that scales the radiance.
+    /// Textured area and projector: index of the texture that scales the light.
     pub texture: u32,
-    /// Mapped area: first entry in `distributions` of its emission map (see `lights::glow`).
+    /// Mapped area and projector: first entry in `distributions` of its emission map (see
+    /// `lights::glow`).
     pub map: u32,
     /// Padding to 16 bytes.
-    pub pad: u32,
+    pub pad0: u32,
+    /// Projector: vector to the right edge of the image at distance one.
+    pub right: Vec3,
+    /// Padding to 16 bytes.
+    pub pad1: u32,
 }
 
 /// Node of the tree over space whose leaves have separate probabilities of the lights for shadow

@@ -52,6 +52,19 @@ fn emit_nearby(light: Light, u: vec4f, across: vec2f, side: f32) -> Emission {
             return emit_spot(light, across);
         }
         //#end
+        //#if profile
+        case LIGHT_PROFILE: {
+            return emit_profile(light, across);
+        }
+        //#end
+        //#if luminaire
+        case LIGHT_PROJECTOR: {
+            return emit_projector(light, across);
+        }
+        case LIGHT_BEAM: {
+            return emit_beam(light, across);
+        }
+        //#end
         default: {
             let ray = Ray(light.position, 0.0, vec3f(0.0, 0.0, 1.0), FAR);
             return unguided(ray, vec3f(0.0));

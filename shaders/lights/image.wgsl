@@ -3,6 +3,9 @@
 
 fn untilted(light: Light, d: vec3f) -> vec3f {
     //#if tilted_sky
+    if light.patch_count == 0u {
+        return d;
+    }
     let z = cross(light.position, light.direction);
     return vec3f(dot(light.position, d), dot(light.direction, d), dot(z, d));
     //#else
@@ -12,6 +15,9 @@ fn untilted(light: Light, d: vec3f) -> vec3f {
 
 fn tilted(light: Light, d: vec3f) -> vec3f {
     //#if tilted_sky
+    if light.patch_count == 0u {
+        return d;
+    }
     let z = cross(light.position, light.direction);
     return light.position * d.x + light.direction * d.y + z * d.z;
     //#else

@@ -34,6 +34,19 @@ fn sample_one_light(light: Light, share: f32, position: vec3f, u: vec4f) -> Ligh
             return light_from_spot(light, share, position);
         }
         //#end
+        //#if profile
+        case LIGHT_PROFILE: {
+            return light_from_profile(light, share, position);
+        }
+        //#end
+        //#if luminaire
+        case LIGHT_PROJECTOR: {
+            return light_from_projector(light, share, position);
+        }
+        case LIGHT_BEAM: {
+            return light_from_beam(light, share, position);
+        }
+        //#end
         //#if infinite
         case LIGHT_SUN: {
             return light_from_sun(light, share);

@@ -154,7 +154,7 @@ fn pdf_patch(light: Light, k: u32, width: f32) -> f32 {
 }
 //#end
 
-//#if environment_image || glow || guided && photon_trace
+//#if environment_image || profile || glow || guided && photon_trace
 fn pdf_bin(first: u32, bin: u32, count: u32) -> f32 {
     let high = scene.distributions[first + bin];
     var low = 0.0;

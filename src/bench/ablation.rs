@@ -105,6 +105,8 @@ pub fn with_unused(scene: &SceneTables, feature: Feature) -> Option<SceneTables>
         Feature::Glow
         | Feature::TwoSided
         | Feature::Unseen
+        | Feature::Luminaire
+        | Feature::Profile
         | Feature::Infinite
         | Feature::SunDisc
         | Feature::Environment

@@ -2,12 +2,15 @@
 
 use super::LightKind;
 use super::area::emit_area;
+use super::beam::emit_beam;
 use super::guide::guided;
 use super::infinity::emit_from_infinity;
 use super::materials::enclosing::interior_at;
 use super::materials::interior::{Interior, interior_of};
 use super::math::rng::{Rng, rng_next};
 use super::point::emit_point;
+use super::profile::emit_profile;
+use super::projector::emit_projector;
 use super::real::{Real, Vec2, Vec3, Vec4};
 use super::select::choose_light;
 use super::shapes::ray::Ray;
@@ -53,6 +56,13 @@ pub fn emit_from(scene: &SceneTables, light: &Light, u: Vec4, v: Vec4) -> Emissi
         }
         LightKind::Point => emit_nearby(scene, light, v, |across| emit_point(light, across)),
         LightKind::Spot => emit_nearby(scene, light, v, |across| emit_spot(light, across)),
+        LightKind::Profile => {
+            emit_nearby(scene, light, v, |across| emit_profile(scene, light, across))
+        }
+        LightKind::Projector => {
+            emit_nearby(scene, light, v, |across| emit_projector(scene, light, across))
+        }
+        LightKind::Beam => emit_nearby(scene, light, v, |across| emit_beam(light, across)),
         LightKind::Sun | LightKind::SunDisc | LightKind::Constant | LightKind::Image => {
             emit_from_infinity(scene, light, u, v)
         }

@@ -17,6 +17,9 @@ pub fn eval_environment(scene: &SceneTables, light: &Light, direction: Vec3) -> 
         | LightKind::Area
         | LightKind::Point
         | LightKind::Spot
+        | LightKind::Profile
+        | LightKind::Projector
+        | LightKind::Beam
         | LightKind::Sun
         | LightKind::SunDisc => light.color,
     }
@@ -30,6 +33,9 @@ pub fn sample_environment(scene: &SceneTables, light: &Light, u: Vec4) -> Vec3 {
         | LightKind::Area
         | LightKind::Point
         | LightKind::Spot
+        | LightKind::Profile
+        | LightKind::Projector
+        | LightKind::Beam
         | LightKind::Sun
         | LightKind::SunDisc => sample_sphere(Vec2::new(u.y, u.z)),
     }
@@ -43,6 +49,9 @@ pub fn pdf_environment(scene: &SceneTables, light: &Light, direction: Vec3) -> R
         | LightKind::Area
         | LightKind::Point
         | LightKind::Spot
+        | LightKind::Profile
+        | LightKind::Projector
+        | LightKind::Beam
         | LightKind::Sun
         | LightKind::SunDisc => PDF_SPHERE,
     }

@@ -3,8 +3,11 @@
 
 use super::LightKind;
 use super::area::light_from_area;
+use super::beam::light_from_beam;
 use super::environment::light_from_environment;
 use super::point::light_from_point;
+use super::profile::light_from_profile;
+use super::projector::light_from_projector;
 use super::real::{Real, Vec3, Vec4};
 use super::select::{choose_light, share_of};
 use super::spot::light_from_spot;
@@ -56,6 +59,9 @@ pub fn sample_one_light(
         LightKind::Area => light_from_area(scene, light, share, position, u),
         LightKind::Point => light_from_point(light, share, position),
         LightKind::Spot => light_from_spot(light, share, position),
+        LightKind::Profile => light_from_profile(scene, light, share, position),
+        LightKind::Projector => light_from_projector(scene, light, share, position),
+        LightKind::Beam => light_from_beam(light, share, position),
         LightKind::Sun => light_from_sun(light, share),
         LightKind::SunDisc => light_from_sun_disc(light, share, u),
         LightKind::Constant | LightKind::Image => light_from_environment(scene, light, share, u),

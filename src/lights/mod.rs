@@ -8,6 +8,7 @@ use super::{geometry, materials, math, real, shapes, tables};
 
 pub mod aim;
 pub mod area;
+pub mod beam;
 pub mod emission;
 pub mod environment;
 pub mod glow;
@@ -15,7 +16,10 @@ pub mod guide;
 pub mod image;
 pub mod infinity;
 pub mod light;
+pub mod luminaire;
 pub mod point;
+pub mod profile;
+pub mod projector;
 pub mod select;
 pub mod shape;
 pub mod spot;
@@ -32,6 +36,12 @@ pub enum LightKind {
     Point,
     /// Point that emits into a cone.
     Spot,
+    /// Point whose intensity a table gives.
+    Profile,
+    /// Point that throws an image.
+    Projector,
+    /// Disc that emits parallel light.
+    Beam,
     /// Parallel light.
     Sun,
     /// Sun with an angular size.
@@ -44,10 +54,13 @@ pub enum LightKind {
 
 impl LightKind {
     /// All kinds.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 10] = [
         Self::Area,
         Self::Point,
         Self::Spot,
+        Self::Profile,
+        Self::Projector,
+        Self::Beam,
         Self::Sun,
         Self::SunDisc,
         Self::Constant,
@@ -73,6 +86,9 @@ impl LightKind {
             Self::Area => "AREA",
             Self::Point => "POINT",
             Self::Spot => "SPOT",
+            Self::Profile => "PROFILE",
+            Self::Projector => "PROJECTOR",
+            Self::Beam => "BEAM",
             Self::Sun => "SUN",
             Self::SunDisc => "SUN_DISC",
             Self::Constant => "CONSTANT",
@@ -84,7 +100,12 @@ impl LightKind {
     #[inline(always)]
     pub const fn is_infinite(self) -> bool {
         match self {
-            Self::Area | Self::Point | Self::Spot => false,
+            Self::Area
+            | Self::Point
+            | Self::Spot
+            | Self::Profile
+            | Self::Projector
+            | Self::Beam => false,
             Self::Sun | Self::SunDisc | Self::Constant | Self::Image => true,
         }
     }
@@ -93,7 +114,14 @@ impl LightKind {
     #[inline(always)]
     pub const fn is_environment(self) -> bool {
         match self {
-            Self::Area | Self::Point | Self::Spot | Self::Sun | Self::SunDisc => false,
+            Self::Area
+            | Self::Point
+            | Self::Spot
+            | Self::Profile
+            | Self::Projector
+            | Self::Beam
+            | Self::Sun
+            | Self::SunDisc => false,
             Self::Constant | Self::Image => true,
         }
     }

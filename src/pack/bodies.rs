@@ -56,7 +56,12 @@ pub fn stand_lights(out: &mut SceneTables) {
                 let (low, high) = lamp_box(out, kind_of(light.reference), index);
                 medium_of_box(out, p.position + p.normal * p.error, low, high)
             }
-            LightKind::Point | LightKind::Spot => {
+            LightKind::Beam => {
+                let half = Vec3::splat(light.outer.sqrt());
+                let at = light.position;
+                medium_of_box(out, at, at - half, at + half)
+            }
+            LightKind::Point | LightKind::Spot | LightKind::Profile | LightKind::Projector => {
                 medium_of_box(out, light.position, light.position, light.position)
             }
             LightKind::Sun | LightKind::SunDisc | LightKind::Constant | LightKind::Image => NONE,

@@ -30,6 +30,19 @@ pub struct Glows {
 }
 
 impl Glows {
+    /// Sets the texture and the emission map of a projector; returns the mean of the texture.
+    pub fn project(
+        &mut self,
+        out: &SceneTables,
+        light: &mut Light,
+        texture: usize,
+        distributions: &mut Vec<Real>,
+    ) -> f64 {
+        light.flags |= LIGHT_TEXTURED;
+        light.texture = texture as u32;
+        emission_map(out, light, distributions).max(1e-9)
+    }
+
     /// Sets the flags, the texture and the emission map of `light`.
     pub fn set(
         &mut self,

@@ -7,8 +7,8 @@ use crate::scene::{self, Filter, ImageData, Reflectance, Texels, TextureKind, Wr
 use bytemuck::Zeroable;
 use glam::{DVec2, DVec3};
 
-/// Fills `textures` and `texels`. An environment image becomes an additional texture after the
-/// scene's own.
+/// Fills `textures` and `texels`. The images of profile lights, in their order, and that of the
+/// environment become additional textures after the scene's own.
 pub fn pack_textures(scene: &scene::Scene, out: &mut SceneTables) {
     if scene.images.iter().any(|i| matches!(i.texels, Texels::Rgba8 { srgb: true, .. })) {
         out.texels.extend((0..256).map(|i| (linear_from_srgb(i as f64 / 255.0) as Real).to_bits()));
@@ -39,13 +39,25 @@ pub fn pack_textures(scene: &scene::Scene, out: &mut SceneTables) {
             },
         });
     }
-    if let Some(scene::Environment::Image { image, .. }) = &scene.environment {
+    let profiles = scene.lights.iter().filter_map(|light| match light {
+        scene::Light::Profile { image, .. } => Some(*image),
+        scene::Light::Point { .. }
+        | scene::Light::Spot { .. }
+        | scene::Light::Projector { .. }
+        | scene::Light::Beam { .. }
+        | scene::Light::Sun { .. } => None,
+    });
+    let sky = match &scene.environment {
+        Some(scene::Environment::Image { image, .. }) => Some(*image),
+        Some(scene::Environment::Constant { .. }) | None => None,
+    };
+    for image in profiles.chain(sky) {
         out.textures.push(Texture {
             kind: TEXTURE_IMAGE,
             scale: Vec2::ONE,
-            // a sky wraps around horizontally and ends at its poles
+            // a sphere of directions wraps around horizontally and ends at its poles
             flags: TEXTURE_CLAMP_V,
-            ..images[*image]
+            ..images[image]
         });
     }
 }

@@ -45,6 +45,7 @@ pub fn pack_lights(
     let mut distributions = Vec::new();
     let mut luminance_max = 0.0_f64;
     let mut glows = Glows::default();
+    let mut profiles = 0;
     for e in emitters {
         let mut light =
             Light { kind: LightKind::Area as u32, reference: e.reference, ..Light::zeroed() };
@@ -83,6 +84,59 @@ pub fn pack_lights(
                     ..Light::zeroed()
                 };
                 (light, DVec3::from(*intensity) / unit_sq, PI * (inner + outer))
+            }
+            scene::Light::Profile { position, image: _, intensity } => {
+                let mut light = Light {
+                    kind: LightKind::Profile as u32,
+                    position: n.point(*position).to_real(),
+                    reference: (scene.textures.len() + profiles) as u32,
+                    outer: 1.0,
+                    ..Light::zeroed()
+                };
+                profiles += 1;
+                let intensity = DVec3::from(*intensity);
+                let mean = image_distribution(out, &mut light, intensity, &mut distributions)
+                    .map_or(0.0, |[mean, _]| mean);
+                (light, intensity / unit_sq, 4.0 * PI * mean.max(1e-9))
+            }
+            scene::Light::Projector {
+                position,
+                target,
+                up,
+                irradiance,
+                fov_degrees,
+                aspect,
+                texture,
+            } => {
+                let forward = (*target - *position).normalize();
+                let half = (0.5 * fov_degrees).to_radians().tan();
+                let area = 4.0 * half * half * aspect;
+                let mut light = Light {
+                    kind: LightKind::Projector as u32,
+                    position: n.point(*position).to_real(),
+                    direction: forward.to_real(),
+                    right: (forward.cross(*up).normalize() * half).to_real(),
+                    outer: *aspect as Real,
+                    area: area as Real,
+                    ..Light::zeroed()
+                };
+                let mean = texture.map_or(1.0, |texture| {
+                    glows.project(out, &mut light, texture, &mut distributions)
+                });
+                (light, DVec3::from(*irradiance) / unit_sq, area * mean)
+            }
+            scene::Light::Beam { position, direction, radius, irradiance } => {
+                let radius = radius / n.unit;
+                let area = PI * radius * radius;
+                let light = Light {
+                    kind: LightKind::Beam as u32,
+                    position: n.point(*position).to_real(),
+                    direction: direction.normalize().to_real(),
+                    outer: (radius * radius) as Real,
+                    area: area as Real,
+                    ..Light::zeroed()
+                };
+                (light, DVec3::from(*irradiance), area)
             }
             scene::Light::Sun { direction, irradiance, angle_degrees } if *angle_degrees > 0.0 => {
                 let half = (0.5 * angle_degrees).to_radians();

@@ -23,7 +23,12 @@ impl PackedScene {
             let photons = f64::from(settings.photons) * f64::from(light.selection);
             let contribution = self.contributions.get(i).copied().unwrap_or(0.0);
             let sized = match LightKind::of(light.kind) {
-                LightKind::Point | LightKind::Spot | LightKind::Sun => false,
+                LightKind::Point
+                | LightKind::Spot
+                | LightKind::Profile
+                | LightKind::Projector
+                | LightKind::Beam
+                | LightKind::Sun => false,
                 LightKind::Area | LightKind::SunDisc | LightKind::Constant | LightKind::Image => {
                     true
                 }

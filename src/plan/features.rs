@@ -117,6 +117,10 @@ features! {
     Point = "point",
     /// Spot lights.
     Spot = "spot",
+    /// Projectors and beams.
+    Luminaire = "luminaire",
+    /// Point lights whose intensity a table gives.
+    Profile = "profile",
     /// Light from infinity: suns and environments.
     Infinite = "infinite",
     /// Suns with an angular size.
@@ -236,6 +240,9 @@ impl Features {
         put(Feature::Guided, scene.world.guided != 0);
         put(Feature::Point, light(LightKind::Point));
         put(Feature::Spot, light(LightKind::Spot));
+        let luminaire = light(LightKind::Projector) || light(LightKind::Beam);
+        put(Feature::Luminaire, luminaire);
+        put(Feature::Profile, light(LightKind::Profile));
         put(Feature::Infinite, lights().any(LightKind::is_infinite));
         put(Feature::SunDisc, light(LightKind::SunDisc));
         put(Feature::Far, scene.world.far != 0);

@@ -24,6 +24,9 @@ impl LightSource {
                 let kind = match scene.lights.get(index) {
                     Some(Light::Point { .. }) => "point light",
                     Some(Light::Spot { .. }) => "spot light",
+                    Some(Light::Profile { .. }) => "IES light",
+                    Some(Light::Projector { .. }) => "projector",
+                    Some(Light::Beam { .. }) => "beam",
                     Some(Light::Sun { .. }) => "sun",
                     None => "light",
                 };

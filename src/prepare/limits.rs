@@ -210,7 +210,10 @@ impl Limits<'_> {
             Light::Point { intensity, .. } | Light::Spot { intensity, .. } => {
                 Some(intensity.iter().sum::<f64>())
             }
-            Light::Sun { .. } => None,
+            Light::Profile { .. }
+            | Light::Projector { .. }
+            | Light::Beam { .. }
+            | Light::Sun { .. } => None,
         };
         let strongest = self.scene.lights.iter().filter_map(power).fold(0.0, f64::max);
         let dim = |(index, light): (usize, &Light)| {

@@ -28,6 +28,46 @@ pub enum Light {
         /// `(1 - blend) angle`, then a smoothstep in the angle's cosine down to zero at `angle`.
         blend: f64,
     },
+    /// A point light whose intensity in each direction an image gives, as an IES file does.
+    Profile {
+        /// Position in world space.
+        position: DVec3,
+        /// Index into [`super::Scene::images`] of an equirectangular image as that of an
+        /// [`Environment::Image`] without a rotation; it is looked up in the direction in which
+        /// light travels.
+        image: usize,
+        /// Radiant intensity in W/sr of a texel value of one.
+        intensity: Rgb,
+    },
+    /// A point light that throws an image through a pinhole.
+    Projector {
+        /// Position in world space.
+        position: DVec3,
+        /// A point on the axis, different from `position`.
+        target: DVec3,
+        /// Up direction of the image, not parallel to the axis.
+        up: DVec3,
+        /// Irradiance in W/m^2 of a white texel on a screen that faces the projector at distance
+        /// one.
+        irradiance: Rgb,
+        /// Angle in degrees between the left and the right edge, in (0, 180).
+        fov_degrees: f64,
+        /// Height of the image over its width, > 0.
+        aspect: f64,
+        /// Index into [`super::Scene::textures`] of a factor on the irradiance.
+        texture: Option<usize>,
+    },
+    /// Parallel light that leaves a disc along its axis.
+    Beam {
+        /// Centre of the disc in world space.
+        position: DVec3,
+        /// Unit vector in which the light travels.
+        direction: DVec3,
+        /// Radius of the disc, > 0.
+        radius: f64,
+        /// Irradiance in W/m^2 on a surface that faces the beam.
+        irradiance: Rgb,
+    },
     /// Light from infinitely far away: parallel, or from a disc of even radiance.
     Sun {
         /// Unit vector in which the light travels.

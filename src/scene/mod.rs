@@ -21,6 +21,7 @@ mod diagnostics;
 mod encoding;
 mod film;
 mod geometry;
+mod ies;
 mod images;
 pub mod importers;
 mod light;
@@ -67,7 +68,7 @@ pub struct Scene {
     pub materials: Vec<Material>,
     /// Surfaces, including area lights.
     pub shapes: Vec<Shape>,
-    /// Point, spot and sun lights.
+    /// Lights without a surface.
     pub lights: Vec<Light>,
     /// Light from infinitely far away.
     pub environment: Option<Environment>,

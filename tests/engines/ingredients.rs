@@ -140,6 +140,11 @@ impl Mixture {
                 self.flag(LIGHT_UNSEEN);
                 self.scene.world.unseen = 1;
             }
+            Feature::Luminaire => self.light(LightKind::Beam as u32, 0),
+            Feature::Profile => {
+                self.add(Feature::Texels);
+                self.light(LightKind::Profile as u32, 0);
+            }
             Feature::SunDisc => self.light(LightKind::SunDisc as u32, NONE),
             Feature::Far => {
                 self.add(Feature::Infinite);

@@ -133,7 +133,8 @@ fn hosts() -> Vec<Layout> {
             guide,
             flags,
             texture,
-            map
+            map,
+            right
         }),
         layout!(Dispatch {
             first,

@@ -30,7 +30,7 @@ material = "white"
 "#;
 
 /// Name, render settings, and the rest of the scene file.
-pub const SCENES: [(&str, &str, &str); 13] = [
+pub const SCENES: [(&str, &str, &str); 15] = [
     (
         "glass and mirror under a rectangle",
         "",
@@ -552,6 +552,113 @@ pub const SCENES: [(&str, &str, &str); 13] = [
         camera_visible = false
         "#,
     ),
+    (
+        "an IES light, projectors and a beam",
+        "",
+        r#"
+        [textures.picture]
+        type = "image"
+        file = "picture.png"
+        [materials.steel]
+        type = "metal"
+        reflectance = 0.8
+        roughness = 0.4
+        [materials.glass]
+        type = "glass"
+        ior = 1.5
+        [[shapes]]
+        type = "sphere"
+        center = [-0.6, 0.5, 0.0]
+        radius = 0.5
+        material = "steel"
+        [[shapes]]
+        type = "sphere"
+        center = [0.6, 0.5, 0.0]
+        radius = 0.4
+        material = "glass"
+        [[lights]]
+        type = "ies"
+        file = "lamp.ies"
+        position = [0.5, 2.0, 0.5]
+        direction = [0.1, -1.0, 0.3]
+        rotate = 20.0
+        scale = [2.0, 1.8, 1.5]
+        [[lights]]
+        type = "projector"
+        position = [-1.0, 1.5, 1.5]
+        target = [0.0, 0.0, 0.0]
+        irradiance = 5.0
+        fov = 40.0
+        texture = "picture"
+        [[lights]]
+        type = "projector"
+        position = [1.0, 1.5, 1.5]
+        target = [0.0, 0.0, 0.0]
+        irradiance = [0.5, 1.0, 0.5]
+        fov = 20.0
+        [[lights]]
+        type = "beam"
+        position = [0.7, 2.0, 0.1]
+        direction = [-0.1, -1.0, 0.0]
+        radius = 0.4
+        irradiance = 2.0
+        [environment]
+        file = "sky.hdr"
+        rotate = { axis = [1.0, 0.2, 0.3], degrees = 40.0 }
+        "#,
+    ),
+    (
+        "an IES light, projectors and a beam by photons",
+        "direct = \"photons\"",
+        r#"
+        [textures.picture]
+        type = "image"
+        file = "picture.png"
+        [materials.steel]
+        type = "metal"
+        reflectance = 0.8
+        roughness = 0.4
+        [materials.glass]
+        type = "glass"
+        ior = 1.5
+        [[shapes]]
+        type = "sphere"
+        center = [-0.6, 0.5, 0.0]
+        radius = 0.5
+        material = "steel"
+        [[shapes]]
+        type = "sphere"
+        center = [0.6, 0.5, 0.0]
+        radius = 0.4
+        material = "glass"
+        [[lights]]
+        type = "ies"
+        file = "lamp.ies"
+        position = [0.5, 2.0, 0.5]
+        direction = [0.1, -1.0, 0.3]
+        rotate = 20.0
+        scale = [2.0, 1.8, 1.5]
+        [[lights]]
+        type = "projector"
+        position = [-1.0, 1.5, 1.5]
+        target = [0.0, 0.0, 0.0]
+        irradiance = 5.0
+        fov = 40.0
+        texture = "picture"
+        [[lights]]
+        type = "projector"
+        position = [1.0, 1.5, 1.5]
+        target = [0.0, 0.0, 0.0]
+        irradiance = [0.5, 1.0, 0.5]
+        fov = 20.0
+        [[lights]]
+        type = "beam"
+        position = [0.7, 2.0, 0.1]
+        direction = [-0.1, -1.0, 0.0]
+        radius = 0.4
+        irradiance = 2.0
+        "#,
+    ),
 ];
 
 /// The folder with the files that scenes refer to.
@@ -571,10 +678,15 @@ fn assets() -> &'static Path {
         });
         sky.save(folder.join("sky.hdr")).unwrap();
         std::fs::write(folder.join("wedge.obj"), WEDGE).unwrap();
+        std::fs::write(folder.join("lamp.ies"), LAMP).unwrap();
         std::fs::write(folder.join("ball.obj"), ball(12, 8)).unwrap();
         folder
     })
 }
+
+/// A luminaire that is brightest aslant.
+const LAMP: &str = "IESNA:LM-63-2002\nTILT=NONE\n1 900 2 4 3 1 2 0 0 0\n1 1 10\n0 30 60 90\n\
+    0 90 180\n800 900 300 0\n800 500 100 10\n800 200 50 0\n";
 
 /// A wedge with triangular ends.
 const WEDGE: &str = "v 0 0 0\nv 0.5 0 0.1\nv 0.1 0.3 0\nv 0 0 0.6\nv 0.5 0 0.7\nv 0.1 0.3 0.6\n\

@@ -150,7 +150,6 @@ fn shapes() -> Vec<String> {
 /// in front of it and, if both sides emit, behind it or inside; and its directions follow
 /// `pdf_area`.
 #[test]
-#[ignore = "takes minutes in the development profile"]
 fn samples_carry_what_rays_meet() {
     let texture = picture("physics-glow.exr", 3.0);
     let head = "version = 1\n[camera]\nposition = [0, -2, 0]\ntarget = [0, 0, 0]\nup = [1, 0, 0]\nfov = 40.0\n\
@@ -231,7 +230,6 @@ fn directions_follow_the_map() {
 /// Theory: shadow rays, photons and scattered rays estimate one integral under a textured shape of
 /// every kind that emits on both sides.
 #[test]
-#[ignore = "takes minutes in the development profile"]
 fn methods_agree() {
     let camera =
         Camera { position: DVec3::new(0.0, 1.6, 3.0), target: DVec3::ZERO, fov: 12.0, size: 8 };

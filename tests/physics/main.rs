@@ -33,6 +33,7 @@ mod integrating_sphere;
 mod invariance;
 mod irradiance;
 mod lab;
+mod luminaires;
 mod materials;
 mod media;
 mod meshes;

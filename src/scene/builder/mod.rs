@@ -12,7 +12,9 @@ use super::load::{InputFile, Loaded};
 use super::meshes::MeshState;
 use super::parts::Part;
 use super::settings::RenderSettings;
-use super::{Camera, Environment, Film, Light, Material, Scene, Shape, Spans, Texture, checks};
+use super::{
+    Camera, Environment, Film, Light, Material, Scene, Shape, Spans, Texture, TextureKind, checks,
+};
 
 /// A scene in the making.
 ///
@@ -96,6 +98,17 @@ impl<'a> SceneBuilder<'a> {
     pub fn add_own_texture(&mut self, texture: Texture) -> usize {
         self.textures.push(texture);
         self.textures.len() - 1
+    }
+
+    /// Width over height of the image of a texture; `None` for a pattern.
+    pub fn image_aspect(&self, texture: usize) -> Option<f64> {
+        match self.textures.get(texture)?.kind {
+            TextureKind::Image { image, .. } => {
+                let image = self.images.images.get(image)?;
+                Some(f64::from(image.width) / f64::from(image.height))
+            }
+            TextureKind::Checker { .. } | TextureKind::Planks { .. } => None,
+        }
     }
 
     /// Adds a material, and returns its index.

@@ -18,6 +18,19 @@ pub(crate) fn light(report: &mut Report, part: &dyn Part, light: &Light) {
             }
             ("intensity", intensity)
         }
+        Light::Profile { intensity, .. } => ("scale", intensity),
+        Light::Projector { position, target, up, irradiance, .. } => {
+            if position == target {
+                let message = format!("the target of {} is its position", part.place());
+                report.error(part.span_of("target"), message, "expected another point", None);
+            } else if (*target - *position).normalize().cross(*up).length() <= 1e-9 * up.length() {
+                let message =
+                    format!("the up direction of {} is parallel to its axis", part.place());
+                report.error(part.span_of("up"), message, "expected another direction", None);
+            }
+            ("irradiance", irradiance)
+        }
+        Light::Beam { irradiance, .. } => ("irradiance", irradiance),
         Light::Sun { irradiance, angle_degrees, .. } => {
             if *angle_degrees > 0.0 && *angle_degrees < NARROWEST_SUN {
                 let message = format!(

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use crate::scene::diagnostics::Report;
 use crate::scene::limits::{Allowance, within};
-use crate::scene::{MaterialKind, Reflectance, Scene};
+use crate::scene::{Light, MaterialKind, Reflectance, Scene};
 
 /// Reports a number of shapes in the file, at `span`, that the limits do not allow; returns whether
 /// they do. Importers call this before they convert the shapes.
@@ -45,7 +45,15 @@ pub(crate) fn unused(report: &mut Report, scene: &Scene, named: &Named) {
     };
     let glows = scene.shapes.iter().filter_map(|shape| shape.glow.texture);
     let used = scene.materials.iter().filter_map(|material| texture(&material.kind));
-    let used: BTreeSet<_> = used.chain(glows).collect();
+    let projected = scene.lights.iter().filter_map(|light| match light {
+        Light::Projector { texture, .. } => *texture,
+        Light::Point { .. }
+        | Light::Spot { .. }
+        | Light::Profile { .. }
+        | Light::Beam { .. }
+        | Light::Sun { .. } => None,
+    });
+    let used: BTreeSet<_> = used.chain(glows).chain(projected).collect();
     for (index, span) in named.textures.iter().filter(|(index, _)| !used.contains(index)) {
         warn(format!("texture `{}` is not used", scene.textures[*index].name), span);
     }

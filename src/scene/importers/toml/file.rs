@@ -41,7 +41,7 @@ pub struct SceneFile {
     /// Surfaces, including area lights.
     #[serde(default)]
     pub shapes: Vec<ShapeFile>,
-    /// Point, spot and sun lights.
+    /// Lights without a surface.
     #[serde(default)]
     pub lights: Vec<LightFile>,
     /// Light from infinitely far away.
@@ -385,6 +385,53 @@ pub enum LightFile {
         #[serde(default)]
         blend: Share,
     },
+    /// A point light with the intensities of an IES file (LM-63, type C); 683 lumens are one watt.
+    Ies {
+        /// An .ies file.
+        file: String,
+        /// Position in world space.
+        position: Vec3,
+        /// Direction of the luminaire's nadir; straight down by default.
+        #[serde(default = "down")]
+        direction: Vec3,
+        /// Rotation of the luminaire about its axis in degrees, before it is pointed along the
+        /// direction. A luminaire that points down has horizontal angle 0 towards +x, and 90
+        /// towards -z.
+        #[serde(default)]
+        rotate: f64,
+        /// Factor on the intensities, such as a color; 1 by default.
+        scale: Option<Spectrum<Strength>>,
+    },
+    /// A point light that throws an image through a pinhole.
+    Projector {
+        /// Position in world space.
+        position: Vec3,
+        /// A point on the axis.
+        target: Vec3,
+        /// Up direction of the image.
+        #[serde(default = "y_axis")]
+        up: Vec3,
+        /// Irradiance in W/m^2 of white on a screen that faces the projector at distance one.
+        irradiance: Spectrum<Strength>,
+        /// Angle in degrees between the left and the right edge, between 0 and 180.
+        #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 180))]
+        fov: f64,
+        /// Width of the image over its height; by default that of the texture's image, or 1.
+        aspect: Option<Positive>,
+        /// Name of the texture that is thrown; white by default.
+        texture: Option<String>,
+    },
+    /// Parallel light that leaves a disc along its axis.
+    Beam {
+        /// Centre of the disc.
+        position: Vec3,
+        /// Direction in which the light travels; any length but 0.
+        direction: Vec3,
+        /// Radius of the disc in scene units.
+        radius: Positive,
+        /// Irradiance on a surface facing the beam, in W/m^2.
+        irradiance: Spectrum<Strength>,
+    },
     /// Light from infinitely far away: parallel, or from a disc that the camera sees.
     Sun {
         /// Direction in which the light travels; any length but 0.
@@ -427,6 +474,10 @@ pub struct EnvironmentFile {
 
 fn y_axis() -> Vec3 {
     [0.0, 1.0, 0.0]
+}
+
+fn down() -> Vec3 {
+    [0.0, -1.0, 0.0]
 }
 
 fn ones() -> [f64; 2] {

@@ -1,16 +1,22 @@
 //! Conversion of lights and the environment.
 
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DQuat, DVec3};
 
-use super::document::Item;
+use super::document::{Document, Item};
 use super::file::{EnvironmentFile, LightFile, RotateFile, SkyRotation};
+use super::index;
 use crate::scene::builder::SceneBuilder;
 use crate::scene::checks::unit;
 use crate::scene::diagnostics::Report;
 use crate::scene::parts::Part;
 use crate::scene::{Environment, Light};
 
-pub(super) fn light(builder: &mut SceneBuilder, item: &Item, file: LightFile) -> Option<()> {
+pub(super) fn light(
+    builder: &mut SceneBuilder,
+    document: &Document,
+    item: &Item,
+    file: LightFile,
+) -> Option<()> {
     let light = match file {
         LightFile::Point { position, intensity } => {
             Light::Point { position: position.into(), intensity: intensity.rgb() }
@@ -21,6 +27,34 @@ pub(super) fn light(builder: &mut SceneBuilder, item: &Item, file: LightFile) ->
             intensity: intensity.rgb(),
             angle_degrees: angle,
             blend: blend.0,
+        },
+        LightFile::Ies { file, position, direction, rotate, scale } => {
+            let direction = unit(&mut builder.report, item, "direction", direction)?;
+            let turn = DQuat::from_rotation_arc(DVec3::NEG_Y, direction)
+                * DQuat::from_rotation_y(rotate.to_radians());
+            let image = builder.ies(item, &file, turn)?;
+            let intensity = scale.map_or([1.0; 3], |scale| scale.rgb());
+            Light::Profile { position: position.into(), image, intensity }
+        }
+        LightFile::Projector { position, target, up, irradiance, fov, aspect, texture } => {
+            let up = unit(&mut builder.report, item, "up", up)?;
+            let texture = texture.map(|name| index(document, "textures", &name));
+            let own = texture.and_then(|texture| builder.image_aspect(texture));
+            Light::Projector {
+                position: position.into(),
+                target: target.into(),
+                up,
+                irradiance: irradiance.rgb(),
+                fov_degrees: fov,
+                aspect: 1.0 / aspect.map(f64::from).or(own).unwrap_or(1.0),
+                texture,
+            }
+        }
+        LightFile::Beam { position, direction, radius, irradiance } => Light::Beam {
+            position: position.into(),
+            direction: unit(&mut builder.report, item, "direction", direction)?,
+            radius: radius.0,
+            irradiance: irradiance.rgb(),
         },
         LightFile::Sun { direction, irradiance, angle } => {
             let direction = unit(&mut builder.report, item, "direction", direction)?;

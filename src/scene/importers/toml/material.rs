@@ -21,7 +21,8 @@ pub(super) fn texture(
         let mut nodes = document.items(section).filter_map(|user| user.node.get(key));
         nodes.any(|node| node.str() == Some(item.name))
     };
-    let emits = names("shapes", "emission") && !names("materials", "reflectance");
+    let emits = (names("shapes", "emission") || names("lights", "texture"))
+        && !names("materials", "reflectance");
     let mut image = |file: &str, color_space| match emits {
         true => builder.image(item, file, color_space),
         false => builder.reflectance_image(item, file, color_space),

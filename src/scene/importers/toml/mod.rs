@@ -69,6 +69,7 @@ fn scene(builder: &mut SceneBuilder, root: Node) {
     undefined(&mut builder.report, document, "materials", "shapes", "material");
     undefined(&mut builder.report, document, "textures", "materials", "reflectance");
     undefined(&mut builder.report, document, "textures", "shapes", "emission");
+    undefined(&mut builder.report, document, "textures", "lights", "texture");
     camera::camera(builder, document);
     camera::film(builder, document);
     camera::settings(builder, document);
@@ -89,7 +90,7 @@ fn scene(builder: &mut SceneBuilder, root: Node) {
     }
     for item in document.items("lights") {
         if let Some(file) = item.read::<LightFile>(&mut builder.report) {
-            light::light(builder, item, file);
+            light::light(builder, document, item, file);
         }
     }
     if let Some(item) = document.item("environment")
