@@ -1,6 +1,6 @@
-//! Microfacet reflection: the GGX distribution with the height-correlated Smith shadowing (Walter et
-//! al. 2007; Heitz 2014, 2018), and the light that it scatters more than once. Shared by metals and
-//! coats. Twin: `shaders/materials/microfacet.wgsl`.
+//! Microfacet reflection: the GGX distribution with the height-correlated Smith shadowing (Walter
+//! et al. 2007; Heitz 2014, 2018), and the light that it scatters more than once. Shared by metals
+//! and coats. Twin: `shaders/materials/microfacet.wgsl`.
 //!
 //! Functions named `ggx_*` take directions in the frame whose z is the shading normal.
 

@@ -9,8 +9,8 @@
 //! the cosine between `wi` and the shading normal. A *layered* material is a sum of several others:
 //! its `choose_X` chooses one of them for the path, with a probability that does not depend on the
 //! scattered direction, so that eye paths, photons and shadow rays need only know one lobe at a
-//! time. Directions are unit vectors that point away from the surface. Tests of densities, energy, reciprocity and engine agreement run over the
-//! `EXAMPLES` of every file.
+//! time. Directions are unit vectors that point away from the surface. Tests of densities, energy,
+//! reciprocity and engine agreement run over the `EXAMPLES` of every file.
 
 use super::{geometry, math, real, shapes, tables};
 use interior::Interior;

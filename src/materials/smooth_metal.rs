@@ -1,5 +1,6 @@
 //! Smooth conductor: a mirror whose reflectance follows from a complex index of refraction, or from
-//! the reflectance at normal incidence if the index is 1. Twin: `shaders/materials/smooth_metal.wgsl`.
+//! the reflectance at normal incidence if the index is 1. Twin:
+//! `shaders/materials/smooth_metal.wgsl`.
 
 use super::fresnel::{fresnel_conductor, schlick};
 use super::interior::Interior;

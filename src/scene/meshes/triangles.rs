@@ -149,8 +149,8 @@ impl MeshBuilder {
         }
     }
 
-    /// Adds a face, whose triangles are numbered from `first` on in the order of the file. `normals`
-    /// provides those that the file lacks; `None` makes all faces flat.
+    /// Adds a face, whose triangles are numbered from `first` on in the order of the file.
+    /// `normals` provides those that the file lacks; `None` makes all faces flat.
     pub fn add(
         &mut self,
         polygon: &Polygon,
@@ -171,7 +171,8 @@ impl MeshBuilder {
         }
     }
 
-    /// Adds a triangle with the shading normals of its corners, of any length; `None` makes it flat.
+    /// Adds a triangle with the shading normals of its corners, of any length; `None` makes it
+    /// flat.
     fn add_triangle(&mut self, mut corners: [Corner; 3], shading: Option<[Option<DVec3>; 3]>) {
         let [a, b, c] = corners.map(|corner| corner.position);
         let area = (b - a).cross(c - a);

@@ -13,12 +13,17 @@ use crate::support::{
 
 /// Whether the program catches SIGINT (2), SIGTERM (15) and SIGHUP (1).
 pub fn catches(child: &Child) -> bool {
+    [2, 15, 1].iter().all(|signal| catches_signal(child, *signal))
+}
+
+/// Whether a process catches one signal. It leaves those alone that it was started to ignore.
+pub fn catches_signal(child: &Child, signal: u32) -> bool {
     let status = fs::read_to_string(Path::new("/proc").join(child.id().to_string()).join("status"));
     let caught = status.ok().and_then(|text| {
         let line = text.lines().find_map(|line| line.strip_prefix("SigCgt:"))?;
         u64::from_str_radix(line.trim(), 16).ok()
     });
-    [2, 15, 1].iter().all(|signal| caught.is_some_and(|caught| caught >> (signal - 1) & 1 == 1))
+    caught.is_some_and(|caught| caught >> (signal - 1) & 1 == 1)
 }
 
 /// Theory: the program catches signals before it reads anything. From then on a signal ends a

@@ -540,7 +540,8 @@ pub enum ShapeFile {
         surface: SurfaceFile,
     },
     /// A cylinder; the normal points away from its axis, and from the ends. It is a surface of
-    /// revolution: v goes through the lower cap, the side and the upper cap, an equal part for each.
+    /// revolution: v goes through the lower cap, the side and the upper cap, an equal part for
+    /// each.
     Cylinder {
         /// Radius in scene units.
         radius: Positive,
