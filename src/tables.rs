@@ -121,7 +121,8 @@ pub struct Material {
     pub kind: u32,
     /// Glass: absorption coefficient, per scene unit.
     pub absorption: Vec3,
-    /// Glass, plastic: index of refraction relative to the outside. Opacity: cutoff of a mask, or 0.
+    /// Glass, plastic: index of refraction relative to the outside. Opacity: cutoff of a mask, or
+    /// 0.
     pub ior: Real,
     /// Index of the texture that replaces `reflectance`, or [`NONE`].
     pub texture: u32,

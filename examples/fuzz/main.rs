@@ -58,7 +58,7 @@ struct Shared {
     target: Target,
     corpus: Mutex<Vec<Vec<u8>>>,
     outcomes: Mutex<HashSet<u64>>,
-    told: Mutex<HashSet<String>>,
+    reported: Mutex<HashSet<String>>,
     runs: AtomicU64,
     accepted: AtomicU64,
     findings: AtomicU64,
@@ -92,7 +92,7 @@ fn fuzz(target: Target, arguments: &Arguments) -> u64 {
         target,
         corpus: Mutex::new(corpus),
         outcomes: Mutex::default(),
-        told: Mutex::default(),
+        reported: Mutex::default(),
         runs: AtomicU64::new(0),
         accepted: AtomicU64::new(0),
         findings: AtomicU64::new(0),
@@ -199,11 +199,12 @@ impl Shared {
     fn keep(&self, message: &str, input: &[u8]) {
         self.findings.fetch_add(1, Ordering::Relaxed);
         let place: String = message.chars().filter(|c| !c.is_ascii_digit()).take(160).collect();
-        let mut told = self.told.lock().unwrap();
-        if !told.insert(place) {
+        let mut reported = self.reported.lock().unwrap();
+        if !reported.insert(place) {
             return;
         }
-        let file = PathBuf::from("fuzz-findings").join(format!("{:?}-{}", self.target, told.len()));
+        let file =
+            PathBuf::from("fuzz-findings").join(format!("{:?}-{}", self.target, reported.len()));
         let kept = fs::create_dir_all("fuzz-findings").and_then(|()| fs::write(&file, input));
         println!("{}: {message} ({kept:?})", file.display());
     }

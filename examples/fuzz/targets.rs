@@ -64,22 +64,22 @@ impl Target {
         };
         let scene = |text: &[u8]| scene::parse_within(&folder.join("scene.toml"), text, &allowance);
         match self {
-            Self::Scene => told(scene(input).map(warnings)),
-            Self::Plan => told(scene(input).map(|loaded| plan(&loaded))),
+            Self::Scene => summary(scene(input).map(warnings)),
+            Self::Plan => summary(scene(input).map(|loaded| plan(&loaded))),
             Self::Obj => {
                 write(folder, "mesh.obj", input);
-                told(
+                summary(
                     scene(reader("mesh.obj", "smooth = true\nmaterial = \"m\"").as_bytes())
                         .map(warnings),
-                ) + &told(scene(reader("mesh.obj", "").as_bytes()).map(warnings))
+                ) + &summary(scene(reader("mesh.obj", "").as_bytes()).map(warnings))
             }
             Self::Mtl => {
                 write(folder, "mesh.mtl", input);
-                told(scene(reader("mesh.obj", "").as_bytes()).map(warnings))
+                summary(scene(reader("mesh.obj", "").as_bytes()).map(warnings))
             }
             Self::Ply => {
                 write(folder, "mesh.ply", input);
-                told(scene(reader("mesh.ply", "material = \"m\"").as_bytes()).map(warnings))
+                summary(scene(reader("mesh.ply", "material = \"m\"").as_bytes()).map(warnings))
             }
             Self::Texture => {
                 // the content determines the format
@@ -92,12 +92,12 @@ impl Target {
                 let text = format!(
                     "{READER}[materials.m]\ntype = \"diffuse\"\nreflectance = 0.5\n[[shapes]]\ntype = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1\nmaterial = \"m\"\n[environment]\nfile = \"{name}\"\n"
                 );
-                told(scene(text.as_bytes()).map(warnings))
+                summary(scene(text.as_bytes()).map(warnings))
             }
             Self::Profile => {
                 write(folder, "profile.toml", input);
                 let loaded = scene::load_profile_within(&folder.join("profile.toml"), &allowance);
-                told(loaded.map(|profile| {
+                summary(loaded.map(|profile| {
                     let mesh =
                         tessellate(&profile.segments, &Fineness { sectors: 3, flatness: 1e-2 });
                     mesh.map(|mesh| drop(mesh.to_obj("")))
@@ -211,9 +211,9 @@ fn plan(loaded: &Loaded) -> String {
 pub const MORE: &str = "..";
 
 /// Outcome of a scene: its first error without names and numbers.
-fn told(outcome: Result<String, SceneErrors>) -> String {
+fn summary(outcome: Result<String, SceneErrors>) -> String {
     match outcome {
-        Ok(told) => told,
+        Ok(text) => text,
         Err(errors) => {
             let first =
                 errors.errors.first().map_or(String::new(), |error| general(error.message()));

@@ -51,8 +51,8 @@ const SHARED_CODE: [(&str, &[Bsdf]); 2] = [
 ];
 
 /// Names that fences may use for `kernel`: the features, all kernels' stems, `scene` (the kernel
-/// reads the packed scene), `area` (some light is a shape), `fresnel` and `microfacet` (some material
-/// uses those functions).
+/// reads the packed scene), `area` (some light is a shape), `fresnel` and `microfacet` (some
+/// material uses those functions).
 pub fn names(kernel: Kernel, features: &Features) -> Names {
     let stems = Kernel::ALL.map(Kernel::stem);
     let known = Feature::all()

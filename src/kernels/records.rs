@@ -109,8 +109,8 @@ pub struct VisiblePoint {
     pub outline: u32,
     /// Sum of [`STOPPED`], [`BAD_EYE`] and [`BAD_DIRECT`].
     pub state: u32,
-    /// Number of the lobe's [`Bsdf`](super::materials::Bsdf) in the lowest [`BSDF_BITS`] bits; above
-    /// them the index of the material, if the gather reads its parameters.
+    /// Number of the lobe's [`Bsdf`](super::materials::Bsdf) in the lowest [`BSDF_BITS`] bits;
+    /// above them the index of the material, if the gather reads its parameters.
     pub bsdf: u32,
 }
 

@@ -14,8 +14,8 @@ use glam::{DVec2, DVec3};
 
 const _: () = assert!(LAYERS == numbers::LAYERS);
 
-/// Microfacets that lose no more than this fraction of the light by single scattering do without
-/// its compensation.
+/// Microfacets that lose no more than this fraction of diffuse light by single scattering do without
+/// its compensation: their loss is confined to grazing angles, where the polynomial is too coarse.
 const NEGLIGIBLE_LOSS: f64 = 0.003;
 
 /// Fills the material table: an entry for each material, at its index, then one for each material
@@ -143,7 +143,7 @@ fn material(m: &scene::Material, unit: f64) -> Material {
 /// Adds the light that microfacets scatter several times, unless it is negligible.
 fn compensate(out: &mut Material) {
     let albedo = Albedo::of(f64::from(out.alpha), |_| 1.0);
-    if albedo.least < 1.0 - NEGLIGIBLE_LOSS {
+    if albedo.mean() < 1.0 - NEGLIGIBLE_LOSS {
         albedo.store(out);
     }
 }

@@ -112,9 +112,9 @@ fn the_same_scene() {
 }
 
 /// Line and column, message, label.
-type Told = (Option<(usize, usize)>, String, String);
+type Reported = (Option<(usize, usize)>, String, String);
 
-fn reported(errors: &[Finding]) -> Vec<Told> {
+fn reported(errors: &[Finding]) -> Vec<Reported> {
     errors.iter().map(|e| (e.line_column(), e.message().to_owned(), e.label().to_owned())).collect()
 }
 

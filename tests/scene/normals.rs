@@ -97,8 +97,8 @@ fn groups_share_normals() {
     }
     // A group that is not known is reported, and the group before it goes on.
     let loaded = load("unknown", "m.obj", &roof(20.0, "s 1\n", "s one\n"), "").unwrap();
-    let told: Vec<_> = loaded.warnings.iter().map(|w| (w.line_column(), w.message())).collect();
-    assert_eq!(told, [(Some((9, 3)), "`one` is no smoothing group")]);
+    let warnings: Vec<_> = loaded.warnings.iter().map(|w| (w.line_column(), w.message())).collect();
+    assert_eq!(warnings, [(Some((9, 3)), "`one` is no smoothing group")]);
 }
 
 /// Faces without a group are flat and leave the others alone: a cube whose top is flat.

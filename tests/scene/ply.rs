@@ -1,7 +1,7 @@
 //! PLY meshes: encodings, layouts of elements, and errors.
 //!
 //! Theory: a file is a table of numbers. Its encoding, the types of its numbers, the order of its
-//! elements and what stands beside the mesh do not change the mesh, which equals that of an OBJ
+//! elements and elements other than the mesh do not change the mesh, which equals that of an OBJ
 //! file with the same numbers. A file that promises more than it has is refused before memory is
 //! allocated.
 
@@ -292,11 +292,11 @@ fn errors(name: &str, ply: &[u8], more: &str) -> Vec<String> {
     let Err(errors) = load(&folder, "m.ply", more) else {
         panic!("no error in\n{}", String::from_utf8_lossy(ply))
     };
-    let told = |error: &caustica::low_level::scene::Finding| {
+    let shown = |error: &caustica::low_level::scene::Finding| {
         let (line, column) = error.line_column().unwrap();
         format!("{line}:{column} {} | {}", error.message(), error.label())
     };
-    errors.errors.iter().map(told).collect()
+    errors.errors.iter().map(shown).collect()
 }
 
 const SQUARE: &str = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n\
