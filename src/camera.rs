@@ -72,6 +72,7 @@ fn through_lens(camera: &Camera, origin: Vec3, d: Vec3, u: Vec4) -> Ray {
 }
 
 /// Ray to longitude `pi px` and latitude `pi/2 py`.
+#[inline(never)]
 fn panorama_ray(camera: &Camera, px: Real, py: Real) -> Ray {
     let (sin_x, cos_x) = sin_cos(PI * px);
     let (sin_y, cos_y) = sin_cos(0.5 * PI * py);
@@ -81,6 +82,7 @@ fn panorama_ray(camera: &Camera, px: Real, py: Real) -> Ray {
 }
 
 /// Ray whose angle from `forward` is its distance from the centre of the image.
+#[inline(never)]
 fn fisheye_ray(camera: &Camera, px: Real, py: Real) -> Ray {
     let v = camera.right * px + camera.up * py;
     let angle = v.dot(v).sqrt();

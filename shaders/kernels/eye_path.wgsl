@@ -52,6 +52,37 @@ fn emission(path: EyePath, s: Surface) -> vec3f {
     return vec3f(0.0);
 }
 
+//#if continued
+struct LastLobe {
+    pdf: f32,
+    shares: u32,
+}
+
+fn found_environment(path: EyePath, last: LastLobe) -> vec3f {
+    //#if sampled && environment
+    if last.pdf > 0.0 && scene.world.environment != NONE {
+        let sky = scene.world.environment;
+        let light = scene.lights[sky];
+        let other = pdf_environment(light, path.ray.direction) * share_of(last.shares, sky);
+        return environment(path) * balance(last.pdf, other);
+    }
+    //#end
+    return environment(path);
+}
+
+fn found_emission(path: EyePath, last: LastLobe, ray: Ray, s: Surface, t: f32) -> vec3f {
+    //#if sampled && area
+    if last.pdf > 0.0 && s.light != NONE {
+        let other = pdf_area(
+            last.shares, s.light, ray.origin, ray.direction, t, s.normal, s.v
+        );
+        return emission(path, s) * balance(last.pdf, other);
+    }
+    //#end
+    return emission(path, s);
+}
+//#end
+
 //#if nested
 fn passes(path: ptr<function, EyePath>, s: Surface) -> bool {
     var ray = (*path).ray;
@@ -66,7 +97,7 @@ fn passes(path: ptr<function, EyePath>, s: Surface) -> bool {
 }
 //#end
 
-//#if specular
+//#if specular || continued
 fn scatter(path: ptr<function, EyePath>, s: Surface, scattered: Scatter, u: f32) -> bool {
     (*path).throughput *= scattered.weight;
     (*path).interior = scattered.interior;

@@ -1,6 +1,8 @@
-// Eye path of one visible point: samples pixel and lens, follows mirrors and glass to the first
-// non-specular hit. Run by one invocation per visible point of a chunk; reads the scene, writes
+// Eye path of one visible point: samples pixel and lens, follows mirrors, glass and narrow lobes to
+// the first wide one. Run by one invocation per visible point of a chunk; reads the scene, writes
 // `visible_points`, adds to `counters`. Twin: src/kernels/eye_trace.rs.
+
+const CONTINUING: f32 = 0.75;
 
 @compute @workgroup_size(64)
 fn eye_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups) groups: vec3u) {
@@ -21,19 +23,34 @@ fn eye_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
     let ray = camera_ray(camera, pixel % camera.width, pixel / camera.width, u);
     //#end
     var path = eye_path(ray);
+    //#if continued
+    var last = LastLobe(0.0, 0u);
+    //#end
     var point = VisiblePoint();
     while continues(path) {
         path.rays += 1u;
         let hit = intersect_scene(path.ray);
         if hit.reference == NONE {
+            //#if continued
+            point.radiance += found_environment(path, last);
+            //#else
             point.radiance += environment(path);
+            //#end
             break;
         }
-        let s = surface_at(path.ray, hit);
+        let ray = path.ray;
+        let s = surface_at(ray, hit);
         arrive(&path, s, hit.t);
+        //#if continued
+        point.radiance += found_emission(path, last, ray, s, hit.t);
+        //#else
         point.radiance += emission(path, s);
+        //#end
         //#if nested
         if passes(&path, s) {
+            //#if continued
+            last.pdf = 0.0;
+            //#end
             continue;
         }
         //#end
@@ -44,7 +61,37 @@ fn eye_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
             path.throughput *= choose_layer(&p, u.x);
         }
         //#end
-        // store the visible point at the first non-specular hit
+        let ends = path.bounce == dispatch.max_bounces;
+        var only_focused = false;
+        //#if continued
+        // continue at a narrow lobe, or gather the photons whose light no continued path can find
+        if !ends && is_narrow(p.lobe) {
+            //#if sampled
+            let found = next_event(p, path.interior, true, rng_next(&rng));
+            last.shares = shares_at(s.position);
+            add_direct(&point, path.throughput * found.radiance);
+            path.rays += found.rays;
+            //#end
+            let v = rng_next(&rng);
+            let gathers = (dispatch.continued & FOCUSED) != 0u;
+            if !gathers || v.z < CONTINUING {
+                if gathers {
+                    path.throughput *= 1.0 / CONTINUING;
+                }
+                let scattered = scatter_rough(p, path.interior, vec2f(v.x, v.y), RADIANCE);
+                //#if sampled
+                last.pdf = pdf_rough(p.lobe, p.n, p.wo, scattered.direction);
+                //#end
+                if !scatter(&path, s, scattered, v.w) {
+                    break;
+                }
+                continue;
+            }
+            path.throughput *= 1.0 / (1.0 - CONTINUING);
+            only_focused = true;
+        }
+        //#end
+        // store the visible point at the first wide hit
         if !is_specular(p.lobe.bsdf) {
             if max_component(p.lobe.reflectance) <= 0.0 {
                 break;
@@ -69,23 +116,26 @@ fn eye_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
                 point.wo = oct_encode(p.wo);
             }
             //#end
+            if only_focused {
+                point.state |= ONLY_FOCUSED;
+            }
             //#if sampled
-            let found = direct_light(p, path.interior, &rng);
-            let direct = path.throughput * found.radiance;
-            path.rays += found.rays;
-            if is_finite(direct) {
-                point.radiance += direct;
-            } else {
-                point.state |= BAD_DIRECT;
+            if !only_focused {
+                let found = direct_light(p, path.interior, &rng);
+                add_direct(&point, path.throughput * found.radiance);
+                path.rays += found.rays;
             }
             //#end
             break;
         }
         //#if specular
         // scatter at mirrors and glass
-        if path.bounce == dispatch.max_bounces {
+        if ends {
             break;
         }
+        //#if continued
+        last.pdf = 0.0;
+        //#end
         let v = rng_next(&rng);
         let scattered = scatter_specular(p, path.interior, v.x, RADIANCE);
         if !scatter(&path, s, scattered, v.y) {
@@ -109,3 +159,13 @@ fn eye_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
     }
     visible_points[id] = point;
 }
+
+//#if sampled
+fn add_direct(point: ptr<function, VisiblePoint>, direct: vec3f) {
+    if is_finite(direct) {
+        (*point).radiance += direct;
+    } else {
+        (*point).state |= BAD_DIRECT;
+    }
+}
+//#end

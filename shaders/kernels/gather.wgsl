@@ -109,6 +109,9 @@ fn gather_class(point: VisiblePoint, frame: Frame, photon_class: u32, radius_sq:
     let both = transmits(lobe.bsdf);
     //#end
     let flat_normal = point.normal == point.shading;
+    //#if continued
+    let only_focused = (point.state & ONLY_FOCUSED) != 0u;
+    //#end
     //#if outlines
     // clip the disc to the outline
     var clip = clip_at(point.outline, point.position, ng, radius);
@@ -153,7 +156,7 @@ fn gather_class(point: VisiblePoint, frame: Frame, photon_class: u32, radius_sq:
                     let position = bitcast<vec3f>(place.xyz);
                     let d = position - point.position;
                     let distance_sq = dot(d, d);
-                    if distance_sq <= radius_sq && abs(dot(d, ng)) <= depth && place.w == code {
+                    if distance_sq <= radius_sq && abs(dot(d, ng)) <= depth && is_code(place.w, code) {
                         // read the rest of a record only if the photon is inside
                         let light = sorted[i][LIGHT];
                         let toward_light = oct_vector(light.w);
@@ -161,6 +164,10 @@ fn gather_class(point: VisiblePoint, frame: Frame, photon_class: u32, radius_sq:
                         var counts = dot(toward_light, ng) > 0.0 || both;
                         //#else
                         var counts = dot(toward_light, ng) > 0.0;
+                        //#end
+                        //#if continued
+                        // reject photons whose light the continued path carries
+                        counts = counts && (!only_focused || is_focused(place.w));
                         //#end
                         //#if outlines
                         // reject photons outside the outline or behind a wall

@@ -21,6 +21,21 @@ fn grid_code(cell: vec3i, photon_class: u32) -> u32 {
     return (u32(cell.y) & 0x3ffu) | ((u32(cell.z) & 0x3ffu) << 10u) | (photon_class << 20u);
 }
 
+// In sorted records, the bit for focused photons lies above those of a code.
+const CODE_BITS: u32 = 21u;
+
+fn is_code(word: u32, code: u32) -> bool {
+    //#if continued
+    return (word & ((1u << CODE_BITS) - 1u)) == code;
+    //#else
+    return word == code;
+    //#end
+}
+
+fn is_focused(word: u32) -> bool {
+    return (word >> CODE_BITS) != 0u;
+}
+
 //#if grid_count || grid_scatter || grid_sort || grid_sort_long
 fn record_family(record: PhotonRecord) -> u32 {
     //#if split
@@ -46,6 +61,11 @@ fn record_bucket(record: PhotonRecord) -> u32 {
 }
 
 fn record_code(record: PhotonRecord) -> u32 {
-    return grid_code(record_cell(record), record_family(record));
+    let code = grid_code(record_cell(record), record_family(record));
+    //#if continued
+    return code | (((record.key & FOCUSED) >> 1u) << CODE_BITS);
+    //#else
+    return code;
+    //#end
 }
 //#end

@@ -27,6 +27,10 @@ fn photon_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgrou
     var hidden = 0u;
     var bounce = 0u;
     var photon_class = 0u;
+    var focus = 0u;
+    //#if continued
+    focus = select(dispatch.continued & FOCUSED, 0u, emission.extended);
+    //#end
     var rays = 0u;
     var end = CUT;
     while bounce <= dispatch.max_bounces && hidden <= HIDDEN_FACES {
@@ -68,7 +72,8 @@ fn photon_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgrou
         stores = stores && (bounce > 0u || hidden > 0u);
         //#end
         if stores {
-            let key = (id << dispatch.key_bits) | (bounce << 1u) | photon_class;
+            let kind = focus | photon_class;
+            let key = (id << dispatch.key_bits) | (bounce << dispatch.bounce_shift) | kind;
             append(PhotonRecord(s.position, key, flux, oct_encode(wo)));
         }
         // scatter
@@ -78,9 +83,11 @@ fn photon_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgrou
         if is_specular(p.lobe.bsdf) {
             scattered = scatter_specular(p, interior, u.x, IMPORTANCE);
         } else {
+            focus = 0u;
             scattered = scattered_rough(&photon_class, p, interior, u);
         }
         //#else
+        focus = 0u;
         scattered = scattered_rough(&photon_class, p, interior, u);
         //#end
         //#if layered

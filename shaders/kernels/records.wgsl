@@ -27,8 +27,8 @@ struct Dispatch {
     window_first: u32,
     window_width: u32,
     fixed_points: u32,
-    pad0: u32,
-    pad1: u32,
+    continued: u32,
+    bounce_shift: u32,
     points: array<vec4u, 4>,
 }
 
@@ -36,6 +36,10 @@ const HIDDEN_FACES: u32 = 256u;
 const STOPPED: u32 = 1u;
 const BAD_EYE: u32 = 2u;
 const BAD_DIRECT: u32 = 4u;
+const ONLY_FOCUSED: u32 = 8u;
+
+const CONTINUED: u32 = 1u;
+const FOCUSED: u32 = 2u;
 
 const BSDF_BITS: u32 = 8u;
 

@@ -5,16 +5,20 @@ struct Emission {
     flux: vec3f,
     relative_flux: f32,
     interior: Interior,
+    extended: bool,
 }
 
 fn unguided(ray: Ray, flux: vec3f) -> Emission {
-    return Emission(ray, flux, 1.0, interior_of(NONE));
+    return Emission(ray, flux, 1.0, interior_of(NONE), false);
 }
 
 fn emit_photon(rng: ptr<function, Rng>) -> Emission {
     let u = rng_next(rng);
     let v = rng_next(rng);
-    return emit_from(scene.lights[choose_light(0u, u.x)], u, v);
+    let light = scene.lights[choose_light(0u, u.x)];
+    var emission = emit_from(light, u, v);
+    emission.extended = is_extended(light.kind);
+    return emission;
 }
 
 fn emit_from(light: Light, u: vec4f, v: vec4f) -> Emission {

@@ -35,7 +35,7 @@ fn emit_from_infinity(light: Light, u: vec4f, v: vec4f) -> Emission {
     ray.t_min = -4.0 * disc_radius(scene.world.disc_levels - 1u);
     let flux = radiance * (1.0 / (pdf * light.selection));
     let usual = pdf_discs(0.25 * near * near);
-    return Emission(ray, flux, usual / pdf, interior_from(ray.direction));
+    return Emission(ray, flux, usual / pdf, interior_from(ray.direction), false);
 }
 
 fn disc_radius(level: u32) -> f32 {

@@ -15,6 +15,12 @@ struct Lobe {
 }
 
 //#if scene
+const NARROW: f32 = 0.08;
+
+fn is_narrow(lobe: Lobe) -> bool {
+    return !is_wide(lobe.bsdf) && !is_specular(lobe.bsdf) && lobe.alpha < NARROW;
+}
+
 struct ShadingPoint {
     s: Surface,
     wo: vec3f,

@@ -88,6 +88,7 @@ pub fn with_unused(scene: &SceneTables, feature: Feature) -> Option<SceneTables>
         Feature::Textures
         | Feature::Specular
         | Feature::Lobes
+        | Feature::Continued
         | Feature::Lights
         | Feature::Photons => return None,
         // select how the same thing is computed

@@ -77,6 +77,7 @@ fn lights() -> String {
     };
     put("is_infinite", LightKind::is_infinite);
     put("is_environment", LightKind::is_environment);
+    put("is_extended", LightKind::is_extended);
     out
 }
 

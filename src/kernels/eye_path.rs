@@ -4,10 +4,13 @@
 use super::direct::transmittance;
 use super::geometry::intersect::intersect_scene;
 use super::geometry::surface::{Surface, surface_at};
-use super::lights::environment::eval_environment;
+use super::lights::area::pdf_area;
+use super::lights::environment::{eval_environment, pdf_environment};
+use super::lights::select::share_of;
 use super::materials::enclosing::interior_at;
 use super::materials::interior::{Interior, interior_before, medium_of, passes_hidden};
 use super::materials::shading::Scatter;
+use super::math::sampling::balance;
 use super::math::{FAR, max_component, offset_origin};
 use super::real::{Real, Vec3};
 use super::records::{Dispatch, HIDDEN_FACES};
@@ -34,6 +37,21 @@ pub struct EyePath {
     pub length: Real,
     /// Number of rays traced.
     pub rays: u32,
+}
+
+/// The last rough surface of a path, by which the path weights emission that it finds.
+#[derive(Clone, Copy, Debug)]
+pub struct LastLobe {
+    /// Density of the path's direction, sr^-1, or 0 unless a shadow ray could have found the same
+    /// light.
+    pub pdf: Real,
+    /// Start of the light probabilities at the surface.
+    pub shares: u32,
+}
+
+impl LastLobe {
+    /// A path that no rough surface has scattered.
+    pub const NONE: Self = Self { pdf: 0.0, shares: 0 };
 }
 
 impl EyePath {
@@ -86,6 +104,38 @@ impl EyePath {
             return Vec3::ZERO;
         }
         self.throughput * scene.lights[s.light as usize].color
+    }
+
+    /// Radiance of the environment, times throughput, weighted against the shadow ray of `last`.
+    #[inline(always)]
+    pub fn found_environment(&self, scene: &SceneTables, last: &LastLobe) -> Vec3 {
+        if last.pdf > 0.0 && scene.world.environment != NONE {
+            let sky = scene.world.environment;
+            let light = &scene.lights[sky as usize];
+            let other = pdf_environment(scene, light, self.ray.direction)
+                * share_of(scene, last.shares, sky);
+            return self.environment(scene) * balance(last.pdf, other);
+        }
+        self.environment(scene)
+    }
+
+    /// Emission of the surface at distance `t`, times throughput, weighted likewise. `ray` is the
+    /// ray that hit it.
+    #[inline(always)]
+    pub fn found_emission(
+        &self,
+        scene: &SceneTables,
+        last: &LastLobe,
+        ray: &Ray,
+        s: &Surface,
+        t: Real,
+    ) -> Vec3 {
+        if last.pdf > 0.0 && s.light != NONE {
+            let Ray { origin, direction, .. } = *ray;
+            let other = pdf_area(scene, last.shares, s.light, origin, direction, t, s.normal, s.v);
+            return self.emission(scene, s) * balance(last.pdf, other);
+        }
+        self.emission(scene, s)
     }
 
     /// Passes through the face if it is a hidden one; returns false otherwise.

@@ -38,7 +38,13 @@ pub fn stratified(u: Vec4, k: u32, pixel: u32, dispatch: &Dispatch) -> Vec4 {
 }
 
 /// Turns the random numbers of the pixel, u.x and u.y, into the position that its filter draws.
+#[inline(always)]
 pub fn filtered(camera: &Camera, u: Vec4) -> Vec4 {
+    if camera.filter_kind == FilterKind::Pixel as u32 { u } else { filtered_by(camera, u) }
+}
+
+#[inline(never)]
+fn filtered_by(camera: &Camera, u: Vec4) -> Vec4 {
     let size = camera.filter_size;
     let offset = match FilterKind::of(camera.filter_kind) {
         FilterKind::Pixel => return u,
@@ -61,6 +67,7 @@ fn filter_sign(camera: &Camera, u: Vec4) -> Real {
 
 /// Weight of a sample of `pixel`, filter over density, where `u` are its numbers before
 /// [`filtered`]. Its mean is one; only a filter with negative lobes has weights other than one.
+#[inline(always)]
 pub fn filter_weight(camera: &Camera, u: Vec4, pixel: u32, dispatch: &Dispatch) -> Real {
     match FilterKind::of(camera.filter_kind) {
         FilterKind::Pixel | FilterKind::Box | FilterKind::Tent | FilterKind::Gaussian => 1.0,
@@ -71,6 +78,7 @@ pub fn filter_weight(camera: &Camera, u: Vec4, pixel: u32, dispatch: &Dispatch) 
 /// [`filter_weight`] of a filter with negative lobes. If no other samples follow, the weights of a
 /// pixel are divided by their mean, so that a constant image stays constant; if too many samples
 /// fall into negative lobes for that, all count alike.
+#[inline(never)]
 fn signed_weight(camera: &Camera, u: Vec4, pixel: u32, dispatch: &Dispatch) -> Real {
     let sign = filter_sign(camera, u);
     if dispatch.fixed_points == 0 {

@@ -1,19 +1,25 @@
-//! Eye path of one visible point: samples pixel and lens, follows mirrors and glass to the first
-//! non-specular hit. Run by one invocation per visible point; reads the scene, writes
+//! Eye path of one visible point: samples pixel and lens, follows mirrors, glass and narrow lobes to
+//! the first wide one. Run by one invocation per visible point; reads the scene, writes
 //! `visible_points`. Twin: `shaders/kernels/eye_trace.wgsl`.
 
 use super::camera::{camera_ray, footprint};
-use super::direct::direct_light;
-use super::eye_path::EyePath;
+use super::direct::{direct_light, next_event};
+use super::eye_path::{EyePath, LastLobe};
 use super::eye_sample::{filter_weight, filtered, start_radius, stratified, window_pixel};
+use super::lights::select::shares_at;
 use super::materials::shading::{RADIANCE, shading_point};
-use super::materials::{Bsdf, choose_layer, scatter_specular};
+use super::materials::{Bsdf, choose_layer, pdf_rough, scatter_rough, scatter_specular};
 use super::math::rng::{rng_eye, rng_next};
 use super::math::{INV_PI, is_finite, max_component, oct_encode};
-use super::real::Vec3;
-use super::records::{BAD_DIRECT, BAD_EYE, BSDF_BITS, Dispatch, VisiblePoint};
+use super::real::{Real, Vec2, Vec3};
+use super::records::{
+    BAD_DIRECT, BAD_EYE, BSDF_BITS, Dispatch, FOCUSED, ONLY_FOCUSED, VisiblePoint,
+};
 use super::tables::*;
 use bytemuck::Zeroable;
+
+/// Probability that a path continues at a narrow lobe whose photons are gathered otherwise.
+const CONTINUING: Real = 0.75;
 
 /// Traces visible point `id` of the chunk; also returns the number of rays. `sampled` adds direct
 /// light by shadow rays.
@@ -38,16 +44,19 @@ pub fn eye_trace(
     let u = stratified(rng_next(&mut rng), k, pixel, dispatch);
     let ray = camera_ray(camera, pixel % camera.width, pixel / camera.width, filtered(camera, u));
     let mut path = EyePath::new(scene, ray);
+    let mut last = LastLobe::NONE;
     let mut point = VisiblePoint::zeroed();
     while path.continues(dispatch) {
         let hit = path.trace(scene);
         if hit.reference == NONE {
-            point.radiance += path.environment(scene);
+            point.radiance += path.found_environment(scene, &last);
             break;
         }
+        let ray = path.ray;
         let s = path.arrive(scene, &hit);
-        point.radiance += path.emission(scene, &s);
+        point.radiance += path.found_emission(scene, &last, &ray, &s, hit.t);
         if path.passes(scene, &s) {
+            last.pdf = 0.0;
             continue;
         }
         let mut p = shading_point(scene, &s, -path.ray.direction);
@@ -55,7 +64,36 @@ pub fn eye_trace(
             let u = rng_next(&mut rng);
             path.throughput *= choose_layer(scene, &mut p, u.x);
         }
-        // store the visible point at the first non-specular hit
+        // continue at a narrow lobe, or gather the photons whose light no continued path can find
+        let ends = path.bounce == dispatch.max_bounces;
+        let mut only_focused = false;
+        if dispatch.continued != 0 && !ends && p.lobe.is_narrow() {
+            if sampled {
+                let u = rng_next(&mut rng);
+                last.shares = shares_at(scene, s.position);
+                let (radiance, spent) = next_event(scene, &p, &path.interior, true, u);
+                add_direct(&mut point, path.throughput * radiance);
+                path.rays += spent;
+            }
+            let v = rng_next(&mut rng);
+            let gathers = dispatch.continued & FOCUSED != 0;
+            if !gathers || v.z < CONTINUING {
+                if gathers {
+                    path.throughput *= 1.0 / CONTINUING;
+                }
+                let scattered = scatter_rough(&p, &path.interior, Vec2::new(v.x, v.y), RADIANCE);
+                if sampled {
+                    last.pdf = pdf_rough(&p.lobe, p.n, p.wo, scattered.direction);
+                }
+                if !path.scatter(&s, &scattered, v.w) {
+                    break;
+                }
+                continue;
+            }
+            path.throughput *= 1.0 / (1.0 - CONTINUING);
+            only_focused = true;
+        }
+        // store the visible point at the first wide hit
         if !p.lobe.bsdf.is_specular() {
             if max_component(p.lobe.reflectance) <= 0.0 {
                 break;
@@ -76,22 +114,20 @@ pub fn eye_trace(
                 point.alpha = p.lobe.alpha;
                 point.wo = oct_encode(p.wo);
             }
-            if sampled {
+            if only_focused {
+                point.state |= ONLY_FOCUSED;
+            } else if sampled {
                 let (radiance, spent) = direct_light(scene, &p, &path.interior, &mut rng);
-                let direct = path.throughput * radiance;
+                add_direct(&mut point, path.throughput * radiance);
                 path.rays += spent;
-                if is_finite(direct) {
-                    point.radiance += direct;
-                } else {
-                    point.state |= BAD_DIRECT;
-                }
             }
             break;
         }
         // scatter at mirrors and glass
-        if path.bounce == dispatch.max_bounces {
+        if ends {
             break;
         }
+        last.pdf = 0.0;
         let v = rng_next(&mut rng);
         let scattered = scatter_specular(scene, &p, &path.interior, v.x, RADIANCE);
         if !path.scatter(&s, &scattered, v.y) {
@@ -108,4 +144,14 @@ pub fn eye_trace(
         point.state |= BAD_EYE;
     }
     (point, path.rays)
+}
+
+/// Adds sampled direct light, unless it is not finite.
+#[inline(always)]
+fn add_direct(point: &mut VisiblePoint, direct: Vec3) {
+    if is_finite(direct) {
+        point.radiance += direct;
+    } else {
+        point.state |= BAD_DIRECT;
+    }
 }

@@ -10,7 +10,7 @@ use super::materials::shading::Lobe;
 use super::materials::{Bsdf, eval_rough};
 use super::math::{LUMINANCE, oct_decode, unit};
 use super::real::{Real, Vec3, Vec4};
-use super::records::{BSDF_BITS, Dispatch, Gathered, Statistics, VisiblePoint};
+use super::records::{BSDF_BITS, Dispatch, Gathered, ONLY_FOCUSED, Statistics, VisiblePoint};
 use super::shapes::outline::{before_walls, clip_at, in_outline};
 use super::tables::{Material, Outline};
 use bytemuck::Zeroable;
@@ -127,6 +127,7 @@ fn gather_class(
     let folded = lobe.bsdf == Bsdf::Diffuse;
     let both = lobe.bsdf.transmits();
     let flat = point.normal == point.shading;
+    let only_focused = point.state & ONLY_FOCUSED != 0;
     // clip the disc to the outline
     let clip = clip_at(outlines, point.outline, point.position, ng, radius);
     let depth = clip.depth.min(FLATNESS * radius);
@@ -183,8 +184,12 @@ fn gather_class(
                                     continue;
                                 }
                             }
-                            count += 1;
                             let mut flux = sorted.fluxes[i];
+                            // reject photons whose light the continued path carries
+                            if only_focused && flux.w == 0.0 {
+                                continue;
+                            }
+                            count += 1;
                             if !flat || !folded {
                                 let [us, vs, ws] = &sorted.directions;
                                 let wi = unit(Vec3::new(us[i], vs[i], ws[i]));

@@ -9,7 +9,7 @@
 use super::grid::{grid_bucket, grid_cell, grid_code};
 use super::math::oct_vector;
 use super::real::{Real, Vec4};
-use super::records::{Dispatch, PhotonRecord};
+use super::records::{Dispatch, FOCUSED, PhotonRecord};
 use bytemuck::Zeroable;
 use glam::IVec3;
 use rayon::prelude::*;
@@ -46,7 +46,7 @@ pub struct SortedRecords {
     pub directions: [Vec<Real>; 3],
     /// Row of cells and class of each record, see [`grid_code`].
     pub codes: Vec<u32>,
-    /// See [`PhotonRecord::flux`]; the fourth component is 0.
+    /// See [`PhotonRecord::flux`]; the fourth component is that of [`with_focus`].
     pub fluxes: Vec<Vec4>,
 }
 
@@ -75,6 +75,11 @@ pub fn record_bucket(dispatch: &Dispatch, record: &PhotonRecord) -> u32 {
 /// Row and class of a record in one word, which replaces its key once it is sorted.
 pub fn record_code(dispatch: &Dispatch, record: &PhotonRecord) -> u32 {
     grid_code(record_cell(dispatch, record), record_family(dispatch, record))
+}
+
+/// Flux of a record; the fourth component is its [`FOCUSED`] bit.
+fn with_focus(dispatch: &Dispatch, record: &PhotonRecord) -> Vec4 {
+    record.flux.extend((record.key & dispatch.continued & FOCUSED) as Real)
 }
 
 /// Number of bits to shift a bucket index right to get the index of its part.
@@ -245,7 +250,7 @@ impl Places<'_> {
             self.directions[axis][i] = direction[axis];
         }
         self.codes[i] = record_code(dispatch, record);
-        self.fluxes[i] = record.flux.extend(0.0);
+        self.fluxes[i] = with_focus(dispatch, record);
     }
 }
 
@@ -297,7 +302,7 @@ mod tests {
             place(&sorted.positions) == record.position.to_array()
                 && place(&sorted.directions) == oct_vector(record.direction).to_array()
                 && sorted.codes[i] == record_code(d, record)
-                && sorted.fluxes[i] == record.flux.extend(0.0)
+                && sorted.fluxes[i] == with_focus(d, record)
         };
         starts.iter().zip(0..).all(|(start, b)| *start == before(b))
             && records.iter().enumerate().all(same)

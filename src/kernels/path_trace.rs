@@ -3,18 +3,14 @@
 
 use super::camera::camera_ray;
 use super::direct::next_event;
-use super::eye_path::EyePath;
+use super::eye_path::{EyePath, LastLobe};
 use super::eye_sample::{filter_weight, filtered, window_pixel};
-use super::lights::area::pdf_area;
-use super::lights::environment::pdf_environment;
-use super::lights::select::{share_of, shares_at};
+use super::lights::select::shares_at;
 use super::materials::shading::{RADIANCE, shading_point};
 use super::materials::{choose_layer, pdf_rough, scatter_rough, scatter_specular};
 use super::math::rng::{rng_eye, rng_next};
-use super::math::sampling::balance;
 use super::real::{Vec2, Vec3};
 use super::records::Dispatch;
-use super::shapes::ray::Ray;
 use super::tables::*;
 
 /// Traces one path through the pixel at position `place` of the window; returns its radiance and
@@ -32,52 +28,35 @@ pub fn path_trace(
     let ray = camera_ray(camera, pixel % camera.width, pixel / camera.width, filtered(camera, u));
     let mut path = EyePath::new(scene, ray);
     let mut radiance = Vec3::ZERO;
-    // density of the last scattered direction; 0 if next-event estimation cannot sample what that
-    // ray hits
-    let mut pdf = 0.0;
-    // start of the light probabilities of the point that the ray leaves
-    let mut shares = 0;
+    let mut last = LastLobe::NONE;
     while path.continues(dispatch) {
         let hit = path.trace(scene);
         if hit.reference == NONE {
-            if pdf > 0.0 && scene.world.environment != NONE {
-                let sky = scene.world.environment;
-                let light = &scene.lights[sky as usize];
-                let other = pdf_environment(scene, light, path.ray.direction)
-                    * share_of(scene, shares, sky);
-                radiance += path.environment(scene) * balance(pdf, other);
-            } else {
-                radiance += path.environment(scene);
-            }
+            radiance += path.found_environment(scene, &last);
             break;
         }
-        let Ray { origin: from, direction, .. } = path.ray;
+        let ray = path.ray;
         let s = path.arrive(scene, &hit);
-        if pdf > 0.0 && s.light != NONE {
-            let other = pdf_area(scene, shares, s.light, from, direction, hit.t, s.normal, s.v);
-            radiance += path.emission(scene, &s) * balance(pdf, other);
-        } else {
-            radiance += path.emission(scene, &s);
-        }
+        radiance += path.found_emission(scene, &last, &ray, &s, hit.t);
         if path.passes(scene, &s) {
-            pdf = 0.0;
+            last.pdf = 0.0;
             continue;
         }
         if path.bounce == dispatch.max_bounces {
             break;
         }
-        let mut p = shading_point(scene, &s, -direction);
+        let mut p = shading_point(scene, &s, -ray.direction);
         if p.lobe.bsdf.is_layered() {
             let u = rng_next(&mut rng);
             path.throughput *= choose_layer(scene, &mut p, u.x);
         }
         let scattered = if p.lobe.bsdf.is_specular() {
-            pdf = 0.0;
+            last.pdf = 0.0;
             let u = rng_next(&mut rng);
             scatter_specular(scene, &p, &path.interior, u.x, RADIANCE)
         } else {
             if sampled {
-                shares = shares_at(scene, s.position);
+                last.shares = shares_at(scene, s.position);
                 let u = rng_next(&mut rng);
                 let (direct, spent) = next_event(scene, &p, &path.interior, true, u);
                 radiance += path.throughput * direct;
@@ -85,7 +64,9 @@ pub fn path_trace(
             }
             let u = rng_next(&mut rng);
             let scattered = scatter_rough(&p, &path.interior, Vec2::new(u.x, u.y), RADIANCE);
-            pdf = if sampled { pdf_rough(&p.lobe, p.n, p.wo, scattered.direction) } else { 0.0 };
+            if sampled {
+                last.pdf = pdf_rough(&p.lobe, p.n, p.wo, scattered.direction);
+            }
             scattered
         };
         if !path.scatter(&s, &scattered, rng_next(&mut rng).x) {

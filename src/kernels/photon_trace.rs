@@ -4,7 +4,7 @@
 
 use super::direct::transmittance;
 use super::geometry::intersect::intersect_scene;
-use super::geometry::surface::surface_at;
+use super::geometry::surface::{Surface, surface_at};
 use super::lights::aim::aimed_scatter;
 use super::lights::emission::{Emission, emit_photon};
 use super::materials::interior::{Interior, interior_before, medium_of, passes_hidden};
@@ -13,7 +13,7 @@ use super::materials::{choose_layer, scatter_rough, scatter_specular};
 use super::math::rng::{Rng, STREAM_PHOTON, rng_new, rng_next};
 use super::math::{FAR, max_component, oct_encode, offset_origin};
 use super::real::{Real, Vec2, Vec3};
-use super::records::{Dispatch, HIDDEN_FACES, PhotonRecord};
+use super::records::{Dispatch, FOCUSED, HIDDEN_FACES, PhotonRecord};
 use super::shapes::ray::{Hit, Ray};
 use super::tables::*;
 
@@ -39,6 +39,8 @@ pub struct PhotonPath {
     relative_flux: Real,
     interior: Interior,
     photon_class: u32,
+    /// [`FOCUSED`] or 0.
+    focus: u32,
     bounce: u32,
     hidden: u32,
 }
@@ -50,7 +52,11 @@ impl PhotonPath {
         let mut rng =
             rng_new(dispatch.batch_first + id, dispatch.pass_number, STREAM_PHOTON, dispatch.seed);
         let emission = emit_photon(scene, &mut rng);
-        Self::emitted(emission, rng, id)
+        let mut path = Self::emitted(emission, rng, id);
+        if !emission.extended {
+            path.focus = dispatch.continued & FOCUSED;
+        }
+        path
     }
 
     /// Starts the path of photon `id` of the batch from an emission.
@@ -66,6 +72,7 @@ impl PhotonPath {
             relative_flux: emission.relative_flux,
             interior: emission.interior,
             photon_class: 0,
+            focus: 0,
             bounce: 0,
             hidden: 0,
         }
@@ -83,6 +90,14 @@ impl PhotonPath {
         }
         self.rays += 1;
         true
+    }
+
+    /// Record of the photon at `s`, which it reached from the direction `wo`.
+    #[inline(always)]
+    fn record(&self, dispatch: &Dispatch, s: &Surface, wo: Vec3) -> PhotonRecord {
+        let kind = self.focus | self.photon_class;
+        let key = self.id << dispatch.key_bits | self.bounce << dispatch.bounce_shift | kind;
+        PhotonRecord { position: s.position, key, flux: self.flux, direction: oct_encode(wo) }
     }
 
     /// Processes the hit of `ray` and samples the next ray; returns false if the path ends. Passes
@@ -113,23 +128,17 @@ impl PhotonPath {
             return true;
         }
         let mut p = shading_point(scene, &s, wo);
-        let mut stores = !p.lobe.bsdf.is_specular() && max_component(p.lobe.reflectance) > 0.0;
-        let mut layer = 1.0;
-        if p.lobe.bsdf.is_layered() {
-            stores = p.lobe.m.stores != 0;
-            let u = rng_next(&mut self.rng);
-            layer = choose_layer(scene, &mut p, u.x);
-        }
         // store a record at non-specular hits, unless shadow rays account for the light; shadow rays
         // end at faces, hidden ones included
-        if stores && (self.bounce > 0 || self.hidden > 0 || !sampled) {
-            let key = self.id << dispatch.key_bits | self.bounce << 1 | self.photon_class;
-            store(PhotonRecord {
-                position: s.position,
-                key,
-                flux: self.flux,
-                direction: oct_encode(wo),
-            });
+        let mut stores = self.bounce > 0 || self.hidden > 0 || !sampled;
+        let mut layer = 1.0;
+        if p.lobe.bsdf.is_layered() {
+            if stores && p.lobe.m.stores != 0 {
+                store(self.record(dispatch, &s, wo));
+            }
+            stores = false;
+            let u = rng_next(&mut self.rng);
+            layer = choose_layer(scene, &mut p, u.x);
         }
         // scatter
         let specular = p.lobe.bsdf.is_specular();
@@ -138,10 +147,14 @@ impl PhotonPath {
         if specular {
             scattered = scatter_specular(scene, &p, &self.interior, u.x, IMPORTANCE);
         } else {
+            if stores && max_component(p.lobe.reflectance) > 0.0 {
+                store(self.record(dispatch, &s, wo));
+            }
             scattered = scatter_rough(&p, &self.interior, Vec2::new(u.x, u.y), IMPORTANCE);
             if far {
                 scattered = aimed_scatter(scene, &p, u, scattered);
             }
+            self.focus = 0;
             if dispatch.classes == 2 && p.lobe.bsdf.is_wide() {
                 self.photon_class = 1;
             }

@@ -62,8 +62,11 @@ pub struct Dispatch {
     pub window_width: u32,
     /// 1 if the passes share their visible points, else 0.
     pub fixed_points: u32,
-    /// Padding to 16 bytes.
-    pub pad: [u32; 2],
+    /// 0 if eye paths end at the first rough surface. Otherwise they continue at narrow lobes:
+    /// [`CONTINUED`], plus [`FOCUSED`] if there may be such photons.
+    pub continued: u32,
+    /// Number of low bits of a record's key below the bounce: 1, or 2 if `continued`.
+    pub bounce_shift: u32,
     /// Sobol point of the pass for the first dimensions of eye paths.
     pub points: Points,
 }
@@ -79,6 +82,14 @@ pub const STOPPED: u32 = 1;
 pub const BAD_EYE: u32 = 2;
 /// State bit: the sampled direct light was not finite and is left out of the radiance.
 pub const BAD_DIRECT: u32 = 4;
+/// State bit: the point gathers only [`FOCUSED`] photons; continued paths find the other light.
+pub const ONLY_FOCUSED: u32 = 8;
+
+/// Bit of [`Dispatch::continued`]: eye paths continue at narrow lobes.
+pub const CONTINUED: u32 = 1;
+/// Bit of [`Dispatch::continued`] and of a record's key: only specular surfaces have scattered the
+/// photon, and its light has no extent, so that scattered rays cannot find it.
+pub const FOCUSED: u32 = 2;
 
 /// Number of bits for the lobe's kind in [`VisiblePoint::bsdf`].
 pub const BSDF_BITS: u32 = 8;
@@ -107,7 +118,7 @@ pub struct VisiblePoint {
     pub wo: Direction,
     /// Index of the outline that contains the point, or `NONE`.
     pub outline: u32,
-    /// Sum of [`STOPPED`], [`BAD_EYE`] and [`BAD_DIRECT`].
+    /// Sum of [`STOPPED`], [`BAD_EYE`], [`BAD_DIRECT`] and [`ONLY_FOCUSED`].
     pub state: u32,
     /// Number of the lobe's [`Bsdf`](super::materials::Bsdf) in the lowest [`BSDF_BITS`] bits;
     /// above them the index of the material, if the gather reads its parameters.
@@ -120,8 +131,7 @@ pub struct VisiblePoint {
 pub struct PhotonRecord {
     /// Position in scene space.
     pub position: Vec3,
-    /// (photon within the batch, bounce, class): the order of summation. On the GPU the cell's code
-    /// replaces it once the record is sorted.
+    /// (photon within the batch, bounce, [`FOCUSED`] bit, class): the order of summation. On the GPU the cell's code replaces it once the record is sorted.
     pub key: u32,
     /// Flux in W, times the number of photons in the pass.
     pub flux: Vec3,

@@ -26,13 +26,15 @@ pub struct Emission {
     pub relative_flux: Real,
     /// Media that the ray's origin lies in.
     pub interior: Interior,
+    /// True if scattered rays can find the light.
+    pub extended: bool,
 }
 
 impl Emission {
     /// Photon that no guide map has chosen, in a medium that is yet to be determined.
     #[inline(always)]
     pub fn unguided(ray: Ray, flux: Vec3) -> Self {
-        Self { ray, flux, relative_flux: 1.0, interior: interior_of(NONE) }
+        Self { ray, flux, relative_flux: 1.0, interior: interior_of(NONE), extended: false }
     }
 }
 
@@ -41,7 +43,10 @@ impl Emission {
 pub fn emit_photon(scene: &SceneTables, rng: &mut Rng) -> Emission {
     let u = rng_next(rng);
     let v = rng_next(rng);
-    emit_from(scene, &scene.lights[choose_light(scene, 0, u.x) as usize], u, v)
+    let light = &scene.lights[choose_light(scene, 0, u.x) as usize];
+    let mut emission = emit_from(scene, light, u, v);
+    emission.extended = LightKind::of(light.kind).is_extended();
+    emission
 }
 
 /// Emits a photon from `light`, by its guide map if it has one.

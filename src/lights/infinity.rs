@@ -52,6 +52,7 @@ pub fn emit_from_infinity(scene: &SceneTables, light: &Light, u: Vec4, v: Vec4) 
         flux,
         relative_flux: usual / pdf,
         interior: interior_from(scene, ray.direction),
+        extended: false,
     }
 }
 

@@ -77,6 +77,15 @@ impl LightKind {
         }
     }
 
+    /// Returns true if scattered rays can find the light.
+    #[inline(always)]
+    pub const fn is_extended(self) -> bool {
+        match self {
+            Self::Area | Self::Constant | Self::Image => true,
+            Self::Point | Self::Spot | Self::Sun => false,
+        }
+    }
+
     /// Returns true if rays that leave the scene find the light.
     #[inline(always)]
     pub const fn is_environment(self) -> bool {

@@ -15,7 +15,7 @@
 use super::{geometry, math, real, shapes, tables};
 use interior::Interior;
 use real::{Real, Vec2, Vec3};
-use shading::{Layer, Lobe, Sample, Scatter, ShadingPoint};
+use shading::{Layer, Lobe, NARROW, Sample, Scatter, ShadingPoint};
 use tables::{Material, SceneTables};
 
 pub mod enclosing;
@@ -160,10 +160,9 @@ macro_rules! materials {
             ),)*
         ];
 
-        /// BSDF of a rough material times the cosine between `wi` and the shading normal `n`, which
-        /// is on the side of `wo`.
-        #[inline(always)]
-        pub fn eval_rough(lobe: &Lobe, n: Vec3, wo: Vec3, wi: Vec3) -> Vec3 {
+        /// See [`eval_rough`].
+        #[inline(never)]
+        fn eval_any(lobe: &Lobe, n: Vec3, wo: Vec3, wi: Vec3) -> Vec3 {
             match lobe.bsdf {
                 $(Bsdf::$rough => $rough_name::$eval(lobe, n, wo, wi),)*
                 $(Bsdf::$specular => Vec3::ZERO,)*
@@ -171,9 +170,9 @@ macro_rules! materials {
             }
         }
 
-        /// Density of [`sample_rough`], sr^-1.
-        #[inline(always)]
-        pub fn pdf_rough(lobe: &Lobe, n: Vec3, wo: Vec3, wi: Vec3) -> Real {
+        /// See [`pdf_rough`].
+        #[inline(never)]
+        fn pdf_any(lobe: &Lobe, n: Vec3, wo: Vec3, wi: Vec3) -> Real {
             match lobe.bsdf {
                 $(Bsdf::$rough => $rough_name::$pdf(lobe, n, wo, wi),)*
                 $(Bsdf::$specular => 0.0,)*
@@ -181,9 +180,9 @@ macro_rules! materials {
             }
         }
 
-        /// Samples a direction at a rough surface from two random numbers.
-        #[inline(always)]
-        pub fn sample_rough(p: &ShadingPoint, u: Vec2, mode: u32) -> Sample {
+        /// See [`sample_rough`].
+        #[inline(never)]
+        fn sample_any(p: &ShadingPoint, u: Vec2, mode: u32) -> Sample {
             match p.lobe.bsdf {
                 $(Bsdf::$rough => $rough_name::$sample(p, u, mode),)*
                 $(Bsdf::$specular => Sample { direction: p.wo, weight: Vec3::ZERO },)*
@@ -191,10 +190,9 @@ macro_rules! materials {
             }
         }
 
-        /// Scatters at a specular surface. `interior` is the list in front of it; `u` chooses
-        /// between reflection and refraction.
-        #[inline(always)]
-        pub fn scatter_specular(
+        /// See [`scatter_specular`].
+        #[inline(never)]
+        fn scatter_any(
             scene: &SceneTables,
             p: &ShadingPoint,
             interior: &Interior,
@@ -294,6 +292,12 @@ impl Bsdf {
         self.is_parametric() || self == Self::Metal && m.mean_albedo < 1.0
     }
 
+    /// Returns true if a lobe of the width `alpha` is so narrow that eye paths continue at it.
+    #[inline(always)]
+    pub const fn is_narrow(self, alpha: Real) -> bool {
+        !self.is_wide() && !self.is_specular() && !self.is_layered() && alpha < NARROW
+    }
+
     /// Returns true if every lobe of the kind has such parameters.
     #[inline(always)]
     pub const fn is_parametric(self) -> bool {
@@ -310,20 +314,74 @@ impl Bsdf {
 /// path's throughput.
 #[inline(always)]
 pub fn choose_layer<'a>(scene: &'a SceneTables, p: &mut ShadingPoint<'a>, u: Real) -> Real {
+    let Layer { lobe, weight, .. } = chosen_layer(scene, &{ *p }, u);
+    p.lobe = lobe;
+    // wide lobes do not depend on the viewing direction
+    if lobe.bsdf.is_wide() {
+        p.n = p.ns;
+    }
+    weight
+}
+
+#[inline(never)]
+fn chosen_layer<'a>(scene: &'a SceneTables, p: &ShadingPoint<'a>, u: Real) -> Layer<'a> {
+    let mut p = *p;
     let mut layer = Layer { lobe: p.lobe, weight: 1.0, u };
     let mut weight = 1.0;
     for _ in 0..LAYERS {
         if p.lobe.bsdf.is_layered() {
-            layer = choose_once(scene, p, layer.u);
+            layer = choose_once(scene, &p, layer.u);
             p.lobe = layer.lobe;
             weight *= layer.weight;
         }
     }
-    // wide lobes do not depend on the viewing direction
-    if p.lobe.bsdf.is_wide() {
-        p.n = p.ns;
+    Layer { weight, ..layer }
+}
+
+// The most common materials are inlined into kernels, the others called: code of materials that a
+// scene lacks would slow it down. They are called with copies, so that kernels can keep the
+// originals in registers.
+
+/// BSDF of a rough material times the cosine between `wi` and the shading normal `n`, which is on
+/// the side of `wo`.
+#[inline(always)]
+pub fn eval_rough(lobe: &Lobe, n: Vec3, wo: Vec3, wi: Vec3) -> Vec3 {
+    if lobe.bsdf == Bsdf::Diffuse {
+        return diffuse::eval_diffuse(lobe, n, wo, wi);
     }
-    weight
+    eval_any(&{ *lobe }, n, wo, wi)
+}
+
+/// Samples a direction at a rough surface from two random numbers.
+#[inline(always)]
+pub fn sample_rough(p: &ShadingPoint, u: Vec2, mode: u32) -> Sample {
+    if p.lobe.bsdf == Bsdf::Diffuse {
+        return diffuse::sample_diffuse(p, u, mode);
+    }
+    sample_any(&{ *p }, u, mode)
+}
+
+/// Density of [`sample_rough`], sr^-1.
+#[inline(always)]
+pub fn pdf_rough(lobe: &Lobe, n: Vec3, wo: Vec3, wi: Vec3) -> Real {
+    pdf_any(&{ *lobe }, n, wo, wi)
+}
+
+/// Scatters at a specular surface. `interior` is the list in front of it; `u` chooses between
+/// reflection and refraction.
+#[inline(always)]
+pub fn scatter_specular(
+    scene: &SceneTables,
+    p: &ShadingPoint,
+    interior: &Interior,
+    u: Real,
+    mode: u32,
+) -> Scatter {
+    match p.lobe.bsdf {
+        Bsdf::Glass => glass::scatter_glass(scene, p, interior, u, mode),
+        Bsdf::Mirror => mirror::scatter_mirror(scene, p, interior, u, mode),
+        _ => scatter_any(scene, &{ *p }, &{ *interior }, u, mode),
+    }
 }
 
 /// Scatters at a rough surface, which leaves the interior list unchanged.

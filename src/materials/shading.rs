@@ -33,6 +33,18 @@ pub struct Lobe<'a> {
     pub m: &'a Material,
 }
 
+/// Width (alpha) below which continued eye paths have less noise than the few photons that
+/// contribute to a lobe.
+pub const NARROW: Real = 0.08;
+
+impl Lobe<'_> {
+    /// Returns true if the lobe is so narrow that eye paths continue at it.
+    #[inline(always)]
+    pub fn is_narrow(&self) -> bool {
+        self.bsdf.is_narrow(self.alpha)
+    }
+}
+
 /// A choice among the materials of a layered one.
 #[derive(Clone, Copy, Debug)]
 pub struct Layer<'a> {

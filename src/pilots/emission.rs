@@ -226,8 +226,13 @@ fn pilot(
     } else {
         guided(scene, light, Vec2::new(v.x, v.y), v.w).0
     };
-    let dispatch =
-        Dispatch { max_bounces: BOUNCES, classes: 2, key_bits: KEY_BITS, ..Dispatch::zeroed() };
+    let dispatch = Dispatch {
+        max_bounces: BOUNCES,
+        classes: 2,
+        key_bits: KEY_BITS,
+        bounce_shift: 1,
+        ..Dispatch::zeroed()
+    };
     let mut path = PhotonPath::emitted(emission, rng, 0);
     let (mut contribution, mut share, mut scattered) = (0.0, 0.0, false);
     while path.goes_on(&dispatch) {

@@ -105,7 +105,7 @@ pub fn probe(packed: &PackedScene, settings: &RenderSettings) -> Probe {
 /// Fraction of the photon flux, without light straight from lights, that has met only mirrors and
 /// glass before.
 fn caustic_share(scene: &SceneTables, dispatch: &Dispatch, photons: u32) -> f64 {
-    let dispatch = Dispatch { key_bits: KEY_BITS, ..*dispatch };
+    let dispatch = Dispatch { key_bits: KEY_BITS, bounce_shift: 1, ..*dispatch };
     let photon = |id| {
         let (mut caustic, mut all, mut first) = (0.0, 0.0, true);
         let _ = photon_trace(scene, &dispatch, false, id, |record| {

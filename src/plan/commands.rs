@@ -110,6 +110,7 @@ impl Plan {
             Radius::Units(u) => (0.0, u * self.widening / self.unit),
         };
         let split = self.features.has(Feature::Split);
+        let bounce_shift = if self.continued != 0 { 2 } else { 1 };
         let wider = if split { self.settings.wider() } else { 1.0 };
         let radius = self.widening * self.probe.radius * scale_sq.sqrt();
         let cell = if split { SPARSE_RADII } else { CELL_RADII } * radius;
@@ -117,7 +118,9 @@ impl Plan {
         Dispatch {
             pass_number: self.first_pass + pass,
             seed: (self.settings.seed ^ (self.settings.seed >> 32)) as u32,
-            key_bits: key_bits(self.settings.max_bounces),
+            key_bits: key_bits(self.settings.max_bounces) + bounce_shift - 1,
+            continued: self.continued,
+            bounce_shift,
             capacity: self.capacity,
             max_bounces: self.settings.max_bounces,
             eye_samples: self.eye_samples,

@@ -136,6 +136,8 @@ features! {
     SignedFilter = "signed_filter",
     /// Direct light from shadow rays.
     Sampled = "sampled",
+    /// Eye paths that continue at narrow lobes.
+    Continued = "continued",
     /// The local radius rule.
     Local = "local",
     /// Separate gather radii for caustic and indirect photons.
@@ -157,10 +159,10 @@ impl Feature {
 
 /// A set of [`Feature`]s.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Features(u64);
+pub struct Features(u128);
 
 /// one bit per feature
-const _: () = assert!(SHARED.len() + Bsdf::ALL.len() <= u64::BITS as usize);
+const _: () = assert!(SHARED.len() + Bsdf::ALL.len() <= u128::BITS as usize);
 
 /// Greatest number of shapes that shaders test one after another, without a kd-tree.
 const FEW: usize = 16;
@@ -252,6 +254,10 @@ impl Features {
         put(Feature::Sampled, settings.direct == Direct::Sampled && !scene.lights.is_empty());
         put(Feature::Local, settings.radius_rule == RadiusRule::Local);
         let photons = !scene.lights.is_empty() && settings.method != Method::Path;
+        let narrow = entries().any(|(bsdf, m)| {
+            [bsdf].iter().chain(bsdf.lobes(m)).any(|lobe| lobe.is_narrow(m.alpha))
+        });
+        put(Feature::Continued, narrow && photons && settings.method == Method::Sppm);
         // photons that no wide surface has scattered are stored
         let first =
             settings.direct == Direct::Photons || !bsdfs().all(|b| b.is_wide() || b.is_layered());

@@ -15,12 +15,13 @@ mod memory;
 mod scale;
 
 use super::kernels::bytes::{FILM_BYTES, STATISTICS_BYTES};
-use super::kernels::records::FilmPixel;
+use super::kernels::records::{CONTINUED, FOCUSED, FilmPixel};
+use super::lights::LightKind;
 use super::math::pixel_filter::FilterKind;
 use super::pack::{Objects, PackedScene};
 use super::pilots::{Probe, probe};
 use super::real::Real;
-use super::tables::Camera;
+use super::tables::{Camera, Light, SceneTables};
 use crate::engine::{Cancel, EngineError, State};
 use crate::film::{ErrorMap, Picture, Rejections};
 use crate::prepare::radius::Automatic;
@@ -61,6 +62,8 @@ pub struct Plan {
     pub window_first: u32,
     /// AOVs to compute in addition to radiance.
     pub aovs: Aovs,
+    /// See [`Dispatch::continued`](super::kernels::records::Dispatch::continued).
+    pub continued: u32,
     /// Number of visible points per pixel.
     pub eye_samples: u32,
     /// Number of visible points per chunk, a multiple of `eye_samples`.
@@ -88,7 +91,7 @@ pub struct Plan {
     pub unit: f64,
     /// Factor from scene radiance to world radiance.
     pub radiance_unit: f64,
-    /// Greatest luminance that eye paths may meet through mirrors or glass, world units.
+    /// Greatest luminance that eye paths may meet after they were scattered, world units.
     pub glint: f64,
     /// Number of the render's first pass; pass numbers count from it.
     pub first_pass: u32,
@@ -112,13 +115,14 @@ impl Plan {
         let wider = settings.indirect_radius.or(probe.automatic.map(|a| a.indirect)).unwrap_or(1.0);
         let settings =
             &RenderSettings { radius: chosen, indirect_radius: Some(wider), ..settings.clone() };
-        let specular = features.has(Feature::Specular);
+        let found = features.has(Feature::Specular) || features.has(Feature::Continued);
         let widening = if features.has(Feature::First) { 1.0 } else { wider };
         let camera = &packed.tables.camera;
         let eye_samples = if settings.method == Method::Ppm { settings.eye_samples } else { 1 };
         let (capacity, batch_photons) = batch(settings, &probe);
         Self {
             features,
+            continued: continued(&packed.tables, features),
             settings: settings.clone(),
             width: camera.width,
             pixels: camera.width * camera.height,
@@ -136,7 +140,7 @@ impl Plan {
             objects: packed.objects.clone(),
             unit: packed.unit,
             radiance_unit: packed.radiance_unit,
-            glint: if specular { packed.brightest * filter_peak(camera) } else { 0.0 },
+            glint: if found { packed.brightest * filter_peak(camera) } else { 0.0 },
             first_pass: 0,
             taken_over: 0,
             cancel: Cancel::default(),
@@ -253,6 +257,19 @@ fn filter_peak(camera: &Camera) -> f64 {
         FilterKind::Pixel | FilterKind::Box | FilterKind::Tent | FilterKind::Gaussian => 1.0,
         FilterKind::Mitchell => (f64::from(camera.filter_size) / 3.0).powi(2),
     }
+}
+
+/// See [`Dispatch::continued`](super::kernels::records::Dispatch::continued).
+fn continued(scene: &SceneTables, features: Features) -> u32 {
+    if !features.has(Feature::Continued) {
+        return 0;
+    }
+    // without shadow rays, photons carry the light of lamps, too
+    if !features.has(Feature::Specular) && features.has(Feature::Sampled) {
+        return CONTINUED;
+    }
+    let extended = |light: &Light| LightKind::of(light.kind).is_extended();
+    if scene.lights.iter().all(extended) { CONTINUED } else { CONTINUED | FOCUSED }
 }
 
 /// Capacity of the record buffers, and number of photons per batch.

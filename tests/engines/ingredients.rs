@@ -113,6 +113,10 @@ impl Mixture {
             Feature::Absorption => self.material(Bsdf::Glass, 1.0),
             Feature::LobeParameters => self.material(Bsdf::Conductor, 0.0),
             Feature::Layered => self.material(Bsdf::Mix, 0.0),
+            Feature::Continued => {
+                self.material(Bsdf::Metal, 0.0);
+                self.light(LightKind::Point as u32, 0);
+            }
             Feature::Lobes => self.material(Bsdf::Metal, 0.0),
             Feature::AreaTriangle => self.area(Feature::Triangle, KIND_TRIANGLE),
             Feature::AreaSphere => self.area(Feature::Sphere, KIND_SPHERE),

@@ -180,6 +180,8 @@ fn hosts() -> Vec<Layout> {
             window_first,
             window_width,
             fixed_points,
+            continued,
+            bounce_shift,
             points
         }),
         layout!(VisiblePoint {

@@ -494,6 +494,15 @@ pub const SCENES: [(&str, &str, &str); 11] = [
         center = [0.4, 0.25, 0.6]
         radius = 0.25
         material = "copper"
+        [materials.polished]
+        type = "metal"
+        reflectance = 0.8
+        roughness = 0.2
+        [[shapes]]
+        type = "sphere"
+        center = [-0.3, 0.2, 0.7]
+        radius = 0.2
+        material = "polished"
         [[shapes]]
         type = "rectangle"
         origin = [-0.9, 0.0, 0.9]

@@ -114,3 +114,89 @@ fn weights_follow_the_light_probabilities_of_each_place() {
         assert_same(side, a, b, 0.015);
     }
 }
+
+/// A metal floor on which a glass ball focuses light, two balls of narrow metal, and a mirror.
+const NARROW: &str = r#"version = 1
+[camera]
+position = [0.0, 1.6, 3.0]
+target = [0.0, 0.3, 0.0]
+fov = 36.0
+[film]
+width = 16
+height = 12
+[materials.floor]
+type = "metal"
+reflectance = 0.8
+roughness = 0.28
+[materials.polished]
+type = "metal"
+reflectance = [0.9, 0.7, 0.4]
+roughness = 0.2
+[materials.wall]
+type = "diffuse"
+reflectance = [0.4, 0.5, 0.6]
+[materials.glass]
+type = "glass"
+ior = 1.5
+[materials.mirror]
+type = "mirror"
+reflectance = 0.9
+[[shapes]]
+type = "rectangle"
+origin = [-1.5, 0.0, 1.5]
+u = [3.0, 0.0, 0.0]
+v = [0.0, 0.0, -3.0]
+material = "floor"
+[[shapes]]
+type = "rectangle"
+origin = [-1.5, 0.0, -1.5]
+u = [3.0, 0.0, 0.0]
+v = [0.0, 3.0, 0.0]
+material = "wall"
+[[shapes]]
+type = "rectangle"
+origin = [-1.5, 0.0, 1.5]
+u = [0.0, 0.0, -3.0]
+v = [0.0, 1.5, 0.0]
+material = "mirror"
+[[shapes]]
+type = "sphere"
+center = [0.0, 0.75, 0.0]
+radius = 0.3
+material = "glass"
+[[shapes]]
+type = "sphere"
+center = [-0.7, 0.35, 0.2]
+radius = 0.35
+material = "polished"
+[[shapes]]
+type = "sphere"
+center = [0.7, 0.35, 0.2]
+radius = 0.35
+material = "polished"
+[[shapes]]
+type = "rectangle"
+origin = [-0.4, 2.8, -0.4]
+u = [0.8, 0.0, 0.0]
+v = [0.0, 0.0, 0.8]
+material = "wall"
+emission = 6.0
+"#;
+
+/// Theory: eye paths that continue at narrow lobes, together with the photons that only they gather
+/// there, estimate the integral of path tracing, and under a point light, whose caustics path
+/// tracing cannot find, that of PPM, which gathers all photons at the first rough surface.
+#[test]
+fn narrow_lobes_agree() {
+    let sppm = |direct, rule| (Method::Sppm, direct, rule);
+    let cases =
+        [PATH, sppm(Direct::Sampled, RadiusRule::Global), sppm(Direct::Photons, RadiusRule::Local)];
+    pairwise("narrow lobes, lamp", NARROW, &cases, 0.03);
+    let point = "[[lights]]\ntype = \"point\"\nposition = [0.3, 2.2, 0.4]\nintensity = 4.0\n";
+    let cases = [
+        (Method::Ppm, Direct::Sampled, RadiusRule::Fixed),
+        sppm(Direct::Sampled, RadiusRule::Global),
+        sppm(Direct::Photons, RadiusRule::Fixed),
+    ];
+    pairwise("narrow lobes, point", &format!("{NARROW}{point}"), &cases, 0.03);
+}
