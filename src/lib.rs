@@ -42,7 +42,9 @@
 //! (scene.film.width, scene.film.height) = (24, 16);
 //! let material = |name: &str, kind| Material { name: name.to_owned(), ..Material::new(kind) };
 //! let white = MaterialKind::Diffuse { reflectance: Reflectance::Color([0.7; 3]), roughness: 0.0 };
-//! let glass = MaterialKind::Glass { ior: 1.5, absorption: [0.0; 3], priority: 0 };
+//! let glass = MaterialKind::Glass {
+//!     ior: 1.5, roughness: 0.0, absorption: [0.0; 3], priority: 0,
+//! };
 //! scene.materials = vec![material("white", white), material("glass", glass)];
 //! let floor = ShapeKind::Plane { point: DVec3::ZERO, normal: DVec3::Y };
 //! let ball = ShapeKind::Sphere { center: DVec3::Y * 0.5, radius: 0.5 };

@@ -131,7 +131,8 @@ pub struct Material {
     pub alpha: Real,
     /// World (x, z) of the scene's origin, where planar uv starts, modulo the texture's period.
     pub planar_origin: Vec2,
-    /// Conductor: index of refraction relative to the outside, per channel.
+    /// Conductor: index of refraction relative to the outside, per channel. Rough glass: lowest
+    /// coefficients of the polynomial `albedo` from inside; `k` and `mean_fresnel` hold the others.
     pub eta: Vec3,
     /// Mix, opacity: index of the first material; two-sided: that of the front. Plastic: 1 if light
     /// takes on the base's color at each reflection inside, else 0.

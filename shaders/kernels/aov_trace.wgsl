@@ -80,7 +80,7 @@ fn aov_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
             continue;
         }
         //#end
-        var p = shading_point(s, -path.ray.direction);
+        var p = shading_point(s, -path.ray.direction, path.interior);
         //#if layered
         if is_layered(p.lobe.bsdf) {
             let u = rng_next(&rng);

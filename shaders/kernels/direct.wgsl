@@ -55,7 +55,13 @@ fn next_event(p: ShadingPoint, interior: Interior, mis: bool, u: vec4f) -> Direc
     //#end
     var radiance = f * light.radiance * weight;
     if light.distance < FAR {
-        radiance *= transmittance(medium_of(interior), light.distance);
+        var medium = medium_of(interior);
+        //#if rough_glass
+        if behind && is_body(p.lobe.bsdf) {
+            medium = medium_of(interior_beyond(p.s, p.wo, interior));
+        }
+        //#end
+        radiance *= transmittance(medium, light.distance);
     }
     return DirectLight(radiance, 1u);
 }
@@ -67,7 +73,7 @@ fn direct_light(p: ShadingPoint, interior: Interior, rng: ptr<function, Rng>) ->
     //#if lobes
     if narrow {
         let u = rng_next(rng);
-        let scattered = sample_rough(p, vec2f(u.x, u.y), RADIANCE);
+        let scattered = scatter_rough(p, interior, u.xyz, RADIANCE);
         if max_component(scattered.weight) > 0.0 {
             direct.rays += 1u;
             let pdf = pdf_rough(p.lobe, p.n, p.wo, scattered.direction);
@@ -94,7 +100,8 @@ fn direct_light(p: ShadingPoint, interior: Interior, rng: ptr<function, Rng>) ->
                     let other = pdf_area(
                         shares, at.light, start, ray.direction, hit.t, at.normal, at.v
                     );
-                    let seen = light.color * transmittance(medium_of(interior), hit.t);
+                    let medium = medium_of(scattered.interior);
+                    let seen = light.color * transmittance(medium, hit.t);
                     direct.radiance += scattered.weight * seen * balance(pdf, other);
                 }
                 //#end

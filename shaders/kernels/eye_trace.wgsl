@@ -54,7 +54,7 @@ fn eye_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
             continue;
         }
         //#end
-        var p = shading_point(s, -path.ray.direction);
+        var p = shading_point(s, -path.ray.direction, path.interior);
         //#if layered
         if is_layered(p.lobe.bsdf) {
             let u = rng_next(&rng);
@@ -75,10 +75,14 @@ fn eye_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
             let v = rng_next(&rng);
             let gathers = (dispatch.continued & FOCUSED) != 0u;
             if !gathers || v.z < CONTINUING {
+                var choice = v.z;
                 if gathers {
                     path.throughput *= 1.0 / CONTINUING;
+                    choice *= 1.0 / CONTINUING;
                 }
-                let scattered = scatter_rough(p, path.interior, vec2f(v.x, v.y), RADIANCE);
+                let scattered = scatter_rough(
+                    p, path.interior, vec3f(v.x, v.y, choice), RADIANCE
+                );
                 //#if sampled
                 last.pdf = pdf_rough(p.lobe, p.n, p.wo, scattered.direction);
                 //#end

@@ -56,7 +56,7 @@ fn photon_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgrou
         }
         //#end
         // choose a layer
-        var p = shading_point(s, wo);
+        var p = shading_point(s, wo, interior);
         var stores = !is_specular(p.lobe.bsdf) && max_component(p.lobe.reflectance) > 0.0;
         //#if layered
         var layer = 1.0;
@@ -128,7 +128,7 @@ fn scattered_rough(
     interior: Interior,
     u: vec4f,
 ) -> Scatter {
-    let scattered = scatter_rough(p, interior, vec2f(u.x, u.y), IMPORTANCE);
+    let scattered = scatter_rough(p, interior, u.xyz, IMPORTANCE);
     //#if split
     if is_wide(p.lobe.bsdf) {
         *photon_class = 1u;

@@ -38,7 +38,7 @@ fn looked(position: vec3f, direction: vec3f, body: u32, known: Interior) -> Inte
         }
         let s = surface_at(ray, hit);
         let m = scene.materials[s.material];
-        let closed = m.kind == MATERIAL_GLASS && dot(m.reflectance, m.reflectance) == 0.0;
+        let closed = is_body(m.kind) && dot(m.reflectance, m.reflectance) == 0.0;
         if s.material == body || (body == NONE && closed) {
             if dot(direction, s.normal) < 0.0 {
                 ahead = entered(ahead, s.material);

@@ -24,6 +24,10 @@ fn fresnel(cos_i: f32, eta: f32) -> Interface {
     return Interface(0.5 * (parallel * parallel + perpendicular * perpendicular), cos_t);
 }
 
+fn refracted(wo: vec3f, n: vec3f, cos_i: f32, cos_t: f32, eta: f32) -> vec3f {
+    return n * (eta * cos_i - cos_t) - wo * eta;
+}
+
 fn fresnel_conductor(cos: f32, eta: vec3f, k: vec3f) -> vec3f {
     let cos_sq = cos * cos;
     let sin_sq = max(1.0 - cos_sq, 0.0);

@@ -1,10 +1,6 @@
 // Smooth dielectric: Fresnel reflection and refraction, total internal reflection. Twin:
 // src/materials/glass.rs.
 
-fn refracted(wo: vec3f, n: vec3f, cos_i: f32, cos_t: f32, eta: f32) -> vec3f {
-    return n * (eta * cos_i - cos_t) - wo * eta;
-}
-
 fn scatter_glass(p: ShadingPoint, interior: Interior, u: f32, mode: u32) -> Scatter {
     let beyond = interior_beyond(p.s, p.wo, interior);
     let eta = relative_ior(p.s, p.wo, interior, beyond);

@@ -24,7 +24,7 @@ fn medium_of(interior: Interior) -> u32 {
     return interior.bodies[0];
 }
 
-//#if glass
+//#if glass || rough_glass
 //#if astride
 fn holds(interior: Interior, body: u32) -> bool {
     var list = interior;
@@ -80,8 +80,8 @@ fn ior_of(medium: u32) -> f32 {
 //#end
 
 fn interior_before(s: Surface, wo: vec3f, interior: Interior) -> Interior {
-    //#if glass
-    let inside = scene.materials[s.material].kind == MATERIAL_GLASS && dot(wo, s.normal) < 0.0;
+    //#if glass || rough_glass
+    let inside = is_body(scene.materials[s.material].kind) && dot(wo, s.normal) < 0.0;
     if inside {
         return entered(interior, s.material);
     }
@@ -89,7 +89,7 @@ fn interior_before(s: Surface, wo: vec3f, interior: Interior) -> Interior {
     return interior;
 }
 
-//#if glass
+//#if glass || rough_glass
 fn interior_beyond(s: Surface, wo: vec3f, before: Interior) -> Interior {
     if dot(wo, s.normal) >= 0.0 {
         return entered(before, s.material);
@@ -111,7 +111,7 @@ fn relative_ior(s: Surface, wo: vec3f, before: Interior, beyond: Interior) -> f3
 
 //#if nested
 fn passes_hidden(s: Surface, ray: ptr<function, Ray>, interior: ptr<function, Interior>) -> bool {
-    if scene.materials[s.material].kind != MATERIAL_GLASS {
+    if !is_body(scene.materials[s.material].kind) {
         return false;
     }
     let direction = (*ray).direction;
@@ -128,13 +128,13 @@ fn passes_hidden(s: Surface, ray: ptr<function, Ray>, interior: ptr<function, In
 //#if photon_trace && infinite
 fn interior_from(direction: vec3f) -> Interior {
     var interior = interior_of(NONE);
-    //#if glass && plane && unbounded
+    //#if glass && plane && unbounded || rough_glass && plane && unbounded
     for (var i = 0u; i < scene.world.unbounded_count; i++) {
         let reference = scene.unbounded[i];
         if kind_of(reference) == KIND_PLANE {
             let index = index_of(reference);
             let material = scene.planes[index].material;
-            let glass = scene.materials[material].kind == MATERIAL_GLASS;
+            let glass = is_body(scene.materials[material].kind);
             if glass && dot(direction, scene.planes[index].normal) > 0.0 {
                 interior = entered(interior, material);
             }

@@ -29,10 +29,10 @@ fn pdf_metal(lobe: Lobe, n: vec3f, wo: vec3f, wi: vec3f) -> f32 {
     return pdf_facet_lobe(lobe, n, wo, wi);
 }
 
-fn sample_metal(p: ShadingPoint, u: vec2f, mode: u32) -> Sample {
+fn sample_metal(p: ShadingPoint, u: vec3f, mode: u32) -> Sample {
     //#if lobe_parameters
     if scene.materials[p.lobe.material].mean_albedo < 1.0 {
-        let wi = sample_facet_lobe(p, u);
+        let wi = sample_facet_lobe(p, u.xy);
         let pdf = pdf_facet_lobe(p.lobe, p.n, p.wo, wi);
         var weight = vec3f(0.0);
         if pdf > 0.0 {
@@ -41,7 +41,7 @@ fn sample_metal(p: ShadingPoint, u: vec2f, mode: u32) -> Sample {
         return Sample(wi, weight);
     }
     //#end
-    let facet = sample_facets(p.n, p.wo, p.lobe.alpha, u);
+    let facet = sample_facets(p.n, p.wo, p.lobe.alpha, u.xy);
     let weight = fresnel_metal(p.lobe, facet.cos_d) * facet.weight;
     return Sample(facet.wi, weight * facet_correction(p, facet.wi, mode));
 }

@@ -114,6 +114,14 @@ fn facet_albedo(material: u32, cos: f32) -> f32 {
     return clamp(a.x + cos * (a.y + cos * (a.z + cos * (a.w + cos * high))), 0.0, 1.0);
 }
 
+fn inner_albedo(material: u32, cos: f32) -> f32 {
+    let a = scene.materials[material].eta;
+    let b = scene.materials[material].k;
+    let c = scene.materials[material].mean_fresnel;
+    let high = b.y + cos * (b.z + cos * (c.x + cos * c.y));
+    return clamp(a.x + cos * (a.y + cos * (a.z + cos * (b.x + cos * high))), 0.0, 1.0);
+}
+
 fn scattered_again(material: u32, mean_fresnel: vec3f, cos_o: f32, cos_i: f32) -> vec3f {
     let mean_albedo = scene.materials[material].mean_albedo;
     let lost = (1.0 - facet_albedo(material, cos_o)) * (1.0 - facet_albedo(material, cos_i));

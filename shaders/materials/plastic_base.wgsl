@@ -21,10 +21,10 @@ fn pdf_plastic_base(lobe: Lobe, n: vec3f, wo: vec3f, wi: vec3f) -> f32 {
     return pdf_cosine(n, wi);
 }
 
-fn sample_plastic_base(p: ShadingPoint, u: vec2f, mode: u32) -> Sample {
+fn sample_plastic_base(p: ShadingPoint, u: vec3f, mode: u32) -> Sample {
     let sent = cosine_axis(p, mode);
     var weight = sent.weight;
-    let wi = renormalized(from_frame(sent.axis, sample_cosine(u)));
+    let wi = renormalized(from_frame(sent.axis, sample_cosine(u.xy)));
     let cos = dot(wi, p.n);
     if dot(wi, p.ng) <= 0.0 || cos <= 0.0 {
         weight = vec3f(0.0);

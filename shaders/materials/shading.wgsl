@@ -75,8 +75,14 @@ fn toward(v: vec3f, w: vec3f) -> vec3f {
     return select(-v, v, dot(v, w) >= 0.0);
 }
 
-fn shading_point(s: Surface, wo: vec3f) -> ShadingPoint {
-    let lobe = lobe_at(s.material, s.uv);
+fn shading_point(s: Surface, wo: vec3f, interior: Interior) -> ShadingPoint {
+    var lobe = lobe_at(s.material, s.uv);
+    //#if rough_glass
+    if lobe.bsdf == MATERIAL_ROUGH_GLASS {
+        let beyond = interior_beyond(s, wo, interior);
+        lobe.reflectance = vec3f(relative_ior(s, wo, interior, beyond));
+    }
+    //#end
     let ng = toward(s.normal, wo);
     let ns = toward(s.shading, ng);
     // wide lobes do not depend on the viewing direction
@@ -138,8 +144,13 @@ fn renormalized(v: vec3f) -> vec3f {
     return v * (1.0 / sqrt(dot(v, v)));
 }
 
-fn scatter_rough(p: ShadingPoint, interior: Interior, u: vec2f, mode: u32) -> Scatter {
+fn scatter_rough(p: ShadingPoint, interior: Interior, u: vec3f, mode: u32) -> Scatter {
     let drawn = sample_rough(p, u, mode);
+    //#if rough_glass
+    if is_body(p.lobe.bsdf) && dot(drawn.direction, p.ng) < 0.0 {
+        return Scatter(drawn.direction, interior_beyond(p.s, p.wo, interior), drawn.weight);
+    }
+    //#end
     return Scatter(drawn.direction, interior, drawn.weight);
 }
 

@@ -15,7 +15,7 @@ fn pdf_translucent(lobe: Lobe, n: vec3f, wo: vec3f, wi: vec3f) -> f32 {
 }
 
 //#if scene
-fn sample_translucent(p: ShadingPoint, u: vec2f, mode: u32) -> Sample {
+fn sample_translucent(p: ShadingPoint, u: vec3f, mode: u32) -> Sample {
     let alpha = p.lobe.alpha;
     let sent = cosine_axis(p, mode);
     var weight = sent.weight;

@@ -44,10 +44,14 @@ const SHARED_CODE: [(&str, &[Bsdf]); 2] = [
             Bsdf::PlasticBase,
             Bsdf::SmoothMetal,
             Bsdf::Glass,
+            Bsdf::RoughGlass,
             Bsdf::ThinGlass,
         ],
     ),
-    ("microfacet", &[Bsdf::Metal, Bsdf::Conductor, Bsdf::Coat, Bsdf::PlasticBase]),
+    (
+        "microfacet",
+        &[Bsdf::Metal, Bsdf::Conductor, Bsdf::Coat, Bsdf::PlasticBase, Bsdf::RoughGlass],
+    ),
 ];
 
 /// Names that fences may use for `kernel`: the features, all kernels' stems, `scene` (the kernel

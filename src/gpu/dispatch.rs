@@ -39,6 +39,7 @@ pub fn dispatch(kernel: Kernel, features: Features) -> String {
     out += &lights();
     out += &is("is_specular", &mut specular.iter());
     out += &is("is_parametric", &mut rough.iter().filter(|bsdf| bsdf.is_parametric()));
+    out += &is("is_body", &mut scattering.iter().filter(|bsdf| bsdf.is_body()));
     out += &is("is_wide", &mut rough.iter().filter(|bsdf| bsdf.is_wide()));
     out += &cases(
         "pdf_rough(lobe: Lobe, n: vec3f, wo: vec3f, wi: vec3f) -> f32",
@@ -46,7 +47,7 @@ pub fn dispatch(kernel: Kernel, features: Features) -> String {
         &rough,
     );
     out += &cases(
-        "sample_rough(p: ShadingPoint, u: vec2f, mode: u32) -> Sample",
+        "sample_rough(p: ShadingPoint, u: vec3f, mode: u32) -> Sample",
         ("p.lobe.bsdf", "sample", "(p, u, mode)", "Sample(p.wo, vec3f(0.0))"),
         &rough,
     );

@@ -112,7 +112,7 @@ pub fn aov_trace(
         if path.passes(scene, &s) {
             continue;
         }
-        let mut p = shading_point(scene, &s, -path.ray.direction);
+        let mut p = shading_point(scene, &s, -path.ray.direction, &path.interior);
         if p.lobe.bsdf.is_layered() {
             let u = rng_next(&mut rng);
             path.throughput *= choose_layer(scene, &mut p, u.x);

@@ -8,14 +8,14 @@ use super::lights::area::pdf_area;
 use super::lights::environment::{eval_environment, pdf_environment};
 use super::lights::light::sample_light;
 use super::lights::select::{share_of, shares_at};
-use super::materials::interior::{Interior, medium_of};
+use super::materials::interior::{Interior, interior_beyond, medium_of};
 use super::materials::shading::{RADIANCE, ShadingPoint};
-use super::materials::{eval_rough, pdf_rough, sample_rough};
+use super::materials::{eval_rough, pdf_rough, scatter_rough};
 use super::math::rng::{Rng, rng_next};
 use super::math::sampling::balance;
 use super::math::trig::exponential;
 use super::math::{FAR, max_component, offset_origin};
-use super::real::{Real, Vec2, Vec3, Vec4};
+use super::real::{Real, Vec3, Vec4};
 use super::shapes::ray::Ray;
 use super::tables::*;
 
@@ -62,7 +62,11 @@ pub fn next_event(
     }
     let mut radiance = f * light.radiance * weight;
     if light.distance < FAR {
-        radiance *= transmittance(scene, medium_of(interior), light.distance);
+        let mut medium = medium_of(interior);
+        if behind && p.lobe.bsdf.is_body() {
+            medium = medium_of(&interior_beyond(scene, &p.s, p.wo, interior));
+        }
+        radiance *= transmittance(scene, medium, light.distance);
     }
     (radiance, 1)
 }
@@ -80,7 +84,7 @@ pub fn direct_light(
     let (mut radiance, mut rays) = next_event(scene, p, interior, narrow, rng_next(rng));
     if narrow {
         let u = rng_next(rng);
-        let scattered = sample_rough(p, Vec2::new(u.x, u.y), RADIANCE);
+        let scattered = scatter_rough(scene, p, interior, u.truncate(), RADIANCE);
         if max_component(scattered.weight) > 0.0 {
             rays += 1;
             let pdf = pdf_rough(&p.lobe, p.n, p.wo, scattered.direction);
@@ -111,7 +115,8 @@ pub fn direct_light(
                         at.normal,
                         at.v,
                     );
-                    let seen = light.color * transmittance(scene, medium_of(interior), hit.t);
+                    let medium = medium_of(&scattered.interior);
+                    let seen = light.color * transmittance(scene, medium, hit.t);
                     radiance += scattered.weight * seen * balance(pdf, other);
                 }
             }

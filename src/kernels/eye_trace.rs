@@ -11,7 +11,7 @@ use super::materials::shading::{RADIANCE, shading_point};
 use super::materials::{Bsdf, choose_layer, pdf_rough, scatter_rough, scatter_specular};
 use super::math::rng::{rng_eye, rng_next};
 use super::math::{INV_PI, is_finite, max_component, oct_encode};
-use super::real::{Real, Vec2, Vec3};
+use super::real::{Real, Vec3};
 use super::records::{
     BAD_DIRECT, BAD_EYE, BSDF_BITS, Dispatch, FOCUSED, ONLY_FOCUSED, VisiblePoint,
 };
@@ -59,7 +59,7 @@ pub fn eye_trace(
             last.pdf = 0.0;
             continue;
         }
-        let mut p = shading_point(scene, &s, -path.ray.direction);
+        let mut p = shading_point(scene, &s, -path.ray.direction, &path.interior);
         if p.lobe.bsdf.is_layered() {
             let u = rng_next(&mut rng);
             path.throughput *= choose_layer(scene, &mut p, u.x);
@@ -78,10 +78,13 @@ pub fn eye_trace(
             let v = rng_next(&mut rng);
             let gathers = dispatch.continued & FOCUSED != 0;
             if !gathers || v.z < CONTINUING {
+                let mut choice = v.z;
                 if gathers {
                     path.throughput *= 1.0 / CONTINUING;
+                    choice *= 1.0 / CONTINUING;
                 }
-                let scattered = scatter_rough(&p, &path.interior, Vec2::new(v.x, v.y), RADIANCE);
+                let u = Vec3::new(v.x, v.y, choice);
+                let scattered = scatter_rough(scene, &p, &path.interior, u, RADIANCE);
                 if sampled {
                     last.pdf = pdf_rough(&p.lobe, p.n, p.wo, scattered.direction);
                 }

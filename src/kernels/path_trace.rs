@@ -9,7 +9,7 @@ use super::lights::select::shares_at;
 use super::materials::shading::{RADIANCE, shading_point};
 use super::materials::{choose_layer, pdf_rough, scatter_rough, scatter_specular};
 use super::math::rng::{rng_eye, rng_next};
-use super::real::{Vec2, Vec3};
+use super::real::Vec3;
 use super::records::Dispatch;
 use super::tables::*;
 
@@ -45,7 +45,7 @@ pub fn path_trace(
         if path.bounce == dispatch.max_bounces {
             break;
         }
-        let mut p = shading_point(scene, &s, -ray.direction);
+        let mut p = shading_point(scene, &s, -ray.direction, &path.interior);
         if p.lobe.bsdf.is_layered() {
             let u = rng_next(&mut rng);
             path.throughput *= choose_layer(scene, &mut p, u.x);
@@ -63,7 +63,7 @@ pub fn path_trace(
                 path.rays += spent;
             }
             let u = rng_next(&mut rng);
-            let scattered = scatter_rough(&p, &path.interior, Vec2::new(u.x, u.y), RADIANCE);
+            let scattered = scatter_rough(scene, &p, &path.interior, u.truncate(), RADIANCE);
             if sampled {
                 last.pdf = pdf_rough(&p.lobe, p.n, p.wo, scattered.direction);
             }

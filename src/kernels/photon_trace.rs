@@ -12,7 +12,7 @@ use super::materials::shading::{IMPORTANCE, shading_point};
 use super::materials::{choose_layer, scatter_rough, scatter_specular};
 use super::math::rng::{Rng, STREAM_PHOTON, rng_new, rng_next};
 use super::math::{FAR, max_component, oct_encode, offset_origin};
-use super::real::{Real, Vec2, Vec3};
+use super::real::{Real, Vec3};
 use super::records::{Dispatch, FOCUSED, HIDDEN_FACES, PhotonRecord};
 use super::shapes::ray::{Hit, Ray};
 use super::tables::*;
@@ -127,7 +127,7 @@ impl PhotonPath {
             self.hidden += 1;
             return true;
         }
-        let mut p = shading_point(scene, &s, wo);
+        let mut p = shading_point(scene, &s, wo, &self.interior);
         // store a record at non-specular hits, unless shadow rays account for the light; shadow rays
         // end at faces, hidden ones included
         let mut stores = self.bounce > 0 || self.hidden > 0 || !sampled;
@@ -150,7 +150,7 @@ impl PhotonPath {
             if stores && max_component(p.lobe.reflectance) > 0.0 {
                 store(self.record(dispatch, &s, wo));
             }
-            scattered = scatter_rough(&p, &self.interior, Vec2::new(u.x, u.y), IMPORTANCE);
+            scattered = scatter_rough(scene, &p, &self.interior, u.truncate(), IMPORTANCE);
             if far {
                 scattered = aimed_scatter(scene, &p, u, scattered);
             }

@@ -3,7 +3,7 @@
 
 use super::fresnel::fresnel;
 use super::microfacet::*;
-use super::real::{Real, Vec2, Vec3};
+use super::real::{Real, Vec3};
 use super::shading::{Lobe, Sample, ShadingPoint};
 use super::tables::Material;
 
@@ -34,8 +34,8 @@ pub fn pdf_coat(lobe: &Lobe, n: Vec3, wo: Vec3, wi: Vec3) -> Real {
 
 /// Samples a direction by the distribution of visible normals.
 #[inline(always)]
-pub fn sample_coat(p: &ShadingPoint, u: Vec2, mode: u32) -> Sample {
-    let FacetSample { wi, cos_d, weight } = sample_facets(p.n, p.wo, p.lobe.alpha, u);
+pub fn sample_coat(p: &ShadingPoint, u: Vec3, mode: u32) -> Sample {
+    let FacetSample { wi, cos_d, weight } = sample_facets(p.n, p.wo, p.lobe.alpha, u.truncate());
     let reflected = fresnel(cos_d, 1.0 / p.lobe.m.ior).reflectance * weight;
     let weight = p.lobe.reflectance * (reflected * facet_correction(p, wi, mode));
     Sample { direction: wi, weight }

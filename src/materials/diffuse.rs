@@ -2,7 +2,7 @@
 
 use super::math::sampling::sample_cosine;
 use super::math::{INV_PI, from_frame};
-use super::real::{Real, Vec2, Vec3};
+use super::real::{Real, Vec3};
 use super::shading::{
     CosineAxis, Lobe, RADIANCE, Sample, ShadingPoint, cosine_axis, pdf_cosine, renormalized,
 };
@@ -36,9 +36,9 @@ pub fn pdf_diffuse(_: &Lobe, n: Vec3, _: Vec3, wi: Vec3) -> Real {
 /// Samples a direction by the cosine to the shading normal. For photons the adjoint applies: they
 /// scatter about the geometric normal, with the weight of the shading normal on arrival.
 #[inline(always)]
-pub fn sample_diffuse(p: &ShadingPoint, u: Vec2, mode: u32) -> Sample {
+pub fn sample_diffuse(p: &ShadingPoint, u: Vec3, mode: u32) -> Sample {
     let CosineAxis { axis, mut weight } = cosine_axis(p, mode);
-    let wi = renormalized(from_frame(axis, sample_cosine(u)));
+    let wi = renormalized(from_frame(axis, sample_cosine(u.truncate())));
     // a cosine about `ng` itself is above 2^-13; without this test the photon's weight does not
     // depend on the direction, so roulette need not wait for it
     if mode == RADIANCE && wi.dot(p.ng) <= 0.0 {

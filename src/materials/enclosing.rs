@@ -60,7 +60,7 @@ fn looked(
         }
         let s = surface_at(scene, &ray, &hit);
         let m = &scene.materials[s.material as usize];
-        let closed = m.kind == Bsdf::Glass as u32 && m.reflectance.dot(m.reflectance) == 0.0;
+        let closed = Bsdf::of(m.kind).is_body() && m.reflectance.dot(m.reflectance) == 0.0;
         if s.material == body || (body == NONE && closed) {
             if direction.dot(s.normal) < 0.0 {
                 ahead = entered(scene, &ahead, s.material);

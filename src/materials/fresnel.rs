@@ -34,6 +34,11 @@ pub fn fresnel(cos_i: Real, eta: Real) -> Interface {
     Interface { reflectance: 0.5 * (parallel * parallel + perpendicular * perpendicular), cos_t }
 }
 
+/// Direction of the refracted ray; `wo` points away from the surface on the side of `n`.
+pub fn refracted(wo: Vec3, n: Vec3, cos_i: Real, cos_t: Real, eta: Real) -> Vec3 {
+    n * (eta * cos_i - cos_t) - wo * eta
+}
+
 /// Fresnel reflectance of a conductor for unpolarised light, per channel: `eta` and `k` are the
 /// real and imaginary part of its index relative to the outside (Born & Wolf, section 14.2).
 pub fn fresnel_conductor(cos: Real, eta: Vec3, k: Vec3) -> Vec3 {

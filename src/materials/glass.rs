@@ -1,7 +1,7 @@
 //! Smooth dielectric: Fresnel reflection and refraction, total internal reflection. Twin:
 //! `shaders/materials/glass.wgsl`.
 
-use super::fresnel::fresnel;
+use super::fresnel::{fresnel, refracted};
 use super::interior::{Interior, interior_beyond, relative_ior};
 use super::real::{Real, Vec3};
 use super::shading::{IMPORTANCE, Sample, Scatter, ShadingPoint, reflected, shading_correction};
@@ -12,11 +12,6 @@ pub const EXAMPLES: &[Material] = &[
     Material { ior: 1.5, ..Material::EMPTY },
     Material { ior: 0.75, absorption: Vec3::new(0.5, 0.2, 0.1), ..Material::EMPTY },
 ];
-
-/// Direction of the refracted ray; `wo` points away from the surface on the side of `n`.
-pub fn refracted(wo: Vec3, n: Vec3, cos_i: Real, cos_t: Real, eta: Real) -> Vec3 {
-    n * (eta * cos_i - cos_t) - wo * eta
-}
 
 /// Reflects or refracts by the Fresnel equations, chosen by `u`. A refracted direction on the wrong
 /// side of the surface is replaced by refraction at the geometric normal.

@@ -94,7 +94,7 @@ pub fn interior_before(
     interior: &Interior,
 ) -> Interior {
     let inside =
-        scene.materials[s.material as usize].kind == Bsdf::Glass as u32 && wo.dot(s.normal) < 0.0;
+        Bsdf::of(scene.materials[s.material as usize].kind).is_body() && wo.dot(s.normal) < 0.0;
     if inside { entered(scene, interior, s.material) } else { *interior }
 }
 
@@ -133,7 +133,7 @@ pub fn passes_hidden(
     ray: &mut Ray,
     interior: &mut Interior,
 ) -> bool {
-    if scene.world.nested == 0 || scene.materials[s.material as usize].kind != Bsdf::Glass as u32 {
+    if scene.world.nested == 0 || !Bsdf::of(scene.materials[s.material as usize].kind).is_body() {
         return false;
     }
     let beyond = interior_beyond(scene, s, -ray.direction, interior);
@@ -154,7 +154,7 @@ pub fn interior_from(scene: &SceneTables, direction: Vec3) -> Interior {
         let reference = scene.unbounded[i as usize];
         if kind_of(reference) == KIND_PLANE {
             let plane = &scene.planes[index_of(reference) as usize];
-            let glass = scene.materials[plane.material as usize].kind == Bsdf::Glass as u32;
+            let glass = Bsdf::of(scene.materials[plane.material as usize].kind).is_body();
             if glass && direction.dot(plane.normal) > 0.0 {
                 interior = entered(scene, &interior, plane.material);
             }

@@ -3,7 +3,7 @@
 
 use super::fresnel::schlick;
 use super::microfacet::*;
-use super::real::{Real, Vec2, Vec3};
+use super::real::{Real, Vec3};
 use super::shading::{Lobe, Sample, ShadingPoint};
 use super::tables::Material;
 
@@ -53,9 +53,9 @@ pub fn pdf_metal(lobe: &Lobe, n: Vec3, wo: Vec3, wi: Vec3) -> Real {
 /// Samples a direction by the distribution of visible normals, or by the cosine for the light that
 /// the facets scatter several times.
 #[inline(always)]
-pub fn sample_metal(p: &ShadingPoint, u: Vec2, mode: u32) -> Sample {
+pub fn sample_metal(p: &ShadingPoint, u: Vec3, mode: u32) -> Sample {
     if p.lobe.m.mean_albedo < 1.0 {
-        let wi = sample_facet_lobe(p, u);
+        let wi = sample_facet_lobe(p, u.truncate());
         let pdf = pdf_facet_lobe(&p.lobe, p.n, p.wo, wi);
         let mut weight = Vec3::ZERO;
         if pdf > 0.0 {
@@ -63,7 +63,7 @@ pub fn sample_metal(p: &ShadingPoint, u: Vec2, mode: u32) -> Sample {
         }
         return Sample { direction: wi, weight };
     }
-    let FacetSample { wi, cos_d, weight } = sample_facets(p.n, p.wo, p.lobe.alpha, u);
+    let FacetSample { wi, cos_d, weight } = sample_facets(p.n, p.wo, p.lobe.alpha, u.truncate());
     let weight = fresnel_metal(&p.lobe, cos_d) * weight * facet_correction(p, wi, mode);
     Sample { direction: wi, weight }
 }

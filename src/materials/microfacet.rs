@@ -157,6 +157,14 @@ pub fn facet_albedo(m: &Material, cos: Real) -> Real {
     (a.x + cos * (a.y + cos * (a.z + cos * (a.w + cos * high)))).clamp(0.0, 1.0)
 }
 
+/// The same for a rough dielectric, from inside.
+#[inline(always)]
+pub fn inner_albedo(m: &Material, cos: Real) -> Real {
+    let (a, b, c) = (m.eta, m.k, m.mean_fresnel);
+    let high = b.y + cos * (b.z + cos * (c.x + cos * c.y));
+    (a.x + cos * (a.y + cos * (a.z + cos * (b.x + cos * high)))).clamp(0.0, 1.0)
+}
+
 /// BRDF of the light that microfacets scatter several times, sr^-1, with their mean Fresnel
 /// reflectance (Kulla & Conty 2017, "Revisiting physically based shading at Imageworks"; Fresnel
 /// part by Jakob et al. 2014). Single scattering loses this light.

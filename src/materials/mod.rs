@@ -13,8 +13,8 @@
 //! reciprocity and engine agreement run over the `EXAMPLES` of every file.
 
 use super::{geometry, math, real, shapes, tables};
-use interior::Interior;
-use real::{Real, Vec2, Vec3};
+use interior::{Interior, interior_beyond};
+use real::{Real, Vec3};
 use shading::{Layer, Lobe, NARROW, Sample, Scatter, ShadingPoint};
 use tables::{Material, SceneTables};
 
@@ -182,7 +182,7 @@ macro_rules! materials {
 
         /// See [`sample_rough`].
         #[inline(never)]
-        fn sample_any(p: &ShadingPoint, u: Vec2, mode: u32) -> Sample {
+        fn sample_any(p: &ShadingPoint, u: Vec3, mode: u32) -> Sample {
             match p.lobe.bsdf {
                 $(Bsdf::$rough => $rough_name::$sample(p, u, mode),)*
                 $(Bsdf::$specular => Sample { direction: p.wo, weight: Vec3::ZERO },)*
@@ -242,6 +242,8 @@ materials! {
         Coat = coat, eval_coat, sample_coat, pdf_coat;
         /// Diffuse base of plastic.
         PlasticBase = plastic_base, eval_plastic_base, sample_plastic_base, pdf_plastic_base;
+        /// Rough dielectric.
+        RoughGlass = rough_glass, eval_rough_glass, sample_rough_glass, pdf_rough_glass;
     }
     specular {
         /// Perfect mirror.
@@ -280,7 +282,7 @@ impl Bsdf {
             Self::Opacity => &[Self::Null],
             Self::Mix | Self::TwoSided => &[],
             Self::Diffuse | Self::RoughDiffuse | Self::Translucent | Self::Metal => &[],
-            Self::Conductor | Self::Coat | Self::PlasticBase => &[],
+            Self::Conductor | Self::Coat | Self::PlasticBase | Self::RoughGlass => &[],
             Self::Mirror | Self::SmoothMetal | Self::Glass | Self::ThinGlass | Self::Null => &[],
         }
     }
@@ -290,6 +292,12 @@ impl Bsdf {
     #[inline(always)]
     pub fn reads_table(self, m: &Material) -> bool {
         self.is_parametric() || self == Self::Metal && m.mean_albedo < 1.0
+    }
+
+    /// Returns true for the surface of a glass body, with a medium inside.
+    #[inline(always)]
+    pub const fn is_body(self) -> bool {
+        matches!(self, Self::Glass | Self::RoughGlass)
     }
 
     /// Returns true if a lobe of the width `alpha` is so narrow that eye paths continue at it.
@@ -303,6 +311,7 @@ impl Bsdf {
     pub const fn is_parametric(self) -> bool {
         match self {
             Self::Conductor | Self::Coat | Self::PlasticBase | Self::Plastic => true,
+            Self::RoughGlass => true,
             Self::Diffuse | Self::RoughDiffuse | Self::Translucent | Self::Metal => false,
             Self::Mirror | Self::SmoothMetal | Self::Glass | Self::ThinGlass | Self::Null => false,
             Self::Mix | Self::TwoSided | Self::Opacity => false,
@@ -352,9 +361,9 @@ pub fn eval_rough(lobe: &Lobe, n: Vec3, wo: Vec3, wi: Vec3) -> Vec3 {
     eval_any(&{ *lobe }, n, wo, wi)
 }
 
-/// Samples a direction at a rough surface from two random numbers.
+/// Samples a direction at a rough surface from three random numbers.
 #[inline(always)]
-pub fn sample_rough(p: &ShadingPoint, u: Vec2, mode: u32) -> Sample {
+pub fn sample_rough(p: &ShadingPoint, u: Vec3, mode: u32) -> Sample {
     if p.lobe.bsdf == Bsdf::Diffuse {
         return diffuse::sample_diffuse(p, u, mode);
     }
@@ -384,9 +393,19 @@ pub fn scatter_specular(
     }
 }
 
-/// Scatters at a rough surface, which leaves the interior list unchanged.
+/// Scatters at a rough surface. `interior` is the list in front of it.
 #[inline(always)]
-pub fn scatter_rough(p: &ShadingPoint, interior: &Interior, u: Vec2, mode: u32) -> Scatter {
+pub fn scatter_rough(
+    scene: &SceneTables,
+    p: &ShadingPoint,
+    interior: &Interior,
+    u: Vec3,
+    mode: u32,
+) -> Scatter {
     let Sample { direction, weight } = sample_rough(p, u, mode);
-    Scatter { direction, interior: *interior, weight }
+    let mut interior = *interior;
+    if p.lobe.bsdf.is_body() && direction.dot(p.ng) < 0.0 {
+        interior = interior_beyond(scene, &p.s, p.wo, &interior);
+    }
+    Scatter { direction, interior, weight }
 }

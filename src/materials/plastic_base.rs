@@ -6,7 +6,7 @@ use super::fresnel::fresnel;
 use super::math::sampling::sample_cosine;
 use super::math::{INV_PI, from_frame};
 use super::microfacet::facet_albedo;
-use super::real::{Real, Vec2, Vec3, Vec4};
+use super::real::{Real, Vec3, Vec4};
 use super::shading::{CosineAxis, Lobe, Sample, ShadingPoint, cosine_axis, pdf_cosine, renormalized};
 use super::tables::Material;
 
@@ -52,9 +52,9 @@ pub fn pdf_plastic_base(_: &Lobe, n: Vec3, _: Vec3, wi: Vec3) -> Real {
 /// Samples a direction by the cosine; for photons about the geometric normal, as on diffuse
 /// surfaces.
 #[inline(always)]
-pub fn sample_plastic_base(p: &ShadingPoint, u: Vec2, mode: u32) -> Sample {
+pub fn sample_plastic_base(p: &ShadingPoint, u: Vec3, mode: u32) -> Sample {
     let CosineAxis { axis, mut weight } = cosine_axis(p, mode);
-    let wi = renormalized(from_frame(axis, sample_cosine(u)));
+    let wi = renormalized(from_frame(axis, sample_cosine(u.truncate())));
     let cos = wi.dot(p.n);
     if wi.dot(p.ng) <= 0.0 || cos <= 0.0 {
         weight = Vec3::ZERO;

@@ -9,7 +9,7 @@
 
 use super::math::sampling::sample_cosine;
 use super::math::{INV_PI, PI, from_frame};
-use super::real::{Real, Vec2, Vec3};
+use super::real::{Real, Vec3};
 use super::shading::{CosineAxis, Lobe, Sample, ShadingPoint, cosine_axis, pdf_cosine, renormalized};
 use super::tables::Material;
 
@@ -55,9 +55,9 @@ pub fn pdf_rough_diffuse(_: &Lobe, n: Vec3, _: Vec3, wi: Vec3) -> Real {
 /// Samples a direction by the cosine; for photons about the geometric normal, as on diffuse
 /// surfaces.
 #[inline(always)]
-pub fn sample_rough_diffuse(p: &ShadingPoint, u: Vec2, mode: u32) -> Sample {
+pub fn sample_rough_diffuse(p: &ShadingPoint, u: Vec3, mode: u32) -> Sample {
     let CosineAxis { axis, mut weight } = cosine_axis(p, mode);
-    let wi = renormalized(from_frame(axis, sample_cosine(u)));
+    let wi = renormalized(from_frame(axis, sample_cosine(u.truncate())));
     if wi.dot(p.ng) <= 0.0 || wi.dot(p.n) <= 0.0 {
         weight = Vec3::ZERO;
     }

@@ -3,7 +3,7 @@
 
 use super::Bsdf;
 use super::geometry::surface::Surface;
-use super::interior::Interior;
+use super::interior::{Interior, interior_beyond, relative_ior};
 use super::math::{INV_PI, mirrored};
 use super::real::{Real, Vec2, Vec3};
 use super::tables::*;
@@ -25,7 +25,8 @@ pub struct Lobe<'a> {
     pub bsdf: Bsdf,
     /// Width (alpha) of the lobe, if the kind has one.
     pub alpha: Real,
-    /// Reflectance, in [0, 1]; at normal incidence for metal.
+    /// Reflectance, in [0, 1]; at normal incidence for metal. Rough glass: index in front of the
+    /// surface over that behind it.
     pub reflectance: Vec3,
     /// Index in the material table.
     pub material: u32,
@@ -124,10 +125,20 @@ pub fn toward(v: Vec3, w: Vec3) -> Vec3 {
     if v.dot(w) >= 0.0 { v } else { -v }
 }
 
-/// Computes the normals and material parameters of a surface viewed from `wo`.
+/// Computes the normals and material parameters of a surface viewed from `wo`; `interior` is the
+/// interior list on that side.
 #[inline(always)]
-pub fn shading_point<'a>(scene: &'a SceneTables, s: &Surface, wo: Vec3) -> ShadingPoint<'a> {
-    let lobe = lobe_at(scene, s.material, s.uv);
+pub fn shading_point<'a>(
+    scene: &'a SceneTables,
+    s: &Surface,
+    wo: Vec3,
+    interior: &Interior,
+) -> ShadingPoint<'a> {
+    let mut lobe = lobe_at(scene, s.material, s.uv);
+    if lobe.bsdf == Bsdf::RoughGlass {
+        let beyond = interior_beyond(scene, s, wo, interior);
+        lobe.reflectance = Vec3::splat(relative_ior(scene, s, wo, interior, &beyond));
+    }
     let ng = toward(s.normal, wo);
     let ns = toward(s.shading, ng);
     // wide lobes do not depend on the viewing direction

@@ -41,7 +41,7 @@ pub fn pdf_translucent(lobe: &Lobe, n: Vec3, _: Vec3, wi: Vec3) -> Real {
 /// Samples a side by its fraction and a direction by the cosine; for photons about the geometric
 /// normal, as on diffuse surfaces.
 #[inline(always)]
-pub fn sample_translucent(p: &ShadingPoint, u: Vec2, mode: u32) -> Sample {
+pub fn sample_translucent(p: &ShadingPoint, u: Vec3, mode: u32) -> Sample {
     let alpha = p.lobe.alpha;
     let CosineAxis { axis, mut weight } = cosine_axis(p, mode);
     // choose the side and stretch the number that chose it to [0, 1]

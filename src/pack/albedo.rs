@@ -2,6 +2,7 @@
 
 use super::real::{Real, Vec4};
 use super::tables::Material;
+use crate::double::materials::fresnel::{fresnel, refracted};
 use crate::double::materials::microfacet::{ggx_lambda, ggx_visible_normal};
 use glam::{DVec2, DVec3};
 use std::f64::consts::PI;
@@ -26,10 +27,28 @@ impl Albedo {
     /// Albedo for a width `alpha`, if a facet reflects `fresnel` of the light at its own cosine:
     /// the mean of `F G_2 / G_1` over the visible normals, fitted by least squares.
     pub fn of(alpha: f64, fresnel: impl Fn(f64) -> f64) -> Self {
+        Self::fitted_to(|cos| single_scattering(alpha, cos, &fresnel))
+    }
+
+    /// Albedo, both sides together, of a rough dielectric seen from the medium with `eta` times the
+    /// index of the other one.
+    pub fn of_dielectric(alpha: f64, eta: f64) -> Self {
+        Self::fitted_to(|cos| {
+            mean_over_facets(alpha, cos, |wo, h| {
+                let interface = fresnel(wo.dot(h), eta);
+                let up = h * (2.0 * wo.dot(h)) - wo;
+                let down = refracted(wo, h, wo.dot(h), interface.cos_t, eta);
+                let reflected = interface.reflectance * masking(alpha, cos, up.z);
+                reflected + (1.0 - interface.reflectance) * masking(alpha, cos, -down.z)
+            })
+        })
+    }
+
+    fn fitted_to(albedo: impl Fn(f64) -> f64) -> Self {
         let nodes: [(f64, f64); NODES] = std::array::from_fn(|i| {
             // dense towards both ends
             let cos = 0.5 - 0.5 * ((i as f64 + 0.5) / NODES as f64 * PI).cos();
-            (cos, single_scattering(alpha, cos, &fresnel))
+            (cos, albedo(cos))
         });
         let least = nodes.iter().map(|node| node.1).fold(1.0, f64::min);
         Self { terms: fitted(&nodes), least }
@@ -60,16 +79,27 @@ pub fn mean_over_hemisphere(f: impl Fn(f64) -> DVec3) -> DVec3 {
 }
 
 fn single_scattering(alpha: f64, cos: f64, fresnel: &impl Fn(f64) -> f64) -> f64 {
+    mean_over_facets(alpha, cos, |wo, h| {
+        let wi = h * (2.0 * wo.dot(h)) - wo;
+        fresnel(wo.dot(h)) * masking(alpha, cos, wi.z)
+    })
+}
+
+/// `G_2 / G_1` for directions with these cosines; 0 if the second one is on the wrong side.
+fn masking(alpha: f64, cos_o: f64, cos_i: f64) -> f64 {
+    if cos_i <= 0.0 {
+        return 0.0;
+    }
+    let lambda = ggx_lambda(cos_o, alpha);
+    (1.0 + lambda) / (1.0 + lambda + ggx_lambda(cos_i, alpha))
+}
+
+/// Mean of `f(wo, h)` over the normals `h` that are visible from `wo`, which has the cosine `cos`.
+fn mean_over_facets(alpha: f64, cos: f64, f: impl Fn(DVec3, DVec3) -> f64) -> f64 {
     let wo = DVec3::new((1.0 - cos * cos).max(0.0).sqrt(), 0.0, cos);
-    let lambda = ggx_lambda(cos, alpha);
     let part = |k: usize| {
         let u = DVec2::new((k % FACETS) as f64 + 0.5, (k / FACETS) as f64 + 0.5) / FACETS as f64;
-        let h = ggx_visible_normal(wo, alpha, u);
-        let wi = h * (2.0 * wo.dot(h)) - wo;
-        if wi.z <= 0.0 {
-            return 0.0;
-        }
-        fresnel(wo.dot(h)) * (1.0 + lambda) / (1.0 + lambda + ggx_lambda(wi.z, alpha))
+        f(wo, ggx_visible_normal(wo, alpha, u))
     };
     (0..FACETS * FACETS).map(part).sum::<f64>() / (FACETS * FACETS) as f64
 }

@@ -90,7 +90,7 @@ fn start_box(camera: &Camera) -> Vec3 {
 /// Medium of everything in a box around `position`: a material index, [`NONE`], or [`ASTRIDE`] if a
 /// glass face crosses the box or several bodies contain it.
 fn medium_of_box(out: &SceneTables, position: Vec3, low: Vec3, high: Vec3) -> u32 {
-    if out.materials.iter().all(|m| m.kind != Bsdf::Glass as u32) {
+    if out.materials.iter().all(|m| !Bsdf::of(m.kind).is_body()) {
         return NONE;
     }
     let interior = enclosing(out, position);
@@ -166,7 +166,7 @@ fn glass_crosses(out: &SceneTables, low: Vec3, high: Vec3) -> bool {
 /// Returns whether `reference` is a glass shape whose surface may cross a box.
 fn reference_crosses(out: &SceneTables, reference: u32, low: Vec3, high: Vec3) -> bool {
     let index = index_of(reference) as usize;
-    let glass = |material: u32| out.materials[material as usize].kind == Bsdf::Glass as u32;
+    let glass = |material: u32| Bsdf::of(out.materials[material as usize].kind).is_body();
     let meets = |(a, b): (Vec3, Vec3)| a.cmple(high).all() && b.cmpge(low).all();
     let box_of = |kind| lamp_box(out, kind, index);
     match kind_of(reference) {

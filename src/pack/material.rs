@@ -4,7 +4,7 @@ use super::albedo::{Albedo, mean_over_hemisphere};
 use super::image::{period, reduced};
 use super::materials::microfacet::ALPHA_MIN;
 use super::materials::{Bsdf, LAYERS};
-use super::real::{Real, ToReal};
+use super::real::{Real, ToReal, Vec3};
 use super::rgb;
 use super::tables::*;
 use crate::double::materials::fresnel::{fresnel, fresnel_conductor};
@@ -17,6 +17,8 @@ const _: () = assert!(LAYERS == numbers::LAYERS);
 /// Microfacets that lose no more than this fraction of diffuse light by single scattering do without
 /// its compensation: their loss is confined to grazing angles, where the polynomial is too coarse.
 const NEGLIGIBLE_LOSS: f64 = 0.003;
+/// Difference of indices of refraction below which rough glass is treated as smooth.
+const EQUAL_MEDIA: f64 = 1e-3;
 
 /// Fills the material table: an entry for each material, at its index, then one for each material
 /// below an opacity.
@@ -83,10 +85,17 @@ fn material(m: &scene::Material, unit: f64) -> Material {
             Bsdf::Translucent
         }
         MaterialKind::Mirror { .. } => Bsdf::Mirror,
-        MaterialKind::Glass { ior, absorption, .. } => {
+        MaterialKind::Glass { ior, roughness, absorption, .. } => {
             out.ior = *ior as Real;
             out.absorption = rgb(absorption.map(|a| a * unit));
-            Bsdf::Glass
+            // facets between equal media do not bend light
+            if *roughness == 0.0 || (ior - 1.0).abs() < EQUAL_MEDIA {
+                Bsdf::Glass
+            } else {
+                out.alpha = alpha(*roughness);
+                compensate_glass(&mut out, *ior);
+                Bsdf::RoughGlass
+            }
         }
         MaterialKind::Metal { roughness, .. } if *roughness == 0.0 => Bsdf::SmoothMetal,
         MaterialKind::Metal { roughness, .. } => {
@@ -138,6 +147,19 @@ fn material(m: &scene::Material, unit: f64) -> Material {
         }
     };
     Material { kind: bsdf as u32, ..out }
+}
+
+/// The same for both sides of a rough dielectric.
+fn compensate_glass(out: &mut Material, ior: f64) {
+    let alpha = f64::from(out.alpha);
+    let [outer, inner] = [1.0 / ior, ior].map(|eta| Albedo::of_dielectric(alpha, eta));
+    if outer.mean().min(inner.mean()) < 1.0 - NEGLIGIBLE_LOSS {
+        outer.store(out);
+        let [a, b, c, d, e, f, g, h] = inner.terms.map(|term| term as Real);
+        out.eta = Vec3::new(a, b, c);
+        out.k = Vec3::new(d, e, f);
+        out.mean_fresnel = Vec3::new(g, h, 0.0);
+    }
 }
 
 /// Adds the light that microfacets scatter several times, unless it is negligible.

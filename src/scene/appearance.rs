@@ -155,10 +155,12 @@ pub enum MaterialKind {
         /// Fraction of light reflected, at every angle.
         reflectance: Reflectance,
     },
-    /// Smooth dielectric with air outside; the normal points to the outside.
+    /// Dielectric with air outside; the normal points to the outside.
     Glass {
         /// Index of refraction inside, > 0.
         ior: f64,
+        /// Roughness in [0, 1]; GGX `alpha = roughness^2`. 0 is smooth.
+        roughness: f64,
         /// Absorption coefficient inside, per scene unit (Beer-Lambert), >= 0.
         absorption: Rgb,
         /// Rank where glass bodies overlap: the medium is the glass with the highest priority, or

@@ -343,7 +343,7 @@ fn glass_on_glass() {
 #[test]
 fn critical_angle() {
     use caustica::low_level::materials::fresnel::fresnel;
-    use caustica::low_level::materials::glass::refracted;
+    use caustica::low_level::materials::fresnel::refracted;
     use glam::Vec3;
     const ROUNDINGS: f64 = 6.0 * 6e-8;
     let exact = |cos: f64, n: f64, off: f64| {

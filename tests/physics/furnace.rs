@@ -193,3 +193,38 @@ fn white_metals_and_plastics_lose_nothing() {
         }
     }
 }
+
+/// Theory: the same for balls of rough glass: what one side reflects the other side lets pass, and
+/// radiance over the squared index is conserved on every path through the ball.
+#[test]
+fn rough_glass_loses_nothing() {
+    for roughness in [0.2, 0.5, 0.8] {
+        let camera = Camera {
+            position: DVec3::new(0.4, 1.1, 3.0),
+            target: DVec3::ZERO,
+            fov: 14.0,
+            size: 24,
+        };
+        let text = format!(
+            "{}[environment]\nradiance = 1.0\n[materials.m]\ntype = \"glass\"\nior = 1.5\n\
+             roughness = {roughness:?}\n[[shapes]]\ntype = \"sphere\"\ncenter = [0, 0, 0]\n\
+             radius = 0.8\nmaterial = \"m\"\n",
+            camera.toml()
+        );
+        for (method, direct) in [(Method::Sppm, Direct::Sampled), (Method::Path, Direct::Photons)] {
+            // photons reach the inner side of the ball in patches
+            let power = if method == Method::Path { 0.01 } else { 0.02 };
+            let settings = RenderSettings {
+                method,
+                direct,
+                passes: 8,
+                photons: 1 << 14,
+                max_bounces: 100,
+                ..settings(0.03)
+            };
+            let found = runs_to(power, &text, &settings).region(|_, _| true);
+            let what = format!("roughness {roughness}, {method:?} {direct:?}");
+            assert_agrees(&what, found, 1.0, power);
+        }
+    }
+}

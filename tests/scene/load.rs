@@ -133,7 +133,9 @@ fn materials_of_an_obj() {
     };
     assert!(matches!(scene.textures[texture].kind, TextureKind::Image { image: 0, .. }));
     assert_eq!(scene.shapes[1].emission, [5.0, 4.0, 3.0]);
-    assert_eq!(kinds[2].kind, MaterialKind::Glass { ior: 1.33, absorption: [0.0; 3], priority: 0 });
+    let water =
+        MaterialKind::Glass { ior: 1.33, roughness: 0.0, absorption: [0.0; 3], priority: 0 };
+    assert_eq!(kinds[2].kind, water);
     assert_eq!(
         kinds[3].kind,
         MaterialKind::Mirror { reflectance: Reflectance::Color([0.9, 0.8, 0.7]) }

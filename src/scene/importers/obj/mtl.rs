@@ -111,6 +111,7 @@ impl<'t> Reader<'_, 't> {
         if is_glass || (is_clear && ior.is_some_and(|ior| ior != 1.0)) {
             MaterialKind::Glass {
                 ior: ior.unwrap_or(DEFAULT_IOR),
+                roughness: 0.0,
                 absorption: [0.0; 3],
                 priority: 0,
             }

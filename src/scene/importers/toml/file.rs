@@ -330,6 +330,9 @@ pub enum MaterialFile {
         ior: Option<Positive>,
         /// Name of a material that has the index, such as bk7, water or diamond.
         material: Option<String>,
+        /// Roughness of the surface, from 0 (smooth) to 1; GGX alpha is its square.
+        #[serde(default)]
+        roughness: Share,
         /// Absorption coefficient inside, per scene unit (Beer-Lambert); 0 by default.
         absorption: Option<Spectrum<NonNegative>>,
         /// Fraction of light that is left at the attenuation distance; replaces `absorption`.

@@ -54,6 +54,7 @@ pub(super) fn material(
         MaterialFile::Glass {
             ior,
             material,
+            roughness,
             absorption,
             attenuation_color,
             attenuation_distance,
@@ -76,7 +77,8 @@ pub(super) fn material(
                     transmittance.as_ref().map_or(Reflectance::Color([1.0; 3]), paint);
                 MaterialKind::ThinGlass { ior, transmittance }
             } else {
-                MaterialKind::Glass { ior, absorption, priority: priority.unwrap_or_default() }
+                let (roughness, priority) = (roughness.0, priority.unwrap_or_default());
+                MaterialKind::Glass { ior, roughness, absorption, priority }
             };
             (kind, coverage)
         }
