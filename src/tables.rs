@@ -10,6 +10,7 @@ use super::real::{Bits, Plain, Real, Vec2, Vec3, Vec4};
 use super::shapes::simd4::{FourRectangles, FourSpheres};
 use bytemuck::Zeroable;
 
+pub use super::shapes::instance::{Group, Instance};
 pub use super::shapes::kdtree::Node;
 pub use super::shapes::outline::Outline;
 pub use super::shapes::revolution::{Patch, Revolution};
@@ -304,6 +305,10 @@ pub struct SceneTables {
     pub patches: Vec<Patch>,
     /// Control points of the patches.
     pub profile_points: Vec<Vec2>,
+    /// Placed groups.
+    pub instances: Vec<Instance>,
+    /// Groups of shapes; their shapes, nodes and references follow those of the scene.
+    pub groups: Vec<Group>,
     /// References of the shapes outside the kd-tree.
     pub unbounded: Vec<u32>,
     /// Materials.

@@ -13,7 +13,11 @@ struct Surface {
     outline: u32,
 }
 
+//#if instances
+fn shape_surface(ray: Ray, hit: Hit) -> Surface {
+//#else
 fn surface_at(ray: Ray, hit: Hit) -> Surface {
+//#end
     let index = index_of(hit.reference);
     let p = ray.origin + ray.direction * hit.t;
     var planar = UV_NATURAL;

@@ -1,6 +1,7 @@
 //! Surface data at a hit: position, normals, texture coordinates, material. Twin:
 //! `shaders/geometry/surface.wgsl`.
 
+use super::instances::instance_surface;
 use super::math::unit;
 use super::real::{Real, Vec2, Vec3};
 use super::shapes::cuboid::{cuboid_axis, cuboid_error, cuboid_normal, cuboid_project, cuboid_uv};
@@ -165,6 +166,7 @@ pub fn surface_at(scene: &SceneTables, ray: &Ray, hit: &Hit) -> Surface {
                 s.uv.y = within_ends(scene, s.material, r.uv.y);
             }
         }
+        KIND_INSTANCE => return instance_surface(scene, ray, hit),
         _ => {
             let plane = &scene.planes[index];
             let q = plane_project(p, plane.point, plane.normal);

@@ -17,3 +17,4 @@ mod normals;
 mod ply;
 mod shipped_assets;
 mod shipped_scenes;
+mod transforms;

@@ -11,6 +11,7 @@ use serde::Deserialize;
 
 use super::numbers::{NonNegative, Paint, Positive, Share, Spectrum, Strength};
 use super::schema::{close_variants, default_to_first};
+use super::transform::PlacementFile;
 use crate::scene::numbers::{LARGEST_SHIFT, NARROWEST_FILTER, WIDEST_FILTER};
 use crate::scene::settings::RenderSettings;
 use crate::scene::{Aov, Axis, ColorSpace, Filter, ToneMap, Wrap};
@@ -42,6 +43,12 @@ pub struct SceneFile {
     /// Surfaces, including area lights.
     #[serde(default)]
     pub shapes: Vec<ShapeFile>,
+    /// Named groups of shapes, which instances place.
+    #[serde(default)]
+    pub groups: BTreeMap<String, GroupFile>,
+    /// Placed groups.
+    #[serde(default)]
+    pub instances: Vec<InstanceFile>,
     /// Point, spot and sun lights.
     #[serde(default)]
     pub lights: Vec<LightFile>,
@@ -442,7 +449,7 @@ pub enum ShapeFile {
         radius: Positive,
         /// Name of a material.
         material: String,
-        /// Emission and texture coordinates.
+        /// Emission, texture coordinates and transform.
         #[serde(flatten)]
         surface: SurfaceFile,
     },
@@ -457,7 +464,7 @@ pub enum ShapeFile {
         v: Vec3,
         /// Name of a material.
         material: String,
-        /// Emission and texture coordinates.
+        /// Emission, texture coordinates and transform.
         #[serde(flatten)]
         surface: SurfaceFile,
     },
@@ -471,7 +478,7 @@ pub enum ShapeFile {
         radius: Positive,
         /// Name of a material.
         material: String,
-        /// Emission and texture coordinates.
+        /// Emission, texture coordinates and transform.
         #[serde(flatten)]
         surface: SurfaceFile,
     },
@@ -483,7 +490,7 @@ pub enum ShapeFile {
         normal: Vec3,
         /// Name of a material.
         material: String,
-        /// Emission and texture coordinates.
+        /// Emission, texture coordinates and transform.
         #[serde(flatten)]
         surface: SurfaceFile,
     },
@@ -496,7 +503,7 @@ pub enum ShapeFile {
         max: Vec3,
         /// Name of a material.
         material: String,
-        /// Emission and texture coordinates.
+        /// Emission, texture coordinates and transform.
         #[serde(flatten)]
         surface: SurfaceFile,
     },
@@ -515,10 +522,7 @@ pub enum ShapeFile {
         crease_angle: Option<f64>,
         /// Name of a material; by default, the materials of the OBJ's own MTL. PLY files need it.
         material: Option<String>,
-        /// Transform from object to world space.
-        #[serde(default)]
-        transform: TransformFile,
-        /// Emission and texture coordinates.
+        /// Emission, texture coordinates and transform.
         #[serde(flatten)]
         surface: SurfaceFile,
     },
@@ -532,10 +536,7 @@ pub enum ShapeFile {
         segments: Option<Segments>,
         /// Name of a material.
         material: String,
-        /// Transform from object to world space.
-        #[serde(default)]
-        transform: TransformFile,
-        /// Emission and texture coordinates.
+        /// Emission, texture coordinates and transform.
         #[serde(flatten)]
         surface: SurfaceFile,
     },
@@ -556,10 +557,7 @@ pub enum ShapeFile {
         caps: bool,
         /// Name of a material.
         material: String,
-        /// Transform from object to world space.
-        #[serde(default)]
-        transform: TransformFile,
-        /// Emission and texture coordinates.
+        /// Emission, texture coordinates and transform.
         #[serde(flatten)]
         surface: SurfaceFile,
     },
@@ -583,13 +581,27 @@ pub enum ShapeFile {
         caps: bool,
         /// Name of a material.
         material: String,
-        /// Transform from object to world space.
-        #[serde(default)]
-        transform: TransformFile,
-        /// Emission and texture coordinates.
+        /// Emission, texture coordinates and transform.
         #[serde(flatten)]
         surface: SurfaceFile,
     },
+}
+
+impl ShapeFile {
+    /// The keys that every shape accepts.
+    pub fn surface(&self) -> &SurfaceFile {
+        match self {
+            Self::Sphere { surface, .. }
+            | Self::Rectangle { surface, .. }
+            | Self::Disc { surface, .. }
+            | Self::Plane { surface, .. }
+            | Self::Box { surface, .. }
+            | Self::Mesh { surface, .. }
+            | Self::Revolution { surface, .. }
+            | Self::Cylinder { surface, .. }
+            | Self::Cone { surface, .. } => surface,
+        }
+    }
 }
 
 /// Control points (radius, height) of several Bezier curves, 2 to 16 each.
@@ -608,9 +620,11 @@ pub struct SurfaceFile {
     pub emission: Spectrum<Strength>,
     /// Texture coordinates that replace the shape's own.
     pub uv: Option<Uv>,
+    /// Affine map from object to world space.
+    pub transform: Option<PlacementFile>,
 }
 
-/// Scale, then rotation, then translation.
+/// Scale, then rotation, then translation, of a profile file.
 #[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct TransformFile {
@@ -630,6 +644,27 @@ pub struct RotateFile {
     pub axis: Vec3,
     /// Angle in degrees.
     pub degrees: f64,
+}
+
+/// Shapes in a space of their own.
+#[derive(Debug, Default, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct GroupFile {
+    /// Surfaces; their transforms lead to the group's space.
+    pub shapes: Vec<ShapeFile>,
+    /// Instances of other groups in this one.
+    pub instances: Vec<InstanceFile>,
+}
+
+/// A group in another place.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct InstanceFile {
+    /// Name of a group.
+    pub group: String,
+    /// Affine map from the group's space to world space, or to that of the group that contains the
+    /// instance.
+    pub transform: Option<PlacementFile>,
 }
 
 /// A light without a surface.
