@@ -159,10 +159,10 @@ impl Feature {
 
 /// A set of [`Feature`]s.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Features(u64);
+pub struct Features(u128);
 
 /// one bit per feature
-const _: () = assert!(SHARED.len() + Bsdf::ALL.len() <= u64::BITS as usize);
+const _: () = assert!(SHARED.len() + Bsdf::ALL.len() <= u128::BITS as usize);
 
 /// Greatest number of shapes that shaders test one after another, without a kd-tree.
 const FEW: usize = 16;

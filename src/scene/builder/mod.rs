@@ -120,8 +120,8 @@ impl<'a> SceneBuilder<'a> {
         self.materials.len() - 1
     }
 
-    #[allow(dead_code)] // for importers of formats without transforms
     /// Adds the shapes of one part: usually one, or one per material of a mesh.
+    #[allow(dead_code)] // for importers of formats without transforms
     pub fn add_shapes(&mut self, part: &dyn Part, shapes: Vec<Shape>) {
         let shapes = self.checked(part, shapes, None);
         self.push_shapes(part, shapes);

@@ -7,9 +7,10 @@ use glam::DAffine3;
 
 use super::SceneBuilder;
 use crate::scene::limits::within;
+use crate::scene::numbers::LAYERS;
 use crate::scene::parts::Part;
 use crate::scene::placement::placed;
-use crate::scene::{Group, MaterialKind, Reflectance, Shape, ShapeKind, checks};
+use crate::scene::{Group, MaterialKind, Shape, ShapeKind, checks};
 
 /// A group in the making.
 #[derive(Debug, Default)]
@@ -46,7 +47,7 @@ impl SceneBuilder<'_> {
     /// Moves a shape. It becomes an instance if the result is none of the shapes; such an instance
     /// cannot emit, which is reported.
     fn placed(&mut self, part: &dyn Part, shape: Shape, map: &DAffine3) -> Option<Shape> {
-        let textured = !shape.planar_uv && self.is_textured(shape.material);
+        let textured = !shape.planar_uv && self.is_textured(shape.material, LAYERS);
         if let Some(kind) = placed(&shape.kind, map, textured) {
             return Some(Shape { kind, ..shape });
         }
@@ -66,10 +67,13 @@ impl SceneBuilder<'_> {
         Some(Shape { planar_uv, ..Shape::new(kind, material) })
     }
 
-    /// Returns whether texture coordinates matter on surfaces of this material.
-    fn is_textured(&self, material: usize) -> bool {
-        let kind = self.materials.get(material).map(|material| &material.kind);
-        matches!(kind.and_then(MaterialKind::reflectance), Some(Reflectance::Texture(_)))
+    /// Returns whether texture coordinates matter on surfaces of this material: it or one of the
+    /// materials that it contains, down to `depth` levels, has a texture.
+    fn is_textured(&self, material: usize, depth: usize) -> bool {
+        let Some(material) = self.materials.get(material) else { return false };
+        let parts = material.kind.parts().filter(|_| depth > 0);
+        let below = |parts: [usize; 2]| parts.iter().any(|at| self.is_textured(*at, depth - 1));
+        material.textures().next().is_some() || parts.is_some_and(below)
     }
 
     /// Makes a group of shapes that were checked.
@@ -102,7 +106,12 @@ impl SceneBuilder<'_> {
         group: &GroupParts,
         map: &DAffine3,
     ) -> Option<Vec<Shape>> {
-        let count = group.apart.len() as u64 + 1;
+        // the profile of a surface of revolution is copied, too
+        let weight = |shape: &Shape| match &shape.kind {
+            ShapeKind::Revolution { segments, .. } => segments.len() as u64,
+            _ => 1,
+        };
+        let count = group.apart.iter().map(weight).sum::<u64>() + 1;
         let copied = |shape: &Shape| match &shape.kind {
             ShapeKind::Mesh(mesh) => mesh.triangles.len() as u64,
             _ => 0,

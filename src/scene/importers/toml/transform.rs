@@ -84,7 +84,11 @@ pub(super) fn placement(
     let node = item.node.get("transform");
     let path = item.key("transform");
     let placement = match file {
-        None => Placement { map: DAffine3::IDENTITY, similar: Some(Transform::IDENTITY), is_given: false },
+        None => Placement {
+            map: DAffine3::IDENTITY,
+            similar: Some(Transform::IDENTITY),
+            is_given: false,
+        },
         Some(PlacementFile::Step(file)) => step(report, (node, &path), file)?,
         Some(PlacementFile::Steps(files)) => {
             let mut map = DAffine3::IDENTITY;
