@@ -134,7 +134,8 @@ impl Group {
 pub struct Mesh {
     /// Vertex positions in scene units.
     pub positions: Vec<DVec3>,
-    /// Unit shading normals.
+    /// Shading normals; of at most unit length, and of unequal lengths only after an uneven
+    /// transform.
     pub normals: Vec<DVec3>,
     /// Texture coordinates; v = 0 is an image's bottom row.
     pub uvs: Vec<DVec2>,

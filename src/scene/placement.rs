@@ -120,8 +120,12 @@ fn straight(linear: DMat3, textured: bool) -> bool {
     })
 }
 
+/// Normals keep the ratios of their lengths, so that interpolated ones are the images of those
+/// before; the longest is a unit vector.
 fn moved_mesh(mesh: &Mesh, map: &DAffine3) -> Mesh {
     let upright = map.matrix3.inverse().transpose();
+    let longest = mesh.normals.iter().map(|n| (upright * *n).length()).fold(0.0, f64::max);
+    let upright = if longest > 0.0 { upright * (1.0 / longest) } else { upright };
     let mirrors = map.matrix3.determinant() < 0.0;
     let turned = |mut corners: [u32; 3]| {
         if mirrors {
@@ -136,7 +140,7 @@ fn moved_mesh(mesh: &Mesh, map: &DAffine3) -> Mesh {
     };
     Mesh {
         positions: mesh.positions.iter().map(|p| map.transform_point3(*p)).collect(),
-        normals: mesh.normals.iter().map(|n| (upright * *n).normalize_or(*n)).collect(),
+        normals: mesh.normals.iter().map(|n| upright * *n).collect(),
         uvs: mesh.uvs.clone(),
         triangles: mesh.triangles.iter().map(triangle).collect(),
     }

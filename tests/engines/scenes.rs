@@ -82,7 +82,7 @@ pub const CAMERAS: [(&str, &str, &str, &str); 5] = [
 ];
 
 /// Name, render settings, and the rest of the scene file.
-pub const SCENES: [(&str, &str, &str); 12] = [
+pub const SCENES: [(&str, &str, &str); 13] = [
     (
         "glass and mirror under a rectangle",
         "",
@@ -560,6 +560,18 @@ pub const SCENES: [(&str, &str, &str); 12] = [
         material = "steel"
         transform = { translate = [0.3, 0.6, 0.2] }
         [[groups.toys.shapes]]
+        type = "cylinder"
+        radius = 0.1
+        p0 = [0.2, 0.0, 0.5]
+        p1 = [0.3, 0.4, 0.6]
+        material = "tiles"
+        [[groups.toys.shapes]]
+        type = "cone"
+        radius = 0.15
+        height = 0.3
+        material = "steel"
+        transform = { translate = [-0.2, 0.0, 0.5] }
+        [[groups.toys.shapes]]
         type = "disc"
         center = [-0.3, 0.6, 0.3]
         normal = [0.2, 1.0, 0.3]
@@ -613,6 +625,98 @@ pub const SCENES: [(&str, &str, &str); 12] = [
         v = [0.0, 0.0, 0.8]
         material = "white"
         emission = [20.0, 18.0, 15.0]
+        "#,
+    ),
+    (
+        "every shape under uneven maps and mirrors, photons alone",
+        "direct = \"photons\"\nindirect_radius = 2.0",
+        r#"
+        [textures.tiles]
+        type = "checker"
+        colors = [[0.8, 0.7, 0.6], [0.1, 0.2, 0.3]]
+        scale = [4.0, 3.0]
+        [materials.tiles]
+        type = "diffuse"
+        reflectance = "tiles"
+        [materials.both]
+        type = "two_sided"
+        front = "tiles"
+        back = "white"
+        [materials.clear]
+        type = "glass"
+        ior = 1.5
+        [[shapes]]
+        type = "mesh"
+        file = "ball.obj"
+        material = "tiles"
+        transform = [{ scale = [0.4, 0.25, -0.3] }, { translate = [-1.2, 0.3, 0.0] }]
+        [[shapes]]
+        type = "mesh"
+        file = "ball.obj"
+        material = "clear"
+        transform = { matrix = [[-0.3, 0.1, 0.0, -0.5], [0.0, 0.2, 0.0, 0.3], [0.0, 0.0, 0.3, 0.8]] }
+        [[shapes]]
+        type = "sphere"
+        center = [0.0, 0.0, 0.0]
+        radius = 0.3
+        material = "both"
+        transform = [{ scale = [1.0, 0.6, -1.0] }, { translate = [-0.4, 0.2, -0.2] }]
+        [[shapes]]
+        type = "box"
+        min = [-0.2, -0.2, -0.2]
+        max = [0.2, 0.2, 0.2]
+        material = "tiles"
+        transform = [
+            { rotate = { axis = [1.0, 0.5, 0.2], degrees = 30.0 } },
+            { translate = [0.3, 0.35, -0.3] },
+        ]
+        [[shapes]]
+        type = "disc"
+        center = [0.0, 0.0, 0.0]
+        normal = [0.0, 1.0, 0.2]
+        radius = 0.4
+        material = "both"
+        transform = [{ scale = [1.0, 1.0, 0.5] }, { translate = [0.3, 0.8, 0.2] }]
+        [[shapes]]
+        type = "rectangle"
+        origin = [-0.3, 0.0, 0.0]
+        u = [0.6, 0.0, 0.0]
+        v = [0.0, 0.5, 0.1]
+        material = "tiles"
+        transform = [{ scale = [-1.0, 1.0, 2.0] }, { translate = [0.9, 0.0, -0.8] }]
+        [[shapes]]
+        type = "revolution"
+        segments = [[[0.0, 0.0], [0.2, 0.0]], [[0.2, 0.0], [0.1, 0.1], [0.2, 0.3]]]
+        material = "tiles"
+        transform = [{ scale = [1.0, 1.2, 0.6] }, { translate = [0.9, 0.0, 0.2] }]
+        [[shapes]]
+        type = "cylinder"
+        radius = 0.15
+        height = 0.4
+        material = "both"
+        transform = [{ scale = [1.5, 1.0, 0.7] }, { translate = [1.4, 0.0, 0.0] }]
+        [[shapes]]
+        type = "cone"
+        radius = 0.2
+        top_radius = 0.1
+        p0 = [0.0, 0.0, 0.0]
+        p1 = [0.1, 0.5, 0.0]
+        material = "clear"
+        transform = [{ scale = [1.2, 1.0, 0.8] }, { translate = [0.5, 0.02, 0.9] }]
+        [[shapes]]
+        type = "plane"
+        point = [0.0, 0.0, -2.0]
+        normal = [0.0, 0.0, 1.0]
+        material = "tiles"
+        transform = [{ scale = [1.0, 2.0, 1.0] }, { rotate = { axis = [0, 1, 0], degrees = 10.0 } }]
+        [[shapes]]
+        type = "rectangle"
+        origin = [-0.2, 0.0, -0.2]
+        u = [0.4, 0.0, 0.0]
+        v = [0.0, 0.0, 0.4]
+        material = "white"
+        emission = [20.0, 18.0, 15.0]
+        transform = [{ scale = [2.0, 1.0, -1.5] }, { translate = [0.0, 2.5, 0.0] }]
         "#,
     ),
 ];

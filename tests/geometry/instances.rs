@@ -143,6 +143,81 @@ fn ellipsoids_in_closed_form() {
     assert!(worst < 0.6, "the error bound is {worst} of the error");
 }
 
+/// Kinds of shapes within a unit or so of the origin.
+const KINDS: [&str; 8] = [
+    "type = \"sphere\"\ncenter = [0.2, 0.1, 0]\nradius = 0.8",
+    "type = \"rectangle\"\norigin = [-0.8, -0.7, 0.1]\nu = [1.5, 0, 0.2]\nv = [0.1, 1.4, 0]",
+    "type = \"disc\"\ncenter = [0.1, 0, 0.2]\nnormal = [0.3, 1, -0.4]\nradius = 0.9",
+    "type = \"box\"\nmin = [-0.7, -0.4, -0.6]\nmax = [0.5, 0.8, 0.3]",
+    "type = \"mesh\"\nfile = \"tent.obj\"",
+    "type = \"revolution\"\nprofile = [[0, -0.5], [0.9, -0.2], [0.3, 0.6]]",
+    "type = \"cylinder\"\nradius = 0.4\np0 = [-0.5, -0.3, 0.2]\np1 = [0.4, 0.5, -0.1]",
+    "type = \"cone\"\nradius = 0.7\ntop_radius = 0.2\nheight = 0.8",
+];
+
+/// Smooth faces about a ridge, with texture coordinates.
+const TENT: &str = "v -0.8 0 -0.7\nv 0.8 0 -0.7\nv -0.8 0.6 0\nv 0.8 0.5 0\nv -0.8 0 0.7\n\
+    v 0.8 0.1 0.7\nvt 0 0\nvt 1 0\nvt 0 0.5\nvt 1 0.5\nvt 0 1\nvt 1 1\nvn 0 0.6 -0.8\nvn 0 1 0\n\
+    vn 0 0.6 0.8\nf 1/1/1 3/3/2 4/4/2 2/2/1\nf 3/3/2 5/5/3 6/6/3 4/4/2\n";
+
+/// Theory: under a map p = A q + b, a ray o + t d meets the image of a shape at the t where the ray
+/// A^-1 (o - b) + t A^-1 d meets the shape, with the same texture coordinates; its normals are
+/// A^-T n, normalized, on the outer side whether A mirrors or not. So each transformed shape gives
+/// the hits of the shape itself.
+#[test]
+fn transformed_shapes_are_images() {
+    let folder = crate::support::folder_with("images", &[("tent.obj", TENT)]);
+    let packed_of = |shape: &str| {
+        let text = format!(
+            "{HEAD}{MATERIAL}[textures.t]\ntype = \"checker\"\ncolors = [0.1, 0.9]\n\
+             [materials.checked]\ntype = \"diffuse\"\nreflectance = \"t\"\n\
+             [[shapes]]\n{shape}\nmaterial = \"checked\"\n"
+        );
+        packed(&sound(parse(&folder.join("scene.toml"), text.as_bytes())).scene).tables
+    };
+    let mut numbers = Numbers(0.53);
+    for kind in KINDS {
+        let plain = packed_of(kind);
+        let (mut met, mut unlike) = (0, 0);
+        for k in 0..12 {
+            let map = numbers.map(4.0);
+            let rows: Vec<[f64; 4]> = (0..3)
+                .map(|i| [map.x_axis[i], map.y_axis[i], map.z_axis[i], map.translation[i]])
+                .collect();
+            let moved = packed_of(&format!("{kind}\ntransform = {{ matrix = {rows:?} }}"));
+            let inverse = map.inverse();
+            for _ in 0..400 {
+                let origin = numbers.unit() * 7.0;
+                let world = ray(origin, map.transform_point3(numbers.signed()) - origin);
+                let (o, d) = (world.origin.as_dvec3(), world.direction.as_dvec3());
+                let own = ray(inverse.transform_point3(o), inverse.matrix3 * d);
+                match (hit_of(&moved, &world), hit_of(&plain, &own)) {
+                    (None, None) => {}
+                    (Some((_, a)), Some((_, b))) if alike(&a, &b, &map) => met += 1,
+                    // rays along edges and silhouettes
+                    _ => unlike += 1,
+                }
+            }
+            assert!(met > 40 * (k + 1), "{kind}: {met} hits after {k} maps, {map:?}");
+        }
+        assert!(unlike * 100 < met, "{kind}: {unlike} of {met} rays");
+    }
+}
+
+/// Returns whether surface `a` is the image of surface `b`.
+fn alike(a: &Surface, b: &Surface, map: &DAffine3) -> bool {
+    let upright = map.matrix3.inverse().transpose();
+    let moved = |n: Vec3| (upright * n.as_dvec3()).normalize();
+    let shading = moved(b.shading);
+    let apart = |x: f32, y: f32| (x - y - (x - y).round()).abs();
+    map.transform_point3(b.position.as_dvec3()).distance(a.position.as_dvec3()) < 2e-5
+        && a.normal.as_dvec3().distance(moved(b.normal)) < 2e-3
+        && a.shading.as_dvec3().distance(shading) < 2e-3
+        && apart(a.uv.x, b.uv.x) < 2e-3
+        && apart(a.uv.y, b.uv.y) < 2e-3
+        && (a.v - b.v).abs() < 2e-3
+}
+
 /// Theory: an instance of a group gives the hits of its shapes moved and written out, with the same
 /// normals and texture coordinates, for nested groups and mirrors as well.
 #[test]

@@ -88,3 +88,63 @@ fn methods_agree_on_ellipsoids() {
         assert_same(&format!("ellipsoids, {direct:?}"), whole(&photons), whole(&path), 0.1);
     }
 }
+
+/// Groups with a lamp, a body of glass, a mirrored box, a cylinder and a cone, placed twice by a group
+/// that is placed once.
+const GROUPED: &str = "[materials.mirror]\ntype = \"mirror\"\nreflectance = 0.9\n\
+    [[groups.set.shapes]]\nSHELF\n[[groups.set.shapes]]\nCAN\n[[groups.set.shapes]]\nHAT\n\
+    [[groups.set.shapes]]\nDROP\n[[groups.set.shapes]]\nLAMP\n\
+    [[groups.pair.instances]]\ngroup = \"set\"\ntransform = FIRST\n\
+    [[groups.pair.instances]]\ngroup = \"set\"\ntransform = SECOND\n\
+    [[instances]]\ngroup = \"pair\"\ntransform = OUTER\n";
+const PARTS: [(&str, &str); 5] = [
+    (
+        "SHELF",
+        "type = \"box\"\nmin = [-0.4, 0, -0.1]\nmax = [-0.2, 0.5, 0.3]\nmaterial = \"floor\"",
+    ),
+    ("CAN", "type = \"cylinder\"\nradius = 0.15\nheight = 0.3\nmaterial = \"floor\""),
+    (
+        "HAT",
+        "type = \"cone\"\nradius = 0.2\np0 = [0.1, 0, 0.4]\np1 = [0.1, 0.3, 0.4]\nmaterial = \"mirror\"",
+    ),
+    ("DROP", "type = \"sphere\"\ncenter = [0.2, 0.3, -0.3]\nradius = 0.25\nmaterial = \"bk\""),
+    (
+        "LAMP",
+        "type = \"rectangle\"\norigin = [-0.1, 1, -0.1]\nu = [0.2, 0, 0]\nv = [0, 0, 0.2]\n\
+         material = \"floor\"\nemission = 8",
+    ),
+];
+const FIRST: &str = "[{ scale = [1, 1.2, 0.9] }, { translate = [-0.4, 0, 0.1] }]";
+const SECOND: &str = "[{ scale = [-0.8, 0.8, 0.8] }, { translate = [0.5, 0, 0] }]";
+const OUTER: &str = "[{ rotate = { axis = [0, 1, 0], degrees = 30 } }]";
+
+/// Theory: an instance shows the same as its shapes, each moved by the maps of the groups around it,
+/// inner ones first; lamps and bodies of glass as well. And photons, shadow rays and paths agree.
+#[test]
+fn groups_render_as_shapes_written_out() {
+    let mut grouped = GROUPED.to_owned();
+    let mut written = "[materials.mirror]\ntype = \"mirror\"\nreflectance = 0.9\n".to_owned();
+    for (name, part) in PARTS {
+        grouped = grouped.replace(name, part);
+        for own in [FIRST, SECOND] {
+            let steps = [own, OUTER].map(|steps| &steps[1..steps.len() - 1]).join(", ");
+            written += &format!("[[shapes]]\n{part}\ntransform = [{steps}]\n");
+        }
+    }
+    for (name, map) in [("FIRST", FIRST), ("SECOND", SECOND), ("OUTER", OUTER)] {
+        grouped = grouped.replace(name, map);
+    }
+    let with = |shapes: &str, method, direct, passes| {
+        let settings =
+            RenderSettings { method, direct, passes, photons: 1 << 13, ..settings(RADIUS) };
+        runs(&text(shapes), &settings)
+    };
+    let path = with(&grouped, Method::Path, Direct::Sampled, 96);
+    let plain = with(&written, Method::Path, Direct::Sampled, 96);
+    assert_regions("a group and its shapes", &path, &plain, 0.05);
+    for direct in [Direct::Sampled, Direct::Photons] {
+        let photons = with(&grouped, Method::Sppm, direct, 12);
+        let whole = |runs: &Runs| runs.region(|_, _| true);
+        assert_same(&format!("groups, {direct:?}"), whole(&photons), whole(&path), 0.1);
+    }
+}

@@ -9,6 +9,7 @@ mod support;
 mod encodings;
 mod errors;
 mod frustums;
+mod groups;
 mod hostile;
 mod limits;
 mod load;

@@ -55,12 +55,12 @@ pub(super) fn groups(builder: &mut SceneBuilder, document: &Document) -> Vec<Gro
             }
         }
     }
-    if left > 0
-        && let Some(at) = waiting.iter().position(|count| *count > 0)
-    {
-        let message = format!("group `{}` contains itself", items[at].name);
-        let label = "expected instances of groups that do not lead back to it";
-        builder.report.error(items[at].span_of("instances"), message, label, None);
+    if left > 0 {
+        let inner = |at: usize| {
+            let instances = files[at].iter().flat_map(|file| &file.instances);
+            instances.filter_map(index).find(|inner| waiting[*inner] > 0)
+        };
+        cycle(builder, &items, &waiting, inner);
     }
     let placed = document.items("instances").filter_map(|item| item.node.get("group")?.str());
     used.extend(placed.filter_map(|name| document.index("groups", name)));
@@ -69,6 +69,23 @@ pub(super) fn groups(builder: &mut SceneBuilder, document: &Document) -> Vec<Gro
         builder.report.warn(item.span(), message, "defined here");
     }
     made
+}
+
+/// Reports a group that contains itself: one of those that still wait for `inner` ones.
+fn cycle(
+    builder: &mut SceneBuilder,
+    items: &[&Item],
+    waiting: &[usize],
+    inner: impl Fn(usize) -> Option<usize>,
+) {
+    // every waiting group leads to a cycle, which it enters after at most as many steps
+    let Some(first) = waiting.iter().position(|count| *count > 0) else { return };
+    let Some(at) = (0..items.len()).try_fold(first, |at, _| inner(at)) else { return };
+    let by = inner(at).filter(|next| *next != at);
+    let by = by.map_or(String::new(), |next| format!(" by way of `{}`", items[next].name));
+    let message = format!("group `{}` contains itself{by}", items[at].name);
+    let label = "expected instances of groups that do not lead back to it";
+    builder.report.error(items[at].span_of("instances"), message, label, None);
 }
 
 /// Reads one group; `made` holds those that it contains.
@@ -88,6 +105,10 @@ fn group(
             json: None,
         })
     };
+    if file.shapes.is_empty() && file.instances.is_empty() {
+        let message = format!("group `{}` is empty", item.name);
+        builder.report.warn(item.span(), message, "expected shapes or instances");
+    }
     let mut all = Vec::new();
     for (part, file) in parts("shapes").zip(file.shapes) {
         all.extend(shape::shapes(builder, document, &part, file).unwrap_or_default());
