@@ -136,7 +136,7 @@ fn faults() {
     for (transform, place, expected) in [
         ("{ scale = [1, 0, 1] }", (24, 13), "is singular"),
         ("{ matrix = [[1, 0, 0, 0], [0, 1, 0, 0], [1, 1, 0, 0]] }", (24, 13), "is singular"),
-        ("{ scale = [1, nan, 1] }", (24, 26), "finite"),
+        ("{ scale = [1, nan, 1] }", (24, 27), "finite"),
         ("{ matrix = [[inf,0,0,0], [0,1,0,0], [0,0,1,0]] }", (24, 26), "finite"),
         ("[{ scale = [1e15, 1, 1] }, { scale = 1e15 }]", (24, 13), "too large"),
         (

@@ -36,7 +36,8 @@ pub(crate) struct SceneBuilder<'a> {
     textures: Vec<Texture>,
     materials: Vec<Material>,
     shapes: Vec<Shape>,
-    /// Number of shapes that instances made, including those in groups.
+    /// Number of shapes that instances made, including those in groups; the greatest number after
+    /// the error that they are too many.
     instanced: u64,
     lights: Vec<Light>,
     environment: Option<Environment>,

@@ -106,6 +106,10 @@ impl SceneBuilder<'_> {
         group: &GroupParts,
         map: &DAffine3,
     ) -> Option<Vec<Shape>> {
+        // one error says that the scene is too large
+        if self.instanced == u64::MAX {
+            return None;
+        }
         // the profile of a surface of revolution is copied, too
         let weight = |shape: &Shape| match &shape.kind {
             ShapeKind::Revolution { segments, .. } => segments.len() as u64,
@@ -122,7 +126,9 @@ impl SceneBuilder<'_> {
             .and_then(|()| self.charge_copies(triangles));
         if let Err(refusal) = allowed {
             let message = format!("the scene is too large: {refusal}");
-            self.report.error(part.span(), message, "here", refusal.help());
+            let label = "expected fewer instances";
+            self.report.error(part.span(), message, label, refusal.help());
+            self.instanced = u64::MAX;
             return None;
         }
         self.instanced += count;
