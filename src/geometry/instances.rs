@@ -34,19 +34,19 @@ impl Primitives for Members<'_> {
     }
 }
 
-/// Replaces `hit` if the ray meets a shape of the instance in `(t_min, hit.t)`; with `any`, the
-/// first shape found ends the search. Separate from the caller, so that scenes without instances
-/// are not slowed down.
+/// The hit if the ray meets a shape of the instance in `(t_min, hit.t)`, else `hit`; with `any`, the
+/// first shape found ends the search. Scenes without instances are not slowed down: the function is
+/// separate from its caller and takes ray and hit by value, which leaves them in registers there.
 #[inline(never)]
 pub fn intersect_instance(
     scene: &SceneTables,
     reference: u32,
-    ray: &Ray,
+    ray: Ray,
     any: bool,
-    hit: &mut Hit,
-) {
+    hit: Hit,
+) -> Hit {
     let instance = &scene.instances[index_of(reference) as usize];
-    let object = object_ray(instance, ray, hit.t);
+    let object = object_ray(instance, &ray, hit.t);
     let mut found = Hit::none(&object.ray);
     let tree = tree_of(scene, &scene.groups[instance.group as usize]);
     let members = Members { scene, shear: RayShear::new(&object.ray), any };
@@ -56,12 +56,13 @@ pub fn intersect_instance(
         traverse_closest(&tree, &object.ray, &mut found, members);
     }
     if found.reference == NONE {
-        return;
+        return hit;
     }
     let t = object.start + found.t / object.length;
     if t > ray.t_min && t < hit.t {
-        *hit = Hit { t, reference, u: found.u, v: found.v, member: found.reference };
+        return Hit { t, reference, u: found.u, v: found.v, member: found.reference };
     }
+    hit
 }
 
 fn tree_of<'a>(scene: &'a SceneTables, group: &Group) -> Tree<'a> {
@@ -76,10 +77,10 @@ fn tree_of<'a>(scene: &'a SceneTables, group: &Group) -> Tree<'a> {
 
 /// Surface data at a hit with an instance. Instances do not emit and have no outlines.
 #[inline(never)]
-pub fn instance_surface(scene: &SceneTables, ray: &Ray, hit: &Hit) -> Surface {
+pub fn instance_surface(scene: &SceneTables, ray: Ray, hit: Hit) -> Surface {
     let instance = &scene.instances[index_of(hit.reference) as usize];
-    let object = object_ray(instance, ray, hit.t);
-    let own = Hit { t: object.ray.t_max, reference: hit.member, ..*hit };
+    let object = object_ray(instance, &ray, hit.t);
+    let own = Hit { t: object.ray.t_max, reference: hit.member, ..hit };
     let mut s = surface_at(scene, &object.ray, &own);
     let n = placed_normal(instance, s.normal);
     let inverse_length: Real = 1.0 / n.dot(n).sqrt();

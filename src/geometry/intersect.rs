@@ -114,7 +114,7 @@ impl Primitives for Shapes<'_> {
                     &rest[1..]
                 }
                 KIND_INSTANCE => {
-                    intersect_instance(scene, first, ray, any, hit);
+                    *hit = intersect_instance(scene, first, *ray, any, *hit);
                     &rest[1..]
                 }
                 _ => {

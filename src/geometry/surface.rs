@@ -166,7 +166,7 @@ pub fn surface_at(scene: &SceneTables, ray: &Ray, hit: &Hit) -> Surface {
                 s.uv.y = within_ends(scene, s.material, r.uv.y);
             }
         }
-        KIND_INSTANCE => return instance_surface(scene, ray, hit),
+        KIND_INSTANCE => return instance_surface(scene, *ray, *hit),
         _ => {
             let plane = &scene.planes[index];
             let q = plane_project(p, plane.point, plane.normal);
