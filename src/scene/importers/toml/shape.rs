@@ -14,8 +14,8 @@ use crate::scene::meshes::MeshRequest;
 use crate::scene::parts::Part;
 use crate::scene::{Shape, ShapeKind, Transform};
 
-/// The shapes of an item, checked: one, or one per material of a mesh with its own materials; `None`
-/// after an error, which is reported.
+/// The shapes of an item, checked: one, or one per material of a mesh with its own materials.
+/// `None` after an error, which is reported.
 pub(super) fn shapes(
     builder: &mut SceneBuilder,
     document: &Document,
