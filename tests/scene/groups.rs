@@ -24,7 +24,7 @@ fn kinds(text: &str) -> Vec<ShapeKind> {
 
 /// The only error, and the line of the text that it points to.
 fn fault(result: Result<Loaded, SceneErrors>) -> (String, usize) {
-    let errors = result.err().expect("no error");
+    let Err(errors) = result else { panic!("no error") };
     let [finding] = &errors.errors[..] else { panic!("{errors:?}") };
     let (line, _) = finding.line_column().expect("no place");
     let before = format!("{HEAD}{HEADER}").lines().count();

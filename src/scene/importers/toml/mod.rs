@@ -100,10 +100,10 @@ fn scene(builder: &mut SceneBuilder, root: Node) {
         }
     }
     for item in document.items("shapes") {
-        if let Some(file) = item.read::<ShapeFile>(&mut builder.report) {
-            if let Some(shapes) = shape::shapes(builder, document, item, file) {
-                builder.push_shapes(item, shapes);
-            }
+        if let Some(file) = item.read::<ShapeFile>(&mut builder.report)
+            && let Some(shapes) = shape::shapes(builder, document, item, file)
+        {
+            builder.push_shapes(item, shapes);
         }
     }
     let groups = group::groups(builder, document);
