@@ -72,7 +72,9 @@ struct Material {
     albedo_low: vec4f,
     albedo_high: vec4f,
     stores: u32,
-    pad: array<u32, 3>,
+    textured: u32,
+    pad0: u32,
+    pad1: u32,
 }
 
 struct Texture {

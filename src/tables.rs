@@ -10,6 +10,7 @@ use super::real::{Bits, Plain, Real, Vec2, Vec3, Vec4};
 use super::shapes::simd4::{FourRectangles, FourSpheres};
 use bytemuck::Zeroable;
 
+pub use super::shapes::instance::{Group, Instance};
 pub use super::shapes::kdtree::Node;
 pub use super::shapes::outline::Outline;
 pub use super::shapes::revolution::{Patch, Revolution};
@@ -153,8 +154,10 @@ pub struct Material {
     pub albedo_high: Vec4,
     /// Layered materials: 1 if photons are stored, because one of the materials is rough.
     pub stores: u32,
+    /// 1 if the material, or one that it consists of, has a texture.
+    pub textured: u32,
     /// Padding to 16 bytes.
-    pub pad: [u32; 3],
+    pub pad: [u32; 2],
 }
 
 impl Material {
@@ -176,7 +179,8 @@ impl Material {
         albedo_low: Vec4::new(1.0, 0.0, 0.0, 0.0),
         albedo_high: Vec4::ZERO,
         stores: 0,
-        pad: [0; 3],
+        textured: 0,
+        pad: [0; 2],
     };
 }
 
@@ -305,6 +309,10 @@ pub struct SceneTables {
     pub patches: Vec<Patch>,
     /// Control points of the patches.
     pub profile_points: Vec<Vec2>,
+    /// Placed groups.
+    pub instances: Vec<Instance>,
+    /// Groups of shapes; their shapes, nodes and references follow those of the scene.
+    pub groups: Vec<Group>,
     /// References of the shapes outside the kd-tree.
     pub unbounded: Vec<u32>,
     /// Materials.

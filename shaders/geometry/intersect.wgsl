@@ -26,7 +26,7 @@ fn intersect_revolution(reference: u32, ray: Ray, hit: ptr<function, Hit>) {
         revolution, patch_data, ray.origin, ray.direction, ray.t_min, (*hit).t
     );
     if at.t < (*hit).t {
-        *hit = Hit(at.t, reference, at.theta, at.tau);
+        *hit = Hit(at.t, reference, at.theta, at.tau, NONE);
     }
 }
 //#end
@@ -102,6 +102,15 @@ fn intersect_leaf(first: u32, last: u32, ray: Ray, any_hit: bool, hit: ptr<funct
     }
     //#end
     //#end
+    //#if instances
+    while names(KIND_INSTANCE, i, last) {
+        intersect_instance(refs[i], ray, any_hit, hit);
+        if any_hit && (*hit).reference != NONE {
+            return;
+        }
+        i++;
+    }
+    //#end
 }
 //#end
 
@@ -136,7 +145,7 @@ fn search_put_off(ray: Ray, any_hit: bool, hit: ptr<function, Hit>) {
 //#end
 
 fn intersect_scene(ray: Ray) -> Hit {
-    var hit = Hit(ray.t_max, NONE, 0.0, 0.0);
+    var hit = Hit(ray.t_max, NONE, 0.0, 0.0, NONE);
     //#if unbounded
     for (var i = 0u; i < scene.world.unbounded_count; i++) {
         intersect_unbounded(scene.unbounded[i], ray, &hit);
@@ -158,7 +167,7 @@ fn intersect_scene(ray: Ray) -> Hit {
 }
 
 fn occluded(ray: Ray) -> bool {
-    var hit = Hit(ray.t_max, NONE, 0.0, 0.0);
+    var hit = Hit(ray.t_max, NONE, 0.0, 0.0, NONE);
     //#if unbounded
     for (var i = 0u; i < scene.world.unbounded_count; i++) {
         intersect_unbounded(scene.unbounded[i], ray, &hit);

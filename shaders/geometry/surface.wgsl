@@ -13,7 +13,11 @@ struct Surface {
     outline: u32,
 }
 
+//#if instances
+fn shape_surface(ray: Ray, hit: Hit) -> Surface {
+//#else
 fn surface_at(ray: Ray, hit: Hit) -> Surface {
+//#end
     let index = index_of(hit.reference);
     let p = ray.origin + ray.direction * hit.t;
     var planar = UV_NATURAL;
@@ -72,7 +76,7 @@ fn surface_at(ray: Ray, hit: Hit) -> Surface {
             );
             planar = sphere.uv;
             // skip the two arctangents for the many spheres without a texture
-            if planar == UV_NATURAL && scene.materials[sphere.material].texture != NONE {
+            if planar == UV_NATURAL && scene.materials[sphere.material].textured != 0u {
                 let uv = sphere_uv(n);
                 s.uv = uv;
                 //#if texels

@@ -16,9 +16,11 @@ struct Lobe {
 
 //#if scene
 const NARROW: f32 = 0.08;
+const NARROW_GLASS: f32 = 0.3;
 
 fn is_narrow(lobe: Lobe) -> bool {
-    return !is_wide(lobe.bsdf) && !is_specular(lobe.bsdf) && lobe.alpha < NARROW;
+    let limit = select(NARROW, NARROW_GLASS, is_body(lobe.bsdf));
+    return !is_wide(lobe.bsdf) && !is_specular(lobe.bsdf) && lobe.alpha < limit;
 }
 
 struct ShadingPoint {

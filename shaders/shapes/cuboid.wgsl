@@ -34,7 +34,7 @@ fn intersect_cuboid(cuboid: Cuboid, reference: u32, ray: Ray, hit: ptr<function,
     let from_outside = near > ray.t_min;
     let t = select(far, near, from_outside);
     if t > ray.t_min && t < (*hit).t {
-        *hit = Hit(t, reference, select(far_face, near_face, from_outside), 0.0);
+        *hit = Hit(t, reference, select(far_face, near_face, from_outside), 0.0, NONE);
     }
 }
 

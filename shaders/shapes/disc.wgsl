@@ -13,7 +13,7 @@ fn intersect_disc(disc: Disc, reference: u32, ray: Ray, hit: ptr<function, Hit>)
     }
     let p = d + ray.direction * t;
     if dot(p, p) <= disc.radius * disc.radius {
-        *hit = Hit(t, reference, 0.0, 0.0);
+        *hit = Hit(t, reference, 0.0, 0.0, NONE);
     }
 }
 
@@ -36,7 +36,7 @@ fn intersect_plane(plane: Plane, reference: u32, ray: Ray, hit: ptr<function, Hi
     }
     let t = -dot(ray.origin - plane.point, plane.normal) / slope;
     if t > ray.t_min && t < (*hit).t {
-        *hit = Hit(t, reference, 0.0, 0.0);
+        *hit = Hit(t, reference, 0.0, 0.0, NONE);
     }
 }
 

@@ -12,4 +12,5 @@ struct Hit {
     reference: u32,
     u: f32,
     v: f32,
+    member: u32,
 }

@@ -16,7 +16,7 @@ fn intersect_rectangle(rectangle: Rectangle, reference: u32, ray: Ray, hit: ptr<
     let s = dot(p, rectangle.dual_u);
     let r = dot(p, rectangle.dual_v);
     if s >= -EDGE && s <= 1.0 + EDGE && r >= -EDGE && r <= 1.0 + EDGE {
-        *hit = Hit(t, reference, s, r);
+        *hit = Hit(t, reference, s, r, NONE);
     }
 }
 

@@ -35,7 +35,7 @@ fn intersect_sphere(sphere: Sphere, reference: u32, ray: Ray, hit: ptr<function,
     let from_outside = select(side >= 0.0, near > ray.t_min, backward);
     let t = select(far, near, from_outside);
     if t > ray.t_min && t < (*hit).t {
-        *hit = Hit(t, reference, 0.0, 0.0);
+        *hit = Hit(t, reference, 0.0, 0.0, NONE);
     }
 }
 

@@ -10,6 +10,7 @@ const KIND_DISC: u32 = 3u;
 const KIND_CUBOID: u32 = 4u;
 const KIND_REVOLUTION: u32 = 5u;
 const KIND_PLANE: u32 = 6u;
+const KIND_INSTANCE: u32 = 7u;
 const UV_NATURAL: u32 = 0u;
 const UV_PLANAR: u32 = 1u;
 

@@ -100,7 +100,7 @@ fn intersect_triangle(triangle: Triangle, reference: u32, ray: Ray, hit: ptr<fun
     }
     let t = (u * a.z + v * b.z + w * c.z) / det;
     if t > ray.t_min && t < (*hit).t {
-        *hit = Hit(t, reference, abs(v / det), abs(w / det));
+        *hit = Hit(t, reference, abs(v / det), abs(w / det), NONE);
     }
 }
 

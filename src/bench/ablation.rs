@@ -103,7 +103,10 @@ pub fn with_unused(scene: &SceneTables, feature: Feature) -> Option<SceneTables>
         | Feature::Astride
         | Feature::Far => return None,
         // need geometry that a ray can reach
-        Feature::AreaTriangle | Feature::AreaCuboid | Feature::AreaRevolution => return None,
+        Feature::Instances
+        | Feature::AreaTriangle
+        | Feature::AreaCuboid
+        | Feature::AreaRevolution => return None,
         // change what is rendered
         Feature::Infinite
         | Feature::Environment

@@ -15,6 +15,12 @@ pub enum PackError {
         /// Maximum number.
         limit: usize,
     },
+    /// A group contains a plane or another instance.
+    #[error("shape {shape}: a group cannot contain infinite planes or other instances")]
+    Group {
+        /// Index of the shape that places the group.
+        shape: usize,
+    },
     /// A profile does not describe a valid surface.
     #[error("shape {shape}: {cause}")]
     Profile {

@@ -1,6 +1,7 @@
 //! Intersection of a ray with the whole scene: shapes outside the kd-tree one by one, then the
 //! kd-tree. Twin: `shaders/geometry/intersect.wgsl`.
 
+use super::instances::intersect_instance;
 use super::shapes::cuboid::intersect_cuboid;
 use super::shapes::disc::{intersect_disc, intersect_plane};
 use super::shapes::kdtree::{Primitives, Tree, traverse_any, traverse_closest};
@@ -44,7 +45,7 @@ pub fn intersect_primitive(
                 hit.t,
             );
             if at.t < hit.t {
-                *hit = Hit { t: at.t, reference, u: at.theta, v: at.tau };
+                *hit = Hit { t: at.t, reference, u: at.theta, v: at.tau, ..*hit };
             }
         }
         _ => intersect_plane(&scene.planes[index], reference, ray, hit),
@@ -110,6 +111,10 @@ impl Primitives for Shapes<'_> {
                 KIND_SPHERE | KIND_RECTANGLE => intersect_fours(scene, shear, rest, ray, hit),
                 KIND_REVOLUTION if has_patch_set(scene) => {
                     self.put_off |= 1 << (first & (PATCH_SET as u32 - 1));
+                    &rest[1..]
+                }
+                KIND_INSTANCE => {
+                    *hit = intersect_instance(scene, first, *ray, any, *hit);
                     &rest[1..]
                 }
                 _ => {
@@ -231,7 +236,7 @@ fn intersect_unbounded(scene: &SceneTables, ray: &Ray) -> Hit {
 /// Returns true if anything lies on the ray between `t_min` and `t_max`.
 #[inline(always)]
 pub fn occluded(scene: &SceneTables, ray: &Ray) -> bool {
-    let mut hit = Hit { t: ray.t_max, reference: NONE, u: 0.0, v: 0.0 };
+    let mut hit = Hit::none(ray);
     for i in 0..scene.world.unbounded_count {
         intersect_primitive(scene, &RayShear::NONE, scene.unbounded[i as usize], ray, &mut hit);
         if hit.reference != NONE {

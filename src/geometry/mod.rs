@@ -3,5 +3,6 @@
 
 use super::{math, real, shapes, tables};
 
+pub mod instances;
 pub mod intersect;
 pub mod surface;

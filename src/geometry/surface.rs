@@ -1,6 +1,7 @@
 //! Surface data at a hit: position, normals, texture coordinates, material. Twin:
 //! `shaders/geometry/surface.wgsl`.
 
+use super::instances::instance_surface;
 use super::math::unit;
 use super::real::{Real, Vec2, Vec3};
 use super::shapes::cuboid::{cuboid_axis, cuboid_error, cuboid_normal, cuboid_project, cuboid_uv};
@@ -92,7 +93,7 @@ pub fn surface_at(scene: &SceneTables, ray: &Ray, hit: &Hit) -> Surface {
             };
             planar = sphere.uv;
             // skip the two arctangents for the many spheres without a texture
-            if planar == UV_NATURAL && scene.materials[sphere.material as usize].texture != NONE {
+            if planar == UV_NATURAL && scene.materials[sphere.material as usize].textured != 0 {
                 let uv = sphere_uv(n);
                 s.uv = Vec2::new(uv.x, within_ends(scene, s.material, uv.y));
             }
@@ -165,6 +166,7 @@ pub fn surface_at(scene: &SceneTables, ray: &Ray, hit: &Hit) -> Surface {
                 s.uv.y = within_ends(scene, s.material, r.uv.y);
             }
         }
+        KIND_INSTANCE => return instance_surface(scene, *ray, *hit),
         _ => {
             let plane = &scene.planes[index];
             let q = plane_project(p, plane.point, plane.normal);

@@ -47,6 +47,8 @@ impl SceneLayout {
         out.table("revolutions", "Revolution", &scene.revolutions);
         out.table("patches", "Patch", &scene.patches);
         out.table("profile_points", "vec2f", &scene.profile_points);
+        out.table("instances", "Instance", &scene.instances);
+        out.table("groups", "Group", &scene.groups);
         out.table("unbounded", "u32", &scene.unbounded);
         // shaders refer to the materials even if a scene has no surface
         let placeholder = [Material::zeroed()];

@@ -15,7 +15,7 @@
 use super::{geometry, math, real, shapes, tables};
 use interior::{Interior, interior_beyond};
 use real::{Real, Vec3};
-use shading::{Layer, Lobe, NARROW, Sample, Scatter, ShadingPoint};
+use shading::{Layer, Lobe, NARROW, NARROW_GLASS, Sample, Scatter, ShadingPoint};
 use tables::{Material, SceneTables};
 
 pub mod enclosing;
@@ -303,7 +303,8 @@ impl Bsdf {
     /// Returns true if a lobe of the width `alpha` is so narrow that eye paths continue at it.
     #[inline(always)]
     pub const fn is_narrow(self, alpha: Real) -> bool {
-        !self.is_wide() && !self.is_specular() && !self.is_layered() && alpha < NARROW
+        let limit = if self.is_body() { NARROW_GLASS } else { NARROW };
+        !self.is_wide() && !self.is_specular() && !self.is_layered() && alpha < limit
     }
 
     /// Returns true if every lobe of the kind has such parameters.

@@ -37,6 +37,8 @@ pub struct Lobe<'a> {
 /// Width (alpha) below which continued eye paths have less noise than the few photons that
 /// contribute to a lobe.
 pub const NARROW: Real = 0.08;
+/// The same for glass, where the photons on both sides of a curved surface spread.
+pub const NARROW_GLASS: Real = 0.3;
 
 impl Lobe<'_> {
     /// Returns true if the lobe is so narrow that eye paths continue at it.

@@ -8,6 +8,7 @@ use super::materials::enclosing::enclosing;
 use super::materials::interior::medium_of;
 use super::math::{EPS, FAR};
 use super::real::{Real, ToReal, Vec2, Vec3};
+use super::shapes::instance::placed_point;
 use super::tables::*;
 use crate::prepare::bodies::Bodies;
 use crate::scene::{self, numbers::WIDEST_FILTER};
@@ -135,6 +136,18 @@ fn lamp_box(out: &SceneTables, kind: u32, index: usize) -> (Vec3, Vec3) {
     }
 }
 
+/// Bounding box of an instance.
+fn instance_box(instance: &Instance, group: &Group) -> (Vec3, Vec3) {
+    let middle = (group.bounds_min + group.bounds_max) * 0.5;
+    let half = (group.bounds_max - group.bounds_min) * 0.5;
+    let center = placed_point(instance, middle);
+    let around = instance.column_x.abs() * half.x
+        + instance.column_y.abs() * half.y
+        + instance.column_z.abs() * half.z;
+    let around = around + Vec3::splat(instance.rounding);
+    (center - around, center + around)
+}
+
 /// Returns whether a glass face may cross a box.
 fn glass_crosses(out: &SceneTables, low: Vec3, high: Vec3) -> bool {
     let slack = Vec3::splat(64.0 * EPS * low.abs().max(high.abs()).max_element());
@@ -188,6 +201,13 @@ fn reference_crosses(out: &SceneTables, reference: u32, low: Vec3, high: Vec3) -
             let revolution = out.patches[index].revolution as usize;
             let own = lamp_box(out, KIND_REVOLUTION, revolution);
             glass(out.revolutions[revolution].material) && meets(own)
+        }
+        KIND_INSTANCE => {
+            let instance = &out.instances[index];
+            let group = &out.groups[instance.group as usize];
+            // the material of glass, which is the only shape of its group
+            let own = instance.material != NONE && glass(instance.material);
+            own && meets(instance_box(instance, group))
         }
         _ => {
             let plane = &out.planes[index];

@@ -48,6 +48,7 @@ pub fn pack_materials(scene: &scene::Scene, n: &Normalization, out: &mut SceneTa
     }
     for i in 0..out.materials.len() {
         out.materials[i].stores = stores(&out.materials, i, LAYERS) as u32;
+        out.materials[i].textured = textured(&out.materials, i, LAYERS) as u32;
     }
 }
 
@@ -60,6 +61,18 @@ fn stores(materials: &[Material], index: usize, depth: usize) -> bool {
         Bsdf::Opacity => below(m.first),
         bsdf => !bsdf.is_specular(),
     }
+}
+
+/// Returns whether an entry or one of those that it chooses from has a texture.
+fn textured(materials: &[Material], index: usize, depth: usize) -> bool {
+    let Some(m) = materials.get(index).filter(|_| depth > 0) else { return false };
+    let below = |index: u32| textured(materials, index as usize, depth - 1);
+    m.texture != NONE
+        || match Bsdf::of(m.kind) {
+            Bsdf::Mix | Bsdf::TwoSided => below(m.first) || below(m.second),
+            Bsdf::Opacity => below(m.first),
+            _ => false,
+        }
 }
 
 fn colored(out: &mut Material, color: Option<&Reflectance>) {

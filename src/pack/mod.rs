@@ -4,6 +4,7 @@ pub mod albedo;
 mod bodies;
 mod flat_regions;
 mod image;
+mod instances;
 mod light;
 mod material;
 mod objects;
@@ -82,8 +83,15 @@ pub fn pack(
     let kinds = grown(scene, kinds, &bodies, &n);
     let mut objects = Objects::default();
     let materials = bodies::pack_bodies(scene, &bodies, &mut out, &mut objects.materials);
+    let groups = instances::pack_groups(scene, &kinds)?;
+    let input = shape::Input {
+        shapes: &scene.shapes,
+        kinds: &kinds,
+        materials: &materials,
+        groups: Some(&groups),
+    };
     let (primitives, references, mut emitters) =
-        shape::pack_shapes(scene, &kinds, &materials, &n, &mut out, &mut objects)?;
+        shape::pack_shapes(scene, input, &n, &mut out, Some(&mut objects))?;
     walls::find_walls(&mut out);
     let limit: usize = 1 << REFERENCE_BITS;
     if references.len() >= limit {
@@ -103,6 +111,7 @@ pub fn pack(
     }
     out.four_rectangles = out.rectangles.chunks(LANES).map(FourRectangles::new).collect();
     out.four_spheres = out.spheres.chunks(LANES).map(FourSpheres::new).collect();
+    groups.append(&mut out)?;
     out.world.unit = n.unit as Real;
     out.world.unbounded_count = out.unbounded.len() as u32;
     let light::PackedLights { radiance_unit, brightest, power, sources } =
@@ -149,6 +158,8 @@ impl SceneTables {
             revolutions: Vec::new(),
             patches: Vec::new(),
             profile_points: Vec::new(),
+            instances: Vec::new(),
+            groups: Vec::new(),
             unbounded: Vec::new(),
             materials: Vec::new(),
             textures: Vec::new(),

@@ -3,7 +3,7 @@
 use super::tables::*;
 
 /// Number of reference kinds.
-const KINDS: usize = KIND_PLANE as usize + 1;
+const KINDS: usize = KIND_INSTANCE as usize + 1;
 
 /// Scene indices of table entries.
 #[derive(Clone, Debug, Default)]
@@ -26,6 +26,7 @@ impl Objects {
             (KIND_CUBOID, scene.cuboids.len()),
             (KIND_REVOLUTION, patches),
             (KIND_PLANE, scene.planes.len()),
+            (KIND_INSTANCE, scene.instances.len()),
         ];
         for (kind, length) in lengths {
             self.shapes[kind as usize].resize(length, shape);

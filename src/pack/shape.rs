@@ -2,6 +2,7 @@
 
 use super::accel::kdtree::Primitive;
 use super::accel::revolution::{Attributes as RevolutionAttributes, Placement, RevolutionTables};
+use super::instances::PackedGroups;
 use super::math::EPS;
 use super::real::{Real, ToDouble, ToReal, Vec3};
 use super::shapes::aabb::Aabb;
@@ -43,20 +44,31 @@ fn off_plane(normal: DVec3, extent: DVec3) -> DVec3 {
     normal.abs() * normal.abs().dot(extent)
 }
 
+/// Shapes to pack.
+pub struct Input<'a> {
+    /// The shapes as described.
+    pub shapes: &'a [scene::Shape],
+    /// Their geometry.
+    pub kinds: &'a [Cow<'a, ShapeKind>],
+    /// For each shape its material or those of its triangles.
+    pub materials: &'a [Vec<u32>],
+    /// Groups that instances place; `None` within a group.
+    pub groups: Option<&'a PackedGroups>,
+}
+
 type Flattened = (Vec<Primitive>, Vec<u32>, Vec<Emitter>);
 
 /// Fills the shape tables. Returns the primitives of the kd-tree, the reference of each, and the
-/// emitters, whose indices are those of their lights. `kinds` are the shapes to pack, and
-/// `materials` contains for each shape its material or those of its triangles. `objects` receives
-/// shape indices if the film requests them.
+/// emitters, whose indices are those of their lights. `objects` receives
+/// shape indices if the film requests them. `groups` are those that instances place.
 pub fn pack_shapes(
     scene: &scene::Scene,
-    kinds: &[Cow<ShapeKind>],
-    materials: &[Vec<u32>],
+    Input { shapes, kinds, materials, groups }: Input,
     n: &Normalization,
     out: &mut SceneTables,
-    objects: &mut Objects,
+    objects: Option<&mut Objects>,
 ) -> Result<Flattened, PackError> {
+    let mut objects = objects.filter(|_| scene.film.aovs.has(Aov::Object));
     let mut pack = Pack {
         n,
         out,
@@ -67,7 +79,7 @@ pub fn pack_shapes(
         period: DVec2::INFINITY,
     };
     let mut revolutions = RevolutionTables::default();
-    for (i, shape) in scene.shapes.iter().enumerate() {
+    for (i, shape) in shapes.iter().enumerate() {
         pack.shape = i;
         let material = materials[i].first().copied().unwrap_or_default();
         let uv = if shape.planar_uv { UV_PLANAR } else { UV_NATURAL };
@@ -107,8 +119,22 @@ pub fn pack_shapes(
                     pack.references.push(reference(KIND_REVOLUTION, b.patch as usize));
                 }
             }
+            ShapeKind::Instance { group, map } => {
+                let packed = groups.and_then(|groups| groups.of(group));
+                let (index, packed) = packed.ok_or(PackError::Group { shape: i })?;
+                // each body of glass has a material of its own
+                let material = if group.shapes().len() == 1 { material } else { NONE };
+                let planar = group.shapes().iter().any(|shape| shape.planar_uv);
+                let uv = if planar { UV_PLANAR } else { uv };
+                let (instance, corners) = packed.placed(index, map, n);
+                let instance = Instance { material, uv, ..instance };
+                let id = reference(KIND_INSTANCE, pack.out.instances.len());
+                pack.out.instances.push(instance);
+                pack.primitives.push(Primitive::Box(corners));
+                pack.references.push(id);
+            }
         }
-        if scene.film.aovs.has(Aov::Object) {
+        if let Some(objects) = &mut objects {
             objects.mark(pack.out, revolutions.patches.len(), i as u32);
         }
     }

@@ -63,6 +63,8 @@ features! {
     Plane = "plane",
     /// Bézier surfaces of revolution.
     Revolution = "revolution",
+    /// Instances of groups of shapes.
+    Instances = "instances",
     /// Patches of surfaces of revolution are deferred to the end of the kd-tree traversal.
     PatchSet = "patch_set",
     /// Outlines of flat shapes, which clip the gather disc.
@@ -173,7 +175,8 @@ pub fn few(scene: &SceneTables) -> &[u32] {
     match scene.nodes.first() {
         Some(root) if root.is_leaf() => {
             let refs = scene.refs.get(root.range()).unwrap_or_default();
-            let short = refs.iter().all(|reference| kind_of(*reference) != KIND_REVOLUTION);
+            let long = |kind| matches!(kind, KIND_REVOLUTION | KIND_INSTANCE);
+            let short = !refs.iter().any(|reference| long(kind_of(*reference)));
             if short && refs.len() <= FEW { refs } else { &[] }
         }
         _ => &[],
@@ -198,6 +201,7 @@ impl Features {
         put(Feature::Plane, !scene.planes.is_empty());
         put(Feature::Outlines, !scene.outlines.is_empty());
         put(Feature::Revolution, !scene.revolutions.is_empty());
+        put(Feature::Instances, !scene.instances.is_empty());
         put(Feature::Unbounded, !scene.unbounded.is_empty());
         let few = !few(scene).is_empty();
         let kdtree = !scene.nodes.is_empty() && !few;

@@ -126,6 +126,10 @@ fn facing(kind: &ShapeKind) -> Option<DVec3> {
             let open = ends.filter(|ends| !closed(ends)).filter(|(a, b)| a.x != b.x);
             open.map(|(a, b)| transform.direction(DVec3::Y) * (a.x - b.x).signum())
         }
+        ShapeKind::Instance { group, map } => {
+            let own = group.shapes().first().and_then(|shape| facing(&shape.kind));
+            own.map(|n| (map.matrix3.inverse().transpose() * n).normalize_or_zero())
+        }
         ShapeKind::Sphere { .. } | ShapeKind::Cuboid { .. } | ShapeKind::Mesh(_) => None,
     }
 }

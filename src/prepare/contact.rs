@@ -9,9 +9,10 @@ use super::bodies::Bodies;
 use super::math::EPS;
 use super::normalize::{Normalization, extent};
 use super::parts::places;
-use crate::scene::{Mesh, Scene, ShapeKind, Transform};
+use crate::scene::{Group, Mesh, Scene, Shape, ShapeKind, Transform};
 use glam::{DVec2, DVec3};
 use std::borrow::Cow;
+use std::sync::Arc;
 
 /// Growth in units of the summed error bounds of two touching surfaces.
 const GROWTH: f64 = 4.0;
@@ -194,6 +195,16 @@ fn larger(kind: &ShapeKind, of: &dyn Fn(usize) -> f64) -> ShapeKind {
             transform: Transform { ..*transform },
             newton_tolerance: *newton_tolerance,
         },
+        // a length along the normal in the group's space is at least its smallest singular value
+        // times as long in the world
+        ShapeKind::Instance { group, map } => {
+            let inverse = map.matrix3.inverse();
+            let squares = inverse.to_cols_array().iter().map(|x| x * x).sum::<f64>();
+            let of = |k: usize| of(k) * squares.sqrt();
+            let shape = |shape: &Shape| Shape { kind: larger(&shape.kind, &of), ..shape.clone() };
+            let shapes = group.shapes().iter().map(shape).collect();
+            ShapeKind::Instance { group: Arc::new(Group::new(shapes)), map: *map }
+        }
     }
 }
 

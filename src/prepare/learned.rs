@@ -41,6 +41,7 @@ impl LightSource {
                     ShapeKind::Cuboid { .. } => "box",
                     ShapeKind::Mesh(_) => "mesh",
                     ShapeKind::Revolution { .. } => "revolution",
+                    ShapeKind::Instance { .. } => "instance",
                 };
                 let middle = extent(&shape.kind).map(|(low, high)| (0.5 * (low + high)).to_array());
                 let place = middle.map_or(String::new(), |p| format!(" about {p:.3?}"));

@@ -279,6 +279,6 @@ fn width(kind: &ShapeKind) -> Option<(f64, &'static str)> {
             let (low, high) = extent(kind)?;
             (low.distance(high), "file")
         }
-        ShapeKind::Plane { .. } => return None,
+        ShapeKind::Plane { .. } | ShapeKind::Instance { .. } => return None,
     })
 }

@@ -1,6 +1,7 @@
 //! Normalization: moves a scene to its own center and to a scale near one before rounding to f32.
 //! Outputs undo it.
 
+pub use crate::scene::extent;
 use crate::scene::{Scene, ShapeKind};
 use glam::DVec3;
 
@@ -74,39 +75,4 @@ pub fn reach(scene: &Scene, center: DVec3, radius: f64) -> f64 {
     let boxes = scene.shapes.iter().filter_map(|s| extent(&s.kind));
     let corner = |(a, b): (DVec3, DVec3)| (a - center).abs().max((b - center).abs()).length();
     boxes.map(corner).fold(if planes { HORIZON * radius } else { 0.0 }, f64::max)
-}
-
-/// Bounding box of a finite shape in world space; `None` for planes and empty meshes.
-pub fn extent(kind: &ShapeKind) -> Option<(DVec3, DVec3)> {
-    let hull = |points: &[DVec3]| {
-        let low = points.iter().copied().fold(DVec3::INFINITY, DVec3::min);
-        let high = points.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
-        (low, high)
-    };
-    Some(match kind {
-        ShapeKind::Sphere { center, radius } | ShapeKind::Disc { center, radius, .. } => {
-            (*center - DVec3::splat(*radius), *center + DVec3::splat(*radius))
-        }
-        ShapeKind::Rectangle { origin, u, v } => {
-            hull(&[*origin, *origin + *u, *origin + *v, *origin + *u + *v])
-        }
-        ShapeKind::Cuboid { min, max } => (*min, *max),
-        ShapeKind::Mesh(mesh) if mesh.positions.is_empty() => return None,
-        ShapeKind::Mesh(mesh) => hull(&mesh.positions),
-        ShapeKind::Revolution { segments, transform, .. } => {
-            let points = || segments.iter().flatten();
-            let r = points().map(|p| p.x.abs()).fold(0.0, f64::max);
-            let bottom = points().map(|p| p.y).fold(f64::INFINITY, f64::min);
-            let top = points().map(|p| p.y).fold(f64::NEG_INFINITY, f64::max);
-            let corners: Vec<DVec3> = (0..8)
-                .map(|k| {
-                    let side = |bit: u32| if k >> bit & 1 == 1 { r } else { -r };
-                    let y = if k >> 1 & 1 == 1 { top } else { bottom };
-                    transform.point(DVec3::new(side(0), y, side(2)))
-                })
-                .collect();
-            hull(&corners)
-        }
-        ShapeKind::Plane { .. } => return None,
-    })
 }

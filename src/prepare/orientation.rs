@@ -18,6 +18,9 @@ pub fn faces_inward(kind: &ShapeKind) -> bool {
     match kind {
         ShapeKind::Mesh(mesh) => mesh_faces_inward(mesh),
         ShapeKind::Revolution { segments, .. } => profile_faces_inward(segments),
+        ShapeKind::Instance { group, .. } => {
+            group.shapes().iter().any(|shape| faces_inward(&shape.kind))
+        }
         ShapeKind::Sphere { .. }
         | ShapeKind::Rectangle { .. }
         | ShapeKind::Disc { .. }

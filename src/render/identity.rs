@@ -1,14 +1,16 @@
 //! Identity of a render: digests of the scene, including all files that it uses, and of the
 //! kernels.
 
+use std::collections::HashMap;
 use std::fmt::{self, Write};
+use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 use xxhash_rust::xxh3::Xxh3;
 
 use crate::film::provenance::VERSION;
 use crate::gpu::fragments::fragments;
-use crate::scene::{ImageData, Mesh, Scene, ShapeKind, Texels};
+use crate::scene::{Group, ImageData, Mesh, Scene, Shape, ShapeKind, Texels};
 
 /// Identity of the program: its version, and a digest of its kernels, since development builds of
 /// one version may render different bits. The digest covers the text of the shaders, which the Rust
@@ -54,13 +56,8 @@ impl Identity {
             environment,
         } = scene;
         let mut all_shapes = Digest::default();
-        for shape in shapes {
-            all_shapes.text(&(shape.material, shape.emission, shape.planar_uv));
-            match &shape.kind {
-                ShapeKind::Mesh(mesh) => all_shapes.mesh(mesh),
-                other => all_shapes.text(other),
-            }
-        }
+        let mut groups = HashMap::new();
+        shapes.iter().for_each(|shape| all_shapes.shape(shape, &mut groups));
         let mut all_textures = Digest::default();
         textures.iter().for_each(|texture| all_textures.text(&texture.kind));
         images.iter().for_each(|image| all_textures.image(image));
@@ -112,6 +109,28 @@ impl Digest {
     fn text(&mut self, value: &impl fmt::Debug) {
         // writing to a hash cannot fail
         let _ = write!(self, "{value:?};");
+    }
+
+    /// Hashes a shape; a group once, and then as its number in `groups`.
+    fn shape(&mut self, shape: &Shape, groups: &mut HashMap<*const Group, usize>) {
+        self.text(&(shape.material, shape.emission, shape.planar_uv));
+        match &shape.kind {
+            ShapeKind::Mesh(mesh) => self.mesh(mesh),
+            ShapeKind::Instance { group, map } => {
+                let next = groups.len();
+                let number = *groups.entry(Arc::as_ptr(group)).or_insert(next);
+                self.text(&(map, number));
+                if number == next {
+                    group.shapes().iter().for_each(|shape| self.shape(shape, groups));
+                }
+            }
+            other @ (ShapeKind::Sphere { .. }
+            | ShapeKind::Rectangle { .. }
+            | ShapeKind::Disc { .. }
+            | ShapeKind::Plane { .. }
+            | ShapeKind::Cuboid { .. }
+            | ShapeKind::Revolution { .. }) => self.text(other),
+        }
     }
 
     /// Hashes the number of rows and their 64-bit values.

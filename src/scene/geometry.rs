@@ -1,8 +1,11 @@
 //! Geometry of surfaces.
 
-use glam::{DMat3, DVec2, DVec3};
+use std::sync::Arc;
+
+use glam::{DAffine3, DMat3, DVec2, DVec3};
 
 use super::appearance::Rgb;
+use super::extent;
 
 /// A surface with its material and emission.
 #[derive(Clone, Debug, PartialEq)]
@@ -87,6 +90,43 @@ pub enum ShapeKind {
         /// ray's hit ends; 0, which scene files imply, iterates to the limit of the precision.
         newton_tolerance: f64,
     },
+    /// A group of shapes in another place. Its shapes keep their materials, so that of the instance
+    /// is that of the first one.
+    Instance {
+        /// The group, which instances share.
+        group: Arc<Group>,
+        /// Map from the group's space to world space; invertible.
+        map: DAffine3,
+    },
+}
+
+/// Shapes in a space of their own, with a kd-tree that all instances share.
+///
+/// They do not emit, and are neither planes nor instances. Glass is the only shape of its group,
+/// since each instance of it is a body of its own.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Group {
+    shapes: Vec<Shape>,
+    bounds: Option<(DVec3, DVec3)>,
+}
+
+impl Group {
+    /// A group of some shapes.
+    pub fn new(shapes: Vec<Shape>) -> Self {
+        let boxes = shapes.iter().filter_map(|shape| extent(&shape.kind));
+        let bounds = boxes.reduce(|(a, b), (low, high)| (a.min(low), b.max(high)));
+        Self { shapes, bounds }
+    }
+
+    /// The shapes.
+    pub fn shapes(&self) -> &[Shape] {
+        &self.shapes
+    }
+
+    /// Bounding box in the group's space; `None` if it is empty.
+    pub fn bounds(&self) -> Option<(DVec3, DVec3)> {
+        self.bounds
+    }
 }
 
 /// Triangles in world space with separate indices for positions, normals and texture coordinates.
@@ -94,7 +134,8 @@ pub enum ShapeKind {
 pub struct Mesh {
     /// Vertex positions in scene units.
     pub positions: Vec<DVec3>,
-    /// Unit shading normals.
+    /// Shading normals; of at most unit length, and of unequal lengths only after an uneven
+    /// transform.
     pub normals: Vec<DVec3>,
     /// Texture coordinates; v = 0 is an image's bottom row.
     pub uvs: Vec<DVec2>,

@@ -19,6 +19,7 @@ mod camera;
 mod checks;
 mod diagnostics;
 mod encoding;
+mod extent;
 mod film;
 mod geometry;
 mod images;
@@ -30,6 +31,7 @@ mod meshes;
 pub mod named;
 pub mod numbers;
 mod parts;
+mod placement;
 pub mod settings;
 mod spans;
 
@@ -40,8 +42,9 @@ pub use appearance::{
 };
 pub use camera::{Axis, Camera, Projection};
 pub use diagnostics::{Finding, SceneErrors};
+pub use extent::extent;
 pub use film::{Film, PixelFilter, ToneMap};
-pub use geometry::{Mesh, Shape, ShapeKind, Transform, Triangle};
+pub use geometry::{Group, Mesh, Shape, ShapeKind, Transform, Triangle};
 pub use images::ColorSpace;
 pub use importers::toml::{
     LoadedProfile, ProfileFile, load_profile, load_profile_within, schema_json,

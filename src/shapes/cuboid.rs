@@ -41,7 +41,13 @@ pub fn intersect_cuboid(cuboid: &Cuboid, reference: u32, ray: &Ray, hit: &mut Hi
     let from_outside = near > ray.t_min;
     let t = if from_outside { near } else { far };
     if t > ray.t_min && t < hit.t {
-        *hit = Hit { t, reference, u: if from_outside { near_face } else { far_face }, v: 0.0 };
+        *hit = Hit {
+            t,
+            reference,
+            u: if from_outside { near_face } else { far_face },
+            v: 0.0,
+            ..*hit
+        };
     }
 }
 

@@ -18,7 +18,7 @@ pub fn intersect_disc(disc: &Disc, reference: u32, ray: &Ray, hit: &mut Hit) {
     }
     let p = d + ray.direction * t;
     if p.dot(p) <= disc.radius * disc.radius {
-        *hit = Hit { t, reference, u: 0.0, v: 0.0 };
+        *hit = Hit { t, reference, u: 0.0, v: 0.0, ..*hit };
     }
 }
 
@@ -42,7 +42,7 @@ pub fn intersect_plane(plane: &Plane, reference: u32, ray: &Ray, hit: &mut Hit) 
     }
     let t = -(ray.origin - plane.point).dot(plane.normal) / slope;
     if t > ray.t_min && t < hit.t {
-        *hit = Hit { t, reference, u: 0.0, v: 0.0 };
+        *hit = Hit { t, reference, u: 0.0, v: 0.0, ..*hit };
     }
 }
 

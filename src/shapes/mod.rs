@@ -6,6 +6,7 @@ use super::{math, real};
 pub mod aabb;
 pub mod cuboid;
 pub mod disc;
+pub mod instance;
 pub mod kdtree;
 pub mod kdtree_stream;
 pub mod outline;

@@ -30,12 +30,15 @@ pub struct Hit {
     pub u: Real,
     /// Second parameter on the shape; on triangles the barycentric weight of `p2`.
     pub v: Real,
+    /// Reference of the shape of the group that was hit, if `reference` is an instance; otherwise
+    /// unspecified.
+    pub member: u32,
 }
 
 impl Hit {
     /// Initial hit of `ray`: nothing hit yet.
     #[inline]
     pub fn none(ray: &Ray) -> Hit {
-        Hit { t: ray.t_max, reference: NONE, u: 0.0, v: 0.0 }
+        Hit { t: ray.t_max, reference: NONE, u: 0.0, v: 0.0, member: NONE }
     }
 }

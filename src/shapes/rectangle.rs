@@ -25,7 +25,7 @@ pub fn intersect_rectangle(rectangle: &Rectangle, reference: u32, ray: &Ray, hit
     let r = p.dot(rectangle.dual_v);
     let inside = -EDGE..=1.0 + EDGE;
     if inside.contains(&s) && inside.contains(&r) {
-        *hit = Hit { t, reference, u: s, v: r };
+        *hit = Hit { t, reference, u: s, v: r, ..*hit };
     }
 }
 

@@ -100,7 +100,7 @@ impl FourRectangles {
             let k = lane as usize;
             if t.to_array()[k] < hit.t {
                 let (u, v) = (s.to_array()[k], r.to_array()[k]);
-                *hit = Hit { t: t.to_array()[k], reference: first | lane, u, v };
+                *hit = Hit { t: t.to_array()[k], reference: first | lane, u, v, ..*hit };
             }
         }
     }
@@ -163,7 +163,7 @@ impl FourSpheres {
             met &= met - 1;
             let t = t.to_array()[lane as usize];
             if t < hit.t {
-                *hit = Hit { t, reference: first | lane, u: 0.0, v: 0.0 };
+                *hit = Hit { t, reference: first | lane, u: 0.0, v: 0.0, ..*hit };
             }
         }
     }

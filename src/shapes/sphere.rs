@@ -40,7 +40,7 @@ pub fn intersect_sphere(sphere: &Sphere, reference: u32, ray: &Ray, hit: &mut Hi
     let from_outside = if backward { near > ray.t_min } else { side >= 0.0 };
     let t = if from_outside { near } else { far };
     if t > ray.t_min && t < hit.t {
-        *hit = Hit { t, reference, u: 0.0, v: 0.0 };
+        *hit = Hit { t, reference, u: 0.0, v: 0.0, ..*hit };
     }
 }
 

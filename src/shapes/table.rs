@@ -24,6 +24,8 @@ pub const KIND_CUBOID: u32 = 4;
 pub const KIND_REVOLUTION: u32 = 5;
 /// See [`Plane`].
 pub const KIND_PLANE: u32 = 6;
+/// See [`Instance`](super::instance::Instance).
+pub const KIND_INSTANCE: u32 = 7;
 
 /// Packs a reference from its kind and index.
 pub const fn reference(kind: u32, index: usize) -> u32 {

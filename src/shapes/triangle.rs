@@ -144,7 +144,7 @@ pub fn intersect_triangle(
     let t = (u * a.z + v * b.z + w * c.z) / det;
     if t > ray.t_min && t < hit.t {
         // `abs` only fixes the sign of zero: the quotient is never negative
-        *hit = Hit { t, reference, u: (v / det).abs(), v: (w / det).abs() };
+        *hit = Hit { t, reference, u: (v / det).abs(), v: (w / det).abs(), ..*hit };
     }
 }
 

@@ -100,6 +100,7 @@ fn along<const AXIS: u32>(
                     reference,
                     u: (v.to_array()[lane] / det).abs(),
                     v: (w.to_array()[lane] / det).abs(),
+                    ..*hit
                 };
             }
         }

@@ -88,7 +88,10 @@ fn area(kind: &ShapeKind) -> Option<f64> {
             let DVec3 { x, y, z } = *max - *min;
             Some(2.0 * (x * y + y * z + z * x))
         }
-        ShapeKind::Plane { .. } | ShapeKind::Mesh(_) | ShapeKind::Revolution { .. } => None,
+        ShapeKind::Plane { .. }
+        | ShapeKind::Mesh(_)
+        | ShapeKind::Revolution { .. }
+        | ShapeKind::Instance { .. } => None,
     }
 }
 
@@ -104,7 +107,10 @@ fn scale(kind: &mut ShapeKind, factor: f64) {
             let (middle, half) = ((*min + *max) * 0.5, (*max - *min) * (0.5 * factor));
             (*min, *max) = (middle - half, middle + half);
         }
-        ShapeKind::Plane { .. } | ShapeKind::Mesh(_) | ShapeKind::Revolution { .. } => (),
+        ShapeKind::Plane { .. }
+        | ShapeKind::Mesh(_)
+        | ShapeKind::Revolution { .. }
+        | ShapeKind::Instance { .. } => (),
     }
 }
 

@@ -79,6 +79,11 @@ impl Mixture {
                 s.patches.push(Patch::zeroed());
                 s.profile_points.extend([Vec2::ZERO; 3]);
             }
+            Feature::Instances => {
+                s.instances.push(Instance::zeroed());
+                s.groups.push(Group::zeroed());
+                self.add(Feature::KdTree);
+            }
             Feature::PatchSet => {
                 self.add(Feature::Revolution);
                 self.add(Feature::KdTree);

@@ -115,6 +115,22 @@ fn hosts() -> Vec<Layout> {
             wobble,
             step_tolerance
         }),
+        layout!(Instance {
+            row_x,
+            group,
+            row_y,
+            material,
+            row_z,
+            uv,
+            center,
+            reach,
+            column_x,
+            rounding,
+            column_y,
+            column_z,
+            slack
+        }),
+        layout!(Group { bounds_min, root, bounds_max, first_ref, primitive_size }),
         layout!(Triangle { p0, material, p1, light, p2, attributes }),
         layout!(Attributes { n0, u0, n1, v0, n2, u1, v1, u2, v2, outline_smooth }),
         layout!(Material {
@@ -133,7 +149,8 @@ fn hosts() -> Vec<Layout> {
             mean_albedo,
             albedo_low,
             albedo_high,
-            stores
+            stores,
+            textured
         }),
         layout!(Texture { scale, kind, flags, first, width, height, format, color0, color1 }),
         layout!(Cell { split, axis, first }),

@@ -82,7 +82,7 @@ pub const CAMERAS: [(&str, &str, &str, &str); 5] = [
 ];
 
 /// Name, render settings, and the rest of the scene file.
-pub const SCENES: [(&str, &str, &str); 11] = [
+pub const SCENES: [(&str, &str, &str); 13] = [
     (
         "glass and mirror under a rectangle",
         "",
@@ -521,6 +521,211 @@ pub const SCENES: [(&str, &str, &str); 11] = [
         intensity = 8.0
         [environment]
         radiance = [0.2, 0.3, 0.4]
+        "#,
+    ),
+    (
+        "instances of every shape, mirrored, stretched, nested and of glass",
+        "max_bounces = 8",
+        r#"
+        [textures.tiles]
+        type = "checker"
+        colors = [[0.8, 0.7, 0.6], [0.1, 0.2, 0.3]]
+        scale = [4.0, 3.0]
+        [materials.tiles]
+        type = "diffuse"
+        reflectance = "tiles"
+        [materials.red]
+        type = "diffuse"
+        reflectance = [0.7, 0.2, 0.1]
+        [materials.steel]
+        type = "metal"
+        reflectance = [0.6, 0.6, 0.65]
+        roughness = 0.4
+        [materials.clear]
+        type = "glass"
+        ior = 1.5
+        absorption = [0.2, 0.4, 0.1]
+        [materials.oil]
+        type = "glass"
+        ior = 1.3
+        [[groups.toys.shapes]]
+        type = "mesh"
+        file = "ball.obj"
+        material = "tiles"
+        transform = { scale = 0.3, translate = [0.0, 0.3, 0.0] }
+        [[groups.toys.shapes]]
+        type = "sphere"
+        center = [0.6, 0.2, 0.0]
+        radius = 0.2
+        material = "red"
+        [[groups.toys.shapes]]
+        type = "box"
+        min = [-0.7, 0.0, -0.2]
+        max = [-0.4, 0.4, 0.1]
+        material = "tiles"
+        [[groups.toys.shapes]]
+        type = "revolution"
+        segments = [[[0.0, 0.0], [0.2, 0.0]], [[0.2, 0.0], [0.1, 0.1], [0.2, 0.3]]]
+        material = "steel"
+        transform = { translate = [0.3, 0.6, 0.2] }
+        [[groups.toys.shapes]]
+        type = "cylinder"
+        radius = 0.1
+        p0 = [0.2, 0.0, 0.5]
+        p1 = [0.3, 0.4, 0.6]
+        material = "tiles"
+        [[groups.toys.shapes]]
+        type = "cone"
+        radius = 0.15
+        height = 0.3
+        material = "steel"
+        transform = { translate = [-0.2, 0.0, 0.5] }
+        [[groups.toys.shapes]]
+        type = "disc"
+        center = [-0.3, 0.6, 0.3]
+        normal = [0.2, 1.0, 0.3]
+        radius = 0.15
+        material = "red"
+        [[groups.toys.shapes]]
+        type = "rectangle"
+        origin = [-0.8, 0.0, -0.4]
+        u = [1.6, 0.0, 0.0]
+        v = [0.0, 0.7, 0.0]
+        material = "tiles"
+        [[groups.pair.instances]]
+        group = "toys"
+        transform = [{ scale = [1.0, 1.3, 0.7] }, { translate = [-0.6, 0.0, -0.5] }]
+        [[groups.pair.instances]]
+        group = "toys"
+        transform = [{ scale = [-0.6, 0.6, 0.6] }, { translate = [0.8, 0.0, 0.6] }]
+        [[instances]]
+        group = "pair"
+        transform = { rotate = { axis = [0.0, 1.0, 0.0], degrees = 20.0 } }
+        [[instances]]
+        group = "pair"
+        transform = { matrix = [[0.5, 0.2, 0, 0.9], [0, 0.5, 0, 0], [0.1, 0, 0.5, -0.6]] }
+        [[shapes]]
+        type = "sphere"
+        center = [0.0, 0.0, 0.0]
+        radius = 1.0
+        material = "clear"
+        transform = [
+            { scale = [0.5, 0.2, 0.3] },
+            { rotate = { axis = [0.0, 0.0, 1.0], degrees = 25.0 } },
+            { translate = [-0.5, 0.35, 0.9] },
+        ]
+        [[shapes]]
+        type = "sphere"
+        center = [0.0, 0.0, 0.0]
+        radius = 1.0
+        material = "oil"
+        transform = [{ scale = [0.2, 0.3, 0.2] }, { translate = [-0.2, 0.35, 0.9] }]
+        [[shapes]]
+        type = "sphere"
+        center = [1.0, 1.0, 0.0]
+        radius = 0.3
+        material = "tiles"
+        uv = "planar"
+        transform = [{ scale = [1.0, 0.5, 1.0] }]
+        [[shapes]]
+        type = "rectangle"
+        origin = [-0.4, 2.5, -0.4]
+        u = [0.8, 0.0, 0.0]
+        v = [0.0, 0.0, 0.8]
+        material = "white"
+        emission = [20.0, 18.0, 15.0]
+        "#,
+    ),
+    (
+        "every shape under uneven maps and mirrors, photons alone",
+        "direct = \"photons\"\nindirect_radius = 2.0",
+        r#"
+        [textures.tiles]
+        type = "checker"
+        colors = [[0.8, 0.7, 0.6], [0.1, 0.2, 0.3]]
+        scale = [4.0, 3.0]
+        [materials.tiles]
+        type = "diffuse"
+        reflectance = "tiles"
+        [materials.both]
+        type = "two_sided"
+        front = "tiles"
+        back = "white"
+        [materials.clear]
+        type = "glass"
+        ior = 1.5
+        [[shapes]]
+        type = "mesh"
+        file = "ball.obj"
+        material = "tiles"
+        transform = [{ scale = [0.4, 0.25, -0.3] }, { translate = [-1.2, 0.3, 0.0] }]
+        [[shapes]]
+        type = "mesh"
+        file = "ball.obj"
+        material = "clear"
+        transform = { matrix = [[-0.3, 0.1, 0.0, -0.5], [0.0, 0.2, 0.0, 0.3], [0.0, 0.0, 0.3, 0.8]] }
+        [[shapes]]
+        type = "sphere"
+        center = [0.0, 0.0, 0.0]
+        radius = 0.3
+        material = "both"
+        transform = [{ scale = [1.0, 0.6, -1.0] }, { translate = [-0.4, 0.2, -0.2] }]
+        [[shapes]]
+        type = "box"
+        min = [-0.2, -0.2, -0.2]
+        max = [0.2, 0.2, 0.2]
+        material = "tiles"
+        transform = [
+            { rotate = { axis = [1.0, 0.5, 0.2], degrees = 30.0 } },
+            { translate = [0.3, 0.35, -0.3] },
+        ]
+        [[shapes]]
+        type = "disc"
+        center = [0.0, 0.0, 0.0]
+        normal = [0.0, 1.0, 0.2]
+        radius = 0.4
+        material = "both"
+        transform = [{ scale = [1.0, 1.0, 0.5] }, { translate = [0.3, 0.8, 0.2] }]
+        [[shapes]]
+        type = "rectangle"
+        origin = [-0.3, 0.0, 0.0]
+        u = [0.6, 0.0, 0.0]
+        v = [0.0, 0.5, 0.1]
+        material = "tiles"
+        transform = [{ scale = [-1.0, 1.0, 2.0] }, { translate = [0.9, 0.0, -0.8] }]
+        [[shapes]]
+        type = "revolution"
+        segments = [[[0.0, 0.0], [0.2, 0.0]], [[0.2, 0.0], [0.1, 0.1], [0.2, 0.3]]]
+        material = "tiles"
+        transform = [{ scale = [1.0, 1.2, 0.6] }, { translate = [0.9, 0.0, 0.2] }]
+        [[shapes]]
+        type = "cylinder"
+        radius = 0.15
+        height = 0.4
+        material = "both"
+        transform = [{ scale = [1.5, 1.0, 0.7] }, { translate = [1.4, 0.0, 0.0] }]
+        [[shapes]]
+        type = "cone"
+        radius = 0.2
+        top_radius = 0.1
+        p0 = [0.0, 0.0, 0.0]
+        p1 = [0.1, 0.5, 0.0]
+        material = "clear"
+        transform = [{ scale = [1.2, 1.0, 0.8] }, { translate = [0.5, 0.02, 0.9] }]
+        [[shapes]]
+        type = "plane"
+        point = [0.0, 0.0, -2.0]
+        normal = [0.0, 0.0, 1.0]
+        material = "tiles"
+        transform = [{ scale = [1.0, 2.0, 1.0] }, { rotate = { axis = [0, 1, 0], degrees = 10.0 } }]
+        [[shapes]]
+        type = "rectangle"
+        origin = [-0.2, 0.0, -0.2]
+        u = [0.4, 0.0, 0.0]
+        v = [0.0, 0.0, 0.4]
+        material = "white"
+        emission = [20.0, 18.0, 15.0]
+        transform = [{ scale = [2.0, 1.0, -1.5] }, { translate = [0.0, 2.5, 0.0] }]
         "#,
     ),
 ];

@@ -9,6 +9,7 @@ mod revolution;
 #[path = "../support/mod.rs"]
 mod support;
 
+mod instances;
 mod kdtree;
 mod outlines;
 mod revolution_device;

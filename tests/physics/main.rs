@@ -29,6 +29,7 @@ mod error_estimate;
 mod everything;
 mod far_ground;
 mod furnace;
+mod instances;
 mod integrating_sphere;
 mod invariance;
 mod irradiance;

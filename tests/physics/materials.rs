@@ -2,7 +2,8 @@
 
 use std::f64::consts::PI;
 
-use caustica::low_level::geometry::surface::Surface;
+use caustica::low_level::geometry::intersect::intersect_scene;
+use caustica::low_level::geometry::surface::{Surface, surface_at};
 use caustica::low_level::materials::fresnel::{fresnel_conductor, schlick};
 use caustica::low_level::materials::plastic_base::coat_reflectance;
 use caustica::low_level::materials::shading::{IMPORTANCE, Lobe, RADIANCE, ShadingPoint};
@@ -10,7 +11,9 @@ use caustica::low_level::materials::{Bsdf, eval_rough, pdf_rough, sample_rough};
 use caustica::low_level::math::rng::rng_next;
 use caustica::low_level::math::sampling::sample_sphere;
 use caustica::low_level::pack::albedo::Albedo;
+use caustica::low_level::pilots::prepare;
 use caustica::low_level::scene::settings::{Direct, Method, RenderSettings};
+use caustica::low_level::shapes::ray::Ray;
 use caustica::low_level::shapes::table::NONE;
 use caustica::low_level::tables::Material;
 use glam::{DVec3, Vec2, Vec3};
@@ -362,6 +365,41 @@ fn mixed_and_two_sided_floors() {
         let radiance = |p: DVec3| rho * at.y / (PI * at.distance(p).powi(3));
         agrees(material, &(floor(material, at.into()) + parts), radiance);
     }
+}
+
+/// Theory: a ball has the texture coordinates of its own shape, whether its material has a texture
+/// itself or consists of others that have.
+#[test]
+fn parts_of_materials_have_texture_coordinates() {
+    let textures = "[textures.t]\ntype = \"checker\"\ncolors = [0.2, 0.8]\n[materials.t]\n\
+                    type = \"diffuse\"\nreflectance = \"t\"\n[materials.plain]\n\
+                    type = \"diffuse\"\nreflectance = 0.5\n";
+    let uv = |material: &str| {
+        let text = format!(
+            "{}{textures}[materials.m]\n{material}\n[[shapes]]\ntype = \"sphere\"\n\
+             center = [0, 0, 0]\nradius = 0.8\nmaterial = \"m\"\n",
+            CAMERA.toml()
+        );
+        let tables = prepare(&parse(&text), 8, 8).unwrap().tables;
+        let ray = Ray {
+            origin: Vec3::new(0.1, 0.2, 5.0),
+            t_min: 0.0,
+            direction: Vec3::new(0.01, 0.02, -1.0).normalize(),
+            t_max: 100.0,
+        };
+        surface_at(&tables, &ray, &intersect_scene(&tables, &ray)).uv
+    };
+    let expected = uv("type = \"diffuse\"\nreflectance = \"t\"");
+    assert!(expected.min_element() > 0.0, "{expected}");
+    for material in [
+        "type = \"two_sided\"\nfront = \"t\"\nback = \"plain\"",
+        "type = \"mix\"\nmaterials = [\"plain\", \"t\"]\namount = 0.5",
+        "type = \"diffuse\"\nreflectance = 0.5\nopacity = \"t\"",
+        "type = \"diffuse\"\nreflectance = \"t\"\nopacity = 0.5",
+    ] {
+        assert_eq!(uv(material), expected, "{material}");
+    }
+    assert_eq!(uv("type = \"diffuse\"\nreflectance = 0.5"), Vec2::ZERO);
 }
 
 /// Theory: a floor of opacity `a` reflects `a rho` and shows `1 - a` of a lamp below it; a mask

@@ -65,7 +65,7 @@ fn intersect_box(bounds: &Aabb, reference: u32, ray: &Ray, hit: &mut Hit) {
     }
     let t = if near > ray.t_min { near } else { far };
     if near <= far && t > ray.t_min && t < hit.t {
-        *hit = Hit { t, reference, u: 0.0, v: 0.0 };
+        *hit = Hit { t, reference, u: 0.0, v: 0.0, ..*hit };
     }
 }
 
@@ -105,7 +105,7 @@ pub fn closest_many(prims: &[Primitive], tree: &Tree, rays: &[Ray]) -> Vec<Hit> 
             Some((*ray, Hit::none(ray)))
         }
     }
-    let hits = vec![Hit { t: -1.0, reference: 0, u: 0.0, v: 0.0 }; rays.len()];
+    let hits = vec![Hit { t: -1.0, reference: 0, u: 0.0, v: 0.0, member: 0 }; rays.len()];
     let mut source = Source { rays, hits, places: [0; STREAM], taken: 0 };
     traverse_closest_many(tree, &mut source, |ray: &Ray| {
         let shear = RayShear::new(ray);

@@ -1,9 +1,11 @@
 //! Collects the parts of a scene from an importer, checks them, and makes the [`Scene`].
 
 mod images;
+mod placed;
 
 use std::path::{Path, PathBuf};
 
+pub(crate) use self::placed::GroupParts;
 use super::checks::Named;
 use super::diagnostics::{Report, SceneErrors};
 use super::images::ImageStore;
@@ -34,6 +36,9 @@ pub(crate) struct SceneBuilder<'a> {
     textures: Vec<Texture>,
     materials: Vec<Material>,
     shapes: Vec<Shape>,
+    /// Number of shapes that instances made, including those in groups; the greatest number after
+    /// the error that they are too many.
+    instanced: u64,
     lights: Vec<Light>,
     environment: Option<Environment>,
 }
@@ -55,6 +60,7 @@ impl<'a> SceneBuilder<'a> {
             textures: Vec::new(),
             materials: Vec::new(),
             shapes: Vec::new(),
+            instanced: 0,
             lights: Vec::new(),
             environment: None,
         }
@@ -116,8 +122,14 @@ impl<'a> SceneBuilder<'a> {
     }
 
     /// Adds the shapes of one part: usually one, or one per material of a mesh.
+    #[allow(dead_code)] // for importers of formats without transforms
     pub fn add_shapes(&mut self, part: &dyn Part, shapes: Vec<Shape>) {
-        checks::shapes(&mut self.report, part, &shapes);
+        let shapes = self.checked(part, shapes, None);
+        self.push_shapes(part, shapes);
+    }
+
+    /// Adds shapes that were checked.
+    pub fn push_shapes(&mut self, part: &dyn Part, shapes: Vec<Shape>) {
         self.spans.add(part);
         self.shapes.extend(shapes);
         self.spans.shapes.resize(self.shapes.len(), part.place().to_owned());

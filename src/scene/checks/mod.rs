@@ -20,4 +20,4 @@ pub(crate) use material::composition;
 pub(crate) use profile::{Curve, profile};
 pub(crate) use scene::{Named, lit, shape_count, unused};
 pub(crate) use settings::{SETTINGS, setting};
-pub(crate) use shape::shapes;
+pub(crate) use shape::{moved, shapes};

@@ -1,11 +1,12 @@
 //! Checks of the scene as a whole.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
+use std::sync::Arc;
 
-use crate::scene::Scene;
 use crate::scene::diagnostics::Report;
 use crate::scene::limits::{Allowance, within};
+use crate::scene::{Scene, ShapeKind};
 
 /// Reports a number of shapes in the file, at `span`, that the limits do not allow; returns whether
 /// they do. Importers call this before they convert the shapes.
@@ -36,7 +37,16 @@ pub(crate) fn unused(report: &mut Report, scene: &Scene, named: &Named) {
         report.warn(span.clone(), message, "defined here");
     };
     let parts = scene.materials.iter().filter_map(|material| material.kind.parts()).flatten();
-    let used: BTreeSet<_> = scene.shapes.iter().map(|shape| shape.material).chain(parts).collect();
+    let mut used: BTreeSet<_> =
+        scene.shapes.iter().map(|shape| shape.material).chain(parts).collect();
+    let groups = scene.shapes.iter().filter_map(|shape| match &shape.kind {
+        ShapeKind::Instance { group, .. } => Some((Arc::as_ptr(group), group)),
+        _ => None,
+    });
+    // each group once
+    for group in groups.collect::<BTreeMap<_, _>>().values() {
+        used.extend(group.shapes().iter().map(|shape| shape.material));
+    }
     for (index, span) in named.materials.iter().filter(|(index, _)| !used.contains(index)) {
         warn(format!("material `{}` is not used", scene.materials[*index].name), span);
     }

@@ -1,9 +1,11 @@
 //! Checks of shapes.
 
+use glam::DVec3;
+
 use crate::scene::diagnostics::Report;
 use crate::scene::numbers::{LARGEST, SMALLEST};
 use crate::scene::parts::Part;
-use crate::scene::{Shape, ShapeKind};
+use crate::scene::{Shape, ShapeKind, extent as bounds};
 
 /// Smallest sine of the angle between the edges of a rectangle.
 const LEAST_SINE: f64 = 1e-12;
@@ -22,10 +24,31 @@ pub(crate) fn shapes(report: &mut Report, part: &dyn Part, shapes: &[Shape]) {
     }
     let reach = shapes.iter().map(|shape| reach(&shape.kind)).fold(0.0, f64::max);
     if reach > LARGEST {
-        let message =
-            format!("{} reaches to {reach:.1e}, too large for single precision", part.place());
-        let label = format!("expected coordinates of at most {LARGEST:e} after the transform");
-        report.error(part.span_of("transform"), message, label, None);
+        too_far(report, part, reach);
+    }
+}
+
+/// Reports shapes that a map moved out of the range of renderers.
+pub(crate) fn moved(report: &mut Report, part: &dyn Part, shapes: &[Shape]) {
+    let reach = shapes.iter().map(|shape| far(&shape.kind)).fold(0.0, f64::max);
+    if !reach.is_finite() || reach > LARGEST {
+        too_far(report, part, reach);
+    }
+}
+
+fn too_far(report: &mut Report, part: &dyn Part, reach: f64) {
+    let message =
+        format!("{} reaches to {reach:.1e}, too large for single precision", part.place());
+    let label = format!("expected coordinates of at most {LARGEST:e} after the transform");
+    report.error(part.span_of("transform"), message, label, None);
+}
+
+/// Largest coordinate of a shape in magnitude.
+fn far(kind: &ShapeKind) -> f64 {
+    let largest = |v: DVec3| v.abs().max_element();
+    match (kind, bounds(kind)) {
+        (ShapeKind::Plane { point, .. }, _) => largest(*point),
+        (_, found) => found.map_or(0.0, |(low, high)| largest(low).max(largest(high))),
     }
 }
 
@@ -58,7 +81,8 @@ fn extent(report: &mut Report, part: &dyn Part, kind: &ShapeKind) {
         | ShapeKind::Disc { .. }
         | ShapeKind::Plane { .. }
         | ShapeKind::Mesh(_)
-        | ShapeKind::Revolution { .. } => {}
+        | ShapeKind::Revolution { .. }
+        | ShapeKind::Instance { .. } => {}
     }
 }
 
@@ -78,6 +102,7 @@ fn reach(kind: &ShapeKind) -> f64 {
         | ShapeKind::Rectangle { .. }
         | ShapeKind::Disc { .. }
         | ShapeKind::Plane { .. }
-        | ShapeKind::Cuboid { .. } => 0.0,
+        | ShapeKind::Cuboid { .. }
+        | ShapeKind::Instance { .. } => 0.0,
     }
 }

@@ -102,6 +102,14 @@ impl SceneBuilder<'_> {
         Ok(bytes)
     }
 
+    /// Charges triangles of copies of meshes to the limits before they are made.
+    pub fn charge_copies(&mut self, count: u64) -> Result<(), Refusal> {
+        let left = self.allowance.triangles.saturating_sub(self.meshes.triangles);
+        within("triangles", "triangles of instances", count, left)?;
+        self.meshes.triangles += count;
+        Ok(())
+    }
+
     /// Charges the triangles of a mesh to the limits before they are made. Reports a mesh that
     /// exceeds them, and returns `None`.
     pub fn charge_triangles(&mut self, request: &MeshRequest, count: u64) -> Option<()> {

@@ -36,9 +36,9 @@ fn trace(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     let ray = rays[id.x];
-    var hit = Hit(ray.t_max, NONE, 0.0, 0.0);
+    var hit = Hit(ray.t_max, NONE, 0.0, 0.0, NONE);
     traverse_closest(ray, &hit);
     hits[id.x] = hit;
-    var shadow = Hit(ray.t_max, NONE, 0.0, 0.0);
+    var shadow = Hit(ray.t_max, NONE, 0.0, 0.0, NONE);
     shadows[id.x] = select(0u, 1u, traverse_any(ray, &shadow));
 }

@@ -11,6 +11,7 @@ use serde::Deserialize;
 
 use super::numbers::{NonNegative, Paint, Positive, Share, Spectrum, Strength};
 use super::schema::{close_variants, default_to_first};
+use super::transform::PlacementFile;
 use crate::scene::numbers::{LARGEST_SHIFT, NARROWEST_FILTER, WIDEST_FILTER};
 use crate::scene::settings::RenderSettings;
 use crate::scene::{Aov, Axis, ColorSpace, Filter, ToneMap, Wrap};
@@ -42,6 +43,12 @@ pub struct SceneFile {
     /// Surfaces, including area lights.
     #[serde(default)]
     pub shapes: Vec<ShapeFile>,
+    /// Named groups of shapes, which instances place.
+    #[serde(default)]
+    pub groups: BTreeMap<String, GroupFile>,
+    /// Placed groups.
+    #[serde(default)]
+    pub instances: Vec<InstanceFile>,
     /// Point, spot and sun lights.
     #[serde(default)]
     pub lights: Vec<LightFile>,
@@ -445,7 +452,7 @@ pub enum ShapeFile {
         radius: Positive,
         /// Name of a material.
         material: String,
-        /// Emission and texture coordinates.
+        /// Emission, texture coordinates and transform.
         #[serde(flatten)]
         surface: SurfaceFile,
     },
@@ -460,7 +467,7 @@ pub enum ShapeFile {
         v: Vec3,
         /// Name of a material.
         material: String,
-        /// Emission and texture coordinates.
+        /// Emission, texture coordinates and transform.
         #[serde(flatten)]
         surface: SurfaceFile,
     },
@@ -474,7 +481,7 @@ pub enum ShapeFile {
         radius: Positive,
         /// Name of a material.
         material: String,
-        /// Emission and texture coordinates.
+        /// Emission, texture coordinates and transform.
         #[serde(flatten)]
         surface: SurfaceFile,
     },
@@ -486,7 +493,7 @@ pub enum ShapeFile {
         normal: Vec3,
         /// Name of a material.
         material: String,
-        /// Emission and texture coordinates.
+        /// Emission, texture coordinates and transform.
         #[serde(flatten)]
         surface: SurfaceFile,
     },
@@ -499,7 +506,7 @@ pub enum ShapeFile {
         max: Vec3,
         /// Name of a material.
         material: String,
-        /// Emission and texture coordinates.
+        /// Emission, texture coordinates and transform.
         #[serde(flatten)]
         surface: SurfaceFile,
     },
@@ -518,10 +525,7 @@ pub enum ShapeFile {
         crease_angle: Option<f64>,
         /// Name of a material; by default, the materials of the OBJ's own MTL. PLY files need it.
         material: Option<String>,
-        /// Transform from object to world space.
-        #[serde(default)]
-        transform: TransformFile,
-        /// Emission and texture coordinates.
+        /// Emission, texture coordinates and transform.
         #[serde(flatten)]
         surface: SurfaceFile,
     },
@@ -535,10 +539,7 @@ pub enum ShapeFile {
         segments: Option<Segments>,
         /// Name of a material.
         material: String,
-        /// Transform from object to world space.
-        #[serde(default)]
-        transform: TransformFile,
-        /// Emission and texture coordinates.
+        /// Emission, texture coordinates and transform.
         #[serde(flatten)]
         surface: SurfaceFile,
     },
@@ -559,10 +560,7 @@ pub enum ShapeFile {
         caps: bool,
         /// Name of a material.
         material: String,
-        /// Transform from object to world space.
-        #[serde(default)]
-        transform: TransformFile,
-        /// Emission and texture coordinates.
+        /// Emission, texture coordinates and transform.
         #[serde(flatten)]
         surface: SurfaceFile,
     },
@@ -586,13 +584,27 @@ pub enum ShapeFile {
         caps: bool,
         /// Name of a material.
         material: String,
-        /// Transform from object to world space.
-        #[serde(default)]
-        transform: TransformFile,
-        /// Emission and texture coordinates.
+        /// Emission, texture coordinates and transform.
         #[serde(flatten)]
         surface: SurfaceFile,
     },
+}
+
+impl ShapeFile {
+    /// The keys that every shape accepts.
+    pub fn surface(&self) -> &SurfaceFile {
+        match self {
+            Self::Sphere { surface, .. }
+            | Self::Rectangle { surface, .. }
+            | Self::Disc { surface, .. }
+            | Self::Plane { surface, .. }
+            | Self::Box { surface, .. }
+            | Self::Mesh { surface, .. }
+            | Self::Revolution { surface, .. }
+            | Self::Cylinder { surface, .. }
+            | Self::Cone { surface, .. } => surface,
+        }
+    }
 }
 
 /// Control points (radius, height) of several Bezier curves, 2 to 16 each.
@@ -611,9 +623,11 @@ pub struct SurfaceFile {
     pub emission: Spectrum<Strength>,
     /// Texture coordinates that replace the shape's own.
     pub uv: Option<Uv>,
+    /// Affine map from object to world space.
+    pub transform: Option<PlacementFile>,
 }
 
-/// Scale, then rotation, then translation.
+/// Scale, then rotation, then translation, of a profile file.
 #[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct TransformFile {
@@ -633,6 +647,27 @@ pub struct RotateFile {
     pub axis: Vec3,
     /// Angle in degrees.
     pub degrees: f64,
+}
+
+/// Shapes in a space of their own.
+#[derive(Debug, Default, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct GroupFile {
+    /// Surfaces; their transforms lead to the group's space.
+    pub shapes: Vec<ShapeFile>,
+    /// Instances of other groups in this one.
+    pub instances: Vec<InstanceFile>,
+}
+
+/// A group in another place.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct InstanceFile {
+    /// Name of a group.
+    pub group: String,
+    /// Affine map from the group's space to world space, or to that of the group that contains the
+    /// instance.
+    pub transform: Option<PlacementFile>,
 }
 
 /// A light without a surface.

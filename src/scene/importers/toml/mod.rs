@@ -9,6 +9,7 @@ mod camera;
 mod document;
 pub mod file;
 mod film;
+mod group;
 mod light;
 mod material;
 mod named;
@@ -18,6 +19,7 @@ mod profile;
 mod profile_file;
 mod schema;
 mod shape;
+pub mod transform;
 mod tree;
 mod validate;
 
@@ -29,7 +31,9 @@ pub use self::profile_file::{LoadedProfile, ProfileFile, load_profile, load_prof
 pub use self::schema::schema_json;
 
 use self::document::Document;
-use self::file::{EnvironmentFile, LightFile, MaterialFile, SceneFile, ShapeFile, TextureFile};
+use self::file::{
+    EnvironmentFile, InstanceFile, LightFile, MaterialFile, SceneFile, ShapeFile, TextureFile,
+};
 use self::tree::Node;
 use self::validate::document;
 use crate::scene::builder::SceneBuilder;
@@ -62,19 +66,25 @@ impl Importer for Toml {
 
 /// Reads the parts of a scene.
 fn scene(builder: &mut SceneBuilder, root: Node) {
-    let count = root.get("shapes").map_or(0, |shapes| shapes.elements().count() as u64);
+    let count = |node: Node, key| node.get(key).map_or(0, |list| list.elements().count() as u64);
+    let own = |node: Node| count(node, "shapes") + count(node, "instances");
+    let groups = root.get("groups").into_iter().flat_map(|groups| groups.entries());
+    let count = own(root) + groups.map(|(_, _, group)| own(group)).sum::<u64>();
     let span = root.span_of("shapes");
     if !checks::shape_count(&mut builder.report, builder.allowance, count, span) {
         return;
     }
     let document = &document(&SCHEMA, root, &mut builder.report);
     version(&mut builder.report, document);
-    undefined(&mut builder.report, document, "materials", "shapes", "material");
+    let all = |key| document.items(key).map(|item| item.node).chain(group::nodes(document, key));
+    undefined(&mut builder.report, document, "materials", (all("shapes"), "material"));
+    undefined(&mut builder.report, document, "groups", (all("instances"), "group"));
+    let materials = || document.items("materials").map(|item| item.node);
     for key in ["materials", "front", "back"] {
-        undefined(&mut builder.report, document, "materials", "materials", key);
+        undefined(&mut builder.report, document, "materials", (materials(), key));
     }
     for key in ["reflectance", "transmittance", "amount", "opacity"] {
-        undefined(&mut builder.report, document, "textures", "materials", key);
+        undefined(&mut builder.report, document, "textures", (materials(), key));
     }
     camera::camera(builder, document);
     film::film(builder, document);
@@ -90,8 +100,18 @@ fn scene(builder: &mut SceneBuilder, root: Node) {
         }
     }
     for item in document.items("shapes") {
-        if let Some(file) = item.read::<ShapeFile>(&mut builder.report) {
-            shape::shapes(builder, document, item, file);
+        if let Some(file) = item.read::<ShapeFile>(&mut builder.report)
+            && let Some(shapes) = shape::shapes(builder, document, item, file)
+        {
+            builder.push_shapes(item, shapes);
+        }
+    }
+    let groups = group::groups(builder, document);
+    for item in document.items("instances") {
+        if let Some(file) = item.read::<InstanceFile>(&mut builder.report)
+            && let Some(shapes) = group::instance(builder, document, item, &file, &groups)
+        {
+            builder.push_shapes(item, shapes);
         }
     }
     for item in document.items("lights") {
@@ -122,11 +142,16 @@ fn index(document: &Document, section: &str, name: &str) -> usize {
     document.index(section, name).unwrap_or(0)
 }
 
-/// Reports names that parts of `user` reference under `key` and that `section` does not define.
-fn undefined(report: &mut Report, document: &Document, section: &str, user: &str, key: &str) {
+/// Reports names that nodes reference under `key` and that `section` does not define.
+fn undefined<'n>(
+    report: &mut Report,
+    document: &Document,
+    section: &str,
+    (nodes, key): (impl Iterator<Item = Node<'n>>, &str),
+) {
     let singular = section.trim_end_matches('s');
     let known: Vec<_> = document.items(section).map(|item| item.name).collect();
-    let nodes = document.items(user).filter_map(|item| item.node.get(key));
+    let nodes = nodes.filter_map(|node| node.get(key));
     // a name or a list of names
     for node in nodes.flat_map(|node| [node].into_iter().chain(node.elements())) {
         let Some(name) = node.str().filter(|name| document.index(section, name).is_none()) else {

@@ -12,7 +12,7 @@ use super::file::{Segments, TransformFile};
 use super::parse::parse;
 use super::profile::segments;
 use super::schema;
-use super::shape::placed;
+use super::transform::similar;
 use super::tree::Node;
 use super::validate::whole;
 use crate::scene::diagnostics::{Finding, Report, SceneErrors};
@@ -74,6 +74,6 @@ fn profile(root: Node, schema: &Json, report: &mut Report) -> Option<(Vec<Vec<DV
     let item = whole(schema, root, report);
     let file: ProfileFile = item.read(report)?;
     let segments = segments(report, &item, file.profile, file.segments);
-    let transform = placed(report, &item, &file.transform);
+    let transform = similar(report, &item, &file.transform);
     segments.zip(transform)
 }

@@ -1,10 +1,11 @@
 //! Conversion of shapes and transforms.
 
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 
 use super::axial::{Axis, frustum};
 use super::document::{Document, Item};
-use super::file::{ShapeFile, SurfaceFile, TransformFile};
+use super::file::{ShapeFile, SurfaceFile};
+use super::transform::{Placement, placement};
 use super::{index, profile};
 use crate::scene::builder::SceneBuilder;
 use crate::scene::checks::unit;
@@ -13,90 +14,85 @@ use crate::scene::meshes::MeshRequest;
 use crate::scene::parts::Part;
 use crate::scene::{Shape, ShapeKind, Transform};
 
-/// Adds the shapes of an item: one, or one per material of a mesh with its own materials.
+/// The shapes of an item, checked: one, or one per material of a mesh with its own materials.
+/// `None` after an error, which is reported.
 pub(super) fn shapes(
     builder: &mut SceneBuilder,
     document: &Document,
     item: &Item,
     file: ShapeFile,
-) -> Option<()> {
+) -> Option<Vec<Shape>> {
     // The check of the emission follows also where the normal has no direction.
     let normal =
         |report: &mut Report, normal| unit(report, item, "normal", normal).unwrap_or(DVec3::Y);
-    let (kind, material, surface) = match file {
+    let place = placement(&mut builder.report, item, file.surface().transform.as_ref());
+    // scale, rotation and translation of the kinds that have them
+    let similar = place.map(|place| place.similar.unwrap_or(Transform::IDENTITY));
+    let index = |name: &str| index(document, "materials", name);
+    let alone = |kind, material: String, surface: SurfaceFile| {
+        vec![shape(kind, index(&material), surface.emission.rgb(), &surface)]
+    };
+    let rest = place.as_ref().map(Placement::rest);
+    let (shapes, map) = match file {
         ShapeFile::Sphere { center, radius, material, surface } => {
             let kind = ShapeKind::Sphere { center: center.into(), radius: radius.0 };
-            (kind, material, surface)
+            (alone(kind, material, surface), place.as_ref().map(Placement::given)?)
         }
         ShapeFile::Rectangle { origin, u, v, material, surface } => {
             let kind = ShapeKind::Rectangle { origin: origin.into(), u: u.into(), v: v.into() };
-            (kind, material, surface)
+            (alone(kind, material, surface), place.as_ref().map(Placement::given)?)
         }
         ShapeFile::Disc { center, normal: along, radius, material, surface } => {
             let normal = normal(&mut builder.report, along);
             let kind = ShapeKind::Disc { center: center.into(), normal, radius: radius.0 };
-            (kind, material, surface)
+            (alone(kind, material, surface), place.as_ref().map(Placement::given)?)
         }
         ShapeFile::Plane { point, normal: along, material, surface } => {
             let normal = normal(&mut builder.report, along);
-            (ShapeKind::Plane { point: point.into(), normal }, material, surface)
+            let kind = ShapeKind::Plane { point: point.into(), normal };
+            (alone(kind, material, surface), place.as_ref().map(Placement::given)?)
         }
         ShapeFile::Box { min, max, material, surface } => {
-            (ShapeKind::Cuboid { min: min.into(), max: max.into() }, material, surface)
+            let kind = ShapeKind::Cuboid { min: min.into(), max: max.into() };
+            (alone(kind, material, surface), place.as_ref().map(Placement::given)?)
         }
-        ShapeFile::Revolution { profile, segments, material, transform, surface } => {
+        ShapeFile::Revolution { profile, segments, material, surface } => {
             let segments = profile::segments(&mut builder.report, item, profile, segments);
-            let transform = placed(&mut builder.report, item, &transform)?;
-            let segments = segments?;
+            let (segments, transform) = (segments?, similar?);
             let kind = ShapeKind::Revolution { segments, transform, newton_tolerance: 0.0 };
-            (kind, material, surface)
+            (alone(kind, material, surface), rest?)
         }
-        ShapeFile::Cylinder { radius, height, p0, p1, caps, material, transform, surface } => {
-            let transform = placed(&mut builder.report, item, &transform)?;
+        ShapeFile::Cylinder { radius, height, p0, p1, caps, material, surface } => {
             let axis = Axis { height, p0, p1 };
             let radii = [radius.0; 2];
-            let kind = frustum(&mut builder.report, item, &axis, radii, caps, &transform)?;
-            (kind, material, surface)
+            let kind = frustum(&mut builder.report, item, &axis, radii, caps, &similar?)?;
+            (alone(kind, material, surface), rest?)
         }
-        ShapeFile::Cone {
-            radius,
-            top_radius,
-            height,
-            p0,
-            p1,
-            caps,
-            material,
-            transform,
-            surface,
-        } => {
-            let transform = placed(&mut builder.report, item, &transform)?;
+        ShapeFile::Cone { radius, top_radius, height, p0, p1, caps, material, surface } => {
             let axis = Axis { height, p0, p1 };
             let radii = [radius.0, top_radius.0];
-            let kind = frustum(&mut builder.report, item, &axis, radii, caps, &transform)?;
-            (kind, material, surface)
+            let kind = frustum(&mut builder.report, item, &axis, radii, caps, &similar?)?;
+            (alone(kind, material, surface), rest?)
         }
-        ShapeFile::Mesh { file, smooth, crease_angle, material, transform, surface } => {
+        ShapeFile::Mesh { file, smooth, crease_angle, material, surface } => {
             flat_creases(&mut builder.report, item, smooth, crease_angle);
             let request = MeshRequest {
                 file: &file,
                 named_at: item.span_of("file"),
                 smooth,
                 crease_angle,
-                material: material.map(|name| index(document, "materials", &name)),
-                transform: placed(&mut builder.report, item, &transform)?,
+                material: material.map(|name| index(&name)),
+                transform: similar?,
                 emits: surface.emission.rgb() == [0.0; 3],
             };
             let parts = builder.mesh(&request)?.into_iter().map(|part| {
                 let emission = if request.emits { part.emission } else { surface.emission.rgb() };
                 shape(ShapeKind::Mesh(part.mesh), part.material, emission, &surface)
             });
-            builder.add_shapes(item, parts.collect());
-            return Some(());
+            (parts.collect(), rest?)
         }
     };
-    let material = index(document, "materials", &material);
-    builder.add_shapes(item, vec![shape(kind, material, surface.emission.rgb(), &surface)]);
-    Some(())
+    Some(builder.checked(item, shapes, map))
 }
 
 /// Reports a crease angle of a mesh without normals.
@@ -110,26 +106,4 @@ fn flat_creases(report: &mut Report, item: &Item, smooth: bool, crease_angle: Op
 
 fn shape(kind: ShapeKind, material: usize, emission: [f64; 3], surface: &SurfaceFile) -> Shape {
     Shape { kind, material, emission, planar_uv: surface.uv.is_some() }
-}
-
-/// Converts a transform; reports a rotation axis without a direction.
-pub(super) fn placed(report: &mut Report, item: &Item, file: &TransformFile) -> Option<Transform> {
-    let rotation = match &file.rotate {
-        None => DMat3::IDENTITY,
-        Some(rotate) => {
-            let Some(axis) = DVec3::from(rotate.axis).try_normalize() else {
-                let message = format!("`{}` has no direction", item.key("transform.rotate.axis"));
-                let node = item.node.get("transform").and_then(|node| node.get("rotate"));
-                let span = node.map_or(item.span(), |node| node.span_of("axis"));
-                report.error(span, message, "expected a vector of a length other than 0", None);
-                return None;
-            };
-            DMat3::from_axis_angle(axis, rotate.degrees.to_radians())
-        }
-    };
-    Some(Transform {
-        scale: file.scale.map_or(1.0, f64::from),
-        rotation,
-        translation: file.translate.into(),
-    })
 }
