@@ -381,11 +381,13 @@ fn parts_of_materials_have_texture_coordinates() {
             CAMERA.toml()
         );
         let tables = prepare(&parse(&text), 8, 8).unwrap().tables;
+        let ball = &tables.spheres[0];
+        let center = ball.anchor - ball.normal * ball.radius;
         let ray = Ray {
-            origin: Vec3::new(0.1, 0.2, 5.0),
+            origin: center + Vec3::new(0.1, 0.2, 5.0) * ball.radius,
             t_min: 0.0,
-            direction: Vec3::new(0.01, 0.02, -1.0).normalize(),
-            t_max: 100.0,
+            direction: Vec3::NEG_Z,
+            t_max: 10.0 * ball.radius,
         };
         surface_at(&tables, &ray, &intersect_scene(&tables, &ray)).uv
     };
