@@ -31,7 +31,7 @@ struct World {
     primitive_size: f32,
     body_first: u32,
     body_count: u32,
-    pad: u32,
+    sun_discs: u32,
 }
 
 struct Camera {

@@ -61,8 +61,9 @@ pub struct World {
     pub body_first: u32,
     /// Number of materials that belong to glass bodies.
     pub body_count: u32,
-    /// Padding to 16 bytes.
-    pub pad: u32,
+    /// Index of the first sun with an angular size, or [`NONE`]; [`Light::reference`] continues the
+    /// list.
+    pub sun_discs: u32,
 }
 
 /// Camera: projection, lens and pixel filter.
@@ -235,34 +236,35 @@ pub struct Texture {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Plain, Zeroable)]
 pub struct Light {
-    /// Radiance (area, constant: W sr^-1 m^-2; image: factor), intensity (point, spot: W/sr) or
+    /// Radiance (area, sun disc, constant: W sr^-1 m^-2; image: factor), intensity (point, spot: W/sr) or
     /// irradiance (sun: W m^-2), all in scene units.
     pub color: Vec3,
     /// Number of its [`LightKind`](super::lights::LightKind).
     pub kind: u32,
-    /// Point and spot: position in scene space.
+    /// Point and spot: position in scene space. Tilted image: its x axis.
     pub position: Vec3,
     /// Probability that a photon starts at this light.
     pub selection: Real,
-    /// Spot and sun: unit direction in which light travels.
+    /// Spot and suns: unit direction in which light travels. Tilted image: its y axis.
     pub direction: Vec3,
     /// Area: area of the shape, square scene units.
     pub area: Real,
-    /// Area: reference of the shape. Image: index of the texture.
+    /// Area: reference of the shape. Image: index of the texture. Sun disc: index of the next sun
+    /// disc, or [`NONE`].
     pub reference: u32,
     /// First entry in `distributions`. Revolution: start of each patch's part of v, then the
     /// cumulative area fraction by patch. Image: cumulative probabilities of the rows, then those
     /// of the columns of each row.
     pub first: u32,
-    /// Spot: 1 - cos of the outer cone's half-angle, which f32 represents accurately even for
-    /// narrow cones. Image: cosine of the rotation about y.
+    /// Spot and sun disc: 1 - cos of the outer cone's half-angle, which f32 represents accurately
+    /// even for narrow cones. Image: cosine of the rotation about y.
     pub outer: Real,
     /// Spot: 1 - cos of the inner cone's half-angle, up to which the intensity is full. Image: sine
     /// of the rotation.
     pub inner: Real,
     /// Revolution: index of its first patch.
     pub patch_first: u32,
-    /// Revolution: number of its patches.
+    /// Revolution: number of its patches. Image: 1 if it is tilted (see `lights::image`), else 0.
     pub patch_count: u32,
     /// Medium of a lamp: a glass material index, [`NONE`] or [`ASTRIDE`].
     pub medium: u32,

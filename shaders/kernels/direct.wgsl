@@ -92,6 +92,17 @@ fn direct_light(p: ShadingPoint, interior: Interior, rng: ptr<function, Rng>) ->
                     direct.radiance += scattered.weight * seen * balance(pdf, other);
                 }
                 //#end
+                //#if sun_disc
+                var sun = scene.world.sun_discs;
+                while sun != NONE {
+                    let light = scene.lights[sun];
+                    if in_sun_disc(light, ray.direction) {
+                        let other = pdf_sun_disc(light) * share_of(shares, sun);
+                        direct.radiance += scattered.weight * light.color * balance(pdf, other);
+                    }
+                    sun = light.reference;
+                }
+                //#end
             } else {
                 //#if area
                 let at = surface_at(ray, hit);

@@ -28,13 +28,17 @@ fn continues(path: EyePath) -> bool {
 }
 
 fn environment(path: EyePath) -> vec3f {
+    var radiance = vec3f(0.0);
     //#if environment
     if scene.world.environment != NONE {
         let light = scene.lights[scene.world.environment];
-        return path.throughput * eval_environment(light, path.ray.direction);
+        radiance = path.throughput * eval_environment(light, path.ray.direction);
     }
     //#end
-    return vec3f(0.0);
+    //#if sun_disc
+    radiance += path.throughput * eval_sun_discs(path.ray.direction);
+    //#end
+    return radiance;
 }
 
 fn arrive(path: ptr<function, EyePath>, s: Surface, t: f32) {
@@ -59,12 +63,31 @@ struct LastLobe {
 }
 
 fn found_environment(path: EyePath, last: LastLobe) -> vec3f {
-    //#if sampled && environment
-    if last.pdf > 0.0 && scene.world.environment != NONE {
-        let sky = scene.world.environment;
-        let light = scene.lights[sky];
-        let other = pdf_environment(light, path.ray.direction) * share_of(last.shares, sky);
-        return environment(path) * balance(last.pdf, other);
+    //#if sampled
+    if last.pdf > 0.0 {
+        var radiance = vec3f(0.0);
+        let direction = path.ray.direction;
+        //#if environment
+        if scene.world.environment != NONE {
+            let sky = scene.world.environment;
+            let light = scene.lights[sky];
+            let other = pdf_environment(light, direction) * share_of(last.shares, sky);
+            let seen = path.throughput * eval_environment(light, direction);
+            radiance = seen * balance(last.pdf, other);
+        }
+        //#end
+        //#if sun_disc
+        var sun = scene.world.sun_discs;
+        while sun != NONE {
+            let light = scene.lights[sun];
+            if in_sun_disc(light, direction) {
+                let other = pdf_sun_disc(light) * share_of(last.shares, sun);
+                radiance += path.throughput * light.color * balance(last.pdf, other);
+            }
+            sun = light.reference;
+        }
+        //#end
+        return radiance;
     }
     //#end
     return environment(path);

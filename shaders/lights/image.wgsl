@@ -1,6 +1,24 @@
 // Environment given by an equirectangular image. Twin: src/lights/image.rs, which explains the
 // fields.
 
+fn untilted(light: Light, d: vec3f) -> vec3f {
+    //#if tilted_sky
+    let z = cross(light.position, light.direction);
+    return vec3f(dot(light.position, d), dot(light.direction, d), dot(z, d));
+    //#else
+    return d;
+    //#end
+}
+
+fn tilted(light: Light, d: vec3f) -> vec3f {
+    //#if tilted_sky
+    let z = cross(light.position, light.direction);
+    return light.position * d.x + light.direction * d.y + z * d.z;
+    //#else
+    return d;
+    //#end
+}
+
 fn image_uv(light: Light, direction: vec3f) -> vec2f {
     let x = light.outer * direction.x - light.inner * direction.z;
     let z = light.inner * direction.x + light.outer * direction.z;
@@ -9,7 +27,7 @@ fn image_uv(light: Light, direction: vec3f) -> vec2f {
 }
 
 fn eval_image(light: Light, direction: vec3f) -> vec3f {
-    return light.color * eval_texture(light.reference, image_uv(light, direction));
+    return light.color * eval_texture(light.reference, image_uv(light, untilted(light, direction)));
 }
 
 fn sample_image(light: Light, u: vec4f) -> vec3f {
@@ -27,15 +45,17 @@ fn sample_image(light: Light, u: vec4f) -> vec3f {
     let theta = sin_cos(down * PI);
     let x = theta.x * phi.y;
     let z = theta.x * phi.x;
-    return vec3f(
+    let d = vec3f(
         light.outer * x + light.inner * z,
         theta.y,
         light.outer * z - light.inner * x,
     );
+    return tilted(light, d);
 }
 
-fn pdf_image(light: Light, direction: vec3f) -> f32 {
+fn pdf_image(light: Light, toward: vec3f) -> f32 {
     let texture = scene.textures[light.reference];
+    let direction = untilted(light, toward);
     let uv = image_uv(light, direction);
     let row = min(u32(floor((1.0 - uv.y) * f32(texture.height))), texture.height - 1u);
     let column = min(u32(floor(uv.x * f32(texture.width))), texture.width - 1u);

@@ -11,6 +11,12 @@ fn emit_from_infinity(light: Light, u: vec4f, v: vec4f) -> Emission {
         radiance = eval_environment(light, w) * (1.0 / pdf_environment(light, w));
     }
     //#end
+    //#if sun_disc
+    if light.kind == LIGHT_SUN_DISC {
+        ray.direction = -sample_sun_disc(light, u);
+        radiance = light.color * (1.0 / pdf_sun_disc(light));
+    }
+    //#end
     // choose a point on a disc or in the map's square
     let across = vec2f(v.x, v.y);
     let level = find_interval(scene.world.disc_first, scene.world.disc_levels, v.z);

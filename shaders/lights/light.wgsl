@@ -39,6 +39,11 @@ fn sample_one_light(light: Light, share: f32, position: vec3f, u: vec4f) -> Ligh
             return light_from_sun(light, share);
         }
         //#end
+        //#if sun_disc
+        case LIGHT_SUN_DISC: {
+            return light_from_sun_disc(light, share, u);
+        }
+        //#end
         //#if environment
         case LIGHT_CONSTANT, LIGHT_IMAGE: {
             return light_from_environment(light, share, u);

@@ -109,8 +109,10 @@ pub fn with_unused(scene: &SceneTables, feature: Feature) -> Option<SceneTables>
         | Feature::AreaRevolution => return None,
         // change what is rendered
         Feature::Infinite
+        | Feature::SunDisc
         | Feature::Environment
         | Feature::EnvironmentImage
+        | Feature::TiltedSky
         | Feature::Lens
         | Feature::Projection
         | Feature::Filter

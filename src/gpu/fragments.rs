@@ -72,6 +72,7 @@ const SHARED: &[Fragment] = fragments![
     "lights/point.wgsl" if "scene && point || scene && spot",
     "lights/spot.wgsl" if "scene && spot",
     "lights/sun.wgsl" if "scene && infinite",
+    "lights/sun_disc.wgsl" if "scene && sun_disc",
     "lights/image.wgsl" if "scene && environment_image",
     "lights/environment.wgsl" if "scene && environment",
     "lights/light.wgsl" if "scene && lights",

@@ -8,6 +8,7 @@ use super::lights::area::pdf_area;
 use super::lights::environment::{eval_environment, pdf_environment};
 use super::lights::light::sample_light;
 use super::lights::select::{share_of, shares_at};
+use super::lights::sun_disc::{in_sun_disc, pdf_sun_disc};
 use super::materials::interior::{Interior, interior_beyond, medium_of};
 use super::materials::shading::{RADIANCE, ShadingPoint};
 use super::materials::{eval_rough, pdf_rough, scatter_rough};
@@ -100,6 +101,15 @@ pub fn direct_light(
                     let other = pdf_environment(scene, light, ray.direction) * share;
                     let seen = eval_environment(scene, light, ray.direction);
                     radiance += scattered.weight * seen * balance(pdf, other);
+                }
+                let mut sun = scene.world.sun_discs;
+                while sun != NONE {
+                    let light = &scene.lights[sun as usize];
+                    if in_sun_disc(light, ray.direction) {
+                        let other = pdf_sun_disc(light) * share_of(scene, shares, sun);
+                        radiance += scattered.weight * light.color * balance(pdf, other);
+                    }
+                    sun = light.reference;
                 }
             } else {
                 let at = surface_at(scene, &ray, &hit);

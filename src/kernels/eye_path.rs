@@ -7,6 +7,7 @@ use super::geometry::surface::{Surface, surface_at};
 use super::lights::area::pdf_area;
 use super::lights::environment::{eval_environment, pdf_environment};
 use super::lights::select::share_of;
+use super::lights::sun_disc::{eval_sun_discs, in_sun_disc, pdf_sun_disc};
 use super::materials::enclosing::interior_at;
 use super::materials::interior::{Interior, interior_before, medium_of, passes_hidden};
 use super::materials::shading::Scatter;
@@ -77,14 +78,18 @@ impl EyePath {
         intersect_scene(scene, &self.ray)
     }
 
-    /// Radiance of the environment in the ray's direction, times throughput.
+    /// Radiance of the environment and of suns in the ray's direction, times throughput.
     #[inline(always)]
     pub fn environment(&self, scene: &SceneTables) -> Vec3 {
-        if scene.world.environment == NONE {
-            return Vec3::ZERO;
+        let mut radiance = Vec3::ZERO;
+        if scene.world.environment != NONE {
+            let light = &scene.lights[scene.world.environment as usize];
+            radiance = self.throughput * eval_environment(scene, light, self.ray.direction);
         }
-        let light = &scene.lights[scene.world.environment as usize];
-        self.throughput * eval_environment(scene, light, self.ray.direction)
+        if scene.world.sun_discs != NONE {
+            radiance += self.throughput * eval_sun_discs(scene, self.ray.direction);
+        }
+        radiance
     }
 
     /// Moves to a hit and applies the absorption of the medium on the way.
@@ -106,17 +111,32 @@ impl EyePath {
         self.throughput * scene.lights[s.light as usize].color
     }
 
-    /// Radiance of the environment, times throughput, weighted against the shadow ray of `last`.
+    /// Radiance of the environment and of suns, times throughput, weighted against the shadow ray of `last`.
     #[inline(always)]
     pub fn found_environment(&self, scene: &SceneTables, last: &LastLobe) -> Vec3 {
-        if last.pdf > 0.0 && scene.world.environment != NONE {
+        if last.pdf == 0.0 {
+            return self.environment(scene);
+        }
+        let mut radiance = Vec3::ZERO;
+        let direction = self.ray.direction;
+        if scene.world.environment != NONE {
             let sky = scene.world.environment;
             let light = &scene.lights[sky as usize];
-            let other = pdf_environment(scene, light, self.ray.direction)
-                * share_of(scene, last.shares, sky);
-            return self.environment(scene) * balance(last.pdf, other);
+            let other =
+                pdf_environment(scene, light, direction) * share_of(scene, last.shares, sky);
+            let seen = self.throughput * eval_environment(scene, light, direction);
+            radiance = seen * balance(last.pdf, other);
         }
-        self.environment(scene)
+        let mut sun = scene.world.sun_discs;
+        while sun != NONE {
+            let light = &scene.lights[sun as usize];
+            if in_sun_disc(light, direction) {
+                let other = pdf_sun_disc(light) * share_of(scene, last.shares, sun);
+                radiance += self.throughput * light.color * balance(last.pdf, other);
+            }
+            sun = light.reference;
+        }
+        radiance
     }
 
     /// Emission of the surface at distance `t`, times throughput, weighted likewise. `ray` is the

@@ -58,7 +58,7 @@ pub fn emit_from(scene: &SceneTables, light: &Light, u: Vec4, v: Vec4) -> Emissi
         }
         LightKind::Point => emit_nearby(scene, light, v, |across| emit_point(light, across)),
         LightKind::Spot => emit_nearby(scene, light, v, |across| emit_spot(light, across)),
-        LightKind::Sun | LightKind::Constant | LightKind::Image => {
+        LightKind::Sun | LightKind::SunDisc | LightKind::Constant | LightKind::Image => {
             emit_from_infinity(scene, light, u, v)
         }
     }

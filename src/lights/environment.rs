@@ -17,7 +17,8 @@ pub fn eval_environment(scene: &SceneTables, light: &Light, direction: Vec3) -> 
         | LightKind::Area
         | LightKind::Point
         | LightKind::Spot
-        | LightKind::Sun => light.color,
+        | LightKind::Sun
+        | LightKind::SunDisc => light.color,
     }
 }
 
@@ -29,7 +30,8 @@ pub fn sample_environment(scene: &SceneTables, light: &Light, u: Vec4) -> Vec3 {
         | LightKind::Area
         | LightKind::Point
         | LightKind::Spot
-        | LightKind::Sun => sample_sphere(Vec2::new(u.y, u.z)),
+        | LightKind::Sun
+        | LightKind::SunDisc => sample_sphere(Vec2::new(u.y, u.z)),
     }
 }
 
@@ -41,7 +43,8 @@ pub fn pdf_environment(scene: &SceneTables, light: &Light, direction: Vec3) -> R
         | LightKind::Area
         | LightKind::Point
         | LightKind::Spot
-        | LightKind::Sun => PDF_SPHERE,
+        | LightKind::Sun
+        | LightKind::SunDisc => PDF_SPHERE,
     }
 }
 

@@ -1,7 +1,8 @@
 //! Environment given by an equirectangular image. `color` scales the image, `reference` is its
 //! texture, `outer` and `inner` are the cosine and sine of its rotation about y, and `first` is the
-//! start of its distribution: cumulative rows, then the cumulative columns of each row. Twin:
-//! `shaders/lights/image.wgsl`.
+//! start of its distribution: cumulative rows, then the cumulative columns of each row. If
+//! `patch_count` is 1, the image is tilted, and `position` and `direction` are its x and y axes.
+//! Twin: `shaders/lights/image.wgsl`.
 
 use super::materials::texture::eval_texture;
 use super::math::trig::{arctan2, sin_cos};
@@ -11,8 +12,26 @@ use super::select::find_interval;
 use super::shape::pdf_bin;
 use super::tables::*;
 
-/// Texture coordinates of a direction in an equirectangular image rotated about y; v is 1 at the
-/// zenith.
+/// Turns a direction from scene space into the axes of the image, before its rotation about y.
+pub fn untilted(light: &Light, d: Vec3) -> Vec3 {
+    if light.patch_count == 0 {
+        return d;
+    }
+    let z = light.position.cross(light.direction);
+    Vec3::new(light.position.dot(d), light.direction.dot(d), z.dot(d))
+}
+
+/// Inverse of [`untilted`].
+pub fn tilted(light: &Light, d: Vec3) -> Vec3 {
+    if light.patch_count == 0 {
+        return d;
+    }
+    let z = light.position.cross(light.direction);
+    light.position * d.x + light.direction * d.y + z * d.z
+}
+
+/// Texture coordinates of a direction, in the axes of the image, in an equirectangular image
+/// rotated about y; v is 1 at the zenith.
 pub fn image_uv(light: &Light, direction: Vec3) -> Vec2 {
     let x = light.outer * direction.x - light.inner * direction.z;
     let z = light.inner * direction.x + light.outer * direction.z;
@@ -22,7 +41,7 @@ pub fn image_uv(light: &Light, direction: Vec3) -> Vec2 {
 
 /// Radiance of the image from `direction`.
 pub fn eval_image(scene: &SceneTables, light: &Light, direction: Vec3) -> Vec3 {
-    light.color * eval_texture(scene, light.reference, image_uv(light, direction))
+    light.color * eval_texture(scene, light.reference, image_uv(light, untilted(light, direction)))
 }
 
 /// Samples a direction towards a pixel, in proportion to the pixel's radiance and solid angle.
@@ -44,12 +63,14 @@ pub fn sample_image(scene: &SceneTables, light: &Light, u: Vec4) -> Vec3 {
     let (sin, cos) = sin_cos(down * PI);
     let x = sin * cos_phi;
     let z = sin * sin_phi;
-    Vec3::new(light.outer * x + light.inner * z, cos, light.outer * z - light.inner * x)
+    let d = Vec3::new(light.outer * x + light.inner * z, cos, light.outer * z - light.inner * x);
+    tilted(light, d)
 }
 
 /// Density per solid angle of [`sample_image`].
-pub fn pdf_image(scene: &SceneTables, light: &Light, direction: Vec3) -> Real {
+pub fn pdf_image(scene: &SceneTables, light: &Light, toward: Vec3) -> Real {
     let texture = &scene.textures[light.reference as usize];
+    let direction = untilted(light, toward);
     let uv = image_uv(light, direction);
     let row = (((1.0 - uv.y) * texture.height as Real).floor() as u32).min(texture.height - 1);
     let column = ((uv.x * texture.width as Real).floor() as u32).min(texture.width - 1);

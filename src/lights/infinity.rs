@@ -10,6 +10,7 @@ use super::math::{EPS, FAR, PI, basis};
 use super::real::{Real, Vec2, Vec3, Vec4};
 use super::select::{find_interval, share_of};
 use super::shapes::ray::Ray;
+use super::sun_disc::{pdf_sun_disc, sample_sun_disc};
 use super::tables::*;
 
 /// Emits a photon of light from infinity. It passes through one of the emission discs about what
@@ -25,6 +26,10 @@ pub fn emit_from_infinity(scene: &SceneTables, light: &Light, u: Vec4, v: Vec4) 
         let w = sample_environment(scene, light, u);
         ray.direction = -w;
         radiance = eval_environment(scene, light, w) * (1.0 / pdf_environment(scene, light, w));
+    }
+    if LightKind::of(light.kind) == LightKind::SunDisc {
+        ray.direction = -sample_sun_disc(light, u);
+        radiance = light.color * (1.0 / pdf_sun_disc(light));
     }
     // choose a point on a disc or in the map's square
     let across = Vec2::new(v.x, v.y);

@@ -9,6 +9,7 @@ use super::real::{Real, Vec3, Vec4};
 use super::select::{choose_light, share_of};
 use super::spot::light_from_spot;
 use super::sun::light_from_sun;
+use super::sun_disc::light_from_sun_disc;
 use super::tables::*;
 
 /// Unoccluded light that reaches a point from a sampled direction.
@@ -56,6 +57,7 @@ pub fn sample_one_light(
         LightKind::Point => light_from_point(light, share, position),
         LightKind::Spot => light_from_spot(light, share, position),
         LightKind::Sun => light_from_sun(light, share),
+        LightKind::SunDisc => light_from_sun_disc(light, share, u),
         LightKind::Constant | LightKind::Image => light_from_environment(scene, light, share, u),
     }
 }

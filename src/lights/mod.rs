@@ -19,6 +19,7 @@ pub mod select;
 pub mod shape;
 pub mod spot;
 pub mod sun;
+pub mod sun_disc;
 
 /// Kind of a light, stored as a number in [`Light::kind`](tables::Light::kind).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,6 +33,8 @@ pub enum LightKind {
     Spot,
     /// Parallel light.
     Sun,
+    /// Sun with an angular size.
+    SunDisc,
     /// Constant environment.
     Constant,
     /// Environment image.
@@ -40,8 +43,15 @@ pub enum LightKind {
 
 impl LightKind {
     /// All kinds.
-    pub const ALL: [Self; 6] =
-        [Self::Area, Self::Point, Self::Spot, Self::Sun, Self::Constant, Self::Image];
+    pub const ALL: [Self; 7] = [
+        Self::Area,
+        Self::Point,
+        Self::Spot,
+        Self::Sun,
+        Self::SunDisc,
+        Self::Constant,
+        Self::Image,
+    ];
 
     /// Kind with the number `kind`.
     #[inline(always)]
@@ -63,6 +73,7 @@ impl LightKind {
             Self::Point => "POINT",
             Self::Spot => "SPOT",
             Self::Sun => "SUN",
+            Self::SunDisc => "SUN_DISC",
             Self::Constant => "CONSTANT",
             Self::Image => "IMAGE",
         }
@@ -73,7 +84,7 @@ impl LightKind {
     pub const fn is_infinite(self) -> bool {
         match self {
             Self::Area | Self::Point | Self::Spot => false,
-            Self::Sun | Self::Constant | Self::Image => true,
+            Self::Sun | Self::SunDisc | Self::Constant | Self::Image => true,
         }
     }
 
@@ -81,16 +92,16 @@ impl LightKind {
     #[inline(always)]
     pub const fn is_extended(self) -> bool {
         match self {
-            Self::Area | Self::Constant | Self::Image => true,
+            Self::Area | Self::SunDisc | Self::Constant | Self::Image => true,
             Self::Point | Self::Spot | Self::Sun => false,
         }
     }
 
-    /// Returns true if rays that leave the scene find the light.
+    /// Returns true if the light is the environment, which rays that leave the scene find.
     #[inline(always)]
     pub const fn is_environment(self) -> bool {
         match self {
-            Self::Area | Self::Point | Self::Spot | Self::Sun => false,
+            Self::Area | Self::Point | Self::Spot | Self::Sun | Self::SunDisc => false,
             Self::Constant | Self::Image => true,
         }
     }

@@ -61,7 +61,7 @@ pub fn stand_lights(out: &mut SceneTables) {
             LightKind::Point | LightKind::Spot => {
                 medium_of_box(out, light.position, light.position, light.position)
             }
-            LightKind::Sun | LightKind::Constant | LightKind::Image => NONE,
+            LightKind::Sun | LightKind::SunDisc | LightKind::Constant | LightKind::Image => NONE,
         };
     }
 }

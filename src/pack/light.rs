@@ -79,7 +79,23 @@ pub fn pack_lights(
                 };
                 (light, DVec3::from(*intensity) / unit_sq, PI * (inner + outer))
             }
-            scene::Light::Sun { direction, irradiance } => {
+            scene::Light::Sun { direction, irradiance, angle_degrees } if *angle_degrees > 0.0 => {
+                let half = (0.5 * angle_degrees).to_radians();
+                let versine = 2.0 * (0.5 * half).sin().powi(2);
+                let light = Light {
+                    kind: LightKind::SunDisc as u32,
+                    direction: direction.normalize().to_real(),
+                    outer: versine as Real,
+                    reference: out.world.sun_discs,
+                    ..Light::zeroed()
+                };
+                out.world.sun_discs = lights.len() as u32;
+                // a surface that faces the disc receives pi sin^2 of its radiance
+                let radiance = DVec3::from(*irradiance) / (PI * half.sin().powi(2));
+                luminance_max = luminance_max.max(luminance(radiance));
+                (light, radiance, 2.0 * PI * versine)
+            }
+            scene::Light::Sun { direction, irradiance, .. } => {
                 let light = Light {
                     kind: LightKind::Sun as u32,
                     direction: direction.normalize().to_real(),
@@ -98,7 +114,7 @@ pub fn pack_lights(
                 4.0 * PI,
             ));
         }
-        Some(Environment::Image { rotate_degrees, scale, .. }) => {
+        Some(Environment::Image { rotate_degrees, tilt, scale, .. }) => {
             let (sin, cos) = rotate_degrees.to_radians().sin_cos();
             let mut light = Light {
                 kind: LightKind::Image as u32,
@@ -107,6 +123,11 @@ pub fn pack_lights(
                 inner: sin as Real,
                 ..Light::zeroed()
             };
+            if let Some(tilt) = tilt {
+                light.position = tilt.x_axis.to_real();
+                light.direction = tilt.y_axis.to_real();
+                light.patch_count = 1;
+            }
             let scale = DVec3::from(*scale);
             if let Some([mean, brightest]) =
                 image_distribution(out, &mut light, scale, &mut distributions)
@@ -254,7 +275,8 @@ mod tests {
             let texels = Texels::Float(vec![color; 8]);
             let path = "sky.exr".to_owned();
             scene.images.push(ImageData { path, width: 4, height: 2, texels });
-            let environment = Environment::Image { image: 0, rotate_degrees: 0.0, scale };
+            let environment =
+                Environment::Image { image: 0, rotate_degrees: 0.0, tilt: None, scale };
             scene.environment = Some(environment);
             let packed = pack(&scene, Normalization::of(&scene), 4, 4).unwrap();
             assert!((packed.brightest - expected).abs() < 1e-6, "{color:?}: {}", packed.brightest);

@@ -148,7 +148,7 @@ impl SceneTables {
     /// An empty scene.
     pub fn empty() -> Self {
         Self {
-            world: World { environment: NONE, ..World::zeroed() },
+            world: World { environment: NONE, sun_discs: NONE, ..World::zeroed() },
             camera: Camera::zeroed(),
             spheres: Vec::new(),
             rectangles: Vec::new(),

@@ -24,7 +24,9 @@ impl PackedScene {
             let contribution = self.contributions.get(i).copied().unwrap_or(0.0);
             let sized = match LightKind::of(light.kind) {
                 LightKind::Point | LightKind::Spot | LightKind::Sun => false,
-                LightKind::Area | LightKind::Constant | LightKind::Image => true,
+                LightKind::Area | LightKind::SunDisc | LightKind::Constant | LightKind::Image => {
+                    true
+                }
             };
             if path && !sized {
                 return Some(format!(

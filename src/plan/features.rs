@@ -121,6 +121,8 @@ features! {
     Spot = "spot",
     /// Light from infinity: suns and environments.
     Infinite = "infinite",
+    /// Suns with an angular size.
+    SunDisc = "sun_disc",
     /// Light from infinity that reaches distant surfaces; photons that scatter there are redirected
     /// to the scene.
     Far = "far",
@@ -128,6 +130,8 @@ features! {
     Environment = "environment",
     /// An environment image.
     EnvironmentImage = "environment_image",
+    /// An environment image rotated about another axis than y.
+    TiltedSky = "tilted_sky",
     /// A thin lens.
     Lens = "lens",
     /// A camera other than a perspective one.
@@ -247,9 +251,12 @@ impl Features {
         put(Feature::Point, light(LightKind::Point));
         put(Feature::Spot, light(LightKind::Spot));
         put(Feature::Infinite, lights().any(LightKind::is_infinite));
+        put(Feature::SunDisc, light(LightKind::SunDisc));
         put(Feature::Far, scene.world.far != 0);
         put(Feature::Environment, lights().any(LightKind::is_environment));
         put(Feature::EnvironmentImage, light(LightKind::Image));
+        let tilted = |l: &Light| l.kind == LightKind::Image as u32 && l.patch_count != 0;
+        put(Feature::TiltedSky, scene.lights.iter().any(tilted));
         put(Feature::Lens, scene.camera.aperture > 0.0);
         let filter = FilterKind::of(scene.camera.filter_kind);
         put(Feature::Projection, scene.camera.projection != ProjectionKind::Perspective as u32);

@@ -1,6 +1,6 @@
 //! Lights without a surface, and the environment.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 use super::Rgb;
 
@@ -28,12 +28,14 @@ pub enum Light {
         /// `(1 - blend) angle`, then a smoothstep in the angle's cosine down to zero at `angle`.
         blend: f64,
     },
-    /// Parallel light from infinitely far away.
+    /// Light from infinitely far away: parallel, or from a disc of even radiance.
     Sun {
         /// Unit vector in which the light travels.
         direction: DVec3,
         /// Irradiance on a surface facing the sun in W/m^2.
         irradiance: Rgb,
+        /// Diameter of the disc in degrees, at most 180; 0 for parallel light, which is invisible.
+        angle_degrees: f64,
     },
 }
 
@@ -45,13 +47,15 @@ pub enum Environment {
         /// Radiance in W sr^-1 m^-2.
         radiance: Rgb,
     },
-    /// An equirectangular image; row 0 is the zenith (+y). A direction `d`, turned back about y,
-    /// reads it at `u = 0.5 - atan2(d.z, d.x) / 2pi`, `v = 1 - acos(d.y) / pi`.
+    /// An equirectangular image; row 0 is the zenith (+y). A direction `d`, turned back by `tilt`
+    /// and then about y, reads it at `u = 0.5 - atan2(d.z, d.x) / 2pi`, `v = 1 - acos(d.y) / pi`.
     Image {
         /// Index into [`super::Scene::images`].
         image: usize,
         /// Rotation of the image about +y in degrees, by the right-hand rule.
         rotate_degrees: f64,
+        /// Rotation that follows the one about y (orthonormal, determinant one); `None` for none.
+        tilt: Option<DMat3>,
         /// Radiance in W sr^-1 m^-2 of a texel value of one, per channel.
         scale: Rgb,
     },

@@ -134,6 +134,7 @@ impl Mixture {
             }
             Feature::Spot => self.light(LightKind::Spot as u32, 0),
             Feature::Infinite => self.light(LightKind::Sun as u32, 0),
+            Feature::SunDisc => self.light(LightKind::SunDisc as u32, NONE),
             Feature::Far => {
                 self.add(Feature::Infinite);
                 self.scene.world.far = 1;
@@ -142,6 +143,12 @@ impl Mixture {
             Feature::EnvironmentImage => {
                 self.add(Feature::Texels);
                 self.light(LightKind::Image as u32, 0);
+            }
+            Feature::TiltedSky => {
+                self.add(Feature::EnvironmentImage);
+                for light in &mut self.scene.lights {
+                    light.patch_count = 1;
+                }
             }
             Feature::Lens => s.camera.aperture = 1.0,
             Feature::Projection => s.camera.projection = ProjectionKind::Fisheye as u32,

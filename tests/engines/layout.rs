@@ -44,7 +44,8 @@ fn hosts() -> Vec<Layout> {
             guided,
             primitive_size,
             body_first,
-            body_count
+            body_count,
+            sun_discs
         }),
         layout!(Camera {
             position,

@@ -82,7 +82,7 @@ pub const CAMERAS: [(&str, &str, &str, &str); 5] = [
 ];
 
 /// Name, render settings, and the rest of the scene file.
-pub const SCENES: [(&str, &str, &str); 13] = [
+pub const SCENES: [(&str, &str, &str); 14] = [
     (
         "glass and mirror under a rectangle",
         "",
@@ -726,6 +726,42 @@ pub const SCENES: [(&str, &str, &str); 13] = [
         material = "white"
         emission = [20.0, 18.0, 15.0]
         transform = [{ scale = [2.0, 1.0, -1.5] }, { translate = [0.0, 2.5, 0.0] }]
+        "#,
+    ),
+    (
+        "two suns with a size, and a tilted sky",
+        "",
+        r#"
+        [materials.steel]
+        type = "metal"
+        reflectance = 0.8
+        roughness = 0.2
+        [materials.glass]
+        type = "glass"
+        ior = 1.5
+        [[shapes]]
+        type = "sphere"
+        center = [-0.6, 0.5, 0.0]
+        radius = 0.5
+        material = "steel"
+        [[shapes]]
+        type = "sphere"
+        center = [0.6, 0.5, 0.0]
+        radius = 0.5
+        material = "glass"
+        [[lights]]
+        type = "sun"
+        direction = [0.3, -1.0, -0.2]
+        irradiance = [1.0, 1.0, 0.8]
+        angle = 0.53
+        [[lights]]
+        type = "sun"
+        direction = [0.1, -0.2, 1.0]
+        irradiance = [0.5, 0.2, 0.1]
+        angle = 30.0
+        [environment]
+        file = "sky.hdr"
+        rotate = { axis = [1.0, 0.2, 0.3], degrees = 40.0 }
         "#,
     ),
 ];

@@ -16,6 +16,7 @@ use caustica::low_level::lights::environment::{
 use caustica::low_level::lights::light::sample_light;
 use caustica::low_level::lights::select::{choose_light, share_of, shares_at};
 use caustica::low_level::lights::shape::sample_shape;
+use caustica::low_level::lights::sun_disc::{in_sun_disc, pdf_sun_disc, sample_sun_disc};
 use caustica::low_level::materials::microfacet::{
     facets_at, ggx_pdf, ggx_visible_normal, sample_facets,
 };
@@ -263,7 +264,11 @@ fn environment() {
         (0..32 * 16).map(|i| if i % 37 == 5 { 4.0 } else { 0.25 + (i % 7) as f32 * 0.1 }).collect();
     let at = |x: usize, y: usize| (texels[y * 32 + x], texels[y * 32 + x], texels[y * 32 + x]);
     exr::prelude::write_rgb_file(folder().join("physics-density.exr"), 32, 16, at).unwrap();
-    for light in ["radiance = 1.0", "file = \"physics-density.exr\"\nrotate = 50.0"] {
+    for light in [
+        "radiance = 1.0",
+        "file = \"physics-density.exr\"\nrotate = 50.0",
+        "file = \"physics-density.exr\"\nrotate = [[1, 0, 0], [0, -1, 0], [0, 0, -1]]",
+    ] {
         let scene = packed(&format!("[environment]\n{light}\n")).tables;
         let light = &scene.lights[0];
         // the image's rows are bin()'s rings if y is its axis
@@ -276,6 +281,16 @@ fn environment() {
         };
         check("environment", draw, |w| pdf_environment(&scene, light, back(w)));
     }
+}
+
+/// Theory: directions to a sun are uniform in its disc, 1 - cos(60 degrees) = 4/8 wide.
+#[test]
+fn sun_disc() {
+    let sun = "[[lights]]\ntype = \"sun\"\ndirection = [0, 0, -1]\nirradiance = 1\nangle = 120\n";
+    let scene = packed(sun).tables;
+    let light = &scene.lights[0];
+    let pdf = |w: Vec3| if in_sun_disc(light, w) { pdf_sun_disc(light) } else { 0.0 };
+    check("sun disc", |r| Some(sample_sun_disc(light, rng_next(r))), pdf);
 }
 
 /// Theory: a light is drawn with its stated probability, wherever the point lies; all probabilities

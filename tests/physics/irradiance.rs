@@ -4,20 +4,20 @@
 use std::f64::consts::PI;
 
 use caustica::low_level::scene::settings::{Direct, RenderSettings};
-use glam::{DVec2, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 
 use super::closed_forms as form;
 use super::lab::*;
 
-const ALBEDO: f64 = 0.6;
+pub const ALBEDO: f64 = 0.6;
 const RADIUS: f64 = 0.03;
 
 /// Looks below the lights at the floor around the origin: |x| < 0.3, |z| < 0.6.
-fn camera() -> Camera {
+pub fn camera() -> Camera {
     Camera { position: DVec3::new(0.0, 1.6, 3.0), target: DVec3::ZERO, fov: 9.0, size: 16 }
 }
 
-const FLOOR: &str = r#"
+pub const FLOOR: &str = r#"
 [materials.floor]
 type = "diffuse"
 reflectance = 0.6
@@ -33,8 +33,18 @@ material = "floor"
 "#;
 
 /// Theory: a floor of irradiance E has the radiance albedo E / pi, however its light was found.
-fn check(name: &str, light: &str, irradiance: impl Fn(DVec3) -> f64 + Sync) {
-    let text = camera().toml() + FLOOR + light;
+pub fn check(name: &str, light: &str, irradiance: impl Fn(DVec3) -> f64 + Sync) {
+    check_from(camera(), name, light, irradiance);
+}
+
+/// The same with another camera.
+pub fn check_from(
+    camera: Camera,
+    name: &str,
+    light: &str,
+    irradiance: impl Fn(DVec3) -> f64 + Sync,
+) {
+    let text = camera.toml() + FLOOR + light;
     for direct in DIRECT {
         let sampled = direct == Direct::Sampled;
         let passes = if sampled { 8 } else { 1 };
@@ -42,7 +52,7 @@ fn check(name: &str, light: &str, irradiance: impl Fn(DVec3) -> f64 + Sync) {
         let settings = RenderSettings { direct, passes, photons, ..settings(RADIUS) };
         // shadow rays end at the visible point itself, photons are averaged over the disc
         let blur = if sampled { 0.0 } else { RADIUS };
-        let truth = camera().floor_picture(blur, |p| ALBEDO / PI * irradiance(p));
+        let truth = camera.floor_picture(blur, |p| ALBEDO / PI * irradiance(p));
         let power = if sampled { 0.02 } else { 0.03 };
         runs_to(power, &text, &settings).assert_picture(
             &format!("{name}, {direct:?}"),
@@ -106,10 +116,32 @@ fn sky() -> Vec<f64> {
     texels
 }
 
-/// Radiance of the image from direction `d`: equirectangular, bilinear, turned about +y by
-/// `degrees`.
-fn sky_radiance(texels: &[f64], d: DVec3, degrees: f64) -> f64 {
-    let d = glam::DQuat::from_rotation_y(-degrees.to_radians()) * d;
+/// Rotations of the image as a scene file writes them, and as matrices: about y, about a slanted
+/// axis, by a matrix with the same meaning as an angle, and by one without a symmetry.
+fn rotations() -> Vec<(String, DMat3)> {
+    let about = |axis: DVec3, degrees: f64| {
+        (
+            format!("{{ axis = {}, degrees = {degrees:?} }}", list(axis)),
+            DMat3::from_axis_angle(axis.normalize(), degrees.to_radians()),
+        )
+    };
+    let rows = |matrix: DMat3| {
+        let rows = matrix.transpose();
+        let text = format!("[{}, {}, {}]", list(rows.x_axis), list(rows.y_axis), list(rows.z_axis));
+        (text, matrix)
+    };
+    vec![
+        ("75.0".to_owned(), DMat3::from_rotation_y(75f64.to_radians())),
+        about(DVec3::new(0.0, -2.0, 0.0), 140.0),
+        about(DVec3::new(1.0, 0.4, -0.7), 50.0),
+        rows(DMat3::from_rotation_y(-0.6)),
+        rows(DMat3::from_rotation_x(0.5) * DMat3::from_rotation_z(2.0)),
+    ]
+}
+
+/// Radiance of the image from direction `d`: equirectangular, bilinear, turned by `rotation`.
+fn sky_radiance(texels: &[f64], d: DVec3, rotation: DMat3) -> f64 {
+    let d = rotation.transpose() * d;
     let u = 0.5 - d.z.atan2(d.x) / (2.0 * PI);
     let down = d.y.clamp(-1.0, 1.0).acos() / PI;
     let (x, y) = (u * WIDTH as f64 - 0.5, down * HEIGHT as f64 - 0.5);
@@ -132,7 +164,7 @@ fn image_environment() {
             [texels[y as usize * WIDTH + x as usize] as f32; 3]
         });
     write_exr("physics-sky.exr", &picture);
-    for degrees in [75.0] {
+    for (text, rotation) in rotations() {
         let mut irradiance = 0.0;
         let (n_theta, n_phi) = (400, 1600);
         for i in 0..n_theta {
@@ -140,12 +172,12 @@ fn image_environment() {
             for k in 0..n_phi {
                 let (s, c) = ((k as f64 + 0.5) / n_phi as f64 * 2.0 * PI).sin_cos();
                 irradiance +=
-                    sky_radiance(&texels, DVec3::new(sin * c, cos, sin * s), degrees) * sin * cos;
+                    sky_radiance(&texels, DVec3::new(sin * c, cos, sin * s), rotation) * sin * cos;
             }
         }
         irradiance *= 0.5 * PI / n_theta as f64 * 2.0 * PI / n_phi as f64;
-        let light = format!("[environment]\nfile = \"physics-sky.exr\"\nrotate = {degrees:?}\n");
-        check(&format!("image turned by {degrees}"), &light, |_| irradiance);
+        let light = format!("[environment]\nfile = \"physics-sky.exr\"\nrotate = {text}\n");
+        check(&format!("image turned by {text}"), &light, |_| irradiance);
     }
 }
 
@@ -159,7 +191,7 @@ fn image_environment_seen() {
             [texels[y as usize * WIDTH + x as usize] as f32; 3]
         });
     write_exr("physics-sky-seen.exr", &picture);
-    for degrees in [0.0, 75.0, -140.0] {
+    for (text, rotation) in rotations() {
         let d = DVec3::new(0.5, 0.9, 0.3);
         let camera = Camera {
             position: DVec3::new(1.0, 2.0, 3.0),
@@ -167,8 +199,7 @@ fn image_environment_seen() {
             fov: 90.0,
             size: 12,
         };
-        let light =
-            format!("[environment]\nfile = \"physics-sky-seen.exr\"\nrotate = {degrees:?}\n");
+        let light = format!("[environment]\nfile = \"physics-sky-seen.exr\"\nrotate = {text}\n");
         let settings = RenderSettings { passes: 16, photons: 1, ..settings(RADIUS) };
         let n = camera.size as usize;
         let sub = 16;
@@ -178,13 +209,13 @@ fn image_environment_seen() {
                     let at =
                         DVec2::new((k % sub) as f64 + 0.5, (k / sub) as f64 + 0.5) / sub as f64;
                     let at = (at + DVec2::new((i % n) as f64, (i / n) as f64)) / n as f64;
-                    sky_radiance(&texels, camera.direction(at).normalize(), degrees)
+                    sky_radiance(&texels, camera.direction(at).normalize(), rotation)
                 });
                 points.sum::<f64>() / (sub * sub) as f64
             })
             .collect();
         runs_to(0.01, &(camera.toml() + light.as_str()), &settings).assert_picture(
-            &format!("sky turned by {degrees}"),
+            &format!("sky turned by {text}"),
             &truth,
             0.01,
         );

@@ -39,5 +39,6 @@ mod media;
 mod meshes;
 mod pixel_filters;
 mod stability;
+mod sun_discs;
 mod truth;
 mod walls;

@@ -265,7 +265,8 @@ fn image_formats() {
     assert!((texels[1][0] - 0.214_048).abs() < 1e-6 && texels[1][1..] == [0.0, 1.0], "{texels:?}");
     let Texels::Float(texels) = &exr.images[1].texels else { panic!() };
     assert_eq!((exr.images[1].width, texels[5]), (3, [2.0, 1.0, 1e4]));
-    let environment = Environment::Image { image: 1, rotate_degrees: 90.0, scale: [1.0; 3] };
+    let environment =
+        Environment::Image { image: 1, rotate_degrees: 90.0, tilt: None, scale: [1.0; 3] };
     assert_eq!(exr.environment, Some(environment));
 
     let hdr = load("color_space = \"linear\"", "sky.hdr").unwrap();

@@ -118,6 +118,30 @@ fn one_fault_each() {
         ("[environment]\n", (6, 1, "neither `radiance` nor `file`")),
         ("[environment]\nradiance = 1\nrotate = 3\n", (8, 10, "no meaning without a `file`")),
         ("[environment]\nfile = \"sky.exr\"\n", (7, 8, "cannot read image")),
+        (
+            "[environment]\nfile = \"sky.exr\"\nrotate = { axis = [0, 0, 0], degrees = 1 }\n",
+            (8, 19, "no direction"),
+        ),
+        (
+            "[environment]\nfile = \"sky.exr\"\nrotate = [[1, 0, 0], [0, 1, 0], [0, 0, -1]]\n",
+            (8, 10, "is not a rotation | expected three perpendicular rows"),
+        ),
+        (
+            "[environment]\nfile = \"sky.exr\"\nrotate = [[2, 0, 0], [0, 2, 0], [0, 0, 2]]\n",
+            (8, 10, "is not a rotation"),
+        ),
+        (
+            "[environment]\nfile = \"sky.exr\"\nrotate = [[1, 0, 0], [0, 1, 0]]\n",
+            (8, 10, "expected"),
+        ),
+        (
+            "[[lights]]\ntype = \"sun\"\ndirection = [0, -1, 0]\nirradiance = 1\nangle = 1e-4\n",
+            (10, 9, "too narrow for single precision | expected 0, or at least 0.001"),
+        ),
+        (
+            "[[lights]]\ntype = \"sun\"\ndirection = [0, -1, 0]\nirradiance = 1\nangle = 181\n",
+            (10, 9, "from 0 to 180"),
+        ),
         ("fov = 3\n", (6, 1, "duplicate key")),
         ("[film\n", (6, 6, "not TOML")),
     ];

@@ -697,13 +697,31 @@ pub enum LightFile {
         #[serde(default)]
         blend: Share,
     },
-    /// Parallel light from infinitely far away.
+    /// Light from infinitely far away: parallel, or from a disc that the camera sees.
     Sun {
         /// Direction in which the light travels; any length but 0.
         direction: Vec3,
         /// Irradiance on a surface facing the sun, in W/m^2.
         irradiance: Spectrum<Strength>,
+        /// Diameter of the sun's disc in degrees, from 0.001 to 180, such as 0.53; 0 for parallel
+        /// light, which no camera sees.
+        #[serde(default)]
+        #[schemars(range(min = 0, max = 180))]
+        angle: f64,
     },
+}
+
+/// Rotation of a sky.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(untagged)]
+#[schemars(inline)]
+pub enum SkyRotation {
+    /// Degrees about +y by the right-hand rule.
+    Degrees(f64),
+    /// Rotation about any axis.
+    About(RotateFile),
+    /// Rows of a matrix that turns directions of the image into directions of the scene.
+    Matrix([Vec3; 3]),
 }
 
 /// A constant radiance from all directions, or an image.
@@ -714,8 +732,9 @@ pub struct EnvironmentFile {
     pub radiance: Option<Spectrum<Strength>>,
     /// An equirectangular image: exr, hdr, png or jpg.
     pub file: Option<String>,
-    /// Rotation of the image about +y in degrees, by the right-hand rule.
-    pub rotate: Option<f64>,
+    /// Rotation of the image: degrees about +y by the right-hand rule, { axis, degrees }, or the
+    /// rows of a rotation matrix.
+    pub rotate: Option<SkyRotation>,
 }
 
 fn y_axis() -> Vec3 {
