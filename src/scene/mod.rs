@@ -45,7 +45,7 @@ pub use diagnostics::{Finding, SceneErrors};
 pub use extent::extent;
 pub use film::{Film, PixelFilter, ToneMap};
 pub use geometry::{Group, Mesh, Shape, ShapeKind, Transform, Triangle};
-pub use images::ColorSpace;
+pub use images::{Channel, ColorSpace};
 pub use importers::toml::{
     LoadedProfile, ProfileFile, load_profile, load_profile_within, schema_json,
 };

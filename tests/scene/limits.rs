@@ -72,9 +72,15 @@ fn limit(from: &str, inside: &str, beyond: &str, at: &str, words: &[&str]) {
 #[test]
 fn a_sound_scene_says_nothing() {
     assert!(reported(SOUND).is_empty());
-    for name in
-        ["caustics", "cornell", "depth-of-field", "soft-shadows", "still-life", "water-drop"]
-    {
+    for name in [
+        "caustics",
+        "cornell",
+        "depth-of-field",
+        "materials",
+        "soft-shadows",
+        "still-life",
+        "water-drop",
+    ] {
         let file = format!("{}/scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
         let loaded = load(file.as_ref()).unwrap();
         let found = warnings(&loaded.scene, &loaded.settings, &loaded.places);

@@ -239,6 +239,40 @@ fn schema_is_current() {
     );
 }
 
+/// A texture of one channel has that channel's values in all three: colors in the file's encoding,
+/// alpha in proportion. A file without the channel is reported.
+#[test]
+fn channels_of_images() {
+    let folder = folder("channels");
+    let image = image::ImageBuffer::from_pixel(2, 1, image::Rgba([10u8, 20, 30, 40]));
+    image.save(folder.join("leaf.png")).unwrap();
+    exr::prelude::write_rgb_file(folder.join("gray.exr"), 1, 1, |_, _| (0.1f32, 0.2f32, 0.3f32))
+        .unwrap();
+    let load = |file: &str, channel: &str| {
+        let text = format!(
+            "{HEAD}[textures.a]\ntype = \"image\"\nfile = \"{file}\"\nchannel = \"{channel}\"\n\
+             [textures.b]\ntype = \"image\"\nfile = \"{file}\"\n"
+        );
+        parse(&folder.join("scene.toml"), text.as_bytes())
+    };
+    for (channel, value, encoded) in
+        [("red", 10, true), ("green", 20, true), ("blue", 30, true), ("alpha", 40, false)]
+    {
+        let scene = load("leaf.png", channel).unwrap().scene;
+        assert_eq!(scene.images.len(), 2);
+        let Texels::Rgba8 { srgb, data } = &scene.images[0].texels else { panic!() };
+        assert_eq!((*srgb, data[0]), (encoded, [value, value, value, 255]), "{channel}");
+        let Texels::Rgba8 { srgb: true, data } = &scene.images[1].texels else { panic!() };
+        assert_eq!(data[0], [10, 20, 30, 40]);
+    }
+    let scene = load("gray.exr", "green").unwrap().scene;
+    let Texels::Float(texels) = &scene.images[0].texels else { panic!() };
+    assert_eq!(texels[0], [0.2; 3]);
+    let errors = load("gray.exr", "alpha").unwrap_err();
+    let said = (errors.errors[0].message(), errors.errors[0].label());
+    assert!(said.0.contains("alpha") && said.1.contains("channel"), "{said:?}");
+}
+
 /// Each image format keeps its values: 8-bit as stored, 16-bit through the sRGB curve (or not), hdr
 /// and exr in linear floats. The same file in the same colour space is read once.
 #[test]

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::SceneBuilder;
 use crate::scene::diagnostics::nearest_file;
-use crate::scene::images::{ColorSpace, ImageFault};
+use crate::scene::images::{Channel, ColorSpace, ImageFault};
 use crate::scene::limits::Missing;
 use crate::scene::parts::Part;
 
@@ -17,7 +17,7 @@ impl SceneBuilder<'_> {
         color_space: Option<ColorSpace>,
     ) -> Option<usize> {
         let path = self.resolve(file);
-        match self.images.load(&path, color_space) {
+        match self.images.load(&path, color_space, None) {
             Ok(image) => {
                 self.warn_of_image(part, file, image);
                 Some(image)
@@ -29,16 +29,17 @@ impl SceneBuilder<'_> {
         }
     }
 
-    /// Like [`Self::image`], for reflectances: no texel may exceed 1. A gray image may replace a
-    /// file that does not exist.
+    /// Like [`Self::image`], for reflectances and amounts, or for one channel: no texel may exceed
+    /// 1. A gray image may replace a file that does not exist.
     pub fn reflectance_image(
         &mut self,
         part: &dyn Part,
         file: &str,
         color_space: Option<ColorSpace>,
+        channel: Option<Channel>,
     ) -> Option<usize> {
         let path = self.resolve(file);
-        let loaded = self.images.load(&path, color_space).and_then(|image| {
+        let loaded = self.images.load(&path, color_space, channel).and_then(|image| {
             self.images.bound_by_one(&path, image)?;
             Ok(image)
         });

@@ -3,22 +3,22 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-use super::ColorSpace;
 use super::fault::{ImageFault, fault};
 use super::texel_range::{Clamped, clamp};
+use super::{Channel, ColorSpace};
 use crate::scene::appearance::{ImageData, Texels};
 use crate::scene::limits::{Allowance, Missing};
 
 /// A warning about an image, and the interpretation of the affected values.
 pub(crate) type Note = (String, &'static str);
 
-/// Images read so far, one for each (file, color space).
+/// Images read so far, one for each (file, color space, channel).
 #[derive(Debug, Default)]
 pub(crate) struct ImageStore {
     pub images: Vec<ImageData>,
     /// Every file requested.
     pub files: Vec<PathBuf>,
-    known: BTreeMap<(PathBuf, Option<ColorSpace>), usize>,
+    known: BTreeMap<(PathBuf, Option<ColorSpace>, Option<Channel>), usize>,
     transparent: BTreeSet<usize>,
     /// Texels clamped into their range, by image.
     moved: BTreeMap<usize, Clamped>,
@@ -35,14 +35,28 @@ impl ImageStore {
         Self { allowance: allowance.clone(), ..Self::default() }
     }
 
-    /// Index of the image in a file; reads the file on first use.
-    pub fn load(&mut self, path: &Path, space: Option<ColorSpace>) -> Result<usize, ImageFault> {
+    /// Index of the image in a file, or of one of its channels as gray values; reads the file on
+    /// first use.
+    pub fn load(
+        &mut self,
+        path: &Path,
+        space: Option<ColorSpace>,
+        channel: Option<Channel>,
+    ) -> Result<usize, ImageFault> {
         let canonical = path.canonicalize().unwrap_or_else(|_| path.to_owned());
-        if let Some(&index) = self.known.get(&(canonical.clone(), space)) {
+        let key = (canonical, space, channel);
+        if let Some(&index) = self.known.get(&key) {
             return Ok(index);
         }
         self.files.push(path.to_owned());
         let (mut image, transparent, unread) = self.read(path, space)?;
+        if let Some(channel) = channel {
+            select(&mut image.texels, channel).map_err(|why| ImageFault {
+                key: "channel",
+                expected: "expected a channel that the file has",
+                ..fault(path, why)
+            })?;
+        }
         let index = self.images.len();
         let mut moved = Clamped::default();
         clamp(&mut image, f32::MAX, &mut moved).map_err(|bad| fault(path, bad))?;
@@ -52,8 +66,8 @@ impl ImageStore {
             self.unread.insert(index, message);
         }
         self.images.push(image);
-        self.known.insert((canonical, space), index);
-        if transparent {
+        self.known.insert(key, index);
+        if transparent && channel != Some(Channel::Alpha) {
             self.transparent.insert(index);
         }
         Ok(index)
@@ -98,4 +112,26 @@ impl ImageStore {
     pub fn is_transparent(&self, index: usize) -> bool {
         self.transparent.contains(&index)
     }
+}
+
+/// Replaces all channels by one of them.
+fn select(texels: &mut Texels, channel: Channel) -> Result<(), &'static str> {
+    match texels {
+        Texels::Rgba8 { srgb, data } => {
+            *srgb &= channel != Channel::Alpha;
+            for texel in data {
+                let value = texel[channel as usize];
+                *texel = [value, value, value, u8::MAX];
+            }
+        }
+        Texels::Float(data) => {
+            if channel == Channel::Alpha {
+                return Err("its alpha channel has more than 8 bits, or is missing");
+            }
+            for texel in data {
+                *texel = [texel[channel as usize]; 3];
+            }
+        }
+    }
+    Ok(())
 }

@@ -235,7 +235,7 @@ impl<'t> Reader<'_, 't> {
         let first = files.next().unwrap_or_default();
         let all = || std::iter::once(first.clone()).chain(files);
         let file = all().find(|file| builder.allowance.has(file)).unwrap_or(first.clone());
-        let image = builder.images.load(&file, None).and_then(|image| {
+        let image = builder.images.load(&file, None, None).and_then(|image| {
             builder.images.bound_by_one(&file, image)?;
             Ok(image)
         });

@@ -14,7 +14,7 @@ use super::schema::{close_variants, default_to_first};
 use super::transform::PlacementFile;
 use crate::scene::numbers::{LARGEST_SHIFT, NARROWEST_FILTER, WIDEST_FILTER};
 use crate::scene::settings::RenderSettings;
-use crate::scene::{Aov, Axis, ColorSpace, Filter, ToneMap, Wrap};
+use crate::scene::{Aov, Axis, Channel, ColorSpace, Filter, ToneMap, Wrap};
 
 /// Three coordinates: x, y, z.
 pub type Vec3 = [f64; 3];
@@ -265,6 +265,8 @@ pub enum TextureFile {
         file: String,
         /// Encoding of its values; the file type gives the default.
         color_space: Option<ColorSpace>,
+        /// The only channel that is read, as gray values; such as alpha, for an opacity.
+        channel: Option<Channel>,
         /// Interpolation between texels.
         #[serde(default)]
         filter: Filter,

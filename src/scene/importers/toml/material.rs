@@ -11,15 +11,15 @@ use crate::scene::{Material, MaterialKind, Opacity, Reflectance, Texture, Textur
 
 pub(super) fn texture(builder: &mut SceneBuilder, item: &Item, file: TextureFile) -> Option<()> {
     let kind = match file {
-        TextureFile::Image { file, color_space, filter, wrap, scale } => {
-            let image = builder.reflectance_image(item, &file, color_space)?;
+        TextureFile::Image { file, color_space, channel, filter, wrap, scale } => {
+            let image = builder.reflectance_image(item, &file, color_space, channel)?;
             TextureKind::Image { image, filter, wrap, scale }
         }
         TextureFile::Checker { colors, scale } => {
             TextureKind::Checker { colors: colors.map(|color| color.rgb()), scale }
         }
         TextureFile::Planks { file, size, color_space, filter } => {
-            let image = builder.reflectance_image(item, &file, color_space)?;
+            let image = builder.reflectance_image(item, &file, color_space, None)?;
             TextureKind::Planks { image, size: size.map(f64::from), filter }
         }
     };
