@@ -17,6 +17,8 @@ const _: () = assert!(LAYERS == numbers::LAYERS);
 /// Microfacets that lose no more than this fraction of diffuse light by single scattering do without
 /// its compensation: their loss is confined to grazing angles, where the polynomial is too coarse.
 const NEGLIGIBLE_LOSS: f64 = 0.003;
+/// The same for glass, whose inside light meets many times.
+const NEGLIGIBLE_LOSS_OF_GLASS: f64 = 0.0003;
 /// Difference of indices of refraction below which rough glass is treated as smooth.
 const EQUAL_MEDIA: f64 = 1e-3;
 
@@ -166,7 +168,7 @@ fn material(m: &scene::Material, unit: f64) -> Material {
 fn compensate_glass(out: &mut Material, ior: f64) {
     let alpha = f64::from(out.alpha);
     let [outer, inner] = [1.0 / ior, ior].map(|eta| Albedo::of_dielectric(alpha, eta));
-    if outer.mean().min(inner.mean()) < 1.0 - NEGLIGIBLE_LOSS {
+    if outer.mean().min(inner.mean()) < 1.0 - NEGLIGIBLE_LOSS_OF_GLASS {
         outer.store(out);
         let [a, b, c, d, e, f, g, h] = inner.terms.map(|term| term as Real);
         out.eta = Vec3::new(a, b, c);
