@@ -236,8 +236,8 @@ pub struct Texture {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Plain, Zeroable)]
 pub struct Light {
-    /// Radiance (area, sun disc, constant: W sr^-1 m^-2; image: factor), intensity (point, spot: W/sr) or
-    /// irradiance (sun: W m^-2), all in scene units.
+    /// Radiance (area, sun disc, constant: W sr^-1 m^-2; image: factor), intensity (point, spot:
+    /// W/sr) or irradiance (sun: W m^-2), all in scene units.
     pub color: Vec3,
     /// Number of its [`LightKind`](super::lights::LightKind).
     pub kind: u32,

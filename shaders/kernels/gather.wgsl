@@ -156,7 +156,10 @@ fn gather_class(point: VisiblePoint, frame: Frame, photon_class: u32, radius_sq:
                     let position = bitcast<vec3f>(place.xyz);
                     let d = position - point.position;
                     let distance_sq = dot(d, d);
-                    if distance_sq <= radius_sq && abs(dot(d, ng)) <= depth && is_code(place.w, code) {
+                    if distance_sq <= radius_sq
+                        && abs(dot(d, ng)) <= depth
+                        && is_code(place.w, code)
+                    {
                         // read the rest of a record only if the photon is inside
                         let light = sorted[i][LIGHT];
                         let toward_light = oct_vector(light.w);

@@ -111,7 +111,8 @@ impl EyePath {
         self.throughput * scene.lights[s.light as usize].color
     }
 
-    /// Radiance of the environment and of suns, times throughput, weighted against the shadow ray of `last`.
+    /// Radiance of the environment and of suns, times throughput, weighted against the shadow ray
+    /// of `last`.
     #[inline(always)]
     pub fn found_environment(&self, scene: &SceneTables, last: &LastLobe) -> Vec3 {
         if last.pdf == 0.0 {

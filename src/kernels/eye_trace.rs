@@ -1,5 +1,5 @@
-//! Eye path of one visible point: samples pixel and lens, follows mirrors, glass and narrow lobes to
-//! the first wide one. Run by one invocation per visible point; reads the scene, writes
+//! Eye path of one visible point: samples pixel and lens, follows mirrors, glass and narrow lobes
+//! to the first wide one. Run by one invocation per visible point; reads the scene, writes
 //! `visible_points`. Twin: `shaders/kernels/eye_trace.wgsl`.
 
 use super::camera::{camera_ray, footprint};

@@ -128,8 +128,8 @@ impl PhotonPath {
             return true;
         }
         let mut p = shading_point(scene, &s, wo, &self.interior);
-        // store a record at non-specular hits, unless shadow rays account for the light; shadow rays
-        // end at faces, hidden ones included
+        // store a record at non-specular hits, unless shadow rays account for the light; shadow
+        // rays end at faces, hidden ones included
         let mut stores = self.bounce > 0 || self.hidden > 0 || !sampled;
         let mut layer = 1.0;
         if p.lobe.bsdf.is_layered() {

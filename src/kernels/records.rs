@@ -131,7 +131,8 @@ pub struct VisiblePoint {
 pub struct PhotonRecord {
     /// Position in scene space.
     pub position: Vec3,
-    /// (photon within the batch, bounce, [`FOCUSED`] bit, class): the order of summation. On the GPU the cell's code replaces it once the record is sorted.
+    /// (photon within the batch, bounce, [`FOCUSED`] bit, class): the order of summation. On the
+    /// GPU the cell's code replaces it once the record is sorted.
     pub key: u32,
     /// Flux in W, times the number of photons in the pass.
     pub flux: Vec3,

@@ -219,7 +219,7 @@ fn rough_glass_loses_nothing() {
                 direct,
                 passes: 8,
                 photons: 1 << 14,
-                max_bounces: 100,
+                max_bounces: 1000,
                 ..settings(0.03)
             };
             let found = runs_to(power, &text, &settings).region(|_, _| true);
