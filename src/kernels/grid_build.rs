@@ -46,7 +46,7 @@ pub struct SortedRecords {
     pub directions: [Vec<Real>; 3],
     /// Row of cells and class of each record, see [`grid_code`].
     pub codes: Vec<u32>,
-    /// See [`PhotonRecord::flux`]; the fourth component is that of [`with_focus`].
+    /// See [`PhotonRecord::flux`]; the fourth component is the [`FOCUSED`] bit of the key.
     pub fluxes: Vec<Vec4>,
 }
 
