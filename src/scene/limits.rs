@@ -60,8 +60,8 @@ const LEAST: u64 = 16 << 20;
 const SCENE_BYTE: u64 = 140;
 /// Most memory per shape that an instance makes, with its share of the kd-tree, in bytes.
 const SHAPE: u64 = 1000;
-/// Most memory per triangle of a mesh, with its kd-tree, in bytes.
-const TRIANGLE: u64 = 600;
+/// Most memory per triangle of a mesh, with its kd-tree and a reserve, in bytes.
+const TRIANGLE: u64 = 660;
 /// Most memory per texel of 8 bits per channel during decoding, in bytes.
 const TEXEL: u64 = 8;
 /// Most memory per byte of texels, in bytes.
