@@ -1,6 +1,6 @@
-// AOVs of a pixel, from the same eye path as a visible point: values at the first hit, and at the
-// first hit beyond mirrors and glass. Run by one invocation per pixel of a chunk for one of its
-// samples; reads the scene, updates `aovs`, adds to `counters`. Twin: src/kernels/aov_trace.rs.
+// AOVs of a pixel, from the same eye path as a visible point: values at the first hit, at the first
+// hit beyond mirrors and glass, and along the whole path. Run by one invocation per pixel of a chunk
+// for one of its samples; reads the scene, updates `aovs`, adds to `counters`. Twin: src/kernels/aov_trace.rs.
 
 struct AovPixel {
     albedo: vec3f,
@@ -49,6 +49,10 @@ fn aov_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
     //#else
     var path = eye_path(camera_ray(camera, x, y, u));
     //#end
+    //#if continued
+    var last = LastLobe(0.0, 0u);
+    //#end
+    var featured = false;
     var albedo = vec3f(0.0);
     var normal = vec3f(0.0);
     var emitted = vec3f(0.0);
@@ -56,11 +60,18 @@ fn aov_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
     while continues(path) {
         let hit = intersect_scene(path.ray);
         if hit.reference == NONE {
+            //#if continued
+            let found = found_environment(path, last);
+            emitted += select(found, vec3f(0.0), last.pdf > 0.0);
+            direct += select(vec3f(0.0), found, last.pdf > 0.0);
+            //#else
             emitted += environment(path);
+            //#end
             break;
         }
         let first = path.bounce == 0u && path.hidden == 0u;
-        let s = surface_at(path.ray, hit);
+        let ray = path.ray;
+        let s = surface_at(ray, hit);
         arrive(&path, s, hit.t);
         if first {
             next.hits += 1.0;
@@ -74,9 +85,18 @@ fn aov_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
             next.depth += (depth - next.depth) * share;
             next.position += (s.position - next.position) * share;
         }
+        //#if continued
+        let seen = found_emission(path, last, ray, s, hit.t);
+        emitted += select(seen, vec3f(0.0), last.pdf > 0.0);
+        direct += select(vec3f(0.0), seen, last.pdf > 0.0);
+        //#else
         emitted += emission(path, s);
+        //#end
         //#if nested
         if passes(&path, s) {
+            //#if continued
+            last.pdf = 0.0;
+            //#end
             continue;
         }
         //#end
@@ -87,16 +107,41 @@ fn aov_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
             path.throughput *= choose_layer(&p, u.x);
         }
         //#end
-        if !is_specular(p.lobe.bsdf) {
+        if !featured && !is_specular(p.lobe.bsdf) {
             albedo = path.throughput * p.lobe.reflectance;
             normal = p.n;
+            featured = true;
+        }
+        // as in `eye_trace`, with the same random numbers
+        var only_focused = false;
+        //#if continued
+        if turns_at(path, p.lobe) {
+            //#if sampled
+            let v = rng_next(&rng);
+            //#if direct_layer
+            direct += path.throughput * next_event(p, path.interior, true, v).radiance;
+            //#end
+            //#end
+            let way = turn(&path, p, &last, rng_next(&rng));
+            if way == CONTINUES {
+                continue;
+            }
+            if way == ENDS {
+                break;
+            }
+            only_focused = true;
+        }
+        //#end
+        if !is_specular(p.lobe.bsdf) {
             if max_component(p.lobe.reflectance) > 0.0 {
                 next.points += 1.0;
                 let radius = start_radius(footprint(camera, path.length));
                 next.radius += (radius - next.radius) * (1.0 / next.points);
                 //#if sampled && direct_layer
-                let found = direct_light(p, path.interior, &rng);
-                direct = path.throughput * found.radiance;
+                if !only_focused {
+                    let found = direct_light(p, path.interior, &rng);
+                    direct += path.throughput * found.radiance;
+                }
                 //#end
             }
             break;
@@ -105,7 +150,9 @@ fn aov_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
         if path.bounce == dispatch.max_bounces {
             break;
         }
-        // as in `eye_trace`, with the same random numbers
+        //#if continued
+        last.pdf = 0.0;
+        //#end
         let v = rng_next(&rng);
         let scattered = scatter_specular(p, path.interior, v.x, RADIANCE);
         if !scatter(&path, s, scattered, v.y) {

@@ -57,6 +57,11 @@ fn emission(path: EyePath, s: Surface) -> vec3f {
 }
 
 //#if continued
+const CONTINUES: u32 = 0u;
+const GATHERS_FOCUSED: u32 = 1u;
+const ENDS: u32 = 2u;
+const CONTINUING: f32 = 0.75;
+
 struct LastLobe {
     pdf: f32,
     shares: u32,
@@ -103,6 +108,37 @@ fn found_emission(path: EyePath, last: LastLobe, ray: Ray, s: Surface, t: f32) -
     }
     //#end
     return emission(path, s);
+}
+//#end
+
+//#if continued
+fn turns_at(path: EyePath, lobe: Lobe) -> bool {
+    return path.bounce < dispatch.max_bounces && is_narrow(lobe);
+}
+
+fn turn(
+    path: ptr<function, EyePath>,
+    p: ShadingPoint,
+    last: ptr<function, LastLobe>,
+    u: vec4f,
+) -> u32 {
+    let gathers = (dispatch.continued & FOCUSED) != 0u;
+    if gathers && u.z >= CONTINUING {
+        (*path).throughput *= 1.0 / (1.0 - CONTINUING);
+        return GATHERS_FOCUSED;
+    }
+    var choice = u.z;
+    if gathers {
+        (*path).throughput *= 1.0 / CONTINUING;
+        choice *= 1.0 / CONTINUING;
+    }
+    let v = vec3f(u.x, u.y, choice);
+    let scattered = scatter_rough(p, (*path).interior, v, RADIANCE);
+    //#if sampled
+    (*last).shares = shares_at(p.s.position);
+    (*last).pdf = pdf_rough(p.lobe, p.n, p.wo, scattered.direction);
+    //#end
+    return select(ENDS, CONTINUES, scatter(path, p.s, scattered, u.w));
 }
 //#end
 

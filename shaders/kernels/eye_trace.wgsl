@@ -2,8 +2,6 @@
 // the first wide one. Run by one invocation per visible point of a chunk; reads the scene, writes
 // `visible_points`, adds to `counters`. Twin: src/kernels/eye_trace.rs.
 
-const CONTINUING: f32 = 0.75;
-
 @compute @workgroup_size(64)
 fn eye_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups) groups: vec3u) {
     let id = invocation(gid, groups);
@@ -61,37 +59,22 @@ fn eye_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
             path.throughput *= choose_layer(&p, u.x);
         }
         //#end
-        let ends = path.bounce == dispatch.max_bounces;
         var only_focused = false;
         //#if continued
-        // continue at a narrow lobe, or gather the photons whose light no continued path can find
-        if !ends && is_narrow(p.lobe) {
+        // continue at a narrow lobe, or gather there the photons that a continued path cannot find
+        if turns_at(path, p.lobe) {
             //#if sampled
             let found = next_event(p, path.interior, true, rng_next(&rng));
-            last.shares = shares_at(s.position);
             add_direct(&point, path.throughput * found.radiance);
             path.rays += found.rays;
             //#end
-            let v = rng_next(&rng);
-            let gathers = (dispatch.continued & FOCUSED) != 0u;
-            if !gathers || v.z < CONTINUING {
-                var choice = v.z;
-                if gathers {
-                    path.throughput *= 1.0 / CONTINUING;
-                    choice *= 1.0 / CONTINUING;
-                }
-                let scattered = scatter_rough(
-                    p, path.interior, vec3f(v.x, v.y, choice), RADIANCE
-                );
-                //#if sampled
-                last.pdf = pdf_rough(p.lobe, p.n, p.wo, scattered.direction);
-                //#end
-                if !scatter(&path, s, scattered, v.w) {
-                    break;
-                }
+            let way = turn(&path, p, &last, rng_next(&rng));
+            if way == CONTINUES {
                 continue;
             }
-            path.throughput *= 1.0 / (1.0 - CONTINUING);
+            if way == ENDS {
+                break;
+            }
             only_focused = true;
         }
         //#end
@@ -134,7 +117,7 @@ fn eye_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
         }
         //#if specular
         // scatter at mirrors and glass
-        if ends {
+        if path.bounce == dispatch.max_bounces {
             break;
         }
         //#if continued

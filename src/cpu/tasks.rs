@@ -79,8 +79,9 @@ impl pulp::WithSimd for EyePaths<'_> {
 
 /// Traces one sample of each pixel of a chunk for the AOVs.
 pub fn trace_aovs(scene: &SceneTables, d: &Dispatch, features: &Features, aovs: &mut [AovPixel]) {
-    let sampled = features.has(Feature::Sampled) && features.has(Feature::DirectLayer);
+    let sampled = features.has(Feature::Sampled);
+    let lit = features.has(Feature::DirectLayer);
     let first = (d.chunk_first / d.eye_samples) as usize;
     let pixels = aovs[first..first + d.end as usize].par_iter_mut();
-    pixels.enumerate().for_each(|(id, pixel)| aov_trace(scene, d, sampled, id as u32, pixel));
+    pixels.enumerate().for_each(|(id, pixel)| aov_trace(scene, d, sampled, lit, id as u32, pixel));
 }

@@ -58,8 +58,8 @@ impl Repair for Retracer {
                 found.rays
             }
             Stage::AovTrace => {
-                let direct = sampled && executor.plan.features.has(Feature::DirectLayer);
-                retrace_aovs(gpu, scene, dispatch, direct, own(Buffer::Aovs))?;
+                let lit = executor.plan.features.has(Feature::DirectLayer);
+                retrace_aovs(gpu, scene, dispatch, sampled, lit, own(Buffer::Aovs))?;
                 words[STOPPED_COUNT] = 0;
                 0
             }
@@ -118,6 +118,7 @@ fn retrace_aovs(
     scene: &SceneTables,
     dispatch: &Dispatch,
     sampled: bool,
+    lit: bool,
     buffer: &wgpu::Buffer,
 ) -> Result<(), EngineError> {
     let bytes = dispatch.end as u64 * size_of::<AovPixel>() as u64;
@@ -125,7 +126,7 @@ fn retrace_aovs(
     let marked = aovs.par_iter_mut().enumerate().filter(|(_, aov)| aov.state & STOPPED != 0);
     marked.for_each(|(id, aov)| {
         aov.state &= !STOPPED;
-        aov_trace(scene, dispatch, sampled, id as u32, aov);
+        aov_trace(scene, dispatch, sampled, lit, id as u32, aov);
     });
     gpu.write(buffer, cast_slice(&aovs));
     Ok(())

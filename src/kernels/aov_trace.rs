@@ -1,10 +1,10 @@
-//! AOVs of a pixel, from the same eye path as a visible point: values at the first hit, and at the
-//! first hit beyond mirrors and glass. Run by one invocation per pixel for one of its samples;
+//! AOVs of a pixel, from the same eye path as a visible point: values at the first hit, at the first
+//! hit beyond mirrors and glass, and along the whole path. Run by one invocation per pixel for one of its samples;
 //! reads the scene, updates `aovs`. Twin: `shaders/kernels/aov_trace.wgsl`.
 
 use super::camera::{camera_ray, footprint, sees_around};
-use super::direct::direct_light;
-use super::eye_path::EyePath;
+use super::direct::{direct_light, next_event};
+use super::eye_path::{EyePath, LastLobe, Turn};
 use super::eye_sample::{filter_weight, filtered, start_radius, stratified, window_pixel};
 use super::geometry::intersect::intersect_scene;
 use super::geometry::surface::surface_at;
@@ -35,11 +35,13 @@ pub struct AovPixel {
     pub position: Vec3,
     /// Number of samples that end at a visible point.
     pub points: Real,
-    /// Emission and environment along the path, times throughput.
+    /// Emission and environment along the path, times throughput, without those that shadow rays
+    /// can find.
     pub emission: Vec3,
     /// Start radius; mean over the samples that end at a visible point.
     pub radius: Real,
-    /// Sampled direct light, times throughput.
+    /// Direct light at the path's rough hits, times throughput: that of shadow rays, and that of
+    /// scattered rays which shadow rays could have found.
     pub direct: Vec3,
     /// Reference of the shape hit by the ray through the centres of pixel and lens, or [`NONE`].
     pub reference: u32,
@@ -51,12 +53,13 @@ pub struct AovPixel {
     pub pad: [u32; 2],
 }
 
-/// Adds the next sample, number `passes_done`, to pixel `id` of the chunk. `sampled` includes
-/// direct light by shadow rays.
+/// Adds the next sample, number `passes_done`, to pixel `id` of the chunk. `sampled` as in
+/// `eye_trace`; `lit` includes that direct light.
 pub fn aov_trace(
     scene: &SceneTables,
     dispatch: &Dispatch,
     sampled: bool,
+    lit: bool,
     id: u32,
     aov: &mut AovPixel,
 ) {
@@ -86,6 +89,8 @@ pub fn aov_trace(
     let ray = camera_ray(camera, x, y, filtered(camera, u));
     // follow the same path as `eye_trace`
     let mut path = EyePath::new(scene, ray);
+    let mut last = LastLobe::NONE;
+    let mut featured = false;
     let mut albedo = Vec3::ZERO;
     let mut normal = Vec3::ZERO;
     let mut emission = Vec3::ZERO;
@@ -93,10 +98,16 @@ pub fn aov_trace(
     while path.continues(dispatch) {
         let hit = path.trace(scene);
         if hit.reference == NONE {
-            emission += path.environment(scene);
+            let found = path.found_environment(scene, &last);
+            if last.pdf > 0.0 {
+                direct += found;
+            } else {
+                emission += found;
+            }
             break;
         }
         let first = path.bounce == 0 && path.hidden == 0;
+        let ray = path.ray;
         let s = path.arrive(scene, &hit);
         if first {
             next.hits += 1.0;
@@ -108,8 +119,14 @@ pub fn aov_trace(
             next.depth += (depth - next.depth) * share;
             next.position += (s.position - next.position) * share;
         }
-        emission += path.emission(scene, &s);
+        let found = path.found_emission(scene, &last, &ray, &s, hit.t);
+        if last.pdf > 0.0 {
+            direct += found;
+        } else {
+            emission += found;
+        }
         if path.passes(scene, &s) {
+            last.pdf = 0.0;
             continue;
         }
         let mut p = shading_point(scene, &s, -path.ray.direction, &path.interior);
@@ -117,16 +134,35 @@ pub fn aov_trace(
             let u = rng_next(&mut rng);
             path.throughput *= choose_layer(scene, &mut p, u.x);
         }
-        if !p.lobe.bsdf.is_specular() {
+        if !featured && !p.lobe.bsdf.is_specular() {
             albedo = path.throughput * p.lobe.reflectance;
             normal = p.n;
+            featured = true;
+        }
+        // as in `eye_trace`, with the same random numbers
+        let mut only_focused = false;
+        if path.turns_at(dispatch, &p.lobe) {
+            if sampled {
+                let u = rng_next(&mut rng);
+                if lit {
+                    let (radiance, _) = next_event(scene, &p, &path.interior, true, u);
+                    direct += path.throughput * radiance;
+                }
+            }
+            match path.turn(scene, dispatch, sampled, &p, &mut last, rng_next(&mut rng)) {
+                Turn::Continues => continue,
+                Turn::GathersFocused => only_focused = true,
+                Turn::Ends => break,
+            }
+        }
+        if !p.lobe.bsdf.is_specular() {
             if max_component(p.lobe.reflectance) > 0.0 {
                 next.points += 1.0;
                 let radius = start_radius(dispatch, footprint(camera, path.length));
                 next.radius += (radius - next.radius) * (1.0 / next.points);
-                if sampled {
+                if sampled && lit && !only_focused {
                     let (radiance, _) = direct_light(scene, &p, &path.interior, &mut rng);
-                    direct = path.throughput * radiance;
+                    direct += path.throughput * radiance;
                 }
             }
             break;
@@ -134,7 +170,7 @@ pub fn aov_trace(
         if path.bounce == dispatch.max_bounces {
             break;
         }
-        // as in `eye_trace`, with the same random numbers
+        last.pdf = 0.0;
         let v = rng_next(&mut rng);
         let scattered = scatter_specular(scene, &p, &path.interior, v.x, RADIANCE);
         if !path.scatter(&s, &scattered, v.y) {

@@ -6,15 +6,16 @@ use super::geometry::intersect::intersect_scene;
 use super::geometry::surface::{Surface, surface_at};
 use super::lights::area::pdf_area;
 use super::lights::environment::{eval_environment, pdf_environment};
-use super::lights::select::share_of;
+use super::lights::select::{share_of, shares_at};
 use super::lights::sun_disc::{eval_sun_discs, in_sun_disc, pdf_sun_disc};
 use super::materials::enclosing::interior_at;
 use super::materials::interior::{Interior, interior_before, medium_of, passes_hidden};
-use super::materials::shading::Scatter;
+use super::materials::shading::{Lobe, RADIANCE, Scatter, ShadingPoint};
+use super::materials::{pdf_rough, scatter_rough};
 use super::math::sampling::balance;
 use super::math::{FAR, max_component, offset_origin};
-use super::real::{Real, Vec3};
-use super::records::{Dispatch, HIDDEN_FACES};
+use super::real::{Real, Vec3, Vec4};
+use super::records::{Dispatch, FOCUSED, HIDDEN_FACES};
 use super::shapes::ray::{Hit, Ray};
 use super::tables::*;
 
@@ -54,6 +55,21 @@ impl LastLobe {
     /// A path that no rough surface has scattered.
     pub const NONE: Self = Self { pdf: 0.0, shares: 0 };
 }
+
+/// What a path does at a narrow lobe.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Turn {
+    /// It continues.
+    Continues,
+    /// It ends at a visible point that gathers only [`FOCUSED`] photons.
+    GathersFocused,
+    /// Russian roulette ends it.
+    Ends,
+}
+
+/// Probability that a path continues at a narrow lobe whose [`FOCUSED`] photons are gathered
+/// otherwise.
+const CONTINUING: Real = 0.75;
 
 impl EyePath {
     /// Starts a path with a camera ray; one with `t_max` 0 is not traced.
@@ -157,6 +173,44 @@ impl EyePath {
             return self.emission(scene, s) * balance(last.pdf, other);
         }
         self.emission(scene, s)
+    }
+
+    /// Returns true if the path does not end at this lobe because it is narrow.
+    #[inline(always)]
+    pub fn turns_at(&self, dispatch: &Dispatch, lobe: &Lobe) -> bool {
+        dispatch.continued != 0 && self.bounce < dispatch.max_bounces && lobe.is_narrow()
+    }
+
+    /// Continues at a narrow lobe, or ends there to gather the photons whose light no continued
+    /// path can find, as the random numbers `u` decide. `sampled` tells `last` that a shadow ray
+    /// was sent.
+    #[inline(always)]
+    pub fn turn(
+        &mut self,
+        scene: &SceneTables,
+        dispatch: &Dispatch,
+        sampled: bool,
+        p: &ShadingPoint,
+        last: &mut LastLobe,
+        u: Vec4,
+    ) -> Turn {
+        let gathers = dispatch.continued & FOCUSED != 0;
+        if gathers && u.z >= CONTINUING {
+            self.throughput *= 1.0 / (1.0 - CONTINUING);
+            return Turn::GathersFocused;
+        }
+        let mut choice = u.z;
+        if gathers {
+            self.throughput *= 1.0 / CONTINUING;
+            choice *= 1.0 / CONTINUING;
+        }
+        let v = Vec3::new(u.x, u.y, choice);
+        let scattered = scatter_rough(scene, p, &self.interior, v, RADIANCE);
+        if sampled {
+            last.shares = shares_at(scene, p.s.position);
+            last.pdf = pdf_rough(&p.lobe, p.n, p.wo, scattered.direction);
+        }
+        if self.scatter(&p.s, &scattered, u.w) { Turn::Continues } else { Turn::Ends }
     }
 
     /// Passes through the face if it is a hidden one; returns false otherwise.

@@ -4,22 +4,16 @@
 
 use super::camera::{camera_ray, footprint};
 use super::direct::{direct_light, next_event};
-use super::eye_path::{EyePath, LastLobe};
+use super::eye_path::{EyePath, LastLobe, Turn};
 use super::eye_sample::{filter_weight, filtered, start_radius, stratified, window_pixel};
-use super::lights::select::shares_at;
 use super::materials::shading::{RADIANCE, shading_point};
-use super::materials::{Bsdf, choose_layer, pdf_rough, scatter_rough, scatter_specular};
+use super::materials::{Bsdf, choose_layer, scatter_specular};
 use super::math::rng::{rng_eye, rng_next};
 use super::math::{INV_PI, is_finite, max_component, oct_encode};
-use super::real::{Real, Vec3};
-use super::records::{
-    BAD_DIRECT, BAD_EYE, BSDF_BITS, Dispatch, FOCUSED, ONLY_FOCUSED, VisiblePoint,
-};
+use super::real::Vec3;
+use super::records::{BAD_DIRECT, BAD_EYE, BSDF_BITS, Dispatch, ONLY_FOCUSED, VisiblePoint};
 use super::tables::*;
 use bytemuck::Zeroable;
-
-/// Probability that a path continues at a narrow lobe whose photons are gathered otherwise.
-const CONTINUING: Real = 0.75;
 
 /// Traces visible point `id` of the chunk; also returns the number of rays. `sampled` adds direct
 /// light by shadow rays.
@@ -64,37 +58,20 @@ pub fn eye_trace(
             let u = rng_next(&mut rng);
             path.throughput *= choose_layer(scene, &mut p, u.x);
         }
-        // continue at a narrow lobe, or gather the photons whose light no continued path can find
-        let ends = path.bounce == dispatch.max_bounces;
+        // continue at a narrow lobe, or gather there the photons that a continued path cannot find
         let mut only_focused = false;
-        if dispatch.continued != 0 && !ends && p.lobe.is_narrow() {
+        if path.turns_at(dispatch, &p.lobe) {
             if sampled {
                 let u = rng_next(&mut rng);
-                last.shares = shares_at(scene, s.position);
                 let (radiance, spent) = next_event(scene, &p, &path.interior, true, u);
                 add_direct(&mut point, path.throughput * radiance);
                 path.rays += spent;
             }
-            let v = rng_next(&mut rng);
-            let gathers = dispatch.continued & FOCUSED != 0;
-            if !gathers || v.z < CONTINUING {
-                let mut choice = v.z;
-                if gathers {
-                    path.throughput *= 1.0 / CONTINUING;
-                    choice *= 1.0 / CONTINUING;
-                }
-                let u = Vec3::new(v.x, v.y, choice);
-                let scattered = scatter_rough(scene, &p, &path.interior, u, RADIANCE);
-                if sampled {
-                    last.pdf = pdf_rough(&p.lobe, p.n, p.wo, scattered.direction);
-                }
-                if !path.scatter(&s, &scattered, v.w) {
-                    break;
-                }
-                continue;
+            match path.turn(scene, dispatch, sampled, &p, &mut last, rng_next(&mut rng)) {
+                Turn::Continues => continue,
+                Turn::GathersFocused => only_focused = true,
+                Turn::Ends => break,
             }
-            path.throughput *= 1.0 / (1.0 - CONTINUING);
-            only_focused = true;
         }
         // store the visible point at the first wide hit
         if !p.lobe.bsdf.is_specular() {
@@ -127,7 +104,7 @@ pub fn eye_trace(
             break;
         }
         // scatter at mirrors and glass
-        if ends {
+        if path.bounce == dispatch.max_bounces {
             break;
         }
         last.pdf = 0.0;
