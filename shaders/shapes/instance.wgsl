@@ -1,4 +1,4 @@
-// Instances: groups of shapes in a space of their own, placed by affine maps. Twin:
+// Instances: groups of shapes in object space, placed by affine maps. Twin:
 // src/shapes/instance.rs, which documents the fields and explains the method.
 
 struct Instance {

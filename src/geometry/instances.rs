@@ -34,9 +34,10 @@ impl Primitives for Members<'_> {
     }
 }
 
-/// The hit if the ray meets a shape of the instance in `(t_min, hit.t)`, else `hit`; with `any`, the
-/// first shape found ends the search. Scenes without instances are not slowed down: the function is
-/// separate from its caller and takes ray and hit by value, which leaves them in registers there.
+/// The hit if the ray meets a shape of the instance in `(t_min, hit.t)`, else `hit`; with `any`,
+/// the first shape found ends the search. Scenes without instances are not slowed down: the
+/// function is separate from its caller and takes ray and hit by value, which leaves them in
+/// registers there.
 #[inline(never)]
 pub fn intersect_instance(
     scene: &SceneTables,

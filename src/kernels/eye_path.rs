@@ -182,8 +182,7 @@ impl EyePath {
     }
 
     /// Continues at a narrow lobe, or ends there to gather the photons whose light no continued
-    /// path can find, as the random numbers `u` decide. `sampled` tells `last` that a shadow ray
-    /// was sent.
+    /// path can find, as the random numbers `u` decide. `sampled`: a shadow ray was sent.
     #[inline(always)]
     pub fn turn(
         &mut self,

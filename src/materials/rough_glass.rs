@@ -29,8 +29,8 @@ pub const TRANSMITS: bool = true;
 /// Least fraction that the BSDF is divided by.
 const LEAST: Real = 0.1;
 
-/// Fraction of the light from a direction with cosine `cos` that the facets scatter once; `outside`
-/// tells the side of the surface.
+/// Fraction of the light from a direction with cosine `cos` that the facets scatter once, on the
+/// outer or the inner side of the surface.
 #[inline(always)]
 fn scattered_once(m: &Material, outside: bool, cos: Real) -> Real {
     if m.mean_albedo == 1.0 {

@@ -1,4 +1,4 @@
-//! Groups of shapes, each packed once in a space of its own, and their instances.
+//! Groups of shapes, each packed once in object space, and their instances.
 
 use super::accel::kdtree;
 use super::math::EPS;
@@ -24,7 +24,7 @@ const POSITION_ERROR: f64 = 16.0;
 /// the radius of the bounding sphere (`object_ray` moves it that near).
 const NEAR: f64 = 3.5;
 
-/// A group in tables of its own.
+/// A group in separate tables.
 pub struct PackedGroup {
     tables: SceneTables,
     tree: accel::kdtree::KdTree,

@@ -15,7 +15,8 @@ use glam::{DVec2, DVec3};
 const _: () = assert!(LAYERS == numbers::LAYERS);
 
 /// Microfacets that lose no more than this fraction of diffuse light by single scattering do
-/// without its compensation: their loss is confined to grazing angles, where the polynomial is too coarse.
+/// without its compensation: their loss is confined to grazing angles, where the polynomial is too
+/// coarse.
 const NEGLIGIBLE_LOSS: f64 = 0.003;
 /// The same for glass, whose inside light meets many times.
 const NEGLIGIBLE_LOSS_OF_GLASS: f64 = 0.0003;

@@ -122,7 +122,7 @@ pub fn pack_shapes(
             ShapeKind::Instance { group, map } => {
                 let packed = groups.and_then(|groups| groups.of(group));
                 let (index, packed) = packed.ok_or(PackError::Group { shape: i })?;
-                // each body of glass has a material of its own
+                // each body of glass has a separate material
                 let material = if group.shapes().len() == 1 { material } else { NONE };
                 let planar = group.shapes().iter().any(|shape| shape.planar_uv);
                 let uv = if planar { UV_PLANAR } else { uv };

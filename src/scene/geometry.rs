@@ -100,10 +100,10 @@ pub enum ShapeKind {
     },
 }
 
-/// Shapes in a space of their own, with a kd-tree that all instances share.
+/// Shapes in the group's space, with a kd-tree that all instances share.
 ///
 /// They do not emit, and are neither planes nor instances. Glass is the only shape of its group,
-/// since each instance of it is a body of its own.
+/// since each instance of it is a separate body.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Group {
     shapes: Vec<Shape>,

@@ -12,7 +12,7 @@ const FACES: [[u8; 4]; 6] =
 
 /// Moves a shape by `map`, which is invertible, or returns `None` if the result is not one of the
 /// shapes. Normals follow the inverse transpose, so that a mirrored shape keeps its sides.
-/// `textured` tells that the texture coordinates matter, which then keep their place on the shape;
+/// If `textured`, the texture coordinates matter and keep their place on the shape;
 /// those of planes are always world units.
 pub(crate) fn placed(kind: &ShapeKind, map: &DAffine3, textured: bool) -> Option<ShapeKind> {
     let linear = map.matrix3;

@@ -1,4 +1,4 @@
-//! Instances: groups of shapes in a space of their own, placed by affine maps. Twin:
+//! Instances: groups of shapes in object space, placed by affine maps. Twin:
 //! `shaders/shapes/instance.wgsl`.
 //!
 //! A ray is transformed to the group's space, where its direction is again a unit vector and a
@@ -51,7 +51,7 @@ pub struct Instance {
     pub pad2: u32,
 }
 
-/// A group of shapes with a kd-tree of its own.
+/// A group of shapes with a separate kd-tree.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Plain, Zeroable)]
 pub struct Group {

@@ -116,7 +116,7 @@ fn ellipsoids_in_closed_form() {
                 missed += 1;
                 continue;
             };
-            assert!(inside > 0.0, "{k}: a ray beside the ellipsoid meets it, {inside}");
+            assert!(inside > 0.0, "{k}: a ray that passes the ellipsoid meets it, {inside}");
             met += 1;
             let exact = -(b + (b * b - a * (p.dot(p) - 1.0)).max(0.0).sqrt()) / a;
             let exact = if p.length() > 1e3 { -(b / a) - (inside / a).sqrt() } else { exact };
@@ -224,7 +224,8 @@ fn alike(a: &Surface, b: &Surface, map: &DAffine3) -> bool {
 fn groups_equal_shapes_written_out() {
     let block = "type = \"box\"\nmin = [-1, -0.5, -0.2]\nmax = [0.5, 0.5, 0.3]\nmaterial = \"m\"\n";
     let cube = "type = \"mesh\"\nfile = \"cube.obj\"\nmaterial = \"m\"\n";
-    let sheet = "type = \"rectangle\"\norigin = [-1, -1, -1]\nu = [2, 0, 0.3]\nv = [0, 2, 0]\nmaterial = \"m\"\n";
+    let sheet = "type = \"rectangle\"\norigin = [-1, -1, -1]\nu = [2, 0, 0.3]\nv = [0, 2, 0]\n\
+                 material = \"m\"\n";
     let inner = "{ translate = [0.3, -0.2, 1.1] }";
     let outer = "{ scale = [-1, 0.5, 0.8] }, { rotate = { axis = [1, 2, 3], degrees = 50 } }, \
                  { translate = [0.2, 0.4, -0.3] }";
@@ -235,7 +236,8 @@ fn groups_equal_shapes_written_out() {
     ));
     assert_eq!(grouped.shapes.len(), 2);
     let written = scene_of(&format!(
-        "[[shapes]]\n{block}transform = [{inner}, {outer}]\n[[shapes]]\n{cube}transform = [{inner}, {inner}, \
+        "[[shapes]]\n{block}transform = [{inner}, {outer}]\n[[shapes]]\n\
+         {cube}transform = [{inner}, {inner}, \
          {outer}]\n[[shapes]]\n{sheet}transform = [{inner}, {outer}]\n\
          [[shapes]]\n{block}[[shapes]]\n{cube}transform = {inner}\n[[shapes]]\n{sheet}"
     ));
@@ -285,7 +287,8 @@ fn a_tilted_box_is_six_rectangles() {
     .map(|(origin, u, v)| face(*origin, *u, *v))
     .collect();
     let block = format!(
-        "[[shapes]]\ntype = \"box\"\nmin = [0, 0, 0]\nmax = [1, 2, 3]\nmaterial = \"m\"\ntransform = {turn}\n"
+        "[[shapes]]\ntype = \"box\"\nmin = [0, 0, 0]\nmax = [1, 2, 3]\nmaterial = \"m\"\n\
+         transform = {turn}\n"
     );
     let (block, faces) = (packed(&scene_of(&block)).tables, packed(&scene_of(&faces)).tables);
     let mut numbers = Numbers(0.11);

@@ -29,7 +29,8 @@ fn closed_room() {
         "type = \"box\"\nmin = [0.3, -0.9, -0.5]\nmax = [0.8, -0.2, 0.2]",
         "type = \"revolution\"\nsegments = [[[0, 0], [0.3, 0]], [[0.3, 0], [0.6, 0.4], [0, 0.6]]]\ntransform = { translate = [-0.2, -0.8, 0.7] }",
         &format!(
-            "type = \"mesh\"\nfile = \"{mesh}\"\ntransform = {{ scale = 0.4, rotate = {{ axis = [1, 1, 0], degrees = 30 }}, translate = [0.8, 0.1, 0.5] }}"
+            "type = \"mesh\"\nfile = \"{mesh}\"\n\
+             transform = {{ scale = 0.4, rotate = {{ axis = [1, 1, 0], degrees = 30 }}, translate = [0.8, 0.1, 0.5] }}"
         ),
     ];
     for shape in shapes {
@@ -73,8 +74,20 @@ fn bodies() -> Vec<(&'static str, String)> {
     vec![
         ("sphere", "type = \"sphere\"\ncenter = [0, 0, 0]\nradius = 0.8".into()),
         ("box", "type = \"box\"\nmin = [-0.6, -0.5, -0.7]\nmax = [0.6, 0.4, 0.5]".into()),
-        ("revolution", "type = \"revolution\"\nprofile = [[0, 0], [0.9, 0], [0.7, 0.8], [0.1, 0.8], [0, 1.3]]\ntransform = { translate = [0, -0.6, 0] }".into()),
-        ("mesh", format!("type = \"mesh\"\nfile = \"{mesh}\"\nsmooth = false\ntransform = {{ scale = 1.2, rotate = {{ axis = [1, 2, 0], degrees = 35 }} }}")),
+        (
+            "revolution",
+            "type = \"revolution\"\n\
+          profile = [[0, 0], [0.9, 0], [0.7, 0.8], [0.1, 0.8], [0, 1.3]]\n\
+          transform = { translate = [0, -0.6, 0] }"
+                .into(),
+        ),
+        (
+            "mesh",
+            format!(
+                "type = \"mesh\"\nfile = \"{mesh}\"\nsmooth = false\n\
+          transform = {{ scale = 1.2, rotate = {{ axis = [1, 2, 0], degrees = 35 }} }}"
+            ),
+        ),
     ]
 }
 
@@ -123,7 +136,8 @@ fn diffuse_bodies() {
         };
         let text = camera.toml()
             + &format!(
-                "[environment]\nradiance = 1.0\n[materials.m]\ntype = \"diffuse\"\nreflectance = {ALBEDO}\n\
+                "[environment]\nradiance = 1.0\n[materials.m]\ntype = \"diffuse\"\n\
+                 reflectance = {ALBEDO}\n\
                  [[shapes]]\n{body}\nmaterial = \"m\"\n"
             );
         for (method, direct) in [
@@ -140,8 +154,8 @@ fn diffuse_bodies() {
 }
 
 /// Theory: a plane of GGX metal with reflectance 1 in constant light is as bright as the light,
-/// because light that one facet sends to another is added. (Single scattering alone keeps 0.32 of it
-/// at roughness 1; Heitz et al. 2016.) The same holds for a white base below any coat.
+/// because light that one facet sends to another is added. (Single scattering alone keeps 0.32 of
+/// it at roughness 1; Heitz et al. 2016.) The same holds for a white base below any coat.
 #[test]
 fn white_metals_and_plastics_lose_nothing() {
     let metal =
@@ -194,8 +208,8 @@ fn white_metals_and_plastics_lose_nothing() {
     }
 }
 
-/// Theory: the same for balls of rough glass, within 1 %: what one side reflects the other side lets
-/// pass, and radiance over the squared index is conserved on every path through the ball.
+/// Theory: the same for balls of rough glass, within 1 %: what one side reflects the other side
+/// lets pass, and radiance over the squared index is conserved on every path through the ball.
 #[test]
 fn rough_glass_loses_nothing() {
     for roughness in [0.3, 0.8] {

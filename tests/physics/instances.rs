@@ -19,10 +19,13 @@ fn text(shapes: &str) -> String {
         size: 16,
     };
     camera.toml()
-        + "[materials.floor]\ntype = \"diffuse\"\nreflectance = 0.6\n[materials.bk]\ntype = \"glass\"\nior = 1.5\n\
+        + "[materials.floor]\ntype = \"diffuse\"\nreflectance = 0.6\n[materials.bk]\n\
+           type = \"glass\"\nior = 1.5\n\
            absorption = [0.3, 0.3, 0.3]\n[materials.oil]\ntype = \"glass\"\nior = 1.3\n\
-           [[shapes]]\ntype = \"disc\"\ncenter = [0, 0, 0]\nnormal = [0, 1, 0]\nradius = 3\nmaterial = \"floor\"\n\
-           [[shapes]]\ntype = \"rectangle\"\norigin = [-0.4, 2.5, -0.4]\nu = [0.8, 0, 0]\nv = [0, 0, 0.8]\n\
+           [[shapes]]\ntype = \"disc\"\ncenter = [0, 0, 0]\nnormal = [0, 1, 0]\nradius = 3\n\
+           material = \"floor\"\n\
+           [[shapes]]\ntype = \"rectangle\"\norigin = [-0.4, 2.5, -0.4]\nu = [0.8, 0, 0]\n\
+           v = [0, 0, 0.8]\n\
            material = \"floor\"\nemission = 10\n"
         + shapes
 }
@@ -42,14 +45,16 @@ fn instanced(mut scene: Scene) -> Scene {
 }
 
 /// Theory: a sphere is the image of the unit sphere under a scale, also a mirrored one. So bodies
-/// of glass that overlap cast the same caustics as instances: each is a body of its own, with its
+/// of glass that overlap cast the same caustics as instances: each is a separate body, with its
 /// own rank, whichever method and whichever light.
 #[test]
 fn glass_casts_the_same_caustic() {
     let bodies = text(
         "[[shapes]]\ntype = \"sphere\"\ncenter = [-0.1, 0.6, 0]\nradius = 0.5\nmaterial = \"bk\"\n\
-         [[shapes]]\ntype = \"sphere\"\ncenter = [0.4, 0.6, 0.1]\nradius = 0.4\nmaterial = \"oil\"\n\
-         [[shapes]]\ntype = \"sphere\"\ncenter = [-0.1, 0.6, 0]\nradius = 0.2\nmaterial = \"oil\"\n",
+         [[shapes]]\ntype = \"sphere\"\ncenter = [0.4, 0.6, 0.1]\nradius = 0.4\n\
+         material = \"oil\"\n\
+         [[shapes]]\ntype = \"sphere\"\ncenter = [-0.1, 0.6, 0]\nradius = 0.2\n\
+         material = \"oil\"\n",
     );
     let plain = parse(&bodies);
     let moved = instanced(plain.clone());
@@ -89,8 +94,8 @@ fn methods_agree_on_ellipsoids() {
     }
 }
 
-/// Groups with a lamp, a body of glass, a mirrored box, a cylinder and a cone, placed twice by a group
-/// that is placed once.
+/// Groups with a lamp, a body of glass, a mirrored box, a cylinder and a cone, placed twice by a
+/// group that is placed once.
 const GROUPED: &str = "[materials.mirror]\ntype = \"mirror\"\nreflectance = 0.9\n\
     [[groups.set.shapes]]\nSHELF\n[[groups.set.shapes]]\nCAN\n[[groups.set.shapes]]\nHAT\n\
     [[groups.set.shapes]]\nDROP\n[[groups.set.shapes]]\nLAMP\n\
@@ -105,7 +110,8 @@ const PARTS: [(&str, &str); 5] = [
     ("CAN", "type = \"cylinder\"\nradius = 0.15\nheight = 0.3\nmaterial = \"floor\""),
     (
         "HAT",
-        "type = \"cone\"\nradius = 0.2\np0 = [0.1, 0, 0.4]\np1 = [0.1, 0.3, 0.4]\nmaterial = \"mirror\"",
+        "type = \"cone\"\nradius = 0.2\np0 = [0.1, 0, 0.4]\np1 = [0.1, 0.3, 0.4]\n\
+         material = \"mirror\"",
     ),
     ("DROP", "type = \"sphere\"\ncenter = [0.2, 0.3, -0.3]\nradius = 0.25\nmaterial = \"bk\""),
     (
@@ -118,8 +124,9 @@ const FIRST: &str = "[{ scale = [1, 1.2, 0.9] }, { translate = [-0.4, 0, 0.1] }]
 const SECOND: &str = "[{ scale = [-0.8, 0.8, 0.8] }, { translate = [0.5, 0, 0] }]";
 const OUTER: &str = "[{ rotate = { axis = [0, 1, 0], degrees = 30 } }]";
 
-/// Theory: an instance shows the same as its shapes, each moved by the maps of the groups around it,
-/// inner ones first; lamps and bodies of glass as well. And photons, shadow rays and paths agree.
+/// Theory: an instance shows the same as its shapes, each moved by the maps of the groups around
+/// it, inner ones first; lamps and bodies of glass as well. And photons, shadow rays and paths
+/// agree.
 #[test]
 fn groups_render_as_shapes_written_out() {
     let mut grouped = GROUPED.to_owned();

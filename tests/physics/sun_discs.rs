@@ -33,14 +33,15 @@ fn penumbra(x: f64, height: f64, radius: f64) -> f64 {
     sum(&at) / sum(&disc)
 }
 
-/// Theory: the floor beside the edge x = -0.3 of a half-plane receives the part of the disc that the edge
-/// does not hide ([`penumbra`]), by shadow rays and by photons.
+/// Theory: the floor next to the edge x = -0.3 of a half-plane receives the part of the disc that
+/// the edge does not hide ([`penumbra`]), by shadow rays and by photons.
 #[test]
 fn penumbra_of_an_edge() {
     let (height, degrees) = (0.5, 40.0f64);
     let camera = Camera { position: DVec3::new(3.0, 1.6, 0.0), ..super::irradiance::camera() };
     let light = format!(
-        "[[lights]]\ntype = \"sun\"\ndirection = [0, -1, 0]\nirradiance = 3.0\nangle = {degrees:?}\n\
+        "[[lights]]\ntype = \"sun\"\ndirection = [0, -1, 0]\nirradiance = 3.0\n\
+         angle = {degrees:?}\n\
          [[shapes]]\ntype = \"rectangle\"\norigin = [-3.3, {height:?}, 2]\nu = [3, 0, 0]\n\
          v = [0, 0, -4]\nmaterial = \"black\"\n"
     );
@@ -98,10 +99,14 @@ fn methods_agree() {
         + super::irradiance::FLOOR
         + "[materials.steel]\ntype = \"metal\"\nreflectance = 0.8\nroughness = 0.4\n\
            [materials.glass]\ntype = \"glass\"\nior = 1.5\n\
-           [[shapes]]\ntype = \"sphere\"\ncenter = [0.45, 0.3, 0]\nradius = 0.3\nmaterial = \"steel\"\n\
-           [[shapes]]\ntype = \"sphere\"\ncenter = [-0.45, 0.35, 0]\nradius = 0.3\nmaterial = \"glass\"\n\
-           [[lights]]\ntype = \"sun\"\ndirection = [0.3, -1, -0.2]\nirradiance = 2.0\nangle = 30.0\n\
-           [[lights]]\ntype = \"sun\"\ndirection = [-0.6, -1, -0.4]\nirradiance = 1.0\nangle = 50.0\n\
+           [[shapes]]\ntype = \"sphere\"\ncenter = [0.45, 0.3, 0]\nradius = 0.3\n\
+           material = \"steel\"\n\
+           [[shapes]]\ntype = \"sphere\"\ncenter = [-0.45, 0.35, 0]\nradius = 0.3\n\
+           material = \"glass\"\n\
+           [[lights]]\ntype = \"sun\"\ndirection = [0.3, -1, -0.2]\nirradiance = 2.0\n\
+           angle = 30.0\n\
+           [[lights]]\ntype = \"sun\"\ndirection = [-0.6, -1, -0.4]\nirradiance = 1.0\n\
+           angle = 50.0\n\
            [environment]\nradiance = 0.2\n";
     let by = |method, direct, passes| {
         let seed = 100 * (3 * method as u64 + direct as u64);

@@ -31,7 +31,7 @@ fn fault(result: Result<Loaded, SceneErrors>) -> (String, usize) {
     (format!("{} | {}", finding.message(), finding.label()), line - before)
 }
 
-/// A body of glass and a lamp in a group are shapes of their own for each instance, and meshes are
+/// A body of glass and a lamp in a group are separate shapes for each instance, and meshes are
 /// shared; a sphere whose two-sided material has a texture on the back keeps its coordinates.
 #[test]
 fn shapes_that_instances_write_out() {

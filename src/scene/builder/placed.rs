@@ -86,7 +86,7 @@ impl SceneBuilder<'_> {
             special || glass || shape.is_emitter() || shape.planar_uv
         };
         let (mut apart, shared): (Vec<_>, Vec<_>) = shapes.into_iter().partition(alone);
-        // a single small shape needs no tree of its own
+        // a single small shape needs no separate tree
         let mesh = discriminant(&ShapeKind::Mesh(Default::default()));
         if let [only] = &shared[..]
             && discriminant(&only.kind) != mesh

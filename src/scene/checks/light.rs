@@ -7,7 +7,8 @@ use crate::scene::parts::Part;
 /// Smallest diameter of a sun's disc, degrees.
 const NARROWEST_SUN: f64 = 0.001;
 
-/// Reports a spot light without a direction and a sun that is too narrow, and warns about a light without power.
+/// Reports a spot light without a direction and a sun that is too narrow, and warns about a light
+/// without power.
 pub(crate) fn light(report: &mut Report, part: &dyn Part, light: &Light) {
     let (power_key, power) = match light {
         Light::Point { intensity, .. } => ("intensity", intensity),

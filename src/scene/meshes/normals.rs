@@ -1,4 +1,4 @@
-//! Normals of the corners of faces that have none of their own: averages over the faces of a
+//! Normals of the corners of faces that the file gives none: averages over the faces of a
 //! smoothing group, or over those that meet at edges below a crease angle.
 
 use std::borrow::Borrow;

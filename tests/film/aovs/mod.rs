@@ -328,7 +328,7 @@ fn it_costs_nothing_unless_asked_for() {
     let without = Seen::by(CpuEngine::new(packed, plan), 2);
     assert!(without.layers.is_empty());
     assert_eq!(without.picture, with.picture);
-    // layers without a kernel of their own run none
+    // layers without a separate kernel run none
     plain.scene.film.aovs = Aovs::parse("photons,variance").unwrap();
     let (_, plan) = planned(&plain);
     assert!(plan.steps(0).iter().all(|step| step.stage != Stage::AovTrace));
