@@ -104,7 +104,8 @@ transform = { scale = 0.4, translate = [0.0, 0.6, 0.0] }
 fn cornell(side: u32, lights: u32, grey: f64) -> String {
     let mut text = format!(
         "version = 1\n[camera]\nposition = [0.0, 1.0, 4.0]\ntarget = [0.0, 1.0, 0.0]\nfov = 39.0\n\
-         [film]\nwidth = {side}\nheight = {side}\n[materials.white]\ntype = \"diffuse\"\nreflectance = {grey}\n"
+         [film]\nwidth = {side}\nheight = {side}\n[materials.white]\ntype = \"diffuse\"\n\
+         reflectance = {grey}\n"
     );
     let walls = [
         ([-1, 0, 5], [2, 0, 0], [0, 0, -6]),
@@ -117,7 +118,8 @@ fn cornell(side: u32, lights: u32, grey: f64) -> String {
     for (origin, u, v) in walls {
         let _ = write!(
             text,
-            "[[shapes]]\ntype = \"rectangle\"\norigin = {origin:?}\nu = {u:?}\nv = {v:?}\nmaterial = \"white\"\n"
+            "[[shapes]]\ntype = \"rectangle\"\norigin = {origin:?}\nu = {u:?}\nv = {v:?}\n\
+             material = \"white\"\n"
         );
     }
     let columns = f64::from(lights).sqrt().ceil() as u32;
@@ -127,7 +129,8 @@ fn cornell(side: u32, lights: u32, grey: f64) -> String {
         let power = 3.0 / f64::from(lights);
         let _ = write!(
             text,
-            "[[lights]]\ntype = \"point\"\nposition = [{x}, 1.9, {z}]\nintensity = [{power}, {power}, {power}]\n"
+            "[[lights]]\ntype = \"point\"\nposition = [{x}, 1.9, {z}]\n\
+             intensity = [{power}, {power}, {power}]\n"
         );
     }
     text

@@ -12,12 +12,15 @@ use image::{DynamicImage, ImageFormat};
 
 use crate::targets::Target;
 
-const OBJ: &str = "mtllib mesh.mtl\nusemtl a\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nvt 0 0\nvt 1 0\nvt 1 1\nvn 0 0 1\n\
+const OBJ: &str = "mtllib mesh.mtl\nusemtl a\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\n\
+                   vt 0 0\nvt 1 0\nvt 1 1\nvn 0 0 1\n\
 g one\nf 1/1/1 2/2/1 3/3/1 4/1/1\nusemtl b\ng two\nf 1 2 5\nf -1 -2 -3\nusemtl c\nf 4 3 2 1 5\n";
-const MTL: &str = "newmtl a\nKd 0.5 0.5 0.5\nmap_Kd t.png\nnewmtl b\nillum 5\nKs 0.9 0.9 0.9\nNs 10\nnewmtl c\nNi 1.5\nd 0.1\n\
+const MTL: &str = "newmtl a\nKd 0.5 0.5 0.5\nmap_Kd t.png\nnewmtl b\nillum 5\nKs 0.9 0.9 0.9\n\
+                   Ns 10\nnewmtl c\nNi 1.5\nd 0.1\n\
 illum 7\nKe 1 1 1\n";
 /// Scene that reads the files of the other targets.
-pub const READER: &str = "version = 1\n[camera]\nposition = [0, 1, 4]\ntarget = [0, 1, 0]\nfov = 39\n\
+pub const READER: &str = "version = 1\n[camera]\nposition = [0, 1, 4]\ntarget = [0, 1, 0]\n\
+                          fov = 39\n\
 [[lights]]\ntype = \"point\"\nposition = [0, 3, 0]\nintensity = 1.0\n";
 
 fn root() -> &'static Path {
@@ -48,13 +51,25 @@ pub fn folder(name: &str) -> PathBuf {
 pub fn of(target: Target) -> Vec<Vec<u8>> {
     match target {
         Target::Scene | Target::Plan => scenes(),
-        Target::Obj => vec![OBJ.into(), read("tests/data/cube.obj"), read("tests/data/broken.obj"), read("tests/data/parts.obj")],
-        Target::Mtl => vec![MTL.into(), read("tests/data/broken.mtl"), read("tests/data/parts.mtl"), read("assets/house.mtl")],
+        Target::Obj => vec![
+            OBJ.into(),
+            read("tests/data/cube.obj"),
+            read("tests/data/broken.obj"),
+            read("tests/data/parts.obj"),
+        ],
+        Target::Mtl => vec![
+            MTL.into(),
+            read("tests/data/broken.mtl"),
+            read("tests/data/parts.mtl"),
+            read("assets/house.mtl"),
+        ],
         Target::Ply => plys(),
         Target::Texture => pictures(),
         Target::Profile => vec![
             read("scenes/profiles/vase.toml"),
-            b"profile = [[0.0, 0.0], [0.6, 0.0], [0.55, 0.6], [0.0, 1.05]]\ntransform = { translate = [0, 1, 0] }\n".to_vec(),
+            b"profile = [[0.0, 0.0], [0.6, 0.0], [0.55, 0.6], [0.0, 1.05]]\n\
+              transform = { translate = [0, 1, 0] }\n"
+                .to_vec(),
             b"segments = [[[0, 0], [1, 0]], [[1, 0], [1, 1], [0, 1]]]\n".to_vec(),
         ],
         Target::Checkpoint => [RadiusRule::Global, RadiusRule::Local].map(checkpoint).into(),
@@ -86,10 +101,13 @@ fn scenes() -> Vec<Vec<u8>> {
 fn plys() -> Vec<Vec<u8>> {
     let header = |format: &str| {
         format!(
-            "ply\nformat {format} 1.0\ncomment seed\nelement vertex 4\nproperty float x\nproperty double y\n\
-             property short z\nproperty float nx\nproperty float ny\nproperty float nz\nproperty float s\nproperty float t\n\
+            "ply\nformat {format} 1.0\ncomment seed\nelement vertex 4\nproperty float x\n\
+             property double y\n\
+             property short z\nproperty float nx\nproperty float ny\nproperty float nz\n\
+             property float s\nproperty float t\n\
              property uchar red\nproperty uchar green\nproperty uchar blue\nelement face 2\n\
-             property list uchar int vertex_indices\nproperty list uchar float texcoord\nelement edge 1\nproperty int a\nend_header\n"
+             property list uchar int vertex_indices\nproperty list uchar float texcoord\n\
+             element edge 1\nproperty int a\nend_header\n"
         )
     };
     let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
@@ -164,7 +182,8 @@ fn pictures() -> Vec<Vec<u8>> {
 /// Scene and engine of the checkpoints.
 pub fn opened(rule: RadiusRule) -> (Loaded, Opened) {
     let text = format!(
-        "{READER}[film]\nwidth = 3\nheight = 2\n[render]\nphotons = 10\n[materials.m]\ntype = \"diffuse\"\nreflectance = 0.5\n\
+        "{READER}[film]\nwidth = 3\nheight = 2\n[render]\nphotons = 10\n[materials.m]\n\
+         type = \"diffuse\"\nreflectance = 0.5\n\
          [[shapes]]\ntype = \"sphere\"\ncenter = [0, 1, 0]\nradius = 1\nmaterial = \"m\"\n"
     );
     let mut loaded = scene::parse("seed.toml".as_ref(), text.as_bytes()).expect("a scene");

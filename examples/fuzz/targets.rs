@@ -90,7 +90,9 @@ impl Target {
                 };
                 write(folder, name, input);
                 let text = format!(
-                    "{READER}[materials.m]\ntype = \"diffuse\"\nreflectance = 0.5\n[[shapes]]\ntype = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1\nmaterial = \"m\"\n[environment]\nfile = \"{name}\"\n"
+                    "{READER}[materials.m]\ntype = \"diffuse\"\nreflectance = 0.5\n[[shapes]]\n\
+                     type = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1\nmaterial = \"m\"\n\
+                     [environment]\nfile = \"{name}\"\n"
                 );
                 summary(scene(text.as_bytes()).map(warnings))
             }
@@ -178,7 +180,8 @@ fn mend_png(input: &mut [u8]) {
 
 fn reader(mesh: &str, more: &str) -> String {
     format!(
-        "{READER}[materials.m]\ntype = \"diffuse\"\nreflectance = 0.5\n[[shapes]]\ntype = \"mesh\"\nfile = \"{mesh}\"\n{more}\n"
+        "{READER}[materials.m]\ntype = \"diffuse\"\nreflectance = 0.5\n[[shapes]]\n\
+         type = \"mesh\"\nfile = \"{mesh}\"\n{more}\n"
     )
 }
 

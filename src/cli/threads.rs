@@ -3,11 +3,12 @@
 //! The system may limit threads (`ulimit -u`, a container's `pids.max`). Then the pool is smaller;
 //! if no thread can be created, all work runs on the main thread.
 
+use std::hint::black_box;
 use std::num::NonZero;
 use std::sync::{Arc, Mutex, mpsc};
 use std::thread;
 
-use caustica::low_level::memory::address_space;
+use caustica::low_level::memory::{KEPT, address_space, check_reserve, words};
 use miette::miette;
 
 use super::Failure;
@@ -57,6 +58,20 @@ pub fn begin() -> Result<(), Failure> {
         Failure::failed(miette!(
             help = "raise the limit of processes (ulimit -u), or set RAYON_NUM_THREADS=1",
             "this process cannot create threads: {error}"
+        ))
+    })?;
+    check_memory()
+}
+
+/// Checks that there is enough memory to begin at all.
+fn check_memory() -> Result<(), Failure> {
+    // the allocator reserves address space when a thread first allocates
+    rayon::broadcast(|_| drop(black_box(Box::new(0u8))));
+    check_reserve().map_err(|(left, whose)| {
+        let (left, least) = (words(left), words(KEPT));
+        Failure::failed(miette!(
+            help = "raise the limit of the process",
+            "too little memory to begin: {whose} is {left}; at least {least} are needed"
         ))
     })
 }

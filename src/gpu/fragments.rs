@@ -186,7 +186,8 @@ mod tests {
     /// Fences keep the line count and choose the right branch at every depth.
     #[test]
     fn fences_choose() {
-        let text = "0\n//#if a\n1\n//#if c\n2\n//#else\n3\n//#end\n//#else\n4\n//#if a\n5\n//#end\n//#end\n6\n";
+        let text = "0\n//#if a\n1\n//#if c\n2\n//#else\n3\n//#end\n//#else\n4\n//#if a\n5\n\
+                    //#end\n//#end\n6\n";
         let out = preprocess(text, &names()).unwrap();
         assert_eq!(out.lines().count(), text.lines().count());
         assert_eq!(out.split_whitespace().collect::<Vec<_>>(), ["0", "1", "3", "6"]);

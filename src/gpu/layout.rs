@@ -129,7 +129,8 @@ impl SceneLayout {
             self.few.iter().any(|reference| tables::kind_of(*reference) == tables::KIND_TRIANGLE);
         let shear = if triangles { "    ray_shear = shear_of(ray);\n" } else { "" };
         format!(
-            "fn intersect_few(ray: Ray, any_hit: bool, hit: ptr<function, Hit>) {{\n{shear}{tests}}}\n"
+            "fn intersect_few(ray: Ray, any_hit: bool, hit: ptr<function, Hit>) {{\n\
+             {shear}{tests}}}\n"
         )
     }
 }

@@ -1,6 +1,6 @@
-//! AOVs of a pixel, from the same eye path as a visible point: values at the first hit, at the first
-//! hit beyond mirrors and glass, and along the whole path. Run by one invocation per pixel for one of its samples;
-//! reads the scene, updates `aovs`. Twin: `shaders/kernels/aov_trace.wgsl`.
+//! AOVs of a pixel, from the same eye path as a visible point: values at the first hit, at the
+//! first hit beyond mirrors and glass, and along the whole path. Run by one invocation per pixel
+//! for one of its samples; reads the scene, updates `aovs`. Twin: `shaders/kernels/aov_trace.wgsl`.
 
 use super::camera::{camera_ray, footprint, sees_around};
 use super::direct::{direct_light, next_event};

@@ -2,7 +2,7 @@
 
 mod system;
 
-pub use system::{address_space, limited};
+pub use system::{KEPT, address_space, check_reserve, limited};
 
 /// Memory limit of a render, and the permitted ways to meet it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -10,7 +10,7 @@ pub type Limit = (u64, &'static str);
 /// Description of the limit on the address space.
 const SPACE: &str = "what the limit of this process (ulimit -v) leaves";
 /// Least memory reserved for what no plan counts: stacks, allocator overhead, a driver's compiler.
-const KEPT: u64 = 32 << 20;
+pub const KEPT: u64 = 32 << 20;
 /// Reciprocal of the fraction of the limit reserved for the same.
 const KEPT_PART: u64 = 8;
 
@@ -40,6 +40,15 @@ fn kept_back(left: u64) -> u64 {
 fn kilobytes(text: &str, name: &str) -> Option<u64> {
     let line = text.lines().find_map(|line| line.strip_prefix(name))?;
     line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok().map(|kib| kib << 10)
+}
+
+/// Checks that the limits of the process leave the memory that no plan counts.
+///
+/// # Errors
+/// The number of bytes left, and a description of the limit.
+pub fn check_reserve() -> Result<(), Limit> {
+    let least = process_limits(Path::new("/proc/self")).into_iter().min_by_key(|limit| limit.0);
+    least.filter(|limit| limit.0 < KEPT).map_or(Ok(()), Err)
 }
 
 /// Bytes of address space that the limit of the process leaves (`ulimit -v`), if there is one.

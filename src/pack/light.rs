@@ -203,9 +203,9 @@ fn luminance(color: DVec3) -> f64 {
 
 /// Appends the cumulative fractions of rows, and of columns within each row, by channel mean times
 /// solid angle. Returns the average channel mean, and the greatest luminance times `scale`, or
-/// `None` for a black image. A texel has the weight of the root mean square of the filtered image inside it, which minimizes
-/// the variance. Filtering blends in its neighbours, so the weight is zero only if they are black
-/// as well.
+/// `None` for a black image. A texel has the weight of the root mean square of the filtered image
+/// inside it, which minimizes the variance. Filtering blends in its neighbours, so the weight is
+/// zero only if they are black as well.
 fn image_distribution(
     out: &SceneTables,
     light: &mut Light,

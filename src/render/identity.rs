@@ -25,8 +25,8 @@ pub fn program() -> String {
 }
 
 /// 128-bit digests of the parts of a scene, including all files that it uses. They do not depend on
-/// names, the order of keys or the film, except for its pixel filter. Scenes with equal digests give equal images for equal
-/// size, settings, device and program.
+/// names, the order of keys or the film, except for its pixel filter. Scenes with equal digests
+/// give equal images for equal size, settings, device and program.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Identity {
     /// Digest of the camera and the pixel filter.

@@ -58,6 +58,8 @@ pub struct Allowance {
 const LEAST: u64 = 16 << 20;
 /// Most memory per byte of a scene file, in bytes (docs/hostile-input.md).
 const SCENE_BYTE: u64 = 140;
+/// Most memory per byte of a mesh file, without its triangles: the file and its text.
+const MESH_BYTE: u64 = 2;
 /// Most memory per shape that an instance makes, with its share of the kd-tree, in bytes.
 const SHAPE: u64 = 1000;
 /// Most memory per triangle of a mesh, with its kd-tree and a reserve, in bytes.
@@ -107,7 +109,7 @@ impl Allowance {
         Self {
             scene_bytes: self.scene_bytes.min(left / SCENE_BYTE),
             shapes: self.shapes.min(left / SHAPE),
-            mesh_bytes: self.mesh_bytes.min(left),
+            mesh_bytes: self.mesh_bytes.min(left / MESH_BYTE),
             mesh_triangles: self.mesh_triangles.min(left / TRIANGLE),
             triangles: self.triangles.min(left / TRIANGLE),
             texture_pixels: self.texture_pixels.min(left / TEXEL),

@@ -147,7 +147,8 @@ emission = [2.0, 4.0, 8.0]
     fn power_stays_and_area_is_as_asked() {
         for lamp in [
             "type = \"sphere\"\ncenter = [1.0, 2.0, 3.0]\nradius = 0.5",
-            "type = \"rectangle\"\norigin = [0.0, 1.0, 0.0]\nu = [2.0, 0.0, 0.0]\nv = [0.5, 0.0, 1.0]",
+            "type = \"rectangle\"\norigin = [0.0, 1.0, 0.0]\nu = [2.0, 0.0, 0.0]\n\
+             v = [0.5, 0.0, 1.0]",
             "type = \"disc\"\ncenter = [1.0, 2.0, 3.0]\nnormal = [0.0, 1.0, 0.0]\nradius = 0.5",
             "type = \"box\"\nmin = [0.0, 0.0, 0.0]\nmax = [1.0, 2.0, 3.0]",
         ] {

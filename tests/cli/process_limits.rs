@@ -47,7 +47,8 @@ fn little_address_space() {
             Some(0) => cut += u32::from(error.contains("to save memory")),
             Some(1) => {
                 assert!(
-                    error.contains("ulimit -v") && error.contains("--size"),
+                    error.contains("ulimit -v")
+                        && (error.contains("--size") || error.contains("raise the limit")),
                     "{megabytes} MB: {error}"
                 );
                 refused += 1;

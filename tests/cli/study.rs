@@ -266,7 +266,8 @@ fn revolutions_become_meshes() {
     let error = error(&output);
     assert!(error.contains("the scene has no surface of revolution"), "{error}");
     let with = SCENE.clone()
-        + "[[shapes]]\ntype = \"revolution\"\nprofile = [[0.0, 0.0], [0.6, 0.3], [0.0, 1.0]]\nmaterial = \"white\"\n";
+        + "[[shapes]]\ntype = \"revolution\"\nprofile = [[0.0, 0.0], [0.6, 0.3], [0.0, 1.0]]\n\
+           material = \"white\"\n";
     fs::write(folder.join("ball.toml"), with).unwrap();
     let other: Vec<&str> =
         study.iter().map(|word| if *word == "out" { "with" } else { word }).collect();

@@ -22,7 +22,8 @@ fn tessellate(folder: &Path, arguments: &[&str]) -> Output {
 /// Loads the OBJ file back through a scene.
 fn load_back(obj: &Path, smooth: bool) -> Mesh {
     let text = format!(
-        "version = 1\n[camera]\nposition = [0, 1, 9]\ntarget = [0, 1, 0]\nfov = 39\n[environment]\nradiance = 1\n\
+        "version = 1\n[camera]\nposition = [0, 1, 9]\ntarget = [0, 1, 0]\nfov = 39\n\
+         [environment]\nradiance = 1\n\
          [materials.m]\ntype = \"diffuse\"\nreflectance = 0.5\n\
          [[shapes]]\ntype = \"mesh\"\nfile = {:?}\nsmooth = {smooth}\nmaterial = \"m\"\n",
         obj.display().to_string()

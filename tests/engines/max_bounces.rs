@@ -19,12 +19,16 @@ use crate::support::{render_on, sound};
 /// `looks_at`.
 fn scene_text(looks_at: &str) -> String {
     format!(
-        "version = 1\n[camera]\nposition = [0, 1, 2]\ntarget = [0, 0, 0]\nfov = 0.25\n[film]\nwidth = 4\nheight = 4\n\
+        "version = 1\n[camera]\nposition = [0, 1, 2]\ntarget = [0, 0, 0]\nfov = 0.25\n[film]\n\
+         width = 4\nheight = 4\n\
          [render]\nmax_bounces = 0\npasses = 4\nphotons = 200_000\nradius = {{ units = 0.05 }}\n\
-         [materials.grey]\ntype = \"diffuse\"\nreflectance = 0.6\n[materials.chrome]\ntype = \"mirror\"\nreflectance = 1\n\
+         [materials.grey]\ntype = \"diffuse\"\nreflectance = 0.6\n[materials.chrome]\n\
+         type = \"mirror\"\nreflectance = 1\n\
          [materials.white]\ntype = \"diffuse\"\nreflectance = 1\n\
-         [[shapes]]\ntype = \"rectangle\"\norigin = [-2, 0, 2]\nu = [4, 0, 0]\nv = [0, 0, -4]\nmaterial = \"{looks_at}\"\n\
-         [[shapes]]\ntype = \"rectangle\"\norigin = [-2, 0, -0.5]\nu = [4, 0, 0]\nv = [0, 3, 0]\nmaterial = \"white\"\n\
+         [[shapes]]\ntype = \"rectangle\"\norigin = [-2, 0, 2]\nu = [4, 0, 0]\nv = [0, 0, -4]\n\
+         material = \"{looks_at}\"\n\
+         [[shapes]]\ntype = \"rectangle\"\norigin = [-2, 0, -0.5]\nu = [4, 0, 0]\nv = [0, 3, 0]\n\
+         material = \"white\"\n\
          [[lights]]\ntype = \"point\"\nposition = [0, 1.5, 0]\nintensity = [3, 2, 1]\n"
     )
 }

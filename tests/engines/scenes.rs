@@ -70,7 +70,8 @@ pub const CAMERAS: [(&str, &str, &str, &str); 5] = [
     (
         "shifted lens, cubic filter",
         "direct = \"photons\"",
-        "focal_length = 35.0\nfov_axis = \"larger\"\nshift = [-0.1, 0.2]\naperture = 0.05\nfocus = 4.0",
+        "focal_length = 35.0\nfov_axis = \"larger\"\nshift = [-0.1, 0.2]\naperture = 0.05\n\
+         focus = 4.0",
         "filter = { type = \"mitchell\", b = 0.0, c = 0.5 }",
     ),
     (

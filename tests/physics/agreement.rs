@@ -59,7 +59,8 @@ fn path_tracing_agrees_on_matte_bodies() {
     let full = everything(1.0, DVec3::ZERO, 24);
     let (from, to) =
         (full.find("[materials.chrome]").unwrap(), full.find("[materials.black]").unwrap());
-    let matte = "[materials.chrome]\ntype = \"diffuse\"\nreflectance = 0.5\n[materials.glass]\ntype = \"metal\"\nreflectance = 0.8\nroughness = 0.7\n";
+    let matte = "[materials.chrome]\ntype = \"diffuse\"\nreflectance = 0.5\n[materials.glass]\n\
+                 type = \"metal\"\nreflectance = 0.8\nroughness = 0.7\n";
     let text = format!("{}{matte}{}", &full[..from], &full[to..]);
     let cases = [
         PATH,
@@ -97,11 +98,16 @@ fn path_tracing_agrees_under_lamp_and_sky() {
 /// the floor below the sky.
 #[test]
 fn weights_follow_the_light_probabilities_of_each_place() {
-    let text = "version = 1\n[camera]\nposition = [0, 9, 0.01]\ntarget = [0, 0, 0]\nfov = 40.0\n[film]\nwidth = 12\n\
-                height = 12\n[materials.floor]\ntype = \"diffuse\"\nreflectance = 0.5\n[materials.black]\n\
-                type = \"diffuse\"\nreflectance = 0.0\n[[shapes]]\ntype = \"rectangle\"\norigin = [-4, 0, 4]\n\
-                u = [8, 0, 0]\nv = [0, 0, -8]\nmaterial = \"floor\"\n[[shapes]]\ntype = \"rectangle\"\n\
-                origin = [0.3, 1.0, -4]\nu = [0, 0, 8]\nv = [0, 3, 0]\nmaterial = \"black\"\nemission = 2.0\n\
+    let text = "version = 1\n[camera]\nposition = [0, 9, 0.01]\ntarget = [0, 0, 0]\nfov = 40.0\n\
+                [film]\nwidth = 12\n\
+                height = 12\n[materials.floor]\ntype = \"diffuse\"\nreflectance = 0.5\n\
+                [materials.black]\n\
+                type = \"diffuse\"\nreflectance = 0.0\n[[shapes]]\ntype = \"rectangle\"\n\
+                origin = [-4, 0, 4]\n\
+                u = [8, 0, 0]\nv = [0, 0, -8]\nmaterial = \"floor\"\n[[shapes]]\n\
+                type = \"rectangle\"\n\
+                origin = [0.3, 1.0, -4]\nu = [0, 0, 8]\nv = [0, 3, 0]\nmaterial = \"black\"\n\
+                emission = 2.0\n\
                 [environment]\nradiance = 0.5\n";
     let by = |direct| {
         let path = RenderSettings { method: Method::Path, direct, passes: 1500, ..settings(1.0) };

@@ -38,8 +38,10 @@ fn scene(
     };
     let text = camera.toml()
         + &format!(
-            "[materials.floor]\ntype = \"diffuse\"\nreflectance = {FLOOR}\n[materials.wall]\n{material}\n\
-             [[shapes]]\ntype = \"disc\"\ncenter = [0, 0, 0]\nnormal = [0, 1, 0]\nradius = 2\nmaterial = \"floor\"\n\
+            "[materials.floor]\ntype = \"diffuse\"\nreflectance = {FLOOR}\n[materials.wall]\n\
+             {material}\n\
+             [[shapes]]\ntype = \"disc\"\ncenter = [0, 0, 0]\nnormal = [0, 1, 0]\nradius = 2\n\
+             material = \"floor\"\n\
              [[shapes]]\ntype = \"mesh\"\nfile = \"{mesh}\"\nmaterial = \"wall\"\n\
              [[lights]]\ntype = \"sun\"\ndirection = {}\nirradiance = {SUN}\n",
             list(sun)

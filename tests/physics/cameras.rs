@@ -15,16 +15,20 @@ use super::agreement::pairwise;
 use super::lab::*;
 
 /// The rest of a scene: a matte floor, a ball and a lamp.
-const ROOM: &str = "[render]\nphotons = 1000\n[materials.m]\ntype = \"diffuse\"\nreflectance = 0.5\n\
-    [[shapes]]\ntype = \"rectangle\"\norigin = [-2, 0, 2]\nu = [4, 0, 0]\nv = [0, 0, -4]\nmaterial = \"m\"\n\
+const ROOM: &str = "[render]\nphotons = 1000\n[materials.m]\ntype = \"diffuse\"\n\
+                    reflectance = 0.5\n\
+    [[shapes]]\ntype = \"rectangle\"\norigin = [-2, 0, 2]\nu = [4, 0, 0]\nv = [0, 0, -4]\n\
+    material = \"m\"\n\
     [[shapes]]\ntype = \"sphere\"\ncenter = [0.5, 0.4, 0]\nradius = 0.4\nmaterial = \"m\"\n\
-    [[shapes]]\ntype = \"rectangle\"\norigin = [-1, 2, -1]\nu = [2, 0, 0]\nv = [0, 0, 2]\nmaterial = \"m\"\n\
+    [[shapes]]\ntype = \"rectangle\"\norigin = [-1, 2, -1]\nu = [2, 0, 0]\nv = [0, 0, 2]\n\
+    material = \"m\"\n\
     emission = 2.0\n";
 
 /// A scene seen along a slanted axis.
 fn text(camera: &str, (width, height): (u32, u32), rest: &str) -> String {
     format!(
-        "version = 1\n[camera]\nposition = [0.3, 1.2, 1.6]\ntarget = [0.1, 0.4, 0.2]\nup = [0.1, 1, 0]\n\
+        "version = 1\n[camera]\nposition = [0.3, 1.2, 1.6]\ntarget = [0.1, 0.4, 0.2]\n\
+         up = [0.1, 1, 0]\n\
          {camera}\n[film]\nwidth = {width}\nheight = {height}\n{rest}"
     )
 }
@@ -177,7 +181,8 @@ fn path_traced(text: &str, passes: u32) -> Vec<f64> {
 /// of radius 0.5 at the distance d it is its radiance times 2 pi (1 - sqrt(1 - (0.5 / d)^2)).
 #[test]
 fn images_of_all_directions_integrate_to_closed_forms() {
-    let ball = "[materials.m]\ntype = \"diffuse\"\nreflectance = 0.0\n[[shapes]]\ntype = \"sphere\"\n\
+    let ball = "[materials.m]\ntype = \"diffuse\"\nreflectance = 0.0\n[[shapes]]\n\
+                type = \"sphere\"\n\
                 radius = 0.5\nmaterial = \"m\"\nemission = 1.0\ncenter = ";
     let behind = format!("{ball}[0.5, 2.0, 3.0]\n");
     let side = format!("{ball}[0.3, 1.2, 2.6]\n");
@@ -225,9 +230,12 @@ fn orthographic_lenses_blur_by_distance() {
     let passes = 256;
     for (aperture, focus) in [(0.0f64, 1.0f64), (0.3, 0.5), (0.5, 2.0), (0.5, 1.0)] {
         let text = format!(
-            "version = 1\n[camera]\ntype = \"orthographic\"\nposition = [0, 0, 1]\ntarget = [0, 0, 0]\nsize = 2\n\
-             aperture = {aperture:?}\nfocus = {focus:?}\n[film]\nwidth = {COLUMNS}\nheight = {COLUMNS}\n\
-             [materials.m]\ntype = \"diffuse\"\nreflectance = 0.0\n[[shapes]]\ntype = \"rectangle\"\n\
+            "version = 1\n[camera]\ntype = \"orthographic\"\nposition = [0, 0, 1]\n\
+             target = [0, 0, 0]\nsize = 2\n\
+             aperture = {aperture:?}\nfocus = {focus:?}\n[film]\nwidth = {COLUMNS}\n\
+             height = {COLUMNS}\n\
+             [materials.m]\ntype = \"diffuse\"\nreflectance = 0.0\n[[shapes]]\n\
+             type = \"rectangle\"\n\
              origin = [-4, -4, 0]\nu = [4, 0, 0]\nv = [0, 8, 0]\nmaterial = \"m\"\nemission = 1.0\n"
         );
         let blur = aperture * (1.0 - 1.0 / focus).abs();

@@ -16,8 +16,10 @@ const RADIUS: f64 = 0.03;
 fn floor(camera: &Camera) -> String {
     camera.toml()
         + &format!(
-            "[materials.floor]\ntype = \"diffuse\"\nreflectance = {ALBEDO}\n[materials.black]\ntype = \"diffuse\"\nreflectance = 0.0\n\
-             [[shapes]]\ntype = \"disc\"\ncenter = [0, 0, 0]\nnormal = [0, 1, 0]\nradius = 3\nmaterial = \"floor\"\n"
+            "[materials.floor]\ntype = \"diffuse\"\nreflectance = {ALBEDO}\n[materials.black]\n\
+             type = \"diffuse\"\nreflectance = 0.0\n\
+             [[shapes]]\ntype = \"disc\"\ncenter = [0, 0, 0]\nnormal = [0, 1, 0]\nradius = 3\n\
+             material = \"floor\"\n"
         )
 }
 
@@ -42,9 +44,11 @@ fn paraboloid_mirror() {
     let text = floor(&camera)
         + &format!(
             "[materials.mirror]\ntype = \"mirror\"\nreflectance = 1.0\n\
-             [[shapes]]\ntype = \"revolution\"\nprofile = [[0, 0], [{}, 0], [{A}, {}]]\nmaterial = \"mirror\"\n\
+             [[shapes]]\ntype = \"revolution\"\nprofile = [[0, 0], [{}, 0], [{A}, {}]]\n\
+             material = \"mirror\"\n\
              transform = {{ rotate = {{ axis = [1, 0, 0], degrees = 180 }}, translate = [0, {TOP}, 0] }}\n\
-             [[shapes]]\ntype = \"disc\"\ncenter = [0, {}, 0]\nnormal = [0, 1, 0]\nradius = 0.2\nmaterial = \"black\"\n\
+             [[shapes]]\ntype = \"disc\"\ncenter = [0, {}, 0]\nnormal = [0, 1, 0]\nradius = 0.2\n\
+             material = \"black\"\n\
              [[lights]]\ntype = \"point\"\nposition = [0, {}, 0]\nintensity = {I}\n",
             0.5 * A,
             A * A / (4.0 * F),
@@ -84,7 +88,8 @@ fn slab_over_a_floor() {
     let text = floor(&camera)
         + &format!(
             "[materials.glass]\ntype = \"glass\"\nior = {N:?}\n\
-             [[shapes]]\ntype = \"box\"\nmin = [-1.6, 0.5, -1.6]\nmax = [1.6, 0.8, 1.6]\nmaterial = \"glass\"\n\
+             [[shapes]]\ntype = \"box\"\nmin = [-1.6, 0.5, -1.6]\nmax = [1.6, 0.8, 1.6]\n\
+             material = \"glass\"\n\
              [[lights]]\ntype = \"point\"\nposition = [0, {H}, 0]\nintensity = {I}\n"
         );
     let reflectance = |c: f64, ct: f64| {
@@ -193,8 +198,10 @@ fn ball_lens() {
         let text = floor(&camera)
             + &format!(
                 "[materials.glass]\ntype = \"glass\"\nior = {N:?}\n\
-                 [[shapes]]\ntype = \"sphere\"\ncenter = [0, {C}, 0]\nradius = {R}\nmaterial = \"glass\"\n\
-                 [[lights]]\ntype = \"spot\"\nposition = [0, {H}, 0]\ntarget = [0, 0, 0]\nintensity = {I}\nangle = 20.0\nblend = 0.0\n"
+                 [[shapes]]\ntype = \"sphere\"\ncenter = [0, {C}, 0]\nradius = {R}\n\
+                 material = \"glass\"\n\
+                 [[lights]]\ntype = \"spot\"\nposition = [0, {H}, 0]\ntarget = [0, 0, 0]\n\
+                 intensity = {I}\nangle = 20.0\nblend = 0.0\n"
             );
         let truth = camera.floor_picture(radius, |p| ALBEDO / PI * mapped(p.x.hypot(p.z), I, &map));
         for radius_rule in [RadiusRule::Fixed, RadiusRule::Local] {
@@ -261,7 +268,8 @@ fn cylinder() {
         let text = floor(&camera)
             + &format!(
                 "[materials.mirror]\ntype = \"mirror\"\nreflectance = 1.0\n\
-                 [[shapes]]\ntype = \"revolution\"\nprofile = [[1, 0], [1, {HEIGHT}]]\nmaterial = \"mirror\"\n\
+                 [[shapes]]\ntype = \"revolution\"\nprofile = [[1, 0], [1, {HEIGHT}]]\n\
+                 material = \"mirror\"\n\
                  [[lights]]\ntype = \"sun\"\ndirection = [1, -1, 0]\nirradiance = {SUN}\n"
             );
         let radius = 0.02;

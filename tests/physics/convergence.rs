@@ -19,7 +19,8 @@ fn scene(fov: f64, size: u32) -> String {
     Camera { position: DVec3::new(0.0, 1.4, 0.4), target: DVec3::ZERO, fov, size }.toml()
         + &format!(
             "[materials.floor]\ntype = \"diffuse\"\nreflectance = {ALBEDO}\n\
-             [[shapes]]\ntype = \"disc\"\ncenter = [0, 0, 0]\nnormal = [0, 1, 0]\nradius = 2\nmaterial = \"floor\"\n\
+             [[shapes]]\ntype = \"disc\"\ncenter = [0, 0, 0]\nnormal = [0, 1, 0]\nradius = 2\n\
+             material = \"floor\"\n\
              [[lights]]\ntype = \"point\"\nposition = [0, {HEIGHT}, 0]\nintensity = 1\n"
         )
 }

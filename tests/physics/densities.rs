@@ -180,7 +180,8 @@ fn metal() {
 }
 
 fn packed(light: &str) -> PackedScene {
-    let head = "version = 1\n[camera]\nposition = [0, -2, 0]\ntarget = [0, 0, 0]\nup = [1, 0, 0]\nfov = 40.0\n\
+    let head = "version = 1\n[camera]\nposition = [0, -2, 0]\ntarget = [0, 0, 0]\nup = [1, 0, 0]\n\
+                fov = 40.0\n\
                 [materials.m]\ntype = \"diffuse\"\nreflectance = 0.0\n";
     prepare(&parse(&format!("{head}{light}")), 8, 8).unwrap()
 }
@@ -301,14 +302,16 @@ fn sun_disc() {
 fn choice_of_lights() {
     let lamp = |i: i32| {
         format!(
-            "[[shapes]]\ntype = \"sphere\"\ncenter = [{}, 0.5, 0]\nradius = 0.05\nmaterial = \"m\"\n\
+            "[[shapes]]\ntype = \"sphere\"\ncenter = [{}, 0.5, 0]\nradius = 0.05\n\
+             material = \"m\"\n\
              emission = 10.0\n",
             4 * i - 18
         )
     };
     let text = "version = 1\n[camera]\nposition = [0, 30, 30]\ntarget = [0, 0, 0]\nfov = 60.0\n\
                 [materials.m]\ntype = \"diffuse\"\nreflectance = 0.5\n\
-                [[shapes]]\ntype = \"rectangle\"\norigin = [-20, 0, 3]\nu = [40, 0, 0]\nv = [0, 0, -6]\n\
+                [[shapes]]\ntype = \"rectangle\"\norigin = [-20, 0, 3]\nu = [40, 0, 0]\n\
+                v = [0, 0, -6]\n\
                 material = \"m\"\n";
     let text = format!("{text}{}", (0..10).map(lamp).collect::<String>());
     let packed = prepare(&parse(&text), 64, 64).unwrap();

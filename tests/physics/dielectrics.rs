@@ -26,14 +26,20 @@ fn bodies() -> Vec<(&'static str, String)> {
     vec![
         ("sphere", "type = \"sphere\"\ncenter = [0, 0, 0]\nradius = 0.6".into()),
         ("box", "type = \"box\"\nmin = [-0.5, -0.7, -0.6]\nmax = [0.8, 0.6, 0.6]".into()),
-        ("revolution", "type = \"revolution\"\nsegments = [[[0, -0.5], [0.6, -0.5]], [[0.6, -0.5], [0.6, 0.5]], [[0.6, 0.5], [0, 0.5]]]".into()),
+        (
+            "revolution",
+            "type = \"revolution\"\n\
+          segments = [[[0, -0.5], [0.6, -0.5]], [[0.6, -0.5], [0.6, 0.5]], [[0.6, 0.5], [0, 0.5]]]"
+                .into(),
+        ),
         ("mesh", format!("type = \"mesh\"\nfile = \"{mesh}\"\nsmooth = false")),
     ]
 }
 
 fn glass(body: &str, ior: f64, absorption: f64) -> String {
     format!(
-        "[materials.glass]\ntype = \"glass\"\nior = {ior:?}\nabsorption = {absorption:?}\n[[shapes]]\n{body}\nmaterial = \"glass\"\n"
+        "[materials.glass]\ntype = \"glass\"\nior = {ior:?}\nabsorption = {absorption:?}\n\
+         [[shapes]]\n{body}\nmaterial = \"glass\"\n"
     )
 }
 
@@ -93,7 +99,9 @@ fn slab() {
                     );
                 for (z, normal, e) in [(-2.0, 1.0, emission[0]), (3.0, -1.0, emission[1])] {
                     text += &format!(
-                        "[[shapes]]\ntype = \"disc\"\ncenter = [0, 0, {z}]\nnormal = [0, 0, {normal}]\nradius = 9\nmaterial = \"black\"\nemission = {e:?}\n"
+                        "[[shapes]]\ntype = \"disc\"\ncenter = [0, 0, {z}]\n\
+                         normal = [0, 0, {normal}]\nradius = 9\nmaterial = \"black\"\n\
+                         emission = {e:?}\n"
                     );
                 }
                 // facets this narrow scatter as a smooth face does
@@ -126,7 +134,8 @@ fn fresnel_at_an_angle() {
         + "[materials.black]\ntype = \"diffuse\"\nreflectance = 0.0\n"
         + &glass("type = \"disc\"\ncenter = [0, 0, 0]\nnormal = [0, 1, 0]\nradius = 1", n, 0.0)
         + &format!(
-            "[[shapes]]\ntype = \"disc\"\ncenter = {}\nnormal = {}\nradius = 1\nmaterial = \"black\"\nemission = 1.0\n",
+            "[[shapes]]\ntype = \"disc\"\ncenter = {}\nnormal = {}\nradius = 1\n\
+             material = \"black\"\nemission = 1.0\n",
             list(DVec3::new(-d.x, d.y, 0.0) * 3.0),
             list(DVec3::new(d.x, -d.y, 0.0))
         );
@@ -184,7 +193,8 @@ fn all_inside_glass() {
     let at = DVec3::new(0.1, 0.5, -0.1);
     let text = camera.toml()
         + &glass("type = \"sphere\"\ncenter = [0, 0, 0]\nradius = 6.0", 1.0, SIGMA)
-        + "[materials.floor]\ntype = \"diffuse\"\nreflectance = 0.6\n[[shapes]]\ntype = \"disc\"\ncenter = [0, 0, 0]\nnormal = [0, 1, 0]\nradius = 1\nmaterial = \"floor\"\n"
+        + "[materials.floor]\ntype = \"diffuse\"\nreflectance = 0.6\n[[shapes]]\ntype = \"disc\"\n\
+           center = [0, 0, 0]\nnormal = [0, 1, 0]\nradius = 1\nmaterial = \"floor\"\n"
         + &format!("[[lights]]\ntype = \"point\"\nposition = {}\nintensity = 2.0\n", list(at));
     let blur = |direct| if direct == Direct::Photons { 0.03 } else { 0.0 };
     let picture = |direct| {
@@ -218,7 +228,8 @@ fn light_inside_glass() {
     let at = DVec3::new(0.1, 0.5, -0.1);
     let text = camera.toml()
         + &glass(&format!("type = \"sphere\"\ncenter = {}\nradius = 0.2", list(at)), 1.0, 3.0)
-        + "[materials.floor]\ntype = \"diffuse\"\nreflectance = 0.6\n[[shapes]]\ntype = \"disc\"\ncenter = [0, 0, 0]\nnormal = [0, 1, 0]\nradius = 1\nmaterial = \"floor\"\n"
+        + "[materials.floor]\ntype = \"diffuse\"\nreflectance = 0.6\n[[shapes]]\ntype = \"disc\"\n\
+           center = [0, 0, 0]\nnormal = [0, 1, 0]\nradius = 1\nmaterial = \"floor\"\n"
         + &format!("[[lights]]\ntype = \"point\"\nposition = {}\nintensity = 2.0\n", list(at));
     let truth = camera.floor_picture(0.03, |p| {
         0.6 / std::f64::consts::PI * 2.0 * at.y / (at - p).length().powi(3) * (-0.6f64).exp()
@@ -245,7 +256,8 @@ fn extreme_indices() {
             camera.toml() + "[materials.black]\ntype = \"diffuse\"\nreflectance = 0.0\n" + glass;
         for (z, normal, e) in [(-2.0, 1.0, emission[0]), (3.0, -1.0, emission[1])] {
             text += &format!(
-                "[[shapes]]\ntype = \"disc\"\ncenter = [0, 0, {z}]\nnormal = [0, 0, {normal}]\nradius = 90\nmaterial = \"black\"\nemission = {e:?}\n"
+                "[[shapes]]\ntype = \"disc\"\ncenter = [0, 0, {z}]\nnormal = [0, 0, {normal}]\n\
+                 radius = 90\nmaterial = \"black\"\nemission = {e:?}\n"
             );
         }
         text
@@ -295,7 +307,8 @@ fn glass_on_glass() {
     let slab = |name: &str, ior: f64, from: f64, to: f64, half: f64| {
         format!(
             "[materials.{name}]\ntype = \"glass\"\nior = {ior:?}\n\
-             [[shapes]]\ntype = \"box\"\nmin = [-{half}, -{half}, {from}]\nmax = [{half}, {half}, {to}]\nmaterial = \"{name}\"\n"
+             [[shapes]]\ntype = \"box\"\nmin = [-{half}, -{half}, {from}]\n\
+             max = [{half}, {half}, {to}]\nmaterial = \"{name}\"\n"
         )
     };
     for (name, bodies, indices) in [
@@ -331,7 +344,8 @@ fn glass_on_glass() {
         let text = camera.toml()
             + "[materials.black]\ntype = \"diffuse\"\nreflectance = 0.0\n"
             + &bodies
-            + "[[shapes]]\ntype = \"disc\"\ncenter = [0, 0, -2]\nnormal = [0, 0, 1]\nradius = 9\nmaterial = \"black\"\nemission = 1.0\n";
+            + "[[shapes]]\ntype = \"disc\"\ncenter = [0, 0, -2]\nnormal = [0, 0, 1]\nradius = 9\n\
+               material = \"black\"\nemission = 1.0\n";
         for method in SPECULAR {
             let truth = [through(&indices); 64];
             let what = format!("{name}, {method:?}");

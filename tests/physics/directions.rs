@@ -42,8 +42,10 @@ fn narrow_spots() {
             let text = format!(
                 "version = 1\n[camera]\n{camera}[film]\nwidth = 8\nheight = 8\n\
                  [materials.d]\ntype = \"diffuse\"\nreflectance = 0.5\n\
-                 [[shapes]]\ntype = \"rectangle\"\norigin = [-5, 0, 5]\nu = [10, 0, 0]\nv = [0, 0, -10]\n\
-                 material = \"d\"\n[[lights]]\ntype = \"spot\"\nposition = [0, 10, 0]\ntarget = [0, 0, 0]\n\
+                 [[shapes]]\ntype = \"rectangle\"\norigin = [-5, 0, 5]\nu = [10, 0, 0]\n\
+                 v = [0, 0, -10]\n\
+                 material = \"d\"\n[[lights]]\ntype = \"spot\"\nposition = [0, 10, 0]\n\
+                 target = [0, 0, 0]\n\
                  intensity = 400.0\nangle = {degrees}\nblend = {blend}\n"
             );
             let truth = 0.5 / PI * 400.0 / 100.0;
@@ -184,21 +186,25 @@ fn textures_far_from_the_origin() {
         let corner = x - 2.0;
         [
             format!(
-                "type = \"rectangle\"\norigin = [{corner:?}, 0, {:?}]\nu = [4, 0, 0]\nv = [0, 0, -4]\nuv = \"planar\"",
+                "type = \"rectangle\"\norigin = [{corner:?}, 0, {:?}]\nu = [4, 0, 0]\n\
+                 v = [0, 0, -4]\nuv = \"planar\"",
                 x + 2.0
             ),
             "type = \"plane\"\npoint = [0, 0, 0]\nnormal = [0, 1, 0]\nuv = \"planar\"".to_owned(),
             format!(
-                "type = \"mesh\"\nfile = \"{mesh}\"\nuv = \"planar\"\ntransform = {{ translate = [{x:?}, 0, {x:?}] }}"
+                "type = \"mesh\"\nfile = \"{mesh}\"\nuv = \"planar\"\n\
+                 transform = {{ translate = [{x:?}, 0, {x:?}] }}"
             ),
             "type = \"plane\"\npoint = [0, 0, 0]\nnormal = [0, 1, 0]".to_owned(),
         ]
     };
     let render_at = |texture: &str, shape: &str, x: f64| {
         let text = format!(
-            "version = 1\n[camera]\nposition = [{x:?}, 1.5, {:?}]\ntarget = [{x:?}, 0, {x:?}]\nfov = 40.0\n\
+            "version = 1\n[camera]\nposition = [{x:?}, 1.5, {:?}]\ntarget = [{x:?}, 0, {x:?}]\n\
+             fov = 40.0\n\
              [film]\nwidth = 32\nheight = 24\n[textures.t]\n{texture}\n\
-             [materials.m]\ntype = \"diffuse\"\nreflectance = \"t\"\n[[shapes]]\n{shape}\nmaterial = \"m\"\n\
+             [materials.m]\ntype = \"diffuse\"\nreflectance = \"t\"\n[[shapes]]\n{shape}\n\
+             material = \"m\"\n\
              [environment]\nradiance = 1.0\n",
             x + 1.5
         );

@@ -73,7 +73,8 @@ fn scene(far: &Far, near: &str) -> String {
          [materials.floor]\ntype = \"diffuse\"\nreflectance = 0.5\n\
          [materials.glass]\ntype = \"glass\"\nior = 1.5\n\
          [materials.black]\ntype = \"diffuse\"\nreflectance = 0.0\n\
-         [[shapes]]\ntype = \"rectangle\"\norigin = [{0:?}, 0.0, {floor:?}]\nu = [{1:?}, 0.0, 0.0]\n\
+         [[shapes]]\ntype = \"rectangle\"\norigin = [{0:?}, 0.0, {floor:?}]\n\
+         u = [{1:?}, 0.0, 0.0]\n\
          v = [0.0, 0.0, {2:?}]\nmaterial = \"floor\"\n{near}\n{stray}",
         -floor,
         2.0 * floor,

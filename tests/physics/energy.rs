@@ -24,7 +24,8 @@ fn scene(closed: bool, h: f64) -> String {
     };
     Camera { position: DVec3::new(0.0, 0.9, 0.9), target: DVec3::ZERO, fov: 20.0, size: 4 }.toml()
         + &format!(
-            "[materials.grey]\ntype = \"diffuse\"\nreflectance = {ALBEDO}\n[[shapes]]\n{shape}\nmaterial = \"grey\"\n\
+            "[materials.grey]\ntype = \"diffuse\"\nreflectance = {ALBEDO}\n[[shapes]]\n{shape}\n\
+             material = \"grey\"\n\
              [[lights]]\ntype = \"point\"\nposition = [0, {h}, 0]\nintensity = 2\n"
         )
 }

@@ -20,7 +20,8 @@ fn scene(h: f64, ground: &str, light: &str) -> String {
         + &format!(
             "[materials.wall]\ntype = \"diffuse\"\nreflectance = {WALL}\n\
              [materials.ground]\ntype = \"diffuse\"\nreflectance = {GROUND}\n\
-             [[shapes]]\ntype = \"rectangle\"\norigin = [-0.2, {}, 0]\nu = [0.4, 0, 0]\nv = [0, 0.4, 0]\nmaterial = \"wall\"\n\
+             [[shapes]]\ntype = \"rectangle\"\norigin = [-0.2, {}, 0]\nu = [0.4, 0, 0]\n\
+             v = [0, 0.4, 0]\nmaterial = \"wall\"\n\
              [[shapes]]\n{ground}\nmaterial = \"ground\"\n{light}\n",
             h - 0.2
         )

@@ -77,7 +77,8 @@ fn spot() {
     let at = DVec3::new(-0.2, 0.7, 0.1);
     let target = DVec3::new(0.1, 0.0, 0.0);
     let light = format!(
-        "[[lights]]\ntype = \"spot\"\nposition = {}\ntarget = {}\nintensity = 2.0\nangle = 40.0\nblend = 0.6\n",
+        "[[lights]]\ntype = \"spot\"\nposition = {}\ntarget = {}\nintensity = 2.0\nangle = 40.0\n\
+         blend = 0.6\n",
         list(at),
         list(target)
     );

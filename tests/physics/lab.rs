@@ -40,7 +40,8 @@ impl Camera {
     /// The head of a scene file.
     pub fn toml(&self) -> String {
         format!(
-            "version = 1\n[camera]\nposition = {}\ntarget = {}\nfov = {}\n[film]\nwidth = {}\nheight = {}\n",
+            "version = 1\n[camera]\nposition = {}\ntarget = {}\nfov = {}\n[film]\nwidth = {}\n\
+             height = {}\n",
             list(self.position),
             list(self.target),
             self.fov,

@@ -291,8 +291,8 @@ fn fresnel_of_conductors() {
 
 /// Theory: below a smooth coat `L = (1 - F(cos_o)) (1 - F(cos_i)) rho_b I cos / (pi d^2)`, with
 /// `rho_b` as `materials/plastic.rs` states it: diffuse light below the coat meets a reflectance of
-/// `F_i = 1 - (1 - F_avg) / n^2`, and the base reflects `rho / (1 - rho F_i)` of it, or, without the
-/// color of the reflections inside, `rho / (1 - F_i)`.
+/// `F_i = 1 - (1 - F_avg) / n^2`, and the base reflects `rho / (1 - rho F_i)` of it, or, without
+/// the color of the reflections inside, `rho / (1 - F_i)`.
 #[test]
 fn plastic_floor() {
     let n = 1.5;
@@ -423,8 +423,8 @@ fn opacity() {
     }
 }
 
-/// Theory: a sheet between a lamp and a diffuse floor leaves `t` of the light: `1 - opacity`, all of
-/// it without a material, and `(1 - R) / (1 + R)` through a pane with the reflectance `R` of one
+/// Theory: a sheet between a lamp and a diffuse floor leaves `t` of the light: `1 - opacity`, all
+/// of it without a material, and `(1 - R) / (1 + R)` through a pane with the reflectance `R` of one
 /// face. Shadow rays end at the sheet, so the light arrives as photons.
 #[test]
 fn light_through_sheets() {

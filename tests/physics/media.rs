@@ -19,7 +19,8 @@ fn ways() -> [RenderSettings; 3] {
 
 fn camera(position: &str, target: &str, fov: f64) -> String {
     format!(
-        "version = 1\n[camera]\nposition = {position}\ntarget = {target}\nfov = {fov:?}\n[film]\nwidth = 12\n\
+        "version = 1\n[camera]\nposition = {position}\ntarget = {target}\nfov = {fov:?}\n[film]\n\
+         width = 12\n\
          height = 12\n[materials.black]\ntype = \"diffuse\"\nreflectance = 0.0\n[materials.white]\n\
          type = \"diffuse\"\nreflectance = 0.6\n"
     )
@@ -215,7 +216,8 @@ fn cameras_under_open_surfaces() {
             + &glass("water", 1.33, "absorption = 0.6")
             + &shape(water, "water")
             + &shape(
-                "type = \"disc\"\ncenter = [0, 0, 0]\nnormal = [0, 0, 1]\nradius = 2\nemission = 1.0",
+                "type = \"disc\"\ncenter = [0, 0, 0]\nnormal = [0, 0, 1]\nradius = 2\n\
+                 emission = 1.0",
                 "black",
             );
         for method in [Method::Path, Method::Sppm] {
@@ -241,7 +243,8 @@ fn lamps_astride() {
         let height = high - low;
         shape(
             &format!(
-                "type = \"rectangle\"\norigin = [1, {low:?}, -0.1]\nu = [0, 0, 0.2]\nv = [0, {height:?}, 0]\n\
+                "type = \"rectangle\"\norigin = [1, {low:?}, -0.1]\nu = [0, 0, 0.2]\n\
+                 v = [0, {height:?}, 0]\n\
                  emission = 10.0"
             ),
             "black",
@@ -301,7 +304,8 @@ fn what_stands_on_a_floor() {
             }
             let alone = runs(
                 &(base.clone()
-                    + "[[shapes]]\ntype = \"sphere\"\ncenter = [0, 90, 0]\nradius = 0.1\nmaterial = \"air\"\n"),
+                    + "[[shapes]]\ntype = \"sphere\"\ncenter = [0, 90, 0]\nradius = 0.1\n\
+                       material = \"air\"\n"),
                 &settings,
             );
             for body in &bodies {

@@ -139,13 +139,16 @@ fn response(filter: &str, edge: f64) -> f64 {
     }
 }
 
-/// A wall that emits left of x = 0.75, seen by an orthographic camera with one pixel per unit, whose
-/// column x begins at x - 8.
+/// A wall that emits left of x = 0.75, seen by an orthographic camera with one pixel per unit,
+/// whose column x begins at x - 8.
 fn edge(filter: &str) -> String {
     format!(
-        "version = 1\n[camera]\ntype = \"orthographic\"\nposition = [0, 0, 1]\ntarget = [0, 0, 0]\nsize = 16\n\
-         [film]\nwidth = 16\nheight = 16\nfilter = {filter}\n[materials.m]\ntype = \"diffuse\"\nreflectance = 0.0\n\
-         [[shapes]]\ntype = \"rectangle\"\norigin = [-30.25, -40, 0]\nu = [31, 0, 0]\nv = [0, 80, 0]\n\
+        "version = 1\n[camera]\ntype = \"orthographic\"\nposition = [0, 0, 1]\n\
+         target = [0, 0, 0]\nsize = 16\n\
+         [film]\nwidth = 16\nheight = 16\nfilter = {filter}\n[materials.m]\ntype = \"diffuse\"\n\
+         reflectance = 0.0\n\
+         [[shapes]]\ntype = \"rectangle\"\norigin = [-30.25, -40, 0]\nu = [31, 0, 0]\n\
+         v = [0, 80, 0]\n\
          material = \"m\"\nemission = 1.0\n"
     )
 }
@@ -187,7 +190,8 @@ fn constants_stay_constant() {
     for filter in FILTERS {
         for (method, passes) in [(Method::Path, 256), (Method::Sppm, 64), (Method::Ppm, 1)] {
             let text = format!(
-                "version = 1\n[camera]\nposition = [0, 0, 1]\ntarget = [0, 0, 0]\nfov = 40\n[film]\nwidth = 16\n\
+                "version = 1\n[camera]\nposition = [0, 0, 1]\ntarget = [0, 0, 0]\nfov = 40\n\
+                 [film]\nwidth = 16\n\
                  height = 16\nfilter = {filter}\n[environment]\nradiance = 2.0\n"
             );
             let picture = grey(&render(&parse(&text), &with(method, passes)));
@@ -214,10 +218,14 @@ fn constants_stay_constant() {
 /// reflectance over pi times a weight of mean one, negative in a lobe.
 #[test]
 fn photons_have_the_weights() {
-    let text = "version = 1\n[camera]\nposition = [0, 0, 1]\ntarget = [0, 0, 0]\nfov = 40\n[film]\nwidth = 32\n\
-                height = 32\nfilter = \"mitchell\"\n[materials.m]\ntype = \"diffuse\"\nreflectance = 0.5\n\
-                [[shapes]]\ntype = \"rectangle\"\norigin = [-9, -9, 0]\nu = [18, 0, 0]\nv = [0, 18, 0]\n\
-                material = \"m\"\n[[lights]]\ntype = \"point\"\nposition = [0, 0, 2]\nintensity = 1.0\n";
+    let text = "version = 1\n[camera]\nposition = [0, 0, 1]\ntarget = [0, 0, 0]\nfov = 40\n\
+                [film]\nwidth = 32\n\
+                height = 32\nfilter = \"mitchell\"\n[materials.m]\ntype = \"diffuse\"\n\
+                reflectance = 0.5\n\
+                [[shapes]]\ntype = \"rectangle\"\norigin = [-9, -9, 0]\nu = [18, 0, 0]\n\
+                v = [0, 18, 0]\n\
+                material = \"m\"\n[[lights]]\ntype = \"point\"\nposition = [0, 0, 2]\n\
+                intensity = 1.0\n";
     let settings = RenderSettings { photons: 64, ..settings(0.1) };
     let packed = prepare(&parse(text), 32, 32).unwrap();
     let plan = Plan::probed(&packed, &settings);
@@ -237,11 +245,16 @@ fn photons_have_the_weights() {
 /// A floor with a mirror under a lamp.
 fn room(filter: &str) -> String {
     format!(
-        "version = 1\n[camera]\nposition = [0, 1.5, 2]\ntarget = [0, 0, 0]\nfov = 50\n[film]\nwidth = 16\nheight = 12\n\
-         filter = {filter}\n[materials.m]\ntype = \"diffuse\"\nreflectance = 0.5\n[materials.c]\ntype = \"mirror\"\n\
-         reflectance = 0.9\n[[shapes]]\ntype = \"rectangle\"\norigin = [-2, 0, 2]\nu = [4, 0, 0]\nv = [0, 0, -4]\n\
-         material = \"m\"\n[[shapes]]\ntype = \"sphere\"\ncenter = [0.3, 0.3, 0]\nradius = 0.3\nmaterial = \"c\"\n\
-         [[shapes]]\ntype = \"rectangle\"\norigin = [-0.5, 1.2, -0.5]\nu = [1, 0, 0]\nv = [0, 0, 1]\nmaterial = \"m\"\n\
+        "version = 1\n[camera]\nposition = [0, 1.5, 2]\ntarget = [0, 0, 0]\nfov = 50\n[film]\n\
+         width = 16\nheight = 12\n\
+         filter = {filter}\n[materials.m]\ntype = \"diffuse\"\nreflectance = 0.5\n[materials.c]\n\
+         type = \"mirror\"\n\
+         reflectance = 0.9\n[[shapes]]\ntype = \"rectangle\"\norigin = [-2, 0, 2]\nu = [4, 0, 0]\n\
+         v = [0, 0, -4]\n\
+         material = \"m\"\n[[shapes]]\ntype = \"sphere\"\ncenter = [0.3, 0.3, 0]\nradius = 0.3\n\
+         material = \"c\"\n\
+         [[shapes]]\ntype = \"rectangle\"\norigin = [-0.5, 1.2, -0.5]\nu = [1, 0, 0]\n\
+         v = [0, 0, 1]\nmaterial = \"m\"\n\
          emission = 3.0\n"
     )
 }

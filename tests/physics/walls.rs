@@ -27,8 +27,10 @@ fn slim_boxes_under_an_even_sky() {
         };
         let (low, high) = (camera.target.x - 0.5 * width, camera.target.x + 0.5 * width);
         let text = format!(
-            "{}[materials.m]\ntype = \"diffuse\"\nreflectance = 0.8\n[[shapes]]\ntype = \"box\"\nmaterial = \"m\"\n\
-             min = [{low:?}, {:?}, {:?}]\nmax = [{high:?}, {:?}, -0.353]\n[environment]\nradiance = 1.0\n",
+            "{}[materials.m]\ntype = \"diffuse\"\nreflectance = 0.8\n[[shapes]]\ntype = \"box\"\n\
+             material = \"m\"\n\
+             min = [{low:?}, {:?}, {:?}]\nmax = [{high:?}, {:?}, -0.353]\n[environment]\n\
+             radiance = 1.0\n",
             camera.toml(),
             0.211 - 0.5 * height,
             -0.353 - depth,
@@ -156,7 +158,8 @@ fn rooms(wall: &str, floor: &str, camera: Camera, material: &str) -> String {
     ] {
         let _ = write!(
             text,
-            "[[shapes]]\ntype = \"rectangle\"\norigin = {origin:?}\nu = {u:?}\nv = {v:?}\nmaterial = \"{material}\"\n"
+            "[[shapes]]\ntype = \"rectangle\"\norigin = {origin:?}\nu = {u:?}\nv = {v:?}\n\
+             material = \"{material}\"\n"
         );
     }
     text + "[[lights]]\ntype = \"point\"\nposition = [0.4, 0.8, 0.0]\nintensity = 1.0\n"

@@ -247,7 +247,10 @@ fn a_picture_that_claims_much_is_refused_by_its_header() {
 fn errors_beyond_the_limit_are_counted() {
     let bad: String = (0..5000)
         .map(|n| {
-            format!("[[shapes]]\ntype = \"sphere\"\ncenter = [0, 0, {n}]\nradius = -1\nmaterial = \"m\"\n")
+            format!(
+                "[[shapes]]\ntype = \"sphere\"\ncenter = [0, 0, {n}]\nradius = -1\n\
+                     material = \"m\"\n"
+            )
         })
         .collect();
     let text = lit(&bad);

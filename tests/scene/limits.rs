@@ -152,7 +152,8 @@ fn small_and_giant_shapes() {
     // a needle is judged by its radius; a thin plate is not
     let revolution = |profile: &str| {
         format!(
-            "type = \"revolution\"\nprofile = {profile}\nmaterial = \"grey\"\n[[shapes]]\ntype = \"sphere\""
+            "type = \"revolution\"\nprofile = {profile}\nmaterial = \"grey\"\n[[shapes]]\n\
+             type = \"sphere\""
         )
     };
     let needle = revolution("[[1e-5, 0.0], [0.0, 1.0]]");
@@ -203,7 +204,9 @@ fn lights_and_lamps() {
     // a square lamp at height 1 over the camera's target: its diagonal over its distance
     let lamp = |side: f64| {
         format!(
-            "[[shapes]]\ntype = \"rectangle\"\norigin = [{0:?}, 3.0, {0:?}]\nu = [{side:?}, 0.0, 0.0]\nv = [0.0, 0.0, {side:?}]\nmaterial = \"grey\"\nemission = 1.0\n[[lights]]\ntype = \"point\"\nposition = [0.0, 1.5, 1.0]",
+            "[[shapes]]\ntype = \"rectangle\"\norigin = [{0:?}, 3.0, {0:?}]\n\
+             u = [{side:?}, 0.0, 0.0]\nv = [0.0, 0.0, {side:?}]\nmaterial = \"grey\"\n\
+             emission = 1.0\n[[lights]]\ntype = \"point\"\nposition = [0.0, 1.5, 1.0]",
             -0.5 * side
         )
     };

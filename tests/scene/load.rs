@@ -104,7 +104,8 @@ fn torus_of_the_mesh_scene() {
 #[test]
 fn transform_order() {
     let scene = scene_of(&format!(
-        "{HEAD}[materials.m]\ntype = \"diffuse\"\nreflectance = 0.5\n[[shapes]]\ntype = \"revolution\"\n\
+        "{HEAD}[materials.m]\ntype = \"diffuse\"\nreflectance = 0.5\n[[shapes]]\n\
+         type = \"revolution\"\n\
          profile = [[1, 0], [1, 1]]\nmaterial = \"m\"\nemission = 1\n\
          transform = {{ scale = 2, rotate = {{ axis = [0, 3, 0], degrees = 90 }}, translate = [10, 0, 0] }}\n"
     ));
@@ -167,7 +168,8 @@ fn materials_of_an_obj() {
 fn normals_made_and_refused() {
     let text = |smooth: bool| {
         format!(
-            "{HEAD}[materials.m]\ntype = \"diffuse\"\nreflectance = 0.5\n[[shapes]]\ntype = \"mesh\"\n\
+            "{HEAD}[materials.m]\ntype = \"diffuse\"\nreflectance = 0.5\n[[shapes]]\n\
+             type = \"mesh\"\n\
          file = \"cube.obj\"\nsmooth = {smooth}\nmaterial = \"m\"\nemission = [1, 2, 3]\n"
         )
     };
@@ -209,8 +211,10 @@ fn windows_text() {
 fn render_settings() {
     use caustica::low_level::scene::settings::{Method, Radius, RenderSettings};
     let loaded = parse_text(&format!(
-        "{HEAD}[environment]\nradiance = 1\n[render]\nmethod = \"ppm\"\nphotons = 1_000\nradius = {{ units = 0.01 }}\nseed = 0xff\n"
-    )).unwrap();
+        "{HEAD}[environment]\nradiance = 1\n[render]\nmethod = \"ppm\"\nphotons = 1_000\n\
+         radius = {{ units = 0.01 }}\nseed = 0xff\n"
+    ))
+    .unwrap();
     let expected = RenderSettings {
         method: Method::Ppm,
         photons: 1000,

@@ -47,7 +47,8 @@ material = "red"
 "#;
 
 fn loaded(settings: &str, rest: &str) -> Loaded {
-    let film = "[film]\nwidth = 24\nheight = 16\naov = [\"albedo\", \"normal\", \"depth\", \"position\", \"object\", \
+    let film = "[film]\nwidth = 24\nheight = 16\n\
+                aov = [\"albedo\", \"normal\", \"depth\", \"position\", \"object\", \
                 \"material\", \"emission\", \"direct\", \"caustic\", \"indirect\", \"radius\", \"photons\", \
                 \"variance\"]\n";
     let photons = if settings.contains("photons =") { "" } else { "photons = 500\n" };
@@ -265,7 +266,8 @@ fn emission_is_all_of_a_dark_picture() {
 fn numbers_are_those_of_the_file() {
     let sphere = |x: f64| {
         format!(
-            "[[shapes]]\ntype = \"sphere\"\ncenter = [{x}, 2.0, 0.0]\nradius = 0.3\nmaterial = \"red\"\n"
+            "[[shapes]]\ntype = \"sphere\"\ncenter = [{x}, 2.0, 0.0]\nradius = 0.3\n\
+             material = \"red\"\n"
         )
     };
     let cube = "[[shapes]]\ntype = \"mesh\"\nfile = \"tests/data/cube.obj\"\nmaterial = \"blue\"\n\
@@ -338,7 +340,8 @@ fn it_costs_nothing_unless_asked_for() {
 #[test]
 fn both_precisions_agree() {
     let rest = format!(
-        "[materials.pane]\ntype = \"glass\"\nior = 1.5\n[[shapes]]\ntype = \"sphere\"\ncenter = [1.0, 2.0, 0.0]\n\
+        "[materials.pane]\ntype = \"glass\"\nior = 1.5\n[[shapes]]\ntype = \"sphere\"\n\
+         center = [1.0, 2.0, 0.0]\n\
          radius = 0.7\nmaterial = \"pane\"\n{WALL}"
     );
     let loaded = loaded("", &rest);
@@ -367,7 +370,8 @@ fn window_of(seen: &Seen, [x0, y0, x1, y1]: [u32; 4]) -> Vec<u64> {
 #[test]
 fn a_window_has_the_bits_of_the_whole() {
     let rest = format!(
-        "[materials.pane]\ntype = \"glass\"\nior = 1.5\n[[shapes]]\ntype = \"sphere\"\ncenter = [1.0, 2.0, 0.0]\n\
+        "[materials.pane]\ntype = \"glass\"\nior = 1.5\n[[shapes]]\ntype = \"sphere\"\n\
+         center = [1.0, 2.0, 0.0]\n\
          radius = 0.7\nmaterial = \"pane\"\n{WALL}"
     );
     let window = [5, 3, 16, 14];

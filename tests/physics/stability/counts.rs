@@ -233,9 +233,11 @@ fn means(b: &Bench) -> Figure {
 
 /// A point source at height 1 over a disc of radius 1, covered by a gather disc of radius 2.
 fn photon_counts(b: &Bench) -> Figure {
-    const TEXT: &str = "version = 1\n[camera]\nposition = [0, 0.4, 0.1]\ntarget = [0, 0, 0]\nfov = 10\n[film]\nwidth = 1\nheight = 1\n\
+    const TEXT: &str = "version = 1\n[camera]\nposition = [0, 0.4, 0.1]\ntarget = [0, 0, 0]\n\
+                        fov = 10\n[film]\nwidth = 1\nheight = 1\n\
         [materials.m]\ntype = \"diffuse\"\nreflectance = 0.5\n\
-        [[shapes]]\ntype = \"disc\"\ncenter = [0, 0, 0]\nnormal = [0, 1, 0]\nradius = 1\nmaterial = \"m\"\n\
+        [[shapes]]\ntype = \"disc\"\ncenter = [0, 0, 0]\nnormal = [0, 1, 0]\nradius = 1\n\
+        material = \"m\"\n\
         [[lights]]\ntype = \"point\"\nposition = [0, 1, 0]\nintensity = 1.0\n";
     let p = 0.5 * (1.0 - 0.5f64.sqrt());
     // rho / pi times the arriving flux over the area of the shape, which clips the gather disc

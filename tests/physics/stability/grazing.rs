@@ -55,7 +55,8 @@ fn bodies() -> Vec<Body> {
             distance: off_tilted,
         },
         Body {
-            toml: "type = \"disc\"\ncenter = [0.3, 0.2, -0.1]\nnormal = [0.36, 0.48, 0.8]\nradius = 1.5",
+            toml: "type = \"disc\"\ncenter = [0.3, 0.2, -0.1]\nnormal = [0.36, 0.48, 0.8]\n\
+                   radius = 1.5",
             at: tilted,
             distance: off_tilted,
         },
@@ -100,8 +101,10 @@ fn grazing(b: &Bench) -> (Figure, Figure) {
     let (mut worst, mut again, mut met, mut all) = (0.0f64, 0, 0, 0);
     for body in bodies() {
         let text = format!(
-            "version = 1\n[camera]\nposition = [2, 1.5, 3]\ntarget = [0, 0.2, 0]\nfov = 40\n[film]\nwidth = 8\nheight = 8\n\
-             [materials.m]\ntype = \"diffuse\"\nreflectance = 0.5\n[[shapes]]\n{}\nmaterial = \"m\"\n",
+            "version = 1\n[camera]\nposition = [2, 1.5, 3]\ntarget = [0, 0.2, 0]\nfov = 40\n\
+             [film]\nwidth = 8\nheight = 8\n\
+             [materials.m]\ntype = \"diffuse\"\nreflectance = 0.5\n[[shapes]]\n{}\n\
+             material = \"m\"\n",
             body.toml
         );
         let n = Normalization::of(&parse(&text));

@@ -99,9 +99,11 @@ fn floors(b: &Bench) -> Figure {
     let mut rng = Rng(3);
     for radius in radii {
         let text = format!(
-            "version = 1\n[camera]\nposition = [0, 1, 0]\ntarget = [0, 0.5, -4]\nfov = 40\n[film]\nwidth = 8\nheight = 8\n\
+            "version = 1\n[camera]\nposition = [0, 1, 0]\ntarget = [0, 0.5, -4]\nfov = 40\n\
+             [film]\nwidth = 8\nheight = 8\n\
              [materials.m]\ntype = \"diffuse\"\nreflectance = 0.5\n\
-             [[shapes]]\ntype = \"sphere\"\ncenter = [0, {:?}, 0]\nradius = {radius:?}\nmaterial = \"m\"\n",
+             [[shapes]]\ntype = \"sphere\"\ncenter = [0, {:?}, 0]\nradius = {radius:?}\n\
+             material = \"m\"\n",
             -radius
         );
         let n = Normalization::of(&parse(&text));
@@ -133,12 +135,14 @@ fn small_balls(b: &Bench) -> Figure {
     let mut worst = 0.0f64;
     let mut met = 0;
     let balls: Vec<DVec3> = (0..20).map(|_| rng.point().as_dvec3() * 0.55).collect();
-    let mut text = "version = 1\n[camera]\nposition = [0, 0, 1]\ntarget = [0, 0, -1]\nfov = 90\n[film]\nwidth = 8\nheight = 8\n\
+    let mut text = "version = 1\n[camera]\nposition = [0, 0, 1]\ntarget = [0, 0, -1]\nfov = 90\n\
+                    [film]\nwidth = 8\nheight = 8\n\
          [materials.m]\ntype = \"diffuse\"\nreflectance = 0.5\n"
         .to_owned();
     for c in &balls {
         text += &format!(
-            "[[shapes]]\ntype = \"sphere\"\ncenter = [{:?}, {:?}, {:?}]\nradius = {R:?}\nmaterial = \"m\"\n",
+            "[[shapes]]\ntype = \"sphere\"\ncenter = [{:?}, {:?}, {:?}]\nradius = {R:?}\n\
+             material = \"m\"\n",
             c.x, c.y, c.z
         );
     }
@@ -161,7 +165,8 @@ fn small_balls(b: &Bench) -> Figure {
 
 fn ball_on_giant(b: &Bench) -> Figure {
     const R: f64 = 1e-5;
-    let text = "version = 1\n[camera]\nposition = [0, 2e-5, 6e-5]\ntarget = [0, 1e-5, 0]\nfov = 40\n[film]\nwidth = 8\nheight = 8\n\
+    let text = "version = 1\n[camera]\nposition = [0, 2e-5, 6e-5]\ntarget = [0, 1e-5, 0]\n\
+                fov = 40\n[film]\nwidth = 8\nheight = 8\n\
          [materials.m]\ntype = \"diffuse\"\nreflectance = 0.5\n\
          [[shapes]]\ntype = \"sphere\"\ncenter = [0, 1e-5, 0]\nradius = 1e-5\nmaterial = \"m\"\n\
          [[shapes]]\ntype = \"sphere\"\ncenter = [0, -1e5, 0]\nradius = 1e5\nmaterial = \"m\"\n";

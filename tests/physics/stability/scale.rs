@@ -122,7 +122,8 @@ fn shadowed(b: &Bench, radius: f64, place: f64) -> u32 {
     let from = DVec3::new(0.0, 0.0, 4.0) * radius;
     let list = |v: DVec3| format!("[{:?}, {:?}, {:?}]", v.x, v.y, v.z);
     let text = format!(
-        "version = 1\n[camera]\nposition = {}\ntarget = {}\nfov = 20.0\n[film]\nwidth = {n}\nheight = {n}\n\
+        "version = 1\n[camera]\nposition = {}\ntarget = {}\nfov = 20.0\n[film]\nwidth = {n}\n\
+         height = {n}\n\
          [materials.m]\ntype = \"diffuse\"\nreflectance = 1.0\n\
          [[shapes]]\ntype = \"sphere\"\ncenter = {}\nradius = {radius:?}\nmaterial = \"m\"\n\
          [[lights]]\ntype = \"sun\"\ndirection = [0.1, 0.05, -1.0]\nirradiance = 1.0\n",

@@ -112,7 +112,8 @@ pub fn rows() -> Vec<Row> {
                 ];
                 let accepted = crossing.iter().filter(|profile| {
                     let text = format!(
-                        "version = 1\n[camera]\nposition = [0, 0, 4]\ntarget = [0, 0, 0]\nfov = 40\n\
+                        "version = 1\n[camera]\nposition = [0, 0, 4]\ntarget = [0, 0, 0]\n\
+                         fov = 40\n\
                          [materials.m]\ntype = \"diffuse\"\nreflectance = 0.5\n\
                          [[shapes]]\ntype = \"revolution\"\nprofile = {profile}\nmaterial = \"m\"\n"
                     );

@@ -60,7 +60,8 @@ pub fn rows() -> Vec<Row> {
 
 fn film(width: u32, height: u32, fov: f64) -> String {
     format!(
-        "version = 1\n[camera]\nposition = [0, 2, 0]\ntarget = [0, 0, 0]\nup = [0, 0, -1]\nfov = {fov:?}\n\
+        "version = 1\n[camera]\nposition = [0, 2, 0]\ntarget = [0, 0, 0]\nup = [0, 0, -1]\n\
+         fov = {fov:?}\n\
          [film]\nwidth = {width}\nheight = {height}\n"
     )
 }
@@ -94,7 +95,8 @@ fn strengths(b: &Bench) -> Figure {
         }
         let wall = format!(
             "[materials.m]\ntype = \"diffuse\"\nreflectance = 0.0\n\
-             [[shapes]]\ntype = \"disc\"\ncenter = [0, 0, 0]\nnormal = [0, 1, 0]\nradius = 9\nmaterial = \"m\"\nemission = {strength:?}\n"
+             [[shapes]]\ntype = \"disc\"\ncenter = [0, 0, 0]\nnormal = [0, 1, 0]\nradius = 9\n\
+             material = \"m\"\nemission = {strength:?}\n"
         );
         largest =
             largest.max(worst(&b.render(&(film(8, 8, 40.0) + &wall), &one_pass()).rgb, strength));
@@ -121,14 +123,17 @@ fn mean(rgb: &[[f32; 3]]) -> f64 {
 fn lamps(b: &Bench) -> Figure {
     let lamp = |shape: &str| {
         format!(
-            "[materials.m]\ntype = \"diffuse\"\nreflectance = 0.5\n[materials.k]\ntype = \"diffuse\"\nreflectance = 0.0\n\
-             [[shapes]]\ntype = \"plane\"\npoint = [0, 0, 0]\nnormal = [0, 1, 0]\nmaterial = \"m\"\n\
+            "[materials.m]\ntype = \"diffuse\"\nreflectance = 0.5\n[materials.k]\n\
+             type = \"diffuse\"\nreflectance = 0.0\n\
+             [[shapes]]\ntype = \"plane\"\npoint = [0, 0, 0]\nnormal = [0, 1, 0]\n\
+             material = \"m\"\n\
              [[shapes]]\n{shape}\nmaterial = \"k\"\nemission = 3.0\n"
         )
     };
     let settings = RenderSettings { passes: b.samples(16, 64), ..one_pass() };
     // a camera next to the lamp's axis, looking at a small part of the floor below it
-    let look = "version = 1\n[camera]\nposition = [0.3, 0.4, 0]\ntarget = [0, 0, 0]\nfov = 0.5\n[film]\nwidth = 48\nheight = 48\n";
+    let look = "version = 1\n[camera]\nposition = [0.3, 0.4, 0]\ntarget = [0, 0, 0]\nfov = 0.5\n\
+                [film]\nwidth = 48\nheight = 48\n";
     let small = lamp("type = \"disc\"\ncenter = [0, 1, 0]\nnormal = [0, -1, 0]\nradius = 1e-6");
     let small =
         mean(&b.render(&(look.to_owned() + &small), &settings).rgb) / (0.5 * 3.0 * 1e-12) - 1.0;
@@ -146,7 +151,8 @@ fn bounces(b: &Bench) -> Figure {
     let mut largest = 0.0f64;
     for (bounces, rho) in [(1u32, 0.5f64), (1000, 0.99)] {
         let mut text = format!(
-            "version = 1\n[camera]\nposition = [0, 0, 0.9]\ntarget = [0, 0, -1]\nfov = 20\n[film]\nwidth = 8\nheight = 8\n\
+            "version = 1\n[camera]\nposition = [0, 0, 0.9]\ntarget = [0, 0, -1]\nfov = 20\n\
+             [film]\nwidth = 8\nheight = 8\n\
              [materials.m]\ntype = \"diffuse\"\nreflectance = {rho:?}\n"
         );
         for (o, u, v) in [
@@ -158,7 +164,8 @@ fn bounces(b: &Bench) -> Figure {
             ([1, -1, -1], [0, 0, 2], [0, 2, 0]),
         ] {
             text += &format!(
-                "[[shapes]]\ntype = \"rectangle\"\norigin = {o:?}\nu = {u:?}\nv = {v:?}\nmaterial = \"m\"\nemission = 0.25\n"
+                "[[shapes]]\ntype = \"rectangle\"\norigin = {o:?}\nu = {u:?}\nv = {v:?}\n\
+                 material = \"m\"\nemission = 0.25\n"
             );
         }
         let settings = RenderSettings {
@@ -184,8 +191,10 @@ const ROWS: u32 = 32;
 fn edge_picture(b: &Bench, fov: f64, edge: f64, reach: f64, lens: &str, passes: u32) -> Vec<f64> {
     let text = format!(
         "version = 1\n[camera]\nposition = [0, 0, 1]\ntarget = [0, 0, 0]\nfov = {fov:?}\n{lens}\n\
-         [film]\nwidth = {COLUMNS}\nheight = {ROWS}\n[materials.m]\ntype = \"diffuse\"\nreflectance = 0.0\n\
-         [[shapes]]\ntype = \"rectangle\"\norigin = [{:?}, {:?}, 0]\nu = [{reach:?}, 0, 0]\nv = [0, {:?}, 0]\nmaterial = \"m\"\nemission = 1.0\n",
+         [film]\nwidth = {COLUMNS}\nheight = {ROWS}\n[materials.m]\ntype = \"diffuse\"\n\
+         reflectance = 0.0\n\
+         [[shapes]]\ntype = \"rectangle\"\norigin = [{:?}, {:?}, 0]\nu = [{reach:?}, 0, 0]\n\
+         v = [0, {:?}, 0]\nmaterial = \"m\"\nemission = 1.0\n",
         edge - reach,
         -reach,
         2.0 * reach

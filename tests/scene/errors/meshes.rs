@@ -231,7 +231,8 @@ fn unread_keys() {
         })
         .collect();
     assert_eq!(differs(&warnings, &expected), None);
-    let idle = b"newmtl a\nKd 1 0 0\nKa 1 1 1\nKs 0.5 0.5 0.5\nNs 10\nTr 0\nTf 1 1 1\nPm 0.0\nd 1\nillum 2\n";
+    let idle = b"newmtl a\nKd 1 0 0\nKa 1 1 1\nKs 0.5 0.5 0.5\nNs 10\nTr 0\nTf 1 1 1\nPm 0.0\n\
+                 d 1\nillum 2\n";
     assert_eq!(parts_of("idle", obj.as_bytes(), idle), (vec![(RED, 2)], vec![]));
 }
 
@@ -353,7 +354,8 @@ fn pictures_of_materials() {
 fn missing_files_of_commands() {
     let obj = format!("mtllib gone.mtl\n{SQUARES}usemtl a\nf 1 2 3 4\n");
     let scene = format!(
-        "{HEAD}[film]\nwidth = 8\nheight = 6\n[environment]\nradiance = 1\n[[shapes]]\ntype = \"mesh\"\n\
+        "{HEAD}[film]\nwidth = 8\nheight = 6\n[environment]\nradiance = 1\n[[shapes]]\n\
+         type = \"mesh\"\n\
          file = \"m.obj\"\n"
     );
     let folder = written("commands", &[("m.obj", obj.as_bytes()), ("s.toml", scene.as_bytes())]);

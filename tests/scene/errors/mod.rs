@@ -107,7 +107,8 @@ fn one_fault_each() {
             (8, 13, "no direction"),
         ),
         (
-            "[[lights]]\ntype = \"spot\"\nposition = [0, 0, 0]\ntarget = [0, 0, 0]\nintensity = 1\nangle = 20\n",
+            "[[lights]]\ntype = \"spot\"\nposition = [0, 0, 0]\ntarget = [0, 0, 0]\n\
+             intensity = 1\nangle = 20\n",
             (9, 10, "is its position"),
         ),
         (
@@ -183,7 +184,8 @@ fn numbers_beyond_single_precision() {
         ),
         ("type = \"box\"\nmin = [0, 0, 0]\nmax = [1, 1, 1e-16]", (13, 7, "is empty")),
         (
-            "type = \"mesh\"\nfile = \"cube.obj\"\ntransform = { scale = 1e15, translate = [1e15, 0, 0] }",
+            "type = \"mesh\"\nfile = \"cube.obj\"\n\
+             transform = { scale = 1e15, translate = [1e15, 0, 0] }",
             (13, 13, "reaches to 2.0e15"),
         ),
         (
@@ -197,7 +199,8 @@ fn numbers_beyond_single_precision() {
     });
     assert_eq!(wrong.collect::<Vec<_>>().join("\n"), "");
     let bounds = format!(
-        "{HEAD}up = [0, 1e15, 0]\nfocus = 1e-15\n[environment]\nradiance = 1e30\n[render]\nseed = 9223372036854775807\n"
+        "{HEAD}up = [0, 1e15, 0]\nfocus = 1e-15\n[environment]\nradiance = 1e30\n[render]\n\
+         seed = 9223372036854775807\n"
     );
     assert!(parse(&data("scene.toml"), bounds.as_bytes()).is_ok());
     let folder = folder("large");
@@ -213,7 +216,8 @@ fn numbers_beyond_single_precision() {
 /// several errors in one word of a mesh, are each reported.
 #[test]
 fn one_report_for_a_value() {
-    let plane = "[[shapes]]\ntype = \"plane\"\npoint = [0, 0, 0]\nnormal = [0, 1, 0]\nmaterial = \"grey\"\nemission = -1\n";
+    let plane = "[[shapes]]\ntype = \"plane\"\npoint = [0, 0, 0]\nnormal = [0, 1, 0]\n\
+                 material = \"grey\"\nemission = -1\n";
     let errors = errors_of(&format!("{HEAD}{MATERIAL}{plane}")).errors;
     assert_eq!(differs(&errors, &[(14, 12, "not below 0")]), None);
     let errors = errors_of(&format!("{HEAD}[render]\nalpha = 1e20\n")).errors;
@@ -257,23 +261,28 @@ fn one_fault_in_a_shape() {
             (12, 1, "did you mean `radius`?"),
         ),
         (
-            "type = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1\nmaterial = \"grey\"\nuv = \"planer\"",
+            "type = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1\nmaterial = \"grey\"\n\
+             uv = \"planer\"",
             (14, 6, "did you mean `planar`?"),
         ),
         (
-            "type = \"rectangle\"\norigin = [0, 0, 0]\nu = [1, 0, 0]\nv = [2, 0, 0]\nmaterial = \"grey\"",
+            "type = \"rectangle\"\norigin = [0, 0, 0]\nu = [1, 0, 0]\nv = [2, 0, 0]\n\
+             material = \"grey\"",
             (13, 5, "no area"),
         ),
         (
-            "type = \"rectangle\"\norigin = [0, 0, 0]\nu = [0, 0, 0]\nv = [2, 0, 0]\nmaterial = \"grey\"",
+            "type = \"rectangle\"\norigin = [0, 0, 0]\nu = [0, 0, 0]\nv = [2, 0, 0]\n\
+             material = \"grey\"",
             (13, 5, "no area"),
         ),
         (
-            "type = \"disc\"\ncenter = [0, 0, 0]\nnormal = [0, 0, 0]\nradius = 1\nmaterial = \"grey\"",
+            "type = \"disc\"\ncenter = [0, 0, 0]\nnormal = [0, 0, 0]\nradius = 1\n\
+             material = \"grey\"",
             (12, 10, "no direction"),
         ),
         (
-            "type = \"plane\"\npoint = [0, 0, 0]\nnormal = [0, 1, 0]\nmaterial = \"grey\"\nemission = 1",
+            "type = \"plane\"\npoint = [0, 0, 0]\nnormal = [0, 1, 0]\nmaterial = \"grey\"\n\
+             emission = 1",
             (14, 12, "cannot emit"),
         ),
         (
@@ -289,12 +298,14 @@ fn one_fault_in_a_shape() {
             (13, 23, "greater than 0"),
         ),
         (
-            "type = \"mesh\"\nfile = \"cube.obj\"\nmaterial = \"grey\"\ntransform = { rotate = { axis = [0, 0, 0], degrees = 3 } }",
+            "type = \"mesh\"\nfile = \"cube.obj\"\nmaterial = \"grey\"\n\
+             transform = { rotate = { axis = [0, 0, 0], degrees = 3 } }",
             (13, 33, "no direction"),
         ),
         ("type = \"revolution\"\nmaterial = \"grey\"", (9, 1, "neither `profile` nor `segments`")),
         (
-            "type = \"revolution\"\nmaterial = \"grey\"\nprofile = [[1, 0], [1, 1]]\nsegments = [[[1, 0], [1, 1]]]",
+            "type = \"revolution\"\nmaterial = \"grey\"\nprofile = [[1, 0], [1, 1]]\n\
+             segments = [[[1, 0], [1, 1]]]",
             (13, 12, "has both"),
         ),
         (
@@ -314,7 +325,8 @@ fn one_fault_in_a_shape() {
             (12, 20, "crosses the axis"),
         ),
         (
-            "type = \"revolution\"\nmaterial = \"grey\"\nsegments = [[[1, 0], [1, 1]], [[1, 2], [1, 3]]]",
+            "type = \"revolution\"\nmaterial = \"grey\"\n\
+             segments = [[[1, 0], [1, 1]], [[1, 2], [1, 3]]]",
             (12, 32, "expected [1, 1]"),
         ),
     ];
@@ -329,9 +341,12 @@ fn one_fault_in_a_shape() {
 /// file.
 #[test]
 fn many_faults_at_once() {
-    let text = "version = 2\n[camera]\nposition = [0, 1, 4]\ntarget = [0, 1]\nfov = 200\n[render]\nalpha = 0.0\npasses = -3\n\
-                [materials.glas]\ntype = \"glass\"\nior = -1\n[[shapes]]\ntype = \"sphere\"\ncenter = [0, nan, 0]\nradius = -1\n\
-                colour = 3\nmaterial = \"glass\"\n[[shapes]]\ntype = \"mesh\"\nfile = \"no.obj\"\nmaterial = \"glas\"\n";
+    let text = "version = 2\n[camera]\nposition = [0, 1, 4]\ntarget = [0, 1]\nfov = 200\n\
+                [render]\nalpha = 0.0\npasses = -3\n\
+                [materials.glas]\ntype = \"glass\"\nior = -1\n[[shapes]]\ntype = \"sphere\"\n\
+                center = [0, nan, 0]\nradius = -1\n\
+                colour = 3\nmaterial = \"glass\"\n[[shapes]]\ntype = \"mesh\"\nfile = \"no.obj\"\n\
+                material = \"glas\"\n";
     let expected = [
         (1, 11, "expected 1"),
         (4, 10, "expected an array of 3 numbers"),
@@ -465,8 +480,10 @@ fn alpha_is_told_of() {
         .unwrap();
     let warnings = |texture: &str| {
         let text = format!(
-            "{HEAD}[textures.t]\ntype = \"image\"\nfile = \"{texture}\"\n[materials.m]\ntype = \"diffuse\"\nreflectance = \"t\"\n\
-             [[shapes]]\ntype = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1\nmaterial = \"m\"\nemission = 1\n"
+            "{HEAD}[textures.t]\ntype = \"image\"\nfile = \"{texture}\"\n[materials.m]\n\
+             type = \"diffuse\"\nreflectance = \"t\"\n\
+             [[shapes]]\ntype = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1\nmaterial = \"m\"\n\
+             emission = 1\n"
         );
         parse(&folder.join("scene.toml"), text.as_bytes()).unwrap().warnings
     };

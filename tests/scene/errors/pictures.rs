@@ -13,8 +13,10 @@ use crate::support::folder;
 
 fn read(folder: &Path, file: &str, missing: Missing) -> Result<Loaded, SceneErrors> {
     let text = format!(
-        "{HEAD}[textures.t]\ntype = \"image\"\nfile = \"{file}\"\n[materials.m]\ntype = \"diffuse\"\n\
-         reflectance = \"t\"\n[[shapes]]\ntype = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1\nmaterial = \"m\"\n\
+        "{HEAD}[textures.t]\ntype = \"image\"\nfile = \"{file}\"\n[materials.m]\n\
+         type = \"diffuse\"\n\
+         reflectance = \"t\"\n[[shapes]]\ntype = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1\n\
+         material = \"m\"\n\
          emission = 1\n"
     );
     let allowance = Allowance { missing, ..Allowance::default() };
@@ -267,7 +269,8 @@ fn numbers_near_the_limits() {
     let read = |number: &str| {
         let text = format!("{HEAD}[materials.m]\ntype = \"mirror\"\nreflectance = {number}\n");
         let scene = text
-            + "[[shapes]]\ntype = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1\nmaterial = \"m\"\nemission = 1\n";
+            + "[[shapes]]\ntype = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1\nmaterial = \"m\"\n\
+               emission = 1\n";
         parse_within("scene.toml".as_ref(), scene.as_bytes(), &Allowance::default())
     };
     for (number, inside) in [("1.0000001", 1.0), ("-1e-7", 0.0), ("1.00001", 1.0)] {
