@@ -73,8 +73,12 @@ struct Material {
     albedo_high: vec4f,
     stores: u32,
     textured: u32,
-    pad0: u32,
-    pad1: u32,
+    normal_map: u32,
+    normal_strength: f32,
+    bump_map: u32,
+    bump_height: f32,
+    bent: u32,
+    coated: f32,
 }
 
 struct Texture {

@@ -115,8 +115,8 @@ pub struct Camera {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Plain, Zeroable)]
 pub struct Material {
-    /// Reflectance, in [0, 1]; at normal incidence for metal. Mix and opacity: the amount, as the
-    /// mean of the channels. Thin glass: transmittance. For an open glass sheet its unit mean
+    /// Reflectance, in [0, 1]; at normal incidence for metal. Mix, opacity and graded: the amount, as
+    /// the mean of the channels. Thin glass: transmittance. For an open glass sheet its unit mean
     /// normal; zero for closed glass.
     pub reflectance: Vec3,
     /// Number of its [`Bsdf`](super::materials::Bsdf).
@@ -124,24 +124,25 @@ pub struct Material {
     /// Glass: absorption coefficient, per scene unit.
     pub absorption: Vec3,
     /// Glass, plastic: index of refraction relative to the outside. Opacity: cutoff of a mask, or
-    /// 0.
+    /// 0. Graded: the amount of the first material.
     pub ior: Real,
     /// Index of the texture that replaces `reflectance`, or [`NONE`].
     pub texture: u32,
     /// Microfacet lobes: GGX alpha, `roughness^2`; 0 for a smooth coat. Rough diffuse: roughness.
-    /// Translucent: fraction transmitted.
+    /// Translucent: fraction transmitted. Graded: number of materials per unit of the amount.
     pub alpha: Real,
     /// World (x, z) of the scene's origin, where planar uv starts, modulo the texture's period.
     pub planar_origin: Vec2,
     /// Conductor: index of refraction relative to the outside, per channel. Rough glass: lowest
     /// coefficients of the polynomial `albedo` from inside; `k` and `mean_fresnel` hold the others.
     pub eta: Vec3,
-    /// Mix, opacity: index of the first material; two-sided: that of the front. Plastic: 1 if light
+    /// Mix, opacity, graded: index of the first material; two-sided: that of the front. Plastic: 1 if light
     /// takes on the base's color at each reflection inside, else 0.
     pub first: u32,
     /// Conductor: extinction coefficient relative to the outside, per channel.
     pub k: Vec3,
-    /// Mix: index of the second material; two-sided: that of the back.
+    /// Mix: index of the second material; two-sided: that of the back. Graded: number of materials
+    /// after the first.
     pub second: u32,
     /// Microfacet lobes: mean over the hemisphere of the Fresnel reflectance (conductor).
     pub mean_fresnel: Vec3,
@@ -157,8 +158,18 @@ pub struct Material {
     pub stores: u32,
     /// 1 if the material, or one that it consists of, has a texture.
     pub textured: u32,
-    /// Padding to 16 bytes.
-    pub pad: [u32; 2],
+    /// Index of the texture that gives the shading normal, or [`NONE`].
+    pub normal_map: u32,
+    /// Factor on the first two components of that normal.
+    pub normal_strength: Real,
+    /// Index of the texture that gives the height of bumps, or [`NONE`].
+    pub bump_map: u32,
+    /// Height of a texel of value 1, scene units.
+    pub bump_height: Real,
+    /// 1 if one of the two textures bends the shading normal.
+    pub bent: u32,
+    /// Index of refraction of the outside over that of a clear coat above the material; 0 without.
+    pub coated: Real,
 }
 
 impl Material {
@@ -181,7 +192,12 @@ impl Material {
         albedo_high: Vec4::ZERO,
         stores: 0,
         textured: 0,
-        pad: [0; 2],
+        normal_map: NONE,
+        normal_strength: 1.0,
+        bump_map: NONE,
+        bump_height: 0.0,
+        bent: 0,
+        coated: 0.0,
     };
 }
 

@@ -52,11 +52,11 @@ fn eye_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgroups)
             continue;
         }
         //#end
-        var p = shading_point(s, -path.ray.direction, path.interior);
+        var p = shading_point(hit, s, -path.ray.direction, path.interior);
         //#if layered
         if is_layered(p.lobe.bsdf) {
             let u = rng_next(&rng);
-            path.throughput *= choose_layer(&p, u.x);
+            path.throughput *= choose_layer(hit, &p, u.x);
         }
         //#end
         var only_focused = false;

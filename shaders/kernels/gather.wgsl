@@ -195,7 +195,7 @@ fn gather_class(point: VisiblePoint, frame: Frame, photon_class: u32, radius_sq:
                                 }
                             }
                             //#else
-                            //#if attributes
+                            //#if attributes || maps
                             if !flat_normal {
                                 let wi = unit(toward_light);
                                 flux *= max(dot(wi, n), 0.0) / max(dot(wi, ng), COS_MIN);

@@ -56,14 +56,14 @@ fn photon_trace(@builtin(global_invocation_id) gid: vec3u, @builtin(num_workgrou
         }
         //#end
         // choose a layer
-        var p = shading_point(s, wo, interior);
+        var p = shading_point(hit, s, wo, interior);
         var stores = !is_specular(p.lobe.bsdf) && max_component(p.lobe.reflectance) > 0.0;
         //#if layered
         var layer = 1.0;
         if is_layered(p.lobe.bsdf) {
             stores = scene.materials[p.lobe.material].stores != 0u;
             let choice = rng_next(&rng);
-            layer = choose_layer(&p, choice.x);
+            layer = choose_layer(hit, &p, choice.x);
         }
         //#end
         // store a record at non-specular hits, unless shadow rays account for the light

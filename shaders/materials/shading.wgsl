@@ -14,6 +14,20 @@ struct Lobe {
     //#end
 }
 
+//#if coated
+fn coated(lobe: Lobe, cos: f32) -> f32 {
+    let ior = scene.materials[lobe.material].coated;
+    if ior == 0.0 {
+        return 1.0;
+    }
+    return 1.0 - fresnel(abs(cos), ior).reflectance;
+}
+
+fn eval_rough(lobe: Lobe, n: vec3f, wo: vec3f, wi: vec3f) -> vec3f {
+    return eval_rough_uncoated(lobe, n, wo, wi) * coated(lobe, dot(wi, n));
+}
+//#end
+
 //#if scene
 const NARROW: f32 = 0.08;
 const NARROW_GLASS: f32 = 0.3;
@@ -29,6 +43,9 @@ struct ShadingPoint {
     ng: vec3f,
     ns: vec3f,
     n: vec3f,
+    //#if maps
+    bent: bool,
+    //#end
     lobe: Lobe,
 }
 
@@ -66,6 +83,11 @@ fn lobe_at(material: u32, uv: vec2f) -> Lobe {
 
 //#if lobe_parameters
 fn reads_table(lobe: Lobe) -> bool {
+    //#if coated
+    if scene.materials[lobe.material].coated > 0.0 {
+        return true;
+    }
+    //#end
     if lobe.bsdf == MATERIAL_METAL {
         return scene.materials[lobe.material].mean_albedo < 1.0;
     }
@@ -77,7 +99,8 @@ fn toward(v: vec3f, w: vec3f) -> vec3f {
     return select(-v, v, dot(v, w) >= 0.0);
 }
 
-fn shading_point(s: Surface, wo: vec3f, interior: Interior) -> ShadingPoint {
+fn shading_point(hit: Hit, surface: Surface, wo: vec3f, interior: Interior) -> ShadingPoint {
+    var s = surface;
     var lobe = lobe_at(s.material, s.uv);
     //#if rough_glass
     if lobe.bsdf == MATERIAL_ROUGH_GLASS {
@@ -85,12 +108,47 @@ fn shading_point(s: Surface, wo: vec3f, interior: Interior) -> ShadingPoint {
         lobe.reflectance = vec3f(relative_ior(s, wo, interior, beyond));
     }
     //#end
+    //#if maps
+    if scene.materials[s.material].bent != 0u {
+        s.shading = mapped_normal(s.material, hit, s);
+    }
+    //#end
     let ng = toward(s.normal, wo);
-    let ns = toward(s.shading, ng);
-    // wide lobes do not depend on the viewing direction
-    let n = select(ng, ns, is_wide(lobe.bsdf) || dot(wo, ns) > 0.0);
-    return ShadingPoint(s, wo, ng, ns, n, lobe);
+    var p: ShadingPoint;
+    p.s = s;
+    p.wo = wo;
+    p.ng = ng;
+    //#if maps
+    p.bent = scene.materials[s.material].bent != 0u;
+    //#end
+    p.lobe = lobe;
+    set_normals(&p);
+    return p;
 }
+
+fn set_normals(p: ptr<function, ShadingPoint>) {
+    (*p).ns = toward((*p).s.shading, (*p).ng);
+    // wide lobes do not depend on the viewing direction
+    let faces = is_wide((*p).lobe.bsdf) || dot((*p).wo, (*p).ns) > 0.0;
+    (*p).n = select((*p).ng, (*p).ns, faces);
+    //#if maps
+    if (*p).bent && is_reflector((*p).lobe.bsdf) {
+        (*p).n = facing_normal((*p).ns, (*p).ng, (*p).wo, (*p).lobe.alpha);
+    }
+    //#end
+}
+
+//#if maps
+fn facing_normal(ns: vec3f, ng: vec3f, wo: vec3f, alpha: f32) -> vec3f {
+    let wi = mirrored(wo, ns);
+    let least = min(2.0 * alpha, dot(wo, ng));
+    let lift = least - dot(wi, ng);
+    if lift <= 0.0 {
+        return ns;
+    }
+    return unit(wo + renormalized(wi + ng * lift));
+}
+//#end
 
 fn mirror_normal(p: ShadingPoint) -> vec3f {
     return select(p.n, p.ng, dot(mirrored(p.wo, p.n), p.ng) <= 0.0);
@@ -146,8 +204,29 @@ fn renormalized(v: vec3f) -> vec3f {
     return v * (1.0 / sqrt(dot(v, v)));
 }
 
+//#if coated
+fn sample_rough(p: ShadingPoint, u: vec3f, mode: u32) -> Sample {
+    let drawn = sample_rough_uncoated(p, u, mode);
+    return Sample(drawn.direction, drawn.weight * coated(p.lobe, dot(drawn.direction, p.n)));
+}
+
+fn scatter_specular(p: ShadingPoint, interior: Interior, u: f32, mode: u32) -> Scatter {
+    let s = scatter_specular_uncoated(p, interior, u, mode);
+    return Scatter(s.direction, s.interior, s.weight * coated(p.lobe, dot(s.direction, p.n)));
+}
+//#end
+
 fn scatter_rough(p: ShadingPoint, interior: Interior, u: vec3f, mode: u32) -> Scatter {
+    //#if maps
+    var drawn: Sample;
+    if mode == IMPORTANCE && p.bent {
+        drawn = sample_adjoint(p, u);
+    } else {
+        drawn = sample_rough(p, u, mode);
+    }
+    //#else
     let drawn = sample_rough(p, u, mode);
+    //#end
     //#if rough_glass
     if is_body(p.lobe.bsdf) && dot(drawn.direction, p.ng) < 0.0 {
         return Scatter(drawn.direction, interior_beyond(p.s, p.wo, interior), drawn.weight);
@@ -156,8 +235,26 @@ fn scatter_rough(p: ShadingPoint, interior: Interior, u: vec3f, mode: u32) -> Sc
     return Scatter(drawn.direction, interior, drawn.weight);
 }
 
+//#if maps
+fn sample_adjoint(p: ShadingPoint, u: vec3f) -> Sample {
+    if !is_reflector(p.lobe.bsdf) {
+        return sample_rough(p, u, IMPORTANCE);
+    }
+    let direction = sample_rough(p, u, RADIANCE).direction;
+    let cos = dot(direction, p.ng);
+    let pdf = pdf_rough(p.lobe, p.n, p.wo, direction);
+    if cos <= 0.0 || pdf <= 0.0 {
+        return Sample(direction, vec3f(0.0));
+    }
+    let n = facing_normal(p.ns, p.ng, direction, p.lobe.alpha);
+    let f = eval_rough(p.lobe, n, direction, p.wo);
+    let arrived = max(dot(p.wo, p.ng), ADJOINT_COS_MIN);
+    return Sample(direction, f * (cos / (arrived * pdf)));
+}
+//#end
+
 //#if layered
-const LAYERS: u32 = 8u;
+const LAYERS: u32 = 12u;
 
 struct Layer {
     lobe: Lobe,
@@ -170,20 +267,24 @@ fn amount_at(p: ShadingPoint) -> f32 {
     return (color.x + color.y + color.z) * (1.0 / 3.0);
 }
 
-fn choose_layer(p: ptr<function, ShadingPoint>, u: f32) -> f32 {
+fn choose_layer(hit: Hit, p: ptr<function, ShadingPoint>, u: f32) -> f32 {
     var layer = Layer((*p).lobe, 1.0, u);
     var weight = 1.0;
     for (var k = 0u; k < LAYERS; k += 1u) {
         if is_layered((*p).lobe.bsdf) {
             layer = choose_once(*p, layer.u);
+            //#if maps
+            let material = layer.lobe.material;
+            if material != (*p).lobe.material && scene.materials[material].bent != 0u {
+                (*p).s.shading = mapped_normal(material, hit, (*p).s);
+                (*p).bent = true;
+            }
+            //#end
             (*p).lobe = layer.lobe;
             weight *= layer.weight;
         }
     }
-    // wide lobes do not depend on the viewing direction
-    if is_wide((*p).lobe.bsdf) {
-        (*p).n = (*p).ns;
-    }
+    set_normals(p);
     return weight;
 }
 //#end

@@ -74,6 +74,10 @@ fn placed_point(instance: Instance, p: vec3f) -> vec3f {
         + instance.column_z * p.z;
 }
 
+fn placed_direction(instance: Instance, d: vec3f) -> vec3f {
+    return (instance.column_x * d.x + instance.column_y * d.y) + instance.column_z * d.z;
+}
+
 fn placed_error(instance: Instance, error: f32, n: vec3f, inverse_length: f32) -> f32 {
     let a = abs(n);
     let own = ((error + a.x * instance.slack.x) + a.y * instance.slack.y) + a.z * instance.slack.z;

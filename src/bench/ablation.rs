@@ -23,13 +23,7 @@ use crate::tables::*;
 /// be added alone or that change the image.
 pub fn with_unused(scene: &SceneTables, feature: Feature) -> Option<SceneTables> {
     let mut scene = scene.clone();
-    let material = |bsdf| Material {
-        kind: bsdf as u32,
-        ior: 1.5,
-        alpha: 0.1,
-        texture: NONE,
-        ..Material::zeroed()
-    };
+    let material = |bsdf| Material { kind: bsdf as u32, ior: 1.5, alpha: 0.1, ..Material::EMPTY };
     let light = |kind| Light { kind, ..Light::zeroed() };
     let area = |shape: u32| Light {
         kind: LightKind::Area as u32,
@@ -53,6 +47,9 @@ pub fn with_unused(scene: &SceneTables, feature: Feature) -> Option<SceneTables>
             scene.profile_points.push(Vec2::ZERO);
         }
         Feature::Material(bsdf) => scene.materials.push(material(bsdf)),
+        Feature::Coated => {
+            scene.materials.push(Material { coated: 1.0 / 1.5, ..material(Bsdf::Metal) });
+        }
         Feature::LobeParameters => scene.materials.push(material(Bsdf::Conductor)),
         Feature::Layered => scene.materials.push(material(Bsdf::Mix)),
         Feature::Absorption => {
@@ -70,6 +67,15 @@ pub fn with_unused(scene: &SceneTables, feature: Feature) -> Option<SceneTables>
             });
             scene.texels.resize(scene.texels.len() + 257, 0);
         }
+        Feature::NormalMap | Feature::BumpMap => {
+            let map = scene.textures.len() as u32;
+            scene.textures.push(Texture { kind: TEXTURE_CHECKER, ..Texture::zeroed() });
+            let maps = match feature {
+                Feature::NormalMap => Material { normal_map: map, ..material(Bsdf::Diffuse) },
+                _ => Material { bump_map: map, ..material(Bsdf::Diffuse) },
+            };
+            scene.materials.push(Material { bent: 1, ..maps });
+        }
         Feature::AreaSphere => {
             scene.spheres.push(Sphere::zeroed());
             scene.lights.push(area(KIND_SPHERE));
@@ -86,6 +92,7 @@ pub fn with_unused(scene: &SceneTables, feature: Feature) -> Option<SceneTables>
         Feature::Spot => scene.lights.push(light(LightKind::Spot as u32)),
         // implied by one of the features above
         Feature::Textures
+        | Feature::Maps
         | Feature::Specular
         | Feature::Lobes
         | Feature::Continued

@@ -6,3 +6,4 @@ use super::{math, real, shapes, tables};
 pub mod instances;
 pub mod intersect;
 pub mod surface;
+pub mod tangents;

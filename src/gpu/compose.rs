@@ -45,12 +45,21 @@ const SHARED_CODE: [(&str, &[Bsdf]); 2] = [
             Bsdf::SmoothMetal,
             Bsdf::Glass,
             Bsdf::RoughGlass,
+            Bsdf::RoughPane,
             Bsdf::ThinGlass,
+            Bsdf::Clearcoat,
         ],
     ),
     (
         "microfacet",
-        &[Bsdf::Metal, Bsdf::Conductor, Bsdf::Coat, Bsdf::PlasticBase, Bsdf::RoughGlass],
+        &[
+            Bsdf::Metal,
+            Bsdf::Conductor,
+            Bsdf::Coat,
+            Bsdf::PlasticBase,
+            Bsdf::RoughGlass,
+            Bsdf::RoughPane,
+        ],
     ),
 ];
 

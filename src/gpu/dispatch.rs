@@ -27,9 +27,12 @@ pub fn dispatch(kernel: Kernel, features: Features) -> String {
     let is = |name: &str, kinds: &mut dyn Iterator<Item = &Bsdf>| {
         test_of(name, &mut kinds.map(|bsdf| *bsdf as u32))
     };
+    // functions of `shading.wgsl` add what a coat takes
+    let coated = features.has(Feature::Coated);
+    let name = |function: &str| function.to_owned() + if coated { "_uncoated" } else { "" };
     out += &is("transmits", &mut rough.iter().filter(|bsdf| bsdf.transmits()));
     out += &cases(
-        "eval_rough(lobe: Lobe, n: vec3f, wo: vec3f, wi: vec3f) -> vec3f",
+        &format!("{}(lobe: Lobe, n: vec3f, wo: vec3f, wi: vec3f) -> vec3f", name("eval_rough")),
         ("lobe.bsdf", "eval", "(lobe, n, wo, wi)", "vec3f(0.0)"),
         &rough,
     );
@@ -40,6 +43,7 @@ pub fn dispatch(kernel: Kernel, features: Features) -> String {
     out += &is("is_specular", &mut specular.iter());
     out += &is("is_parametric", &mut rough.iter().filter(|bsdf| bsdf.is_parametric()));
     out += &is("is_body", &mut scattering.iter().filter(|bsdf| bsdf.is_body()));
+    out += &is("is_reflector", &mut rough.iter().filter(|bsdf| bsdf.is_reflector()));
     out += &is("is_wide", &mut rough.iter().filter(|bsdf| bsdf.is_wide()));
     out += &cases(
         "pdf_rough(lobe: Lobe, n: vec3f, wo: vec3f, wi: vec3f) -> f32",
@@ -47,12 +51,15 @@ pub fn dispatch(kernel: Kernel, features: Features) -> String {
         &rough,
     );
     out += &cases(
-        "sample_rough(p: ShadingPoint, u: vec3f, mode: u32) -> Sample",
+        &format!("{}(p: ShadingPoint, u: vec3f, mode: u32) -> Sample", name("sample_rough")),
         ("p.lobe.bsdf", "sample", "(p, u, mode)", "Sample(p.wo, vec3f(0.0))"),
         &rough,
     );
     out += &cases(
-        "scatter_specular(p: ShadingPoint, interior: Interior, u: f32, mode: u32) -> Scatter",
+        &format!(
+            "{}(p: ShadingPoint, interior: Interior, u: f32, mode: u32) -> Scatter",
+            name("scatter_specular")
+        ),
         ("p.lobe.bsdf", "scatter", "(p, interior, u, mode)", "Scatter(p.wo, interior, vec3f(0.0))"),
         &specular,
     );

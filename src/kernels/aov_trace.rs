@@ -129,10 +129,10 @@ pub fn aov_trace(
             last.pdf = 0.0;
             continue;
         }
-        let mut p = shading_point(scene, &s, -path.ray.direction, &path.interior);
+        let mut p = shading_point(scene, &hit, &s, -path.ray.direction, &path.interior);
         if p.lobe.bsdf.is_layered() {
             let u = rng_next(&mut rng);
-            path.throughput *= choose_layer(scene, &mut p, u.x);
+            path.throughput *= choose_layer(scene, &hit, &mut p, u.x);
         }
         if !featured && !p.lobe.bsdf.is_specular() {
             albedo = path.throughput * p.lobe.reflectance;

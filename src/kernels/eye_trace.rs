@@ -53,10 +53,10 @@ pub fn eye_trace(
             last.pdf = 0.0;
             continue;
         }
-        let mut p = shading_point(scene, &s, -path.ray.direction, &path.interior);
+        let mut p = shading_point(scene, &hit, &s, -path.ray.direction, &path.interior);
         if p.lobe.bsdf.is_layered() {
             let u = rng_next(&mut rng);
-            path.throughput *= choose_layer(scene, &mut p, u.x);
+            path.throughput *= choose_layer(scene, &hit, &mut p, u.x);
         }
         // continue at a narrow lobe, or gather there the photons that a continued path cannot find
         let mut only_focused = false;

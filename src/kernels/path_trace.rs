@@ -45,10 +45,10 @@ pub fn path_trace(
         if path.bounce == dispatch.max_bounces {
             break;
         }
-        let mut p = shading_point(scene, &s, -ray.direction, &path.interior);
+        let mut p = shading_point(scene, &hit, &s, -ray.direction, &path.interior);
         if p.lobe.bsdf.is_layered() {
             let u = rng_next(&mut rng);
-            path.throughput *= choose_layer(scene, &mut p, u.x);
+            path.throughput *= choose_layer(scene, &hit, &mut p, u.x);
         }
         let scattered = if p.lobe.bsdf.is_specular() {
             last.pdf = 0.0;

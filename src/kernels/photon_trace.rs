@@ -127,7 +127,7 @@ impl PhotonPath {
             self.hidden += 1;
             return true;
         }
-        let mut p = shading_point(scene, &s, wo, &self.interior);
+        let mut p = shading_point(scene, hit, &s, wo, &self.interior);
         // store a record at non-specular hits, unless shadow rays account for the light; shadow
         // rays end at faces, hidden ones included
         let mut stores = self.bounce > 0 || self.hidden > 0 || !sampled;
@@ -138,7 +138,7 @@ impl PhotonPath {
             }
             stores = false;
             let u = rng_next(&mut self.rng);
-            layer = choose_layer(scene, &mut p, u.x);
+            layer = choose_layer(scene, hit, &mut p, u.x);
         }
         // scatter
         let specular = p.lobe.bsdf.is_specular();

@@ -14,13 +14,19 @@
 
 use super::{geometry, math, real, shapes, tables};
 use interior::{Interior, interior_beyond};
+use maps::mapped_normal;
 use real::{Real, Vec3};
-use shading::{Layer, Lobe, NARROW, NARROW_GLASS, Sample, Scatter, ShadingPoint};
+use shading::{
+    ADJOINT_COS_MIN, IMPORTANCE, Layer, Lobe, NARROW, NARROW_GLASS, RADIANCE, Sample, Scatter,
+    ShadingPoint, facing_normal, set_normals,
+};
+use shapes::ray::Hit;
 use tables::{Material, SceneTables};
 
 pub mod enclosing;
 pub mod fresnel;
 pub mod interior;
+pub mod maps;
 pub mod microfacet;
 pub mod shading;
 pub mod texture;
@@ -244,6 +250,8 @@ materials! {
         PlasticBase = plastic_base, eval_plastic_base, sample_plastic_base, pdf_plastic_base;
         /// Rough dielectric.
         RoughGlass = rough_glass, eval_rough_glass, sample_rough_glass, pdf_rough_glass;
+        /// Thin sheet with rough faces.
+        RoughPane = rough_pane, eval_rough_pane, sample_rough_pane, pdf_rough_pane;
     }
     specular {
         /// Perfect mirror.
@@ -266,11 +274,15 @@ materials! {
         TwoSided = two_sided, choose_two_sided;
         /// A material that is partly transparent.
         Opacity = opacity, choose_opacity;
+        /// A series of materials, by the value of a texture.
+        Graded = graded, choose_graded;
+        /// A clear coat over another material.
+        Clearcoat = clearcoat, choose_clearcoat;
     }
 }
 
 /// Greatest depth of layered materials that contain others.
-pub const LAYERS: usize = 8;
+pub const LAYERS: usize = 12;
 
 impl Bsdf {
     /// Lobes that the entry `m` of this kind, itself not counted, chooses from; other entries of
@@ -279,10 +291,13 @@ impl Bsdf {
         match self {
             Self::Plastic if m.alpha > 0.0 => &[Self::PlasticBase, Self::Coat],
             Self::Plastic => &[Self::PlasticBase, Self::Mirror],
+            Self::Clearcoat if m.alpha > 0.0 => &[Self::Coat],
+            Self::Clearcoat => &[Self::Mirror],
             Self::Opacity => &[Self::Null],
-            Self::Mix | Self::TwoSided => &[],
+            Self::Mix | Self::TwoSided | Self::Graded => &[],
             Self::Diffuse | Self::RoughDiffuse | Self::Translucent | Self::Metal => &[],
             Self::Conductor | Self::Coat | Self::PlasticBase | Self::RoughGlass => &[],
+            Self::RoughPane => &[],
             Self::Mirror | Self::SmoothMetal | Self::Glass | Self::ThinGlass | Self::Null => &[],
         }
     }
@@ -291,13 +306,19 @@ impl Bsdf {
     /// so that the gather reads the material table.
     #[inline(always)]
     pub fn reads_table(self, m: &Material) -> bool {
-        self.is_parametric() || self == Self::Metal && m.mean_albedo < 1.0
+        self.is_parametric() || m.coated > 0.0 || self == Self::Metal && m.mean_albedo < 1.0
     }
 
     /// Returns true for the surface of a glass body, with a medium inside.
     #[inline(always)]
     pub const fn is_body(self) -> bool {
         matches!(self, Self::Glass | Self::RoughGlass)
+    }
+
+    /// Returns true for a rough material that reflects about the mirror direction only.
+    #[inline(always)]
+    pub const fn is_reflector(self) -> bool {
+        !self.is_specular() && !self.is_layered() && !self.is_wide() && !self.transmits()
     }
 
     /// Returns true if a lobe of the width `alpha` is so narrow that eye paths continue at it.
@@ -312,40 +333,52 @@ impl Bsdf {
     pub const fn is_parametric(self) -> bool {
         match self {
             Self::Conductor | Self::Coat | Self::PlasticBase | Self::Plastic => true,
-            Self::RoughGlass => true,
+            Self::RoughGlass | Self::RoughPane | Self::Clearcoat => true,
             Self::Diffuse | Self::RoughDiffuse | Self::Translucent | Self::Metal => false,
             Self::Mirror | Self::SmoothMetal | Self::Glass | Self::ThinGlass | Self::Null => false,
-            Self::Mix | Self::TwoSided | Self::Opacity => false,
+            Self::Mix | Self::TwoSided | Self::Opacity | Self::Graded => false,
         }
     }
 }
 
-/// Chooses a lobe if the material is layered, by the random number `u`. Returns the factor of the
-/// path's throughput.
+/// Chooses a lobe if the material at `hit` is layered, by the random number `u`. Returns the factor
+/// of the path's throughput.
 #[inline(always)]
-pub fn choose_layer<'a>(scene: &'a SceneTables, p: &mut ShadingPoint<'a>, u: Real) -> Real {
-    let Layer { lobe, weight, .. } = chosen_layer(scene, &{ *p }, u);
-    p.lobe = lobe;
-    // wide lobes do not depend on the viewing direction
-    if lobe.bsdf.is_wide() {
-        p.n = p.ns;
-    }
+pub fn choose_layer<'a>(
+    scene: &'a SceneTables,
+    hit: &Hit,
+    p: &mut ShadingPoint<'a>,
+    u: Real,
+) -> Real {
+    let (chosen, weight) = chosen_layer(scene, *hit, &{ *p }, u);
+    *p = chosen;
     weight
 }
 
 #[inline(never)]
-fn chosen_layer<'a>(scene: &'a SceneTables, p: &ShadingPoint<'a>, u: Real) -> Layer<'a> {
+fn chosen_layer<'a>(
+    scene: &'a SceneTables,
+    hit: Hit,
+    p: &ShadingPoint<'a>,
+    u: Real,
+) -> (ShadingPoint<'a>, Real) {
     let mut p = *p;
     let mut layer = Layer { lobe: p.lobe, weight: 1.0, u };
     let mut weight = 1.0;
     for _ in 0..LAYERS {
         if p.lobe.bsdf.is_layered() {
             layer = choose_once(scene, &p, layer.u);
+            let other = layer.lobe.material != p.lobe.material;
             p.lobe = layer.lobe;
             weight *= layer.weight;
+            if other && p.lobe.m.bent != 0 {
+                p.s.shading = mapped_normal(scene, p.lobe.m, hit, p.s);
+                p.bent = true;
+            }
         }
     }
-    Layer { weight, ..layer }
+    set_normals(&mut p);
+    (p, weight)
 }
 
 // The most common materials are inlined into kernels, the others called: code of materials that a
@@ -359,7 +392,8 @@ pub fn eval_rough(lobe: &Lobe, n: Vec3, wo: Vec3, wi: Vec3) -> Vec3 {
     if lobe.bsdf == Bsdf::Diffuse {
         return diffuse::eval_diffuse(lobe, n, wo, wi);
     }
-    eval_any(&{ *lobe }, n, wo, wi)
+    let f = eval_any(&{ *lobe }, n, wo, wi);
+    if lobe.m.coated > 0.0 { f * coated(lobe, wi.dot(n)) } else { f }
 }
 
 /// Samples a direction at a rough surface from three random numbers.
@@ -368,7 +402,38 @@ pub fn sample_rough(p: &ShadingPoint, u: Vec3, mode: u32) -> Sample {
     if p.lobe.bsdf == Bsdf::Diffuse {
         return diffuse::sample_diffuse(p, u, mode);
     }
-    sample_any(&{ *p }, u, mode)
+    let mut drawn = sample_any(&{ *p }, u, mode);
+    if p.lobe.m.coated > 0.0 {
+        drawn.weight *= coated(&p.lobe, drawn.direction.dot(p.n));
+    }
+    drawn
+}
+
+/// Fraction of the light of a lobe below a clear coat that passes the coat in a direction with
+/// cosine `cos` (see [`clearcoat`]).
+#[inline(always)]
+fn coated(lobe: &Lobe, cos: Real) -> Real {
+    1.0 - fresnel::fresnel(cos.abs(), lobe.m.coated).reflectance
+}
+
+/// Samples the direction of a photon at a surface with maps. The shading normal of a reflector
+/// depends on the viewer, whose direction is sampled: the adjoint follows from the BSDF that the
+/// viewer sees (Veach 1997, eq. 5.19).
+#[inline(never)]
+fn sample_adjoint(p: &ShadingPoint, u: Vec3) -> Sample {
+    if !p.lobe.bsdf.is_reflector() {
+        return sample_rough(p, u, IMPORTANCE);
+    }
+    let Sample { direction, .. } = sample_rough(p, u, RADIANCE);
+    let cos = direction.dot(p.ng);
+    let pdf = pdf_rough(&p.lobe, p.n, p.wo, direction);
+    if cos <= 0.0 || pdf <= 0.0 {
+        return Sample { direction, weight: Vec3::ZERO };
+    }
+    let n = facing_normal(p.ns, p.ng, direction, p.lobe.alpha);
+    let f = eval_rough(&p.lobe, n, direction, p.wo);
+    let arrived = p.wo.dot(p.ng).max(ADJOINT_COS_MIN);
+    Sample { direction, weight: f * (cos / (arrived * pdf)) }
 }
 
 /// Density of [`sample_rough`], sr^-1.
@@ -389,8 +454,16 @@ pub fn scatter_specular(
 ) -> Scatter {
     match p.lobe.bsdf {
         Bsdf::Glass => glass::scatter_glass(scene, p, interior, u, mode),
-        Bsdf::Mirror => mirror::scatter_mirror(scene, p, interior, u, mode),
-        _ => scatter_any(scene, &{ *p }, &{ *interior }, u, mode),
+        Bsdf::Mirror if p.lobe.m.coated == 0.0 => {
+            mirror::scatter_mirror(scene, p, interior, u, mode)
+        }
+        _ => {
+            let mut scattered = scatter_any(scene, &{ *p }, &{ *interior }, u, mode);
+            if p.lobe.m.coated > 0.0 {
+                scattered.weight *= coated(&p.lobe, scattered.direction.dot(p.n));
+            }
+            scattered
+        }
     }
 }
 
@@ -403,7 +476,11 @@ pub fn scatter_rough(
     u: Vec3,
     mode: u32,
 ) -> Scatter {
-    let Sample { direction, weight } = sample_rough(p, u, mode);
+    let Sample { direction, weight } = if mode == IMPORTANCE && p.bent {
+        sample_adjoint(&{ *p }, u)
+    } else {
+        sample_rough(p, u, mode)
+    };
     let mut interior = *interior;
     if p.lobe.bsdf.is_body() && direction.dot(p.ng) < 0.0 {
         interior = interior_beyond(scene, &p.s, p.wo, &interior);

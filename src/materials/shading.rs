@@ -4,8 +4,10 @@
 use super::Bsdf;
 use super::geometry::surface::Surface;
 use super::interior::{Interior, interior_beyond, relative_ior};
-use super::math::{INV_PI, mirrored};
+use super::maps::mapped_normal;
+use super::math::{INV_PI, mirrored, unit};
 use super::real::{Real, Vec2, Vec3};
+use super::shapes::ray::Hit;
 use super::tables::*;
 use super::texture::eval_texture;
 
@@ -15,7 +17,7 @@ pub const RADIANCE: u32 = 0;
 pub const IMPORTANCE: u32 = 1;
 
 /// Lower bound of the cosine to the geometric normal that the shading-normal correction divides by.
-const ADJOINT_COS_MIN: Real = 1e-2;
+pub const ADJOINT_COS_MIN: Real = 1e-2;
 
 /// Material parameters at a point. A rough material needs nothing else to be evaluated, so a
 /// visible point stores these.
@@ -70,8 +72,11 @@ pub struct ShadingPoint<'a> {
     pub ng: Vec3,
     /// Interpolated normal on the side of `ng`.
     pub ns: Vec3,
-    /// Shading normal: `ns`, or `ng` if `wo` is behind `ns` and the material is not wide.
+    /// Shading normal: `ns`, or `ng` if `wo` is behind `ns` and the material is not wide; see
+    /// [`set_normals`] for surfaces with maps.
     pub n: Vec3,
+    /// True if a map has bent `ns`.
+    pub bent: bool,
     /// Material parameters.
     pub lobe: Lobe<'a>,
 }
@@ -127,11 +132,12 @@ pub fn toward(v: Vec3, w: Vec3) -> Vec3 {
     if v.dot(w) >= 0.0 { v } else { -v }
 }
 
-/// Computes the normals and material parameters of a surface viewed from `wo`; `interior` is the
-/// interior list on that side.
+/// Computes the normals and material parameters of the surface `s` at `hit`, viewed from `wo`;
+/// `interior` is the interior list on that side.
 #[inline(always)]
 pub fn shading_point<'a>(
     scene: &'a SceneTables,
+    hit: &Hit,
     s: &Surface,
     wo: Vec3,
     interior: &Interior,
@@ -141,11 +147,40 @@ pub fn shading_point<'a>(
         let beyond = interior_beyond(scene, s, wo, interior);
         lobe.reflectance = Vec3::splat(relative_ior(scene, s, wo, interior, &beyond));
     }
+    let mut s = *s;
+    if lobe.m.bent != 0 {
+        s.shading = mapped_normal(scene, lobe.m, *hit, s);
+    }
     let ng = toward(s.normal, wo);
-    let ns = toward(s.shading, ng);
+    let mut p = ShadingPoint { s, wo, ng, ns: ng, n: ng, bent: lobe.m.bent != 0, lobe };
+    set_normals(&mut p);
+    p
+}
+
+/// Sets the shading normals from that of the surface.
+#[inline(always)]
+pub fn set_normals(p: &mut ShadingPoint) {
+    p.ns = toward(p.s.shading, p.ng);
     // wide lobes do not depend on the viewing direction
-    let n = if lobe.bsdf.is_wide() || wo.dot(ns) > 0.0 { ns } else { ng };
-    ShadingPoint { s: *s, wo, ng, ns, n, lobe }
+    let faces = p.lobe.bsdf.is_wide() || p.wo.dot(p.ns) > 0.0;
+    p.n = if faces { p.ns } else { p.ng };
+    if p.bent && p.lobe.bsdf.is_reflector() {
+        p.n = facing_normal(p.ns, p.ng, p.wo, p.lobe.alpha);
+    }
+}
+
+/// The normal nearest to `ns` that mirrors most of a lobe of width `alpha` from `wo` to directions
+/// above the surface, whose normal is `ng`. (For mirrors by Keller et al. 2017, "The iray light
+/// transport simulation and rendering system", section 5.)
+#[inline(never)]
+pub fn facing_normal(ns: Vec3, ng: Vec3, wo: Vec3, alpha: Real) -> Vec3 {
+    let wi = mirrored(wo, ns);
+    let least = (2.0 * alpha).min(wo.dot(ng));
+    let lift = least - wi.dot(ng);
+    if lift <= 0.0 {
+        return ns;
+    }
+    unit(wo + renormalized(wi + ng * lift))
 }
 
 /// Normal of a mirror: the shading normal, or the geometric one if the mirrored direction would

@@ -2,6 +2,7 @@
 
 use super::albedo::{Albedo, mean_over_hemisphere};
 use super::image::{period, reduced};
+use super::layers::{Entries, Place};
 use super::materials::microfacet::ALPHA_MIN;
 use super::materials::{Bsdf, LAYERS};
 use super::real::{Real, ToReal, Vec3};
@@ -23,32 +24,30 @@ const NEGLIGIBLE_LOSS_OF_GLASS: f64 = 0.0003;
 /// Difference of indices of refraction below which rough glass is treated as smooth.
 const EQUAL_MEDIA: f64 = 1e-3;
 
-/// Fills the material table: an entry for each material, at its index, then one for each material
-/// below an opacity.
+/// Fills the material table: an entry for each material, at its index, then entries for the
+/// materials that these consist of.
 pub fn pack_materials(scene: &scene::Scene, n: &Normalization, out: &mut SceneTables) {
-    let origin = |m: &scene::Material| {
-        reduced(DVec2::new(n.center.x, n.center.z), period(scene, m)).to_real()
-    };
-    for m in &scene.materials {
-        out.materials.push(Material { planar_origin: origin(m), ..material(m, n.unit) });
-    }
+    let mut entries = Entries::new(scene, n.unit);
     for (i, m) in scene.materials.iter().enumerate() {
+        let origin = reduced(DVec2::new(n.center.x, n.center.z), period(scene, m)).to_real();
+        let place = Place { planar_origin: origin, coated: false };
+        let mut entry = entries.kind(&m.kind, m.roughness_map, place);
+        bend(&mut entry, m, n.unit);
         if let Some(opacity) = &m.opacity {
-            let first = out.materials.len() as u32;
-            let covered = out.materials[i];
-            out.materials.push(covered);
             let cutoff = opacity.cutoff.map_or(0.0, |cutoff| cutoff.max(f64::MIN_POSITIVE));
             let mut cover = Material {
                 kind: Bsdf::Opacity as u32,
                 ior: (cutoff as Real).min(1.0),
-                first,
-                planar_origin: covered.planar_origin,
+                first: entries.push(entry),
+                planar_origin: origin,
                 ..Material::EMPTY
             };
             colored(&mut cover, Some(&opacity.amount));
-            out.materials[i] = cover;
+            entry = cover;
         }
+        entries.table[i] = entry;
     }
+    out.materials = entries.table;
     for i in 0..out.materials.len() {
         out.materials[i].stores = stores(&out.materials, i, LAYERS) as u32;
         out.materials[i].textured = textured(&out.materials, i, LAYERS) as u32;
@@ -62,6 +61,8 @@ fn stores(materials: &[Material], index: usize, depth: usize) -> bool {
     match Bsdf::of(m.kind) {
         Bsdf::Mix | Bsdf::TwoSided => below(m.first) || below(m.second),
         Bsdf::Opacity => below(m.first),
+        Bsdf::Clearcoat => m.alpha > 0.0 || below(m.first),
+        Bsdf::Graded => (m.first..=m.first + m.second).any(below),
         bsdf => !bsdf.is_specular(),
     }
 }
@@ -71,14 +72,28 @@ fn textured(materials: &[Material], index: usize, depth: usize) -> bool {
     let Some(m) = materials.get(index).filter(|_| depth > 0) else { return false };
     let below = |index: u32| textured(materials, index as usize, depth - 1);
     m.texture != NONE
+        || m.bent != 0
         || match Bsdf::of(m.kind) {
             Bsdf::Mix | Bsdf::TwoSided => below(m.first) || below(m.second),
-            Bsdf::Opacity => below(m.first),
+            Bsdf::Opacity | Bsdf::Graded | Bsdf::Clearcoat => below(m.first),
             _ => false,
         }
 }
 
-fn colored(out: &mut Material, color: Option<&Reflectance>) {
+/// Sets the textures that bend the normal.
+fn bend(out: &mut Material, m: &scene::Material, unit: f64) {
+    if let Some(map) = &m.normal_map {
+        out.normal_map = map.texture as u32;
+        out.normal_strength = map.strength as Real;
+    }
+    if let Some(map) = &m.bump_map {
+        out.bump_map = map.texture as u32;
+        out.bump_height = (map.height / unit) as Real;
+    }
+    out.bent = u32::from(m.normal_map.is_some() || m.bump_map.is_some());
+}
+
+pub fn colored(out: &mut Material, color: Option<&Reflectance>) {
     match color {
         Some(Reflectance::Color(c)) => out.reflectance = rgb(*c),
         Some(Reflectance::Texture(t)) => out.texture = *t as u32,
@@ -86,11 +101,12 @@ fn colored(out: &mut Material, color: Option<&Reflectance>) {
     }
 }
 
-fn material(m: &scene::Material, unit: f64) -> Material {
+/// Entry of a material of one kind.
+pub fn material(kind: &MaterialKind, unit: f64) -> Material {
     let mut out = Material::EMPTY;
-    colored(&mut out, m.kind.color());
+    colored(&mut out, kind.color());
     let alpha = |roughness: f64| ((roughness * roughness) as Real).max(ALPHA_MIN);
-    let bsdf = match &m.kind {
+    let bsdf = match kind {
         MaterialKind::Diffuse { roughness, .. } if *roughness > 0.0 => {
             out.alpha = *roughness as Real;
             Bsdf::RoughDiffuse
@@ -145,9 +161,15 @@ fn material(m: &scene::Material, unit: f64) -> Material {
             }
             Bsdf::Plastic
         }
-        MaterialKind::ThinGlass { ior, .. } => {
+        MaterialKind::ThinGlass { ior, roughness, .. } => {
             out.ior = *ior as Real;
-            Bsdf::ThinGlass
+            if *roughness == 0.0 {
+                Bsdf::ThinGlass
+            } else {
+                out.alpha = alpha(*roughness);
+                compensate(&mut out);
+                Bsdf::RoughPane
+            }
         }
         MaterialKind::Mix { materials: [first, second], .. } => {
             (out.first, out.second) = (*first as u32, *second as u32);
@@ -157,6 +179,8 @@ fn material(m: &scene::Material, unit: f64) -> Material {
             (out.first, out.second) = (*front as u32, *back as u32);
             Bsdf::TwoSided
         }
+        // made of other kinds
+        MaterialKind::Principled(_) => Bsdf::Diffuse,
         MaterialKind::Null => {
             out.reflectance = rgb([1.0; 3]);
             Bsdf::Null

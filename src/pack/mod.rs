@@ -5,6 +5,7 @@ mod bodies;
 mod flat_regions;
 mod image;
 mod instances;
+mod layers;
 mod light;
 mod material;
 mod objects;

@@ -82,6 +82,14 @@ features! {
     Checker = "checker",
     /// Image textures.
     Texels = "texels",
+    /// Textures that bend the shading normal.
+    Maps = "maps",
+    /// Textures that give the shading normal.
+    NormalMap = "normal_map",
+    /// Textures that give the height of bumps.
+    BumpMap = "bump_map",
+    /// Materials below a clear coat.
+    Coated = "coated",
     /// Glass bodies that may overlap.
     Nested = "nested",
     /// A lamp or lens that a glass surface crosses, so that its medium is determined point by
@@ -231,6 +239,10 @@ impl Features {
         put(Feature::Textures, !scene.textures.is_empty());
         put(Feature::Checker, scene.textures.iter().any(|t| t.kind == TEXTURE_CHECKER));
         put(Feature::Texels, !scene.texels.is_empty());
+        put(Feature::Coated, scene.materials.iter().any(|m| m.coated > 0.0));
+        put(Feature::Maps, scene.materials.iter().any(|m| m.bent != 0));
+        put(Feature::NormalMap, scene.materials.iter().any(|m| m.normal_map != NONE));
+        put(Feature::BumpMap, scene.materials.iter().any(|m| m.bump_map != NONE));
         let lights = || scene.lights.iter().map(|l| LightKind::of(l.kind));
         let light = |kind| lights().any(|k| k == kind);
         let area = |kind| {

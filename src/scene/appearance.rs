@@ -105,22 +105,59 @@ pub struct Material {
     pub kind: MaterialKind,
     /// Fraction of the surface that is there, if not all of it; not for glass and not for lights.
     pub opacity: Option<Opacity>,
+    /// Index of a texture in [`super::Scene::textures`] whose values, the means of the channels,
+    /// are factors of the kind's roughness.
+    pub roughness_map: Option<usize>,
+    /// Texture that gives the shading normal.
+    pub normal_map: Option<NormalMap>,
+    /// Texture that gives the height of bumps.
+    pub bump_map: Option<BumpMap>,
 }
 
 impl Material {
     /// An opaque material without a name.
     pub const fn new(kind: MaterialKind) -> Self {
-        Self { name: String::new(), kind, opacity: None }
+        Self {
+            name: String::new(),
+            kind,
+            opacity: None,
+            roughness_map: None,
+            normal_map: None,
+            bump_map: None,
+        }
     }
 
     /// Indices of the textures that the material uses.
     pub fn textures(&self) -> impl Iterator<Item = usize> {
         let opacity = self.opacity.as_ref().map(|opacity| &opacity.amount);
-        [self.kind.color(), opacity].into_iter().flatten().filter_map(|color| match color {
+        let of = |color: &Reflectance| match color {
             Reflectance::Texture(index) => Some(*index),
             Reflectance::Color(_) => None,
-        })
+        };
+        let colors: Vec<_> = self.kind.colors().into_iter().chain(opacity).filter_map(of).collect();
+        let (normal, bump) = (self.normal_map.as_ref(), self.bump_map.as_ref());
+        let maps = [self.roughness_map, normal.map(|map| map.texture), bump.map(|map| map.texture)];
+        colors.into_iter().chain(maps.into_iter().flatten())
     }
+}
+
+/// A texture that gives the shading normal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NormalMap {
+    /// Index into [`super::Scene::textures`]. Its channels are `(x + 1) / 2` of the components along
+    /// the directions in which u and v increase, and along the normal.
+    pub texture: usize,
+    /// Factor on the first two components.
+    pub strength: f64,
+}
+
+/// A texture that gives the height of bumps, along the outer normal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BumpMap {
+    /// Index into [`super::Scene::textures`]; the mean of the channels counts.
+    pub texture: usize,
+    /// Height at the value 1, scene units; negative for dents.
+    pub height: f64,
 }
 
 /// Opacity of a surface, for holes in leaves, nets and lace.
@@ -195,10 +232,12 @@ pub enum MaterialKind {
         /// inside.
         nonlinear: bool,
     },
-    /// Thin sheet of a smooth dielectric, which does not bend light.
+    /// Thin sheet of a dielectric, which does not bend light.
     ThinGlass {
         /// Index of refraction, > 0.
         ior: f64,
+        /// Roughness of both faces in [0, 1]; GGX `alpha = roughness^2`. 0 is smooth.
+        roughness: f64,
         /// Fraction of the transmitted light that is left.
         transmittance: Reflectance,
     },
@@ -216,12 +255,50 @@ pub enum MaterialKind {
         /// Likewise for the other side.
         back: usize,
     },
+    /// Dielectric and metal with common parameters.
+    Principled(Principled),
     /// No material: light passes straight through.
     Null,
 }
 
+/// Parameters of the principled material. Of textures for amounts the mean of the channels counts.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Principled {
+    /// Albedo of the dielectric, and reflectance of the metal at normal incidence.
+    pub base_color: Reflectance,
+    /// Amount of metal; the rest is dielectric.
+    pub metallic: Reflectance,
+    /// Roughness in [0, 1] of all facets but those of the clear coat; GGX `alpha = roughness^2`.
+    pub roughness: f64,
+    /// Index of refraction of the dielectric, >= 1.
+    pub ior: f64,
+    /// Amount of the dielectric's surface that reflects.
+    pub specular: Reflectance,
+    /// Amount of the dielectric that is a thin sheet of glass with the base color.
+    pub transmission: Reflectance,
+    /// Amount of the surface with a clear coat.
+    pub clearcoat: Reflectance,
+    /// Roughness of the clear coat in [0, 1].
+    pub clearcoat_roughness: f64,
+}
+
+impl Principled {
+    /// All parameters that may be textures.
+    fn colors(&self) -> [&Reflectance; 5] {
+        [&self.base_color, &self.metallic, &self.specular, &self.transmission, &self.clearcoat]
+    }
+}
+
 impl MaterialKind {
-    /// The reflectance, transmittance or amount, which may be a texture.
+    /// The reflectances, transmittances and amounts, which may be textures.
+    pub fn colors(&self) -> Vec<&Reflectance> {
+        match self {
+            Self::Principled(principled) => principled.colors().to_vec(),
+            _ => self.color().into_iter().collect(),
+        }
+    }
+
+    /// The reflectance, transmittance or amount of a kind that has only one.
     pub fn color(&self) -> Option<&Reflectance> {
         match self {
             Self::Diffuse { reflectance, .. }
@@ -231,10 +308,47 @@ impl MaterialKind {
             | Self::Plastic { reflectance, .. } => Some(reflectance),
             Self::ThinGlass { transmittance, .. } => Some(transmittance),
             Self::Mix { amount, .. } => Some(amount),
-            Self::Glass { .. } | Self::Conductor { .. } | Self::TwoSided { .. } | Self::Null => {
-                None
-            }
+            Self::Glass { .. }
+            | Self::Conductor { .. }
+            | Self::TwoSided { .. }
+            | Self::Principled(_)
+            | Self::Null => None,
         }
+    }
+
+    /// The roughness, if the kind has one.
+    pub fn roughness(&self) -> Option<f64> {
+        match self {
+            Self::Diffuse { roughness, .. }
+            | Self::Glass { roughness, .. }
+            | Self::Metal { roughness, .. }
+            | Self::Conductor { roughness, .. }
+            | Self::Plastic { roughness, .. }
+            | Self::ThinGlass { roughness, .. }
+            | Self::Principled(Principled { roughness, .. }) => Some(*roughness),
+            Self::Translucent { .. }
+            | Self::Mirror { .. }
+            | Self::Mix { .. }
+            | Self::TwoSided { .. }
+            | Self::Null => None,
+        }
+    }
+
+    /// The kind with another roughness, if it has one.
+    #[must_use]
+    pub fn with_roughness(&self, value: f64) -> Self {
+        let mut kind = self.clone();
+        if let Self::Diffuse { roughness, .. }
+        | Self::Glass { roughness, .. }
+        | Self::Metal { roughness, .. }
+        | Self::Conductor { roughness, .. }
+        | Self::Plastic { roughness, .. }
+        | Self::ThinGlass { roughness, .. }
+        | Self::Principled(Principled { roughness, .. }) = &mut kind
+        {
+            *roughness = value;
+        }
+        kind
     }
 
     /// Indices of the materials that this one consists of.
@@ -250,6 +364,7 @@ impl MaterialKind {
             | Self::Conductor { .. }
             | Self::Plastic { .. }
             | Self::ThinGlass { .. }
+            | Self::Principled(_)
             | Self::Null => None,
         }
     }

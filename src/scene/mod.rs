@@ -37,8 +37,8 @@ mod spans;
 
 pub use aov::{Aov, Aovs};
 pub use appearance::{
-    Filter, ImageData, Material, MaterialKind, Opacity, Reflectance, Rgb, Texels, Texture,
-    TextureKind, Wrap,
+    BumpMap, Filter, ImageData, Material, MaterialKind, NormalMap, Opacity, Principled,
+    Reflectance, Rgb, Texels, Texture, TextureKind, Wrap,
 };
 pub use camera::{Axis, Camera, Projection};
 pub use diagnostics::{Finding, SceneErrors};

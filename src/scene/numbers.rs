@@ -63,4 +63,4 @@ impl Rounded {
 }
 
 /// Greatest depth of materials that contain others; an opacity counts as one level.
-pub const LAYERS: usize = 8;
+pub const LAYERS: usize = 12;

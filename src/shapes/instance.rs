@@ -128,6 +128,11 @@ pub fn placed_point(instance: &Instance, p: Vec3) -> Vec3 {
         + instance.column_z * p.z
 }
 
+/// Direction or derivative `d` of the group's space in scene space, not normalized.
+pub fn placed_direction(instance: &Instance, d: Vec3) -> Vec3 {
+    (instance.column_x * d.x + instance.column_y * d.y) + instance.column_z * d.z
+}
+
 /// Error bound along the normal in scene space (scene units): `error` along the unit normal `n` in
 /// the group's space, whose [`placed_normal`] is `inverse_length` times a unit vector, with the
 /// rounding of both transforms.

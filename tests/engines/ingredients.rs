@@ -56,8 +56,14 @@ impl Mixture {
         self.scene.materials.push(Material {
             kind: bsdf as u32,
             absorption: Vec3::splat(absorption),
-            ..Material::zeroed()
+            ..Material::EMPTY
         });
+    }
+
+    /// A material whose normal the texture 0 bends.
+    fn bent(&mut self, normal_map: u32, bump_map: u32) {
+        self.add(Feature::Checker);
+        self.scene.materials.push(Material { normal_map, bump_map, bent: 1, ..Material::EMPTY });
     }
 
     fn add(&mut self, feature: Feature) {
@@ -107,6 +113,13 @@ impl Mixture {
             }
             Feature::Material(bsdf) => self.material(bsdf, 0.0),
             Feature::Specular => self.material(Bsdf::Mirror, 0.0),
+            Feature::Coated => {
+                let coated = 1.0 / 1.5;
+                let kind = Bsdf::Coat as u32;
+                s.materials.push(Material { kind, coated, ..Material::EMPTY });
+            }
+            Feature::Maps | Feature::NormalMap => self.bent(0, NONE),
+            Feature::BumpMap => self.bent(NONE, 0),
             Feature::Nested => {
                 self.add(Feature::Material(Bsdf::Glass));
                 self.scene.world.nested = 1;

@@ -83,7 +83,7 @@ pub const CAMERAS: [(&str, &str, &str, &str); 5] = [
 ];
 
 /// Name, render settings, and the rest of the scene file.
-pub const SCENES: [(&str, &str, &str); 14] = [
+pub const SCENES: [(&str, &str, &str); 16] = [
     (
         "glass and mirror under a rectangle",
         "",
@@ -727,6 +727,191 @@ pub const SCENES: [(&str, &str, &str); 14] = [
         material = "white"
         emission = [20.0, 18.0, 15.0]
         transform = [{ scale = [2.0, 1.0, -1.5] }, { translate = [0.0, 2.5, 0.0] }]
+        "#,
+    ),
+    (
+        "normal maps and bumps on every shape and material",
+        "",
+        r#"
+        [textures.n]
+        type = "image"
+        file = "picture.png"
+        color_space = "linear"
+        scale = [3.0, 2.0]
+        [textures.h]
+        type = "checker"
+        colors = [0.2, 0.8]
+        scale = [4.0, 3.0]
+        [materials.wall]
+        type = "diffuse"
+        reflectance = [0.7, 0.2, 0.1]
+        normal_map = "n"
+        normal_strength = 0.4
+        bump_map = "h"
+        bump_height = 0.01
+        [materials.steel]
+        type = "metal"
+        reflectance = [0.6, 0.6, 0.65]
+        roughness = 0.5
+        bump_map = "n"
+        bump_height = 0.05
+        [materials.clear]
+        type = "glass"
+        ior = 1.5
+        bump_map = "h"
+        bump_height = -0.02
+        [materials.gloss]
+        type = "plastic"
+        reflectance = [0.1, 0.5, 0.2]
+        roughness = 0.2
+        normal_map = "n"
+        [materials.patchy]
+        type = "mix"
+        materials = ["steel", "gloss"]
+        amount = "h"
+        bump_map = "n"
+        bump_height = 0.02
+        [[shapes]]
+        type = "mesh"
+        file = "ball.obj"
+        material = "patchy"
+        transform = { scale = [-0.3, 0.4, 0.3], translate = [0.0, 0.4, 0.2] }
+        [[shapes]]
+        type = "sphere"
+        center = [0.7, 0.25, 0.6]
+        radius = 0.25
+        material = "clear"
+        [[shapes]]
+        type = "sphere"
+        center = [0.0, 0.0, 0.0]
+        radius = 1.0
+        material = "gloss"
+        transform = [
+            { scale = [0.4, 0.2, 0.3] },
+            { rotate = { axis = [0.0, 0.0, 1.0], degrees = 25.0 } },
+            { translate = [-0.5, 0.35, 0.9] },
+        ]
+        [[shapes]]
+        type = "box"
+        min = [-1.3, 0.0, -0.5]
+        max = [-0.9, 0.6, -0.1]
+        material = "wall"
+        [[shapes]]
+        type = "box"
+        min = [-1.3, 0.0, 0.2]
+        max = [-1.0, 0.3, 0.6]
+        uv = "planar"
+        material = "wall"
+        [[shapes]]
+        type = "revolution"
+        segments = [[[0.0, 0.0], [0.2, 0.0]], [[0.2, 0.0], [0.1, 0.1], [0.2, 0.3]]]
+        material = "steel"
+        transform = { translate = [1.1, 0.0, 0.0] }
+        [[shapes]]
+        type = "disc"
+        center = [0.9, 0.8, -0.4]
+        normal = [0.2, 0.3, 1.0]
+        radius = 0.3
+        material = "patchy"
+        [[shapes]]
+        type = "plane"
+        point = [0.0, 0.0, -2.0]
+        normal = [0.0, 0.0, 1.0]
+        material = "wall"
+        [[shapes]]
+        type = "rectangle"
+        origin = [-0.4, 2.5, -0.4]
+        u = [0.8, 0.0, 0.0]
+        v = [0.0, 0.0, 0.8]
+        material = "white"
+        emission = 20.0
+        "#,
+    ),
+    (
+        "principled materials with textures, clear coats and rough panes",
+        "",
+        r#"
+        [textures.t]
+        type = "image"
+        file = "picture.png"
+        color_space = "linear"
+        channel = "green"
+        scale = [3.0, 2.0]
+        [textures.spots]
+        type = "checker"
+        colors = [[0.8, 0.7, 0.6], [0.1, 0.2, 0.3]]
+        scale = [4.0, 3.0]
+        [materials.all]
+        type = "principled"
+        base_color = "spots"
+        metallic = "t"
+        roughness = "t"
+        specular = 0.7
+        clearcoat = "t"
+        clearcoat_roughness = 0.4
+        bump_map = "t"
+        bump_height = 0.02
+        [materials.lacquer]
+        type = "principled"
+        base_color = [0.6, 0.1, 0.05]
+        roughness = 0.3
+        clearcoat = 1.0
+        [materials.frosted]
+        type = "principled"
+        base_color = [0.8, 0.9, 0.9]
+        roughness = "t"
+        transmission = 0.8
+        [materials.pane]
+        type = "glass"
+        ior = 1.5
+        thin = true
+        roughness = 0.6
+        [materials.worn]
+        type = "metal"
+        material = "copper"
+        roughness = "t"
+        [materials.chalk]
+        type = "diffuse"
+        reflectance = 0.7
+        roughness = "t"
+        [[shapes]]
+        type = "mesh"
+        file = "ball.obj"
+        material = "all"
+        transform = { scale = 0.4, translate = [0.0, 0.4, 0.2] }
+        [[shapes]]
+        type = "sphere"
+        center = [0.7, 0.25, 0.6]
+        radius = 0.25
+        material = "lacquer"
+        [[shapes]]
+        type = "sphere"
+        center = [-0.8, 0.3, 0.5]
+        radius = 0.3
+        material = "frosted"
+        [[shapes]]
+        type = "box"
+        min = [-1.3, 0.0, -0.5]
+        max = [-0.9, 0.6, -0.1]
+        material = "worn"
+        [[shapes]]
+        type = "disc"
+        center = [0.9, 0.8, -0.4]
+        normal = [0.2, 0.3, 1.0]
+        radius = 0.3
+        material = "pane"
+        [[shapes]]
+        type = "plane"
+        point = [0.0, 0.0, -2.0]
+        normal = [0.0, 0.0, 1.0]
+        material = "chalk"
+        [[shapes]]
+        type = "rectangle"
+        origin = [-0.4, 2.5, -0.4]
+        u = [0.8, 0.0, 0.0]
+        v = [0.0, 0.0, 0.8]
+        material = "white"
+        emission = 20.0
         "#,
     ),
     (

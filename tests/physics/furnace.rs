@@ -166,8 +166,13 @@ fn white_metals_and_plastics_lose_nothing() {
              nonlinear = {nonlinear}"
         )
     };
+    let principled = |keys: &str| format!("type = \"principled\"\nbase_color = 1.0\n{keys}");
     for (material, elevation) in [
-        (metal(0.3), 60.0f64),
+        (principled("metallic = 0.4\nroughness = 0.5"), 40.0f64),
+        (principled("specular = 0.5\nroughness = 0.7"), 20.0),
+        (principled("clearcoat = 1.0\nroughness = 0.9"), 45.0),
+        (principled("clearcoat = 0.6\nclearcoat_roughness = 0.2\nspecular = 0.3"), 70.0),
+        (metal(0.3), 60.0),
         (metal(0.7), 35.0),
         (metal(1.0), 50.0),
         (metal(1.0), 12.0),
@@ -190,7 +195,7 @@ fn white_metals_and_plastics_lose_nothing() {
                  type = \"disc\"\ncenter = [0, 0, 0]\nnormal = [0, 1, 0]\nradius = 3.0\n\
                  material = \"m\"\n"
             );
-        let narrow = !material.contains("roughness = 1.0") && !material.contains("plastic");
+        let narrow = !material.contains("roughness = 1.0") && !material.contains("type = \"plastic");
         for (method, direct) in [
             (Method::Sppm, Direct::Sampled),
             (Method::Sppm, Direct::Photons),

@@ -61,7 +61,7 @@ fn point(lobe: Lobe<'_>, wo: Vec3) -> ShadingPoint<'_> {
         v: 0.0,
         outline: NONE,
     };
-    ShadingPoint { s, wo, ng: Vec3::Z, ns: Vec3::Z, n: Vec3::Z, lobe }
+    ShadingPoint { s, wo, ng: Vec3::Z, ns: Vec3::Z, n: Vec3::Z, bent: false, lobe }
 }
 
 fn direction(cos: f32, turn: f32) -> Vec3 {
@@ -146,7 +146,8 @@ fn energy_and_reciprocity() {
             let wo = direction(cos, 0.3);
             let (found, most) = (albedo(&lobe, wo), lobe.reflectance.as_dvec3());
             // Fresnel terms rise to 1 at grazing angles
-            let rises = matches!(lobe.bsdf, Bsdf::Metal | Bsdf::Conductor | Bsdf::Coat);
+            let rises =
+                matches!(lobe.bsdf, Bsdf::Metal | Bsdf::Conductor | Bsdf::Coat | Bsdf::RoughPane);
             let most = if rises { DVec3::ONE } else { most };
             // radiance is compressed into a smaller solid angle inside glass
             let glass = lobe.bsdf == Bsdf::RoughGlass;
@@ -187,11 +188,11 @@ fn energy_and_reciprocity() {
     }
 }
 
-const CAMERA: Camera =
+pub const CAMERA: Camera =
     Camera { position: DVec3::new(0.2, 1.2, 1.6), target: DVec3::ZERO, fov: 3.0, size: 4 };
 
 /// A floor of this material under a camera that looks down, with a point light.
-fn floor(material: &str, light: [f64; 3]) -> String {
+pub fn floor(material: &str, light: [f64; 3]) -> String {
     format!(
         "{}[materials.m]\n{material}\n[[shapes]]\ntype = \"rectangle\"\norigin = [-1, 0, 1]\n\
          u = [2, 0, 0]\nv = [0, 0, -2]\nmaterial = \"m\"\n\
@@ -201,7 +202,7 @@ fn floor(material: &str, light: [f64; 3]) -> String {
 }
 
 /// Checks that all methods agree with a closed form of the floor's radiance.
-fn agrees(name: &str, text: &str, radiance: impl Fn(DVec3) -> f64 + Sync) {
+pub fn agrees(name: &str, text: &str, radiance: impl Fn(DVec3) -> f64 + Sync) {
     let picture = CAMERA.floor_picture(0.0, radiance);
     let truth = picture.iter().sum::<f64>() / picture.len() as f64;
     for (method, direct) in [

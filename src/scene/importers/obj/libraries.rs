@@ -192,7 +192,7 @@ impl Libraries {
             let reflectance = Reflectance::Color([Missing::STAND_IN; 3]);
             let kind = MaterialKind::Diffuse { reflectance, roughness: 0.0 };
             let name = format!("{file}:{shown}");
-            let material = Material { name, kind, opacity: None };
+            let material = Material { name, ..Material::new(kind) };
             let material = builder.add_own_material(material);
             return Some(OwnMaterial { material, emission: [0.0; 3] });
         }

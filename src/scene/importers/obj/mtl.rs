@@ -85,7 +85,7 @@ pub(super) fn material(
     let emission = if emits { reader.color("Ke", BRIGHTEST) } else { None };
     let kind = reader.kind(path, text, builder);
     reader.unused(matches!(kind, MaterialKind::Glass { .. }));
-    (Material { name, kind, opacity: None }, emission.unwrap_or([0.0; 3]))
+    (Material { name, ..Material::new(kind) }, emission.unwrap_or([0.0; 3]))
 }
 
 /// Most statements of a material that are examined.

@@ -1,13 +1,16 @@
 //! Conversion of textures and materials.
 
 use super::document::{Document, Item};
-use super::file::{CoverageFile, MaterialFile, TextureFile};
+use super::file::{CommonFile, MaterialFile, TextureFile};
 use super::index;
 use super::named::{glass_absorption, glass_index, metal_index, thin_glass_keys};
-use super::numbers::Paint;
+use super::numbers::{Amount, Paint};
 use crate::scene::builder::SceneBuilder;
 use crate::scene::parts::Part;
-use crate::scene::{Material, MaterialKind, Opacity, Reflectance, Texture, TextureKind};
+use crate::scene::{
+    BumpMap, Material, MaterialKind, NormalMap, Opacity, Principled, Reflectance, Texture,
+    TextureKind,
+};
 
 pub(super) fn texture(builder: &mut SceneBuilder, item: &Item, file: TextureFile) -> Option<()> {
     let kind = match file {
@@ -38,18 +41,30 @@ pub(super) fn material(
         Paint::Texture(name) => Reflectance::Texture(index(document, "textures", name)),
     };
     let named = |name: &str| index(document, "materials", name);
-    let (kind, coverage) = match file {
-        MaterialFile::Diffuse { reflectance, roughness, coverage } => {
-            let kind =
-                MaterialKind::Diffuse { reflectance: paint(&reflectance), roughness: roughness.0 };
-            (kind, coverage)
+    let share = |amount: &Amount| match amount {
+        Amount::Number(number) => Reflectance::Color([number.0; 3]),
+        Amount::Texture(name) => Reflectance::Texture(index(document, "textures", name)),
+    };
+    let mut roughness_map = None;
+    // a texture is a factor of the roughness 1
+    let mut rough = |amount: &Amount| match amount {
+        Amount::Number(number) => number.0,
+        Amount::Texture(name) => {
+            roughness_map = Some(index(document, "textures", name));
+            1.0
         }
-        MaterialFile::Translucent { reflectance, transmission, coverage } => {
+    };
+    let (kind, common) = match file {
+        MaterialFile::Diffuse { reflectance, roughness, common } => {
+            let (reflectance, roughness) = (paint(&reflectance), rough(&roughness));
+            (MaterialKind::Diffuse { reflectance, roughness }, common)
+        }
+        MaterialFile::Translucent { reflectance, transmission, common } => {
             let reflectance = paint(&reflectance);
-            (MaterialKind::Translucent { reflectance, transmission: transmission.0 }, coverage)
+            (MaterialKind::Translucent { reflectance, transmission: transmission.0 }, common)
         }
-        MaterialFile::Mirror { reflectance, coverage } => {
-            (MaterialKind::Mirror { reflectance: paint(&reflectance) }, coverage)
+        MaterialFile::Mirror { reflectance, common } => {
+            (MaterialKind::Mirror { reflectance: paint(&reflectance) }, common)
         }
         MaterialFile::Glass {
             ior,
@@ -61,7 +76,7 @@ pub(super) fn material(
             priority,
             thin,
             transmittance,
-            coverage,
+            common,
         } => {
             let ior = glass_index(builder, item, ior.map(f64::from), material.as_deref());
             let absorption = glass_absorption(
@@ -75,14 +90,14 @@ pub(super) fn material(
             let kind = if thin {
                 let transmittance =
                     transmittance.as_ref().map_or(Reflectance::Color([1.0; 3]), paint);
-                MaterialKind::ThinGlass { ior, transmittance }
+                MaterialKind::ThinGlass { ior, roughness: roughness.0, transmittance }
             } else {
                 let (roughness, priority) = (roughness.0, priority.unwrap_or_default());
                 MaterialKind::Glass { ior, roughness, absorption, priority }
             };
-            (kind, coverage)
+            (kind, common)
         }
-        MaterialFile::Metal { reflectance, eta, k, material, roughness, coverage } => {
+        MaterialFile::Metal { reflectance, eta, k, material, roughness, common } => {
             let index = metal_index(
                 builder,
                 item,
@@ -90,32 +105,55 @@ pub(super) fn material(
                 [eta.map(|eta| eta.rgb()), k.map(|k| k.rgb())],
                 material.as_deref(),
             );
+            let roughness = rough(&roughness);
             let kind = match (index, reflectance) {
-                (Some([eta, k]), _) => MaterialKind::Conductor { eta, k, roughness: roughness.0 },
+                (Some([eta, k]), _) => MaterialKind::Conductor { eta, k, roughness },
                 (None, reflectance) => MaterialKind::Metal {
                     reflectance: reflectance.as_ref().map_or(Reflectance::Color([1.0; 3]), paint),
-                    roughness: roughness.0,
+                    roughness,
                 },
             };
-            (kind, coverage)
+            (kind, common)
         }
-        MaterialFile::Plastic { reflectance, ior, roughness, nonlinear, coverage } => {
+        MaterialFile::Plastic { reflectance, ior, roughness, nonlinear, common } => {
             let reflectance = paint(&reflectance);
-            let roughness = roughness.0;
-            (MaterialKind::Plastic { reflectance, ior, roughness, nonlinear }, coverage)
+            let roughness = rough(&roughness);
+            (MaterialKind::Plastic { reflectance, ior, roughness, nonlinear }, common)
         }
-        MaterialFile::Mix { materials: [first, second], amount, coverage } => {
+        MaterialFile::Principled {
+            base_color,
+            metallic,
+            roughness,
+            ior,
+            specular,
+            transmission,
+            clearcoat,
+            clearcoat_roughness,
+            common,
+        } => {
+            let kind = MaterialKind::Principled(Principled {
+                base_color: paint(&base_color),
+                metallic: share(&metallic),
+                roughness: rough(&roughness),
+                ior,
+                specular: share(&specular),
+                transmission: share(&transmission),
+                clearcoat: share(&clearcoat),
+                clearcoat_roughness: clearcoat_roughness.0,
+            });
+            (kind, common)
+        }
+        MaterialFile::Mix { materials: [first, second], amount, common } => {
             let materials = [named(&first), named(&second)];
-            (MaterialKind::Mix { materials, amount: paint(&amount) }, coverage)
+            (MaterialKind::Mix { materials, amount: paint(&amount) }, common)
         }
-        MaterialFile::TwoSided { front, back, coverage } => {
-            (MaterialKind::TwoSided { front: named(&front), back: named(&back) }, coverage)
+        MaterialFile::TwoSided { front, back, common } => {
+            (MaterialKind::TwoSided { front: named(&front), back: named(&back) }, common)
         }
-        MaterialFile::Null {} => {
-            (MaterialKind::Null, CoverageFile { opacity: None, opacity_cutoff: None })
-        }
+        MaterialFile::Null {} => (MaterialKind::Null, CommonFile::default()),
     };
-    let opacity = match (coverage.opacity, coverage.opacity_cutoff) {
+    let maps = maps(builder, document, item, &common);
+    let opacity = match (common.opacity, common.opacity_cutoff) {
         (Some(amount), cutoff) => {
             let cutoff = cutoff.map(|cutoff| cutoff.0);
             Some(Opacity { amount: paint(&amount), cutoff })
@@ -128,5 +166,40 @@ pub(super) fn material(
         }
         (None, None) => None,
     };
-    builder.add_material(item, Material { name: item.name.to_owned(), kind, opacity });
+    let (normal_map, bump_map) = maps;
+    let name = item.name.to_owned();
+    builder
+        .add_material(item, Material { name, kind, opacity, roughness_map, normal_map, bump_map });
+}
+
+/// The textures that bend the normal. Reports a factor without its map and a height map without its
+/// height.
+fn maps(
+    builder: &mut SceneBuilder,
+    document: &Document,
+    item: &Item,
+    common: &CommonFile,
+) -> (Option<NormalMap>, Option<BumpMap>) {
+    let texture = |name: &String| index(document, "textures", name);
+    for (key, map, given) in [
+        (
+            "normal_strength",
+            "normal_map",
+            common.normal_strength.is_some() && common.normal_map.is_none(),
+        ),
+        ("bump_height", "bump_map", common.bump_height.is_some() && common.bump_map.is_none()),
+        ("bump_map", "bump_height", common.bump_map.is_some() && common.bump_height.is_none()),
+    ] {
+        if given {
+            let message = format!("{} has `{key}` without `{map}`", item.place());
+            let label = format!("expected `{map}` too");
+            builder.report.error(item.span_of(key), message, &label, None);
+        }
+    }
+    let normal = common.normal_map.as_ref().map(|name| NormalMap {
+        texture: texture(name),
+        strength: common.normal_strength.unwrap_or(1.0),
+    });
+    let bump = common.bump_map.as_ref().zip(common.bump_height);
+    (normal, bump.map(|(name, height)| BumpMap { texture: texture(name), height }))
 }

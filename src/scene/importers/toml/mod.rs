@@ -45,6 +45,22 @@ use crate::scene::parts::Part;
 
 static SCHEMA: LazyLock<Json> = LazyLock::new(schema::of::<SceneFile>);
 
+/// Keys of materials that may name a texture.
+const TEXTURED: [&str; 12] = [
+    "reflectance",
+    "transmittance",
+    "amount",
+    "opacity",
+    "roughness",
+    "normal_map",
+    "bump_map",
+    "base_color",
+    "metallic",
+    "specular",
+    "transmission",
+    "clearcoat",
+];
+
 /// Imports TOML scene files.
 pub(crate) struct Toml;
 
@@ -83,7 +99,7 @@ fn scene(builder: &mut SceneBuilder, root: Node) {
     for key in ["materials", "front", "back"] {
         undefined(&mut builder.report, document, "materials", (materials(), key));
     }
-    for key in ["reflectance", "transmittance", "amount", "opacity"] {
+    for key in TEXTURED {
         undefined(&mut builder.report, document, "textures", (materials(), key));
     }
     camera::camera(builder, document);

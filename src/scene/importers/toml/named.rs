@@ -79,13 +79,8 @@ pub(super) fn glass_absorption(
 /// Reports keys that have no meaning for a thin sheet, or only for one.
 pub(super) fn thin_glass_keys(builder: &mut SceneBuilder, item: &Item, thin: bool) {
     let (wrong, message, label): (&[&str], _, _) = if thin {
-        let keys =
-            &["absorption", "attenuation_color", "attenuation_distance", "priority", "roughness"];
-        (
-            keys,
-            "is thin: it has no inside and no facets",
-            "expected `transmittance`, or thin = false",
-        )
+        let keys = &["absorption", "attenuation_color", "attenuation_distance", "priority"];
+        (keys, "is thin: it has no inside", "expected `transmittance`, or thin = false")
     } else {
         (&["transmittance"], "is not thin", "expected `attenuation_color`, or thin = true")
     };

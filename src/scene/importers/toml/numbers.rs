@@ -82,6 +82,23 @@ impl<T: Copy + Into<f64>> Spectrum<T> {
     }
 }
 
+/// A number from 0 to 1, or the name of a texture, of which the mean of the channels counts.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(untagged)]
+#[schemars(inline)]
+pub enum Amount {
+    /// A constant number.
+    Number(Share),
+    /// Name of a texture.
+    Texture(String),
+}
+
+impl Default for Amount {
+    fn default() -> Self {
+        Self::Number(Share::default())
+    }
+}
+
 /// A number from 0 to 1, linear [r, g, b], or the name of a texture.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(untagged)]

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::super::numbers::{NonNegative, Paint, Positive, Share, Spectrum};
+use super::super::numbers::{Amount, NonNegative, Paint, Positive, Share, Spectrum};
 use super::super::schema::close_variants;
 use crate::scene::{Channel, ColorSpace, Filter, Wrap};
 
@@ -62,10 +62,10 @@ pub enum MaterialFile {
         reflectance: Paint,
         /// Roughness, from 0 (Lambertian) to 1 (Oren-Nayar).
         #[serde(default)]
-        roughness: Share,
-        /// Opacity.
+        roughness: Amount,
+        /// Opacity and maps.
         #[serde(flatten)]
-        coverage: CoverageFile,
+        common: CommonFile,
     },
     /// Diffuse reflection and transmission by a thin surface such as paper.
     Translucent {
@@ -73,17 +73,17 @@ pub enum MaterialFile {
         reflectance: Paint,
         /// Fraction of the scattered light that is transmitted.
         transmission: Share,
-        /// Opacity.
+        /// Opacity and maps.
         #[serde(flatten)]
-        coverage: CoverageFile,
+        common: CommonFile,
     },
     /// A perfect two-sided mirror.
     Mirror {
         /// Fraction of light reflected.
         reflectance: Paint,
-        /// Opacity.
+        /// Opacity and maps.
         #[serde(flatten)]
-        coverage: CoverageFile,
+        common: CommonFile,
     },
     /// A smooth dielectric. Outside is air or, where bodies overlap, the other glass.
     Glass {
@@ -109,9 +109,9 @@ pub enum MaterialFile {
         thin: bool,
         /// Fraction of the transmitted light that a thin sheet lets through; 1 by default.
         transmittance: Option<Paint>,
-        /// Opacity.
+        /// Opacity and maps.
         #[serde(flatten)]
-        coverage: CoverageFile,
+        common: CommonFile,
     },
     /// A two-sided GGX microfacet conductor. Its color is given by `reflectance`, by `eta` and `k`,
     /// or by the name of a metal.
@@ -127,10 +127,10 @@ pub enum MaterialFile {
         material: Option<String>,
         /// Roughness, from 0 (mirror) to 1; GGX alpha is its square.
         #[serde(default)]
-        roughness: Share,
-        /// Opacity.
+        roughness: Amount,
+        /// Opacity and maps.
         #[serde(flatten)]
-        coverage: CoverageFile,
+        common: CommonFile,
     },
     /// A diffuse base below a clear dielectric coat, as on plastic, glazed ceramics or varnish.
     Plastic {
@@ -142,14 +142,44 @@ pub enum MaterialFile {
         ior: f64,
         /// Roughness of the coat, from 0 (smooth) to 1; GGX alpha is its square.
         #[serde(default)]
-        roughness: Share,
+        roughness: Amount,
         /// If true, light takes on the color of the base each time that the coat reflects it back
         /// inside, which saturates the color.
         #[serde(default)]
         nonlinear: bool,
-        /// Opacity.
+        /// Opacity and maps.
         #[serde(flatten)]
-        coverage: CoverageFile,
+        common: CommonFile,
+    },
+    /// Dielectric and metal with common parameters, like the material of glTF.
+    Principled {
+        /// Albedo of the dielectric, and reflectance of the metal at normal incidence.
+        base_color: Paint,
+        /// Amount of metal; the rest is dielectric.
+        #[serde(default)]
+        metallic: Amount,
+        /// Roughness, from 0 (smooth) to 1; GGX alpha is its square. 0.5 by default.
+        #[serde(default = "half")]
+        roughness: Amount,
+        /// Index of refraction of the dielectric, above 1; 1.5 by default.
+        #[serde(default = "coat_ior")]
+        #[schemars(extend("exclusiveMinimum" = 1))]
+        ior: f64,
+        /// Amount of the dielectric's surface that reflects; 1 by default.
+        #[serde(default = "all")]
+        specular: Amount,
+        /// Amount of the dielectric that is a thin sheet of glass with the base color.
+        #[serde(default)]
+        transmission: Amount,
+        /// Amount of the surface with a clear coat.
+        #[serde(default)]
+        clearcoat: Amount,
+        /// Roughness of the clear coat.
+        #[serde(default)]
+        clearcoat_roughness: Share,
+        /// Opacity and maps.
+        #[serde(flatten)]
+        common: CommonFile,
     },
     /// A mix of two materials, which must not be glass with an inside.
     Mix {
@@ -157,9 +187,9 @@ pub enum MaterialFile {
         materials: [String; 2],
         /// Fraction of the second material; of a texture the mean of the channels counts.
         amount: Paint,
-        /// Opacity.
+        /// Opacity and maps.
         #[serde(flatten)]
-        coverage: CoverageFile,
+        common: CommonFile,
     },
     /// A material for each side of a surface.
     TwoSided {
@@ -167,26 +197,44 @@ pub enum MaterialFile {
         front: String,
         /// Name of the material on the other side.
         back: String,
-        /// Opacity.
+        /// Opacity and maps.
         #[serde(flatten)]
-        coverage: CoverageFile,
+        common: CommonFile,
     },
     /// No material: light passes straight through.
     Null {},
 }
 
 /// Keys that every material accepts, except `null`.
-#[derive(Debug, Deserialize, JsonSchema)]
-pub struct CoverageFile {
+#[derive(Debug, Default, Deserialize, JsonSchema)]
+pub struct CommonFile {
     /// Fraction of light that meets the surface; the rest passes straight through. Of a texture the
     /// mean of the channels counts. 1 by default.
     pub opacity: Option<Paint>,
     /// Makes the surface a mask: opaque where the opacity is at least this, else absent.
     pub opacity_cutoff: Option<Share>,
+    /// Name of an image texture in linear color space that gives the shading normal: red, green and
+    /// blue are half of one plus its components along u, v and the surface's normal.
+    pub normal_map: Option<String>,
+    /// Factor on the components of the normal map along u and v; 1 by default.
+    pub normal_strength: Option<f64>,
+    /// Name of a texture in linear color space that gives the height of bumps; the mean of the
+    /// channels counts.
+    pub bump_map: Option<String>,
+    /// Height of bumps at the value 1, along the surface's normal; negative for dents.
+    pub bump_height: Option<f64>,
 }
 
 fn coat_ior() -> f64 {
     1.5
+}
+
+fn half() -> Amount {
+    Amount::Number(Share(0.5))
+}
+
+fn all() -> Amount {
+    Amount::Number(Share(1.0))
 }
 
 fn ones() -> [f64; 2] {

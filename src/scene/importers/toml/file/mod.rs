@@ -16,7 +16,7 @@ use serde::Deserialize;
 
 use crate::scene::settings::RenderSettings;
 
-pub use appearance::{CoverageFile, MaterialFile, TextureFile};
+pub use appearance::{CommonFile, MaterialFile, TextureFile};
 pub use camera::{
     CameraFile, FilmFile, FilterFile, FilterName, FilterSize, FilterTable, Fraction, Shift,
 };
