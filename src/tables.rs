@@ -124,7 +124,7 @@ pub struct Material {
     /// Glass: absorption coefficient, per scene unit.
     pub absorption: Vec3,
     /// Glass, plastic: index of refraction relative to the outside. Opacity: cutoff of a mask, or
-    /// 0. Graded: the amount of the first material.
+    /// 0. Graded: the amount of the first material. Brushed metal: GGX alpha along v.
     pub ior: Real,
     /// Index of the texture that replaces `reflectance`, or [`NONE`].
     pub texture: u32,
@@ -137,7 +137,8 @@ pub struct Material {
     /// coefficients of the polynomial `albedo` from inside; `k` and `mean_fresnel` hold the others.
     pub eta: Vec3,
     /// Mix, opacity, graded: index of the first material; two-sided: that of the front. Plastic: 1 if light
-    /// takes on the base's color at each reflection inside, else 0.
+    /// takes on the base's color at each reflection inside, else 0. Brushed metal: 1 for the exact
+    /// Fresnel term.
     pub first: u32,
     /// Conductor: extinction coefficient relative to the outside, per channel.
     pub k: Vec3,

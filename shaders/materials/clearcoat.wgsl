@@ -7,7 +7,7 @@ fn choose_clearcoat(p: ShadingPoint, u: f32) -> Layer {
     let share = fresnel(abs(dot(p.wo, p.n)), 1.0 / ior).reflectance;
     if u >= share {
         let v = (u - share) / max(1.0 - share, 1e-6);
-        return Layer(lobe_at(scene.materials[material].first, p.s.uv), 1.0, v);
+        return another(p, scene.materials[material].first, v);
     }
     let rough = p.lobe.alpha > 0.0;
     var lobe = p.lobe;

@@ -12,8 +12,8 @@ fn choose_graded(p: ShadingPoint, u: f32) -> Layer {
     let share = at - below;
     let k = first + u32(below);
     if u < share {
-        return Layer(lobe_at(k + 1u, p.s.uv), 1.0, u / share);
+        return another(p, k + 1u, u / share);
     }
     let v = (u - share) / max(1.0 - share, 1e-6);
-    return Layer(lobe_at(k, p.s.uv), 1.0, v);
+    return another(p, k, v);
 }

@@ -7,12 +7,12 @@ fn mapped_normal(material: u32, hit: Hit, s: Surface) -> vec3f {
     var n = s.shading;
     //#if bump_map
     if scene.materials[material].bump_map != NONE {
-        n = bumped(material, s.uv, n, t);
+        n = normal_from_bumps(material, s.uv, n, t);
     }
     //#end
     //#if normal_map
     if scene.materials[material].normal_map != NONE {
-        n = tilted(material, s.uv, n, t);
+        n = normal_from_map(material, s.uv, n, t);
     }
     //#end
     let cos = dot(n, s.normal);
@@ -25,7 +25,7 @@ fn mapped_normal(material: u32, hit: Hit, s: Surface) -> vec3f {
 //#if bump_map
 const CHECKER_CELLS: f32 = 64.0;
 
-fn bumped(material: u32, uv: vec2f, n: vec3f, t: Tangents) -> vec3f {
+fn normal_from_bumps(material: u32, uv: vec2f, n: vec3f, t: Tangents) -> vec3f {
     let bump_map = scene.materials[material].bump_map;
     let texture = scene.textures[bump_map];
     // central differences over one texel: continuous, because textures are filtered bilinearly
@@ -56,7 +56,7 @@ fn height_at(material: u32, uv: vec2f) -> f32 {
 //#end
 
 //#if normal_map
-fn tilted(material: u32, uv: vec2f, n: vec3f, t: Tangents) -> vec3f {
+fn normal_from_map(material: u32, uv: vec2f, n: vec3f, t: Tangents) -> vec3f {
     let color = eval_texture(scene.materials[material].normal_map, uv);
     let strength = scene.materials[material].normal_strength;
     let x = (2.0 * color.x - 1.0) * strength;

@@ -8,7 +8,7 @@ fn choose_opacity(p: ShadingPoint, u: f32) -> Layer {
         opacity = select(0.0, 1.0, opacity >= cutoff);
     }
     if u < opacity {
-        return Layer(lobe_at(scene.materials[m].first, p.s.uv), 1.0, u / opacity);
+        return another(p, scene.materials[m].first, u / opacity);
     }
     var lobe = p.lobe;
     lobe.bsdf = MATERIAL_NULL;

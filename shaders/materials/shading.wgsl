@@ -34,7 +34,13 @@ const NARROW_GLASS: f32 = 0.3;
 
 fn is_narrow(lobe: Lobe) -> bool {
     let limit = select(NARROW, NARROW_GLASS, is_body(lobe.bsdf));
-    return !is_wide(lobe.bsdf) && !is_specular(lobe.bsdf) && lobe.alpha < limit;
+    var width = lobe.alpha;
+    //#if brushed
+    if lobe.bsdf == MATERIAL_BRUSHED {
+        width = max(scene.materials[lobe.material].alpha, scene.materials[lobe.material].ior);
+    }
+    //#end
+    return !is_wide(lobe.bsdf) && !is_specular(lobe.bsdf) && width < limit;
 }
 
 struct ShadingPoint {
@@ -123,6 +129,11 @@ fn shading_point(hit: Hit, surface: Surface, wo: vec3f, interior: Interior) -> S
     //#end
     p.lobe = lobe;
     set_normals(&p);
+    //#if brushed
+    if lobe.bsdf == MATERIAL_BRUSHED {
+        p.lobe.alpha = grain_angle(hit, p);
+    }
+    //#end
     return p;
 }
 
@@ -262,6 +273,12 @@ struct Layer {
     u: f32,
 }
 
+fn another(p: ShadingPoint, material: u32, u: f32) -> Layer {
+    var lobe = p.lobe;
+    lobe.material = material;
+    return Layer(lobe, 1.0, u);
+}
+
 fn amount_at(p: ShadingPoint) -> f32 {
     let color = p.lobe.reflectance;
     return (color.x + color.y + color.z) * (1.0 / 3.0);
@@ -270,21 +287,29 @@ fn amount_at(p: ShadingPoint) -> f32 {
 fn choose_layer(hit: Hit, p: ptr<function, ShadingPoint>, u: f32) -> f32 {
     var layer = Layer((*p).lobe, 1.0, u);
     var weight = 1.0;
-    for (var k = 0u; k < LAYERS; k += 1u) {
-        if is_layered((*p).lobe.bsdf) {
-            layer = choose_once(*p, layer.u);
-            //#if maps
-            let material = layer.lobe.material;
-            if material != (*p).lobe.material && scene.materials[material].bent != 0u {
-                (*p).s.shading = mapped_normal(material, hit, (*p).s);
-                (*p).bent = true;
-            }
-            //#end
-            (*p).lobe = layer.lobe;
-            weight *= layer.weight;
+    var depth = 0u;
+    while depth < LAYERS && is_layered((*p).lobe.bsdf) {
+        layer = choose_once(*p, layer.u);
+        if layer.lobe.material != (*p).lobe.material {
+            layer.lobe = lobe_at(layer.lobe.material, (*p).s.uv);
         }
+        (*p).lobe = layer.lobe;
+        weight *= layer.weight;
+        depth += 1u;
     }
+    //#if part_maps
+    let material = (*p).lobe.material;
+    if scene.materials[material].bent != 0u && material != (*p).s.material {
+        (*p).s.shading = mapped_normal(material, hit, (*p).s);
+        (*p).bent = true;
+    }
+    //#end
     set_normals(p);
+    //#if brushed
+    if (*p).lobe.bsdf == MATERIAL_BRUSHED {
+        (*p).lobe.alpha = grain_angle(hit, *p);
+    }
+    //#end
     return weight;
 }
 //#end

@@ -4,5 +4,5 @@ fn choose_two_sided(p: ShadingPoint, u: f32) -> Layer {
     let m = p.lobe.material;
     let front = dot(p.wo, p.s.normal) >= 0.0;
     let side = select(scene.materials[m].second, scene.materials[m].first, front);
-    return Layer(lobe_at(side, p.s.uv), 1.0, u);
+    return another(p, side, u);
 }

@@ -93,6 +93,7 @@ pub fn with_unused(scene: &SceneTables, feature: Feature) -> Option<SceneTables>
         // implied by one of the features above
         Feature::Textures
         | Feature::Maps
+        | Feature::PartMaps
         | Feature::Specular
         | Feature::Lobes
         | Feature::Continued

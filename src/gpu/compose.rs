@@ -40,6 +40,7 @@ const SHARED_CODE: [(&str, &[Bsdf]); 2] = [
         &[
             Bsdf::Metal,
             Bsdf::Conductor,
+            Bsdf::Brushed,
             Bsdf::Coat,
             Bsdf::PlasticBase,
             Bsdf::SmoothMetal,
@@ -55,6 +56,7 @@ const SHARED_CODE: [(&str, &[Bsdf]); 2] = [
         &[
             Bsdf::Metal,
             Bsdf::Conductor,
+            Bsdf::Brushed,
             Bsdf::Coat,
             Bsdf::PlasticBase,
             Bsdf::RoughGlass,

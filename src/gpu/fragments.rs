@@ -60,7 +60,7 @@ const SHARED: &[Fragment] = fragments![
     "geometry/intersect.wgsl" if "scene",
     "geometry/surface.wgsl" if "scene",
     "geometry/instances.wgsl" if "scene && instances",
-    "geometry/tangents.wgsl" if "scene && maps",
+    "geometry/tangents.wgsl" if "scene && maps || scene && brushed",
     "materials/texture.wgsl" if "scene && textures",
     "materials/maps.wgsl" if "scene && maps",
     "materials/interior.wgsl" if "scene",

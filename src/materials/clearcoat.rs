@@ -6,7 +6,7 @@
 use super::Bsdf;
 use super::fresnel::fresnel;
 use super::real::{Real, Vec3};
-use super::shading::{Layer, Lobe, ShadingPoint, lobe_at};
+use super::shading::{Layer, Lobe, ShadingPoint, another};
 use super::tables::{Material, SceneTables};
 
 /// See [`super::Bsdf::examples`].
@@ -14,12 +14,12 @@ pub const EXAMPLES: &[Material] = &[];
 
 /// Chooses the coat with the probability that it reflects, else the material below.
 #[inline(always)]
-pub fn choose_clearcoat<'a>(scene: &'a SceneTables, p: &ShadingPoint<'a>, u: Real) -> Layer<'a> {
+pub fn choose_clearcoat<'a>(_: &'a SceneTables, p: &ShadingPoint<'a>, u: Real) -> Layer<'a> {
     let m = p.lobe.m;
     let share = fresnel(p.wo.dot(p.n).abs(), 1.0 / m.ior).reflectance;
     if u >= share {
         let u = (u - share) / (1.0 - share).max(1e-6);
-        return Layer { lobe: lobe_at(scene, m.first, p.s.uv), weight: 1.0, u };
+        return another(p, m.first, u);
     }
     let rough = m.alpha > 0.0;
     let bsdf = if rough { Bsdf::Coat } else { Bsdf::Mirror };

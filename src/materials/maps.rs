@@ -20,10 +20,10 @@ pub fn mapped_normal(scene: &SceneTables, m: &Material, hit: Hit, s: Surface) ->
     let t = tangents_at(scene, hit, s);
     let mut n = s.shading;
     if m.bump_map != NONE {
-        n = bumped(scene, m, s.uv, n, t);
+        n = normal_from_bumps(scene, m, s.uv, n, t);
     }
     if m.normal_map != NONE {
-        n = tilted(scene, m, s.uv, n, t);
+        n = normal_from_map(scene, m, s.uv, n, t);
     }
     let cos = n.dot(s.normal);
     if cos < LEAST_COS {
@@ -34,7 +34,7 @@ pub fn mapped_normal(scene: &SceneTables, m: &Material, hit: Hit, s: Surface) ->
 
 /// Normal of a surface that is moved along its normal `n` by the height that a texture gives
 /// (Mikkelsen 2010, "Bump mapping unparametrized surfaces on the GPU", section 2).
-fn bumped(scene: &SceneTables, m: &Material, uv: Vec2, n: Vec3, t: Tangents) -> Vec3 {
+fn normal_from_bumps(scene: &SceneTables, m: &Material, uv: Vec2, n: Vec3, t: Tangents) -> Vec3 {
     let texture = &scene.textures[m.bump_map as usize];
     // central differences over one texel: continuous, because textures are filtered bilinearly
     let mut du = CHECKER_CELLS;
@@ -64,7 +64,7 @@ fn height_at(scene: &SceneTables, m: &Material, uv: Vec2) -> Real {
 
 /// Normal that a texture gives in the frame of `n` and the directions of u and v, each component
 /// as `(x + 1) / 2`.
-fn tilted(scene: &SceneTables, m: &Material, uv: Vec2, n: Vec3, t: Tangents) -> Vec3 {
+fn normal_from_map(scene: &SceneTables, m: &Material, uv: Vec2, n: Vec3, t: Tangents) -> Vec3 {
     let color = eval_texture(scene, m.normal_map, uv);
     let x = (2.0 * color.x - 1.0) * m.normal_strength;
     let y = (2.0 * color.y - 1.0) * m.normal_strength;

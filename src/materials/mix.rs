@@ -2,7 +2,7 @@
 //! `shaders/materials/mix.wgsl`.
 
 use super::real::Real;
-use super::shading::{Layer, ShadingPoint, amount_at, lobe_at};
+use super::shading::{Layer, ShadingPoint, amount_at, another};
 use super::tables::{Material, SceneTables};
 
 /// See [`super::Bsdf::examples`].
@@ -10,12 +10,12 @@ pub const EXAMPLES: &[Material] = &[];
 
 /// Chooses one of the two materials.
 #[inline(always)]
-pub fn choose_mix<'a>(scene: &'a SceneTables, p: &ShadingPoint<'a>, u: Real) -> Layer<'a> {
+pub fn choose_mix<'a>(_: &'a SceneTables, p: &ShadingPoint<'a>, u: Real) -> Layer<'a> {
     let m = p.lobe.m;
     let amount = amount_at(p);
     if u < amount {
-        return Layer { lobe: lobe_at(scene, m.second, p.s.uv), weight: 1.0, u: u / amount };
+        return another(p, m.second, u / amount);
     }
     let u = (u - amount) / (1.0 - amount).max(1e-6);
-    Layer { lobe: lobe_at(scene, m.first, p.s.uv), weight: 1.0, u }
+    another(p, m.first, u)
 }

@@ -13,12 +13,13 @@
 //! reciprocity and engine agreement run over the `EXAMPLES` of every file.
 
 use super::{geometry, math, real, shapes, tables};
+use brushed::grain_angle;
 use interior::{Interior, interior_beyond};
 use maps::mapped_normal;
 use real::{Real, Vec3};
 use shading::{
     ADJOINT_COS_MIN, IMPORTANCE, Layer, Lobe, NARROW, NARROW_GLASS, RADIANCE, Sample, Scatter,
-    ShadingPoint, facing_normal, set_normals,
+    ShadingPoint, facing_normal, lobe_at, set_normals,
 };
 use shapes::ray::Hit;
 use tables::{Material, SceneTables};
@@ -244,6 +245,8 @@ materials! {
         Metal = metal, eval_metal, sample_metal, pdf_metal;
         /// GGX conductor with a complex index of refraction.
         Conductor = conductor, eval_conductor, sample_conductor, pdf_conductor;
+        /// GGX conductor with two widths.
+        Brushed = brushed, eval_brushed, sample_brushed, pdf_brushed;
         /// Rough dielectric coat of plastic.
         Coat = coat, eval_coat, sample_coat, pdf_coat;
         /// Diffuse base of plastic.
@@ -297,7 +300,7 @@ impl Bsdf {
             Self::Mix | Self::TwoSided | Self::Graded => &[],
             Self::Diffuse | Self::RoughDiffuse | Self::Translucent | Self::Metal => &[],
             Self::Conductor | Self::Coat | Self::PlasticBase | Self::RoughGlass => &[],
-            Self::RoughPane => &[],
+            Self::RoughPane | Self::Brushed => &[],
             Self::Mirror | Self::SmoothMetal | Self::Glass | Self::ThinGlass | Self::Null => &[],
         }
     }
@@ -315,10 +318,17 @@ impl Bsdf {
         matches!(self, Self::Glass | Self::RoughGlass)
     }
 
-    /// Returns true for a rough material that reflects about the mirror direction only.
+    /// Returns true for a rough material that reflects about the mirror direction only, by facets
+    /// of one width.
     #[inline(always)]
     pub const fn is_reflector(self) -> bool {
-        !self.is_specular() && !self.is_layered() && !self.is_wide() && !self.transmits()
+        matches!(self, Self::Metal | Self::Conductor | Self::Coat)
+    }
+
+    /// Greatest width of the lobe of the entry `m` of this kind.
+    #[inline(always)]
+    pub fn width(self, m: &Material) -> Real {
+        if self == Self::Brushed { m.alpha.max(m.ior) } else { m.alpha }
     }
 
     /// Returns true if a lobe of the width `alpha` is so narrow that eye paths continue at it.
@@ -333,7 +343,7 @@ impl Bsdf {
     pub const fn is_parametric(self) -> bool {
         match self {
             Self::Conductor | Self::Coat | Self::PlasticBase | Self::Plastic => true,
-            Self::RoughGlass | Self::RoughPane | Self::Clearcoat => true,
+            Self::RoughGlass | Self::RoughPane | Self::Clearcoat | Self::Brushed => true,
             Self::Diffuse | Self::RoughDiffuse | Self::Translucent | Self::Metal => false,
             Self::Mirror | Self::SmoothMetal | Self::Glass | Self::ThinGlass | Self::Null => false,
             Self::Mix | Self::TwoSided | Self::Opacity | Self::Graded => false,
@@ -365,19 +375,24 @@ fn chosen_layer<'a>(
     let mut p = *p;
     let mut layer = Layer { lobe: p.lobe, weight: 1.0, u };
     let mut weight = 1.0;
-    for _ in 0..LAYERS {
-        if p.lobe.bsdf.is_layered() {
-            layer = choose_once(scene, &p, layer.u);
-            let other = layer.lobe.material != p.lobe.material;
-            p.lobe = layer.lobe;
-            weight *= layer.weight;
-            if other && p.lobe.m.bent != 0 {
-                p.s.shading = mapped_normal(scene, p.lobe.m, hit, p.s);
-                p.bent = true;
-            }
+    let mut depth = 0;
+    while depth < LAYERS && p.lobe.bsdf.is_layered() {
+        layer = choose_once(scene, &p, layer.u);
+        if layer.lobe.material != p.lobe.material {
+            layer.lobe = lobe_at(scene, layer.lobe.material, p.s.uv);
         }
+        p.lobe = layer.lobe;
+        weight *= layer.weight;
+        depth += 1;
+    }
+    if p.lobe.m.bent != 0 && p.lobe.material != p.s.material {
+        p.s.shading = mapped_normal(scene, p.lobe.m, hit, p.s);
+        p.bent = true;
     }
     set_normals(&mut p);
+    if p.lobe.bsdf == Bsdf::Brushed {
+        p.lobe.alpha = grain_angle(scene, hit, &p);
+    }
     (p, weight)
 }
 

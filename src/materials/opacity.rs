@@ -4,7 +4,7 @@
 
 use super::Bsdf;
 use super::real::{Real, Vec3};
-use super::shading::{Layer, Lobe, ShadingPoint, amount_at, lobe_at};
+use super::shading::{Layer, Lobe, ShadingPoint, amount_at, another};
 use super::tables::{Material, SceneTables};
 
 /// See [`super::Bsdf::examples`].
@@ -12,14 +12,14 @@ pub const EXAMPLES: &[Material] = &[];
 
 /// Chooses between the material and none.
 #[inline(always)]
-pub fn choose_opacity<'a>(scene: &'a SceneTables, p: &ShadingPoint<'a>, u: Real) -> Layer<'a> {
+pub fn choose_opacity<'a>(_: &'a SceneTables, p: &ShadingPoint<'a>, u: Real) -> Layer<'a> {
     let m = p.lobe.m;
     let mut opacity = amount_at(p);
     if m.ior > 0.0 {
         opacity = if opacity >= m.ior { 1.0 } else { 0.0 };
     }
     if u < opacity {
-        return Layer { lobe: lobe_at(scene, m.first, p.s.uv), weight: 1.0, u: u / opacity };
+        return another(p, m.first, u / opacity);
     }
     let lobe = Lobe { bsdf: Bsdf::Null, reflectance: Vec3::ONE, ..p.lobe };
     Layer { lobe, weight: 1.0, u }

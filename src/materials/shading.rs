@@ -2,6 +2,7 @@
 //! `shaders/materials/shading.wgsl`.
 
 use super::Bsdf;
+use super::brushed::grain_angle;
 use super::geometry::surface::Surface;
 use super::interior::{Interior, interior_beyond, relative_ior};
 use super::maps::mapped_normal;
@@ -25,7 +26,7 @@ pub const ADJOINT_COS_MIN: Real = 1e-2;
 pub struct Lobe<'a> {
     /// The material's kind.
     pub bsdf: Bsdf,
-    /// Width (alpha) of the lobe, if the kind has one.
+    /// Width (alpha) of the lobe, if the kind has one; the angle of the grain of brushed metal.
     pub alpha: Real,
     /// Reflectance, in [0, 1]; at normal incidence for metal. Rough glass: index in front of the
     /// surface over that behind it.
@@ -46,19 +47,26 @@ impl Lobe<'_> {
     /// Returns true if the lobe is so narrow that eye paths continue at it.
     #[inline(always)]
     pub fn is_narrow(&self) -> bool {
-        self.bsdf.is_narrow(self.alpha)
+        let width = if self.bsdf == Bsdf::Brushed { self.bsdf.width(self.m) } else { self.alpha };
+        self.bsdf.is_narrow(width)
     }
 }
 
 /// A choice among the materials of a layered one.
 #[derive(Clone, Copy, Debug)]
 pub struct Layer<'a> {
-    /// The chosen lobe, or a material that is itself layered.
+    /// The chosen lobe. If its material is another one, the caller reads its other parameters.
     pub lobe: Lobe<'a>,
     /// Factor of the path's throughput.
     pub weight: Real,
     /// A random number for further choices.
     pub u: Real,
+}
+
+/// The choice of the entry `material` of the table, whose parameters the caller reads.
+#[inline(always)]
+pub fn another<'a>(p: &ShadingPoint<'a>, material: u32, u: Real) -> Layer<'a> {
+    Layer { lobe: Lobe { material, ..p.lobe }, weight: 1.0, u }
 }
 
 /// Surface point viewed from `wo`.
@@ -154,6 +162,9 @@ pub fn shading_point<'a>(
     let ng = toward(s.normal, wo);
     let mut p = ShadingPoint { s, wo, ng, ns: ng, n: ng, bent: lobe.m.bent != 0, lobe };
     set_normals(&mut p);
+    if lobe.bsdf == Bsdf::Brushed {
+        p.lobe.alpha = grain_angle(scene, *hit, &p);
+    }
     p
 }
 

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::albedo::mean_over_hemisphere;
-use super::material::{colored, material};
+use super::material::{brush, colored, material};
 use super::materials::Bsdf;
 use super::real::{Real, Vec2};
 use super::tables::Material;
@@ -14,6 +14,8 @@ use glam::DVec3;
 
 /// Number of materials of a series per unit of roughness.
 const STEPS_OF_ROUGHNESS: f64 = 64.0;
+/// Least roughness of a metal with a grain, whose lobe is no mirror.
+const LEAST_ROUGHNESS: f64 = 1e-3;
 /// Index of refraction of clear coats.
 const COAT_IOR: f64 = 1.5;
 
@@ -23,6 +25,46 @@ pub struct Entries<'s> {
     unit: f64,
     /// An entry for each material of the scene, then those that they consist of.
     pub table: Vec<Material>,
+}
+
+/// How the roughness of a material depends on the place and on the direction.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Grain {
+    /// Texture that multiplies the roughness.
+    map: Option<usize>,
+    /// Roughness along v.
+    along_v: Option<f64>,
+    /// Strength of a metal's grain (see [`Principled::anisotropy`]).
+    strength: f64,
+}
+
+impl Grain {
+    /// Of a material of the scene.
+    pub fn of(m: &crate::scene::Material) -> Self {
+        let strength = match &m.kind {
+            MaterialKind::Principled(p) => p.anisotropy,
+            _ => 0.0,
+        };
+        Self { map: m.roughness_map, along_v: m.roughness_v, strength }
+    }
+
+    /// Widths (alpha) along u and v of a metal with the given roughness, if they differ.
+    fn widths(&self, kind: &MaterialKind) -> Option<[f64; 2]> {
+        let roughness = match kind {
+            MaterialKind::Metal { roughness, .. } | MaterialKind::Conductor { roughness, .. } => {
+                *roughness
+            }
+            _ => return None,
+        };
+        let alpha = roughness * roughness;
+        match self.along_v {
+            Some(v) => Some([alpha, v * v]),
+            None if self.strength > 0.0 => {
+                Some([alpha + (1.0 - alpha) * self.strength * self.strength, alpha])
+            }
+            None => None,
+        }
+    }
 }
 
 /// Where a material is used.
@@ -47,22 +89,23 @@ impl<'s> Entries<'s> {
     }
 
     /// Entry of a kind, whose roughness a texture multiplies.
-    pub fn kind(
-        &mut self,
-        kind: &MaterialKind,
-        roughness_map: Option<usize>,
-        place: Place,
-    ) -> Material {
-        match (kind, roughness_map) {
-            (MaterialKind::Principled(p), _) => self.principled(p, roughness_map, place),
-            (_, Some(texture)) => self.series(kind, texture, place),
-            (_, None) => single(kind, self.unit, place),
+    pub fn kind(&mut self, kind: &MaterialKind, grain: Grain, place: Place) -> Material {
+        match (kind, grain.map) {
+            (MaterialKind::Principled(p), _) => self.principled(p, grain, place),
+            (_, Some(texture)) => self.series(kind, texture, grain, place),
+            (_, None) => single(kind, self.unit, grain, place),
         }
     }
 
     /// A series of materials whose roughness rises in equal steps over the range of a texture's
     /// values.
-    fn series(&mut self, kind: &MaterialKind, texture: usize, place: Place) -> Material {
+    fn series(
+        &mut self,
+        kind: &MaterialKind,
+        texture: usize,
+        grain: Grain,
+        place: Place,
+    ) -> Material {
         let factor = kind.roughness().unwrap_or_default();
         let (least, most) = range(self.scene, &self.scene.textures[texture]);
         let steps = ((most - least) * factor * STEPS_OF_ROUGHNESS).ceil();
@@ -70,7 +113,12 @@ impl<'s> Entries<'s> {
         let unit = self.unit;
         let one = |k: u32| {
             let share = if steps > 0.0 { f64::from(k) / steps } else { 0.0 };
-            single(&kind.with_roughness((least + (most - least) * share) * factor), unit, place)
+            single(
+                &kind.with_roughness((least + (most - least) * share) * factor),
+                unit,
+                grain,
+                place,
+            )
         };
         self.table.par_extend((0..=steps as u32).into_par_iter().map(one));
         Material {
@@ -87,11 +135,11 @@ impl<'s> Entries<'s> {
 
     /// The principled material (docs/materials.md): a clear coat over a mix of a metal with a mix of
     /// a sheet of glass with a dielectric.
-    fn principled(&mut self, p: &Principled, map: Option<usize>, place: Place) -> Material {
-        let below = self.metal_and_dielectric(p, map, place);
+    fn principled(&mut self, p: &Principled, grain: Grain, place: Place) -> Material {
+        let below = self.metal_and_dielectric(p, grain, place);
         self.mix(&p.clearcoat, below, place, |entries| {
             let coated = Place { coated: true, ..place };
-            let below = entries.metal_and_dielectric(p, map, coated);
+            let below = entries.metal_and_dielectric(p, grain, coated);
             let alpha = p.clearcoat_roughness;
             let coat = MaterialKind::Plastic {
                 reflectance: Reflectance::Color([1.0; 3]),
@@ -102,17 +150,12 @@ impl<'s> Entries<'s> {
             Material {
                 kind: Bsdf::Clearcoat as u32,
                 first: entries.push(below),
-                ..single(&coat, entries.unit, place)
+                ..single(&coat, entries.unit, Grain::default(), place)
             }
         })
     }
 
-    fn metal_and_dielectric(
-        &mut self,
-        p: &Principled,
-        map: Option<usize>,
-        place: Place,
-    ) -> Material {
+    fn metal_and_dielectric(&mut self, p: &Principled, grain: Grain, place: Place) -> Material {
         let Principled { base_color, roughness, ior, .. } = p;
         let (reflectance, roughness, ior) = (*base_color, *roughness, *ior);
         let diffuse = |ior| MaterialKind::Plastic {
@@ -122,15 +165,15 @@ impl<'s> Entries<'s> {
             nonlinear: false,
         };
         // without a coat only where all of the surface reflects nothing
-        let bare = single(&diffuse(1.0), self.unit, place);
+        let bare = single(&diffuse(1.0), self.unit, Grain::default(), place);
         let opaque =
-            self.mix(&p.specular, bare, place, |entries| entries.kind(&diffuse(ior), map, place));
+            self.mix(&p.specular, bare, place, |entries| entries.kind(&diffuse(ior), grain, place));
         let dielectric = self.mix(&p.transmission, opaque, place, |entries| {
             let sheet = MaterialKind::ThinGlass { ior, roughness, transmittance: reflectance };
-            entries.kind(&sheet, map, place)
+            entries.kind(&sheet, grain, place)
         });
         self.mix(&p.metallic, dielectric, place, |entries| {
-            entries.kind(&MaterialKind::Metal { reflectance, roughness }, map, place)
+            entries.kind(&MaterialKind::Metal { reflectance, roughness }, grain, place)
         })
     }
 
@@ -164,8 +207,19 @@ impl<'s> Entries<'s> {
 }
 
 /// Entry of a kind that consists of no others.
-fn single(kind: &MaterialKind, unit: f64, place: Place) -> Material {
-    let mut entry = Material { planar_origin: place.planar_origin, ..material(kind, unit) };
+fn single(kind: &MaterialKind, unit: f64, grain: Grain, place: Place) -> Material {
+    let widths = grain.widths(kind);
+    let mut entry = match widths {
+        None => material(kind, unit),
+        // alpha is the square of the roughness
+        Some([a, b]) => {
+            material(&kind.with_roughness((a * b).powf(0.25).max(LEAST_ROUGHNESS)), unit)
+        }
+    };
+    if let Some(widths) = widths {
+        brush(&mut entry, widths);
+    }
+    entry.planar_origin = place.planar_origin;
     if place.coated {
         let eta = 1.0 / COAT_IOR;
         entry.coated = eta as Real;

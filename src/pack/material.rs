@@ -2,7 +2,7 @@
 
 use super::albedo::{Albedo, mean_over_hemisphere};
 use super::image::{period, reduced};
-use super::layers::{Entries, Place};
+use super::layers::{Entries, Grain, Place};
 use super::materials::microfacet::ALPHA_MIN;
 use super::materials::{Bsdf, LAYERS};
 use super::real::{Real, ToReal, Vec3};
@@ -31,8 +31,7 @@ pub fn pack_materials(scene: &scene::Scene, n: &Normalization, out: &mut SceneTa
     for (i, m) in scene.materials.iter().enumerate() {
         let origin = reduced(DVec2::new(n.center.x, n.center.z), period(scene, m)).to_real();
         let place = Place { planar_origin: origin, coated: false };
-        let mut entry = entries.kind(&m.kind, m.roughness_map, place);
-        bend(&mut entry, m, n.unit);
+        let mut entry = entries.kind(&m.kind, Grain::of(m), place);
         if let Some(opacity) = &m.opacity {
             let cutoff = opacity.cutoff.map_or(0.0, |cutoff| cutoff.max(f64::MIN_POSITIVE));
             let mut cover = Material {
@@ -45,6 +44,7 @@ pub fn pack_materials(scene: &scene::Scene, n: &Normalization, out: &mut SceneTa
             colored(&mut cover, Some(&opacity.amount));
             entry = cover;
         }
+        bend(&mut entry, m, n.unit);
         entries.table[i] = entry;
     }
     out.materials = entries.table;
@@ -73,6 +73,7 @@ fn textured(materials: &[Material], index: usize, depth: usize) -> bool {
     let below = |index: u32| textured(materials, index as usize, depth - 1);
     m.texture != NONE
         || m.bent != 0
+        || Bsdf::of(m.kind) == Bsdf::Brushed
         || match Bsdf::of(m.kind) {
             Bsdf::Mix | Bsdf::TwoSided => below(m.first) || below(m.second),
             Bsdf::Opacity | Bsdf::Graded | Bsdf::Clearcoat => below(m.first),
@@ -200,6 +201,14 @@ fn compensate_glass(out: &mut Material, ior: f64) {
         out.k = Vec3::new(d, e, f);
         out.mean_fresnel = Vec3::new(g, h, 0.0);
     }
+}
+
+/// Gives a metal other widths along u and along v; its entry is that of their geometric mean.
+pub fn brush(out: &mut Material, [along_u, along_v]: [f64; 2]) {
+    out.first = u32::from(out.kind == Bsdf::Conductor as u32);
+    out.alpha = (along_u as Real).max(ALPHA_MIN);
+    out.ior = (along_v as Real).max(ALPHA_MIN);
+    out.kind = Bsdf::Brushed as u32;
 }
 
 /// Adds the light that microfacets scatter several times, unless it is negligible.

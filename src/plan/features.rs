@@ -84,6 +84,8 @@ features! {
     Texels = "texels",
     /// Textures that bend the shading normal.
     Maps = "maps",
+    /// Textures that bend the normal of parts of layered materials.
+    PartMaps = "part_maps",
     /// Textures that give the shading normal.
     NormalMap = "normal_map",
     /// Textures that give the height of bumps.
@@ -241,6 +243,7 @@ impl Features {
         put(Feature::Texels, !scene.texels.is_empty());
         put(Feature::Coated, scene.materials.iter().any(|m| m.coated > 0.0));
         put(Feature::Maps, scene.materials.iter().any(|m| m.bent != 0));
+        put(Feature::PartMaps, has_part_maps(scene));
         put(Feature::NormalMap, scene.materials.iter().any(|m| m.normal_map != NONE));
         put(Feature::BumpMap, scene.materials.iter().any(|m| m.bump_map != NONE));
         let lights = || scene.lights.iter().map(|l| LightKind::of(l.kind));
@@ -278,7 +281,7 @@ impl Features {
         put(Feature::Local, settings.radius_rule == RadiusRule::Local);
         let photons = !scene.lights.is_empty() && settings.method != Method::Path;
         let narrow = entries().any(|(bsdf, m)| {
-            [bsdf].iter().chain(bsdf.lobes(m)).any(|lobe| lobe.is_narrow(m.alpha))
+            [bsdf].iter().chain(bsdf.lobes(m)).any(|lobe| lobe.is_narrow(lobe.width(m)))
         });
         put(Feature::Continued, narrow && photons && settings.method == Method::Sppm);
         // photons that no wide surface has scattered are stored
@@ -304,6 +307,15 @@ impl Features {
     pub fn iter(self) -> impl Iterator<Item = Feature> {
         Feature::all().filter(move |feature| self.has(*feature))
     }
+}
+
+/// Returns true if a material that a layered one contains bends the normal.
+fn has_part_maps(scene: &SceneTables) -> bool {
+    let bends = |index: u32| scene.materials.get(index as usize).is_some_and(|m| m.bent != 0);
+    scene.materials.iter().any(|m| match Bsdf::of(m.kind) {
+        Bsdf::Mix | Bsdf::TwoSided => bends(m.first) || bends(m.second),
+        _ => false,
+    })
 }
 
 impl FromIterator<Feature> for Features {

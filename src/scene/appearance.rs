@@ -108,6 +108,8 @@ pub struct Material {
     /// Index of a texture in [`super::Scene::textures`] whose values, the means of the channels,
     /// are factors of the kind's roughness.
     pub roughness_map: Option<usize>,
+    /// Roughness of a metal along v, if it differs from that along u.
+    pub roughness_v: Option<f64>,
     /// Texture that gives the shading normal.
     pub normal_map: Option<NormalMap>,
     /// Texture that gives the height of bumps.
@@ -122,6 +124,7 @@ impl Material {
             kind,
             opacity: None,
             roughness_map: None,
+            roughness_v: None,
             normal_map: None,
             bump_map: None,
         }
@@ -270,6 +273,9 @@ pub struct Principled {
     pub metallic: Reflectance,
     /// Roughness in [0, 1] of all facets but those of the clear coat; GGX `alpha = roughness^2`.
     pub roughness: f64,
+    /// Strength in [0, 1] of the metal's grain: along u, alpha grows by the strength's square of its
+    /// distance to 1.
+    pub anisotropy: f64,
     /// Index of refraction of the dielectric, >= 1.
     pub ior: f64,
     /// Amount of the dielectric's surface that reflects.

@@ -118,6 +118,13 @@ impl Mixture {
                 let kind = Bsdf::Coat as u32;
                 s.materials.push(Material { kind, coated, ..Material::EMPTY });
             }
+            Feature::PartMaps => {
+                self.bent(0, NONE);
+                let part = self.scene.materials.len() as u32 - 1;
+                let kind = Bsdf::Mix as u32;
+                let mix = Material { kind, first: part, second: part, ..Material::EMPTY };
+                self.scene.materials.push(mix);
+            }
             Feature::Maps | Feature::NormalMap => self.bent(0, NONE),
             Feature::BumpMap => self.bent(NONE, 0),
             Feature::Nested => {

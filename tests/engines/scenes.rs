@@ -870,6 +870,28 @@ pub const SCENES: [(&str, &str, &str); 16] = [
         type = "metal"
         material = "copper"
         roughness = "t"
+        [materials.brushed]
+        type = "metal"
+        material = "iron"
+        roughness = [0.2, 0.6]
+        [materials.grained]
+        type = "principled"
+        base_color = "spots"
+        metallic = 0.8
+        roughness = "t"
+        anisotropy = 0.7
+        normal_map = "t"
+        [[shapes]]
+        type = "revolution"
+        segments = [[[0.0, 0.0], [0.2, 0.0]], [[0.2, 0.0], [0.1, 0.1], [0.2, 0.3]]]
+        material = "brushed"
+        transform = { translate = [1.1, 0.0, 0.0] }
+        [[shapes]]
+        type = "sphere"
+        center = [0.0, 0.0, 0.0]
+        radius = 1.0
+        material = "grained"
+        transform = [{ scale = [0.3, 0.2, -0.3] }, { translate = [-0.4, 0.2, 1.0] }]
         [materials.chalk]
         type = "diffuse"
         reflectance = 0.7

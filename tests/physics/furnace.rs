@@ -172,6 +172,8 @@ fn white_metals_and_plastics_lose_nothing() {
         (principled("specular = 0.5\nroughness = 0.7"), 20.0),
         (principled("clearcoat = 1.0\nroughness = 0.9"), 45.0),
         (principled("clearcoat = 0.6\nclearcoat_roughness = 0.2\nspecular = 0.3"), 70.0),
+        // the light scattered several times is that of a metal without a grain
+        ("type = \"metal\"\nreflectance = 1.0\nroughness = [0.5, 0.7]".to_owned(), 50.0),
         (metal(0.3), 60.0),
         (metal(0.7), 35.0),
         (metal(1.0), 50.0),
@@ -195,7 +197,8 @@ fn white_metals_and_plastics_lose_nothing() {
                  type = \"disc\"\ncenter = [0, 0, 0]\nnormal = [0, 1, 0]\nradius = 3.0\n\
                  material = \"m\"\n"
             );
-        let narrow = !material.contains("roughness = 1.0") && !material.contains("type = \"plastic");
+        let narrow =
+            !material.contains("roughness = 1.0") && !material.contains("type = \"plastic");
         for (method, direct) in [
             (Method::Sppm, Direct::Sampled),
             (Method::Sppm, Direct::Photons),

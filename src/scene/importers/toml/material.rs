@@ -4,7 +4,7 @@ use super::document::{Document, Item};
 use super::file::{CommonFile, MaterialFile, TextureFile};
 use super::index;
 use super::named::{glass_absorption, glass_index, metal_index, thin_glass_keys};
-use super::numbers::{Amount, Paint};
+use super::numbers::{Amount, GrainedAmount, Paint};
 use crate::scene::builder::SceneBuilder;
 use crate::scene::parts::Part;
 use crate::scene::{
@@ -45,6 +45,7 @@ pub(super) fn material(
         Amount::Number(number) => Reflectance::Color([number.0; 3]),
         Amount::Texture(name) => Reflectance::Texture(index(document, "textures", name)),
     };
+    let mut roughness_v = None;
     let mut roughness_map = None;
     // a texture is a factor of the roughness 1
     let mut rough = |amount: &Amount| match amount {
@@ -105,7 +106,14 @@ pub(super) fn material(
                 [eta.map(|eta| eta.rgb()), k.map(|k| k.rgb())],
                 material.as_deref(),
             );
-            let roughness = rough(&roughness);
+            let roughness = match roughness {
+                GrainedAmount::Number(number) => number.0,
+                GrainedAmount::Texture(name) => rough(&Amount::Texture(name)),
+                GrainedAmount::Grain([u, v]) => {
+                    roughness_v = Some(v.0);
+                    u.0
+                }
+            };
             let kind = match (index, reflectance) {
                 (Some([eta, k]), _) => MaterialKind::Conductor { eta, k, roughness },
                 (None, reflectance) => MaterialKind::Metal {
@@ -124,6 +132,7 @@ pub(super) fn material(
             base_color,
             metallic,
             roughness,
+            anisotropy,
             ior,
             specular,
             transmission,
@@ -135,6 +144,7 @@ pub(super) fn material(
                 base_color: paint(&base_color),
                 metallic: share(&metallic),
                 roughness: rough(&roughness),
+                anisotropy: anisotropy.0,
                 ior,
                 specular: share(&specular),
                 transmission: share(&transmission),
@@ -168,8 +178,10 @@ pub(super) fn material(
     };
     let (normal_map, bump_map) = maps;
     let name = item.name.to_owned();
-    builder
-        .add_material(item, Material { name, kind, opacity, roughness_map, normal_map, bump_map });
+    builder.add_material(
+        item,
+        Material { name, kind, opacity, roughness_map, roughness_v, normal_map, bump_map },
+    );
 }
 
 /// The textures that bend the normal. Reports a factor without its map and a height map without its

@@ -99,6 +99,26 @@ impl Default for Amount {
     }
 }
 
+/// A number from 0 to 1, two numbers along u and v, or the name of a texture, of which the mean of
+/// the channels counts.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(untagged)]
+#[schemars(inline)]
+pub enum GrainedAmount {
+    /// The same number in all directions.
+    Number(Share),
+    /// Numbers along u and v.
+    Grain([Share; 2]),
+    /// Name of a texture.
+    Texture(String),
+}
+
+impl Default for GrainedAmount {
+    fn default() -> Self {
+        Self::Number(Share::default())
+    }
+}
+
 /// A number from 0 to 1, linear [r, g, b], or the name of a texture.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(untagged)]

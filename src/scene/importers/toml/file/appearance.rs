@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::super::numbers::{Amount, NonNegative, Paint, Positive, Share, Spectrum};
+use super::super::numbers::{Amount, GrainedAmount, NonNegative, Paint, Positive, Share, Spectrum};
 use super::super::schema::close_variants;
 use crate::scene::{Channel, ColorSpace, Filter, Wrap};
 
@@ -125,9 +125,9 @@ pub enum MaterialFile {
         k: Option<Spectrum<NonNegative>>,
         /// Name of a metal, such as gold, copper or aluminium.
         material: Option<String>,
-        /// Roughness, from 0 (mirror) to 1; GGX alpha is its square.
+        /// Roughness, from 0 (mirror) to 1, or two along u and v; GGX alpha is its square.
         #[serde(default)]
-        roughness: Amount,
+        roughness: GrainedAmount,
         /// Opacity and maps.
         #[serde(flatten)]
         common: CommonFile,
@@ -161,6 +161,9 @@ pub enum MaterialFile {
         /// Roughness, from 0 (smooth) to 1; GGX alpha is its square. 0.5 by default.
         #[serde(default = "half")]
         roughness: Amount,
+        /// Strength of the metal's grain along u.
+        #[serde(default)]
+        anisotropy: Share,
         /// Index of refraction of the dielectric, above 1; 1.5 by default.
         #[serde(default = "coat_ior")]
         #[schemars(extend("exclusiveMinimum" = 1))]
