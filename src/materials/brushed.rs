@@ -4,7 +4,7 @@
 //!
 //! The widths along u and v are the entry's `alpha` and `ior`. The lobe's `alpha` is the angle of
 //! u about the shading normal, from the first tangent of [`basis`]. Light scattered several times
-//! is that of the geometric mean of the widths.
+//! does not depend on the azimuth.
 
 use super::fresnel::{fresnel_conductor, schlick};
 use super::geometry::tangents::{Tangents, tangents_at};
@@ -62,7 +62,7 @@ fn brushed_d(h: Vec3, m: &Material) -> Real {
 
 /// Smith's Lambda.
 #[inline(always)]
-fn brushed_lambda(w: Vec3, m: &Material) -> Real {
+pub fn brushed_lambda(w: Vec3, m: &Material) -> Real {
     let (x, y) = (w.x * m.alpha, w.y * m.ior);
     0.5 * ((1.0 + (x * x + y * y) / (w.z * w.z)).sqrt() - 1.0)
 }
@@ -127,7 +127,7 @@ fn again_share(m: &Material, cos: Real) -> Real {
 
 /// Visible microfacet normal for `wo` in the frame of the grain.
 #[inline(always)]
-fn brushed_normal(wo: Vec3, m: &Material, u: Vec2) -> Vec3 {
+pub fn brushed_normal(wo: Vec3, m: &Material, u: Vec2) -> Vec3 {
     let vh = unit(Vec3::new(m.alpha * wo.x, m.ior * wo.y, wo.z));
     let len_sq = vh.x * vh.x + vh.y * vh.y;
     let mut t1 = Vec3::new(1.0, 0.0, 0.0);

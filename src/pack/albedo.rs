@@ -2,8 +2,10 @@
 
 use super::real::{Real, Vec4};
 use super::tables::Material;
+use crate::double::materials::brushed::{brushed_lambda, brushed_normal};
 use crate::double::materials::fresnel::{fresnel, refracted};
 use crate::double::materials::microfacet::{ggx_lambda, ggx_visible_normal};
+use crate::double::tables::Material as Brushed;
 use glam::{DVec2, DVec3};
 use std::f64::consts::PI;
 
@@ -13,6 +15,10 @@ const TERMS: usize = 8;
 const NODES: usize = 24;
 /// Number of sampled facets along each dimension.
 const FACETS: usize = 48;
+
+/// The same for brushed metal, and the number of azimuths.
+const FEW: usize = 24;
+const AZIMUTHS: usize = 6;
 
 /// Directional albedo of GGX microfacets.
 #[derive(Clone, Copy, Debug)]
@@ -41,6 +47,32 @@ impl Albedo {
                 let reflected = interface.reflectance * masking(alpha, cos, up.z);
                 reflected + (1.0 - interface.reflectance) * masking(alpha, cos, -down.z)
             })
+        })
+    }
+
+    /// Albedo of brushed metal with the widths `along_u` and `along_v` and a Fresnel term of one,
+    /// the mean over the azimuth.
+    pub fn of_brushed([along_u, along_v]: [f64; 2]) -> Self {
+        let m = Brushed { alpha: along_u, ior: along_v, ..Brushed::EMPTY };
+        Self::fitted_to(|cos| {
+            let sin = (1.0 - cos * cos).max(0.0).sqrt();
+            let toward = |k: usize| {
+                // one quadrant: the distribution is symmetric
+                let (y, x) = ((k as f64 + 0.5) / AZIMUTHS as f64 * (0.5 * PI)).sin_cos();
+                let wo = DVec3::new(sin * x, sin * y, cos);
+                let lambda = brushed_lambda(wo, &m);
+                let part = |k: usize| {
+                    let u = DVec2::new((k % FEW) as f64 + 0.5, (k / FEW) as f64 + 0.5) / FEW as f64;
+                    let h = brushed_normal(wo, &m, u);
+                    let wi = h * (2.0 * wo.dot(h)) - wo;
+                    if wi.z <= 0.0 {
+                        return 0.0;
+                    }
+                    (1.0 + lambda) / (1.0 + lambda + brushed_lambda(wi, &m))
+                };
+                (0..FEW * FEW).map(part).sum::<f64>() / (FEW * FEW) as f64
+            };
+            (0..AZIMUTHS).map(toward).sum::<f64>() / AZIMUTHS as f64
         })
     }
 

@@ -203,8 +203,12 @@ fn compensate_glass(out: &mut Material, ior: f64) {
     }
 }
 
-/// Gives a metal other widths along u and along v; its entry is that of their geometric mean.
+/// Gives a metal other widths along u and along v.
 pub fn brush(out: &mut Material, [along_u, along_v]: [f64; 2]) {
+    let albedo = Albedo::of_brushed([along_u, along_v].map(|a| a.max(f64::from(ALPHA_MIN))));
+    if albedo.mean() < 1.0 - NEGLIGIBLE_LOSS {
+        albedo.store(out);
+    }
     out.first = u32::from(out.kind == Bsdf::Conductor as u32);
     out.alpha = (along_u as Real).max(ALPHA_MIN);
     out.ior = (along_v as Real).max(ALPHA_MIN);

@@ -151,7 +151,13 @@ fn hosts() -> Vec<Layout> {
             albedo_low,
             albedo_high,
             stores,
-            textured
+            textured,
+            normal_map,
+            normal_strength,
+            bump_map,
+            bump_height,
+            bent,
+            coated
         }),
         layout!(Texture { scale, kind, flags, first, width, height, format, color0, color1 }),
         layout!(Cell { split, axis, first }),

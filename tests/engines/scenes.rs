@@ -535,6 +535,8 @@ pub const SCENES: [(&str, &str, &str); 16] = [
         [materials.tiles]
         type = "diffuse"
         reflectance = "tiles"
+        bump_map = "tiles"
+        bump_height = 0.02
         [materials.red]
         type = "diffuse"
         reflectance = [0.7, 0.2, 0.1]
@@ -783,14 +785,9 @@ pub const SCENES: [(&str, &str, &str); 16] = [
         material = "clear"
         [[shapes]]
         type = "sphere"
-        center = [0.0, 0.0, 0.0]
-        radius = 1.0
+        center = [-0.5, 0.25, 0.9]
+        radius = 0.25
         material = "gloss"
-        transform = [
-            { scale = [0.4, 0.2, 0.3] },
-            { rotate = { axis = [0.0, 0.0, 1.0], degrees = 25.0 } },
-            { translate = [-0.5, 0.35, 0.9] },
-        ]
         [[shapes]]
         type = "box"
         min = [-1.3, 0.0, -0.5]
@@ -888,10 +885,9 @@ pub const SCENES: [(&str, &str, &str); 16] = [
         transform = { translate = [1.1, 0.0, 0.0] }
         [[shapes]]
         type = "sphere"
-        center = [0.0, 0.0, 0.0]
-        radius = 1.0
+        center = [-0.4, 0.2, 1.0]
+        radius = 0.2
         material = "grained"
-        transform = [{ scale = [0.3, 0.2, -0.3] }, { translate = [-0.4, 0.2, 1.0] }]
         [materials.chalk]
         type = "diffuse"
         reflectance = 0.7

@@ -172,7 +172,7 @@ fn white_metals_and_plastics_lose_nothing() {
         (principled("specular = 0.5\nroughness = 0.7"), 20.0),
         (principled("clearcoat = 1.0\nroughness = 0.9"), 45.0),
         (principled("clearcoat = 0.6\nclearcoat_roughness = 0.2\nspecular = 0.3"), 70.0),
-        // the light scattered several times is that of a metal without a grain
+        // the light scattered several times is a mean over the azimuth
         ("type = \"metal\"\nreflectance = 1.0\nroughness = [0.5, 0.7]".to_owned(), 50.0),
         (metal(0.3), 60.0),
         (metal(0.7), 35.0),

@@ -361,7 +361,7 @@ fn brushed_floor() {
     let material = "type = \"metal\"\nreflectance = 0.7\nroughness = [0.3, 0.6]";
     let (ax, az) = (0.09f64, 0.36f64);
     let at = DVec3::new(-0.15, 1.0, -0.4);
-    let albedo = Albedo::of((ax * az).sqrt(), |_| 1.0);
+    let albedo = Albedo::of_brushed([ax, az]);
     let once = |cos: f64| {
         albedo.terms.iter().enumerate().map(|(i, t)| t * cos.powi(i as i32)).sum::<f64>()
     };
