@@ -265,6 +265,35 @@ fn methods_agree_on_bent_normals() {
     pairwise("mix of mapped parts", &room([bumpy, diffuse, plastic, mix]), &cases, 0.06);
 }
 
+/// Theory: the same for a floor that only light from a mapped metal wall reaches.
+#[test]
+fn methods_agree_on_light_from_bent_reflectors() {
+    let wall = "type = \"metal\"\nreflectance = 0.9\nroughness = 0.7\nnormal_map = \"n\"";
+    let text = room([wall; 4]);
+    let (head, _) = text.split_at(text.find("[materials.black]").unwrap());
+    let camera = Camera {
+        position: DVec3::new(-0.2, 2.0, 1.0),
+        target: DVec3::new(-0.2, 0.0, 0.0),
+        fov: 30.0,
+        size: 24,
+    };
+    let text = camera.toml()
+        + &head[head.find("[textures.h]").unwrap()..]
+        + "[materials.black]\ntype = \"diffuse\"\nreflectance = 0\n\
+           [materials.white]\ntype = \"diffuse\"\nreflectance = 0.8\n\
+           [[shapes]]\ntype = \"rectangle\"\norigin = [-2, 0, 2]\nu = [4, 0, 0]\nv = [0, 0, -4]\n\
+           material = \"white\"\n\
+           [[shapes]]\ntype = \"rectangle\"\norigin = [-1, 0, 1]\nu = [0, 0, -2]\nv = [0, 1.5, 0]\n\
+           material = \"left\"\n\
+           [[shapes]]\ntype = \"rectangle\"\norigin = [0.6, 0.3, -0.4]\nu = [0, 0, 0.8]\n\
+           v = [0, 0.6, 0]\nmaterial = \"black\"\nemission = 9\n";
+    let cases = [
+        (Method::Path, Direct::Sampled, RadiusRule::Fixed),
+        (Method::Sppm, Direct::Photons, RadiusRule::Fixed),
+    ];
+    pairwise("light from a mapped wall", &text, &cases, 0.05);
+}
+
 /// Theory: a white mapped surface under an even sky is nowhere much darker than its light, not even
 /// where it is seen at grazing angles: a bent normal that faces away does not make it black.
 #[test]
