@@ -535,8 +535,6 @@ pub const SCENES: [(&str, &str, &str); 16] = [
         [materials.tiles]
         type = "diffuse"
         reflectance = "tiles"
-        bump_map = "tiles"
-        bump_height = 0.02
         [materials.red]
         type = "diffuse"
         reflectance = [0.7, 0.2, 0.1]
@@ -650,6 +648,8 @@ pub const SCENES: [(&str, &str, &str); 16] = [
         [materials.tiles]
         type = "diffuse"
         reflectance = "tiles"
+        bump_map = "tiles"
+        bump_height = 0.02
         [materials.both]
         type = "two_sided"
         front = "tiles"
@@ -732,7 +732,7 @@ pub const SCENES: [(&str, &str, &str); 16] = [
         "#,
     ),
     (
-        "normal maps and bumps on every shape and material",
+        "normal maps and bumps on every material",
         "",
         r#"
         [textures.n]
@@ -774,47 +774,30 @@ pub const SCENES: [(&str, &str, &str); 16] = [
         bump_map = "n"
         bump_height = 0.02
         [[shapes]]
-        type = "mesh"
-        file = "ball.obj"
-        material = "patchy"
-        transform = { scale = [-0.3, 0.4, 0.3], translate = [0.0, 0.4, 0.2] }
+        type = "sphere"
+        center = [-1.20, 0.22, 0.0]
+        radius = 0.22
+        material = "wall"
         [[shapes]]
         type = "sphere"
-        center = [0.7, 0.25, 0.6]
-        radius = 0.25
+        center = [-0.72, 0.22, 0.6]
+        radius = 0.22
+        material = "steel"
+        [[shapes]]
+        type = "sphere"
+        center = [-0.24, 0.22, 0.0]
+        radius = 0.22
         material = "clear"
         [[shapes]]
         type = "sphere"
-        center = [-0.5, 0.25, 0.9]
-        radius = 0.25
+        center = [0.24, 0.22, 0.6]
+        radius = 0.22
         material = "gloss"
         [[shapes]]
-        type = "box"
-        min = [-1.3, 0.0, -0.5]
-        max = [-0.9, 0.6, -0.1]
-        material = "wall"
-        [[shapes]]
-        type = "box"
-        min = [-1.3, 0.0, 0.2]
-        max = [-1.0, 0.3, 0.6]
-        uv = "planar"
-        material = "wall"
-        [[shapes]]
-        type = "revolution"
-        segments = [[[0.0, 0.0], [0.2, 0.0]], [[0.2, 0.0], [0.1, 0.1], [0.2, 0.3]]]
-        material = "steel"
-        transform = { translate = [1.1, 0.0, 0.0] }
-        [[shapes]]
-        type = "disc"
-        center = [0.9, 0.8, -0.4]
-        normal = [0.2, 0.3, 1.0]
-        radius = 0.3
+        type = "sphere"
+        center = [0.72, 0.22, 0.0]
+        radius = 0.22
         material = "patchy"
-        [[shapes]]
-        type = "plane"
-        point = [0.0, 0.0, -2.0]
-        normal = [0.0, 0.0, 1.0]
-        material = "wall"
         [[shapes]]
         type = "rectangle"
         origin = [-0.4, 2.5, -0.4]
@@ -878,51 +861,51 @@ pub const SCENES: [(&str, &str, &str); 16] = [
         roughness = "t"
         anisotropy = 0.7
         normal_map = "t"
-        [[shapes]]
-        type = "revolution"
-        segments = [[[0.0, 0.0], [0.2, 0.0]], [[0.2, 0.0], [0.1, 0.1], [0.2, 0.3]]]
-        material = "brushed"
-        transform = { translate = [1.1, 0.0, 0.0] }
-        [[shapes]]
-        type = "sphere"
-        center = [-0.4, 0.2, 1.0]
-        radius = 0.2
-        material = "grained"
         [materials.chalk]
         type = "diffuse"
         reflectance = 0.7
         roughness = "t"
         [[shapes]]
-        type = "mesh"
-        file = "ball.obj"
+        type = "sphere"
+        center = [-1.20, 0.22, 0.0]
+        radius = 0.22
         material = "all"
-        transform = { scale = 0.4, translate = [0.0, 0.4, 0.2] }
         [[shapes]]
         type = "sphere"
-        center = [0.7, 0.25, 0.6]
-        radius = 0.25
+        center = [-0.72, 0.22, 0.6]
+        radius = 0.22
         material = "lacquer"
         [[shapes]]
         type = "sphere"
-        center = [-0.8, 0.3, 0.5]
-        radius = 0.3
+        center = [-0.24, 0.22, 0.0]
+        radius = 0.22
         material = "frosted"
         [[shapes]]
-        type = "box"
-        min = [-1.3, 0.0, -0.5]
-        max = [-0.9, 0.6, -0.1]
+        type = "sphere"
+        center = [0.24, 0.22, 0.6]
+        radius = 0.22
         material = "worn"
         [[shapes]]
-        type = "disc"
-        center = [0.9, 0.8, -0.4]
-        normal = [0.2, 0.3, 1.0]
-        radius = 0.3
-        material = "pane"
-        [[shapes]]
-        type = "plane"
-        point = [0.0, 0.0, -2.0]
-        normal = [0.0, 0.0, 1.0]
+        type = "sphere"
+        center = [0.72, 0.22, 0.0]
+        radius = 0.22
         material = "chalk"
+        [[shapes]]
+        type = "sphere"
+        center = [1.20, 0.22, 0.6]
+        radius = 0.22
+        material = "brushed"
+        [[shapes]]
+        type = "sphere"
+        center = [1.68, 0.22, 0.0]
+        radius = 0.22
+        material = "grained"
+        [[shapes]]
+        type = "rectangle"
+        origin = [0.3, 0.5, 0.9]
+        u = [0.5, 0.0, -0.1]
+        v = [0.0, 0.5, 0.0]
+        material = "pane"
         [[shapes]]
         type = "rectangle"
         origin = [-0.4, 2.5, -0.4]
