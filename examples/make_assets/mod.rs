@@ -4,6 +4,7 @@ pub mod canvas;
 pub mod car;
 pub mod car_paint;
 pub mod car_shape;
+pub mod cloth;
 pub mod crafts;
 pub mod house;
 pub mod house_paint;
@@ -12,6 +13,7 @@ pub mod mesh;
 pub mod numbers;
 pub mod parts;
 pub mod sky;
+pub mod tableware;
 
 use canvas::Canvas;
 use image::codecs::hdr::HdrEncoder;
@@ -86,6 +88,18 @@ pub fn meshes() -> Vec<NamedMesh> {
             comment: "a brick cottage, its front towards +z, y up, metres",
             mesh: house::house(),
         },
+        NamedMesh {
+            name: "spoon.obj",
+            library: None,
+            comment: "a spoon, its handle along +x, y up, centimetres",
+            mesh: tableware::spoon(),
+        },
+        NamedMesh {
+            name: "ice.obj",
+            library: None,
+            comment: "an ice cube of about two centimetres",
+            mesh: tableware::ice(),
+        },
     ]
 }
 
@@ -104,6 +118,7 @@ pub fn pictures() -> Vec<Asset> {
         picture("window.png", house_paint::window()),
         picture("shutter.png", house_paint::shutter()),
         picture("grass.png", house_paint::grass()),
+        picture("cloth-normal.png", cloth::normals()),
         Asset { name: "sky.hdr", content: Content::Radiance(sky::WIDTH, sky::sky()) },
         Asset { name: "house.mtl", content: Content::Text(house::materials()) },
     ]

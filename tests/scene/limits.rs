@@ -79,6 +79,7 @@ fn a_sound_scene_says_nothing() {
         "materials",
         "soft-shadows",
         "still-life",
+        "table",
         "water-drop",
     ] {
         let file = format!("{}/scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
