@@ -1,6 +1,6 @@
 //! A clear dielectric coat over any other material: the path meets the coat with the probability
 //! `F(cos_o)` of its Fresnel term, else the material below, whose lobes lose `1 - F(cos_i)` of
-//! their light as it passes the coat on its other way (see [`super::coated`]). Twin:
+//! their light as it passes the coat on its other way (see `coated` in `materials/mod.rs`). Twin:
 //! `shaders/materials/clearcoat.wgsl`.
 
 use super::Bsdf;
