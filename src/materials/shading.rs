@@ -163,7 +163,7 @@ pub fn shading_point<'a>(
     let mut p = ShadingPoint { s, wo, ng, ns: ng, n: ng, bent: lobe.m.bent != 0, lobe };
     set_normals(&mut p);
     if lobe.bsdf == Bsdf::Brushed {
-        p.lobe.alpha = grain_angle(scene, *hit, &p);
+        p.lobe.alpha = grain_angle(scene, *hit, &{ p });
     }
     p
 }
