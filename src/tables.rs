@@ -115,9 +115,9 @@ pub struct Camera {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Plain, Zeroable)]
 pub struct Material {
-    /// Reflectance, in [0, 1]; at normal incidence for metal. Mix, opacity and graded: the amount, as
-    /// the mean of the channels. Thin glass: transmittance. For an open glass sheet its unit mean
-    /// normal; zero for closed glass.
+    /// Reflectance, in [0, 1]; at normal incidence for metal. Mix, opacity and graded: the amount,
+    /// as the mean of the channels. Thin glass: transmittance. For an open glass sheet its unit
+    /// mean normal; zero for closed glass.
     pub reflectance: Vec3,
     /// Number of its [`Bsdf`](super::materials::Bsdf).
     pub kind: u32,
@@ -136,9 +136,9 @@ pub struct Material {
     /// Conductor: index of refraction relative to the outside, per channel. Rough glass: lowest
     /// coefficients of the polynomial `albedo` from inside; `k` and `mean_fresnel` hold the others.
     pub eta: Vec3,
-    /// Mix, opacity, graded: index of the first material; two-sided: that of the front. Plastic: 1 if light
-    /// takes on the base's color at each reflection inside, else 0. Brushed metal: 1 for the exact
-    /// Fresnel term.
+    /// Mix, opacity, graded: index of the first material; two-sided: that of the front. Plastic: 1
+    /// if light takes on the base's color at each reflection inside, else 0. Brushed metal: 1 for
+    /// the exact Fresnel term.
     pub first: u32,
     /// Conductor: extinction coefficient relative to the outside, per channel.
     pub k: Vec3,

@@ -133,8 +133,8 @@ impl<'s> Entries<'s> {
         }
     }
 
-    /// The principled material (docs/materials.md): a clear coat over a mix of a metal with a mix of
-    /// a sheet of glass with a dielectric.
+    /// The principled material (docs/materials.md): a clear coat over a mix of a metal with a mix
+    /// of a sheet of glass with a dielectric.
     fn principled(&mut self, p: &Principled, grain: Grain, place: Place) -> Material {
         let below = self.metal_and_dielectric(p, grain, place);
         self.mix(&p.clearcoat, below, place, |entries| {

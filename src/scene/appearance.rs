@@ -147,8 +147,8 @@ impl Material {
 /// A texture that gives the shading normal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NormalMap {
-    /// Index into [`super::Scene::textures`]. Its channels are `(x + 1) / 2` of the components along
-    /// the directions in which u and v increase, and along the normal.
+    /// Index into [`super::Scene::textures`]. Its channels are `(x + 1) / 2` of the components
+    /// along the directions in which u and v increase, and along the normal.
     pub texture: usize,
     /// Factor on the first two components.
     pub strength: f64,
@@ -273,8 +273,7 @@ pub struct Principled {
     pub metallic: Reflectance,
     /// Roughness in [0, 1] of all facets but those of the clear coat; GGX `alpha = roughness^2`.
     pub roughness: f64,
-    /// Strength in [0, 1] of the metal's grain: along u, alpha grows by the strength's square of its
-    /// distance to 1.
+    /// Strength `s` in [0, 1] of the metal's grain: alpha along u is `alpha + (1 - alpha) s^2`.
     pub anisotropy: f64,
     /// Index of refraction of the dielectric, >= 1.
     pub ior: f64,

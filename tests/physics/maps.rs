@@ -41,7 +41,8 @@ fn normal_map_floor() {
         let [x, y, z] = texel.map(|c| 2.0 * f64::from(c) / 255.0 - 1.0);
         let n = DVec3::new(x * strength, z, -y * strength).normalize();
         let material = format!(
-            "type = \"diffuse\"\nreflectance = 0.8\nnormal_map = \"n\"\nnormal_strength = {strength:?}"
+            "type = \"diffuse\"\nreflectance = 0.8\nnormal_map = \"n\"\n\
+             normal_strength = {strength:?}"
         );
         let at = DVec3::new(0.6, 0.9, -0.3);
         let radiance =
@@ -50,9 +51,9 @@ fn normal_map_floor() {
     }
 }
 
-/// Theory: a floor of the height h(x, z) has the normal `(-dh/dx, 1, -dh/dz)`. On an image of 8 bits
-/// that rises by one from texel to texel, a unit of u is 256 / 255 of the height. A height scale
-/// with the sign changed makes dents.
+/// Theory: a floor of the height h(x, z) has the normal `(-dh/dx, 1, -dh/dz)`. On an image of 8
+/// bits that rises by one from texel to texel, a unit of u is 256 / 255 of the height. A height
+/// scale with the sign changed makes dents.
 #[test]
 fn bump_map_floor() {
     for (name, height, rise) in [
@@ -99,8 +100,8 @@ const SHAPES: [(&str, &str); 13] = [
     ("plane", "type = \"plane\"\npoint = [0, -0.2, 0]\nnormal = [0.1, 1, 0.2]"),
     (
         "ellipsoid",
-        "type = \"sphere\"\ncenter = [0, 0, 0]\nradius = 0.6\ntransform = [{ scale = [1, 0.5, -0.8] }, \
-         { rotate = { axis = [1, 1, 0], degrees = 40 } }]",
+        "type = \"sphere\"\ncenter = [0, 0, 0]\nradius = 0.6\n\
+         transform = [{ scale = [1, 0.5, -0.8] }, { rotate = { axis = [1, 1, 0], degrees = 40 } }]",
     ),
     ("mirrored mesh", "type = \"mesh\"\nfile = \"MESH\"\ntransform = { scale = [-1, 0.7, 0.8] }"),
     (
@@ -115,7 +116,7 @@ const SHAPES: [(&str, &str); 13] = [
     ),
 ];
 
-/// A wavy patch with a normal and a (u, v) of its own at each vertex, seen from both sides.
+/// A wavy patch with a (u, v) at each vertex.
 fn wavy() -> String {
     let mut text = String::new();
     for j in 0..=8 {

@@ -1,5 +1,5 @@
-//! The principled material, textures for roughness, and rough panes: closed forms, and agreement with
-//! the materials that they consist of.
+//! The principled material, textures for roughness, and rough panes: closed forms, and agreement
+//! with the materials that they consist of.
 
 use std::f64::consts::PI;
 
